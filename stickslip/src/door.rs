@@ -1,0 +1,201 @@
+//! A running simulation with dimension and precision erased: what the command line, Python and observers see.
+//!
+//! Everything that crosses this door is `f64`, SI and three-dimensional; plane scenes have zeros in the third component.
+
+use serde::Serialize;
+
+/// A simulation that can be stepped and looked at.
+pub trait Simulation: Send {
+    /// Simulated time [s].
+    fn time(&self) -> f64;
+    /// Steps taken.
+    fn steps(&self) -> u64;
+    /// Particles in all bodies.
+    fn particles(&self) -> usize;
+    /// The step that [`Simulation::step`] would take now if nothing cut it short [s].
+    fn stable_step(&self) -> f64;
+    /// Takes one step, at most `longest` long [s].
+    ///
+    /// # Errors
+    /// The step's failure, with the simulation left as it was when it went wrong, so that it can still be looked at.
+    fn step(&mut self, longest: f64) -> Result<(), StepError>;
+    /// Each body's mass, motion and energy now, in the order of the scene.
+    fn bodies(&self) -> Vec<BodyState>;
+    /// The energy and momentum ledger now.
+    fn ledger(&self) -> Ledger;
+    /// What contact did since the last call, per pair of bodies that touched, ordered by pair.
+    fn take_contacts(&mut self) -> Vec<ContactState>;
+    /// All particles now, ordered by body and then by the particle's number in its body.
+    fn snapshot(&self) -> ParticleSnapshot;
+    /// The nodes of the last step's grid that carry mass.
+    fn grid_snapshot(&self) -> GridSnapshot;
+    /// Wall time spent so far in each verb of the step [s].
+    fn timings(&self) -> Vec<(&'static str, f64)>;
+}
+
+/// One body at one time.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct BodyState {
+    /// Mass [kg].
+    pub mass: f64,
+    /// Centre of mass [m].
+    pub position: [f64; 3],
+    /// Velocity of the centre of mass [m/s].
+    pub velocity: [f64; 3],
+    /// Angular velocity: the inverse of the inertia tensor times the angular momentum, both about the centre of mass [rad/s].
+    pub spin: [f64; 3],
+    /// Kinetic energy [J].
+    pub kinetic: f64,
+    /// Strain energy [J].
+    pub strain: f64,
+}
+
+/// Energy and momentum of everything. Dissipated and supplied energies are summed from the start.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Ledger {
+    /// Kinetic energy of the particles [J].
+    pub kinetic: f64,
+    /// Strain energy [J].
+    pub strain: f64,
+    /// Potential energy in gravity, zero at the origin [J].
+    pub potential: f64,
+    /// Work done on the bodies by prescribed motion [J].
+    pub external_work: f64,
+    /// Dissipated by friction [J].
+    pub friction: f64,
+    /// Dissipated by plastic flow [J].
+    pub plastic: f64,
+    /// Dissipated by damping, and by the inelastic shock of contact on the grid [J].
+    pub damping: f64,
+    /// kinetic + strain + potential + friction + plastic + damping - external work [J]; constant in an exact solution.
+    pub total: f64,
+    /// Linear momentum [kg m/s].
+    pub momentum: [f64; 3],
+    /// Angular momentum about the origin [kg m^2/s].
+    pub angular_momentum: [f64; 3],
+}
+
+/// Contact between two bodies, averaged over the time since the last look.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ContactState {
+    /// Index of the first body; smaller than `body_b`.
+    pub body_a: usize,
+    /// Index of the second body.
+    pub body_b: usize,
+    /// Mean force of `a` on `b` [N].
+    pub force: [f64; 3],
+    /// Sum over nodes of the force along each node's normal, positive when the bodies push each other apart [N].
+    pub normal: f64,
+    /// Sum over nodes of the magnitude of the force across each node's normal [N].
+    pub tangential: f64,
+    /// Grid nodes in contact in the last step in which the pair touched.
+    pub nodes: usize,
+}
+
+/// Particles of all bodies as columns of equal length.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ParticleSnapshot {
+    /// 2 or 3.
+    pub dimension: usize,
+    /// Index of the body.
+    pub body: Vec<u32>,
+    /// Number of the particle in its body, from the filling; it never changes.
+    pub number: Vec<u32>,
+    /// Position [m].
+    pub position: Vec<[f64; 3]>,
+    /// Velocity [m/s].
+    pub velocity: Vec<[f64; 3]>,
+    /// Mass [kg].
+    pub mass: Vec<f64>,
+    /// Volume now [m^3].
+    pub volume: Vec<f64>,
+    /// Cauchy stress xx, yy, zz, xy, yz, xz, tension positive [Pa].
+    pub stress: Vec<[f64; 6]>,
+    /// Deformation gradient, row by row [-].
+    pub deformation: Vec<[f64; 9]>,
+}
+
+/// Grid nodes with mass as columns of equal length; a node that two bodies share stands there twice.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct GridSnapshot {
+    /// 2 or 3.
+    pub dimension: usize,
+    /// Side of a cell [m].
+    pub cell: f64,
+    /// Index of the body.
+    pub body: Vec<u32>,
+    /// Position of the node [m].
+    pub position: Vec<[f64; 3]>,
+    /// The body's mass at the node [kg].
+    pub mass: Vec<f64>,
+    /// The body's velocity at the end of the step [m/s].
+    pub velocity: Vec<[f64; 3]>,
+    /// Force on the body from its own stress [N].
+    pub force: Vec<[f64; 3]>,
+    /// Change of the body's momentum by contact in the step [N s].
+    pub contact_impulse: Vec<[f64; 3]>,
+}
+
+/// A step that went wrong.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum StepError {
+    /// A particle turned inside out.
+    #[error(
+        "particle {number} of body `{body}` inverted at {position:?} m, t = {time:.6e} s (determinant of F: {determinant:.3e})"
+    )]
+    Inverted {
+        /// Name of the body.
+        body: String,
+        /// Number of the particle in its body.
+        number: u32,
+        /// Where it is [m].
+        position: [f64; 3],
+        /// When [s].
+        time: f64,
+        /// Determinant of its deformation gradient.
+        determinant: f64,
+    },
+    /// A particle left the domain.
+    #[error("particle {number} of body `{body}` left the domain at {position:?} m, t = {time:.6e} s")]
+    Escaped {
+        /// Name of the body.
+        body: String,
+        /// Number of the particle in its body.
+        number: u32,
+        /// Where it is [m].
+        position: [f64; 3],
+        /// When [s].
+        time: f64,
+    },
+    /// A particle's position, velocity or stress is not a finite number.
+    #[error(
+        "particle {number} of body `{body}` has a value that is not finite near {position:?} m, t = {time:.6e} s"
+    )]
+    NotFinite {
+        /// Name of the body.
+        body: String,
+        /// Number of the particle in its body.
+        number: u32,
+        /// Where it was last [m].
+        position: [f64; 3],
+        /// When [s].
+        time: f64,
+    },
+}
+
+impl StepError {
+    /// What the user can try.
+    pub fn advice(&self) -> &'static str {
+        match self {
+            StepError::Inverted { .. } => {
+                "try a smaller time.courant, more cells, the gimp basis, or a stiffer material; look at the last frame"
+            }
+            StepError::Escaped { .. } => {
+                "make the domain larger, end the run earlier, or put a face in the way"
+            }
+            StepError::NotFinite { .. } => {
+                "try a smaller time.courant; look at the last frame for what went wrong first"
+            }
+        }
+    }
+}

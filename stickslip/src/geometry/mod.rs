@@ -1,0 +1,63 @@
+//! Shapes: which points are inside, and how a shape is filled with particles.
+
+use serde::Serialize;
+
+/// A region of space. In the plane, the first two coordinates count.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Shape {
+    /// A ball; in the plane, a disk.
+    Ball {
+        /// Centre [m].
+        center: [f64; 3],
+        /// Radius [m].
+        radius: f64,
+    },
+    /// A box with faces across the axes; in the plane, a rectangle.
+    Box {
+        /// Lower corner [m].
+        min: [f64; 3],
+        /// Upper corner [m].
+        max: [f64; 3],
+    },
+    /// A solid cylinder between the centres of its two ends; three dimensions only.
+    Cylinder {
+        /// Centre of one end [m].
+        start: [f64; 3],
+        /// Centre of the other end [m].
+        end: [f64; 3],
+        /// Radius [m].
+        radius: f64,
+    },
+    /// All points behind a plane; unbounded, so it serves to cut other shapes.
+    HalfSpace {
+        /// A point on the plane [m].
+        point: [f64; 3],
+        /// Outward normal, any length [-].
+        normal: [f64; 3],
+    },
+    /// A polygon in the plane of x and y; in three dimensions a prism over it.
+    Polygon {
+        /// Corners in order [m]; the last joins the first.
+        points: Vec<[f64; 2]>,
+        /// Lower and upper z of the prism [m]; not used in the plane.
+        height: [f64; 2],
+    },
+    /// Points in any of the shapes.
+    Union(Vec<Shape>),
+    /// Points in all of the shapes.
+    Intersection(Vec<Shape>),
+    /// Points in the first shape and in none of the others.
+    Difference(Vec<Shape>),
+    /// The shape turned about a point.
+    Rotated {
+        /// The shape before it is turned.
+        shape: Box<Shape>,
+        /// A fixed point [m].
+        center: [f64; 3],
+        /// Axis of the turn, any length; in the plane (0, 0, 1) [-].
+        axis: [f64; 3],
+        /// Angle, right-handed about the axis [rad].
+        angle: f64,
+    },
+}

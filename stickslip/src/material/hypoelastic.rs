@@ -1,0 +1,102 @@
+//! Linear elasticity in rate form (the paper's law for disks), integrated objectively after Hughes and Winget (1980).
+//!
+//! ```text
+//! sigma rate = (K - 2G/3) tr(D) I + 2 G D          (rate seen by an observer turning with the material)
+//! H = 2 (dF - I)(dF + I)^-1,  D dt = (H + H^T)/2,  W dt = (H - H^T)/2
+//! Q = (I - W dt/2)^-1 (I + W dt/2),  sigma' = Q sigma Q^T + (K - 2G/3) tr(D dt) I + 2 G D dt
+//! ```
+//!
+//! A step that is a pure rotation gives D = 0 exactly, and Q is that rotation.
+
+use super::{Isotropic, Law, Motion};
+use crate::tensor::{Matrix, Real, Symmetric};
+use serde::Serialize;
+
+/// Linear elasticity in rate form.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Hypoelastic<T> {
+    /// Moduli.
+    #[serde(flatten)]
+    pub elastic: Isotropic<T>,
+}
+
+impl<T: Real> Law<T> for Hypoelastic<T> {
+    #[inline]
+    fn stress(&self, motion: &Motion<T>) -> Symmetric<T> {
+        let Isotropic { bulk_modulus: k, shear_modulus: g } = self.elastic;
+        let identity = Matrix::IDENTITY;
+        let two = T::of(2.0);
+        let h = (motion.increment - identity) * (motion.increment + identity).inverse() * two;
+        let strain = h.symmetric_part();
+        let half_spin = (h - h.transpose()) * T::of(0.25);
+        let rotation = (identity - half_spin).inverse() * (identity + half_spin);
+        let lame = k - T::of(2.0 / 3.0) * g;
+        motion.stress.rotated(&rotation) + Symmetric::isotropic(lame * strain.trace()) + strain * (two * g)
+    }
+
+    fn strain_energy(&self, deformation: &Matrix<T>, stress: &Symmetric<T>) -> T {
+        let Isotropic { bulk_modulus: k, shear_modulus: g } = self.elastic;
+        let mean = stress.trace() / T::of(3.0);
+        let deviator = stress.deviator();
+        let shear = if g > T::ZERO { deviator.double_dot(&deviator) / (T::of(4.0) * g) } else { T::ZERO };
+        deformation.det() * (T::HALF * mean * mean / k + shear)
+    }
+
+    #[inline]
+    fn wave_modulus(&self, _deformation: &Matrix<T>, jacobian: T) -> T {
+        let Isotropic { bulk_modulus: k, shear_modulus: g } = self.elastic;
+        (k + T::of(4.0 / 3.0) * g) * jacobian
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::material::tests::{hooke, motion_of, rotation, sample_gradients};
+
+    const LAW: Hypoelastic<f64> =
+        Hypoelastic { elastic: Isotropic { bulk_modulus: 6.0, shear_modulus: 3.0 } };
+
+    #[test]
+    fn small_strain_gives_hooke() {
+        for h in sample_gradients() {
+            let f = Matrix::IDENTITY + h * 1e-6;
+            let stress = LAW.stress(&motion_of(f));
+            let exact = hooke(&LAW.elastic, &(h * 1e-6).symmetric_part());
+            for (s, e) in stress.0.iter().zip(exact.0) {
+                assert!((s - e).abs() < 1e-10, "{s} {e}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_step_of_rotation_only_rotates_the_stress() {
+        let q = rotation();
+        let before = Symmetric([1.0, -2.0, 0.5, 0.3, -0.7, 0.2]);
+        let motion = Motion { deformation: q, jacobian: 1.0, increment: q, stress: before };
+        let after = LAW.stress(&motion);
+        for (s, e) in after.0.iter().zip(before.rotated(&q).0) {
+            assert!((s - e).abs() < 1e-13, "{s} {e}");
+        }
+    }
+
+    #[test]
+    fn energy_is_the_work_of_the_stress_at_small_strain() {
+        for h in sample_gradients() {
+            let h = h * 1e-4;
+            let n = 400;
+            let (mut work, mut stress, mut f) = (0.0, Symmetric::ZERO, Matrix::IDENTITY);
+            for i in 0..n {
+                let next = Matrix::IDENTITY + h * ((i + 1) as f64 / n as f64);
+                let increment = next * f.inverse();
+                let motion = Motion { deformation: next, jacobian: next.det(), increment, stress };
+                let after = LAW.stress(&motion);
+                let strain = (increment - Matrix::IDENTITY).symmetric_part();
+                work += next.det() * ((stress + after) * 0.5).double_dot(&strain);
+                (stress, f) = (after, next);
+            }
+            let energy = LAW.strain_energy(&f, &stress);
+            assert!((work / energy - 1.0).abs() < 1e-3, "{work} {energy}");
+        }
+    }
+}

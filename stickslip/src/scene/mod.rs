@@ -1,0 +1,288 @@
+//! What the user asks for: a [`Scene`], in SI units, with every parameter resolved.
+//!
+//! A scene is plain data. It says nothing about precision of its storage, threads or blocks; the engine is built from it.
+//! Vectors have three components; a plane scene uses the first two and takes the third as zero.
+
+mod expression;
+mod problem;
+
+pub use expression::Expression;
+pub use problem::Problem;
+
+use crate::geometry::Shape;
+use crate::material::Material;
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// Everything that a run needs, resolved to SI units.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Scene {
+    /// One line for plots, pictures and summaries.
+    pub title: String,
+    /// What the scene shows and which numbers it must give.
+    pub about: String,
+    /// The named parameters of the file with the values of this run.
+    pub parameters: BTreeMap<String, Parameter>,
+    /// Two or three dimensions.
+    pub dimension: Dimension,
+    /// Number format of the particles and the grid.
+    pub precision: Precision,
+    /// Cells, particles and shape functions.
+    pub discretization: Discretization,
+    /// Where material may be, and what its faces do; `None` is unbounded space.
+    pub domain: Option<Domain>,
+    /// Time and how it is stepped.
+    pub time: Time,
+    /// Acceleration of every body [m/s^2].
+    pub gravity: [f64; 3],
+    /// The materials that bodies name.
+    pub materials: Vec<NamedMaterial>,
+    /// The bodies, in the order of the file.
+    pub bodies: Vec<Body>,
+    /// Contact rules; the first that matches a pair holds, see [`Scene::contact_between`].
+    pub contact: Vec<ContactRule>,
+    /// What is written, and how often.
+    pub outputs: Outputs,
+    /// Known answers that plots and summaries hold the run against.
+    pub references: Vec<Reference>,
+}
+
+/// A named parameter of a scene file as it was used.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum Parameter {
+    /// A number in SI units.
+    Number(f64),
+    /// A word, such as the name of a contact law.
+    Text(String),
+}
+
+/// Two or three dimensions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Dimension {
+    /// Plane strain: two dimensions, no strain out of the plane; masses and forces are per metre of depth.
+    PlaneStrain,
+    /// Three dimensions.
+    Space,
+}
+
+/// Number format of the particles and the grid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Precision {
+    /// `f32`.
+    Single,
+    /// `f64`.
+    Double,
+}
+
+/// Cells, particles and shape functions.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Discretization {
+    /// Side of a grid cell [m].
+    pub cell: f64,
+    /// Particles along each side of a cell: 2 means 4 in the plane, 8 in space.
+    pub particles_per_side: usize,
+    /// Shape functions.
+    pub basis: BasisKind,
+}
+
+/// Shape functions between particles and grid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum BasisKind {
+    /// Tent functions of the particle's centre.
+    Linear,
+    /// Tent functions averaged over the particle's undeformed box (uniform GIMP; Bardenhagen and Kober 2004).
+    Gimp,
+}
+
+/// A box that holds all material. A particle that leaves it stops the run.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Domain {
+    /// Lower corner [m]; grid nodes lie at whole cells from here.
+    pub min: [f64; 3],
+    /// Upper corner [m].
+    pub max: [f64; 3],
+    /// What the lower and the upper face across each axis do.
+    pub faces: [[Face; 2]; 3],
+}
+
+/// What a face of the domain does. Faces other than `Open` lie on grid nodes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Face {
+    /// Nothing; material that reaches it stops the run.
+    Open,
+    /// A mirror: no velocity through it, none of its resistance along it.
+    Symmetry,
+    /// Material sticks to it: no velocity at all.
+    Fixed,
+}
+
+/// Time and how it is stepped.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Time {
+    /// Simulated time at which the run ends [s].
+    pub end: f64,
+    /// Time step as a fraction of the time in which a wave crosses a cell.
+    pub courant: f64,
+    /// No step is longer than this [s].
+    pub max_step: Option<f64>,
+    /// When in the step the stress is updated.
+    pub stress_update: StressUpdate,
+    /// Share of the grid's velocity itself (PIC) in the particles' new velocity; the rest takes the grid's change of velocity (FLIP). 0 to 1.
+    pub pic_share: f64,
+}
+
+/// When in the step strain and stress are computed (Bardenhagen 2002; Nairn 2003).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum StressUpdate {
+    /// From the velocities interpolated at the start of the step (USF).
+    First,
+    /// From the integrated velocities at the end of the step (USL).
+    Last,
+    /// From the particles' new velocities, interpolated once more at the end of the step (MUSL).
+    ModifiedLast,
+}
+
+/// A material with its name and density.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct NamedMaterial {
+    /// The name that bodies and contact rules use.
+    pub name: String,
+    /// Mass per undeformed volume [kg/m^3].
+    pub density: f64,
+    /// The constitutive law with its constants.
+    pub law: Material<f64>,
+}
+
+/// A body: a shape filled with a material, and how it moves at the start.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Body {
+    /// Its name, unique in the scene.
+    pub name: String,
+    /// Index into [`Scene::materials`].
+    pub material: usize,
+    /// Where it is at the start.
+    pub shape: Shape,
+    /// How it moves.
+    pub motion: Motion,
+}
+
+/// How a body moves.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Motion {
+    /// It deforms and moves under forces, from this start.
+    Free {
+        /// Velocity of its centre of mass [m/s].
+        velocity: [f64; 3],
+        /// Angular velocity about its centre of mass [rad/s]; in the plane only the third component.
+        spin: [f64; 3],
+    },
+    /// It is rigid and moves as prescribed, whatever pushes it.
+    Rigid {
+        /// Velocity of its centre of mass at time t [m/s].
+        velocity: [Expression; 3],
+        /// Angular velocity about its centre of mass at time t [rad/s].
+        spin: [Expression; 3],
+    },
+}
+
+/// How two bodies touch.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ContactRule {
+    /// The pairs it holds for: each entry is the name of a body or of a material; `None` matches every body.
+    pub between: [Option<String>; 2],
+    /// The contact law.
+    pub law: ContactLaw,
+    /// Coefficient of friction; infinity sticks, 0 is frictionless.
+    pub friction: f64,
+    /// Where the direction of the contact comes from.
+    pub normal: Normal,
+    /// Largest strain of a cell by contact in one step, the paper's gamma: 0 to 1.
+    pub max_strain: f64,
+}
+
+/// When bodies that share a grid node push on each other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ContactLaw {
+    /// They do not.
+    None,
+    /// When they approach (Bardenhagen, Brackbill and Sulsky 2000).
+    Kinematic,
+    /// When the normal traction between them is compressive (Bardenhagen et al. 2001).
+    Traction,
+    /// As [`ContactLaw::Traction`], but only once the particles' surfaces touch.
+    Gap,
+    /// Always and in every direction: one velocity for both.
+    Glued,
+}
+
+/// Where the direction of a contact comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Normal {
+    /// Each body uses the gradient of its own grid mass, as the paper prints it.
+    Own,
+    /// One direction for the pair, from the difference of the two volume gradients; conserves momentum.
+    Common,
+}
+
+/// What is written, and how often. Intervals are in seconds of simulated time; `None` writes nothing.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Outputs {
+    /// Rows of `bodies.csv`, `energy.csv` and `contacts.csv`.
+    pub tables: f64,
+    /// Particles for ParaView.
+    pub particles: Option<f64>,
+    /// Grid nodes for ParaView.
+    pub grid: Option<f64>,
+}
+
+/// A known answer for one quantity of one body.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Reference {
+    /// Name of the body.
+    pub body: String,
+    /// A column of `bodies.csv`: `x`, `vx`, `wz` ...
+    pub quantity: String,
+    /// Its exact value as a function of time.
+    pub value: Expression,
+    /// What the answer assumes: `"rigid sphere, paper eq. (23)"`.
+    pub label: String,
+}
+
+impl Scene {
+    /// The rule for two bodies, given by index: the first in the file that matches, else the default rule.
+    pub fn contact_between(&self, a: usize, b: usize) -> ContactRule {
+        let matches = |filter: &Option<String>, body: usize| {
+            filter.as_ref().is_none_or(|name| {
+                let body = &self.bodies[body];
+                *name == body.name || *name == self.materials[body.material].name
+            })
+        };
+        let rule = self.contact.iter().find(|rule| {
+            let [first, second] = &rule.between;
+            (matches(first, a) && matches(second, b)) || (matches(first, b) && matches(second, a))
+        });
+        rule.cloned().unwrap_or_default()
+    }
+}
+
+impl Default for ContactRule {
+    /// The gap law without friction for every pair.
+    fn default() -> Self {
+        ContactRule {
+            between: [None, None],
+            law: ContactLaw::Gap,
+            friction: 0.0,
+            normal: Normal::Common,
+            max_strain: 0.5,
+        }
+    }
+}

@@ -1,0 +1,15 @@
+//! What is wrong with a scene, said so that the user can mend it.
+
+/// A mistake in a scene, tied to the key that holds it.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{key}: {found}; allowed: {allowed}")]
+pub struct Problem {
+    /// Path of the key in the scene file: `bodies[1].shape.ball.radius`. The loader turns it into file, line and column.
+    pub key: String,
+    /// What was found.
+    pub found: String,
+    /// What is allowed.
+    pub allowed: String,
+    /// What to try, if there is more to say.
+    pub help: Option<String>,
+}

@@ -1,0 +1,435 @@
+//! Numbers, vectors and matrices of any precision and dimension.
+//!
+//! Transfer between particles and grid works in the dimension of the scene, `Vector<T, D>`; laws live in three dimensions,
+//! `Matrix<T>` and `Symmetric<T>`, whatever the scene: a plane scene embeds its motion with [`Vector::space`].
+
+use std::fmt::Debug;
+use std::iter::Sum;
+use std::ops::{Add, AddAssign, Div, DivAssign, Index, IndexMut, Mul, MulAssign, Neg, Sub, SubAssign};
+
+/// A floating-point number: `f32` or `f64`.
+///
+/// Transcendental functions come from `libm`, so that every build gives the same bits.
+pub trait Real:
+    Copy
+    + Debug
+    + Default
+    + PartialOrd
+    + Send
+    + Sync
+    + Sum
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + AddAssign
+    + SubAssign
+    + MulAssign
+    + DivAssign
+    + 'static
+{
+    /// 0.
+    const ZERO: Self;
+    /// 1.
+    const ONE: Self;
+    /// 1/2.
+    const HALF: Self;
+    /// Distance from 1 to the next number.
+    const EPSILON: Self;
+    /// The nearest number to an `f64`.
+    fn of(value: f64) -> Self;
+    /// The same number in `f64`.
+    fn f64(self) -> f64;
+    /// Largest integer not above.
+    fn floor(self) -> i32;
+    /// Square root.
+    fn sqrt(self) -> Self;
+    /// Cube root.
+    fn cbrt(self) -> Self;
+    /// Natural logarithm.
+    fn ln(self) -> Self;
+    /// Magnitude.
+    fn abs(self) -> Self;
+    /// The smaller of two; the other one where one is not a number.
+    fn min(self, other: Self) -> Self;
+    /// The larger of two; the other one where one is not a number.
+    fn max(self, other: Self) -> Self;
+    /// Neither infinite nor not a number.
+    fn is_finite(self) -> bool;
+}
+
+macro_rules! real {
+    ($t:ty, $cbrt:path, $ln:path) => {
+        impl Real for $t {
+            const ZERO: Self = 0.0;
+            const ONE: Self = 1.0;
+            const HALF: Self = 0.5;
+            const EPSILON: Self = <$t>::EPSILON;
+            #[inline(always)]
+            fn of(value: f64) -> Self {
+                value as $t
+            }
+            #[inline(always)]
+            fn f64(self) -> f64 {
+                self as f64
+            }
+            #[inline(always)]
+            fn floor(self) -> i32 {
+                let truncated = self as i32;
+                truncated - i32::from(truncated as $t > self)
+            }
+            #[inline(always)]
+            fn sqrt(self) -> Self {
+                self.sqrt()
+            }
+            #[inline(always)]
+            fn cbrt(self) -> Self {
+                $cbrt(self)
+            }
+            #[inline(always)]
+            fn ln(self) -> Self {
+                $ln(self)
+            }
+            #[inline(always)]
+            fn abs(self) -> Self {
+                self.abs()
+            }
+            #[inline(always)]
+            fn min(self, other: Self) -> Self {
+                self.min(other)
+            }
+            #[inline(always)]
+            fn max(self, other: Self) -> Self {
+                self.max(other)
+            }
+            #[inline(always)]
+            fn is_finite(self) -> bool {
+                self.is_finite()
+            }
+        }
+    };
+}
+real!(f32, libm::cbrtf, libm::logf);
+real!(f64, libm::cbrt, libm::log);
+
+/// A vector of `D` components.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Vector<T, const D: usize>(pub [T; D]);
+
+impl<T: Real, const D: usize> Vector<T, D> {
+    /// All components zero.
+    pub const ZERO: Self = Vector([T::ZERO; D]);
+
+    /// The vector whose component along axis `i` is `f(i)`.
+    #[inline(always)]
+    pub fn from_fn(f: impl FnMut(usize) -> T) -> Self {
+        Vector(std::array::from_fn(f))
+    }
+
+    /// The first `D` of three components.
+    pub fn of(space: [f64; 3]) -> Self {
+        Self::from_fn(|i| T::of(space[i]))
+    }
+
+    /// The vector in space; a plane vector has no third component.
+    #[inline(always)]
+    pub fn space(self) -> [f64; 3] {
+        std::array::from_fn(|i| if i < D { self.0[i].f64() } else { 0.0 })
+    }
+
+    /// a . b
+    #[inline(always)]
+    pub fn dot(self, other: Self) -> T {
+        let mut sum = T::ZERO;
+        for i in 0..D {
+            sum += self.0[i] * other.0[i];
+        }
+        sum
+    }
+
+    /// Length.
+    #[inline(always)]
+    pub fn norm(self) -> T {
+        self.dot(self).sqrt()
+    }
+
+    /// The vector of length one in the same direction; `None` for a vector too short to have one.
+    #[inline(always)]
+    pub fn direction(self) -> Option<Self> {
+        let norm = self.norm();
+        let direction = self / norm;
+        (norm > T::ZERO && direction.is_finite()).then_some(direction)
+    }
+
+    /// Every component is finite.
+    #[inline(always)]
+    pub fn is_finite(self) -> bool {
+        self.0.iter().all(|x| x.is_finite())
+    }
+}
+
+macro_rules! componentwise {
+    ($op:ident, $f:ident, $assign:ident, $g:ident) => {
+        impl<T: Real, const D: usize> $op for Vector<T, D> {
+            type Output = Self;
+            #[inline(always)]
+            fn $f(self, other: Self) -> Self {
+                Vector::from_fn(|i| self.0[i].$f(other.0[i]))
+            }
+        }
+        impl<T: Real, const D: usize> $assign for Vector<T, D> {
+            #[inline(always)]
+            fn $g(&mut self, other: Self) {
+                for i in 0..D {
+                    self.0[i].$g(other.0[i]);
+                }
+            }
+        }
+    };
+}
+componentwise!(Add, add, AddAssign, add_assign);
+componentwise!(Sub, sub, SubAssign, sub_assign);
+
+impl<T: Real, const D: usize> Mul<T> for Vector<T, D> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, factor: T) -> Self {
+        Vector::from_fn(|i| self.0[i] * factor)
+    }
+}
+
+impl<T: Real, const D: usize> Div<T> for Vector<T, D> {
+    type Output = Self;
+    #[inline(always)]
+    fn div(self, divisor: T) -> Self {
+        Vector::from_fn(|i| self.0[i] / divisor)
+    }
+}
+
+impl<T: Real, const D: usize> Neg for Vector<T, D> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Vector::from_fn(|i| -self.0[i])
+    }
+}
+
+impl<T: Real, const D: usize> Sum for Vector<T, D> {
+    fn sum<I: Iterator<Item = Self>>(vectors: I) -> Self {
+        vectors.fold(Self::ZERO, |a, b| a + b)
+    }
+}
+
+impl<T, const D: usize> Index<usize> for Vector<T, D> {
+    type Output = T;
+    #[inline(always)]
+    fn index(&self, i: usize) -> &T {
+        &self.0[i]
+    }
+}
+
+impl<T, const D: usize> IndexMut<usize> for Vector<T, D> {
+    #[inline(always)]
+    fn index_mut(&mut self, i: usize) -> &mut T {
+        &mut self.0[i]
+    }
+}
+
+/// a x b in space.
+pub fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+/// A 3 x 3 matrix, row by row.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Matrix<T>(pub [[T; 3]; 3]);
+
+impl<T: Real> Matrix<T> {
+    /// All entries zero.
+    pub const ZERO: Self = Matrix([[T::ZERO; 3]; 3]);
+    /// The identity.
+    pub const IDENTITY: Self =
+        Matrix([[T::ONE, T::ZERO, T::ZERO], [T::ZERO, T::ONE, T::ZERO], [T::ZERO, T::ZERO, T::ONE]]);
+
+    /// The matrix whose entry in row `i`, column `j` is `f(i, j)`.
+    #[inline(always)]
+    pub fn from_fn(mut f: impl FnMut(usize, usize) -> T) -> Self {
+        Matrix(std::array::from_fn(|i| std::array::from_fn(|j| f(i, j))))
+    }
+
+    /// Determinant.
+    #[inline(always)]
+    pub fn det(&self) -> T {
+        let [a, b, c] = self.0;
+        a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0])
+            + a[2] * (b[0] * c[1] - b[1] * c[0])
+    }
+
+    /// Inverse; entries are not finite where the determinant is zero.
+    pub fn inverse(&self) -> Self {
+        let m = &self.0;
+        let det = self.det();
+        Matrix::from_fn(|i, j| {
+            let (a, b) = ((j + 1) % 3, (j + 2) % 3);
+            let (c, d) = ((i + 1) % 3, (i + 2) % 3);
+            (m[a][c] * m[b][d] - m[a][d] * m[b][c]) / det
+        })
+    }
+
+    /// Transpose.
+    #[inline(always)]
+    pub fn transpose(&self) -> Self {
+        Matrix::from_fn(|i, j| self.0[j][i])
+    }
+
+    /// (A + A^T) / 2
+    #[inline(always)]
+    pub fn symmetric_part(&self) -> Symmetric<T> {
+        let m = &self.0;
+        Symmetric([
+            m[0][0],
+            m[1][1],
+            m[2][2],
+            T::HALF * (m[0][1] + m[1][0]),
+            T::HALF * (m[1][2] + m[2][1]),
+            T::HALF * (m[0][2] + m[2][0]),
+        ])
+    }
+
+    /// A A^T
+    #[inline(always)]
+    pub fn times_transpose(&self) -> Symmetric<T> {
+        let row = |i: usize, j: usize| (0..3).map(|k| self.0[i][k] * self.0[j][k]).sum();
+        Symmetric([row(0, 0), row(1, 1), row(2, 2), row(0, 1), row(1, 2), row(0, 2)])
+    }
+}
+
+impl<T: Real> Add for Matrix<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Matrix::from_fn(|i, j| self.0[i][j] + other.0[i][j])
+    }
+}
+
+impl<T: Real> Sub for Matrix<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Matrix::from_fn(|i, j| self.0[i][j] - other.0[i][j])
+    }
+}
+
+impl<T: Real> Mul for Matrix<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        Matrix::from_fn(|i, j| {
+            self.0[i][0] * other.0[0][j] + self.0[i][1] * other.0[1][j] + self.0[i][2] * other.0[2][j]
+        })
+    }
+}
+
+impl<T: Real> Mul<T> for Matrix<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, factor: T) -> Self {
+        Matrix::from_fn(|i, j| self.0[i][j] * factor)
+    }
+}
+
+/// A symmetric 3 x 3 matrix: xx, yy, zz, xy, yz, xz.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Symmetric<T>(pub [T; 6]);
+
+impl<T: Real> Symmetric<T> {
+    /// All entries zero.
+    pub const ZERO: Self = Symmetric([T::ZERO; 6]);
+
+    /// `value` times the identity.
+    #[inline(always)]
+    pub fn isotropic(value: T) -> Self {
+        Symmetric([value, value, value, T::ZERO, T::ZERO, T::ZERO])
+    }
+
+    /// Entry in row `i`, column `j`.
+    #[inline(always)]
+    pub fn at(&self, i: usize, j: usize) -> T {
+        const PLACE: [[usize; 3]; 3] = [[0, 3, 5], [3, 1, 4], [5, 4, 2]];
+        self.0[PLACE[i][j]]
+    }
+
+    /// The full matrix.
+    pub fn matrix(&self) -> Matrix<T> {
+        Matrix::from_fn(|i, j| self.at(i, j))
+    }
+
+    /// Sum of the diagonal.
+    #[inline(always)]
+    pub fn trace(&self) -> T {
+        self.0[0] + self.0[1] + self.0[2]
+    }
+
+    /// The matrix less a third of its trace.
+    #[inline(always)]
+    pub fn deviator(&self) -> Self {
+        *self - Symmetric::isotropic(self.trace() / T::of(3.0))
+    }
+
+    /// A : B, the sum of products of all nine entries.
+    #[inline(always)]
+    pub fn double_dot(&self, other: &Self) -> T {
+        let (a, b) = (&self.0, &other.0);
+        a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + T::of(2.0) * (a[3] * b[3] + a[4] * b[4] + a[5] * b[5])
+    }
+
+    /// A v in the dimension of v.
+    #[inline(always)]
+    pub fn times<const D: usize>(&self, v: Vector<T, D>) -> Vector<T, D> {
+        Vector::from_fn(|i| (0..D).map(|j| self.at(i, j) * v[j]).sum())
+    }
+
+    /// R A R^T
+    #[inline(always)]
+    pub fn rotated(&self, r: &Matrix<T>) -> Self {
+        (*r * self.matrix() * r.transpose()).symmetric_part()
+    }
+
+    /// Every entry is finite.
+    #[inline(always)]
+    pub fn is_finite(&self) -> bool {
+        self.0.iter().all(|x| x.is_finite())
+    }
+}
+
+impl<T: Real> Add for Symmetric<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Symmetric(std::array::from_fn(|i| self.0[i] + other.0[i]))
+    }
+}
+
+impl<T: Real> AddAssign for Symmetric<T> {
+    #[inline(always)]
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl<T: Real> Sub for Symmetric<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Symmetric(std::array::from_fn(|i| self.0[i] - other.0[i]))
+    }
+}
+
+impl<T: Real> Mul<T> for Symmetric<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, factor: T) -> Self {
+        Symmetric(self.0.map(|x| x * factor))
+    }
+}
