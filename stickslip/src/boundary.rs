@@ -1,0 +1,140 @@
+//! Faces of the domain: mirrors and walls that material sticks to.
+//!
+//! Behind a mirror the particles' images are summed: nodes behind it give their share to the nodes before it and take
+//! their values back with the sign of the normal component turned, as if the other half of the bodies were there.
+
+use crate::grid::{Cover, Field, SIDE, node_at, nodes_per_block};
+use crate::scene::Face;
+use crate::tensor::{Real, Vector};
+
+/// A face of the domain that does something.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Wall {
+    /// Axis across the face.
+    pub axis: usize,
+    /// Node on the face.
+    pub node: i32,
+    /// Which way the domain lies: 1 above a lower face, -1 below an upper one.
+    pub inward: i32,
+    /// Symmetry or fixed.
+    pub face: Face,
+}
+
+impl Wall {
+    /// Nodes from the face into the domain; negative behind it.
+    #[inline]
+    pub fn depth<const D: usize>(&self, node: [i32; D]) -> i32 {
+        (node[self.axis] - self.node) * self.inward
+    }
+
+    /// The mirror image of a node.
+    #[inline]
+    pub fn image<const D: usize>(&self, mut node: [i32; D]) -> [i32; D] {
+        node[self.axis] = 2 * self.node - node[self.axis];
+        node
+    }
+}
+
+/// A vector's mirror image across an axis.
+#[inline]
+pub fn reflect<T: Real, const D: usize>(mut v: Vector<T, D>, axis: usize) -> Vector<T, D> {
+    v[axis] = -v[axis];
+    v
+}
+
+/// The domain's walls and the field's nodes that they govern.
+#[derive(Clone, Debug, Default)]
+pub struct Boundary {
+    /// Faces that are not open.
+    pub walls: Vec<Wall>,
+    /// Nodes behind a mirror with their images before it, by wall.
+    mirrored: Vec<(usize, usize, usize)>,
+    /// Nodes on a mirror, and its axis.
+    on_mirror: Vec<(usize, usize)>,
+    /// Nodes on or behind a fixed face.
+    fixed: Vec<usize>,
+}
+
+impl Boundary {
+    /// The boundary with these walls.
+    pub fn new(walls: Vec<Wall>) -> Self {
+        Boundary { walls, ..Boundary::default() }
+    }
+
+    /// Finds the nodes that walls govern.
+    pub fn cover<const D: usize>(&mut self, cover: &Cover<D>) {
+        self.mirrored.clear();
+        self.on_mirror.clear();
+        self.fixed.clear();
+        let n = nodes_per_block(D);
+        for wall in &self.walls {
+            for (slot, &(body, block)) in cover.slots.iter().enumerate() {
+                let first = block[wall.axis] * SIDE;
+                let nearest = if wall.inward > 0 { first } else { first + SIDE - 1 };
+                if (nearest - wall.node) * wall.inward > 0 {
+                    continue;
+                }
+                for local in 0..n {
+                    let node = node_at(block, local);
+                    let (depth, index) = (wall.depth(node), slot * n + local);
+                    match wall.face {
+                        Face::Fixed if depth <= 0 => self.fixed.push(index),
+                        Face::Symmetry if depth == 0 => self.on_mirror.push((index, wall.axis)),
+                        Face::Symmetry if depth < 0 => {
+                            if let Some(image) = cover.node_index(body as usize, wall.image(node)) {
+                                self.mirrored.push((index, image, wall.axis));
+                            }
+                        }
+                        _ => {}
+                    }
+                }
+            }
+        }
+    }
+
+    /// Adds the images' mass to the nodes before the mirrors.
+    pub fn fold_mass<T: Real, const D: usize>(&self, field: &mut Field<T, D>) {
+        for &(behind, before, _) in &self.mirrored {
+            let mass = field.nodes[behind].mass;
+            field.nodes[before].mass += mass;
+        }
+    }
+
+    /// Adds the images' momentum to the nodes before the mirrors.
+    pub fn fold_momentum<T: Real, const D: usize>(&self, field: &mut Field<T, D>) {
+        for &(behind, before, axis) in &self.mirrored {
+            let momentum = field.nodes[behind].velocity;
+            field.nodes[before].velocity += reflect(momentum, axis);
+        }
+        for &(node, axis) in &self.on_mirror {
+            field.nodes[node].velocity[axis] = T::ZERO;
+        }
+    }
+
+    /// Adds the images' forces to the nodes before the mirrors.
+    pub fn fold_force<T: Real, const D: usize>(&self, field: &mut Field<T, D>) {
+        for &(behind, before, axis) in &self.mirrored {
+            let force = field.nodes[behind].force;
+            field.nodes[before].force += reflect(force, axis);
+        }
+        for &(node, axis) in &self.on_mirror {
+            field.nodes[node].force[axis] = T::ZERO;
+        }
+    }
+
+    /// Makes the velocities obey the walls.
+    pub fn hold<T: Real, const D: usize>(&self, field: &mut Field<T, D>) {
+        for &node in &self.fixed {
+            field.nodes[node].velocity = Vector::ZERO;
+        }
+        for &(node, axis) in &self.on_mirror {
+            field.nodes[node].velocity[axis] = T::ZERO;
+        }
+        for &(behind, before, axis) in self.mirrored.iter().rev() {
+            let node = field.nodes[before];
+            let image = &mut field.nodes[behind];
+            image.start = reflect(node.start, axis);
+            image.velocity = reflect(node.velocity, axis);
+        }
+    }
+}

@@ -1,0 +1,124 @@
+//! The engine behind its door.
+
+use super::Engine;
+use crate::basis::Basis;
+use crate::door::{BodyState, ContactState, GridSnapshot, Ledger, ParticleSnapshot, Simulation, StepError};
+use crate::grid::{node_at, nodes_per_block};
+use crate::tensor::{Real, Vector};
+
+impl<T: Real, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
+    fn time(&self) -> f64 {
+        self.time
+    }
+
+    fn steps(&self) -> u64 {
+        self.steps
+    }
+
+    fn particles(&self) -> usize {
+        self.bodies.iter().map(|body| body.particles.len()).sum()
+    }
+
+    fn stable_step(&self) -> f64 {
+        self.stable()
+    }
+
+    fn step(&mut self, longest: f64) -> Result<(), StepError> {
+        let dt = self.stable().min(longest);
+        for motion in self.rigid.iter_mut().flatten() {
+            motion.set_time(self.time + 0.5 * dt);
+        }
+        self.advance(T::of(dt))?;
+        self.time += dt;
+        self.steps += 1;
+        Ok(())
+    }
+
+    fn bodies(&self) -> Vec<BodyState> {
+        (self.bodies.iter())
+            .map(|body| {
+                let totals = body.totals();
+                BodyState {
+                    mass: totals.mass,
+                    position: totals.first_moment.map(|x| x / totals.mass),
+                    velocity: totals.momentum.map(|p| p / totals.mass),
+                    spin: body.spin(&totals),
+                    kinetic: totals.kinetic,
+                    strain: totals.strain,
+                }
+            })
+            .collect()
+    }
+
+    fn ledger(&self) -> Ledger {
+        let mut ledger =
+            Ledger { friction: self.tally.friction, external_work: self.tally.work, ..Ledger::default() };
+        let gravity = self.gravity.space();
+        for body in self.bodies.iter().filter(|body| !body.rigid) {
+            let totals = body.totals();
+            ledger.kinetic += totals.kinetic;
+            ledger.strain += totals.strain;
+            for i in 0..3 {
+                ledger.potential -= gravity[i] * totals.first_moment[i];
+                ledger.momentum[i] += totals.momentum[i];
+                ledger.angular_momentum[i] += totals.angular_momentum[i];
+            }
+        }
+        ledger.total = ledger.kinetic
+            + ledger.strain
+            + ledger.potential
+            + ledger.friction
+            + ledger.plastic
+            + ledger.damping
+            - ledger.external_work;
+        ledger
+    }
+
+    fn take_contacts(&mut self) -> Vec<ContactState> {
+        self.tally.take(self.time)
+    }
+
+    fn snapshot(&self) -> ParticleSnapshot {
+        let mut snapshot = ParticleSnapshot { dimension: D, ..ParticleSnapshot::default() };
+        for (i, body) in self.bodies.iter().enumerate() {
+            let mut particles: Vec<_> = body.particles.iter().collect();
+            particles.sort_unstable_by_key(|particle| particle.number);
+            for particle in particles {
+                snapshot.body.push(i as u32);
+                snapshot.number.push(particle.number);
+                snapshot.position.push(particle.position.space());
+                snapshot.velocity.push(particle.velocity.space());
+                snapshot.mass.push(particle.mass.f64());
+                snapshot.volume.push((particle.volume * particle.deformation.det()).f64());
+                snapshot.stress.push(particle.stress.0.map(Real::f64));
+                let f = &particle.deformation.0;
+                snapshot.deformation.push(std::array::from_fn(|k| f[k / 3][k % 3].f64()));
+            }
+        }
+        snapshot
+    }
+
+    fn grid_snapshot(&self) -> GridSnapshot {
+        let mut snapshot =
+            GridSnapshot { dimension: D, cell: self.lattice.cell.f64(), ..GridSnapshot::default() };
+        let n = nodes_per_block(D);
+        for (slot, &(body, block)) in self.cover.slots.iter().enumerate() {
+            for local in 0..n {
+                let node = &self.field.nodes[slot * n + local];
+                if node.mass > T::ZERO {
+                    snapshot.body.push(body);
+                    snapshot.position.push(self.lattice.position(node_at(block, local)).space());
+                    snapshot.mass.push(node.mass.f64());
+                    snapshot.velocity.push(node.velocity.space());
+                    snapshot.force.push(node.force.space());
+                    snapshot.contact_impulse.push(Vector::<T, D>::ZERO.space());
+                }
+            }
+        }
+        snapshot
+    }
+
+    fn timings(&self) -> Vec<(&'static str, f64)> {
+        self.watch.seconds()
+    }
+}

@@ -1,0 +1,104 @@
+//! The step: explicit MPM with contact, a list of verbs.
+
+mod build;
+mod look;
+mod rigid;
+mod verbs;
+mod watch;
+
+pub use build::build;
+
+use crate::basis::Basis;
+use crate::body::Body;
+use crate::boundary::Boundary;
+use crate::clock::fastest_signal;
+use crate::contact::{Rules, Survey, Tally};
+use crate::door::StepError;
+use crate::grid::{Cover, Field, Lattice};
+use crate::scene::{StressUpdate, Time};
+use crate::tensor::{Real, Vector};
+use rigid::RigidMotion;
+use std::marker::PhantomData;
+use verbs::Share;
+use watch::Watch;
+
+/// A simulation in `D` dimensions and precision `T`, with shape functions `B`.
+pub struct Engine<T, const D: usize, B> {
+    bodies: Vec<Body<T, D>>,
+    /// Prescribed motion of rigid bodies.
+    rigid: Vec<Option<RigidMotion>>,
+    lattice: Lattice<T, D>,
+    /// Lower and upper corner of the domain [m].
+    domain: Option<[Vector<T, D>; 2]>,
+    gravity: Vector<T, D>,
+    pic_share: T,
+    rules: Rules<T>,
+    boundary: Boundary,
+    clock: Time,
+    cover: Cover<D>,
+    field: Field<T, D>,
+    survey: Survey<T, D>,
+    tally: Tally,
+    time: f64,
+    steps: u64,
+    watch: Watch,
+    basis: PhantomData<B>,
+}
+
+impl<T: Real, const D: usize, B: Basis<T>> Engine<T, D, B> {
+    /// One step of `dt`.
+    ///
+    /// Numbers are equations of Bardenhagen et al. (2001). Contact is applied to the interpolated and to the integrated
+    /// velocities. Where the strain is computed is the scene's choice: from the first ([`StressUpdate::First`]), from the
+    /// second ([`StressUpdate::Last`]), or from the particles' new velocities scattered once more ([`StressUpdate::ModifiedLast`]).
+    fn advance(&mut self, dt: T) -> Result<(), StepError> {
+        self.cover(); //                            blocks under each body's particles
+        match self.clock.stress_update {
+            StressUpdate::First => {
+                self.scatter(Share::Momentum); //   m, p
+                self.interpolated_velocities(); //  v = p / m                                (4)
+                self.survey(); //                   normals, tractions, gaps where bodies meet
+                self.contact(dt); //                v~ from interpolated velocities          (5)-(13), (20)-(22)
+                self.strain(dt)?; //                F = (I + L dt) F, sigma = law(F)
+                self.scatter(Share::Force); //      f = -sum V sigma grad S
+                self.accelerate(dt); //             v += dt (f / m + g)                      (3)
+                self.contact(dt); //                v~ from integrated velocities
+                self.accept()?; //                  particles: v += dv
+                self.displace(dt) //                particles: x += v dt
+            }
+            StressUpdate::Last => {
+                self.scatter(Share::Everything);
+                self.interpolated_velocities();
+                self.survey();
+                self.contact(dt);
+                self.accelerate(dt);
+                self.contact(dt);
+                self.accept()?;
+                self.strain(dt)?;
+                self.displace(dt)
+            }
+            StressUpdate::ModifiedLast => {
+                self.scatter(Share::Everything);
+                self.interpolated_velocities();
+                self.survey();
+                self.contact(dt);
+                self.accelerate(dt);
+                self.contact(dt);
+                self.accept()?;
+                self.integrated_velocities_aside();
+                self.scatter(Share::NewMomentum);
+                self.modified_velocities();
+                self.contact_again(dt);
+                self.strain(dt)?;
+                self.displace_aside(dt)
+            }
+        }
+    }
+
+    /// Longest stable step now [s].
+    fn stable(&self) -> f64 {
+        let signal = fastest_signal(&self.bodies);
+        let step = self.clock.courant * self.lattice.cell.f64() / signal;
+        self.clock.max_step.map_or(step, |longest| step.min(longest))
+    }
+}

@@ -1,0 +1,60 @@
+//! Rigid bodies with prescribed motion.
+
+use crate::scene::Expression;
+use crate::tensor::{Matrix, cross};
+
+/// How a rigid body moves, and where it is.
+#[derive(Clone, Debug)]
+pub struct RigidMotion {
+    /// Centre of mass now [m].
+    pub center: [f64; 3],
+    velocity: [Expression; 3],
+    spin: [Expression; 3],
+    /// Velocity of the centre in this step [m/s].
+    now: [f64; 3],
+    /// Angular velocity in this step [rad/s].
+    turning: [f64; 3],
+}
+
+impl RigidMotion {
+    /// A body at rest at `center` until its first step.
+    pub fn new(center: [f64; 3], velocity: [Expression; 3], spin: [Expression; 3]) -> Self {
+        let mut motion = RigidMotion { center, velocity, spin, now: [0.0; 3], turning: [0.0; 3] };
+        motion.set_time(0.0);
+        motion
+    }
+
+    /// Takes the velocities of time `t` [s].
+    pub fn set_time(&mut self, t: f64) {
+        self.now = std::array::from_fn(|i| self.velocity[i].at(t));
+        self.turning = std::array::from_fn(|i| self.spin[i].at(t));
+    }
+
+    /// v + w x (x - c) [m/s]
+    pub fn velocity_at(&self, position: [f64; 3]) -> [f64; 3] {
+        let turn = cross(self.turning, std::array::from_fn(|i| position[i] - self.center[i]));
+        std::array::from_fn(|i| self.now[i] + turn[i])
+    }
+
+    /// The rotation of a step of `dt`: Q = (I - W dt/2)^-1 (I + W dt/2), exactly orthogonal.
+    pub fn rotation(&self, dt: f64) -> Matrix<f64> {
+        let [x, y, z] = self.turning;
+        let half_spin = Matrix([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]]) * (0.5 * dt);
+        (Matrix::IDENTITY - half_spin).inverse() * (Matrix::IDENTITY + half_spin)
+    }
+
+    /// Where a step of `dt` with this rotation takes a point.
+    pub fn moved(&self, position: [f64; 3], rotation: &Matrix<f64>, dt: f64) -> [f64; 3] {
+        let arm: [f64; 3] = std::array::from_fn(|i| position[i] - self.center[i]);
+        std::array::from_fn(|i| {
+            self.center[i] + self.now[i] * dt + (0..3).map(|j| rotation.0[i][j] * arm[j]).sum::<f64>()
+        })
+    }
+
+    /// Moves the centre by a step of `dt`.
+    pub fn advance(&mut self, dt: f64) {
+        for i in 0..3 {
+            self.center[i] += self.now[i] * dt;
+        }
+    }
+}

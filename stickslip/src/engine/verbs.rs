@@ -1,0 +1,358 @@
+//! What the verbs of the step do, on threads.
+//!
+//! Tiles of one colour scatter side by side, colours one after the other, and a tile's particles in their own order: the sums do
+//! not depend on the number of threads.
+
+use super::Engine;
+use crate::basis::Basis;
+use crate::body::{Body, Particle};
+use crate::contact::{Near, solve};
+use crate::door::StepError;
+use crate::grid::{Disjoint, Node, Tile, Window, addressable, node_at, nodes_per_block};
+use crate::material::Motion;
+use crate::tensor::{Matrix, Real, Symmetric, Vector};
+use crate::transfer::{Load, Stencil};
+use rayon::prelude::*;
+use std::time::Instant;
+
+/// What a scatter gives to the nodes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Share {
+    /// Mass and momentum.
+    Momentum,
+    /// Force.
+    Force,
+    /// Mass, momentum and force.
+    Everything,
+    /// Momentum alone, after the particles' velocities changed.
+    NewMomentum,
+}
+
+/// A particle that a verb cannot go on with.
+struct Fault {
+    body: usize,
+    particle: usize,
+    kind: FaultKind,
+}
+
+enum FaultKind {
+    Inverted,
+    Escaped,
+    NotFinite,
+}
+
+impl<T: Real, const D: usize, B: Basis<T>> Engine<T, D, B> {
+    pub(super) fn cover(&mut self) {
+        let start = Instant::now();
+        let counts: Vec<usize> = self.bodies.iter().map(|body| body.particles.len()).collect();
+        let (bodies, lattice) = (&self.bodies, &self.lattice);
+        self.cover.update(&counts, |body, particle| {
+            Stencil::new::<B>(lattice, &bodies[body].particles[particle]).base()
+        });
+        self.boundary.cover(&self.cover);
+        self.field.clear(&self.cover);
+        self.watch.lap("cover", start);
+    }
+
+    pub(super) fn scatter(&mut self, share: Share) {
+        let start = Instant::now();
+        match share {
+            Share::Momentum => self.scatter_loads(|p| Load {
+                mass: p.mass,
+                momentum: p.velocity * p.mass,
+                stress: Symmetric::ZERO,
+            }),
+            Share::Force => self.scatter_loads(|p| Load {
+                mass: T::ZERO,
+                momentum: Vector::ZERO,
+                stress: p.stress * (p.volume * p.deformation.det()),
+            }),
+            Share::Everything => self.scatter_loads(|p| Load {
+                mass: p.mass,
+                momentum: p.velocity * p.mass,
+                stress: p.stress * (p.volume * p.deformation.det()),
+            }),
+            Share::NewMomentum => self.scatter_loads(|p| Load {
+                mass: T::ZERO,
+                momentum: p.velocity * p.mass,
+                stress: Symmetric::ZERO,
+            }),
+        }
+        if matches!(share, Share::Momentum | Share::Everything) {
+            self.boundary.fold_mass(&mut self.field);
+        }
+        if !matches!(share, Share::Force) {
+            self.boundary.fold_momentum(&mut self.field);
+        }
+        if matches!(share, Share::Force | Share::Everything) {
+            self.boundary.fold_force(&mut self.field);
+        }
+        self.watch.lap("scatter", start);
+    }
+
+    fn scatter_loads(&mut self, load: impl Fn(&Particle<T, D>) -> Load<T, D> + Sync) {
+        let nodes = Disjoint::new(&mut self.field.nodes);
+        let (cover, bodies, lattice) = (&self.cover, &self.bodies, &self.lattice);
+        for color in &cover.colors {
+            color.par_iter().with_min_len(4).for_each_init(Window::default, |window, &tile| {
+                let tile = &cover.tiles[tile as usize];
+                window.clear();
+                for &index in cover.particles_of(tile) {
+                    let particle = &bodies[tile.body].particles[index as usize];
+                    let stencil = Stencil::new::<B>(lattice, particle);
+                    stencil.scatter(window, tile.block, &load(particle));
+                }
+                // SAFETY: tiles of one colour share no slot, and colours follow one another.
+                unsafe { window.add_to(&nodes, tile) };
+            });
+        }
+    }
+
+    /// v = p / m
+    pub(super) fn interpolated_velocities(&mut self) {
+        self.field.nodes.par_iter_mut().with_min_len(4096).for_each(|node| {
+            if node.mass > T::ZERO {
+                node.velocity = node.velocity / node.mass;
+                node.start = node.velocity;
+            }
+        });
+        self.hold();
+    }
+
+    /// Sets the integrated velocities aside in `start` and makes room for momentum.
+    pub(super) fn integrated_velocities_aside(&mut self) {
+        self.field.nodes.par_iter_mut().with_min_len(4096).for_each(|node| {
+            node.start = node.velocity;
+            node.velocity = Vector::ZERO;
+        });
+    }
+
+    /// v = p / m, with the integrated velocities kept in `start`.
+    pub(super) fn modified_velocities(&mut self) {
+        self.field.nodes.par_iter_mut().with_min_len(4096).for_each(|node| {
+            if node.mass > T::ZERO {
+                node.velocity = node.velocity / node.mass;
+            }
+        });
+        self.hold();
+    }
+
+    /// Prescribed velocities of rigid bodies and walls.
+    fn hold(&mut self) {
+        let n = nodes_per_block(D);
+        for (slot, &(body, block)) in self.cover.slots.iter().enumerate() {
+            if let Some(motion) = &self.rigid[body as usize] {
+                for local in 0..n {
+                    let position = self.lattice.position(node_at(block, local)).space();
+                    self.field.nodes[slot * n + local].velocity = Vector::of(motion.velocity_at(position));
+                }
+            }
+        }
+        self.boundary.hold(&mut self.field);
+    }
+
+    pub(super) fn survey(&mut self) {
+        let start = Instant::now();
+        let near = Near {
+            cover: &self.cover,
+            bodies: &self.bodies,
+            field: &self.field,
+            lattice: self.lattice,
+            boundary: &self.boundary,
+            rules: &self.rules,
+        };
+        self.survey = near.survey::<B>();
+        self.watch.lap("survey", start);
+    }
+
+    pub(super) fn contact(&mut self, dt: T) {
+        let start = Instant::now();
+        let impulses = solve(&self.survey, &self.rules, &self.field, self.lattice.cell / dt);
+        self.tally.add(&impulses);
+        self.change_velocities(&impulses);
+        self.watch.lap("contact", start);
+    }
+
+    /// Contact on velocities that only strain the particles: it enters no sum of forces and works.
+    pub(super) fn contact_again(&mut self, dt: T) {
+        let start = Instant::now();
+        let impulses = solve(&self.survey, &self.rules, &self.field, self.lattice.cell / dt);
+        self.change_velocities(&impulses);
+        self.watch.lap("contact", start);
+    }
+
+    fn change_velocities(&mut self, impulses: &[crate::contact::Impulse<T, D>]) {
+        for impulse in impulses {
+            for (node, velocity) in impulse.nodes.into_iter().zip(impulse.velocity) {
+                self.field.nodes[node].velocity += velocity;
+            }
+        }
+        self.boundary.hold(&mut self.field);
+    }
+
+    pub(super) fn accelerate(&mut self, dt: T) {
+        let start = Instant::now();
+        let gravity = self.gravity;
+        self.field.nodes.par_iter_mut().with_min_len(4096).for_each(|node| {
+            if node.mass > T::ZERO {
+                node.velocity += (node.force / node.mass + gravity) * dt;
+            }
+        });
+        self.hold();
+        self.watch.lap("accelerate", start);
+    }
+
+    /// v_p = (1 - a) (v_p + sum S_i (v_i - v_i^0)) + a sum S_i v_i,   a: PIC share
+    pub(super) fn accept(&mut self) -> Result<(), StepError> {
+        let start = Instant::now();
+        let pic = self.pic_share;
+        let fault = self.each_particle(|_, particle, stencil, window, block| {
+            let [velocity, before] = stencil.interpolate(window, block, |node| [node.velocity, node.start]);
+            let flip = particle.velocity + (velocity - before);
+            particle.velocity = flip * (T::ONE - pic) + velocity * pic;
+            particle.velocity.is_finite().then_some(()).ok_or(FaultKind::NotFinite)
+        });
+        self.watch.lap("gather", start);
+        fault.map_or(Ok(()), |fault| Err(self.error(&fault)))
+    }
+
+    pub(super) fn displace(&mut self, dt: T) -> Result<(), StepError> {
+        self.displace_by(dt, |node| node.velocity)
+    }
+
+    pub(super) fn displace_aside(&mut self, dt: T) -> Result<(), StepError> {
+        self.displace_by(dt, |node| node.start)
+    }
+
+    fn displace_by(
+        &mut self,
+        dt: T,
+        velocity: impl Fn(&Node<T, D>) -> Vector<T, D> + Sync,
+    ) -> Result<(), StepError> {
+        let start = Instant::now();
+        let (lattice, domain) = (self.lattice, self.domain);
+        let fault = self.each_particle(|_, particle, stencil, window, block| {
+            let [velocity] = stencil.interpolate(window, block, |node| [velocity(node)]);
+            let position = particle.position + velocity * dt;
+            if !position.is_finite() {
+                return Err(FaultKind::NotFinite);
+            }
+            particle.position = position;
+            let outside = domain.is_some_and(|[min, max]| {
+                (0..D).any(|i| particle.position[i] < min[i] || particle.position[i] > max[i])
+            });
+            if outside || !addressable(Stencil::new::<B>(&lattice, particle).base()) {
+                return Err(FaultKind::Escaped);
+            }
+            Ok(())
+        });
+        for (body, motion) in self.bodies.iter_mut().zip(&mut self.rigid) {
+            if let Some(motion) = motion {
+                let dt = dt.f64();
+                let rotation = motion.rotation(dt);
+                let turn = Matrix::from_fn(|i, j| T::of(rotation.0[i][j]));
+                for particle in &mut body.particles {
+                    let position = particle.position.space();
+                    particle.velocity = Vector::of(motion.velocity_at(position));
+                    particle.position = Vector::of(motion.moved(position, &rotation, dt));
+                    particle.deformation = turn * particle.deformation;
+                }
+                motion.advance(dt);
+            }
+        }
+        self.watch.lap("gather", start);
+        fault.map_or(Ok(()), |fault| Err(self.error(&fault)))
+    }
+
+    /// F = (I + L dt) F,  sigma = law(F)
+    pub(super) fn strain(&mut self, dt: T) -> Result<(), StepError> {
+        let start = Instant::now();
+        let fault = self.each_particle(|body, particle, stencil, window, block| {
+            let increment = Matrix::IDENTITY + stencil.velocity_gradient(window, block) * dt;
+            let deformation = increment * particle.deformation;
+            let jacobian = deformation.det();
+            if !jacobian.is_finite() {
+                return Err(FaultKind::NotFinite);
+            }
+            particle.deformation = deformation;
+            if jacobian <= T::ZERO {
+                return Err(FaultKind::Inverted);
+            }
+            let motion = Motion { deformation, jacobian, increment, stress: particle.stress };
+            particle.stress = body.material.law().stress(&motion);
+            particle.stress.is_finite().then_some(()).ok_or(FaultKind::NotFinite)
+        });
+        self.watch.lap("strain", start);
+        fault.map_or(Ok(()), |fault| Err(self.error(&fault)))
+    }
+
+    /// Visits every particle of the deformable bodies with its stencil and window; returns the first fault by body and particle.
+    fn each_particle(
+        &mut self,
+        visit: impl Fn(
+            &Body<T, D>,
+            &mut Particle<T, D>,
+            &Stencil<T, D>,
+            &Window<T, D>,
+            [i32; D],
+        ) -> Result<(), FaultKind>
+        + Sync,
+    ) -> Option<Fault> {
+        let mut particles: Vec<Vec<Particle<T, D>>> =
+            self.bodies.iter_mut().map(|body| std::mem::take(&mut body.particles)).collect();
+        let columns: Vec<Disjoint<Particle<T, D>>> = particles.iter_mut().map(|p| Disjoint::new(p)).collect();
+        let (cover, field, bodies, lattice) = (&self.cover, &self.field, &self.bodies, &self.lattice);
+        let of_tile = |window: &mut Window<T, D>, tile: &Tile<D>| -> Option<Fault> {
+            let body = &bodies[tile.body];
+            if body.rigid {
+                return None;
+            }
+            window.load(field, tile);
+            let mut first = None;
+            for &index in cover.particles_of(tile) {
+                // SAFETY: every particle belongs to one tile, and every tile to one call.
+                let particle = unsafe { columns[tile.body].get(index as usize) };
+                let stencil = Stencil::new::<B>(lattice, particle);
+                if let Err(kind) = visit(body, particle, &stencil, window, tile.block) {
+                    let fault = Fault { body: tile.body, particle: index as usize, kind };
+                    first = earlier(first, Some(fault));
+                }
+            }
+            first
+        };
+        let fault = (cover.tiles.par_iter().with_min_len(4))
+            .map_init(Window::default, of_tile)
+            .reduce(|| None, earlier);
+        drop(columns);
+        for (body, particles) in self.bodies.iter_mut().zip(particles) {
+            body.particles = particles;
+        }
+        fault
+    }
+
+    fn error(&self, fault: &Fault) -> StepError {
+        let body = &self.bodies[fault.body];
+        let particle = &body.particles[fault.particle];
+        let (name, number, position, time) =
+            (body.name.clone(), particle.number, particle.position.space(), self.time);
+        match fault.kind {
+            FaultKind::Inverted => StepError::Inverted {
+                body: name,
+                number,
+                position,
+                time,
+                determinant: particle.deformation.det().f64(),
+            },
+            FaultKind::Escaped => StepError::Escaped { body: name, number, position, time },
+            FaultKind::NotFinite => StepError::NotFinite { body: name, number, position, time },
+        }
+    }
+}
+
+/// The fault of the lower body and particle.
+fn earlier(a: Option<Fault>, b: Option<Fault>) -> Option<Fault> {
+    match (a, b) {
+        (Some(a), Some(b)) => Some(if (b.body, b.particle) < (a.body, a.particle) { b } else { a }),
+        (a, b) => a.or(b),
+    }
+}

@@ -1,0 +1,25 @@
+//! Wall time by verb. Nothing in the step depends on it.
+
+use std::time::{Duration, Instant};
+
+/// Wall time spent in each verb, in the order of first use.
+#[derive(Clone, Debug, Default)]
+pub struct Watch {
+    laps: Vec<(&'static str, Duration)>,
+}
+
+impl Watch {
+    /// Adds the time since `start` to a verb.
+    pub fn lap(&mut self, verb: &'static str, start: Instant) {
+        let elapsed = start.elapsed();
+        match self.laps.iter_mut().find(|(name, _)| *name == verb) {
+            Some((_, total)) => *total += elapsed,
+            None => self.laps.push((verb, elapsed)),
+        }
+    }
+
+    /// Seconds by verb.
+    pub fn seconds(&self) -> Vec<(&'static str, f64)> {
+        self.laps.iter().map(|(verb, total)| (*verb, total.as_secs_f64())).collect()
+    }
+}

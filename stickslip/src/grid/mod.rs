@@ -1,0 +1,65 @@
+//! The sparse grid: blocks of nodes that exist only under a body's particles.
+//!
+//! Space is cut into cells, nodes are their corners, and a block is 4^D nodes. Each body owns the blocks that its particles
+//! reach, so memory and time follow the particles, never bodies x grid nor the size of the domain.
+
+mod cover;
+mod field;
+
+pub use cover::{Cover, Meeting, Tile, addressable};
+pub use field::{Disjoint, Field, Node, WINDOW, Window};
+
+use crate::tensor::{Real, Vector};
+
+/// Nodes along a side of a block.
+pub const SIDE: i32 = 4;
+
+/// Nodes in a block: 4^D.
+pub const fn nodes_per_block(dimension: usize) -> usize {
+    (SIDE as usize).pow(dimension as u32)
+}
+
+/// Where the nodes are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lattice<T, const D: usize> {
+    /// Position of the node at zero [m].
+    pub origin: Vector<T, D>,
+    /// Side of a cell [m].
+    pub cell: T,
+}
+
+impl<T: Real, const D: usize> Lattice<T, D> {
+    /// Position in cells from the origin.
+    #[inline(always)]
+    pub fn cells(&self, position: Vector<T, D>) -> Vector<T, D> {
+        (position - self.origin) / self.cell
+    }
+
+    /// Position of a node [m].
+    #[inline(always)]
+    pub fn position(&self, node: [i32; D]) -> Vector<T, D> {
+        Vector::from_fn(|i| self.origin[i] + T::of(f64::from(node[i])) * self.cell)
+    }
+}
+
+/// The block that holds a node, and the node's place in it, the last axis fastest.
+#[inline(always)]
+pub fn locate<const D: usize>(node: [i32; D]) -> ([i32; D], usize) {
+    let mut local = 0;
+    for n in node {
+        local = local * SIDE as usize + n.rem_euclid(SIDE) as usize;
+    }
+    (node.map(|n| n.div_euclid(SIDE)), local)
+}
+
+/// The node at a place of a block.
+#[inline(always)]
+pub fn node_at<const D: usize>(block: [i32; D], local: usize) -> [i32; D] {
+    let mut rest = local as i32;
+    let mut node = [0; D];
+    for i in (0..D).rev() {
+        node[i] = block[i] * SIDE + rest % SIDE;
+        rest /= SIDE;
+    }
+    node
+}
