@@ -40,6 +40,18 @@ impl Lattice {
         (0..self.dimension).map(|k| (size[k] / self.spacing).ceil() + 1.0).product()
     }
 
+    /// Volume of a cube [m^3], in the plane area of a square [m^2].
+    pub fn volume(&self) -> f64 {
+        self.spacing.powi(self.dimension as i32)
+    }
+
+    /// The sites that [`fill`] gives particles, one after the other [m]; `None` for a shape without bounds.
+    pub fn sites_inside<'a>(&self, shape: &'a Shape) -> Option<impl Iterator<Item = [f64; 3]> + use<'a>> {
+        let bounds = shape.bounds(self.dimension)?;
+        let (margin, dimension) = (ROUND_OFF * self.spacing, self.dimension);
+        Some(self.sites_around(&bounds).filter(move |&site| shape.holds(Probe::new(site, margin, dimension))))
+    }
+
     /// Every site in a box and up to one spacing around it, ordered by x, then y, then z [m].
     pub fn sites_around(&self, bounds: &Bounds) -> impl Iterator<Item = [f64; 3]> + use<> {
         let Lattice { origin, spacing, dimension } = *self;
@@ -71,14 +83,8 @@ impl Lattice {
 /// along its surface, and agrees with it exactly for a box on the lattice. A site on the border but for round-off counts
 /// as [`Shape::contains`] says of a point exactly on it.
 pub fn fill(shape: &Shape, lattice: &Lattice) -> Option<Filling> {
-    let bounds = shape.bounds(lattice.dimension)?;
-    let margin = ROUND_OFF * lattice.spacing;
-    let positions = lattice
-        .sites_around(&bounds)
-        .filter(|&site| shape.holds(Probe::new(site, margin, lattice.dimension)))
-        .collect();
-    let volume = lattice.spacing.powi(lattice.dimension as i32);
-    Some(Filling { positions, volume, half_width: 0.5 * lattice.spacing })
+    let positions = lattice.sites_inside(shape)?.collect();
+    Some(Filling { positions, volume: lattice.volume(), half_width: 0.5 * lattice.spacing })
 }
 
 #[cfg(test)]
