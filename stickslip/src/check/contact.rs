@@ -4,14 +4,11 @@ use super::axes;
 use super::bodies::Extent;
 use super::hertz::{Hertz, Patch};
 use super::neighbours::pairs_within;
-use crate::geometry::{RoundPart, Shape};
+use super::touch::{SAME, Touch};
 use crate::scene::{Body, ContactLaw, ContactRule, Motion, Scene};
 use crate::tensor::Vector;
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
-
-/// Surfaces closer than this share of a radius are the same surface.
-const SAME: f64 = 1e-6;
 
 /// The contact of a ball with another body as Hertz predicts it from the start of the scene.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -65,15 +62,15 @@ pub(super) fn estimates(scene: &Scene, extents: &[Extent]) -> Vec<ContactEstimat
     let boxes: Vec<_> = extents.iter().map(|extent| extent.bounds).collect();
     let near = pairs_within(&boxes, scene.discretization.cell);
     let pairs: BTreeSet<_> = near.into_iter().chain(named.iter().copied()).collect();
-    let estimate = |pair: [usize; 2]| {
+    let of_pair = |pair: [usize; 2]| {
         let [a, b] = pair;
         let touches = [Touch::of(scene, extents, [a, b]), Touch::of(scene, extents, [b, a])];
         let nearest = touches.into_iter().flatten().min_by(|a, b| a.gap.total_cmp(&b.gap))?;
         let counts = nearest.gap <= scene.discretization.cell || named.contains(&pair);
-        if counts { nearest.estimate(scene) } else { None }
+        if counts { estimate(&nearest, scene) } else { None }
     };
     let mut found: Vec<_> =
-        pairs.into_iter().filter(|&pair| pushes(scene, pair)).filter_map(estimate).collect();
+        pairs.into_iter().filter(|&pair| pushes(scene, pair)).filter_map(of_pair).collect();
     found.sort_by(|a, b| a.cells.total_cmp(&b.cells));
     found
 }
@@ -94,97 +91,37 @@ fn pushes(scene: &Scene, [a, b]: [usize; 2]) -> bool {
     !rigid && !matches!(scene.contact_between(a, b).law, ContactLaw::None | ContactLaw::Glued)
 }
 
-/// A ball of one body that faces another body.
-struct Touch {
-    pair: [usize; 2],
-    /// Masses that move: of the ball itself, even if a symmetry plane cuts it, and of the other body [kg].
-    masses: [f64; 2],
-    /// Effective radius [m].
-    radius: f64,
-    gap: f64,
-    /// Unit vector from the ball's centre to the other body.
-    direction: Vector<f64, 3>,
-}
-
-impl Touch {
-    /// Where a ball of the first body is nearest to the second; `None` if no ball faces it.
-    fn of(scene: &Scene, extents: &[Extent], pair: [usize; 2]) -> Option<Touch> {
-        let [first, second] = pair.map(|i| &scene.bodies[i]);
-        let full = |part: &RoundPart| !part.hollow;
-        let balls = first.shape.round_parts(axes(scene)).into_iter().filter(full);
-        let touches = balls.filter_map(|ball| {
-            let (gap, direction) = facing(&ball, first, second, axes(scene))?;
-            let opposite = opposite_ball(&second.shape, &ball, gap, direction, axes(scene));
-            let curvature = opposite.map_or(0.0, |part| if part.hollow { -1.0 } else { 1.0 } / part.radius);
-            let radius = 1.0 / (1.0 / ball.radius + curvature);
-            let whole = |part: RoundPart, body: &Body| {
-                let ball = Shape::Ball { center: part.center, radius: part.radius };
-                ball.volume(axes(scene)).map(|volume| volume * scene.materials[body.material].density)
-            };
-            let other_ball = opposite.filter(full).and_then(|part| whole(part, second));
-            let masses = [whole(ball, first)?, other_ball.unwrap_or(extents[pair[1]].mass)];
-            (radius > 0.0 && radius.is_finite()).then_some(Touch { pair, masses, radius, gap, direction })
-        });
-        touches.min_by(|a, b| a.gap.total_cmp(&b.gap))
-    }
-
-    /// `None` if nothing presses the two together.
-    fn estimate(&self, scene: &Scene) -> Option<ContactEstimate> {
-        let bodies = self.pair.map(|i| &scene.bodies[i]);
-        let rigid = bodies.map(|body| matches!(body.motion, Motion::Rigid { .. }));
-        let materials =
-            std::array::from_fn(|i| (!rigid[i]).then(|| scene.materials[bodies[i].material].law.elastic()));
-        let modulus = Hertz::effective_modulus(materials);
-        let hertz = Hertz { modulus, radius: self.radius, dimension: axes(scene) };
-        let gravity = Vector(scene.gravity);
-        // The one above rests on the other; gravity along the surface presses nothing, but for round-off.
-        let along = self.direction.dot(gravity);
-        let above = usize::from(along < 0.0);
-        let presses = along.abs() > SAME * gravity.norm() && !rigid[above];
-        let load = if presses { self.masses[above] * along.abs() } else { 0.0 };
-        let velocities = bodies.map(|body| Vector(starting_velocity(body)));
-        let closing = self.direction.dot(velocities[0] - velocities[1]);
-        let approach = if closing > SAME * (velocities[0] - velocities[1]).norm() { closing } else { 0.0 };
-        let inverse_masses = [0, 1].map(|i| if rigid[i] { 0.0 } else { 1.0 / self.masses[i] });
-        let reduced_mass = 1.0 / (inverse_masses[0] + inverse_masses[1]);
-        let [rest, impact] = [hertz.under_load(load), hertz.at_impact(reduced_mass, approach)];
-        let patch = if impact.radius > rest.radius { impact } else { rest };
-        let cells = patch.radius / scene.discretization.cell;
-        (patch.radius > 0.0).then(|| ContactEstimate {
-            bodies: bodies.map(|body| body.name.clone()),
-            gap: self.gap,
-            load,
-            approach,
-            patch,
-            cells,
-            verdict: Verdict::of(cells),
-        })
-    }
-}
-
-/// Gap and direction from a ball of `first` to `second`, if the ball's surface is the body's surface there.
-fn facing(ball: &RoundPart, first: &Body, second: &Body, dimension: usize) -> Option<(f64, Vector<f64, 3>)> {
-    let distance = second.shape.distance(ball.center, dimension);
-    let direction = Vector(second.shape.direction_to(ball.center, SAME * ball.radius, dimension)?);
-    let point = Vector(ball.center) + direction * ball.radius;
-    let on_surface = first.shape.distance(point.0, dimension).abs() < SAME * ball.radius;
-    (distance > 0.0 && on_surface).then_some((distance - ball.radius, direction))
-}
-
-/// The ball of the opposite shape that holds the point nearest to a ball.
-fn opposite_ball(
-    opposite: &Shape,
-    ball: &RoundPart,
-    gap: f64,
-    direction: Vector<f64, 3>,
-    dimension: usize,
-) -> Option<RoundPart> {
-    let foot = Vector(ball.center) + direction * (ball.radius + gap);
-    let holds = |part: &RoundPart| {
-        let sphere = Shape::Ball { center: part.center, radius: part.radius };
-        sphere.distance(foot.0, dimension).abs() < SAME * part.radius
-    };
-    opposite.round_parts(dimension).into_iter().find(holds)
+/// `None` if nothing presses the two together.
+fn estimate(touch: &Touch, scene: &Scene) -> Option<ContactEstimate> {
+    let bodies = touch.pair.map(|i| &scene.bodies[i]);
+    let rigid = bodies.map(|body| matches!(body.motion, Motion::Rigid { .. }));
+    let materials =
+        std::array::from_fn(|i| (!rigid[i]).then(|| scene.materials[bodies[i].material].law.elastic()));
+    let modulus = Hertz::effective_modulus(materials);
+    let hertz = Hertz { modulus, radius: touch.radius, dimension: axes(scene) };
+    let gravity = Vector(scene.gravity);
+    // The one above rests on the other; gravity along the surface presses nothing, but for round-off.
+    let along = touch.direction.dot(gravity);
+    let above = usize::from(along < 0.0);
+    let presses = along.abs() > SAME * gravity.norm() && !rigid[above];
+    let load = if presses { touch.masses[above] * along.abs() } else { 0.0 };
+    let velocities = bodies.map(|body| Vector(starting_velocity(body)));
+    let closing = touch.direction.dot(velocities[0] - velocities[1]);
+    let approach = if closing > SAME * (velocities[0] - velocities[1]).norm() { closing } else { 0.0 };
+    let inverse_masses = [0, 1].map(|i| if rigid[i] { 0.0 } else { 1.0 / touch.masses[i] });
+    let reduced_mass = 1.0 / (inverse_masses[0] + inverse_masses[1]);
+    let [rest, impact] = [hertz.under_load(load), hertz.at_impact(reduced_mass, approach)];
+    let patch = if impact.radius > rest.radius { impact } else { rest };
+    let cells = patch.radius / scene.discretization.cell;
+    (patch.radius > 0.0).then(|| ContactEstimate {
+        bodies: bodies.map(|body| body.name.clone()),
+        gap: touch.gap,
+        load,
+        approach,
+        patch,
+        cells,
+        verdict: Verdict::of(cells),
+    })
 }
 
 /// Velocity of the centre of mass at the start [m/s]; spin moves a ball's surface along the contact, not into it.
@@ -200,6 +137,7 @@ mod tests {
     use super::*;
     use crate::check::bodies::measure;
     use crate::check::tests::{free, incline, scene};
+    use crate::geometry::Shape;
     use crate::scene::{Dimension, Expression};
     use std::f64::consts::PI;
 

@@ -12,6 +12,7 @@ mod report;
 mod settings;
 mod shapes;
 mod table;
+mod touch;
 
 pub use contact::{ContactEstimate, Verdict};
 pub use hertz::{Hertz, Patch};

@@ -120,7 +120,8 @@ pub fn report(scene: &Scene) -> Result<Report, Problem> {
         memory: memory(scene, particles),
         end: scene.time.end,
         time_step,
-        steps: (scene.time.end / time_step * (1.0 - f64::EPSILON)).ceil() as u64,
+        // A last step that is only round-off is none.
+        steps: (scene.time.end / time_step * (1.0 - 1e-12)).ceil() as u64,
         machine: Machine::default(),
         wall_time: 0.0,
         warnings: thin_bodies(scene).into_iter().chain(narrow_contacts(&contacts)).collect(),
@@ -174,7 +175,8 @@ fn time_step(scene: &Scene, extents: &[Extent]) -> f64 {
     };
     let fastest = scene.bodies.iter().zip(extents).map(signal).fold(0.0, f64::max);
     let step = scene.time.courant * scene.discretization.cell / fastest;
-    step.min(scene.time.max_step.unwrap_or(f64::INFINITY)).min(scene.time.end.max(f64::MIN_POSITIVE))
+    let step = step.min(scene.time.max_step.unwrap_or(f64::INFINITY));
+    if step.is_finite() { step } else { scene.time.end }
 }
 
 fn memory(scene: &Scene, particles: usize) -> f64 {
