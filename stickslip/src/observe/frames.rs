@@ -40,14 +40,21 @@ impl Frames {
     /// # Errors
     /// The disk is full or refuses; then the series stays as it was.
     pub(super) fn push(&mut self, time: f64, snapshot: &Vtu) -> Result<(), OutputError> {
-        let new = self.times.last() != Some(&time);
-        let number = self.times.len() - usize::from(!new);
-        snapshot.write(&self.folder.join(&self.file(number)))?;
-        if new {
-            self.times.push(time);
-            self.write_collection()?;
+        if self.times.last() == Some(&time) {
+            return snapshot.write(&self.path(self.times.len() - 1));
         }
-        Ok(())
+        let path = self.path(self.times.len());
+        snapshot.write(&path)?;
+        self.times.push(time);
+        self.write_collection().inspect_err(|_| {
+            // A snapshot that no list names only takes the room that the record of the failed run needs.
+            let _ = fs::remove_file(&path);
+            self.times.pop();
+        })
+    }
+
+    fn path(&self, number: usize) -> PathBuf {
+        self.folder.join(&self.file(number))
     }
 
     fn file(&self, number: usize) -> String {

@@ -38,7 +38,7 @@ pub struct Manifest {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Status {
-    /// It has not ended, or was killed.
+    /// It has not ended; or it was killed, or its disk was too full to say how it ended.
     Running,
     /// It reached its end time.
     Finished,

@@ -9,15 +9,13 @@ use stickslip::material::SHELF;
 use stickslip::scene::*;
 
 const GRAVITY: f64 = 9.81;
-/// Particles of the two bodies, of one kilogram each.
-const PARTICLES: [usize; 2] = [4, 3];
-
 /// Both bodies start at the origin with a velocity of 2 m/s along x; gravity pulls along -y.
 pub struct Ballistic {
     time: f64,
     steps: u64,
     step: f64,
     last_step: f64,
+    particles: [usize; 2],
     steps_in_contact: usize,
     fails_at: Option<u64>,
     inverted: bool,
@@ -25,18 +23,25 @@ pub struct Ballistic {
 }
 
 impl Ballistic {
-    /// Flies in steps of this length [s].
+    /// Four and three particles of one kilogram each, in steps of this length [s].
     pub fn new(step: f64) -> Self {
         Ballistic {
             time: 0.0,
             steps: 0,
             step,
             last_step: 0.0,
+            particles: [4, 3],
             steps_in_contact: 0,
             fails_at: None,
             inverted: false,
             trap: None,
         }
+    }
+
+    /// The same with these numbers of particles.
+    pub fn with_particles(mut self, particles: [usize; 2]) -> Self {
+        self.particles = particles;
+        self
     }
 
     /// Does something before the step of this number, counted from zero.
@@ -75,7 +80,7 @@ impl Simulation for Ballistic {
     }
 
     fn particles(&self) -> usize {
-        PARTICLES.iter().sum()
+        self.particles.iter().sum()
     }
 
     fn stable_step(&self) -> f64 {
@@ -115,7 +120,7 @@ impl Simulation for Ballistic {
             kinetic: 0.5 * particles as f64 * (vx * vx + vy * vy),
             strain: 0.0,
         };
-        PARTICLES.iter().map(body).collect()
+        self.particles.iter().map(body).collect()
     }
 
     fn ledger(&self) -> Ledger {
@@ -149,7 +154,7 @@ impl Simulation for Ballistic {
     fn snapshot(&self) -> ParticleSnapshot {
         let sign = if self.inverted { -1.0 } else { 1.0 };
         let mut snapshot = ParticleSnapshot { dimension: 3, ..Default::default() };
-        for (body, &particles) in PARTICLES.iter().enumerate() {
+        for (body, &particles) in self.particles.iter().enumerate() {
             for number in 0..particles {
                 snapshot.body.push(body as u32);
                 snapshot.number.push(number as u32);
