@@ -1,3 +1,6 @@
 //! The command `stickslip`.
 
+mod drawing;
+mod picture;
+
 fn main() {}
