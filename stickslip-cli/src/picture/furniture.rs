@@ -19,6 +19,9 @@ fn letters(size: i32, anchor: (HPos, VPos)) -> TextStyle<'static> {
 }
 
 fn write(ink: &Ink, text: &str, at: (i32, i32), style: TextStyle<'static>) -> Result<(), DrawError> {
+    // The line's box has room below for letters that hang; its middle is above the middle of the digits.
+    let drop = if matches!(style.pos.v_pos, VPos::Center) { 3 * PIXEL / 2 } else { 0 };
+    let at = (at.0, at.1 + drop);
     ink.draw(&Text::new(text.to_owned(), at, style)).map_err(DrawError::ink)
 }
 

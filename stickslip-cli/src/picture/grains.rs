@@ -29,7 +29,7 @@ impl Grain {
     }
 }
 
-/// Darker quarters of round bodies, told by where each particle was at the start.
+/// Paler quarters of round bodies, told by where each particle was at the start.
 pub type Quarters = HashMap<(u32, u32), bool>;
 
 /// The particles of a snapshot, coloured.
@@ -63,7 +63,7 @@ pub fn grains(
 fn quartered(particles: &ParticleSnapshot, quarters: &Quarters) -> Vec<Rgb> {
     let color = |(&body, &number): (&u32, &u32)| {
         let color = body_color(body as usize);
-        if quarters.get(&(body, number)) == Some(&true) { shaded(color, 0.62) } else { color }
+        if quarters.get(&(body, number)) == Some(&true) { shaded(color, 1.6) } else { color }
     };
     particles.body.iter().zip(&particles.number).map(color).collect()
 }

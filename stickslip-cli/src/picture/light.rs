@@ -8,7 +8,7 @@ use crate::drawing::{Rgb, SAMPLES};
 use stickslip::tensor::Vector;
 
 /// Share of a ball's own normal in the normal that light sees; the rest is that of the body's surface.
-const GRAININESS: f64 = 0.30;
+const GRAININESS: f64 = 0.24;
 /// Distance over which corners darken, in ball radii.
 const CORNER: f64 = 5.0;
 /// Pixels along each side of the picture that the lamp sees.
@@ -58,7 +58,7 @@ impl<'a> Lit<'a> {
         let gloss = 0.10 * normal.dot(half).max(0.0).powi(28) * if lamp > 0.0 { 1.0 } else { 0.0 };
         let sky = 0.75 + 0.25 * normal.dot(self.camera.up);
         let open = self.openness([x, y], normal, depth);
-        let light = (0.46 * sky * open + 0.66 * lamp * (0.6 + 0.4 * open)) * self.rim([x, y], ball);
+        let light = (0.58 * sky * open + 0.58 * lamp * (0.6 + 0.4 * open)) * self.rim([x, y], ball);
         let color = self.grains[ball.grain].color;
         Some(color.map(|c| (c * light as f32 + gloss as f32).clamp(0.0, 1.0)))
     }
@@ -97,7 +97,7 @@ impl<'a> Lit<'a> {
             (cosine - 0.15).max(0.0) * fade
         };
         let hidden = (0..PROBES).map(hidden).sum::<f64>() / PROBES as f64;
-        (1.0 - 2.6 * hidden).max(0.15)
+        (1.0 - 2.2 * hidden).max(0.25)
     }
 
     /// Darkens a pixel next to another body or to the background.

@@ -18,7 +18,7 @@ pub use quantity::Quantity;
 pub use setting::{Mirror, Setting};
 
 use crate::drawing::{Canvas, DrawError, Rgb, SAMPLES, Scale, body_color};
-use camera::{Camera, Point};
+use camera::{Camera, Point, unit};
 use grains::Grain;
 use light::Lit;
 use plane::{Drawn, Window};
@@ -38,7 +38,7 @@ pub struct Look {
     pub mirror: Option<Mirror>,
     /// Width and height in pixels; without them, the height follows the scene.
     pub size: Option<[usize; 2]>,
-    /// The part of space to show; without it, everything there is.
+    /// The part of space to show, mirror image left out; without it, everything there is.
     pub bounds: Option<Bounds>,
 }
 
@@ -78,16 +78,41 @@ pub fn draw(
     if let Some(mirror) = look.mirror {
         grains = grains::mirrored(grains, mirror);
     }
-    let bounds = look.bounds.map_or_else(|| bounds(particles), |bounds| bounds);
-    let bounds = look.mirror.map_or(bounds, |mirror| widened(bounds, mirror));
+    let extent = extent(&grains, look);
     let legend = legend(particles, setting, look);
     let mut canvas = if particles.dimension == 2 {
-        plane_picture(&grains, &bounds, look, &legend)?
+        plane_picture(&grains, &extent, look, &legend)?
     } else {
-        space_picture(&grains, &bounds, (look, setting), &legend)?
+        space_picture(&grains, &extent, (look, setting), &legend)?
     };
     furniture::heading(&canvas.ink(), &setting.title, time)?;
     Ok(canvas)
+}
+
+/// Points that the picture must hold: the corners of the user's box, or of every particle's.
+fn extent(grains: &[Grain], look: &Look) -> Vec<Point> {
+    let corners = |low: [f64; 3], high: [f64; 3]| {
+        (0..8).map(move |i| Vector::from_fn(|axis| if i >> axis & 1 == 0 { low[axis] } else { high[axis] }))
+    };
+    let around = |grain: &Grain| {
+        let half = 0.5 * grain.size();
+        corners(grain.position.map(|x| x - half), grain.position.map(|x| x + half))
+    };
+    match look.bounds {
+        Some(bounds) => {
+            let [low, high] = look.mirror.map_or(bounds, |mirror| widened(bounds, mirror));
+            corners(low, high).collect()
+        }
+        None => grains.iter().flat_map(around).collect(),
+    }
+}
+
+/// Lengths of the projection of some points on a direction: lower and upper end [m].
+fn span(points: &[Point], direction: Point) -> [f64; 2] {
+    points.iter().fold([f64::MAX, f64::MIN], |[low, high], point| {
+        let along = point.dot(direction);
+        [low.min(along), high.max(along)]
+    })
 }
 
 /// The smallest box around all particles with their sizes [m].
@@ -137,12 +162,12 @@ fn room(look: &Look, margins: [usize; 4], aspect: f64) -> [[usize; 2]; 2] {
 
 fn plane_picture(
     grains: &[Grain],
-    bounds: &Bounds,
+    extent: &[Point],
     look: &Look,
     legend: &Legend,
 ) -> Result<Canvas, DrawError> {
-    let [low, high] = bounds;
-    let extent = [0, 1].map(|axis| (high[axis] - low[axis]).max(1e-9));
+    let spans = [0, 1].map(|axis| span(extent, unit(axis)));
+    let extent = spans.map(|[low, high]| (high - low).max(1e-9));
     let margins = [78, HEADING, COLUMN, 56];
     let [size, inner] = room(look, margins, extent[0] / extent[1]);
     let mut canvas = Canvas::new(size);
@@ -150,7 +175,7 @@ fn plane_picture(
     let scale = [0, 1].map(|axis| inner[axis] as f64 / (1.04 * extent[axis]));
     let scale = scale[0].min(scale[1]);
     let half = [0, 1].map(|axis| 0.5 * inner[axis] as f64 / scale);
-    let middle = [0, 1].map(|axis| 0.5 * (low[axis] + high[axis]));
+    let middle = spans.map(|[low, high]| 0.5 * (low + high));
     let window = Window {
         low: [middle[0] - half[0], middle[1] - half[1]],
         high: [middle[0] + half[0], middle[1] + half[1]],
@@ -168,22 +193,20 @@ fn plane_picture(
 
 fn space_picture(
     grains: &[Grain],
-    bounds: &Bounds,
+    extent: &[Point],
     (look, setting): (&Look, &Setting),
     legend: &Legend,
 ) -> Result<Canvas, DrawError> {
     let camera = Camera::new(look.view, setting);
-    let corners = (0..8).map(|i| Vector::from_fn(|axis| bounds[i >> axis & 1][axis]));
-    let corners: Vec<Point> = corners.collect();
-    let extent = |direction: Point| {
-        let along = corners.iter().map(|corner| corner.dot(direction));
-        along.clone().fold(f64::MIN, f64::max) - along.fold(f64::MAX, f64::min)
-    };
+    let [width, height] = [camera.right, camera.up].map(|direction| {
+        let [low, high] = span(extent, direction);
+        (high - low).max(1e-9)
+    });
     let margins = [24, HEADING, COLUMN, 24];
-    let [size, inner] = room(look, margins, extent(camera.right) / extent(camera.up).max(1e-9));
+    let [size, inner] = room(look, margins, width / height);
     let mut canvas = Canvas::new(size);
     let area = [margins[0], margins[1], inner[0], inner[1]].map(|length| (length * SAMPLES) as f64);
-    let camera = camera.fit(corners, area);
+    let camera = camera.fit(extent.iter().copied(), area);
     let balls = surface::surface(grains);
     let lit = Lit::new(grains, &balls, camera, canvas.size);
     let [width, height] = canvas.size;
