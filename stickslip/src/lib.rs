@@ -9,3 +9,6 @@ pub mod material; // one file a law: equation, code, tests
 pub mod scene; // what the user asks for; scene file -> Scene, with errors that point at line and key
 
 pub mod door; // a running simulation with dimension and precision erased; what observers see
+
+pub mod observe; // one file a kind of output: tables, snapshots for ParaView, the record of the run; reading them back
+pub mod run; // the loop: step, observe, stop

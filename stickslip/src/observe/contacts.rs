@@ -1,0 +1,79 @@
+//! `contacts.csv`: the forces between bodies that touch.
+
+use super::file::OutputError;
+use super::folder::OutputFolder;
+use super::schedule::Schedule;
+use super::table::Table;
+use super::{CONTACTS, Observer};
+use crate::door::Simulation;
+use crate::scene::Scene;
+use serde::{Deserialize, Serialize};
+
+/// Contact of one pair of bodies, averaged from the row before to this one; the columns of `contacts.csv`.
+///
+/// Pairs that did not touch in that time have no row.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ContactRow {
+    /// Simulated time at which the average ends [s].
+    pub time: f64,
+    /// Name of the first body.
+    pub body_a: String,
+    /// Name of the second body.
+    pub body_b: String,
+    /// Mean force of the first on the second body, first component [N].
+    pub fx: f64,
+    /// Mean force of the first on the second body, second component [N].
+    pub fy: f64,
+    /// Mean force of the first on the second body, third component [N].
+    pub fz: f64,
+    /// Sum over nodes of the force along each node's normal, positive when the bodies push each other apart [N].
+    pub normal: f64,
+    /// Sum over nodes of the magnitude of the force across each node's normal [N].
+    pub tangential: f64,
+    /// Grid nodes in contact in the last step in which the pair touched.
+    pub nodes: usize,
+}
+
+/// Writes `contacts.csv`. It alone calls [`Simulation::take_contacts`], so that each row's average starts at the row before.
+pub(super) struct Contacts {
+    names: Vec<String>,
+    schedule: Schedule,
+    table: Table<ContactRow>,
+}
+
+impl Contacts {
+    pub(super) fn create(scene: &Scene, folder: &OutputFolder) -> Result<Self, OutputError> {
+        Ok(Contacts {
+            names: scene.bodies.iter().map(|body| body.name.clone()).collect(),
+            schedule: Schedule::every(scene.outputs.tables),
+            table: Table::create(folder.join(CONTACTS))?,
+        })
+    }
+}
+
+impl Observer for Contacts {
+    fn next(&self) -> f64 {
+        self.schedule.next()
+    }
+
+    fn observe(&mut self, simulation: &mut dyn Simulation) -> Result<(), OutputError> {
+        let time = simulation.time();
+        let contacts = simulation.take_contacts();
+        self.table.append(contacts.into_iter().map(|contact| {
+            let [fx, fy, fz] = contact.force;
+            ContactRow {
+                time,
+                body_a: self.names[contact.body_a].clone(),
+                body_b: self.names[contact.body_b].clone(),
+                fx,
+                fy,
+                fz,
+                normal: contact.normal,
+                tangential: contact.tangential,
+                nodes: contact.nodes,
+            }
+        }))?;
+        self.schedule.recorded(time);
+        Ok(())
+    }
+}

@@ -1,0 +1,99 @@
+//! `energy.csv`: where the energy is and went, and the momentum of everything.
+
+use super::file::OutputError;
+use super::folder::OutputFolder;
+use super::schedule::Schedule;
+use super::table::Table;
+use super::{ENERGY, Observer};
+use crate::door::{Ledger, Simulation};
+use crate::scene::Scene;
+use serde::{Deserialize, Serialize};
+
+/// Energy and momentum of everything at one time; the columns of `energy.csv`. See [`Ledger`] for what each term is.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct EnergyRow {
+    /// Simulated time [s].
+    pub time: f64,
+    /// Kinetic energy [J].
+    pub kinetic: f64,
+    /// Strain energy [J].
+    pub strain: f64,
+    /// Potential energy in gravity [J].
+    pub potential: f64,
+    /// Work of prescribed motion since the start [J].
+    pub external_work: f64,
+    /// Dissipated by friction since the start [J].
+    pub friction: f64,
+    /// Dissipated by plastic flow since the start [J].
+    pub plastic: f64,
+    /// Dissipated by damping and by inelastic shock since the start [J].
+    pub damping: f64,
+    /// Sum that is constant in an exact solution [J].
+    pub total: f64,
+    /// Momentum, first component [kg m/s].
+    pub px: f64,
+    /// Momentum, second component [kg m/s].
+    pub py: f64,
+    /// Momentum, third component [kg m/s].
+    pub pz: f64,
+    /// Angular momentum about the origin, first component [kg m^2/s].
+    pub lx: f64,
+    /// Angular momentum about the origin, second component [kg m^2/s].
+    pub ly: f64,
+    /// Angular momentum about the origin, third component [kg m^2/s].
+    pub lz: f64,
+}
+
+impl EnergyRow {
+    /// The row of a ledger at a time [s].
+    pub fn new(time: f64, ledger: &Ledger) -> Self {
+        let Ledger { kinetic, strain, potential, external_work, friction, plastic, damping, total, .. } =
+            *ledger;
+        let ([px, py, pz], [lx, ly, lz]) = (ledger.momentum, ledger.angular_momentum);
+        EnergyRow {
+            time,
+            kinetic,
+            strain,
+            potential,
+            external_work,
+            friction,
+            plastic,
+            damping,
+            total,
+            px,
+            py,
+            pz,
+            lx,
+            ly,
+            lz,
+        }
+    }
+}
+
+/// Writes `energy.csv`.
+pub(super) struct Energy {
+    schedule: Schedule,
+    table: Table<EnergyRow>,
+}
+
+impl Energy {
+    pub(super) fn create(scene: &Scene, folder: &OutputFolder) -> Result<Self, OutputError> {
+        Ok(Energy {
+            schedule: Schedule::every(scene.outputs.tables),
+            table: Table::create(folder.join(ENERGY))?,
+        })
+    }
+}
+
+impl Observer for Energy {
+    fn next(&self) -> f64 {
+        self.schedule.next()
+    }
+
+    fn observe(&mut self, simulation: &mut dyn Simulation) -> Result<(), OutputError> {
+        let time = simulation.time();
+        self.table.append([EnergyRow::new(time, &simulation.ledger())])?;
+        self.schedule.recorded(time);
+        Ok(())
+    }
+}

@@ -1,0 +1,55 @@
+//! `grid.pvd`: the grid nodes that carry mass through time, for ParaView.
+
+use super::file::OutputError;
+use super::folder::OutputFolder;
+use super::frames::Frames;
+use super::schedule::Schedule;
+use super::vtu::{NUMBER, VECTOR, Vtu};
+use super::{GRID, Observer};
+use crate::door::{GridSnapshot, Simulation};
+
+/// Writes `grid.pvd` and `grid/`.
+pub(super) struct Grid {
+    schedule: Schedule,
+    frames: Frames,
+}
+
+impl Grid {
+    pub(super) fn create(interval: f64, folder: &OutputFolder) -> Result<Self, OutputError> {
+        Ok(Grid { schedule: Schedule::every(interval), frames: Frames::create(folder, GRID)? })
+    }
+}
+
+impl Observer for Grid {
+    fn next(&self) -> f64 {
+        self.schedule.next()
+    }
+
+    fn observe(&mut self, simulation: &mut dyn Simulation) -> Result<(), OutputError> {
+        let time = simulation.time();
+        self.frames.push(time, &encode_grid(&simulation.grid_snapshot(), time))?;
+        self.schedule.recorded(time);
+        Ok(())
+    }
+
+    fn replaces(&self) -> bool {
+        true
+    }
+}
+
+/// The nodes of the last step's grid at a time [s] as a file for ParaView, ready to be written.
+///
+/// Node by node and body by body: `mass` [kg], `velocity` [m/s], internal `force` [N], `contact_impulse` [N s] and the index of the
+/// `body`; the side of a `cell` [m] holds for the whole file.
+pub fn encode_grid(snapshot: &GridSnapshot, time: f64) -> Vtu {
+    let body: Vec<i32> = snapshot.body.iter().map(|&body| body as i32).collect();
+    let mut file = Vtu::new(time, &snapshot.position);
+    file.field("dimension", snapshot.dimension as f64);
+    file.field("cell", snapshot.cell);
+    file.point_data("mass", NUMBER, &snapshot.mass);
+    file.point_data("velocity", VECTOR, snapshot.velocity.as_flattened());
+    file.point_data("force", VECTOR, snapshot.force.as_flattened());
+    file.point_data("contact_impulse", VECTOR, snapshot.contact_impulse.as_flattened());
+    file.point_data("body", NUMBER, &body);
+    file
+}

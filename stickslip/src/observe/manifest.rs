@@ -1,0 +1,160 @@
+//! `run.json`: what was run, by which program, how it went and how long it took.
+
+use super::file::{OutputError, ReadError, ReadProblem, replace};
+use super::folder::OutputFolder;
+use crate::scene::{Dimension, Scene};
+use serde::{Deserialize, Serialize};
+use std::fs;
+use std::path::Path;
+
+/// The record of a run. It is there from the first moment of the run, so that a folder of results is known as one.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Manifest {
+    /// `stickslip`.
+    pub program: String,
+    /// Version of the program.
+    pub version: String,
+    /// How the run stands.
+    pub status: Status,
+    /// What stopped it, if it failed.
+    pub error: Option<String>,
+    /// Title of the scene.
+    pub title: String,
+    /// 2 or 3.
+    pub dimension: usize,
+    /// Side of a grid cell [m].
+    pub cell: f64,
+    /// Names of the bodies: number `i` of a snapshot's `body` is name `i` here.
+    pub bodies: Vec<String>,
+    /// How far the run has come.
+    pub performance: Performance,
+    /// Known answers, to be held against `bodies.csv`.
+    pub references: Vec<ReferenceCurve>,
+    /// The scene as run, in SI units, parameters resolved; numbers that are infinite stand as `null`.
+    pub scene: serde_json::Value,
+}
+
+/// How a run stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Status {
+    /// It has not ended, or was killed.
+    Running,
+    /// It reached its end time.
+    Finished,
+    /// The user stopped it.
+    Interrupted,
+    /// It could not go on.
+    Failed,
+}
+
+/// How far a run has come, and how fast.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Performance {
+    /// Threads.
+    pub threads: usize,
+    /// Particles in all bodies.
+    pub particles: usize,
+    /// Simulated time reached [s].
+    pub time: f64,
+    /// Steps taken.
+    pub steps: u64,
+    /// Wall time, outputs included [s].
+    pub wall_time: f64,
+    /// Particles times steps over wall time [1/s].
+    pub particle_steps_per_second: f64,
+    /// Wall time of each verb of the step, in the order of the step.
+    pub timings: Vec<Timing>,
+}
+
+/// Wall time spent in one verb of the step.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Timing {
+    /// The verb.
+    pub verb: String,
+    /// Wall time so far [s].
+    pub seconds: f64,
+}
+
+/// A known answer for one quantity of one body, sampled over the run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ReferenceCurve {
+    /// Name of the body.
+    pub body: String,
+    /// A column of `bodies.csv`.
+    pub quantity: String,
+    /// What the answer assumes.
+    pub label: String,
+    /// Time [s] and exact value, evenly from the start to the end of the run.
+    pub points: Vec<[f64; 2]>,
+}
+
+/// Samples of a reference curve over a run: smooth at the width of a page.
+const SAMPLES: usize = 201;
+
+impl Manifest {
+    /// Name of the file.
+    pub const FILE: &'static str = "run.json";
+
+    /// The record of a run that begins.
+    pub fn new(scene: &Scene, performance: Performance) -> Self {
+        Manifest {
+            program: "stickslip".to_string(),
+            version: env!("CARGO_PKG_VERSION").to_string(),
+            status: Status::Running,
+            error: None,
+            title: scene.title.clone(),
+            dimension: match scene.dimension {
+                Dimension::PlaneStrain => 2,
+                Dimension::Space => 3,
+            },
+            cell: scene.discretization.cell,
+            bodies: scene.bodies.iter().map(|body| body.name.clone()).collect(),
+            performance,
+            references: reference_curves(scene),
+            scene: serde_json::to_value(scene).expect("a scene is plain data whose keys are text"),
+        }
+    }
+
+    /// Writes the record into the folder of the run.
+    ///
+    /// # Errors
+    /// The disk is full or refuses; then the old record stays.
+    pub fn write(&self, folder: &OutputFolder) -> Result<(), OutputError> {
+        replace(&folder.join(Self::FILE), |file| {
+            serde_json::to_writer_pretty(&mut *file, self)?;
+            writeln!(file)
+        })
+    }
+
+    /// Reads the record of the run that wrote a folder.
+    ///
+    /// # Errors
+    /// There is none, or another program wrote it.
+    pub fn read(folder: &Path) -> Result<Self, ReadError> {
+        let path = folder.join(Self::FILE);
+        let read = || -> Result<Manifest, ReadProblem> { Ok(serde_json::from_slice(&fs::read(&path)?)?) };
+        let manifest = read().map_err(|problem| problem.at(&path))?;
+        if manifest.program != "stickslip" {
+            let found = format!("it is the record of `{}`, not of stickslip", manifest.program);
+            return Err(ReadProblem::Layout(found).at(&path));
+        }
+        Ok(manifest)
+    }
+}
+
+fn reference_curves(scene: &Scene) -> Vec<ReferenceCurve> {
+    let times = (0..SAMPLES).map(|i| scene.time.end * i as f64 / (SAMPLES - 1) as f64);
+    let curve = |reference: &crate::scene::Reference| ReferenceCurve {
+        body: reference.body.clone(),
+        quantity: reference.quantity.clone(),
+        label: reference.label.clone(),
+        // JSON has no infinities: a value that is not finite has no place on a plot either.
+        points: times
+            .clone()
+            .map(|t| [t, reference.value.at(t)])
+            .filter(|[_, value]| value.is_finite())
+            .collect(),
+    };
+    scene.references.iter().map(curve).collect()
+}

@@ -1,0 +1,61 @@
+//! Everything that a run writes, and reading it back.
+//!
+//! One file for each kind of output; to add one, write its file and seat it in [`Recorder::new`]. Outputs look at the simulation
+//! between steps and never change how it steps: a record is made after the first step that reaches a multiple of the output's
+//! interval and carries the true time; the start and the end are always recorded. Whatever ends a run (its end time, the user, a
+//! failing step, a full disk), every file that is there can be read: tables hold whole rows only, and snapshots, their `.pvd` list
+//! and `run.json` are written under another name and renamed when complete.
+
+mod bodies;
+mod contacts;
+mod energy;
+mod file;
+mod folder;
+mod frames;
+mod grid;
+mod manifest;
+mod particles;
+mod recorder;
+mod results;
+mod schedule;
+mod table;
+mod vtu;
+mod xml;
+
+pub use bodies::BodyRow;
+pub use contacts::ContactRow;
+pub use energy::EnergyRow;
+pub use file::{OutputError, ReadError, ReadProblem};
+pub use folder::{FolderError, OutputFolder};
+pub use frames::Frame;
+pub use grid::encode_grid;
+pub use manifest::{Manifest, Performance, ReferenceCurve, Status, Timing};
+pub use particles::{encode_particles, read_particles};
+pub use recorder::Recorder;
+pub use results::Results;
+pub use vtu::Vtu;
+
+use crate::door::Simulation;
+
+const BODIES: &str = "bodies.csv";
+const ENERGY: &str = "energy.csv";
+const CONTACTS: &str = "contacts.csv";
+const PARTICLES: &str = "particles";
+const GRID: &str = "grid";
+
+/// One kind of output.
+pub trait Observer {
+    /// The time from which its next record is due [s].
+    fn next(&self) -> f64;
+
+    /// Records the present state.
+    ///
+    /// # Errors
+    /// The disk is full or refuses; what was recorded before stays readable.
+    fn observe(&mut self, simulation: &mut dyn Simulation) -> Result<(), OutputError>;
+
+    /// Whether a second record at the same time takes the place of the first, as for snapshots; tables would repeat a row.
+    fn replaces(&self) -> bool {
+        false
+    }
+}

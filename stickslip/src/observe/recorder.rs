@@ -1,0 +1,87 @@
+//! All observers of a run, asked at the right times.
+
+use super::Observer;
+use super::bodies::Bodies;
+use super::contacts::Contacts;
+use super::energy::Energy;
+use super::file::OutputError;
+use super::folder::OutputFolder;
+use super::grid::Grid;
+use super::particles::Particles;
+use crate::door::Simulation;
+use crate::scene::Scene;
+
+/// The observers that a scene asks for.
+pub struct Recorder {
+    seats: Vec<Seat>,
+}
+
+struct Seat {
+    observer: Box<dyn Observer>,
+    /// Time of its last record [s].
+    last: Option<f64>,
+}
+
+impl Recorder {
+    /// Makes the files of every output that the scene asks for.
+    ///
+    /// # Errors
+    /// A file cannot be made.
+    pub fn new(scene: &Scene, folder: &OutputFolder) -> Result<Self, OutputError> {
+        let mut observers: Vec<Box<dyn Observer>> = vec![
+            Box::new(Bodies::create(scene, folder)?),
+            Box::new(Energy::create(scene, folder)?),
+            Box::new(Contacts::create(scene, folder)?),
+        ];
+        if let Some(interval) = scene.outputs.particles {
+            observers.push(Box::new(Particles::create(interval, folder)?));
+        }
+        if let Some(interval) = scene.outputs.grid {
+            observers.push(Box::new(Grid::create(interval, folder)?));
+        }
+        let seats = observers.into_iter().map(|observer| Seat { observer, last: None }).collect();
+        Ok(Recorder { seats })
+    }
+
+    /// Records what is due: to be called after each step.
+    ///
+    /// # Errors
+    /// A file cannot be written.
+    pub fn record_due(&mut self, simulation: &mut dyn Simulation) -> Result<(), OutputError> {
+        let time = simulation.time();
+        self.record_where(simulation, |seat| time >= seat.observer.next())
+    }
+
+    /// Records the present state in every output that does not have it yet: at the start and the end of a run.
+    ///
+    /// # Errors
+    /// A file cannot be written.
+    pub fn record_present(&mut self, simulation: &mut dyn Simulation) -> Result<(), OutputError> {
+        let time = simulation.time();
+        self.record_where(simulation, |seat| seat.last != Some(time))
+    }
+
+    /// Records the state in which a step failed. If the time did not advance, tables keep the row that they have and snapshots
+    /// are replaced: what went wrong is to be seen.
+    ///
+    /// # Errors
+    /// A file cannot be written.
+    pub fn record_failure(&mut self, simulation: &mut dyn Simulation) -> Result<(), OutputError> {
+        let time = simulation.time();
+        self.record_where(simulation, |seat| seat.last != Some(time) || seat.observer.replaces())
+    }
+
+    fn record_where(
+        &mut self,
+        simulation: &mut dyn Simulation,
+        chosen: impl Fn(&Seat) -> bool,
+    ) -> Result<(), OutputError> {
+        for seat in &mut self.seats {
+            if chosen(seat) {
+                seat.observer.observe(simulation)?;
+                seat.last = Some(simulation.time());
+            }
+        }
+        Ok(())
+    }
+}

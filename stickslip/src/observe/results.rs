@@ -1,0 +1,81 @@
+//! Reading what a run wrote: for plots, pictures and tests.
+
+use super::bodies::BodyRow;
+use super::contacts::ContactRow;
+use super::energy::EnergyRow;
+use super::file::ReadError;
+use super::frames::{Frame, read_frames};
+use super::manifest::Manifest;
+use super::particles::read_particles;
+use super::table::read_rows;
+use super::{BODIES, CONTACTS, ENERGY, PARTICLES};
+use crate::door::ParticleSnapshot;
+use std::path::{Path, PathBuf};
+
+/// The results of a run, finished or not.
+#[derive(Clone, Debug)]
+pub struct Results {
+    folder: PathBuf,
+    manifest: Manifest,
+    frames: Vec<Frame>,
+}
+
+impl Results {
+    /// Opens the folder of a run. Tables and particles are read when asked for.
+    ///
+    /// # Errors
+    /// The folder holds no record of a run, or its list of snapshots cannot be read.
+    pub fn open(folder: &Path) -> Result<Self, ReadError> {
+        let manifest = Manifest::read(folder)?;
+        let collection = folder.join(format!("{PARTICLES}.pvd"));
+        let frames = if collection.exists() { read_frames(&collection)? } else { Vec::new() };
+        Ok(Results { folder: folder.to_path_buf(), manifest, frames })
+    }
+
+    /// What was run and how it went.
+    pub fn manifest(&self) -> &Manifest {
+        &self.manifest
+    }
+
+    /// Names of the bodies, in the order of the numbers in snapshots.
+    pub fn body_names(&self) -> &[String] {
+        &self.manifest.bodies
+    }
+
+    /// Snapshots of particles in the order of time; none if the scene asked for none.
+    pub fn frames(&self) -> &[Frame] {
+        &self.frames
+    }
+
+    /// The particles of a snapshot.
+    ///
+    /// # Errors
+    /// The file is missing or damaged.
+    pub fn particles(&self, frame: &Frame) -> Result<ParticleSnapshot, ReadError> {
+        read_particles(&frame.path)
+    }
+
+    /// `bodies.csv`: at each time a row for each body, in the order of the scene.
+    ///
+    /// # Errors
+    /// The file is missing or damaged; so for the other tables.
+    pub fn bodies_table(&self) -> Result<Vec<BodyRow>, ReadError> {
+        read_rows(&self.folder.join(BODIES))
+    }
+
+    /// `energy.csv`: a row for each time.
+    ///
+    /// # Errors
+    /// The file is missing or damaged.
+    pub fn energy_table(&self) -> Result<Vec<EnergyRow>, ReadError> {
+        read_rows(&self.folder.join(ENERGY))
+    }
+
+    /// `contacts.csv`: at each time a row for each pair of bodies that touched since the time before.
+    ///
+    /// # Errors
+    /// The file is missing or damaged.
+    pub fn contacts_table(&self) -> Result<Vec<ContactRow>, ReadError> {
+        read_rows(&self.folder.join(CONTACTS))
+    }
+}

@@ -1,0 +1,70 @@
+//! When an output is due.
+
+/// Whole multiples of an interval of simulated time.
+///
+/// The run does not shorten steps for outputs: a record is made after the first step that reaches a multiple, and carries the time
+/// at which it was made. Multiples that a step jumps over are skipped. An interval of zero asks for every step, an infinite one for
+/// none but the first.
+#[derive(Clone, Debug)]
+pub(super) struct Schedule {
+    interval: f64,
+    next: f64,
+}
+
+/// Part of the interval by which a record may come early, so that the rounding of summed steps does not delay it by a whole step.
+const EARLY: f64 = 1e-6;
+
+impl Schedule {
+    /// Due at once, then at multiples of `interval` [s].
+    pub(super) fn every(interval: f64) -> Self {
+        Schedule { interval, next: f64::NEG_INFINITY }
+    }
+
+    /// The time from which the next record is due [s].
+    pub(super) fn next(&self) -> f64 {
+        self.next
+    }
+
+    /// Notes that a record was made at `time` [s].
+    pub(super) fn recorded(&mut self, time: f64) {
+        let multiple = (time / self.interval + EARLY).floor() + 1.0;
+        self.next = if self.interval > 0.0 { (multiple - EARLY) * self.interval } else { time };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn records(interval: f64, step: f64, steps: usize) -> Vec<usize> {
+        let mut schedule = Schedule::every(interval);
+        let mut time = 0.0;
+        let mut records = Vec::new();
+        for i in 0..=steps {
+            if time >= schedule.next() {
+                schedule.recorded(time);
+                records.push(i);
+            }
+            time += step;
+        }
+        records
+    }
+
+    #[test]
+    fn summed_steps_meet_the_multiples_in_spite_of_rounding() {
+        assert_eq!(records(0.1, 0.01, 50), [0, 10, 20, 30, 40, 50]);
+        assert_eq!(records(0.3, 0.1, 9), [0, 3, 6, 9]);
+    }
+
+    #[test]
+    fn steps_longer_than_the_interval_skip_multiples() {
+        assert_eq!(records(0.1, 0.25, 4), [0, 1, 2, 3, 4]);
+        assert_eq!(records(0.1, 0.04, 10), [0, 3, 5, 8, 10]);
+    }
+
+    #[test]
+    fn zero_asks_for_every_step_and_infinity_for_the_first() {
+        assert_eq!(records(0.0, 0.25, 3), [0, 1, 2, 3]);
+        assert_eq!(records(f64::INFINITY, 0.25, 3), [0]);
+    }
+}

@@ -1,0 +1,45 @@
+//! VTK's file of points in XML (`.vtu`), with appended raw data in blocks compressed by LZ4.
+//!
+//! Layout of the data of one array, all little-endian (VTK file formats, "Appended data" and "Compression"):
+//!
+//! ```text
+//! u64 blocks, u64 bytes of a full block, u64 bytes of a partial last block (0: none), u64 compressed bytes of each block, the blocks
+//! ```
+//! Blocks are independent, so that they are compressed on all threads; the bytes do not depend on how many there are.
+//! Numbers keep all their bits: reading a file gives exactly what was written.
+
+mod read;
+mod write;
+
+pub(super) use read::Points;
+pub use write::Vtu;
+pub(super) use write::{NUMBER, SYMMETRIC, TENSOR, VECTOR};
+
+/// Bytes of a full block before compression: a multiple of every number's size, small enough to stay in a core's cache.
+const BLOCK: usize = 1 << 17;
+
+/// A number that an array can hold.
+pub trait Scalar: Copy + Send + Sync {
+    /// VTK's name of the type.
+    const NAME: &'static str;
+    /// Appends the number's bytes, little-endian.
+    fn write(values: &[Self], bytes: &mut Vec<u8>);
+    /// The numbers in bytes, little-endian.
+    fn read(bytes: &[u8]) -> Vec<Self>;
+}
+
+macro_rules! scalar {
+    ($($t:ty: $name:literal),*) => {$(
+        impl Scalar for $t {
+            const NAME: &'static str = $name;
+            fn write(values: &[Self], bytes: &mut Vec<u8>) {
+                bytes.extend(values.iter().flat_map(|value| value.to_le_bytes()));
+            }
+            fn read(bytes: &[u8]) -> Vec<Self> {
+                let (numbers, _) = bytes.as_chunks();
+                numbers.iter().map(|&number| <$t>::from_le_bytes(number)).collect()
+            }
+        }
+    )*};
+}
+scalar!(f64: "Float64", i32: "Int32", u32: "UInt32", i64: "Int64", u64: "UInt64", u8: "UInt8");

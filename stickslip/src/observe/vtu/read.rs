@@ -1,0 +1,159 @@
+//! Reading back files of points that a run wrote; it is no reader for the `.vtu` files of other programs.
+
+use super::{BLOCK, Scalar};
+use crate::observe::file::{ReadError, ReadProblem};
+use crate::observe::xml::attribute;
+use quick_xml::Reader;
+use quick_xml::events::{BytesStart, Event};
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// An opened file of points.
+pub(in crate::observe) struct Points {
+    path: PathBuf,
+    bytes: Vec<u8>,
+    /// Where the appended data starts.
+    appended: usize,
+    count: usize,
+    fields: BTreeMap<String, f64>,
+    arrays: BTreeMap<String, Place>,
+}
+
+/// Where an array lies in the appended data, and what it is made of.
+struct Place {
+    kind: String,
+    components: usize,
+    offset: usize,
+}
+
+impl Points {
+    /// Opens a file and reads what it holds; arrays are unpacked when asked for.
+    pub(in crate::observe) fn open(path: &Path) -> Result<Self, ReadError> {
+        let bytes = fs::read(path).map_err(|error| ReadProblem::Io(error).at(path))?;
+        let mut points = Points {
+            path: path.to_path_buf(),
+            bytes: Vec::new(),
+            appended: 0,
+            count: 0,
+            fields: BTreeMap::new(),
+            arrays: BTreeMap::new(),
+        };
+        points.read_header(&bytes).map_err(|problem| problem.at(path))?;
+        points.bytes = bytes;
+        Ok(points)
+    }
+
+    fn read_header(&mut self, bytes: &[u8]) -> Result<(), ReadProblem> {
+        let find = |text: &str| bytes.windows(text.len()).position(|window| window == text.as_bytes());
+        // The appended data is no XML: the reader must not see it.
+        let appended = find("<AppendedData encoding=\"raw\">").ok_or_else(|| missing("appended raw data"))?;
+        let underscore = bytes[appended..].iter().position(|&byte| byte == b'_');
+        self.appended = appended + underscore.ok_or_else(|| missing("mark before the appended data"))? + 1;
+        let header = str::from_utf8(&bytes[..appended]).map_err(|_| missing("readable header"))?;
+
+        let mut reader = Reader::from_str(header);
+        let mut field = None;
+        loop {
+            match reader.read_event()? {
+                Event::Start(tag) if tag.name().0 == "VTKFile" => {
+                    expect(&tag, "compressor", "vtkLZ4DataCompressor")?;
+                    expect(&tag, "header_type", "UInt64")?;
+                }
+                Event::Start(tag) if tag.name().0 == "Piece" => {
+                    self.count = attribute(&tag, "NumberOfPoints")?;
+                }
+                Event::Start(tag) if tag.name().0 == "DataArray" => {
+                    field = Some(attribute(&tag, "Name")?);
+                }
+                Event::Text(text) => {
+                    if let Some(name) = field.take() {
+                        let value = text.trim().parse().map_err(|_| missing(&format!("number in {name}")))?;
+                        self.fields.insert(name, value);
+                    }
+                }
+                Event::Empty(tag) if tag.name().0 == "DataArray" => {
+                    let place = Place {
+                        kind: attribute(&tag, "type")?,
+                        components: attribute(&tag, "NumberOfComponents")?,
+                        offset: attribute(&tag, "offset")?,
+                    };
+                    self.arrays.insert(attribute(&tag, "Name")?, place);
+                }
+                Event::Eof => return Ok(()),
+                _ => {}
+            }
+        }
+    }
+
+    /// A number that holds for the whole file.
+    pub(in crate::observe) fn field(&self, name: &str) -> Result<f64, ReadError> {
+        self.fields.get(name).copied().ok_or_else(|| missing(&format!("field `{name}`")).at(&self.path))
+    }
+
+    /// An array with one number for each point.
+    pub(in crate::observe) fn numbers<T: Scalar>(&self, name: &str) -> Result<Vec<T>, ReadError> {
+        Ok(self.array::<T, 1>(name)?.into_flattened())
+    }
+
+    /// An array with `N` numbers for each point.
+    pub(in crate::observe) fn array<T: Scalar, const N: usize>(
+        &self,
+        name: &str,
+    ) -> Result<Vec<[T; N]>, ReadError> {
+        self.unpack(name).map_err(|problem| problem.at(&self.path))
+    }
+
+    fn unpack<T: Scalar, const N: usize>(&self, name: &str) -> Result<Vec<[T; N]>, ReadProblem> {
+        let wanted = || missing(&format!("array `{name}` of {} with {N} components", T::NAME));
+        let place = self.arrays.get(name).ok_or_else(wanted)?;
+        if place.kind != T::NAME || place.components != N {
+            return Err(wanted());
+        }
+        let cut = || missing(&format!("complete array `{name}`"));
+        let start = self.appended.checked_add(place.offset).ok_or_else(cut)?;
+        let bytes = self.bytes.get(start..).ok_or_else(cut)?;
+        let total = self.count.checked_mul(N * size_of::<T>()).ok_or_else(cut)?;
+        let blocks = split(bytes, total).ok_or_else(cut)?;
+        let unpacked: Option<Vec<Vec<T>>> = blocks
+            .into_par_iter()
+            .map(|(packed, size)| {
+                let bytes = lz4_flex::block::decompress(packed, size).ok()?;
+                (bytes.len() == size).then(|| T::read(&bytes))
+            })
+            .collect();
+        let values = unpacked.ok_or_else(cut)?.concat();
+        Ok(values.as_chunks().0.to_vec())
+    }
+}
+
+/// The packed blocks of an array of `total` bytes with the size of each when unpacked; `None` if they are not all there.
+fn split(bytes: &[u8], total: usize) -> Option<Vec<(&[u8], usize)>> {
+    let word = |i: usize| {
+        let bytes = bytes.get(8 * i..8 * i + 8)?;
+        usize::try_from(u64::from_le_bytes(bytes.try_into().ok()?)).ok()
+    };
+    let count = total.div_ceil(BLOCK);
+    if word(0)? != count || word(1)? != BLOCK {
+        return None;
+    }
+    let mut start = 8 * (3 + count);
+    (0..count)
+        .map(|i| {
+            let end = start.checked_add(word(3 + i)?)?;
+            let packed = bytes.get(start..end)?;
+            start = end;
+            Some((packed, BLOCK.min(total - i * BLOCK)))
+        })
+        .collect()
+}
+
+fn expect(tag: &BytesStart, name: &str, value: &str) -> Result<(), ReadProblem> {
+    let found: String = attribute(tag, name)?;
+    if found == value { Ok(()) } else { Err(missing(&format!("{name}=\"{value}\""))) }
+}
+
+fn missing(what: &str) -> ReadProblem {
+    ReadProblem::Layout(format!("no {what}"))
+}

@@ -1,0 +1,152 @@
+//! Writing points and their data.
+
+use super::{BLOCK, Scalar};
+use crate::observe::file::{OutputError, replace};
+use rayon::prelude::*;
+use std::fmt::Write as _;
+use std::path::Path;
+
+/// VTK's number of a cell that is a single point.
+const VTK_VERTEX: u8 = 1;
+
+/// A file of points, encoded and ready to be written: it borrows nothing, so that another thread may write it.
+pub struct Vtu {
+    points: usize,
+    fields: Vec<(&'static str, f64)>,
+    geometry: Vec<Array>,
+    cells: Vec<Array>,
+    point_data: Vec<Array>,
+}
+
+struct Array {
+    name: &'static str,
+    kind: &'static str,
+    components: &'static [&'static str],
+    /// As it stands in the file: sizes of blocks, then blocks.
+    bytes: Vec<u8>,
+}
+
+impl Array {
+    fn new<T: Scalar>(name: &'static str, components: &'static [&'static str], values: &[T]) -> Self {
+        Array { name, kind: T::NAME, components, bytes: compress(values) }
+    }
+}
+
+/// Names of the components of a number, of a vector, of a symmetric tensor and of a tensor, in VTK's order.
+pub(in crate::observe) const NUMBER: &[&str] = &[""];
+pub(in crate::observe) const VECTOR: &[&str] = &["X", "Y", "Z"];
+pub(in crate::observe) const SYMMETRIC: &[&str] = &["XX", "YY", "ZZ", "XY", "YZ", "XZ"];
+pub(in crate::observe) const TENSOR: &[&str] = &["XX", "XY", "XZ", "YX", "YY", "YZ", "ZX", "ZY", "ZZ"];
+
+impl Vtu {
+    /// Points at a time [s], each a cell of its own, so that ParaView can threshold and select them one by one.
+    pub(in crate::observe) fn new(time: f64, positions: &[[f64; 3]]) -> Self {
+        let numbers: Vec<i64> = (0..positions.len() as i64).collect();
+        let ends: Vec<i64> = (1..=positions.len() as i64).collect();
+        Vtu {
+            points: positions.len(),
+            fields: vec![("TimeValue", time)],
+            geometry: vec![Array::new("points", VECTOR, positions.as_flattened())],
+            cells: vec![
+                Array::new("connectivity", NUMBER, &numbers),
+                Array::new("offsets", NUMBER, &ends),
+                Array::new("types", NUMBER, &vec![VTK_VERTEX; positions.len()]),
+            ],
+            point_data: Vec::new(),
+        }
+    }
+
+    /// Adds a number that holds for the whole file.
+    pub(in crate::observe) fn field(&mut self, name: &'static str, value: f64) {
+        self.fields.push((name, value));
+    }
+
+    /// Adds an array with a value of so many components for each point.
+    pub(in crate::observe) fn point_data<T: Scalar>(
+        &mut self,
+        name: &'static str,
+        components: &'static [&'static str],
+        values: &[T],
+    ) {
+        assert_eq!(values.len(), self.points * components.len(), "`{name}` has a value for each point");
+        self.point_data.push(Array::new(name, components, values));
+    }
+
+    /// Writes the file; it appears under its name once complete.
+    ///
+    /// # Errors
+    /// The disk is full or refuses; then no file of this name appears.
+    pub fn write(&self, path: &Path) -> Result<(), OutputError> {
+        replace(path, |file| {
+            file.write_all(self.header().as_bytes())?;
+            self.arrays().try_for_each(|array| file.write_all(&array.bytes))?;
+            file.write_all(b"\n</AppendedData>\n</VTKFile>\n")
+        })
+    }
+
+    fn arrays(&self) -> impl Iterator<Item = &Array> {
+        self.geometry.iter().chain(&self.cells).chain(&self.point_data)
+    }
+
+    /// Everything before the first byte of the appended data.
+    fn header(&self) -> String {
+        let mut xml = String::from(concat!(
+            "<?xml version=\"1.0\"?>\n",
+            "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\" ",
+            "compressor=\"vtkLZ4DataCompressor\">\n<UnstructuredGrid>\n<FieldData>\n",
+        ));
+        for (name, value) in &self.fields {
+            xml += &format!(
+                "<DataArray type=\"Float64\" Name=\"{name}\" NumberOfTuples=\"1\" format=\"ascii\">{value:e}</DataArray>\n"
+            );
+        }
+        let n = self.points;
+        xml += &format!("</FieldData>\n<Piece NumberOfPoints=\"{n}\" NumberOfCells=\"{n}\">\n");
+        let mut offset = 0;
+        for (tag, arrays) in
+            [("Points", &self.geometry), ("Cells", &self.cells), ("PointData", &self.point_data)]
+        {
+            xml += &format!("<{tag}>\n");
+            for array in arrays {
+                array.declare(offset, &mut xml);
+                offset += array.bytes.len();
+            }
+            xml += &format!("</{tag}>\n");
+        }
+        xml + "</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_"
+    }
+}
+
+impl Array {
+    fn declare(&self, offset: usize, xml: &mut String) {
+        let Array { name, kind, components, .. } = self;
+        let count = components.len();
+        let mut line = || -> std::fmt::Result {
+            write!(xml, "<DataArray type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{count}\"")?;
+            if count > 1 {
+                for (i, component) in components.iter().enumerate() {
+                    write!(xml, " ComponentName{i}=\"{component}\"")?;
+                }
+            }
+            writeln!(xml, " format=\"appended\" offset=\"{offset}\"/>")
+        };
+        line().expect("a string takes all text");
+    }
+}
+
+fn compress<T: Scalar>(values: &[T]) -> Vec<u8> {
+    let blocks: Vec<Vec<u8>> = values
+        .par_chunks(BLOCK / size_of::<T>())
+        .map(|chunk| {
+            let mut bytes = Vec::with_capacity(size_of_val(chunk));
+            T::write(chunk, &mut bytes);
+            lz4_flex::block::compress(&bytes)
+        })
+        .collect();
+    let mut sizes = vec![blocks.len() as u64, BLOCK as u64, (size_of_val(values) % BLOCK) as u64];
+    sizes.extend(blocks.iter().map(|block| block.len() as u64));
+    let mut bytes = Vec::with_capacity(size_of_val(&sizes[..]) + blocks.iter().map(Vec::len).sum::<usize>());
+    u64::write(&sizes, &mut bytes);
+    blocks.iter().for_each(|block| bytes.extend_from_slice(block));
+    bytes
+}

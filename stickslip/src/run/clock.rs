@@ -1,0 +1,97 @@
+//! Wall time of a run: how fast it goes and how long it will take.
+
+use crate::door::Simulation;
+use crate::observe::{Performance, Timing};
+use std::time::{Duration, Instant};
+
+/// How far a run has come.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Progress {
+    /// Simulated time [s].
+    pub time: f64,
+    /// Simulated time at which the run ends [s].
+    pub end: f64,
+    /// Steps taken.
+    pub steps: u64,
+    /// Particles in all bodies.
+    pub particles: usize,
+    /// Particles times steps over wall time, outputs included [1/s].
+    pub particle_steps_per_second: f64,
+    /// Wall time left at the present pace [s]; infinite while there is no pace yet.
+    pub eta: f64,
+}
+
+/// Wall time between two reports of progress.
+const REPORT: Duration = Duration::from_millis(100);
+
+/// When and where a run started.
+pub(super) struct Clock {
+    start: Instant,
+    threads: usize,
+    first_time: f64,
+    first_step: u64,
+}
+
+impl Clock {
+    pub(super) fn start(simulation: &dyn Simulation, threads: usize) -> Self {
+        Clock {
+            start: Instant::now(),
+            threads,
+            first_time: simulation.time(),
+            first_step: simulation.steps(),
+        }
+    }
+
+    pub(super) fn progress(&self, simulation: &dyn Simulation, end: f64) -> Progress {
+        let wall = self.start.elapsed().as_secs_f64();
+        let time = simulation.time();
+        let done = time - self.first_time;
+        Progress {
+            time,
+            end,
+            steps: simulation.steps(),
+            particles: simulation.particles(),
+            particle_steps_per_second: self.rate(simulation, wall),
+            eta: if done > 0.0 { wall * (end - time) / done } else { f64::INFINITY },
+        }
+    }
+
+    pub(super) fn performance(&self, simulation: &dyn Simulation) -> Performance {
+        let wall_time = self.start.elapsed().as_secs_f64();
+        let timing = |(verb, seconds): (&str, f64)| Timing { verb: verb.to_string(), seconds };
+        Performance {
+            threads: self.threads,
+            particles: simulation.particles(),
+            time: simulation.time(),
+            steps: simulation.steps(),
+            wall_time,
+            particle_steps_per_second: self.rate(simulation, wall_time),
+            timings: simulation.timings().into_iter().map(timing).collect(),
+        }
+    }
+
+    fn rate(&self, simulation: &dyn Simulation, wall: f64) -> f64 {
+        let steps = simulation.steps() - self.first_step;
+        if steps > 0 && wall > 0.0 { steps as f64 * simulation.particles() as f64 / wall } else { 0.0 }
+    }
+
+    pub(super) fn reports(&self) -> Reports {
+        Reports { last: self.start }
+    }
+}
+
+/// Tells when the next report of progress is due.
+pub(super) struct Reports {
+    last: Instant,
+}
+
+impl Reports {
+    /// True at most once in [`REPORT`].
+    pub(super) fn due(&mut self) -> bool {
+        let due = self.last.elapsed() >= REPORT;
+        if due {
+            self.last = Instant::now();
+        }
+        due
+    }
+}

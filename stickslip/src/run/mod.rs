@@ -1,0 +1,124 @@
+//! The loop: step, observe, stop.
+
+mod clock;
+mod error;
+mod summary;
+
+pub use clock::Progress;
+pub use error::RunError;
+pub use summary::{ReferenceResult, Summary};
+
+use crate::door::Simulation;
+use crate::observe::{Manifest, OutputFolder, Recorder, Status};
+use crate::scene::Scene;
+use clock::Clock;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// How a scene is run.
+#[derive(Clone, Debug)]
+pub struct RunOptions {
+    /// Folder for the results; see [`OutputFolder::prepare`] for what may be there already.
+    pub out: PathBuf,
+    /// Set by whoever wants the run to stop: it does so after the step under way, with all outputs valid.
+    pub stop: Arc<AtomicBool>,
+    /// Threads that the simulation uses, for the record.
+    pub threads: usize,
+}
+
+/// Runs a scene from the present state of its simulation to the end time, and writes what the scene asks for.
+///
+/// Nothing is written before the folder is found usable. `progress` is called about ten times a second of wall time, and at the end.
+///
+/// # Errors
+/// The folder cannot be used, a step fails, or an output cannot be written. In the last two cases the record of the run says so, and
+/// everything written so far can be read; of a failing step the state in which it failed is the last record.
+pub fn run(
+    scene: &Scene,
+    simulation: &mut dyn Simulation,
+    options: &RunOptions,
+    progress: &mut dyn FnMut(&Progress),
+) -> Result<Summary, RunError> {
+    let folder = OutputFolder::prepare(&options.out)?;
+    let clock = Clock::start(simulation, options.threads);
+    let mut manifest = Manifest::new(scene, clock.performance(simulation));
+    manifest.write(&folder)?;
+    let start = simulation.ledger();
+
+    let outcome = Recorder::new(scene, &folder).map_err(RunError::from).and_then(|recorder| {
+        March { simulation, recorder, options, clock: &clock }.to(scene.time.end, progress)
+    });
+
+    manifest.performance = clock.performance(simulation);
+    manifest.status = *outcome.as_ref().unwrap_or(&Status::Failed);
+    manifest.error = outcome.as_ref().err().map(RunError::to_string);
+    let saved = manifest.write(&folder);
+    outcome?;
+    saved?;
+    Ok(Summary::new(scene, simulation, start, manifest))
+}
+
+/// A run under way.
+struct March<'a> {
+    simulation: &'a mut dyn Simulation,
+    recorder: Recorder,
+    options: &'a RunOptions,
+    clock: &'a Clock,
+}
+
+/// Remainder of the run, as a part of the last step, that is rounding and not time to be simulated.
+const ROUNDING: f64 = 1e-6;
+
+impl March<'_> {
+    fn to(mut self, end: f64, progress: &mut dyn FnMut(&Progress)) -> Result<Status, RunError> {
+        self.recorder.record_present(self.simulation)?;
+        let mut last_step = 0.0;
+        let mut reports = self.clock.reports();
+        let status = loop {
+            let remaining = end - self.simulation.time();
+            if remaining <= ROUNDING * last_step {
+                break Status::Finished;
+            }
+            if self.options.stop.load(Ordering::Relaxed) {
+                break Status::Interrupted;
+            }
+            last_step = self.step(longest_step(remaining, last_step, self.simulation))?;
+            self.recorder.record_due(self.simulation)?;
+            if reports.due() {
+                progress(&self.clock.progress(self.simulation, end));
+            }
+        };
+        self.recorder.record_present(self.simulation)?;
+        progress(&self.clock.progress(self.simulation, end));
+        Ok(status)
+    }
+
+    /// Takes a step and returns its length [s].
+    fn step(&mut self, longest: f64) -> Result<f64, RunError> {
+        let before = self.simulation.time();
+        if let Err(error) = self.simulation.step(longest) {
+            let unsaved = self.recorder.record_failure(self.simulation).err();
+            return Err(RunError::Step { error, unsaved });
+        }
+        let time = self.simulation.time();
+        if time > before {
+            return Ok(time - before);
+        }
+        self.recorder.record_failure(self.simulation)?;
+        Err(RunError::Stuck { time, step: self.simulation.stable_step() })
+    }
+}
+
+/// Longest next step such that the run ends exactly at its end [s].
+///
+/// Where the remainder is more than one and less than two steps, it is shared equally: a last step of nearly no length would
+/// divide forces by nearly nothing.
+fn longest_step(remaining: f64, last_step: f64, simulation: &dyn Simulation) -> f64 {
+    // Asking for the stable step may cost a look at all particles: only near the end.
+    if remaining > 4.0 * last_step && last_step > 0.0 {
+        return remaining;
+    }
+    let stable = simulation.stable_step();
+    if remaining > stable && remaining < 2.0 * stable { 0.5 * remaining } else { remaining }
+}

@@ -1,0 +1,134 @@
+//! What a run came to, on one screen.
+
+use crate::door::{Ledger, Simulation};
+use crate::observe::{BodyRow, Manifest, Performance, Status};
+use crate::scene::Scene;
+use std::fmt::{self, Display, Formatter};
+
+/// What a run came to.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Summary {
+    /// Finished or interrupted.
+    pub status: Status,
+    /// Time reached, steps, wall time, timing of each verb.
+    pub performance: Performance,
+    /// Energy and momentum at the start.
+    pub start: Ledger,
+    /// Energy and momentum at the end.
+    pub end: Ledger,
+    /// How the run compares with each known answer of the scene.
+    pub references: Vec<ReferenceResult>,
+}
+
+/// One quantity of one body against its known answer, at the time that the run reached.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ReferenceResult {
+    /// Name of the body.
+    pub body: String,
+    /// A column of `bodies.csv`.
+    pub quantity: String,
+    /// What the answer assumes.
+    pub label: String,
+    /// What the run gave, in SI units.
+    pub value: f64,
+    /// What it should give, in SI units.
+    pub exact: f64,
+}
+
+impl ReferenceResult {
+    /// Value over exact value; not finite where the exact value is zero.
+    pub fn ratio(&self) -> f64 {
+        self.value / self.exact
+    }
+}
+
+impl Summary {
+    pub(super) fn new(scene: &Scene, simulation: &dyn Simulation, start: Ledger, manifest: Manifest) -> Self {
+        let (time, bodies) = (simulation.time(), simulation.bodies());
+        let references = scene.references.iter().filter_map(|reference| {
+            let body = scene.bodies.iter().position(|body| body.name == reference.body)?;
+            let row = BodyRow::new(time, &reference.body, &bodies[body]);
+            Some(ReferenceResult {
+                body: reference.body.clone(),
+                quantity: reference.quantity.clone(),
+                label: reference.label.clone(),
+                value: row.quantity(&reference.quantity)?,
+                exact: reference.value.at(time),
+            })
+        });
+        let references = references.collect();
+        let Manifest { status, performance, .. } = manifest;
+        Summary { status, performance, start, end: simulation.ledger(), references }
+    }
+
+    /// Change of the total energy, which is zero in an exact solution [J].
+    pub fn energy_drift(&self) -> f64 {
+        self.end.total - self.start.total
+    }
+
+    /// [`Summary::energy_drift`] over the largest energy that the run started with, ended with or turned into heat, not counting
+    /// the potential energy, whose zero is arbitrary, but counting its change [-].
+    pub fn relative_energy_drift(&self) -> f64 {
+        let moving = |ledger: &Ledger| ledger.kinetic + ledger.strain;
+        let heat = self.end.friction + self.end.plastic + self.end.damping;
+        let fallen = (self.end.potential - self.start.potential).abs();
+        let scale = moving(&self.start).max(moving(&self.end)).max(heat).max(fallen);
+        if scale > 0.0 { self.energy_drift() / scale } else { 0.0 }
+    }
+}
+
+impl Display for Summary {
+    fn fmt(&self, f: &mut Formatter) -> fmt::Result {
+        let Performance { time, steps, particles, wall_time, particle_steps_per_second, .. } =
+            self.performance;
+        let ended = if self.status == Status::Interrupted { "interrupted" } else { "finished" };
+        writeln!(f, "{ended} at t = {time:.6} s after {steps} steps of {particles} particles")?;
+        writeln!(f, "  wall time  {wall_time:.1} s, {particle_steps_per_second:.3e} particle-steps/s")?;
+        self.write_timings(f)?;
+        writeln!(
+            f,
+            "  energy     {:.6e} J at the start, {:.6e} J at the end; drift {:+.2e} J ({:+.3} %)",
+            self.start.total,
+            self.end.total,
+            self.energy_drift(),
+            100.0 * self.relative_energy_drift()
+        )?;
+        writeln!(
+            f,
+            "  momentum   {} kg m/s at the start, {} kg m/s at the end",
+            vector(self.start.momentum),
+            vector(self.end.momentum)
+        )?;
+        self.references.iter().try_for_each(|reference| write!(f, "{reference}"))
+    }
+}
+
+impl Summary {
+    fn write_timings(&self, f: &mut Formatter) -> fmt::Result {
+        let timings = &self.performance.timings;
+        let total: f64 = timings.iter().map(|timing| timing.seconds).sum();
+        if total <= 0.0 {
+            return Ok(());
+        }
+        let shares: Vec<String> = timings
+            .iter()
+            .map(|timing| format!("{} {:.0} %", timing.verb, 100.0 * timing.seconds / total))
+            .collect();
+        writeln!(f, "  step       {}", shares.join(", "))
+    }
+}
+
+impl Display for ReferenceResult {
+    fn fmt(&self, f: &mut Formatter) -> fmt::Result {
+        let ReferenceResult { body, quantity, label, value, exact } = self;
+        write!(f, "  {body} {quantity}: {value:.6}, exact {exact:.6}")?;
+        if self.ratio().is_finite() {
+            write!(f, ", ratio {:.4}", self.ratio())?;
+        }
+        writeln!(f, " ({label})")
+    }
+}
+
+fn vector([x, y, z]: [f64; 3]) -> String {
+    format!("({x:.4e}, {y:.4e}, {z:.4e})")
+}
