@@ -109,7 +109,8 @@ mod tests {
         let error = MietteDiagnostic::new("unknown key `radios`")
             .with_help("did you mean `radius`?")
             .with_label(LabeledSpan::at(8..14, "here"));
-        let report = Report::new(error).with_source_code(NamedSource::new("a.toml", "[ball]\n\nradios = 1\n"));
+        let report =
+            Report::new(error).with_source_code(NamedSource::new("a.toml", "[ball]\n\nradios = 1\n"));
         let text = plain(report.as_ref());
         assert!(text.starts_with("a.toml:3:1: error: unknown key `radios`\n"), "{text}");
         assert!(text.contains("  help: did you mean `radius`?"), "{text}");

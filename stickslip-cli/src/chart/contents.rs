@@ -59,7 +59,8 @@ fn shown(results: &Results, choice: &Choice) -> Vec<Shown> {
             quantities = ["x", "y", "z", "vx", "vy", "vz"].map(str::to_owned).to_vec();
         }
         if wanted(&choice.bodies, body) {
-            let of_body = |quantity: &String| Shown { body: body.clone(), number, quantity: quantity.clone() };
+            let of_body =
+                |quantity: &String| Shown { body: body.clone(), number, quantity: quantity.clone() };
             shown.extend(quantities.iter().map(of_body));
         }
     }
@@ -86,7 +87,8 @@ fn panels(rows: &[BodyRow], references: &[ReferenceCurve], shown: &[Shown]) -> V
             panels.push(Panel { name: name.to_owned(), unit, curves: Vec::new() });
             panels.len() - 1
         });
-        let earlier = shown[..i].iter().any(|before| before.body == each.body && axis(&before.quantity).0 == name);
+        let earlier =
+            shown[..i].iter().any(|before| before.body == each.body && axis(&before.quantity).0 == name);
         let color = body_color(if earlier { each.number + i } else { each.number });
         let curves = &mut panels[place].curves;
         curves.push(curve(rows, each, color));
@@ -140,19 +142,19 @@ fn interpolated(points: &[[f64; 2]], time: f64) -> Option<f64> {
 }
 
 fn energy_panel(rows: &[EnergyRow]) -> Panel {
-    let terms: [(&str, fn(&EnergyRow) -> f64); 4] = [
-        ("kinetic", |row| row.kinetic),
-        ("strain", |row| row.strain),
-        ("potential", |row| row.potential),
-        ("total", |row| row.total),
-    ];
-    let curves = terms.iter().enumerate().map(|(i, (label, term))| Curve {
-        label: (*label).to_owned(),
-        color: if *label == "total" { EXACT } else { body_color(i) },
+    let curve = |label: &str, color: Rgb, term: fn(&EnergyRow) -> f64| Curve {
+        label: label.to_owned(),
+        color,
         dashed: false,
         points: rows.iter().map(|row| [row.time, term(row)]).collect(),
-    });
-    Panel { name: "energy".to_owned(), unit: "J", curves: curves.collect() }
+    };
+    let curves = vec![
+        curve("kinetic", body_color(0), |row| row.kinetic),
+        curve("strain", body_color(2), |row| row.strain),
+        curve("potential", body_color(1), |row| row.potential),
+        curve("total", EXACT, |row| row.total),
+    ];
+    Panel { name: "energy".to_owned(), unit: "J", curves }
 }
 
 /// The coordinates of the bodies' centres that change most, as the way they went.

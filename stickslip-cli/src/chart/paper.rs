@@ -1,14 +1,17 @@
 //! A chart on paper: PNG or SVG.
 
 use super::{Chart, Curve, Panel};
-use crate::drawing::{Canvas, DrawError, Prefix, SAMPLES, label, prefix, register_font};
+use crate::drawing::{Canvas, DrawError, Prefix, label, prefix, register_font};
 use plotters::coord::Shift;
+use plotters::element::DashedPathElement;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use std::path::Path;
 
 const INK: RGBColor = RGBColor(50, 54, 60);
 const FAINT: RGBColor = RGBColor(226, 229, 233);
+/// Lines end on whole pixels as drawn: many of them make slanted curves smooth.
+const SAMPLES: usize = 4;
 /// Numbers along an axis, about.
 const MARKS: usize = 6;
 
@@ -30,28 +33,24 @@ pub fn draw(chart: &Chart, path: &Path, size: [usize; 2]) -> Result<(), DrawErro
         return std::fs::write(path, text)
             .map_err(|source| DrawError::Write { path: path.to_path_buf(), source });
     }
-    let mut canvas = Canvas::new(size);
+    let mut canvas = Canvas::new(size, SAMPLES);
     page(&canvas.ink(), chart, SAMPLES as i32)?;
     canvas.save(path)
 }
 
 /// All of a chart, with lengths multiplied by `pixel`.
-fn page<D: DrawingBackend>(
-    area: &DrawingArea<D, Shift>,
-    chart: &Chart,
-    pixel: i32,
-) -> Result<(), DrawError> {
+fn page<D: DrawingBackend>(area: &DrawingArea<D, Shift>, chart: &Chart, pixel: i32) -> Result<(), DrawError> {
     area.fill(&WHITE).map_err(DrawError::ink)?;
-    let (width, height) = area.dim_in_pixel();
+    let height = area.dim_in_pixel().1 as i32;
     let bold = FontDesc::new(FontFamily::SansSerif, f64::from(17 * pixel), FontStyle::Bold);
     let bold = bold.color(&INK).pos(Pos::new(HPos::Left, VPos::Top));
     let title = Text::new(chart.title.clone(), (20 * pixel, 14 * pixel), bold);
     area.draw(&title).map_err(DrawError::ink)?;
     let lines: Vec<&str> = chart.caption.lines().collect();
-    let foot = 10 * pixel + 19 * pixel * lines.len() as i32;
+    let foot = 12 * pixel + 24 * pixel * lines.len() as i32;
     for (row, line) in lines.iter().enumerate() {
         let style = letters(13, pixel).pos(Pos::new(HPos::Left, VPos::Top));
-        let at = (20 * pixel, height as i32 - foot + 19 * pixel * row as i32);
+        let at = (20 * pixel, height - foot + (10 + 24 * row as i32) * pixel);
         area.draw(&Text::new(*line, at, style)).map_err(DrawError::ink)?;
     }
     let body = area.margin(44 * pixel, foot, 8 * pixel, 8 * pixel);
@@ -60,7 +59,6 @@ fn page<D: DrawingBackend>(
     for (cell, panel) in body.split_evenly((rows, columns)).iter().zip(&chart.panels) {
         draw_panel(cell, panel, pixel)?;
     }
-    debug_assert!(width > 0);
     Ok(())
 }
 
@@ -83,7 +81,7 @@ fn draw_panel<D: DrawingBackend>(
         .margin_right(18 * pixel)
         .margin_top(6 * pixel)
         .x_label_area_size(44 * pixel)
-        .y_label_area_size(70 * pixel)
+        .y_label_area_size(64 * pixel)
         .build_cartesian_2d(times[0]..times[1], values[0]..values[1])
         .map_err(DrawError::ink)?;
     chart
@@ -149,15 +147,18 @@ fn stroke(curve: &Curve, pixel: i32) -> ShapeStyle {
 fn range(curves: &[Curve], axis: usize) -> [f64; 2] {
     let values = curves.iter().flat_map(|curve| &curve.points).map(|point| point[axis]);
     let values = values.filter(|value| value.is_finite());
-    let [low, high] = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
-        [low.min(value), high.max(value)]
-    });
+    let [low, high] = values
+        .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| [low.min(value), high.max(value)]);
     if low > high {
         return [0.0, 1.0];
     }
     // A quantity that stays as it is gets an axis on which rounding does not show.
     let least = 1e-9 * low.abs().max(high.abs()).max(1e-12);
-    if high - low > least { [low, high] } else { [low - 0.5 * low.abs().max(1.0), high + 0.5 * high.abs().max(1.0)] }
+    if high - low > least {
+        [low, high]
+    } else {
+        [low - 0.5 * low.abs().max(1.0), high + 0.5 * high.abs().max(1.0)]
+    }
 }
 
 #[cfg(test)]

@@ -63,10 +63,7 @@ impl Arguments {
         let results = open(&self.folder)?;
         let names = results.body_names();
         if let Some(unknown) = self.bodies.iter().find(|body| !names.contains(body)) {
-            return Err(Failure::Input(miette!(
-                "--body: found `{unknown}`; allowed: {}",
-                names.join(", ")
-            )));
+            return Err(Failure::Input(miette!("--body: found `{unknown}`; allowed: {}", names.join(", "))));
         }
         let choice = Choice { bodies: self.bodies, quantities: self.quantities };
         let out = self.out.unwrap_or_else(|| self.folder.join("plot.png"));

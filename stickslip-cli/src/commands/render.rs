@@ -3,9 +3,9 @@
 use super::{open, say};
 use crate::failure::Failure;
 use crate::illustration::{Album, PictureChoice};
-use crate::picture::{Bounds, Quantity, View, bounds};
+use crate::picture::{Quantity, View};
 use clap::Args;
-use miette::{Report, miette};
+use miette::miette;
 use std::path::PathBuf;
 use stickslip::observe::Frame;
 

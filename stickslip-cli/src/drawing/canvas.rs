@@ -9,7 +9,7 @@ use std::io::BufWriter;
 use std::path::Path;
 use std::sync::Once;
 
-/// Pixels drawn along each side of a pixel saved.
+/// Pixels drawn along each side of a pixel saved, for pictures of particles.
 pub const SAMPLES: usize = 2;
 
 /// What lines and letters are drawn on.
@@ -17,18 +17,20 @@ pub type Ink<'a> = DrawingArea<BitMapBackend<'a>, Shift>;
 
 /// An RGB image on white.
 pub struct Canvas {
-    /// Width and height as drawn, [`SAMPLES`] times those of the file.
+    /// Width and height as drawn.
     pub size: [usize; 2],
+    /// Pixels drawn along each side of a pixel saved.
+    samples: usize,
     /// Rows from the top, three bytes a pixel.
     pub pixels: Vec<u8>,
 }
 
 impl Canvas {
-    /// A white canvas for a file of this width and height in pixels.
-    pub fn new(size: [usize; 2]) -> Self {
+    /// A white canvas for a file of this width and height in pixels, drawn `samples` times larger.
+    pub fn new(size: [usize; 2], samples: usize) -> Self {
         register_font();
-        let size = size.map(|side| side * SAMPLES);
-        Canvas { size, pixels: vec![255; 3 * size[0] * size[1]] }
+        let size = size.map(|side| side * samples);
+        Canvas { size, samples, pixels: vec![255; 3 * size[0] * size[1]] }
     }
 
     /// The canvas for lines and letters; lengths are in drawn pixels.
@@ -58,7 +60,7 @@ impl Canvas {
     pub fn save(&self, path: &Path) -> Result<(), DrawError> {
         let failed = |source| DrawError::Write { path: path.to_path_buf(), source };
         let file = File::create(path).map_err(failed)?;
-        let [width, height] = self.size.map(|side| side / SAMPLES);
+        let [width, height] = self.size.map(|side| side / self.samples);
         let mut encoder = png::Encoder::new(BufWriter::new(file), width as u32, height as u32);
         encoder.set_color(png::ColorType::Rgb);
         let mut writer = encoder.write_header().map_err(|e| failed(e.into()))?;
@@ -68,14 +70,14 @@ impl Canvas {
 
     /// The image at the size of the file: each pixel the mean of its samples.
     fn averaged(&self) -> Vec<u8> {
-        let width = self.size[0];
-        let rows = self.pixels.par_chunks_exact(3 * width * SAMPLES);
+        let ([width, _], samples) = (self.size, self.samples);
+        let rows = self.pixels.par_chunks_exact(3 * width * samples);
         rows.flat_map_iter(|rows| {
-            (0..width / SAMPLES * 3).map(move |i| {
-                let (x, channel) = (i / 3 * SAMPLES, i % 3);
-                let sample = |k: usize| rows[3 * ((k / SAMPLES) * width + x + k % SAMPLES) + channel];
-                let sum: u32 = (0..SAMPLES * SAMPLES).map(|k| u32::from(sample(k))).sum();
-                (sum / (SAMPLES * SAMPLES) as u32) as u8
+            (0..width / samples * 3).map(move |i| {
+                let (x, channel) = (i / 3 * samples, i % 3);
+                let sample = |k: usize| rows[3 * ((k / samples) * width + x + k % samples) + channel];
+                let sum: u32 = (0..samples * samples).map(|k| u32::from(sample(k))).sum();
+                (sum / (samples * samples) as u32) as u8
             })
         })
         .collect()
@@ -86,10 +88,9 @@ impl Canvas {
 pub fn register_font() {
     static ONCE: Once = Once::new();
     ONCE.call_once(|| {
-        for (style, bytes) in [
-            (FontStyle::Normal, dejavu::sans::regular()),
-            (FontStyle::Bold, dejavu::sans::bold()),
-        ] {
+        for (style, bytes) in
+            [(FontStyle::Normal, dejavu::sans::regular()), (FontStyle::Bold, dejavu::sans::bold())]
+        {
             let registered = plotters::style::register_font("sans-serif", style, bytes);
             registered.ok().expect("the embedded font is a valid font");
         }
@@ -102,8 +103,8 @@ mod tests {
 
     #[test]
     fn half_covered_pixels_are_grey() {
-        let mut canvas = Canvas::new([3, 2]);
-        canvas.paint([0, 0, SAMPLES / 2, 2 * SAMPLES], |_, _| Some([0.0; 3]));
+        let mut canvas = Canvas::new([3, 2], 2);
+        canvas.paint([0, 0, 1, 4], |_, _| Some([0.0; 3]));
         let averaged = canvas.averaged();
         assert_eq!(averaged.len(), 3 * 3 * 2);
         assert_eq!(averaged[0], 127);

@@ -66,7 +66,7 @@ impl Camera {
         let front = front(setting, up);
         let side = Vector(cross(up.0, front.0));
         let toward = match view {
-            View::Auto => from_angles([front, side, up], 24.0, 20.0),
+            View::Auto => from_angles([front, side, up], 16.0, 18.0),
             View::Angles(azimuth, elevation) => from_angles([front, side, up], azimuth, elevation),
             View::Axis(axis, negative) => unit(axis) * if negative { -1.0 } else { 1.0 },
         };

@@ -5,7 +5,6 @@ use super::grains::Grain;
 use super::splat::{Layer, NOTHING, splat};
 use super::surface::Ball;
 use crate::drawing::{Rgb, SAMPLES};
-use stickslip::tensor::Vector;
 
 /// Share of a ball's own normal in the normal that light sees; the rest is that of the body's surface.
 const GRAININESS: f64 = 0.24;
@@ -80,7 +79,8 @@ impl<'a> Lit<'a> {
     fn openness(&self, [x, y]: [usize; 2], normal: Point, depth: f64) -> f64 {
         const PROBES: usize = 20;
         let reach = CORNER * self.radius;
-        let normal = [normal.dot(self.camera.right), normal.dot(self.camera.up), normal.dot(self.camera.toward)];
+        let normal =
+            [normal.dot(self.camera.right), normal.dot(self.camera.up), normal.dot(self.camera.toward)];
         let hidden = |k: usize| {
             // Points on a sunflower: evenly spread over a disk.
             let (r, angle) = (((k as f64 + 0.5) / PROBES as f64).sqrt() * reach, k as f64 * 2.399_963);
@@ -124,9 +124,9 @@ impl<'a> Lit<'a> {
 mod tests {
     use super::super::camera::View;
     use super::super::setting::Setting;
-    use super::super::surface::surface;
-    use super::super::sample;
+    use super::super::{sample, surface::surface};
     use super::*;
+    use stickslip::tensor::Vector;
 
     #[test]
     fn the_side_that_faces_the_lamp_is_brighter() {

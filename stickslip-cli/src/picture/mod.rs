@@ -12,7 +12,7 @@ mod setting;
 mod splat;
 mod surface;
 
-pub use camera::{UnknownView, View};
+pub use camera::View;
 pub use grains::{Quarters, quarters};
 pub use quantity::Quantity;
 pub use setting::{Mirror, Setting};
@@ -170,7 +170,7 @@ fn plane_picture(
     let extent = spans.map(|[low, high]| (high - low).max(1e-9));
     let margins = [78, HEADING, COLUMN, 56];
     let [size, inner] = room(look, margins, extent[0] / extent[1]);
-    let mut canvas = Canvas::new(size);
+    let mut canvas = Canvas::new(size, SAMPLES);
     let inner = inner.map(|side| side * SAMPLES);
     let scale = [0, 1].map(|axis| inner[axis] as f64 / (1.04 * extent[axis]));
     let scale = scale[0].min(scale[1]);
@@ -204,7 +204,7 @@ fn space_picture(
     });
     let margins = [24, HEADING, COLUMN, 24];
     let [size, inner] = room(look, margins, width / height);
-    let mut canvas = Canvas::new(size);
+    let mut canvas = Canvas::new(size, SAMPLES);
     let area = [margins[0], margins[1], inner[0], inner[1]].map(|length| (length * SAMPLES) as f64);
     let camera = camera.fit(extent.iter().copied(), area);
     let balls = surface::surface(grains);

@@ -91,18 +91,16 @@ impl Quantity {
         }
     }
 
-    /// Colours that suit these values. The outermost 0.5 % of the values at either end do not stretch the scale.
+    /// Colours that suit these values. The outermost thousandth of the values at either end do not stretch the scale.
     pub fn scale(self, values: &[f64]) -> Scale {
         let mut sorted: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
         sorted.sort_by(f64::total_cmp);
         let at = |share: f64| {
             sorted.get((share * sorted.len().saturating_sub(1) as f64) as usize).copied().unwrap_or(0.0)
         };
-        let (low, high) = (at(0.005), at(0.995));
+        let (low, high) = (at(0.001), at(0.999));
         match self.kind() {
-            Kind::Magnitude => {
-                Scale { range: [0.0, if high > 0.0 { high } else { 1.0 }], diverging: false }
-            }
+            Kind::Magnitude => Scale { range: [0.0, if high > 0.0 { high } else { 1.0 }], diverging: false },
             Kind::Around(middle) => {
                 let half = (high - middle).abs().max((low - middle).abs());
                 let half = if half > 0.0 { half } else { 1.0 };

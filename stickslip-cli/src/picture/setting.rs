@@ -1,9 +1,8 @@
 //! What a picture takes from the scene as it was run: names, where up is, which bodies are round, where mirrors stand.
 
 use serde_json::Value;
-use stickslip::scene::Scene;
 
-/// What a picture takes from the scene; see [`Setting::of_run`].
+/// What a picture takes from the scene; see [`Setting::of_json`].
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Setting {
     /// The scene's title.
@@ -28,12 +27,6 @@ pub struct Mirror {
 }
 
 impl Setting {
-    /// The setting that a scene describes.
-    pub fn of_scene(scene: &Scene) -> Self {
-        let value = serde_json::to_value(scene).expect("a scene is plain data");
-        Setting::of_json(&value)
-    }
-
     /// The setting in a scene as `run.json` keeps it; what is missing there keeps its default.
     pub fn of_json(scene: &Value) -> Self {
         let bodies = scene["bodies"].as_array().map(Vec::as_slice).unwrap_or_default();
