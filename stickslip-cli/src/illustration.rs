@@ -18,7 +18,8 @@ pub struct PictureChoice {
     pub range: Option<[f64; 2]>,
     /// Where the camera stands.
     pub view: View,
-    /// `x`, `y`, `z` or `none`; where the scene has just one plane of symmetry, without it.
+    /// `x`, `y`, `z` or `none`. Without it, pictures of bodies are mirrored where the scene has just one plane of symmetry;
+    /// pictures of values are not, as the cut shows the inside.
     pub mirror: Option<String>,
     /// Width and height in pixels.
     pub size: Option<[usize; 2]>,
@@ -54,7 +55,7 @@ impl<'a> Album<'a> {
             )));
         };
         let setting = Setting::of_json(&results.manifest().scene);
-        let mirror = mirror(&setting, choice.mirror.as_deref())?;
+        let mirror = mirror(&setting, &choice)?;
         let first = results.particles(first).map_err(Failure::input)?;
         let quarters = picture::quarters(&first, &setting);
         Ok(Album { results, setting, quarters, mirror, choice, bounds: None })
@@ -112,9 +113,12 @@ impl<'a> Album<'a> {
     }
 }
 
-fn mirror(setting: &Setting, choice: Option<&str>) -> Result<Option<Mirror>, Failure> {
-    let Some(name) = choice else { return Ok(setting.only_mirror()) };
-    let Some(axis) = ["x", "y", "z"].iter().position(|axis| *axis == name) else { return Ok(None) };
+fn mirror(setting: &Setting, choice: &PictureChoice) -> Result<Option<Mirror>, Failure> {
+    let Some(name) = &choice.mirror else {
+        let bodies = choice.quantity == Quantity::Body;
+        return Ok(setting.only_mirror().filter(|_| bodies));
+    };
+    let Some(axis) = ["x", "y", "z"].iter().position(|axis| axis == name) else { return Ok(None) };
     let mirror = setting.mirrors.iter().find(|mirror| mirror.axis == axis);
     let missing = || Failure::Input(miette!("--mirror: the scene has no plane of symmetry across {name}"));
     mirror.copied().map(Some).ok_or_else(missing)

@@ -39,7 +39,7 @@ pub struct Arguments {
     #[arg(long, default_value = "auto", allow_hyphen_values = true)]
     view: View,
 
-    /// Draw the other half across a plane of symmetry; without this, where the scene has just one.
+    /// Draw the other half across a plane of symmetry; without this, pictures of bodies do where the scene has just one.
     #[arg(long, value_parser = ["x", "y", "z", "none"])]
     mirror: Option<String>,
 

@@ -43,7 +43,8 @@ impl Scale {
         let share = if high > low { ((value - low) / (high - low)).clamp(0.0, 1.0) } else { 0.5 };
         let gradient = if self.diverging { colorous::RED_BLUE } else { colorous::VIRIDIS };
         // Red stands for the upper end, as readers of stress pictures expect.
-        let share = if self.diverging { 1.0 - share } else { share };
+        // The darkest violet would swallow light and shadow.
+        let share = if self.diverging { 1.0 - share } else { 0.06 + 0.94 * share };
         gradient.eval_continuous(share).as_array().map(|c| f32::from(c) / 255.0)
     }
 }

@@ -22,11 +22,18 @@ pub struct Lit<'a> {
     lamp: Camera,
     shadows: Layer,
     radius: f64,
+    contrast: f64,
 }
 
 impl<'a> Lit<'a> {
-    /// Draws the balls for the eye and for the lamp.
-    pub fn new(grains: &'a [Grain], balls: &'a [Ball], camera: Camera, size: [usize; 2]) -> Self {
+    /// Draws the balls for the eye and for the lamp. `contrast` is 1 for light as it falls, 0 for colours as they are.
+    pub fn new(
+        grains: &'a [Grain],
+        balls: &'a [Ball],
+        camera: Camera,
+        size: [usize; 2],
+        contrast: f64,
+    ) -> Self {
         let toward = camera.toward * 0.62 + camera.up * 0.66 - camera.right * 0.42;
         let lamp = Camera::facing(toward.direction().expect("the eye is not opposite the lamp"), camera.up);
         let side = SHADOW_MAP as f64;
@@ -40,6 +47,7 @@ impl<'a> Lit<'a> {
             lamp,
             shadows: splat(balls, &lamp, [SHADOW_MAP; 2]),
             radius,
+            contrast,
         }
     }
 
@@ -57,7 +65,8 @@ impl<'a> Lit<'a> {
         let gloss = 0.10 * normal.dot(half).max(0.0).powi(28) * if lamp > 0.0 { 1.0 } else { 0.0 };
         let sky = 0.75 + 0.25 * normal.dot(self.camera.up);
         let open = self.openness([x, y], normal, depth);
-        let light = (0.58 * sky * open + 0.58 * lamp * (0.6 + 0.4 * open)) * self.rim([x, y], ball);
+        let light = 0.68 * sky * open + 0.60 * lamp * (0.6 + 0.4 * open);
+        let light = (1.0 + self.contrast * (light - 1.0)) * self.rim([x, y], ball);
         let color = self.grains[ball.grain].color;
         Some(color.map(|c| (c * light as f32 + gloss as f32).clamp(0.0, 1.0)))
     }
@@ -134,7 +143,7 @@ mod tests {
         let balls = surface(&grains);
         let camera = Camera::new(View::Auto, &Setting::default());
         let corners = [Vector([-1.2; 3]), Vector([1.2; 3])];
-        let lit = Lit::new(&grains, &balls, camera.fit(corners, [0.0, 0.0, 200.0, 200.0]), [200, 200]);
+        let lit = Lit::new(&grains, &balls, camera.fit(corners, [0.0, 0.0, 200.0, 200.0]), [200, 200], 1.0);
         let brightness = |x, y| lit.color(x, y).map(|rgb| rgb.iter().sum::<f32>());
         assert!(brightness(80, 70).unwrap() > 1.5 * brightness(120, 140).unwrap());
         assert_eq!(brightness(2, 2), None);

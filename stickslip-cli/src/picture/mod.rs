@@ -58,6 +58,8 @@ const WIDTH: usize = 1280;
 /// Space above the bodies, and for the legend on the right [pixels].
 const HEADING: usize = 48;
 const COLUMN: usize = 130;
+/// Contrast of light where colours stand for values, which shadows must not falsify.
+const VALUE_CONTRAST: f64 = 0.6;
 /// More bodies than this are not named.
 const MOST_NAMES: usize = 12;
 
@@ -208,7 +210,8 @@ fn space_picture(
     let area = [margins[0], margins[1], inner[0], inner[1]].map(|length| (length * SAMPLES) as f64);
     let camera = camera.fit(extent.iter().copied(), area);
     let balls = surface::surface(grains);
-    let lit = Lit::new(grains, &balls, camera, canvas.size);
+    let contrast = if look.quantity == Quantity::Body { 1.0 } else { VALUE_CONTRAST };
+    let lit = Lit::new(grains, &balls, camera, canvas.size, contrast);
     let [width, height] = canvas.size;
     canvas.paint([0, 0, width, height], |x, y| lit.color(x, y));
     let ink = canvas.ink();
