@@ -20,7 +20,7 @@ const BETWEEN_LINES: Duration = Duration::from_secs(10);
 impl Display {
     /// A display for a run until a simulated time [s].
     pub fn new(end: f64, terminal: bool) -> Self {
-        let style = ProgressStyle::with_template("{bar:32.cyan/dim} {percent:>3} %  {msg}");
+        let style = ProgressStyle::with_template("{bar:24.cyan/dim} {percent:>3} %  {wide_msg}");
         let style = style.expect("the template is well formed").progress_chars("━╸─");
         let bar = terminal.then(|| ProgressBar::new(PARTS).with_style(style));
         if let Some(bar) = &bar {

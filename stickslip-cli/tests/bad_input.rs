@@ -26,7 +26,7 @@ fn a_missing_scene_is_refused_by_name() {
 #[test]
 fn a_misspelt_key_is_named_with_its_place_and_no_folder_is_left() {
     let workplace = Workplace::new();
-    let scene = new_scene().replace("courant", "courent").replace("end = ", "endd = ");
+    let scene = new_scene().replace("end = ", "endd = ");
     workplace.write("scene.toml", &scene);
     let ran = workplace.run(&["run", "scene.toml"]);
     assert_eq!(ran.code, Some(2), "{}", ran.stderr);
