@@ -1,0 +1,123 @@
+//! What can go wrong for a user, how it is printed, and the exit code it gives.
+
+use crate::drawing::DrawError;
+use miette::{Diagnostic, GraphicalReportHandler, Report};
+use std::io::IsTerminal;
+use std::process::ExitCode;
+
+/// Why a command did not do what it was asked.
+#[derive(Debug)]
+pub enum Failure {
+    /// The input is at fault: a scene, a folder, a flag.
+    Input(Report),
+    /// The input is sound, yet the run or its outputs went wrong.
+    Run(Report),
+    /// The user stopped it; everything written is valid.
+    Interrupted,
+}
+
+impl Failure {
+    /// Exit code after Ctrl-C, as shells count it: 128 + SIGINT.
+    pub const INTERRUPTED: u8 = 130;
+
+    /// The input is at fault.
+    pub fn input(error: impl Diagnostic + Send + Sync + 'static) -> Self {
+        Failure::Input(Report::new(error))
+    }
+
+    /// The run went wrong.
+    pub fn run(error: impl Diagnostic + Send + Sync + 'static) -> Self {
+        Failure::Run(Report::new(error))
+    }
+
+    /// 2 for input, 1 for a run, 130 for Ctrl-C.
+    pub fn exit_code(&self) -> ExitCode {
+        ExitCode::from(match self {
+            Failure::Input(_) => 2,
+            Failure::Run(_) => 1,
+            Failure::Interrupted => Self::INTERRUPTED,
+        })
+    }
+
+    /// Prints to standard error: with the lines at fault on a terminal, as `file:line:column: error: ...` elsewhere.
+    pub fn print(&self) {
+        match self {
+            Failure::Interrupted => eprintln!("interrupted; everything written is valid"),
+            Failure::Input(report) | Failure::Run(report) => {
+                let mut text = String::new();
+                let drawn = std::io::stderr().is_terminal()
+                    && GraphicalReportHandler::new().render_report(&mut text, report.as_ref()).is_ok();
+                if !drawn {
+                    text = plain(report.as_ref());
+                }
+                eprintln!("{}", text.trim_end());
+            }
+        }
+    }
+}
+
+impl From<DrawError> for Failure {
+    fn from(error: DrawError) -> Self {
+        match error {
+            DrawError::Write { .. } | DrawError::Empty(_) => Failure::Input(miette::miette!("{error}")),
+            DrawError::Ink(_) => Failure::Run(miette::miette!("{error}")),
+        }
+    }
+}
+
+/// A line for each place at fault, one for the remedy, and so on for the errors that came along.
+fn plain(error: &dyn Diagnostic) -> String {
+    let mut text = String::new();
+    let places = places(error);
+    match places.split_first() {
+        None => text += &format!("error: {error}\n"),
+        Some(((place, label), others)) => {
+            text += &format!("{place}: error: {error}\n");
+            let notes = label.iter().map(|label| format!("{place}: note: {label}\n"));
+            text.extend(notes);
+            for (place, label) in others {
+                text += &format!("{place}: note: {}\n", label.as_deref().unwrap_or("see also"));
+            }
+        }
+    }
+    if let Some(help) = error.help() {
+        text += &format!("  help: {help}\n");
+    }
+    text.extend(error.related().into_iter().flatten().map(plain));
+    text
+}
+
+/// `file:line:column` of every label, and what the label says.
+fn places(error: &dyn Diagnostic) -> Vec<(String, Option<String>)> {
+    let (Some(source), Some(labels)) = (error.source_code(), error.labels()) else { return Vec::new() };
+    let place = |label: miette::LabeledSpan| {
+        let contents = source.read_span(label.inner(), 0, 0).ok()?;
+        let file = contents.name().unwrap_or("scene");
+        let place = format!("{file}:{}:{}", contents.line() + 1, contents.column() + 1);
+        Some((place, label.label().map(str::to_owned)))
+    };
+    labels.filter_map(place).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use miette::{LabeledSpan, MietteDiagnostic, NamedSource};
+
+    #[test]
+    fn a_plain_error_names_file_line_and_column() {
+        let error = MietteDiagnostic::new("unknown key `radios`")
+            .with_help("did you mean `radius`?")
+            .with_label(LabeledSpan::at(8..14, "here"));
+        let report =
+            Report::new(error).with_source_code(NamedSource::new("a.toml", "[ball]\n\nradios = 1\n"));
+        let text = plain(report.as_ref());
+        assert!(text.starts_with("a.toml:3:1: error: unknown key `radios`\n"), "{text}");
+        assert!(text.contains("  help: did you mean `radius`?"), "{text}");
+    }
+
+    #[test]
+    fn an_error_without_a_place_is_still_an_error() {
+        assert_eq!(plain(Report::msg("no such file").as_ref()), "error: no such file\n");
+    }
+}
