@@ -111,6 +111,12 @@ impl<T: Real, const D: usize> Pair<'_, T, D> {
                 Some(traction) => traction < T::ZERO,
                 None => approaching,
             },
+            ContactLaw::Gap if std::env::var("LITERAL").is_ok() => {
+                self.gap <= T::ZERO && self.traction(n).map_or(approaching, |t| t < T::ZERO)
+            }
+            ContactLaw::Gap if std::env::var("APPROACH").is_ok() => {
+                self.gap <= T::ZERO && approaching
+            }
             ContactLaw::Gap => {
                 self.gap <= T::ZERO && (approaching || self.traction(n).is_some_and(|t| t < T::ZERO))
             }

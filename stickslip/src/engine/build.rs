@@ -7,16 +7,18 @@ use crate::basis::{Basis, Gimp, Linear};
 use crate::body::{Body, Particle};
 use crate::boundary::{Boundary, Wall};
 use crate::contact::{Rules, Survey, Tally};
+use crate::check;
 use crate::door::Simulation;
+use crate::geometry::{Filling, fill};
 use crate::grid::{Cover, Field, Lattice};
-use crate::scene::{BasisKind, Dimension, Face, Motion, Precision, Problem, Scene};
+use crate::scene::{self, BasisKind, Dimension, Face, Motion, Precision, Problem, Scene};
 use crate::tensor::{Matrix, Real, Symmetric, Vector, cross};
 use std::marker::PhantomData;
 
 /// The simulation of a scene.
 ///
 /// # Errors
-/// A body that cannot be filled with particles.
+/// What [`check::problems`] finds.
 pub fn build(scene: &Scene) -> Result<Box<dyn Simulation>, Problem> {
     match (scene.dimension, scene.precision) {
         (Dimension::PlaneStrain, Precision::Double) => with_basis::<f64, 2>(scene),
@@ -37,52 +39,33 @@ impl<T: Real, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// The simulation of a scene of this dimension and precision.
     ///
     /// # Errors
-    /// A body that cannot be filled with particles.
+    /// What [`check::problems`] finds.
     pub fn new(scene: &Scene) -> Result<Self, Problem> {
-        let cell = scene.discretization.cell;
-        let origin = scene.domain.as_ref().map_or([0.0; 3], |domain| domain.min);
-        let lattice = Lattice { origin: Vector::of(origin), cell: T::of(cell) };
+        check::problems(scene)?;
+        let sites = check::lattice(scene);
         let mut bodies = Vec::new();
         let mut rigid = Vec::new();
-        for (i, request) in scene.bodies.iter().enumerate() {
-            let material = &scene.materials[request.material];
-            let (positions, volume, half_width) = fill(scene, i)?;
-            let center = mean(&positions);
-            rigid.push(match &request.motion {
-                Motion::Free { .. } => None,
-                Motion::Rigid { velocity, spin } => {
-                    Some(RigidMotion::new(center, velocity.clone(), spin.clone()))
-                }
-            });
-            let velocity = |x: [f64; 3]| match &request.motion {
-                Motion::Free { velocity, spin } => {
-                    let turn = cross(*spin, std::array::from_fn(|i| x[i] - center[i]));
-                    std::array::from_fn(|i| velocity[i] + turn[i])
-                }
-                Motion::Rigid { .. } => rigid[i].as_ref().map_or([0.0; 3], |motion| motion.velocity_at(x)),
-            };
-            let particle = |(number, &x): (usize, &[f64; 3])| Particle {
-                position: Vector::of(x),
-                velocity: Vector::of(velocity(x)),
-                mass: T::of(volume * material.density),
-                volume: T::of(volume),
-                half_width: T::of(half_width),
-                deformation: Matrix::IDENTITY,
-                stress: Symmetric::ZERO,
-                number: number as u32,
-            };
+        for body in &scene.bodies {
+            let filling = fill(&body.shape, &sites).expect("a checked shape is bounded");
+            let center = mean(&filling.positions);
+            let motion = prescribed(body, center);
             bodies.push(Body {
-                name: request.name.clone(),
-                material: material.law.cast(),
-                density: T::of(material.density),
-                particles: positions.iter().enumerate().map(particle).collect(),
-                rigid: rigid[i].is_some(),
+                name: body.name.clone(),
+                material: scene.materials[body.material].law.cast(),
+                density: T::of(scene.materials[body.material].density),
+                particles: particles(scene, body, &filling, |x| match (&body.motion, &motion) {
+                    (Motion::Free { velocity, spin }, _) => about(center, *velocity, *spin, x),
+                    (_, Some(motion)) => motion.velocity_at(x),
+                    _ => [0.0; 3],
+                }),
+                rigid: motion.is_some(),
             });
+            rigid.push(motion);
         }
         Ok(Engine {
             bodies,
             rigid,
-            lattice,
+            lattice: Lattice { origin: Vector::of(sites.origin), cell: T::of(scene.discretization.cell) },
             domain: scene.domain.as_ref().map(|domain| [domain.min, domain.max].map(Vector::of)),
             gravity: Vector::of(scene.gravity),
             pic_share: T::of(scene.time.pic_share),
@@ -99,6 +82,40 @@ impl<T: Real, const D: usize, B: Basis<T>> Engine<T, D, B> {
             basis: PhantomData,
         })
     }
+}
+
+/// The prescribed motion of a rigid body.
+fn prescribed(body: &scene::Body, center: [f64; 3]) -> Option<RigidMotion> {
+    match &body.motion {
+        Motion::Free { .. } => None,
+        Motion::Rigid { velocity, spin } => Some(RigidMotion::new(center, velocity.clone(), spin.clone())),
+    }
+}
+
+/// v + w x (x - c) [m/s]
+fn about(center: [f64; 3], velocity: [f64; 3], spin: [f64; 3], x: [f64; 3]) -> [f64; 3] {
+    let turn = cross(spin, std::array::from_fn(|i| x[i] - center[i]));
+    std::array::from_fn(|i| velocity[i] + turn[i])
+}
+
+fn particles<T: Real, const D: usize>(
+    scene: &Scene,
+    body: &scene::Body,
+    filling: &Filling,
+    velocity: impl Fn([f64; 3]) -> [f64; 3],
+) -> Vec<Particle<T, D>> {
+    let mass = filling.volume * scene.materials[body.material].density;
+    let particle = |(number, &x): (usize, &[f64; 3])| Particle {
+        position: Vector::of(x),
+        velocity: Vector::of(velocity(x)),
+        mass: T::of(mass),
+        volume: T::of(filling.volume),
+        half_width: T::of(filling.half_width),
+        deformation: Matrix::IDENTITY,
+        stress: Symmetric::ZERO,
+        number: number as u32,
+    };
+    filling.positions.iter().enumerate().map(particle).collect()
 }
 
 /// The domain's faces that do something.
@@ -119,44 +136,4 @@ fn walls<const D: usize>(scene: &Scene) -> Vec<Wall> {
 fn mean(positions: &[[f64; 3]]) -> [f64; 3] {
     let sum = positions.iter().fold([0.0; 3], |sum: [f64; 3], x| std::array::from_fn(|i| sum[i] + x[i]));
     sum.map(|x| x / positions.len() as f64)
-}
-
-fn fill(scene: &Scene, body: usize) -> Result<(Vec<[f64; 3]>, f64, f64), Problem> {
-    use crate::geometry::Shape;
-    let d = if scene.dimension == Dimension::Space { 3 } else { 2 };
-    let h = scene.discretization.cell / scene.discretization.particles_per_side as f64;
-    let origin = scene.domain.as_ref().map_or([0.0; 3], |domain| domain.min);
-    let (min, max) = match &scene.bodies[body].shape {
-        Shape::Ball { center, radius } => (center.map(|c| c - radius), center.map(|c| c + radius)),
-        Shape::Box { min, max } => (*min, *max),
-        _ => unimplemented!(),
-    };
-    let inside = |x: [f64; 3]| match &scene.bodies[body].shape {
-        Shape::Ball { center, radius } => {
-            (0..d).map(|i| (x[i] - center[i]).powi(2)).sum::<f64>() < radius * radius
-        }
-        _ => (0..d).all(|i| x[i] > min[i] && x[i] < max[i]),
-    };
-    let lo: [i64; 3] =
-        std::array::from_fn(|i| if i < d { ((min[i] - origin[i]) / h).floor() as i64 - 1 } else { 0 });
-    let hi: [i64; 3] =
-        std::array::from_fn(|i| if i < d { ((max[i] - origin[i]) / h).ceil() as i64 + 1 } else { 0 });
-    let mut out = Vec::new();
-    for i in lo[0]..=hi[0] {
-        for j in lo[1]..=hi[1] {
-            for k in lo[2]..=hi[2] {
-                let n = [i, j, k];
-                let x: [f64; 3] =
-                    std::array::from_fn(|a| if a < d { origin[a] + (n[a] as f64 + 0.5) * h } else { 0.0 });
-                let in_domain = scene
-                    .domain
-                    .as_ref()
-                    .is_none_or(|dm| (0..d).all(|a| x[a] > dm.min[a] && x[a] < dm.max[a]));
-                if inside(x) && in_domain {
-                    out.push(x);
-                }
-            }
-        }
-    }
-    Ok((out, h.powi(d as i32), h / 2.0))
 }
