@@ -12,7 +12,7 @@ pub enum Expression {
     /// The same number at every time.
     Constant(f64),
     /// A formula with `t` in it.
-    Formula(Program),
+    Formula(Box<Program>),
 }
 
 /// A formula as instructions for a stack of numbers.
@@ -55,7 +55,7 @@ impl Expression {
     pub(super) fn new(text: &str, code: Vec<Instruction>) -> Expression {
         match code[..] {
             [Instruction::Push(value)] => Expression::Constant(value),
-            _ => Expression::Formula(Program { text: text.to_string(), code }),
+            _ => Expression::Formula(Box::new(Program { text: text.to_string(), code })),
         }
     }
 }

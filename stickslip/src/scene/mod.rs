@@ -11,14 +11,16 @@ mod load;
 mod overrides;
 mod parameters;
 mod problem;
+mod schema;
 mod source;
 mod suggestion;
 mod units;
 
 pub use error::{Mistake, SceneError};
 pub use expression::{Expression, Program};
-pub use load::{Loaded, load, parse, schema};
+pub use load::{Loaded, load, parse};
 pub use problem::Problem;
+pub use schema::schema;
 pub use source::Source;
 
 use crate::geometry::Shape;

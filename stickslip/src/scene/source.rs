@@ -162,12 +162,19 @@ impl Node {
         }
     }
 
+    fn is_table(&self) -> bool {
+        matches!(self.value, Value::Table(_))
+    }
+
     /// The value as the user would recognise it: `"6 MPa"`, `3`, `a table`.
     pub fn found(&self) -> String {
         match &self.value {
             Value::Number(number) => format!("{number}"),
             Value::Text(text) => format!("{text:?}"),
             Value::Other(text) => format!("`{text}`"),
+            Value::List(items) if items.len() <= 3 && !items.iter().any(|item| item.is_table()) => {
+                format!("[{}]", items.iter().map(Node::found).collect::<Vec<_>>().join(", "))
+            }
             Value::List(items) => format!("a list of {}", items.len()),
             Value::Table(_) => "a table".to_string(),
         }

@@ -2,7 +2,7 @@
 
 /// The candidate nearest to `word`, if one is near enough to be what was meant.
 ///
-/// Near enough: the same but for upper and lower case, at most a third of the letters wrong (Damerau and Levenshtein), or
+/// Near enough: the same but for upper and lower case, about a third of the letters wrong (Damerau and Levenshtein), or
 /// the one the beginning of the other.
 pub(super) fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let plain = word.to_lowercase();
@@ -12,7 +12,8 @@ pub(super) fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a s
         let longer = plain.chars().count().max(candidate.chars().count());
         let beginning = plain.len().min(candidate.len()) >= 3
             && (plain.starts_with(&candidate) || candidate.starts_with(&plain));
-        (edits <= longer / 3 || beginning).then_some(edits)
+        let slips = if longer < 3 { 0 } else { (longer + 1) / 3 };
+        (edits <= slips || beginning).then_some(edits)
     };
     let near = candidates.into_iter().filter_map(|candidate| Some((distance(candidate)?, candidate)));
     near.min_by_key(|(edits, _)| *edits).map(|(_, candidate)| candidate)
@@ -44,6 +45,7 @@ mod tests {
             ("raduis", Some("radius")),
             ("Radius", Some("radius")),
             ("bulk", Some("bulk_modulus")),
+            ("plain-strane", Some("plane-strain")),
             ("centre", Some("center")),
             ("2d", None),
             ("colour", None),

@@ -1,10 +1,11 @@
 //! `[[bodies]]`: shape, material, and how a body moves.
 
 use super::Context;
-use super::quantity::{Spin, Vector, Velocity};
+use super::quantity::Velocity;
 use super::read::table;
 use super::shape::Shape;
 use super::text::Text;
+use super::vector::{Spin, Vector};
 use crate::scene::error::Fault;
 use crate::scene::{self, Expression, Motion, NamedMaterial};
 

@@ -11,16 +11,18 @@ mod shape;
 mod space;
 mod text;
 mod time;
+mod vector;
 
 use super::error::Fault;
 use super::parameters::Parameters;
 use super::source::{Node, Source, Value};
 use super::{Dimension, Scene};
-use quantity::{Acceleration, Vector};
+use quantity::Acceleration;
 use read::{Read, table};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use std::borrow::Cow;
 use text::Text;
+use vector::Vector;
 
 /// What values in a file are read with.
 pub struct Context<'a> {
@@ -120,9 +122,4 @@ impl JsonSchema for ParameterTable {
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
         json_schema!({ "type": "object", "additionalProperties": { "type": ["number", "string"] } })
     }
-}
-
-/// The JSON schema of scene files.
-pub(super) fn schema() -> Schema {
-    schemars::generate::SchemaSettings::draft2020_12().into_generator().into_root_schema_for::<File>()
 }

@@ -1,9 +1,10 @@
 //! Shapes: `shape.ball = { center = [0, 0, 1], radius = 1 }`.
 
 use super::Context;
-use super::quantity::{Angle, Length, Quantity, Ratio, Vector};
+use super::quantity::{Angle, Length, Quantity, Ratio};
 use super::read::{Read, table};
 use super::space::corners;
+use super::vector::Vector;
 use crate::geometry;
 use crate::scene::Dimension;
 use crate::scene::error::Fault;

@@ -1,9 +1,10 @@
 //! `[space]`: dimensions, cells, particles and domain.
 
 use super::Context;
-use super::quantity::{Length, Quantity, Vector};
+use super::quantity::{Length, Quantity};
 use super::read::table;
 use super::text::{Choice, Count, Word};
+use super::vector::Vector;
 use crate::scene::error::Fault;
 use crate::scene::{self, BasisKind, Dimension, Discretization, Face, Precision};
 

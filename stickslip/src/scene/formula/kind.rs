@@ -88,6 +88,7 @@ impl Kind {
     /// `a length [m]`
     pub fn name(self) -> String {
         match self {
+            Kind::Known(powers) if powers == Powers::NONE => "an angle or a ratio".to_string(),
             Kind::Known(powers) | Kind::Timed(powers) => powers.name(),
             Kind::Number | Kind::Any => "a plain number".to_string(),
             Kind::Truth => "a comparison".to_string(),

@@ -7,8 +7,10 @@
 //!   anywhere;
 //! - `t` is a time, but a formula in which no unit is written at all (`"3 * t + 5 * t^2"`) is in SI units.
 
+mod call;
 mod function;
 mod kind;
+mod literal;
 mod parser;
 mod token;
 

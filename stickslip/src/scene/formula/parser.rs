@@ -4,7 +4,7 @@
 //! with its unit.
 
 use super::token::{self, Token};
-use super::{Formula, FormulaError, Function, Kind, Meaning, Misread, Names, Quantity, reserved};
+use super::{Formula, FormulaError, Kind, Meaning, Misread, Names, Quantity, reserved};
 use crate::scene::expression::{Expression, Instruction, run};
 use crate::scene::suggestion::did_you_mean;
 use crate::scene::units::{Powers, Unit};
@@ -14,29 +14,27 @@ use std::ops::Range;
 const DEEPEST: usize = 64;
 /// Strength of a sign before its operand: above `*`, below `^`.
 const SIGN: u8 = 6;
-/// Largest power of a unit.
-const LARGEST_POWER: f64 = 9.0;
 
 /// Reads one formula.
 pub struct Parser<'a> {
-    text: &'a str,
-    words: Vec<(Token<'a>, Range<usize>)>,
-    next: usize,
+    pub(super) text: &'a str,
+    pub(super) words: Vec<(Token<'a>, Range<usize>)>,
+    pub(super) next: usize,
     depth: usize,
-    code: Vec<Instruction>,
-    names: &'a dyn Names,
+    pub(super) code: Vec<Instruction>,
+    pub(super) names: &'a dyn Names,
 }
 
 /// A part of the formula that has been read and whose instructions stand at `code[start..]`.
-struct Part {
-    kind: Kind,
+pub struct Part {
+    pub kind: Kind,
     /// Its value, unless it varies in time.
-    value: Option<f64>,
-    start: usize,
-    span: Range<usize>,
+    pub value: Option<f64>,
+    pub start: usize,
+    pub span: Range<usize>,
 }
 
-type Read<T> = Result<T, FormulaError>;
+pub type Read<T> = Result<T, FormulaError>;
 
 impl<'a> Parser<'a> {
     /// A parser at the start of `text`.
@@ -68,7 +66,7 @@ impl<'a> Parser<'a> {
     }
 
     /// Reads operators stronger than `weakest` and their operands.
-    fn expression(&mut self, weakest: u8) -> Read<Part> {
+    pub(super) fn expression(&mut self, weakest: u8) -> Read<Part> {
         self.depth += 1;
         if self.depth > DEEPEST {
             let found = format!("more than {DEEPEST} levels of brackets and powers");
@@ -136,70 +134,6 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// Reads what stands for the unit after a number that ends at `end`; returns where the unit ends.
-    fn unit(&mut self, end: usize) -> Read<(Option<Unit>, usize)> {
-        let (Token::Name(name), span) = self.peek() else { return Ok((None, end)) };
-        let Some(first) = Unit::named(name).filter(|_| !self.calls()) else {
-            let known = self.names.all();
-            let help = if known.iter().any(|known| known == name) || self.calls() {
-                Some(format!("write `* {name}` for a product"))
-            } else {
-                did_you_mean(name, Unit::names().iter().map(String::as_str))
-            };
-            return fail(
-                span,
-                format!("`{name}` after a number"),
-                "a unit such as m, mm, kg, ms, MPa, deg",
-                help,
-            );
-        };
-        self.next += 1;
-        let (power, mut end) = self.unit_power(span.end)?;
-        let mut unit = Unit::ONE.times(first, power);
-        while let Token::Symbol(symbol @ ("*" | "/")) = self.peek().0 {
-            let Some((Token::Name(name), span)) = self.words.get(self.next + 1).cloned() else { break };
-            let calls = self.words.get(self.next + 2).is_some_and(|(token, _)| *token == Token::Symbol("("));
-            let Some(factor) = Unit::named(name).filter(|_| !calls) else { break };
-            // `kg/m^3` written tightly is a unit even beside a parameter `m`
-            let tight = span.start == end + 1;
-            if !tight && self.names.all().iter().any(|known| known == name) {
-                let found = format!("`{symbol} {name}`, where `{name}` is both a unit and a parameter");
-                let help = format!(
-                    "for the parameter put the quantity before it in brackets: `({}) {symbol} {name}`; for the unit leave out the spaces: `{symbol}{name}`",
-                    self.text[..end].rsplit(['(', ',', '+']).next().unwrap_or_default().trim()
-                );
-                return fail(span, found, "a name with one meaning", Some(help));
-            }
-            self.next += 2;
-            let (power, last) = self.unit_power(span.end)?;
-            unit = unit.times(factor, if symbol == "*" { power } else { -power });
-            end = last;
-        }
-        Ok((Some(unit), end))
-    }
-
-    /// Reads the power of a unit that ends at `end`: `^2`, `^-1` or nothing.
-    fn unit_power(&mut self, end: usize) -> Read<(i32, usize)> {
-        if self.peek().0 != Token::Symbol("^") {
-            return Ok((1, end));
-        }
-        self.next += 1;
-        let negative = self.peek().0 == Token::Symbol("-");
-        self.next += usize::from(negative);
-        match self.take() {
-            (Token::Number(power), span) if power.fract() == 0.0 && power <= LARGEST_POWER => {
-                let power = power as i32; // a whole number from 0 to 9
-                Ok((if negative { -power } else { power }, span.end))
-            }
-            (_, span) => fail(
-                span.clone(),
-                self.quote(&span),
-                format!("a whole power of a unit, up to {LARGEST_POWER}"),
-                Some("for a power of the quantity put it in brackets: `(2 m)^n`".to_string()),
-            ),
-        }
-    }
-
     /// The meaning of a name that stands alone.
     fn name(&mut self, name: &str, span: Range<usize>) -> Read<Part> {
         let number = |value| Quantity { value, kind: Kind::Number };
@@ -237,69 +171,6 @@ impl<'a> Parser<'a> {
         let parameters =
             if known.is_empty() { "(there are none)".to_string() } else { format!("({})", known.join(", ")) };
         format!("a parameter {parameters}, pi or inf")
-    }
-
-    /// Reads a call from its bracket on.
-    fn call(&mut self, name: &str, span: Range<usize>) -> Read<Part> {
-        let function = Function::named(name);
-        if function.is_none() && name != "if" {
-            let all: Vec<&str> = Function::ALL.iter().map(|(name, _)| *name).chain(["if"]).collect();
-            let help = match self.names.all().iter().any(|known| known == name) {
-                true => Some(format!("write `{name} * (...)` for a product")),
-                false => did_you_mean(name, all.iter().copied()),
-            };
-            return fail(span, format!("unknown function `{name}`"), all.join(", "), help);
-        }
-        self.next += 1; // the bracket
-        let start = self.code.len();
-        let mut arguments = vec![self.expression(0)?];
-        while self.peek().0 == Token::Symbol(",") {
-            self.next += 1;
-            arguments.push(self.expression(0)?);
-            // min and max of many are taken two at a time, so that code needs no counts
-            if let (Some(function @ (Function::Min | Function::Max)), [a, b]) = (function, &arguments[..]) {
-                let (kind, value) = self.agree(a, b)?;
-                self.code.push(Instruction::Call(function));
-                let span = a.span.start..b.span.end;
-                arguments = vec![self.folded(Part { kind, value, start, span })];
-            }
-        }
-        let end = self.expect(")")?.end;
-        let span = span.start..end;
-        match (function, &arguments[..]) {
-            (None, [condition, then, otherwise]) => {
-                if condition.kind != Kind::Truth {
-                    return fail(
-                        condition.span.clone(),
-                        condition.kind.name(),
-                        "a comparison such as t < 1 s",
-                        None,
-                    );
-                }
-                let (kind, value) = self.agree(then, otherwise)?;
-                self.code.push(Instruction::Choose);
-                Ok(self.folded(Part { kind, value: condition.value.and(value), start, span }))
-            }
-            (Some(Function::Min | Function::Max), [part]) => Ok(Part { span, start, ..*part }),
-            (Some(function @ Function::Atan2), [y, x]) => {
-                let (_, value) = self.agree(y, x)?;
-                self.code.push(Instruction::Call(function));
-                Ok(self.folded(Part { kind: Kind::Number, value, start, span }))
-            }
-            (Some(function), [part]) if function.arguments() == 1 => {
-                let kind = result(function, part)?;
-                self.code.push(Instruction::Call(function));
-                Ok(self.folded(Part { kind, value: part.value, start, span }))
-            }
-            _ => {
-                let wanted = match function {
-                    None => "if(condition, a, b)".to_string(),
-                    Some(function) if function.arguments() == 2 => format!("{name}(a, b)"),
-                    Some(_) => format!("{name}(a)"),
-                };
-                fail(span, format!("`{name}` of {}", arguments.len()), wanted, None)
-            }
-        }
     }
 
     /// Emits an operator between two parts.
@@ -346,7 +217,7 @@ impl<'a> Parser<'a> {
     }
 
     /// The common kind of two parts; the value only says whether both are constant.
-    fn agree(&self, a: &Part, b: &Part) -> Read<(Kind, Option<f64>)> {
+    pub(super) fn agree(&self, a: &Part, b: &Part) -> Read<(Kind, Option<f64>)> {
         let span = a.span.start..b.span.end;
         let Ok(kind) = a.kind.sum(b.kind) else {
             let found = format!("{} with {}", a.kind.name(), b.kind.name());
@@ -364,7 +235,7 @@ impl<'a> Parser<'a> {
     }
 
     /// The part with its instructions replaced by their number if it does not vary in time.
-    fn folded(&mut self, part: Part) -> Part {
+    pub(super) fn folded(&mut self, part: Part) -> Part {
         if part.value.is_none() {
             return part;
         }
@@ -374,30 +245,25 @@ impl<'a> Parser<'a> {
         Part { value: Some(value), ..part }
     }
 
-    fn peek(&self) -> (Token<'a>, Range<usize>) {
+    pub(super) fn peek(&self) -> (Token<'a>, Range<usize>) {
         let last = self.words.len() - 1;
         self.words[self.next.min(last)].clone()
     }
 
-    fn take(&mut self) -> (Token<'a>, Range<usize>) {
+    pub(super) fn take(&mut self) -> (Token<'a>, Range<usize>) {
         let word = self.peek();
         self.next += 1;
         word
     }
 
-    /// Is the next word a name with a bracket after it?
-    fn calls(&self) -> bool {
-        self.words.get(self.next + 1).is_some_and(|(token, _)| *token == Token::Symbol("("))
-    }
-
-    fn expect(&mut self, symbol: &'static str) -> Read<Range<usize>> {
+    pub(super) fn expect(&mut self, symbol: &'static str) -> Read<Range<usize>> {
         match self.take() {
             (Token::Symbol(found), span) if found == symbol => Ok(span),
             (_, span) => fail(span.clone(), self.quote(&span), format!("`{symbol}`"), None),
         }
     }
 
-    fn quote(&self, span: &Range<usize>) -> String {
+    pub(super) fn quote(&self, span: &Range<usize>) -> String {
         match &self.text[span.clone()] {
             "" => "the end of the formula".to_string(),
             text => format!("`{text}`"),
@@ -405,29 +271,8 @@ impl<'a> Parser<'a> {
     }
 }
 
-/// Kind of a function of one number.
-fn result(function: Function, part: &Part) -> Read<Kind> {
-    let kind = match function {
-        Function::Abs | Function::Floor | Function::Ceil => part.kind,
-        Function::Sqrt => part.kind.power(Some(0.5)).unwrap_or(Kind::Truth),
-        _ if part.kind.has_dimension() => {
-            let help = "divide by a quantity of the same dimension: `t / 1 s`".to_string();
-            return fail(
-                part.span.clone(),
-                part.kind.name(),
-                "a number without unit, or an angle",
-                Some(help),
-            );
-        }
-        _ => Kind::Number,
-    };
-    match part.kind {
-        Kind::Truth => fail(part.span.clone(), part.kind.name(), "a number", None),
-        _ => Ok(kind),
-    }
-}
-
-fn fail<T>(
+/// A mistake at these bytes.
+pub fn fail<T>(
     span: Range<usize>,
     found: impl Into<String>,
     allowed: impl Into<String>,
