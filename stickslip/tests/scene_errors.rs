@@ -503,3 +503,22 @@ fn missing_files_suggest_their_neighbours() {
     assert!(error.to_string().contains("minimul.toml"), "{error}");
     assert_eq!(error.help().unwrap().to_string(), "did you mean `minimal.toml`?");
 }
+
+proptest::proptest! {
+    #![proptest_config(proptest::prelude::ProptestConfig::with_cases(400))]
+
+    /// Whatever is damaged in a file, the answer is a scene or a mistake in a place of that file.
+    #[test]
+    fn damaged_files_are_read_or_refused(
+        (text, from, length) in (proptest::sample::select(vec![MINIMAL, ROLLING, WEDGE]), 0..2000_usize, 0..12_usize),
+        instead in "[\"\\[\\]{}=.,#\n a-z0-9\u{b5}-]{0,6}",
+    ) {
+        let from = from % text.len();
+        let to = (from + length).min(text.len());
+        let damaged = format!("{}{instead}{}", &text[..from], &text[to..]);
+        if let Err(SceneError::Mistake(mistake)) = scene::parse("a.toml", &damaged, &[]) {
+            proptest::prop_assert!(mistake.line <= damaged.lines().count() + 1, "{}", mistake);
+            proptest::prop_assert!(!mistake.problem.found.is_empty() && !mistake.problem.allowed.is_empty());
+        }
+    }
+}

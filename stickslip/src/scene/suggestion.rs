@@ -16,7 +16,11 @@ pub(super) fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a s
         (edits <= slips || beginning).then_some(edits)
     };
     let near = candidates.into_iter().filter_map(|candidate| Some((distance(candidate)?, candidate)));
-    near.min_by_key(|(edits, _)| *edits).map(|(_, candidate)| candidate)
+    let likeness = |candidate: &str| strsim::jaro_winkler(&plain, &candidate.to_lowercase());
+    near.min_by(|(a_edits, a), (b_edits, b)| {
+        a_edits.cmp(b_edits).then_with(|| likeness(b).total_cmp(&likeness(a)))
+    })
+    .map(|(_, candidate)| candidate)
 }
 
 /// `did you mean `x`?`, if a candidate is near enough.
@@ -37,6 +41,11 @@ pub(super) fn listed<'a>(words: impl IntoIterator<Item = &'a str>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn among_equals_the_beginning_decides() {
+        assert_eq!(nearest("MPs", ["Ms", "ms", "MPa"]), Some("MPa"));
+    }
 
     #[test]
     fn slips_are_recognised_and_other_words_are_not() {
