@@ -4,9 +4,10 @@
 
 pub mod tensor; // Real, Vector<T, D>, Matrix<T, D>, symmetric stress
 
+pub mod check;
 pub mod geometry; // shapes: inside(x), bounds; filling them with particles
 pub mod material; // one file a law: equation, code, tests
-pub mod scene; // what the user asks for; scene file -> Scene, with errors that point at line and key
+pub mod scene; // what the user asks for; scene file -> Scene, with errors that point at line and key // what is wrong or doubtful with a scene before it runs: overlap, domain, resolution, cost
 
 pub mod door; // a running simulation with dimension and precision erased; what observers see
 

@@ -1,4 +1,20 @@
-//! Shapes: which points are inside, and how a shape is filled with particles.
+//! Shapes: which points are inside, how far away they are, and how a shape is filled with particles.
+//!
+//! `dimension` is 2 or 3 throughout: in the plane only the first two coordinates count, a ball is a disk and a box is a
+//! rectangle. Sine and cosine come from `libm`, so that every build fills a turned shape with the same particles.
+
+mod bounds;
+mod distance;
+mod filling;
+mod inside;
+mod polygon;
+mod rotation;
+mod round;
+mod volume;
+
+pub use bounds::Bounds;
+pub use filling::{Filling, Lattice, fill};
+pub use round::RoundPart;
 
 use serde::Serialize;
 

@@ -1,0 +1,184 @@
+//! Bodies as their particles show them: how many, how large, and whether the domain holds them.
+
+use super::lattice;
+use crate::geometry::{Bounds, Shape};
+use crate::scene::{Problem, Scene};
+use rayon::prelude::*;
+
+/// Particles are numbered with 32 bits in their body.
+const MOST_SITES: f64 = 4_294_967_295.0;
+
+/// Particles may lie outside the domain by this share of their spacing.
+const ROUND_OFF: f64 = 1e-6;
+
+/// The filling of a body in numbers.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Extent {
+    /// Number of particles.
+    pub particles: usize,
+    /// Mass of all particles [kg], in the plane per metre of depth.
+    pub mass: f64,
+    /// Holds all particles with their width [m].
+    pub bounds: Bounds,
+}
+
+/// Each body's extent, in the order of the scene.
+pub(super) fn measure(scene: &Scene) -> Result<Vec<Extent>, Problem> {
+    // Collected before the first problem is taken, so that it is the first in the scene and not the first in time.
+    let all: Vec<_> = (0..scene.bodies.len()).into_par_iter().map(|i| measure_body(scene, i)).collect();
+    all.into_iter().collect()
+}
+
+fn measure_body(scene: &Scene, i: usize) -> Result<Extent, Problem> {
+    let (body, lattice) = (&scene.bodies[i], lattice(scene));
+    let bounds = body.shape.bounds(lattice.dimension).expect("unbounded shapes are refused before");
+    let sites = lattice.sites(&bounds);
+    if sites > MOST_SITES {
+        return Err(Problem {
+            key: "discretization.cell".into(),
+            found: format!(
+                "cells of {} m, {sites:.1e} particle sites in body `{}`",
+                scene.discretization.cell, body.name
+            ),
+            allowed: format!("at most {MOST_SITES:.1e} sites in a body"),
+            help: Some("are the units of the cell and the shape right?".into()),
+        });
+    }
+    let mut extent = Extent { particles: 0, mass: 0.0, bounds: Bounds::EMPTY };
+    for position in lattice.sites_inside(&body.shape).into_iter().flatten() {
+        extent.particles += 1;
+        extent.bounds = extent.bounds.united(&Bounds { min: position, max: position });
+    }
+    if extent.particles == 0 {
+        return Err(no_particles(scene, i, &bounds));
+    }
+    extent.mass = extent.particles as f64 * lattice.volume() * scene.materials[body.material].density;
+    let half: [f64; 3] =
+        std::array::from_fn(|k| if k < lattice.dimension { 0.5 * lattice.spacing } else { 0.0 });
+    extent.bounds.min = std::array::from_fn(|k| extent.bounds.min[k] - half[k]);
+    extent.bounds.max = std::array::from_fn(|k| extent.bounds.max[k] + half[k]);
+    Ok(extent)
+}
+
+fn no_particles(scene: &Scene, i: usize, bounds: &Bounds) -> Problem {
+    let (body, lattice) = (&scene.bodies[i], lattice(scene));
+    let thickness = smallest_extent(&body.shape, lattice.dimension);
+    let (found, help) = if bounds.is_empty() {
+        (
+            format!("`{}` is empty: no point is inside", body.name),
+            "do the shapes that are combined meet?".into(),
+        )
+    } else {
+        let found = format!(
+            "`{}` holds no particle: it is {thickness:.4} m across, particles are {:.4} m apart",
+            body.name, lattice.spacing
+        );
+        // Two particles through the thickness.
+        let cell = 0.5 * thickness * scene.discretization.particles_per_side as f64;
+        (found, format!("take cells of at most {cell:.3e} m, or a larger shape"))
+    };
+    Problem {
+        key: format!("bodies[{i}].shape"),
+        found,
+        allowed: "a shape with room for particles".into(),
+        help: Some(help),
+    }
+}
+
+/// Smallest side of a shape's box [m], in the shape's own frame if it is turned.
+pub(super) fn smallest_extent(shape: &Shape, dimension: usize) -> f64 {
+    match shape {
+        Shape::Rotated { shape, .. } => smallest_extent(shape, dimension),
+        Shape::Cylinder { start, end, radius } => {
+            let length: f64 = (0..3).map(|k| (end[k] - start[k]).powi(2)).sum();
+            length.sqrt().min(2.0 * radius)
+        }
+        shape => {
+            let size = shape.bounds(dimension).map_or([f64::INFINITY; 3], |bounds| bounds.size());
+            size[..dimension].iter().fold(f64::INFINITY, |a, &b| a.min(b))
+        }
+    }
+}
+
+/// Refuses a body with particles' centres outside the domain, where a step would refuse them.
+pub(super) fn check_domain(scene: &Scene, extents: &[Extent]) -> Result<(), Problem> {
+    let Some(domain) = &scene.domain else { return Ok(()) };
+    let lattice = lattice(scene);
+    let half = (0.5 - ROUND_OFF) * lattice.spacing;
+    for (i, extent) in extents.iter().enumerate() {
+        for k in 0..lattice.dimension {
+            let sides = [
+                (domain.min[k] - extent.bounds.min[k], "below its lower", domain.min[k]),
+                (extent.bounds.max[k] - domain.max[k], "above its upper", domain.max[k]),
+            ];
+            for (beyond, side, at) in sides {
+                if beyond > half {
+                    let axis = ["x", "y", "z"][k];
+                    return Err(Problem {
+                        key: format!("bodies[{i}].shape"),
+                        found: format!(
+                            "`{}` leaves the domain: it reaches {beyond:.4} m {side} {axis} face at {at} m",
+                            scene.bodies[i].name
+                        ),
+                        allowed: "bodies inside the domain".into(),
+                        help: Some(
+                            "make the domain larger, move the body, or cut it at the face with a half-space"
+                                .into(),
+                        ),
+                    });
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::check::tests::{free, incline, scene};
+    use crate::scene::Dimension;
+
+    fn ball(x: f64, radius: f64) -> Shape {
+        Shape::Ball { center: [x, 0.05, 0.05], radius }
+    }
+
+    #[test]
+    fn a_box_has_its_exact_particles_mass_and_bounds() {
+        let plane = &measure(&incline(4.0)).expect("no problem")[1];
+        assert_eq!(plane.particles, 104 * 16 * 8);
+        assert!((plane.mass / (20.8 * 3.2 * 1.6 * 1e4) - 1.0).abs() < 1e-12);
+        let exact = [20.8, 3.2, 1.6];
+        assert!((0..3).all(|k| (plane.bounds.size()[k] - exact[k]).abs() < 1e-12));
+    }
+
+    #[test]
+    fn a_body_without_particles_is_told_which_cells_would_do() {
+        let small = || free("grain", 0, ball(0.0, 0.01));
+        let problem = measure(&scene(Dimension::Space, 0.1, vec![small()])).expect_err("between the sites");
+        assert_eq!(problem.key, "bodies[0].shape");
+        assert!(problem.found.contains("`grain`") && problem.found.contains("0.0500 m apart"), "{problem}");
+        assert!(problem.help.expect("a cell").contains("2.000e-2"));
+        assert!(measure(&scene(Dimension::Space, 0.02, vec![small()])).is_ok());
+    }
+
+    #[test]
+    fn an_empty_shape_and_a_cell_of_the_wrong_unit_are_told_apart() {
+        let nothing = Shape::Intersection(vec![ball(0.0, 0.4), ball(1.0, 0.4)]);
+        let problem =
+            measure(&scene(Dimension::Space, 0.1, vec![free("it", 0, nothing)])).expect_err("empty");
+        assert!(problem.found.contains("empty"), "{problem}");
+        let huge = scene(Dimension::Space, 1e-5, vec![free("it", 0, ball(0.0, 1.0))]);
+        assert_eq!(measure(&huge).expect_err("8e15 sites").key, "discretization.cell");
+    }
+
+    #[test]
+    fn a_body_beyond_a_face_is_told_which_and_by_how_much() {
+        let mut scene = incline(4.0);
+        scene.bodies[1].shape = Shape::Box { min: [0.0, 0.0, -1.6], max: [21.2, 3.2, 0.0] };
+        let extents = measure(&scene).expect("filled");
+        let problem = check_domain(&scene, &extents).expect_err("0.4 m too long");
+        assert_eq!(problem.key, "bodies[1].shape");
+        assert!(problem.found.contains("0.4000 m above its upper x face at 20.8 m"), "{problem}");
+    }
+}

@@ -1,0 +1,258 @@
+//! Whether the grid resolves contacts: the patch that Hertz predicts, in cells.
+
+use super::axes;
+use super::bodies::Extent;
+use super::hertz::{Hertz, Patch};
+use super::neighbours::pairs_within;
+use super::touch::{SAME, Touch};
+use crate::scene::{Body, ContactLaw, ContactRule, Motion, Scene};
+use crate::tensor::Vector;
+use serde::Serialize;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// The contact of a ball with another body as Hertz predicts it from the start of the scene.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ContactEstimate {
+    /// Names of the ball's body and of the other one.
+    pub bodies: [String; 2],
+    /// Distance between the two at the start [m].
+    pub gap: f64,
+    /// Weight that presses them together [N], in the plane [N/m].
+    pub load: f64,
+    /// Speed at which they approach at the start [m/s].
+    pub approach: f64,
+    /// The wider one of the patches under the load and at the impact.
+    pub patch: Patch,
+    /// Radius of the patch, in the plane its half-width, over the cell size [-].
+    pub cells: f64,
+    /// What to expect of the contact.
+    pub verdict: Verdict,
+}
+
+/// What to expect of a contact on the grid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Verdict {
+    /// Narrower than a cell: the grid decides how wide the bodies touch.
+    NotResolved,
+    /// 1 to 4 cells.
+    Marginal,
+    /// At least 4 cells.
+    Resolved,
+}
+
+impl Verdict {
+    /// From the radius or half-width of the patch in cells.
+    pub fn of(cells: f64) -> Self {
+        match cells {
+            cells if cells >= 4.0 => Verdict::Resolved,
+            cells if cells >= 1.0 => Verdict::Marginal,
+            _ => Verdict::NotResolved,
+        }
+    }
+}
+
+/// Estimates for all pairs within a cell of each other or named by a contact rule, narrowest first.
+///
+/// Only a ball touches in a patch that the start tells; the other body may be a ball, hollow or full, and counts as flat
+/// where it is something else. The load is the weight of the upper body alone, without what rests on it. Pairs that nothing
+/// presses together at the start are left out, as are rigid or glued pairs.
+pub(super) fn estimates(scene: &Scene, extents: &[Extent]) -> Vec<ContactEstimate> {
+    let named = named_pairs(scene);
+    let boxes: Vec<_> = extents.iter().map(|extent| extent.bounds).collect();
+    let near = pairs_within(&boxes, scene.discretization.cell);
+    let pairs: BTreeSet<_> = near.into_iter().chain(named.iter().copied()).collect();
+    let of_pair = |pair: [usize; 2]| {
+        let [a, b] = pair;
+        let touches = [Touch::of(scene, extents, [a, b]), Touch::of(scene, extents, [b, a])];
+        let nearest = touches.into_iter().flatten().min_by(|a, b| a.gap.total_cmp(&b.gap))?;
+        let counts = nearest.gap <= scene.discretization.cell || named.contains(&pair);
+        if counts { estimate(&nearest, scene) } else { None }
+    };
+    let mut found: Vec<_> =
+        pairs.into_iter().filter(|&pair| pushes(scene, pair)).filter_map(of_pair).collect();
+    found.sort_by(|a, b| a.cells.total_cmp(&b.cells));
+    found
+}
+
+/// Pairs of bodies, not of materials, that contact rules name.
+fn named_pairs(scene: &Scene) -> BTreeSet<[usize; 2]> {
+    let number: BTreeMap<_, _> = scene.bodies.iter().enumerate().map(|(i, body)| (&body.name, i)).collect();
+    let pair = |rule: &ContactRule| {
+        let [a, b] = rule.between.each_ref().map(|name| number.get(name.as_ref()?).copied());
+        Some([a?.min(b?), a?.max(b?)]).filter(|[a, b]| a != b)
+    };
+    scene.contact.iter().filter_map(pair).collect()
+}
+
+/// Whether contact of a pair can press it together: not both rigid, and neither glued nor left alone.
+fn pushes(scene: &Scene, [a, b]: [usize; 2]) -> bool {
+    let rigid = [a, b].iter().all(|&i| matches!(scene.bodies[i].motion, Motion::Rigid { .. }));
+    !rigid && !matches!(scene.contact_between(a, b).law, ContactLaw::None | ContactLaw::Glued)
+}
+
+/// `None` if nothing presses the two together.
+fn estimate(touch: &Touch, scene: &Scene) -> Option<ContactEstimate> {
+    let bodies = touch.pair.map(|i| &scene.bodies[i]);
+    let rigid = bodies.map(|body| matches!(body.motion, Motion::Rigid { .. }));
+    let materials =
+        std::array::from_fn(|i| (!rigid[i]).then(|| scene.materials[bodies[i].material].law.elastic()));
+    let modulus = Hertz::effective_modulus(materials);
+    let hertz = Hertz { modulus, radius: touch.radius, dimension: axes(scene) };
+    let gravity = Vector(scene.gravity);
+    // The one above rests on the other; gravity along the surface presses nothing, but for round-off.
+    let along = touch.direction.dot(gravity);
+    let above = usize::from(along < 0.0);
+    let presses = along.abs() > SAME * gravity.norm() && !rigid[above];
+    let load = if presses { touch.masses[above] * along.abs() } else { 0.0 };
+    let velocities = bodies.map(|body| Vector(starting_velocity(body)));
+    let closing = touch.direction.dot(velocities[0] - velocities[1]);
+    let approach = if closing > SAME * (velocities[0] - velocities[1]).norm() { closing } else { 0.0 };
+    let inverse_masses = [0, 1].map(|i| if rigid[i] { 0.0 } else { 1.0 / touch.masses[i] });
+    let reduced_mass = 1.0 / (inverse_masses[0] + inverse_masses[1]);
+    let [rest, impact] = [hertz.under_load(load), hertz.at_impact(reduced_mass, approach)];
+    let patch = if impact.radius > rest.radius { impact } else { rest };
+    let cells = patch.radius / scene.discretization.cell;
+    (patch.radius > 0.0).then(|| ContactEstimate {
+        bodies: bodies.map(|body| body.name.clone()),
+        gap: touch.gap,
+        load,
+        approach,
+        patch,
+        cells,
+        verdict: Verdict::of(cells),
+    })
+}
+
+/// Velocity of the centre of mass at the start [m/s]; spin moves a ball's surface along the contact, not into it.
+pub(super) fn starting_velocity(body: &Body) -> [f64; 3] {
+    match &body.motion {
+        Motion::Free { velocity, .. } => *velocity,
+        Motion::Rigid { velocity, .. } => velocity.each_ref().map(|v| v.at(0.0)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::check::bodies::measure;
+    use crate::check::tests::{free, incline, scene};
+    use crate::geometry::Shape;
+    use crate::scene::{Dimension, Expression};
+    use std::f64::consts::PI;
+
+    fn estimates_of(scene: &Scene) -> Vec<ContactEstimate> {
+        estimates(scene, &measure(scene).expect("filled"))
+    }
+
+    fn ball(x: f64, radius: f64) -> Shape {
+        Shape::Ball { center: [x, 0.0, 0.0], radius }
+    }
+
+    fn moving(mut body: Body, velocity: [f64; 3]) -> Body {
+        body.motion = Motion::Free { velocity, spin: [0.0, 0.0, 5.0] };
+        body
+    }
+
+    /// The paper's sphere: the mean height of its centre on the slope is 1.555 m by Hertz.
+    #[test]
+    fn the_papers_sphere_sinks_by_what_hertz_says() {
+        let found = estimates_of(&incline(8.0));
+        assert_eq!(found.len(), 1);
+        let contact = &found[0];
+        assert_eq!(contact.bodies, ["sphere", "plane"]);
+        assert!(contact.gap.abs() < 1e-12);
+        // The half sphere carries the load of the whole one.
+        let weight = 4.0 / 3.0 * PI * 1.6f64.powi(3) * 1000.0 * 10.0 * (PI / 4.0).cos();
+        assert!((contact.load / weight - 1.0).abs() < 1e-9);
+        assert!((1.6 - contact.patch.depth - 1.555).abs() < 5e-4, "{}", contact.patch.depth);
+        assert!((contact.patch.radius / (1.6 / 6.0) - 1.0).abs() < 0.01, "{}", contact.patch.radius);
+        assert_eq!(contact.verdict, Verdict::Marginal);
+    }
+
+    #[test]
+    fn the_verdict_follows_the_cells() {
+        assert_eq!(estimates_of(&incline(4.0))[0].verdict, Verdict::NotResolved);
+        assert_eq!(Verdict::of(4.0), Verdict::Resolved);
+        assert!(Verdict::NotResolved < Verdict::Marginal && Verdict::Marginal < Verdict::Resolved);
+    }
+
+    #[test]
+    fn two_spheres_at_impact_agree_with_the_closed_form() {
+        let bodies = vec![
+            moving(free("a", 0, ball(0.0, 1.0)), [0.5, 0.0, 0.0]),
+            moving(free("b", 0, ball(2.05, 1.0)), [-0.5, 0.0, 0.0]),
+        ];
+        let scene = scene(Dimension::Space, 0.1, bodies);
+        let found = estimates_of(&scene);
+        let contact = &found[0];
+        let elastic = scene.materials[0].law.elastic();
+        let modulus = elastic.young_modulus() / (2.0 * (1.0 - elastic.poisson_ratio().powi(2)));
+        let mass = 0.5 * 4.0 / 3.0 * PI * 1000.0;
+        let depth = (15.0 * mass / (16.0 * modulus * 0.5f64.sqrt())).powf(0.4);
+        assert!((contact.gap - 0.05).abs() < 1e-9 && (contact.approach - 1.0).abs() < 1e-9);
+        assert!((contact.patch.depth / depth - 1.0).abs() < 1e-9, "{} {depth}", contact.patch.depth);
+        assert_eq!(contact.load, 0.0);
+    }
+
+    #[test]
+    fn a_disk_presses_a_rigid_floor_with_its_weight_per_metre() {
+        let mut floor = free("floor", 1, Shape::Box { min: [-2.0, -1.0, 0.0], max: [2.0, 0.0, 0.0] });
+        let still = || [0.0; 3].map(Expression::Constant);
+        floor.motion = Motion::Rigid { velocity: still(), spin: still() };
+        let disk = free("disk", 0, Shape::Ball { center: [0.0, 0.5, 0.0], radius: 0.5 });
+        let mut scene = scene(Dimension::PlaneStrain, 0.1, vec![floor, disk]);
+        scene.gravity = [0.0, -10.0, 0.0];
+        let contact = &estimates_of(&scene)[0];
+        let elastic = scene.materials[0].law.elastic();
+        let modulus = elastic.young_modulus() / (1.0 - elastic.poisson_ratio().powi(2));
+        let load = PI * 0.25 * 1000.0 * 10.0;
+        assert!((contact.load / load - 1.0).abs() < 1e-9);
+        let half_width = (4.0 * load * 0.5 / (PI * modulus)).sqrt();
+        assert!((contact.patch.radius / half_width - 1.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_ball_in_a_hollow_touches_wider_than_on_a_plane() {
+        let on = |support: Shape| {
+            let ball = free("ball", 0, Shape::Ball { center: [0.0, 0.0, 1.0], radius: 1.0 });
+            let mut scene = scene(Dimension::Space, 0.2, vec![ball, free("support", 1, support)]);
+            scene.gravity = [0.0, 0.0, -10.0];
+            estimates_of(&scene)[0].patch.radius
+        };
+        let block = || Shape::Box { min: [-2.0, -2.0, -1.0], max: [2.0, 2.0, 1.0] };
+        let bowl = Shape::Ball { center: [0.0, 0.0, 2.0], radius: 2.0 };
+        let flat = on(Shape::Box { min: [-2.0, -2.0, -1.0], max: [2.0, 2.0, 0.0] });
+        let hollow = on(Shape::Difference(vec![block(), bowl]));
+        // 1/R* = 1 - 1/2, so R* doubles and a grows by the cube root of 2.
+        assert!((hollow / flat - 2f64.cbrt()).abs() < 1e-6, "{hollow} {flat}");
+    }
+
+    #[test]
+    fn only_what_is_pressed_near_or_named_is_estimated() {
+        let far =
+            || vec![moving(free("a", 0, ball(0.0, 0.5)), [1.0, 0.0, 0.0]), free("b", 0, ball(5.0, 0.5))];
+        let mut scene = scene(Dimension::Space, 0.1, far());
+        assert!(estimates_of(&scene).is_empty());
+        let between = [Some("b".to_string()), Some("a".to_string())];
+        scene.contact = vec![ContactRule { between, ..Default::default() }];
+        let found = estimates_of(&scene);
+        assert!((found[0].gap - 4.0).abs() < 1e-9, "{}", found[0].gap);
+        scene.contact[0].law = ContactLaw::Glued;
+        assert!(estimates_of(&scene).is_empty());
+        scene.contact[0].law = ContactLaw::Gap;
+        scene.bodies[0].motion = Motion::Free { velocity: [-1.0, 0.0, 0.0], spin: [0.0; 3] };
+        assert!(estimates_of(&scene).is_empty());
+    }
+
+    #[test]
+    fn spheres_side_by_side_on_a_level_floor_do_not_press_each_other() {
+        let mut bodies: Vec<_> = (0..3).map(|i| free(&format!("{i}"), 0, ball(f64::from(i), 0.5))).collect();
+        bodies.push(free("floor", 1, Shape::Box { min: [-1.0, -1.0, -1.0], max: [3.0, 1.0, -0.5] }));
+        let mut scene = scene(Dimension::Space, 0.1, bodies);
+        scene.gravity = [0.0, 0.0, -10.0];
+        let found = estimates_of(&scene);
+        assert_eq!(found.len(), 3);
+        assert!(found.iter().all(|contact| contact.bodies[1] == "floor"));
+    }
+}

@@ -1,0 +1,113 @@
+//! Two bodies in one place.
+
+use super::bodies::Extent;
+use super::lattice;
+use super::neighbours::pairs_within;
+use crate::scene::{Problem, Scene};
+use rayon::prelude::*;
+
+/// A particle this share of the spacing inside a body is inside beyond round-off; touching bodies stay allowed.
+const ROUND_OFF: f64 = 1e-6;
+
+/// Refuses particle sites that lie inside two bodies.
+///
+/// All bodies are filled from one lattice, so bodies that overlap by more than the lattice resolves share sites.
+pub(super) fn check(scene: &Scene, extents: &[Extent]) -> Result<(), Problem> {
+    let boxes: Vec<_> = extents.iter().map(|extent| extent.bounds).collect();
+    let pairs = pairs_within(&boxes, 0.0);
+    match pairs.par_iter().find_map_first(|&pair| shared(scene, extents, pair)) {
+        Some(problem) => Err(problem),
+        None => Ok(()),
+    }
+}
+
+/// The problem with a pair of bodies, if they share sites.
+fn shared(scene: &Scene, extents: &[Extent], [a, b]: [usize; 2]) -> Option<Problem> {
+    let lattice = lattice(scene);
+    let (first, second) = (&scene.bodies[a], &scene.bodies[b]);
+    let depth = |point: [f64; 3]| {
+        let inside = |body: &crate::scene::Body| -body.shape.distance(point, lattice.dimension);
+        inside(first).min(inside(second))
+    };
+    let common = extents[a].bounds.intersected(&extents[b].bounds);
+    let deep = |&point: &[f64; 3]| depth(point) > ROUND_OFF * lattice.spacing;
+    let mut sites = lattice.sites_around(&common).filter(deep);
+    let at = sites.next()?;
+    let count = 1 + sites.count();
+    let place: Vec<_> = at[..lattice.dimension].iter().map(|x| format!("{x:.4}")).collect();
+    Some(Problem {
+        key: format!("bodies[{b}].shape"),
+        found: format!(
+            "`{}` overlaps `{}` in {count} particle{} near ({}) m",
+            second.name,
+            first.name,
+            if count == 1 { "" } else { "s" },
+            place.join(", ")
+        ),
+        allowed: "bodies that touch but do not overlap".into(),
+        help: Some("move one of them, or cut one shape out of the other with a difference".into()),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::check::bodies::measure;
+    use crate::check::tests::{free, scene};
+    use crate::geometry::Shape;
+    use crate::scene::{Body, Dimension};
+
+    fn overlap(dimension: Dimension, bodies: Vec<Body>) -> Result<(), Problem> {
+        let scene = scene(dimension, 0.1, bodies);
+        check(&scene, &measure(&scene).expect("filled"))
+    }
+
+    fn disks(rows: usize, pitch: f64) -> Vec<Body> {
+        let disk = |i: usize| {
+            let center = [(i % rows) as f64 * pitch, (i / rows) as f64 * pitch, 0.0];
+            free(&format!("disk {i}"), 0, Shape::Ball { center, radius: 0.5 })
+        };
+        (0..rows * rows).map(disk).collect()
+    }
+
+    #[test]
+    fn touching_bodies_do_not_overlap() {
+        let cube = |x: f64| free("cube", 0, Shape::Box { min: [x, 0.0, 0.0], max: [x + 0.3, 0.3, 0.3] });
+        assert_eq!(overlap(Dimension::Space, vec![cube(0.0), cube(0.3), cube(0.6)]), Ok(()));
+        // Faces through the particles' sites.
+        assert_eq!(overlap(Dimension::Space, vec![cube(0.025), cube(0.325)]), Ok(()));
+        assert_eq!(overlap(Dimension::PlaneStrain, disks(4, 1.0)), Ok(()));
+    }
+
+    #[test]
+    fn turned_faces_that_touch_do_not_overlap() {
+        let angle = 0.3;
+        let turned = |y: f64| {
+            let shape = Box::new(Shape::Box { min: [-1.0, y, 0.0], max: [1.0, y + 1.0, 0.0] });
+            free("slab", 0, Shape::Rotated { shape, center: [0.0; 3], axis: [0.0, 0.0, 1.0], angle })
+        };
+        assert_eq!(overlap(Dimension::PlaneStrain, vec![turned(0.0), turned(1.0)]), Ok(()));
+        assert!(overlap(Dimension::PlaneStrain, vec![turned(0.0), turned(0.9)]).is_err());
+    }
+
+    #[test]
+    fn the_overlapping_pair_is_named_among_thousands() {
+        let mut bodies = disks(64, 1.0);
+        assert_eq!(overlap(Dimension::PlaneStrain, bodies.clone()), Ok(()));
+        let Shape::Ball { center, .. } = &mut bodies[2000].shape else { unreachable!("disks are balls") };
+        center[0] += 0.2;
+        let problem = overlap(Dimension::PlaneStrain, bodies).expect_err("2000 runs into 2001");
+        assert_eq!(problem.key, "bodies[2001].shape");
+        assert!(problem.found.contains("`disk 2001` overlaps `disk 2000`"), "{problem}");
+    }
+
+    #[test]
+    fn a_box_with_thousands_of_grains_inside_overlaps_none() {
+        let mut bodies = disks(16, 1.0);
+        let room = |min: f64, max: f64| Shape::Box { min: [min, min, 0.0], max: [max, max, 0.0] };
+        bodies.push(free("walls", 1, Shape::Difference(vec![room(-0.8, 15.8), room(-0.5, 15.5)])));
+        assert_eq!(overlap(Dimension::PlaneStrain, bodies.clone()), Ok(()));
+        bodies.last_mut().expect("walls").shape = room(-0.8, 15.8);
+        assert!(overlap(Dimension::PlaneStrain, bodies).is_err());
+    }
+}

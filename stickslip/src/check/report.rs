@@ -1,0 +1,287 @@
+//! What a run will be, before it runs.
+
+use super::bodies::{Extent, smallest_extent};
+use super::contact::{ContactEstimate, Verdict, estimates, starting_velocity};
+use super::table::short;
+use super::{axes, examine, lattice};
+use crate::scene::{Body, Motion, Precision, Problem, Scene};
+use crate::tensor::{Matrix, Vector};
+use serde::Serialize;
+
+/// What a particle in `f64` takes: the particle, its transfer weights and sorting space, rounded up [bytes].
+const PARTICLE_BYTES: f64 = 400.0;
+/// What a grid node in `f64` takes: mass, momentum, force, gradients and stress of a body [bytes].
+const NODE_BYTES: f64 = 200.0;
+/// Nodes per cell that particles fill: the surface of a body and partly used blocks.
+const NODES_PER_CELL: f64 = 2.0;
+
+/// How fast the machine is that will run the scene.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Machine {
+    /// Particles times steps that one core does in a second [1/s].
+    pub particle_steps_per_second: f64,
+    /// Cores in use.
+    pub cores: usize,
+}
+
+impl Default for Machine {
+    /// All cores of this machine, each at an assumed two million particle-steps per second.
+    fn default() -> Self {
+        let cores = std::thread::available_parallelism().map_or(1, usize::from);
+        Machine { particle_steps_per_second: 2e6, cores }
+    }
+}
+
+/// What a run will be, before it runs. Shown as a table of one screen.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Report {
+    /// The scene's title.
+    pub title: String,
+    /// 2 or 3.
+    pub dimension: usize,
+    /// Side of a grid cell [m].
+    pub cell: f64,
+    /// Particles along each side of a cell.
+    pub particles_per_side: usize,
+    /// The bodies, in the order of the scene.
+    pub bodies: Vec<BodyReport>,
+    /// The materials, in the order of the scene.
+    pub materials: Vec<MaterialReport>,
+    /// Particles in all bodies.
+    pub particles: usize,
+    /// Memory of particles and grid, estimated [bytes].
+    pub memory: f64,
+    /// Simulated time at the end [s].
+    pub end: f64,
+    /// Time step at the start [s].
+    pub time_step: f64,
+    /// Steps of that length to the end.
+    pub steps: u64,
+    /// The machine that the expected time is for.
+    pub machine: Machine,
+    /// Expected wall time [s].
+    pub wall_time: f64,
+    /// Whether contacts are resolved, the narrowest first.
+    pub contacts: Vec<ContactEstimate>,
+    /// What is doubtful but allowed.
+    pub warnings: Vec<String>,
+}
+
+/// A body as it will start.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct BodyReport {
+    /// Its name.
+    pub name: String,
+    /// Name of its material.
+    pub material: String,
+    /// It moves as prescribed.
+    pub rigid: bool,
+    /// Number of particles.
+    pub particles: usize,
+    /// Mass of the particles [kg], in the plane per metre of depth.
+    pub mass: f64,
+    /// Sides of the box round the particles [m].
+    pub size: [f64; 3],
+}
+
+/// A material and its waves at rest.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct MaterialReport {
+    /// Its name.
+    pub name: String,
+    /// sqrt((K + 4G/3) / rho) [m/s]
+    pub longitudinal_speed: f64,
+    /// sqrt(G / rho) [m/s]
+    pub shear_speed: f64,
+}
+
+/// Finds what is wrong with a scene, else says what the run will be on this machine; see [`Report::on`] for another.
+///
+/// # Errors
+/// As [`super::problems`].
+pub fn report(scene: &Scene) -> Result<Report, Problem> {
+    let extents = examine(scene)?;
+    let particles = extents.iter().map(|extent| extent.particles).sum();
+    let time_step = time_step(scene, &extents);
+    let contacts = estimates(scene, &extents);
+    let report = Report {
+        title: scene.title.clone(),
+        dimension: axes(scene),
+        cell: scene.discretization.cell,
+        particles_per_side: scene.discretization.particles_per_side,
+        bodies: scene
+            .bodies
+            .iter()
+            .zip(&extents)
+            .map(|(body, extent)| of_body(scene, body, extent))
+            .collect(),
+        materials: of_materials(scene),
+        particles,
+        memory: memory(scene, particles),
+        end: scene.time.end,
+        time_step,
+        // A last step that is only round-off is none.
+        steps: (scene.time.end / time_step * (1.0 - 1e-12)).ceil() as u64,
+        machine: Machine::default(),
+        wall_time: 0.0,
+        warnings: thin_bodies(scene).into_iter().chain(narrow_contacts(&contacts)).collect(),
+        contacts,
+    };
+    Ok(report.on(Machine::default()))
+}
+
+impl Report {
+    /// The same run on another machine.
+    pub fn on(self, machine: Machine) -> Self {
+        let rate = machine.particle_steps_per_second * machine.cores as f64;
+        Report { machine, wall_time: self.particles as f64 * self.steps as f64 / rate, ..self }
+    }
+}
+
+fn of_body(scene: &Scene, body: &Body, extent: &Extent) -> BodyReport {
+    BodyReport {
+        name: body.name.clone(),
+        material: scene.materials[body.material].name.clone(),
+        rigid: matches!(body.motion, Motion::Rigid { .. }),
+        particles: extent.particles,
+        mass: extent.mass,
+        size: extent.bounds.size(),
+    }
+}
+
+fn of_materials(scene: &Scene) -> Vec<MaterialReport> {
+    let speeds = (0..scene.materials.len()).map(|i| MaterialReport {
+        name: scene.materials[i].name.clone(),
+        longitudinal_speed: longitudinal_speed(scene, i),
+        shear_speed: (scene.materials[i].law.elastic().shear_modulus / scene.materials[i].density).sqrt(),
+    });
+    speeds.collect()
+}
+
+fn longitudinal_speed(scene: &Scene, material: usize) -> f64 {
+    let material = &scene.materials[material];
+    (material.law.law().wave_modulus(&Matrix::IDENTITY, 1.0) / material.density).sqrt()
+}
+
+/// courant h / max(c + |v|) at the start, at most the longest step that the scene allows [s].
+fn time_step(scene: &Scene, extents: &[Extent]) -> f64 {
+    let signal = |(body, extent): (&Body, &Extent)| {
+        let (wave, spin) = match &body.motion {
+            Motion::Free { spin, .. } => (longitudinal_speed(scene, body.material), *spin),
+            Motion::Rigid { spin, .. } => (0.0, spin.each_ref().map(|s| s.at(0.0))),
+        };
+        let reach = 0.5 * Vector(extent.bounds.size()).norm();
+        wave + Vector(starting_velocity(body)).norm() + Vector(spin).norm() * reach
+    };
+    let fastest = scene.bodies.iter().zip(extents).map(signal).fold(0.0, f64::max);
+    let step = scene.time.courant * scene.discretization.cell / fastest;
+    let step = step.min(scene.time.max_step.unwrap_or(f64::INFINITY));
+    if step.is_finite() { step } else { scene.time.end }
+}
+
+fn memory(scene: &Scene, particles: usize) -> f64 {
+    let per_cell = (scene.discretization.particles_per_side as f64).powi(axes(scene) as i32);
+    let nodes = NODES_PER_CELL * particles as f64 / per_cell;
+    let doubles = PARTICLE_BYTES * particles as f64 + NODE_BYTES * nodes;
+    match scene.precision {
+        Precision::Single => 0.5 * doubles,
+        Precision::Double => doubles,
+    }
+}
+
+/// Fewer than two particles through a body cannot bend or bulge.
+fn thin_bodies(scene: &Scene) -> Option<String> {
+    let lattice = lattice(scene);
+    let needed = 2.0 * lattice.spacing * (1.0 - 1e-9);
+    let thickness = |body: &Body| smallest_extent(&body.shape, lattice.dimension);
+    let mut thin = scene.bodies.iter().filter(|body| thickness(body) < needed);
+    let first = thin.next()?;
+    let others = match thin.count() {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    let cell = 0.5 * thickness(first) * scene.discretization.particles_per_side as f64;
+    Some(format!(
+        "thinner than two particles: `{}` ({} m){others}; cells of at most {} m give it two",
+        first.name,
+        short(thickness(first)),
+        short(cell)
+    ))
+}
+
+fn narrow_contacts(contacts: &[ContactEstimate]) -> Option<String> {
+    let narrow = contacts.iter().filter(|contact| contact.verdict == Verdict::NotResolved).count();
+    let narrowest = contacts.first().filter(|_| narrow > 0)?;
+    Some(format!(
+        "not resolved: {narrow} of {} contacts; the narrowest needs cells of {} m to be marginal, {} m to be resolved",
+        contacts.len(),
+        short(narrowest.patch.radius),
+        short(0.25 * narrowest.patch.radius)
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::check::tests::{free, incline, scene};
+    use crate::geometry::Shape;
+    use crate::scene::Dimension;
+
+    #[test]
+    fn the_papers_incline_is_reported_with_its_waves_and_steps() {
+        let report = report(&incline(4.0)).expect("no problem");
+        assert_eq!(report.particles, report.bodies[0].particles + 104 * 16 * 8);
+        // "Same wave speeds, longitudinal 100 m/s": sqrt((K + 4G/3)/rho) = sqrt(1e7/1e3).
+        assert!(report.materials.iter().all(|m| (m.longitudinal_speed - 100.0).abs() < 1e-9));
+        assert!((report.time_step - 0.4 * 0.4 / 100.0).abs() < 1e-12);
+        assert_eq!(report.steps, 1250);
+        let half_sphere = 2.0 / 3.0 * std::f64::consts::PI * 1.6f64.powi(3) * 1000.0;
+        assert!((report.bodies[0].mass / half_sphere - 1.0).abs() < 0.02);
+        assert_eq!(report.warnings.len(), 1);
+        assert!(report.warnings[0].starts_with("not resolved: 1 of 1 contacts;"), "{:?}", report.warnings);
+    }
+
+    #[test]
+    fn the_expected_time_is_that_of_the_machine() {
+        let machine = Machine { particle_steps_per_second: 1e6, cores: 4 };
+        let report = report(&incline(4.0)).expect("no problem").on(machine);
+        let exact = report.particles as f64 * report.steps as f64 / 4e6;
+        assert!((report.wall_time / exact - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn motion_at_the_start_shortens_the_step_and_a_limit_caps_it() {
+        let mut scene = incline(4.0);
+        scene.bodies[0].motion = Motion::Free { velocity: [60.0, 0.0, 80.0], spin: [0.0; 3] };
+        assert!((report(&scene).expect("no problem").time_step - 0.4 * 0.4 / 200.0).abs() < 1e-12);
+        scene.time.max_step = Some(1e-4);
+        let report = report(&scene).expect("no problem");
+        assert_eq!((report.time_step, report.steps), (1e-4, 20_000));
+    }
+
+    #[test]
+    fn a_thin_sheet_is_a_warning_even_when_turned() {
+        let sheet = |thickness| {
+            let shape = Box::new(Shape::Box { min: [0.0; 3], max: [1.0, 1.0, thickness] });
+            free("sheet", 0, Shape::Rotated { shape, center: [0.0; 3], axis: [1.0, 0.0, 0.0], angle: 0.5 })
+        };
+        let of = |thickness| {
+            let scene = scene(Dimension::Space, 0.1, vec![sheet(thickness)]);
+            report(&scene).expect("no problem").warnings
+        };
+        assert!(of(0.1).is_empty());
+        assert!(of(0.08)[0].contains("`sheet` (0.08 m);"));
+    }
+
+    #[test]
+    fn a_report_of_thousands_of_bodies_takes_no_time() {
+        let disk = |i: usize| {
+            let center = [(i % 64) as f64, (i / 64) as f64, 0.0];
+            free(&format!("disk {i}"), 0, Shape::Ball { center, radius: 0.5 })
+        };
+        let mut scene = scene(Dimension::PlaneStrain, 0.1, (0..4096).map(disk).collect());
+        scene.gravity = [0.0, -10.0, 0.0];
+        let report = report(&scene).expect("no problem");
+        assert_eq!((report.bodies.len(), report.contacts.len()), (4096, 64 * 63));
+    }
+}

@@ -1,0 +1,180 @@
+//! Numbers that do not fit each other: the grid, the domain, time, materials, motion out of the plane.
+
+use super::axes;
+use crate::scene::{Domain, Expression, Face, Motion, NamedMaterial, Problem, Scene};
+use crate::tensor::Matrix;
+
+/// Walls may miss the nodes of the grid by this share of a cell.
+const WALL_TOLERANCE: f64 = 1e-6;
+
+pub(super) fn check(scene: &Scene) -> Result<(), Problem> {
+    require_positive("discretization.cell", scene.discretization.cell, "m")?;
+    if scene.discretization.particles_per_side == 0 {
+        return Err(problem("discretization.particles_per_side", "0".into(), "1 or more"));
+    }
+    require_positive("time.courant", scene.time.courant, "")?;
+    if let Some(step) = scene.time.max_step {
+        require_positive("time.max_step", step, "s")?;
+    }
+    if !(scene.time.end >= 0.0 && scene.time.end.is_finite()) {
+        return Err(problem("time.end", format!("{} s", scene.time.end), "a finite number, at least 0"));
+    }
+    if scene.bodies.is_empty() {
+        return Err(problem("bodies", "no body".into(), "at least one body"));
+    }
+    for (i, material) in scene.materials.iter().enumerate() {
+        check_material(&format!("materials[{i}]"), material)?;
+    }
+    if let Some(domain) = &scene.domain {
+        check_domain(domain, scene.discretization.cell, axes(scene))?;
+    }
+    if axes(scene) == 2 { check_plane(scene) } else { Ok(()) }
+}
+
+fn problem(key: &str, found: String, allowed: &str) -> Problem {
+    Problem { key: key.into(), found, allowed: allowed.into(), help: None }
+}
+
+fn require_positive(key: &str, value: f64, unit: &str) -> Result<(), Problem> {
+    if value > 0.0 && value.is_finite() {
+        return Ok(());
+    }
+    Err(problem(key, format!("{value} {unit}").trim_end().into(), "a finite number above 0"))
+}
+
+/// A material is stable if waves in it have a real speed: positive density, K > 0 and G >= 0.
+fn check_material(key: &str, material: &NamedMaterial) -> Result<(), Problem> {
+    require_positive(&format!("{key}.density"), material.density, "kg/m^3")?;
+    let modulus = material.law.law().wave_modulus(&Matrix::IDENTITY, 1.0);
+    let elastic = material.law.elastic();
+    let (k, g) = (elastic.bulk_modulus, elastic.shear_modulus);
+    let speed = (modulus / material.density).sqrt();
+    if k > 0.0 && g >= 0.0 && speed > 0.0 && speed.is_finite() {
+        return Ok(());
+    }
+    let found = format!("`{}` has K = {k:.4e} Pa, G = {g:.4e} Pa, wave speed {speed:.4e} m/s", material.name);
+    Err(problem(
+        key,
+        found,
+        "K above 0, G at least 0 and a finite wave speed, else the material is not stable",
+    ))
+}
+
+fn check_domain(domain: &Domain, cell: f64, dimension: usize) -> Result<(), Problem> {
+    for k in 0..dimension {
+        let axis = ["x", "y", "z"][k];
+        let (min, max) = (domain.min[k], domain.max[k]);
+        if !(min < max && min.is_finite() && max.is_finite()) {
+            let found = format!("from {min} to {max} m along {axis}");
+            return Err(problem("domain.max", found, "finite corners, the upper above the lower"));
+        }
+        let cells = (max - min) / cell;
+        if domain.faces[k][1] != Face::Open && (cells - cells.round()).abs() > WALL_TOLERANCE {
+            let whole = cells.round().max(1.0);
+            return Err(Problem {
+                key: "domain.max".into(),
+                found: format!("{:.6} cells of {cell} m along {axis}", cells),
+                allowed: "a whole number of cells between the domain's lower corner and an upper wall".into(),
+                help: Some(format!(
+                    "put the upper {axis} wall at {} m, or take cells of {} m",
+                    min + whole * cell,
+                    (max - min) / whole
+                )),
+            });
+        }
+    }
+    Ok(())
+}
+
+/// In the plane nothing accelerates or moves out of it or turns about an axis in it.
+fn check_plane(scene: &Scene) -> Result<(), Problem> {
+    let stays = "0 in a plane scene";
+    if scene.gravity[2] != 0.0 {
+        return Err(problem("gravity", format!("{} m/s^2 along z", scene.gravity[2]), stays));
+    }
+    for (i, body) in scene.bodies.iter().enumerate() {
+        let still = |key: &str, part: &str, zero: bool| {
+            let found = format!("`{}` has {part}", body.name);
+            if zero { Ok(()) } else { Err(problem(&format!("bodies[{i}].{key}"), found, stays)) }
+        };
+        let (moves, turns) = match &body.motion {
+            Motion::Free { velocity, spin } => (velocity[2] != 0.0, spin[0] != 0.0 || spin[1] != 0.0),
+            Motion::Rigid { velocity, spin } => {
+                let zero = Expression::Constant(0.0);
+                (velocity[2] != zero, spin[0] != zero || spin[1] != zero)
+            }
+        };
+        still("velocity", "a velocity along z", !moves)?;
+        still("spin", "a spin about x or y", !turns)?;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::check::tests::{free, incline, scene};
+    use crate::geometry::Shape;
+    use crate::scene::Dimension;
+
+    fn key_of(change: impl FnOnce(&mut Scene)) -> String {
+        let mut scene = incline(4.0);
+        change(&mut scene);
+        check(&scene).expect_err("a problem").key
+    }
+
+    #[test]
+    fn numbers_that_allow_no_step_are_named() {
+        assert_eq!(key_of(|s| s.discretization.cell = 0.0), "discretization.cell");
+        assert_eq!(key_of(|s| s.discretization.cell = f64::NAN), "discretization.cell");
+        assert_eq!(key_of(|s| s.discretization.particles_per_side = 0), "discretization.particles_per_side");
+        assert_eq!(key_of(|s| s.time.courant = -0.1), "time.courant");
+        assert_eq!(key_of(|s| s.time.max_step = Some(0.0)), "time.max_step");
+        assert_eq!(key_of(|s| s.time.end = f64::INFINITY), "time.end");
+        assert_eq!(key_of(|s| s.bodies.clear()), "bodies");
+        assert_eq!(key_of(|s| s.materials[1].density = -1.0), "materials[1].density");
+    }
+
+    #[test]
+    fn an_unstable_material_is_named_with_its_moduli() {
+        let mut scene = incline(4.0);
+        scene.materials[0].law = {
+            let elastic = crate::material::Isotropic { bulk_modulus: -6e6, shear_modulus: 3e6 };
+            crate::material::Material::NeoHookean(crate::material::NeoHookean { elastic })
+        };
+        let problem = check(&scene).expect_err("K < 0");
+        assert_eq!(problem.key, "materials[0]");
+        assert!(problem.found.contains("`soft`") && problem.found.contains("-6.0000e6"), "{problem}");
+    }
+
+    #[test]
+    fn walls_lie_on_nodes_and_open_faces_anywhere() {
+        let mut scene = incline(4.0);
+        let domain = scene.domain.as_mut().expect("the incline has a domain");
+        domain.max[0] = 20.9;
+        assert_eq!(check(&scene), Ok(()));
+        scene.domain.as_mut().expect("as above").faces[0][1] = Face::Fixed;
+        let problem = check(&scene).expect_err("52.25 cells");
+        assert_eq!(problem.key, "domain.max");
+        assert!(problem.found.starts_with("52.25"), "{problem}");
+        assert!(problem.help.expect("a wall to take").contains("20.8"));
+    }
+
+    #[test]
+    fn nothing_leaves_the_plane() {
+        let disk = Shape::Ball { center: [0.0; 3], radius: 1.0 };
+        let plane = || scene(Dimension::PlaneStrain, 0.1, vec![free("disk", 0, disk.clone())]);
+        assert_eq!(check(&plane()), Ok(()));
+        let mut falling = plane();
+        falling.gravity = [0.0, 0.0, -9.81];
+        assert_eq!(check(&falling).expect_err("along z").key, "gravity");
+        let mut rolling = plane();
+        rolling.bodies[0].motion = Motion::Free { velocity: [0.0; 3], spin: [1.0, 0.0, 0.0] };
+        assert_eq!(check(&rolling).expect_err("about x").key, "bodies[0].spin");
+        let mut leaving = plane();
+        let [zero, one] = [0.0, 1.0].map(Expression::Constant);
+        let spin = [zero.clone(), zero.clone(), one.clone()];
+        leaving.bodies[0].motion = Motion::Rigid { velocity: [zero.clone(), zero, one], spin };
+        assert_eq!(check(&leaving).expect_err("along z").key, "bodies[0].velocity");
+    }
+}

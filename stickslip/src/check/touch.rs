@@ -1,0 +1,104 @@
+//! Where a ball of one body is nearest to another body.
+
+use super::axes;
+use super::bodies::Extent;
+use crate::geometry::{RoundPart, Shape};
+use crate::scene::{Body, Scene};
+use crate::tensor::Vector;
+
+/// Lengths that differ by this share of a radius are the same.
+pub(super) const SAME: f64 = 1e-6;
+
+/// A ball of one body that faces another body.
+pub(super) struct Touch {
+    pub pair: [usize; 2],
+    /// Masses that move: of the ball itself, even if a symmetry plane cuts it, and of the other body [kg].
+    pub masses: [f64; 2],
+    /// Effective radius [m].
+    pub radius: f64,
+    pub gap: f64,
+    /// Unit vector from the ball's centre to the other body.
+    pub direction: Vector<f64, 3>,
+}
+
+impl Touch {
+    /// Where a ball of the first body is nearest to the second; `None` if no ball faces it.
+    pub(super) fn of(scene: &Scene, extents: &[Extent], pair: [usize; 2]) -> Option<Touch> {
+        let [first, second] = pair.map(|i| &scene.bodies[i]);
+        let full = |part: &RoundPart| !part.hollow;
+        let balls = first.shape.round_parts(axes(scene)).into_iter().filter(full);
+        let touches = balls.filter_map(|ball| {
+            let (gap, direction) = facing(&ball, first, second, axes(scene))?;
+            let opposite = opposite_ball(&second.shape, &ball, gap, direction, axes(scene));
+            let curvature = opposite.map_or(0.0, |part| if part.hollow { -1.0 } else { 1.0 } / part.radius);
+            let radius = 1.0 / (1.0 / ball.radius + curvature);
+            let whole = |part: RoundPart, body: &Body| {
+                let ball = Shape::Ball { center: part.center, radius: part.radius };
+                ball.volume(axes(scene)).map(|volume| volume * scene.materials[body.material].density)
+            };
+            let other_ball = opposite.filter(full).and_then(|part| whole(part, second));
+            let masses = [whole(ball, first)?, other_ball.unwrap_or(extents[pair[1]].mass)];
+            (radius > 0.0 && radius.is_finite()).then_some(Touch { pair, masses, radius, gap, direction })
+        });
+        touches.min_by(|a, b| a.gap.total_cmp(&b.gap))
+    }
+}
+
+/// Gap and direction from a ball of `first` to `second`, if the ball's surface is the body's surface there.
+fn facing(ball: &RoundPart, first: &Body, second: &Body, dimension: usize) -> Option<(f64, Vector<f64, 3>)> {
+    let distance = second.shape.distance(ball.center, dimension);
+    let direction = Vector(second.shape.direction_to(ball.center, SAME * ball.radius, dimension)?);
+    let point = Vector(ball.center) + direction * ball.radius;
+    let on_surface = first.shape.distance(point.0, dimension).abs() < SAME * ball.radius;
+    (distance > 0.0 && on_surface).then_some((distance - ball.radius, direction))
+}
+
+/// The ball of the opposite shape that holds the point nearest to a ball.
+fn opposite_ball(
+    opposite: &Shape,
+    ball: &RoundPart,
+    gap: f64,
+    direction: Vector<f64, 3>,
+    dimension: usize,
+) -> Option<RoundPart> {
+    let foot = Vector(ball.center) + direction * (ball.radius + gap);
+    let holds = |part: &RoundPart| {
+        let sphere = Shape::Ball { center: part.center, radius: part.radius };
+        sphere.distance(foot.0, dimension).abs() < SAME * part.radius
+    };
+    opposite.round_parts(dimension).into_iter().find(holds)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::check::bodies::measure;
+    use crate::check::tests::{free, scene};
+    use crate::scene::Dimension;
+
+    fn touch(first: Shape, second: Shape) -> Option<Touch> {
+        let scene = scene(Dimension::Space, 0.1, vec![free("first", 0, first), free("second", 0, second)]);
+        Touch::of(&scene, &measure(&scene).expect("filled"), [0, 1])
+    }
+
+    fn ball(x: f64, radius: f64) -> Shape {
+        Shape::Ball { center: [x, 0.0, 0.0], radius }
+    }
+
+    #[test]
+    fn a_ball_cut_off_before_it_reaches_the_other_body_does_not_face_it() {
+        let behind = |x| Shape::HalfSpace { point: [x, 0.0, 0.0], normal: [1.0, 0.0, 0.0] };
+        let cut = |x| Shape::Intersection(vec![ball(0.0, 1.0), behind(x)]);
+        let wall = || Shape::Box { min: [1.2, -1.0, -1.0], max: [1.6, 1.0, 1.0] };
+        assert!(touch(cut(0.5), wall()).is_none());
+        assert!((touch(cut(1.5), wall()).expect("whole").gap - 0.2).abs() < 1e-12);
+    }
+
+    #[test]
+    fn balls_face_along_their_centres_with_the_harmonic_radius() {
+        let touch = touch(ball(0.0, 1.0), ball(4.5, 3.0)).expect("two balls");
+        assert!((touch.gap - 0.5).abs() < 1e-12 && (touch.radius - 0.75).abs() < 1e-12);
+        assert!((touch.direction[0] - 1.0).abs() < 1e-9);
+        assert!((touch.masses[1] / touch.masses[0] - 27.0).abs() < 1e-9);
+    }
+}

@@ -1,0 +1,95 @@
+//! Polygons in the plane.
+
+/// Edges as pairs of corners, the last corner joined to the first.
+fn edges(points: &[[f64; 2]]) -> impl Iterator<Item = ([f64; 2], [f64; 2])> {
+    points.iter().zip(points.iter().cycle().skip(1)).map(|(&a, &b)| (a, b))
+}
+
+/// Whether a point is inside by the even-odd rule: a ray to the right crosses the border an odd number of times.
+///
+/// An edge holds its lower end and not its upper one, and a point on an edge is to the right of it. An edge is always
+/// walked upwards, so that two polygons that share it never both hold or both lose a point.
+pub(super) fn contains(points: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
+    let mut inside = false;
+    for (a, b) in edges(points) {
+        if (a[1] > y) != (b[1] > y) {
+            let (low, high) = if a[1] < b[1] { (a, b) } else { (b, a) };
+            let crossing = low[0] + (y - low[1]) / (high[1] - low[1]) * (high[0] - low[0]);
+            inside ^= x < crossing;
+        }
+    }
+    inside
+}
+
+/// Distance to the border [m], negative inside.
+pub(super) fn distance(points: &[[f64; 2]], [x, y]: [f64; 2]) -> f64 {
+    let mut nearest = f64::INFINITY;
+    for (a, b) in edges(points) {
+        let (edge, arm) = ([b[0] - a[0], b[1] - a[1]], [x - a[0], y - a[1]]);
+        let squared = edge[0] * edge[0] + edge[1] * edge[1];
+        let along = if squared > 0.0 {
+            ((arm[0] * edge[0] + arm[1] * edge[1]) / squared).clamp(0.0, 1.0)
+        } else {
+            0.0
+        };
+        nearest = nearest.min((arm[0] - along * edge[0]).hypot(arm[1] - along * edge[1]));
+    }
+    if contains(points, [x, y]) { -nearest } else { nearest }
+}
+
+/// Area [m^2] of a polygon that does not cross itself, whichever way round its corners go.
+pub(super) fn area(points: &[[f64; 2]]) -> f64 {
+    // Corners are taken from the first one, so that a small polygon far from the origin keeps its digits.
+    let Some(&[x0, y0]) = points.first() else { return 0.0 };
+    edges(points).map(|(a, b)| (a[0] - x0) * (b[1] - y0) - (b[0] - x0) * (a[1] - y0)).sum::<f64>().abs() / 2.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const L: [[f64; 2]; 6] = [[0.0, 0.0], [3.0, 0.0], [3.0, 1.0], [1.0, 1.0], [1.0, 3.0], [0.0, 3.0]];
+
+    #[test]
+    fn an_l_has_its_area_its_notch_and_its_distances() {
+        assert_eq!(area(&L), 5.0);
+        assert!(contains(&L, [0.5, 2.5]) && contains(&L, [2.5, 0.5]) && !contains(&L, [1.5, 1.5]));
+        assert!((distance(&L, [2.0, 2.0]) - 1.0).abs() < 1e-15);
+        assert!((distance(&L, [0.5, 2.0]) + 0.5).abs() < 1e-15);
+        assert!((distance(&L, [4.0, 2.0]) - 2f64.sqrt()).abs() < 1e-15);
+    }
+
+    #[test]
+    fn points_on_lattice_lines_through_corners_count_once() {
+        // Two triangles tile the square: each lattice point of the half-open square is in exactly one.
+        let (lower, upper) = ([[0.0, 0.0], [4.0, 0.0], [4.0, 4.0]], [[0.0, 0.0], [4.0, 4.0], [0.0, 4.0]]);
+        for i in -1..=5 {
+            for j in -1..=5 {
+                let point = [f64::from(i), f64::from(j)];
+                let held = usize::from(contains(&lower, point)) + usize::from(contains(&upper, point));
+                assert_eq!(held, usize::from((0..4).contains(&i) && (0..4).contains(&j)), "{point:?}");
+            }
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn a_fan_of_triangles_tiles_a_star(
+            radii in prop::collection::vec(0.3..2.0f64, 5..12),
+            point in prop::array::uniform2(-2.0..2.0f64),
+        ) {
+            let corner = |i: usize| {
+                let angle = std::f64::consts::TAU * i as f64 / radii.len() as f64;
+                [radii[i % radii.len()] * angle.cos(), radii[i % radii.len()] * angle.sin()]
+            };
+            let star: Vec<_> = (0..radii.len()).map(corner).collect();
+            let next = |i: usize| star[(i + 1) % star.len()];
+            let triangles: Vec<_> = (0..star.len()).map(|i| [[0.0, 0.0], star[i], next(i)]).collect();
+            let held = triangles.iter().filter(|triangle| contains(*triangle, point)).count();
+            prop_assert_eq!(held, usize::from(contains(&star, point)));
+            let sum: f64 = triangles.iter().map(|triangle| area(triangle)).sum();
+            prop_assert!((sum - area(&star)).abs() < 1e-12);
+        }
+    }
+}
