@@ -1,0 +1,113 @@
+//! An image that is drawn larger than it is saved: averaging smooths every edge, whoever drew it.
+
+use super::{DrawError, Rgb};
+use plotters::coord::Shift;
+use plotters::prelude::{BitMapBackend, DrawingArea, FontStyle, IntoDrawingArea};
+use rayon::prelude::*;
+use std::fs::File;
+use std::io::BufWriter;
+use std::path::Path;
+use std::sync::Once;
+
+/// Pixels drawn along each side of a pixel saved, for pictures of particles.
+pub const SAMPLES: usize = 2;
+
+/// What lines and letters are drawn on.
+pub type Ink<'a> = DrawingArea<BitMapBackend<'a>, Shift>;
+
+/// An RGB image on white.
+pub struct Canvas {
+    /// Width and height as drawn.
+    pub size: [usize; 2],
+    /// Pixels drawn along each side of a pixel saved.
+    samples: usize,
+    /// Rows from the top, three bytes a pixel.
+    pub pixels: Vec<u8>,
+}
+
+impl Canvas {
+    /// A white canvas for a file of this width and height in pixels, drawn `samples` times larger.
+    pub fn new(size: [usize; 2], samples: usize) -> Self {
+        register_font();
+        let size = size.map(|side| side * samples);
+        Canvas { size, samples, pixels: vec![255; 3 * size[0] * size[1]] }
+    }
+
+    /// The canvas for lines and letters; lengths are in drawn pixels.
+    pub fn ink(&mut self) -> Ink<'_> {
+        let size = (self.size[0] as u32, self.size[1] as u32);
+        BitMapBackend::with_buffer(&mut self.pixels, size).into_drawing_area()
+    }
+
+    /// Paints every pixel of a rectangle (left, top, width, height) for which `color` has one; rows in parallel.
+    pub fn paint(&mut self, area: [usize; 4], color: impl Fn(usize, usize) -> Option<Rgb> + Sync) {
+        let [left, top, width, height] = area;
+        let rows = self.pixels.par_chunks_exact_mut(3 * self.size[0]).skip(top).take(height);
+        rows.enumerate().for_each(|(y, row)| {
+            for x in 0..width {
+                if let Some(rgb) = color(x, y) {
+                    let start = 3 * (left + x);
+                    row[start..start + 3].copy_from_slice(&rgb.map(|c| (c * 255.0 + 0.5) as u8));
+                }
+            }
+        });
+    }
+
+    /// Writes the image as PNG.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn save(&self, path: &Path) -> Result<(), DrawError> {
+        let failed = |source| DrawError::Write { path: path.to_path_buf(), source };
+        let file = File::create(path).map_err(failed)?;
+        let [width, height] = self.size.map(|side| side / self.samples);
+        let mut encoder = png::Encoder::new(BufWriter::new(file), width as u32, height as u32);
+        encoder.set_color(png::ColorType::Rgb);
+        let mut writer = encoder.write_header().map_err(|e| failed(e.into()))?;
+        writer.write_image_data(&self.averaged()).map_err(|e| failed(e.into()))?;
+        writer.finish().map_err(|e| failed(e.into()))
+    }
+
+    /// The image at the size of the file: each pixel the mean of its samples.
+    fn averaged(&self) -> Vec<u8> {
+        let ([width, _], samples) = (self.size, self.samples);
+        let rows = self.pixels.par_chunks_exact(3 * width * samples);
+        rows.flat_map_iter(|rows| {
+            (0..width / samples * 3).map(move |i| {
+                let (x, channel) = (i / 3 * samples, i % 3);
+                let sample = |k: usize| rows[3 * ((k / samples) * width + x + k % samples) + channel];
+                let sum: u32 = (0..samples * samples).map(|k| u32::from(sample(k))).sum();
+                (sum / (samples * samples) as u32) as u8
+            })
+        })
+        .collect()
+    }
+}
+
+/// Makes the embedded DejaVu Sans known as `sans-serif`, so that no font need be installed.
+pub fn register_font() {
+    static ONCE: Once = Once::new();
+    ONCE.call_once(|| {
+        for (style, bytes) in
+            [(FontStyle::Normal, dejavu::sans::regular()), (FontStyle::Bold, dejavu::sans::bold())]
+        {
+            let registered = plotters::style::register_font("sans-serif", style, bytes);
+            registered.ok().expect("the embedded font is a valid font");
+        }
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn half_covered_pixels_are_grey() {
+        let mut canvas = Canvas::new([3, 2], 2);
+        canvas.paint([0, 0, 1, 4], |_, _| Some([0.0; 3]));
+        let averaged = canvas.averaged();
+        assert_eq!(averaged.len(), 3 * 3 * 2);
+        assert_eq!(averaged[0], 127);
+        assert_eq!(averaged[3], 255);
+    }
+}
