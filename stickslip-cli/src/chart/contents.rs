@@ -1,0 +1,226 @@
+//! What a chart shows: the quantities that the scene knows answers for, or those that the user asks for.
+
+use super::{Chart, Curve, Panel};
+use crate::drawing::{Rgb, body_color};
+use stickslip::observe::{BodyRow, EnergyRow, ReadError, ReferenceCurve, Results};
+
+/// What the user asks for; nothing at all gives what the scene is about.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Choice {
+    /// Names of bodies; none means all that have something to show.
+    pub bodies: Vec<String>,
+    /// Columns of `bodies.csv`; none means those with known answers.
+    pub quantities: Vec<String>,
+}
+
+/// More curves than this in one panel cannot be told apart.
+const MOST_CURVES: usize = 8;
+const EXACT: Rgb = [0.22, 0.24, 0.27];
+
+/// The chart of a run.
+///
+/// # Errors
+/// The tables cannot be read.
+pub fn chart(results: &Results, choice: &Choice) -> Result<Chart, ReadError> {
+    let rows = results.bodies_table()?;
+    let title = results.manifest().title.clone();
+    let references = &results.manifest().references;
+    let shown = shown(results, choice);
+    if !shown.is_empty() {
+        let panels = panels(&rows, references, &shown);
+        return Ok(Chart { title, panels, caption: caption(&rows, references, &shown) });
+    }
+    let energy = energy_panel(&results.energy_table()?);
+    let centers = center_panel(&rows, results.body_names());
+    Ok(Chart { title, panels: vec![energy, centers], caption: String::new() })
+}
+
+/// A quantity of a body.
+#[derive(Clone, Debug, PartialEq)]
+struct Shown {
+    body: String,
+    /// The body's place in the scene.
+    number: usize,
+    quantity: String,
+}
+
+/// The quantities to show, in the order of the bodies; none for the picture of a run that nobody knows the answer to.
+fn shown(results: &Results, choice: &Choice) -> Vec<Shown> {
+    let wanted = |list: &[String], name: &str| list.is_empty() || list.iter().any(|entry| entry == name);
+    let mut quantities = choice.quantities.clone();
+    let mut shown = Vec::new();
+    for (number, body) in results.body_names().iter().enumerate() {
+        let known = results.manifest().references.iter().filter(|reference| reference.body == *body);
+        let known: Vec<String> = known.map(|reference| reference.quantity.clone()).collect();
+        if choice.quantities.is_empty() {
+            quantities = known;
+        }
+        if quantities.is_empty() && !choice.bodies.is_empty() {
+            quantities = ["x", "y", "z", "vx", "vy", "vz"].map(str::to_owned).to_vec();
+        }
+        if wanted(&choice.bodies, body) {
+            let of_body =
+                |quantity: &String| Shown { body: body.clone(), number, quantity: quantity.clone() };
+            shown.extend(quantities.iter().map(of_body));
+        }
+    }
+    shown
+}
+
+/// Name and unit of the axis that a column belongs on.
+fn axis(quantity: &str) -> (&'static str, &'static str) {
+    match quantity {
+        "x" | "y" | "z" => ("position", "m"),
+        "vx" | "vy" | "vz" => ("velocity", "m/s"),
+        "wx" | "wy" | "wz" => ("angular velocity", "rad/s"),
+        "mass" => ("mass", "kg"),
+        "kinetic" | "strain" => ("energy", "J"),
+        _ => ("value", ""),
+    }
+}
+
+fn panels(rows: &[BodyRow], references: &[ReferenceCurve], shown: &[Shown]) -> Vec<Panel> {
+    let mut panels: Vec<Panel> = Vec::new();
+    for (i, each) in shown.iter().enumerate() {
+        let (name, unit) = axis(&each.quantity);
+        let place = panels.iter().position(|panel| panel.name == name).unwrap_or_else(|| {
+            panels.push(Panel { name: name.to_owned(), unit, curves: Vec::new() });
+            panels.len() - 1
+        });
+        let earlier =
+            shown[..i].iter().any(|before| before.body == each.body && axis(&before.quantity).0 == name);
+        let color = body_color(if earlier { each.number + i } else { each.number });
+        let curves = &mut panels[place].curves;
+        curves.push(curve(rows, each, color));
+        if let Some(reference) = reference(references, each) {
+            let label = reference.label.clone();
+            curves.push(Curve { label, color: EXACT, dashed: true, points: reference.points.clone() });
+        }
+    }
+    panels
+}
+
+fn curve(rows: &[BodyRow], shown: &Shown, color: Rgb) -> Curve {
+    let rows = rows.iter().filter(|row| row.body == shown.body);
+    let points = rows.filter_map(|row| Some([row.time, row.quantity(&shown.quantity)?]));
+    Curve {
+        label: format!("{} {}", shown.body, shown.quantity),
+        color,
+        dashed: false,
+        points: points.collect(),
+    }
+}
+
+fn reference<'a>(references: &'a [ReferenceCurve], shown: &Shown) -> Option<&'a ReferenceCurve> {
+    references.iter().find(|reference| reference.body == shown.body && reference.quantity == shown.quantity)
+}
+
+/// One line a body: the last recorded values over the exact ones.
+fn caption(rows: &[BodyRow], references: &[ReferenceCurve], shown: &[Shown]) -> String {
+    let ratio = |each: &Shown| {
+        let exact = reference(references, each)?;
+        let row = rows.iter().rfind(|row| row.body == each.body)?;
+        let ratio = row.quantity(&each.quantity)? / interpolated(&exact.points, row.time)?;
+        ratio.is_finite().then(|| (row.time, format!("{} {} {ratio:.3}", each.body, each.quantity)))
+    };
+    let ratios: Vec<(f64, String)> = shown.iter().filter_map(ratio).collect();
+    match ratios.last() {
+        None => String::new(),
+        Some((time, _)) => {
+            let list: Vec<&str> = ratios.iter().map(|(_, text)| text.as_str()).collect();
+            format!("At t = {time:.3} s, over the exact value: {}", list.join(", "))
+        }
+    }
+}
+
+/// The value between two points of a curve; `None` outside it.
+fn interpolated(points: &[[f64; 2]], time: f64) -> Option<f64> {
+    let after = points.iter().position(|point| point[0] >= time * (1.0 - 1e-9))?;
+    let [t1, v1] = points[after];
+    let [t0, v0] = points[after.saturating_sub(1)];
+    Some(if t1 > t0 { v0 + (v1 - v0) * (time - t0) / (t1 - t0) } else { v1 })
+}
+
+fn energy_panel(rows: &[EnergyRow]) -> Panel {
+    let curve = |label: &str, color: Rgb, term: fn(&EnergyRow) -> f64| Curve {
+        label: label.to_owned(),
+        color,
+        dashed: false,
+        points: rows.iter().map(|row| [row.time, term(row)]).collect(),
+    };
+    let curves = vec![
+        curve("kinetic", body_color(0), |row| row.kinetic),
+        curve("strain", body_color(2), |row| row.strain),
+        curve("potential", body_color(1), |row| row.potential),
+        curve("total", EXACT, |row| row.total),
+    ];
+    Panel { name: "energy".to_owned(), unit: "J", curves }
+}
+
+/// The coordinates of the bodies' centres that change most, as the way they went.
+fn center_panel(rows: &[BodyRow], bodies: &[String]) -> Panel {
+    let way = |(number, body): (usize, &String), quantity: &str| {
+        let shown = Shown { body: body.clone(), number, quantity: quantity.to_owned() };
+        let mut curve = curve(rows, &shown, body_color(number));
+        let start = curve.points.first().map_or(0.0, |point| point[1]);
+        curve.points.iter_mut().for_each(|point| point[1] -= start);
+        let most = curve.points.iter().map(|point| point[1].abs()).fold(0.0, f64::max);
+        (most, curve)
+    };
+    let each = bodies.iter().enumerate().flat_map(|body| ["x", "y", "z"].map(|axis| way(body, axis)));
+    let mut ways: Vec<(f64, Curve)> = each.collect();
+    ways.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let most = ways.first().map_or(0.0, |(most, _)| *most);
+    ways.retain(|(way, _)| *way > 1e-3 * most);
+    ways.truncate(MOST_CURVES);
+    let curves = ways.into_iter().enumerate();
+    let curves = curves.map(|(i, (_, curve))| Curve { color: body_color(i), ..curve }).collect();
+    Panel { name: "displacement of centres".to_owned(), unit: "m", curves }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(time: f64, x: f64) -> BodyRow {
+        BodyRow { time, body: "sphere".to_owned(), x, ..BodyRow::default() }
+    }
+
+    fn shown(quantity: &str) -> Shown {
+        Shown { body: "sphere".to_owned(), number: 0, quantity: quantity.to_owned() }
+    }
+
+    fn exact() -> Vec<ReferenceCurve> {
+        vec![ReferenceCurve {
+            body: "sphere".to_owned(),
+            quantity: "x".to_owned(),
+            label: "rigid".to_owned(),
+            points: vec![[0.0, 0.0], [1.0, 4.0], [2.0, 8.0]],
+        }]
+    }
+
+    #[test]
+    fn the_caption_gives_the_ratio_at_the_last_row() {
+        let rows = [row(0.0, 0.0), row(1.5, 5.7)];
+        let caption = caption(&rows, &exact(), &[shown("x"), shown("vx")]);
+        assert_eq!(caption, "At t = 1.500 s, over the exact value: sphere x 0.950");
+    }
+
+    #[test]
+    fn positions_and_velocities_get_panels_of_their_own() {
+        let panels = panels(&[row(0.0, 0.0)], &exact(), &[shown("x"), shown("vx"), shown("y")]);
+        assert_eq!(panels.len(), 2);
+        assert_eq!((panels[0].unit, panels[1].unit), ("m", "m/s"));
+        let labels: Vec<&str> = panels[0].curves.iter().map(|curve| curve.label.as_str()).collect();
+        assert_eq!(labels, ["sphere x", "rigid", "sphere y"]);
+        assert_ne!(panels[0].curves[0].color, panels[0].curves[2].color);
+    }
+
+    #[test]
+    fn bodies_that_rest_are_not_drawn() {
+        let rows = [row(0.0, 1.0), row(1.0, 3.0)];
+        let panel = center_panel(&rows, &["sphere".to_owned()]);
+        assert_eq!(panel.curves.len(), 1);
+        assert_eq!(panel.curves[0].points, vec![[0.0, 0.0], [1.0, 2.0]]);
+    }
+}

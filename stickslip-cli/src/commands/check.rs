@@ -1,0 +1,26 @@
+//! `stickslip check SCENE`: what a run would be, without running it.
+
+use super::{assignment, load, say};
+use crate::failure::Failure;
+use clap::Args;
+use std::path::PathBuf;
+
+/// Read a scene and report bodies, particles, memory, step, expected time and whether contact is resolved.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// Scene file.
+    scene: PathBuf,
+
+    /// Give a named parameter of the scene another value; may be repeated.
+    #[arg(long = "set", value_name = "NAME=VALUE", value_parser = assignment)]
+    parameters: Vec<(String, String)>,
+}
+
+impl Arguments {
+    pub fn execute(self) -> Result<(), Failure> {
+        let loaded = load(&self.scene, &self.parameters).map_err(Failure::input)?;
+        let report = stickslip::check::report(&loaded.scene)
+            .map_err(|problem| Failure::input(loaded.source.locate(problem)))?;
+        say(&report.to_string())
+    }
+}

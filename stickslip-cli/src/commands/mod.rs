@@ -1,0 +1,92 @@
+//! The commands, one file each.
+
+mod check;
+mod new;
+mod plot;
+mod render;
+mod run;
+mod schema;
+
+use crate::failure::Failure;
+use clap::Parser;
+use miette::miette;
+use std::io::Write;
+use std::path::Path;
+use stickslip::observe::Results;
+use stickslip::scene::{Loaded, SceneError};
+
+/// Many deformable bodies in frictional contact, by the material point method.
+#[derive(Debug, Parser)]
+#[command(name = "stickslip", version, arg_required_else_help = true)]
+pub enum Command {
+    Run(run::Arguments),
+    Check(check::Arguments),
+    New(new::Arguments),
+    Render(render::Arguments),
+    Plot(plot::Arguments),
+    Schema(schema::Arguments),
+}
+
+impl Command {
+    /// Does what the user asks.
+    pub fn execute(self) -> Result<(), Failure> {
+        match self {
+            Command::Run(arguments) => arguments.execute(),
+            Command::Check(arguments) => arguments.execute(),
+            Command::New(arguments) => arguments.execute(),
+            Command::Render(arguments) => arguments.execute(),
+            Command::Plot(arguments) => arguments.execute(),
+            Command::Schema(arguments) => arguments.execute(),
+        }
+    }
+}
+
+/// `name=value` of `--set`.
+fn assignment(text: &str) -> Result<(String, String), String> {
+    match text.split_once('=') {
+        Some((name, value)) if !name.trim().is_empty() && !value.trim().is_empty() => {
+            Ok((name.trim().to_owned(), value.trim().to_owned()))
+        }
+        _ => Err("allowed: name=value, such as cells_per_radius=8".to_owned()),
+    }
+}
+
+/// The scene of a file with the user's parameters.
+fn load(path: &Path, parameters: &[(String, String)]) -> Result<Loaded, SceneError> {
+    stickslip::scene::load(path, parameters)
+}
+
+/// The results in a folder.
+fn open(folder: &Path) -> Result<Results, Failure> {
+    Results::open(folder).map_err(Failure::input)
+}
+
+/// Writes to standard output. Whoever reads it may have had enough (`stickslip schema | head`): that is no failure.
+fn say(text: &str) -> Result<(), Failure> {
+    match writeln!(std::io::stdout(), "{}", text.trim_end()) {
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
+            Err(Failure::Run(miette!("cannot write to standard output: {error}")))
+        }
+        _ => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_sound() {
+        Command::command().debug_assert();
+    }
+
+    #[test]
+    fn assignments_need_a_name_and_a_value() {
+        assert_eq!(assignment("angle=30 deg").unwrap(), ("angle".to_owned(), "30 deg".to_owned()));
+        assert_eq!(assignment("a = b=c").unwrap(), ("a".to_owned(), "b=c".to_owned()));
+        for wrong in ["angle", "=3", "angle="] {
+            assert!(assignment(wrong).is_err(), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,96 @@
+//! `stickslip run SCENE`: from a scene file to numbers, a chart and a picture.
+
+use super::{assignment, load, say};
+use crate::failure::Failure;
+use crate::illustration::illustrate;
+use crate::progress::Display;
+use clap::Args;
+use miette::{IntoDiagnostic, miette};
+use std::io::IsTerminal;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use stickslip::observe::Status;
+use stickslip::run::{RunError, RunOptions};
+
+/// Run a scene and write its results.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// Scene file.
+    scene: PathBuf,
+
+    /// Folder for the results; the name of the scene with `.results`, in this folder, without this.
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+
+    /// Give a named parameter of the scene another value; may be repeated.
+    #[arg(long = "set", value_name = "NAME=VALUE", value_parser = assignment)]
+    parameters: Vec<(String, String)>,
+
+    /// Threads; as many as there are processors without this.
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+}
+
+/// Where the results go if the user does not say.
+fn default_folder(scene: &Path) -> PathBuf {
+    let mut name = scene.file_stem().unwrap_or(scene.as_os_str()).to_owned();
+    name.push(".results");
+    PathBuf::from(name)
+}
+
+#[test]
+fn results_go_beside_the_user_not_beside_the_scene() {
+    let folder = default_folder(Path::new("scenes/paper/inclined_plane_no_slip.toml"));
+    assert_eq!(folder, PathBuf::from("inclined_plane_no_slip.results"));
+}
+
+impl Arguments {
+    pub fn execute(self) -> Result<(), Failure> {
+        let loaded = load(&self.scene, &self.parameters).map_err(Failure::input)?;
+        let scene = &loaded.scene;
+        let threads = use_threads(self.threads)?;
+        let mut simulation = stickslip::engine::build(scene)
+            .map_err(|problem| Failure::input(loaded.source.locate(problem)))?;
+        let out = self.out.clone().unwrap_or_else(|| default_folder(&self.scene));
+        let options = RunOptions { out: out.clone(), stop: stop_on_interrupt()?, threads };
+        let display = Display::new(scene.time.end, std::io::stderr().is_terminal());
+        let outcome =
+            stickslip::run::run(scene, &mut *simulation, &options, &mut |progress| display.show(progress));
+        display.finish();
+        let summary = match outcome {
+            Ok(summary) => summary,
+            Err(error @ RunError::Folder(_)) => return Err(Failure::input(error)),
+            Err(error) => {
+                // The failure is the news; a picture of it is welcome but must not hide it.
+                let _ = illustrate(&out);
+                return Err(Failure::run(error));
+            }
+        };
+        say(&format!("{}\n{summary}", scene.title))?;
+        let drawn = illustrate(&out)?;
+        say(&format!("results in {}/: {drawn}", out.display()))?;
+        if summary.status == Status::Interrupted { Err(Failure::Interrupted) } else { Ok(()) }
+    }
+}
+
+/// Makes the threads of the run, and says how many there are.
+fn use_threads(threads: Option<u16>) -> Result<usize, Failure> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.map_or(0, usize::from));
+    pool.build_global().into_diagnostic().map_err(Failure::Run)?;
+    Ok(rayon::current_num_threads())
+}
+
+/// A flag that the first Ctrl-C sets; the second ends the program at once.
+fn stop_on_interrupt() -> Result<Arc<AtomicBool>, Failure> {
+    let stop = Arc::new(AtomicBool::new(false));
+    let flag = Arc::clone(&stop);
+    let installed = ctrlc::set_handler(move || {
+        if flag.swap(true, Ordering::Relaxed) {
+            std::process::exit(i32::from(Failure::INTERRUPTED));
+        }
+        eprintln!("\nstopping after this step; Ctrl-C again ends at once");
+    });
+    installed.map_err(|error| Failure::Run(miette!("cannot watch for Ctrl-C: {error}")))?;
+    Ok(stop)
+}

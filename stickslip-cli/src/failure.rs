@@ -1,0 +1,133 @@
+//! What can go wrong for a user, how it is printed, and the exit code it gives.
+
+use crate::drawing::DrawError;
+use miette::{Diagnostic, GraphicalReportHandler, Report};
+use std::io::IsTerminal;
+use std::process::ExitCode;
+
+/// Why a command did not do what it was asked.
+#[derive(Debug)]
+pub enum Failure {
+    /// The input is at fault: a scene, a folder, a flag.
+    Input(Report),
+    /// The input is sound, yet the run or its outputs went wrong.
+    Run(Report),
+    /// The user stopped it; everything written is valid.
+    Interrupted,
+}
+
+impl Failure {
+    /// Exit code after Ctrl-C, as shells count it: 128 + SIGINT.
+    pub const INTERRUPTED: u8 = 130;
+
+    /// The input is at fault.
+    pub fn input(error: impl Diagnostic + Send + Sync + 'static) -> Self {
+        Failure::Input(Report::new(error))
+    }
+
+    /// The run went wrong.
+    pub fn run(error: impl Diagnostic + Send + Sync + 'static) -> Self {
+        Failure::Run(Report::new(error))
+    }
+
+    /// 2 for input, 1 for a run, 130 for Ctrl-C.
+    pub fn exit_code(&self) -> ExitCode {
+        ExitCode::from(match self {
+            Failure::Input(_) => 2,
+            Failure::Run(_) => 1,
+            Failure::Interrupted => Self::INTERRUPTED,
+        })
+    }
+
+    /// Prints to standard error: with the lines at fault on a terminal, as `file:line:column: error: ...` elsewhere.
+    pub fn print(&self) {
+        match self {
+            Failure::Interrupted => eprintln!("interrupted; everything written is valid"),
+            Failure::Input(report) | Failure::Run(report) => {
+                let mut text = String::new();
+                let drawn = std::io::stderr().is_terminal()
+                    && GraphicalReportHandler::new().render_report(&mut text, report.as_ref()).is_ok();
+                if !drawn {
+                    text = plain(report.as_ref());
+                }
+                eprintln!("{}", text.trim_end());
+            }
+        }
+    }
+}
+
+impl From<DrawError> for Failure {
+    fn from(error: DrawError) -> Self {
+        match error {
+            DrawError::Write { .. } | DrawError::Empty(_) => Failure::Input(miette::miette!("{error}")),
+            DrawError::Ink(_) => Failure::Run(miette::miette!("{error}")),
+        }
+    }
+}
+
+/// A line for each place at fault, one for the remedy, and so on for the errors that came along.
+///
+/// What the message says already, its place or its remedy, is not said again.
+fn plain(error: &dyn Diagnostic) -> String {
+    let message = error.to_string();
+    let places = places(error);
+    let mut text = match places.first() {
+        Some((place, _)) if !message.starts_with(place.as_str()) => format!("{place}: error: {message}\n"),
+        Some(_) => format!("{message}\n"),
+        None => format!("error: {message}\n"),
+    };
+    for (place, label) in &places {
+        if let Some(label) = label.as_deref().filter(|label| !message.contains(label)) {
+            text += &format!("{place}: note: {label}\n");
+        }
+    }
+    let help = error.help().map(|help| help.to_string());
+    if let Some(help) = help.filter(|help| !message.contains(help.as_str())) {
+        text += &format!("  help: {help}\n");
+    }
+    text.extend(error.related().into_iter().flatten().map(plain));
+    text
+}
+
+/// `file:line:column` of every label, and what the label says.
+fn places(error: &dyn Diagnostic) -> Vec<(String, Option<String>)> {
+    let (Some(source), Some(labels)) = (error.source_code(), error.labels()) else { return Vec::new() };
+    let place = |label: miette::LabeledSpan| {
+        let contents = source.read_span(label.inner(), 0, 0).ok()?;
+        let file = contents.name().unwrap_or("scene");
+        let place = format!("{file}:{}:{}", contents.line() + 1, contents.column() + 1);
+        Some((place, label.label().map(str::to_owned)))
+    };
+    labels.filter_map(place).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use miette::{LabeledSpan, MietteDiagnostic, NamedSource};
+
+    #[test]
+    fn a_plain_error_names_file_line_and_column() {
+        let error = MietteDiagnostic::new("unknown key `radios`")
+            .with_help("did you mean `radius`?")
+            .with_label(LabeledSpan::at(8..14, "here"));
+        let report =
+            Report::new(error).with_source_code(NamedSource::new("a.toml", "[ball]\n\nradios = 1\n"));
+        let text = plain(report.as_ref());
+        assert!(text.starts_with("a.toml:3:1: error: unknown key `radios`\n"), "{text}");
+        assert!(text.contains("  help: did you mean `radius`?"), "{text}");
+    }
+
+    #[test]
+    fn a_message_that_names_its_place_does_not_get_it_twice() {
+        let error = MietteDiagnostic::new("a.toml:1:1: unknown key `radios`")
+            .with_label(LabeledSpan::at(0..6, "unknown key `radios`"));
+        let report = Report::new(error).with_source_code(NamedSource::new("a.toml", "radios = 1\n"));
+        assert_eq!(plain(report.as_ref()), "a.toml:1:1: unknown key `radios`\n");
+    }
+
+    #[test]
+    fn an_error_without_a_place_is_still_an_error() {
+        assert_eq!(plain(Report::msg("no such file").as_ref()), "error: no such file\n");
+    }
+}

@@ -1,0 +1,142 @@
+//! Pictures and a chart of a folder of results.
+
+use crate::chart::{Choice, chart};
+use crate::drawing::{DrawError, Scale};
+use crate::failure::Failure;
+use crate::picture::{self, Bounds, Look, Mirror, Quantity, Quarters, Setting, View};
+use miette::miette;
+use std::path::Path;
+use stickslip::door::ParticleSnapshot;
+use stickslip::observe::{Frame, Results};
+
+/// What the user wants to see of snapshots.
+#[derive(Clone, Debug)]
+pub struct PictureChoice {
+    /// What colour stands for.
+    pub quantity: Quantity,
+    /// Values at the ends of the colours; those that occur, without it.
+    pub range: Option<[f64; 2]>,
+    /// Where the camera stands.
+    pub view: View,
+    /// `x`, `y`, `z` or `none`. Without it, pictures of bodies are mirrored where the scene has just one plane of symmetry;
+    /// pictures of values are not, as the cut shows the inside.
+    pub mirror: Option<String>,
+    /// Width and height in pixels.
+    pub size: Option<[usize; 2]>,
+}
+
+impl Default for PictureChoice {
+    fn default() -> Self {
+        PictureChoice { quantity: Quantity::Body, range: None, view: View::Auto, mirror: None, size: None }
+    }
+}
+
+/// The snapshots of a run, ready to be drawn.
+#[derive(Clone)]
+pub struct Album<'a> {
+    results: &'a Results,
+    setting: Setting,
+    quarters: Quarters,
+    mirror: Option<Mirror>,
+    choice: PictureChoice,
+    bounds: Option<Bounds>,
+}
+
+impl<'a> Album<'a> {
+    /// Opens the snapshots of a run.
+    ///
+    /// # Errors
+    /// There are none, or the scene has no plane of symmetry where the user wants a mirror.
+    pub fn open(results: &'a Results, choice: PictureChoice) -> Result<Self, Failure> {
+        let Some(first) = results.frames().first() else {
+            return Err(Failure::Input(miette!(
+                help = "let the scene write particles, and run it again",
+                "the run wrote no snapshots of particles"
+            )));
+        };
+        let setting = Setting::of_json(&results.manifest().scene);
+        let mirror = mirror(&setting, &choice)?;
+        let first = results.particles(first).map_err(Failure::input)?;
+        let quarters = picture::quarters(&first, &setting);
+        Ok(Album { results, setting, quarters, mirror, choice, bounds: None })
+    }
+
+    /// All snapshots, at least one.
+    pub fn frames(&self) -> &[Frame] {
+        self.results.frames()
+    }
+
+    /// The same album with one camera and one range of colours for all pictures.
+    pub fn steadied(&self) -> Result<Self, Failure> {
+        let mut album = self.clone();
+        let mut range = [f64::INFINITY, f64::NEG_INFINITY];
+        for frame in self.frames() {
+            let particles = self.results.particles(frame).map_err(Failure::input)?;
+            let here = picture::bounds(&particles);
+            let all = album.bounds.get_or_insert(here);
+            for axis in 0..3 {
+                all[0][axis] = all[0][axis].min(here[0][axis]);
+                all[1][axis] = all[1][axis].max(here[1][axis]);
+            }
+            let [low, high] = self.scale(&particles).range;
+            range = [range[0].min(low), range[1].max(high)];
+        }
+        album.choice.range = Some(range);
+        Ok(album)
+    }
+
+    /// Draws a snapshot into a PNG file.
+    pub fn draw(&self, frame: &Frame, out: &Path) -> Result<(), Failure> {
+        let particles = self.results.particles(frame).map_err(Failure::input)?;
+        let look = Look {
+            quantity: self.choice.quantity,
+            scale: self.scale(&particles),
+            view: self.choice.view,
+            mirror: self.mirror,
+            size: self.choice.size,
+            bounds: self.bounds,
+        };
+        let canvas = picture::draw(&particles, &self.setting, &self.quarters, (frame.time, &look))?;
+        Ok(canvas.save(out)?)
+    }
+
+    fn scale(&self, particles: &ParticleSnapshot) -> Scale {
+        let quantity = self.choice.quantity;
+        match self.choice.range {
+            Some(range) => quantity.scale_between(range),
+            None => {
+                let count = particles.body.len();
+                let values: Vec<f64> = (0..count).map(|i| quantity.value(particles, i)).collect();
+                quantity.scale(&values)
+            }
+        }
+    }
+}
+
+fn mirror(setting: &Setting, choice: &PictureChoice) -> Result<Option<Mirror>, Failure> {
+    let Some(name) = &choice.mirror else {
+        let bodies = choice.quantity == Quantity::Body;
+        return Ok(setting.only_mirror().filter(|_| bodies));
+    };
+    let Some(axis) = ["x", "y", "z"].iter().position(|axis| axis == name) else { return Ok(None) };
+    let mirror = setting.mirrors.iter().find(|mirror| mirror.axis == axis);
+    let missing = || Failure::Input(miette!("--mirror: the scene has no plane of symmetry across {name}"));
+    mirror.copied().map(Some).ok_or_else(missing)
+}
+
+/// Draws the chart and the picture that every run leaves, and names them.
+pub fn illustrate(folder: &Path) -> Result<String, Failure> {
+    let results = Results::open(folder).map_err(Failure::input)?;
+    let mut drawn = vec!["bodies.csv", "energy.csv", "contacts.csv", "run.json"];
+    let chart = chart(&results, &Choice::default()).map_err(Failure::input)?;
+    match crate::chart::draw(&chart, &folder.join("plot.png"), [1280, 560]) {
+        Ok(()) => drawn.push("plot.png"),
+        Err(DrawError::Empty(_)) => {}
+        Err(error) => return Err(error.into()),
+    }
+    if let Some(last) = results.frames().last() {
+        Album::open(&results, PictureChoice::default())?.draw(last, &folder.join("picture.png"))?;
+        drawn.extend(["particles.pvd", "picture.png"]);
+    }
+    Ok(drawn.join(", "))
+}

@@ -1,0 +1,102 @@
+//! How far a run has come: a bar on a terminal, a line now and then elsewhere.
+
+use crate::drawing::prefix;
+use indicatif::{ProgressBar, ProgressStyle};
+use std::cell::Cell;
+use std::time::{Duration, Instant};
+use stickslip::run::Progress;
+
+/// Shows the progress of one run on standard error.
+pub struct Display {
+    bar: Option<ProgressBar>,
+    next_line: Cell<Instant>,
+}
+
+/// Parts of the bar.
+const PARTS: u64 = 1000;
+/// Wall time between two lines where there is no terminal.
+const BETWEEN_LINES: Duration = Duration::from_secs(10);
+
+impl Display {
+    /// A display for a run until a simulated time [s].
+    pub fn new(end: f64, terminal: bool) -> Self {
+        let style = ProgressStyle::with_template("{bar:24.cyan/dim} {percent:>3} %  {wide_msg}");
+        let style = style.expect("the template is well formed").progress_chars("━╸─");
+        let bar = terminal.then(|| ProgressBar::new(PARTS).with_style(style));
+        if let Some(bar) = &bar {
+            bar.set_message(format!("t = 0 of {end} s"));
+        }
+        Display { bar, next_line: Cell::new(Instant::now() + BETWEEN_LINES) }
+    }
+
+    /// Shows the present state.
+    pub fn show(&self, progress: &Progress) {
+        if let Some(bar) = &self.bar {
+            let share = (progress.time / progress.end).clamp(0.0, 1.0);
+            bar.set_position((share * PARTS as f64) as u64);
+            bar.set_message(line(progress));
+        } else if Instant::now() >= self.next_line.get() || progress.time >= progress.end {
+            eprintln!("{}", line(progress));
+            self.next_line.set(Instant::now() + BETWEEN_LINES);
+        }
+    }
+
+    /// Takes the bar away.
+    pub fn finish(&self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+fn line(progress: &Progress) -> String {
+    let rate = prefix(progress.particle_steps_per_second);
+    format!(
+        "t = {:.4} of {} s, step {}, {:.1} {} particle-steps/s, {} left",
+        progress.time,
+        progress.end,
+        progress.steps,
+        progress.particle_steps_per_second / rate.factor,
+        rate.letter,
+        duration(progress.eta)
+    )
+}
+
+/// `1 h 02 min`, `3 min 20 s`, `4 s`; unknown before there is a pace.
+fn duration(seconds: f64) -> String {
+    if !seconds.is_finite() {
+        return "unknown time".to_owned();
+    }
+    let seconds = seconds.max(0.0).ceil() as u64;
+    match (seconds / 3600, seconds / 60 % 60, seconds % 60) {
+        (0, 0, seconds) => format!("{seconds} s"),
+        (0, minutes, seconds) => format!("{minutes} min {seconds:02} s"),
+        (hours, minutes, _) => format!("{hours} h {minutes:02} min"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_says_time_steps_pace_and_rest() {
+        let progress = Progress {
+            time: 0.5,
+            end: 2.0,
+            steps: 321,
+            particles: 1000,
+            particle_steps_per_second: 2.5e6,
+            eta: 200.0,
+        };
+        let expected = "t = 0.5000 of 2 s, step 321, 2.5 M particle-steps/s, 3 min 20 s left";
+        assert_eq!(line(&progress), expected);
+    }
+
+    #[test]
+    fn durations_read_well() {
+        assert_eq!(duration(3.2), "4 s");
+        assert_eq!(duration(3725.0), "1 h 02 min");
+        assert_eq!(duration(f64::INFINITY), "unknown time");
+    }
+}

@@ -1,0 +1,96 @@
+//! Input at fault: exit code 2, a message that says what and where, and nothing left behind.
+
+mod stickslip;
+
+use std::fs;
+use stickslip::{Workplace, new_scene};
+
+#[test]
+fn an_unknown_flag_is_refused() {
+    let ran = Workplace::new().run(&["run", "scene.toml", "--thread", "2"]);
+    assert_eq!(ran.code, Some(2));
+    assert!(ran.stderr.contains("--threads"), "{}", ran.stderr);
+}
+
+#[test]
+fn a_missing_scene_is_refused_by_name() {
+    let workplace = Workplace::new();
+    for command in ["run", "check"] {
+        let ran = workplace.run(&[command, "nowhere.toml"]);
+        assert_eq!(ran.code, Some(2));
+        assert!(ran.stderr.contains("nowhere.toml"), "{}", ran.stderr);
+    }
+    assert!(!workplace.path("nowhere.results").exists());
+}
+
+#[test]
+fn a_misspelt_key_is_named_with_its_place_and_no_folder_is_left() {
+    let workplace = Workplace::new();
+    let scene = new_scene().replace("end = ", "endd = ");
+    workplace.write("scene.toml", &scene);
+    let ran = workplace.run(&["run", "scene.toml"]);
+    assert_eq!(ran.code, Some(2), "{}", ran.stderr);
+    let line = 1 + scene.lines().position(|line| line.starts_with("endd")).unwrap();
+    assert!(ran.stderr.contains(&format!("scene.toml:{line}:1")), "{}", ran.stderr);
+    assert!(ran.stderr.contains("`end`"), "{}", ran.stderr);
+    assert!(!workplace.path("scene.results").exists());
+}
+
+#[test]
+fn a_wrong_unit_is_refused() {
+    let workplace = Workplace::new();
+    workplace.write("scene.toml", &new_scene().replace("\"0.5 s\"", "\"0.5 m\""));
+    let ran = workplace.run(&["check", "scene.toml"]);
+    assert_eq!(ran.code, Some(2));
+    assert!(ran.stderr.contains("scene.toml:"), "{}", ran.stderr);
+}
+
+#[test]
+fn an_unknown_parameter_is_refused() {
+    let workplace = Workplace::new();
+    workplace.write("scene.toml", &new_scene());
+    let ran = workplace.run(&["check", "scene.toml", "--set", "fricton=0"]);
+    assert_eq!(ran.code, Some(2));
+    assert!(ran.stderr.contains("friction"), "{}", ran.stderr);
+}
+
+#[test]
+fn a_folder_with_other_files_is_left_alone() {
+    let workplace = Workplace::new();
+    workplace.write("scene.toml", &new_scene());
+    fs::create_dir(workplace.path("mine")).unwrap();
+    workplace.write("mine/thesis.txt", "years of work");
+    let ran = workplace.run(&["run", "scene.toml", "--out", "mine"]);
+    assert_eq!(ran.code, Some(2), "{}", ran.stderr);
+    assert!(ran.stderr.contains("thesis.txt"), "{}", ran.stderr);
+    assert_eq!(fs::read_dir(workplace.path("mine")).unwrap().count(), 1);
+}
+
+#[test]
+fn an_out_that_is_a_file_is_refused() {
+    let workplace = Workplace::new();
+    workplace.write("scene.toml", &new_scene());
+    workplace.write("out", "a file");
+    let ran = workplace.run(&["run", "scene.toml", "--out", "out"]);
+    assert_eq!(ran.code, Some(2), "{}", ran.stderr);
+}
+
+#[test]
+fn a_folder_that_is_no_run_cannot_be_drawn() {
+    let workplace = Workplace::new();
+    for command in ["render", "plot"] {
+        let ran = workplace.run(&[command, "."]);
+        assert_eq!(ran.code, Some(2));
+        assert!(ran.stderr.contains("run.json"), "{}", ran.stderr);
+    }
+}
+
+#[test]
+fn new_does_not_overwrite() {
+    let workplace = Workplace::new();
+    workplace.write("scene.toml", "mine");
+    let ran = workplace.run(&["new"]);
+    assert_eq!(ran.code, Some(2));
+    assert!(ran.stderr.contains("scene.toml is there already"), "{}", ran.stderr);
+    assert_eq!(fs::read_to_string(workplace.path("scene.toml")).unwrap(), "mine");
+}

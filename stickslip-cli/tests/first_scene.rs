@@ -1,0 +1,88 @@
+//! From `stickslip new` to numbers and pictures, as a new user goes.
+
+mod stickslip;
+
+use std::fs;
+use std::time::{Duration, Instant};
+use stickslip::{Workplace, new_scene};
+
+/// The new scene, coarse and short: what a test needs of it.
+const QUICK: [&str; 4] = ["--set", "cells_per_radius=4", "--set", "friction=0.3"];
+
+#[test]
+fn the_schema_is_json() {
+    let schema = Workplace::new().succeed(&["schema"]);
+    let schema: serde_json::Value = serde_json::from_str(&schema).unwrap();
+    assert!(schema["properties"]["bodies"].is_object());
+}
+
+#[test]
+fn check_counts_particles() {
+    let workplace = Workplace::new();
+    workplace.write("scene.toml", &new_scene());
+    let report = workplace.succeed(&["check", "scene.toml"]);
+    assert!(report.contains("disk") && report.contains("bar") && report.contains("particles"), "{report}");
+    assert!(!workplace.path("scene.results").exists());
+}
+
+#[test]
+fn run_render_and_plot_leave_numbers_and_pictures() {
+    let workplace = Workplace::new();
+    workplace.write("scene.toml", &new_scene());
+    let summary = workplace.succeed(&[&["run", "scene.toml"][..], &QUICK].concat());
+    assert!(summary.contains("A soft disk") && summary.contains("finished"), "{summary}");
+    for file in
+        ["bodies.csv", "energy.csv", "contacts.csv", "run.json", "particles.pvd", "plot.png", "picture.png"]
+    {
+        assert!(workplace.path("scene.results").join(file).metadata().unwrap().len() > 0, "{file}");
+    }
+    workplace.succeed(&["render", "scene.results", "--frame", "0", "--color", "pressure", "--out", "p.png"]);
+    workplace.succeed(&["render", "scene.results", "--all", "--size", "400x300", "--out", "all"]);
+    workplace.succeed(&["plot", "scene.results", "--body", "disk", "--quantity", "x,vx", "--out", "p.svg"]);
+    assert_eq!(&fs::read(workplace.path("p.png")).unwrap()[1..4], b"PNG");
+    assert!(fs::read_to_string(workplace.path("p.svg")).unwrap().contains("disk vx"));
+    assert!(fs::read_dir(workplace.path("all")).unwrap().count() >= 20);
+
+    let missing = workplace.run(&["render", "scene.results", "--frame", "9999"]);
+    assert_eq!(missing.code, Some(2));
+    assert!(missing.stderr.contains("allowed: 0 to"), "{}", missing.stderr);
+    let unknown = workplace.run(&["plot", "scene.results", "--body", "disc"]);
+    assert_eq!(unknown.code, Some(2));
+    assert!(unknown.stderr.contains("disk"), "{}", unknown.stderr);
+}
+
+#[test]
+fn tables_do_not_depend_on_the_number_of_threads() {
+    let workplace = Workplace::new();
+    workplace.write("scene.toml", &new_scene());
+    let tables = ["1", "2"].map(|threads| {
+        let out = format!("{threads}.results");
+        let arguments = ["run", "scene.toml", "--threads", threads, "--out", &out];
+        workplace.succeed(&[&arguments[..], &QUICK].concat());
+        fs::read(workplace.path(&out).join("bodies.csv")).unwrap()
+    });
+    assert_eq!(tables[0], tables[1]);
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_ends_a_run_cleanly() {
+    let workplace = Workplace::new();
+    // Long enough that it is still running when the signal comes, on any machine.
+    workplace.write("scene.toml", &new_scene().replace("\"0.5 s\"", "\"1000 s\""));
+    let mut run = workplace.command(&["run", "scene.toml"]).spawn().unwrap();
+    let table = workplace.path("scene.results").join("bodies.csv");
+    let give_up = Instant::now() + Duration::from_secs(60);
+    while !table.exists() {
+        assert!(Instant::now() < give_up, "the run does not start");
+        std::thread::sleep(Duration::from_millis(50));
+    }
+    let killed = std::process::Command::new("kill").args(["-INT", &run.id().to_string()]).status().unwrap();
+    assert!(killed.success());
+    assert_eq!(run.wait().unwrap().code(), Some(130));
+    let record = fs::read(workplace.path("scene.results").join("run.json")).unwrap();
+    let record: serde_json::Value = serde_json::from_slice(&record).unwrap();
+    assert_eq!(record["status"], "interrupted");
+    workplace.succeed(&["render", "scene.results"]);
+    workplace.succeed(&["plot", "scene.results"]);
+}
