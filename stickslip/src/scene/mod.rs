@@ -3,11 +3,25 @@
 //! A scene is plain data. It says nothing about precision of its storage, threads or blocks; the engine is built from it.
 //! Vectors have three components; a plane scene uses the first two and takes the third as zero.
 
+mod error;
 mod expression;
+mod file;
+mod formula;
+mod load;
+mod overrides;
+mod parameters;
 mod problem;
+mod schema;
+mod source;
+mod suggestion;
+mod units;
 
-pub use expression::Expression;
+pub use error::{Mistake, SceneError};
+pub use expression::{Expression, Program};
+pub use load::{Loaded, load, parse};
 pub use problem::Problem;
+pub use schema::schema;
+pub use source::Source;
 
 use crate::geometry::Shape;
 use crate::material::Material;

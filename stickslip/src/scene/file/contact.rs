@@ -1,0 +1,111 @@
+//! `[[contact]]`: rules for how bodies touch.
+
+use super::Context;
+use super::quantity::{Quantity, Ratio};
+use super::read::{Read, table};
+use super::text::{Choice, Text, Word};
+use crate::scene::error::Fault;
+use crate::scene::source::{Node, Value};
+use crate::scene::{Body, ContactLaw, ContactRule, NamedMaterial, Normal};
+use schemars::JsonSchema;
+
+table! {
+    /// How bodies touch.
+    Contact {
+        /// The pair it holds for: two names of bodies or materials; "any", the default for both, matches every body.
+        between: Option<Pair>,
+        /// When the bodies push on each other.
+        #[schemars(extend("default" = "gap"))]
+        law: Option<Word<ContactLaw>>,
+        /// Coefficient of friction; inf sticks, 0 is frictionless.
+        #[schemars(extend("default" = 0))]
+        friction: Option<Quantity<Ratio>>,
+        /// Where the direction of contact comes from; by default "own" for the laws kinematic and traction, as the paper has it,
+        /// "common" for the others.
+        normal: Option<Word<Normal>>,
+        /// Largest strain of a cell by contact in one step, the paper's gamma, above 0 and up to 1.
+        #[schemars(extend("default" = 0.5))]
+        max_strain: Option<Quantity<Ratio>>,
+    }
+}
+
+/// Two names.
+#[derive(JsonSchema)]
+#[schemars(transparent)]
+pub struct Pair([Text; 2]);
+
+impl Choice for ContactLaw {
+    const WORDS: &'static [(&'static str, Self, &'static str)] = &[
+        ("gap", ContactLaw::Gap, "As traction, but only once the particles' surfaces touch."),
+        ("traction", ContactLaw::Traction, "When the traction between them is compressive (2001)."),
+        ("kinematic", ContactLaw::Kinematic, "When they approach (2000)."),
+        ("glued", ContactLaw::Glued, "Always and in every direction: one velocity for both."),
+        ("none", ContactLaw::None, "Never."),
+    ];
+}
+
+impl Choice for Normal {
+    const WORDS: &'static [(&'static str, Self, &'static str)] = &[
+        ("common", Normal::Common, "One direction for the pair; conserves momentum."),
+        ("own", Normal::Own, "Each body's own mass gradient, as the paper prints it."),
+    ];
+}
+
+/// The rules in the order of the file.
+pub fn resolve(
+    rules: &[Contact],
+    (bodies, materials): (&[Body], &[NamedMaterial]),
+    context: &Context,
+) -> Result<Vec<ContactRule>, Fault> {
+    let mut names: Vec<&str> = bodies.iter().map(|body| body.name.as_str()).collect();
+    for material in materials {
+        if !names.contains(&material.name.as_str()) {
+            names.push(&material.name);
+        }
+    }
+    names.push("any");
+    rules.iter().map(|rule| rule.resolve(&names, context)).collect()
+}
+
+impl Contact {
+    fn resolve(&self, names: &[&str], context: &Context) -> Result<ContactRule, Fault> {
+        let default = ContactRule::default();
+        let mut between = default.between;
+        if let Some(Pair(pair)) = &self.between {
+            for (side, text) in between.iter_mut().zip(pair) {
+                let name = text.name_of(context, "the name of a body or a material, or any", names)?;
+                *side = (name != "any").then_some(name);
+            }
+        }
+        let law = self.law.as_ref().map_or(Ok(default.law), |word| word.value(context))?;
+        let usual = match law {
+            ContactLaw::Kinematic | ContactLaw::Traction => Normal::Own,
+            ContactLaw::None | ContactLaw::Gap | ContactLaw::Glued => Normal::Common,
+        };
+        let friction = self.friction.as_ref().map_or(Ok(default.friction), |friction| {
+            let value = friction.extended(context)?;
+            let allowed = "a number from 0 on, or inf";
+            if value >= 0.0 { Ok(value) } else { Err(friction.refused(value, allowed)) }
+        })?;
+        let max_strain = self.max_strain.as_ref().map_or(Ok(default.max_strain), |strain| {
+            strain.checked(context, "a number above 0 and up to 1", |value| value > 0.0 && value <= 1.0)
+        })?;
+        let normal = self.normal.as_ref().map_or(Ok(usual), |word| word.value(context))?;
+        Ok(ContactRule { between, law, friction, normal, max_strain })
+    }
+}
+
+impl Read for Pair {
+    fn wanted() -> String {
+        "two names of bodies or materials: [\"sphere\", \"any\"]".to_string()
+    }
+
+    fn read(node: &Node) -> Result<Self, Fault> {
+        match &node.value {
+            Value::List(items) if items.len() == 2 => {
+                Ok(Pair([Text::read(&items[0])?, Text::read(&items[1])?]))
+            }
+            _ => Err(node.fault(Self::wanted())),
+        }
+    }
+}

@@ -1,0 +1,139 @@
+//! `[materials.NAME]`: density and a law from the shelf with its constants.
+
+use super::Context;
+use super::quantity::{Density, Quantity, evaluate};
+use super::read::{Read, check_keys, field, unknown_key};
+use crate::material::{Description, SHELF};
+use crate::scene::error::Fault;
+use crate::scene::parameters::Variation;
+use crate::scene::source::{Node, Value};
+use crate::scene::units::Powers;
+use crate::scene::{NamedMaterial, Problem};
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+
+/// The materials by name.
+pub struct Materials(Vec<Node>);
+
+impl Materials {
+    /// The materials in the order of the file.
+    pub fn resolve(&self, context: &Context) -> Result<Vec<NamedMaterial>, Fault> {
+        self.0.iter().map(|node| material(node, context)).collect()
+    }
+}
+
+/// One material: its density and exactly one law.
+fn material(node: &Node, context: &Context) -> Result<NamedMaterial, Fault> {
+    let laws: Vec<&str> = SHELF.iter().map(|law| law.name).collect();
+    let keys: Vec<&str> = std::iter::once("density").chain(laws.iter().copied()).collect();
+    if node.name == "any" {
+        return Err(Fault::new(&node.key, "the name `any`, which matches every body", "another name"));
+    }
+    check_keys(node, &keys)?;
+    let density = field::<Quantity<Density>>(node, "density")?.positive(context)?;
+    let mut named = node
+        .children()
+        .iter()
+        .filter_map(|child| Some((child, SHELF.iter().find(|law| law.name == child.name)?)));
+    let Some((table, law)) = named.next() else {
+        let example = "neo_hookean = { bulk_modulus = \"6 MPa\", shear_modulus = \"3 MPa\" }";
+        let allowed = format!("a law ({}), like {example}", laws.join(", "));
+        return Err(Fault::new(&node.key, "no law", allowed).at(node.name_span.clone()));
+    };
+    if let Some((second, _)) = named.next() {
+        let found = format!("a second law, `{}` besides `{}`", second.name, table.name);
+        return Err(Fault::new(&second.key, found, "one law").at(second.name_span.clone()));
+    }
+    let law = law.build(&constants(table, law, context)?).map_err(|bad| {
+        let child = bad.key.as_ref().and_then(|key| table.children().iter().find(|child| child.name == *key));
+        let key = child.unwrap_or(table).key.clone();
+        let found = match child {
+            Some(child) if !bad.found.is_empty() => format!("{} ({})", child.found(), bad.found),
+            _ => bad.found,
+        };
+        Problem { key, found, allowed: bad.allowed, help: None }
+    })?;
+    Ok(NamedMaterial { name: node.name.clone(), density, law })
+}
+
+/// The constants of a law in SI units.
+fn constants(table: &Node, law: &Description, context: &Context) -> Result<BTreeMap<String, f64>, Fault> {
+    let names: Vec<&str> = law.constants.iter().map(|constant| constant.name).collect();
+    let Value::Table(children) = &table.value else {
+        return Err(table.fault(format!("a table {{ ... }} with the keys {}", names.join(", "))));
+    };
+    let mut values = BTreeMap::new();
+    for child in children {
+        let constant = law.constants.iter().find(|constant| constant.name == child.name);
+        let constant = constant.ok_or_else(|| unknown_key(child, &names))?;
+        let powers = Powers::from(constant.dimension);
+        let allowed = match powers == Powers::NONE {
+            true => powers.name(),
+            false => format!("{}, like \"{}\"", powers.name(), powers.example()),
+        };
+        let value = evaluate(child, powers, &allowed, (context, Variation::Constant))?.at(0.0);
+        values.insert(child.name.clone(), value);
+    }
+    Ok(values)
+}
+
+impl Read for Materials {
+    fn wanted() -> String {
+        "a table for each material: [materials.NAME] with density and a law".to_string()
+    }
+
+    fn read(node: &Node) -> Result<Self, Fault> {
+        match &node.value {
+            Value::Table(materials) if !materials.is_empty() => Ok(Materials(materials.clone())),
+            _ => Err(node.fault(Self::wanted())),
+        }
+    }
+}
+
+impl JsonSchema for Materials {
+    fn schema_name() -> Cow<'static, str> {
+        "Materials".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let mut properties = serde_json::Map::new();
+        let mut density = Quantity::<Density>::json_schema(generator);
+        density.insert("description".into(), "Mass per undeformed volume [kg/m^3].".into());
+        properties.insert("density".into(), density.into());
+        for law in SHELF {
+            let constants: serde_json::Map<_, _> = law
+                .constants
+                .iter()
+                .map(|constant| {
+                    let powers = Powers::from(constant.dimension);
+                    let schema = json_schema!({
+                        "description": constant.summary,
+                        "type": ["number", "string"],
+                        "examples": [powers.example()],
+                    });
+                    (constant.name.to_string(), schema.into())
+                })
+                .collect();
+            let table = json_schema!({
+                "description": law.summary,
+                "type": "object",
+                "properties": constants,
+                "additionalProperties": false,
+            });
+            properties.insert(law.name.into(), table.into());
+        }
+        let one: Vec<Schema> = SHELF.iter().map(|law| json_schema!({ "required": [law.name] })).collect();
+        json_schema!({
+            "type": "object",
+            "minProperties": 1,
+            "additionalProperties": {
+                "type": "object",
+                "properties": properties,
+                "required": ["density"],
+                "oneOf": one,
+                "additionalProperties": false,
+            },
+        })
+    }
+}

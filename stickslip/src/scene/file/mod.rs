@@ -1,0 +1,125 @@
+//! The scene file as it is written: its tables, one file each, with what each key means and how it becomes part of a
+//! [`Scene`](super::Scene). The documentation of a key here is its description in the schema.
+
+mod body;
+mod contact;
+mod material;
+mod outputs;
+mod quantity;
+mod read;
+mod shape;
+mod space;
+mod text;
+mod time;
+mod vector;
+
+use super::error::Fault;
+use super::parameters::Parameters;
+use super::source::{Node, Source, Value};
+use super::{Dimension, Scene};
+use quantity::Acceleration;
+use read::{Read, table};
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use std::borrow::Cow;
+use text::Text;
+use vector::Vector;
+
+/// What values in a file are read with.
+pub struct Context<'a> {
+    /// The named parameters.
+    pub parameters: &'a Parameters<'a>,
+    /// How many components vectors have.
+    pub dimension: Dimension,
+}
+
+table! {
+    /// A Stickslip scene. Numbers are SI or text with a unit ("6 MPa") or a formula ("radius / 8"); {name} puts a parameter
+    /// into text.
+    File {
+        /// One line for plots, pictures and summaries; by default the name of the file.
+        title: Option<Text>,
+        /// What the scene shows, and the numbers it must give.
+        about: Option<Text>,
+        /// Acceleration of every body, such as [0, 0, "-9.81 m/s^2"]; by default none. It stands above the first [table].
+        gravity: Option<Vector<Acceleration>>,
+        /// Named numbers, formulas and words for the rest of the file; `--set name=value` replaces one.
+        parameters: Option<ParameterTable>,
+        /// Dimensions, cells, particles and domain.
+        space: space::Space,
+        /// Duration and time step.
+        time: time::Time,
+        /// The materials by name.
+        materials: material::Materials,
+        /// The bodies: [[bodies]].
+        bodies: Vec<body::Body>,
+        /// Rules for how bodies touch: [[contact]]. The first that matches a pair holds; a pair that none matches has the
+        /// gap law without friction.
+        contact: Option<Vec<contact::Contact>>,
+        /// What is written, and how often.
+        outputs: Option<outputs::Outputs>,
+        /// Known answers that plots and summaries hold the run against: [[references]].
+        references: Option<Vec<outputs::Reference>>,
+    }
+}
+
+/// Named parameters: [`Parameters`] reads them.
+pub struct ParameterTable(Vec<Node>);
+
+/// The scene that a source describes.
+///
+/// # Errors
+/// The first mistake found.
+pub(super) fn resolve(source: &Source) -> Result<Scene, Fault> {
+    let file = File::read(source.root())?;
+    let parameters = Parameters::new(source, file.parameters.as_ref().map_or(&[], |table| &table.0))?;
+    let values = parameters.resolved()?;
+    let mut context = Context { parameters: &parameters, dimension: Dimension::Space };
+    context.dimension = file.space.dimension.value(&context)?;
+    let context = &context;
+
+    let time = file.time.resolve(context)?;
+    let materials = file.materials.resolve(context)?;
+    let bodies = body::resolve(&file.bodies, &materials, context)?;
+    let contact =
+        contact::resolve(file.contact.as_deref().unwrap_or_default(), (&bodies, &materials), context)?;
+    let stem = source.name().rsplit(['/', '\\']).next().unwrap_or_default().trim_end_matches(".toml");
+    Ok(Scene {
+        title: file.title.as_ref().map_or_else(|| Ok(stem.to_string()), |title| title.value(context))?,
+        about: file.about.as_ref().map_or(String::new(), |about| about.as_written().trim().to_string()),
+        parameters: values,
+        dimension: context.dimension,
+        precision: file.space.precision(context)?,
+        discretization: file.space.discretization(context)?,
+        domain: file.space.domain(context)?,
+        gravity: file.gravity.map_or(Ok([0.0; 3]), |gravity| gravity.value(context))?,
+        outputs: outputs::resolve(file.outputs.as_ref(), time.end, context)?,
+        references: outputs::references(file.references.as_deref().unwrap_or_default(), &bodies, context)?,
+        time,
+        materials,
+        bodies,
+        contact,
+    })
+}
+
+impl Read for ParameterTable {
+    fn wanted() -> String {
+        "a table: [parameters]".to_string()
+    }
+
+    fn read(node: &Node) -> Result<Self, Fault> {
+        match &node.value {
+            Value::Table(nodes) => Ok(ParameterTable(nodes.clone())),
+            _ => Err(node.fault(Self::wanted())),
+        }
+    }
+}
+
+impl JsonSchema for ParameterTable {
+    fn schema_name() -> Cow<'static, str> {
+        "Parameters".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({ "type": "object", "additionalProperties": { "type": ["number", "string"] } })
+    }
+}

@@ -1,0 +1,164 @@
+//! `[outputs]` and `[[references]]`: what is written, and what it is held against.
+
+use super::Context;
+use super::quantity::{Duration, Quantity, evaluate};
+use super::read::{Read, table};
+use super::text::Text;
+use crate::scene::error::Fault;
+use crate::scene::parameters::Variation;
+use crate::scene::source::{Node, Value};
+use crate::scene::units::Powers;
+use crate::scene::{self, Body};
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use std::borrow::Cow;
+
+table! {
+    /// What is written, and how often, in simulated time.
+    Outputs {
+        /// Interval between rows of bodies.csv, energy.csv and contacts.csv [s]; by default 1/200 of the run.
+        tables: Option<Quantity<Duration>>,
+        /// Interval between snapshots of the particles for ParaView [s], or "never"; by default 1/40 of the run.
+        particles: Option<Interval>,
+        /// Interval between snapshots of the grid for ParaView [s], or "never".
+        #[schemars(extend("default" = "never"))]
+        grid: Option<Interval>,
+    }
+}
+
+table! {
+    /// A known answer for one quantity of one body.
+    Reference {
+        /// Name of the body.
+        body: Text,
+        /// A column of bodies.csv: x, vx, wz ...
+        quantity: Text,
+        /// Its exact value, a formula of `t`: "25 * sqrt(2) / 14 * t^2".
+        value: Answer,
+        /// What the answer assumes: "rigid sphere".
+        label: Text,
+    }
+}
+
+/// A time, or "never".
+pub enum Interval {
+    /// The word.
+    Never,
+    /// The time.
+    Every(Quantity<Duration>),
+}
+
+/// A formula whose dimension depends on the quantity it is for.
+pub struct Answer(Node);
+
+/// Columns of `bodies.csv` that a reference can name, with powers of kilogram, metre and second.
+const QUANTITIES: &[(&str, [i8; 3])] = &[
+    ("x", [0, 1, 0]),
+    ("y", [0, 1, 0]),
+    ("z", [0, 1, 0]),
+    ("vx", [0, 1, -1]),
+    ("vy", [0, 1, -1]),
+    ("vz", [0, 1, -1]),
+    ("wx", [0, 0, -1]),
+    ("wy", [0, 0, -1]),
+    ("wz", [0, 0, -1]),
+    ("mass", [1, 0, 0]),
+    ("kinetic", [1, 2, -2]),
+    ("strain", [1, 2, -2]),
+];
+
+/// What is written in a run of length `end` [s].
+pub fn resolve(outputs: Option<&Outputs>, end: f64, context: &Context) -> Result<scene::Outputs, Fault> {
+    let tables = outputs.and_then(|outputs| outputs.tables.as_ref());
+    let particles = outputs.and_then(|outputs| outputs.particles.as_ref());
+    let grid = outputs.and_then(|outputs| outputs.grid.as_ref());
+    Ok(scene::Outputs {
+        tables: tables.map_or(Ok(end / 200.0), |interval| interval.positive(context))?,
+        particles: particles.map_or(Ok(Some(end / 40.0)), |interval| interval.value(context))?,
+        grid: grid.map_or(Ok(None), |interval| interval.value(context))?,
+    })
+}
+
+/// The known answers.
+pub fn references(
+    references: &[Reference],
+    bodies: &[Body],
+    context: &Context,
+) -> Result<Vec<scene::Reference>, Fault> {
+    let bodies: Vec<&str> = bodies.iter().map(|body| body.name.as_str()).collect();
+    let names: Vec<&str> = QUANTITIES.iter().map(|(name, _)| *name).collect();
+    let resolve = |reference: &Reference| {
+        let body = reference.body.name_of(context, "the name of a body", &bodies)?;
+        let quantity = reference.quantity.name_of(context, "a column of bodies.csv", &names)?;
+        let (_, powers) =
+            QUANTITIES.iter().find(|(name, _)| *name == quantity).expect("name_of found it in names");
+        let powers = Powers::from(*powers);
+        let allowed = format!("{}, like \"{}\"", powers.name(), powers.example());
+        let value = evaluate(&reference.value.0, powers, &allowed, (context, Variation::InTime))?;
+        Ok(scene::Reference { body, quantity, value, label: reference.label.value(context)? })
+    };
+    references.iter().map(resolve).collect()
+}
+
+impl Interval {
+    fn value(&self, context: &Context) -> Result<Option<f64>, Fault> {
+        match self {
+            Interval::Never => Ok(None),
+            Interval::Every(interval) => interval.positive(context).map(Some),
+        }
+    }
+}
+
+impl Read for Interval {
+    fn wanted() -> String {
+        format!("{}, or \"never\"", Quantity::<Duration>::wanted())
+    }
+
+    fn read(node: &Node) -> Result<Self, Fault> {
+        match &node.value {
+            Value::Text(text) if text == "never" => Ok(Interval::Never),
+            Value::Text(_) | Value::Number(_) => Ok(Interval::Every(Quantity::new(node))),
+            _ => Err(node.fault(Self::wanted())),
+        }
+    }
+}
+
+impl Read for Answer {
+    fn wanted() -> String {
+        "a number, or a formula of t in quotes".to_string()
+    }
+
+    fn read(node: &Node) -> Result<Self, Fault> {
+        match node.value {
+            Value::Text(_) | Value::Number(_) => Ok(Answer(node.clone())),
+            _ => Err(node.fault(Self::wanted())),
+        }
+    }
+}
+
+impl JsonSchema for Interval {
+    fn schema_name() -> Cow<'static, str> {
+        "Interval".into()
+    }
+
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({ "type": ["number", "string"], "examples": ["10 ms", "never"] })
+    }
+}
+
+impl JsonSchema for Answer {
+    fn schema_name() -> Cow<'static, str> {
+        "Answer".into()
+    }
+
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({ "type": ["number", "string"], "examples": ["1 m/s * t"] })
+    }
+}

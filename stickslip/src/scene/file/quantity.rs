@@ -1,0 +1,176 @@
+//! Numbers and quantities with units as scene files write them.
+
+use super::Context;
+use super::read::Read;
+use crate::scene::Expression;
+use crate::scene::error::Fault;
+use crate::scene::parameters::Variation;
+use crate::scene::source::{Node, Value};
+use crate::scene::units::Powers;
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use std::borrow::Cow;
+use std::marker::PhantomData;
+
+/// A physical dimension with its name and an example.
+pub trait Measure {
+    /// Powers of kilogram, metre and second.
+    const POWERS: [i8; 3];
+
+    /// `a length [m]`
+    fn name() -> String {
+        Powers::from(Self::POWERS).name()
+    }
+
+    /// `0.4 m`
+    fn example() -> String {
+        Powers::from(Self::POWERS).example()
+    }
+}
+
+macro_rules! measures {
+    ($($(#[$about:meta])* $name:ident = $powers:expr;)*) => {
+        $($(#[$about])* pub struct $name; impl Measure for $name { const POWERS: [i8; 3] = $powers; })*
+    };
+}
+measures! {
+    /// A plain number.
+    Ratio = [0, 0, 0];
+    /// In metres.
+    Length = [0, 1, 0];
+    /// In seconds.
+    Duration = [0, 0, 1];
+    /// In metres per second.
+    Velocity = [0, 1, -1];
+    /// In metres per second squared.
+    Acceleration = [0, 1, -2];
+    /// In radians per second.
+    AngularVelocity = [0, 0, -1];
+    /// In kilograms per cubic metre.
+    Density = [1, -3, 0];
+}
+
+/// In radians.
+pub struct Angle;
+
+impl Measure for Angle {
+    const POWERS: [i8; 3] = [0, 0, 0];
+
+    fn name() -> String {
+        "an angle [rad]".to_string()
+    }
+
+    fn example() -> String {
+        "30 deg".to_string()
+    }
+}
+
+/// A number in SI units, or text: a quantity with its unit or a formula.
+pub struct Quantity<M> {
+    node: Node,
+    measure: PhantomData<M>,
+}
+
+impl<M: Measure> Quantity<M> {
+    /// The quantity at `node`.
+    pub fn new(node: &Node) -> Self {
+        Quantity { node: node.clone(), measure: PhantomData }
+    }
+
+    /// Its value in SI units, finite.
+    pub fn value(&self, context: &Context) -> Result<f64, Fault> {
+        let value = self.extended(context)?;
+        if value.is_finite() { Ok(value) } else { Err(self.refused(value, Self::wanted())) }
+    }
+
+    /// Its value in SI units, perhaps infinite.
+    pub fn extended(&self, context: &Context) -> Result<f64, Fault> {
+        let expression =
+            evaluate(&self.node, Powers::from(M::POWERS), &Self::wanted(), (context, Variation::Constant))?;
+        let value = expression.at(0.0);
+        if value.is_nan() { Err(self.refused(value, Self::wanted())) } else { Ok(value) }
+    }
+
+    /// Its value as a function of time.
+    pub fn over_time(&self, context: &Context) -> Result<Expression, Fault> {
+        evaluate(&self.node, Powers::from(M::POWERS), &Self::wanted(), (context, Variation::InTime))
+    }
+
+    /// Its value, above zero.
+    pub fn positive(&self, context: &Context) -> Result<f64, Fault> {
+        let value = self.value(context)?;
+        let allowed = || format!("{} above 0, like \"{}\"", M::name(), M::example());
+        if value > 0.0 { Ok(value) } else { Err(self.refused(value, allowed())) }
+    }
+
+    /// Its value, which must satisfy what `allowed` says.
+    pub fn checked(
+        &self,
+        context: &Context,
+        allowed: &str,
+        satisfied: impl Fn(f64) -> bool,
+    ) -> Result<f64, Fault> {
+        let value = self.value(context)?;
+        if satisfied(value) { Ok(value) } else { Err(self.refused(value, allowed)) }
+    }
+
+    /// The fault of a value that is not allowed.
+    pub fn refused(&self, value: f64, allowed: impl Into<String>) -> Fault {
+        let mut fault = self.node.fault(allowed);
+        if let Value::Text(text) = &self.node.value
+            && (text.split_whitespace().count() > 2
+                || !text.starts_with(['-', '.', '0', '1', '2', '3', '4', '5', '6', '7', '8', '9']))
+        {
+            let unit = Powers::from(M::POWERS).symbol();
+            let unit = if unit == "1" { String::new() } else { format!(" {unit}") };
+            fault.problem.found = format!("{text:?}, which is {value}{unit}");
+        }
+        fault
+    }
+
+    /// Where it stands.
+    pub fn node(&self) -> &Node {
+        &self.node
+    }
+}
+
+/// What a number or formula says, if it has the dimension `wanted`; `allowed` says so in words.
+pub fn evaluate(
+    node: &Node,
+    wanted: Powers,
+    allowed: &str,
+    (context, variation): (&Context, Variation),
+) -> Result<Expression, Fault> {
+    let formula = context.parameters.formula(node, variation, allowed)?;
+    if formula.kind.fits(wanted) {
+        return Ok(formula.expression);
+    }
+    let found = format!("{}, {}", node.found(), formula.kind.name());
+    Err(Fault::new(&node.key, found, allowed).at(node.span.clone()))
+}
+
+impl<M: Measure> Read for Quantity<M> {
+    fn wanted() -> String {
+        format!("{}, like \"{}\"", M::name(), M::example()).replace("\"0.5\"", "0.5")
+    }
+
+    fn read(node: &Node) -> Result<Self, Fault> {
+        match node.value {
+            Value::Number(_) | Value::Text(_) => Ok(Quantity::new(node)),
+            _ => Err(node.fault(Self::wanted())),
+        }
+    }
+}
+
+impl<M: Measure> JsonSchema for Quantity<M> {
+    fn schema_name() -> Cow<'static, str> {
+        format!("Quantity_{}", Powers::from(M::POWERS).symbol()).into()
+    }
+
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({ "type": ["number", "string"], "examples": [M::example()] })
+    }
+}

@@ -1,0 +1,274 @@
+//! Shapes: `shape.ball = { center = [0, 0, 1], radius = 1 }`.
+
+use super::Context;
+use super::quantity::{Angle, Length, Quantity, Ratio};
+use super::read::{Read, table};
+use super::space::corners;
+use super::vector::Vector;
+use crate::geometry;
+use crate::scene::Dimension;
+use crate::scene::error::Fault;
+use crate::scene::source::{Node, Value};
+use crate::scene::suggestion::did_you_mean;
+use schemars::JsonSchema;
+
+/// A region of space: one of the shapes.
+#[derive(JsonSchema)]
+#[schemars(rename_all = "snake_case")]
+pub enum Shape {
+    /// A ball; in the plane, a disk.
+    Ball(Ball),
+    /// A box with faces across the axes; in the plane, a rectangle.
+    Box(Cuboid),
+    /// A solid cylinder; three dimensions only.
+    Cylinder(Cylinder),
+    /// All points behind a plane; unbounded, so it serves to cut other shapes.
+    HalfSpace(HalfSpace),
+    /// A polygon in the plane of x and y; in three dimensions a prism over it.
+    Polygon(Polygon),
+    /// Points in any of the shapes.
+    Union(Vec<Shape>),
+    /// Points in all of the shapes.
+    Intersection(Vec<Shape>),
+    /// Points in the first shape and in none of the others.
+    Difference(Vec<Shape>),
+    /// A shape turned about a point.
+    Rotated(Rotated),
+}
+
+/// Keys of the shapes.
+const KINDS: &[&str] =
+    &["ball", "box", "cylinder", "half_space", "polygon", "union", "intersection", "difference", "rotated"];
+
+table! {
+    /// A ball; in the plane, a disk.
+    Ball {
+        /// Centre [m].
+        center: Vector<Length>,
+        /// Radius [m].
+        radius: Quantity<Length>,
+    }
+}
+
+table! {
+    /// A box with faces across the axes; in the plane, a rectangle.
+    Cuboid {
+        /// Lower corner [m].
+        min: Vector<Length>,
+        /// Upper corner [m].
+        max: Vector<Length>,
+    }
+}
+
+table! {
+    /// A solid cylinder between the centres of its two ends; three dimensions only.
+    Cylinder {
+        /// Centre of one end [m].
+        start: Vector<Length>,
+        /// Centre of the other end [m].
+        end: Vector<Length>,
+        /// Radius [m].
+        radius: Quantity<Length>,
+    }
+}
+
+table! {
+    /// All points behind a plane.
+    HalfSpace {
+        /// A point on the plane [m].
+        point: Vector<Length>,
+        /// Direction out of the half-space, of any length.
+        normal: Vector<Ratio>,
+    }
+}
+
+table! {
+    /// A polygon in the plane of x and y; in three dimensions a prism over it.
+    Polygon {
+        /// Corners in order, [[0, 0], [1, 0], [0, 1]] [m]; the last joins the first.
+        points: Corners,
+        /// Lower and upper z of the prism, [0, "1 m"]; three dimensions only.
+        height: Option<Vector<Length>>,
+    }
+}
+
+table! {
+    /// A shape turned about a point.
+    Rotated {
+        /// The shape before it is turned.
+        shape: Box<Shape>,
+        /// The point that stays in place [m].
+        center: Vector<Length>,
+        /// Axis of the turn, of any length; three dimensions only.
+        axis: Option<Vector<Ratio>>,
+        /// Angle, right-handed about the axis, in the plane counterclockwise: "30 deg".
+        angle: Quantity<Angle>,
+    }
+}
+
+/// Corners of a polygon, with the place of their list.
+#[derive(JsonSchema)]
+#[schemars(transparent)]
+pub struct Corners(Vec<Vector<Length>>, #[schemars(skip)] Node);
+
+impl Shape {
+    /// The shape in SI units.
+    pub fn resolve(&self, context: &Context) -> Result<geometry::Shape, Fault> {
+        let all = |shapes: &[Shape]| -> Result<Vec<_>, Fault> {
+            shapes.iter().map(|shape| shape.resolve(context)).collect()
+        };
+        Ok(match self {
+            Shape::Ball(ball) => geometry::Shape::Ball {
+                center: ball.center.value(context)?,
+                radius: ball.radius.positive(context)?,
+            },
+            Shape::Box(cuboid) => {
+                let (min, max) = corners(&cuboid.min, &cuboid.max, context)?;
+                geometry::Shape::Box { min, max }
+            }
+            Shape::Cylinder(cylinder) => cylinder.resolve(context)?,
+            Shape::HalfSpace(half) => geometry::Shape::HalfSpace {
+                point: half.point.value(context)?,
+                normal: direction(&half.normal, context)?,
+            },
+            Shape::Polygon(polygon) => polygon.resolve(context)?,
+            Shape::Union(shapes) => geometry::Shape::Union(all(shapes)?),
+            Shape::Intersection(shapes) => geometry::Shape::Intersection(all(shapes)?),
+            Shape::Difference(shapes) => geometry::Shape::Difference(all(shapes)?),
+            Shape::Rotated(rotated) => rotated.resolve(context)?,
+        })
+    }
+}
+
+impl Cylinder {
+    fn resolve(&self, context: &Context) -> Result<geometry::Shape, Fault> {
+        if context.dimension == Dimension::PlaneStrain {
+            return Err(self.start.node().fault("shapes other than a cylinder, as the scene is plane"));
+        }
+        let (start, end) = (self.start.value(context)?, self.end.value(context)?);
+        if start == end {
+            return Err(self.end.node().fault("another point than start"));
+        }
+        Ok(geometry::Shape::Cylinder { start, end, radius: self.radius.positive(context)? })
+    }
+}
+
+impl Polygon {
+    fn resolve(&self, context: &Context) -> Result<geometry::Shape, Fault> {
+        let points = self.points.0.iter().map(|point| point.pair(context)).collect::<Result<Vec<_>, _>>()?;
+        if points.len() < 3 {
+            return Err(self.points.1.fault("at least 3 corners"));
+        }
+        let height = match (&self.height, context.dimension) {
+            (None, Dimension::PlaneStrain) => [0.0, 0.0],
+            (Some(height), Dimension::Space) => {
+                let [lower, upper] = height.pair(context)?;
+                if lower >= upper {
+                    return Err(height.part(1).refused(upper, format!("more than the lower end, {lower} m")));
+                }
+                [lower, upper]
+            }
+            (Some(height), Dimension::PlaneStrain) => {
+                return Err(height.node().fault("no height, as the scene is plane"));
+            }
+            (None, Dimension::Space) => {
+                let key = self.points.1.key.replace("points", "height");
+                let fault =
+                    Fault::new(&key, "nothing, the key is missing", "lower and upper z: [0, \"1 m\"]");
+                return Err(fault);
+            }
+        };
+        Ok(geometry::Shape::Polygon { points, height })
+    }
+}
+
+impl Rotated {
+    fn resolve(&self, context: &Context) -> Result<geometry::Shape, Fault> {
+        let axis = match (&self.axis, context.dimension) {
+            (None, Dimension::PlaneStrain) => [0.0, 0.0, 1.0],
+            (Some(axis), Dimension::Space) => direction(axis, context)?,
+            (Some(axis), Dimension::PlaneStrain) => {
+                return Err(axis.node().fault("no axis, as the scene is plane"));
+            }
+            (None, Dimension::Space) => {
+                let key = self.angle.node().key.replace("angle", "axis");
+                return Err(Fault::new(
+                    &key,
+                    "nothing, the key is missing",
+                    "the axis of the turn: [0, 0, 1]",
+                ));
+            }
+        };
+        Ok(geometry::Shape::Rotated {
+            shape: Box::new(self.shape.resolve(context)?),
+            center: self.center.value(context)?,
+            axis,
+            angle: self.angle.value(context)?,
+        })
+    }
+}
+
+/// A vector that is not zero.
+fn direction(vector: &Vector<Ratio>, context: &Context) -> Result<[f64; 3], Fault> {
+    let value = vector.value(context)?;
+    if value == [0.0; 3] { Err(vector.node().fault("a direction, not zero")) } else { Ok(value) }
+}
+
+impl Read for Shape {
+    fn wanted() -> String {
+        format!("a shape ({}), like shape.ball = {{ center = [0, 0, 1], radius = 1 }}", KINDS.join(", "))
+    }
+
+    fn read(node: &Node) -> Result<Self, Fault> {
+        let Value::Table(children) = &node.value else { return Err(node.fault(Self::wanted())) };
+        let child = match &children[..] {
+            [child] => child,
+            [] => return Err(Fault::new(&node.key, "no shape", Self::wanted())),
+            [_, second, ..] => {
+                let found = format!("a second shape, `{}`", second.name);
+                let help = Some("union = [...] joins shapes".to_string());
+                return Err(Fault::new(&second.key, found, "one shape")
+                    .help(help)
+                    .at(second.name_span.clone()));
+            }
+        };
+        Ok(match child.name.as_str() {
+            "ball" => Shape::Ball(Ball::read(child)?),
+            "box" => Shape::Box(Cuboid::read(child)?),
+            "cylinder" => Shape::Cylinder(Cylinder::read(child)?),
+            "half_space" => Shape::HalfSpace(HalfSpace::read(child)?),
+            "polygon" => Shape::Polygon(Polygon::read(child)?),
+            "union" => Shape::Union(several(child, 1)?),
+            "intersection" => Shape::Intersection(several(child, 1)?),
+            "difference" => Shape::Difference(several(child, 2)?),
+            "rotated" => Shape::Rotated(Rotated::read(child)?),
+            name => {
+                let help = did_you_mean(name, KINDS.iter().copied());
+                let fault = Fault::new(&child.key, format!("unknown shape `{name}`"), KINDS.join(", "));
+                return Err(fault.help(help).at(child.name_span.clone()));
+            }
+        })
+    }
+}
+
+/// At least so many shapes.
+fn several(node: &Node, least: usize) -> Result<Vec<Shape>, Fault> {
+    let shapes = Vec::<Shape>::read(node)?;
+    if shapes.len() < least {
+        return Err(node.fault(format!("a list of at least {least}")));
+    }
+    Ok(shapes)
+}
+
+impl Read for Corners {
+    fn wanted() -> String {
+        "a list of corners: [[0, 0], [1, 0], [0, 1]]".to_string()
+    }
+
+    fn read(node: &Node) -> Result<Self, Fault> {
+        match node.value {
+            Value::List(_) => Ok(Corners(Vec::read(node)?, node.clone())),
+            _ => Err(node.fault(Self::wanted())),
+        }
+    }
+}

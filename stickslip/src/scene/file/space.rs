@@ -1,0 +1,146 @@
+//! `[space]`: dimensions, cells, particles and domain.
+
+use super::Context;
+use super::quantity::{Length, Quantity};
+use super::read::table;
+use super::text::{Choice, Count, Word};
+use super::vector::Vector;
+use crate::scene::error::Fault;
+use crate::scene::{self, BasisKind, Dimension, Discretization, Face, Precision};
+
+table! {
+    /// Dimensions, cells, particles and domain.
+    Space {
+        /// Plane strain or three dimensions.
+        dimension: Word<Dimension>,
+        /// Side of a grid cell [m].
+        cell: Quantity<Length>,
+        /// Particles along each side of a cell, 1 to 8: 2 means 4 in the plane, 8 in space.
+        #[schemars(extend("default" = 2))]
+        particles_per_side: Option<Count>,
+        /// Shape functions between particles and grid.
+        #[schemars(extend("default" = "gimp"))]
+        basis: Option<Word<BasisKind>>,
+        /// Number format of particles and grid.
+        #[schemars(extend("default" = "double"))]
+        precision: Option<Word<Precision>>,
+        /// A box that holds all material; by default space is unbounded.
+        domain: Option<Domain>,
+    }
+}
+
+table! {
+    /// A box that holds all material. A particle that leaves it stops the run.
+    Domain {
+        /// Lower corner [m].
+        min: Vector<Length>,
+        /// Upper corner [m].
+        max: Vector<Length>,
+        /// What the lower face across x does.
+        #[schemars(extend("default" = "open"))]
+        x_min: Option<Word<Face>>,
+        /// What the upper face across x does.
+        #[schemars(extend("default" = "open"))]
+        x_max: Option<Word<Face>>,
+        /// What the lower face across y does.
+        #[schemars(extend("default" = "open"))]
+        y_min: Option<Word<Face>>,
+        /// What the upper face across y does.
+        #[schemars(extend("default" = "open"))]
+        y_max: Option<Word<Face>>,
+        /// What the lower face across z does; three dimensions only.
+        #[schemars(extend("default" = "open"))]
+        z_min: Option<Word<Face>>,
+        /// What the upper face across z does; three dimensions only.
+        #[schemars(extend("default" = "open"))]
+        z_max: Option<Word<Face>>,
+    }
+}
+
+impl Choice for Dimension {
+    const WORDS: &'static [(&'static str, Self, &'static str)] = &[
+        ("plane-strain", Dimension::PlaneStrain, "Two dimensions, no strain out of the plane."),
+        ("3d", Dimension::Space, "Three dimensions."),
+    ];
+}
+
+impl Choice for BasisKind {
+    const WORDS: &'static [(&'static str, Self, &'static str)] = &[
+        ("gimp", BasisKind::Gimp, "Tent functions averaged over the particle's box (uniform GIMP)."),
+        ("linear", BasisKind::Linear, "Tent functions at the particle's centre."),
+    ];
+}
+
+impl Choice for Precision {
+    const WORDS: &'static [(&'static str, Self, &'static str)] =
+        &[("double", Precision::Double, "64-bit numbers."), ("single", Precision::Single, "32-bit numbers.")];
+}
+
+impl Choice for Face {
+    const WORDS: &'static [(&'static str, Self, &'static str)] = &[
+        ("open", Face::Open, "Nothing; material that reaches it stops the run."),
+        ("symmetry", Face::Symmetry, "A mirror: no velocity through it, no resistance along it."),
+        ("fixed", Face::Fixed, "Material sticks to it: no velocity at all."),
+    ];
+}
+
+impl Space {
+    /// Number format.
+    pub fn precision(&self, context: &Context) -> Result<Precision, Fault> {
+        self.precision.as_ref().map_or(Ok(Precision::Double), |word| word.value(context))
+    }
+
+    /// Cells, particles and shape functions.
+    pub fn discretization(&self, context: &Context) -> Result<Discretization, Fault> {
+        Ok(Discretization {
+            cell: self.cell.positive(context)?,
+            particles_per_side: self
+                .particles_per_side
+                .as_ref()
+                .map_or(Ok(2), |n| n.value(context, 1..=8))?,
+            basis: self.basis.as_ref().map_or(Ok(BasisKind::Gimp), |word| word.value(context))?,
+        })
+    }
+
+    /// The box of all material, if there is one.
+    pub fn domain(&self, context: &Context) -> Result<Option<scene::Domain>, Fault> {
+        self.domain.as_ref().map(|domain| domain.resolve(context)).transpose()
+    }
+}
+
+impl Domain {
+    fn resolve(&self, context: &Context) -> Result<scene::Domain, Fault> {
+        let (min, max) = corners(&self.min, &self.max, context)?;
+        let mut faces = [[Face::Open; 2]; 3];
+        let written = [[&self.x_min, &self.x_max], [&self.y_min, &self.y_max], [&self.z_min, &self.z_max]];
+        for (axis, pair) in written.iter().enumerate() {
+            for (side, word) in pair.iter().enumerate() {
+                let Some(word) = word else { continue };
+                if axis == 2 && context.dimension == Dimension::PlaneStrain {
+                    return Err(word
+                        .node()
+                        .fault("x_min, x_max, y_min and y_max only, as the scene is plane"));
+                }
+                faces[axis][side] = word.value(context)?;
+            }
+        }
+        Ok(scene::Domain { min, max, faces })
+    }
+}
+
+/// Two corners of a box, the lower below the upper along each axis.
+pub fn corners(
+    min: &Vector<Length>,
+    max: &Vector<Length>,
+    context: &Context,
+) -> Result<([f64; 3], [f64; 3]), Fault> {
+    let (lower, upper) = (min.value(context)?, max.value(context)?);
+    let axes = if context.dimension == Dimension::Space { 3 } else { 2 };
+    match (0..axes).find(|axis| lower[*axis] >= upper[*axis]) {
+        None => Ok((lower, upper)),
+        Some(axis) => {
+            let allowed = format!("more than {} m, the {} of min", lower[axis], ["x", "y", "z"][axis]);
+            Err(max.part(axis).refused(upper[axis], allowed))
+        }
+    }
+}

@@ -1,0 +1,55 @@
+//! `[time]`: duration and time step.
+
+use super::Context;
+use super::quantity::{Duration, Quantity, Ratio};
+use super::read::table;
+use super::text::{Choice, Word};
+use crate::scene::error::Fault;
+use crate::scene::{self, StressUpdate};
+
+table! {
+    /// Duration and time step.
+    Time {
+        /// Simulated time at which the run ends [s].
+        end: Quantity<Duration>,
+        /// Time step as a fraction of the time in which a wave crosses a cell, above 0 and up to 1.
+        #[schemars(extend("default" = 0.4))]
+        courant: Option<Quantity<Ratio>>,
+        /// No step is longer than this [s]; by default only the Courant number limits it.
+        max_step: Option<Quantity<Duration>>,
+        /// When in the step the stress is updated.
+        #[schemars(extend("default" = "modified-last"))]
+        stress_update: Option<Word<StressUpdate>>,
+        /// Share of the grid's velocity itself (PIC) in the particles' new velocity, 0 to 1; the rest is FLIP.
+        #[schemars(extend("default" = 0))]
+        pic_share: Option<Quantity<Ratio>>,
+    }
+}
+
+impl Choice for StressUpdate {
+    const WORDS: &'static [(&'static str, Self, &'static str)] = &[
+        ("modified-last", StressUpdate::ModifiedLast, "From the particles' new velocities (MUSL)."),
+        ("first", StressUpdate::First, "From the velocities at the start of the step (USF)."),
+        ("last", StressUpdate::Last, "From the velocities at the end of the step (USL)."),
+    ];
+}
+
+impl Time {
+    /// Duration and time step in SI units.
+    pub fn resolve(&self, context: &Context) -> Result<scene::Time, Fault> {
+        let courant = self.courant.as_ref().map_or(Ok(0.4), |courant| {
+            courant.checked(context, "a number above 0 and up to 1", |value| value > 0.0 && value <= 1.0)
+        });
+        let pic_share = self.pic_share.as_ref().map_or(Ok(0.0), |share| {
+            share.checked(context, "a number from 0 to 1", |value| (0.0..=1.0).contains(&value))
+        });
+        let update = self.stress_update.as_ref();
+        Ok(scene::Time {
+            end: self.end.positive(context)?,
+            courant: courant?,
+            max_step: self.max_step.as_ref().map(|step| step.positive(context)).transpose()?,
+            stress_update: update.map_or(Ok(StressUpdate::ModifiedLast), |word| word.value(context))?,
+            pic_share: pic_share?,
+        })
+    }
+}

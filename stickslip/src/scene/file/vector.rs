@@ -1,0 +1,164 @@
+//! Vectors as scene files write them: two components in the plane, three in space.
+
+use super::Context;
+use super::quantity::{AngularVelocity, Measure, Quantity};
+use super::read::Read;
+use crate::scene::error::Fault;
+use crate::scene::source::{Node, Value};
+use crate::scene::units::Powers;
+use crate::scene::{Dimension, Expression};
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use std::borrow::Cow;
+
+/// A vector: as many quantities as the scene has dimensions.
+pub struct Vector<M> {
+    node: Node,
+    parts: Vec<Quantity<M>>,
+}
+
+/// An angular velocity: a vector, in the plane a number.
+pub struct Spin(Node);
+
+impl<M: Measure> Vector<M> {
+    /// Its components in SI units; in the plane the third is zero.
+    pub fn value(&self, context: &Context) -> Result<[f64; 3], Fault> {
+        self.each(context, |part| part.value(context), 0.0)
+    }
+
+    /// Its components as functions of time.
+    pub fn over_time(&self, context: &Context) -> Result<[Expression; 3], Fault> {
+        self.each(context, |part| part.over_time(context), Expression::Constant(0.0))
+    }
+
+    /// The two components of a point in the plane.
+    pub fn pair(&self, context: &Context) -> Result<[f64; 2], Fault> {
+        match &self.parts[..] {
+            [x, y] => Ok([x.value(context)?, y.value(context)?]),
+            _ => Err(self.node.fault("2 numbers: [x, y]")),
+        }
+    }
+
+    /// The component across an axis, as written.
+    pub fn part(&self, axis: usize) -> &Quantity<M> {
+        &self.parts[axis]
+    }
+
+    /// Where it stands.
+    pub fn node(&self) -> &Node {
+        &self.node
+    }
+
+    fn each<T: Clone>(
+        &self,
+        context: &Context,
+        of: impl Fn(&Quantity<M>) -> Result<T, Fault>,
+        zero: T,
+    ) -> Result<[T; 3], Fault> {
+        match (&self.parts[..], context.dimension) {
+            ([x, y], Dimension::PlaneStrain) => Ok([of(x)?, of(y)?, zero]),
+            ([x, y, z], Dimension::Space) => Ok([of(x)?, of(y)?, of(z)?]),
+            (_, Dimension::PlaneStrain) => Err(self.node.fault("2 numbers, as the scene is plane: [x, y]")),
+            (_, Dimension::Space) => Err(self.node.fault("3 numbers, as the scene is 3d: [x, y, z]")),
+        }
+    }
+}
+
+impl Spin {
+    /// Its components in SI units; in the plane only the third is not zero.
+    pub fn value(&self, context: &Context) -> Result<[f64; 3], Fault> {
+        match context.dimension {
+            Dimension::PlaneStrain => Ok([0.0, 0.0, self.turn()?.value(context)?]),
+            Dimension::Space => self.vector()?.value(context),
+        }
+    }
+
+    /// Its components as functions of time.
+    pub fn over_time(&self, context: &Context) -> Result<[Expression; 3], Fault> {
+        let zero = || Expression::Constant(0.0);
+        match context.dimension {
+            Dimension::PlaneStrain => Ok([zero(), zero(), self.turn()?.over_time(context)?]),
+            Dimension::Space => self.vector()?.over_time(context),
+        }
+    }
+
+    /// Where it stands.
+    pub fn node(&self) -> &Node {
+        &self.0
+    }
+
+    fn vector(&self) -> Result<Vector<AngularVelocity>, Fault> {
+        match self.0.value {
+            Value::List(_) => Vector::read(&self.0),
+            _ => Err(self.0.fault("3 numbers, as the scene is 3d, like [0, \"5 rad/s\", 0]")),
+        }
+    }
+
+    fn turn(&self) -> Result<Quantity<AngularVelocity>, Fault> {
+        match self.0.value {
+            Value::List(_) => {
+                Err(self.0.fault("one number, as the scene is plane: the turn about z, like \"5 rad/s\""))
+            }
+            _ => Ok(Quantity::new(&self.0)),
+        }
+    }
+}
+
+impl<M: Measure> Read for Vector<M> {
+    fn wanted() -> String {
+        format!("a list such as [0, \"{}\", 0], two in the plane", M::example()).replace("\"0.5\"", "0.5")
+    }
+
+    fn read(node: &Node) -> Result<Self, Fault> {
+        match &node.value {
+            Value::List(items) => {
+                let parts = items.iter().map(Quantity::read).collect::<Result<_, _>>()?;
+                Ok(Vector { node: node.clone(), parts })
+            }
+            _ => Err(node.fault(Self::wanted())),
+        }
+    }
+}
+
+impl Read for Spin {
+    fn wanted() -> String {
+        "a list such as [0, \"5 rad/s\", 0], one number in the plane".to_string()
+    }
+
+    fn read(node: &Node) -> Result<Self, Fault> {
+        match node.value {
+            Value::Number(_) | Value::Text(_) | Value::List(_) => Ok(Spin(node.clone())),
+            _ => Err(node.fault(Self::wanted())),
+        }
+    }
+}
+
+impl<M: Measure> JsonSchema for Vector<M> {
+    fn schema_name() -> Cow<'static, str> {
+        format!("Vector_{}", Powers::from(M::POWERS).symbol()).into()
+    }
+
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let part = Quantity::<M>::json_schema(generator);
+        json_schema!({ "type": "array", "items": part, "minItems": 2, "maxItems": 3 })
+    }
+}
+
+impl JsonSchema for Spin {
+    fn schema_name() -> Cow<'static, str> {
+        "Spin".into()
+    }
+
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let number = Quantity::<AngularVelocity>::json_schema(generator);
+        let vector = Vector::<AngularVelocity>::json_schema(generator);
+        json_schema!({ "anyOf": [number, vector] })
+    }
+}

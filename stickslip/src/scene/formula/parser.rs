@@ -1,0 +1,282 @@
+//! From the text of a formula to instructions, by operator precedence (Pratt 1973), checking dimensions on the way.
+//!
+//! From weakest to strongest: comparisons, `+ -`, `* /`, signs, `^` (from the right: `2^3^2` = 512, `-2^2` = -4), a number
+//! with its unit.
+
+use super::token::{self, Token};
+use super::{Formula, FormulaError, Kind, Meaning, Misread, Names, Quantity, reserved};
+use crate::scene::expression::{Expression, Instruction, run};
+use crate::scene::suggestion::did_you_mean;
+use crate::scene::units::{Powers, Unit};
+use std::ops::Range;
+
+/// Brackets and powers may nest this deep.
+const DEEPEST: usize = 64;
+/// Strength of a sign before its operand: above `*`, below `^`.
+const SIGN: u8 = 6;
+
+/// Reads one formula.
+pub struct Parser<'a> {
+    pub(super) text: &'a str,
+    pub(super) words: Vec<(Token<'a>, Range<usize>)>,
+    pub(super) next: usize,
+    depth: usize,
+    pub(super) code: Vec<Instruction>,
+    pub(super) names: &'a dyn Names,
+}
+
+/// A part of the formula that has been read and whose instructions stand at `code[start..]`.
+pub struct Part {
+    pub kind: Kind,
+    /// Its value, unless it varies in time.
+    pub value: Option<f64>,
+    pub start: usize,
+    pub span: Range<usize>,
+}
+
+pub type Read<T> = Result<T, FormulaError>;
+
+impl<'a> Parser<'a> {
+    /// A parser at the start of `text`.
+    pub fn new(text: &'a str, names: &'a dyn Names) -> Read<Self> {
+        let words = token::split(text).map_err(FormulaError::Here)?;
+        Ok(Parser { text, words, next: 0, depth: 0, code: Vec::new(), names })
+    }
+
+    /// Reads all of it.
+    pub fn formula(mut self) -> Read<Formula> {
+        let whole = self.expression(0)?;
+        let (token, span) = self.peek();
+        if token != Token::End {
+            let help = match token {
+                Token::Name(name) if Unit::named(name).is_some() => {
+                    Some("units are joined by * and /: `1 kg*m/s^2`".to_string())
+                }
+                Token::Name(_) | Token::Number(_) | Token::Symbol("(") => {
+                    Some("a product needs its `*`".to_string())
+                }
+                _ => None,
+            };
+            return fail(span.clone(), self.quote(&span), "an operator, or the end of the formula", help);
+        }
+        if whole.kind == Kind::Truth {
+            return fail(whole.span, "a comparison", "a number", Some("if(condition, a, b) chooses".into()));
+        }
+        Ok(Formula { expression: Expression::new(self.text, self.code), kind: whole.kind })
+    }
+
+    /// Reads operators stronger than `weakest` and their operands.
+    pub(super) fn expression(&mut self, weakest: u8) -> Read<Part> {
+        self.depth += 1;
+        if self.depth > DEEPEST {
+            let found = format!("more than {DEEPEST} levels of brackets and powers");
+            return fail(
+                self.peek().1,
+                found,
+                "a simpler formula",
+                Some("name its parts as parameters".into()),
+            );
+        }
+        let mut left = self.operand()?;
+        loop {
+            let (token, _) = self.peek();
+            let Token::Symbol(symbol) = token else { break };
+            let (strength, right_side) = match symbol {
+                "<" | "<=" | ">" | ">=" | "==" | "!=" => (1, 2),
+                "+" | "-" => (2, 3),
+                "*" | "/" => (4, 5),
+                "^" => (8, SIGN),
+                _ => break,
+            };
+            if strength < weakest || (strength == 1 && left.kind == Kind::Truth) {
+                break;
+            }
+            self.next += 1;
+            let right = self.expression(right_side)?;
+            left = self.combine(left, symbol, right)?;
+        }
+        self.depth -= 1;
+        Ok(left)
+    }
+
+    /// Reads a sign, a bracket, a quantity or a name.
+    fn operand(&mut self) -> Read<Part> {
+        let (token, span) = self.take();
+        let start = self.code.len();
+        match token {
+            Token::Number(number) => {
+                let (unit, end) = self.unit(span.end)?;
+                let kind = unit.map_or(Kind::Number, |unit| Kind::Known(unit.powers));
+                let value = unit.map_or(number, |unit| unit.to_si(number));
+                Ok(self.push(Quantity { value, kind }, span.start..end))
+            }
+            Token::Name(name) if self.peek().0 == Token::Symbol("(") => self.call(name, span),
+            Token::Name(name) => self.name(name, span),
+            Token::Symbol(sign @ ("-" | "+")) => {
+                let part = self.expression(SIGN)?;
+                if part.kind == Kind::Truth {
+                    return fail(part.span, "a comparison", "a number", None);
+                }
+                if sign == "-" {
+                    self.code.push(Instruction::Negate);
+                }
+                let span = span.start..part.span.end;
+                Ok(self.folded(Part { span, ..part }))
+            }
+            Token::Symbol("(") => {
+                let inner = self.expression(0)?;
+                let end = self.expect(")")?.end;
+                Ok(Part { span: span.start..end, start, ..inner })
+            }
+            _ => {
+                fail(span.clone(), self.quote(&span), "a number, a parameter, a function or a bracket", None)
+            }
+        }
+    }
+
+    /// The meaning of a name that stands alone.
+    fn name(&mut self, name: &str, span: Range<usize>) -> Read<Part> {
+        let number = |value| Quantity { value, kind: Kind::Number };
+        match name {
+            "pi" => return Ok(self.push(number(std::f64::consts::PI), span)),
+            "inf" => return Ok(self.push(number(f64::INFINITY), span)),
+            _ => {}
+        }
+        match self.names.meaning(name) {
+            Meaning::Value(quantity) => Ok(self.push(quantity, span)),
+            Meaning::Wrong(fault) => Err(FormulaError::Parameter(fault)),
+            Meaning::Time => {
+                let start = self.code.len();
+                self.code.push(Instruction::Time);
+                Ok(Part { kind: Kind::Timed(Powers::TIME), value: None, start, span })
+            }
+            Meaning::Unknown if name == "t" => {
+                let allowed = "a formula without time: only prescribed motion and references vary in time";
+                fail(span, "`t`, the time", allowed, None)
+            }
+            Meaning::Unknown => {
+                let known = self.names.all();
+                let parameters = known.iter().map(String::as_str);
+                let help = match Unit::named(name) {
+                    Some(_) => Some(format!("a unit stands right after a number: `1 {name}`")),
+                    None => did_you_mean(name, parameters).or_else(|| did_you_mean(name, reserved())),
+                };
+                fail(span, format!("unknown name `{name}`"), self.choices(), help)
+            }
+        }
+    }
+
+    fn choices(&self) -> String {
+        let known = self.names.all();
+        let parameters =
+            if known.is_empty() { "(there are none)".to_string() } else { format!("({})", known.join(", ")) };
+        format!("a parameter {parameters}, pi or inf")
+    }
+
+    /// Emits an operator between two parts.
+    fn combine(&mut self, left: Part, symbol: &str, right: Part) -> Read<Part> {
+        let value = left.value.and(right.value);
+        let (instruction, kind) = match symbol {
+            "*" => (Instruction::Multiply, left.kind.product(right.kind, 1.0)),
+            "/" => (Instruction::Divide, left.kind.product(right.kind, -1.0)),
+            "^" => {
+                if right.kind.has_dimension() || right.kind == Kind::Truth {
+                    return fail(
+                        right.span,
+                        format!("{} as exponent", right.kind.name()),
+                        "a plain number",
+                        None,
+                    );
+                }
+                (Instruction::Power, left.kind.power(right.value))
+            }
+            "+" => (Instruction::Add, Ok(self.agree(&left, &right)?.0)),
+            "-" => (Instruction::Subtract, Ok(self.agree(&left, &right)?.0)),
+            _ => {
+                self.agree(&left, &right)?;
+                if symbol.starts_with('>') {
+                    // a > b is b < a
+                    self.code[left.start..].rotate_left(right.start - left.start);
+                }
+                let instruction = match symbol {
+                    "<" | ">" => Instruction::Less,
+                    "<=" | ">=" => Instruction::LessOrEqual,
+                    "==" => Instruction::Equal,
+                    _ => Instruction::NotEqual,
+                };
+                (instruction, Ok(Kind::Truth))
+            }
+        };
+        let span = left.span.start..right.span.end;
+        let Ok(kind) = kind else {
+            let found = format!("{} {symbol} {}", left.kind.name(), right.kind.name());
+            return fail(span, found, "numbers, and constant exponents of quantities with units", None);
+        };
+        self.code.push(instruction);
+        Ok(self.folded(Part { kind, value, start: left.start, span }))
+    }
+
+    /// The common kind of two parts; the value only says whether both are constant.
+    pub(super) fn agree(&self, a: &Part, b: &Part) -> Read<(Kind, Option<f64>)> {
+        let span = a.span.start..b.span.end;
+        let Ok(kind) = a.kind.sum(b.kind) else {
+            let found = format!("{} with {}", a.kind.name(), b.kind.name());
+            let timed = matches!(a.kind, Kind::Timed(_)) || matches!(b.kind, Kind::Timed(_));
+            let help =
+                timed.then(|| "where units are written, every number needs its own; t is in s".to_string());
+            return fail(span, found, "terms of the same dimension", help);
+        };
+        Ok((kind, a.value.and(b.value)))
+    }
+
+    fn push(&mut self, quantity: Quantity, span: Range<usize>) -> Part {
+        self.code.push(Instruction::Push(quantity.value));
+        Part { kind: quantity.kind, value: Some(quantity.value), start: self.code.len() - 1, span }
+    }
+
+    /// The part with its instructions replaced by their number if it does not vary in time.
+    pub(super) fn folded(&mut self, part: Part) -> Part {
+        if part.value.is_none() {
+            return part;
+        }
+        let value = run(&self.code[part.start..], 0.0);
+        self.code.truncate(part.start);
+        self.code.push(Instruction::Push(value));
+        Part { value: Some(value), ..part }
+    }
+
+    pub(super) fn peek(&self) -> (Token<'a>, Range<usize>) {
+        let last = self.words.len() - 1;
+        self.words[self.next.min(last)].clone()
+    }
+
+    pub(super) fn take(&mut self) -> (Token<'a>, Range<usize>) {
+        let word = self.peek();
+        self.next += 1;
+        word
+    }
+
+    pub(super) fn expect(&mut self, symbol: &'static str) -> Read<Range<usize>> {
+        match self.take() {
+            (Token::Symbol(found), span) if found == symbol => Ok(span),
+            (_, span) => fail(span.clone(), self.quote(&span), format!("`{symbol}`"), None),
+        }
+    }
+
+    pub(super) fn quote(&self, span: &Range<usize>) -> String {
+        match &self.text[span.clone()] {
+            "" => "the end of the formula".to_string(),
+            text => format!("`{text}`"),
+        }
+    }
+}
+
+/// A mistake at these bytes.
+pub fn fail<T>(
+    span: Range<usize>,
+    found: impl Into<String>,
+    allowed: impl Into<String>,
+    help: Option<String>,
+) -> Read<T> {
+    Err(FormulaError::Here(Misread { span, found: found.into(), allowed: allowed.into(), help }))
+}

@@ -1,0 +1,116 @@
+//! `--set name=value`: parameters and keys that are replaced before a scene is read.
+
+use super::error::Fault;
+use super::source::{Node, Value, joined, node};
+use super::suggestion::did_you_mean;
+use std::ops::Range;
+use toml::de::DeValue;
+
+/// Where an override stands among all documents: its name, and the start of its value.
+pub(super) struct Place {
+    pub name: Range<usize>,
+    pub value: usize,
+}
+
+/// Puts `value` in place of the parameter `name`, or of the key if `name` is a path with dots.
+///
+/// A value that is TOML (a number, a list, text in quotes) is taken as such, anything else as text: `gap`, `2 mm`, `pi / 6`.
+///
+/// # Errors
+/// A parameter that does not exist; a path through a value that is no table or list.
+pub(super) fn put(root: &mut Node, name: &str, value: &str, place: &Place) -> Result<(), Fault> {
+    let written = value.trim();
+    let start = place.value + (value.len() - value.trim_start().len());
+    let read = match DeValue::parse(written) {
+        Ok(parsed) => node(&parsed, String::new(), start),
+        Err(_) => Node {
+            key: String::new(),
+            name: String::new(),
+            name_span: place.name.clone(),
+            span: start..start + written.len(),
+            value: Value::Text(written.to_string()),
+        },
+    };
+    let parameter = !name.contains(['.', '[']);
+    if parameter {
+        let known = root.children().iter().find(|child| child.name == "parameters");
+        let known: Vec<&str> =
+            known.iter().flat_map(|table| table.children()).map(|child| child.name.as_str()).collect();
+        if !known.contains(&name) {
+            let choices = if known.is_empty() { "there are none".to_string() } else { known.join(", ") };
+            let found = format!("no parameter `{name}`");
+            let help = did_you_mean(name, known)
+                .or_else(|| Some("other keys are set by their path with dots: time.end=\"1 s\"".to_string()));
+            let allowed = format!("a parameter of the scene ({choices})");
+            return Err(Fault::new("", found, allowed).help(help).at(place.name.clone()));
+        }
+    }
+    let path = if parameter { joined("parameters", name) } else { name.to_string() };
+    let mut target = root;
+    for step in path.split('.').flat_map(steps) {
+        target = descend(target, step, place)?;
+    }
+    let key = target.key.clone();
+    *target = Node { name: target.name.clone(), name_span: place.name.clone(), ..renamed(read, key) };
+    Ok(())
+}
+
+/// `bodies[0]` is two steps: a name and a number.
+enum Step<'a> {
+    Name(&'a str),
+    Number(&'a str),
+}
+
+fn steps(word: &str) -> impl Iterator<Item = Step<'_>> {
+    let (name, numbers) = word.split_at(word.find('[').unwrap_or(word.len()));
+    let numbers = numbers.split('[').skip(1).map(|number| Step::Number(number.trim_end_matches(']')));
+    std::iter::once(Step::Name(name)).chain(numbers)
+}
+
+fn descend<'n>(node: &'n mut Node, step: Step<'_>, place: &Place) -> Result<&'n mut Node, Fault> {
+    let found = node.found();
+    let key = node.key.clone();
+    let fault = |found: String, allowed: &str| Fault::new(&key, found, allowed).at(place.name.clone());
+    match (step, &mut node.value) {
+        (Step::Name(name), Value::Table(children)) => {
+            let at = children.iter().position(|child| child.name == name).unwrap_or_else(|| {
+                children.push(Node {
+                    key: joined(&key, name),
+                    name: name.to_string(),
+                    name_span: place.name.clone(),
+                    span: place.name.clone(),
+                    value: Value::Table(Vec::new()),
+                });
+                children.len() - 1
+            });
+            Ok(&mut children[at])
+        }
+        (Step::Number(number), Value::List(items)) => {
+            let count = items.len();
+            let item = number.parse().ok().and_then(|number: usize| items.get_mut(number));
+            item.ok_or_else(|| {
+                fault(format!("number {number} of a list of {count}"), "a number in the list, from 0")
+            })
+        }
+        (Step::Name(name), _) => Err(fault(format!("`.{name}` in {found}"), "a name in a table")),
+        (Step::Number(number), _) => Err(fault(format!("`[{number}]` in {found}"), "a number in a list")),
+    }
+}
+
+/// The value with all its keys as if it stood at `key`.
+fn renamed(mut node: Node, key: String) -> Node {
+    match &mut node.value {
+        Value::Table(children) => {
+            for child in children {
+                *child = renamed(child.clone(), joined(&key, &child.name));
+            }
+        }
+        Value::List(items) => {
+            for (i, item) in items.iter_mut().enumerate() {
+                *item = renamed(item.clone(), format!("{key}[{i}]"));
+            }
+        }
+        _ => {}
+    }
+    Node { key, ..node }
+}

@@ -1,0 +1,210 @@
+//! Named parameters: numbers and formulas that may use each other in any order, and words for text.
+
+use super::Parameter;
+use super::error::Fault;
+use super::expression::Expression;
+use super::formula::{self, Formula, FormulaError, Kind, Meaning, Names, Quantity};
+use super::source::{Node, Source, Value};
+use super::suggestion::did_you_mean;
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+
+/// The parameters of a scene, evaluated when they are first asked for.
+pub(super) struct Parameters<'s> {
+    source: &'s Source,
+    nodes: &'s [Node],
+    evaluated: RefCell<BTreeMap<&'s str, Result<Quantity, Fault>>>,
+    /// Parameters that are being evaluated, to notice circles.
+    pending: RefCell<Vec<&'s str>>,
+}
+
+/// May a formula use `t`?
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Variation {
+    Constant,
+    InTime,
+}
+
+struct Scope<'a, 's>(&'a Parameters<'s>, Variation);
+
+impl<'s> Parameters<'s> {
+    /// The parameters `nodes` of `source`.
+    ///
+    /// # Errors
+    /// Names that no formula can use; values that are neither number nor text.
+    pub fn new(source: &'s Source, nodes: &'s [Node]) -> Result<Self, Fault> {
+        for node in nodes {
+            let name = &node.name;
+            let plain = name.starts_with(|first: char| first.is_alphabetic() || first == '_')
+                && name.chars().all(|letter| letter.is_alphanumeric() || letter == '_');
+            let fault = |found: String, allowed: &str| {
+                Err(Fault::new(&node.key, found, allowed).at(node.name_span.clone()))
+            };
+            if !plain {
+                return fault(
+                    format!("the name `{name}`"),
+                    "letters, digits and _, not beginning with a digit",
+                );
+            }
+            if formula::reserved().any(|word| word == name) {
+                return fault(format!("the name `{name}`, which formulas use already"), "another name");
+            }
+            if !matches!(node.value, Value::Number(_) | Value::Text(_)) {
+                return Err(node.fault("a number, or a formula or a word in quotes"));
+            }
+        }
+        Ok(Parameters { source, nodes, evaluated: RefCell::default(), pending: RefCell::default() })
+    }
+
+    /// Every parameter with its value in this run. A text that has no value as a formula is a word.
+    ///
+    /// # Errors
+    /// A formula that is wrong, unless it is a single word or used as text: `"{contact}"`.
+    pub fn resolved(&self) -> Result<BTreeMap<String, Parameter>, Fault> {
+        let mut resolved = BTreeMap::new();
+        for node in self.nodes {
+            let value = match self.quantity(&node.name) {
+                Some(Ok(quantity)) => Parameter::Number(quantity.value),
+                Some(Err(fault)) if !(is_word(node) || is_used_as_text(&node.name, self.source.root())) => {
+                    return Err(fault);
+                }
+                _ => Parameter::Text(self.text(node)?),
+            };
+            resolved.insert(node.name.clone(), value);
+        }
+        Ok(resolved)
+    }
+
+    /// What a number or a formula says.
+    ///
+    /// # Errors
+    /// A value that is no number and no formula, and whatever is wrong with the formula; `allowed` says what would be right.
+    pub fn formula(&self, node: &Node, variation: Variation, allowed: &str) -> Result<Formula, Fault> {
+        match &node.value {
+            Value::Number(number) => {
+                Ok(Formula { expression: Expression::Constant(*number), kind: Kind::Number })
+            }
+            Value::Text(text) => {
+                formula::compile(text, &Scope(self, variation)).map_err(|error| match error {
+                    FormulaError::Parameter(fault) => fault,
+                    FormulaError::Here(misread) => Fault::new(&node.key, misread.found, misread.allowed)
+                        .help(misread.help)
+                        .at(self.source.inside(node, misread.span)),
+                })
+            }
+            _ => Err(node.fault(allowed)),
+        }
+    }
+
+    /// A text with the parameters in it, `{name}`, replaced by their values; `{{` is a brace.
+    ///
+    /// # Errors
+    /// A value that is no text, a parameter that does not exist, a brace without end.
+    pub fn text(&self, node: &Node) -> Result<String, Fault> {
+        let text = match &node.value {
+            Value::Text(text) => text,
+            Value::Number(number) => return Ok(number.to_string()),
+            _ => return Err(node.fault("text in quotes")),
+        };
+        let mut result = String::new();
+        let mut at = 0;
+        while let Some(brace) = text[at..].find('{') {
+            result.push_str(&text[at..at + brace]);
+            let open = at + brace;
+            let rest = &text[open + 1..];
+            if rest.starts_with('{') {
+                result.push('{');
+                at = open + 2;
+                continue;
+            }
+            let Some(length) = rest.find('}') else {
+                let fault = Fault::new(&node.key, "`{` without `}`", "a parameter in braces: \"{contact}\"");
+                return Err(fault
+                    .help(Some("`{{` is a brace itself".to_string()))
+                    .at(self.source.inside(node, open..text.len())));
+            };
+            let name = rest[..length].trim();
+            result.push_str(&self.word(name).unwrap_or_else(|| {
+                let allowed = format!("a parameter ({})", self.names().join(", "));
+                Err(Fault::new(&node.key, format!("unknown parameter `{name}`"), allowed)
+                    .help(did_you_mean(name, self.names()))
+                    .at(self.source.inside(node, open..open + length + 2)))
+            })?);
+            at = open + length + 2;
+        }
+        result.push_str(&text[at..]);
+        Ok(result)
+    }
+
+    /// The parameter as text, if there is one of that name.
+    fn word(&self, name: &str) -> Option<Result<String, Fault>> {
+        let node = self.nodes.iter().find(|node| node.name == name)?;
+        Some(self.guarded(node, || self.text(node)))
+    }
+
+    /// The parameter as a number, if there is one of that name.
+    fn quantity(&self, name: &str) -> Option<Result<Quantity, Fault>> {
+        let node = self.nodes.iter().find(|node| node.name == name)?;
+        if let Some(known) = self.evaluated.borrow().get(name) {
+            return Some(known.clone());
+        }
+        let quantity = self.guarded(node, || {
+            let formula = self.formula(node, Variation::Constant, "a number")?;
+            let kind = if formula.kind == Kind::Number { Kind::Any } else { formula.kind };
+            Ok(Quantity { value: formula.expression.at(0.0), kind })
+        });
+        self.evaluated.borrow_mut().insert(&node.name, quantity.clone());
+        Some(quantity)
+    }
+
+    /// `evaluate`, unless that is going on already.
+    fn guarded<T>(&self, node: &'s Node, evaluate: impl FnOnce() -> Result<T, Fault>) -> Result<T, Fault> {
+        if let Some(first) = self.pending.borrow().iter().position(|name| *name == node.name) {
+            let circle = self.pending.borrow()[first..].join(" -> ");
+            let allowed = "parameters that do not need each other in a circle";
+            return Err(Fault::new(&node.key, format!("the circle {circle} -> {}", node.name), allowed));
+        }
+        self.pending.borrow_mut().push(&node.name);
+        let result = evaluate();
+        self.pending.borrow_mut().pop();
+        result
+    }
+
+    fn names(&self) -> Vec<&'s str> {
+        self.nodes.iter().map(|node| node.name.as_str()).collect()
+    }
+}
+
+impl Names for Scope<'_, '_> {
+    fn meaning(&self, name: &str) -> Meaning {
+        if name == "t" && self.1 == Variation::InTime {
+            return Meaning::Time;
+        }
+        match self.0.quantity(name) {
+            Some(Ok(quantity)) => Meaning::Value(quantity),
+            Some(Err(fault)) => Meaning::Wrong(fault),
+            None => Meaning::Unknown,
+        }
+    }
+
+    fn all(&self) -> Vec<String> {
+        self.0.names().into_iter().map(str::to_string).collect()
+    }
+}
+
+/// `gap`, `modified-last`
+fn is_word(node: &Node) -> bool {
+    matches!(&node.value, Value::Text(text) if text.starts_with(char::is_alphabetic)
+        && text.chars().all(|letter| letter.is_alphanumeric() || letter == '-' || letter == '_'))
+}
+
+/// Does any text in the scene say `{name}`?
+fn is_used_as_text(name: &str, node: &Node) -> bool {
+    match &node.value {
+        Value::Text(text) => text
+            .split('{')
+            .skip(1)
+            .any(|rest| rest.split_once('}').is_some_and(|(inner, _)| inner.trim() == name)),
+        _ => node.children().iter().any(|child| is_used_as_text(name, child)),
+    }
+}

@@ -1,0 +1,262 @@
+//! The text of a scene and where each key stands in it.
+
+use super::error::{Fault, Mistake, SceneError};
+use super::{Problem, overrides};
+use std::ops::Range;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// The text of a scene and where each key stands in it, so that a [`Problem`] found later can be shown in its place.
+#[derive(Clone, Debug)]
+pub struct Source {
+    /// The file, then each override: all in one range of byte positions, one after the other.
+    documents: Vec<Document>,
+    root: Node,
+}
+
+#[derive(Clone, Debug)]
+struct Document {
+    name: String,
+    text: String,
+    start: usize,
+}
+
+/// A value with its key and its place.
+#[derive(Clone, Debug)]
+pub(super) struct Node {
+    /// The whole path: `bodies[1].shape.ball`.
+    pub key: String,
+    /// The last word of the path; empty in a list.
+    pub name: String,
+    /// Where the key stands.
+    pub name_span: Range<usize>,
+    /// Where the value stands; for a table under a header, the header.
+    pub span: Range<usize>,
+    pub value: Value,
+}
+
+/// What a scene file can hold.
+#[derive(Clone, Debug)]
+pub(super) enum Value {
+    Number(f64),
+    Text(String),
+    /// True, false, and dates: no key takes them.
+    Other(String),
+    List(Vec<Node>),
+    /// In the order of the file.
+    Table(Vec<Node>),
+}
+
+impl Source {
+    /// Reads TOML and puts the overrides `name=value` in it.
+    ///
+    /// # Errors
+    /// Text that is no TOML; overrides of parameters that do not exist.
+    pub(super) fn read(name: &str, text: &str, overrides: &[(String, String)]) -> Result<Source, SceneError> {
+        let document = Document { name: name.to_string(), text: text.to_string(), start: 0 };
+        let empty = Node {
+            key: String::new(),
+            name: String::new(),
+            name_span: 0..0,
+            span: 0..0,
+            value: Value::Table(vec![]),
+        };
+        let mut source = Source { documents: vec![document], root: empty };
+        let table = DeTable::parse(text).map_err(|error| source.show(syntax_fault(text, &error)))?;
+        source.root.value = table_value(table.get_ref(), "", 0);
+        for (name, value) in overrides {
+            let start = source.end() + 1;
+            let name = name.trim();
+            let document = Document { name: format!("--set {name}"), text: format!("{name}={value}"), start };
+            source.documents.push(document);
+            let place = overrides::Place { name: start..start + name.len(), value: start + name.len() + 1 };
+            overrides::put(&mut source.root, name, value, &place).map_err(|fault| source.show(fault))?;
+        }
+        Ok(source)
+    }
+
+    /// The error for a problem, at its key or the nearest key around it that exists.
+    pub fn locate(&self, problem: Problem) -> SceneError {
+        self.show(problem.into())
+    }
+
+    /// Name of the file.
+    pub fn name(&self) -> &str {
+        &self.documents[0].name
+    }
+
+    /// Text of the file.
+    pub fn text(&self) -> &str {
+        &self.documents[0].text
+    }
+
+    pub(super) fn root(&self) -> &Node {
+        &self.root
+    }
+
+    /// Where in all documents the letter `at` of the text value `node` stands, if it is written without escapes.
+    pub(super) fn inside(&self, node: &Node, at: Range<usize>) -> Range<usize> {
+        let Value::Text(text) = &node.value else { return node.span.clone() };
+        let document = self.document(node.span.start);
+        let written = &document.text[node.span.start - document.start..node.span.end - document.start];
+        match written.find(text.as_str()) {
+            Some(quote) if written.len() <= text.len() + 2 * quote => {
+                let start = node.span.start + quote;
+                start + at.start..start + at.end
+            }
+            _ => node.span.clone(),
+        }
+    }
+
+    /// The error for a fault.
+    pub(super) fn show(&self, fault: Fault) -> SceneError {
+        let span = fault.span.unwrap_or_else(|| self.span_of(&fault.problem.key));
+        let document = self.document(span.start);
+        let text = &document.text;
+        let boundary = |at: usize| {
+            let at = at.saturating_sub(document.start).min(text.len());
+            (0..=at).rfind(|at| text.is_char_boundary(*at)).unwrap_or(0)
+        };
+        let (start, end) = (boundary(span.start), boundary(span.end.max(span.start)));
+        let before = &text[..start];
+        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+        SceneError::Mistake(Box::new(Mistake {
+            problem: *fault.problem,
+            file: document.name.clone(),
+            line: before.matches('\n').count() + 1,
+            column: before[line_start..].chars().count() + 1,
+            span: start..end,
+            text: text.clone(),
+        }))
+    }
+
+    fn end(&self) -> usize {
+        self.documents.iter().map(|document| document.start + document.text.len()).max().unwrap_or(0)
+    }
+
+    fn document(&self, at: usize) -> &Document {
+        let found = self.documents.iter().rfind(|document| document.start <= at);
+        found.expect("the first document starts at 0")
+    }
+
+    /// Where the key stands, or the nearest key around it.
+    fn span_of(&self, key: &str) -> Range<usize> {
+        let mut node = &self.root;
+        while let Some(child) = node.children().iter().find(|child| is_around(&child.key, key)) {
+            node = child;
+        }
+        if node.key == key && !matches!(node.value, Value::Table(_)) || node.name.is_empty() {
+            node.span.clone()
+        } else {
+            node.name_span.clone()
+        }
+    }
+}
+
+impl Node {
+    /// Values in a list or a table.
+    pub fn children(&self) -> &[Node] {
+        match &self.value {
+            Value::List(children) | Value::Table(children) => children,
+            _ => &[],
+        }
+    }
+
+    fn is_table(&self) -> bool {
+        matches!(self.value, Value::Table(_))
+    }
+
+    /// The value as the user would recognise it: `"6 MPa"`, `3`, `a table`.
+    pub fn found(&self) -> String {
+        match &self.value {
+            Value::Number(number) => format!("{number}"),
+            Value::Text(text) => format!("{text:?}"),
+            Value::Other(text) => format!("`{text}`"),
+            Value::List(items) if items.len() <= 3 && !items.iter().any(|item| item.is_table()) => {
+                format!("[{}]", items.iter().map(Node::found).collect::<Vec<_>>().join(", "))
+            }
+            Value::List(items) => format!("a list of {}", items.len()),
+            Value::Table(_) => "a table".to_string(),
+        }
+    }
+
+    /// A fault of this value.
+    pub fn fault(&self, allowed: impl Into<String>) -> Fault {
+        Fault::new(&self.key, self.found(), allowed).at(self.place())
+    }
+
+    fn place(&self) -> Range<usize> {
+        match self.value {
+            Value::Table(_) if !self.name.is_empty() => self.name_span.clone(),
+            _ => self.span.clone(),
+        }
+    }
+}
+
+/// Is `outer` the key `inner` or a key around it?
+fn is_around(outer: &str, inner: &str) -> bool {
+    inner.strip_prefix(outer).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
+}
+
+/// The path of `name` in the table `key`.
+pub(super) fn joined(key: &str, name: &str) -> String {
+    if key.is_empty() { name.to_string() } else { format!("{key}.{name}") }
+}
+
+fn table_value(table: &DeTable<'_>, key: &str, shift: usize) -> Value {
+    let mut nodes: Vec<Node> = table
+        .iter()
+        .map(|(name, value)| {
+            let span = name.span();
+            Node {
+                name: name.get_ref().to_string(),
+                name_span: span.start + shift..span.end + shift,
+                ..node(value, joined(key, name.get_ref()), shift)
+            }
+        })
+        .collect();
+    nodes.sort_by_key(|node| node.name_span.start);
+    Value::Table(nodes)
+}
+
+/// The value with all keys and places in it; `shift` is the start of its document.
+pub(super) fn node(value: &Spanned<DeValue<'_>>, key: String, shift: usize) -> Node {
+    let span = value.span().start + shift..value.span().end + shift;
+    let value = match value.get_ref() {
+        DeValue::String(text) => Value::Text(text.to_string()),
+        DeValue::Integer(integer) => {
+            let whole = i64::from_str_radix(integer.as_str(), integer.radix());
+            whole.map_or_else(
+                |_| Value::Other(integer.as_str().to_string()),
+                |whole| Value::Number(whole as f64),
+            )
+        }
+        DeValue::Float(float) => {
+            let number = float.as_str().parse();
+            number.map_or_else(|_| Value::Other(float.as_str().to_string()), Value::Number)
+        }
+        DeValue::Boolean(truth) => Value::Other(truth.to_string()),
+        DeValue::Datetime(date) => Value::Other(date.to_string()),
+        DeValue::Array(items) => {
+            let numbered = items.iter().enumerate();
+            Value::List(numbered.map(|(i, item)| node(item, format!("{key}[{i}]"), shift)).collect())
+        }
+        DeValue::Table(table) => table_value(table, &key, shift),
+    };
+    Node { key, name: String::new(), name_span: span.clone(), span, value }
+}
+
+fn syntax_fault(text: &str, error: &toml::de::Error) -> Fault {
+    let span = error.span().unwrap_or(0..0);
+    let message = error.message();
+    if message.starts_with("string values must be quoted") {
+        let help = "text, and numbers with units, stand in quotes: cell = \"0.4 m\"".to_string();
+        let written = format!("`{}` without quotes", text[span.clone()].trim_end());
+        return Fault::new("", written, "a number, or text in quotes").help(Some(help)).at(span);
+    }
+    if message.starts_with("duplicate key") {
+        let found = format!("`{}` for the second time", &text[span.clone()]);
+        return Fault::new("", found, "each key once").at(span);
+    }
+    Fault::new("", message, "TOML, see toml.io").at(span)
+}

@@ -1,0 +1,62 @@
+//! The word that a misspelt word was meant to be.
+
+/// The candidate nearest to `word`, if one is near enough to be what was meant.
+///
+/// Near enough: the same but for upper and lower case, about a third of the letters wrong (Damerau and Levenshtein), or
+/// the one the beginning of the other.
+pub(super) fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let plain = word.to_lowercase();
+    let distance = |candidate: &str| {
+        let candidate = candidate.to_lowercase();
+        let edits = strsim::damerau_levenshtein(&plain, &candidate);
+        let longer = plain.chars().count().max(candidate.chars().count());
+        let beginning = plain.len().min(candidate.len()) >= 3
+            && (plain.starts_with(&candidate) || candidate.starts_with(&plain));
+        let slips = if longer < 3 { 0 } else { (longer + 1) / 3 };
+        (edits <= slips || beginning).then_some(edits)
+    };
+    let near = candidates.into_iter().filter_map(|candidate| Some((distance(candidate)?, candidate)));
+    near.min_by_key(|(edits, _)| *edits).map(|(_, candidate)| candidate)
+}
+
+/// `did you mean `x`?`, if a candidate is near enough.
+pub(super) fn did_you_mean<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<String> {
+    nearest(word, candidates).map(|meant| format!("did you mean `{meant}`?"))
+}
+
+/// `"a", "b" or "c"`
+pub(super) fn listed<'a>(words: impl IntoIterator<Item = &'a str>) -> String {
+    let words: Vec<&str> = words.into_iter().collect();
+    match words.split_last() {
+        Some((last, [])) => last.to_string(),
+        Some((last, rest)) => format!("{} or {last}", rest.join(", ")),
+        None => String::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn slips_are_recognised_and_other_words_are_not() {
+        let keys = ["radius", "center", "bulk_modulus", "3d", "plane-strain"];
+        for (word, meant) in [
+            ("raduis", Some("radius")),
+            ("Radius", Some("radius")),
+            ("bulk", Some("bulk_modulus")),
+            ("plain-strane", Some("plane-strain")),
+            ("centre", Some("center")),
+            ("2d", None),
+            ("colour", None),
+        ] {
+            assert_eq!(nearest(word, keys), meant, "{word}");
+        }
+    }
+
+    #[test]
+    fn words_are_listed_as_one_says_them() {
+        assert_eq!(listed(["a"]), "a");
+        assert_eq!(listed(["a", "b", "c"]), "a, b or c");
+    }
+}
