@@ -66,21 +66,23 @@ impl From<DrawError> for Failure {
 }
 
 /// A line for each place at fault, one for the remedy, and so on for the errors that came along.
+///
+/// What the message says already, its place or its remedy, is not said again.
 fn plain(error: &dyn Diagnostic) -> String {
-    let mut text = String::new();
+    let message = error.to_string();
     let places = places(error);
-    match places.split_first() {
-        None => text += &format!("error: {error}\n"),
-        Some(((place, label), others)) => {
-            text += &format!("{place}: error: {error}\n");
-            let notes = label.iter().map(|label| format!("{place}: note: {label}\n"));
-            text.extend(notes);
-            for (place, label) in others {
-                text += &format!("{place}: note: {}\n", label.as_deref().unwrap_or("see also"));
-            }
+    let mut text = match places.first() {
+        Some((place, _)) if !message.starts_with(place.as_str()) => format!("{place}: error: {message}\n"),
+        Some(_) => format!("{message}\n"),
+        None => format!("error: {message}\n"),
+    };
+    for (place, label) in &places {
+        if let Some(label) = label.as_deref().filter(|label| !message.contains(label)) {
+            text += &format!("{place}: note: {label}\n");
         }
     }
-    if let Some(help) = error.help() {
+    let help = error.help().map(|help| help.to_string());
+    if let Some(help) = help.filter(|help| !message.contains(help.as_str())) {
         text += &format!("  help: {help}\n");
     }
     text.extend(error.related().into_iter().flatten().map(plain));
@@ -114,6 +116,14 @@ mod tests {
         let text = plain(report.as_ref());
         assert!(text.starts_with("a.toml:3:1: error: unknown key `radios`\n"), "{text}");
         assert!(text.contains("  help: did you mean `radius`?"), "{text}");
+    }
+
+    #[test]
+    fn a_message_that_names_its_place_does_not_get_it_twice() {
+        let error = MietteDiagnostic::new("a.toml:1:1: unknown key `radios`")
+            .with_label(LabeledSpan::at(0..6, "unknown key `radios`"));
+        let report = Report::new(error).with_source_code(NamedSource::new("a.toml", "radios = 1\n"));
+        assert_eq!(plain(report.as_ref()), "a.toml:1:1: unknown key `radios`\n");
     }
 
     #[test]

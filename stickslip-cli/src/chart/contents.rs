@@ -171,7 +171,7 @@ fn center_panel(rows: &[BodyRow], bodies: &[String]) -> Panel {
     let mut ways: Vec<(f64, Curve)> = each.collect();
     ways.sort_by(|a, b| b.0.total_cmp(&a.0));
     let most = ways.first().map_or(0.0, |(most, _)| *most);
-    ways.retain(|(way, _)| *way > 1e-6 * most);
+    ways.retain(|(way, _)| *way > 1e-3 * most);
     ways.truncate(MOST_CURVES);
     let curves = ways.into_iter().enumerate();
     let curves = curves.map(|(i, (_, curve))| Curve { color: body_color(i), ..curve }).collect();

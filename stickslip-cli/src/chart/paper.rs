@@ -1,7 +1,7 @@
 //! A chart on paper: PNG or SVG.
 
 use super::{Chart, Curve, Panel};
-use crate::drawing::{Canvas, DrawError, Prefix, label, prefix, register_font};
+use crate::drawing::{Canvas, DrawError, Prefix, axis_prefix, label, register_font};
 use plotters::coord::Shift;
 use plotters::element::DashedPathElement;
 use plotters::prelude::*;
@@ -73,10 +73,12 @@ fn draw_panel<D: DrawingBackend>(
 ) -> Result<(), DrawError> {
     let [times, values] = [0, 1].map(|axis| range(&panel.curves, axis));
     let largest = values[0].abs().max(values[1].abs());
-    let size = if panel.unit.is_empty() { prefix(1.0) } else { prefix(largest) };
+    let size = axis_prefix(largest, panel.unit);
     let values = values.map(|value| value / size.factor);
-    let pad = 0.06 * (values[1] - values[0]);
-    let values = [values[0] - pad, values[1] + pad];
+    // Above the curves there is room for their names.
+    let room = (0.04 + 0.05 * panel.curves.len() as f64).min(0.4);
+    let pad = values[1] - values[0];
+    let values = [values[0] - 0.05 * pad, values[1] + room * pad];
     let mut chart = ChartBuilder::on(area)
         .margin_right(18 * pixel)
         .margin_top(6 * pixel)

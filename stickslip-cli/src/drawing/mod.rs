@@ -6,7 +6,7 @@ mod ticks;
 
 pub use canvas::{Canvas, Ink, SAMPLES, register_font};
 pub use colors::{Rgb, Scale, body_color, shaded};
-pub use ticks::{Prefix, label, prefix, ticks};
+pub use ticks::{Prefix, axis_prefix, label, prefix, ticks};
 
 use std::path::PathBuf;
 

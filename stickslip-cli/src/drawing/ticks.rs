@@ -49,6 +49,11 @@ pub fn prefix(magnitude: f64) -> Prefix {
     Prefix { letter, factor: 10f64.powi(exponent) }
 }
 
+/// The prefix for an axis up to this magnitude: none where the numbers read well without, or where there is no unit.
+pub fn axis_prefix(magnitude: f64, unit: &str) -> Prefix {
+    if unit.is_empty() || (0.05..1000.0).contains(&magnitude) { prefix(1.0) } else { prefix(magnitude) }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -3,7 +3,7 @@
 use super::camera::{Camera, unit};
 use super::plane::Window;
 use super::{Legend, Rgb};
-use crate::drawing::{DrawError, Ink, SAMPLES, label, prefix, ticks};
+use crate::drawing::{DrawError, Ink, SAMPLES, axis_prefix, label, prefix, ticks};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
@@ -57,7 +57,7 @@ pub fn legend(ink: &Ink, legend: &Legend, column: i32) -> Result<(), DrawError> 
                 let place = [(left, top + row), (left + 16 * PIXEL, top + row + 1)];
                 ink.draw(&Rectangle::new(place, fill(scale.color(value)))).map_err(DrawError::ink)?;
             }
-            let size = if unit.is_empty() { prefix(1.0) } else { prefix(low.abs().max(high.abs())) };
+            let size = axis_prefix(low.abs().max(high.abs()), unit);
             let shown = [low / size.factor, high / size.factor];
             for tick in ticks(shown, 6) {
                 let share = (shown[1] - tick) / (shown[1] - shown[0]);

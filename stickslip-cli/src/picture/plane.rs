@@ -58,7 +58,7 @@ impl<'a> Drawn<'a> {
     /// The colour of a pixel; `None` where there is nothing.
     pub fn color(&self, x: usize, y: usize) -> Option<Rgb> {
         let grain = self.at(x as i64, y as i64)?;
-        let reach = SAMPLES as i64 / 2;
+        let reach = SAMPLES as i64;
         let rim = [(-reach, 0), (reach, 0), (0, -reach), (0, reach)].iter().any(|(dx, dy)| {
             self.at(x as i64 + dx, y as i64 + dy).is_none_or(|neighbour| neighbour.body != grain.body)
         });
