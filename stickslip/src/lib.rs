@@ -4,10 +4,10 @@
 
 pub mod tensor; // Real, Vector<T, D>, Matrix<T>, Symmetric<T>
 
+pub mod check;
 pub mod geometry; // shapes: inside(x), bounds; filling them with particles
 pub mod material; // one file a law: equation, code, tests
-pub mod scene; // what the user asks for; scene file -> Scene, with errors that point at line and key
-pub mod check; // what is wrong or doubtful with a scene, before it runs
+pub mod scene; // what the user asks for; scene file -> Scene, with errors that point at line and key // what is wrong or doubtful with a scene, before it runs
 
 pub mod basis; // shape functions: linear, GIMP
 pub mod body; // particles, and what they add up to
@@ -16,8 +16,8 @@ pub mod transfer; // particles -> field, field -> particles
 
 pub mod boundary; // mirrors and fixed faces of the domain
 pub mod clock; // the stable time step
-pub mod door; // a running simulation with dimension and precision erased
-pub mod contact; // what bodies do to each other at the nodes they share
+pub mod contact;
+pub mod door; // a running simulation with dimension and precision erased // what bodies do to each other at the nodes they share
 
 pub mod engine; // the step and its verbs
 

@@ -43,10 +43,8 @@ impl<T: Real, const D: usize> Stencil<T, D> {
     /// Calls `f(place in the window, weight [-], gradient [1/m])` for every node.
     #[inline(always)]
     fn each(&self, block: [i32; D], mut f: impl FnMut(usize, T, Vector<T, D>)) {
-        let mut place = 0;
-        for i in 0..D {
-            place = place * WINDOW + (self.axes[i].base - block[i] * SIDE) as usize;
-        }
+        let offsets = self.axes.iter().zip(block).map(|(axis, block)| (axis.base - block * SIDE) as usize);
+        let place = offsets.fold(0, |place, offset| place * WINDOW + offset);
         let h = self.per_cell;
         if D == 2 {
             let (x, y) = (&self.axes[0], &self.axes[1]);

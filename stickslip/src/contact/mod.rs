@@ -13,5 +13,5 @@ mod tally;
 pub use law::{Change, Pair, Surface};
 pub use rules::{Rule, Rules};
 pub use solve::{Impulse, solve};
-pub use survey::{Near, Side, Site, Survey, SUP};
+pub use survey::{Encounter, Near, Side, Site, Survey};
 pub use tally::Tally;

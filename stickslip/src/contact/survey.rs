@@ -5,7 +5,7 @@ use crate::basis::Basis;
 use crate::body::{Body, Particle};
 use crate::boundary::Boundary;
 use crate::grid::{Cover, Field, Lattice, Meeting, node_at, nodes_per_block};
-use crate::scene::{ContactLaw, Face};
+use crate::scene::Face;
 use crate::tensor::{Matrix, Real, Symmetric, Vector};
 use crate::transfer::{Stencil, offsets};
 use rayon::prelude::*;
@@ -81,7 +81,7 @@ pub struct Near<'a, T, const D: usize> {
     pub rules: &'a Rules<T>,
 }
 
-/// A node or one of its mirror images.
+/// A node or one of its mirror images, with the signs that turn vectors between the two.
 struct Image<T, const D: usize> {
     node: [i32; D],
     sign: [T; D],
@@ -113,9 +113,14 @@ impl<T: Real, const D: usize> Near<'_, T, D> {
         whole
     }
 
+    /// h^D [m^3]
+    fn cell_volume(&self) -> T {
+        (0..D).fold(T::ONE, |v, _| v * self.lattice.cell)
+    }
+
     fn survey_block<B: Basis<T>>(&self, meeting: &Meeting<D>, survey: &mut Survey<T, D>) {
         let n = nodes_per_block(D);
-        let cell_volume = (0..D).fold(T::ONE, |v, _| v * self.lattice.cell);
+        let cell_volume = self.cell_volume();
         for local in 0..n {
             let present = |&&slot: &&u32| {
                 let body = self.cover.slots[slot as usize].0 as usize;
@@ -139,10 +144,12 @@ impl<T: Real, const D: usize> Near<'_, T, D> {
                 survey.sides.push(self.side::<B>(node, slot as usize * n + local));
             }
             let (last, start) = (survey.sides.len(), survey.encounters.len());
+            let gap = self.gap(&survey.sides[first..last]);
             for a in first..last {
                 for b in a + 1..last {
-                    let encounter = self.encounter::<B>(node, [a, b], &survey.sides);
-                    survey.encounters.push(encounter);
+                    let gradients = [a, b].map(|side| survey.sides[side].volume_gradient);
+                    let normal = (gradients[1] - gradients[0]).direction();
+                    survey.encounters.push(Encounter { sides: [a, b], normal, gap });
                 }
             }
             survey.sites.push(Site { node, sides: first..last, encounters: start..survey.encounters.len() });
@@ -175,37 +182,16 @@ impl<T: Real, const D: usize> Near<'_, T, D> {
         Side { body, index, mass, surface, volume_gradient }
     }
 
-    fn encounter<B: Basis<T>>(
-        &self,
-        node: [i32; D],
-        sides: [usize; 2],
-        all: &[Side<T, D>],
-    ) -> Encounter<T, D> {
-        let [a, b] = sides.map(|side| &all[side]);
-        let p: i32 = std::env::var("NORMP").map_or(0, |x| x.parse().unwrap());
-        let w = |g: Vector<T, D>| (0..p).fold(g, |v, _| v * g.norm());
-        let normal = (w(b.volume_gradient) - w(a.volume_gradient)).direction();
-        let law = self.rules.between(a.body, b.body).law;
-        let gap = match (law, normal) {
-            (ContactLaw::Gap, Some(n)) => {
-                -self.extent::<B>(a.body, node, n) - self.extent::<B>(b.body, node, -n)
-            }
-            _ => T::ZERO,
-        };
-        Encounter { sides, normal, gap }
-    }
-
-    /// How far the surfaces of a body's particles near a node reach along a direction, from the node [m].
-    fn extent<B: Basis<T>>(&self, body: usize, node: [i32; D], direction: Vector<T, D>) -> T {
-        let mut extent = T::of(f64::MIN);
-        self.each_particle::<B>(body, node, |particle, _, _, image| {
-            let n = Vector::from_fn(|i| direction[i] * image.sign[i]);
-            let center = (particle.position - self.lattice.position(image.node)).dot(n);
-            let _ = support(&particle.deformation, n);
-            let sup = match SUP.get() { Some(&x) => T::of(x), None => support(&particle.deformation, n) };
-            extent = extent.max(center + particle.half_width * sup);
-        });
-        extent
+    /// Distance between the surfaces at a node, from the room that the bodies leave around it [cells].
+    ///
+    /// ```text
+    /// gap / h = 1 - sum_a V_a / h^D,   V_a = sum_p V_p S_i(x_p)
+    /// ```
+    /// Where material fills space without a gap, the volumes interpolated to a node are a whole cell; a thin gap through the node
+    /// takes its width times h^(D-1) from that. Overlap is negative. Needs no normal, and stairs of the particles' lattice
+    /// average out. A surface of radius R seems h^2/(6R) further away than its nearest point.
+    fn gap(&self, sides: &[Side<T, D>]) -> T {
+        T::ONE - sides.iter().map(|side| side.surface.volume).sum::<T>() / self.cell_volume()
     }
 
     /// Calls `f(particle, weight, gradient, image)` for every particle of a body that reaches a node or an image of it.
@@ -240,11 +226,6 @@ impl<T: Real, const D: usize> Near<'_, T, D> {
     }
 }
 
-/// How far a cube of half-width one, deformed by F, reaches along a direction: sum_k |n . F e_k| [-].
-fn support<T: Real, const D: usize>(deformation: &Matrix<T>, n: Vector<T, D>) -> T {
-    (0..D).map(|k| (0..D).map(|i| n[i] * deformation.0[i][k]).sum::<T>().abs()).sum()
-}
-
 /// A stress seen in the mirrors that turn the axes with sign -1.
 fn mirrored<T: Real, const D: usize>(stress: &Symmetric<T>, sign: [T; D]) -> Symmetric<T> {
     let sign: [T; 3] = std::array::from_fn(|i| if i < D { sign[i] } else { T::ONE });
@@ -272,6 +253,3 @@ impl<T: Real, const D: usize> Survey<T, D> {
         }
     }
 }
-
-/// tmp
-pub static SUP: std::sync::OnceLock<f64> = std::sync::OnceLock::new();

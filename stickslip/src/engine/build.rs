@@ -6,8 +6,8 @@ use super::watch::Watch;
 use crate::basis::{Basis, Gimp, Linear};
 use crate::body::{Body, Particle};
 use crate::boundary::{Boundary, Wall};
-use crate::contact::{Rules, Survey, Tally};
 use crate::check;
+use crate::contact::{Rules, Survey, Tally};
 use crate::door::Simulation;
 use crate::geometry::{Filling, fill};
 use crate::grid::{Cover, Field, Lattice};
@@ -75,6 +75,7 @@ impl<T: Real, const D: usize, B: Basis<T>> Engine<T, D, B> {
             cover: Cover::default(),
             field: Field { nodes: Vec::new() },
             survey: Survey::default(),
+            impulses: Vec::new(),
             tally: Tally::default(),
             time: 0.0,
             steps: 0,

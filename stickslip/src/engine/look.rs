@@ -4,7 +4,15 @@ use super::Engine;
 use crate::basis::Basis;
 use crate::door::{BodyState, ContactState, GridSnapshot, Ledger, ParticleSnapshot, Simulation, StepError};
 use crate::grid::{node_at, nodes_per_block};
-use crate::tensor::{Real, Vector};
+use crate::tensor::Real;
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn add(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    std::array::from_fn(|i| a[i] + b[i])
+}
 
 impl<T: Real, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
     fn time(&self) -> f64 {
@@ -58,11 +66,9 @@ impl<T: Real, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
             let totals = body.totals();
             ledger.kinetic += totals.kinetic;
             ledger.strain += totals.strain;
-            for i in 0..3 {
-                ledger.potential -= gravity[i] * totals.first_moment[i];
-                ledger.momentum[i] += totals.momentum[i];
-                ledger.angular_momentum[i] += totals.angular_momentum[i];
-            }
+            ledger.potential -= dot(gravity, totals.first_moment);
+            ledger.momentum = add(ledger.momentum, totals.momentum);
+            ledger.angular_momentum = add(ledger.angular_momentum, totals.angular_momentum);
         }
         ledger.total = ledger.kinetic
             + ledger.strain
@@ -101,6 +107,12 @@ impl<T: Real, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
     fn grid_snapshot(&self) -> GridSnapshot {
         let mut snapshot =
             GridSnapshot { dimension: D, cell: self.lattice.cell.f64(), ..GridSnapshot::default() };
+        let mut impulse = vec![[0.0; 3]; self.field.nodes.len()];
+        for contact in &self.impulses {
+            for (node, on_body) in contact.nodes.into_iter().zip(contact.change.impulse) {
+                impulse[node] = add(impulse[node], on_body.space());
+            }
+        }
         let n = nodes_per_block(D);
         for (slot, &(body, block)) in self.cover.slots.iter().enumerate() {
             for local in 0..n {
@@ -111,7 +123,7 @@ impl<T: Real, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
                     snapshot.mass.push(node.mass.f64());
                     snapshot.velocity.push(node.velocity.space());
                     snapshot.force.push(node.force.space());
-                    snapshot.contact_impulse.push(Vector::<T, D>::ZERO.space());
+                    snapshot.contact_impulse.push(impulse[slot * n + local]);
                 }
             }
         }

@@ -12,7 +12,7 @@ use crate::basis::Basis;
 use crate::body::Body;
 use crate::boundary::Boundary;
 use crate::clock::fastest_signal;
-use crate::contact::{Rules, Survey, Tally};
+use crate::contact::{Impulse, Rules, Survey, Tally};
 use crate::door::StepError;
 use crate::grid::{Cover, Field, Lattice};
 use crate::scene::{StressUpdate, Time};
@@ -38,6 +38,8 @@ pub struct Engine<T, const D: usize, B> {
     cover: Cover<D>,
     field: Field<T, D>,
     survey: Survey<T, D>,
+    /// What contact did in the last step, both uses.
+    impulses: Vec<Impulse<T, D>>,
     tally: Tally,
     time: f64,
     steps: u64,

@@ -6,7 +6,7 @@
 use super::Engine;
 use crate::basis::Basis;
 use crate::body::{Body, Particle};
-use crate::contact::{Near, solve};
+use crate::contact::{Impulse, Near, solve};
 use crate::door::StepError;
 use crate::grid::{Disjoint, Node, Tile, Window, addressable, node_at, nodes_per_block};
 use crate::material::Motion;
@@ -162,6 +162,7 @@ impl<T: Real, const D: usize, B: Basis<T>> Engine<T, D, B> {
             rules: &self.rules,
         };
         self.survey = near.survey::<B>();
+        self.impulses.clear();
         self.watch.lap("survey", start);
     }
 
@@ -170,6 +171,7 @@ impl<T: Real, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let impulses = solve(&self.survey, &self.rules, &self.field, self.lattice.cell / dt);
         self.tally.add(&impulses);
         self.change_velocities(&impulses);
+        self.impulses.extend(impulses);
         self.watch.lap("contact", start);
     }
 
@@ -181,7 +183,7 @@ impl<T: Real, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.watch.lap("contact", start);
     }
 
-    fn change_velocities(&mut self, impulses: &[crate::contact::Impulse<T, D>]) {
+    fn change_velocities(&mut self, impulses: &[Impulse<T, D>]) {
         for impulse in impulses {
             for (node, velocity) in impulse.nodes.into_iter().zip(impulse.velocity) {
                 self.field.nodes[node].velocity += velocity;

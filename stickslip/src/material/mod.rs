@@ -58,8 +58,10 @@ pub struct Description {
     pub summary: &'static str,
     /// Its constants.
     pub constants: &'static [Constant],
-    build: fn(&BTreeMap<String, f64>) -> Result<Material<f64>, BadConstants>,
+    build: Build,
 }
+
+type Build = fn(&BTreeMap<String, f64>) -> Result<Material<f64>, BadConstants>;
 
 /// A constant of a law as scene files name it.
 pub struct Constant {

@@ -231,7 +231,7 @@ pub enum ContactLaw {
     Kinematic,
     /// When the normal traction between them is compressive (Bardenhagen et al. 2001).
     Traction,
-    /// As [`ContactLaw::Traction`], but only once the particles' surfaces touch.
+    /// When they approach or the normal traction is compressive, once their surfaces touch: the bodies fill the room around the node.
     Gap,
     /// Always and in every direction: one velocity for both.
     Glued,

@@ -36,7 +36,11 @@ pub struct Pair([Text; 2]);
 
 impl Choice for ContactLaw {
     const WORDS: &'static [(&'static str, Self, &'static str)] = &[
-        ("gap", ContactLaw::Gap, "As traction, but only once the particles' surfaces touch."),
+        (
+            "gap",
+            ContactLaw::Gap,
+            "When they approach or push on each other, once their surfaces touch: the bodies fill the room around the node.",
+        ),
         ("traction", ContactLaw::Traction, "When the traction between them is compressive (2001)."),
         ("kinematic", ContactLaw::Kinematic, "When they approach (2000)."),
         ("glued", ContactLaw::Glued, "Always and in every direction: one velocity for both."),
