@@ -92,19 +92,12 @@ impl Boundary {
         }
     }
 
-    /// Adds the images' mass to the nodes before the mirrors.
-    pub fn fold_mass<T: Real, const D: usize>(&self, field: &mut Field<T, D>) {
-        for &(behind, before, _) in &self.mirrored {
-            let mass = field.nodes[behind].mass;
-            field.nodes[before].mass += mass;
-        }
-    }
-
-    /// Adds the images' momentum to the nodes before the mirrors.
+    /// Adds the images' mass and momentum to the nodes before the mirrors.
     pub fn fold_momentum<T: Real, const D: usize>(&self, field: &mut Field<T, D>) {
         for &(behind, before, axis) in &self.mirrored {
-            let momentum = field.nodes[behind].velocity;
-            field.nodes[before].velocity += reflect(momentum, axis);
+            let image = field.nodes[behind];
+            field.nodes[before].mass += image.mass;
+            field.nodes[before].velocity += reflect(image.velocity, axis);
         }
         for &(node, axis) in &self.on_mirror {
             field.nodes[node].velocity[axis] = T::ZERO;

@@ -4,24 +4,25 @@ use crate::basis::{Axis, Basis, MAX_WIDTH};
 use crate::body::Particle;
 use crate::grid::{Lattice, Node, SIDE, WINDOW, Window};
 use crate::tensor::{Matrix, Real, Symmetric, Vector};
+use std::marker::PhantomData;
 
 /// The nodes that one particle reaches, with its shape functions there.
 #[derive(Clone, Copy, Debug)]
-pub struct Stencil<T, const D: usize> {
+pub struct Stencil<T, const D: usize, B> {
     axes: [Axis<T>; D],
-    width: usize,
     /// 1/cell [1/m]
     per_cell: T,
+    basis: PhantomData<B>,
 }
 
-impl<T: Real, const D: usize> Stencil<T, D> {
+impl<T: Real, const D: usize, B: Basis<T>> Stencil<T, D, B> {
     /// The stencil of a particle.
     #[inline(always)]
-    pub fn new<B: Basis<T>>(lattice: &Lattice<T, D>, particle: &Particle<T, D>) -> Self {
+    pub fn new(lattice: &Lattice<T, D>, particle: &Particle<T, D>) -> Self {
         let per_cell = T::ONE / lattice.cell;
         let x = lattice.cells(particle.position);
         let half = particle.half_width * per_cell;
-        Stencil { axes: std::array::from_fn(|i| B::axis(x[i], half)), width: B::WIDTH, per_cell }
+        Stencil { axes: std::array::from_fn(|i| B::axis(x[i], half)), per_cell, basis: PhantomData }
     }
 
     /// Base node: the first that the particle reaches along each axis.
@@ -48,22 +49,22 @@ impl<T: Real, const D: usize> Stencil<T, D> {
         let h = self.per_cell;
         if D == 2 {
             let (x, y) = (&self.axes[0], &self.axes[1]);
-            for i in 0..self.width {
-                for j in 0..self.width {
+            for i in 0..B::WIDTH {
+                for j in 0..B::WIDTH {
                     let gradient = [x.slope[i] * y.weight[j] * h, x.weight[i] * y.slope[j] * h];
                     f(place + i * WINDOW + j, x.weight[i] * y.weight[j], Vector::from_fn(|k| gradient[k]));
                 }
             }
         } else {
             let (x, y, z) = (&self.axes[0], &self.axes[1], &self.axes[D - 1]);
-            for i in 0..self.width {
-                for j in 0..self.width {
+            for i in 0..B::WIDTH {
+                for j in 0..B::WIDTH {
                     let (xy, dxy, xdy) = (
                         x.weight[i] * y.weight[j],
                         x.slope[i] * y.weight[j] * h,
                         x.weight[i] * y.slope[j] * h,
                     );
-                    for k in 0..self.width {
+                    for k in 0..B::WIDTH {
                         let gradient = [dxy * z.weight[k], xdy * z.weight[k], xy * z.slope[k] * h];
                         f(
                             place + (i * WINDOW + j) * WINDOW + k,
@@ -76,19 +77,37 @@ impl<T: Real, const D: usize> Stencil<T, D> {
         }
     }
 
-    /// Adds a particle to the window's nodes.
+    /// Adds a particle's mass and momentum to the window's nodes.
     ///
     /// ```text
-    /// m_i += S_i m,   p_i += S_i m v,   f_i += -V sigma grad S_i          Sulsky, Chen and Schreyer (1994)
+    /// m_i += S_i m,   p_i += S_i m v          Sulsky, Chen and Schreyer (1994)
     /// ```
     #[inline(always)]
-    pub fn scatter(&self, window: &mut Window<T, D>, block: [i32; D], load: &Load<T, D>) {
-        let Load { mass, momentum, stress } = load;
-        self.each(block, |place, weight, gradient| {
+    pub fn scatter_momentum(
+        &self,
+        window: &mut Window<T, D>,
+        block: [i32; D],
+        (mass, velocity): (T, Vector<T, D>),
+    ) {
+        let momentum = velocity * mass;
+        self.each(block, |place, weight, _| {
             let node = &mut window.nodes[place];
-            node.mass += *mass * weight;
-            node.velocity += *momentum * weight;
-            node.force -= stress.times(gradient);
+            node.mass += mass * weight;
+            node.velocity += momentum * weight;
+        });
+    }
+
+    /// Adds the force of a particle's stress to the window's nodes.
+    ///
+    /// ```text
+    /// f_i += -V sigma grad S_i                Sulsky, Chen and Schreyer (1994)
+    /// ```
+    /// `stress` is V sigma, tension positive [J].
+    #[inline(always)]
+    pub fn scatter_force(&self, window: &mut Window<T, D>, block: [i32; D], stress: &Symmetric<T>) {
+        let rows: [Vector<T, D>; D] = std::array::from_fn(|i| Vector::from_fn(|j| stress.at(i, j)));
+        self.each(block, |place, _, gradient| {
+            window.nodes[place].force -= Vector::from_fn(|i| rows[i].dot(gradient));
         });
     }
 
@@ -123,17 +142,6 @@ impl<T: Real, const D: usize> Stencil<T, D> {
         });
         l
     }
-}
-
-/// What a particle gives to the nodes.
-#[derive(Clone, Copy, Debug)]
-pub struct Load<T, const D: usize> {
-    /// m [kg]
-    pub mass: T,
-    /// m v [kg m/s]
-    pub momentum: Vector<T, D>,
-    /// V sigma [J]
-    pub stress: Symmetric<T>,
 }
 
 /// Offsets of the nodes that a basis reaches from its base node.

@@ -88,7 +88,7 @@ impl<T: Real, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 self.contact(dt);
                 self.accept()?;
                 self.integrated_velocities_aside();
-                self.scatter(Share::NewMomentum);
+                self.scatter(Share::Momentum);
                 self.modified_velocities();
                 self.contact_again(dt);
                 self.strain(dt)?;

@@ -10,8 +10,8 @@ use crate::contact::{Impulse, Near, solve};
 use crate::door::StepError;
 use crate::grid::{Disjoint, Node, Tile, Window, addressable, node_at, nodes_per_block};
 use crate::material::Motion;
-use crate::tensor::{Matrix, Real, Symmetric, Vector};
-use crate::transfer::{Load, Stencil};
+use crate::tensor::{Matrix, Real, Vector};
+use crate::transfer::Stencil;
 use rayon::prelude::*;
 use std::time::Instant;
 
@@ -24,8 +24,6 @@ pub enum Share {
     Force,
     /// Mass, momentum and force.
     Everything,
-    /// Momentum alone, after the particles' velocities changed.
-    NewMomentum,
 }
 
 /// A particle that a verb cannot go on with.
@@ -47,7 +45,7 @@ impl<T: Real, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let counts: Vec<usize> = self.bodies.iter().map(|body| body.particles.len()).collect();
         let (bodies, lattice) = (&self.bodies, &self.lattice);
         self.cover.update(&counts, |body, particle| {
-            Stencil::new::<B>(lattice, &bodies[body].particles[particle]).base()
+            Stencil::<T, D, B>::new(lattice, &bodies[body].particles[particle]).base()
         });
         self.boundary.cover(&self.cover);
         self.field.clear(&self.cover);
@@ -56,41 +54,33 @@ impl<T: Real, const D: usize, B: Basis<T>> Engine<T, D, B> {
 
     pub(super) fn scatter(&mut self, share: Share) {
         let start = Instant::now();
+        let momentum = |p: &Particle<T, D>, stencil: &Stencil<T, D, B>, window: &mut Window<T, D>, block| {
+            stencil.scatter_momentum(window, block, (p.mass, p.velocity));
+        };
+        let force = |p: &Particle<T, D>, stencil: &Stencil<T, D, B>, window: &mut Window<T, D>, block| {
+            stencil.scatter_force(window, block, &(p.stress * (p.volume * p.deformation.det())));
+        };
         match share {
-            Share::Momentum => self.scatter_loads(|p| Load {
-                mass: p.mass,
-                momentum: p.velocity * p.mass,
-                stress: Symmetric::ZERO,
-            }),
-            Share::Force => self.scatter_loads(|p| Load {
-                mass: T::ZERO,
-                momentum: Vector::ZERO,
-                stress: p.stress * (p.volume * p.deformation.det()),
-            }),
-            Share::Everything => self.scatter_loads(|p| Load {
-                mass: p.mass,
-                momentum: p.velocity * p.mass,
-                stress: p.stress * (p.volume * p.deformation.det()),
-            }),
-            Share::NewMomentum => self.scatter_loads(|p| Load {
-                mass: T::ZERO,
-                momentum: p.velocity * p.mass,
-                stress: Symmetric::ZERO,
+            Share::Momentum => self.scatter_each(momentum),
+            Share::Force => self.scatter_each(force),
+            Share::Everything => self.scatter_each(|p, stencil, window, block| {
+                momentum(p, stencil, window, block);
+                force(p, stencil, window, block);
             }),
         }
-        if matches!(share, Share::Momentum | Share::Everything) {
-            self.boundary.fold_mass(&mut self.field);
-        }
-        if !matches!(share, Share::Force) {
+        if share != Share::Force {
             self.boundary.fold_momentum(&mut self.field);
         }
-        if matches!(share, Share::Force | Share::Everything) {
+        if share != Share::Momentum {
             self.boundary.fold_force(&mut self.field);
         }
         self.watch.lap("scatter", start);
     }
 
-    fn scatter_loads(&mut self, load: impl Fn(&Particle<T, D>) -> Load<T, D> + Sync) {
+    fn scatter_each(
+        &mut self,
+        scatter: impl Fn(&Particle<T, D>, &Stencil<T, D, B>, &mut Window<T, D>, [i32; D]) + Sync,
+    ) {
         let nodes = Disjoint::new(&mut self.field.nodes);
         let (cover, bodies, lattice) = (&self.cover, &self.bodies, &self.lattice);
         for color in &cover.colors {
@@ -99,8 +89,8 @@ impl<T: Real, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 window.clear();
                 for &index in cover.particles_of(tile) {
                     let particle = &bodies[tile.body].particles[index as usize];
-                    let stencil = Stencil::new::<B>(lattice, particle);
-                    stencil.scatter(window, tile.block, &load(particle));
+                    let stencil = Stencil::<T, D, B>::new(lattice, particle);
+                    scatter(particle, &stencil, window, tile.block);
                 }
                 // SAFETY: tiles of one colour share no slot, and colours follow one another.
                 unsafe { window.add_to(&nodes, tile) };
@@ -119,11 +109,10 @@ impl<T: Real, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.hold();
     }
 
-    /// Sets the integrated velocities aside in `start` and makes room for momentum.
+    /// Sets the integrated velocities aside in `start` and makes room for mass and momentum.
     pub(super) fn integrated_velocities_aside(&mut self) {
         self.field.nodes.par_iter_mut().with_min_len(4096).for_each(|node| {
-            node.start = node.velocity;
-            node.velocity = Vector::ZERO;
+            *node = Node { start: node.velocity, force: node.force, ..Node::EMPTY };
         });
     }
 
@@ -243,7 +232,7 @@ impl<T: Real, const D: usize, B: Basis<T>> Engine<T, D, B> {
             let outside = domain.is_some_and(|[min, max]| {
                 (0..D).any(|i| particle.position[i] < min[i] || particle.position[i] > max[i])
             });
-            if outside || !addressable(Stencil::new::<B>(&lattice, particle).base()) {
+            if outside || !addressable(Stencil::<T, D, B>::new(&lattice, particle).base()) {
                 return Err(FaultKind::Escaped);
             }
             Ok(())
@@ -294,7 +283,7 @@ impl<T: Real, const D: usize, B: Basis<T>> Engine<T, D, B> {
         visit: impl Fn(
             &Body<T, D>,
             &mut Particle<T, D>,
-            &Stencil<T, D>,
+            &Stencil<T, D, B>,
             &Window<T, D>,
             [i32; D],
         ) -> Result<(), FaultKind>
@@ -314,7 +303,7 @@ impl<T: Real, const D: usize, B: Basis<T>> Engine<T, D, B> {
             for &index in cover.particles_of(tile) {
                 // SAFETY: every particle belongs to one tile, and every tile to one call.
                 let particle = unsafe { columns[tile.body].get(index as usize) };
-                let stencil = Stencil::new::<B>(lattice, particle);
+                let stencil = Stencil::<T, D, B>::new(lattice, particle);
                 if let Err(kind) = visit(body, particle, &stencil, window, tile.block) {
                     let fault = Fault { body: tile.body, particle: index as usize, kind };
                     first = earlier(first, Some(fault));
