@@ -13,6 +13,9 @@ use crate::transfer::Stencil;
 use rayon::prelude::*;
 use std::time::Instant;
 
+/// Steps between sorts of the particles in memory.
+const SORT_INTERVAL: u64 = 256;
+
 /// What a scatter gives to the nodes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Share {
@@ -27,14 +30,29 @@ pub enum Share {
 impl<T: Real, const D: usize, B: Basis<T>> Engine<T, D, B> {
     pub(super) fn cover(&mut self) {
         let start = Instant::now();
+        self.cover_particles();
+        if self.steps.is_multiple_of(SORT_INTERVAL) {
+            self.sort_particles();
+            self.cover_particles();
+        }
+        self.boundary.cover(&self.cover);
+        self.field.clear(&self.cover);
+        self.watch.lap("cover", start);
+    }
+
+    fn cover_particles(&mut self) {
         let counts: Vec<usize> = self.bodies.iter().map(|body| body.particles.len()).collect();
         let (bodies, lattice) = (&self.bodies, &self.lattice);
         self.cover.update(&counts, |body, particle| {
             Stencil::<T, D, B>::new(lattice, &bodies[body].particles[particle]).base()
         });
-        self.boundary.cover(&self.cover);
-        self.field.clear(&self.cover);
-        self.watch.lap("cover", start);
+    }
+
+    /// Brings the particles' order in memory close to the order in which tiles visit them.
+    fn sort_particles(&mut self) {
+        for (i, body) in self.bodies.iter_mut().enumerate() {
+            body.particles = self.cover.order_of(i).iter().map(|&p| body.particles[p as usize]).collect();
+        }
     }
 
     pub(super) fn scatter(&mut self, share: Share) {
