@@ -65,7 +65,7 @@ pub struct Ledger {
     pub friction: f64,
     /// Dissipated by plastic flow [J].
     pub plastic: f64,
-    /// Dissipated by damping, and by the inelastic shock of contact on the grid [J].
+    /// Dissipated by damping [J].
     pub damping: f64,
     /// kinetic + strain + potential + friction + plastic + damping - external work [J]; constant in an exact solution.
     pub total: f64,

@@ -7,7 +7,7 @@ use crate::basis::{Basis, Gimp, Linear};
 use crate::body::{Body, Particle};
 use crate::boundary::{Boundary, Wall};
 use crate::check;
-use crate::contact::{Rules, Survey, Tally};
+use crate::contact::{Rules, Tally};
 use crate::door::Simulation;
 use crate::geometry::{Filling, fill};
 use crate::grid::{Cover, Field, Lattice};
@@ -74,7 +74,6 @@ impl<T: Real, const D: usize, B: Basis<T>> Engine<T, D, B> {
             clock: scene.time.clone(),
             cover: Cover::default(),
             field: Field { nodes: Vec::new() },
-            survey: Survey::default(),
             impulses: Vec::new(),
             tally: Tally::default(),
             time: 0.0,

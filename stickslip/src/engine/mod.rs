@@ -1,6 +1,7 @@
 //! The step: explicit MPM with contact, a list of verbs.
 
 mod build;
+mod cpu;
 mod look;
 mod rigid;
 mod verbs;
@@ -12,7 +13,7 @@ use crate::basis::Basis;
 use crate::body::Body;
 use crate::boundary::Boundary;
 use crate::clock::fastest_signal;
-use crate::contact::{Impulse, Rules, Survey, Tally};
+use crate::contact::{Impulse, Rules, Tally};
 use crate::door::StepError;
 use crate::grid::{Cover, Field, Lattice};
 use crate::scene::{StressUpdate, Time};
@@ -37,7 +38,6 @@ pub struct Engine<T, const D: usize, B> {
     clock: Time,
     cover: Cover<D>,
     field: Field<T, D>,
-    survey: Survey<T, D>,
     /// What contact did in the last step, both uses.
     impulses: Vec<Impulse<T, D>>,
     tally: Tally,
@@ -48,49 +48,39 @@ pub struct Engine<T, const D: usize, B> {
 }
 
 impl<T: Real, const D: usize, B: Basis<T>> Engine<T, D, B> {
-    /// One step of `dt`.
+    /// One step of `dt`. Numbers are equations of Bardenhagen et al. (2001).
     ///
-    /// Numbers are equations of Bardenhagen et al. (2001). Contact is applied to the interpolated and to the integrated
-    /// velocities. Where the strain is computed is the scene's choice: from the first ([`StressUpdate::First`]), from the
-    /// second ([`StressUpdate::Last`]), or from the particles' new velocities scattered once more ([`StressUpdate::ModifiedLast`]).
+    /// Contact is applied to the interpolated and to the integrated velocities. The strain comes from the first
+    /// ([`StressUpdate::First`]), from the second ([`StressUpdate::Last`]), or from the particles' new velocities scattered
+    /// once more ([`StressUpdate::ModifiedLast`]).
     fn advance(&mut self, dt: T) -> Result<(), StepError> {
-        self.cover(); //                            blocks under each body's particles
-        match self.clock.stress_update {
-            StressUpdate::First => {
-                self.scatter(Share::Momentum); //   m, p
-                self.interpolated_velocities(); //  v = p / m                                (4)
-                self.survey(); //                   normals, tractions, gaps where bodies meet
-                self.contact(dt); //                v~ from interpolated velocities          (5)-(13), (20)-(22)
-                self.strain(dt)?; //                F = (I + L dt) F, sigma = law(F)
-                self.scatter(Share::Force); //      f = -sum V sigma grad S
-                self.accelerate(dt); //             v += dt (f / m + g)                      (3)
-                self.contact(dt); //                v~ from integrated velocities
-                self.accept()?; //                  particles: v += dv
-                self.displace(dt) //                particles: x += v dt
-            }
+        let when = self.clock.stress_update;
+        self.cover(); //                                blocks under each body's particles
+        self.scatter(match when {
+            StressUpdate::First => Share::Momentum, //  m, p
+            _ => Share::Everything,                 //                  m, p, f = -sum V sigma grad S
+        });
+        self.interpolated_velocities(); //              v = p / m                           (4)
+        let survey = self.survey(); //                  surfaces, normals and gaps where bodies meet
+        self.contact(&survey, dt); //                   v~ from interpolated velocities     (5)-(13), (20)-(22)
+        if when == StressUpdate::First {
+            self.strain(dt)?;
+            self.scatter(Share::Force);
+        }
+        self.accelerate(dt); //                         v += dt (f / m + g)                 (3)
+        self.contact(&survey, dt); //                   v~ from integrated velocities
+        self.accept()?; //                              particles: v += dv
+        match when {
+            StressUpdate::First => self.displace(dt), // particles: x += v dt
             StressUpdate::Last => {
-                self.scatter(Share::Everything);
-                self.interpolated_velocities();
-                self.survey();
-                self.contact(dt);
-                self.accelerate(dt);
-                self.contact(dt);
-                self.accept()?;
-                self.strain(dt)?;
+                self.strain(dt)?; //                    F = (I + L dt) F, sigma = law(F)
                 self.displace(dt)
             }
             StressUpdate::ModifiedLast => {
-                self.scatter(Share::Everything);
-                self.interpolated_velocities();
-                self.survey();
-                self.contact(dt);
-                self.accelerate(dt);
-                self.contact(dt);
-                self.accept()?;
-                self.integrated_velocities_aside();
+                self.set_velocities_aside();
                 self.scatter(Share::Momentum);
                 self.modified_velocities();
-                self.contact_again(dt);
+                self.contact_unrecorded(&survey, dt);
                 self.strain(dt)?;
                 self.displace_aside(dt)
             }

@@ -1,19 +1,20 @@
-//! What the verbs of the step do, on threads.
-//!
-//! Tiles of one colour scatter side by side, colours one after the other, and a tile's particles in their own order: the sums do
-//! not depend on the number of threads.
+//! The verbs of the step: what each does to a node or a particle.
 
 use super::Engine;
+use super::cpu::{Fault, FaultKind};
 use crate::basis::Basis;
-use crate::body::{Body, Particle};
-use crate::contact::{Impulse, Near, solve};
+use crate::body::Particle;
+use crate::contact::{Impulse, Near, Survey, solve};
 use crate::door::StepError;
-use crate::grid::{Disjoint, Node, Tile, Window, addressable, node_at, nodes_per_block};
+use crate::grid::{Node, Window, addressable, node_at, nodes_per_block};
 use crate::material::Motion;
 use crate::tensor::{Matrix, Real, Vector};
 use crate::transfer::Stencil;
 use rayon::prelude::*;
 use std::time::Instant;
+
+/// Steps between sorts of the particles in memory.
+const SORT_INTERVAL: u64 = 256;
 
 /// What a scatter gives to the nodes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,30 +27,32 @@ pub enum Share {
     Everything,
 }
 
-/// A particle that a verb cannot go on with.
-struct Fault {
-    body: usize,
-    particle: usize,
-    kind: FaultKind,
-}
-
-enum FaultKind {
-    Inverted,
-    Escaped,
-    NotFinite,
-}
-
 impl<T: Real, const D: usize, B: Basis<T>> Engine<T, D, B> {
     pub(super) fn cover(&mut self) {
         let start = Instant::now();
+        self.cover_particles();
+        if self.steps.is_multiple_of(SORT_INTERVAL) {
+            self.sort_particles();
+            self.cover_particles();
+        }
+        self.boundary.cover(&self.cover);
+        self.field.clear(&self.cover);
+        self.watch.lap("cover", start);
+    }
+
+    fn cover_particles(&mut self) {
         let counts: Vec<usize> = self.bodies.iter().map(|body| body.particles.len()).collect();
         let (bodies, lattice) = (&self.bodies, &self.lattice);
         self.cover.update(&counts, |body, particle| {
             Stencil::<T, D, B>::new(lattice, &bodies[body].particles[particle]).base()
         });
-        self.boundary.cover(&self.cover);
-        self.field.clear(&self.cover);
-        self.watch.lap("cover", start);
+    }
+
+    /// Brings the particles' order in memory close to the order in which tiles visit them.
+    fn sort_particles(&mut self) {
+        for (i, body) in self.bodies.iter_mut().enumerate() {
+            body.particles = self.cover.order_of(i).iter().map(|&p| body.particles[p as usize]).collect();
+        }
     }
 
     pub(super) fn scatter(&mut self, share: Share) {
@@ -77,27 +80,6 @@ impl<T: Real, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.watch.lap("scatter", start);
     }
 
-    fn scatter_each(
-        &mut self,
-        scatter: impl Fn(&Particle<T, D>, &Stencil<T, D, B>, &mut Window<T, D>, [i32; D]) + Sync,
-    ) {
-        let nodes = Disjoint::new(&mut self.field.nodes);
-        let (cover, bodies, lattice) = (&self.cover, &self.bodies, &self.lattice);
-        for color in &cover.colors {
-            color.par_iter().with_min_len(4).for_each_init(Window::default, |window, &tile| {
-                let tile = &cover.tiles[tile as usize];
-                window.clear();
-                for &index in cover.particles_of(tile) {
-                    let particle = &bodies[tile.body].particles[index as usize];
-                    let stencil = Stencil::<T, D, B>::new(lattice, particle);
-                    scatter(particle, &stencil, window, tile.block);
-                }
-                // SAFETY: tiles of one colour share no slot, and colours follow one another.
-                unsafe { window.add_to(&nodes, tile) };
-            });
-        }
-    }
-
     /// v = p / m
     pub(super) fn interpolated_velocities(&mut self) {
         self.field.nodes.par_iter_mut().with_min_len(4096).for_each(|node| {
@@ -110,7 +92,7 @@ impl<T: Real, const D: usize, B: Basis<T>> Engine<T, D, B> {
     }
 
     /// Sets the integrated velocities aside in `start` and makes room for mass and momentum.
-    pub(super) fn integrated_velocities_aside(&mut self) {
+    pub(super) fn set_velocities_aside(&mut self) {
         self.field.nodes.par_iter_mut().with_min_len(4096).for_each(|node| {
             *node = Node { start: node.velocity, force: node.force, ..Node::EMPTY };
         });
@@ -140,7 +122,7 @@ impl<T: Real, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.boundary.hold(&mut self.field);
     }
 
-    pub(super) fn survey(&mut self) {
+    pub(super) fn survey(&mut self) -> Survey<T, D> {
         let start = Instant::now();
         let near = Near {
             cover: &self.cover,
@@ -150,14 +132,15 @@ impl<T: Real, const D: usize, B: Basis<T>> Engine<T, D, B> {
             boundary: &self.boundary,
             rules: &self.rules,
         };
-        self.survey = near.survey::<B>();
+        let survey = near.survey::<B>();
         self.impulses.clear();
         self.watch.lap("survey", start);
+        survey
     }
 
-    pub(super) fn contact(&mut self, dt: T) {
+    pub(super) fn contact(&mut self, survey: &Survey<T, D>, dt: T) {
         let start = Instant::now();
-        let impulses = solve(&self.survey, &self.rules, &self.field, self.lattice.cell / dt);
+        let impulses = solve(survey, &self.rules, &self.field, self.lattice.cell / dt);
         self.tally.add(&impulses);
         self.change_velocities(&impulses);
         self.impulses.extend(impulses);
@@ -165,9 +148,9 @@ impl<T: Real, const D: usize, B: Basis<T>> Engine<T, D, B> {
     }
 
     /// Contact on velocities that only strain the particles: it enters no sum of forces and works.
-    pub(super) fn contact_again(&mut self, dt: T) {
+    pub(super) fn contact_unrecorded(&mut self, survey: &Survey<T, D>, dt: T) {
         let start = Instant::now();
-        let impulses = solve(&self.survey, &self.rules, &self.field, self.lattice.cell / dt);
+        let impulses = solve(survey, &self.rules, &self.field, self.lattice.cell / dt);
         self.change_velocities(&impulses);
         self.watch.lap("contact", start);
     }
@@ -277,50 +260,6 @@ impl<T: Real, const D: usize, B: Basis<T>> Engine<T, D, B> {
         fault.map_or(Ok(()), |fault| Err(self.error(&fault)))
     }
 
-    /// Visits every particle of the deformable bodies with its stencil and window; returns the first fault by body and particle.
-    fn each_particle(
-        &mut self,
-        visit: impl Fn(
-            &Body<T, D>,
-            &mut Particle<T, D>,
-            &Stencil<T, D, B>,
-            &Window<T, D>,
-            [i32; D],
-        ) -> Result<(), FaultKind>
-        + Sync,
-    ) -> Option<Fault> {
-        let mut particles: Vec<Vec<Particle<T, D>>> =
-            self.bodies.iter_mut().map(|body| std::mem::take(&mut body.particles)).collect();
-        let columns: Vec<Disjoint<Particle<T, D>>> = particles.iter_mut().map(|p| Disjoint::new(p)).collect();
-        let (cover, field, bodies, lattice) = (&self.cover, &self.field, &self.bodies, &self.lattice);
-        let of_tile = |window: &mut Window<T, D>, tile: &Tile<D>| -> Option<Fault> {
-            let body = &bodies[tile.body];
-            if body.rigid {
-                return None;
-            }
-            window.load(field, tile);
-            let mut first = None;
-            for &index in cover.particles_of(tile) {
-                // SAFETY: every particle belongs to one tile, and every tile to one call.
-                let particle = unsafe { columns[tile.body].get(index as usize) };
-                let stencil = Stencil::<T, D, B>::new(lattice, particle);
-                if let Err(kind) = visit(body, particle, &stencil, window, tile.block) {
-                    let fault = Fault { body: tile.body, particle: index as usize, kind };
-                    first = earlier(first, Some(fault));
-                }
-            }
-            first
-        };
-        let fault = (cover.tiles.par_iter().with_min_len(4))
-            .map_init(Window::default, of_tile)
-            .reduce(|| None, earlier);
-        drop(columns);
-        for (body, particles) in self.bodies.iter_mut().zip(particles) {
-            body.particles = particles;
-        }
-        fault
-    }
-
     fn error(&self, fault: &Fault) -> StepError {
         let body = &self.bodies[fault.body];
         let particle = &body.particles[fault.particle];
@@ -337,13 +276,5 @@ impl<T: Real, const D: usize, B: Basis<T>> Engine<T, D, B> {
             FaultKind::Escaped => StepError::Escaped { body: name, number, position, time },
             FaultKind::NotFinite => StepError::NotFinite { body: name, number, position, time },
         }
-    }
-}
-
-/// The fault of the lower body and particle.
-fn earlier(a: Option<Fault>, b: Option<Fault>) -> Option<Fault> {
-    match (a, b) {
-        (Some(a), Some(b)) => Some(if (b.body, b.particle) < (a.body, a.particle) { b } else { a }),
-        (a, b) => a.or(b),
     }
 }
