@@ -23,7 +23,10 @@ fn documents() -> Vec<(PathBuf, String)> {
         }
     }
     paths.sort();
-    paths.into_iter().map(|path| (path.clone(), fs::read_to_string(repository().join(path)).unwrap())).collect()
+    paths
+        .into_iter()
+        .map(|path| (path.clone(), fs::read_to_string(repository().join(path)).unwrap()))
+        .collect()
 }
 
 fn chapter(name: &str) -> String {

@@ -1,6 +1,7 @@
 //! Bodies as their particles show them: how many, how large, and whether the domain holds them.
 
 use super::lattice;
+use super::table::short;
 use crate::geometry::{Bounds, Shape};
 use crate::scene::{Problem, Scene};
 use rayon::prelude::*;
@@ -38,7 +39,8 @@ fn measure_body(scene: &Scene, i: usize) -> Result<Extent, Problem> {
             key: "space.cell".into(),
             found: format!(
                 "cells of {} m, {sites:.1e} particle sites in body `{}`",
-                scene.discretization.cell, body.name
+                short(scene.discretization.cell),
+                body.name
             ),
             allowed: format!("at most {MOST_SITES:.1e} sites in a body"),
             help: Some("are the units of the cell and the shape right?".into()),

@@ -1,6 +1,7 @@
 //! Numbers that do not fit each other: the grid, the domain, time, materials, motion out of the plane.
 
 use super::axes;
+use super::table::short;
 use crate::scene::{Domain, Expression, Face, Motion, NamedMaterial, Problem, Scene};
 use crate::tensor::Matrix;
 
@@ -73,17 +74,22 @@ fn check_domain(domain: &Domain, cell: f64, dimension: usize) -> Result<(), Prob
             let whole = cells.round().max(1.0);
             return Err(Problem {
                 key: "space.domain.max".into(),
-                found: format!("{:.6} cells of {cell} m along {axis}", cells),
+                found: format!("{} cells of {} m along {axis}", short(cells), short(cell)),
                 allowed: "a whole number of cells between the domain's lower corner and an upper wall".into(),
                 help: Some(format!(
                     "put the upper {axis} wall at {} m, or take cells of {} m",
-                    min + whole * cell,
-                    (max - min) / whole
+                    rounded(min + whole * cell),
+                    rounded((max - min) / whole)
                 )),
             });
         }
     }
     Ok(())
+}
+
+/// Ten digits: near enough to be a whole number of cells.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.9e}").parse().unwrap_or(value)
 }
 
 /// In the plane nothing accelerates or moves out of it or turns about an axis in it.
