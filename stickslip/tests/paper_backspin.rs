@@ -26,7 +26,9 @@
 //! | R/8   | default  | 0.982, 0.978   | x within 4 % |
 //! | R/4   | traction | 0.237, -0.217  |              |
 //! | R/8   | traction | 0.718, 0.483   | x 0.65       |
-//! | R/12  | traction | XXXX           | x 0.87       |
+//! | R/12  | traction | 0.889, 0.735   | x 0.87       |
+//!
+//! The older, kinematic rule gives 0.439 at R/4 and 0.820, 0.887 at R/8, and gains 73 % of the final kinetic energy there, the paper's 4 %.
 //!
 //! The sphere skips, more the larger the cells, and what it does between two landings decides how far it gets: shifted by quarters of a cell
 //! along the plane the default at R/4 gives 0.926 to 0.966, which is why R/4 is held to 10 % only. Runs repeat bit for bit.
@@ -69,4 +71,13 @@ fn the_papers_rule_converges() {
     assert!(finest.distance >= 0.87, "{finest:?}");
     assert!((fine.distance - 1.0).abs() < (coarse.distance - 1.0).abs(), "{coarse:?} {fine:?}");
     assert!((finest.distance - 1.0).abs() < (fine.distance - 1.0).abs(), "{fine:?} {finest:?}");
+}
+
+/// For the record: the paper gives no such run.
+#[test]
+#[ignore = "slow: one minute"]
+fn the_older_rule_on_fine_cells() {
+    let roll = Roll::down(BACKSPIN, &[("cells_per_radius", "8"), ("contact", "kinematic")]);
+    assert!((roll.distance - 0.82).abs() < 0.05, "{roll:?}");
+    assert!(roll.gain > 0.3, "{roll:?}");
 }

@@ -29,6 +29,9 @@
 //! | R/4   | default  | 0.952, 0.927   | x within 7 %    | 0.995, 0.986   |           |
 //! | R/8   | default  | 1.000, 0.990   | x within 3 %    | 0.999, 0.996   | x within 3 % |
 //!
+//! The older, kinematic rule gives 0.860, 0.950 at R/4 and 0.965, 1.010 at R/8 without slip, and 0.937, 0.980 at R/8 with it. Over the
+//! kinetic energy at the end, energy comes from nowhere by 3.4 % with the older rule at R/4, 1.1 % with the paper's, 0.02 % with the default.
+//!
 //! Room is left for where nodes lie under the sphere: shifted along the slope by quarters of a cell, the default at R/4 without slip gives
 //! 0.952 to 0.958, shifted across it 0.930 to 0.952. Runs repeat bit for bit.
 
@@ -50,6 +53,7 @@ fn the_default_rolls_on_coarse_cells() {
     assert!((roll.distance - 1.0).abs() < 0.07, "{roll:?}");
     assert!((roll.rolling - 1.0).abs() < 0.1, "{roll:?}");
     assert!((roll.height - 1.555).abs() < 0.1 * COARSE_CELL, "{roll:?}");
+    assert!(roll.gain.abs() < 0.005, "{roll:?}");
 }
 
 #[test]
@@ -57,6 +61,7 @@ fn the_default_slips_on_coarse_cells() {
     let roll = Roll::down(SLIP, &[("cells_per_radius", "4")]);
     assert!((roll.distance - 1.0).abs() < 0.03, "{roll:?}");
     assert!((roll.height - 1.565).abs() < 0.1 * COARSE_CELL, "{roll:?}");
+    assert!(roll.gain.abs() < 0.005, "{roll:?}");
 }
 
 /// "A flat spot" keeps the sphere where it is (figure 5). It does where the plane's surface lies amid a cell, which it is made to do here by a
@@ -72,9 +77,12 @@ fn the_papers_rule_does_not_roll_on_the_coarsest_cells() {
 }
 
 #[test]
-fn the_papers_rule_lags_on_coarse_cells() {
-    let roll = Roll::down(NO_SLIP, &[("cells_per_radius", "4"), ("contact", "traction")]);
-    assert!((0.80..0.92).contains(&roll.distance), "{roll:?}");
+fn the_papers_rule_lags_on_coarse_cells_and_gains_less_energy_than_the_older_rule() {
+    let [paper, older] = ["traction", "kinematic"]
+        .map(|contact| Roll::down(NO_SLIP, &[("cells_per_radius", "4"), ("contact", contact)]));
+    assert!((0.80..0.92).contains(&paper.distance), "{paper:?}");
+    assert!((0.80..0.92).contains(&older.distance), "{older:?}");
+    assert!(paper.gain.abs() < 0.5 * older.gain, "{paper:?} {older:?}");
 }
 
 #[test]
@@ -84,6 +92,7 @@ fn the_default_rolls_as_a_rigid_sphere() {
     assert!((roll.distance - 1.0).abs() < 0.03, "{roll:?}");
     assert!((roll.speed - 1.0).abs() < 0.03, "{roll:?}");
     assert!((roll.height - 1.555).abs() < 0.1 * FINE_CELL, "{roll:?}");
+    assert!(roll.gain.abs() < 0.005, "{roll:?}");
 }
 
 #[test]
@@ -93,6 +102,7 @@ fn the_default_slips_as_a_rigid_sphere() {
     assert!((roll.distance - 1.0).abs() < 0.03, "{roll:?}");
     assert!((roll.speed - 1.0).abs() < 0.03, "{roll:?}");
     assert!((roll.height - 1.565).abs() < 0.1 * FINE_CELL, "{roll:?}");
+    assert!(roll.gain.abs() < 0.005, "{roll:?}");
 }
 
 #[test]
@@ -112,4 +122,15 @@ fn the_papers_rule_converges_with_slip() {
         ["4", "8"].map(|cells| Roll::down(SLIP, &[("cells_per_radius", cells), ("contact", "traction")]));
     assert!(fine.distance >= 0.91, "{fine:?}");
     assert!((fine.distance - 1.0).abs() < (coarse.distance - 1.0).abs(), "{coarse:?} {fine:?}");
+}
+
+/// For the record: the paper gives no such run.
+#[test]
+#[ignore = "slow: four minutes"]
+fn the_older_rule_on_fine_cells() {
+    for (scene, distance) in [(NO_SLIP, 0.965), (SLIP, 0.937)] {
+        let roll = Roll::down(scene, &[("cells_per_radius", "8"), ("contact", "kinematic")]);
+        assert!((roll.distance - distance).abs() < 0.02, "{roll:?}");
+        assert!(roll.gain > 0.01, "{roll:?}");
+    }
 }

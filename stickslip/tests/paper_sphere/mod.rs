@@ -15,6 +15,8 @@ pub struct Roll {
     pub rolling: f64,
     /// Mean height of the centre of mass above the plane's undeformed surface in the last four fifths of the run [m].
     pub height: f64,
+    /// Energy gained from nowhere until the end over the kinetic energy then [-].
+    pub gain: f64,
 }
 
 /// Part of the run in which the sphere settles on the plane: its height counts from here on.
@@ -39,6 +41,7 @@ impl Roll {
         let mut simulation = engine::build(scene).unwrap_or_else(|error| panic!("{error:?}"));
         let sphere = scene.bodies.iter().position(|body| body.name == "sphere").unwrap();
         let end = scene.time.end;
+        let energy = simulation.ledger().total;
         let (mut height, mut duration) = (0.0, 0.0);
         while end - simulation.time() > ROUNDING {
             let start = simulation.time();
@@ -51,11 +54,13 @@ impl Roll {
         }
         let state = &simulation.bodies()[sphere];
         let Parameter::Number(radius) = scene.parameters["radius"] else { panic!("a radius is a number") };
+        let ledger = simulation.ledger();
         Roll {
             distance: state.position[0] / reference(scene, "x"),
             speed: state.velocity[0] / reference(scene, "vx"),
             rolling: state.spin[1] * radius / state.velocity[0],
             height: height / duration,
+            gain: (ledger.total - energy) / ledger.kinetic,
         }
     }
 }
