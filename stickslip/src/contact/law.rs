@@ -133,7 +133,8 @@ impl<T: Real, const D: usize> Pair<'_, T, D> {
     fn own_normals(&self, velocities: [Vector<T, D>; 2]) -> Change<T, D> {
         let [a, b] = self.surfaces;
         let share = a.inverse_mass + b.inverse_mass;
-        if share <= T::ZERO {
+        let apart = self.rule.law == ContactLaw::Gap && self.gap > T::of(TOUCHING);
+        if share <= T::ZERO || apart {
             return Change::NONE;
         }
         // m_2/M = (1/m_1)/(1/m_1 + 1/m_2)
@@ -255,6 +256,21 @@ mod tests {
                 let difference = (own.impulse[body] - common.impulse[body]).norm();
                 assert!(difference < 1e-14, "friction {friction}: {own:?} {common:?}");
             }
+        }
+    }
+
+    #[test]
+    fn surfaces_with_a_gap_do_not_touch_whatever_the_normal() {
+        let surfaces = [surface(1.0, [0.0, -1.0]), surface(3.0, [0.0, 1.0])];
+        for normal in [Normal::Own, Normal::Common] {
+            let rule = rule(ContactLaw::Gap, normal, 0.25);
+            let touching = |gap| {
+                let normal = Some(Vector([0.0, -1.0]));
+                let pair =
+                    Pair { rule: &rule, surfaces: [&surfaces[0], &surfaces[1]], normal, gap, limit: 100.0 };
+                pair.change([Vector([0.0, -8.0]), Vector::ZERO]) != Change::NONE
+            };
+            assert!(touching(0.0) && touching(-0.1) && !touching(0.01), "{normal:?}");
         }
     }
 
