@@ -71,7 +71,8 @@ impl<T: Real, const D: usize> Body<T, D> {
                 totals.angular_momentum[i] += m * l[i];
                 totals.kinetic += 0.5 * m * v[i] * v[i];
             }
-            if !self.rigid {
+            // A particle that turned inside out has stopped the run and has no energy.
+            if !self.rigid && particle.deformation.det() > T::ZERO {
                 let energy = law.strain_energy(&particle.deformation, &particle.stress);
                 totals.strain += particle.volume.f64() * energy.f64();
             }

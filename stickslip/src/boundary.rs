@@ -61,6 +61,11 @@ impl Boundary {
         Boundary { walls, ..Boundary::default() }
     }
 
+    /// Whether a node lies behind a mirror, where it only repeats the one before it.
+    pub fn mirrors<const D: usize>(&self, node: [i32; D]) -> bool {
+        self.walls.iter().any(|wall| wall.face == Face::Symmetry && wall.depth(node) < 0)
+    }
+
     /// Finds the nodes that walls govern.
     pub fn cover<const D: usize>(&mut self, cover: &Cover<D>) {
         self.mirrored.clear();

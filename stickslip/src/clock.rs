@@ -15,9 +15,6 @@ pub fn fastest_signal<T: Real, const D: usize>(bodies: &[Body<T, D>]) -> f64 {
         let law = body.material.law();
         let signal = |particle: &crate::body::Particle<T, D>| {
             let speed = particle.velocity.norm();
-            if body.rigid {
-                return speed.f64();
-            }
             let modulus = law.wave_modulus(&particle.deformation, particle.deformation.det());
             ((modulus / body.density).sqrt() + speed).f64()
         };

@@ -86,7 +86,7 @@ pub struct ContactState {
     pub force: [f64; 3],
     /// Sum over nodes of the force along each node's normal, positive when the bodies push each other apart [N].
     pub normal: f64,
-    /// Sum over nodes of the magnitude of the force across each node's normal [N].
+    /// Magnitude of the sum over nodes of the forces across each node's normal [N].
     pub tangential: f64,
     /// Grid nodes in contact in the last step in which the pair touched.
     pub nodes: usize,
@@ -202,7 +202,7 @@ impl StepError {
                 "make the domain larger, end the run earlier, or put a face in the way"
             }
             StepError::NotFinite { .. } => {
-                "try a smaller time.courant; look at the last frame for what went wrong first"
+                "try a smaller time.courant, or mend the formula of a prescribed motion; look at the last frame for what went wrong first"
             }
         }
     }

@@ -2,24 +2,50 @@
 //!
 //! The rooms below are in reading order: each uses only rooms above it.
 
-pub mod tensor; // Real, Vector<T, D>, Matrix<T>, Symmetric<T>
+// Real, Vector<T, D>, Matrix<T>, Symmetric<T>
+pub mod tensor;
 
+// Shapes: inside(x), bounds; filling them with particles.
+pub mod geometry;
+
+// One file a law: equation, code, tests.
+pub mod material;
+
+// What the user asks for; scene file -> Scene, with errors that point at line and key.
+pub mod scene;
+
+// What is wrong or doubtful with a scene, before it runs.
 pub mod check;
-pub mod geometry; // shapes: inside(x), bounds; filling them with particles
-pub mod material; // one file a law: equation, code, tests
-pub mod scene; // what the user asks for; scene file -> Scene, with errors that point at line and key // what is wrong or doubtful with a scene, before it runs
 
-pub mod basis; // shape functions: linear, GIMP
-pub mod body; // particles, and what they add up to
-pub mod grid; // the sparse field: blocks of nodes under each body's particles
-pub mod transfer; // particles -> field, field -> particles
+// Shape functions: linear, GIMP.
+pub mod basis;
 
-pub mod boundary; // mirrors and fixed faces of the domain
-pub mod clock; // the stable time step
+// Particles, and what they add up to.
+pub mod body;
+
+// The sparse field: blocks of nodes under each body's particles.
+pub mod grid;
+
+// Particles -> field, field -> particles.
+pub mod transfer;
+
+// Mirrors and fixed faces of the domain.
+pub mod boundary;
+
+// The stable time step.
+pub mod clock;
+
+// A running simulation with dimension and precision erased.
+pub mod door;
+
+// What bodies do to each other at the nodes they share.
 pub mod contact;
-pub mod door; // a running simulation with dimension and precision erased // what bodies do to each other at the nodes they share
 
-pub mod engine; // the step and its verbs
+// The step and its verbs.
+pub mod engine;
 
-pub mod observe; // one file a kind of output; results read back
-pub mod run; // the loop: step, observe, stop
+// One file a kind of output; results read back.
+pub mod observe;
+
+// The loop: step, observe, stop.
+pub mod run;

@@ -6,8 +6,11 @@ use crate::geometry::{Bounds, Shape};
 use crate::scene::{Problem, Scene};
 use rayon::prelude::*;
 
-/// Particles are numbered with 32 bits in their body.
-const MOST_SITES: f64 = 4_294_967_295.0;
+/// Particles are numbered with 32 bits in their body, and take hundreds of bytes.
+const MOST_SITES: f64 = 1e9;
+
+/// Cells from the grid's origin along an axis; the grid numbers its blocks that far and a little further.
+const MOST_CELLS: f64 = 4e6;
 
 /// Particles may lie outside the domain by this share of their spacing.
 const ROUND_OFF: f64 = 1e-6;
@@ -44,6 +47,18 @@ fn measure_body(scene: &Scene, i: usize) -> Result<Extent, Problem> {
             ),
             allowed: format!("at most {MOST_SITES:.1e} sites in a body"),
             help: Some("are the units of the cell and the shape right?".into()),
+        });
+    }
+    let cell = scene.discretization.cell;
+    let reach = (0..lattice.dimension)
+        .flat_map(|k| [bounds.min[k] - lattice.origin[k], bounds.max[k] - lattice.origin[k]])
+        .fold(0.0_f64, |reach, x| reach.max(x.abs()));
+    if reach.is_finite() && reach > MOST_CELLS * cell {
+        return Err(Problem {
+            key: format!("bodies[{i}].shape"),
+            found: format!("`{}` reaches {:.1e} cells from the grid's origin", body.name, reach / cell),
+            allowed: format!("at most {MOST_CELLS:.0e} cells"),
+            help: Some("put the corner space.domain.min near the bodies: the grid starts there".into()),
         });
     }
     let mut extent = Extent { particles: 0, mass: 0.0, bounds: Bounds::EMPTY };
@@ -172,6 +187,14 @@ mod tests {
         assert!(problem.found.contains("empty"), "{problem}");
         let huge = scene(Dimension::Space, 1e-5, vec![free("it", 0, ball(0.0, 1.0))]);
         assert_eq!(measure(&huge).expect_err("8e15 sites").key, "space.cell");
+    }
+
+    #[test]
+    fn a_body_far_from_the_grids_origin_is_refused() {
+        for (x, allowed) in [(3e5, true), (1e6, false), (-1e12, false)] {
+            let far = scene(Dimension::Space, 0.1, vec![free("far", 0, ball(x, 1.0))]);
+            assert_eq!(measure(&far).is_ok(), allowed, "{x}");
+        }
     }
 
     #[test]

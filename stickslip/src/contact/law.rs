@@ -51,10 +51,14 @@ impl<T: Real, const D: usize> Change<T, D> {
 }
 
 /// Surfaces closer than this part of a cell touch: round-off must not part bodies that start in contact.
-const TOUCHING: f64 = 1e-6;
+fn touching<T: Real>() -> T {
+    T::of(1e-6).max(T::of(16.0) * T::EPSILON)
+}
 
-/// Stress below this fraction of the modulus counts as none.
-const STRESS_FREE: f64 = 1e-12;
+/// Stress below this fraction of the modulus is round-off and counts as none.
+fn stress_free<T: Real>() -> T {
+    T::of(1e-12).max(T::of(16.0) * T::EPSILON)
+}
 
 impl<T: Real, const D: usize> Pair<'_, T, D> {
     /// What contact does to two bodies with these velocities [m/s].
@@ -77,7 +81,10 @@ impl<T: Real, const D: usize> Pair<'_, T, D> {
 
     /// Both bodies take their common velocity.
     fn glued(&self, [v, w]: [Vector<T, D>; 2]) -> Change<T, D> {
-        self.exchange(T::ZERO, (w - v) * self.reduced_mass(), Vector::ZERO)
+        let impulse = (w - v) * self.reduced_mass();
+        let n = self.normal.unwrap_or(Vector::ZERO);
+        let along = impulse.dot(n);
+        self.exchange(along, impulse - n * along, n)
     }
 
     /// Equal and opposite impulses: `normal` along the common normal and `tangential` across it, on the first body [N s].
@@ -116,7 +123,7 @@ impl<T: Real, const D: usize> Pair<'_, T, D> {
                 None => approaching,
             },
             ContactLaw::Gap => {
-                self.gap <= T::of(TOUCHING) && (approaching || self.traction(n).is_some_and(|t| t < T::ZERO))
+                self.gap <= touching() && (approaching || self.traction(n).is_some_and(|t| t < T::ZERO))
             }
             ContactLaw::None | ContactLaw::Glued => false,
         }
@@ -133,7 +140,7 @@ impl<T: Real, const D: usize> Pair<'_, T, D> {
     fn own_normals(&self, velocities: [Vector<T, D>; 2]) -> Change<T, D> {
         let [a, b] = self.surfaces;
         let share = a.inverse_mass + b.inverse_mass;
-        let apart = self.rule.law == ContactLaw::Gap && self.gap > T::of(TOUCHING);
+        let apart = self.rule.law == ContactLaw::Gap && self.gap > touching();
         if share <= T::ZERO || apart {
             return Change::NONE;
         }
@@ -186,11 +193,11 @@ impl<T: Real, const D: usize> Pair<'_, T, D> {
 fn sticking<T: Real>(slip: T, friction: T, normal: T) -> T {
     let bound = friction * normal;
     // An infinite coefficient sticks even without any normal velocity.
-    if friction > T::of(1e30) || bound >= slip { T::ONE } else { bound / slip }
+    if !friction.is_finite() || bound >= slip { T::ONE } else { bound / slip }
 }
 
 fn loaded<T: Real>(traction: T, modulus: T) -> Option<T> {
-    (traction.abs() > T::of(STRESS_FREE) * modulus).then_some(traction)
+    (traction.abs() > stress_free::<T>() * modulus).then_some(traction)
 }
 
 #[cfg(test)]

@@ -28,45 +28,98 @@ impl<T: Real> From<&ContactRule> for Rule<T> {
     }
 }
 
-/// Rules between classes of bodies. Bodies of one class match the same names in the scene's rules, so the table grows with the
-/// rules of the scene and not with its bodies.
+/// The scene's rules, found by the names of a pair's bodies and materials. Space and time follow the rules, never pairs of bodies.
 #[derive(Clone, Debug, Default)]
 pub struct Rules<T> {
-    class: Vec<usize>,
-    classes: usize,
-    table: Vec<Rule<T>>,
+    /// The scene's rules in their order, and the rule for all other pairs.
+    rules: Vec<Rule<T>>,
+    /// Each body's names that rules mention: its own, its material's, and `ANY`.
+    names: Vec<[Option<u32>; 3]>,
+    /// The first rule that mentions two names.
+    first: HashMap<[u32; 2], usize>,
 }
+
+/// Stands for every body.
+const ANY: u32 = 0;
 
 impl<T: Real> Rules<T> {
     /// The rules of a scene.
     pub fn new(scene: &Scene) -> Self {
-        let named = |name: &str| {
-            scene.contact.iter().flat_map(|rule| &rule.between).any(|n| n.as_deref() == Some(name))
-        };
-        let mut members: Vec<usize> = Vec::new();
-        let mut known = HashMap::new();
-        let class = (scene.bodies.iter().enumerate())
-            .map(|(i, body)| {
-                let signature = (named(&body.name).then_some(&body.name), body.material);
-                *known.entry(signature).or_insert_with(|| {
-                    members.push(i);
-                    members.len() - 1
-                })
-            })
+        let mut numbers = HashMap::new();
+        let mut first = HashMap::new();
+        for (index, rule) in scene.contact.iter().enumerate() {
+            let [a, b] = rule.between.each_ref().map(|name| match name {
+                Some(name) => {
+                    let next = numbers.len() as u32 + 1;
+                    *numbers.entry(name.as_str()).or_insert(next)
+                }
+                None => ANY,
+            });
+            first.entry([a, b]).or_insert(index);
+            first.entry([b, a]).or_insert(index);
+        }
+        let number = |name: &str| numbers.get(name).copied();
+        let names = (scene.bodies.iter())
+            .map(|body| [number(&body.name), number(&scene.materials[body.material].name), Some(ANY)])
             .collect();
-        let pair = |&a: &usize| members.iter().map(move |&b| Rule::from(&scene.contact_between(a, b)));
-        Rules { class, classes: members.len(), table: members.iter().flat_map(pair).collect() }
+        let default = ContactRule::default();
+        Rules { rules: scene.contact.iter().chain([&default]).map(Rule::from).collect(), names, first }
     }
 
     /// One rule between all bodies.
     #[cfg(test)]
     pub fn of_all(bodies: usize, rule: Rule<T>) -> Self {
-        Rules { class: vec![0; bodies], classes: 1, table: vec![rule] }
+        let first = HashMap::from([([ANY, ANY], 0)]);
+        Rules { rules: vec![rule], names: vec![[None, None, Some(ANY)]; bodies], first }
     }
 
-    /// The rule for two bodies.
-    #[inline]
-    pub fn between(&self, a: usize, b: usize) -> &Rule<T> {
-        &self.table[self.class[a] * self.classes + self.class[b]]
+    /// Number of the rule for two bodies: the first in the scene that matches, else the last.
+    pub fn number(&self, a: usize, b: usize) -> usize {
+        let pairs = self.names[a]
+            .iter()
+            .flatten()
+            .flat_map(|&x| self.names[b].iter().flatten().map(move |&y| [x, y]));
+        pairs.filter_map(|pair| self.first.get(&pair)).min().copied().unwrap_or(self.rules.len() - 1)
+    }
+
+    /// A rule by its number.
+    pub fn rule(&self, number: usize) -> &Rule<T> {
+        &self.rules[number]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_rule_that_matches_holds_as_in_the_scene() {
+        let text = r#"
+            space = { dimension = "plane-strain", cell = 1 }
+            time.end = 1
+            materials.clay = { density = 1, neo_hookean = { young_modulus = 1, poisson_ratio = 0 } }
+            materials.iron = { density = 1, neo_hookean = { young_modulus = 9, poisson_ratio = 0 } }
+            bodies = [
+                { name = "a", material = "clay", shape.ball = { center = [0, 0], radius = 1 } },
+                { name = "b", material = "iron", shape.ball = { center = [4, 0], radius = 1 } },
+                { name = "c", material = "iron", shape.ball = { center = [8, 0], radius = 1 } },
+            ]
+            contact = [
+                { between = ["c", "a"], friction = 0.1 },
+                { between = ["clay", "iron"], friction = 0.2 },
+                { between = ["any", "c"], friction = 0.3 },
+            ]"#;
+        let scene = crate::scene::parse("rules.toml", text, &[]).expect("a scene").scene;
+        let rules = Rules::<f64>::new(&scene);
+        for (a, b, friction) in [(0, 2, 0.1), (0, 1, 0.2), (1, 2, 0.3), (2, 2, 0.3), (1, 1, 0.0)] {
+            for (a, b) in [(a, b), (b, a)] {
+                assert_eq!(
+                    rules.rule(rules.number(a, b)),
+                    &Rule::from(&scene.contact_between(a, b)),
+                    "{a} {b}"
+                );
+                assert_eq!(rules.rule(rules.number(a, b)).friction, friction, "{a} {b}");
+            }
+        }
     }
 }

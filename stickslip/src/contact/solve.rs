@@ -143,13 +143,13 @@ mod tests {
                 volume: 1.0,
                 modulus: 10.0,
             };
-            survey.sides.push(Side { body, index: body, mass, surface, volume_gradient });
+            survey.sides.push(Side { body, index: body, surface, volume_gradient });
         }
         let n = state.len();
         for a in 0..n {
             for b in a + 1..n {
                 let normal = (survey.sides[b].volume_gradient - survey.sides[a].volume_gradient).direction();
-                survey.encounters.push(Encounter { sides: [a, b], normal, gap: 0.0 });
+                survey.encounters.push(Encounter { sides: [a, b], rule: 0, normal, gap: 0.0 });
             }
         }
         survey.sites.push(Site { node: [0; 3], sides: 0..n, encounters: 0..survey.encounters.len() });

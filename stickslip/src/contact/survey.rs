@@ -5,7 +5,7 @@ use crate::basis::Basis;
 use crate::body::{Body, Particle};
 use crate::boundary::Boundary;
 use crate::grid::{Cover, Field, Lattice, Meeting, node_at, nodes_per_block};
-use crate::scene::Face;
+use crate::scene::{ContactLaw, Face};
 use crate::tensor::{Matrix, Real, Symmetric, Vector};
 use crate::transfer::{Stencil, offsets};
 use rayon::prelude::*;
@@ -29,8 +29,6 @@ pub struct Side<T, const D: usize> {
     pub body: usize,
     /// Its node in the field.
     pub index: usize,
-    /// Mass there [kg].
-    pub mass: T,
     /// Its surface there.
     pub surface: Surface<T, D>,
     pub(super) volume_gradient: Vector<T, D>,
@@ -41,6 +39,8 @@ pub struct Side<T, const D: usize> {
 pub struct Encounter<T, const D: usize> {
     /// The two sides, in [`Survey::sides`].
     pub sides: [usize; 2],
+    /// Number of the pair's rule.
+    pub(super) rule: usize,
     pub(super) normal: Option<Vector<T, D>>,
     pub(super) gap: T,
 }
@@ -144,12 +144,17 @@ impl<T: Real, const D: usize> Near<'_, T, D> {
                 survey.sides.push(self.side::<B>(node, slot as usize * n + local));
             }
             let (last, start) = (survey.sides.len(), survey.encounters.len());
-            let gap = self.gap(&survey.sides[first..last]);
             for a in first..last {
                 for b in a + 1..last {
+                    let rule = self.rules.number(survey.sides[a].body, survey.sides[b].body);
+                    let rigid = [a, b].map(|side| self.bodies[survey.sides[side].body].rigid);
+                    if self.rules.rule(rule).law == ContactLaw::None || rigid == [true; 2] {
+                        continue;
+                    }
+                    let gap = self.gap(&survey.sides[first..last], [a, b].map(|side| side - first));
                     let gradients = [a, b].map(|side| survey.sides[side].volume_gradient);
                     let normal = (gradients[1] - gradients[0]).direction();
-                    survey.encounters.push(Encounter { sides: [a, b], normal, gap });
+                    survey.encounters.push(Encounter { sides: [a, b], rule, normal, gap });
                 }
             }
             survey.sites.push(Site { node, sides: first..last, encounters: start..survey.encounters.len() });
@@ -179,7 +184,7 @@ impl<T: Real, const D: usize> Near<'_, T, D> {
             volume,
             modulus: owner.material.law().wave_modulus(&Matrix::IDENTITY, T::ONE),
         };
-        Side { body, index, mass, surface, volume_gradient }
+        Side { body, index, surface, volume_gradient }
     }
 
     /// Distance between the surfaces at a node, from the room that the bodies leave around it [cells].
@@ -189,9 +194,16 @@ impl<T: Real, const D: usize> Near<'_, T, D> {
     /// ```
     /// Where material fills space without a gap, the volumes interpolated to a node are a whole cell; a thin gap through the node
     /// takes its width times h^(D-1) from that. Overlap is negative. Needs no normal, and stairs of the particles' lattice
-    /// average out. A surface of radius R seems h^2/(6R) further away than its nearest point.
-    fn gap(&self, sides: &[Side<T, D>]) -> T {
-        T::ONE - sides.iter().map(|side| side.surface.volume).sum::<T>() / self.cell_volume()
+    /// average out. All bodies that touch either of the two count. A surface of radius R seems h^2/(6R) further away than its nearest point.
+    fn gap(&self, sides: &[Side<T, D>], pair: [usize; 2]) -> T {
+        let touches = |a: &Side<T, D>, b: &Side<T, D>| {
+            self.rules.rule(self.rules.number(a.body, b.body)).law != ContactLaw::None
+        };
+        let counts = |(i, side): &(usize, &Side<T, D>)| {
+            pair.contains(i) || pair.iter().any(|&of_pair| touches(side, &sides[of_pair]))
+        };
+        let volumes = sides.iter().enumerate().filter(counts).map(|(_, side)| side.surface.volume);
+        T::ONE - volumes.sum::<T>() / self.cell_volume()
     }
 
     /// Calls `f(particle, weight, gradient, image)` for every particle of a body that reaches a node or an image of it.
@@ -243,7 +255,7 @@ impl<T: Real, const D: usize> Survey<T, D> {
         strain_rate: T,
     ) -> Pair<'a, T, D> {
         let [a, b] = encounter.sides.map(|side| &self.sides[side]);
-        let rule = rules.between(a.body, b.body);
+        let rule = rules.rule(encounter.rule);
         Pair {
             rule,
             surfaces: [&a.surface, &b.surface],

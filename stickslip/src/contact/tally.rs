@@ -10,7 +10,7 @@ struct Sum {
     /// On the second body [N s].
     impulse: [f64; 3],
     normal: f64,
-    tangential: f64,
+    tangential: [f64; 3],
     nodes: usize,
     last_use: u64,
 }
@@ -41,12 +41,13 @@ impl Tally {
                 (sum.last_use, sum.nodes) = (self.uses, 0);
             }
             sum.nodes += 1;
+            let tangential = impulse.change.tangential.space();
             for i in 0..3 {
+                sum.tangential[i] += tangential[i];
                 // The paper's own normals give impulses that are not quite opposite; the force is their mean.
                 sum.impulse[i] += 0.5 * (on_b[i] - on_a[i]);
             }
             sum.normal -= impulse.change.normal.f64();
-            sum.tangential += impulse.change.tangential.norm().f64();
             self.friction += impulse.friction.f64();
             self.work += impulse.work.f64();
         }
@@ -64,7 +65,7 @@ impl Tally {
                 body_b,
                 force: sum.impulse.map(|j| j / elapsed),
                 normal: sum.normal / elapsed,
-                tangential: sum.tangential / elapsed,
+                tangential: sum.tangential.iter().map(|j| j * j).sum::<f64>().sqrt() / elapsed,
                 nodes: sum.nodes,
             })
             .collect()

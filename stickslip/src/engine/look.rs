@@ -117,9 +117,10 @@ impl<T: Real, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
         for (slot, &(body, block)) in self.cover.slots.iter().enumerate() {
             for local in 0..n {
                 let node = &self.field.nodes[slot * n + local];
-                if node.mass > T::ZERO {
+                let place = node_at(block, local);
+                if node.mass > T::ZERO && !self.boundary.mirrors(place) {
                     snapshot.body.push(body);
-                    snapshot.position.push(self.lattice.position(node_at(block, local)).space());
+                    snapshot.position.push(self.lattice.position(place).space());
                     snapshot.mass.push(node.mass.f64());
                     snapshot.velocity.push(node.velocity.space());
                     snapshot.force.push(node.force.space());

@@ -6,7 +6,7 @@ use crate::basis::Basis;
 use crate::body::Particle;
 use crate::contact::{Impulse, Near, Survey, solve};
 use crate::door::StepError;
-use crate::grid::{Node, Window, addressable, node_at, nodes_per_block};
+use crate::grid::{Lattice, Node, Window, addressable, node_at, nodes_per_block};
 use crate::material::Motion;
 use crate::tensor::{Matrix, Real, Vector};
 use crate::transfer::Stencil;
@@ -212,30 +212,38 @@ impl<T: Real, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 return Err(FaultKind::NotFinite);
             }
             particle.position = position;
-            let outside = domain.is_some_and(|[min, max]| {
-                (0..D).any(|i| particle.position[i] < min[i] || particle.position[i] > max[i])
-            });
-            if outside || !addressable(Stencil::<T, D, B>::new(&lattice, particle).base()) {
-                return Err(FaultKind::Escaped);
-            }
-            Ok(())
+            if escaped::<T, D, B>(particle, &lattice, domain) { Err(FaultKind::Escaped) } else { Ok(()) }
         });
-        for (body, motion) in self.bodies.iter_mut().zip(&mut self.rigid) {
+        let fault = fault.or(self.move_rigid_bodies(dt));
+        self.watch.lap("gather", start);
+        fault.map_or(Ok(()), |fault| Err(self.error(&fault)))
+    }
+
+    /// Moves rigid bodies as prescribed; returns the first fault by body and particle.
+    fn move_rigid_bodies(&mut self, dt: T) -> Option<Fault> {
+        let mut first = None;
+        for (i, (body, motion)) in self.bodies.iter_mut().zip(&mut self.rigid).enumerate() {
             if let Some(motion) = motion {
                 let dt = dt.f64();
                 let rotation = motion.rotation(dt);
                 let turn = Matrix::from_fn(|i, j| T::of(rotation.0[i][j]));
-                for particle in &mut body.particles {
+                for (p, particle) in body.particles.iter_mut().enumerate() {
                     let position = particle.position.space();
-                    particle.velocity = Vector::of(motion.velocity_at(position));
-                    particle.position = Vector::of(motion.moved(position, &rotation, dt));
-                    particle.deformation = turn * particle.deformation;
+                    let moved = Vector::of(motion.moved(position, &rotation, dt));
+                    let kind = if !moved.is_finite() {
+                        Some(FaultKind::NotFinite)
+                    } else {
+                        particle.velocity = Vector::of(motion.velocity_at(position));
+                        particle.position = moved;
+                        particle.deformation = turn * particle.deformation;
+                        escaped::<T, D, B>(particle, &self.lattice, self.domain).then_some(FaultKind::Escaped)
+                    };
+                    first = first.or(kind.map(|kind| Fault { body: i, particle: p, kind }));
                 }
                 motion.advance(dt);
             }
         }
-        self.watch.lap("gather", start);
-        fault.map_or(Ok(()), |fault| Err(self.error(&fault)))
+        first
     }
 
     /// F = (I + L dt) F,  sigma = law(F)
@@ -277,4 +285,16 @@ impl<T: Real, const D: usize, B: Basis<T>> Engine<T, D, B> {
             FaultKind::NotFinite => StepError::NotFinite { body: name, number, position, time },
         }
     }
+}
+
+/// Whether a particle is outside the domain, or so far away that its cell has no number.
+fn escaped<T: Real, const D: usize, B: Basis<T>>(
+    particle: &Particle<T, D>,
+    lattice: &Lattice<T, D>,
+    domain: Option<[Vector<T, D>; 2]>,
+) -> bool {
+    let outside = domain.is_some_and(|[min, max]| {
+        (0..D).any(|i| particle.position[i] < min[i] || particle.position[i] > max[i])
+    });
+    outside || !addressable(Stencil::<T, D, B>::new(lattice, particle).base())
 }

@@ -1,7 +1,7 @@
 //! Which blocks a body's particles reach, and where bodies meet.
 //!
 //! A particle's *home* is the cell of its base node. Particles that share a home block form a tile; a tile writes to its own
-//! block and to the next one along each axis, since no basis reaches more than four nodes.
+//! block and to the next one along each axis, since no basis reaches more than three nodes.
 
 use super::{SIDE, locate, nodes_per_block};
 use rayon::prelude::*;
@@ -67,9 +67,12 @@ pub struct Cover<const D: usize> {
 /// Blocks further than this from the origin have no key.
 const REACH: i32 = 1 << 20;
 
+/// Cells from the origin of the grid, along an axis, within which blocks have keys.
+pub const MOST_CELLS: i32 = (REACH - 2) * SIDE;
+
 /// Whether a base node lies where blocks have keys.
 pub fn addressable<const D: usize>(base: [i32; D]) -> bool {
-    base.iter().all(|n| n.abs() < (REACH - 2) * SIDE)
+    base.iter().all(|n| n.unsigned_abs() < MOST_CELLS as u32)
 }
 
 fn key<const D: usize>(block: [i32; D]) -> u64 {

@@ -26,7 +26,7 @@ pub struct EnergyRow {
     pub friction: f64,
     /// Dissipated by plastic flow since the start [J].
     pub plastic: f64,
-    /// Dissipated by damping and by inelastic shock since the start [J].
+    /// Dissipated by damping since the start [J].
     pub damping: f64,
     /// Sum that is constant in an exact solution [J].
     pub total: f64,

@@ -1,6 +1,7 @@
 //! A step that goes wrong says which particle of which body, where and when, and leaves what it saw.
 //!
-//! Set-ups: a block that spins with linear functions and the stress updated last; a block that flies out of the domain. Expected: the failure of that
+//! Set-ups: a block that spins with linear functions and the stress updated last; a block that flies out of the domain; rigid blocks whose prescribed
+//! motion leaves the domain or is no number. Expected: the failure of that
 //! kind with the body's name; a place inside or at the edge of the body; the time of the step before; the simulation can still be looked at.
 
 use crate::trial::start;
@@ -70,4 +71,26 @@ fn a_body_that_leaves_the_domain() {
     assert!(position[0] > 2.0 && position[0] < 2.1, "{position:?}");
     assert!((time - 0.15).abs() < 0.02, "{time}");
     assert_eq!(simulation.snapshot().body.len(), simulation.particles());
+}
+
+#[test]
+fn prescribed_motion_that_leaves_the_domain_or_is_no_number() {
+    for (velocity, escapes) in [("10 m/s", true), ("1 m/s * sqrt(0.05 - t / (1 s))", false)] {
+        let mut simulation = start(&scene(&format!("rigid = {{ velocity = [\"{velocity}\", 0] }}")));
+        let error = loop {
+            if let Err(error) = simulation.step(0.01) {
+                break error;
+            }
+            assert!(simulation.time() < 1.0, "the motion must fail: {velocity}");
+        };
+        println!("{error}");
+        match error {
+            StepError::Escaped { body, .. } if escapes => assert_eq!(body, "runaway"),
+            StepError::NotFinite { body, position, .. } if !escapes => {
+                assert_eq!(body, "runaway");
+                assert!(position.iter().all(|x| x.is_finite()), "{position:?}");
+            }
+            other => panic!("{velocity}: {other}"),
+        }
+    }
 }
