@@ -46,7 +46,7 @@ impl Failure {
             Failure::Input(report) | Failure::Run(report) => {
                 let mut text = String::new();
                 let drawn = std::io::stderr().is_terminal()
-                    && GraphicalReportHandler::new().render_report(&mut text, report.as_ref()).is_ok();
+                    && GraphicalReportHandler::new().render_report(&mut text, &Drawn::new(report)).is_ok();
                 if !drawn {
                     text = plain(report.as_ref());
                 }
@@ -62,6 +62,43 @@ impl From<DrawError> for Failure {
             DrawError::Write { .. } | DrawError::Empty(_) => Failure::Input(miette::miette!("{error}")),
             DrawError::Ink(_) => Failure::Run(miette::miette!("{error}")),
         }
+    }
+}
+
+/// An error as it is drawn over the lines at fault: its place and its remedy are drawn too, so the headline leaves them out.
+#[derive(Debug, thiserror::Error)]
+#[error("{headline}")]
+struct Drawn<'a> {
+    headline: String,
+    error: &'a dyn Diagnostic,
+}
+
+impl<'a> Drawn<'a> {
+    fn new(report: &'a Report) -> Self {
+        let error: &dyn Diagnostic = report.as_ref();
+        let message = error.to_string();
+        let mut headline = message.as_str();
+        if let Some((place, _)) = places(error).first() {
+            headline = headline.strip_prefix(&format!("{place}: ")).unwrap_or(headline);
+        }
+        if let Some(help) = error.help() {
+            headline = headline.strip_suffix(&format!("; {help}")).unwrap_or(headline);
+        }
+        Drawn { headline: headline.to_owned(), error }
+    }
+}
+
+impl Diagnostic for Drawn<'_> {
+    fn help<'b>(&'b self) -> Option<Box<dyn std::fmt::Display + 'b>> {
+        self.error.help()
+    }
+
+    fn source_code(&self) -> Option<&dyn miette::SourceCode> {
+        self.error.source_code()
+    }
+
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = miette::LabeledSpan> + '_>> {
+        self.error.labels()
     }
 }
 
@@ -124,6 +161,18 @@ mod tests {
             .with_label(LabeledSpan::at(0..6, "unknown key `radios`"));
         let report = Report::new(error).with_source_code(NamedSource::new("a.toml", "radios = 1\n"));
         assert_eq!(plain(report.as_ref()), "a.toml:1:1: unknown key `radios`\n");
+    }
+
+    #[test]
+    fn a_drawn_error_says_place_and_remedy_once() {
+        let error = MietteDiagnostic::new("a.toml:1:1: unknown key `radios`; did you mean `radius`?")
+            .with_help("did you mean `radius`?")
+            .with_label(LabeledSpan::at(0..6, "here"));
+        let report = Report::new(error).with_source_code(NamedSource::new("a.toml", "radios = 1\n"));
+        let mut text = String::new();
+        GraphicalReportHandler::new().render_report(&mut text, &Drawn::new(&report)).unwrap();
+        assert_eq!(text.matches("a.toml:1:1").count(), 1, "{text}");
+        assert_eq!(text.matches("did you mean").count(), 1, "{text}");
     }
 
     #[test]

@@ -35,7 +35,7 @@ impl Display {
             let share = (progress.time / progress.end).clamp(0.0, 1.0);
             bar.set_position((share * PARTS as f64) as u64);
             bar.set_message(line(progress));
-        } else if Instant::now() >= self.next_line.get() || progress.time >= progress.end {
+        } else if Instant::now() >= self.next_line.get() {
             eprintln!("{}", line(progress));
             self.next_line.set(Instant::now() + BETWEEN_LINES);
         }

@@ -46,6 +46,33 @@ fn a_wrong_unit_is_refused() {
 }
 
 #[test]
+fn a_wall_between_nodes_is_shown_where_the_domain_stands() {
+    let workplace = Workplace::new();
+    let scene = new_scene().replace("\"4 * radius\"], y_min", "\"4.05 * radius\"], y_max");
+    workplace.write("scene.toml", &scene);
+    let ran = workplace.run(&["run", "scene.toml"]);
+    let line = 1 + scene.lines().position(|line| line.starts_with("domain")).unwrap();
+    assert_eq!(ran.code, Some(2));
+    assert!(ran.stderr.contains(&format!("scene.toml:{line}:")), "{}", ran.stderr);
+    assert!(ran.stderr.contains("40.4 cells") && ran.stderr.contains("wall at 0.4 m"), "{}", ran.stderr);
+}
+
+#[test]
+fn a_particle_that_leaves_stops_the_run_and_everything_can_be_read() {
+    let workplace = Workplace::new();
+    workplace.write("scene.toml", &new_scene());
+    let thrown = "bodies[0].velocity=[\"1 m/s\", \"100 m/s\"]";
+    let ran = workplace.run(&["run", "scene.toml", "--set", thrown, "--set", "cells_per_radius=4"]);
+    assert_eq!(ran.code, Some(1), "{}", ran.stderr);
+    assert!(ran.stderr.contains("of body `disk` left the domain at ("), "{}", ran.stderr);
+    assert!(ran.stderr.contains("make the domain larger"), "{}", ran.stderr);
+    workplace.succeed(&["render", "scene.results", "--out", "last.png"]);
+    let jpeg = workplace.run(&["render", "scene.results", "--out", "last.jpg"]);
+    assert_eq!(jpeg.code, Some(2));
+    assert!(jpeg.stderr.contains(".png"), "{}", jpeg.stderr);
+}
+
+#[test]
 fn an_unknown_parameter_is_refused() {
     let workplace = Workplace::new();
     workplace.write("scene.toml", &new_scene());

@@ -141,7 +141,8 @@ pub struct GridSnapshot {
 pub enum StepError {
     /// A particle turned inside out.
     #[error(
-        "particle {number} of body `{body}` inverted at {position:?} m, t = {time:.6e} s (determinant of F: {determinant:.3e})"
+        "particle {number} of body `{body}` inverted at {} m, t = {time:.6e} s (determinant of F: {determinant:.3e})",
+        place(position)
     )]
     Inverted {
         /// Name of the body.
@@ -156,7 +157,7 @@ pub enum StepError {
         determinant: f64,
     },
     /// A particle left the domain.
-    #[error("particle {number} of body `{body}` left the domain at {position:?} m, t = {time:.6e} s")]
+    #[error("particle {number} of body `{body}` left the domain at {} m, t = {time:.6e} s", place(position))]
     Escaped {
         /// Name of the body.
         body: String,
@@ -169,7 +170,8 @@ pub enum StepError {
     },
     /// A particle's position, velocity or stress is not a finite number.
     #[error(
-        "particle {number} of body `{body}` has a value that is not finite near {position:?} m, t = {time:.6e} s"
+        "particle {number} of body `{body}` has a value that is not finite near {} m, t = {time:.6e} s",
+        place(position)
     )]
     NotFinite {
         /// Name of the body.
@@ -181,6 +183,12 @@ pub enum StepError {
         /// When [s].
         time: f64,
     },
+}
+
+/// `(0.1503, -2, 0)`: five digits are enough to find a particle in a picture.
+fn place(position: &[f64; 3]) -> String {
+    let short = |x: f64| format!("{x:.4e}").parse().unwrap_or(x).to_string();
+    format!("({})", position.map(short).join(", "))
 }
 
 impl StepError {
@@ -197,5 +205,19 @@ impl StepError {
                 "try a smaller time.courant; look at the last frame for what went wrong first"
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_particle_that_left_is_named_with_its_place() {
+        let position = [0.1503039572985548, -2.0, 1.23456e-7];
+        let error = StepError::Escaped { body: "disk".into(), number: 7, position, time: 0.25 };
+        let expected =
+            "particle 7 of body `disk` left the domain at (0.1503, -2, 0.00000012346) m, t = 2.500000e-1 s";
+        assert_eq!(error.to_string(), expected);
     }
 }

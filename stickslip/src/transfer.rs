@@ -15,6 +15,16 @@ pub struct Stencil<T, const D: usize, B> {
     basis: PhantomData<B>,
 }
 
+/// The nodes of a stencil along the last axis.
+struct Row<T, const D: usize> {
+    /// Place of the first in the window.
+    start: usize,
+    /// Product of the other axes' weights [-].
+    weight: T,
+    /// Gradient of that product; nothing along the last axis [1/m].
+    slope: Vector<T, D>,
+}
+
 impl<T: Real, const D: usize, B: Basis<T>> Stencil<T, D, B> {
     /// The stencil of a particle.
     #[inline(always)]
@@ -41,40 +51,65 @@ impl<T: Real, const D: usize, B: Basis<T>> Stencil<T, D, B> {
         (weight(D), gradient)
     }
 
-    /// Calls `f(place in the window, weight [-], gradient [1/m])` for every node.
+    /// Calls `f(row)` for every row of nodes along the last axis.
     #[inline(always)]
-    fn each(&self, block: [i32; D], mut f: impl FnMut(usize, T, Vector<T, D>)) {
+    fn each_row(&self, block: [i32; D], mut f: impl FnMut(Row<T, D>)) {
         let offsets = self.axes.iter().zip(block).map(|(axis, block)| (axis.base - block * SIDE) as usize);
-        let place = offsets.fold(0, |place, offset| place * WINDOW + offset);
+        let start = offsets.fold(0, |place, offset| place * WINDOW + offset);
         let h = self.per_cell;
+        let x = &self.axes[0];
         if D == 2 {
-            let (x, y) = (&self.axes[0], &self.axes[1]);
             for i in 0..B::WIDTH {
-                for j in 0..B::WIDTH {
-                    let gradient = [x.slope[i] * y.weight[j] * h, x.weight[i] * y.slope[j] * h];
-                    f(place + i * WINDOW + j, x.weight[i] * y.weight[j], Vector::from_fn(|k| gradient[k]));
-                }
+                let slope = Vector::from_fn(|axis| if axis == 0 { x.slope[i] * h } else { T::ZERO });
+                f(Row { start: start + i * WINDOW, weight: x.weight[i], slope });
             }
         } else {
-            let (x, y, z) = (&self.axes[0], &self.axes[1], &self.axes[D - 1]);
+            let y = &self.axes[1];
             for i in 0..B::WIDTH {
                 for j in 0..B::WIDTH {
-                    let (xy, dxy, xdy) = (
-                        x.weight[i] * y.weight[j],
-                        x.slope[i] * y.weight[j] * h,
-                        x.weight[i] * y.slope[j] * h,
-                    );
-                    for k in 0..B::WIDTH {
-                        let gradient = [dxy * z.weight[k], xdy * z.weight[k], xy * z.slope[k] * h];
-                        f(
-                            place + (i * WINDOW + j) * WINDOW + k,
-                            xy * z.weight[k],
-                            Vector::from_fn(|k| gradient[k]),
-                        );
-                    }
+                    let slope = [x.slope[i] * y.weight[j] * h, x.weight[i] * y.slope[j] * h, T::ZERO];
+                    let weight = x.weight[i] * y.weight[j];
+                    let start = start + (i * WINDOW + j) * WINDOW;
+                    f(Row { start, weight, slope: Vector::from_fn(|axis| slope[axis]) });
                 }
             }
         }
+    }
+
+    /// Weight [-] and gradient [1/m] of a row's node number `k`.
+    #[inline(always)]
+    fn in_row(&self, row: &Row<T, D>, k: usize) -> (T, Vector<T, D>) {
+        let last = &self.axes[D - 1];
+        let mut gradient = row.slope * last.weight[k];
+        gradient[D - 1] = row.weight * last.slope[k] * self.per_cell;
+        (row.weight * last.weight[k], gradient)
+    }
+
+    /// Calls `f(node, weight [-], gradient [1/m])` for every node.
+    #[inline(always)]
+    fn each(&self, window: &Window<T, D>, block: [i32; D], mut f: impl FnMut(&Node<T, D>, T, Vector<T, D>)) {
+        self.each_row(block, |row| {
+            for (k, node) in window.nodes[row.start..row.start + B::WIDTH].iter().enumerate() {
+                let (weight, gradient) = self.in_row(&row, k);
+                f(node, weight, gradient);
+            }
+        });
+    }
+
+    /// Calls `f(node, weight [-], gradient [1/m])` for every node, to change it.
+    #[inline(always)]
+    fn each_mut(
+        &self,
+        window: &mut Window<T, D>,
+        block: [i32; D],
+        mut f: impl FnMut(&mut Node<T, D>, T, Vector<T, D>),
+    ) {
+        self.each_row(block, |row| {
+            for (k, node) in window.nodes[row.start..row.start + B::WIDTH].iter_mut().enumerate() {
+                let (weight, gradient) = self.in_row(&row, k);
+                f(node, weight, gradient);
+            }
+        });
     }
 
     /// Adds a particle's mass and momentum to the window's nodes.
@@ -90,8 +125,7 @@ impl<T: Real, const D: usize, B: Basis<T>> Stencil<T, D, B> {
         (mass, velocity): (T, Vector<T, D>),
     ) {
         let momentum = velocity * mass;
-        self.each(block, |place, weight, _| {
-            let node = &mut window.nodes[place];
+        self.each_mut(window, block, |node, weight, _| {
             node.mass += mass * weight;
             node.velocity += momentum * weight;
         });
@@ -106,8 +140,8 @@ impl<T: Real, const D: usize, B: Basis<T>> Stencil<T, D, B> {
     #[inline(always)]
     pub fn scatter_force(&self, window: &mut Window<T, D>, block: [i32; D], stress: &Symmetric<T>) {
         let rows: [Vector<T, D>; D] = std::array::from_fn(|i| Vector::from_fn(|j| stress.at(i, j)));
-        self.each(block, |place, _, gradient| {
-            window.nodes[place].force -= Vector::from_fn(|i| rows[i].dot(gradient));
+        self.each_mut(window, block, |node, _, gradient| {
+            node.force -= Vector::from_fn(|i| rows[i].dot(gradient));
         });
     }
 
@@ -120,8 +154,8 @@ impl<T: Real, const D: usize, B: Basis<T>> Stencil<T, D, B> {
         value: impl Fn(&Node<T, D>) -> [Vector<T, D>; N],
     ) -> [Vector<T, D>; N] {
         let mut sum = [Vector::ZERO; N];
-        self.each(block, |place, weight, _| {
-            for (sum, value) in sum.iter_mut().zip(value(&window.nodes[place])) {
+        self.each(window, block, |node, weight, _| {
+            for (sum, value) in sum.iter_mut().zip(value(node)) {
                 *sum += value * weight;
             }
         });
@@ -132,11 +166,10 @@ impl<T: Real, const D: usize, B: Basis<T>> Stencil<T, D, B> {
     #[inline(always)]
     pub fn velocity_gradient(&self, window: &Window<T, D>, block: [i32; D]) -> Matrix<T> {
         let mut l = Matrix::ZERO;
-        self.each(block, |place, _, gradient| {
-            let v = window.nodes[place].velocity;
+        self.each(window, block, |node, _, gradient| {
             for i in 0..D {
                 for j in 0..D {
-                    l.0[i][j] += v[i] * gradient[j];
+                    l.0[i][j] += node.velocity[i] * gradient[j];
                 }
             }
         });

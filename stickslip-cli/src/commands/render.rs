@@ -35,7 +35,7 @@ pub struct Arguments {
     #[arg(long, value_name = "LOW,HIGH", value_parser = pair, allow_hyphen_values = true)]
     range: Option<[f64; 2]>,
 
-    /// Where the camera stands: auto, an axis (x, -x, ...), or AZIMUTH,ELEVATION in degrees.
+    /// Where the camera stands: auto, an axis (x, -x, ...), or AZIMUTH,ELEVATION in degrees from the front.
     #[arg(long, default_value = "auto", allow_hyphen_values = true)]
     view: View,
 
@@ -47,7 +47,7 @@ pub struct Arguments {
     #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = size)]
     size: Option<[usize; 2]>,
 
-    /// The picture, or the folder for `--all`; DIR/picture.png or DIR/pictures without this.
+    /// The picture, .png, or the folder for `--all`; DIR/picture.png or DIR/pictures without this.
     #[arg(long)]
     out: Option<PathBuf>,
 }
@@ -92,6 +92,10 @@ impl Arguments {
         }
         let frame = self.chosen(album.frames())?;
         let out = self.out.clone().unwrap_or_else(|| self.folder.join("picture.png"));
+        if !out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
+            let allowed = "a file name that ends in .png, or a folder with --all";
+            return Err(Failure::Input(miette!("--out: found `{}`; allowed: {allowed}", out.display())));
+        }
         album.draw(frame, &out)?;
         say(&format!("{} shows t = {:.6} s", out.display(), frame.time))
     }

@@ -1,6 +1,7 @@
 //! Bodies as their particles show them: how many, how large, and whether the domain holds them.
 
 use super::lattice;
+use super::table::short;
 use crate::geometry::{Bounds, Shape};
 use crate::scene::{Problem, Scene};
 use rayon::prelude::*;
@@ -35,10 +36,11 @@ fn measure_body(scene: &Scene, i: usize) -> Result<Extent, Problem> {
     let sites = lattice.sites(&bounds);
     if sites > MOST_SITES {
         return Err(Problem {
-            key: "discretization.cell".into(),
+            key: "space.cell".into(),
             found: format!(
                 "cells of {} m, {sites:.1e} particle sites in body `{}`",
-                scene.discretization.cell, body.name
+                short(scene.discretization.cell),
+                body.name
             ),
             allowed: format!("at most {MOST_SITES:.1e} sites in a body"),
             help: Some("are the units of the cell and the shape right?".into()),
@@ -169,7 +171,7 @@ mod tests {
             measure(&scene(Dimension::Space, 0.1, vec![free("it", 0, nothing)])).expect_err("empty");
         assert!(problem.found.contains("empty"), "{problem}");
         let huge = scene(Dimension::Space, 1e-5, vec![free("it", 0, ball(0.0, 1.0))]);
-        assert_eq!(measure(&huge).expect_err("8e15 sites").key, "discretization.cell");
+        assert_eq!(measure(&huge).expect_err("8e15 sites").key, "space.cell");
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Numbers that do not fit each other: the grid, the domain, time, materials, motion out of the plane.
 
 use super::axes;
+use super::table::short;
 use crate::scene::{Domain, Expression, Face, Motion, NamedMaterial, Problem, Scene};
 use crate::tensor::Matrix;
 
@@ -8,9 +9,9 @@ use crate::tensor::Matrix;
 const WALL_TOLERANCE: f64 = 1e-6;
 
 pub(super) fn check(scene: &Scene) -> Result<(), Problem> {
-    require_positive("discretization.cell", scene.discretization.cell, "m")?;
+    require_positive("space.cell", scene.discretization.cell, "m")?;
     if scene.discretization.particles_per_side == 0 {
-        return Err(problem("discretization.particles_per_side", "0".into(), "1 or more"));
+        return Err(problem("space.particles_per_side", "0".into(), "1 or more"));
     }
     require_positive("time.courant", scene.time.courant, "")?;
     if let Some(step) = scene.time.max_step {
@@ -22,8 +23,8 @@ pub(super) fn check(scene: &Scene) -> Result<(), Problem> {
     if scene.bodies.is_empty() {
         return Err(problem("bodies", "no body".into(), "at least one body"));
     }
-    for (i, material) in scene.materials.iter().enumerate() {
-        check_material(&format!("materials[{i}]"), material)?;
+    for material in &scene.materials {
+        check_material(&format!("materials.{}", material.name), material)?;
     }
     if let Some(domain) = &scene.domain {
         check_domain(domain, scene.discretization.cell, axes(scene))?;
@@ -66,24 +67,29 @@ fn check_domain(domain: &Domain, cell: f64, dimension: usize) -> Result<(), Prob
         let (min, max) = (domain.min[k], domain.max[k]);
         if !(min < max && min.is_finite() && max.is_finite()) {
             let found = format!("from {min} to {max} m along {axis}");
-            return Err(problem("domain.max", found, "finite corners, the upper above the lower"));
+            return Err(problem("space.domain.max", found, "finite corners, the upper above the lower"));
         }
         let cells = (max - min) / cell;
         if domain.faces[k][1] != Face::Open && (cells - cells.round()).abs() > WALL_TOLERANCE {
             let whole = cells.round().max(1.0);
             return Err(Problem {
-                key: "domain.max".into(),
-                found: format!("{:.6} cells of {cell} m along {axis}", cells),
+                key: "space.domain.max".into(),
+                found: format!("{} cells of {} m along {axis}", short(cells), short(cell)),
                 allowed: "a whole number of cells between the domain's lower corner and an upper wall".into(),
                 help: Some(format!(
                     "put the upper {axis} wall at {} m, or take cells of {} m",
-                    min + whole * cell,
-                    (max - min) / whole
+                    rounded(min + whole * cell),
+                    rounded((max - min) / whole)
                 )),
             });
         }
     }
     Ok(())
+}
+
+/// Ten digits: near enough to be a whole number of cells.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.9e}").parse().unwrap_or(value)
 }
 
 /// In the plane nothing accelerates or moves out of it or turns about an axis in it.
@@ -125,14 +131,17 @@ mod tests {
 
     #[test]
     fn numbers_that_allow_no_step_are_named() {
-        assert_eq!(key_of(|s| s.discretization.cell = 0.0), "discretization.cell");
-        assert_eq!(key_of(|s| s.discretization.cell = f64::NAN), "discretization.cell");
-        assert_eq!(key_of(|s| s.discretization.particles_per_side = 0), "discretization.particles_per_side");
+        assert_eq!(key_of(|s| s.discretization.cell = 0.0), "space.cell");
+        assert_eq!(key_of(|s| s.discretization.cell = f64::NAN), "space.cell");
+        assert_eq!(key_of(|s| s.discretization.particles_per_side = 0), "space.particles_per_side");
         assert_eq!(key_of(|s| s.time.courant = -0.1), "time.courant");
         assert_eq!(key_of(|s| s.time.max_step = Some(0.0)), "time.max_step");
         assert_eq!(key_of(|s| s.time.end = f64::INFINITY), "time.end");
         assert_eq!(key_of(|s| s.bodies.clear()), "bodies");
-        assert_eq!(key_of(|s| s.materials[1].density = -1.0), "materials[1].density");
+        assert_eq!(
+            key_of(|s| s.materials[1].density = -1.0),
+            format!("materials.{}.density", incline(4.0).materials[1].name)
+        );
     }
 
     #[test]
@@ -143,7 +152,7 @@ mod tests {
             crate::material::Material::NeoHookean(crate::material::NeoHookean { elastic })
         };
         let problem = check(&scene).expect_err("K < 0");
-        assert_eq!(problem.key, "materials[0]");
+        assert_eq!(problem.key, format!("materials.{}", incline(4.0).materials[0].name));
         assert!(problem.found.contains("`soft`") && problem.found.contains("-6.0000e6"), "{problem}");
     }
 
@@ -155,7 +164,7 @@ mod tests {
         assert_eq!(check(&scene), Ok(()));
         scene.domain.as_mut().expect("as above").faces[0][1] = Face::Fixed;
         let problem = check(&scene).expect_err("52.25 cells");
-        assert_eq!(problem.key, "domain.max");
+        assert_eq!(problem.key, "space.domain.max");
         assert!(problem.found.starts_with("52.25"), "{problem}");
         assert!(problem.help.expect("a wall to take").contains("20.8"));
     }

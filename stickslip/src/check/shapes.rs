@@ -55,11 +55,11 @@ fn check_shape(shape: &Shape, key: &str, dimension: usize) -> Result<(), Problem
             require(positive(*radius), "cylinder.radius", format!("{radius} m"), "a finite number above 0")
         }
         Shape::HalfSpace { point, normal } => {
-            require(finite(point), "half-space.point", format!("{point:?}"), "finite numbers")?;
+            require(finite(point), "half_space.point", format!("{point:?}"), "finite numbers")?;
             let allowed = "a vector of some length; in the plane, along x and y";
             require(
                 longer_than_zero(&normal[..dimension]),
-                "half-space.normal",
+                "half_space.normal",
                 format!("{normal:?}"),
                 allowed,
             )
@@ -125,7 +125,7 @@ mod tests {
             "bodies[0].shape.union[1].ball.radius"
         );
         assert_eq!(key_of(space, Shape::Union(vec![])), "bodies[0].shape.union");
-        assert_eq!(key_of(space, floor([0.0; 3])), "bodies[0].shape.half-space.normal");
+        assert_eq!(key_of(space, floor([0.0; 3])), "bodies[0].shape.half_space.normal");
         let cube = Shape::Box { min: [0.0; 3], max: [1.0, 1.0, 0.0] };
         assert_eq!(key_of(space, cube), "bodies[0].shape.box.max");
         let line = Shape::Polygon { points: vec![[0.0, 0.0], [1.0, 1.0], [2.0, 2.0]], height: [0.0, 1.0] };

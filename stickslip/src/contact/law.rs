@@ -133,7 +133,8 @@ impl<T: Real, const D: usize> Pair<'_, T, D> {
     fn own_normals(&self, velocities: [Vector<T, D>; 2]) -> Change<T, D> {
         let [a, b] = self.surfaces;
         let share = a.inverse_mass + b.inverse_mass;
-        if share <= T::ZERO {
+        let apart = self.rule.law == ContactLaw::Gap && self.gap > T::of(TOUCHING);
+        if share <= T::ZERO || apart {
             return Change::NONE;
         }
         // m_2/M = (1/m_1)/(1/m_1 + 1/m_2)
@@ -190,4 +191,103 @@ fn sticking<T: Real>(slip: T, friction: T, normal: T) -> T {
 
 fn loaded<T: Real>(traction: T, modulus: T) -> Option<T> {
     (traction.abs() > T::of(STRESS_FREE) * modulus).then_some(traction)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn surface(mass: f64, normal: [f64; 2]) -> Surface<f64, 2> {
+        Surface {
+            inverse_mass: 1.0 / mass,
+            normal: Some(Vector(normal)),
+            stress: Symmetric([0.0, -1.0, 0.0, 0.0, 0.0, 0.0]),
+            volume: 1.0,
+            modulus: 10.0,
+        }
+    }
+
+    fn rule(law: ContactLaw, normal: Normal, friction: f64) -> Rule<f64> {
+        Rule { law, normal, friction, max_strain: 0.5 }
+    }
+
+    /// m = 1, 3; v = (4, -8), 0: v_cm = (1, -2), dv_1 = (3, -6), dv_2 = (-1, 2); n_1 = (0, -1), so dv_n1 = 6, dv_t1 = 3.
+    /// mu = 1/4: v~_1 = v_1 - 6 (n_1 + t_1/4) = (4 - 1.5, -8 + 6), eq. (10); n_2 at atan(3/4) from -n_1, so dv_n2 = 1,
+    /// dv_t2 = 2, v~_2 = -(n_2 + t_2/4).
+    #[test]
+    fn own_normals_give_the_papers_equation_10() {
+        let rule = rule(ContactLaw::Kinematic, Normal::Own, 0.25);
+        let surfaces = [surface(1.0, [0.0, -1.0]), surface(3.0, [0.6, 0.8])];
+        let pair = Pair {
+            rule: &rule,
+            surfaces: [&surfaces[0], &surfaces[1]],
+            normal: None,
+            gap: 0.0,
+            limit: 100.0,
+        };
+        let change = pair.change([Vector([4.0, -8.0]), Vector::ZERO]);
+        let tangent = [-1.6 / 2.0, 1.2 / 2.0];
+        let expected = [[-1.5, 6.0], [0, 1].map(|i| -3.0 * ([0.6, 0.8][i] + 0.25 * tangent[i]))];
+        for (impulse, expected) in change.impulse.iter().zip(expected) {
+            for i in 0..2 {
+                assert!((impulse[i] - expected[i]).abs() < 1e-14, "{:?} {expected:?}", impulse);
+            }
+        }
+    }
+
+    /// With n_2 = -n_1 both forms are the same law.
+    #[test]
+    fn opposite_normals_make_own_and_common_equal() {
+        let surfaces = [surface(1.0, [0.0, -1.0]), surface(3.0, [0.0, 1.0])];
+        for friction in [0.0, 0.25, 2.0, f64::INFINITY] {
+            let [own, common] = [Normal::Own, Normal::Common].map(|normal| {
+                let rule = rule(ContactLaw::Traction, normal, friction);
+                let normal = Some(Vector([0.0, -1.0]));
+                let pair = Pair {
+                    rule: &rule,
+                    surfaces: [&surfaces[0], &surfaces[1]],
+                    normal,
+                    gap: 0.0,
+                    limit: 100.0,
+                };
+                pair.change([Vector([4.0, -8.0]), Vector::ZERO])
+            });
+            for body in 0..2 {
+                let difference = (own.impulse[body] - common.impulse[body]).norm();
+                assert!(difference < 1e-14, "friction {friction}: {own:?} {common:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn surfaces_with_a_gap_do_not_touch_whatever_the_normal() {
+        let surfaces = [surface(1.0, [0.0, -1.0]), surface(3.0, [0.0, 1.0])];
+        for normal in [Normal::Own, Normal::Common] {
+            let rule = rule(ContactLaw::Gap, normal, 0.25);
+            let touching = |gap| {
+                let normal = Some(Vector([0.0, -1.0]));
+                let pair =
+                    Pair { rule: &rule, surfaces: [&surfaces[0], &surfaces[1]], normal, gap, limit: 100.0 };
+                pair.change([Vector([0.0, -8.0]), Vector::ZERO]) != Change::NONE
+            };
+            assert!(touching(0.0) && touching(-0.1) && !touching(0.01), "{normal:?}");
+        }
+    }
+
+    /// The lighter body's velocity changes by 6 m/s; eqs. (20)-(22) allow the limit along an axis, and both bodies get less.
+    #[test]
+    fn scaling_limits_the_change_and_keeps_the_momentum() {
+        let surfaces = [surface(1.0, [0.0, -1.0]), surface(3.0, [0.0, 1.0])];
+        for law in [ContactLaw::Kinematic, ContactLaw::Glued] {
+            for (limit, factor) in [(100.0, 1.0), (6.0, 1.0), (1.5, 0.25)] {
+                let rule = rule(law, Normal::Common, 0.25);
+                let normal = Some(Vector([0.0, -1.0]));
+                let pair =
+                    Pair { rule: &rule, surfaces: [&surfaces[0], &surfaces[1]], normal, gap: 0.0, limit };
+                let change = pair.change([Vector([0.0, -8.0]), Vector::ZERO]);
+                assert!((change.impulse[0][1] - 6.0 * factor).abs() < 1e-14, "{law:?}, {limit}: {change:?}");
+                assert_eq!(change.impulse[0] + change.impulse[1], Vector::ZERO);
+            }
+        }
+    }
 }

@@ -58,6 +58,12 @@ impl<T: Real> Rules<T> {
         Rules { class, classes: members.len(), table: members.iter().flat_map(pair).collect() }
     }
 
+    /// One rule between all bodies.
+    #[cfg(test)]
+    pub fn of_all(bodies: usize, rule: Rule<T>) -> Self {
+        Rules { class: vec![0; bodies], classes: 1, table: vec![rule] }
+    }
+
     /// The rule for two bodies.
     #[inline]
     pub fn between(&self, a: usize, b: usize) -> &Rule<T> {

@@ -96,3 +96,118 @@ fn solve_site<T: Real, const D: usize>(
     }
     impulses
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::{Encounter, Rule, Side, Surface};
+    use crate::grid::Node;
+    use crate::scene::Normal;
+    use crate::tensor::Symmetric;
+    use proptest::prelude::*;
+
+    /// Mass, velocity and volume gradient of each body at one node.
+    type State = Vec<(f64, [f64; 3], [f64; 3])>;
+
+    /// Two to five bodies with masses over four decades, as at the rim of a body.
+    fn states() -> impl Strategy<Value = State> {
+        let vector = || prop::array::uniform3(-1.0..1.0_f64);
+        prop::collection::vec(((-4.0..0.0_f64).prop_map(|e| 10_f64.powf(e)), vector(), vector()), 2..=5)
+    }
+
+    struct Outcome {
+        masses: Vec<f64>,
+        before: Vec<Vector<f64, 3>>,
+        after: Vec<Vector<f64, 3>>,
+        normals: Vec<Vector<f64, 3>>,
+        impulses: Vec<Impulse<f64, 3>>,
+    }
+
+    impl Outcome {
+        fn kinetic(&self, velocities: &[Vector<f64, 3>]) -> f64 {
+            velocities.iter().zip(&self.masses).map(|(v, m)| 0.5 * m * v.dot(*v)).sum()
+        }
+    }
+
+    /// What one rule does to bodies that touch at one node under pressure.
+    fn at_node(state: &State, law: ContactLaw, friction: f64) -> Outcome {
+        let mut field = Field { nodes: Vec::new() };
+        let mut survey = Survey::default();
+        for (body, &(mass, velocity, gradient)) in state.iter().enumerate() {
+            field.nodes.push(Node { mass, velocity: Vector(velocity), ..Node::EMPTY });
+            let volume_gradient = Vector(gradient);
+            let surface = Surface {
+                inverse_mass: 1.0 / mass,
+                normal: (-volume_gradient).direction(),
+                stress: Symmetric([-1.0, -2.0, -3.0, 0.5, 0.2, 0.1]),
+                volume: 1.0,
+                modulus: 10.0,
+            };
+            survey.sides.push(Side { body, index: body, mass, surface, volume_gradient });
+        }
+        let n = state.len();
+        for a in 0..n {
+            for b in a + 1..n {
+                let normal = (survey.sides[b].volume_gradient - survey.sides[a].volume_gradient).direction();
+                survey.encounters.push(Encounter { sides: [a, b], normal, gap: 0.0 });
+            }
+        }
+        survey.sites.push(Site { node: [0; 3], sides: 0..n, encounters: 0..survey.encounters.len() });
+        let rules = Rules::of_all(n, Rule { law, normal: Normal::Common, friction, max_strain: 1.0 });
+        let impulses = solve(&survey, &rules, &field, 1e6);
+        let before: Vec<_> = field.nodes.iter().map(|node| node.velocity).collect();
+        let mut after = before.clone();
+        for impulse in &impulses {
+            (0..2).for_each(|i| after[impulse.nodes[i]] += impulse.velocity[i]);
+        }
+        let masses = state.iter().map(|body| body.0).collect();
+        let normals = survey.encounters.iter().map(|e| e.normal.expect("gradients differ")).collect();
+        Outcome { masses, before, after, normals, impulses }
+    }
+
+    proptest! {
+        #[test]
+        fn momentum_stays_for_any_number_of_bodies(state in states(), friction in 0.0..2.0_f64) {
+            use ContactLaw::{Gap, Glued, Kinematic, Traction};
+            for (law, friction) in
+                [Kinematic, Traction, Gap, Glued].into_iter().flat_map(|law| [(law, friction), (law, f64::INFINITY)])
+            {
+                let node = at_node(&state, law, friction);
+                let change = (0..state.len())
+                    .fold(Vector::<f64, 3>::ZERO, |sum, i| sum + (node.after[i] - node.before[i]) * node.masses[i]);
+                let size: f64 = (0..state.len()).map(|i| node.before[i].norm() * node.masses[i]).sum();
+                prop_assert!(change.norm() <= 1e-13 * size, "{law:?} {friction}: {:e} of {size:e}", change.norm());
+            }
+        }
+
+        #[test]
+        fn contact_of_approaching_bodies_gains_no_energy(state in states(), friction in 0.0..2.0_f64) {
+            for law in [ContactLaw::Kinematic, ContactLaw::Glued] {
+                let node = at_node(&state, law, friction);
+                let (before, after) = (node.kinetic(&node.before), node.kinetic(&node.after));
+                prop_assert!(after <= before * (1.0 + 1e-12), "{law:?}: {before} to {after}");
+            }
+        }
+
+        #[test]
+        fn every_pair_obeys_coulomb(state in states(), friction in 0.0..2.0_f64) {
+            for law in [ContactLaw::Kinematic, ContactLaw::Traction, ContactLaw::Gap] {
+                let node = at_node(&state, law, friction);
+                for (impulse, normal) in node.impulses.iter().zip(&node.normals) {
+                    let (push, across) = (-impulse.change.normal, impulse.change.tangential);
+                    prop_assert!(across.norm() <= friction * push.max(0.0) * (1.0 + 1e-12), "{law:?}: {impulse:?}");
+                    prop_assert!(across.dot(*normal).abs() <= 1e-14, "{law:?}: {impulse:?}");
+                    prop_assert!(law != ContactLaw::Kinematic || push >= 0.0, "{law:?} pulls: {impulse:?}");
+                }
+            }
+        }
+
+        #[test]
+        fn glued_bodies_have_one_velocity(state in states()) {
+            let node = at_node(&state, ContactLaw::Glued, 0.0);
+            for v in &node.after {
+                prop_assert!((*v - node.after[0]).norm() <= 1e-12, "{:?}", node.after);
+            }
+        }
+    }
+}

@@ -33,7 +33,7 @@ pub struct Side<T, const D: usize> {
     pub mass: T,
     /// Its surface there.
     pub surface: Surface<T, D>,
-    volume_gradient: Vector<T, D>,
+    pub(super) volume_gradient: Vector<T, D>,
 }
 
 /// Two sides of a site.
@@ -41,8 +41,8 @@ pub struct Side<T, const D: usize> {
 pub struct Encounter<T, const D: usize> {
     /// The two sides, in [`Survey::sides`].
     pub sides: [usize; 2],
-    normal: Option<Vector<T, D>>,
-    gap: T,
+    pub(super) normal: Option<Vector<T, D>>,
+    pub(super) gap: T,
 }
 
 /// All sites of a step.

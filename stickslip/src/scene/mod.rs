@@ -213,7 +213,8 @@ pub struct ContactRule {
     pub between: [Option<String>; 2],
     /// The contact law.
     pub law: ContactLaw,
-    /// Coefficient of friction; infinity sticks, 0 is frictionless.
+    /// Coefficient of friction; infinity sticks, 0 is frictionless. Written as `"inf"` where numbers cannot be infinite.
+    #[serde(serialize_with = "infinity_as_text")]
     pub friction: f64,
     /// Where the direction of the contact comes from.
     pub normal: Normal,
@@ -286,6 +287,11 @@ impl Scene {
         });
         rule.cloned().unwrap_or_default()
     }
+}
+
+/// JSON has no infinity; scene files write it `"inf"`.
+fn infinity_as_text<S: serde::Serializer>(value: &f64, serializer: S) -> Result<S::Ok, S::Error> {
+    if value.is_infinite() { serializer.serialize_str("inf") } else { serializer.serialize_f64(*value) }
 }
 
 impl Default for ContactRule {

@@ -49,7 +49,9 @@ fn material(node: &Node, context: &Context) -> Result<NamedMaterial, Fault> {
         let child = bad.key.as_ref().and_then(|key| table.children().iter().find(|child| child.name == *key));
         let key = child.unwrap_or(table).key.clone();
         let found = match child {
-            Some(child) if !bad.found.is_empty() => format!("{} ({})", child.found(), bad.found),
+            Some(child) if !bad.found.is_empty() && bad.found != child.found() => {
+                format!("{} ({})", child.found(), bad.found)
+            }
             _ => bad.found,
         };
         Problem { key, found, allowed: bad.allowed, help: None }

@@ -1,0 +1,184 @@
+//! What README and book say is true: their commands run, their scenes are scenes, their links lead somewhere, and every key,
+//! word, column and equation number of the code stands there.
+
+mod stickslip;
+
+use serde_json::Value;
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+use stickslip::Workplace;
+
+fn repository() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the workspace holds this crate").to_path_buf()
+}
+
+/// README, CHANGELOG and the book's chapters with their paths in the repository.
+fn documents() -> Vec<(PathBuf, String)> {
+    let mut paths: Vec<PathBuf> = ["README.md", "CHANGELOG.md", "ARCHITECTURE.md"].map(PathBuf::from).into();
+    for entry in fs::read_dir(repository().join("book")).unwrap() {
+        let name = PathBuf::from("book").join(entry.unwrap().file_name());
+        if name.extension().is_some_and(|extension| extension == "md") {
+            paths.push(name);
+        }
+    }
+    paths.sort();
+    paths
+        .into_iter()
+        .map(|path| (path.clone(), fs::read_to_string(repository().join(path)).unwrap()))
+        .collect()
+}
+
+fn chapter(name: &str) -> String {
+    fs::read_to_string(repository().join("book").join(name)).unwrap()
+}
+
+/// Contents of the fenced blocks of a language.
+fn fenced(text: &str, language: &str) -> Vec<String> {
+    let opening = format!("```{language}");
+    let mut blocks = Vec::new();
+    let mut lines = text.lines();
+    while lines.by_ref().any(|line| line == opening) {
+        let block: Vec<&str> = lines.by_ref().take_while(|line| *line != "```").collect();
+        blocks.push(block.join("\n") + "\n");
+    }
+    blocks
+}
+
+/// A stand-in for `stickslip` that makes runs short: coarse, and over after a few snapshots.
+#[cfg(unix)]
+const SHORT: &str = r#"#!/bin/sh
+case "$1" in
+    run | check) grep -q '^cells_per_radius' "$2" && coarse="--set cells_per_radius=2" ;;
+esac
+case "$1" in
+    run) exec "$STICKSLIP" "$@" $coarse --set time.end="40 ms" --set outputs.particles="10 ms" ;;
+    *) exec "$STICKSLIP" "$@" $coarse ;;
+esac
+"#;
+
+/// Every command of a document runs, one after the other as a reader would type them, in a folder with the repository's scenes.
+#[cfg(unix)]
+#[test]
+fn commands_run() {
+    use std::os::unix::fs::PermissionsExt;
+    let tools = Workplace::new();
+    tools.write("stickslip", SHORT);
+    fs::set_permissions(tools.path("stickslip"), fs::Permissions::from_mode(0o755)).unwrap();
+    let path = format!("{}:{}", tools.path("").display(), std::env::var("PATH").unwrap());
+    for (document, text) in documents() {
+        let workplace = Workplace::new();
+        std::os::unix::fs::symlink(repository().join("scenes"), workplace.path("scenes")).unwrap();
+        for block in fenced(&text, "sh") {
+            for line in block.lines() {
+                let command = line.replace("cargo run --release --bin stickslip -- ", "stickslip ");
+                if !command.starts_with("stickslip ") {
+                    continue;
+                }
+                let output = std::process::Command::new("sh")
+                    .args(["-c", &command])
+                    .current_dir(workplace.path(""))
+                    .env("PATH", &path)
+                    .env("STICKSLIP", env!("CARGO_BIN_EXE_stickslip"))
+                    .output()
+                    .unwrap();
+                let said = String::from_utf8_lossy(&output.stderr);
+                assert!(output.status.success(), "{}: {line}\n{said}", document.display());
+            }
+        }
+    }
+}
+
+#[test]
+fn scenes_are_scenes() {
+    let mut complete = 0;
+    for (document, text) in documents() {
+        for block in fenced(&text, "toml").iter().filter(|block| block.contains("[space]")) {
+            let workplace = Workplace::new();
+            workplace.write("scene.toml", block);
+            let ran = workplace.run(&["check", "scene.toml"]);
+            assert_eq!(ran.code, Some(0), "{}: {}", document.display(), ran.stderr);
+            complete += 1;
+        }
+    }
+    assert!(complete > 0);
+}
+
+#[test]
+fn links_lead_to_files() {
+    for (document, text) in documents() {
+        for link in text.split("](").skip(1).filter_map(|rest| rest.split_once(')')).map(|(link, _)| link) {
+            let file = link.split('#').next().unwrap_or_default();
+            if link.contains("://") || file.is_empty() {
+                continue;
+            }
+            let target = repository().join(&document).with_file_name(file);
+            assert!(target.exists(), "{}: {link} leads nowhere", document.display());
+        }
+    }
+}
+
+/// Names of keys, of words to choose from, and of definitions that a JSON schema holds.
+fn collect(schema: &Value, keys: &mut BTreeSet<String>, words: &mut BTreeSet<String>) {
+    match schema {
+        Value::Object(members) => {
+            if let Some(Value::Object(properties)) = members.get("properties") {
+                keys.extend(properties.keys().cloned());
+            }
+            if let Some(Value::String(word)) = members.get("const") {
+                words.insert(word.clone());
+            }
+            members.values().for_each(|member| collect(member, keys, words));
+        }
+        Value::Array(items) => items.iter().for_each(|item| collect(item, keys, words)),
+        _ => {}
+    }
+}
+
+#[test]
+fn every_key_and_word_of_scene_files_is_explained() {
+    let schema = serde_json::from_str(&Workplace::new().succeed(&["schema"])).unwrap();
+    let (mut keys, mut words) = (BTreeSet::new(), BTreeSet::new());
+    collect(&schema, &mut keys, &mut words);
+    let text = chapter("02-scene-file.md");
+    let tables = ["space", "time", "materials", "bodies", "contact", "outputs", "references", "parameters"];
+    for key in keys {
+        let heading = tables.contains(&key.as_str()) && text.contains(&format!("[{key}"));
+        assert!(heading || text.contains(&format!("`{key}`")), "no word on the key `{key}`");
+    }
+    for word in words {
+        assert!(text.contains(&format!("`\"{word}\"`")), "no word on \"{word}\"");
+    }
+}
+
+#[test]
+fn every_column_is_explained() {
+    let workplace = Workplace::new();
+    workplace.write("scene.toml", &fenced(&chapter("02-scene-file.md"), "toml")[0]);
+    workplace.succeed(&["run", "scene.toml", "--set", "time.end=1 ms", "--set", "outputs.grid=1 ms"]);
+    let text = chapter("07-outputs.md");
+    let quoted: BTreeSet<&str> = text.split('`').flat_map(str::split_whitespace).collect();
+    for table in ["bodies.csv", "energy.csv", "contacts.csv"] {
+        let written = fs::read_to_string(workplace.path("scene.results").join(table)).unwrap();
+        for column in written.lines().next().unwrap().split(',') {
+            assert!(quoted.contains(column), "{table}: no word on `{column}`");
+        }
+    }
+    for folder in ["particles", "grid"] {
+        let file = workplace.path("scene.results").join(folder).join("00000.vtu");
+        let written = String::from_utf8_lossy(&fs::read(file).unwrap()).into_owned();
+        let (_, arrays) = written.split_once("<PointData").unwrap();
+        for array in arrays.split_once("</PointData>").unwrap().0.split("Name=\"").skip(1) {
+            let name = array.split('"').next().unwrap();
+            assert!(quoted.contains(name), "{folder}: no word on `{name}`");
+        }
+    }
+}
+
+#[test]
+fn the_papers_equations_stand_in_the_book() {
+    let book: String = documents().into_iter().map(|(_, text)| text).collect();
+    for number in 1..=26 {
+        assert!(book.contains(&format!("\\tag{{{number}}}")), "eq. ({number})");
+    }
+}

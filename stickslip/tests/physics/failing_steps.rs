@@ -1,0 +1,73 @@
+//! A step that goes wrong says which particle of which body, where and when, and leaves what it saw.
+//!
+//! Set-ups: a block that spins with linear functions and the stress updated last; a block that flies out of the domain. Expected: the failure of that
+//! kind with the body's name; a place inside or at the edge of the body; the time of the step before; the simulation can still be looked at.
+
+use crate::trial::start;
+use stickslip::door::StepError;
+
+fn scene(motion: &str) -> String {
+    format!(
+        r#"
+        [space]
+        dimension = "plane-strain"
+        cell = 0.1
+        domain = {{ min = [-20, -2], max = [2, 2] }}
+        [time]
+        end = 1
+        courant = 1
+        [materials]
+        rubber = {{ density = 1000, neo_hookean = {{ young_modulus = 1e5, poisson_ratio = 0.3 }} }}
+        [[bodies]]
+        name = "still"
+        material = "rubber"
+        shape.box = {{ min = [-0.7, 0], max = [-0.2, 0.5] }}
+        [[bodies]]
+        name = "runaway"
+        material = "rubber"
+        shape.box = {{ min = [0, 0], max = [0.5, 0.5] }}
+        {motion}
+        "#
+    )
+}
+
+#[test]
+fn a_particle_that_inverts() {
+    // Linear functions with the stress updated last fold the corners of a spinning block.
+    let text = scene("spin = 3").replace("cell = 0.1", "cell = 0.1\nbasis = \"linear\"");
+    let text = text.replace("courant = 1", "stress_update = \"last\"");
+    let mut simulation = start(&text);
+    let error = loop {
+        let before = simulation.time();
+        if let Err(error) = simulation.step(1.0) {
+            assert_eq!(simulation.time(), before, "a step that fails takes no time");
+            break error;
+        }
+        assert!(simulation.steps() < 5000, "a particle must fold");
+    };
+    println!("{error}");
+    let StepError::Inverted { body, number, position, time, determinant } = error else { panic!("{error}") };
+    assert_eq!(body, "runaway");
+    assert_eq!(time, simulation.time());
+    assert!(determinant <= 0.0, "{determinant}");
+    let snapshot = simulation.snapshot();
+    let p = (0..snapshot.body.len()).find(|&p| snapshot.body[p] == 1 && snapshot.number[p] == number);
+    assert_eq!(snapshot.position[p.expect("the particle exists")], position);
+}
+
+#[test]
+fn a_body_that_leaves_the_domain() {
+    let mut simulation = start(&scene("velocity = [10, 0]"));
+    let error = loop {
+        if let Err(error) = simulation.step(1.0) {
+            break error;
+        }
+        assert!(simulation.time() < 1.0, "the block must be gone");
+    };
+    println!("{error}");
+    let StepError::Escaped { body, position, time, .. } = error else { panic!("{error}") };
+    assert_eq!(body, "runaway");
+    assert!(position[0] > 2.0 && position[0] < 2.1, "{position:?}");
+    assert!((time - 0.15).abs() < 0.02, "{time}");
+    assert_eq!(simulation.snapshot().body.len(), simulation.particles());
+}

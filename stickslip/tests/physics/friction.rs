@@ -1,0 +1,170 @@
+//! Coulomb friction: a block on an incline, and a rule for every pair.
+//!
+//! Source: mechanics. Benchmark "block on an incline": at rest for tan(angle) < mu, else a = g (sin(angle) - mu cos(angle)). Gravity is
+//! inclined, the geometry lies along the grid.
+//!
+//! Set-up: the plane; a soft block 1 m long and 0.5 m high on a rigid floor, 10 cells a metre, the gap law. The load comes at once, so
+//! the block shakes while it settles.
+//!
+//! Expected: without friction the acceleration within 1 %, by least squares over the second half of the run. With friction the effective
+//! coefficient within 15 % of mu. That bounds what was measured and is no aim: it is 3 to 13 % too high. The load is the weight within 3 %, but
+//! tangential over normal impulse is 1.03 to 1.11 mu; as each impulse obeys Coulomb's bound, pushes must sum to more than
+//! the load, and the pulls that make up for it bear no friction. The benchmark asks 1 %.
+//! Sticking: the exact answer is rest. The block creeps: 6 % of the way that gravity alone would take it at mu = 1.13 tan(angle), 3 % at
+//! 1.4 tan, 0.2 % at infinity; 10 % and 0.5 % bound that. Why it creeps is not established here.
+
+use crate::trial::{run_to, start};
+
+const ANGLE: f64 = 30.0;
+const G: f64 = 10.0;
+
+fn incline(friction: f64) -> String {
+    let (sin, cos) = ANGLE.to_radians().sin_cos();
+    format!(
+        r#"
+        gravity = [{}, {}]
+        space = {{ dimension = "plane-strain", cell = 0.1 }}
+        time.end = 1
+        materials.rubber = {{ density = 1000, neo_hookean = {{ young_modulus = 1e6, poisson_ratio = 0.3 }} }}
+        [[bodies]]
+        name = "floor"
+        material = "rubber"
+        shape.box = {{ min = [-1, -0.3], max = [5, 0] }}
+        rigid = {{}}
+        [[bodies]]
+        name = "block"
+        material = "rubber"
+        shape.box = {{ min = [0, 0], max = [1, 0.5] }}
+        [[contact]]
+        friction = {friction}
+        "#,
+        G * sin,
+        -G * cos
+    )
+}
+
+/// Slope of y over x by least squares.
+fn slope(points: &[(f64, f64)]) -> f64 {
+    let n = points.len() as f64;
+    let mean = |f: fn(&(f64, f64)) -> f64| points.iter().map(f).sum::<f64>() / n;
+    let (x, y) = (mean(|p| p.0), mean(|p| p.1));
+    points.iter().map(|p| (p.0 - x) * (p.1 - y)).sum::<f64>()
+        / points.iter().map(|p| (p.0 - x).powi(2)).sum::<f64>()
+}
+
+/// Second half of a run of a body on the floor.
+struct Slide {
+    /// Acceleration along x by least squares [m/s^2].
+    acceleration: f64,
+    /// Impulse across the contact over impulse along its normals.
+    ratio: f64,
+}
+
+fn slide(scene: &str, body: usize, end: f64) -> Slide {
+    let mut simulation = start(scene);
+    let (mut points, mut last) = (Vec::new(), 0.0);
+    let (mut normal, mut tangential) = (0.0, 0.0);
+    run_to(&mut *simulation, end, |s| {
+        let dt = s.time() - last;
+        last = s.time();
+        let contacts = s.take_contacts();
+        if s.time() > 0.5 * end {
+            points.push((s.time(), s.bodies()[body].velocity[0]));
+            for contact in contacts.iter().filter(|contact| contact.body_b == body) {
+                normal += contact.normal * dt;
+                tangential += contact.tangential * dt;
+            }
+        }
+    });
+    Slide { acceleration: slope(&points), ratio: tangential / normal }
+}
+
+#[test]
+fn a_block_slides_down_an_incline() {
+    let (sin, cos) = ANGLE.to_radians().sin_cos();
+    for friction in [0.0, 0.2, 0.4, 0.5] {
+        let seen = slide(&incline(friction), 1, 0.8);
+        let a = seen.acceleration;
+        println!("   tangential/normal {:.4}", seen.ratio);
+        let (exact, effective) = (G * (sin - friction * cos), (G * sin - a) / (G * cos));
+        println!(
+            "friction {friction}: acceleration/exact {:.4}, effective friction {effective:.4}",
+            a / exact
+        );
+        assert!((effective - friction).abs() < 0.15 * friction + 0.01 * sin / cos, "{friction}: {effective}");
+    }
+}
+
+#[test]
+fn a_block_rests_on_an_incline() {
+    for friction in ["0.65", "0.8", "inf"] {
+        let scene = incline(0.0).replace("friction = 0", &format!("friction = {friction}"));
+        let mut simulation = start(&scene);
+        let from = simulation.bodies()[1].position[0];
+        let (mut early, end) = (0.0, 0.8);
+        run_to(&mut *simulation, end, |s| {
+            if s.time() < 0.5 * end {
+                early = s.bodies()[1].position[0];
+            }
+        });
+        let now = simulation.bodies()[1].position[0];
+        let free = 0.5 * G * ANGLE.to_radians().sin() * end * end;
+        println!(
+            "friction {friction}: moved {:.1e} m in all, {:.1e} m in the second half, of {free:.2} m",
+            now - from,
+            now - early
+        );
+        let part = if friction == "inf" { 0.005 } else { 0.1 };
+        assert!((now - from).abs() < part * free, "friction {friction}: moved {} m", now - from);
+    }
+}
+
+/// Blocks thrown along a floor slow down by the friction of their own pair: by names of bodies, by names of materials, by default.
+#[test]
+fn every_pair_has_its_own_friction() {
+    let bodies = [
+        ("rubber_one", "rubber", 0.0),
+        ("rubber_two", "rubber", 2.0),
+        ("stone_one", "stone", 4.0),
+        ("stone_two", "stone", 6.0),
+    ];
+    let mut scene = String::from(
+        r#"
+        gravity = [0, -10]
+        space = { dimension = "plane-strain", cell = 0.1 }
+        time.end = 1
+        materials.rubber = { density = 1000, neo_hookean = { young_modulus = 1e6, poisson_ratio = 0.3 } }
+        materials.stone = { density = 2000, hypoelastic = { young_modulus = 2e6, poisson_ratio = 0.3 } }
+        materials.steel = { density = 8000, hypoelastic = { young_modulus = 2e6, poisson_ratio = 0.3 } }
+        [[contact]]
+        between = ["floor", "rubber_two"]
+        friction = 0.4
+        [[contact]]
+        between = ["rubber", "steel"]
+        friction = 0.1
+        [[contact]]
+        between = ["any", "stone_two"]
+        friction = 0.3
+        [[contact]]
+        friction = 0.2
+        [[bodies]]
+        name = "floor"
+        material = "steel"
+        shape.box = { min = [-1, -0.3], max = [10, 0] }
+        rigid = {}
+        "#,
+    );
+    for (name, material, x) in bodies {
+        scene += &format!(
+            "[[bodies]]\nname = \"{name}\"\nmaterial = \"{material}\"\nshape.box = {{ min = [{x}, 0], max = [{}, 0.3] }}\nvelocity = [3, 0]\n",
+            x + 1.0
+        );
+    }
+    for ((name, ..), (body, friction)) in bodies.iter().zip([(1, 0.1), (2, 0.4), (3, 0.2), (4, 0.3)]) {
+        let seen = slide(&scene, body, 0.5);
+        let ratio = seen.acceleration / (-friction * G);
+        println!("   tangential/normal/mu {:.4}", seen.ratio / friction);
+        println!("{name}: deceleration / (mu g) {ratio:.4}");
+        assert!((ratio - 1.0).abs() < 0.15, "{name}: {ratio}");
+    }
+}

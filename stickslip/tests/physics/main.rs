@@ -1,0 +1,20 @@
+//! What the engine owes to mechanics: one file a claim, each headed by its source, set-up, expected value and tolerance.
+//!
+//! `cargo test --release -p stickslip --test physics -- --nocapture` prints what was measured.
+
+mod trial;
+
+mod body_at_rest;
+mod colliding_disks;
+mod empty_space;
+mod failing_steps;
+mod free_body;
+mod friction;
+mod glued_identity;
+mod many_bodies;
+mod mirror;
+mod precision;
+mod rigid_bodies;
+mod spinning_disk;
+mod struck_bar;
+mod threads;

@@ -1,0 +1,58 @@
+//! Scenes written in the tests, and how they are run.
+
+use stickslip::door::{ParticleSnapshot, Simulation};
+use stickslip::{engine, scene};
+
+/// Every stress update by its word in scene files.
+pub const STRESS_UPDATES: [&str; 3] = ["first", "last", "modified-last"];
+
+/// The simulation of a scene.
+pub fn start(text: &str) -> Box<dyn Simulation> {
+    let loaded = scene::parse("trial.toml", text, &[]).unwrap_or_else(|error| panic!("{error:?}\n{text}"));
+    engine::build(&loaded.scene).unwrap_or_else(|problem| panic!("{problem:?}\n{text}"))
+}
+
+/// Takes `count` steps of the stable length.
+pub fn take_steps(simulation: &mut dyn Simulation, count: usize) {
+    for _ in 0..count {
+        simulation.step(f64::INFINITY).expect("the trial is sound");
+    }
+}
+
+/// Steps to a time, and looks at the simulation after each step.
+pub fn run_to(simulation: &mut dyn Simulation, end: f64, mut look: impl FnMut(&mut dyn Simulation)) {
+    while simulation.time() < end * (1.0 - 1e-12) {
+        let remaining = end - simulation.time();
+        // The remainder in equal steps: a last step of nearly no length would divide forces by nearly nothing.
+        let share = remaining / (remaining / simulation.stable_step()).ceil();
+        simulation.step(share).expect("the trial is sound");
+        look(simulation);
+    }
+}
+
+/// Mean of a quantity over the particles that a filter takes.
+pub fn mean_where(
+    snapshot: &ParticleSnapshot,
+    takes: impl Fn(usize) -> bool,
+    quantity: impl Fn(usize) -> f64,
+) -> f64 {
+    let taken: Vec<usize> = (0..snapshot.body.len()).filter(|&p| takes(p)).collect();
+    assert!(!taken.is_empty(), "no particle to average over");
+    taken.iter().map(|&p| quantity(p)).sum::<f64>() / taken.len() as f64
+}
+
+/// Largest difference between two lists of vectors, any component.
+pub fn largest_difference<const N: usize>(a: &[[f64; N]], b: &[[f64; N]]) -> f64 {
+    assert_eq!(a.len(), b.len());
+    a.iter().flatten().zip(b.iter().flatten()).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max)
+}
+
+/// |a - b| of vectors.
+pub fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
+    (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>().sqrt()
+}
+
+/// |a| of a vector.
+pub fn norm(a: [f64; 3]) -> f64 {
+    distance(a, [0.0; 3])
+}
