@@ -6,7 +6,7 @@ use crate::basis::Basis;
 use crate::body::Particle;
 use crate::contact::{Impulse, Near, Survey, solve};
 use crate::door::StepError;
-use crate::grid::{Lattice, Node, Window, addressable, node_at, nodes_per_block};
+use crate::grid::{Blocks, Lattice, Node, Window, addressable, node_at, nodes_per_block};
 use crate::material::Motion;
 use crate::tensor::{Matrix, Real, Vector};
 use crate::transfer::Stencil;
@@ -30,22 +30,24 @@ pub enum Share {
 impl<T: Real, const D: usize, B: Basis<T>> Engine<T, D, B> {
     pub(super) fn cover(&mut self) {
         let start = Instant::now();
-        self.cover_particles();
+        let mut blocks = self.cover_particles();
         if self.steps.is_multiple_of(SORT_INTERVAL) {
             self.sort_particles();
-            self.cover_particles();
+            blocks = blocks.max(self.cover_particles());
         }
-        self.boundary.cover(&self.cover);
+        if blocks == Blocks::New {
+            self.boundary.cover(&self.cover);
+        }
         self.field.clear(&self.cover);
         self.watch.lap("cover", start);
     }
 
-    fn cover_particles(&mut self) {
+    fn cover_particles(&mut self) -> Blocks {
         let counts: Vec<usize> = self.bodies.iter().map(|body| body.particles.len()).collect();
         let (bodies, lattice) = (&self.bodies, &self.lattice);
         self.cover.update(&counts, |body, particle| {
             Stencil::<T, D, B>::new(lattice, &bodies[body].particles[particle]).base()
-        });
+        })
     }
 
     /// Brings the particles' order in memory close to the order in which tiles visit them.
@@ -82,13 +84,7 @@ impl<T: Real, const D: usize, B: Basis<T>> Engine<T, D, B> {
 
     /// v = p / m
     pub(super) fn interpolated_velocities(&mut self) {
-        self.field.nodes.par_iter_mut().with_min_len(4096).for_each(|node| {
-            if node.mass > T::ZERO {
-                node.velocity = node.velocity / node.mass;
-                node.start = node.velocity;
-            }
-        });
-        self.hold();
+        self.velocities(|node| node.start = node.velocity);
     }
 
     /// Sets the integrated velocities aside in `start` and makes room for mass and momentum.
@@ -100,9 +96,14 @@ impl<T: Real, const D: usize, B: Basis<T>> Engine<T, D, B> {
 
     /// v = p / m, with the integrated velocities kept in `start`.
     pub(super) fn modified_velocities(&mut self) {
+        self.velocities(|_| {});
+    }
+
+    fn velocities(&mut self, before_walls: impl Fn(&mut Node<T, D>) + Sync) {
         self.field.nodes.par_iter_mut().with_min_len(4096).for_each(|node| {
             if node.mass > T::ZERO {
                 node.velocity = node.velocity / node.mass;
+                before_walls(node);
             }
         });
         self.hold();
@@ -139,29 +140,23 @@ impl<T: Real, const D: usize, B: Basis<T>> Engine<T, D, B> {
     }
 
     pub(super) fn contact(&mut self, survey: &Survey<T, D>, dt: T) {
-        let start = Instant::now();
-        let impulses = solve(survey, &self.rules, &self.field, self.lattice.cell / dt);
+        let impulses = self.contact_unrecorded(survey, dt);
         self.tally.add(&impulses);
-        self.change_velocities(&impulses);
         self.impulses.extend(impulses);
-        self.watch.lap("contact", start);
     }
 
     /// Contact on velocities that only strain the particles: it enters no sum of forces and works.
-    pub(super) fn contact_unrecorded(&mut self, survey: &Survey<T, D>, dt: T) {
+    pub(super) fn contact_unrecorded(&mut self, survey: &Survey<T, D>, dt: T) -> Vec<Impulse<T, D>> {
         let start = Instant::now();
         let impulses = solve(survey, &self.rules, &self.field, self.lattice.cell / dt);
-        self.change_velocities(&impulses);
-        self.watch.lap("contact", start);
-    }
-
-    fn change_velocities(&mut self, impulses: &[Impulse<T, D>]) {
-        for impulse in impulses {
+        for impulse in &impulses {
             for (node, velocity) in impulse.nodes.into_iter().zip(impulse.velocity) {
                 self.field.nodes[node].velocity += velocity;
             }
         }
         self.boundary.hold(&mut self.field);
+        self.watch.lap("contact", start);
+        impulses
     }
 
     pub(super) fn accelerate(&mut self, dt: T) {

@@ -64,11 +64,20 @@ pub struct Cover<const D: usize> {
     shared: Vec<u32>,
 }
 
+/// Whether the blocks under the particles, and with them the field's slots, are others than before.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Blocks {
+    /// The same.
+    Same,
+    /// Others.
+    New,
+}
+
 /// Blocks further than this from the origin have no key.
 const REACH: i32 = 1 << 20;
 
 /// Cells from the origin of the grid, along an axis, within which blocks have keys.
-pub const MOST_CELLS: i32 = (REACH - 2) * SIDE;
+const MOST_CELLS: i32 = (REACH - 2) * SIDE;
 
 /// Whether a base node lies where blocks have keys.
 pub fn addressable<const D: usize>(base: [i32; D]) -> bool {
@@ -94,8 +103,8 @@ fn corner_block<const D: usize>(block: [i32; D], corner: usize) -> [i32; D] {
 }
 
 impl<const D: usize> Cover<D> {
-    /// Covers bodies of `counts` particles; `base(body, particle)` is a particle's base node, which must be [`addressable`].
-    pub fn update(&mut self, counts: &[usize], base: impl Fn(usize, usize) -> [i32; D] + Sync) {
+    /// Covers bodies of `counts` particles and says whether their blocks are others than before; `base(body, particle)` is a particle's base node, which must be [`addressable`].
+    pub fn update(&mut self, counts: &[usize], base: impl Fn(usize, usize) -> [i32; D] + Sync) -> Blocks {
         self.holdings.resize_with(counts.len(), Holding::default);
         let changed = self
             .holdings
@@ -109,6 +118,7 @@ impl<const D: usize> Cover<D> {
             Change::Cells => self.refresh_tiles(),
             Change::Blocks => self.rebuild(),
         }
+        if changed == Change::Blocks { Blocks::New } else { Blocks::Same }
     }
 
     fn refresh_tiles(&mut self) {

@@ -6,7 +6,7 @@
 mod cover;
 mod field;
 
-pub use cover::{Cover, MOST_CELLS, Meeting, Tile, addressable};
+pub use cover::{Blocks, Cover, Meeting, Tile, addressable};
 pub use field::{Disjoint, Field, Node, WINDOW, Window};
 
 use crate::tensor::{Real, Vector};
