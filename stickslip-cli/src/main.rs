@@ -5,7 +5,7 @@ mod commands;
 mod drawing;
 mod failure;
 mod illustration;
-#[allow(dead_code, reason = "reports are written over it")]
+#[allow(dead_code, unused_imports, reason = "reports are written over it")]
 mod page;
 mod picture;
 mod progress;
