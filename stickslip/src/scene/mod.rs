@@ -213,9 +213,21 @@ pub struct ContactRule {
     pub between: [Option<String>; 2],
     /// The contact law.
     pub law: ContactLaw,
-    /// Coefficient of friction; infinity sticks, 0 is frictionless. Written as `"inf"` where numbers cannot be infinite.
+    /// Coefficient of friction of surfaces that do not slip; infinity sticks, 0 is frictionless. Written as `"inf"` where numbers
+    /// cannot be infinite.
     #[serde(serialize_with = "infinity_as_text")]
     pub friction: f64,
+    /// Coefficient of friction of surfaces that slip fast, at most [`ContactRule::friction`].
+    #[serde(serialize_with = "infinity_as_text")]
+    pub kinetic_friction: f64,
+    /// Speed of slip over which friction falls from the one to the other [m/s]; 0: as soon as they slip.
+    pub friction_decay_speed: f64,
+    /// Shear strength of the contact beside friction [Pa].
+    pub cohesion: f64,
+    /// Tensile strength of the contact [Pa].
+    pub adhesion: f64,
+    /// Shear traction over speed of slip [Pa s/m].
+    pub viscosity: f64,
     /// Where the direction of the contact comes from.
     pub normal: Normal,
     /// Largest strain of a cell by contact in one step, the paper's gamma: 0 to 1.
@@ -301,6 +313,11 @@ impl Default for ContactRule {
             between: [None, None],
             law: ContactLaw::Gap,
             friction: 0.0,
+            kinetic_friction: 0.0,
+            friction_decay_speed: 0.0,
+            cohesion: 0.0,
+            adhesion: 0.0,
+            viscosity: 0.0,
             normal: Normal::Common,
             max_strain: 0.5,
         }

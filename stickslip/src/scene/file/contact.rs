@@ -1,7 +1,7 @@
 //! `[[contact]]`: rules for how bodies touch.
 
 use super::Context;
-use super::quantity::{Quantity, Ratio};
+use super::quantity::{Measure, Pressure, Quantity, Ratio, SurfaceViscosity, Velocity};
 use super::read::{Read, table};
 use super::text::{Choice, Text, Word};
 use crate::scene::error::Fault;
@@ -20,6 +20,20 @@ table! {
         /// Coefficient of friction; inf sticks, 0 is frictionless.
         #[schemars(extend("default" = 0))]
         friction: Option<Quantity<Ratio>>,
+        /// Coefficient of friction once the surfaces slip, at most `friction`; by default the same.
+        kinetic_friction: Option<Quantity<Ratio>>,
+        /// Speed of slip over which friction falls from `friction` to `kinetic_friction`; 0: as soon as they slip.
+        #[schemars(extend("default" = 0))]
+        friction_decay_speed: Option<Quantity<Velocity>>,
+        /// Shear traction that the contact bears beside friction, pressed or not, where the surfaces touch.
+        #[schemars(extend("default" = 0))]
+        cohesion: Option<Quantity<Pressure>>,
+        /// Tensile traction that the contact bears before the surfaces part.
+        #[schemars(extend("default" = 0))]
+        adhesion: Option<Quantity<Pressure>>,
+        /// Viscous shear traction over speed of slip, beside friction.
+        #[schemars(extend("default" = 0))]
+        viscosity: Option<Quantity<SurfaceViscosity>>,
         /// Where the direction of contact comes from; by default "own" for the laws kinematic and traction, as the paper has it,
         /// "common" for the others.
         normal: Option<Word<Normal>>,
@@ -95,8 +109,31 @@ impl Contact {
             strain.checked(context, "a number above 0 and up to 1", |value| value > 0.0 && value <= 1.0)
         })?;
         let normal = self.normal.as_ref().map_or(Ok(usual), |word| word.value(context))?;
-        Ok(ContactRule { between, law, friction, normal, max_strain })
+        let kinetic_friction = self.kinetic_friction.as_ref().map_or(Ok(friction), |kinetic| {
+            let value = kinetic.extended(context)?;
+            let allowed = format!("a number from 0 to the rule's friction, {friction}");
+            if (0.0..=friction).contains(&value) { Ok(value) } else { Err(kinetic.refused(value, &allowed)) }
+        })?;
+        Ok(ContactRule {
+            between,
+            law,
+            friction,
+            kinetic_friction,
+            friction_decay_speed: not_negative(&self.friction_decay_speed, context)?,
+            cohesion: not_negative(&self.cohesion, context)?,
+            adhesion: not_negative(&self.adhesion, context)?,
+            viscosity: not_negative(&self.viscosity, context)?,
+            normal,
+            max_strain,
+        })
     }
+}
+
+/// A quantity from zero on; zero where the file is silent.
+fn not_negative<M: Measure>(quantity: &Option<Quantity<M>>, context: &Context) -> Result<f64, Fault> {
+    quantity.as_ref().map_or(Ok(0.0), |quantity| {
+        quantity.checked(context, "a quantity from 0 on", |value| value >= 0.0)
+    })
 }
 
 impl Read for Pair {

@@ -47,6 +47,10 @@ measures! {
     AngularVelocity = [0, 0, -1];
     /// In kilograms per cubic metre.
     Density = [1, -3, 0];
+    /// In pascals.
+    Pressure = [1, -1, -2];
+    /// In pascals per metre per second.
+    SurfaceViscosity = [1, -2, -1];
 }
 
 /// In radians.
