@@ -1,5 +1,6 @@
 //! A body: particles that share a material, and what they add up to.
 
+use crate::geometry::Whole;
 use crate::material::Material;
 use crate::tensor::{Matrix, Real, Symmetric, Vector, cross};
 
@@ -37,6 +38,10 @@ pub struct Body<T, const D: usize> {
     pub particles: Vec<Particle<T, D>>,
     /// Whether its motion is prescribed, whatever pushes it.
     pub rigid: bool,
+    /// Its undeformed shape with its images in the domain's mirrors.
+    pub whole: Whole,
+    /// Where its particles were before it moved, by number [m].
+    pub places: Vec<Vector<T, D>>,
 }
 
 /// Sums over the particles of one body, in `f64` and SI units whatever the precision.

@@ -73,6 +73,8 @@ pub struct Ledger {
     pub momentum: [f64; 3],
     /// Angular momentum about the origin [kg m^2/s].
     pub angular_momentum: [f64; 3],
+    /// Impulses of contact at nodes that were reduced to the rule's `max_strain`, since the start.
+    pub scaled_impulses: u64,
 }
 
 /// Contact between two bodies, averaged over the time since the last look.

@@ -72,7 +72,7 @@ pub fn sticking<T: Real>(slip: T, friction: T, normal: T) -> T {
 
 #[cfg(test)]
 mod tests {
-    use super::super::pair::tests::{rule, surface};
+    use super::super::pair::tests::{rule, step, surface};
     use super::*;
     use crate::scene::{ContactLaw, Normal};
 
@@ -88,7 +88,7 @@ mod tests {
             surfaces: [&surfaces[0], &surfaces[1]],
             normal: None,
             gap: 0.0,
-            limit: 100.0,
+            step: step(100.0),
         };
         let change = pair.change([Vector([4.0, -8.0]), Vector::ZERO]);
         let tangent = [-1.6 / 2.0, 1.2 / 2.0];
@@ -113,7 +113,7 @@ mod tests {
                     surfaces: [&surfaces[0], &surfaces[1]],
                     normal,
                     gap: 0.0,
-                    limit: 100.0,
+                    step: step(100.0),
                 };
                 pair.change([Vector([4.0, -8.0]), Vector::ZERO])
             });

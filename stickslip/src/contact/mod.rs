@@ -7,15 +7,17 @@
 mod exchange;
 mod law;
 mod pair;
+mod place;
 mod rules;
 mod solve;
 mod survey;
 mod tally;
 
 pub use exchange::{common_normal, own_normals, sticking};
-pub use law::Law;
-pub use pair::{Change, Pair, Surface};
+pub use law::{Law, Span};
+pub use pair::{Change, Pair, Step, Surface, Use};
+pub use place::Place;
 pub use rules::{Rule, Rules};
-pub use solve::{Impulse, solve};
-pub use survey::{Encounter, Near, Side, Site, Survey};
+pub use solve::{Impulse, Solve};
+pub use survey::{Encounter, Facing, Look, Near, Side, Site, Survey, room};
 pub use tally::Tally;

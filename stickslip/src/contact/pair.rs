@@ -1,7 +1,7 @@
 //! Two bodies at a node: what is known of them there, and what contact may do to them.
 
-use super::Rule;
 use super::law::law;
+use super::{Place, Rule, Span};
 use crate::tensor::{Real, Symmetric, Vector};
 
 /// What the particles around a node say of one body's surface there.
@@ -17,6 +17,37 @@ pub struct Surface<T, const D: usize> {
     pub volume: T,
     /// P-wave modulus of the material: stresses far below it count as none [Pa].
     pub modulus: T,
+    /// Force of the body's stress on the node, -sum V sigma grad S, before this step's strain [N].
+    pub force: Vector<T, D>,
+    /// Where the material around the node was before it deformed.
+    pub place: Place<T, D>,
+}
+
+/// What the velocities of a pair are about to be used for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Use {
+    /// To strain the particles.
+    Strain,
+    /// To move them: velocities with all forces of the step.
+    Motion,
+}
+
+/// A step of time, as contact needs it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Step<T> {
+    /// dt [s]
+    pub duration: T,
+    /// Side of a cell [m].
+    pub cell: T,
+    /// What the velocities are for.
+    pub purpose: Use,
+}
+
+impl<T: Real> Step<T> {
+    /// Speed of one cell in this step: h/dt [m/s].
+    pub fn cell_speed(&self) -> T {
+        self.cell / self.duration
+    }
 }
 
 /// Two bodies at a node.
@@ -30,8 +61,8 @@ pub struct Pair<'a, T, const D: usize> {
     pub normal: Option<Vector<T, D>>,
     /// Distance between the surfaces at the node, negative where they overlap [cells].
     pub gap: T,
-    /// Largest change of velocity that a cell bears in this step: gamma h/dt [m/s].
-    pub limit: T,
+    /// The step.
+    pub step: Step<T>,
 }
 
 /// What contact does to two bodies at a node.
@@ -43,17 +74,24 @@ pub struct Change<T, const D: usize> {
     pub normal: T,
     /// Impulse on the first body across the normal [N s].
     pub tangential: Vector<T, D>,
+    /// What is left of the impulse that the law asked for, as the rule's largest strain allows [-].
+    pub scale: T,
 }
 
 impl<T: Real, const D: usize> Change<T, D> {
     /// No contact.
-    pub const NONE: Self = Change { impulse: [Vector::ZERO; 2], normal: T::ZERO, tangential: Vector::ZERO };
+    pub const NONE: Self =
+        Change { impulse: [Vector::ZERO; 2], normal: T::ZERO, tangential: Vector::ZERO, scale: T::ONE };
 }
 
 impl<T: Real, const D: usize> Pair<'_, T, D> {
     /// What contact does to two bodies with these velocities [m/s], by the rule's law and scaled.
     pub fn change(&self, velocities: [Vector<T, D>; 2]) -> Change<T, D> {
-        self.scaled(law(self.rule.law).change(self, velocities))
+        let law = law(self.rule.law);
+        let change = law.change(self, velocities);
+        // Over a whole step an impulse mostly takes back what forces did to a node of little mass: that strains nothing.
+        let strains = law.span() == Span::EachUse || self.step.purpose == Use::Strain;
+        if strains { self.scaled(change) } else { change }
     }
 
     /// m_1 m_2 / (m_1 + m_2) [kg]
@@ -66,7 +104,7 @@ impl<T: Real, const D: usize> Pair<'_, T, D> {
     /// Equal and opposite impulses: `normal` along the common normal `n` and `tangential` across it, on the first body [N s].
     pub fn exchange(&self, normal: T, tangential: Vector<T, D>, n: Vector<T, D>) -> Change<T, D> {
         let impulse = n * normal + tangential;
-        Change { impulse: [impulse, -impulse], normal, tangential }
+        Change { impulse: [impulse, -impulse], normal, tangential, scale: T::ONE }
     }
 
     /// The change reduced so that no cell strains by more than the rule allows, eqs. (20)-(22).
@@ -74,14 +112,17 @@ impl<T: Real, const D: usize> Pair<'_, T, D> {
         let largest = (change.impulse.iter().zip(self.surfaces))
             .flat_map(|(impulse, surface)| (*impulse * surface.inverse_mass).0)
             .fold(T::ZERO, |max, x| max.max(x.abs()));
-        if largest <= self.limit {
+        // gamma h/dt
+        let limit = self.rule.max_strain * self.step.cell_speed();
+        if largest <= limit {
             return change;
         }
-        let factor = self.limit / largest;
+        let factor = limit / largest;
         Change {
             impulse: change.impulse.map(|j| j * factor),
             normal: change.normal * factor,
             tangential: change.tangential * factor,
+            scale: factor,
         }
     }
 }
@@ -98,7 +139,14 @@ pub(super) mod tests {
             stress: Symmetric([0.0, -1.0, 0.0, 0.0, 0.0, 0.0]),
             volume: 1.0,
             modulus: 10.0,
+            force: Vector::ZERO,
+            place: Place::EMPTY,
         }
+    }
+
+    /// A step in which contact may change velocities by `limit` [m/s] under [`rule`].
+    pub fn step(limit: f64) -> Step<f64> {
+        Step { duration: 1.0, cell: 2.0 * limit, purpose: Use::Motion }
     }
 
     pub fn rule(law: ContactLaw, normal: Normal, friction: f64) -> Rule<f64> {
@@ -113,8 +161,13 @@ pub(super) mod tests {
             for (limit, factor) in [(100.0, 1.0), (6.0, 1.0), (1.5, 0.25)] {
                 let rule = rule(law, Normal::Common, 0.25);
                 let normal = Some(Vector([0.0, -1.0]));
-                let pair =
-                    Pair { rule: &rule, surfaces: [&surfaces[0], &surfaces[1]], normal, gap: 0.0, limit };
+                let pair = Pair {
+                    rule: &rule,
+                    surfaces: [&surfaces[0], &surfaces[1]],
+                    normal,
+                    gap: 0.0,
+                    step: step(limit),
+                };
                 let change = pair.change([Vector([0.0, -8.0]), Vector::ZERO]);
                 assert!((change.impulse[0][1] - 6.0 * factor).abs() < 1e-14, "{law:?}, {limit}: {change:?}");
                 assert_eq!(change.impulse[0] + change.impulse[1], Vector::ZERO);

@@ -1,6 +1,7 @@
 //! From pairs to a whole node: any number of bodies, each pair by its own law.
 
-use super::{Change, Rules, Site, Survey};
+use super::law::law;
+use super::{Change, Rules, Site, Span, Step, Survey};
 use crate::grid::Field;
 use crate::scene::ContactLaw;
 use crate::tensor::{Real, Vector};
@@ -13,10 +14,12 @@ pub struct Impulse<T, const D: usize> {
     pub bodies: [usize; 2],
     /// Nodes of the bodies in the field.
     pub nodes: [usize; 2],
-    /// The impulses on them [N s].
+    /// The impulses on them, of this use or of the whole step as their law has it [N s].
     pub change: Change<T, D>,
-    /// Changes of their velocities [m/s].
+    /// Changes of their velocities in this use [m/s].
     pub velocity: [Vector<T, D>; 2],
+    /// Whether a later use of the same step takes it back and judges the whole.
+    pub span: Span,
     /// Work that friction took from the two bodies [J].
     pub friction: T,
     /// Work that a rigid body's prescribed motion did on the other [J].
@@ -27,80 +30,96 @@ pub struct Impulse<T, const D: usize> {
 const TOLERANCE: f64 = 1e-14;
 const MAX_SWEEPS: usize = 200;
 
-/// The impulses at every site, ordered by site and pair. `strain_rate` is h/dt [m/s].
-///
-/// Where more than two bodies meet, each pair's impulse is solved in turn with the others held until none changes
-/// (block Gauss-Seidel), so that every pair obeys its own law and momentum is conserved pair by pair.
-pub fn solve<T: Real, const D: usize>(
-    survey: &Survey<T, D>,
-    rules: &Rules<T>,
-    field: &Field<T, D>,
-    strain_rate: T,
-) -> Vec<Impulse<T, D>> {
-    (survey.sites.par_iter().with_min_len(64))
-        .flat_map_iter(|site| solve_site(survey, rules, site, (field, strain_rate)))
-        .collect()
+/// A use of contact.
+pub struct Solve<'a, T, const D: usize> {
+    /// Where bodies meet.
+    pub survey: &'a Survey<T, D>,
+    /// Which law holds for which pair.
+    pub rules: &'a Rules<T>,
+    /// The velocities.
+    pub field: &'a Field<T, D>,
+    /// The step.
+    pub step: Step<T>,
+    /// What an earlier use of contact in this step did, as [`Solve::impulses`] gave it; empty in the first use.
+    pub given: &'a [Impulse<T, D>],
 }
 
-fn solve_site<T: Real, const D: usize>(
-    survey: &Survey<T, D>,
-    rules: &Rules<T>,
-    site: &Site<D>,
-    (field, strain_rate): (&Field<T, D>, T),
-) -> Vec<Impulse<T, D>> {
-    let sides = &survey.sides[site.sides.clone()];
-    let mut velocity: Vec<Vector<T, D>> = sides.iter().map(|side| field.nodes[side.index].velocity).collect();
-    let encounters = &survey.encounters[site.encounters.clone()];
-    let mut impulses: Vec<Impulse<T, D>> = (encounters.iter())
-        .map(|encounter| {
-            let [a, b] = encounter.sides.map(|side| &survey.sides[side]);
-            Impulse {
-                bodies: [a.body, b.body],
-                nodes: [a.index, b.index],
-                change: Change::NONE,
-                velocity: [Vector::ZERO; 2],
-                friction: T::ZERO,
-                work: T::ZERO,
-            }
-        })
-        .collect();
-    for _ in 0..MAX_SWEEPS {
-        let (mut largest, mut moved) = (T::ZERO, T::ZERO);
-        for (encounter, impulse) in encounters.iter().zip(&mut impulses) {
-            let pair = survey.pair(encounter, rules, strain_rate);
-            let places = encounter.sides.map(|side| side - site.sides.start);
-            let old = impulse.velocity;
-            let free = [0, 1].map(|i| velocity[places[i]] - old[i]);
-            impulse.change = pair.change(free);
-            impulse.work = T::ZERO;
-            for i in 0..2 {
-                let inverse_mass = pair.surfaces[i].inverse_mass;
-                let new = impulse.change.impulse[i] * inverse_mass;
-                impulse.velocity[i] = new;
-                velocity[places[i]] = free[i] + new;
-                moved = moved.max((new - old[i]).norm());
-                largest = largest.max(new.norm());
-                if inverse_mass == T::ZERO {
-                    impulse.work += impulse.change.impulse[1 - i].dot(free[i]);
-                }
-            }
-            let slip = velocity[places[0]] - velocity[places[1]];
-            impulse.friction = match pair.rule.law {
-                ContactLaw::Glued => T::ZERO,
-                _ => -impulse.change.tangential.dot(slip),
-            };
-        }
-        if encounters.len() == 1 || moved <= T::of(TOLERANCE.max(T::EPSILON.f64() * 4.0)) * largest {
-            break;
-        }
+impl<T: Real, const D: usize> Solve<'_, T, D> {
+    /// The impulses of all encounters in their order.
+    ///
+    /// Where more than two bodies meet, each pair's impulse is solved in turn with the others held until none changes
+    /// (block Gauss-Seidel), so that every pair obeys its own law and momentum is conserved pair by pair. A law that judges
+    /// the whole step sees the velocities without what it gave before.
+    pub fn impulses(&self) -> Vec<Impulse<T, D>> {
+        (self.survey.sites.par_iter().with_min_len(64)).flat_map_iter(|site| self.site(site)).collect()
     }
-    impulses
+
+    fn site(&self, site: &Site<D>) -> Vec<Impulse<T, D>> {
+        let Solve { survey, rules, field, step, .. } = *self;
+        let sides = &survey.sides[site.sides.clone()];
+        let mut velocity: Vec<Vector<T, D>> =
+            sides.iter().map(|side| field.nodes[side.index].velocity).collect();
+        let encounters = &survey.encounters[site.encounters.clone()];
+        let given = if self.given.is_empty() { &[] } else { &self.given[site.encounters.clone()] };
+        let mut impulses: Vec<Impulse<T, D>> = (encounters.iter().enumerate())
+            .map(|(i, encounter)| {
+                let [a, b] = encounter.sides.map(|side| &survey.sides[side]);
+                let span = law::<T, D>(rules.rule(encounter.rule).law).span();
+                let before = given.get(i).filter(|_| span == Span::WholeStep);
+                Impulse {
+                    bodies: [a.body, b.body],
+                    nodes: [a.index, b.index],
+                    change: Change::NONE,
+                    velocity: before.map_or([Vector::ZERO; 2], |impulse| impulse.velocity),
+                    span,
+                    friction: T::ZERO,
+                    work: T::ZERO,
+                }
+            })
+            .collect();
+        for _ in 0..MAX_SWEEPS {
+            let (mut largest, mut moved) = (T::ZERO, T::ZERO);
+            for (encounter, impulse) in encounters.iter().zip(&mut impulses) {
+                let pair = survey.pair(encounter, rules, step);
+                let places = encounter.sides.map(|side| side - site.sides.start);
+                let old = impulse.velocity;
+                let free = [0, 1].map(|i| velocity[places[i]] - old[i]);
+                impulse.change = pair.change(free);
+                impulse.work = T::ZERO;
+                for i in 0..2 {
+                    let inverse_mass = pair.surfaces[i].inverse_mass;
+                    let new = impulse.change.impulse[i] * inverse_mass;
+                    impulse.velocity[i] = new;
+                    velocity[places[i]] = free[i] + new;
+                    moved = moved.max((new - old[i]).norm());
+                    largest = largest.max(new.norm());
+                    if inverse_mass == T::ZERO {
+                        impulse.work += impulse.change.impulse[1 - i].dot(free[i]);
+                    }
+                }
+                let slip = velocity[places[0]] - velocity[places[1]];
+                impulse.friction = match pair.rule.law {
+                    ContactLaw::Glued => T::ZERO,
+                    _ => -impulse.change.tangential.dot(slip),
+                };
+            }
+            if encounters.len() == 1 || moved <= T::of(TOLERANCE.max(T::EPSILON.f64() * 4.0)) * largest {
+                break;
+            }
+        }
+        for (impulse, before) in impulses.iter_mut().zip(given) {
+            if impulse.span == Span::WholeStep {
+                (0..2).for_each(|i| impulse.velocity[i] -= before.velocity[i]);
+            }
+        }
+        impulses
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::{Encounter, Rule, Side, Surface};
+    use crate::contact::{Encounter, Facing, Place, Rule, Side, Surface, Use};
     use crate::grid::Node;
     use crate::scene::Normal;
     use crate::tensor::Symmetric;
@@ -142,6 +161,8 @@ mod tests {
                 stress: Symmetric([-1.0, -2.0, -3.0, 0.5, 0.2, 0.1]),
                 volume: 1.0,
                 modulus: 10.0,
+                force: Vector::ZERO,
+                place: Place::EMPTY,
             };
             survey.sides.push(Side { body, index: body, surface, volume_gradient });
         }
@@ -149,28 +170,33 @@ mod tests {
         for a in 0..n {
             for b in a + 1..n {
                 let normal = (survey.sides[b].volume_gradient - survey.sides[a].volume_gradient).direction();
-                survey.encounters.push(Encounter { sides: [a, b], rule: 0, normal, gap: 0.0 });
+                survey.encounters.push(Encounter {
+                    sides: [a, b],
+                    rule: 0,
+                    facing: Facing { normal, gap: 0.0 },
+                });
             }
         }
         survey.sites.push(Site { node: [0; 3], sides: 0..n, encounters: 0..survey.encounters.len() });
         let rules = Rules::of_all(n, Rule { law, normal: Normal::Common, friction, max_strain: 1.0 });
-        let impulses = solve(&survey, &rules, &field, 1e6);
+        let step = Step { duration: 1e-6, cell: 1.0, purpose: Use::Motion };
+        let impulses = Solve { survey: &survey, rules: &rules, field: &field, step, given: &[] }.impulses();
         let before: Vec<_> = field.nodes.iter().map(|node| node.velocity).collect();
         let mut after = before.clone();
         for impulse in &impulses {
             (0..2).for_each(|i| after[impulse.nodes[i]] += impulse.velocity[i]);
         }
         let masses = state.iter().map(|body| body.0).collect();
-        let normals = survey.encounters.iter().map(|e| e.normal.expect("gradients differ")).collect();
+        let normals = survey.encounters.iter().map(|e| e.facing.normal.expect("gradients differ")).collect();
         Outcome { masses, before, after, normals, impulses }
     }
 
     proptest! {
         #[test]
         fn momentum_stays_for_any_number_of_bodies(state in states(), friction in 0.0..2.0_f64) {
-            use ContactLaw::{Gap, Glued, Kinematic, Traction};
+            use ContactLaw::{Gap, Glued, Kinematic, Surface, Traction};
             for (law, friction) in
-                [Kinematic, Traction, Gap, Glued].into_iter().flat_map(|law| [(law, friction), (law, f64::INFINITY)])
+                [Kinematic, Traction, Gap, Surface, Glued].into_iter().flat_map(|law| [(law, friction), (law, f64::INFINITY)])
             {
                 let node = at_node(&state, law, friction);
                 let change = (0..state.len())
@@ -182,7 +208,7 @@ mod tests {
 
         #[test]
         fn contact_of_approaching_bodies_gains_no_energy(state in states(), friction in 0.0..2.0_f64) {
-            for law in [ContactLaw::Kinematic, ContactLaw::Glued] {
+            for law in [ContactLaw::Kinematic, ContactLaw::Surface, ContactLaw::Glued] {
                 let node = at_node(&state, law, friction);
                 let (before, after) = (node.kinetic(&node.before), node.kinetic(&node.after));
                 prop_assert!(after <= before * (1.0 + 1e-12), "{law:?}: {before} to {after}");
@@ -191,13 +217,13 @@ mod tests {
 
         #[test]
         fn every_pair_obeys_coulomb(state in states(), friction in 0.0..2.0_f64) {
-            for law in [ContactLaw::Kinematic, ContactLaw::Traction, ContactLaw::Gap] {
+            for law in [ContactLaw::Kinematic, ContactLaw::Traction, ContactLaw::Gap, ContactLaw::Surface] {
                 let node = at_node(&state, law, friction);
                 for (impulse, normal) in node.impulses.iter().zip(&node.normals) {
                     let (push, across) = (-impulse.change.normal, impulse.change.tangential);
                     prop_assert!(across.norm() <= friction * push.max(0.0) * (1.0 + 1e-12), "{law:?}: {impulse:?}");
                     prop_assert!(across.dot(*normal).abs() <= 1e-14, "{law:?}: {impulse:?}");
-                    prop_assert!(law != ContactLaw::Kinematic || push >= 0.0, "{law:?} pulls: {impulse:?}");
+                    prop_assert!(!matches!(law, ContactLaw::Kinematic | ContactLaw::Surface) || push >= 0.0, "{law:?} pulls: {impulse:?}");
                 }
             }
         }

@@ -1,6 +1,7 @@
 //! Where bodies meet, and what the particles there say of their surfaces.
 
-use super::{Pair, Rules, Surface};
+use super::law::law;
+use super::{Pair, Place, Rules, Step, Surface};
 use crate::basis::Basis;
 use crate::body::{Body, Particle};
 use crate::boundary::Boundary;
@@ -31,7 +32,27 @@ pub struct Side<T, const D: usize> {
     pub index: usize,
     /// Its surface there.
     pub surface: Surface<T, D>,
-    pub(super) volume_gradient: Vector<T, D>,
+    /// Gradient of its volume, into the body [m^2].
+    pub volume_gradient: Vector<T, D>,
+}
+
+/// How two bodies face each other at a node.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Facing<T, const D: usize> {
+    /// Common normal from the first to the second [-].
+    pub normal: Option<Vector<T, D>>,
+    /// Distance between their surfaces, negative where they overlap [cells].
+    pub gap: T,
+}
+
+/// What a law may look at to tell how two bodies face each other.
+pub struct Look<'a, T, const D: usize> {
+    /// Everything near.
+    pub near: &'a Near<'a, T, D>,
+    /// All bodies at the node.
+    pub sides: &'a [Side<T, D>],
+    /// The two among them.
+    pub pair: [usize; 2],
 }
 
 /// Two sides of a site.
@@ -41,8 +62,7 @@ pub struct Encounter<T, const D: usize> {
     pub sides: [usize; 2],
     /// Number of the pair's rule.
     pub(super) rule: usize,
-    pub(super) normal: Option<Vector<T, D>>,
-    pub(super) gap: T,
+    pub(super) facing: Facing<T, D>,
 }
 
 /// All sites of a step.
@@ -151,10 +171,10 @@ impl<T: Real, const D: usize> Near<'_, T, D> {
                     if self.rules.rule(rule).law == ContactLaw::None || rigid == [true; 2] {
                         continue;
                     }
-                    let gap = self.gap(&survey.sides[first..last], [a, b].map(|side| side - first));
-                    let gradients = [a, b].map(|side| survey.sides[side].volume_gradient);
-                    let normal = (gradients[1] - gradients[0]).direction();
-                    survey.encounters.push(Encounter { sides: [a, b], rule, normal, gap });
+                    let pair = [a, b].map(|side| side - first);
+                    let look = Look { near: self, sides: &survey.sides[first..last], pair };
+                    let facing = law(self.rules.rule(rule).law).facing(&look);
+                    survey.encounters.push(Encounter { sides: [a, b], rule, facing });
                 }
             }
             survey.sites.push(Site { node, sides: first..last, encounters: start..survey.encounters.len() });
@@ -165,45 +185,57 @@ impl<T: Real, const D: usize> Near<'_, T, D> {
         let body = self.cover.slots[index / nodes_per_block(D)].0 as usize;
         let mut volume = T::ZERO;
         let (mut mass_gradient, mut volume_gradient) = (Vector::ZERO, Vector::ZERO);
-        let mut stress = Symmetric::ZERO;
+        let (mut stress, mut force) = (Symmetric::ZERO, Vector::ZERO);
+        let mut place = Place::EMPTY;
+        let owner = &self.bodies[body];
+        let at = self.lattice.position(node);
         self.each_particle::<B>(body, node, |particle, weight, gradient, image| {
             let v = particle.volume * particle.deformation.det();
+            let share = v * weight;
             // The node sees a particle move away as the particle sees the node move: grad at the node = -grad S(x_p).
             let gradient = Vector::from_fn(|i| -gradient[i] * image.sign[i]);
-            volume += v * weight;
+            let sigma = mirrored(&particle.stress, image.sign);
+            volume += share;
             mass_gradient += gradient * particle.mass;
             volume_gradient += gradient * v;
-            stress += mirrored(&particle.stress, image.sign) * (v * weight);
+            stress += sigma * share;
+            force += sigma.times(gradient) * v;
+            let before = self.place(particle, owner.places[particle.number as usize], (at, image));
+            place.add(&before, share);
         });
         let mass = self.field.nodes[index].mass;
-        let owner = &self.bodies[body];
         let surface = Surface {
             inverse_mass: if owner.rigid { T::ZERO } else { T::ONE / mass },
             normal: (-mass_gradient).direction(),
             stress: stress * (T::ONE / volume),
             volume,
             modulus: owner.material.law().wave_modulus(&Matrix::IDENTITY, T::ONE),
+            force,
+            place: place.over(volume),
         };
         Side { body, index, surface, volume_gradient }
     }
 
-    /// Distance between the surfaces at a node, from the room that the bodies leave around it [cells].
-    ///
-    /// ```text
-    /// gap / h = 1 - sum_a V_a / h^D,   V_a = sum_p V_p S_i(x_p)
-    /// ```
-    /// Where material fills space without a gap, the volumes interpolated to a node are a whole cell; a thin gap through the node
-    /// takes its width times h^(D-1) from that. Overlap is negative. Needs no normal, and stairs of the particles' lattice
-    /// average out. All bodies that touch either of the two count. A surface of radius R seems h^2/(6R) further away than its nearest point.
-    fn gap(&self, sides: &[Side<T, D>], pair: [usize; 2]) -> T {
-        let touches = |a: &Side<T, D>, b: &Side<T, D>| {
-            self.rules.rule(self.rules.number(a.body, b.body)).law != ContactLaw::None
-        };
-        let counts = |(i, side): &(usize, &Side<T, D>)| {
-            pair.contains(i) || pair.iter().any(|&of_pair| touches(side, &sides[of_pair]))
-        };
-        let volumes = sides.iter().enumerate().filter(counts).map(|(_, side)| side.surface.volume);
-        T::ONE - volumes.sum::<T>() / self.cell_volume()
+    /// Where the material of a particle was at a node, as seen by the node's image, and turned back from it.
+    fn place(
+        &self,
+        particle: &Particle<T, D>,
+        place: Vector<T, D>,
+        (at, image): (Vector<T, D>, &Image<T, D>),
+    ) -> Place<T, D> {
+        let inverse = particle.deformation.inverse();
+        let seen = self.lattice.position(image.node);
+        let arm = particle.position - seen;
+        let sign = |i: usize| if i < D { image.sign[i] } else { T::ONE };
+        Place {
+            place: Vector::from_fn(|i| {
+                let x = (0..D).fold(place[i], |x, j| x - inverse.0[i][j] * arm[j]);
+                // A mirror lies half way between a node and its image.
+                if sign(i) < T::ZERO { at[i] + seen[i] - x } else { x }
+            }),
+            inverse: Matrix::from_fn(|i, j| inverse.0[i][j] * sign(i) * sign(j)),
+            center: Vector::from_fn(|i| arm[i] * sign(i)),
+        }
     }
 
     /// Calls `f(particle, weight, gradient, image)` for every particle of a body that reaches a node or an image of it.
@@ -246,22 +278,43 @@ fn mirrored<T: Real, const D: usize>(stress: &Symmetric<T>, sign: [T; D]) -> Sym
     Symmetric([s[0], s[1], s[2], s[3] * x * y, s[4] * y * z, s[5] * x * z])
 }
 
+/// Normal along the difference of the volume gradients, and the gap from the room that the bodies leave around the node [cells].
+///
+/// ```text
+/// gap / h = 1 - sum_a V_a / h^D,   V_a = sum_p V_p S_i(x_p)
+/// ```
+/// Where material fills space without a gap, the volumes interpolated to a node are a whole cell; a thin gap through the node
+/// takes its width times h^(D-1) from that. Overlap is negative. Needs no normal, and stairs of the particles' lattice
+/// average out. All bodies that touch either of the two count. A surface of radius R seems h^2/(6R) further away than its nearest point.
+pub fn room<T: Real, const D: usize>(look: &Look<T, D>) -> Facing<T, D> {
+    let Look { near, sides, pair } = look;
+    let touches = |a: &Side<T, D>, b: &Side<T, D>| {
+        near.rules.rule(near.rules.number(a.body, b.body)).law != ContactLaw::None
+    };
+    let counts = |(i, side): &(usize, &Side<T, D>)| {
+        pair.contains(i) || pair.iter().any(|&of_pair| touches(side, &sides[of_pair]))
+    };
+    let volumes = sides.iter().enumerate().filter(counts).map(|(_, side)| side.surface.volume);
+    let [a, b] = pair.map(|side| sides[side].volume_gradient);
+    Facing { normal: (b - a).direction(), gap: T::ONE - volumes.sum::<T>() / near.cell_volume() }
+}
+
 impl<T: Real, const D: usize> Survey<T, D> {
-    /// The pair of an encounter, with the largest change of velocity for a cell and step: `strain_rate` is h/dt [m/s].
+    /// The pair of an encounter.
     pub fn pair<'a>(
         &'a self,
         encounter: &Encounter<T, D>,
         rules: &'a Rules<T>,
-        strain_rate: T,
+        step: Step<T>,
     ) -> Pair<'a, T, D> {
         let [a, b] = encounter.sides.map(|side| &self.sides[side]);
         let rule = rules.rule(encounter.rule);
         Pair {
             rule,
             surfaces: [&a.surface, &b.surface],
-            normal: encounter.normal,
-            gap: encounter.gap,
-            limit: rule.max_strain * strain_rate,
+            normal: encounter.facing.normal,
+            gap: encounter.facing.gap,
+            step,
         }
     }
 }

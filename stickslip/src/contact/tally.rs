@@ -23,6 +23,8 @@ pub struct Tally {
     uses: u64,
     /// Work that friction took from the bodies [J].
     pub friction: f64,
+    /// How many impulses were reduced, so that no cell strains by more than its rule allows.
+    pub scaled: u64,
     /// Work that rigid bodies' prescribed motion did on the others [J].
     pub work: f64,
 }
@@ -41,6 +43,7 @@ impl Tally {
                 (sum.last_use, sum.nodes) = (self.uses, 0);
             }
             sum.nodes += 1;
+            self.scaled += u64::from(impulse.change.scale < T::ONE);
             let tangential = impulse.change.tangential.space();
             for i in 0..3 {
                 sum.tangential[i] += tangential[i];

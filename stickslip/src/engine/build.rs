@@ -9,7 +9,7 @@ use crate::boundary::{Boundary, Wall};
 use crate::check;
 use crate::contact::{Rules, Tally};
 use crate::door::Simulation;
-use crate::geometry::{Filling, fill};
+use crate::geometry::{Filling, Mirror, Whole, fill};
 use crate::grid::{Cover, Field, Lattice};
 use crate::scene::{self, BasisKind, Dimension, Face, Motion, Precision, Problem, Scene};
 use crate::tensor::{Matrix, Real, Symmetric, Vector, cross};
@@ -59,6 +59,8 @@ impl<T: Real, const D: usize, B: Basis<T>> Engine<T, D, B> {
                     _ => [0.0; 3],
                 }),
                 rigid: motion.is_some(),
+                whole: Whole::new(&body.shape, mirrors::<D>(scene), D),
+                places: filling.positions.iter().map(|&x| Vector::of(x)).collect(),
             });
             rigid.push(motion);
         }
@@ -116,6 +118,18 @@ fn particles<T: Real, const D: usize>(
         number: number as u32,
     };
     filling.positions.iter().enumerate().map(particle).collect()
+}
+
+/// The domain's faces that are mirrors.
+fn mirrors<const D: usize>(scene: &Scene) -> Vec<Mirror> {
+    let Some(domain) = &scene.domain else { return Vec::new() };
+    let faces = (0..D).flat_map(|axis| [0, 1].map(|side| (axis, side)));
+    (faces.filter(|&(axis, side)| domain.faces[axis][side] == Face::Symmetry))
+        .map(|(axis, side)| match side {
+            0 => Mirror { axis, position: domain.min[axis], inward: 1.0 },
+            _ => Mirror { axis, position: domain.max[axis], inward: -1.0 },
+        })
+        .collect()
 }
 
 /// The domain's faces that do something.

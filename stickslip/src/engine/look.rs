@@ -59,8 +59,12 @@ impl<T: Real, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
     }
 
     fn ledger(&self) -> Ledger {
-        let mut ledger =
-            Ledger { friction: self.tally.friction, external_work: self.tally.work, ..Ledger::default() };
+        let mut ledger = Ledger {
+            friction: self.tally.friction,
+            external_work: self.tally.work,
+            scaled_impulses: self.tally.scaled,
+            ..Ledger::default()
+        };
         let gravity = self.gravity.space();
         for body in self.bodies.iter().filter(|body| !body.rigid) {
             let totals = body.totals();

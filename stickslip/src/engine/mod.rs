@@ -62,13 +62,13 @@ impl<T: Real, const D: usize, B: Basis<T>> Engine<T, D, B> {
         });
         self.interpolated_velocities(); //              v = p / m                           (4)
         let survey = self.survey(); //                  surfaces, normals and gaps where bodies meet
-        self.contact(&survey, dt); //                   v~ from interpolated velocities     (5)-(13), (20)-(22)
+        let given = self.first_contact(&survey, dt); // v~ from interpolated velocities     (5)-(13), (20)-(22)
         if when == StressUpdate::First {
             self.strain(dt)?;
             self.scatter(Share::Force);
         }
         self.accelerate(dt); //                         v += dt (f / m + g)                 (3)
-        self.contact(&survey, dt); //                   v~ from integrated velocities
+        self.contact(&survey, &given, dt); //           v~ from integrated velocities
         self.accept()?; //                              particles: v += dv
         match when {
             StressUpdate::First => self.displace(dt), // particles: x += v dt

@@ -4,7 +4,7 @@ use super::Engine;
 use super::cpu::{Fault, FaultKind};
 use crate::basis::Basis;
 use crate::body::Particle;
-use crate::contact::{Impulse, Near, Survey, solve};
+use crate::contact::{Impulse, Near, Solve, Span, Step, Survey, Use};
 use crate::door::StepError;
 use crate::grid::{Blocks, Lattice, Node, Window, addressable, node_at, nodes_per_block};
 use crate::material::Motion;
@@ -139,16 +139,36 @@ impl<T: Real, const D: usize, B: Basis<T>> Engine<T, D, B> {
         survey
     }
 
-    pub(super) fn contact(&mut self, survey: &Survey<T, D>, dt: T) {
-        let impulses = self.contact_unrecorded(survey, dt);
+    /// Contact on the interpolated velocities, which strain the particles.
+    pub(super) fn first_contact(&mut self, survey: &Survey<T, D>, dt: T) -> Vec<Impulse<T, D>> {
+        let impulses = self.exchange(survey, (dt, Use::Strain), &[]);
+        self.impulses.extend(impulses.iter().filter(|impulse| impulse.span == Span::EachUse));
+        self.tally.add(&self.impulses);
+        impulses
+    }
+
+    /// Contact on the integrated velocities, after what it gave to the interpolated ones.
+    pub(super) fn contact(&mut self, survey: &Survey<T, D>, given: &[Impulse<T, D>], dt: T) {
+        let impulses = self.exchange(survey, (dt, Use::Motion), given);
         self.tally.add(&impulses);
         self.impulses.extend(impulses);
     }
 
     /// Contact on velocities that only strain the particles: it enters no sum of forces and works.
-    pub(super) fn contact_unrecorded(&mut self, survey: &Survey<T, D>, dt: T) -> Vec<Impulse<T, D>> {
+    pub(super) fn contact_unrecorded(&mut self, survey: &Survey<T, D>, dt: T) {
+        self.exchange(survey, (dt, Use::Strain), &[]);
+    }
+
+    fn exchange(
+        &mut self,
+        survey: &Survey<T, D>,
+        (duration, purpose): (T, Use),
+        given: &[Impulse<T, D>],
+    ) -> Vec<Impulse<T, D>> {
         let start = Instant::now();
-        let impulses = solve(survey, &self.rules, &self.field, self.lattice.cell / dt);
+        let step = Step { duration, cell: self.lattice.cell, purpose };
+        let solve = Solve { survey, rules: &self.rules, field: &self.field, step, given };
+        let impulses = solve.impulses();
         for impulse in &impulses {
             for (node, velocity) in impulse.nodes.into_iter().zip(impulse.velocity) {
                 self.field.nodes[node].velocity += velocity;

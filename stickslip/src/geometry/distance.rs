@@ -4,49 +4,107 @@ use super::inside::along_and_across;
 use super::rotation::Rotation;
 use super::{Shape, polygon};
 
+/// How far a point is from a surface, and which way leads out fastest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Level {
+    /// Distance to the surface [m], negative inside.
+    pub distance: f64,
+    /// Its gradient, a unit vector; zero where no direction stands out, as at the centre of a ball [-].
+    pub gradient: [f64; 3],
+}
+
+impl Level {
+    /// Far outside of everything.
+    const NOWHERE: Level = Level { distance: f64::INFINITY, gradient: [0.0; 3] };
+    /// Deep inside of everything.
+    const EVERYWHERE: Level = Level { distance: f64::NEG_INFINITY, gradient: [0.0; 3] };
+
+    fn new(distance: f64, gradient: [f64; 3]) -> Self {
+        Level { distance, gradient }
+    }
+
+    /// Of the part that is in both.
+    fn intersected(self, other: Level) -> Level {
+        if other.distance > self.distance { other } else { self }
+    }
+
+    /// Of the part that is in either.
+    fn united(self, other: Level) -> Level {
+        if other.distance < self.distance { other } else { self }
+    }
+
+    /// Of what the shape leaves.
+    fn complement(self) -> Level {
+        Level { distance: -self.distance, gradient: self.gradient.map(|g| -g) }
+    }
+
+    /// Of the part that is in both of two solids with faces at right angles, exactly.
+    fn square(self, other: Level) -> Level {
+        if self.distance <= 0.0 || other.distance <= 0.0 {
+            return self.intersected(other);
+        }
+        let distance = self.distance.hypot(other.distance);
+        let along = |k: usize| self.gradient[k] * self.distance + other.gradient[k] * other.distance;
+        Level { distance, gradient: std::array::from_fn(|k| along(k) / distance) }
+    }
+}
+
 impl Shape {
-    /// Distance from a point to the shape's surface [m], negative inside.
+    /// Distance from a point to the shape's surface [m], negative inside; see [`Shape::level`].
+    pub fn distance(&self, point: [f64; 3], dimension: usize) -> f64 {
+        self.level(point, dimension).distance
+    }
+
+    /// Signed distance from a point to the shape's surface and its gradient.
     ///
     /// Exact for simple and turned shapes; of shapes combined, the sign is exact and the magnitude is at most the true one:
     /// `min` over a union, `max` over an intersection. In the plane, a cylinder is infinitely far away.
-    pub fn distance(&self, point: [f64; 3], dimension: usize) -> f64 {
-        let norm = |values: [f64; 3]| (0..dimension).map(|k| values[k] * values[k]).sum::<f64>().sqrt();
+    pub fn level(&self, point: [f64; 3], dimension: usize) -> Level {
         match self {
-            Shape::Ball { center, radius } => norm(std::array::from_fn(|k| point[k] - center[k])) - radius,
-            Shape::Box { min, max } => {
-                let beyond: [f64; 3] = std::array::from_fn(|k| (min[k] - point[k]).max(point[k] - max[k]));
-                let deepest = beyond[..dimension].iter().fold(f64::NEG_INFINITY, |a, &b| a.max(b));
-                norm(beyond.map(|b| b.max(0.0))) + deepest.min(0.0)
+            Shape::Ball { center, radius } => {
+                let arm = std::array::from_fn(|k| if k < dimension { point[k] - center[k] } else { 0.0 });
+                let length = norm(arm);
+                let gradient = if length > 0.0 { arm.map(|a| a / length) } else { [0.0; 3] };
+                Level::new(length - radius, gradient)
             }
-            Shape::Cylinder { .. } if dimension == 2 => f64::INFINITY,
+            Shape::Box { min, max } => (0..dimension)
+                .map(|k| slab(k, [min[k], max[k]], point[k]))
+                .fold(Level::EVERYWHERE, Level::square),
+            Shape::Cylinder { .. } if dimension == 2 => Level::NOWHERE,
             Shape::Cylinder { start, end, radius } => {
-                let length = norm(std::array::from_fn(|k| end[k] - start[k]));
+                let axis: [f64; 3] = std::array::from_fn(|k| end[k] - start[k]);
+                let length = norm(axis);
                 let (along, across) = along_and_across(point, *start, *end);
-                prism(across - radius, (-along).max(along - 1.0) * length)
+                let from_axis: [f64; 3] = std::array::from_fn(|k| point[k] - start[k] - along * axis[k]);
+                let outward = if across > 0.0 { from_axis.map(|a| a / across) } else { [0.0; 3] };
+                let (beyond, sign) = if along > 0.5 { (along - 1.0, 1.0) } else { (-along, -1.0) };
+                Level::new(across - radius, outward)
+                    .square(Level::new(beyond * length, axis.map(|a| sign * a / length)))
             }
             Shape::HalfSpace { point: on, normal } => {
-                (0..dimension).map(|k| (point[k] - on[k]) * normal[k]).sum::<f64>() / norm(*normal)
+                let normal = std::array::from_fn(|k| if k < dimension { normal[k] } else { 0.0 });
+                let gradient = normal.map(|n| n / norm(normal));
+                Level::new((0..dimension).map(|k| (point[k] - on[k]) * gradient[k]).sum(), gradient)
             }
             Shape::Polygon { points, height } => {
-                let base = polygon::distance(points, [point[0], point[1]]);
-                if dimension == 2 {
-                    base
-                } else {
-                    prism(base, (height[0] - point[2]).max(point[2] - height[1]))
-                }
+                let (distance, [x, y]) = polygon::distance(points, [point[0], point[1]]);
+                let base = Level::new(distance, [x, y, 0.0]);
+                if dimension == 2 { base } else { base.square(slab(2, *height, point[2])) }
             }
             Shape::Union(shapes) => {
-                shapes.iter().map(|shape| shape.distance(point, dimension)).fold(f64::INFINITY, f64::min)
+                shapes.iter().map(|shape| shape.level(point, dimension)).fold(Level::NOWHERE, Level::united)
             }
-            Shape::Intersection(shapes) => {
-                shapes.iter().map(|shape| shape.distance(point, dimension)).fold(f64::NEG_INFINITY, f64::max)
-            }
-            Shape::Difference(shapes) => shapes.split_first().map_or(f64::INFINITY, |(first, others)| {
-                let cut = others.iter().map(|shape| -shape.distance(point, dimension));
-                cut.fold(first.distance(point, dimension), f64::max)
+            Shape::Intersection(shapes) => (shapes.iter())
+                .map(|shape| shape.level(point, dimension))
+                .fold(Level::EVERYWHERE, Level::intersected),
+            Shape::Difference(shapes) => shapes.split_first().map_or(Level::NOWHERE, |(first, others)| {
+                let cut = others.iter().map(|shape| shape.level(point, dimension).complement());
+                cut.fold(first.level(point, dimension), Level::intersected)
             }),
             Shape::Rotated { shape, center, axis, angle } => {
-                shape.distance(Rotation::new(*center, *axis, *angle, dimension).back(point), dimension)
+                let rotation = Rotation::new(*center, *axis, *angle, dimension);
+                let level = shape.level(rotation.back(point), dimension);
+                Level { gradient: rotation.turned(level.gradient), ..level }
             }
         }
     }
@@ -69,9 +127,16 @@ impl Shape {
     }
 }
 
-/// Distance to a prism from the distances to its sides and to its ends.
-fn prism(side: f64, end: f64) -> f64 {
-    side.max(0.0).hypot(end.max(0.0)) + side.max(end).min(0.0)
+/// What lies between two faces across an axis.
+fn slab(axis: usize, [low, high]: [f64; 2], x: f64) -> Level {
+    let (distance, sign) = if low - x > x - high { (low - x, -1.0) } else { (x - high, 1.0) };
+    let mut gradient = [0.0; 3];
+    gradient[axis] = sign;
+    Level { distance, gradient }
+}
+
+fn norm(a: [f64; 3]) -> f64 {
+    a.iter().map(|a| a * a).sum::<f64>().sqrt()
 }
 
 #[cfg(test)]
@@ -97,6 +162,36 @@ mod tests {
                 let [p, q] = points;
                 let apart = (0..dimension).map(|k| (p[k] - q[k]).powi(2)).sum::<f64>().sqrt();
                 prop_assert!(!(near - far).is_finite() || (near - far).abs() <= apart + 1e-9);
+            }
+        }
+    }
+
+    proptest! {
+        /// On edges and ridges no gradient exists: where the two differences disagree, the point is left out.
+        #[test]
+        fn the_gradient_is_the_slope_of_the_distance(
+            a in any_shape(),
+            b in any_shape(),
+            point in prop::array::uniform3(-2.0..2.0f64),
+            dimension in 2..=3usize,
+        ) {
+            let pair = vec![a, b];
+            for shape in [Shape::Union(pair.clone()), Shape::Intersection(pair.clone()), Shape::Difference(pair)] {
+                let level = shape.level(point, dimension);
+                prop_assume!(level.distance.is_finite());
+                prop_assert!(norm(level.gradient) == 0.0 || (norm(level.gradient) - 1.0).abs() < 1e-12);
+                for k in 0..dimension {
+                    let at = |offset: f64| {
+                        let mut moved = point;
+                        moved[k] += offset;
+                        shape.distance(moved, dimension)
+                    };
+                    let step = 1e-6;
+                    let [back, ahead] = [(level.distance - at(-step)) / step, (at(step) - level.distance) / step];
+                    if (back - ahead).abs() < 1e-4 && level.distance.abs() > 1e-4 {
+                        prop_assert!((0.5 * (back + ahead) - level.gradient[k]).abs() < 1e-4, "{shape:?} {level:?}");
+                    }
+                }
             }
         }
     }

@@ -11,10 +11,13 @@ mod polygon;
 mod rotation;
 mod round;
 mod volume;
+mod whole;
 
 pub use bounds::Bounds;
+pub use distance::Level;
 pub use filling::{Filling, Lattice, fill};
 pub use round::RoundPart;
+pub use whole::{Mirror, Whole};
 
 use serde::Serialize;
 

@@ -21,27 +21,44 @@ pub(super) fn contains(points: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
     inside
 }
 
-/// Distance to the border [m], negative inside.
-pub(super) fn distance(points: &[[f64; 2]], [x, y]: [f64; 2]) -> f64 {
-    let mut nearest = f64::INFINITY;
+/// Distance to the border [m], negative inside, and its gradient.
+pub(super) fn distance(points: &[[f64; 2]], [x, y]: [f64; 2]) -> (f64, [f64; 2]) {
+    let (mut nearest, mut arm, mut along_edge) = (f64::INFINITY, [0.0; 2], [0.0; 2]);
     for (a, b) in edges(points) {
-        let (edge, arm) = ([b[0] - a[0], b[1] - a[1]], [x - a[0], y - a[1]]);
+        let (edge, from) = ([b[0] - a[0], b[1] - a[1]], [x - a[0], y - a[1]]);
         let squared = edge[0] * edge[0] + edge[1] * edge[1];
         let along = if squared > 0.0 {
-            ((arm[0] * edge[0] + arm[1] * edge[1]) / squared).clamp(0.0, 1.0)
+            ((from[0] * edge[0] + from[1] * edge[1]) / squared).clamp(0.0, 1.0)
         } else {
             0.0
         };
-        nearest = nearest.min((arm[0] - along * edge[0]).hypot(arm[1] - along * edge[1]));
+        let off = [from[0] - along * edge[0], from[1] - along * edge[1]];
+        let length = off[0].hypot(off[1]);
+        if length < nearest {
+            (nearest, arm, along_edge) = (length, off, edge);
+        }
     }
-    if contains(points, [x, y]) { -nearest } else { nearest }
+    let sign = if contains(points, [x, y]) { -1.0 } else { 1.0 };
+    let gradient = if nearest > 0.0 {
+        arm.map(|a| sign * a / nearest)
+    } else {
+        // On the border: the edge's normal, out of a polygon that goes round anticlockwise.
+        let turn = if signed_area(points) < 0.0 { -1.0 } else { 1.0 } / along_edge[0].hypot(along_edge[1]);
+        [along_edge[1] * turn, -along_edge[0] * turn]
+    };
+    (sign * nearest, gradient)
 }
 
 /// Area [m^2] of a polygon that does not cross itself, whichever way round its corners go.
 pub(super) fn area(points: &[[f64; 2]]) -> f64 {
+    signed_area(points).abs()
+}
+
+/// Area [m^2], negative where the corners go round clockwise.
+fn signed_area(points: &[[f64; 2]]) -> f64 {
     // Corners are taken from the first one, so that a small polygon far from the origin keeps its digits.
     let Some(&[x0, y0]) = points.first() else { return 0.0 };
-    edges(points).map(|(a, b)| (a[0] - x0) * (b[1] - y0) - (b[0] - x0) * (a[1] - y0)).sum::<f64>().abs() / 2.0
+    edges(points).map(|(a, b)| (a[0] - x0) * (b[1] - y0) - (b[0] - x0) * (a[1] - y0)).sum::<f64>() / 2.0
 }
 
 #[cfg(test)]
@@ -55,9 +72,9 @@ mod tests {
     fn an_l_has_its_area_its_notch_and_its_distances() {
         assert_eq!(area(&L), 5.0);
         assert!(contains(&L, [0.5, 2.5]) && contains(&L, [2.5, 0.5]) && !contains(&L, [1.5, 1.5]));
-        assert!((distance(&L, [2.0, 2.0]) - 1.0).abs() < 1e-15);
-        assert!((distance(&L, [0.5, 2.0]) + 0.5).abs() < 1e-15);
-        assert!((distance(&L, [4.0, 2.0]) - 2f64.sqrt()).abs() < 1e-15);
+        assert!((distance(&L, [2.0, 2.0]).0 - 1.0).abs() < 1e-15);
+        assert!((distance(&L, [0.5, 2.0]).0 + 0.5).abs() < 1e-15);
+        assert!((distance(&L, [4.0, 2.0]).0 - 2f64.sqrt()).abs() < 1e-15);
     }
 
     #[test]

@@ -32,6 +32,11 @@ impl Rotation {
         self.turn(point, -self.sine)
     }
 
+    /// A direction after the turn.
+    pub(super) fn turned(&self, direction: [f64; 3]) -> [f64; 3] {
+        (Vector(self.forward((Vector(self.center) + Vector(direction)).0)) - Vector(self.center)).0
+    }
+
     /// c + d cos + (n x d) sin + n (n . d)(1 - cos),  d = x - c        Rodrigues (1840)
     fn turn(&self, point: [f64; 3], sine: f64) -> [f64; 3] {
         let arm = Vector(point) - Vector(self.center);

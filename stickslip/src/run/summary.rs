@@ -99,6 +99,13 @@ impl Display for Summary {
             vector(self.start.momentum),
             vector(self.end.momentum)
         )?;
+        if self.end.scaled_impulses > 0 {
+            writeln!(
+                f,
+                "  contact    {} impulses at nodes were reduced to max_strain",
+                self.end.scaled_impulses
+            )?;
+        }
         self.references.iter().try_for_each(|reference| write!(f, "{reference}"))
     }
 }

@@ -246,6 +246,8 @@ pub enum ContactLaw {
     Traction,
     /// When they approach or the normal traction is compressive, once their surfaces touch: the bodies fill the room around the node.
     Gap,
+    /// When their undeformed shapes, carried along by the deformation, touch: a push that sums over the step, never a pull.
+    Surface,
     /// Always and in every direction: one velocity for both.
     Glued,
 }

@@ -37,7 +37,7 @@ impl<T: Real, const D: usize> Law<T, D> for Gap {
 
 #[cfg(test)]
 mod tests {
-    use crate::contact::pair::tests::{rule, surface};
+    use crate::contact::pair::tests::{rule, step, surface};
     use crate::contact::{Change, Pair};
     use crate::scene::{ContactLaw, Normal};
     use crate::tensor::Vector;
@@ -49,8 +49,13 @@ mod tests {
             let rule = rule(ContactLaw::Gap, normal, 0.25);
             let touching = |gap| {
                 let normal = Some(Vector([0.0, -1.0]));
-                let pair =
-                    Pair { rule: &rule, surfaces: [&surfaces[0], &surfaces[1]], normal, gap, limit: 100.0 };
+                let pair = Pair {
+                    rule: &rule,
+                    surfaces: [&surfaces[0], &surfaces[1]],
+                    normal,
+                    gap,
+                    step: step(100.0),
+                };
                 pair.change([Vector([0.0, -8.0]), Vector::ZERO]) != Change::NONE
             };
             assert!(touching(0.0) && touching(-0.1) && !touching(0.01), "{normal:?}");

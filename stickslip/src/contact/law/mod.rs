@@ -4,16 +4,36 @@ mod gap;
 mod glued;
 mod kinematic;
 mod none;
+mod surface;
 mod traction;
 
-use super::{Change, Pair};
+use super::{Change, Facing, Look, Pair, room};
 use crate::scene::ContactLaw;
 use crate::tensor::{Real, Vector};
+
+/// Over how much of a step a law judges its impulse.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Span {
+    /// Each of the two uses of contact by itself, as the paper does.
+    EachUse,
+    /// The sum of both; the first use only prepares the strain.
+    WholeStep,
+}
 
 /// What a pair of bodies does at a node that they share.
 pub trait Law<T: Real, const D: usize>: Sync {
     /// What contact does to two bodies with these velocities [m/s], before it is scaled.
     fn change(&self, pair: &Pair<T, D>, velocities: [Vector<T, D>; 2]) -> Change<T, D>;
+
+    /// Over how much of a step the impulse is judged.
+    fn span(&self) -> Span {
+        Span::EachUse
+    }
+
+    /// Normal and gap of a pair at a node.
+    fn facing(&self, look: &Look<T, D>) -> Facing<T, D> {
+        room(look)
+    }
 }
 
 /// The shelf: the law of each word in scene files.
@@ -23,6 +43,7 @@ pub fn law<T: Real, const D: usize>(law: ContactLaw) -> &'static dyn Law<T, D> {
         ContactLaw::Kinematic => &kinematic::Kinematic,
         ContactLaw::Traction => &traction::Traction,
         ContactLaw::Gap => &gap::Gap,
+        ContactLaw::Surface => &surface::Surface,
         ContactLaw::Glued => &glued::Glued,
     }
 }

@@ -55,6 +55,11 @@ impl Choice for ContactLaw {
             ContactLaw::Gap,
             "When they approach or push on each other, once their surfaces touch: the bodies fill the room around the node.",
         ),
+        (
+            "surface",
+            ContactLaw::Surface,
+            "When their exact surfaces touch: the undeformed shapes, carried along by the deformation.",
+        ),
         ("traction", ContactLaw::Traction, "When the traction between them is compressive (2001)."),
         ("kinematic", ContactLaw::Kinematic, "When they approach (2000)."),
         ("glued", ContactLaw::Glued, "Always and in every direction: one velocity for both."),
@@ -98,7 +103,7 @@ impl Contact {
         let law = self.law.as_ref().map_or(Ok(default.law), |word| word.value(context))?;
         let usual = match law {
             ContactLaw::Kinematic | ContactLaw::Traction => Normal::Own,
-            ContactLaw::None | ContactLaw::Gap | ContactLaw::Glued => Normal::Common,
+            ContactLaw::None | ContactLaw::Gap | ContactLaw::Surface | ContactLaw::Glued => Normal::Common,
         };
         let friction = self.friction.as_ref().map_or(Ok(default.friction), |friction| {
             let value = friction.extended(context)?;

@@ -1,0 +1,148 @@
+//! Contact of exact surfaces: bodies touch where their undeformed shapes, carried along by the deformation, touch.
+//!
+//! Our own. Each body knows where the material around a node was before it deformed ([`crate::contact::Place`]), hence the distance
+//! and the normal of its surface there. The pair takes one normal from both, the flatter surface deciding, and one gap, where the
+//! smaller share of the node lies. Contact is one unilateral impulse a step, with Coulomb's bound on the whole of it (Moreau 1988):
+//!
+//! ```text
+//! u = v_1 - v_2,   u_n <= max(gap, 0)/dt,   J_n >= 0,   |J_t| <= mu J_n,   J_t against the slip
+//! ```
+//! Bodies may close a gap within a step, and never pull. The impulse for the velocities that only strain is not part of the sum: bodies
+//! that press on each other strain with a common normal velocity, whether they are being compressed or released.
+
+use super::Law;
+use crate::contact::{Change, Facing, Look, Pair, Side, Span, Use, sticking};
+use crate::tensor::{Real, Vector};
+
+/// Contact of carried surfaces.
+pub struct Surface;
+
+impl<T: Real, const D: usize> Law<T, D> for Surface {
+    fn span(&self) -> Span {
+        Span::WholeStep
+    }
+
+    fn facing(&self, look: &Look<T, D>) -> Facing<T, D> {
+        let pair = look.pair.map(|side| &look.sides[side]);
+        // Seen from the body with less volume there: the other may go on far beyond it.
+        let near = if pair[0].surface.volume <= pair[1].surface.volume { 0 } else { 1 };
+        let seen = |side: usize, point: Vector<T, D>| {
+            let Side { body, surface, .. } = pair[side];
+            surface.place.offset(point, &look.near.bodies[*body].whole)
+        };
+        // Its centre, moved onto the other's surface.
+        let center = pair[near].surface.place.center;
+        let from = seen(1 - near, center);
+        let point = center - from.normal * from.distance;
+        let cell = look.near.lattice.cell;
+        let [a, b] = [0, 1].map(|side| {
+            let offset = seen(side, point);
+            (offset, flatness(|arm| seen(side, point + arm).normal, cell))
+        });
+        let normal = (a.0.normal * a.1 - b.0.normal * b.1).direction();
+        Facing { normal, gap: (a.0.distance + b.0.distance) / cell }
+    }
+
+    fn change(&self, pair: &Pair<T, D>, [v, w]: [Vector<T, D>; 2]) -> Change<T, D> {
+        let Some(n) = pair.normal else { return Change::NONE };
+        let m = pair.reduced_mass();
+        let u = v - w;
+        // The speed that closes the gap in this step.
+        let closing = pair.gap.max(T::ZERO) * pair.step.cell_speed();
+        let push = |u: Vector<T, D>| m * (u.dot(n) - closing).max(T::ZERO);
+        let across = |u: Vector<T, D>| u - n * u.dot(n);
+        let (push, tangential) = match pair.step.purpose {
+            Use::Motion => {
+                let (push, slip) = (push(u), across(u));
+                (push, slip * (m * sticking(m * slip.norm(), pair.rule.friction, push)))
+            }
+            Use::Strain => {
+                let [a, b] = pair.surfaces;
+                let ahead = u + (a.force * a.inverse_mass - b.force * b.inverse_mass) * pair.step.duration;
+                let bound = push(ahead);
+                if bound <= T::ZERO {
+                    return Change::NONE;
+                }
+                let sticks = m * across(ahead).norm() <= pair.rule.friction * bound;
+                let u_n = u.dot(n);
+                (m * (u_n - u_n.max(T::ZERO).min(closing)), if sticks { across(u) * m } else { Vector::ZERO })
+            }
+        };
+        if pair.step.purpose == Use::Motion && push <= T::ZERO {
+            return Change::NONE;
+        }
+        pair.exchange(-push, -tangential, n)
+    }
+}
+
+/// How flat a surface is around a point: large on a face, 2 at a right-angled edge.
+///
+/// ```text
+/// 1 / (1 - c^2),   c = |mean of the normals half a cell away|
+/// ```
+fn flatness<T: Real, const D: usize>(normal: impl Fn(Vector<T, D>) -> Vector<T, D>, cell: T) -> T {
+    let mut sum = Vector::ZERO;
+    for axis in 0..D {
+        for half in [-T::HALF, T::HALF] {
+            sum += normal(Vector::from_fn(|i| if i == axis { half * cell } else { T::ZERO }));
+        }
+    }
+    let mean = sum.norm() / T::of(2.0 * D as f64);
+    // Beyond this, one face is as flat as another.
+    T::ONE / (T::ONE - mean * mean).max(T::of(1e-3))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::Step;
+    use crate::contact::pair::tests::{rule, surface};
+    use crate::scene::{ContactLaw, Normal};
+
+    /// Masses 1 and 3, so m* = 3/4; the first flies down at the second, one cell of 1 m a step of 1 s.
+    fn impulse(gap: f64, purpose: Use, force: f64, velocity: [f64; 2]) -> [f64; 2] {
+        let rule = rule(ContactLaw::Surface, Normal::Common, 0.5);
+        let surfaces = [
+            crate::contact::Surface { force: Vector([0.0, force]), ..surface(1.0, [0.0, -1.0]) },
+            surface(3.0, [0.0, 1.0]),
+        ];
+        let pair = Pair {
+            rule: &rule,
+            surfaces: [&surfaces[0], &surfaces[1]],
+            normal: Some(Vector([0.0, -1.0])),
+            gap,
+            step: Step { duration: 1.0, cell: 1.0, purpose },
+        };
+        Surface.change(&pair, [Vector(velocity), Vector::ZERO]).impulse[0].0
+    }
+
+    #[test]
+    fn bodies_close_their_gap_and_no_more_and_never_pull() {
+        assert_eq!(impulse(0.5, Use::Motion, 0.0, [0.0, -0.4]), [0.0, 0.0]);
+        assert_eq!(impulse(0.5, Use::Motion, 0.0, [0.0, -0.9]), [0.0, 0.75 * 0.4]);
+        assert_eq!(impulse(-0.5, Use::Motion, 0.0, [0.0, -0.4]), [0.0, 0.75 * 0.4]);
+        assert_eq!(impulse(-0.5, Use::Motion, 0.0, [0.0, 0.4]), [0.0, 0.0]);
+    }
+
+    #[test]
+    fn friction_stops_the_slip_up_to_its_coefficient() {
+        assert_eq!(impulse(0.0, Use::Motion, 0.0, [0.25, -1.0]), [-0.75 * 0.25, 0.75]);
+        assert_eq!(impulse(0.0, Use::Motion, 0.0, [-2.0, -1.0]), [0.75 * 0.5, 0.75]);
+    }
+
+    /// The stress pushes the first body against the second: they strain together even while they part, and stick if they can.
+    #[test]
+    fn bodies_that_press_strain_with_one_normal_velocity() {
+        assert_eq!(impulse(0.0, Use::Strain, -1.0, [0.25, 0.5]), [-0.75 * 0.25, -0.75 * 0.5]);
+        assert_eq!(impulse(0.0, Use::Strain, -1.0, [2.0, 0.5]), [0.0, -0.75 * 0.5]);
+        assert_eq!(impulse(0.0, Use::Strain, 0.0, [0.25, 0.5]), [0.0, 0.0]);
+    }
+
+    #[test]
+    fn a_face_is_flatter_than_an_edge() {
+        let (down, left) = (Vector([0.0, -1.0]), Vector([-1.0, 0.0]));
+        let edge = flatness(|arm: Vector<f64, 2>| if arm[0] + arm[1] < 0.0 { left } else { down }, 1.0);
+        assert!((edge - 2.0).abs() < 1e-12, "{edge}");
+        assert_eq!(flatness(|_: Vector<f64, 2>| down, 1.0), 1000.0);
+    }
+}

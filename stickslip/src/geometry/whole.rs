@@ -1,0 +1,165 @@
+//! A shape together with its mirror images: a face that lies on a mirror is no surface.
+
+use super::rotation::Rotation;
+use super::{Level, Shape};
+
+/// A mirror across an axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mirror {
+    /// Axis across the mirror.
+    pub axis: usize,
+    /// Where it stands along the axis [m].
+    pub position: f64,
+    /// Which way the shape lies: 1 above, -1 below.
+    pub inward: f64,
+}
+
+/// A shape and its images in mirrors.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Whole {
+    /// The shape, continued through the mirrors where it ends on them.
+    shape: Shape,
+    mirrors: Vec<Mirror>,
+    dimension: usize,
+}
+
+impl Whole {
+    /// A shape before mirrors.
+    ///
+    /// Faces on a mirror are left out of half-spaces, boxes, and polygons, also where these are combined; of turned shapes
+    /// only out of half-spaces.
+    pub fn new(shape: &Shape, mirrors: Vec<Mirror>, dimension: usize) -> Self {
+        let shape = mirrors.iter().fold(shape.clone(), |shape, mirror| continued(shape, mirror, dimension));
+        Whole { shape, mirrors, dimension }
+    }
+
+    /// Signed distance to the surface and its gradient, as [`Shape::level`].
+    pub fn level(&self, mut point: [f64; 3]) -> Level {
+        let mut sign = [1.0; 3];
+        for Mirror { axis, position, inward } in &self.mirrors {
+            if (point[*axis] - position) * inward < 0.0 {
+                point[*axis] = 2.0 * position - point[*axis];
+                sign[*axis] = -sign[*axis];
+            }
+        }
+        let level = self.shape.level(point, self.dimension);
+        Level { gradient: std::array::from_fn(|k| level.gradient[k] * sign[k]), ..level }
+    }
+}
+
+/// Round-off in where a face lies, relative to the larger of 1 m and its distance from the origin.
+const ROUND_OFF: f64 = 1e-9;
+
+fn on(mirror: &Mirror, x: f64) -> bool {
+    (x - mirror.position).abs() <= ROUND_OFF * mirror.position.abs().max(1.0)
+}
+
+/// The shape without its faces on a mirror: it goes straight on behind it.
+fn continued(shape: Shape, mirror: &Mirror, dimension: usize) -> Shape {
+    let Mirror { axis, inward, .. } = *mirror;
+    let all = |shapes: Vec<Shape>| shapes.into_iter().map(|s| continued(s, mirror, dimension)).collect();
+    match shape {
+        Shape::HalfSpace { point, normal } => half_space(point, normal, mirror, dimension),
+        Shape::Box { mut min, mut max } => {
+            if inward > 0.0 && on(mirror, min[axis]) {
+                min[axis] = f64::NEG_INFINITY;
+            } else if inward < 0.0 && on(mirror, max[axis]) {
+                max[axis] = f64::INFINITY;
+            }
+            Shape::Box { min, max }
+        }
+        Shape::Polygon { points, mut height } if axis == 2 => {
+            if inward > 0.0 && on(mirror, height[0]) {
+                height[0] = f64::NEG_INFINITY;
+            } else if inward < 0.0 && on(mirror, height[1]) {
+                height[1] = f64::INFINITY;
+            }
+            Shape::Polygon { points, height }
+        }
+        Shape::Polygon { points, height } => Shape::Polygon { points: drawn_out(&points, mirror), height },
+        Shape::Union(shapes) => Shape::Union(all(shapes)),
+        Shape::Intersection(shapes) => Shape::Intersection(all(shapes)),
+        Shape::Difference(shapes) => Shape::Difference(all(shapes)),
+        Shape::Rotated { shape, center, axis, angle } => match *shape {
+            Shape::HalfSpace { point, normal } => {
+                let rotation = Rotation::new(center, axis, angle, dimension);
+                half_space(rotation.forward(point), rotation.turned(normal), mirror, dimension)
+            }
+            shape => Shape::Rotated { shape: Box::new(shape), center, axis, angle },
+        },
+        shape @ (Shape::Ball { .. } | Shape::Cylinder { .. }) => shape,
+    }
+}
+
+/// A half-space that ends on the mirror is everything, one that starts there is nothing.
+fn half_space(point: [f64; 3], normal: [f64; 3], mirror: &Mirror, dimension: usize) -> Shape {
+    let Mirror { axis, inward, .. } = *mirror;
+    let across: f64 = (0..dimension).map(|k| normal[k].abs()).sum::<f64>() - normal[axis].abs();
+    if !on(mirror, point[axis]) || across > ROUND_OFF * normal[axis].abs() {
+        Shape::HalfSpace { point, normal }
+    } else if normal[axis] * inward < 0.0 {
+        Shape::Box { min: [f64::NEG_INFINITY; 3], max: [f64::INFINITY; 3] }
+    } else {
+        Shape::Union(Vec::new())
+    }
+}
+
+/// A polygon whose edges on the mirror are moved far behind it.
+fn drawn_out(points: &[[f64; 2]], mirror: &Mirror) -> Vec<[f64; 2]> {
+    let Mirror { axis, position, inward } = *mirror;
+    let size = points.iter().flatten().fold(1.0, |size: f64, x| size.max((x - position).abs()));
+    let behind = |mut point: [f64; 2]| {
+        point[axis] = position - 1e3 * inward * size;
+        point
+    };
+    let next = |i: usize| points[(i + 1) % points.len()];
+    let mut drawn = Vec::new();
+    for (i, &point) in points.iter().enumerate() {
+        drawn.push(point);
+        if on(mirror, point[axis]) && on(mirror, next(i)[axis]) {
+            drawn.extend([behind(point), behind(next(i))]);
+        }
+    }
+    drawn
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MIRROR: Mirror = Mirror { axis: 1, position: 0.0, inward: 1.0 };
+
+    /// Every way to write the upper half of something that the mirror completes.
+    #[test]
+    fn a_face_on_the_mirror_is_no_surface() {
+        let ball = || Shape::Ball { center: [0.0; 3], radius: 1.0 };
+        let below = |y| Shape::HalfSpace { point: [0.0; 3], normal: [0.0, y, 0.0] };
+        let cut = [
+            Shape::Intersection(vec![ball(), below(-2.0)]),
+            Shape::Difference(vec![ball(), below(1.0)]),
+            ball(),
+        ];
+        for shape in cut {
+            let whole = Whole::new(&shape, vec![MIRROR], 3);
+            for point in [[0.3, 0.0, 0.4], [0.3, 0.01, 0.4], [0.1, -0.5, 0.2], [0.0, 0.0, 1.5]] {
+                assert_eq!(whole.level(point), ball().level(point, 3), "{shape:?}");
+            }
+        }
+        let points = vec![[-1.0, 0.0], [1.0, 0.0], [1.0, 2.0], [-1.0, 2.0]];
+        let height = [0.0, 0.0];
+        for shape in
+            [Shape::Box { min: [-1.0, 0.0, 0.0], max: [1.0, 2.0, 0.0] }, Shape::Polygon { points, height }]
+        {
+            let level = Whole::new(&shape, vec![MIRROR], 2).level([0.9, 0.01, 0.0]);
+            assert!((level.distance + 0.1).abs() < 1e-12 && level.gradient[0] == 1.0, "{level:?}");
+        }
+    }
+
+    #[test]
+    fn a_face_off_the_mirror_stays() {
+        let shape = Shape::Box { min: [-1.0, 0.5, 0.0], max: [1.0, 2.0, 0.0] };
+        let whole = Whole::new(&shape, vec![MIRROR], 2);
+        let level = whole.level([0.0, -0.2, 0.0]);
+        assert!((level.distance - 0.3).abs() < 1e-12 && level.gradient[1] == 1.0, "{level:?}");
+    }
+}
