@@ -1,6 +1,6 @@
 //! Eq. (10) of Bardenhagen et al. (2001), whatever decides about contact: with one normal for the pair, and with each body's own.
 
-use super::{Change, Pair, Surface};
+use super::{Change, Load, Pair, Surface};
 use crate::tensor::{Real, Vector};
 
 /// One normal for the pair and one decision, `touching(approach [m/s], n)`.
@@ -8,7 +8,7 @@ use crate::tensor::{Real, Vector};
 /// ```text
 /// J_n = -m* u . n,   J_t = -m* min(|u_t|, mu max(u . n, 0)) u_t/|u_t|,   u = v_1 - v_2,  m* = m_1 m_2/(m_1 + m_2)
 /// ```
-/// which is eq. (10) for n_2 = -n_1. While compressed bodies depart, the normal impulse gives back strain energy by
+/// which is eq. (10) for n_2 = -n_1, with Coulomb's bound; [`crate::contact::Friction`] has the others. While compressed bodies depart, the normal impulse gives back strain energy by
 /// pulling, and a pull bears no friction.
 pub fn common_normal<T: Real, const D: usize>(
     pair: &Pair<T, D>,
@@ -18,12 +18,14 @@ pub fn common_normal<T: Real, const D: usize>(
     let Some(n) = pair.normal else { return Change::NONE };
     let u = v - w;
     let approach = u.dot(n);
-    if !touching(approach, n) {
+    let m = pair.reduced_mass();
+    let load = pair.load(m * approach.max(T::ZERO));
+    let bonded = pair.gap <= T::ZERO && -m * approach <= pair.rule.friction.pull(load);
+    if !bonded && !touching(approach, n) {
         return Change::NONE;
     }
     let slip = u - n * approach;
-    let m = pair.reduced_mass();
-    let tangential = slip * (m * sticking(slip.norm(), pair.rule.friction, approach.max(T::ZERO)));
+    let tangential = slip * (m * pair.rule.friction.stopped(slip.norm(), load));
     pair.exchange(-m * approach, -tangential, n)
 }
 
@@ -50,9 +52,10 @@ pub fn own_normals<T: Real, const D: usize>(
             continue;
         }
         let slip = dv - n * approach;
-        let tangential = slip * -sticking(slip.norm(), pair.rule.friction, approach.abs());
         if surface.inverse_mass > T::ZERO {
             let mass = T::ONE / surface.inverse_mass;
+            let load = Load { mass, push: mass * approach.abs(), exposure: T::ZERO };
+            let tangential = slip * -pair.rule.friction.stopped(slip.norm(), load);
             change.impulse[i] = (tangential - n * approach) * mass;
             if i == 0 || a.inverse_mass <= T::ZERO {
                 change.normal = -approach * mass;
@@ -61,13 +64,6 @@ pub fn own_normals<T: Real, const D: usize>(
         }
     }
     change
-}
-
-/// The fraction of the slip that friction stops: min(|slip|, mu |dv_n|)/|slip|.
-pub fn sticking<T: Real>(slip: T, friction: T, normal: T) -> T {
-    let bound = friction * normal;
-    // An infinite coefficient sticks even without any normal velocity.
-    if !friction.is_finite() || bound >= slip { T::ONE } else { bound / slip }
 }
 
 #[cfg(test)]
@@ -88,6 +84,7 @@ mod tests {
             surfaces: [&surfaces[0], &surfaces[1]],
             normal: None,
             gap: 0.0,
+            area: 0.0,
             step: step(100.0),
         };
         let change = pair.change([Vector([4.0, -8.0]), Vector::ZERO]);
@@ -113,6 +110,7 @@ mod tests {
                     surfaces: [&surfaces[0], &surfaces[1]],
                     normal,
                     gap: 0.0,
+                    area: 0.0,
                     step: step(100.0),
                 };
                 pair.change([Vector([4.0, -8.0]), Vector::ZERO])

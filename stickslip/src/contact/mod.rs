@@ -5,6 +5,7 @@
 //! integrated velocities; both uses share one survey.
 
 mod exchange;
+mod friction;
 mod law;
 mod pair;
 mod place;
@@ -13,7 +14,8 @@ mod solve;
 mod survey;
 mod tally;
 
-pub use exchange::{common_normal, own_normals, sticking};
+pub use exchange::{common_normal, own_normals};
+pub use friction::{Friction, Load};
 pub use law::{Law, Span};
 pub use pair::{Change, Pair, Step, Surface, Use};
 pub use place::Place;

@@ -1,7 +1,7 @@
 //! Two bodies at a node: what is known of them there, and what contact may do to them.
 
 use super::law::law;
-use super::{Place, Rule, Span};
+use super::{Friction, Load, Place, Rule, Span};
 use crate::tensor::{Real, Symmetric, Vector};
 
 /// What the particles around a node say of one body's surface there.
@@ -61,6 +61,8 @@ pub struct Pair<'a, T, const D: usize> {
     pub normal: Option<Vector<T, D>>,
     /// Distance between the surfaces at the node, negative where they overlap [cells].
     pub gap: T,
+    /// The node's share of the contact area [m^2], in the plane per depth [m].
+    pub area: T,
     /// The step.
     pub step: Step<T>,
 }
@@ -99,6 +101,11 @@ impl<T: Real, const D: usize> Pair<'_, T, D> {
         let [a, b] = self.surfaces;
         let sum = a.inverse_mass + b.inverse_mass;
         if sum > T::ZERO { T::ONE / sum } else { T::ZERO }
+    }
+
+    /// How the pair is loaded by a normal impulse that presses it together [N s].
+    pub fn load(&self, push: T) -> Load<T> {
+        Load { mass: self.reduced_mass(), push, exposure: self.area * self.step.duration }
     }
 
     /// Equal and opposite impulses: `normal` along the common normal `n` and `tangential` across it, on the first body [N s].
@@ -150,7 +157,7 @@ pub(super) mod tests {
     }
 
     pub fn rule(law: ContactLaw, normal: Normal, friction: f64) -> Rule<f64> {
-        Rule { law, normal, friction, max_strain: 0.5 }
+        Rule { law, normal, friction: Friction::coulomb(friction), max_strain: 0.5 }
     }
 
     /// The lighter body's velocity changes by 6 m/s; eqs. (20)-(22) allow the limit along an axis, and both bodies get less.
@@ -166,6 +173,7 @@ pub(super) mod tests {
                     surfaces: [&surfaces[0], &surfaces[1]],
                     normal,
                     gap: 0.0,
+                    area: 0.0,
                     step: step(limit),
                 };
                 let change = pair.change([Vector([0.0, -8.0]), Vector::ZERO]);

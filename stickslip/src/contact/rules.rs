@@ -1,5 +1,6 @@
 //! Which rule holds for a pair of bodies, looked up without a table of all pairs.
 
+use super::Friction;
 use crate::scene::{ContactLaw, ContactRule, Normal, Scene};
 use crate::tensor::Real;
 use std::collections::HashMap;
@@ -11,8 +12,8 @@ pub struct Rule<T> {
     pub law: ContactLaw,
     /// Where the direction comes from.
     pub normal: Normal,
-    /// Coefficient of friction; infinity sticks.
-    pub friction: T,
+    /// Resistance against slip and against parting.
+    pub friction: Friction<T>,
     /// Largest strain of a cell by contact in one step, the paper's gamma.
     pub max_strain: T,
 }
@@ -22,7 +23,7 @@ impl<T: Real> From<&ContactRule> for Rule<T> {
         Rule {
             law: rule.law,
             normal: rule.normal,
-            friction: T::of(rule.friction),
+            friction: Friction::from(rule),
             max_strain: T::of(rule.max_strain),
         }
     }
@@ -118,7 +119,7 @@ mod tests {
                     &Rule::from(&scene.contact_between(a, b)),
                     "{a} {b}"
                 );
-                assert_eq!(rules.rule(rules.number(a, b)).friction, friction, "{a} {b}");
+                assert_eq!(rules.rule(rules.number(a, b)).friction, Friction::coulomb(friction), "{a} {b}");
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use super::law::law;
 use super::{Pair, Place, Rules, Step, Surface};
-use crate::basis::Basis;
+use crate::basis::{Basis, MAX_WIDTH};
 use crate::body::{Body, Particle};
 use crate::boundary::Boundary;
 use crate::grid::{Cover, Field, Lattice, Meeting, node_at, nodes_per_block};
@@ -53,6 +53,8 @@ pub struct Look<'a, T, const D: usize> {
     pub sides: &'a [Side<T, D>],
     /// The two among them.
     pub pair: [usize; 2],
+    /// The node.
+    pub node: [i32; D],
 }
 
 /// Two sides of a site.
@@ -63,6 +65,8 @@ pub struct Encounter<T, const D: usize> {
     /// Number of the pair's rule.
     pub(super) rule: usize,
     pub(super) facing: Facing<T, D>,
+    /// The node's share of the contact area [m^2], in the plane per depth [m].
+    pub(super) area: T,
 }
 
 /// All sites of a step.
@@ -172,9 +176,10 @@ impl<T: Real, const D: usize> Near<'_, T, D> {
                         continue;
                     }
                     let pair = [a, b].map(|side| side - first);
-                    let look = Look { near: self, sides: &survey.sides[first..last], pair };
+                    let look = Look { near: self, sides: &survey.sides[first..last], pair, node };
                     let facing = law(self.rules.rule(rule).law).facing(&look);
-                    survey.encounters.push(Encounter { sides: [a, b], rule, facing });
+                    let area = area(&look, &facing);
+                    survey.encounters.push(Encounter { sides: [a, b], rule, facing, area });
                 }
             }
             survey.sites.push(Site { node, sides: first..last, encounters: start..survey.encounters.len() });
@@ -190,7 +195,7 @@ impl<T: Real, const D: usize> Near<'_, T, D> {
         let owner = &self.bodies[body];
         let at = self.lattice.position(node);
         self.each_particle::<B>(body, node, |particle, weight, gradient, image| {
-            let v = particle.volume * particle.deformation.det();
+            let v = particle.room();
             let share = v * weight;
             // The node sees a particle move away as the particle sees the node move: grad at the node = -grad S(x_p).
             let gradient = Vector::from_fn(|i| -gradient[i] * image.sign[i]);
@@ -209,7 +214,7 @@ impl<T: Real, const D: usize> Near<'_, T, D> {
             normal: (-mass_gradient).direction(),
             stress: stress * (T::ONE / volume),
             volume,
-            modulus: owner.material.law().wave_modulus(&Matrix::IDENTITY, T::ONE),
+            modulus: owner.wave_modulus(&Matrix::IDENTITY, T::ONE),
             force,
             place: place.over(volume),
         };
@@ -238,16 +243,40 @@ impl<T: Real, const D: usize> Near<'_, T, D> {
         }
     }
 
-    /// Calls `f(particle, weight, gradient, image)` for every particle of a body that reaches a node or an image of it.
-    fn each_particle<B: Basis<T>>(
+    /// Calls `f(arm, particle, mirror)` for every particle of a body whose box reaches into the cells around a node: `arm` from the node
+    /// to it [m], `mirror` turns its vectors into those that the node sees.
+    pub fn around(
         &self,
         body: usize,
         node: [i32; D],
-        mut f: impl FnMut(&Particle<T, D>, T, Vector<T, D>, &Image<T, D>),
+        mut f: impl FnMut(Vector<T, D>, &Particle<T, D>, Matrix<T>),
     ) {
+        for image in &self.images(node, MAX_WIDTH) {
+            let seen = self.lattice.position(image.node);
+            let mirror = Matrix::from_fn(|i, j| match (i == j, i < D) {
+                (true, true) => image.sign[i],
+                (true, false) => T::ONE,
+                _ => T::ZERO,
+            });
+            for offset in offsets::<D>(MAX_WIDTH) {
+                let cell = std::array::from_fn(|i| image.node[i] - offset[i] as i32);
+                for &index in self.cover.particles_in(body, cell) {
+                    let particle = &self.bodies[body].particles[index as usize];
+                    let arm = particle.position - seen;
+                    let reach = self.lattice.cell + particle.half_width;
+                    if (0..D).all(|i| arm[i].abs() < reach) {
+                        f(Vector::from_fn(|i| arm[i] * image.sign[i]), particle, mirror);
+                    }
+                }
+            }
+        }
+    }
+
+    /// A node and its images in the mirrors that a stencil of `width` nodes around it can reach.
+    fn images(&self, node: [i32; D], width: usize) -> Vec<Image<T, D>> {
         let mut images = vec![Image { node, sign: [T::ONE; D] }];
         for wall in self.boundary.walls.iter().filter(|wall| wall.face == Face::Symmetry) {
-            if wall.depth(node) < B::WIDTH as i32 {
+            if wall.depth(node) < width as i32 {
                 for i in 0..images.len() {
                     let Image { node, mut sign } = images[i];
                     sign[wall.axis] = -sign[wall.axis];
@@ -255,7 +284,17 @@ impl<T: Real, const D: usize> Near<'_, T, D> {
                 }
             }
         }
-        for image in &images {
+        images
+    }
+
+    /// Calls `f(particle, weight, gradient, image)` for every particle of a body that reaches a node or an image of it.
+    fn each_particle<B: Basis<T>>(
+        &self,
+        body: usize,
+        node: [i32; D],
+        mut f: impl FnMut(&Particle<T, D>, T, Vector<T, D>, &Image<T, D>),
+    ) {
+        for image in &self.images(node, B::WIDTH) {
             for offset in offsets::<D>(B::WIDTH) {
                 let cell = std::array::from_fn(|i| image.node[i] - offset[i] as i32);
                 for &index in self.cover.particles_in(body, cell) {
@@ -287,7 +326,7 @@ fn mirrored<T: Real, const D: usize>(stress: &Symmetric<T>, sign: [T; D]) -> Sym
 /// takes its width times h^(D-1) from that. Overlap is negative. Needs no normal, and stairs of the particles' lattice
 /// average out. All bodies that touch either of the two count. A surface of radius R seems h^2/(6R) further away than its nearest point.
 pub fn room<T: Real, const D: usize>(look: &Look<T, D>) -> Facing<T, D> {
-    let Look { near, sides, pair } = look;
+    let Look { near, sides, pair, .. } = look;
     let touches = |a: &Side<T, D>, b: &Side<T, D>| {
         near.rules.rule(near.rules.number(a.body, b.body)).law != ContactLaw::None
     };
@@ -297,6 +336,19 @@ pub fn room<T: Real, const D: usize>(look: &Look<T, D>) -> Facing<T, D> {
     let volumes = sides.iter().enumerate().filter(counts).map(|(_, side)| side.surface.volume);
     let [a, b] = pair.map(|side| sides[side].volume_gradient);
     Facing { normal: (b - a).direction(), gap: T::ONE - volumes.sum::<T>() / near.cell_volume() }
+}
+
+/// A node's share of the area over which a pair faces each other [m^2].
+///
+/// ```text
+/// integral of S_i n dA over a body's surface = integral of grad S_i dV = -sum_p V_p grad S_i(x_p)
+/// ```
+/// by the divergence theorem, so the volume gradient along the normal is the surface that the node sees; the pair shares the smaller
+/// of the two. Summed over nodes it is the whole area, as the functions S_i sum to one.
+fn area<T: Real, const D: usize>(look: &Look<T, D>, facing: &Facing<T, D>) -> T {
+    let Some(normal) = facing.normal else { return T::ZERO };
+    let [a, b] = look.pair.map(|side| look.sides[side].volume_gradient.dot(normal));
+    (-a).min(b).max(T::ZERO)
 }
 
 impl<T: Real, const D: usize> Survey<T, D> {
@@ -314,6 +366,7 @@ impl<T: Real, const D: usize> Survey<T, D> {
             surfaces: [&a.surface, &b.surface],
             normal: encounter.facing.normal,
             gap: encounter.facing.gap,
+            area: encounter.area,
             step,
         }
     }

@@ -54,6 +54,7 @@ mod tests {
                     surfaces: [&surfaces[0], &surfaces[1]],
                     normal,
                     gap,
+                    area: 0.0,
                     step: step(100.0),
                 };
                 pair.change([Vector([0.0, -8.0]), Vector::ZERO]) != Change::NONE

@@ -4,6 +4,8 @@ mod gap;
 mod glued;
 mod kinematic;
 mod none;
+mod regression;
+mod separation;
 mod surface;
 mod traction;
 
@@ -43,6 +45,8 @@ pub fn law<T: Real, const D: usize>(law: ContactLaw) -> &'static dyn Law<T, D> {
         ContactLaw::Kinematic => &kinematic::Kinematic,
         ContactLaw::Traction => &traction::Traction,
         ContactLaw::Gap => &gap::Gap,
+        ContactLaw::Separation => &separation::Separation,
+        ContactLaw::Regression => &regression::Regression,
         ContactLaw::Surface => &surface::Surface,
         ContactLaw::Glued => &glued::Glued,
     }

@@ -111,6 +111,7 @@ mod tests {
             surfaces: [&surfaces[0], &surfaces[1]],
             normal: Some(Vector([0.0, -1.0])),
             gap,
+            area: 0.0,
             step: Step { duration: 1.0, cell: 1.0, purpose },
         };
         Surface.change(&pair, [Vector(velocity), Vector::ZERO]).impulse[0].0

@@ -60,6 +60,16 @@ impl Choice for ContactLaw {
             ContactLaw::Surface,
             "When their exact surfaces touch: the undeformed shapes, carried along by the deformation.",
         ),
+        (
+            "separation",
+            ContactLaw::Separation,
+            "When they approach or push on each other, once their extrapolated positions are close (Nairn 2013).",
+        ),
+        (
+            "regression",
+            ContactLaw::Regression,
+            "When they approach, once their particles touch across the plane that logistic regression finds (2020).",
+        ),
         ("traction", ContactLaw::Traction, "When the traction between them is compressive (2001)."),
         ("kinematic", ContactLaw::Kinematic, "When they approach (2000)."),
         ("glued", ContactLaw::Glued, "Always and in every direction: one velocity for both."),
@@ -103,7 +113,11 @@ impl Contact {
         let law = self.law.as_ref().map_or(Ok(default.law), |word| word.value(context))?;
         let usual = match law {
             ContactLaw::Kinematic | ContactLaw::Traction => Normal::Own,
-            ContactLaw::None | ContactLaw::Gap | ContactLaw::Surface | ContactLaw::Glued => Normal::Common,
+            ContactLaw::None
+            | ContactLaw::Separation
+            | ContactLaw::Regression
+            | ContactLaw::Gap
+            | ContactLaw::Surface | ContactLaw::Glued => Normal::Common,
         };
         let friction = self.friction.as_ref().map_or(Ok(default.friction), |friction| {
             let value = friction.extended(context)?;
