@@ -7,6 +7,7 @@ mod trial;
 mod body_at_rest;
 mod colliding_disks;
 mod empty_space;
+mod exact_surfaces;
 mod failing_steps;
 mod free_body;
 mod friction;
