@@ -25,6 +25,8 @@ pub trait Simulation: Send {
     fn ledger(&self) -> Ledger;
     /// What contact did since the last call, per pair of bodies that touched, ordered by pair.
     fn take_contacts(&mut self) -> Vec<ContactState>;
+    /// The widest contact of each pair of bodies since the start, ordered by pair.
+    fn patches(&self) -> Vec<Patch>;
     /// All particles now, ordered by body and then by the particle's number in its body.
     fn snapshot(&self) -> ParticleSnapshot;
     /// The nodes of the last step's grid that carry mass.
@@ -92,6 +94,27 @@ pub struct ContactState {
     pub tangential: f64,
     /// Grid nodes in contact in the last step in which the pair touched.
     pub nodes: usize,
+    /// Centre of the forces over nodes and time [m].
+    pub position: [f64; 3],
+    /// Area over which the bodies touched in that last step [m^2], in the plane length per depth [m].
+    pub area: f64,
+    /// Mean distance between the surfaces over that area, negative where they overlap [m].
+    pub gap: f64,
+    /// How far the surfaces slipped on each other, the mean over their area [m].
+    pub slip: f64,
+    /// Work of friction [J].
+    pub friction: f64,
+}
+
+/// The widest contact of two bodies so far.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Patch {
+    /// Index of the first body; smaller than `body_b`.
+    pub body_a: usize,
+    /// Index of the second body.
+    pub body_b: usize,
+    /// Largest area over which they touched in a step [m^2], in the plane length per depth [m].
+    pub area: f64,
 }
 
 /// Particles of all bodies as columns of equal length.

@@ -1,7 +1,7 @@
 //! Two bodies at a node: what is known of them there, and what contact may do to them.
 
 use super::law::law;
-use super::{Friction, Load, Place, Rule, Span};
+use super::{Load, Place, Rule, Span};
 use crate::tensor::{Real, Symmetric, Vector};
 
 /// What the particles around a node say of one body's surface there.
@@ -137,6 +137,7 @@ impl<T: Real, const D: usize> Pair<'_, T, D> {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
+    use crate::contact::Friction;
     use crate::scene::{ContactLaw, Normal};
 
     pub fn surface(mass: f64, normal: [f64; 2]) -> Surface<f64, 2> {

@@ -1,7 +1,7 @@
 //! From pairs to a whole node: any number of bodies, each pair by its own law.
 
 use super::law::law;
-use super::{Change, Rules, Site, Span, Step, Survey};
+use super::{Change, Rules, Site, Span, Step, Survey, Use};
 use crate::grid::Field;
 use crate::scene::ContactLaw;
 use crate::tensor::{Real, Vector};
@@ -14,6 +14,14 @@ pub struct Impulse<T, const D: usize> {
     pub bodies: [usize; 2],
     /// Nodes of the bodies in the field.
     pub nodes: [usize; 2],
+    /// The node in space.
+    pub node: [i32; D],
+    /// Distance between the surfaces there before the step [cells].
+    pub gap: T,
+    /// Its share of the contact area [m^2].
+    pub area: T,
+    /// How far the bodies slip there in this use: nothing where the velocities only strain [m].
+    pub slip: T,
     /// The impulses on them, of this use or of the whole step as their law has it [N s].
     pub change: Change<T, D>,
     /// Changes of their velocities in this use [m/s].
@@ -69,6 +77,10 @@ impl<T: Real, const D: usize> Solve<'_, T, D> {
                 Impulse {
                     bodies: [a.body, b.body],
                     nodes: [a.index, b.index],
+                    node: site.node,
+                    gap: encounter.facing.gap,
+                    area: encounter.area,
+                    slip: T::ZERO,
                     change: Change::NONE,
                     velocity: before.map_or([Vector::ZERO; 2], |impulse| impulse.velocity),
                     span,
@@ -98,6 +110,9 @@ impl<T: Real, const D: usize> Solve<'_, T, D> {
                     }
                 }
                 let slip = velocity[places[0]] - velocity[places[1]];
+                if let (Use::Motion, Some(n)) = (step.purpose, pair.normal) {
+                    impulse.slip = (slip - n * slip.dot(n)).norm() * step.duration;
+                }
                 impulse.friction = match pair.rule.law {
                     ContactLaw::Glued => T::ZERO,
                     _ => -impulse.change.tangential.dot(slip),
@@ -119,7 +134,7 @@ impl<T: Real, const D: usize> Solve<'_, T, D> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::{Encounter, Facing, Place, Rule, Side, Surface, Use};
+    use crate::contact::{Encounter, Facing, Friction, Place, Rule, Side, Surface};
     use crate::grid::Node;
     use crate::scene::Normal;
     use crate::tensor::Symmetric;
@@ -174,11 +189,12 @@ mod tests {
                     sides: [a, b],
                     rule: 0,
                     facing: Facing { normal, gap: 0.0 },
+                    area: 1.0,
                 });
             }
         }
         survey.sites.push(Site { node: [0; 3], sides: 0..n, encounters: 0..survey.encounters.len() });
-        let rules = Rules::of_all(n, Rule { law, normal: Normal::Common, friction, max_strain: 1.0 });
+        let rules = Rules::of_all(n, Rule { law, normal: Normal::Common, friction: Friction::coulomb(friction), max_strain: 1.0 });
         let step = Step { duration: 1e-6, cell: 1.0, purpose: Use::Motion };
         let impulses = Solve { survey: &survey, rules: &rules, field: &field, step, given: &[] }.impulses();
         let before: Vec<_> = field.nodes.iter().map(|node| node.velocity).collect();

@@ -1,7 +1,8 @@
 //! What contact did to each pair of bodies, summed over nodes and steps.
 
 use super::Impulse;
-use crate::door::ContactState;
+use crate::door::{ContactState, Patch};
+use crate::grid::Lattice;
 use crate::tensor::Real;
 use std::collections::BTreeMap;
 
@@ -11,14 +12,35 @@ struct Sum {
     impulse: [f64; 3],
     normal: f64,
     tangential: [f64; 3],
-    nodes: usize,
+    /// Magnitudes of the nodes' impulses, and with their places [N s, N s m].
+    magnitude: f64,
+    moment: [f64; 3],
+    /// Work of friction since the last look [J].
+    friction: f64,
+    /// Way of slip, the mean over the area of each use [m].
+    slip: f64,
+    /// The last use in which the pair touched.
     last_use: u64,
+    last: Touching,
+}
+
+/// What a pair is like in one use of contact.
+#[derive(Clone, Copy, Debug, Default)]
+struct Touching {
+    nodes: usize,
+    /// [m^2]
+    area: f64,
+    /// Area times gap [m^3] and area times slip [m^3].
+    gap: f64,
+    slip: f64,
 }
 
 /// Impulses by pair since the last look, and works since the start.
 #[derive(Clone, Debug, Default)]
 pub struct Tally {
     pairs: BTreeMap<[usize; 2], Sum>,
+    /// Largest area over which each pair touched since the start [m^2].
+    largest: BTreeMap<[usize; 2], f64>,
     since: f64,
     uses: u64,
     /// Work that friction took from the bodies [J].
@@ -29,9 +51,21 @@ pub struct Tally {
     pub work: f64,
 }
 
+impl Sum {
+    /// Closes the use before `next`, whose touching nodes are all known now.
+    fn close(&mut self, next: u64) {
+        if self.last_use != next {
+            if self.last.area > 0.0 {
+                self.slip += self.last.slip / self.last.area;
+            }
+            (self.last_use, self.last) = (next, Touching::default());
+        }
+    }
+}
+
 impl Tally {
     /// Adds the impulses of one use of contact.
-    pub fn add<T: Real, const D: usize>(&mut self, impulses: &[Impulse<T, D>]) {
+    pub fn add<T: Real, const D: usize>(&mut self, impulses: &[Impulse<T, D>], lattice: &Lattice<T, D>) {
         self.uses += 1;
         for impulse in impulses {
             let [on_a, on_b] = impulse.change.impulse.map(|j| j.space());
@@ -39,20 +73,30 @@ impl Tally {
                 continue;
             }
             let sum = self.pairs.entry(impulse.bodies).or_default();
-            if sum.last_use != self.uses {
-                (sum.last_use, sum.nodes) = (self.uses, 0);
-            }
-            sum.nodes += 1;
-            self.scaled += u64::from(impulse.change.scale < T::ONE);
-            let tangential = impulse.change.tangential.space();
+            sum.close(self.uses);
+            let area = impulse.area.f64();
+            sum.last.nodes += 1;
+            sum.last.area += area;
+            sum.last.gap += area * (impulse.gap * lattice.cell).f64();
+            sum.last.slip += area * impulse.slip.f64();
+            let (place, tangential) = (lattice.position(impulse.node).space(), impulse.change.tangential.space());
+            let magnitude = impulse.change.impulse[0].norm().f64().max(impulse.change.impulse[1].norm().f64());
+            sum.magnitude += magnitude;
             for i in 0..3 {
                 sum.tangential[i] += tangential[i];
                 // The paper's own normals give impulses that are not quite opposite; the force is their mean.
                 sum.impulse[i] += 0.5 * (on_b[i] - on_a[i]);
+                sum.moment[i] += magnitude * place[i];
             }
             sum.normal -= impulse.change.normal.f64();
+            sum.friction += impulse.friction.f64();
+            self.scaled += u64::from(impulse.change.scale < T::ONE);
             self.friction += impulse.friction.f64();
             self.work += impulse.work.f64();
+        }
+        for (pair, sum) in self.pairs.iter().filter(|(_, sum)| sum.last_use == self.uses) {
+            let largest = self.largest.entry(*pair).or_default();
+            *largest = largest.max(sum.last.area);
         }
     }
 
@@ -63,14 +107,29 @@ impl Tally {
         let pairs = std::mem::take(&mut self.pairs);
         (pairs.into_iter())
             .filter(|_| elapsed > 0.0)
-            .map(|([body_a, body_b], sum)| ContactState {
-                body_a,
-                body_b,
-                force: sum.impulse.map(|j| j / elapsed),
-                normal: sum.normal / elapsed,
-                tangential: sum.tangential.iter().map(|j| j * j).sum::<f64>().sqrt() / elapsed,
-                nodes: sum.nodes,
+            .map(|([body_a, body_b], mut sum)| {
+                let last = sum.last;
+                sum.close(u64::MAX);
+                ContactState {
+                    body_a,
+                    body_b,
+                    force: sum.impulse.map(|j| j / elapsed),
+                    normal: sum.normal / elapsed,
+                    tangential: sum.tangential.iter().map(|j| j * j).sum::<f64>().sqrt() / elapsed,
+                    nodes: last.nodes,
+                    position: sum.moment.map(|x| x / sum.magnitude),
+                    area: last.area,
+                    gap: if last.area > 0.0 { last.gap / last.area } else { 0.0 },
+                    slip: sum.slip,
+                    friction: sum.friction,
+                }
             })
             .collect()
+    }
+
+    /// The largest area over which each pair touched since the start, ordered by pair.
+    pub fn patches(&self) -> Vec<Patch> {
+        let patch = |(&[body_a, body_b], &area): (&[usize; 2], &f64)| Patch { body_a, body_b, area };
+        self.largest.iter().map(patch).collect()
     }
 }

@@ -2,7 +2,7 @@
 
 use super::Engine;
 use crate::basis::Basis;
-use crate::door::{BodyState, ContactState, GridSnapshot, Ledger, ParticleSnapshot, Simulation, StepError};
+use crate::door::{BodyState, ContactState, GridSnapshot, Ledger, ParticleSnapshot, Patch, Simulation, StepError};
 use crate::grid::{node_at, nodes_per_block};
 use crate::tensor::Real;
 
@@ -86,6 +86,10 @@ impl<T: Real, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
 
     fn take_contacts(&mut self) -> Vec<ContactState> {
         self.tally.take(self.time)
+    }
+
+    fn patches(&self) -> Vec<Patch> {
+        self.tally.patches()
     }
 
     fn snapshot(&self) -> ParticleSnapshot {

@@ -143,14 +143,14 @@ impl<T: Real, const D: usize, B: Basis<T>> Engine<T, D, B> {
     pub(super) fn first_contact(&mut self, survey: &Survey<T, D>, dt: T) -> Vec<Impulse<T, D>> {
         let impulses = self.exchange(survey, (dt, Use::Strain), &[]);
         self.impulses.extend(impulses.iter().filter(|impulse| impulse.span == Span::EachUse));
-        self.tally.add(&self.impulses);
+        self.tally.add(&self.impulses, &self.lattice);
         impulses
     }
 
     /// Contact on the integrated velocities, after what it gave to the interpolated ones.
     pub(super) fn contact(&mut self, survey: &Survey<T, D>, given: &[Impulse<T, D>], dt: T) {
         let impulses = self.exchange(survey, (dt, Use::Motion), given);
-        self.tally.add(&impulses);
+        self.tally.add(&impulses, &self.lattice);
         self.impulses.extend(impulses);
     }
 

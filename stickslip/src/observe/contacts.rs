@@ -32,6 +32,20 @@ pub struct ContactRow {
     pub tangential: f64,
     /// Grid nodes in contact in the last step in which the pair touched.
     pub nodes: usize,
+    /// Centre of the forces over nodes and time, first component [m].
+    pub x: f64,
+    /// Centre of the forces, second component [m].
+    pub y: f64,
+    /// Centre of the forces, third component [m].
+    pub z: f64,
+    /// Area over which the bodies touched in that last step [m^2], in the plane length per depth [m].
+    pub area: f64,
+    /// Mean distance between the surfaces over that area, negative where they overlap [m].
+    pub gap: f64,
+    /// How far the surfaces slipped on each other since the row before, the mean over their area [m].
+    pub slip: f64,
+    /// Work of friction since the row before [J].
+    pub friction: f64,
 }
 
 /// Writes `contacts.csv`. It alone calls [`Simulation::take_contacts`], so that each row's average starts at the row before.
@@ -60,7 +74,7 @@ impl Observer for Contacts {
         let time = simulation.time();
         let contacts = simulation.take_contacts();
         self.table.append(contacts.into_iter().map(|contact| {
-            let [fx, fy, fz] = contact.force;
+            let ([fx, fy, fz], [x, y, z]) = (contact.force, contact.position);
             ContactRow {
                 time,
                 body_a: self.names[contact.body_a].clone(),
@@ -71,6 +85,13 @@ impl Observer for Contacts {
                 normal: contact.normal,
                 tangential: contact.tangential,
                 nodes: contact.nodes,
+                x,
+                y,
+                z,
+                area: contact.area,
+                gap: contact.gap,
+                slip: contact.slip,
+                friction: contact.friction,
             }
         }))?;
         self.schedule.recorded(time);

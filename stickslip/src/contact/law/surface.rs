@@ -7,11 +7,12 @@
 //! ```text
 //! u = v_1 - v_2,   u_n <= max(gap, 0)/dt,   J_n >= 0,   |J_t| <= mu J_n,   J_t against the slip
 //! ```
-//! Bodies may close a gap within a step, and never pull. The impulse for the velocities that only strain is not part of the sum: bodies
-//! that press on each other strain with a common normal velocity, whether they are being compressed or released.
+//! Bodies may close a gap within a step, and never pull, unless they adhere ([`crate::contact::Friction`]). The impulse for the
+//! velocities that only strain is not part of the sum: bodies that press on each other strain with a common normal velocity,
+//! whether they are being compressed or released.
 
 use super::Law;
-use crate::contact::{Change, Facing, Look, Pair, Side, Span, Use, sticking};
+use crate::contact::{Change, Facing, Look, Pair, Side, Span, Use};
 use crate::tensor::{Real, Vector};
 
 /// Contact of carried surfaces.
@@ -47,31 +48,32 @@ impl<T: Real, const D: usize> Law<T, D> for Surface {
         let Some(n) = pair.normal else { return Change::NONE };
         let m = pair.reduced_mass();
         let u = v - w;
+        let friction = &pair.rule.friction;
         // The speed that closes the gap in this step.
         let closing = pair.gap.max(T::ZERO) * pair.step.cell_speed();
-        let push = |u: Vector<T, D>| m * (u.dot(n) - closing).max(T::ZERO);
+        let normal = |u: Vector<T, D>| m * (u.dot(n) - closing);
         let across = |u: Vector<T, D>| u - n * u.dot(n);
-        let (push, tangential) = match pair.step.purpose {
+        // What presses the pair together, if it does not part.
+        let pressed = |normal: T| {
+            let load = pair.load(normal.max(T::ZERO));
+            (normal > T::ZERO || pair.gap <= T::ZERO && -normal < friction.pull(load)).then_some(load)
+        };
+        match pair.step.purpose {
             Use::Motion => {
-                let (push, slip) = (push(u), across(u));
-                (push, slip * (m * sticking(m * slip.norm(), pair.rule.friction, push)))
+                let (normal, slip) = (normal(u), across(u));
+                let Some(load) = pressed(normal) else { return Change::NONE };
+                pair.exchange(-normal, -slip * (m * friction.stopped(slip.norm(), load)), n)
             }
             Use::Strain => {
                 let [a, b] = pair.surfaces;
                 let ahead = u + (a.force * a.inverse_mass - b.force * b.inverse_mass) * pair.step.duration;
-                let bound = push(ahead);
-                if bound <= T::ZERO {
-                    return Change::NONE;
-                }
-                let sticks = m * across(ahead).norm() <= pair.rule.friction * bound;
+                let Some(load) = pressed(normal(ahead)) else { return Change::NONE };
+                let sticks = friction.stopped(across(ahead).norm(), load) == T::ONE;
                 let u_n = u.dot(n);
-                (m * (u_n - u_n.max(T::ZERO).min(closing)), if sticks { across(u) * m } else { Vector::ZERO })
+                let tangential = if sticks { across(u) * m } else { Vector::ZERO };
+                pair.exchange(-m * (u_n - u_n.max(T::ZERO).min(closing)), -tangential, n)
             }
-        };
-        if pair.step.purpose == Use::Motion && push <= T::ZERO {
-            return Change::NONE;
         }
-        pair.exchange(-push, -tangential, n)
     }
 }
 
