@@ -1,6 +1,7 @@
 //! The commands, one file each.
 
 mod check;
+mod network;
 mod new;
 mod plot;
 mod render;
@@ -24,6 +25,7 @@ pub enum Command {
     New(new::Arguments),
     Render(render::Arguments),
     Plot(plot::Arguments),
+    Network(network::Arguments),
     Schema(schema::Arguments),
 }
 
@@ -36,6 +38,7 @@ impl Command {
             Command::New(arguments) => arguments.execute(),
             Command::Render(arguments) => arguments.execute(),
             Command::Plot(arguments) => arguments.execute(),
+            Command::Network(arguments) => arguments.execute(),
             Command::Schema(arguments) => arguments.execute(),
         }
     }
