@@ -7,6 +7,7 @@ mod failure;
 mod illustration;
 mod picture;
 mod progress;
+mod validation;
 
 use clap::Parser;
 use std::process::ExitCode;
