@@ -2,10 +2,11 @@
 
 use super::say;
 use crate::failure::Failure;
-use crate::validation::{line, table};
+use crate::validation::{line, table, write_scenes};
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use std::path::PathBuf;
+use miette::miette;
+use std::path::{Path, PathBuf};
 use stickslip_validation::{BENCHMARKS, Benchmark, Law, Suite, Tier, laws};
 
 /// Run problems with known answers by every contact law, and say how close each law comes.
@@ -46,6 +47,10 @@ fn law_words() -> impl TypedValueParser<Value = Law> {
         .map(|word| laws().into_iter().find(|law| law.word == word).expect("the word is one of them"))
 }
 
+fn unwritable(folder: &Path, error: &std::io::Error) -> Failure {
+    Failure::Input(miette!("cannot write to {}: {error}", folder.display()))
+}
+
 impl Arguments {
     pub fn execute(self) -> Result<(), Failure> {
         let chosen = |benchmark: &&'static Benchmark| {
@@ -61,6 +66,7 @@ impl Arguments {
             },
         };
         let report = suite.run(&mut |finished| eprintln!("{}", line(finished)));
+        write_scenes(&report, &self.out.join("scenes")).map_err(|error| unwritable(&self.out, &error))?;
         say(&table(&report))
     }
 }
