@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::penetration::penetration;
 use std::time::Instant;
-use stickslip::door::{BodyState, ContactState, Ledger, ParticleSnapshot, Simulation};
+use stickslip::door::{BodyState, ContactState, GridSnapshot, Ledger, ParticleSnapshot, Simulation};
 use stickslip::scene::{Face, Motion, Scene};
 use stickslip::{engine, scene};
 
@@ -226,6 +226,11 @@ impl Trial {
     /// The particles now.
     pub fn snapshot(&self) -> ParticleSnapshot {
         self.simulation.snapshot()
+    }
+
+    /// The grid of the last step.
+    pub fn grid(&self) -> GridSnapshot {
+        self.simulation.grid_snapshot()
     }
 
     /// What contact did in the last step.

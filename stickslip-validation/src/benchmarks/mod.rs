@@ -1,5 +1,11 @@
 //! The benchmarks, one file each; every file reads like a report. To add one, write its file and seat it in [`BENCHMARKS`].
 
+mod b11_cylinder;
+mod b12_sphere_impact;
+mod b13_oblique_impact;
+mod b1_incline;
+mod b29_stack;
+mod b2_backspin;
 mod b3_block_on_incline;
 mod b5_equal_bars;
 mod b7_impedance_mismatch;
@@ -10,6 +16,8 @@ mod m3_registration;
 mod m4_first_contact;
 mod m5_patch;
 mod m6_friction_ratio;
+mod rigid_half_space;
+mod rolling_sphere;
 
 use crate::benchmark::Benchmark;
 
@@ -20,9 +28,16 @@ pub static BENCHMARKS: &[Benchmark] = &[
     m5_patch::BENCHMARK,
     m6_friction_ratio::BENCHMARK,
     identity::BENCHMARK,
-    b3_block_on_incline::BENCHMARK,
     corners::BENCHMARK,
+    rigid_half_space::BENCHMARK,
+    b1_incline::BENCHMARK,
+    b2_backspin::BENCHMARK,
+    b3_block_on_incline::BENCHMARK,
     b5_equal_bars::BENCHMARK,
     b7_impedance_mismatch::BENCHMARK,
     b9_two_disks::BENCHMARK,
+    b11_cylinder::BENCHMARK,
+    b12_sphere_impact::BENCHMARK,
+    b13_oblique_impact::BENCHMARK,
+    b29_stack::BENCHMARK,
 ];
