@@ -2,11 +2,13 @@
 
 use super::say;
 use crate::failure::Failure;
-use crate::validation::{line, table, write_scenes};
+use crate::validation::{line, page, table, write_scenes};
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use miette::miette;
+use std::fs;
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 use stickslip_validation::{BENCHMARKS, Benchmark, Law, Suite, Tier, laws};
 
 /// Run problems with known answers by every contact law, and say how close each law comes.
@@ -65,8 +67,14 @@ impl Arguments {
                 None => std::thread::available_parallelism().map_or(1, usize::from),
             },
         };
+        // A folder that cannot be written shall be known before the work, not after it.
+        fs::create_dir_all(&self.out).map_err(|error| unwritable(&self.out, &error))?;
+        let begin = Instant::now();
         let report = suite.run(&mut |finished| eprintln!("{}", line(finished)));
         write_scenes(&report, &self.out.join("scenes")).map_err(|error| unwritable(&self.out, &error))?;
-        say(&table(&report))
+        let file = self.out.join("index.html");
+        page(&report, begin.elapsed()).write(&file)?;
+        say(&table(&report))?;
+        say(&format!("\npage in {}, scenes in {}", file.display(), self.out.join("scenes").display()))
     }
 }
