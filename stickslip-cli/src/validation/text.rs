@@ -43,7 +43,8 @@ fn write_heading(entry: &Entry, text: &mut String) {
 }
 
 fn write_entry(entry: &Entry, text: &mut String) {
-    for (i, target) in entry.benchmark.targets.iter().enumerate() {
+    let targets = entry.benchmark.targets.iter().filter(|target| !repeated(entry, target));
+    for (i, target) in targets.enumerate() {
         let law = if i == 0 { entry.law.word } else { "" };
         let order = entry.order(target).map_or(String::new(), |order| format!("{order:.1}"));
         let values: String = values(entry, target).map(|value| format!("{value:>11}")).collect();
@@ -82,6 +83,12 @@ fn write_entry(entry: &Entry, text: &mut String) {
             }
         }
     }
+}
+
+/// Whether a target that is not judged asks something of a quantity that another target judges.
+fn repeated(entry: &Entry, target: &Target) -> bool {
+    let judges = |other: &Target| other.metric == target.metric && entry.verdict(other) != Verdict::Open;
+    entry.verdict(target) == Verdict::Open && entry.benchmark.targets.iter().any(judges)
 }
 
 /// What was measured at each resolution.

@@ -1,5 +1,6 @@
 //! The benchmarks, one file each; every file reads like a report. To add one, write its file and seat it in [`BENCHMARKS`].
 
+mod b10_collinear_disks;
 mod b11_cylinder;
 mod b12_sphere_impact;
 mod b13_oblique_impact;
@@ -36,6 +37,7 @@ pub static BENCHMARKS: &[Benchmark] = &[
     b5_equal_bars::BENCHMARK,
     b7_impedance_mismatch::BENCHMARK,
     b9_two_disks::BENCHMARK,
+    b10_collinear_disks::BENCHMARK,
     b11_cylinder::BENCHMARK,
     b12_sphere_impact::BENCHMARK,
     b13_oblique_impact::BENCHMARK,

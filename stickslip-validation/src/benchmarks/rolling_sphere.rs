@@ -4,6 +4,7 @@ use crate::benchmark::Case;
 use crate::failure::Failure;
 use crate::measuring::{mean, slope};
 use crate::outcome::Outcome;
+use crate::scenery::with_parameter;
 use crate::trial::Trial;
 use stickslip::scene::Parameter;
 
@@ -60,17 +61,4 @@ pub fn roll(name: &str, scene: &str, case: &Case, outcome: &mut Outcome) -> Resu
     };
     outcome.include(trial);
     Ok(roll)
-}
-
-/// The scene's text with another value for a parameter, which stands on a line of its own.
-fn with_parameter(scene: &str, name: &str, value: &str) -> String {
-    let sets = |line: &str| line.strip_prefix(name).is_some_and(|rest| rest.trim_start().starts_with('='));
-    let line = |line: &str| if sets(line) { format!("{name} = {value}\n") } else { format!("{line}\n") };
-    scene.lines().map(line).collect()
-}
-
-#[test]
-fn a_parameter_is_replaced_and_its_namesakes_stay() {
-    let text = "cells = 8   # per radius\ncells_more = 2\ncell = \"cells\"\n";
-    assert_eq!(with_parameter(text, "cells", "4"), "cells = 4\ncells_more = 2\ncell = \"cells\"\n");
 }
