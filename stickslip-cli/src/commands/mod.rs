@@ -7,6 +7,7 @@ mod plot;
 mod render;
 mod run;
 mod schema;
+mod validate;
 
 use crate::failure::Failure;
 use clap::Parser;
@@ -27,6 +28,7 @@ pub enum Command {
     Plot(plot::Arguments),
     Network(network::Arguments),
     Schema(schema::Arguments),
+    Validate(validate::Arguments),
 }
 
 impl Command {
@@ -40,6 +42,7 @@ impl Command {
             Command::Plot(arguments) => arguments.execute(),
             Command::Network(arguments) => arguments.execute(),
             Command::Schema(arguments) => arguments.execute(),
+            Command::Validate(arguments) => arguments.execute(),
         }
     }
 }
