@@ -3,10 +3,12 @@
 mod clock;
 mod error;
 mod summary;
+mod widest;
 
 pub use clock::Progress;
 pub use error::RunError;
 pub use summary::{ReferenceResult, Summary};
+pub use widest::{WidestContact, WidestContacts};
 
 use crate::door::Simulation;
 use crate::observe::{Manifest, OutputFolder, Recorder, Status};

@@ -1,5 +1,6 @@
 //! What a run came to, on one screen.
 
+use super::WidestContacts;
 use crate::door::{Ledger, Simulation};
 use crate::observe::{BodyRow, Manifest, Performance, Status};
 use crate::scene::Scene;
@@ -16,6 +17,8 @@ pub struct Summary {
     pub start: Ledger,
     /// Energy and momentum at the end.
     pub end: Ledger,
+    /// How wide the bodies touched, and whether the grid resolved it.
+    pub contacts: WidestContacts,
     /// How the run compares with each known answer of the scene.
     pub references: Vec<ReferenceResult>,
 }
@@ -58,7 +61,8 @@ impl Summary {
         });
         let references = references.collect();
         let Manifest { status, performance, .. } = manifest;
-        Summary { status, performance, start, end: simulation.ledger(), references }
+        let contacts = WidestContacts::new(scene, &simulation.patches());
+        Summary { status, performance, start, end: simulation.ledger(), contacts, references }
     }
 
     /// Change of the total energy, which is zero in an exact solution [J].
@@ -106,6 +110,7 @@ impl Display for Summary {
                 self.end.scaled_impulses
             )?;
         }
+        write!(f, "{}", self.contacts)?;
         self.references.iter().try_for_each(|reference| write!(f, "{reference}"))
     }
 }

@@ -16,6 +16,7 @@ mod many_bodies;
 mod mirror;
 mod plane_stress;
 mod precision;
+mod resistance;
 mod rigid_bodies;
 mod spinning_disk;
 mod struck_bar;

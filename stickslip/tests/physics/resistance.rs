@@ -1,0 +1,123 @@
+//! Resistance of surfaces beside Coulomb's: static and kinetic friction, viscosity, cohesion, adhesion; and what contact says of itself.
+//!
+//! Source: mechanics of a rigid block of mass m on a floor over the area A, weight m g, in the plane per depth.
+//!
+//! ```text
+//! kinetic friction:   a = -mu_k g while it slips
+//! viscosity:          v = v_0 exp(-eta A t / m)
+//! cohesion:           a = -c A / m without any weight
+//! adhesion:           hangs for a A > m g, falls for a A < m g
+//! ```
+//! Set-up: a block 1 m long and 0.5 m high on a rigid floor, 10 cells a metre; light and stiff enough to move as one, surfaces by the law
+//! `surface`. Sheared at its lower face it also shears, turns and shakes, hence the tolerances of some per cent.
+
+use crate::trial::{run_to, start};
+
+struct Block {
+    gravity: f64,
+    speed: f64,
+    contact: &'static str,
+}
+
+fn scene(block: &Block) -> String {
+    let Block { gravity, speed, contact } = block;
+    format!(
+        r#"
+        gravity = [0, {gravity}]
+        space = {{ dimension = "plane-strain", cell = 0.1 }}
+        time.end = 1
+        materials.rubber = {{ density = 1000, neo_hookean = {{ young_modulus = 1e6, poisson_ratio = 0.3 }} }}
+        [[bodies]]
+        name = "floor"
+        material = "rubber"
+        shape.box = {{ min = [-2, -0.3], max = [4, 0] }}
+        rigid = {{}}
+        [[bodies]]
+        name = "block"
+        material = "rubber"
+        shape.box = {{ min = [0, 0], max = [1, 0.5] }}
+        velocity = [{speed}, 0]
+        [[contact]]
+        law = "surface"
+        {contact}
+        "#
+    )
+}
+
+const MASS: f64 = 500.0;
+const AREA: f64 = 1.0;
+
+/// Velocity of the block at `time`, and the contacts of all steps as (seconds, row).
+fn velocity(block: &Block, time: f64) -> [f64; 3] {
+    let mut simulation = start(&scene(block));
+    run_to(&mut *simulation, time, |_| {});
+    simulation.bodies()[1].velocity
+}
+
+#[test]
+fn a_slipping_block_has_kinetic_friction_however_high_the_static_one() {
+    let contact = "friction = 0.8\nkinetic_friction = 0.2";
+    let time = 0.4;
+    let v = velocity(&Block { gravity: -10.0, speed: 3.0, contact }, time)[0];
+    let exact = 3.0 - 0.2 * 10.0 * time;
+    println!("kinetic friction: {v:.4} m/s, exact {exact:.4}");
+    assert!((v - exact).abs() < 0.05 * (3.0 - exact) + 0.02, "{v}");
+    // Slower than the decay speed the friction is nearly the static one.
+    let contact = "friction = 0.3\nkinetic_friction = 0.1\nfriction_decay_speed = 1e6";
+    let v = velocity(&Block { gravity: -10.0, speed: 3.0, contact }, time)[0];
+    let exact = 3.0 - 0.3 * 10.0 * time;
+    println!("static friction at low speed: {v:.4} m/s, exact {exact:.4}");
+    assert!((v - exact).abs() < 0.05 * (3.0 - exact) + 0.02, "{v}");
+}
+
+#[test]
+fn a_viscous_contact_slows_the_block_exponentially() {
+    let time = 0.4;
+    let v = velocity(&Block { gravity: -10.0, speed: 1.0, contact: "viscosity = 1000" }, time)[0];
+    let exact = (-1000.0 * AREA * time / MASS).exp();
+    println!("viscosity: {v:.4} m/s, exact {exact:.4}");
+    assert!((v - exact).abs() < 0.03, "{v} {exact}");
+}
+
+#[test]
+fn cohesion_bears_shear_without_weight() {
+    let time = 0.2;
+    let v = velocity(&Block { gravity: 0.0, speed: 2.0, contact: "cohesion = 2000\nadhesion = 1e5" }, time)[0];
+    let exact = 2.0 - 2000.0 * AREA / MASS * time;
+    println!("cohesion: {v:.4} m/s, exact {exact:.4}");
+    assert!((v - exact).abs() < 0.1 * (2.0 - exact), "{v} {exact}");
+}
+
+/// The weight comes at once: the block's own ringing doubles the load on the bond.
+#[test]
+fn adhesion_holds_what_its_strength_bears() {
+    let falls = |contact| velocity(&Block { gravity: 10.0, speed: 0.0, contact }, 0.3)[1];
+    let (strong, weak) = (falls("adhesion = 20000"), falls("adhesion = 1000"));
+    println!("adhesion: {strong:.3e} m/s bonded, {weak:.3} m/s too weak, exact 0 and 3");
+    assert!(strong.abs() < 0.1, "{strong}");
+    assert!((weak - 3.0).abs() < 0.15, "{weak}");
+}
+
+/// The block of 500 kg slides by 0.6 m under mu = 0.2: area 1 m, gap 0, the slip of its centre, work mu m g s.
+#[test]
+fn contact_says_where_how_wide_and_how_far() {
+    let block = Block { gravity: -10.0, speed: 2.0, contact: "friction = 0.2" };
+    let mut simulation = start(&scene(&block));
+    run_to(&mut *simulation, 0.3, |_| {});
+    let contacts = simulation.take_contacts();
+    let [contact] = contacts.as_slice() else { panic!("one pair touches: {contacts:?}") };
+    let moved = simulation.bodies()[1].position[0] - 0.5;
+    println!("{contact:?}, moved {moved}");
+    assert_eq!((contact.body_a, contact.body_b), (0, 1));
+    assert!((contact.area - AREA).abs() < 0.1, "{}", contact.area);
+    assert!(contact.gap.abs() < 0.005, "{}", contact.gap);
+    assert!((contact.slip / moved - 1.0).abs() < 0.1, "{} {moved}", contact.slip);
+    let work = 0.2 * MASS * 10.0 * moved;
+    assert!((contact.friction / work - 1.0).abs() < 0.1, "{} {work}", contact.friction);
+    // Friction tips the block forward, so the forces' centre lies ahead of its middle.
+    let centre = 0.5 + 0.5 * moved;
+    assert!((contact.position[0] - centre).abs() < 0.25, "{:?} {centre}", contact.position);
+    assert!(contact.position[1].abs() < 0.1, "{:?}", contact.position);
+    let patches = simulation.patches();
+    assert!(patches.len() == 1 && patches[0].area >= contact.area, "{patches:?}");
+}
