@@ -190,7 +190,7 @@ impl<T: Real, const D: usize> Near<'_, T, D> {
         let owner = &self.bodies[body];
         let at = self.lattice.position(node);
         self.each_particle::<B>(body, node, |particle, weight, gradient, image| {
-            let v = particle.volume * particle.deformation.det();
+            let v = particle.room();
             let share = v * weight;
             // The node sees a particle move away as the particle sees the node move: grad at the node = -grad S(x_p).
             let gradient = Vector::from_fn(|i| -gradient[i] * image.sign[i]);
@@ -199,7 +199,7 @@ impl<T: Real, const D: usize> Near<'_, T, D> {
             mass_gradient += gradient * particle.mass;
             volume_gradient += gradient * v;
             stress += sigma * share;
-            force += sigma.times(gradient) * v;
+            force += sigma.times(gradient) * (particle.volume * particle.deformation.det());
             let before = self.place(particle, owner.places[particle.number as usize], (at, image));
             place.add(&before, share);
         });
@@ -209,7 +209,7 @@ impl<T: Real, const D: usize> Near<'_, T, D> {
             normal: (-mass_gradient).direction(),
             stress: stress * (T::ONE / volume),
             volume,
-            modulus: owner.material.law().wave_modulus(&Matrix::IDENTITY, T::ONE),
+            modulus: owner.wave_modulus(&Matrix::IDENTITY, T::ONE),
             force,
             place: place.over(volume),
         };
