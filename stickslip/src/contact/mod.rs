@@ -10,6 +10,7 @@ mod pair;
 mod place;
 mod rules;
 mod solve;
+mod surroundings;
 mod survey;
 mod tally;
 
