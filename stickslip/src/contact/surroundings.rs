@@ -3,13 +3,16 @@
 //! Each particle near such nodes is visited once and added to all that it reaches. Behind a mirror its image is added.
 
 use super::{Near, Place};
-use crate::basis::Basis;
+use crate::basis::{Basis, MAX_WIDTH};
 use crate::body::Particle;
 use crate::boundary::Wall;
 use crate::grid::{SIDE, node_at, nodes_per_block};
 use crate::scene::Face;
 use crate::tensor::{Matrix, Real, Symmetric, Vector};
 use crate::transfer::{Stencil, offsets};
+
+/// Most nodes that a particle reaches.
+const MAX_REACHED: usize = MAX_WIDTH.pow(3);
 
 /// Nodes of a block, a bit each.
 pub type Nodes = u64;
@@ -111,12 +114,16 @@ impl<T: Real, const D: usize> Near<'_, T, D> {
         for cell in offsets::<D>(side) {
             // Steps from the lowest node to the cell's base node.
             let base: [i32; D] = std::array::from_fn(|i| cell[i] as i32 - reach);
-            let reached = |offset: [usize; D]| {
+            let mut reached = [([0; D], 0); MAX_REACHED];
+            let mut count = 0;
+            for offset in offsets::<D>(B::WIDTH) {
                 let steps: [i32; D] = std::array::from_fn(|i| base[i] + offset[i] as i32);
-                let inside = steps.iter().all(|step| (0..SIDE).contains(step));
-                inside.then(|| local(steps)).filter(|local| wanted >> local & 1 == 1)
-            };
-            if !offsets::<D>(B::WIDTH).any(|offset| reached(offset).is_some()) {
+                if steps.iter().all(|step| (0..SIDE).contains(step)) && wanted >> local(steps) & 1 == 1 {
+                    reached[count] = (offset, local(steps));
+                    count += 1;
+                }
+            }
+            if count == 0 {
                 continue;
             }
             let home = std::array::from_fn(|i| lowest[i] + base[i]);
@@ -124,10 +131,8 @@ impl<T: Real, const D: usize> Near<'_, T, D> {
                 let particle = &self.bodies[body].particles[index as usize];
                 let stencil = Stencil::<T, D, B>::new(&self.lattice, particle);
                 let share = self.share((body, block), particle, mirrors);
-                for offset in offsets::<D>(B::WIDTH) {
-                    if let Some(local) = reached(offset) {
-                        share.add_to(&mut sums[local], stencil.at(offset));
-                    }
+                for &(offset, local) in &reached[..count] {
+                    share.add_to(&mut sums[local], stencil.at(offset));
                 }
             }
         }

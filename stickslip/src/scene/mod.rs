@@ -331,11 +331,11 @@ fn infinity_as_text<S: serde::Serializer>(value: &f64, serializer: S) -> Result<
 }
 
 impl Default for ContactRule {
-    /// The gap law without friction for every pair.
+    /// The law of exact surfaces without friction for every pair.
     fn default() -> Self {
         ContactRule {
             between: [None, None],
-            law: ContactLaw::Gap,
+            law: ContactLaw::Surface,
             friction: 0.0,
             normal: Normal::Common,
             max_strain: 0.5,

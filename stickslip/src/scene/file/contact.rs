@@ -15,7 +15,7 @@ table! {
         /// The pair it holds for: two names of bodies or materials; "any", the default for both, matches every body.
         between: Option<Pair>,
         /// When the bodies push on each other.
-        #[schemars(extend("default" = "gap"))]
+        #[schemars(extend("default" = "surface"))]
         law: Option<Word<ContactLaw>>,
         /// Coefficient of friction; inf sticks, 0 is frictionless.
         #[schemars(extend("default" = 0))]
@@ -37,14 +37,14 @@ pub struct Pair([Text; 2]);
 impl Choice for ContactLaw {
     const WORDS: &'static [(&'static str, Self, &'static str)] = &[
         (
-            "gap",
-            ContactLaw::Gap,
-            "When they approach or push on each other, once their surfaces touch: the bodies fill the room around the node.",
-        ),
-        (
             "surface",
             ContactLaw::Surface,
             "When their exact surfaces touch: the undeformed shapes, carried along by the deformation.",
+        ),
+        (
+            "gap",
+            ContactLaw::Gap,
+            "When they approach or push on each other, once their surfaces touch: the bodies fill the room around the node.",
         ),
         ("traction", ContactLaw::Traction, "When the traction between them is compressive (2001)."),
         ("kinematic", ContactLaw::Kinematic, "When they approach (2000)."),
