@@ -17,7 +17,7 @@
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
-use stickslip::observe::{ArrivalRow, Results};
+use stickslip::observe::{ArrivalRow, ProbeRow, Results};
 use stickslip::run::RunOptions;
 use stickslip::scene::Scene;
 use stickslip::{engine, run, scene};
@@ -141,12 +141,16 @@ fn a_step_wave_arrives_and_runs_at_the_speed_of_the_bar() {
     let way = riding.last().unwrap().x - 0.25;
     assert!((way / (SPEED * 0.65) - 1.0).abs() < 0.03, "way {way}");
     assert_eq!(fixed.last().unwrap().x, 0.5);
-    for row in [riding.last().unwrap(), fixed.last().unwrap()] {
-        assert!((row.vx / SPEED - 1.0).abs() < 0.05 && (row.xx / -SPEED - 1.0).abs() < 0.05, "{row:?}");
-        assert!(
-            (row.pressure - -row.xx / 3.0).abs() < 0.01 * SPEED && row.vy.abs() < 0.05 * SPEED,
-            "{row:?}"
-        );
+    for (rows, x) in [(riding, 0.25), (fixed, 0.5)] {
+        // Means over time: FLIP rings behind a sharp front.
+        let behind: Vec<_> = rows.into_iter().filter(|row| row.time > x + 0.1).collect();
+        let mean = |value: fn(&ProbeRow) -> f64| {
+            behind.iter().map(|row| value(row)).sum::<f64>() / behind.len() as f64
+        };
+        let (vx, xx) = (mean(|row| row.vx), mean(|row| row.xx));
+        println!("x = {x}: vx {vx} ({SPEED}), xx {xx} (-{SPEED})");
+        assert!((vx / SPEED - 1.0).abs() < 0.02 && (xx / -SPEED - 1.0).abs() < 0.02, "{vx}, {xx}");
+        assert!(behind.iter().all(|row| (row.pressure + row.xx / 3.0).abs() < 0.01 * SPEED), "{behind:?}");
     }
 
     for name in ["bodies", "energy", "contacts", "probes", "arrivals", "fronts", "front_speeds"] {
