@@ -9,6 +9,7 @@ mod illustration;
 mod page;
 mod picture;
 mod progress;
+mod sweep;
 
 use clap::Parser;
 use std::process::ExitCode;
