@@ -1,6 +1,6 @@
 //! What a chart shows of forces, probes, arrivals and fronts.
 
-use super::contents::{Choice, EXACT, MOST_CURVES, Table};
+use super::contents::{Choice, MOST_CURVES, Table};
 use super::{Chart, Curve, Panel};
 use crate::drawing::body_color;
 use stickslip::observe::{ArrivalRow, ContactRow, FrontSpeedRow, ProbeRow, ReadError, Results};

@@ -54,16 +54,14 @@ fn curves(sweep: &Sweep, over: usize, start: &str) -> Vec<Curve> {
             );
             match curves.iter_mut().find(|curve| curve.label == label) {
                 Some(curve) => curve.points.push([x, *value]),
-                None if curves.len() < MOST_CURVES => curves.push(Curve {
-                    label,
-                    color: body_color(curves.len()),
-                    dashed: false,
-                    points: vec![[x, *value]],
-                }),
-                None => {}
+                None => {
+                    let color = body_color(curves.len());
+                    curves.push(Curve { label, color, dashed: false, points: vec![[x, *value]] });
+                }
             }
         }
     }
+    curves.truncate(MOST_CURVES);
     for curve in &mut curves {
         curve.points.sort_by(|a, b| a[0].total_cmp(&b[0]));
     }
