@@ -7,6 +7,7 @@ mod render;
 mod run;
 mod schema;
 mod sweep;
+mod validate;
 
 use crate::failure::Failure;
 use clap::Parser;
@@ -27,6 +28,7 @@ pub enum Command {
     Render(render::Arguments),
     Plot(plot::Arguments),
     Schema(schema::Arguments),
+    Validate(validate::Arguments),
 }
 
 impl Command {
@@ -40,6 +42,7 @@ impl Command {
             Command::Render(arguments) => arguments.execute(),
             Command::Plot(arguments) => arguments.execute(),
             Command::Schema(arguments) => arguments.execute(),
+            Command::Validate(arguments) => arguments.execute(),
         }
     }
 }
