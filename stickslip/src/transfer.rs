@@ -1,6 +1,6 @@
 //! Particles to field, field to particles: the sums over the nodes that one particle reaches.
 
-use crate::basis::{Axis, Basis, MAX_WIDTH};
+use crate::basis::{Axis, Basis};
 use crate::body::Particle;
 use crate::grid::{Lattice, Node, SIDE, WINDOW, Window};
 use crate::tensor::{Matrix, Real, Symmetric, Vector};
@@ -177,9 +177,8 @@ impl<T: Real, const D: usize, B: Basis<T>> Stencil<T, D, B> {
     }
 }
 
-/// Offsets of the nodes that a basis reaches from its base node.
+/// Whole steps from 0 to below `width` along every axis: the nodes that a basis reaches from its base node.
 pub fn offsets<const D: usize>(width: usize) -> impl Iterator<Item = [usize; D]> {
-    debug_assert!(width <= MAX_WIDTH, "no basis is wider");
     (0..width.pow(D as u32)).map(move |i| {
         let mut rest = i;
         let mut offset = [0; D];

@@ -87,7 +87,10 @@ fn the_tables_have_the_columns_that_the_manual_lists() {
         header("energy.csv"),
         "time,kinetic,strain,potential,external_work,friction,plastic,damping,total,px,py,pz,lx,ly,lz"
     );
-    assert_eq!(header("contacts.csv"), "time,body_a,body_b,fx,fy,fz,normal,tangential,nodes");
+    assert_eq!(
+        header("contacts.csv"),
+        "time,body_a,body_b,fx,fy,fz,normal,tangential,nodes,x,y,z,area,gap,slip,friction"
+    );
 }
 
 #[test]

@@ -4,6 +4,7 @@
 //! bodies' velocities into changes of velocity, pair by pair. Contact is applied twice a step, to interpolated and to
 //! integrated velocities; both uses share one survey.
 
+mod around;
 mod exchange;
 mod friction;
 mod law;
@@ -11,6 +12,7 @@ mod pair;
 mod place;
 mod rules;
 mod solve;
+mod surroundings;
 mod survey;
 mod tally;
 

@@ -49,6 +49,13 @@ impl<T: Real, const D: usize> Place<T, D> {
         }
     }
 
+    /// The same, seen from a point `arm` away [m].
+    pub fn seen_from(&self, arm: Vector<T, D>) -> Self {
+        let f = &self.inverse.0;
+        let place = Vector::from_fn(|i| (0..D).fold(self.place[i], |x, j| x + f[i][j] * arm[j]));
+        Place { place, inverse: self.inverse, center: self.center - arm }
+    }
+
     /// How far a point, seen from the node [m], is from the surface of an undeformed shape carried along.
     ///
     /// ```text

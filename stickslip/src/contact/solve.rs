@@ -194,7 +194,10 @@ mod tests {
             }
         }
         survey.sites.push(Site { node: [0; 3], sides: 0..n, encounters: 0..survey.encounters.len() });
-        let rules = Rules::of_all(n, Rule { law, normal: Normal::Common, friction: Friction::coulomb(friction), max_strain: 1.0 });
+        let rules = Rules::of_all(
+            n,
+            Rule { law, normal: Normal::Common, friction: Friction::coulomb(friction), max_strain: 1.0 },
+        );
         let step = Step { duration: 1e-6, cell: 1.0, purpose: Use::Motion };
         let impulses = Solve { survey: &survey, rules: &rules, field: &field, step, given: &[] }.impulses();
         let before: Vec<_> = field.nodes.iter().map(|node| node.velocity).collect();

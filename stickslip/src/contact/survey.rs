@@ -1,14 +1,14 @@
 //! Where bodies meet, and what the particles there say of their surfaces.
 
 use super::law::law;
-use super::{Pair, Place, Rules, Step, Surface};
-use crate::basis::{Basis, MAX_WIDTH};
-use crate::body::{Body, Particle};
+use super::surroundings::{Nodes, Sums, nodes_where};
+use super::{Pair, Rules, Step, Surface};
+use crate::basis::Basis;
+use crate::body::Body;
 use crate::boundary::Boundary;
-use crate::grid::{Cover, Field, Lattice, Meeting, node_at, nodes_per_block};
+use crate::grid::{Cover, Field, Lattice, Meeting, SIDE, node_at, nodes_per_block};
 use crate::scene::{ContactLaw, Face};
-use crate::tensor::{Matrix, Real, Symmetric, Vector};
-use crate::transfer::{Stencil, offsets};
+use crate::tensor::{Matrix, Real, Vector};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -105,19 +105,13 @@ pub struct Near<'a, T, const D: usize> {
     pub rules: &'a Rules<T>,
 }
 
-/// A node or one of its mirror images, with the signs that turn vectors between the two.
-struct Image<T, const D: usize> {
-    node: [i32; D],
-    sign: [T; D],
-}
-
 impl<T: Real, const D: usize> Near<'_, T, D> {
     /// Surveys every node that two or more bodies share.
     pub fn survey<B: Basis<T>>(&self) -> Survey<T, D> {
         let parts: Vec<Survey<T, D>> = (self.cover.meetings.par_chunks(8))
-            .map(|meetings| {
+            .map_init(Vec::new, |sums, meetings| {
                 let mut part = Survey::default();
-                meetings.iter().for_each(|meeting| self.survey_block::<B>(meeting, &mut part));
+                meetings.iter().for_each(|meeting| self.survey_block::<B>(meeting, sums, &mut part));
                 part
             })
             .collect();
@@ -142,179 +136,99 @@ impl<T: Real, const D: usize> Near<'_, T, D> {
         (0..D).fold(T::ONE, |v, _| v * self.lattice.cell)
     }
 
-    fn survey_block<B: Basis<T>>(&self, meeting: &Meeting<D>, survey: &mut Survey<T, D>) {
-        let n = nodes_per_block(D);
-        let cell_volume = self.cell_volume();
-        for local in 0..n {
-            let present = |&&slot: &&u32| {
-                let body = self.cover.slots[slot as usize].0 as usize;
-                self.field.nodes[slot as usize * n + local].mass
-                    > T::of(TRACE) * cell_volume * self.bodies[body].density
-            };
-            let slots = self.cover.slots_of(meeting);
-            if slots.iter().filter(present).count() < 2 {
-                continue;
-            }
+    fn survey_block<B: Basis<T>>(
+        &self,
+        meeting: &Meeting<D>,
+        sums: &mut Vec<Sums<T, D>>,
+        survey: &mut Survey<T, D>,
+    ) {
+        let (n, slots) = (nodes_per_block(D), self.cover.slots_of(meeting));
+        let body = |slot: u32| self.cover.slots[slot as usize].0 as usize;
+        let trace = T::of(TRACE) * self.cell_volume();
+        let present: Vec<Nodes> = (slots.iter())
+            .map(|&slot| {
+                let least = trace * self.bodies[body(slot)].density;
+                nodes_where::<D>(|local| self.field.nodes[slot as usize * n + local].mass > least)
+            })
+            .collect();
+        let governed = nodes_where::<D>(|local| self.governed(node_at(meeting.block, local)));
+        let pairs: Vec<[usize; 3]> = self.pairs(slots).collect();
+        let shared = (pairs.iter()).fold(0, |nodes, &[a, b, _]| nodes | present[a] & present[b]) & !governed;
+        if shared == 0 {
+            return;
+        }
+        sums.clear();
+        sums.resize(slots.len() * n, Sums::EMPTY);
+        for ((&slot, present), sums) in slots.iter().zip(&present).zip(sums.chunks_mut(n)) {
+            self.sum_around::<B>((body(slot), meeting.block), present & shared, sums);
+        }
+        // Where each body of the block stands among the sides of a node.
+        let mut seats = vec![None; slots.len()];
+        for local in (0..n).filter(|local| shared >> local & 1 == 1) {
             let node = node_at(meeting.block, local);
-            let governed = self.boundary.walls.iter().any(|wall| match wall.face {
-                Face::Fixed => wall.depth(node) <= 0,
-                _ => wall.depth(node) < 0,
-            });
-            if governed {
-                continue;
-            }
             let first = survey.sides.len();
-            for &slot in slots.iter().filter(present) {
-                survey.sides.push(self.side::<B>(node, slot as usize * n + local));
+            for (i, &slot) in slots.iter().enumerate() {
+                let here = present[i] >> local & 1 == 1;
+                seats[i] = here.then_some(survey.sides.len());
+                if here {
+                    let index = slot as usize * n + local;
+                    survey.sides.push(self.side(index, node, &sums[i * n + local]));
+                }
             }
-            let (last, start) = (survey.sides.len(), survey.encounters.len());
-            for a in first..last {
-                for b in a + 1..last {
-                    let rule = self.rules.number(survey.sides[a].body, survey.sides[b].body);
-                    let rigid = [a, b].map(|side| self.bodies[survey.sides[side].body].rigid);
-                    if self.rules.rule(rule).law == ContactLaw::None || rigid == [true; 2] {
-                        continue;
-                    }
-                    let pair = [a, b].map(|side| side - first);
-                    let look = Look { near: self, sides: &survey.sides[first..last], pair, node };
+            let start = survey.encounters.len();
+            for &[a, b, rule] in &pairs {
+                if let (Some(a), Some(b)) = (seats[a], seats[b]) {
+                    let pair = [a - first, b - first];
+                    let look = Look { near: self, sides: &survey.sides[first..], pair, node };
                     let facing = law(self.rules.rule(rule).law).facing(&look);
                     let area = area(&look, &facing);
                     survey.encounters.push(Encounter { sides: [a, b], rule, facing, area });
                 }
             }
-            survey.sites.push(Site { node, sides: first..last, encounters: start..survey.encounters.len() });
-        }
-    }
-
-    fn side<B: Basis<T>>(&self, node: [i32; D], index: usize) -> Side<T, D> {
-        let body = self.cover.slots[index / nodes_per_block(D)].0 as usize;
-        let mut volume = T::ZERO;
-        let (mut mass_gradient, mut volume_gradient) = (Vector::ZERO, Vector::ZERO);
-        let (mut stress, mut force) = (Symmetric::ZERO, Vector::ZERO);
-        let mut place = Place::EMPTY;
-        let owner = &self.bodies[body];
-        let at = self.lattice.position(node);
-        self.each_particle::<B>(body, node, |particle, weight, gradient, image| {
-            let v = particle.room();
-            let share = v * weight;
-            // The node sees a particle move away as the particle sees the node move: grad at the node = -grad S(x_p).
-            let gradient = Vector::from_fn(|i| -gradient[i] * image.sign[i]);
-            let sigma = mirrored(&particle.stress, image.sign);
-            volume += share;
-            mass_gradient += gradient * particle.mass;
-            volume_gradient += gradient * v;
-            stress += sigma * share;
-            force += sigma.times(gradient) * v;
-            let before = self.place(particle, owner.places[particle.number as usize], (at, image));
-            place.add(&before, share);
-        });
-        let mass = self.field.nodes[index].mass;
-        let surface = Surface {
-            inverse_mass: if owner.rigid { T::ZERO } else { T::ONE / mass },
-            normal: (-mass_gradient).direction(),
-            stress: stress * (T::ONE / volume),
-            volume,
-            modulus: owner.wave_modulus(&Matrix::IDENTITY, T::ONE),
-            force,
-            place: place.over(volume),
-        };
-        Side { body, index, surface, volume_gradient }
-    }
-
-    /// Where the material of a particle was at a node, as seen by the node's image, and turned back from it.
-    fn place(
-        &self,
-        particle: &Particle<T, D>,
-        place: Vector<T, D>,
-        (at, image): (Vector<T, D>, &Image<T, D>),
-    ) -> Place<T, D> {
-        let inverse = particle.deformation.inverse();
-        let seen = self.lattice.position(image.node);
-        let arm = particle.position - seen;
-        let sign = |i: usize| if i < D { image.sign[i] } else { T::ONE };
-        Place {
-            place: Vector::from_fn(|i| {
-                let x = (0..D).fold(place[i], |x, j| x - inverse.0[i][j] * arm[j]);
-                // A mirror lies half way between a node and its image.
-                if sign(i) < T::ZERO { at[i] + seen[i] - x } else { x }
-            }),
-            inverse: Matrix::from_fn(|i, j| inverse.0[i][j] * sign(i) * sign(j)),
-            center: Vector::from_fn(|i| arm[i] * sign(i)),
-        }
-    }
-
-    /// Calls `f(arm, particle, mirror)` for every particle of a body whose box reaches into the cells around a node: `arm` from the node
-    /// to it [m], `mirror` turns its vectors into those that the node sees.
-    pub fn around(
-        &self,
-        body: usize,
-        node: [i32; D],
-        mut f: impl FnMut(Vector<T, D>, &Particle<T, D>, Matrix<T>),
-    ) {
-        for image in &self.images(node, MAX_WIDTH) {
-            let seen = self.lattice.position(image.node);
-            let mirror = Matrix::from_fn(|i, j| match (i == j, i < D) {
-                (true, true) => image.sign[i],
-                (true, false) => T::ONE,
-                _ => T::ZERO,
+            survey.sites.push(Site {
+                node,
+                sides: first..survey.sides.len(),
+                encounters: start..survey.encounters.len(),
             });
-            for offset in offsets::<D>(MAX_WIDTH) {
-                let cell = std::array::from_fn(|i| image.node[i] - offset[i] as i32);
-                for &index in self.cover.particles_in(body, cell) {
-                    let particle = &self.bodies[body].particles[index as usize];
-                    let arm = particle.position - seen;
-                    let reach = self.lattice.cell + particle.half_width;
-                    if (0..D).all(|i| arm[i].abs() < reach) {
-                        f(Vector::from_fn(|i| arm[i] * image.sign[i]), particle, mirror);
-                    }
-                }
-            }
         }
     }
 
-    /// A node and its images in the mirrors that a stencil of `width` nodes around it can reach.
-    fn images(&self, node: [i32; D], width: usize) -> Vec<Image<T, D>> {
-        let mut images = vec![Image { node, sign: [T::ONE; D] }];
-        for wall in self.boundary.walls.iter().filter(|wall| wall.face == Face::Symmetry) {
-            if wall.depth(node) < width as i32 {
-                for i in 0..images.len() {
-                    let Image { node, mut sign } = images[i];
-                    sign[wall.axis] = -sign[wall.axis];
-                    images.push(Image { node: wall.image(node), sign });
-                }
-            }
-        }
-        images
+    /// Whether a wall decides what a node does.
+    fn governed(&self, node: [i32; D]) -> bool {
+        self.boundary.walls.iter().any(|wall| match wall.face {
+            Face::Fixed => wall.depth(node) <= 0,
+            _ => wall.depth(node) < 0,
+        })
     }
 
-    /// Calls `f(particle, weight, gradient, image)` for every particle of a body that reaches a node or an image of it.
-    fn each_particle<B: Basis<T>>(
-        &self,
-        body: usize,
-        node: [i32; D],
-        mut f: impl FnMut(&Particle<T, D>, T, Vector<T, D>, &Image<T, D>),
-    ) {
-        for image in &self.images(node, B::WIDTH) {
-            for offset in offsets::<D>(B::WIDTH) {
-                let cell = std::array::from_fn(|i| image.node[i] - offset[i] as i32);
-                for &index in self.cover.particles_in(body, cell) {
-                    let particle = &self.bodies[body].particles[index as usize];
-                    let (weight, gradient) = Stencil::<T, D, B>::new(&self.lattice, particle).at(offset);
-                    if weight > T::ZERO {
-                        f(particle, weight, gradient, image);
-                    }
-                }
-            }
-        }
+    /// Places in `slots` of two bodies that may touch, and the number of their rule.
+    fn pairs(&self, slots: &[u32]) -> impl Iterator<Item = [usize; 3]> {
+        let body = |place: usize| self.cover.slots[slots[place] as usize].0 as usize;
+        let places = (0..slots.len()).flat_map(move |a| (a + 1..slots.len()).map(move |b| [a, b]));
+        places.filter_map(move |[a, b]| {
+            let bodies = [body(a), body(b)];
+            let rule = self.rules.number(bodies[0], bodies[1]);
+            let rigid = bodies.map(|body| self.bodies[body].rigid);
+            let touch = self.rules.rule(rule).law != ContactLaw::None && rigid != [true; 2];
+            touch.then_some([a, b, rule])
+        })
     }
-}
 
-/// A stress seen in the mirrors that turn the axes with sign -1.
-fn mirrored<T: Real, const D: usize>(stress: &Symmetric<T>, sign: [T; D]) -> Symmetric<T> {
-    let sign: [T; 3] = std::array::from_fn(|i| if i < D { sign[i] } else { T::ONE });
-    let s = stress.0;
-    let [x, y, z] = sign;
-    Symmetric([s[0], s[1], s[2], s[3] * x * y, s[4] * y * z, s[5] * x * z])
+    fn side(&self, index: usize, node: [i32; D], sums: &Sums<T, D>) -> Side<T, D> {
+        let body = self.cover.slots[index / nodes_per_block(D)].0 as usize;
+        let owner = &self.bodies[body];
+        let arm = Vector::from_fn(|i| T::of(f64::from(node[i].rem_euclid(SIDE))) * self.lattice.cell);
+        let surface = Surface {
+            inverse_mass: if owner.rigid { T::ZERO } else { T::ONE / self.field.nodes[index].mass },
+            normal: (-sums.mass_gradient).direction(),
+            stress: sums.stress * (T::ONE / sums.volume),
+            volume: sums.volume,
+            modulus: owner.wave_modulus(&Matrix::IDENTITY, T::ONE),
+            force: sums.force,
+            place: sums.place.over(sums.volume).seen_from(arm),
+        };
+        Side { body, index, surface, volume_gradient: sums.volume_gradient }
+    }
 }
 
 /// Normal along the difference of the volume gradients, and the gap from the room that the bodies leave around the node [cells].

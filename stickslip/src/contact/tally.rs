@@ -79,8 +79,10 @@ impl Tally {
             sum.last.area += area;
             sum.last.gap += area * (impulse.gap * lattice.cell).f64();
             sum.last.slip += area * impulse.slip.f64();
-            let (place, tangential) = (lattice.position(impulse.node).space(), impulse.change.tangential.space());
-            let magnitude = impulse.change.impulse[0].norm().f64().max(impulse.change.impulse[1].norm().f64());
+            let (place, tangential) =
+                (lattice.position(impulse.node).space(), impulse.change.tangential.space());
+            let magnitude =
+                impulse.change.impulse[0].norm().f64().max(impulse.change.impulse[1].norm().f64());
             sum.magnitude += magnitude;
             for i in 0..3 {
                 sum.tangential[i] += tangential[i];

@@ -36,7 +36,8 @@ impl Network {
         let bodies = results.bodies_table()?;
         let contacts = results.contacts_table()?;
         let distance = |row: &BodyRow| time.map_or(-row.time, |time| (row.time - time).abs());
-        let nearest = bodies.iter().min_by(|a, b| distance(a).total_cmp(&distance(b))).map_or(0.0, |row| row.time);
+        let nearest =
+            bodies.iter().min_by(|a, b| distance(a).total_cmp(&distance(b))).map_or(0.0, |row| row.time);
         Ok(Network {
             time: nearest,
             bodies: bodies.into_iter().filter(|row| row.time == nearest).collect(),
@@ -58,19 +59,27 @@ impl Network {
     pub fn write(&self, sink: impl Write) -> io::Result<()> {
         let mut xml = Writer::new_with_indent(sink, b' ', 1);
         xml.write_event(Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None)))?;
-        let root = xml.create_element("graphml").with_attribute(("xmlns", "http://graphml.graphdrawing.org/xmlns"));
+        let root =
+            xml.create_element("graphml").with_attribute(("xmlns", "http://graphml.graphdrawing.org/xmlns"));
         root.write_inner_content(|xml| {
             for (kind, names) in [("node", &OF_BODY[..]), ("edge", &OF_CONTACT[..])] {
                 for name in names {
-                    let (id, of) = (format!("{kind}_{name}"), if *name == "name" { "string" } else { "double" });
+                    let (id, of) =
+                        (format!("{kind}_{name}"), if *name == "name" { "string" } else { "double" });
                     xml.create_element("key")
-                        .with_attributes([("id", id.as_str()), ("for", kind), ("attr.name", *name), ("attr.type", of)])
+                        .with_attributes([
+                            ("id", id.as_str()),
+                            ("for", kind),
+                            ("attr.name", *name),
+                            ("attr.type", of),
+                        ])
                         .write_empty()?;
                 }
             }
             let time = format!("t = {} s", self.time);
-            xml.create_element("graph").with_attributes([("id", time.as_str()), ("edgedefault", "directed")]).write_inner_content(
-                |xml| {
+            xml.create_element("graph")
+                .with_attributes([("id", time.as_str()), ("edgedefault", "directed")])
+                .write_inner_content(|xml| {
                     for row in &self.bodies {
                         let values = [row.x, row.y, row.z, row.mass].map(|value| value.to_string());
                         let values: Vec<String> = std::iter::once(row.body.clone()).chain(values).collect();
@@ -79,17 +88,33 @@ impl Network {
                             .write_inner_content(|xml| data(xml, "node", &OF_BODY, &values))?;
                     }
                     for row in &self.contacts {
-                        let ContactRow { fx, fy, fz, normal, tangential, x, y, z, area, gap, slip, friction, .. } = *row;
+                        let ContactRow {
+                            fx,
+                            fy,
+                            fz,
+                            normal,
+                            tangential,
+                            x,
+                            y,
+                            z,
+                            area,
+                            gap,
+                            slip,
+                            friction,
+                            ..
+                        } = *row;
                         let values = [fx, fy, fz, normal, tangential, x, y, z, area, gap, slip, friction];
                         xml.create_element("edge")
-                            .with_attributes([("source", row.body_a.as_str()), ("target", row.body_b.as_str())])
+                            .with_attributes([
+                                ("source", row.body_a.as_str()),
+                                ("target", row.body_b.as_str()),
+                            ])
                             .write_inner_content(|xml| {
                                 data(xml, "edge", &OF_CONTACT, &values.map(|value| value.to_string()))
                             })?;
                     }
                     Ok(())
-                },
-            )?;
+                })?;
             Ok(())
         })?;
         xml.into_inner().write_all(b"\n")

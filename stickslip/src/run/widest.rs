@@ -100,6 +100,9 @@ mod tests {
     fn only_contacts_that_the_grid_does_not_resolve_are_named() {
         assert_eq!(widest("plane-strain", &[2.0]).to_string(), "");
         let text = widest("plane-strain", &[2.0, 0.1, 0.3, 0.2, 0.4, 0.5]).to_string();
-        assert!(text.contains("b1 and b2 0.50 cells, b3 and b4 1.00 cells, b2 and b3 1.50 cells and 2 more"), "{text}");
+        assert!(
+            text.contains("b1 and b2 0.50 cells, b3 and b4 1.00 cells, b2 and b3 1.50 cells and 2 more"),
+            "{text}"
+        );
     }
 }

@@ -8,6 +8,7 @@ mod expression;
 mod file;
 mod formula;
 mod load;
+mod measurements;
 mod overrides;
 mod parameters;
 mod problem;
@@ -19,6 +20,7 @@ mod units;
 pub use error::{Mistake, SceneError};
 pub use expression::{Expression, Program};
 pub use load::{Loaded, load, parse};
+pub use measurements::{Anchor, Arrival, Front, Measurements, Observable, Probe, Reading, TimeUnit};
 pub use problem::Problem;
 pub use schema::schema;
 pub use source::Source;
@@ -309,6 +311,8 @@ pub struct Outputs {
     pub particles: Option<f64>,
     /// Grid nodes for ParaView.
     pub grid: Option<f64>,
+    /// Probes, arrivals and fronts.
+    pub measurements: Measurements,
 }
 
 /// A known answer for one quantity of one body.
@@ -347,11 +351,11 @@ fn infinity_as_text<S: serde::Serializer>(value: &f64, serializer: S) -> Result<
 }
 
 impl Default for ContactRule {
-    /// The gap law without friction for every pair.
+    /// The law of exact surfaces without friction for every pair.
     fn default() -> Self {
         ContactRule {
             between: [None, None],
-            law: ContactLaw::Gap,
+            law: ContactLaw::Surface,
             friction: 0.0,
             kinetic_friction: 0.0,
             friction_decay_speed: 0.0,

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 use stickslip::door::{
-    BodyState, ContactState, GridSnapshot, Ledger, ParticleSnapshot, Simulation, StepError,
+    BodyState, ContactState, GridSnapshot, Ledger, ParticleSnapshot, Patch, Simulation, StepError,
 };
 use stickslip::geometry::Shape;
 use stickslip::material::SHELF;
@@ -147,8 +147,17 @@ impl Simulation for Ballistic {
                 normal: 3.0,
                 tangential: 0.0,
                 nodes,
+                position: [0.5, 0.0, 0.25],
+                area: 0.125,
+                gap: -0.01,
+                slip: 0.02,
+                friction: 0.75,
             }],
         }
+    }
+
+    fn patches(&self) -> Vec<Patch> {
+        Vec::new()
     }
 
     fn snapshot(&self) -> ParticleSnapshot {
@@ -218,7 +227,12 @@ pub fn scene() -> Scene {
         materials: vec![NamedMaterial { name: "rubber".into(), density: 1000.0, law }],
         bodies: vec![body("sphere"), body("plane")],
         contact: vec![ContactRule { friction: f64::INFINITY, ..Default::default() }],
-        outputs: Outputs { tables: 0.1, particles: Some(0.25), grid: Some(0.5) },
+        outputs: Outputs {
+            tables: 0.1,
+            particles: Some(0.25),
+            grid: Some(0.5),
+            measurements: Measurements::default(),
+        },
         references: vec![Reference {
             body: "sphere".into(),
             quantity: "vx".into(),

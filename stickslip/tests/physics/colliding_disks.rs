@@ -9,13 +9,15 @@
 //! that lie about 0.3 cells inside, so friction should lose some mu 0.3 h of each
 //! disk's arm, an estimate (measured 0.9 % and 4.5 %). With the
 //! traction rule and GIMP, energy (kinetic + strain + dissipated by friction) never above 1.001 of the start, with own and with common
-//! normals, with and without friction; the same for the gap law. Rebound no faster than approach (the kinematic
-//! rule gains a quarter of the energy, as the paper says). The gap law touches within half a cell of travel of the exact time
-//! (measured 0.37; the benchmark asks 0.3). How much energy is left is printed only: the gap law loses 8 % head on, where the benchmark asks 1 %.
+//! normals, with and without friction; the same for the laws `surface` and `gap`. Rebound no faster than approach (the kinematic
+//! rule gains a quarter of the energy, as the paper says). `surface` touches within 0.1 cells of travel of the exact time
+//! (measured 0.06), `gap` within half a cell (0.37). How much energy is left is printed only: `surface` loses 10 % head on, `gap` 7 %, where the benchmark asks
+//! 1 %: nodes that meet collide inelastically, and the loss shrinks with the cell (`surface`: 3.6 % at half, 1.3 % at a quarter).
 
 use crate::trial::{distance, run_to, start};
 
-const RULES: [(&str, &str); 5] = [
+const RULES: [(&str, &str); 6] = [
+    ("surface", "common"),
     ("gap", "common"),
     ("traction", "common"),
     ("traction", "own"),
@@ -112,9 +114,13 @@ fn head_on_disks() {
     for rule in RULES {
         let seen = collide(&disks([0.8, 0.8], rule, 0.0), 3.5);
         check("head on", (rule.0, rule.1, 0.0), &seen);
-        if rule.0 == "gap" {
-            assert!((seen.first_contact - 1.58579).abs() < 0.5 * 0.05 / 0.2828, "{}", seen.first_contact);
-        }
+        let cells = match rule.0 {
+            "surface" => 0.1,
+            "gap" => 0.5,
+            _ => f64::INFINITY,
+        };
+        let late = (seen.first_contact - 1.58579) * 0.2828 / 0.05;
+        assert!(late.abs() < cells, "{rule:?}: {late} cells late");
         if rule.0 != "kinematic" {
             assert!(seen.restitution <= 1.0, "{rule:?}: {}", seen.restitution);
         }

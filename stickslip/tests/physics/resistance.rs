@@ -82,7 +82,8 @@ fn a_viscous_contact_slows_the_block_exponentially() {
 #[test]
 fn cohesion_bears_shear_without_weight() {
     let time = 0.2;
-    let v = velocity(&Block { gravity: 0.0, speed: 2.0, contact: "cohesion = 2000\nadhesion = 1e5" }, time)[0];
+    let v =
+        velocity(&Block { gravity: 0.0, speed: 2.0, contact: "cohesion = 2000\nadhesion = 1e5" }, time)[0];
     let exact = 2.0 - 2000.0 * AREA / MASS * time;
     println!("cohesion: {v:.4} m/s, exact {exact:.4}");
     assert!((v - exact).abs() < 0.1 * (2.0 - exact), "{v} {exact}");

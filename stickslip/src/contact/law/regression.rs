@@ -108,10 +108,9 @@ fn gap<T: Real, const D: usize>(points: &[Point<T, D>], normal: Vector<T, D>) ->
     let (mut first, mut second) = (None::<T>, None::<T>);
     for point in points {
         let along = point.arm.dot(normal);
-        let radius = Vector::<T, 3>::from_fn(|j| {
-            (0..D).fold(T::ZERO, |sum, i| sum + normal[i] * point.axes.0[i][j])
-        })
-        .norm();
+        let radius =
+            Vector::<T, 3>::from_fn(|j| (0..D).fold(T::ZERO, |sum, i| sum + normal[i] * point.axes.0[i][j]))
+                .norm();
         if point.label < T::ZERO {
             let surface = along + radius;
             first = Some(first.map_or(surface, |x| x.max(surface)));

@@ -36,12 +36,18 @@ impl<T: Real, const D: usize> Law<T, D> for Surface {
         let from = seen(1 - near, center);
         let point = center - from.normal * from.distance;
         let cell = look.near.lattice.cell;
-        let [a, b] = [0, 1].map(|side| {
-            let offset = seen(side, point);
-            (offset, flatness(|arm| seen(side, point + arm).normal, cell))
-        });
-        let normal = (a.0.normal * a.1 - b.0.normal * b.1).direction();
-        Facing { normal, gap: (a.0.distance + b.0.distance) / cell }
+        let [a, b] = [0, 1].map(|side| seen(side, point));
+        let gap = (a.distance + b.distance) / cell;
+        // Nothing moves by a cell in a step.
+        if gap > T::ONE {
+            return Facing { normal: None, gap };
+        }
+        // Where the normals agree, it does not matter whose counts more.
+        let weights = match (a.normal + b.normal).norm() < T::of(AGREEING) {
+            true => [T::ONE; 2],
+            false => [0, 1].map(|side| flatness(|arm| seen(side, point + arm).normal, cell)),
+        };
+        Facing { normal: (a.normal * weights[0] - b.normal * weights[1]).direction(), gap }
     }
 
     fn change(&self, pair: &Pair<T, D>, [v, w]: [Vector<T, D>; 2]) -> Change<T, D> {
@@ -76,6 +82,9 @@ impl<T: Real, const D: usize> Law<T, D> for Surface {
         }
     }
 }
+
+/// Angle between two normals that are the same for all that contact does [rad].
+const AGREEING: f64 = 1e-3;
 
 /// How flat a surface is around a point: large on a face, 2 at a right-angled edge.
 ///

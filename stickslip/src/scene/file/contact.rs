@@ -15,7 +15,7 @@ table! {
         /// The pair it holds for: two names of bodies or materials; "any", the default for both, matches every body.
         between: Option<Pair>,
         /// When the bodies push on each other.
-        #[schemars(extend("default" = "gap"))]
+        #[schemars(extend("default" = "surface"))]
         law: Option<Word<ContactLaw>>,
         /// Coefficient of friction; inf sticks, 0 is frictionless.
         #[schemars(extend("default" = 0))]
@@ -51,14 +51,14 @@ pub struct Pair([Text; 2]);
 impl Choice for ContactLaw {
     const WORDS: &'static [(&'static str, Self, &'static str)] = &[
         (
-            "gap",
-            ContactLaw::Gap,
-            "When they approach or push on each other, once their surfaces touch: the bodies fill the room around the node.",
-        ),
-        (
             "surface",
             ContactLaw::Surface,
             "When their exact surfaces touch: the undeformed shapes, carried along by the deformation.",
+        ),
+        (
+            "gap",
+            ContactLaw::Gap,
+            "When they approach or push on each other, once their surfaces touch: the bodies fill the room around the node.",
         ),
         (
             "separation",
@@ -124,7 +124,8 @@ impl Contact {
             | ContactLaw::Separation
             | ContactLaw::Regression
             | ContactLaw::Gap
-            | ContactLaw::Surface | ContactLaw::Glued => Normal::Common,
+            | ContactLaw::Surface
+            | ContactLaw::Glued => Normal::Common,
         };
         let friction = self.friction.as_ref().map_or(Ok(default.friction), |friction| {
             let value = friction.extended(context)?;
@@ -157,9 +158,9 @@ impl Contact {
 
 /// A quantity from zero on; zero where the file is silent.
 fn not_negative<M: Measure>(quantity: &Option<Quantity<M>>, context: &Context) -> Result<f64, Fault> {
-    quantity.as_ref().map_or(Ok(0.0), |quantity| {
-        quantity.checked(context, "a quantity from 0 on", |value| value >= 0.0)
-    })
+    quantity
+        .as_ref()
+        .map_or(Ok(0.0), |quantity| quantity.checked(context, "a quantity from 0 on", |value| value >= 0.0))
 }
 
 impl Read for Pair {

@@ -1,0 +1,60 @@
+//! The particles of a body around one node, one after the other, for laws that look at more than sums.
+
+use super::Near;
+use crate::basis::MAX_WIDTH;
+use crate::body::Particle;
+use crate::scene::Face;
+use crate::tensor::{Matrix, Real, Vector};
+use crate::transfer::offsets;
+
+/// A node or one of its mirror images, with the signs that turn vectors between the two.
+struct Image<T, const D: usize> {
+    node: [i32; D],
+    sign: [T; D],
+}
+
+impl<T: Real, const D: usize> Near<'_, T, D> {
+    /// Calls `f(arm, particle, mirror)` for every particle of a body whose box reaches into the cells around a node: `arm` from the node
+    /// to it [m], `mirror` turns its vectors into those that the node sees.
+    pub fn around(
+        &self,
+        body: usize,
+        node: [i32; D],
+        mut f: impl FnMut(Vector<T, D>, &Particle<T, D>, Matrix<T>),
+    ) {
+        for image in &self.images(node) {
+            let seen = self.lattice.position(image.node);
+            let mirror = Matrix::from_fn(|i, j| match (i == j, i < D) {
+                (true, true) => image.sign[i],
+                (true, false) => T::ONE,
+                _ => T::ZERO,
+            });
+            for offset in offsets::<D>(MAX_WIDTH) {
+                let cell = std::array::from_fn(|i| image.node[i] - offset[i] as i32);
+                for &index in self.cover.particles_in(body, cell) {
+                    let particle = &self.bodies[body].particles[index as usize];
+                    let arm = particle.position - seen;
+                    let reach = self.lattice.cell + particle.half_width;
+                    if (0..D).all(|i| arm[i].abs() < reach) {
+                        f(Vector::from_fn(|i| arm[i] * image.sign[i]), particle, mirror);
+                    }
+                }
+            }
+        }
+    }
+
+    /// A node and its images in the mirrors near it.
+    fn images(&self, node: [i32; D]) -> Vec<Image<T, D>> {
+        let mut images = vec![Image { node, sign: [T::ONE; D] }];
+        for wall in self.boundary.walls.iter().filter(|wall| wall.face == Face::Symmetry) {
+            if wall.depth(node) < MAX_WIDTH as i32 {
+                for i in 0..images.len() {
+                    let Image { node, mut sign } = images[i];
+                    sign[wall.axis] = -sign[wall.axis];
+                    images.push(Image { node: wall.image(node), sign });
+                }
+            }
+        }
+        images
+    }
+}
