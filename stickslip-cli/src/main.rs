@@ -9,6 +9,7 @@ mod illustration;
 mod page;
 mod picture;
 mod progress;
+mod validation;
 
 use clap::Parser;
 use std::process::ExitCode;

@@ -6,6 +6,7 @@ mod plot;
 mod render;
 mod run;
 mod schema;
+mod validate;
 
 use crate::failure::Failure;
 use clap::Parser;
@@ -25,6 +26,7 @@ pub enum Command {
     Render(render::Arguments),
     Plot(plot::Arguments),
     Schema(schema::Arguments),
+    Validate(validate::Arguments),
 }
 
 impl Command {
@@ -37,6 +39,7 @@ impl Command {
             Command::Render(arguments) => arguments.execute(),
             Command::Plot(arguments) => arguments.execute(),
             Command::Schema(arguments) => arguments.execute(),
+            Command::Validate(arguments) => arguments.execute(),
         }
     }
 }
