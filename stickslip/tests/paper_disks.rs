@@ -1,6 +1,7 @@
 //! The paper's disks (Bardenhagen et al. 2001, section 3.3), run from their scene files.
 //!
-//! Arrival: sigma_1 - sigma_2 at the centre of a disk above 0.3 rho c_L V, in transits D/c_L, as in the sharp-contact reference.
+//! Arrival, where nothing else is said: sigma_1 - sigma_2 at the centre of a disk above 0.3 rho c_L V, in transits D/c_L, as in the
+//! sharp-contact reference.
 //!
 //! Every claim has a quick form on coarse grids, which always runs, and a slow one at the paper's 80 cells.
 //! `cargo test --release -p stickslip --test paper_disks -- --nocapture --include-ignored` prints what was measured.
@@ -28,25 +29,27 @@ fn every_choice_of_the_scenes_runs_and_keeps_the_balance() {
 }
 
 /// The paper: frictionless contacts slow the waves most, sliding ones less, glued ones least. From the third disk on the order holds,
-/// and the last disk sees the wave at least `ratio` times later where contacts slide than where they are glued.
+/// and the last disk moves at least `ratio` times later where contacts slide than where they are glued. A disk has the wave when its centre
+/// of mass moves at 0.05 V: in the glued zig-zag the wave passes a disk's centre with little difference of stress.
+/// Measured at 20 cells: 4.26, 5.90 and 8.21 transits at the last disk, 1.385 times later.
 fn friction_orders_arrivals(cells: (&str, &str), ratio: f64) {
     let chain = |scene: &str, choice: &[(&str, &str)]| {
-        Chain::until_arrival(scene, &[&[cells, ("contact", "traction")], choice].concat(), 16.0)
+        Chain::until_start(scene, &[&[cells, ("contact", "traction")], choice].concat(), 16.0)
     };
     let glued = chain("glued", &[]);
     let [sliding, frictionless] = ["0.5", "0"].map(|friction| chain("zigzag", &[("friction", friction)]));
     for disk in 3..=5 {
-        let times = [&glued, &sliding, &frictionless].map(|chain| chain.arrival(disk));
+        let times = [&glued, &sliding, &frictionless].map(|chain| chain.start(disk));
         assert!(times[0] < times[1] && times[1] < times[2], "disk {disk}: {times:?}");
     }
-    let later = sliding.arrival(5) / glued.arrival(5);
+    let later = sliding.start(5) / glued.start(5);
     println!("last disk {later:.3} times later where contacts slide");
     assert!(later >= ratio, "{later}");
 }
 
 #[test]
 fn friction_orders_arrivals_on_a_coarse_grid() {
-    friction_orders_arrivals(COARSE, 1.1);
+    friction_orders_arrivals(COARSE, 1.3);
 }
 
 #[test]

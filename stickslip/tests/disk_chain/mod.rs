@@ -14,16 +14,21 @@ pub struct Chain {
     pub energy: f64,
     /// When the stress difference at the centre of each disk, from the striker on, first is above 0.3 rho c_L V [transits].
     pub arrivals: Vec<Option<f64>>,
+    /// When each disk's centre of mass first is faster than 0.05 V [transits].
+    pub starts: Vec<Option<f64>>,
 }
 
 /// Stress difference that counts as arrived [rho c_L V]: that of the reference with sharp contact.
 const THRESHOLD: f64 = 0.3;
 
+/// Speed of a disk that counts as moving [V].
+const MOVING: f64 = 0.05;
+
 /// Transits between looks at the centres.
 const LOOK: f64 = 0.01;
 
-/// When a run ends: a time [transits], or arrivals that are enough.
-type Until = (f64, fn(&[Option<f64>]) -> bool);
+/// When a run ends: a time [transits], or when it has shown enough.
+type Until = (f64, fn(&Chain) -> bool);
 
 /// Numbers that a scene of disks names.
 struct Setting {
@@ -31,6 +36,8 @@ struct Setting {
     cell: f64,
     /// Stress difference that counts as arrived [Pa].
     threshold: f64,
+    /// Speed that counts as moving [m/s].
+    moving: f64,
     /// Bodies of the disks with their first centres, in the plane.
     disks: Vec<(usize, [f64; 2])>,
 }
@@ -43,15 +50,20 @@ impl Chain {
 
     /// Runs a scene until the wave has arrived at every disk, at most to a time [transits].
     pub fn until_arrival(name: &str, overrides: &[(&str, &str)], transits: f64) -> Chain {
-        Chain::stopped(name, overrides, (transits, |arrivals| arrivals.iter().all(Option::is_some)))
+        Chain::stopped(name, overrides, (transits, |chain| chain.arrivals.iter().all(Option::is_some)))
+    }
+
+    /// Runs a scene until every disk moves, at most to a time [transits].
+    pub fn until_start(name: &str, overrides: &[(&str, &str)], transits: f64) -> Chain {
+        Chain::stopped(name, overrides, (transits, |chain| chain.starts.iter().all(Option::is_some)))
     }
 
     fn stopped(name: &str, overrides: &[(&str, &str)], until: Until) -> Chain {
         let scene = load(name, overrides);
         let chain = Chain::of(&scene, until);
         println!(
-            "{name} {overrides:?}: energy {:+.4}, momentum {:.1e}, arrivals {:.3?}",
-            chain.energy, chain.momentum, chain.arrivals
+            "{name} {overrides:?}: energy {:+.4}, momentum {:.1e}, arrivals {:.3?}, starts {:.3?}",
+            chain.energy, chain.momentum, chain.arrivals, chain.starts
         );
         chain
     }
@@ -60,11 +72,13 @@ impl Chain {
         let mut simulation = engine::build(scene).unwrap_or_else(|error| panic!("{error:?}"));
         let setting = Setting::of(scene, &*simulation);
         let end = transits * setting.transit;
-        let mut chain = Chain { momentum: 0.0, energy: 0.0, arrivals: vec![None; setting.disks.len()] };
-        let (mut impulse, mut pushed, mut looked) =
-            ([0.0; 2], 0.0_f64, (0.0, vec![0.0; setting.disks.len()]));
+        let disks = setting.disks.len();
+        let mut chain =
+            Chain { momentum: 0.0, energy: 0.0, arrivals: vec![None; disks], starts: vec![None; disks] };
+        let (mut impulse, mut pushed) = ([0.0; 2], 0.0_f64);
+        let (mut stresses, mut speeds) = (First::new(disks), First::new(disks));
         simulation.take_contacts();
-        while simulation.time() < end * (1.0 - 1e-12) && !enough(&chain.arrivals) {
+        while simulation.time() < end * (1.0 - 1e-12) && !enough(&chain) {
             let start = simulation.time();
             simulation.step(end - start).unwrap_or_else(|error| panic!("{error}"));
             let dt = simulation.time() - start;
@@ -77,16 +91,10 @@ impl Chain {
                 }
             }
             let now = simulation.time() / setting.transit;
-            if now - looked.0 >= LOOK {
-                let differences = setting.differences(&simulation.snapshot());
-                for (i, arrival) in chain.arrivals.iter_mut().enumerate() {
-                    let [before, after] = [looked.1[i], differences[i]];
-                    if arrival.is_none() && after >= setting.threshold {
-                        let share = (setting.threshold - before) / (after - before);
-                        *arrival = Some(looked.0 + share * (now - looked.0));
-                    }
-                }
-                looked = (now, differences);
+            if now - stresses.time >= LOOK {
+                stresses.look(now, setting.differences(&simulation.snapshot()), setting.threshold);
+                speeds.look(now, setting.speeds(&*simulation), setting.moving);
+                (chain.arrivals, chain.starts) = (stresses.found.clone(), speeds.found.clone());
             }
         }
         let ledger = simulation.ledger();
@@ -100,10 +108,38 @@ impl Chain {
         self.arrivals[disk - 1].unwrap_or_else(|| panic!("nothing arrived at disk {disk}: {self:?}"))
     }
 
+    /// When a disk starts, counted from the striker and from 1 [transits].
+    pub fn start(&self, disk: usize) -> f64 {
+        self.starts[disk - 1].unwrap_or_else(|| panic!("disk {disk} did not move: {self:?}"))
+    }
+
     /// Mean time from centre to centre, from the second disk on [transits].
     pub fn interval(&self) -> f64 {
         let last = self.arrivals.len();
         (self.arrival(last) - self.arrival(2)) / (last - 2) as f64
+    }
+}
+
+/// When each of some values first is above a threshold.
+struct First {
+    found: Vec<Option<f64>>,
+    time: f64,
+    values: Vec<f64>,
+}
+
+impl First {
+    fn new(count: usize) -> Self {
+        First { found: vec![None; count], time: 0.0, values: vec![0.0; count] }
+    }
+
+    fn look(&mut self, now: f64, values: Vec<f64>, threshold: f64) {
+        for ((found, before), after) in self.found.iter_mut().zip(&self.values).zip(&values) {
+            if found.is_none() && *after >= threshold {
+                let share = (threshold - before) / (after - before);
+                *found = Some(self.time + share * (now - self.time));
+            }
+        }
+        (self.time, self.values) = (now, values);
     }
 }
 
@@ -119,6 +155,7 @@ impl Setting {
         Setting {
             transit: number("transit"),
             cell: number("cell"),
+            moving: MOVING * number("speed"),
             threshold: THRESHOLD * number("density") * number("c_L") * number("speed"),
             disks: disks.collect(),
         }
@@ -126,6 +163,12 @@ impl Setting {
 
     fn is_disk(&self, body: usize) -> bool {
         self.disks.iter().any(|&(disk, _)| disk == body)
+    }
+
+    /// Speed of each disk's centre of mass [m/s].
+    fn speeds(&self, simulation: &dyn Simulation) -> Vec<f64> {
+        let bodies = simulation.bodies();
+        self.disks.iter().map(|&(disk, _)| bodies[disk].velocity[0].hypot(bodies[disk].velocity[1])).collect()
     }
 
     /// sigma_1 - sigma_2 of the mean stress within a cell and a half of each disk's centre [Pa].
