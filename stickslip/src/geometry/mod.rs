@@ -6,16 +6,20 @@
 mod bounds;
 mod distance;
 mod filling;
+mod fitted;
 mod inside;
 mod polygon;
+mod rings;
 mod rotation;
 mod round;
+mod shells;
 mod volume;
 mod whole;
 
 pub use bounds::Bounds;
 pub use distance::Level;
-pub use filling::{Filling, Lattice, fill};
+pub use filling::{Arrangement, Filling, Lattice, Site, fill, sites};
+pub use fitted::{FITTED_SHAPES, fits};
 pub use round::RoundPart;
 pub use whole::{Mirror, Whole};
 
