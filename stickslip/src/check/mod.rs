@@ -96,7 +96,7 @@ mod tests {
             materials: vec![neo_hookean("soft", 1.0), neo_hookean("stiff", 10.0)],
             bodies,
             contact: vec![],
-            outputs: Outputs { tables: 0.1, particles: None, grid: None },
+            outputs: Outputs { tables: 0.1, particles: None, grid: None, fringes: None },
             references: vec![],
         }
     }

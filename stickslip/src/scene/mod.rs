@@ -7,6 +7,7 @@ mod error;
 mod expression;
 mod file;
 mod formula;
+mod fringes;
 mod load;
 mod overrides;
 mod parameters;
@@ -18,6 +19,7 @@ mod units;
 
 pub use error::{Mistake, SceneError};
 pub use expression::{Expression, Program};
+pub use fringes::{Field, Fringes, Light, Overlay, Polariscope, Sensitivity};
 pub use load::{Loaded, load, parse};
 pub use problem::Problem;
 pub use schema::schema;
@@ -257,6 +259,8 @@ pub struct Outputs {
     pub particles: Option<f64>,
     /// Grid nodes for ParaView.
     pub grid: Option<f64>,
+    /// Photoelastic fringes.
+    pub fringes: Option<Fringes>,
 }
 
 /// A known answer for one quantity of one body.
