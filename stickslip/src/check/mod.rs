@@ -100,6 +100,7 @@ mod tests {
                 particles: None,
                 grid: None,
                 measurements: Measurements::default(),
+                fringes: None,
             },
             references: vec![],
         }

@@ -42,6 +42,8 @@ pub struct Tally {
     /// Largest area over which each pair touched since the start [m^2].
     largest: BTreeMap<[usize; 2], f64>,
     since: f64,
+    /// What was taken last.
+    taken: Vec<ContactState>,
     uses: u64,
     /// Work that friction took from the bodies [J].
     pub friction: f64,
@@ -52,13 +54,15 @@ pub struct Tally {
 }
 
 impl Sum {
+    /// Way of slip with that of the last use [m].
+    fn slipped(&self) -> f64 {
+        if self.last.area > 0.0 { self.slip + self.last.slip / self.last.area } else { self.slip }
+    }
+
     /// Closes the use before `next`, whose touching nodes are all known now.
     fn close(&mut self, next: u64) {
         if self.last_use != next {
-            if self.last.area > 0.0 {
-                self.slip += self.last.slip / self.last.area;
-            }
-            (self.last_use, self.last) = (next, Touching::default());
+            (self.slip, self.last_use, self.last) = (self.slipped(), next, Touching::default());
         }
     }
 }
@@ -104,27 +108,36 @@ impl Tally {
 
     /// The mean forces between the last call and time `now` [s], ordered by pair.
     pub fn take(&mut self, now: f64) -> Vec<ContactState> {
-        let elapsed = now - self.since;
+        if now > self.since {
+            self.taken = self.means(now);
+        } else {
+            self.taken.clear();
+        }
         self.since = now;
-        let pairs = std::mem::take(&mut self.pairs);
-        (pairs.into_iter())
-            .filter(|_| elapsed > 0.0)
-            .map(|([body_a, body_b], mut sum)| {
-                let last = sum.last;
-                sum.close(u64::MAX);
-                ContactState {
-                    body_a,
-                    body_b,
-                    force: sum.impulse.map(|j| j / elapsed),
-                    normal: sum.normal / elapsed,
-                    tangential: sum.tangential.iter().map(|j| j * j).sum::<f64>().sqrt() / elapsed,
-                    nodes: last.nodes,
-                    position: sum.moment.map(|x| x / sum.magnitude),
-                    area: last.area,
-                    gap: if last.area > 0.0 { last.gap / last.area } else { 0.0 },
-                    slip: sum.slip,
-                    friction: sum.friction,
-                }
+        self.pairs.clear();
+        self.taken.clone()
+    }
+
+    /// What [`Tally::take`] would give, or gave at this very time.
+    pub fn look(&self, now: f64) -> Vec<ContactState> {
+        if now > self.since { self.means(now) } else { self.taken.clone() }
+    }
+
+    fn means(&self, now: f64) -> Vec<ContactState> {
+        let elapsed = now - self.since;
+        (self.pairs.iter())
+            .map(|(&[body_a, body_b], sum)| ContactState {
+                body_a,
+                body_b,
+                force: sum.impulse.map(|j| j / elapsed),
+                normal: sum.normal / elapsed,
+                tangential: sum.tangential.iter().map(|j| j * j).sum::<f64>().sqrt() / elapsed,
+                nodes: sum.last.nodes,
+                position: sum.moment.map(|x| x / sum.magnitude),
+                area: sum.last.area,
+                gap: if sum.last.area > 0.0 { sum.last.gap / sum.last.area } else { 0.0 },
+                slip: sum.slipped(),
+                friction: sum.friction,
             })
             .collect()
     }

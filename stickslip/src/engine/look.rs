@@ -91,6 +91,10 @@ impl<T: Real, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
         self.tally.take(self.time)
     }
 
+    fn contacts(&self) -> Vec<ContactState> {
+        self.tally.look(self.time)
+    }
+
     fn patches(&self) -> Vec<Patch> {
         self.tally.patches()
     }

@@ -13,6 +13,7 @@ mod energy;
 mod file;
 mod folder;
 mod frames;
+mod fringes;
 mod fronts;
 mod grid;
 mod manifest;
@@ -34,6 +35,7 @@ pub use energy::EnergyRow;
 pub use file::{OutputError, ReadError, ReadProblem};
 pub use folder::{FolderError, OutputFolder};
 pub use frames::Frame;
+pub use fringes::{FRAMES_PER_SECOND, FringeRow};
 pub use fronts::{FrontRow, FrontSpeedRow};
 pub use grid::encode_grid;
 pub use manifest::{Manifest, Performance, ReferenceCurve, Status, Timing};
@@ -55,6 +57,9 @@ const FRONTS: &str = "fronts.csv";
 const FRONT_SPEEDS: &str = "front_speeds.csv";
 const PARTICLES: &str = "particles";
 const GRID: &str = "grid";
+const FRINGES: &str = "fringes";
+const FRINGES_TABLE: &str = "fringes.csv";
+const FRINGES_ANIMATION: &str = "fringes.png";
 
 /// One kind of output.
 pub trait Observer {

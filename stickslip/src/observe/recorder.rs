@@ -7,6 +7,7 @@ use super::contacts::Contacts;
 use super::energy::Energy;
 use super::file::OutputError;
 use super::folder::OutputFolder;
+use super::fringes::Fringes;
 use super::fronts::Fronts;
 use super::grid::Grid;
 use super::particles::Particles;
@@ -51,6 +52,9 @@ impl Recorder {
         }
         if let Some(interval) = scene.outputs.grid {
             observers.push(Box::new(Grid::create(interval, folder)?));
+        }
+        if let Some(camera) = &scene.outputs.fringes {
+            observers.push(Box::new(Fringes::create((scene, camera), folder)?));
         }
         let seats = observers.into_iter().map(|observer| Seat { observer, last: None }).collect();
         Ok(Recorder { seats })

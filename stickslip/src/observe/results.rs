@@ -6,12 +6,13 @@ use super::contacts::ContactRow;
 use super::energy::EnergyRow;
 use super::file::ReadError;
 use super::frames::{Frame, read_frames};
+use super::fringes::FringeRow;
 use super::fronts::{FrontRow, FrontSpeedRow};
 use super::manifest::Manifest;
 use super::particles::read_particles;
 use super::probes::ProbeRow;
 use super::table::read_rows;
-use super::{ARRIVALS, BODIES, CONTACTS, ENERGY, FRONT_SPEEDS, FRONTS, PARTICLES, PROBES};
+use super::{ARRIVALS, BODIES, CONTACTS, ENERGY, FRINGES_TABLE, FRONT_SPEEDS, FRONTS, PARTICLES, PROBES};
 use crate::door::ParticleSnapshot;
 use serde::de::DeserializeOwned;
 use std::path::{Path, PathBuf};
@@ -81,6 +82,14 @@ impl Results {
     /// The file is missing or damaged.
     pub fn contacts_table(&self) -> Result<Vec<ContactRow>, ReadError> {
         read_rows(&self.folder.join(CONTACTS))
+    }
+
+    /// `fringes.csv`: a row for each frame of the scene's camera; none if it has none.
+    ///
+    /// # Errors
+    /// The file is damaged.
+    pub fn fringes_table(&self) -> Result<Vec<FringeRow>, ReadError> {
+        self.measured(FRINGES_TABLE)
     }
 
     /// `probes.csv`: at each sample a row for each probe that has material around it; none if the scene has no probes.

@@ -7,6 +7,7 @@ mod error;
 mod expression;
 mod file;
 mod formula;
+mod fringes;
 mod load;
 mod measurements;
 mod overrides;
@@ -19,6 +20,7 @@ mod units;
 
 pub use error::{Mistake, SceneError};
 pub use expression::{Expression, Program};
+pub use fringes::{Field, Fringes, Light, Overlay, Polariscope, Sensitivity};
 pub use load::{Loaded, load, parse};
 pub use measurements::{Anchor, Arrival, Front, Measurements, Observable, Probe, Reading, TimeUnit};
 pub use problem::Problem;
@@ -313,6 +315,8 @@ pub struct Outputs {
     pub particles: Option<f64>,
     /// Grid nodes for ParaView.
     pub grid: Option<f64>,
+    /// Photoelastic fringes.
+    pub fringes: Option<Fringes>,
     /// Probes, arrivals and fronts.
     pub measurements: Measurements,
 }

@@ -3,6 +3,7 @@
 
 mod body;
 mod contact;
+mod fringes;
 mod material;
 mod measurements;
 mod outputs;

@@ -1,6 +1,7 @@
 //! `[outputs]` and `[[references]]`: what is written, and what it is held against.
 
 use super::Context;
+use super::fringes::Fringes;
 use super::measurements::{self, Arrival, Front, Probe, Sampling};
 use super::quantity::{Duration, Quantity, evaluate};
 use super::read::{Read, table};
@@ -23,6 +24,8 @@ table! {
         /// Interval between snapshots of the grid for ParaView [s], or "never".
         #[schemars(extend("default" = "never"))]
         grid: Option<Interval>,
+        /// Pictures of photoelastic fringes, and an animation of them: a camera behind a virtual polariscope.
+        fringes: Option<Fringes>,
         /// What non-dimensional time counts in, such as "diameter / c_L" [s]; tables then have a column `time_units`.
         time_unit: Option<Quantity<Duration>>,
         /// Interval between samples of probes, arrivals and fronts [s], or "step" for every step; by default 1/1000 of the run.
@@ -86,10 +89,12 @@ pub fn resolve(
     let tables = outputs.and_then(|outputs| outputs.tables.as_ref());
     let particles = outputs.and_then(|outputs| outputs.particles.as_ref());
     let grid = outputs.and_then(|outputs| outputs.grid.as_ref());
+    let fringes = outputs.and_then(|outputs| outputs.fringes.as_ref());
     Ok(scene::Outputs {
         tables: tables.map_or(Ok(end / 200.0), |interval| interval.positive(context))?,
         particles: particles.map_or(Ok(Some(end / 40.0)), |interval| interval.value(context))?,
         grid: grid.map_or(Ok(None), |interval| interval.value(context))?,
+        fringes: fringes.map(|fringes| fringes.resolve(bodies, context)).transpose()?,
         measurements: measurements::resolve(outputs, (bodies, end), context)?,
     })
 }

@@ -51,6 +51,8 @@ measures! {
     Pressure = [1, -1, -2];
     /// In pascals per metre per second.
     SurfaceViscosity = [1, -2, -1];
+    /// In one over pascals.
+    Compliance = [-1, 1, 2];
 }
 
 /// In radians.
