@@ -1,5 +1,6 @@
 //! The commands, one file each.
 
+mod bench;
 mod check;
 mod new;
 mod plot;
@@ -25,6 +26,7 @@ pub enum Command {
     Render(render::Arguments),
     Plot(plot::Arguments),
     Schema(schema::Arguments),
+    Bench(bench::Arguments),
 }
 
 impl Command {
@@ -37,6 +39,7 @@ impl Command {
             Command::Render(arguments) => arguments.execute(),
             Command::Plot(arguments) => arguments.execute(),
             Command::Schema(arguments) => arguments.execute(),
+            Command::Bench(arguments) => arguments.execute(),
         }
     }
 }
