@@ -194,7 +194,7 @@ mod tests {
 
     #[test]
     fn rates_are_per_core_and_fractions_of_the_limits() {
-        let scheme = Scheme::default();
+        let scheme = Scheme { stress_update: "last", ..Scheme::default() };
         let case = Case {
             problem: "P1",
             variant: "cube".into(),
