@@ -40,7 +40,7 @@ def simulation(cube, serial, quadratic):
     @ti.kernel
     def clear():
         ti.loop_config(serialize=serial)
-        for i, j, k in mass:
+        for i, j, k in ti.ndrange(n, n, n):
             mass[i, j, k] = 0.0
             momentum[i, j, k] = ti.Vector.zero(ti.f64, 3)
             force[i, j, k] = ti.Vector.zero(ti.f64, 3)
@@ -48,7 +48,7 @@ def simulation(cube, serial, quadratic):
     @ti.kernel
     def linear_to_grid():
         ti.loop_config(serialize=serial)
-        for p in x:
+        for p in range(cube.particles):
             base = ti.floor(x[p] / h).cast(int)
             fx = x[p] / h - base.cast(ti.f64)
             w = [1.0 - fx, fx]
@@ -74,7 +74,7 @@ def simulation(cube, serial, quadratic):
     @ti.kernel
     def accelerate():
         ti.loop_config(serialize=serial)
-        for i, j, k in mass:
+        for i, j, k in ti.ndrange(n, n, n):
             if mass[i, j, k] > 0.0:
                 change = dt * force[i, j, k] / mass[i, j, k]
                 momentum[i, j, k] = momentum[i, j, k] / mass[i, j, k] + change
@@ -83,7 +83,7 @@ def simulation(cube, serial, quadratic):
     @ti.kernel
     def grid_to_linear():
         ti.loop_config(serialize=serial)
-        for p in x:
+        for p in range(cube.particles):
             base = ti.floor(x[p] / h).cast(int)
             fx = x[p] / h - base.cast(ti.f64)
             w = [1.0 - fx, fx]
@@ -114,7 +114,7 @@ def simulation(cube, serial, quadratic):
     @ti.kernel
     def quadratic_to_grid():
         ti.loop_config(serialize=serial)
-        for p in x:
+        for p in range(cube.particles):
             base = ti.floor(x[p] / h - 0.5).cast(int)
             fx = x[p] / h - base.cast(ti.f64)
             w = [0.5 * (1.5 - fx) ** 2, 0.75 - (fx - 1.0) ** 2, 0.5 * (fx - 0.5) ** 2]
@@ -130,14 +130,14 @@ def simulation(cube, serial, quadratic):
     @ti.kernel
     def divide():
         ti.loop_config(serialize=serial)
-        for i, j, k in mass:
+        for i, j, k in ti.ndrange(n, n, n):
             if mass[i, j, k] > 0.0:
                 momentum[i, j, k] /= mass[i, j, k]
 
     @ti.kernel
     def grid_to_quadratic():
         ti.loop_config(serialize=serial)
-        for p in x:
+        for p in range(cube.particles):
             base = ti.floor(x[p] / h - 0.5).cast(int)
             fx = x[p] / h - base.cast(ti.f64)
             w = [0.5 * (1.5 - fx) ** 2, 0.75 - (fx - 1.0) ** 2, 0.5 * (fx - 0.5) ** 2]

@@ -53,6 +53,7 @@ case "$1" in
 esac
 case "$1" in
     run) exec "$STICKSLIP" "$@" $coarse --set time.end="40 ms" --set outputs.particles="10 ms" ;;
+    bench) exec "$STICKSLIP" "$@" --tiny ;;
     *) exec "$STICKSLIP" "$@" $coarse ;;
 esac
 "#;

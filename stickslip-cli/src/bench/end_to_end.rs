@@ -16,6 +16,7 @@ pub struct Whole {
 }
 
 const SPHERE: &str = include_str!("../../../scenes/paper/inclined_plane_no_slip.toml");
+const DISKS: &str = include_str!("../../../scenes/paper/disks_collinear.toml");
 /// Runs with and runs without outputs; they take turns, so that a disturbance hits both kinds.
 const REPETITIONS: usize = 2;
 /// What takes the outputs away, but for the first and the last row of each table.
@@ -25,8 +26,11 @@ const SILENT: [(&str, &str); 3] =
 /// The scenes that are run whole.
 pub fn wholes(extent: Extent) -> Vec<Whole> {
     let sphere = |overrides| Whole { name: "sphere R/8", scene: SPHERE, overrides };
+    let disks = |overrides| Whole { name: "disks n = 80", scene: DISKS, overrides };
     match extent {
-        Extent::Full => vec![sphere(&[("cells_per_radius", "8")])],
+        Extent::Full => {
+            vec![sphere(&[("cells_per_radius", "8")]), disks(&[("cells_per_diameter", "80")])]
+        }
         Extent::Quick => Vec::new(),
         Extent::Tiny => vec![sphere(&[("cells_per_radius", "2"), ("time.end", "10 ms")])],
     }

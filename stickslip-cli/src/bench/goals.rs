@@ -201,6 +201,7 @@ mod tests {
             of_copy: 0.0,
             of_multiply_add: 0.0,
             memory: Some(400.0),
+            at_work: None,
             verbs: Vec::new(),
         }
     }

@@ -63,6 +63,8 @@ pub struct Sample {
     pub verbs: Vec<(String, f64)>,
     /// Most memory that the process held from before the scene was read [bytes].
     pub memory: Option<u64>,
+    /// Part of the repetitions' wall time in which the threads together had a core, over the number of threads.
+    pub at_work: Option<f64>,
 }
 
 impl Order {
@@ -136,9 +138,12 @@ fn step(simulation: &mut dyn Simulation, effort: Effort, sample: &mut Sample) ->
     advance(simulation, effort.warm_up)?;
     sample.steps = effort.steps_in(advance(simulation, 1)?);
     let before = verbs(simulation);
+    let core_time = memory::core_time();
     for _ in 0..effort.repetitions {
         sample.repetitions.push(advance(simulation, sample.steps)?);
     }
+    let offered = rayon::current_num_threads() as f64 * sample.repetitions.iter().sum::<f64>();
+    sample.at_work = memory::core_time().zip(core_time).map(|(after, before)| (after - before) / offered);
     sample.verbs = verbs(simulation);
     for (verb, seconds) in &mut sample.verbs {
         *seconds -= before.iter().find(|(name, _)| name == verb).map_or(0.0, |(_, seconds)| *seconds);

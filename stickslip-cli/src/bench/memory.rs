@@ -1,4 +1,4 @@
-//! What this process holds in memory, and what the machine has left. Linux tells; elsewhere nobody does.
+//! What this process takes of the machine, and what is left. Linux tells; elsewhere nobody does.
 
 /// Most memory that this process ever held [bytes].
 pub fn peak() -> Option<u64> {
@@ -8,6 +8,16 @@ pub fn peak() -> Option<u64> {
 /// Memory that the machine can still give without swapping [bytes].
 pub fn available() -> Option<u64> {
     field("/proc/meminfo", "MemAvailable:")
+}
+
+/// Time that all threads of this process have had a core [s].
+pub fn core_time() -> Option<f64> {
+    let mut nanoseconds = 0.0;
+    for thread in std::fs::read_dir("/proc/self/task").ok()? {
+        let record = std::fs::read_to_string(thread.ok()?.path().join("schedstat")).ok()?;
+        nanoseconds += record.split_whitespace().next()?.parse::<f64>().ok()?;
+    }
+    Some(1e-9 * nanoseconds)
 }
 
 /// The number of kilobytes after a name in one of the kernel's tables [bytes].

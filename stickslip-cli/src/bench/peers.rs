@@ -25,22 +25,24 @@ const SCRIPTS: [(&str, &str); 2] = [
 ];
 
 impl Peers {
-    /// Runs them, one after the other, in their environment, which is made first where it is missing.
+    /// Runs them, one after the other.
     ///
     /// # Errors
-    /// There is no Python 3, the packages cannot be installed, or a script fails; each says what to do.
-    pub fn measure(&self) -> Result<Vec<PeerResult>, Failure> {
-        let python = self.prepare()?;
+    /// A script fails.
+    pub fn measure(&self, python: &Path) -> Result<Vec<PeerResult>, Failure> {
         let mut results = Vec::new();
         for (program, script) in SCRIPTS {
             eprintln!("{program} ...");
-            results.extend(self.run(&python, program, script)?);
+            results.extend(self.run(python, program, script)?);
         }
         Ok(results)
     }
 
-    /// The environment's Python, with the packages installed.
-    fn prepare(&self) -> Result<PathBuf, Failure> {
+    /// The environment's Python; the environment is made and the packages are installed first where they are missing.
+    ///
+    /// # Errors
+    /// There is no Python 3, or the packages cannot be installed; each says what to do.
+    pub fn prepare(&self) -> Result<PathBuf, Failure> {
         let python = self.environment.join(if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" });
         let ready = quiet(&python).args(["-c", "import numpy, taichi, warp"]).status();
         if !ready.is_ok_and(|status| status.success()) {

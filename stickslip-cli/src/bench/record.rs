@@ -68,6 +68,8 @@ pub struct Measured {
     pub of_multiply_add: f64,
     /// Most memory of the process over its particles [bytes].
     pub memory: Option<f64>,
+    /// Part of the time in which each thread had a core: less than all where the machine did other things too, and the rate is too low.
+    pub at_work: Option<f64>,
     /// Time in each verb of the step for each particle and step, on all threads together [ns].
     pub verbs: Vec<Verb>,
 }
@@ -160,6 +162,7 @@ impl Measured {
             of_copy: rate * case.scheme.bytes() / copy,
             of_multiply_add: rate * case.scheme.multiply_adds() / adds,
             memory: sample.memory.map(|bytes| bytes as f64 / sample.particles as f64),
+            at_work: sample.at_work,
             verbs: sample.verbs.into_iter().map(verb).collect(),
             repetitions,
             case,
@@ -213,6 +216,7 @@ mod tests {
             repetitions: vec![5.0, 10.0, 4.0],
             verbs: vec![("scatter".into(), 9.5)],
             memory: Some(500_000_000),
+            at_work: None,
         };
         let measured = Measured::new(case, sample, &machine);
         assert_eq!(measured.repetitions, [1e6, 0.5e6, 1.25e6]);

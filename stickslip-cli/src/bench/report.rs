@@ -11,6 +11,13 @@ impl Display for Record {
             f.write_str(&results(&self.results))?;
             f.write_str(&verbs(&self.results))?;
         }
+        if let Some(share) = busiest(&self.results) {
+            writeln!(
+                f,
+                "This machine was busy with other things: a thread had a core for {} of the time. Rates are too low.\n",
+                percent(share)
+            )?;
+        }
         for skipped in &self.skipped {
             writeln!(f, "left out: {}: {}", skipped.case.label(), skipped.reason)?;
         }
@@ -58,6 +65,14 @@ fn results(results: &[Measured]) -> String {
         "Million particle-steps per core-second, median and half the spread; bytes that a particle and a step must move,\n\
          and the share of the copy and multiply-add limits that this is; peak memory a particle.\n{table}\n"
     )
+}
+
+/// Part of the time for which single threads had a core, where that is too little to believe the rates.
+fn busiest(results: &[Measured]) -> Option<f64> {
+    /// Less than this is not the clock's own unrest.
+    const UNDISTURBED: f64 = 0.95;
+    let alone = results.iter().filter(|measured| measured.case.threads == 1);
+    alone.filter_map(|measured| measured.at_work).min_by(f64::total_cmp).filter(|share| *share < UNDISTURBED)
 }
 
 fn verbs(results: &[Measured]) -> String {

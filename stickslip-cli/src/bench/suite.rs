@@ -36,8 +36,10 @@ impl Suite {
     /// Measures everything, and says on standard error what it is at.
     ///
     /// # Errors
-    /// A measurement fails.
+    /// Other programs cannot be installed, or a measurement fails.
     pub fn run(&self) -> Result<Record, Failure> {
+        // First what may be missing, then what takes long.
+        let python = self.peers.as_ref().map(Peers::prepare).transpose()?;
         let machine = self.machine();
         let mut record = Record {
             program: "stickslip",
@@ -62,8 +64,8 @@ impl Suite {
                 record.end_to_end.push(whole.measure(self.threads)?);
             }
         }
-        if let Some(peers) = &self.peers {
-            record.peers = peers.measure()?;
+        if let Some((peers, python)) = self.peers.as_ref().zip(python) {
+            record.peers = peers.measure(&python)?;
         }
         let findings =
             Findings { results: &record.results, end_to_end: &record.end_to_end, peers: &record.peers };

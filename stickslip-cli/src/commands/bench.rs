@@ -39,7 +39,7 @@ pub struct Arguments {
     scenes: Option<PathBuf>,
 
     /// A few hundred particles each: whether everything works.
-    #[arg(long, hide = true, conflicts_with = "quick")]
+    #[arg(long, hide = true)]
     tiny: bool,
 
     /// Measure what standard input asks for: what the other options start, in a process of its own.

@@ -20,6 +20,7 @@ mod results;
 mod schedule;
 mod table;
 mod vtu;
+mod writer;
 mod xml;
 
 pub use bodies::BodyRow;
@@ -48,14 +49,22 @@ pub trait Observer {
     /// The time from which its next record is due [s].
     fn next(&self) -> f64;
 
-    /// Records the present state.
+    /// Records the present state. What takes long is handed over, to be written while the run goes on.
     ///
     /// # Errors
-    /// The disk is full or refuses; what was recorded before stays readable.
+    /// The disk is full or refuses, now or at an earlier record; what was written before stays readable.
     fn observe(&mut self, simulation: &mut dyn Simulation) -> Result<(), OutputError>;
 
     /// Whether a second record at the same time takes the place of the first, as for snapshots; tables would repeat a row.
     fn replaces(&self) -> bool {
         false
+    }
+
+    /// Writes what is left to write when the run has ended, however it ended.
+    ///
+    /// # Errors
+    /// The disk is full or refuses; what was recorded before stays readable.
+    fn finish(&mut self) -> Result<(), OutputError> {
+        Ok(())
     }
 }

@@ -71,6 +71,14 @@ impl Recorder {
         self.record_where(simulation, |seat| seat.last != Some(time) || seat.observer.replaces())
     }
 
+    /// Lets every output write what it has left: to be called once, when the run has ended.
+    ///
+    /// # Errors
+    /// A file cannot be written.
+    pub fn finish(&mut self) -> Result<(), OutputError> {
+        self.seats.iter_mut().try_for_each(|seat| seat.observer.finish())
+    }
+
     fn record_where(
         &mut self,
         simulation: &mut dyn Simulation,
