@@ -7,6 +7,8 @@ mod plot;
 mod render;
 mod run;
 mod schema;
+mod sweep;
+mod validate;
 
 use crate::failure::Failure;
 use clap::Parser;
@@ -21,12 +23,14 @@ use stickslip::scene::{Loaded, SceneError};
 #[command(name = "stickslip", version, arg_required_else_help = true)]
 pub enum Command {
     Run(run::Arguments),
+    Sweep(sweep::Arguments),
     Check(check::Arguments),
     New(new::Arguments),
     Render(render::Arguments),
     Plot(plot::Arguments),
     Schema(schema::Arguments),
     Bench(bench::Arguments),
+    Validate(validate::Arguments),
 }
 
 impl Command {
@@ -34,12 +38,14 @@ impl Command {
     pub fn execute(self) -> Result<(), Failure> {
         match self {
             Command::Run(arguments) => arguments.execute(),
+            Command::Sweep(arguments) => arguments.execute(),
             Command::Check(arguments) => arguments.execute(),
             Command::New(arguments) => arguments.execute(),
             Command::Render(arguments) => arguments.execute(),
             Command::Plot(arguments) => arguments.execute(),
             Command::Schema(arguments) => arguments.execute(),
             Command::Bench(arguments) => arguments.execute(),
+            Command::Validate(arguments) => arguments.execute(),
         }
     }
 }

@@ -38,7 +38,7 @@ impl Observer for Grid {
         Ok(())
     }
 
-    fn finish(&mut self) -> Result<(), OutputError> {
+    fn conclude(&mut self) -> Result<(), OutputError> {
         self.frames.finish()
     }
 

@@ -40,7 +40,7 @@ impl Observer for Particles {
         Ok(())
     }
 
-    fn finish(&mut self) -> Result<(), OutputError> {
+    fn conclude(&mut self) -> Result<(), OutputError> {
         self.frames.finish()
     }
 
