@@ -1,5 +1,6 @@
 //! The command `stickslip`.
 
+mod bench;
 mod chart;
 mod commands;
 mod darkroom;

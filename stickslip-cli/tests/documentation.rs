@@ -58,6 +58,7 @@ case "$1" in
 esac
 case "$1" in
     run) exec "$STICKSLIP" "$@" $coarse --set time.end="$end" --set outputs.particles="$particles" ;;
+    bench) exec "$STICKSLIP" "$@" --tiny ;;
     *) exec "$STICKSLIP" "$@" $coarse ;;
 esac
 "#;

@@ -1,5 +1,6 @@
 //! The commands, one file each.
 
+mod bench;
 mod check;
 mod fringes;
 mod network;
@@ -31,6 +32,7 @@ pub enum Command {
     Plot(plot::Arguments),
     Network(network::Arguments),
     Schema(schema::Arguments),
+    Bench(bench::Arguments),
     Validate(validate::Arguments),
 }
 
@@ -46,6 +48,7 @@ impl Command {
             Command::Plot(arguments) => arguments.execute(),
             Command::Network(arguments) => arguments.execute(),
             Command::Schema(arguments) => arguments.execute(),
+            Command::Bench(arguments) => arguments.execute(),
             Command::Validate(arguments) => arguments.execute(),
         }
     }

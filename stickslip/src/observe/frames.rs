@@ -3,6 +3,7 @@
 use super::file::{OutputError, ReadError, ReadProblem, replace};
 use super::folder::OutputFolder;
 use super::vtu::Vtu;
+use super::writer::Writer;
 use super::xml::attribute;
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
@@ -18,11 +19,9 @@ pub struct Frame {
     pub path: PathBuf,
 }
 
-/// A growing series of snapshots. The `.pvd` file lists those that are complete, at any time.
+/// A growing series of snapshots, written by a thread of its own. The `.pvd` file lists those that are complete, at any time.
 pub(super) struct Frames {
-    folder: OutputFolder,
-    name: &'static str,
-    times: Vec<f64>,
+    writer: Writer<Series>,
 }
 
 impl Frames {
@@ -30,16 +29,43 @@ impl Frames {
     pub(super) fn create(folder: &OutputFolder, name: &'static str) -> Result<Self, OutputError> {
         let path = folder.join(name);
         fs::create_dir_all(&path).map_err(OutputError::at(&path))?;
-        let frames = Frames { folder: folder.clone(), name, times: Vec::new() };
-        frames.write_collection()?;
-        Ok(frames)
+        let series = Series { folder: folder.clone(), name, times: Vec::new() };
+        series.write_collection()?;
+        Ok(Frames { writer: Writer::start(series).map_err(OutputError::at(&path))? })
     }
 
-    /// Adds a snapshot at a time [s]; a second one at the time of the last takes its place.
+    /// Waits until there is room in memory for another snapshot: to be called before one is made.
     ///
     /// # Errors
-    /// The disk is full or refuses; then the series stays as it was.
-    pub(super) fn push(&mut self, time: f64, snapshot: &Vtu) -> Result<(), OutputError> {
+    /// An earlier snapshot could not be written: the disk is full or refuses; then the series ends before it.
+    pub(super) fn make_room(&mut self) -> Result<(), OutputError> {
+        self.writer.make_room()
+    }
+
+    /// Hands over a snapshot at a time [s] that takes so many bytes; a second one at the time of the last takes its place.
+    pub(super) fn push(&mut self, time: f64, bytes: usize, encode: impl FnOnce() -> Vtu + Send + 'static) {
+        self.writer.hand_over(bytes, move |series| series.push(time, &encode()));
+    }
+
+    /// Waits until everything is written.
+    ///
+    /// # Errors
+    /// As [`Frames::make_room`].
+    pub(super) fn finish(&mut self) -> Result<(), OutputError> {
+        self.writer.finish()
+    }
+}
+
+/// The files of a series.
+struct Series {
+    folder: OutputFolder,
+    name: &'static str,
+    times: Vec<f64>,
+}
+
+impl Series {
+    /// Adds a snapshot; after an error the series is as it was.
+    fn push(&mut self, time: f64, snapshot: &Vtu) -> Result<(), OutputError> {
         if self.times.last() == Some(&time) {
             return snapshot.write(&self.path(self.times.len() - 1));
         }

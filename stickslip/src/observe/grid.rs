@@ -8,6 +8,9 @@ use super::vtu::{NUMBER, VECTOR, Vtu};
 use super::{GRID, Observer};
 use crate::door::{GridSnapshot, Simulation};
 
+/// Bytes of a node in a snapshot: 13 numbers and a whole one.
+const NODE_BYTES: usize = 13 * size_of::<f64>() + size_of::<u32>();
+
 /// Writes `grid.pvd` and `grid/`.
 pub(super) struct Grid {
     schedule: Schedule,
@@ -27,9 +30,16 @@ impl Observer for Grid {
 
     fn observe(&mut self, simulation: &mut dyn Simulation) -> Result<(), OutputError> {
         let time = simulation.time();
-        self.frames.push(time, &encode_grid(&simulation.grid_snapshot(), time))?;
+        self.frames.make_room()?;
+        let snapshot = simulation.grid_snapshot();
+        let bytes = NODE_BYTES * snapshot.mass.len();
+        self.frames.push(time, bytes, move || encode_grid(&snapshot, time));
         self.schedule.recorded(time);
         Ok(())
+    }
+
+    fn conclude(&mut self) -> Result<(), OutputError> {
+        self.frames.finish()
     }
 
     fn replaces(&self) -> bool {

@@ -26,6 +26,7 @@ mod results;
 mod schedule;
 mod table;
 mod vtu;
+mod writer;
 mod xml;
 
 pub use arrivals::ArrivalRow;
@@ -66,10 +67,10 @@ pub trait Observer {
     /// The time from which its next record is due [s].
     fn next(&self) -> f64;
 
-    /// Records the present state.
+    /// Records the present state. What takes long is handed over, to be written while the run goes on.
     ///
     /// # Errors
-    /// The disk is full or refuses; what was recorded before stays readable.
+    /// The disk is full or refuses, now or at an earlier record; what was written before stays readable.
     fn observe(&mut self, simulation: &mut dyn Simulation) -> Result<(), OutputError>;
 
     /// Writes what only the whole of the records tells: called once, after the last.

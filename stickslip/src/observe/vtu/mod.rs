@@ -5,7 +5,7 @@
 //! ```text
 //! u64 blocks, u64 bytes of a full block, u64 bytes of a partial last block (0: none), u64 compressed bytes of each block, the blocks
 //! ```
-//! Blocks are independent, so that they are compressed on all threads; the bytes do not depend on how many there are.
+//! Blocks are independent; one that does not shrink stands in it as a single run of literals.
 //! Numbers keep all their bits: reading a file gives exactly what was written.
 
 mod read;

@@ -2,7 +2,6 @@
 
 use super::{BLOCK, Scalar};
 use crate::observe::file::{OutputError, replace};
-use rayon::prelude::*;
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -136,11 +135,11 @@ impl Array {
 
 fn compress<T: Scalar>(values: &[T]) -> Vec<u8> {
     let blocks: Vec<Vec<u8>> = values
-        .par_chunks(BLOCK / size_of::<T>())
+        .chunks(BLOCK / size_of::<T>())
         .map(|chunk| {
             let mut bytes = Vec::with_capacity(size_of_val(chunk));
             T::write(chunk, &mut bytes);
-            lz4_flex::block::compress(&bytes)
+            block(&bytes)
         })
         .collect();
     let mut sizes = vec![blocks.len() as u64, BLOCK as u64, (size_of_val(values) % BLOCK) as u64];
@@ -149,4 +148,64 @@ fn compress<T: Scalar>(values: &[T]) -> Vec<u8> {
     u64::write(&sizes, &mut bytes);
     blocks.iter().for_each(|block| bytes.extend_from_slice(block));
     bytes
+}
+
+/// Bytes of a sample, and how many of them tell whether a block is worth compressing.
+const SAMPLE: usize = 1 << 11;
+const SAMPLES: usize = 4;
+/// A block is worth compressing if its samples shrink below this share.
+const WORTH: f64 = 0.9;
+
+/// A block in the format of LZ4: compressed, or as it is where that would take time and save next to nothing, as for most numbers
+/// that use all their bits.
+fn block(bytes: &[u8]) -> Vec<u8> {
+    let samples = || bytes.chunks(SAMPLE).step_by(bytes.len().div_ceil(SAMPLE * SAMPLES).max(1));
+    let before: usize = samples().map(<[u8]>::len).sum();
+    let after: usize = samples().map(|sample| lz4_flex::block::compress(sample).len()).sum();
+    if (after as f64) < WORTH * before as f64 { lz4_flex::block::compress(bytes) } else { literals(bytes) }
+}
+
+/// Bytes as one run of literals: LZ4's format for a block that nothing was found to repeat in.
+///
+/// ```text
+/// token (high half: 15, or the length if that is less), 255 ... 255, rest of the length - 15, the bytes
+/// ```
+fn literals(bytes: &[u8]) -> Vec<u8> {
+    let length = bytes.len();
+    let mut packed = Vec::with_capacity(length + length / 255 + 2);
+    packed.push((length.min(15) as u8) << 4);
+    if let Some(more) = length.checked_sub(15) {
+        packed.resize(packed.len() + more / 255, 255);
+        packed.push((more % 255) as u8);
+    }
+    packed.extend_from_slice(bytes);
+    packed
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn literals_of_any_length_are_a_block_of_lz4() {
+        for length in [0, 1, 14, 15, 16, 269, 270, 271, 525, BLOCK] {
+            let bytes: Vec<u8> = (0..length).map(|i| (i * i / 7) as u8).collect();
+            let packed = literals(&bytes);
+            assert_eq!(lz4_flex::block::decompress(&packed, length).unwrap(), bytes, "{length} bytes");
+        }
+    }
+
+    #[test]
+    fn what_repeats_is_compressed_and_what_does_not_is_left() {
+        let constant = vec![7_u8; BLOCK];
+        assert!(block(&constant).len() < BLOCK / 100);
+        let mut state = 1_u64;
+        let random: Vec<u8> = (0..BLOCK)
+            .map(|_| {
+                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+                (state >> 56) as u8
+            })
+            .collect();
+        assert!(block(&random) == literals(&random));
+    }
 }

@@ -1,0 +1,200 @@
+//! One measurement, in a process of its own: its threads, its memory from nothing, and nobody else's leftovers.
+
+use super::memory;
+use crate::failure::Failure;
+use miette::miette;
+use serde::{Deserialize, Serialize};
+use std::io::{Read, Write};
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use std::time::Instant;
+use stickslip::door::Simulation;
+use stickslip::run::RunOptions;
+
+/// What a process is asked to measure.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Order {
+    /// The scene.
+    pub scene: String,
+    /// Parameters of the scene with other values.
+    pub overrides: Vec<(String, String)>,
+    /// Threads.
+    pub threads: usize,
+    /// What to do with it.
+    pub task: Task,
+}
+
+/// What to do with a scene.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub enum Task {
+    /// Step, and look at the clock.
+    Steps(Effort),
+    /// Run it from end to end, with the outputs that the scene asks for in this folder.
+    Run(PathBuf),
+}
+
+/// How long to step.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Effort {
+    /// Steps before the first that counts: memory is allocated and caches and predictors settle.
+    pub warm_up: u64,
+    /// Repetitions, each of as many steps as the other.
+    pub repetitions: usize,
+    /// Most steps in a repetition.
+    pub steps: u64,
+    /// Wall time for all repetitions, unless that is less than a step each [s].
+    pub seconds: f64,
+}
+
+/// What was measured.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Sample {
+    /// Bodies.
+    pub bodies: usize,
+    /// Particles in all bodies.
+    pub particles: usize,
+    /// Steps of one repetition.
+    pub steps: u64,
+    /// Wall time of each repetition [s].
+    pub repetitions: Vec<f64>,
+    /// Wall time in each verb of the step, in all repetitions [s].
+    pub verbs: Vec<(String, f64)>,
+    /// Most memory that the process held from before the scene was read [bytes].
+    pub memory: Option<u64>,
+    /// Part of the repetitions' wall time in which the threads together had a core, over the number of threads.
+    pub at_work: Option<f64>,
+}
+
+impl Order {
+    /// Has a process of its own measure this.
+    ///
+    /// # Errors
+    /// The process cannot be started, or fails; what it says goes where this process's own errors go.
+    pub fn measure(&self) -> Result<Sample, Failure> {
+        let wrong = |what: &dyn std::fmt::Display| Failure::Run(miette!("cannot measure: {what}"));
+        let program = std::env::current_exe().map_err(|error| wrong(&error))?;
+        let mut process = Command::new(program)
+            .args(["bench", "--measure"])
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .spawn()
+            .map_err(|error| wrong(&error))?;
+        let order = serde_json::to_vec(self).expect("an order is plain data");
+        let mut input = process.stdin.take().expect("its input is a pipe");
+        // Whoever ended before reading says why by its exit.
+        let _ = input.write_all(&order);
+        drop(input);
+        let output = process.wait_with_output().map_err(|error| wrong(&error))?;
+        if !output.status.success() {
+            return Err(wrong(&format!("the process that measures ended with {}", output.status)));
+        }
+        serde_json::from_slice(&output.stdout).map_err(|error| wrong(&error))
+    }
+}
+
+/// Reads an order from standard input, measures, and writes the sample to standard output.
+///
+/// # Errors
+/// The order is none, its scene has mistakes, or a step fails.
+pub fn answer() -> Result<(), Failure> {
+    let before = memory::peak();
+    let mut text = String::new();
+    std::io::stdin().read_to_string(&mut text).map_err(|error| Failure::Input(miette!("{error}")))?;
+    let order: Order = serde_json::from_str(&text).map_err(|error| Failure::Input(miette!("{error}")))?;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(order.threads).build_global();
+    pool.map_err(|error| Failure::Run(miette!("{error}")))?;
+    let mut sample = take(&order)?;
+    sample.memory = memory::peak().zip(before).map(|(peak, before)| peak.saturating_sub(before));
+    let sample = serde_json::to_vec(&sample).expect("a sample is plain data");
+    std::io::stdout().write_all(&sample).map_err(|error| Failure::Run(miette!("{error}")))
+}
+
+fn take(order: &Order) -> Result<Sample, Failure> {
+    let start = Instant::now();
+    let loaded =
+        stickslip::scene::parse("benchmark", &order.scene, &order.overrides).map_err(Failure::input)?;
+    let mut simulation = stickslip::engine::build(&loaded.scene)
+        .map_err(|problem| Failure::input(loaded.source.locate(problem)))?;
+    let mut sample =
+        Sample { bodies: loaded.scene.bodies.len(), particles: simulation.particles(), ..Sample::default() };
+    match &order.task {
+        Task::Steps(effort) => step(&mut *simulation, *effort, &mut sample)?,
+        Task::Run(folder) => {
+            let stop = Arc::new(AtomicBool::new(false));
+            let options = RunOptions { out: folder.clone(), stop, threads: order.threads };
+            stickslip::run::run(&loaded.scene, &mut *simulation, &options, &mut |_| {})
+                .map_err(Failure::run)?;
+            sample.steps = simulation.steps();
+            sample.repetitions = vec![start.elapsed().as_secs_f64()];
+            sample.verbs = verbs(&*simulation);
+        }
+    }
+    Ok(sample)
+}
+
+fn step(simulation: &mut dyn Simulation, effort: Effort, sample: &mut Sample) -> Result<(), Failure> {
+    advance(simulation, effort.warm_up)?;
+    sample.steps = effort.steps_in(advance(simulation, 1)?);
+    let before = verbs(simulation);
+    let core_time = memory::core_time();
+    for _ in 0..effort.repetitions {
+        sample.repetitions.push(advance(simulation, sample.steps)?);
+    }
+    let offered = rayon::current_num_threads() as f64 * sample.repetitions.iter().sum::<f64>();
+    sample.at_work = memory::core_time().zip(core_time).map(|(after, before)| (after - before) / offered);
+    sample.verbs = verbs(simulation);
+    for (verb, seconds) in &mut sample.verbs {
+        *seconds -= before.iter().find(|(name, _)| name == verb).map_or(0.0, |(_, seconds)| *seconds);
+    }
+    Ok(())
+}
+
+/// Wall time of so many steps [s].
+fn advance(simulation: &mut dyn Simulation, steps: u64) -> Result<f64, Failure> {
+    let start = Instant::now();
+    for _ in 0..steps {
+        simulation.step(f64::INFINITY).map_err(|error| Failure::Run(miette!("{error}")))?;
+    }
+    Ok(start.elapsed().as_secs_f64())
+}
+
+impl Effort {
+    /// Steps of a repetition if a step takes `pace` [s].
+    fn steps_in(&self, pace: f64) -> u64 {
+        let affordable = self.seconds / (self.repetitions as f64 * pace.max(1e-9));
+        (affordable as u64).clamp(1, self.steps)
+    }
+}
+
+fn verbs(simulation: &dyn Simulation) -> Vec<(String, f64)> {
+    simulation.timings().into_iter().map(|(verb, seconds)| (verb.to_owned(), seconds)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::problems::{Extent, cases};
+    use super::*;
+
+    #[test]
+    fn steps_fit_into_the_time_that_there_is() {
+        let effort = Effort { warm_up: 0, repetitions: 5, steps: 64, seconds: 10.0 };
+        assert_eq!(effort.steps_in(0.1), 20);
+        assert_eq!(effort.steps_in(1e-3), 64);
+        assert_eq!(effort.steps_in(60.0), 1);
+    }
+
+    #[test]
+    fn steps_are_counted_and_timed() {
+        let case = cases(Extent::Tiny, 1).swap_remove(0);
+        let effort = Effort { warm_up: 2, repetitions: 3, steps: 4, seconds: 60.0 };
+        let order = Order { scene: case.scene, overrides: Vec::new(), threads: 1, task: Task::Steps(effort) };
+        let sample = take(&order).unwrap();
+        assert_eq!((sample.bodies, sample.particles, sample.steps), (1, 512, 4));
+        assert_eq!(sample.repetitions.len(), 3);
+        let (all, verbs): (f64, f64) =
+            (sample.repetitions.iter().sum(), sample.verbs.iter().map(|(_, seconds)| seconds).sum());
+        assert!(verbs > 0.0 && verbs <= all, "{sample:?}");
+    }
+}

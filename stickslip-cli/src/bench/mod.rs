@@ -1,0 +1,22 @@
+//! How fast this machine could be, and how fast the program is on it.
+//!
+//! The rooms in the order of data: the machine's limits, problems, what a step must move, one measurement in a process of its own,
+//! whole runs with and without outputs, other programs, ratios against goals, and the report of it all.
+
+mod end_to_end;
+mod goals;
+mod limits;
+mod measure;
+mod memory;
+mod model;
+mod multiply_add;
+mod peers;
+mod problems;
+mod record;
+mod report;
+mod suite;
+
+pub use measure::answer;
+pub use peers::Peers;
+pub use problems::Extent;
+pub use suite::{PROBLEMS, Suite, write_scenes};

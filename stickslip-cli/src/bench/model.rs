@@ -1,0 +1,60 @@
+//! What a step has to move and to compute at least, whatever the program: what results are held against the machine's limits with.
+//!
+//! Numbers of a particle that each pass over all particles reads and writes, in space (x, v: 3; m, V: 1; F: 9; sigma: 6):
+//!
+//! ```text
+//! last            scatter x v m V sigma | gather, strain, displace: x v F -> x v F sigma                   14 + 15 + 21
+//! first           scatter x v m | strain x F -> F sigma | force x V sigma | x v -> x v                      7 + 27 + 10 + 12
+//! modified-last   scatter x v m V sigma | x v -> v | scatter x v m | strain x F -> F sigma | x -> x         14 + 9 + 7 + 27 + 6
+//! ```
+//! A node's 26 numbers (mass, momentum and force written and read, two velocities written and read) are shared by the cell's particles.
+//! A multiply-add is counted for each product with a sum: 37 for each node that a particle reaches (weights 3, gradient 6, mass 1,
+//! momentum 3, force 9, velocity and its change 6, velocity gradient 9) and 150 for the particle itself (F, its determinant, the law).
+
+use super::problems::Scheme;
+
+/// Particles a cell of every problem here.
+const PARTICLES_PER_CELL: f64 = 8.0;
+const NODE_NUMBERS: f64 = 26.0;
+const ADDS_PER_NODE: f64 = 37.0;
+const ADDS_PER_PARTICLE: f64 = 150.0;
+
+impl Scheme {
+    /// Bytes of a number.
+    pub fn number_bytes(&self) -> f64 {
+        if self.number() == "f32" { 4.0 } else { 8.0 }
+    }
+
+    /// Bytes that a particle and a step must move between memory and core.
+    pub fn bytes(&self) -> f64 {
+        let particle = match self.stress_update {
+            "last" => 50.0,
+            "first" => 56.0,
+            _ => 63.0,
+        };
+        self.number_bytes() * (particle + NODE_NUMBERS / PARTICLES_PER_CELL)
+    }
+
+    /// Multiply-adds of a particle and a step.
+    pub fn multiply_adds(&self) -> f64 {
+        // GIMP with two particles a side of a cell: 2.5 nodes along an axis in the mean; 3 are computed.
+        let nodes = if self.basis == "linear" { 8.0 } else { 27.0 };
+        ADDS_PER_NODE * nodes + ADDS_PER_PARTICLE
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_model_is_what_its_text_says() {
+        let linear = Scheme { stress_update: "last", ..Scheme::default() };
+        assert_eq!(linear.bytes(), 8.0 * 53.25);
+        assert_eq!(linear.multiply_adds(), 446.0);
+        let single = Scheme { precision: "single", ..linear };
+        assert_eq!(single.bytes(), 0.5 * linear.bytes());
+        let safest = Scheme { stress_update: "modified-last", ..linear };
+        assert_eq!(safest.bytes() - linear.bytes(), 13.0 * 8.0);
+    }
+}

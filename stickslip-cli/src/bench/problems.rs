@@ -1,0 +1,255 @@
+//! The problems: scenes like any other, as text.
+
+use serde::Serialize;
+use std::fmt::Write as _;
+
+/// How a problem is computed, in the words of scene files.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Scheme {
+    /// `linear` or `gimp`.
+    pub basis: &'static str,
+    /// `double` or `single`.
+    pub precision: &'static str,
+    /// `last`, `first` or `modified-last`.
+    pub stress_update: &'static str,
+}
+
+impl Default for Scheme {
+    /// Linear functions, and what scene files have by default.
+    fn default() -> Self {
+        Scheme { basis: "linear", precision: "double", stress_update: "modified-last" }
+    }
+}
+
+/// One problem, computed in one way by so many threads.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Case {
+    /// `P1` to `P5`.
+    pub problem: &'static str,
+    /// What distinguishes it within the problem: `cube`, `64 balls`.
+    pub variant: String,
+    /// How it is computed.
+    pub scheme: Scheme,
+    /// Threads.
+    pub threads: usize,
+    /// The scene.
+    #[serde(skip)]
+    pub scene: String,
+    /// About how many particles it has.
+    #[serde(skip)]
+    pub expected: usize,
+}
+
+impl Case {
+    /// A few words that no other case has: `P3 64 balls, linear f64 last, 2 threads`.
+    pub fn label(&self) -> String {
+        let Scheme { basis, stress_update, .. } = self.scheme;
+        let number = self.scheme.number();
+        let threads = if self.threads == 1 { String::new() } else { format!(", {} threads", self.threads) };
+        format!("{} {}, {basis} {number} {stress_update}{threads}", self.problem, self.variant)
+    }
+}
+
+impl Scheme {
+    /// `f64` or `f32`.
+    pub fn number(&self) -> &'static str {
+        if self.precision == "single" { "f32" } else { "f64" }
+    }
+}
+
+/// How much is measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Extent {
+    /// All sizes.
+    Full,
+    /// What fits into a minute.
+    Quick,
+    /// A few hundred particles: whether everything works.
+    Tiny,
+}
+
+const CUBE: &str = include_str!("../../../scenes/bench/cube.toml");
+const BLOCKS: &str = include_str!("../../../scenes/bench/blocks.toml");
+const BALLS: &str = include_str!("../../../scenes/bench/balls.toml");
+
+/// Cells of empty space round problem P4: its domain is 100 times larger than P1's, (32 + 2 * 207)^3 against (32 + 2 * 32)^3 cells.
+const WIDE_MARGIN: usize = 207;
+
+/// Particles of a ball, about.
+const BALL: usize = 2145;
+
+impl Extent {
+    /// Cells along the cube of P1.
+    fn cells(self) -> usize {
+        if self == Extent::Tiny { 4 } else { 32 }
+    }
+
+    /// Balls along each side of the packs of P3.
+    fn balls(self) -> &'static [usize] {
+        match self {
+            Extent::Full => &[1, 2, 4, 8, 16],
+            Extent::Quick => &[2, 4, 6],
+            Extent::Tiny => &[1, 2],
+        }
+    }
+
+    /// Cells along the cubes of P5: 1, 4 and 16 million particles.
+    fn growth(self) -> &'static [usize] {
+        match self {
+            Extent::Full => &[50, 79, 126],
+            Extent::Quick => &[],
+            Extent::Tiny => &[5, 6],
+        }
+    }
+}
+
+/// All that is measured, on one thread and then on all `threads`. What is compared stands side by side.
+pub fn cases(extent: Extent, threads: usize) -> Vec<Case> {
+    let linear = Scheme::default();
+    let gimp = Scheme { basis: "gimp", ..linear };
+    let mut cases = Vec::new();
+    let mut add = |problem, variant: &str, (scheme, threads), (expected, scene)| {
+        cases.push(Case { problem, variant: variant.to_owned(), scheme, threads, scene, expected });
+    };
+    let mut in_parallel = vec![1];
+    in_parallel.extend((threads > 1).then_some(threads));
+
+    for scheme in schemes(extent) {
+        let parallel = scheme == linear || scheme == gimp;
+        for &threads in if parallel { &in_parallel[..] } else { &[1] } {
+            add("P1", "cube", (scheme, threads), cube(scheme, extent.cells(), 32));
+        }
+    }
+    for scheme in [linear, gimp] {
+        let cells = extent.cells();
+        let scene = with(BLOCKS, scheme, &[("cells", cells)]);
+        add("P2", "two blocks", (scheme, 1), (8 * cells.pow(3), scene));
+    }
+    add("P4", "wide domain", (linear, 1), cube(linear, extent.cells(), WIDE_MARGIN));
+    for &side in extent.balls() {
+        let count = side.pow(3);
+        let variant = format!("{count} ball{}", if count == 1 { "" } else { "s" });
+        for &threads in if side == 4 { &in_parallel[..] } else { &[1] } {
+            add("P3", &variant, (linear, threads), (BALL * count, balls(linear, side)));
+        }
+    }
+    for &cells in extent.growth() {
+        let variant = format!("{:.1} M", (8 * cells.pow(3)) as f64 / 1e6);
+        add("P5", &variant, (linear, 1), cube(linear, cells, 32));
+    }
+    cases
+}
+
+/// In which ways P1 is computed.
+fn schemes(extent: Extent) -> Vec<Scheme> {
+    let mut schemes = Vec::new();
+    for basis in ["linear", "gimp"] {
+        for stress_update in ["last", "first", "modified-last"] {
+            for precision in ["double", "single"] {
+                let few =
+                    stress_update == "last" || (stress_update == "modified-last" && precision == "double");
+                if extent == Extent::Full || few {
+                    schemes.push(Scheme { basis, precision, stress_update });
+                }
+            }
+        }
+    }
+    schemes
+}
+
+/// A cube and its number of particles.
+fn cube(scheme: Scheme, cells: usize, margin: usize) -> (usize, String) {
+    let turn = usize::from(scheme.stress_update != "last");
+    (8 * cells.pow(3), with(CUBE, scheme, &[("cells", cells), ("margin", margin), ("turn", turn)]))
+}
+
+/// A scene with other parameters than its file has.
+fn with(scene: &str, scheme: Scheme, sizes: &[(&str, usize)]) -> String {
+    let Scheme { basis, precision, stress_update } = scheme;
+    let words = [("basis", basis), ("precision", precision), ("stress_update", stress_update)];
+    let mut values: Vec<(String, String)> =
+        words.iter().map(|(name, word)| (format!("{name} = "), format!("\"{word}\""))).collect();
+    values.extend(sizes.iter().map(|(name, size)| (format!("{name} = "), size.to_string())));
+    let mut text = String::new();
+    let mut within = false;
+    for line in scene.lines() {
+        if line.starts_with('[') {
+            within = line == "[parameters]";
+        }
+        let replaced = values.iter().find(|(start, _)| within && line.starts_with(start.as_str()));
+        match replaced {
+            Some((start, value)) => writeln!(text, "{start}{value}"),
+            None => writeln!(text, "{line}"),
+        }
+        .expect("a string takes all text");
+    }
+    text
+}
+
+/// Balls of 8 cells' diameter in a hexagonal pack with `side` balls along each side.
+fn balls(scheme: Scheme, side: usize) -> String {
+    /// Radius of a ball, as in the file [m].
+    const RADIUS: f64 = 0.125;
+    /// By how much the balls approach the middle of the pack [1/s].
+    const APPROACH: f64 = 1.0;
+    let mut scene = with(BALLS, scheme, &[]);
+    let place = |i: usize, j: usize, k: usize| {
+        let [x, y, z] = [i, j, k].map(|i| i as f64);
+        let (odd_row, odd_layer) = (((j + k) % 2) as f64, (k % 2) as f64);
+        let rows = 3f64.sqrt() * (y + odd_layer / 3.0);
+        [2.0 * x + odd_row, rows, 2.0 * 6f64.sqrt() / 3.0 * z].map(|x| RADIUS * x)
+    };
+    let middle = place(side - 1, side - 1, side - 1).map(|x| 0.5 * x);
+    for (i, j, k) in (0..side.pow(3)).map(|n| (n % side, n / side % side, n / side / side)) {
+        let center = place(i, j, k);
+        let flight = [8.0, 5.0, 3.0];
+        let velocity: [f64; 3] = std::array::from_fn(|a| flight[a] - APPROACH * (center[a] - middle[a]));
+        let spin = if (i + j + k).is_multiple_of(2) { 5.0 } else { -5.0 };
+        write!(
+            scene,
+            "\n[[bodies]]\nname = \"ball {i} {j} {k}\"\nmaterial = \"rubber\"\n\
+             shape.ball = {{ center = {center:?}, radius = \"radius\" }}\n\
+             velocity = {velocity:?}\nspin = [{spin:?}, 0, 0]\n"
+        )
+        .expect("a string takes all text");
+    }
+    scene
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_problem_is_a_sound_scene() {
+        for case in cases(Extent::Tiny, 2) {
+            let loaded = stickslip::scene::parse("bench", &case.scene, &[]).unwrap_or_else(|e| panic!("{e}"));
+            stickslip::check::problems(&loaded.scene).unwrap_or_else(|e| panic!("{case:?}: {e:?}"));
+        }
+    }
+
+    #[test]
+    fn sizes_are_those_that_the_names_say() {
+        let report = |scene: &str| {
+            let loaded = stickslip::scene::parse("bench", scene, &[]).unwrap();
+            stickslip::check::report(&loaded.scene).unwrap()
+        };
+        assert_eq!(report(&cube(Scheme::default(), 32, 32).1).particles, 262_144);
+        assert_eq!(report(&with(BLOCKS, Scheme::default(), &[])).particles, 262_144);
+        let pack = report(&balls(Scheme::default(), 2));
+        assert_eq!(pack.bodies.len(), 8);
+        assert!(pack.bodies.iter().all(|ball| (2080..2200).contains(&ball.particles)), "{pack}");
+        assert!(!pack.contacts.is_empty(), "the balls touch");
+    }
+
+    #[test]
+    fn parameters_are_replaced_where_they_stand() {
+        let scheme = Scheme { basis: "gimp", precision: "single", stress_update: "first" };
+        let loaded = stickslip::scene::parse("bench", &cube(scheme, 8, 4).1, &[]).unwrap();
+        let scene = loaded.scene;
+        assert_eq!(scene.discretization.basis, stickslip::scene::BasisKind::Gimp);
+        assert_eq!(scene.precision, stickslip::scene::Precision::Single);
+        assert_eq!(scene.time.stress_update, stickslip::scene::StressUpdate::First);
+        assert_eq!(scene.domain.unwrap().max, [12.0 * 0.03125; 3]);
+    }
+}

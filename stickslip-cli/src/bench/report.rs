@@ -1,0 +1,214 @@
+//! The report on the terminal.
+
+use super::goals::{Goal, Sense};
+use super::record::{Machine, Measured, Record, median};
+use std::fmt::{Display, Formatter, Result, Write};
+
+impl Display for Record {
+    fn fmt(&self, f: &mut Formatter) -> Result {
+        writeln!(f, "{}", self.machine)?;
+        if !self.results.is_empty() {
+            f.write_str(&results(&self.results))?;
+            f.write_str(&verbs(&self.results))?;
+        }
+        if let Some(share) = busiest(&self.results) {
+            writeln!(
+                f,
+                "This machine was busy with other things: a thread had a core for {} of the time. Rates are too low.\n",
+                percent(share)
+            )?;
+        }
+        for skipped in &self.skipped {
+            writeln!(f, "left out: {}: {}", skipped.case.label(), skipped.reason)?;
+        }
+        if !self.end_to_end.is_empty() {
+            f.write_str(&self.whole_runs())?;
+        }
+        if !self.peers.is_empty() {
+            f.write_str(&self.other_programs())?;
+        }
+        f.write_str(&goals(&self.goals))
+    }
+}
+
+impl Display for Machine {
+    fn fmt(&self, f: &mut Formatter) -> Result {
+        let cores = if self.cores == 1 { "core" } else { "cores" };
+        writeln!(f, "{}, {} {cores}, {}", self.processor, self.cores, self.instructions)?;
+        let mut table =
+            Table::new(&["<threads", "copy GB/s", "f64 G multiply-adds/s", "f32 G multiply-adds/s"]);
+        for limits in &self.limits {
+            let giga = |rate: f64| format!("{:.1}", rate / 1e9);
+            let adds = limits.multiply_add;
+            table.row([limits.threads.to_string(), giga(limits.copy), giga(adds.double), giga(adds.single)]);
+        }
+        write!(f, "{table}")
+    }
+}
+
+fn results(results: &[Measured]) -> String {
+    let mut table =
+        Table::new(&["<problem", "particles", "M/core s", "+-", "bytes", "of copy", "of m-adds", "memory B"]);
+    for measured in results {
+        table.row([
+            measured.case.label(),
+            measured.particles.to_string(),
+            format!("{:.2}", measured.rate / 1e6),
+            percent(measured.spread),
+            format!("{:.0}", measured.bytes),
+            percent(measured.of_copy),
+            percent(measured.of_multiply_add),
+            measured.memory.map_or("-".to_owned(), |bytes| format!("{bytes:.0}")),
+        ]);
+    }
+    format!(
+        "Million particle-steps per core-second, median and half the spread; bytes that a particle and a step must move,\n\
+         and the share of the copy and multiply-add limits that this is; peak memory a particle.\n{table}\n"
+    )
+}
+
+/// Part of the time for which single threads had a core, where that is too little to believe the rates.
+fn busiest(results: &[Measured]) -> Option<f64> {
+    /// Less than this is not the clock's own unrest.
+    const UNDISTURBED: f64 = 0.95;
+    let alone = results.iter().filter(|measured| measured.case.threads == 1);
+    alone.filter_map(|measured| measured.at_work).min_by(f64::total_cmp).filter(|share| *share < UNDISTURBED)
+}
+
+fn verbs(results: &[Measured]) -> String {
+    let mut names: Vec<&str> = Vec::new();
+    for verb in results.iter().flat_map(|measured| &measured.verbs) {
+        if !names.contains(&verb.verb.as_str()) {
+            names.push(&verb.verb);
+        }
+    }
+    let mut head = vec!["<problem"];
+    head.extend(&names);
+    head.extend(["rest", "all"]);
+    let mut table = Table::new(&head);
+    for measured in results {
+        let all = 1e9 / measured.rate;
+        let known: f64 = measured.verbs.iter().map(|verb| verb.nanoseconds).sum();
+        let cell = |name: &&str| {
+            let verb = measured.verbs.iter().find(|verb| verb.verb == *name);
+            verb.map_or("-".to_owned(), |verb| format!("{:.1}", verb.nanoseconds))
+        };
+        let mut row = vec![measured.case.label()];
+        row.extend(names.iter().map(cell));
+        row.extend([(all - known).max(0.0), all].map(|time| format!("{time:.1}")));
+        table.row(row);
+    }
+    format!("Where the time goes: core-nanoseconds for a particle and a step.\n{table}\n")
+}
+
+impl Record {
+    fn whole_runs(&self) -> String {
+        let mut table =
+            Table::new(&["<scene", "particles", "steps", "threads", "with s", "without s", "ratio"]);
+        for run in &self.end_to_end {
+            let fastest =
+                |times: &[f64]| format!("{:.2}", times.iter().copied().fold(f64::INFINITY, f64::min));
+            table.row([
+                run.scene.clone(),
+                run.particles.to_string(),
+                run.steps.to_string(),
+                run.threads.to_string(),
+                fastest(&run.with_outputs),
+                fastest(&run.without_outputs),
+                format!("{:.3}", run.ratio),
+            ]);
+        }
+        format!("P6, whole runs with and without outputs.\n{table}\n")
+    }
+
+    fn other_programs(&self) -> String {
+        let mut table =
+            Table::new(&["<program", "<version", "<basis", "threads", "M/core s", "first step s"]);
+        for peer in &self.peers {
+            table.row([
+                peer.program.clone(),
+                peer.version.clone(),
+                peer.basis.clone(),
+                peer.threads.to_string(),
+                format!("{:.2}", median(&peer.repetitions) / 1e6),
+                format!("{:.1}", peer.first_step),
+            ]);
+        }
+        format!("Other programs on P1, f64.\n{table}\n")
+    }
+}
+
+fn goals(goals: &[Goal]) -> String {
+    let mut table = Table::new(&["<goal", "measured", "<", "goal", "stretch", "<"]);
+    for goal in goals {
+        let number = |value: f64| if value < 100.0 { format!("{value:.2}") } else { format!("{value:.0}") };
+        table.row([
+            goal.name.clone(),
+            number(goal.value),
+            match goal.sense {
+                Sense::AtLeast => ">=",
+                Sense::AtMost => "<=",
+            }
+            .to_owned(),
+            number(goal.goal),
+            goal.stretch.map_or(String::new(), number),
+            if goal.met { "met" } else { "missed" }.to_owned(),
+        ]);
+    }
+    format!("Goals.\n{table}")
+}
+
+fn percent(share: f64) -> String {
+    if share.is_finite() { format!("{:.0} %", 100.0 * share) } else { "-".to_owned() }
+}
+
+/// Columns under a head; those whose head starts with `<` stand left, the others right.
+struct Table {
+    rows: Vec<Vec<String>>,
+    left: Vec<bool>,
+}
+
+impl Table {
+    fn new(head: &[&str]) -> Self {
+        let left = head.iter().map(|name| name.starts_with('<')).collect();
+        let names = head.iter().map(|name| name.trim_start_matches('<').to_owned()).collect();
+        Table { rows: vec![names], left }
+    }
+
+    fn row(&mut self, cells: impl Into<Vec<String>>) {
+        self.rows.push(cells.into());
+    }
+}
+
+impl Display for Table {
+    fn fmt(&self, f: &mut Formatter) -> Result {
+        let width =
+            |column: usize| self.rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
+        let widths: Vec<usize> = (0..self.left.len()).map(width).collect();
+        for row in &self.rows {
+            let mut line = String::new();
+            for ((cell, &width), &left) in row.iter().zip(&widths).zip(&self.left) {
+                if left {
+                    write!(line, "{cell:<width$}  ")?;
+                } else {
+                    write!(line, "{cell:>width$}  ")?;
+                }
+            }
+            writeln!(f, "{}", line.trim_end())?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_stand_under_their_heads() {
+        let mut table = Table::new(&["<name", "rate"]);
+        table.row(["a longer name".to_owned(), "1.5".to_owned()]);
+        table.row(["b".to_owned(), "12.25".to_owned()]);
+        assert_eq!(table.to_string(), "name            rate\na longer name    1.5\nb              12.25\n");
+    }
+}

@@ -1,0 +1,146 @@
+//! Which problems are measured, one after the other.
+
+use super::end_to_end::wholes;
+use super::goals::{Findings, goals};
+use super::limits::{self, Care};
+use super::measure::{Effort, Order, Task};
+use super::memory;
+use super::multiply_add::instructions;
+use super::peers::Peers;
+use super::problems::{Case, Extent, cases};
+use super::record::{Machine, Measured, Record, Skipped};
+use crate::failure::Failure;
+use miette::miette;
+use std::collections::BTreeSet;
+use std::path::Path;
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
+
+/// What is to be measured.
+pub struct Suite {
+    /// How much of each problem.
+    pub extent: Extent,
+    /// `P1` to `P6`; all if empty.
+    pub only: Vec<String>,
+    /// Most threads.
+    pub threads: usize,
+    /// Other programs, if they are to be measured too.
+    pub peers: Option<Peers>,
+}
+
+/// Names of the problems.
+pub const PROBLEMS: [&str; 6] = ["P1", "P2", "P3", "P4", "P5", "P6"];
+/// What a process may need for a particle; a case is left out if the machine does not have so much [bytes].
+const MEMORY: f64 = 1000.0;
+
+impl Suite {
+    /// Measures everything, and says on standard error what it is at.
+    ///
+    /// # Errors
+    /// Other programs cannot be installed, or a measurement fails.
+    pub fn run(&self) -> Result<Record, Failure> {
+        // First what may be missing, then what takes long.
+        let python = self.peers.as_ref().map(Peers::prepare).transpose()?;
+        let machine = self.machine();
+        let mut record = Record {
+            program: "stickslip",
+            version: env!("CARGO_PKG_VERSION"),
+            unix_time: SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |time| time.as_secs()),
+            machine,
+            results: Vec::new(),
+            skipped: Vec::new(),
+            end_to_end: Vec::new(),
+            peers: Vec::new(),
+            goals: Vec::new(),
+        };
+        for case in self.cases() {
+            match too_large(&case) {
+                Some(reason) => record.skipped.push(Skipped { case, reason }),
+                None => record.results.push(self.measure(case, &record.machine)?),
+            }
+        }
+        if self.wants("P6") {
+            for whole in wholes(self.extent) {
+                eprintln!("P6 {}, with and without outputs ...", whole.name);
+                record.end_to_end.push(whole.measure(self.threads)?);
+            }
+        }
+        if let Some((peers, python)) = self.peers.as_ref().zip(python) {
+            record.peers = peers.measure(&python)?;
+        }
+        let findings =
+            Findings { results: &record.results, end_to_end: &record.end_to_end, peers: &record.peers };
+        record.goals = goals(findings);
+        Ok(record)
+    }
+
+    fn wants(&self, problem: &str) -> bool {
+        self.only.is_empty() || self.only.iter().any(|only| only == problem)
+    }
+
+    fn cases(&self) -> impl Iterator<Item = Case> {
+        cases(self.extent, self.threads).into_iter().filter(|case| self.wants(case.problem))
+    }
+
+    fn machine(&self) -> Machine {
+        eprintln!("the machine's limits ...");
+        let care = match self.extent {
+            Extent::Full => Care { bytes: 512 << 20, duration: Duration::from_secs(1) },
+            Extent::Quick => Care { bytes: 256 << 20, duration: Duration::from_millis(300) },
+            Extent::Tiny => Care { bytes: 1 << 20, duration: Duration::from_millis(2) },
+        };
+        let threads = BTreeSet::from([1, self.threads]);
+        Machine {
+            processor: processor(),
+            cores: std::thread::available_parallelism().map_or(1, usize::from),
+            instructions: instructions(),
+            limits: threads.into_iter().map(|threads| limits::measure(threads, care)).collect(),
+        }
+    }
+
+    fn measure(&self, case: Case, machine: &Machine) -> Result<Measured, Failure> {
+        eprintln!("{} ...", case.label());
+        let effort = match self.extent {
+            Extent::Full => Effort { warm_up: 8, repetitions: 5, steps: 64, seconds: 15.0 },
+            Extent::Quick => Effort { warm_up: 2, repetitions: 3, steps: 32, seconds: 1.2 },
+            Extent::Tiny => Effort { warm_up: 1, repetitions: 2, steps: 2, seconds: 0.1 },
+        };
+        let order = Order {
+            scene: case.scene.clone(),
+            overrides: Vec::new(),
+            threads: case.threads,
+            task: Task::Steps(effort),
+        };
+        let sample = order.measure()?;
+        Ok(Measured::new(case, sample, machine))
+    }
+}
+
+/// Why a case does not fit into the machine's memory, if it may not.
+fn too_large(case: &Case) -> Option<String> {
+    let (needed, left) = (MEMORY * case.expected as f64, memory::available()? as f64);
+    let gigabytes = |bytes: f64| format!("{:.1} GB", bytes / 1e9);
+    (needed > left).then(|| format!("it may need {}, and {} are free", gigabytes(needed), gigabytes(left)))
+}
+
+/// What the processor calls itself.
+fn processor() -> String {
+    let table = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let name = table.lines().find_map(|line| line.strip_prefix("model name")?.split_once(':'));
+    name.map_or_else(|| std::env::consts::ARCH.to_owned(), |(_, name)| name.trim().to_owned())
+}
+
+/// Writes the scene of every case of problems P1 to P5 that is wanted into a folder, to be run and looked at.
+///
+/// # Errors
+/// The folder cannot be written.
+pub fn write_scenes(suite: &Suite, folder: &Path) -> Result<usize, Failure> {
+    let cannot = |error| Failure::Input(miette!("cannot write scenes to {}: {error}", folder.display()));
+    std::fs::create_dir_all(folder).map_err(cannot)?;
+    let mut written = 0;
+    for case in suite.cases().filter(|case| case.threads == 1) {
+        let name = case.label().replace(", ", "_").replace(' ', "_") + ".toml";
+        std::fs::write(folder.join(name), &case.scene).map_err(cannot)?;
+        written += 1;
+    }
+    Ok(written)
+}

@@ -1,0 +1,94 @@
+//! `stickslip bench`: how fast the program is, and how fast this machine could be.
+
+use super::say;
+use crate::bench::{Extent, PROBLEMS, Peers, Suite, answer, write_scenes};
+use crate::failure::Failure;
+use clap::Args;
+use miette::miette;
+use std::path::PathBuf;
+
+/// Measure this machine's limits, and how near the program comes to them.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// Fewer and smaller problems: under a minute.
+    #[arg(long)]
+    quick: bool,
+
+    /// Only these problems, separated by commas: P1 to P6.
+    #[arg(long, value_name = "PROBLEM", value_delimiter = ',', value_parser = problem)]
+    only: Vec<String>,
+
+    /// Most threads; as many as there are processors without this.
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+
+    /// Write what was found to this file, too.
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+
+    /// Run problem P1 with Taichi and NVIDIA Warp, too; needs Python 3 and installs both from the Python package index.
+    #[arg(long)]
+    peers: bool,
+
+    /// Where the Python environment of `--peers` is made, and kept.
+    #[arg(long, value_name = "DIR", default_value = "target/peers", requires = "peers")]
+    environment: PathBuf,
+
+    /// Measure nothing: write the scenes of the problems into this folder.
+    #[arg(long, value_name = "DIR")]
+    scenes: Option<PathBuf>,
+
+    /// A few hundred particles each: whether everything works.
+    #[arg(long, hide = true)]
+    tiny: bool,
+
+    /// Measure what standard input asks for: what the other options start, in a process of its own.
+    #[arg(long, hide = true)]
+    measure: bool,
+}
+
+fn problem(text: &str) -> Result<String, String> {
+    let name = text.trim().to_uppercase();
+    if PROBLEMS.contains(&name.as_str()) {
+        Ok(name)
+    } else {
+        Err(format!("allowed: {}", PROBLEMS.join(", ")))
+    }
+}
+
+#[test]
+fn problems_are_known_by_name() {
+    assert_eq!(problem("p3").as_deref(), Ok("P3"));
+    assert!(problem("P7").unwrap_err().contains("P6"));
+}
+
+impl Arguments {
+    pub fn execute(self) -> Result<(), Failure> {
+        if self.measure {
+            return answer();
+        }
+        let extent = match (self.tiny, self.quick) {
+            (true, _) => Extent::Tiny,
+            (_, true) => Extent::Quick,
+            _ => Extent::Full,
+        };
+        let all = std::thread::available_parallelism().map_or(1, usize::from);
+        let suite = Suite {
+            extent,
+            only: self.only,
+            threads: self.threads.map_or(all, usize::from),
+            peers: self.peers.then_some(Peers { environment: self.environment, extent }),
+        };
+        if let Some(folder) = self.scenes {
+            let written = write_scenes(&suite, &folder)?;
+            return say(&format!("{}/ holds {written} scenes", folder.display()));
+        }
+        let record = suite.run()?;
+        say(&record.to_string())?;
+        let Some(file) = self.json else { return Ok(()) };
+        let text = serde_json::to_string_pretty(&record).expect("a record is plain data") + "\n";
+        std::fs::write(&file, text)
+            .map_err(|error| Failure::Input(miette!("cannot write {}: {error}", file.display())))?;
+        say(&format!("{} is written", file.display()))
+    }
+}
