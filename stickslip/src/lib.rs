@@ -44,6 +44,12 @@ pub mod contact;
 // The step and its verbs.
 pub mod engine;
 
+// RGB images: PNG files and animations.
+pub mod image;
+
+// A virtual polariscope: fringes of the stress in a snapshot.
+pub mod polariscope;
+
 // One file a kind of output; results read back.
 pub mod observe;
 

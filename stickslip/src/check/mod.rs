@@ -19,7 +19,7 @@ pub use hertz::{Hertz, Patch};
 pub use report::{BodyReport, Machine, MaterialReport, Report, report};
 
 use crate::geometry::Lattice;
-use crate::scene::{Dimension, Problem, Scene};
+use crate::scene::{Problem, Scene};
 
 /// Finds what is wrong with a scene and takes its geometry to see.
 ///
@@ -51,10 +51,7 @@ pub fn lattice(scene: &Scene) -> Lattice {
 
 /// 2 or 3.
 fn axes(scene: &Scene) -> usize {
-    match scene.dimension {
-        Dimension::PlaneStrain => 2,
-        Dimension::Space => 3,
-    }
+    scene.dimension.axes()
 }
 
 #[cfg(test)]
@@ -96,7 +93,7 @@ mod tests {
             materials: vec![neo_hookean("soft", 1.0), neo_hookean("stiff", 10.0)],
             bodies,
             contact: vec![],
-            outputs: Outputs { tables: 0.1, particles: None, grid: None },
+            outputs: Outputs { tables: 0.1, particles: None, grid: None, fringes: None },
             references: vec![],
         }
     }

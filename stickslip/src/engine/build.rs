@@ -21,8 +21,8 @@ use std::marker::PhantomData;
 /// What [`check::problems`] finds.
 pub fn build(scene: &Scene) -> Result<Box<dyn Simulation>, Problem> {
     match (scene.dimension, scene.precision) {
-        (Dimension::PlaneStrain, Precision::Double) => with_basis::<f64, 2>(scene),
-        (Dimension::PlaneStrain, Precision::Single) => with_basis::<f32, 2>(scene),
+        (Dimension::PlaneStrain | Dimension::PlaneStress, Precision::Double) => with_basis::<f64, 2>(scene),
+        (Dimension::PlaneStrain | Dimension::PlaneStress, Precision::Single) => with_basis::<f32, 2>(scene),
         (Dimension::Space, Precision::Double) => with_basis::<f64, 3>(scene),
         (Dimension::Space, Precision::Single) => with_basis::<f32, 3>(scene),
     }
@@ -59,6 +59,7 @@ impl<T: Real, const D: usize, B: Basis<T>> Engine<T, D, B> {
                     _ => [0.0; 3],
                 }),
                 rigid: motion.is_some(),
+                thickness: scene.dimension.thickness(),
             });
             rigid.push(motion);
         }

@@ -27,6 +27,8 @@ pub enum FaultKind {
     Inverted,
     /// It left the domain.
     Escaped,
+    /// No thickness leaves it without stress out of the plane.
+    NoThickness,
     /// A value of it is not a finite number.
     NotFinite,
 }

@@ -256,7 +256,8 @@ impl<T: Real, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 return Err(FaultKind::Inverted);
             }
             let motion = Motion { deformation, jacobian, increment, stress: particle.stress };
-            particle.stress = body.material.law().stress(&motion);
+            let (motion, stress) = body.respond(motion).ok_or(FaultKind::NoThickness)?;
+            (particle.deformation, particle.stress) = (motion.deformation, stress);
             particle.stress.is_finite().then_some(()).ok_or(FaultKind::NotFinite)
         });
         self.watch.lap("strain", start);
@@ -277,6 +278,7 @@ impl<T: Real, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 determinant: particle.deformation.det().f64(),
             },
             FaultKind::Escaped => StepError::Escaped { body: name, number, position, time },
+            FaultKind::NoThickness => StepError::NoThickness { body: name, number, position, time },
             FaultKind::NotFinite => StepError::NotFinite { body: name, number, position, time },
         }
     }

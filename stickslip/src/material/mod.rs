@@ -6,10 +6,12 @@
 mod elastic;
 mod hypoelastic;
 mod neo_hookean;
+mod plane_stress;
 
 pub use elastic::Isotropic;
 pub use hypoelastic::Hypoelastic;
 pub use neo_hookean::NeoHookean;
+pub use plane_stress::Thickness;
 
 use crate::tensor::{Matrix, Real, Symmetric};
 use serde::Serialize;
@@ -38,6 +40,9 @@ pub trait Law<T: Real>: Send + Sync {
 
     /// Stiffness against a longitudinal wave in the present state, times J [Pa]: over the undeformed density it is the squared wave speed.
     fn wave_modulus(&self, deformation: &Matrix<T>, jacobian: T) -> T;
+
+    /// Stiffness against a shear wave in the present state, times J [Pa]; plane stress needs it for its waves.
+    fn shear_modulus(&self, deformation: &Matrix<T>, jacobian: T) -> T;
 }
 
 /// The shelf: every law with its constants.
@@ -137,6 +142,25 @@ impl<T: Real> Material<T> {
         match self {
             Material::NeoHookean(law) => law,
             Material::Hypoelastic(law) => law,
+        }
+    }
+
+    /// The motion with the thickness that the particle takes, and Cauchy stress after it [Pa]; `None` if no thickness is free of stress.
+    #[inline]
+    pub fn respond(&self, thickness: Thickness, motion: Motion<T>) -> Option<(Motion<T>, Symmetric<T>)> {
+        match thickness {
+            Thickness::Moved => Some((motion, self.law().stress(&motion))),
+            Thickness::Free => plane_stress::with_free_thickness(self.law(), &motion),
+        }
+    }
+
+    /// Stiffness against the fastest wave in the present state, times J [Pa]: [`Law::wave_modulus`], in plane stress that of a plate.
+    pub fn wave_modulus(&self, thickness: Thickness, deformation: &Matrix<T>, jacobian: T) -> T {
+        let law = self.law();
+        let waves = law.wave_modulus(deformation, jacobian);
+        match thickness {
+            Thickness::Moved => waves,
+            Thickness::Free => plane_stress::plate_modulus(waves, law.shear_modulus(deformation, jacobian)),
         }
     }
 }

@@ -1,6 +1,7 @@
 //! `[outputs]` and `[[references]]`: what is written, and what it is held against.
 
 use super::Context;
+use super::fringes::Fringes;
 use super::quantity::{Duration, Quantity, evaluate};
 use super::read::{Read, table};
 use super::text::Text;
@@ -22,6 +23,8 @@ table! {
         /// Interval between snapshots of the grid for ParaView [s], or "never".
         #[schemars(extend("default" = "never"))]
         grid: Option<Interval>,
+        /// Pictures of photoelastic fringes, and an animation of them: a camera behind a virtual polariscope.
+        fringes: Option<Fringes>,
     }
 }
 
@@ -67,14 +70,20 @@ const QUANTITIES: &[(&str, [i8; 3])] = &[
 ];
 
 /// What is written in a run of length `end` [s].
-pub fn resolve(outputs: Option<&Outputs>, end: f64, context: &Context) -> Result<scene::Outputs, Fault> {
+pub fn resolve(
+    outputs: Option<&Outputs>,
+    (bodies, end): (&[Body], f64),
+    context: &Context,
+) -> Result<scene::Outputs, Fault> {
     let tables = outputs.and_then(|outputs| outputs.tables.as_ref());
     let particles = outputs.and_then(|outputs| outputs.particles.as_ref());
     let grid = outputs.and_then(|outputs| outputs.grid.as_ref());
+    let fringes = outputs.and_then(|outputs| outputs.fringes.as_ref());
     Ok(scene::Outputs {
         tables: tables.map_or(Ok(end / 200.0), |interval| interval.positive(context))?,
         particles: particles.map_or(Ok(Some(end / 40.0)), |interval| interval.value(context))?,
         grid: grid.map_or(Ok(None), |interval| interval.value(context))?,
+        fringes: fringes.map(|fringes| fringes.resolve(bodies, context)).transpose()?,
     })
 }
 

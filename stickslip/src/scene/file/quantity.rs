@@ -47,6 +47,10 @@ measures! {
     AngularVelocity = [0, 0, -1];
     /// In kilograms per cubic metre.
     Density = [1, -3, 0];
+    /// In pascals.
+    Pressure = [1, -1, -2];
+    /// In one over pascals.
+    Compliance = [-1, 1, 2];
 }
 
 /// In radians.

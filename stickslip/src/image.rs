@@ -1,0 +1,136 @@
+//! Images of eight bits a colour, as PNG files and as animated PNG files, which browsers play.
+
+use std::fs::File;
+use std::io::{self, BufReader, Write};
+use std::path::Path;
+
+/// An image: sRGB, three bytes a pixel, rows from the top.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Image {
+    /// Width and height in pixels.
+    pub size: [usize; 2],
+    /// Red, green and blue of each pixel.
+    pub pixels: Vec<u8>,
+}
+
+impl Image {
+    /// An image of one colour.
+    pub fn new(size: [usize; 2], color: [u8; 3]) -> Self {
+        Image { size, pixels: color.repeat(size[0] * size[1]) }
+    }
+
+    /// The colour of a pixel, counted from the left and from the top.
+    ///
+    /// # Panics
+    /// The pixel is outside.
+    pub fn color(&self, x: usize, y: usize) -> [u8; 3] {
+        assert!(x < self.size[0]);
+        let start = 3 * (y * self.size[0] + x);
+        [self.pixels[start], self.pixels[start + 1], self.pixels[start + 2]]
+    }
+
+    /// Writes the image as PNG.
+    ///
+    /// # Errors
+    /// The writer refuses.
+    pub fn write_png(&self, to: &mut dyn Write) -> io::Result<()> {
+        let mut writer = self.encoder(to).write_header()?;
+        writer.write_image_data(&self.pixels)?;
+        Ok(writer.finish()?)
+    }
+
+    /// Reads a PNG file that [`Image::write_png`] wrote.
+    ///
+    /// # Errors
+    /// The file cannot be read, is damaged, or has another kind of pixels.
+    pub fn read_png(path: &Path) -> io::Result<Self> {
+        let mut reader = png::Decoder::new(BufReader::new(File::open(path)?)).read_info()?;
+        let size = [reader.info().width as usize, reader.info().height as usize];
+        if reader.output_color_type() != (png::ColorType::Rgb, png::BitDepth::Eight) {
+            return Err(io::Error::new(io::ErrorKind::InvalidData, "not an image of eight bits a colour"));
+        }
+        let mut pixels = vec![0; 3 * size[0] * size[1]];
+        reader.next_frame(&mut pixels)?;
+        Ok(Image { size, pixels })
+    }
+
+    fn encoder<'a>(&self, to: &'a mut dyn Write) -> png::Encoder<'static, &'a mut dyn Write> {
+        let mut encoder = png::Encoder::new(to, self.size[0] as u32, self.size[1] as u32);
+        encoder.set_color(png::ColorType::Rgb);
+        encoder
+    }
+}
+
+/// Writes images as one animated PNG (APNG) that plays for ever, `rate` images a second.
+///
+/// A program that does not know animations shows the first image. Images are asked for one by one, so that a long film need not
+/// fit into memory.
+///
+/// # Errors
+/// There are no images, one cannot be had or has another size than the first, or the writer refuses.
+pub fn write_animation(
+    mut images: impl ExactSizeIterator<Item = io::Result<Image>>,
+    rate: f64,
+    to: &mut dyn Write,
+) -> io::Result<()> {
+    let count = images.len() as u32;
+    let wrong = |what| io::Error::new(io::ErrorKind::InvalidInput, what);
+    let first = images.next().ok_or_else(|| wrong("an animation of no images"))??;
+    let mut encoder = first.encoder(to);
+    encoder.set_animated(count, 0)?;
+    // The delay is a fraction of two small whole numbers.
+    encoder.set_frame_delay((1000.0 / rate).round().clamp(1.0, 60_000.0) as u16, 1000)?;
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(&first.pixels)?;
+    for image in images {
+        let image = image?;
+        if image.size != first.size {
+            return Err(wrong("an animation of images of different sizes"));
+        }
+        writer.write_image_data(&image.pixels)?;
+    }
+    Ok(writer.finish()?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn image(shade: u8) -> Image {
+        let mut image = Image::new([7, 5], [shade, 2, 200]);
+        image.pixels[3] = 255 - shade;
+        image
+    }
+
+    #[test]
+    fn an_image_comes_back() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.png");
+        image(9).write_png(&mut File::create(&path).unwrap()).unwrap();
+        assert_eq!(Image::read_png(&path).unwrap(), image(9));
+    }
+
+    #[test]
+    fn an_animation_has_every_image_and_its_delay() {
+        let mut file = Vec::new();
+        write_animation([3, 60, 120].into_iter().map(|shade| Ok(image(shade))), 8.0, &mut file).unwrap();
+        let mut reader = png::Decoder::new(io::Cursor::new(file)).read_info().unwrap();
+        let control = reader.info().animation_control.unwrap();
+        assert_eq!((control.num_frames, control.num_plays), (3, 0));
+        for shade in [3, 60, 120] {
+            let mut pixels = vec![0; 3 * 7 * 5];
+            reader.next_frame(&mut pixels).unwrap();
+            assert_eq!(pixels, image(shade).pixels);
+            let frame = reader.info().frame_control.unwrap();
+            assert_eq!((frame.delay_num, frame.delay_den), (125, 1000));
+        }
+    }
+
+    #[test]
+    fn images_of_two_sizes_make_no_animation() {
+        let images = [Ok(image(1)), Ok(Image::new([4, 4], [0; 3]))];
+        assert!(write_animation(images.into_iter(), 8.0, &mut Vec::new()).is_err());
+        let nothing: [io::Result<Image>; 0] = [];
+        assert!(write_animation(nothing.into_iter(), 8.0, &mut Vec::new()).is_err());
+    }
+}

@@ -1,0 +1,140 @@
+//! One body as light sees it: points of the plane, each with its area, the stress along the ray through it, and the way through
+//! the body.
+
+use crate::door::ParticleSnapshot;
+use std::collections::BTreeMap;
+
+/// A particle of a plane scene, or the particles of a scene in space that lie one behind the other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Point {
+    /// Place in the plane [m].
+    pub place: [f64; 2],
+    /// Area that it stands for [m^2].
+    pub area: f64,
+    /// Cauchy stress xx, yy, xy, averaged along the ray [Pa], and the ray's way through the body [m].
+    pub values: [f64; 4],
+}
+
+/// The points of one body, sorted into square bins.
+pub struct Cloud {
+    /// Index of the body.
+    pub body: usize,
+    /// How far points are looked for, and side of a bin [m].
+    pub reach: f64,
+    /// Lower and upper corner of the points [m].
+    pub bounds: [[f64; 2]; 2],
+    /// Centre of mass [m].
+    pub center: [f64; 2],
+    bins: [usize; 2],
+    starts: Vec<u32>,
+    points: Vec<Point>,
+}
+
+/// The bodies of a snapshot that have particles, in their order; `reach` is in distances between particles.
+pub fn clouds(particles: &ParticleSnapshot, reach: f64) -> Vec<Cloud> {
+    let mut clouds = Vec::new();
+    let mut start = 0;
+    for group in particles.body.chunk_by(|a, b| a == b) {
+        let range = start..start + group.len();
+        start = range.end;
+        let size = |i: usize| particles.volume[i].max(f64::MIN_POSITIVE);
+        let mean = range.clone().map(size).sum::<f64>() / group.len() as f64;
+        let (points, spacing) = if particles.dimension == 2 {
+            (range.clone().map(|i| flat(particles, i)).collect(), mean.sqrt())
+        } else {
+            (columns(particles, range.clone(), mean.cbrt()), mean.cbrt())
+        };
+        let mass: f64 = particles.mass[range.clone()].iter().sum();
+        let moment =
+            |axis: usize| range.clone().map(|i| particles.mass[i] * particles.position[i][axis]).sum::<f64>();
+        let center = [moment(0) / mass, moment(1) / mass];
+        clouds.push(Cloud::sorted(group[0] as usize, points, (center, reach * spacing)));
+    }
+    clouds
+}
+
+/// A particle of a plane scene: its volume is per metre of depth, and so is its way.
+fn flat(particles: &ParticleSnapshot, i: usize) -> Point {
+    let [x, y, _] = particles.position[i];
+    let [xx, yy, _, xy, _, _] = particles.stress[i];
+    Point { place: [x, y], area: particles.volume[i], values: [xx, yy, xy, 1.0] }
+}
+
+/// Particles in columns along the third axis, a column for each square of side `side` [m] that holds any:
+///
+/// ```text
+/// way = sum V / side^2,   stress = sum V sigma / sum V
+/// ```
+fn columns(particles: &ParticleSnapshot, range: std::ops::Range<usize>, side: f64) -> Vec<Point> {
+    let low = [0, 1].map(|axis| {
+        particles.position[range.clone()].iter().map(|x| x[axis]).fold(f64::INFINITY, f64::min) - 0.5 * side
+    });
+    // V, V x, V y, V sigma
+    let mut columns: BTreeMap<[i64; 2], [f64; 6]> = BTreeMap::new();
+    for i in range {
+        let [x, y, _] = particles.position[i];
+        let [xx, yy, _, xy, _, _] = particles.stress[i];
+        let key = [((x - low[0]) / side).floor() as i64, ((y - low[1]) / side).floor() as i64];
+        let sum = columns.entry(key).or_default();
+        for (sum, value) in sum.iter_mut().zip([1.0, x, y, xx, yy, xy]) {
+            *sum += particles.volume[i] * value;
+        }
+    }
+    let point = |[volume, x, y, xx, yy, xy]: [f64; 6]| Point {
+        place: [x / volume, y / volume],
+        area: side * side,
+        values: [xx / volume, yy / volume, xy / volume, volume / (side * side)],
+    };
+    columns.into_values().map(point).collect()
+}
+
+impl Cloud {
+    fn sorted(body: usize, points: Vec<Point>, (center, reach): ([f64; 2], f64)) -> Self {
+        let mut bounds = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
+        for point in &points {
+            for axis in 0..2 {
+                bounds[0][axis] = bounds[0][axis].min(point.place[axis]);
+                bounds[1][axis] = bounds[1][axis].max(point.place[axis]);
+            }
+        }
+        // A few particles that flew far away must not ask for a bin on every square metre between.
+        let most = (4 * points.len()).max(64) as f64;
+        let wide = [0, 1].map(|axis| (bounds[1][axis] - bounds[0][axis]) / reach + 1.0);
+        let reach = reach * (wide[0] * wide[1] / most).sqrt().max(1.0);
+        let bins = [0, 1].map(|axis| ((bounds[1][axis] - bounds[0][axis]) / reach) as usize + 1);
+        let mut cloud = Cloud { body, reach, bounds, center, bins, starts: Vec::new(), points: Vec::new() };
+        let bin = |point: &Point| {
+            let [column, row] = cloud.bin(point.place).map(|index| index as usize);
+            row * bins[0] + column
+        };
+        let mut starts = vec![0u32; bins[0] * bins[1] + 1];
+        points.iter().for_each(|point| starts[bin(point) + 1] += 1);
+        (1..starts.len()).for_each(|i| starts[i] += starts[i - 1]);
+        let mut order: Vec<usize> = (0..points.len()).collect();
+        order.sort_by_key(|&i| bin(&points[i]));
+        cloud.points = order.into_iter().map(|i| points[i]).collect();
+        cloud.starts = starts;
+        cloud
+    }
+
+    fn bin(&self, x: [f64; 2]) -> [i64; 2] {
+        [0, 1].map(|axis| ((x[axis] - self.bounds[0][axis]) / self.reach).floor() as i64)
+    }
+
+    /// Points in the bins around a place: all that are nearer than `reach`, and some more.
+    pub fn near(&self, x: [f64; 2]) -> impl Iterator<Item = &Point> {
+        let [column, row] = self.bin(x);
+        let [columns, rows] = self.bins.map(|count| count as i64);
+        let (left, right) = ((column - 1).max(0), (column + 2).min(columns));
+        ((row - 1).max(0)..(row + 2).min(rows)).flat_map(move |row| {
+            // The bins of a row follow one another.
+            let bin = |column: i64| self.starts[(row * columns + column) as usize] as usize;
+            if left < right { &self.points[bin(left)..bin(right)] } else { &[] }
+        })
+    }
+
+    /// All points.
+    pub fn points(&self) -> &[Point] {
+        &self.points
+    }
+}

@@ -1,0 +1,40 @@
+//! Film: sums up light while the shutter is open.
+
+use super::color::srgb_byte;
+use super::optics::Rgb;
+use crate::image::Image;
+
+/// Light on each pixel, linear, summed over exposures.
+#[derive(Clone, Debug)]
+pub struct Film {
+    size: [usize; 2],
+    light: Vec<[f32; 3]>,
+    exposures: usize,
+}
+
+impl Film {
+    /// Film of this width and height in pixels.
+    pub fn new(size: [usize; 2]) -> Self {
+        Film { size, light: vec![[0.0; 3]; size[0] * size[1]], exposures: 0 }
+    }
+
+    /// Times that light fell on it.
+    pub fn exposures(&self) -> usize {
+        self.exposures
+    }
+
+    /// Adds the light of an instant, rows from the top.
+    pub(super) fn expose(&mut self, light: &[Rgb]) {
+        self.exposures += 1;
+        for (sum, light) in self.light.iter_mut().zip(light) {
+            (0..3).for_each(|i| sum[i] += light[i] as f32);
+        }
+    }
+
+    /// The image of the mean light; what is too bright or out of the screen's gamut is clipped.
+    pub fn develop(&self) -> Image {
+        let share = 1.0 / self.exposures.max(1) as f64;
+        let bytes = self.light.iter().flatten().map(|&light| srgb_byte(f64::from(light) * share));
+        Image { size: self.size, pixels: bytes.collect() }
+    }
+}

@@ -1,0 +1,134 @@
+//! Stress on the pixels of an image, interpolated between the particles of one body.
+//!
+//! Moving least squares (Lancaster and Salkauskas 1981): around each pixel a plane a + b.(x - x_pixel) is fitted to the stress of
+//! the particles within a reach R of two distances between particles, with weights
+//!
+//! ```text
+//! w = A (1 - r^2/R^2)^3          A: the particle's area
+//! ```
+//!
+//! so stress that varies linearly is met exactly, up to the body's surface. Only the body's own particles count: stress does not
+//! smear across contacts. How much of the body covers a pixel is
+//!
+//! ```text
+//! c = sum w / (pi R^2 / 4)       1 inside, 1/2 on a straight surface
+//! ```
+
+use super::Window;
+use super::cloud::Cloud;
+use rayon::prelude::*;
+use std::f64::consts::PI;
+
+/// What a ray of light meets in one body.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Ray {
+    /// Share of the pixel that the body covers, 0 to 1.
+    pub coverage: f64,
+    /// Cauchy stress xx, yy, xy, averaged along the ray, tension positive [Pa].
+    pub stress: [f64; 3],
+    /// Way through the body [m]; 1 in a plane scene.
+    pub path: f64,
+}
+
+/// The rays through one body, on the pixels of a part of a window.
+#[derive(Clone, Debug)]
+pub struct StressMap {
+    /// Index of the body.
+    pub body: usize,
+    /// Left and top pixel.
+    pub corner: [usize; 2],
+    /// Width and height in pixels.
+    pub size: [usize; 2],
+    /// Rows from the top.
+    pub rays: Vec<Ray>,
+}
+
+/// Reach of the kernel in distances between particles: a dozen of them, so that the steps of a lattice smooth out.
+pub const REACH: f64 = 2.0;
+
+/// Part of the points' mean square distance (in reaches) added to that of every fit: a single row of particles has no slope
+/// across itself.
+const RIDGE: f64 = 1e-3;
+
+impl Ray {
+    /// Difference of the principal stresses in the plane, sqrt((xx - yy)^2 + 4 xy^2) [Pa].
+    pub fn principal_difference(&self) -> f64 {
+        let [xx, yy, xy] = self.stress;
+        (xx - yy).hypot(2.0 * xy)
+    }
+
+    /// Angle of the larger principal stress from the x axis, -pi/2 to pi/2 [rad].
+    pub fn principal_angle(&self) -> f64 {
+        let [xx, yy, xy] = self.stress;
+        0.5 * (2.0 * xy).atan2(xx - yy)
+    }
+}
+
+impl StressMap {
+    /// The rays of a window that may meet a body; `None` if all miss it.
+    pub(super) fn new(cloud: &Cloud, window: &Window) -> Option<Self> {
+        let [left, bottom] = window.pixel(cloud.bounds[0].map(|x| x - cloud.reach));
+        let [right, top] = window.pixel(cloud.bounds[1].map(|x| x + cloud.reach));
+        let inside = |pixel: f64, axis: usize| pixel.clamp(0.0, window.size[axis] as f64) as usize;
+        let corner = [inside(left.floor(), 0), inside(top.floor(), 1)];
+        let end = [inside(right.ceil(), 0), inside(bottom.ceil(), 1)];
+        if end[0] <= corner[0] || end[1] <= corner[1] {
+            return None;
+        }
+        let size = [end[0] - corner[0], end[1] - corner[1]];
+        let mut rays = vec![Ray::default(); size[0] * size[1]];
+        rays.par_chunks_mut(size[0]).enumerate().for_each(|(row, rays)| {
+            for (column, ray) in rays.iter_mut().enumerate() {
+                *ray = ray_at(cloud, window.position(corner[0] + column, corner[1] + row), window.scale());
+            }
+        });
+        Some(StressMap { body: cloud.body, corner, size, rays })
+    }
+
+    /// The ray through a pixel of the window, if it is one of the map's.
+    pub fn ray(&self, column: usize, row: usize) -> Option<&Ray> {
+        let x = column.checked_sub(self.corner[0]).filter(|x| *x < self.size[0])?;
+        let y = row.checked_sub(self.corner[1]).filter(|y| *y < self.size[1])?;
+        Some(&self.rays[y * self.size[0] + x])
+    }
+}
+
+/// The ray through a place; `scale` is in pixels per metre.
+fn ray_at(cloud: &Cloud, x: [f64; 2], scale: f64) -> Ray {
+    let mut sum = [[0.0; 5]; 3]; // of w, w dx, w dy, each times 1 and the four values
+    let mut square = [0.0; 3]; // of w dx dx, w dx dy, w dy dy
+    for point in cloud.near(x) {
+        let [dx, dy] = [0, 1].map(|axis| (point.place[axis] - x[axis]) / cloud.reach);
+        let gap = 1.0 - dx * dx - dy * dy;
+        if gap <= 0.0 {
+            continue;
+        }
+        let w = point.area * gap * gap * gap;
+        for (sum, factor) in sum.iter_mut().zip([w, w * dx, w * dy]) {
+            sum[0] += factor;
+            for (sum, value) in sum[1..].iter_mut().zip(point.values) {
+                *sum += factor * value;
+            }
+        }
+        square = [square[0] + w * dx * dx, square[1] + w * dx * dy, square[2] + w * dy * dy];
+    }
+    let filled = sum[0][0] / (0.25 * PI * cloud.reach * cloud.reach);
+    // Across a straight surface c rises by 128 / (35 pi R) a metre where it is 1/2.
+    let rise = 128.0 / (35.0 * PI * cloud.reach * scale);
+    let coverage = (0.5 + (filled - 0.5) / rise).clamp(0.0, 1.0);
+    if coverage == 0.0 {
+        return Ray::default();
+    }
+    let [a, b, c] = first_row_of_inverse(&sum, square);
+    let fitted = |k: usize| a * sum[0][k] + b * sum[1][k] + c * sum[2][k];
+    Ray { coverage, stress: [fitted(1), fitted(2), fitted(3)], path: fitted(4).max(0.0) }
+}
+
+/// First row of the inverse of the matrix of moments, made regular by [`RIDGE`].
+fn first_row_of_inverse(sum: &[[f64; 5]; 3], [xx, xy, yy]: [f64; 3]) -> [f64; 3] {
+    let [one, x, y] = [sum[0][0], sum[1][0], sum[2][0]];
+    let (xx, yy) = (xx + RIDGE * one, yy + RIDGE * one);
+    let cofactors = [xx * yy - xy * xy, xy * y - x * yy, x * xy - xx * y];
+    let det = one * cofactors[0] + x * cofactors[1] + y * cofactors[2];
+    cofactors.map(|cofactor| cofactor / det)
+}
