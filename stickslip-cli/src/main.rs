@@ -5,10 +5,11 @@ mod commands;
 mod drawing;
 mod failure;
 mod illustration;
-#[allow(dead_code, unused_imports, reason = "reports are written over it")]
 mod page;
 mod picture;
 mod progress;
+mod reproduce;
+mod workshop;
 
 use clap::Parser;
 use std::process::ExitCode;
