@@ -91,8 +91,8 @@ pub(super) fn with_free_thickness<T: Real>(
 fn stretched<T: Real>(motion: &Motion<T>, stretch: T) -> Motion<T> {
     let mut motion = *motion;
     motion.increment.0[2][2] = stretch;
-    motion.deformation.0[2][2] = motion.deformation.0[2][2] * stretch;
-    motion.jacobian = motion.jacobian * stretch;
+    motion.deformation.0[2][2] *= stretch;
+    motion.jacobian *= stretch;
     motion
 }
 

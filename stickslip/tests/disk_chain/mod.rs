@@ -34,9 +34,9 @@ impl Chain {
             simulation.step(end - start).unwrap_or_else(|error| panic!("{error}"));
             let dt = simulation.time() - start;
             for contact in simulation.take_contacts() {
-                let [a, b] = contact.bodies;
+                let (a, b) = (contact.body_a, contact.body_b);
                 if deformable(a) != deformable(b) {
-                    let sign = if deformable(a) { dt } else { -dt };
+                    let sign = if deformable(a) { -dt } else { dt };
                     (0..2).for_each(|i| impulse[i] += sign * contact.force[i]);
                     pushed = pushed.max(impulse[0].abs());
                 }
@@ -49,8 +49,10 @@ impl Chain {
 }
 
 fn load(name: &str, overrides: &[(&str, &str)]) -> Scene {
-    let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/paper")).join(format!("disks_{name}.toml"));
-    let overrides: Vec<_> = overrides.iter().map(|(key, value)| (key.to_string(), value.to_string())).collect();
+    let path =
+        Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/paper")).join(format!("disks_{name}.toml"));
+    let overrides: Vec<_> =
+        overrides.iter().map(|(key, value)| (key.to_string(), value.to_string())).collect();
     scene::load(&path, &overrides).unwrap_or_else(|error| panic!("{error}")).scene
 }
 
