@@ -1,13 +1,20 @@
 //! Pictures and a chart of a folder of results.
 
 use crate::chart::{Choice, chart};
-use crate::drawing::{DrawError, Scale};
+use crate::drawing::{DrawError, Scale, save};
 use crate::failure::Failure;
 use crate::picture::{self, Bounds, Look, Mirror, Quantity, Quarters, Setting, View};
 use miette::miette;
 use std::path::Path;
 use stickslip::door::ParticleSnapshot;
+use stickslip::image::Image;
 use stickslip::observe::{Frame, Results};
+
+/// A way to draw snapshots.
+pub trait Pictures {
+    /// The picture of a snapshot.
+    fn picture(&self, frame: &Frame) -> Result<Image, Failure>;
+}
 
 /// What the user wants to see of snapshots.
 #[derive(Clone, Debug)]
@@ -48,12 +55,7 @@ impl<'a> Album<'a> {
     /// # Errors
     /// There are none, or the scene has no plane of symmetry where the user wants a mirror.
     pub fn open(results: &'a Results, choice: PictureChoice) -> Result<Self, Failure> {
-        let Some(first) = results.frames().first() else {
-            return Err(Failure::Input(miette!(
-                help = "let the scene write particles, and run it again",
-                "the run wrote no snapshots of particles"
-            )));
-        };
+        let first = snapshots(results)?.first().expect("there is at least one");
         let setting = Setting::of_json(&results.manifest().scene);
         let mirror = mirror(&setting, &choice)?;
         let first = results.particles(first).map_err(Failure::input)?;
@@ -61,16 +63,11 @@ impl<'a> Album<'a> {
         Ok(Album { results, setting, quarters, mirror, choice, bounds: None })
     }
 
-    /// All snapshots, at least one.
-    pub fn frames(&self) -> &[Frame] {
-        self.results.frames()
-    }
-
     /// The same album with one camera and one range of colours for all pictures.
     pub fn steadied(&self) -> Result<Self, Failure> {
         let mut album = self.clone();
         let mut range = [f64::INFINITY, f64::NEG_INFINITY];
-        for frame in self.frames() {
+        for frame in self.results.frames() {
             let particles = self.results.particles(frame).map_err(Failure::input)?;
             let here = picture::bounds(&particles);
             let all = album.bounds.get_or_insert(here);
@@ -85,21 +82,6 @@ impl<'a> Album<'a> {
         Ok(album)
     }
 
-    /// Draws a snapshot into a PNG file.
-    pub fn draw(&self, frame: &Frame, out: &Path) -> Result<(), Failure> {
-        let particles = self.results.particles(frame).map_err(Failure::input)?;
-        let look = Look {
-            quantity: self.choice.quantity,
-            scale: self.scale(&particles),
-            view: self.choice.view,
-            mirror: self.mirror,
-            size: self.choice.size,
-            bounds: self.bounds,
-        };
-        let canvas = picture::draw(&particles, &self.setting, &self.quarters, (frame.time, &look))?;
-        Ok(canvas.save(out)?)
-    }
-
     fn scale(&self, particles: &ParticleSnapshot) -> Scale {
         let quantity = self.choice.quantity;
         match self.choice.range {
@@ -111,6 +93,36 @@ impl<'a> Album<'a> {
             }
         }
     }
+}
+
+impl Pictures for Album<'_> {
+    fn picture(&self, frame: &Frame) -> Result<Image, Failure> {
+        let particles = self.results.particles(frame).map_err(Failure::input)?;
+        let look = Look {
+            quantity: self.choice.quantity,
+            scale: self.scale(&particles),
+            view: self.choice.view,
+            mirror: self.mirror,
+            size: self.choice.size,
+            bounds: self.bounds,
+        };
+        let canvas = picture::draw(&particles, &self.setting, &self.quarters, (frame.time, &look))?;
+        Ok(canvas.image())
+    }
+}
+
+/// The snapshots of a run, at least one.
+///
+/// # Errors
+/// There are none.
+pub fn snapshots(results: &Results) -> Result<&[Frame], Failure> {
+    let none = || {
+        Failure::Input(miette!(
+            help = "let the scene write particles, and run it again",
+            "the run wrote no snapshots of particles"
+        ))
+    };
+    Some(results.frames()).filter(|frames| !frames.is_empty()).ok_or_else(none)
 }
 
 fn mirror(setting: &Setting, choice: &PictureChoice) -> Result<Option<Mirror>, Failure> {
@@ -135,8 +147,12 @@ pub fn illustrate(folder: &Path) -> Result<String, Failure> {
         Err(error) => return Err(error.into()),
     }
     if let Some(last) = results.frames().last() {
-        Album::open(&results, PictureChoice::default())?.draw(last, &folder.join("picture.png"))?;
+        let picture = Album::open(&results, PictureChoice::default())?.picture(last)?;
+        save(&picture, &folder.join("picture.png"))?;
         drawn.extend(["particles.pvd", "picture.png"]);
+    }
+    if folder.join("fringes.png").exists() {
+        drawn.push("fringes.png");
     }
     Ok(drawn.join(", "))
 }

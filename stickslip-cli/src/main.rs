@@ -2,6 +2,7 @@
 
 mod chart;
 mod commands;
+mod darkroom;
 mod drawing;
 mod failure;
 mod illustration;

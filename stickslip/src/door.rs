@@ -25,6 +25,8 @@ pub trait Simulation: Send {
     fn ledger(&self) -> Ledger;
     /// What contact did since the last call, per pair of bodies that touched, ordered by pair.
     fn take_contacts(&mut self) -> Vec<ContactState>;
+    /// What [`Simulation::take_contacts`] would give now, without beginning a new mean; what it gave last, if that was just now.
+    fn contacts(&self) -> Vec<ContactState>;
     /// All particles now, ordered by body and then by the particle's number in its body.
     fn snapshot(&self) -> ParticleSnapshot;
     /// The nodes of the last step's grid that carry mass.

@@ -11,8 +11,10 @@ use std::process::Command;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use stickslip::door::{ParticleSnapshot, Simulation, StepError};
+use stickslip::image::Image;
 use stickslip::observe::{FolderError, Results, Status};
 use stickslip::run::{RunError, RunOptions, Summary, run};
+use stickslip::scene::{Field, Fringes, Light, Overlay, Polariscope, Sensitivity};
 
 fn options(out: &Path) -> RunOptions {
     RunOptions { out: out.to_path_buf(), stop: Arc::new(AtomicBool::new(false)), threads: 2 }
@@ -315,4 +317,51 @@ fn assert_same_particles(found: &serde_json::Value, time: f64, expected: &Partic
         assert!(values(name) == column, "{name} at {time} s");
     }
     assert!(values("von_mises").iter().all(|value| (value - 3f64.sqrt()).abs() < 1e-15));
+}
+
+#[test]
+fn a_camera_leaves_its_frames_a_table_and_an_animation() {
+    let out = tempfile::tempdir().unwrap();
+    let mut scene = scene();
+    let polariscope = Polariscope {
+        sensitivity: Sensitivity::StressPerFringe(2.0),
+        wavelength: Polariscope::MERCURY_GREEN,
+        field: Field::Dark,
+        light: Light::White,
+        polarizer: None,
+    };
+    scene.outputs.fringes = Some(Fringes {
+        first: 0.1,
+        interval: 0.25,
+        exposure: 0.12,
+        samples: 3,
+        width: 48,
+        view: Some([[-1.0, -5.0], [3.0, 5.0]]),
+        bodies: vec![scene.bodies[0].name.clone()],
+        overlay: Overlay::ForceChains,
+        polariscope,
+    });
+    run(&scene, &mut Ballistic::new(0.01), &options(out.path()), &mut |_| {}).unwrap();
+    let frames = names_in(&out.path().join("fringes"));
+    assert_eq!(frames, ["00000.png", "00001.png", "00002.png", "00003.png"]);
+    let rows = Results::open(out.path()).unwrap().fringes_table().unwrap();
+    for (i, row) in rows.iter().enumerate() {
+        let opened = 0.1 + 0.25 * i as f64;
+        assert_eq!((row.frame, row.samples), (i, 3), "{row:?}");
+        // The middles of three parts of the open time, each met by the first step that reaches it.
+        for (time, instant) in [(row.from, 0.02), (row.time, 0.06), (row.to, 0.10)] {
+            assert!((time - opened - instant).abs() < 0.0051, "{row:?}");
+        }
+    }
+    let images = frames.iter().map(|name| Image::read_png(&out.path().join("fringes").join(name)).unwrap());
+    assert!(images.clone().all(|image| image.size == [48, 120]));
+    assert!(images.clone().any(|image| image != images.clone().next().unwrap()), "the bodies fly");
+    let animation = fs::read(out.path().join("fringes.png")).unwrap();
+    let control = animation.windows(4).position(|name| name == b"acTL").unwrap() + 4;
+    assert_eq!(animation[control..control + 4], 4u32.to_be_bytes());
+
+    // A second run clears them.
+    scene.outputs.fringes = None;
+    run(&scene, &mut Ballistic::new(0.1), &options(out.path()), &mut |_| {}).unwrap();
+    assert!(names_in(out.path()).iter().all(|name| !name.starts_with("fringes")));
 }

@@ -1,7 +1,7 @@
 //! A chart on paper: PNG or SVG.
 
 use super::{Chart, Curve, Panel, Stroke};
-use crate::drawing::{Canvas, DrawError, Prefix, axis_prefix, label, register_font};
+use crate::drawing::{Canvas, DrawError, Prefix, axis_prefix, label, register_font, save};
 use plotters::coord::Shift;
 use plotters::element::DashedPathElement;
 use plotters::prelude::*;
@@ -27,7 +27,7 @@ pub fn draw(chart: &Chart, path: &Path, size: [usize; 2]) -> Result<(), DrawErro
     something(chart)?;
     let mut canvas = Canvas::new(size, SAMPLES);
     page(&canvas.ink(), chart, SAMPLES as i32)?;
-    canvas.save(path)
+    save(&canvas.image(), path)
 }
 
 /// A chart of this width and height as the text of an SVG file.

@@ -1,6 +1,7 @@
 //! The commands, one file each.
 
 mod check;
+mod fringes;
 mod new;
 mod plot;
 mod render;

@@ -1,13 +1,19 @@
 //! `stickslip render DIR`: pictures of snapshots.
 
+use super::fringes::FringeArguments;
 use super::{open, say};
+use crate::darkroom::Darkroom;
+use crate::drawing::{DrawError, save};
 use crate::failure::Failure;
-use crate::illustration::{Album, PictureChoice};
+use crate::illustration::{Album, PictureChoice, Pictures, snapshots};
 use crate::picture::{Quantity, View};
 use clap::Args;
 use miette::miette;
+use std::fs::File;
+use std::io::{self, BufWriter, Write};
 use std::path::PathBuf;
-use stickslip::observe::Frame;
+use stickslip::image::write_animation;
+use stickslip::observe::{FRAMES_PER_SECOND, Frame, Results};
 
 /// Draw pictures of a run's snapshots.
 #[derive(Debug, Args)]
@@ -16,16 +22,24 @@ pub struct Arguments {
     folder: PathBuf,
 
     /// Which snapshot, counted from 0; the last without this.
-    #[arg(long, conflicts_with_all = ["time", "all"])]
+    #[arg(long, conflicts_with_all = ["time", "all", "animate"])]
     frame: Option<usize>,
 
     /// The snapshot nearest to this time [s].
-    #[arg(long, conflicts_with = "all", allow_negative_numbers = true)]
+    #[arg(long, conflicts_with_all = ["all", "animate"], allow_negative_numbers = true)]
     time: Option<f64>,
 
     /// Every snapshot, from one place and with one range of colours.
     #[arg(long)]
     all: bool,
+
+    /// Every snapshot as `--all` draws them, in one animated PNG, which browsers play.
+    #[arg(long, conflicts_with = "all")]
+    animate: bool,
+
+    /// Snapshots that the animation shows in a second of the viewer's time; 10 without this.
+    #[arg(long, value_name = "RATE", value_parser = rate, requires = "animate")]
+    rate: Option<f64>,
 
     /// What colour stands for.
     #[arg(long, value_enum, default_value = "body")]
@@ -47,9 +61,36 @@ pub struct Arguments {
     #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = size)]
     size: Option<[usize; 2]>,
 
-    /// The picture, .png, or the folder for `--all`; DIR/picture.png or DIR/pictures without this.
+    /// The picture or the animation, .png, or the folder for `--all`; DIR/picture.png, DIR/animation.png or DIR/pictures without
+    /// this, and fringes in the place of picture.
     #[arg(long)]
     out: Option<PathBuf>,
+
+    #[command(flatten)]
+    fringes: FringeArguments,
+}
+
+/// A number above 0.
+pub fn positive(text: &str) -> Result<f64, String> {
+    let positive = |value: &f64| value.is_finite() && *value > 0.0;
+    text.parse().ok().filter(positive).ok_or_else(|| "allowed: a number above 0, in SI units".to_owned())
+}
+
+#[test]
+fn a_positive_number_is_finite() {
+    assert_eq!(positive("4e-12").unwrap(), 4e-12);
+    assert!(positive("0").is_err() && positive("inf").is_err() && positive("4 MPa").is_err());
+}
+
+fn rate(text: &str) -> Result<f64, String> {
+    let allowed = |rate: &f64| (0.1..=100.0).contains(rate);
+    text.parse().ok().filter(allowed).ok_or_else(|| "allowed: 0.1 to 100".to_owned())
+}
+
+#[test]
+fn a_rate_can_be_seen() {
+    assert_eq!(rate("25").unwrap(), 25.0);
+    assert!(rate("0").is_err() && rate("1000").is_err());
 }
 
 fn pair(text: &str) -> Result<[f64; 2], String> {
@@ -79,6 +120,34 @@ fn a_size_is_two_sides() {
 impl Arguments {
     pub fn execute(self) -> Result<(), Failure> {
         let results = open(&self.folder)?;
+        let frames = snapshots(&results)?;
+        if self.all || self.animate {
+            let pictures = self.pictures(&results, frames)?;
+            return if self.all {
+                self.draw_all(&*pictures, frames)
+            } else {
+                self.draw_film(&*pictures, frames)
+            };
+        }
+        let frame = self.chosen(frames)?;
+        let out = self.file("picture.png")?;
+        let pictures = self.pictures(&results, std::slice::from_ref(frame))?;
+        save(&pictures.picture(frame)?, &out)?;
+        say(&format!("{} shows t = {} s", out.display(), significant(frame.time)))
+    }
+
+    /// What draws the snapshots `frames`, all from one place and with one range of colours.
+    fn pictures<'a>(
+        &self,
+        results: &'a Results,
+        frames: &[Frame],
+    ) -> Result<Box<dyn Pictures + 'a>, Failure> {
+        if self.fringes.fringes {
+            let choice = self.fringes.choice(results.manifest().dimension, self.size)?;
+            let darkroom = Darkroom::open(results, frames, &choice)?;
+            say(&darkroom.scale())?;
+            return Ok(Box::new(darkroom));
+        }
         let choice = PictureChoice {
             quantity: self.color,
             range: self.range,
@@ -86,18 +155,23 @@ impl Arguments {
             mirror: self.mirror.clone(),
             size: self.size,
         };
-        let album = Album::open(&results, choice)?;
-        if self.all {
-            return self.draw_all(&album);
+        let album = Album::open(results, choice)?;
+        Ok(Box::new(if frames.len() > 1 { album.steadied()? } else { album }))
+    }
+
+    /// Where a picture goes: where the user says, or to a file of this name in the folder of results.
+    fn file(&self, name: &str) -> Result<PathBuf, Failure> {
+        let out = self.out.clone().unwrap_or_else(|| self.usual(name));
+        if out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
+            return Ok(out);
         }
-        let frame = self.chosen(album.frames())?;
-        let out = self.out.clone().unwrap_or_else(|| self.folder.join("picture.png"));
-        if !out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
-            let allowed = "a file name that ends in .png, or a folder with --all";
-            return Err(Failure::Input(miette!("--out: found `{}`; allowed: {allowed}", out.display())));
-        }
-        album.draw(frame, &out)?;
-        say(&format!("{} shows t = {:.6} s", out.display(), frame.time))
+        let allowed = "a file name that ends in .png, or a folder with --all";
+        Err(Failure::Input(miette!("--out: found `{}`; allowed: {allowed}", out.display())))
+    }
+
+    fn usual(&self, name: &str) -> PathBuf {
+        let kind = if self.fringes.fringes { "fringes_" } else { "" };
+        self.folder.join(format!("{kind}{name}"))
     }
 
     /// The snapshot that `--frame` or `--time` asks for; the last without them.
@@ -110,17 +184,52 @@ impl Arguments {
         let time = self.time.unwrap_or(f64::INFINITY);
         let nearer = |a: &&Frame, b: &&Frame| (a.time - time).abs().total_cmp(&(b.time - time).abs());
         let nearest = if time.is_finite() { frames.iter().min_by(nearer) } else { frames.last() };
-        Ok(nearest.expect("an album has at least one frame"))
+        Ok(nearest.expect("there is at least one snapshot"))
     }
 
-    fn draw_all(&self, album: &Album) -> Result<(), Failure> {
-        let out = self.out.clone().unwrap_or_else(|| self.folder.join("pictures"));
+    fn draw_all(&self, pictures: &dyn Pictures, frames: &[Frame]) -> Result<(), Failure> {
+        let out = self.out.clone().unwrap_or_else(|| self.usual("pictures"));
         std::fs::create_dir_all(&out)
             .map_err(|error| Failure::Input(miette!("cannot make {}: {error}", out.display())))?;
-        let album = album.steadied()?;
-        for (number, frame) in album.frames().iter().enumerate() {
-            album.draw(frame, &out.join(format!("picture_{number:05}.png")))?;
+        for (number, frame) in frames.iter().enumerate() {
+            save(&pictures.picture(frame)?, &out.join(format!("picture_{number:05}.png")))?;
         }
-        say(&format!("{} holds {} pictures", out.display(), album.frames().len()))
+        say(&format!("{} holds {} pictures", out.display(), frames.len()))
     }
+
+    fn draw_film(&self, pictures: &dyn Pictures, frames: &[Frame]) -> Result<(), Failure> {
+        let out = self.file("animation.png")?;
+        // A picture that cannot be drawn has a better error than the file that lacks it.
+        let mut failure = None;
+        let images = frames.iter().map(|frame| {
+            pictures.picture(frame).map_err(|error| {
+                failure = Some(error);
+                io::Error::other("a picture is missing")
+            })
+        });
+        let written = File::create(&out).and_then(|file| {
+            let mut file = BufWriter::new(file);
+            write_animation(images, self.rate.unwrap_or(FRAMES_PER_SECOND), &mut file)?;
+            file.flush()
+        });
+        match (written, failure) {
+            (_, Some(failure)) => Err(failure),
+            (Err(source), None) => Err(DrawError::Write { path: out, source }.into()),
+            (Ok(()), None) => say(&format!("{} plays {} pictures", out.display(), frames.len())),
+        }
+    }
+}
+
+/// A time as one reads it: six digits.
+fn significant(time: f64) -> String {
+    if time == 0.0 || (1e-3..1e6).contains(&time.abs()) {
+        format!("{time:.6}")
+    } else {
+        format!("{time:.5e}")
+    }
+}
+
+#[test]
+fn short_times_keep_their_digits() {
+    assert_eq!([0.0, 0.5, 2.2e-6].map(significant), ["0.000000", "0.500000", "2.20000e-6"]);
 }

@@ -5,9 +5,10 @@ use plotters::coord::Shift;
 use plotters::prelude::{BitMapBackend, DrawingArea, FontStyle, IntoDrawingArea};
 use rayon::prelude::*;
 use std::fs::File;
-use std::io::BufWriter;
+use std::io::{BufWriter, Write};
 use std::path::Path;
 use std::sync::Once;
+use stickslip::image::Image;
 
 /// Pixels drawn along each side of a pixel saved, for pictures of particles.
 pub const SAMPLES: usize = 2;
@@ -53,35 +54,33 @@ impl Canvas {
         });
     }
 
-    /// Writes the image as PNG.
-    ///
-    /// # Errors
-    /// The file cannot be written.
-    pub fn save(&self, path: &Path) -> Result<(), DrawError> {
-        let failed = |source| DrawError::Write { path: path.to_path_buf(), source };
-        let file = File::create(path).map_err(failed)?;
-        let [width, height] = self.size.map(|side| side / self.samples);
-        let mut encoder = png::Encoder::new(BufWriter::new(file), width as u32, height as u32);
-        encoder.set_color(png::ColorType::Rgb);
-        let mut writer = encoder.write_header().map_err(|e| failed(e.into()))?;
-        writer.write_image_data(&self.averaged()).map_err(|e| failed(e.into()))?;
-        writer.finish().map_err(|e| failed(e.into()))
-    }
-
     /// The image at the size of the file: each pixel the mean of its samples.
-    fn averaged(&self) -> Vec<u8> {
+    pub fn image(&self) -> Image {
         let ([width, _], samples) = (self.size, self.samples);
         let rows = self.pixels.par_chunks_exact(3 * width * samples);
-        rows.flat_map_iter(|rows| {
+        let pixels = rows.flat_map_iter(|rows| {
             (0..width / samples * 3).map(move |i| {
                 let (x, channel) = (i / 3 * samples, i % 3);
                 let sample = |k: usize| rows[3 * ((k / samples) * width + x + k % samples) + channel];
                 let sum: u32 = (0..samples * samples).map(|k| u32::from(sample(k))).sum();
                 (sum / (samples * samples) as u32) as u8
             })
-        })
-        .collect()
+        });
+        Image { size: self.size.map(|side| side / samples), pixels: pixels.collect() }
     }
+}
+
+/// Writes an image as PNG.
+///
+/// # Errors
+/// The file cannot be written.
+pub fn save(image: &Image, path: &Path) -> Result<(), DrawError> {
+    let written = File::create(path).and_then(|file| {
+        let mut file = BufWriter::new(file);
+        image.write_png(&mut file)?;
+        file.flush()
+    });
+    written.map_err(|source| DrawError::Write { path: path.to_path_buf(), source })
 }
 
 /// Makes the embedded DejaVu Sans known as `sans-serif`, so that no font need be installed.
@@ -105,7 +104,7 @@ mod tests {
     fn half_covered_pixels_are_grey() {
         let mut canvas = Canvas::new([3, 2], 2);
         canvas.paint([0, 0, 1, 4], |_, _| Some([0.0; 3]));
-        let averaged = canvas.averaged();
+        let averaged = canvas.image().pixels;
         assert_eq!(averaged.len(), 3 * 3 * 2);
         assert_eq!(averaged[0], 127);
         assert_eq!(averaged[3], 255);

@@ -4,7 +4,7 @@ mod canvas;
 mod colors;
 mod ticks;
 
-pub use canvas::{Canvas, Ink, SAMPLES, register_font};
+pub use canvas::{Canvas, Ink, SAMPLES, register_font, save};
 pub use colors::{Rgb, Scale, body_color, shaded};
 pub use ticks::{Prefix, axis_prefix, label, prefix, ticks};
 

@@ -2,7 +2,7 @@
 
 use super::camera::{Camera, unit};
 use super::plane::Window;
-use super::{Legend, Rgb};
+use super::{Legend, Rgb, Setting};
 use crate::drawing::{DrawError, Ink, SAMPLES, axis_prefix, label, prefix, ticks};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -35,13 +35,15 @@ fn fill(color: Rgb) -> ShapeStyle {
     RGBColor(r, g, b).filled()
 }
 
-/// Title on the left, time on the right.
-pub fn heading(ink: &Ink, title: &str, time: f64) -> Result<(), DrawError> {
+/// The scene's title on the left, time on the right.
+pub fn heading(ink: &Ink, setting: &Setting, time: f64) -> Result<(), DrawError> {
     let width = ink.dim_in_pixel().0 as i32;
     let bold = FontDesc::new(FontFamily::SansSerif, f64::from(17 * PIXEL), FontStyle::Bold);
     let bold = bold.color(&GREY).pos(Pos::new(HPos::Left, VPos::Center));
-    write(ink, title, (20 * PIXEL, 24 * PIXEL), bold)?;
-    let time = format!("t = {time:.3} s");
+    write(ink, &setting.title, (20 * PIXEL, 24 * PIXEL), bold)?;
+    // One unit for all pictures of a run.
+    let unit = axis_prefix(setting.end, "s");
+    let time = format!("t = {:.3} {}s", time / unit.factor, unit.letter);
     write(ink, &time, (width - 20 * PIXEL, 24 * PIXEL), letters(16, (HPos::Right, VPos::Center)))
 }
 

@@ -23,6 +23,7 @@ use grains::Grain;
 use light::Lit;
 use plane::{Drawn, Window};
 use stickslip::door::ParticleSnapshot;
+use stickslip::image::Image;
 use stickslip::tensor::Vector;
 
 /// How a picture is to look.
@@ -56,7 +57,7 @@ enum Legend {
 /// Width of a picture whose size the user does not give [pixels].
 const WIDTH: usize = 1280;
 /// Space above the bodies, and for the legend on the right [pixels].
-const HEADING: usize = 48;
+pub const HEADING: usize = 48;
 const COLUMN: usize = 130;
 /// Contrast of light where colours stand for values, which shadows must not falsify.
 const VALUE_CONTRAST: f64 = 0.6;
@@ -87,8 +88,20 @@ pub fn draw(
     } else {
         space_picture(&grains, &extent, (look, setting), &legend)?
     };
-    furniture::heading(&canvas.ink(), &setting.title, time)?;
+    furniture::heading(&canvas.ink(), setting, time)?;
     Ok(canvas)
+}
+
+/// An image under the scene's title and the time.
+///
+/// # Errors
+/// The title cannot be drawn.
+pub fn headed(image: &Image, setting: &Setting, time: f64) -> Result<Image, DrawError> {
+    let mut canvas = Canvas::new([image.size[0], HEADING], SAMPLES);
+    furniture::heading(&canvas.ink(), setting, time)?;
+    let Image { size: [width, height], mut pixels } = canvas.image();
+    pixels.extend(&image.pixels);
+    Ok(Image { size: [width, height + image.size[1]], pixels })
 }
 
 /// Points that the picture must hold: the corners of the user's box, or of every particle's.
@@ -225,6 +238,7 @@ fn space_picture(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::drawing::save;
 
     fn look(quantity: Quantity, particles: &ParticleSnapshot) -> Look {
         let count = particles.body.len();
@@ -242,6 +256,7 @@ mod tests {
     fn setting(gravity: [f64; 3], center: [f64; 3]) -> Setting {
         Setting {
             title: "A sphere rolls down a slab".to_owned(),
+            end: 2.0,
             gravity,
             bodies: vec!["sphere".to_owned(), "slab".to_owned()],
             round: vec![Some(center), None],
@@ -273,7 +288,7 @@ mod tests {
                 let share = inked_share(&canvas);
                 assert!(share > 0.15 && share < 0.95, "{dimension} {quantity:?} {share}");
                 let path = keep.as_deref().unwrap_or(folder.path());
-                canvas.save(&path.join(format!("{dimension}_{quantity:?}.png"))).unwrap();
+                save(&canvas.image(), &path.join(format!("{dimension}_{quantity:?}.png"))).unwrap();
             }
         }
     }

@@ -7,6 +7,8 @@ use serde_json::Value;
 pub struct Setting {
     /// The scene's title.
     pub title: String,
+    /// Simulated time at which the run is to end [s].
+    pub end: f64,
     /// Acceleration [m/s^2].
     pub gravity: [f64; 3],
     /// Names of the bodies.
@@ -32,6 +34,7 @@ impl Setting {
         let bodies = scene["bodies"].as_array().map(Vec::as_slice).unwrap_or_default();
         Setting {
             title: scene["title"].as_str().unwrap_or_default().to_owned(),
+            end: scene["time"]["end"].as_f64().unwrap_or_default(),
             gravity: triple(&scene["gravity"]).unwrap_or_default(),
             bodies: bodies.iter().map(|body| body["name"].as_str().unwrap_or_default().to_owned()).collect(),
             round: bodies.iter().map(|body| round(&body["shape"])).collect(),

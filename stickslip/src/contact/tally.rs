@@ -20,6 +20,8 @@ struct Sum {
 pub struct Tally {
     pairs: BTreeMap<[usize; 2], Sum>,
     since: f64,
+    /// What was taken last.
+    taken: Vec<ContactState>,
     uses: u64,
     /// Work that friction took from the bodies [J].
     pub friction: f64,
@@ -55,12 +57,25 @@ impl Tally {
 
     /// The mean forces between the last call and time `now` [s], ordered by pair.
     pub fn take(&mut self, now: f64) -> Vec<ContactState> {
-        let elapsed = now - self.since;
+        if now > self.since {
+            self.taken = self.means(now);
+        } else {
+            self.taken.clear();
+        }
         self.since = now;
-        let pairs = std::mem::take(&mut self.pairs);
-        (pairs.into_iter())
-            .filter(|_| elapsed > 0.0)
-            .map(|([body_a, body_b], sum)| ContactState {
+        self.pairs.clear();
+        self.taken.clone()
+    }
+
+    /// What [`Tally::take`] would give, or gave at this very time.
+    pub fn look(&self, now: f64) -> Vec<ContactState> {
+        if now > self.since { self.means(now) } else { self.taken.clone() }
+    }
+
+    fn means(&self, now: f64) -> Vec<ContactState> {
+        let elapsed = now - self.since;
+        (self.pairs.iter())
+            .map(|(&[body_a, body_b], sum)| ContactState {
                 body_a,
                 body_b,
                 force: sum.impulse.map(|j| j / elapsed),

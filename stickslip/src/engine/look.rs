@@ -84,6 +84,10 @@ impl<T: Real, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
         self.tally.take(self.time)
     }
 
+    fn contacts(&self) -> Vec<ContactState> {
+        self.tally.look(self.time)
+    }
+
     fn snapshot(&self) -> ParticleSnapshot {
         let mut snapshot = ParticleSnapshot { dimension: D, ..ParticleSnapshot::default() };
         for (i, body) in self.bodies.iter().enumerate() {

@@ -2,16 +2,17 @@
 
 use super::file::part_of;
 use super::manifest::Manifest;
-use super::{BODIES, CONTACTS, ENERGY, GRID, PARTICLES};
+use super::{BODIES, CONTACTS, ENERGY, FRINGES, FRINGES_ANIMATION, FRINGES_TABLE, GRID, PARTICLES};
 use miette::Diagnostic;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
 /// Files that a run may leave in its folder.
-const FILES: [&str; 6] = [BODIES, ENERGY, CONTACTS, "particles.pvd", "grid.pvd", Manifest::FILE];
+const FILES: [&str; 8] =
+    [BODIES, ENERGY, CONTACTS, "particles.pvd", "grid.pvd", FRINGES_TABLE, FRINGES_ANIMATION, Manifest::FILE];
 /// Folders of snapshots that a run may leave in its folder.
-const SNAPSHOTS: [&str; 2] = [PARTICLES, GRID];
+const SNAPSHOTS: [&str; 3] = [PARTICLES, GRID, FRINGES];
 
 /// A folder that is ready to take the results of a run.
 #[derive(Clone, Debug)]
@@ -108,10 +109,10 @@ fn clear_snapshots(path: &Path) -> Result<(), FolderError> {
     }
 }
 
-/// `00012.vtu`, or the same not yet renamed.
+/// `00012.vtu` or `00012.png`, or the same not yet renamed.
 fn is_snapshot(name: &str) -> bool {
     let name = name.strip_suffix(".part").unwrap_or(name);
-    name.strip_suffix(".vtu")
+    (name.strip_suffix(".vtu").or_else(|| name.strip_suffix(".png")))
         .is_some_and(|number| number.len() >= 5 && number.bytes().all(|b| b.is_ascii_digit()))
 }
 
@@ -156,6 +157,7 @@ mod tests {
     #[test]
     fn snapshots_are_known_by_name() {
         assert!(is_snapshot("00000.vtu") && is_snapshot("123456.vtu") && is_snapshot("00003.vtu.part"));
+        assert!(is_snapshot("00004.png"));
         assert!(!is_snapshot("mine.vtu") && !is_snapshot("1.vtu") && !is_snapshot("00000.vtp"));
     }
 }

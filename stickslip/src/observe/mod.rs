@@ -12,6 +12,7 @@ mod energy;
 mod file;
 mod folder;
 mod frames;
+mod fringes;
 mod grid;
 mod manifest;
 mod particles;
@@ -28,6 +29,7 @@ pub use energy::EnergyRow;
 pub use file::{OutputError, ReadError, ReadProblem};
 pub use folder::{FolderError, OutputFolder};
 pub use frames::Frame;
+pub use fringes::{FRAMES_PER_SECOND, FringeRow};
 pub use grid::encode_grid;
 pub use manifest::{Manifest, Performance, ReferenceCurve, Status, Timing};
 pub use particles::{encode_particles, read_particles};
@@ -42,6 +44,9 @@ const ENERGY: &str = "energy.csv";
 const CONTACTS: &str = "contacts.csv";
 const PARTICLES: &str = "particles";
 const GRID: &str = "grid";
+const FRINGES: &str = "fringes";
+const FRINGES_TABLE: &str = "fringes.csv";
+const FRINGES_ANIMATION: &str = "fringes.png";
 
 /// One kind of output.
 pub trait Observer {
@@ -57,5 +62,13 @@ pub trait Observer {
     /// Whether a second record at the same time takes the place of the first, as for snapshots; tables would repeat a row.
     fn replaces(&self) -> bool {
         false
+    }
+
+    /// Writes what is left to write when the run has ended, however it ended.
+    ///
+    /// # Errors
+    /// The disk is full or refuses; what was recorded before stays readable.
+    fn finish(&mut self) -> Result<(), OutputError> {
+        Ok(())
     }
 }

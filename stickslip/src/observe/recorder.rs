@@ -6,6 +6,7 @@ use super::contacts::Contacts;
 use super::energy::Energy;
 use super::file::OutputError;
 use super::folder::OutputFolder;
+use super::fringes::Fringes;
 use super::grid::Grid;
 use super::particles::Particles;
 use crate::door::Simulation;
@@ -39,6 +40,9 @@ impl Recorder {
         if let Some(interval) = scene.outputs.grid {
             observers.push(Box::new(Grid::create(interval, folder)?));
         }
+        if let Some(camera) = &scene.outputs.fringes {
+            observers.push(Box::new(Fringes::create((scene, camera), folder)?));
+        }
         let seats = observers.into_iter().map(|observer| Seat { observer, last: None }).collect();
         Ok(Recorder { seats })
     }
@@ -69,6 +73,14 @@ impl Recorder {
     pub fn record_failure(&mut self, simulation: &mut dyn Simulation) -> Result<(), OutputError> {
         let time = simulation.time();
         self.record_where(simulation, |seat| seat.last != Some(time) || seat.observer.replaces())
+    }
+
+    /// Lets every output write what it has left: to be called once, when the run has ended.
+    ///
+    /// # Errors
+    /// A file cannot be written.
+    pub fn finish(&mut self) -> Result<(), OutputError> {
+        self.seats.iter_mut().try_for_each(|seat| seat.observer.finish())
     }
 
     fn record_where(

@@ -5,10 +5,11 @@ use super::contacts::ContactRow;
 use super::energy::EnergyRow;
 use super::file::ReadError;
 use super::frames::{Frame, read_frames};
+use super::fringes::FringeRow;
 use super::manifest::Manifest;
 use super::particles::read_particles;
 use super::table::read_rows;
-use super::{BODIES, CONTACTS, ENERGY, PARTICLES};
+use super::{BODIES, CONTACTS, ENERGY, FRINGES_TABLE, PARTICLES};
 use crate::door::ParticleSnapshot;
 use std::path::{Path, PathBuf};
 
@@ -77,5 +78,13 @@ impl Results {
     /// The file is missing or damaged.
     pub fn contacts_table(&self) -> Result<Vec<ContactRow>, ReadError> {
         read_rows(&self.folder.join(CONTACTS))
+    }
+
+    /// `fringes.csv`: a row for each frame of the scene's camera.
+    ///
+    /// # Errors
+    /// The file is missing, as where the scene asks for no fringes, or damaged.
+    pub fn fringes_table(&self) -> Result<Vec<FringeRow>, ReadError> {
+        read_rows(&self.folder.join(FRINGES_TABLE))
     }
 }

@@ -19,6 +19,14 @@ impl Window {
         Window { low, high, size: [width, height] }
     }
 
+    /// A rectangle in the middle of an image of this size.
+    pub fn holding([low, high]: [[f64; 2]; 2], size: [usize; 2]) -> Self {
+        let pixels = size.map(|side| side as f64);
+        let scale = (pixels[0] / (high[0] - low[0])).min(pixels[1] / (high[1] - low[1]));
+        let end = |axis: usize, side: f64| 0.5 * (low[axis] + high[axis] + side * pixels[axis] / scale);
+        Window { low: [end(0, -1.0), end(1, -1.0)], high: [end(0, 1.0), end(1, 1.0)], size }
+    }
+
     /// Pixels per metre.
     pub fn scale(&self) -> f64 {
         self.size[0] as f64 / (self.high[0] - self.low[0])
@@ -34,5 +42,20 @@ impl Window {
     pub fn position(&self, column: usize, row: usize) -> [f64; 2] {
         let scale = self.scale();
         [self.low[0] + (column as f64 + 0.5) / scale, self.high[1] - (row as f64 + 0.5) / scale]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_window_holds_what_it_must() {
+        let tall = Window::around([[1.0, 0.0], [2.0, 3.0]], 100);
+        assert_eq!((tall.size, tall.pixel([1.5, 3.0])), ([100, 300], [50.0, 0.0]));
+        assert_eq!(tall.position(0, 299), [1.005, 0.0050000000000000044]);
+        let wide = Window::holding([[1.0, 0.0], [2.0, 3.0]], [600, 300]);
+        assert_eq!((wide.low, wide.high), ([-1.5, 0.0], [4.5, 3.0]));
+        assert_eq!(wide.scale(), 100.0);
     }
 }

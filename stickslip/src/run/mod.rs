@@ -90,6 +90,7 @@ impl March<'_> {
             }
         };
         self.recorder.record_present(self.simulation)?;
+        self.recorder.finish()?;
         progress(&self.clock.progress(self.simulation, end));
         Ok(status)
     }
@@ -98,7 +99,8 @@ impl March<'_> {
     fn step(&mut self, longest: f64) -> Result<f64, RunError> {
         let before = self.simulation.time();
         if let Err(error) = self.simulation.step(longest) {
-            let unsaved = self.recorder.record_failure(self.simulation).err();
+            let recorded = self.recorder.record_failure(self.simulation);
+            let unsaved = recorded.and_then(|()| self.recorder.finish()).err();
             return Err(RunError::Step { error, unsaved });
         }
         let time = self.simulation.time();

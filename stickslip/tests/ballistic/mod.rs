@@ -138,7 +138,13 @@ impl Simulation for Ballistic {
     }
 
     fn take_contacts(&mut self) -> Vec<ContactState> {
-        match std::mem::take(&mut self.steps_in_contact) {
+        let contacts = self.contacts();
+        self.steps_in_contact = 0;
+        contacts
+    }
+
+    fn contacts(&self) -> Vec<ContactState> {
+        match self.steps_in_contact {
             0 => Vec::new(),
             nodes => vec![ContactState {
                 body_a: 0,

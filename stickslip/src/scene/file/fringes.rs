@@ -160,6 +160,9 @@ impl Fringes {
     fn names(&self, bodies: &[Body], context: &Context) -> Result<Vec<String>, Fault> {
         let known: Vec<&str> = bodies.iter().map(|body| body.name.as_str()).collect();
         match &self.bodies {
+            Some(names) if names.is_empty() => {
+                Err(self.interval.node().fault("fringes with one body or more in bodies"))
+            }
             Some(names) => {
                 names.iter().map(|name| name.name_of(context, "the name of a body", &known)).collect()
             }

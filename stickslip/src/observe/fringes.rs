@@ -1,0 +1,230 @@
+//! `fringes/` and `fringes.png`: photoelastic fringes as a camera behind a polariscope sees them, frame by frame and as an animation.
+
+use super::file::{OutputError, replace};
+use super::folder::OutputFolder;
+use super::table::Table;
+use super::{FRINGES, FRINGES_ANIMATION, FRINGES_TABLE, Observer};
+use crate::door::{ParticleSnapshot, Simulation};
+use crate::image::{Image, write_animation};
+use crate::polariscope::{Bench, Film, Link, Push, Stage, Window, bounds, draw_links, links};
+use crate::scene::{self, Overlay, Scene};
+use serde::{Deserialize, Serialize};
+use std::fs;
+use std::path::PathBuf;
+
+/// Frames of an animation that a viewer sees in a second.
+pub const FRAMES_PER_SECOND: f64 = 10.0;
+
+/// One frame; the columns of `fringes.csv`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct FringeRow {
+    /// Number of the frame, which is the name of its file.
+    pub frame: usize,
+    /// Mean of the simulated times whose light it has [s].
+    pub time: f64,
+    /// First of these times [s].
+    pub from: f64,
+    /// Last of these times [s].
+    pub to: f64,
+    /// How many they are.
+    pub samples: usize,
+}
+
+/// Writes `fringes.csv`, the frames in `fringes/`, and at the end `fringes.png`.
+pub(super) struct Fringes {
+    camera: scene::Fringes,
+    specimens: Vec<usize>,
+    shutter: Shutter,
+    folder: OutputFolder,
+    table: Table<FringeRow>,
+    frames: Vec<PathBuf>,
+    /// From the first look on.
+    view: Option<View>,
+    /// Largest force between two bodies so far [N].
+    largest: f64,
+}
+
+/// The bench, and what has fallen on the film since the shutter opened.
+struct View {
+    bench: Bench,
+    film: Film,
+    times: Vec<f64>,
+    links: Vec<Link>,
+}
+
+/// When light falls on film: at instants spread evenly over each open time, the middles of equal parts.
+struct Shutter {
+    first: f64,
+    interval: f64,
+    exposure: f64,
+    samples: usize,
+    frame: u64,
+    sample: usize,
+}
+
+/// Part of the interval by which an instant may come early, so that the rounding of summed steps does not delay it by a whole step.
+const EARLY: f64 = 1e-6;
+
+impl Shutter {
+    fn new(camera: &scene::Fringes) -> Self {
+        let scene::Fringes { first, interval, exposure, samples, .. } = *camera;
+        Shutter { first, interval, exposure, samples, frame: 0, sample: 0 }
+    }
+
+    /// The next instant [s].
+    fn next(&self) -> f64 {
+        self.instant(self.sample) - EARLY * self.interval
+    }
+
+    fn instant(&self, sample: usize) -> f64 {
+        let share = (sample as f64 + 0.5) / self.samples as f64;
+        self.first + self.frame as f64 * self.interval + share * self.exposure
+    }
+
+    /// Goes past the instants up to a time [s]; true if that ends the frame.
+    fn pass(&mut self, time: f64) -> bool {
+        while self.sample < self.samples && self.next() <= time {
+            self.sample += 1;
+        }
+        if self.sample < self.samples {
+            return false;
+        }
+        // Frames that a step jumps over are skipped.
+        while self.sample == self.samples {
+            (self.frame, self.sample) = (self.frame + 1, 0);
+            while self.sample < self.samples && self.next() <= time {
+                self.sample += 1;
+            }
+        }
+        true
+    }
+}
+
+impl Fringes {
+    pub(super) fn create(
+        (scene, camera): (&Scene, &scene::Fringes),
+        folder: &OutputFolder,
+    ) -> Result<Self, OutputError> {
+        let path = folder.join(FRINGES);
+        fs::create_dir_all(&path).map_err(OutputError::at(&path))?;
+        let birefringent = |body: &scene::Body| camera.bodies.contains(&body.name);
+        Ok(Fringes {
+            specimens: (0..scene.bodies.len()).filter(|&i| birefringent(&scene.bodies[i])).collect(),
+            shutter: Shutter::new(camera),
+            folder: folder.clone(),
+            table: Table::create(folder.join(FRINGES_TABLE))?,
+            frames: Vec::new(),
+            view: None,
+            largest: 0.0,
+            camera: camera.clone(),
+        })
+    }
+
+    fn view(&self, particles: &ParticleSnapshot) -> View {
+        let shown = self.camera.view.or_else(|| bounds(particles, &self.specimens));
+        // Bodies without particles leave nothing to frame.
+        let window = Window::around(shown.unwrap_or([[0.0; 2], [1.0; 2]]), self.camera.width);
+        let bench = Bench::new(&self.camera.polariscope, Stage { window, specimens: self.specimens.clone() });
+        View { film: bench.film(), bench, times: Vec::new(), links: Vec::new() }
+    }
+
+    /// Writes what is on the film, and puts in new film.
+    fn develop(&mut self) -> Result<(), OutputError> {
+        let Some(view) = self.view.as_mut().filter(|view| !view.times.is_empty()) else { return Ok(()) };
+        let mut image = view.film.develop();
+        draw_links(&mut image, &view.bench.stage().window, (&view.links, self.largest));
+        let times = std::mem::take(&mut view.times);
+        view.film = view.bench.film();
+        let path = self.folder.join(&format!("{FRINGES}/{:05}.png", self.frames.len()));
+        replace(&path, |file| image.write_png(file))?;
+        self.table.append([FringeRow {
+            frame: self.frames.len(),
+            time: times.iter().sum::<f64>() / times.len() as f64,
+            from: times[0],
+            to: times[times.len() - 1],
+            samples: times.len(),
+        }])?;
+        self.frames.push(path);
+        Ok(())
+    }
+}
+
+impl Observer for Fringes {
+    fn next(&self) -> f64 {
+        // The first look, at the start, says where the bodies are.
+        if self.view.is_none() { f64::NEG_INFINITY } else { self.shutter.next() }
+    }
+
+    fn observe(&mut self, simulation: &mut dyn Simulation) -> Result<(), OutputError> {
+        let (time, due) = (simulation.time(), simulation.time() >= self.shutter.next());
+        if !due && self.view.is_some() {
+            return Ok(());
+        }
+        let particles = simulation.snapshot();
+        let mut view = self.view.take().unwrap_or_else(|| self.view(&particles));
+        if due {
+            view.bench.expose(&particles, &mut view.film);
+            view.times.push(time);
+        }
+        if due && self.camera.overlay == Overlay::ForceChains {
+            let contacts = simulation.contacts().into_iter();
+            let pushes: Vec<Push> = contacts
+                .map(|contact| Push { bodies: [contact.body_a, contact.body_b], force: contact.normal })
+                .collect();
+            self.largest = pushes.iter().fold(self.largest, |largest, push| largest.max(push.force));
+            view.links = links(&particles, &pushes, &self.specimens);
+        }
+        self.view = Some(view);
+        if due && self.shutter.pass(time) { self.develop() } else { Ok(()) }
+    }
+
+    fn finish(&mut self) -> Result<(), OutputError> {
+        // The run may end while the shutter is open.
+        self.develop()?;
+        if self.frames.is_empty() {
+            return Ok(());
+        }
+        let frames = self.frames.iter().map(|path| Image::read_png(path));
+        replace(&self.folder.join(FRINGES_ANIMATION), |file| write_animation(frames, FRAMES_PER_SECOND, file))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The instants at which light falls on film for steps of a length, a list for each frame.
+    fn frames(mut shutter: Shutter, step: f64, steps: usize) -> Vec<Vec<f64>> {
+        let (mut frames, mut open) = (Vec::new(), Vec::new());
+        for time in (0..=steps).map(|i| step * i as f64) {
+            if time >= shutter.next() {
+                open.push(time);
+                if shutter.pass(time) {
+                    frames.push(std::mem::take(&mut open));
+                }
+            }
+        }
+        frames
+    }
+
+    fn shutter(first: f64, exposure: f64, samples: usize) -> Shutter {
+        Shutter { first, interval: 1.0, exposure, samples, frame: 0, sample: 0 }
+    }
+
+    #[test]
+    fn an_instant_without_exposure_is_at_the_opening() {
+        assert_eq!(frames(shutter(0.5, 0.0, 1), 0.25, 11), [[0.5], [1.5], [2.5]]);
+        assert_eq!(frames(shutter(0.0, 0.0, 1), 0.375, 6), [[0.0], [1.125], [2.25]]);
+    }
+
+    #[test]
+    fn instants_are_spread_over_the_open_time() {
+        let all = frames(shutter(0.0, 0.5, 2), 0.125, 16);
+        assert_eq!(all, [[0.125, 0.375], [1.125, 1.375]]);
+    }
+
+    #[test]
+    fn steps_longer_than_the_interval_skip_frames() {
+        assert_eq!(frames(shutter(0.0, 0.5, 4), 2.5, 3), [[2.5], [5.0], [7.5]]);
+    }
+}
