@@ -1,6 +1,6 @@
 //! What a chart shows: the quantities that the scene knows answers for, or those that the user asks for.
 
-use super::{Chart, Curve, Panel, Stroke, TIME};
+use super::{Chart, Curve, Panel};
 use crate::drawing::{Rgb, body_color};
 use stickslip::observe::{BodyRow, EnergyRow, ReadError, ReferenceCurve, Results};
 
@@ -84,7 +84,7 @@ fn panels(rows: &[BodyRow], references: &[ReferenceCurve], shown: &[Shown]) -> V
     for (i, each) in shown.iter().enumerate() {
         let (name, unit) = axis(&each.quantity);
         let place = panels.iter().position(|panel| panel.name == name).unwrap_or_else(|| {
-            panels.push(Panel { along: TIME, name: name.to_owned(), unit, curves: Vec::new() });
+            panels.push(Panel { name: name.to_owned(), unit, curves: Vec::new() });
             panels.len() - 1
         });
         let earlier =
@@ -94,12 +94,7 @@ fn panels(rows: &[BodyRow], references: &[ReferenceCurve], shown: &[Shown]) -> V
         curves.push(curve(rows, each, color));
         if let Some(reference) = reference(references, each) {
             let label = reference.label.clone();
-            curves.push(Curve {
-                label,
-                color: EXACT,
-                stroke: Stroke::Dashed,
-                points: reference.points.clone(),
-            });
+            curves.push(Curve { label, color: EXACT, dashed: true, points: reference.points.clone() });
         }
     }
     panels
@@ -111,7 +106,7 @@ fn curve(rows: &[BodyRow], shown: &Shown, color: Rgb) -> Curve {
     Curve {
         label: format!("{} {}", shown.body, shown.quantity),
         color,
-        stroke: Stroke::Solid,
+        dashed: false,
         points: points.collect(),
     }
 }
@@ -150,7 +145,7 @@ fn energy_panel(rows: &[EnergyRow]) -> Panel {
     let curve = |label: &str, color: Rgb, term: fn(&EnergyRow) -> f64| Curve {
         label: label.to_owned(),
         color,
-        stroke: Stroke::Solid,
+        dashed: false,
         points: rows.iter().map(|row| [row.time, term(row)]).collect(),
     };
     let curves = vec![
@@ -159,7 +154,7 @@ fn energy_panel(rows: &[EnergyRow]) -> Panel {
         curve("potential", body_color(1), |row| row.potential),
         curve("total", EXACT, |row| row.total),
     ];
-    Panel { along: TIME, name: "energy".to_owned(), unit: "J", curves }
+    Panel { name: "energy".to_owned(), unit: "J", curves }
 }
 
 /// The coordinates of the bodies' centres that change most, as the way they went.
@@ -180,7 +175,7 @@ fn center_panel(rows: &[BodyRow], bodies: &[String]) -> Panel {
     ways.truncate(MOST_CURVES);
     let curves = ways.into_iter().enumerate();
     let curves = curves.map(|(i, (_, curve))| Curve { color: body_color(i), ..curve }).collect();
-    Panel { along: TIME, name: "displacement of centres".to_owned(), unit: "m", curves }
+    Panel { name: "displacement of centres".to_owned(), unit: "m", curves }
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ mod contents;
 mod paper;
 
 pub use contents::{Choice, chart};
-pub use paper::{draw, svg};
+pub use paper::draw;
 
 use crate::drawing::Rgb;
 
@@ -19,11 +19,9 @@ pub struct Chart {
     pub caption: String,
 }
 
-/// Curves that share their axes.
+/// Curves over time that share an axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Panel {
-    /// What runs along the page, with its unit: `time [s]`.
-    pub along: &'static str,
     /// What the axis shows: `position`.
     pub name: String,
     /// Its SI unit, without prefix: `m`.
@@ -32,29 +30,15 @@ pub struct Panel {
     pub curves: Vec<Curve>,
 }
 
-/// A curve.
+/// A curve over time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
     /// Its name in the legend.
     pub label: String,
     /// Its colour.
     pub color: Rgb,
-    /// How it is drawn.
-    pub stroke: Stroke,
-    /// What runs along the page, such as time [s], and value in SI units.
+    /// Drawn as dashes: a known answer rather than a result.
+    pub dashed: bool,
+    /// Time [s] and value in SI units.
     pub points: Vec<[f64; 2]>,
 }
-
-/// How a curve is drawn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Stroke {
-    /// A line: a result.
-    Solid,
-    /// Dashes: a known answer.
-    Dashed,
-    /// A line with a dot at each point: a few results.
-    Dots,
-}
-
-/// Time along the page.
-pub const TIME: &str = "time [s]";

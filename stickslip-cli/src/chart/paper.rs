@@ -1,6 +1,6 @@
 //! A chart on paper: PNG or SVG.
 
-use super::{Chart, Curve, Panel, Stroke};
+use super::{Chart, Curve, Panel};
 use crate::drawing::{Canvas, DrawError, Prefix, axis_prefix, label, register_font, save};
 use plotters::coord::Shift;
 use plotters::element::DashedPathElement;
@@ -20,35 +20,22 @@ const MARKS: usize = 6;
 /// # Errors
 /// The file cannot be written, or no panel has a curve.
 pub fn draw(chart: &Chart, path: &Path, size: [usize; 2]) -> Result<(), DrawError> {
+    if chart.panels.iter().all(|panel| panel.curves.iter().all(|curve| curve.points.is_empty())) {
+        return Err(DrawError::Empty("no rows match".to_owned()));
+    }
+    register_font();
     if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("svg")) {
-        return std::fs::write(path, svg(chart, size)?)
+        let mut text = String::new();
+        let area = SVGBackend::with_string(&mut text, (size[0] as u32, size[1] as u32)).into_drawing_area();
+        page(&area, chart, 1)?;
+        area.present().map_err(DrawError::ink)?;
+        drop(area);
+        return std::fs::write(path, text)
             .map_err(|source| DrawError::Write { path: path.to_path_buf(), source });
     }
-    something(chart)?;
     let mut canvas = Canvas::new(size, SAMPLES);
     page(&canvas.ink(), chart, SAMPLES as i32)?;
     save(&canvas.image(), path)
-}
-
-/// A chart of this width and height as the text of an SVG file.
-///
-/// # Errors
-/// No panel has a curve.
-pub fn svg(chart: &Chart, size: [usize; 2]) -> Result<String, DrawError> {
-    something(chart)?;
-    register_font();
-    let mut text = String::new();
-    let area = SVGBackend::with_string(&mut text, (size[0] as u32, size[1] as u32)).into_drawing_area();
-    page(&area, chart, 1)?;
-    area.present().map_err(DrawError::ink)?;
-    drop(area);
-    Ok(text)
-}
-
-/// An error if there is nothing to see in a chart.
-fn something(chart: &Chart) -> Result<(), DrawError> {
-    let empty = |panel: &Panel| panel.curves.iter().all(|curve| curve.points.is_empty());
-    if chart.panels.iter().all(empty) { Err(DrawError::Empty("no rows match".to_owned())) } else { Ok(()) }
 }
 
 /// All of a chart, with lengths multiplied by `pixel`.
@@ -58,7 +45,6 @@ fn page<D: DrawingBackend>(area: &DrawingArea<D, Shift>, chart: &Chart, pixel: i
     let bold = FontDesc::new(FontFamily::SansSerif, f64::from(17 * pixel), FontStyle::Bold);
     let bold = bold.color(&INK).pos(Pos::new(HPos::Left, VPos::Top));
     let title = Text::new(chart.title.clone(), (20 * pixel, 14 * pixel), bold);
-    let head = if chart.title.is_empty() { 0 } else { 44 * pixel };
     area.draw(&title).map_err(DrawError::ink)?;
     let lines: Vec<&str> = chart.caption.lines().collect();
     let foot = 12 * pixel + 24 * pixel * lines.len() as i32;
@@ -67,7 +53,7 @@ fn page<D: DrawingBackend>(area: &DrawingArea<D, Shift>, chart: &Chart, pixel: i
         let at = (20 * pixel, height - foot + (10 + 24 * row as i32) * pixel);
         area.draw(&Text::new(*line, at, style)).map_err(DrawError::ink)?;
     }
-    let body = area.margin(head, foot, 8 * pixel, 8 * pixel);
+    let body = area.margin(44 * pixel, foot, 8 * pixel, 8 * pixel);
     let columns = chart.panels.len().clamp(1, 2);
     let rows = chart.panels.len().div_ceil(columns).max(1);
     for (cell, panel) in body.split_evenly((rows, columns)).iter().zip(&chart.panels) {
@@ -112,20 +98,18 @@ fn draw_panel<D: DrawingBackend>(
         .set_all_tick_mark_size(4 * pixel)
         .x_label_formatter(&|time| label(*time, times, MARKS))
         .y_label_formatter(&|value| label(*value, values, MARKS))
-        .x_desc(panel.along)
+        .x_desc("time [s]")
         .y_desc(axis_name(panel, size))
         .draw()
         .map_err(DrawError::ink)?;
     for curve in &panel.curves {
         let points = curve.points.iter().map(|[time, value]| (*time, value / size.factor));
-        let style = ink(curve, pixel);
-        let dashes = curve.stroke == Stroke::Dashed;
-        let series = match curve.stroke {
-            Stroke::Dashed => chart.draw_series(DashedLineSeries::new(points, 7 * pixel, 5 * pixel, style)),
-            Stroke::Solid => chart.draw_series(LineSeries::new(points, style)),
-            Stroke::Dots => {
-                chart.draw_series(LineSeries::new(points, style.filled()).point_size(4 * pixel as u32))
-            }
+        let style = stroke(curve, pixel);
+        let dashes = curve.dashed;
+        let series = if dashes {
+            chart.draw_series(DashedLineSeries::new(points, 7 * pixel, 5 * pixel, style))
+        } else {
+            chart.draw_series(LineSeries::new(points, style))
         };
         series.map_err(DrawError::ink)?.label(&curve.label).legend(move |(x, y)| {
             let ends = [(x, y), (x + 22 * pixel, y)];
@@ -156,7 +140,7 @@ fn axis_name(panel: &Panel, size: Prefix) -> String {
     }
 }
 
-fn ink(curve: &Curve, pixel: i32) -> ShapeStyle {
+fn stroke(curve: &Curve, pixel: i32) -> ShapeStyle {
     let [r, g, b] = curve.color.map(|c| (c * 255.0 + 0.5) as u8);
     RGBColor(r, g, b).stroke_width((2 * pixel) as u32)
 }
@@ -185,20 +169,16 @@ mod tests {
 
     fn chart() -> Chart {
         let times = (0..100).map(|i| f64::from(i) * 0.02);
-        let curve = |label: &str, stroke: Stroke, factor: f64| Curve {
+        let curve = |label: &str, dashed: bool, factor: f64| Curve {
             label: label.to_owned(),
-            color: crate::drawing::body_color(usize::from(stroke == Stroke::Dashed)),
-            stroke,
+            color: if dashed { [0.2, 0.2, 0.2] } else { crate::drawing::body_color(0) },
+            dashed,
             points: times.clone().map(|t| [t, factor * t * t]).collect(),
         };
         let panel = |name: &str, unit| Panel {
-            along: crate::chart::TIME,
             name: name.to_owned(),
             unit,
-            curves: vec![
-                curve("sphere x", Stroke::Dots, 2.45),
-                curve("rigid sphere, paper eq. (23)", Stroke::Dashed, 2.525),
-            ],
+            curves: vec![curve("sphere x", false, 2.45), curve("rigid sphere, paper eq. (23)", true, 2.525)],
         };
         Chart {
             title: "A sphere rolls down a plane".to_owned(),
@@ -231,7 +211,7 @@ mod tests {
         let curve = Curve {
             label: String::new(),
             color: [0.0; 3],
-            stroke: Stroke::Solid,
+            dashed: false,
             points: vec![[0.0, 5.0], [1.0, 5.0]],
         };
         let [low, high] = range(&[curve], 1);
