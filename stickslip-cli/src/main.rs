@@ -10,6 +10,7 @@ mod page;
 mod picture;
 mod progress;
 mod reproduce;
+mod sweep;
 mod workshop;
 
 use clap::Parser;

@@ -14,28 +14,43 @@ const FAINT: RGBColor = RGBColor(226, 229, 233);
 const SAMPLES: usize = 4;
 /// Numbers along an axis, about.
 const MARKS: usize = 6;
+/// Curves of so few points have them marked.
+const FEW: usize = 12;
 
 /// Draws a chart into a file of this width and height in pixels; a name that ends in `.svg` gives SVG, any other PNG.
 ///
 /// # Errors
 /// The file cannot be written, or no panel has a curve.
 pub fn draw(chart: &Chart, path: &Path, size: [usize; 2]) -> Result<(), DrawError> {
-    if chart.panels.iter().all(|panel| panel.curves.iter().all(|curve| curve.points.is_empty())) {
-        return Err(DrawError::Empty("no rows match".to_owned()));
-    }
-    register_font();
     if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("svg")) {
-        let mut text = String::new();
-        let area = SVGBackend::with_string(&mut text, (size[0] as u32, size[1] as u32)).into_drawing_area();
-        page(&area, chart, 1)?;
-        area.present().map_err(DrawError::ink)?;
-        drop(area);
-        return std::fs::write(path, text)
+        return std::fs::write(path, svg(chart, size)?)
             .map_err(|source| DrawError::Write { path: path.to_path_buf(), source });
     }
+    something(chart)?;
     let mut canvas = Canvas::new(size, SAMPLES);
     page(&canvas.ink(), chart, SAMPLES as i32)?;
     save(&canvas.image(), path)
+}
+
+/// A chart of this width and height as the text of an SVG file.
+///
+/// # Errors
+/// No panel has a curve.
+pub fn svg(chart: &Chart, size: [usize; 2]) -> Result<String, DrawError> {
+    something(chart)?;
+    register_font();
+    let mut text = String::new();
+    let area = SVGBackend::with_string(&mut text, (size[0] as u32, size[1] as u32)).into_drawing_area();
+    page(&area, chart, 1)?;
+    area.present().map_err(DrawError::ink)?;
+    drop(area);
+    Ok(text)
+}
+
+/// An error if there is nothing to see in a chart.
+fn something(chart: &Chart) -> Result<(), DrawError> {
+    let empty = |panel: &Panel| panel.curves.iter().all(|curve| curve.points.is_empty());
+    if chart.panels.iter().all(empty) { Err(DrawError::Empty("no rows match".to_owned())) } else { Ok(()) }
 }
 
 /// All of a chart, with lengths multiplied by `pixel`.
@@ -46,6 +61,7 @@ fn page<D: DrawingBackend>(area: &DrawingArea<D, Shift>, chart: &Chart, pixel: i
     let bold = bold.color(&INK).pos(Pos::new(HPos::Left, VPos::Top));
     let title = Text::new(chart.title.clone(), (20 * pixel, 14 * pixel), bold);
     area.draw(&title).map_err(DrawError::ink)?;
+    let head = if chart.title.is_empty() { 0 } else { 44 * pixel };
     let lines: Vec<&str> = chart.caption.lines().collect();
     let foot = 12 * pixel + 24 * pixel * lines.len() as i32;
     for (row, line) in lines.iter().enumerate() {
@@ -53,11 +69,11 @@ fn page<D: DrawingBackend>(area: &DrawingArea<D, Shift>, chart: &Chart, pixel: i
         let at = (20 * pixel, height - foot + (10 + 24 * row as i32) * pixel);
         area.draw(&Text::new(*line, at, style)).map_err(DrawError::ink)?;
     }
-    let body = area.margin(44 * pixel, foot, 8 * pixel, 8 * pixel);
+    let body = area.margin(head, foot, 8 * pixel, 8 * pixel);
     let columns = chart.panels.len().clamp(1, 2);
     let rows = chart.panels.len().div_ceil(columns).max(1);
     for (cell, panel) in body.split_evenly((rows, columns)).iter().zip(&chart.panels) {
-        draw_panel(cell, panel, pixel)?;
+        draw_panel(cell, (panel, &chart.over), pixel)?;
     }
     Ok(())
 }
@@ -68,7 +84,7 @@ fn letters(size: i32, pixel: i32) -> TextStyle<'static> {
 
 fn draw_panel<D: DrawingBackend>(
     area: &DrawingArea<D, Shift>,
-    panel: &Panel,
+    (panel, over): (&Panel, &str),
     pixel: i32,
 ) -> Result<(), DrawError> {
     let [times, values] = [0, 1].map(|axis| range(&panel.curves, axis));
@@ -98,14 +114,19 @@ fn draw_panel<D: DrawingBackend>(
         .set_all_tick_mark_size(4 * pixel)
         .x_label_formatter(&|time| label(*time, times, MARKS))
         .y_label_formatter(&|value| label(*value, values, MARKS))
-        .x_desc("time [s]")
+        .x_desc(over)
         .y_desc(axis_name(panel, size))
         .draw()
         .map_err(DrawError::ink)?;
     for curve in &panel.curves {
         let points = curve.points.iter().map(|[time, value]| (*time, value / size.factor));
+        let points = points.filter(|(_, value)| value.is_finite());
         let style = stroke(curve, pixel);
         let dashes = curve.dashed;
+        if curve.points.len() <= FEW && !dashes {
+            let mark = |point| Circle::new(point, 3 * pixel, style.filled());
+            chart.draw_series(points.clone().map(mark)).map_err(DrawError::ink)?;
+        }
         let series = if dashes {
             chart.draw_series(DashedLineSeries::new(points, 7 * pixel, 5 * pixel, style))
         } else {
@@ -182,6 +203,7 @@ mod tests {
         };
         Chart {
             title: "A sphere rolls down a plane".to_owned(),
+            over: "time [s]".to_owned(),
             panels: vec![panel("position", "m"), panel("velocity", "m/s")],
             caption: "at t = 2 s: sphere x is 0.970 of exact".to_owned(),
         }
@@ -202,7 +224,8 @@ mod tests {
 
     #[test]
     fn a_chart_of_nothing_is_an_error() {
-        let nothing = Chart { title: String::new(), panels: Vec::new(), caption: String::new() };
+        let nothing =
+            Chart { title: String::new(), over: String::new(), panels: Vec::new(), caption: String::new() };
         assert!(matches!(draw(&nothing, Path::new("x.png"), [64, 64]), Err(DrawError::Empty(_))));
     }
 

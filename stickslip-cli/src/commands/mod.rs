@@ -8,6 +8,7 @@ mod render;
 mod reproduce;
 mod run;
 mod schema;
+mod sweep;
 
 use crate::failure::Failure;
 use clap::Parser;
@@ -24,6 +25,7 @@ use stickslip::scene::{Loaded, SceneError};
 #[command(name = "stickslip", version, arg_required_else_help = true)]
 pub enum Command {
     Run(run::Arguments),
+    Sweep(sweep::Arguments),
     Check(check::Arguments),
     New(new::Arguments),
     Render(render::Arguments),
@@ -37,6 +39,7 @@ impl Command {
     pub fn execute(self) -> Result<(), Failure> {
         match self {
             Command::Run(arguments) => arguments.execute(),
+            Command::Sweep(arguments) => arguments.execute(),
             Command::Check(arguments) => arguments.execute(),
             Command::New(arguments) => arguments.execute(),
             Command::Render(arguments) => arguments.execute(),

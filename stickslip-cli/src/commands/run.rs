@@ -31,15 +31,15 @@ pub struct Arguments {
 }
 
 /// Where the results go if the user does not say.
-fn default_folder(scene: &Path) -> PathBuf {
+pub fn default_folder(scene: &Path, kind: &str) -> PathBuf {
     let mut name = scene.file_stem().unwrap_or(scene.as_os_str()).to_owned();
-    name.push(".results");
+    name.push(format!(".{kind}"));
     PathBuf::from(name)
 }
 
 #[test]
 fn results_go_beside_the_user_not_beside_the_scene() {
-    let folder = default_folder(Path::new("scenes/paper/inclined_plane_no_slip.toml"));
+    let folder = default_folder(Path::new("scenes/paper/inclined_plane_no_slip.toml"), "results");
     assert_eq!(folder, PathBuf::from("inclined_plane_no_slip.results"));
 }
 
@@ -50,7 +50,7 @@ impl Arguments {
         let threads = use_threads(self.threads)?;
         let mut simulation = stickslip::engine::build(scene)
             .map_err(|problem| Failure::input(loaded.source.locate(problem)))?;
-        let out = self.out.clone().unwrap_or_else(|| default_folder(&self.scene));
+        let out = self.out.clone().unwrap_or_else(|| default_folder(&self.scene, "results"));
         let options = RunOptions { out: out.clone(), stop: stop_on_interrupt()?, threads };
         let display = Display::new(scene.time.end, std::io::stderr().is_terminal());
         let outcome =

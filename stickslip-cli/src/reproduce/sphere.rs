@@ -3,7 +3,7 @@
 use super::accounts::energy_error;
 use super::case::{Case, PaperScene, Rule, Runs};
 use super::drawn;
-use crate::chart::{Chart, Curve, Panel, Stroke, TIME, svg};
+use crate::chart::{Chart, Curve, Panel, svg};
 use crate::drawing::{Rgb, body_color};
 use crate::failure::Failure;
 use crate::page::{Cell, Column, Figure, Image, Table};
@@ -59,12 +59,16 @@ pub fn figure(figure: Figure, axis: Axis, spheres: &[Sphere], runs: &Runs) -> Re
     for rule in Rule::BOTH {
         let of_rule: Vec<&Sphere> = spheres.iter().filter(|sphere| sphere.rule == rule).collect();
         let panel = Panel {
-            along: TIME,
             name: axis.name.to_owned(),
             unit: axis.unit,
             curves: curves(&of_rule, axis, runs)?,
         };
-        let chart = Chart { title: String::new(), panels: vec![panel], caption: String::new() };
+        let chart = Chart {
+            title: String::new(),
+            over: "time [s]".to_owned(),
+            panels: vec![panel],
+            caption: String::new(),
+        };
         if let Some(svg) = drawn(svg(&chart, SIZE))? {
             let description = format!("{} over time, {}", axis.name, rule.title());
             charts.push(Image::svg(&svg, description).label(rule.title()));
@@ -81,7 +85,7 @@ fn curves(spheres: &[&Sphere], axis: Axis, runs: &Runs) -> Result<Vec<Curve>, Fa
         let rows = results.bodies_table().map_err(Failure::input)?;
         let rows = rows.iter().filter(|row| row.body == BODY);
         let points = rows.filter_map(|row| Some([row.time, row.quantity(axis.quantity)?])).collect();
-        curves.push(Curve { label: sphere.name(), color: body_color(number), stroke: Stroke::Solid, points });
+        curves.push(Curve { label: sphere.name(), color: body_color(number), dashed: false, points });
         let reference = results
             .manifest()
             .references
@@ -89,12 +93,7 @@ fn curves(spheres: &[&Sphere], axis: Axis, runs: &Runs) -> Result<Vec<Curve>, Fa
             .find(|reference| reference.body == BODY && reference.quantity == axis.quantity);
         if let Some(reference) = reference.filter(|new| exact.iter().all(|old| old.points != new.points)) {
             let label = reference.label.clone();
-            exact.push(Curve {
-                label,
-                color: EXACT,
-                stroke: Stroke::Dashed,
-                points: reference.points.clone(),
-            });
+            exact.push(Curve { label, color: EXACT, dashed: true, points: reference.points.clone() });
         }
     }
     curves.extend(exact);

@@ -2,15 +2,28 @@
 
 use super::file::part_of;
 use super::manifest::Manifest;
-use super::{BODIES, CONTACTS, ENERGY, FRINGES, FRINGES_ANIMATION, FRINGES_TABLE, GRID, PARTICLES};
+use super::{ARRIVALS, BODIES, CONTACTS, ENERGY, FRONT_SPEEDS, FRONTS, GRID, PARTICLES, PROBES};
+use super::{FRINGES, FRINGES_ANIMATION, FRINGES_TABLE};
 use miette::Diagnostic;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
 /// Files that a run may leave in its folder.
-const FILES: [&str; 8] =
-    [BODIES, ENERGY, CONTACTS, "particles.pvd", "grid.pvd", FRINGES_TABLE, FRINGES_ANIMATION, Manifest::FILE];
+const FILES: [&str; 12] = [
+    BODIES,
+    ENERGY,
+    CONTACTS,
+    PROBES,
+    ARRIVALS,
+    FRONTS,
+    FRONT_SPEEDS,
+    "particles.pvd",
+    "grid.pvd",
+    FRINGES_TABLE,
+    FRINGES_ANIMATION,
+    Manifest::FILE,
+];
 /// Folders of snapshots that a run may leave in its folder.
 const SNAPSHOTS: [&str; 3] = [PARTICLES, GRID, FRINGES];
 

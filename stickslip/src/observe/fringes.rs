@@ -2,7 +2,7 @@
 
 use super::file::{OutputError, replace};
 use super::folder::OutputFolder;
-use super::table::Table;
+use super::table::{Row, Table};
 use super::{FRINGES, FRINGES_ANIMATION, FRINGES_TABLE, Observer};
 use crate::door::{ParticleSnapshot, Simulation};
 use crate::image::{Image, write_animation};
@@ -28,6 +28,12 @@ pub struct FringeRow {
     pub to: f64,
     /// How many they are.
     pub samples: usize,
+}
+
+impl Row for FringeRow {
+    fn time(&self) -> f64 {
+        self.time
+    }
 }
 
 /// Writes `fringes.csv`, the frames in `fringes/`, and at the end `fringes.png`.
@@ -112,7 +118,7 @@ impl Fringes {
             specimens: (0..scene.bodies.len()).filter(|&i| birefringent(&scene.bodies[i])).collect(),
             shutter: Shutter::new(camera),
             folder: folder.clone(),
-            table: Table::create(folder.join(FRINGES_TABLE))?,
+            table: Table::create(folder.join(FRINGES_TABLE), scene.outputs.measurements.unit())?,
             frames: Vec::new(),
             view: None,
             largest: 0.0,
@@ -178,7 +184,7 @@ impl Observer for Fringes {
         if due && self.shutter.pass(time) { self.develop() } else { Ok(()) }
     }
 
-    fn finish(&mut self) -> Result<(), OutputError> {
+    fn conclude(&mut self) -> Result<(), OutputError> {
         // The run may end while the shutter is open.
         self.develop()?;
         if self.frames.is_empty() {

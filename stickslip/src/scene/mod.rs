@@ -9,6 +9,7 @@ mod file;
 mod formula;
 mod fringes;
 mod load;
+mod measurements;
 mod overrides;
 mod parameters;
 mod problem;
@@ -21,6 +22,7 @@ pub use error::{Mistake, SceneError};
 pub use expression::{Expression, Program};
 pub use fringes::{Field, Fringes, Light, Overlay, Polariscope, Sensitivity};
 pub use load::{Loaded, load, parse};
+pub use measurements::{Anchor, Arrival, Front, Measurements, Observable, Probe, Reading, TimeUnit};
 pub use problem::Problem;
 pub use schema::schema;
 pub use source::Source;
@@ -295,6 +297,8 @@ pub struct Outputs {
     pub grid: Option<f64>,
     /// Photoelastic fringes.
     pub fringes: Option<Fringes>,
+    /// Probes, arrivals and fronts.
+    pub measurements: Measurements,
 }
 
 /// A known answer for one quantity of one body.

@@ -5,6 +5,7 @@ mod body;
 mod contact;
 mod fringes;
 mod material;
+mod measurements;
 mod outputs;
 mod quantity;
 mod read;

@@ -2,6 +2,7 @@
 
 use super::Context;
 use super::fringes::Fringes;
+use super::measurements::{self, Arrival, Front, Probe, Sampling};
 use super::quantity::{Duration, Quantity, evaluate};
 use super::read::{Read, table};
 use super::text::Text;
@@ -25,6 +26,16 @@ table! {
         grid: Option<Interval>,
         /// Pictures of photoelastic fringes, and an animation of them: a camera behind a virtual polariscope.
         fringes: Option<Fringes>,
+        /// What non-dimensional time counts in, such as "diameter / c_L" [s]; tables then have a column `time_units`.
+        time_unit: Option<Quantity<Duration>>,
+        /// Interval between samples of probes, arrivals and fronts [s], or "step" for every step; by default 1/1000 of the run.
+        samples: Option<Sampling>,
+        /// Points at which velocity and stress are recorded: [[outputs.probes]].
+        probes: Option<Vec<Probe>>,
+        /// Thresholds whose first passing is recorded: [[outputs.arrivals]].
+        arrivals: Option<Vec<Arrival>>,
+        /// Fronts whose position and speed are recorded: [[outputs.fronts]].
+        fronts: Option<Vec<Front>>,
     }
 }
 
@@ -84,6 +95,7 @@ pub fn resolve(
         particles: particles.map_or(Ok(Some(end / 40.0)), |interval| interval.value(context))?,
         grid: grid.map_or(Ok(None), |interval| interval.value(context))?,
         fringes: fringes.map(|fringes| fringes.resolve(bodies, context)).transpose()?,
+        measurements: measurements::resolve(outputs, (bodies, end), context)?,
     })
 }
 
