@@ -48,7 +48,7 @@ impl Table {
 
 /// More curves than this in one panel cannot be told apart.
 pub(super) const MOST_CURVES: usize = 8;
-pub(super) const EXACT: Rgb = [0.22, 0.24, 0.27];
+const EXACT: Rgb = [0.22, 0.24, 0.27];
 
 /// The chart of a run.
 ///
