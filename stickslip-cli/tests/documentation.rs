@@ -49,10 +49,15 @@ fn fenced(text: &str, language: &str) -> Vec<String> {
 #[cfg(unix)]
 const SHORT: &str = r#"#!/bin/sh
 case "$1" in
-    run | check) grep -q '^cells_per_radius' "$2" && coarse="--set cells_per_radius=2" ;;
+    run | check)
+        grep -q '^cells_per_radius' "$2" && coarse="--set cells_per_radius=2"
+        end="40 ms" particles="10 ms"
+        # A wave crosses the paper's disks in a microsecond.
+        grep -q '^cells_per_diameter' "$2" && coarse="--set cells_per_diameter=20" end="2 us" particles="0.5 us"
+        ;;
 esac
 case "$1" in
-    run) exec "$STICKSLIP" "$@" $coarse --set time.end="40 ms" --set outputs.particles="10 ms" ;;
+    run) exec "$STICKSLIP" "$@" $coarse --set time.end="$end" --set outputs.particles="$particles" ;;
     *) exec "$STICKSLIP" "$@" $coarse ;;
 esac
 "#;

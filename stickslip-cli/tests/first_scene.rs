@@ -52,6 +52,52 @@ fn run_render_and_plot_leave_numbers_and_pictures() {
 }
 
 #[test]
+fn fringes_and_animations_come_from_a_run_and_from_its_snapshots() {
+    let workplace = Workplace::new();
+    workplace.write(
+        "scene.toml",
+        &format!(
+            "{}\n[outputs.fringes]\ninterval = \"50 ms\"\nexposure = \"10 ms\"\nstress_parameter = \"2 kPa\"\nwidth = 200\noverlay = \"force-chains\"\n",
+            new_scene()
+        ),
+    );
+    let short = ["--set", "time.end=0.3 s", "--set", "outputs.particles=60 ms"];
+    let said = workplace.succeed(&[&["run", "scene.toml"][..], &QUICK, &short].concat());
+    assert!(said.contains("fringes.png"), "{said}");
+    let frames = fs::read_dir(workplace.path("scene.results").join("fringes")).unwrap().count();
+    assert_eq!(frames, 6);
+
+    let count = |file: &str| {
+        let file = fs::read(workplace.path(file)).unwrap();
+        let control = file.windows(4).position(|name| name == b"acTL").unwrap() + 4;
+        u32::from_be_bytes(file[control..control + 4].try_into().unwrap())
+    };
+    assert_eq!(count("scene.results/fringes.png"), 6);
+    let render = |flags: &[&str]| workplace.succeed(&[&["render", "scene.results"], flags].concat());
+    render(&["--animate", "--rate", "4", "--size", "300x200"]);
+    assert_eq!(count("scene.results/animation.png"), 6);
+    let said = render(&["--fringes", "--animate", "--size", "300x200"]);
+    assert!(said.contains("stress parameter 2.0000e3 Pa"), "as in the scene: {said}");
+    assert_eq!(count("scene.results/fringes_animation.png"), 6);
+    let said = render(&["--fringes", "--stress-optic-coefficient", "5e-9", "--thickness", "0.02", "--out", "f.png"]);
+    assert!(said.contains("a fringe is 5.4610e3 Pa"), "{said}");
+    assert_eq!(&fs::read(workplace.path("f.png")).unwrap()[1..4], b"PNG");
+
+    for (flags, allowed) in [
+        (&["--fringes", "--stress-optic-coefficient", "5e-9"][..], "--thickness"),
+        (&["--fringes", "--bodies", "disc"], "disk"),
+        (&["--fringes", "--stress-parameter", "0"], "above 0"),
+        (&["--fringes", "--light", "gray"], "grey"),
+        (&["--light", "grey"], "--fringes"),
+        (&["--fringes", "--color", "pressure"], "--color"),
+    ] {
+        let ran = workplace.run(&[&["render", "scene.results"], flags].concat());
+        assert_eq!(ran.code, Some(2), "{flags:?}");
+        assert!(ran.stderr.contains(allowed), "{flags:?}: {}", ran.stderr);
+    }
+}
+
+#[test]
 fn tables_do_not_depend_on_the_number_of_threads() {
     let workplace = Workplace::new();
     workplace.write("scene.toml", &new_scene());

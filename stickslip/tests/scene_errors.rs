@@ -526,3 +526,99 @@ proptest::proptest! {
         }
     }
 }
+
+#[test]
+fn a_camera_behind_a_polariscope() {
+    let plane = MINIMAL
+        .replace("\"3d\"", "\"plane-strain\"")
+        .replace("[0, 0, 0]", "[0, 0]")
+        .replace("shape.ball", "\nshape.ball");
+    let scene = format!(
+        "{plane}\n[outputs.fringes]\ninterval = \"1 ms\"\nexposure = \"0.5 ms\"\nstress_optic_coefficient = \"4e-12 1/Pa\"\nthickness = \"6 mm\"\n"
+    );
+    scene::parse("a.toml", &scene, &[]).unwrap_or_else(|error| panic!("{error}"));
+    let space = scene.replace("\"plane-strain\"", "\"3d\"").replace("[0, 0]", "[0, 0, 0]");
+    check(
+        &scene,
+        &[
+            (
+                "interval = \"1 ms\"",
+                "interval = 0",
+                "19:12: outputs.fringes.interval: found 0; allowed: a time [s] above 0, like \"2.5 ms\"",
+            ),
+            (
+                "interval = \"1 ms\"",
+                "",
+                "18:2: outputs.fringes.interval: found nothing; allowed: a time [s], like \"2.5 ms\"",
+            ),
+            (
+                "exposure = \"0.5 ms\"",
+                "exposure = \"2 ms\"",
+                "20:12: outputs.fringes.exposure: found \"2 ms\"; allowed: at most the interval, 0.001 s",
+            ),
+            (
+                "exposure = \"0.5 ms\"",
+                "exposure = \"-1 ms\"",
+                "20:12: outputs.fringes.exposure: found \"-1 ms\"; allowed: a time [s] of 0 or more, like \"2.5 ms\"",
+            ),
+            (
+                "thickness = \"6 mm\"",
+                "samples = 0.5\nthickness = 1",
+                "22:11: outputs.fringes.samples: found 0.5; allowed: a whole number from 1 to 64",
+            ),
+            (
+                "thickness = \"6 mm\"",
+                "",
+                "21:28: outputs.fringes.stress_optic_coefficient: found \"4e-12 1/Pa\"; allowed: in a plane scene together with a thickness",
+            ),
+            (
+                "thickness = \"6 mm\"",
+                "stress_parameter = \"1 MPa\"",
+                "22:20: outputs.fringes.stress_parameter: found \"1 MPa\"; allowed: either stress_optic_coefficient or stress_parameter",
+            ),
+            (
+                "stress_optic_coefficient = \"4e-12 1/Pa\"",
+                "stress_parameter = \"1 MPa\"",
+                "22:13: outputs.fringes.thickness: found \"6 mm\"; allowed: no thickness beside stress_parameter, which holds for the stress itself",
+            ),
+            (
+                "stress_optic_coefficient = \"4e-12 1/Pa\"",
+                "",
+                "19:12: outputs.fringes.interval: found \"1 ms\"; allowed: fringes with stress_optic_coefficient and thickness, or with stress_parameter, such as \"20 MPa\"",
+            ),
+            (
+                "4e-12 1/Pa",
+                "4 MPa",
+                "21:28: outputs.fringes.stress_optic_coefficient: found \"4 MPa\", a pressure [Pa]; allowed: a quantity in m*s^2/kg, like \"1 m*s^2/kg\"",
+            ),
+            (
+                "thickness",
+                "wavelength = \"1 um\"\nthickness",
+                "22:14: outputs.fringes.wavelength: found \"1 um\"; allowed: a visible wavelength, \"380 nm\" to \"780 nm\"",
+            ),
+            (
+                "thickness",
+                "light = \"gray\"\nthickness",
+                "22:9: outputs.fringes.light: found \"gray\"; allowed: \"grey\", \"monochrome\" or \"white\"; did you mean `grey`?",
+            ),
+            (
+                "thickness",
+                "bodies = [\"bal\"]\nthickness",
+                "22:11: outputs.fringes.bodies[0]: found \"bal\"; allowed: the name of a body (\"ball\"); did you mean `ball`?",
+            ),
+            (
+                "thickness",
+                "view = { min = [0, 0], max = [1, 0] }\nthickness",
+                "22:34: outputs.fringes.view.max[1]: found 0; allowed: more than 0 m, the y of min",
+            ),
+        ],
+    );
+    check(
+        &space,
+        &[(
+            "thickness = \"6 mm\"",
+            "thickness = \"7 mm\"",
+            "22:13: outputs.fringes.thickness: found \"7 mm\"; allowed: no thickness in 3d, where light crosses the bodies as thick as they are",
+        )],
+    );
+}

@@ -30,6 +30,8 @@ pub struct Link {
 const REACH: f64 = 4.0;
 /// Width of the line of the largest force, over the width of the image.
 const WIDEST: f64 = 0.009;
+/// Forces below this part of the largest are not drawn.
+const LEAST: f64 = 0.01;
 /// Red, green, blue; and its share over what lies under it.
 const COLOR: [f64; 3] = [235.0, 70.0, 30.0];
 const OPACITY: f64 = 0.85;
@@ -77,7 +79,7 @@ fn meeting_place(a: &Cloud, b: &Cloud) -> Option<[f64; 2]> {
 /// Draws links as lines, their width in proportion to the force and widest at the force `full` [N].
 pub fn draw_links(image: &mut Image, window: &Window, (links, full): (&[Link], f64)) {
     let widest = (WIDEST * image.size[0] as f64).max(2.0);
-    for link in links {
+    for link in links.iter().filter(|link| link.force > LEAST * full) {
         let half = 0.5 * (widest * (link.force / full).clamp(0.0, 1.0)).max(1.0);
         draw_line(image, [window.pixel(link.center), window.pixel(link.contact)], half);
     }
