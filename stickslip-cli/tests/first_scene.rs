@@ -79,7 +79,8 @@ fn fringes_and_animations_come_from_a_run_and_from_its_snapshots() {
     let said = render(&["--fringes", "--animate", "--size", "300x200"]);
     assert!(said.contains("stress parameter 2.0000e3 Pa"), "as in the scene: {said}");
     assert_eq!(count("scene.results/fringes_animation.png"), 6);
-    let said = render(&["--fringes", "--stress-optic-coefficient", "5e-9", "--thickness", "0.02", "--out", "f.png"]);
+    let said =
+        render(&["--fringes", "--stress-optic-coefficient", "5e-9", "--thickness", "0.02", "--out", "f.png"]);
     assert!(said.contains("a fringe is 5.4610e3 Pa"), "{said}");
     assert_eq!(&fs::read(workplace.path("f.png")).unwrap()[1..4], b"PNG");
 

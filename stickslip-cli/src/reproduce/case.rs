@@ -50,6 +50,8 @@ impl PaperScene {
 /// Which bodies count as touching.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rule {
+    /// The one before the paper's, of 2000.
+    Kinematic,
     /// The paper's of 2001.
     Traction,
     /// Stickslip's default.
@@ -87,6 +89,11 @@ impl Case {
         Case { name: format!("{}-{label}", scene.name), scene, settings }
     }
 
+    /// The same with one more word in its name.
+    pub fn labelled(self, label: &str) -> Self {
+        Case { name: format!("{}-{label}", self.name), ..self }
+    }
+
     /// The case, ready to be run.
     ///
     /// # Errors
@@ -99,20 +106,31 @@ impl Case {
 }
 
 impl Rule {
-    /// Both, the paper's first.
+    /// The two that everything is run with, the paper's first.
     pub const BOTH: [Rule; 2] = [Rule::Traction, Rule::Gap];
 
     /// Its word in scenes.
     pub fn word(self) -> &'static str {
         match self {
+            Rule::Kinematic => "kinematic",
             Rule::Traction => "traction",
             Rule::Gap => "gap",
         }
     }
 
-    /// Its name in tables and under figures.
+    /// Its name in tables.
+    pub fn short(self) -> &'static str {
+        match self {
+            Rule::Kinematic => "kinematic (before the paper)",
+            Rule::Traction => "traction (the paper's)",
+            Rule::Gap => "gap (default)",
+        }
+    }
+
+    /// Its name in sentences.
     pub fn title(self) -> &'static str {
         match self {
+            Rule::Kinematic => "the rule before the paper's (kinematic)",
             Rule::Traction => "the paper's rule (traction)",
             Rule::Gap => "Stickslip's default (gap)",
         }

@@ -6,7 +6,11 @@
 mod accounts;
 mod backspin;
 mod case;
+mod chain;
+mod convergence;
+mod disks;
 mod inclined_plane;
+mod poisson;
 mod sphere;
 
 pub use case::{Case, Level, Runs};
@@ -34,7 +38,13 @@ pub trait Study: Sync {
 }
 
 /// All applications, in the order of the paper.
-pub const STUDIES: &[&dyn Study] = &[&inclined_plane::InclinedPlane, &backspin::Backspin];
+pub const STUDIES: &[&dyn Study] = &[
+    &inclined_plane::InclinedPlane,
+    &backspin::Backspin,
+    &disks::Disks,
+    &poisson::Poisson,
+    &convergence::Convergence,
+];
 
 /// Runs studies and makes the report of them; whether all runs went well stands in [`Runs::failures`].
 ///

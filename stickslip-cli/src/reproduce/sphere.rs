@@ -58,11 +58,8 @@ pub fn figure(figure: Figure, axis: Axis, spheres: &[Sphere], runs: &Runs) -> Re
     let mut charts = Vec::new();
     for rule in Rule::BOTH {
         let of_rule: Vec<&Sphere> = spheres.iter().filter(|sphere| sphere.rule == rule).collect();
-        let panel = Panel {
-            name: axis.name.to_owned(),
-            unit: axis.unit,
-            curves: curves(&of_rule, axis, runs)?,
-        };
+        let panel =
+            Panel { name: axis.name.to_owned(), unit: axis.unit, curves: curves(&of_rule, axis, runs)? };
         let chart = Chart {
             title: String::new(),
             over: "time [s]".to_owned(),
@@ -121,7 +118,7 @@ pub fn table(caption: &str, spheres: &[Sphere], runs: &Runs) -> Result<Table, Fa
     for sphere in spheres {
         let mut row = vec![
             Cell::text(sphere.label),
-            Cell::text(sphere.rule.title()),
+            Cell::text(sphere.rule.short()),
             Cell::Number(format!("R/{}", sphere.cells)),
         ];
         match runs.get(&sphere.case()) {
