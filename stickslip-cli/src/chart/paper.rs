@@ -92,7 +92,9 @@ fn draw_panel<D: DrawingBackend>(
     let size = axis_prefix(largest, panel.unit);
     let values = values.map(|value| value / size.factor);
     // Above the curves there is room for their names.
-    let room = (0.04 + 0.05 * panel.curves.len() as f64).min(0.4);
+    let plot = f64::from(area.dim_in_pixel().1 as i32 - 50 * pixel).max(1.0);
+    let names = (f64::from((18 + 20 * panel.curves.len() as i32) * pixel) / plot).min(0.45);
+    let room = 1.05 * names / (1.0 - names);
     let pad = values[1] - values[0];
     let values = [values[0] - 0.05 * pad, values[1] + room * pad];
     let mut chart = ChartBuilder::on(area)

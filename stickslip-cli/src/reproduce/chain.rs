@@ -2,8 +2,9 @@
 
 use super::case::{Case, PaperScene, Rule};
 use crate::failure::Failure;
-use std::path::PathBuf;
-use stickslip::observe::{ContactRow, EnergyRow, Results};
+use stickslip::observe::{ContactRow, EnergyRow, Frame, Results};
+use stickslip::polariscope::{self, Bench, Stage, Window};
+use stickslip::scene::Fringes;
 
 /// The paper's disks as it ran them: touching at the start, one particle a cell, each rule with its own normals.
 pub fn case(scene: PaperScene, rule: Rule, cells: usize, more: &[(&str, &str)]) -> Case {
@@ -16,10 +17,9 @@ pub fn case(scene: PaperScene, rule: Rule, cells: usize, more: &[(&str, &str)]) 
         ("cells_per_diameter", cells.as_str()),
         ("particles_per_side", "1"),
         ("outputs.particles", "never"),
-        ("outputs.fringes.interval", "0.1 * transit"),
+        // The report takes its own pictures, from snapshots at the times that it shows.
+        ("outputs.fringes.interval", "1000 * transit"),
         ("outputs.fringes.field", "light"),
-        ("outputs.fringes.overlay", "none"),
-        ("outputs.fringes.width", "720"),
         ("outputs.samples", "step"),
         ("fringe", FRINGE),
     ];
@@ -37,6 +37,16 @@ pub struct Chain<'a> {
     /// Time in which a longitudinal wave crosses a disk [s].
     transit: f64,
 }
+
+/// A camera behind a polariscope, with the disks of a run before it.
+pub struct Camera<'a> {
+    results: &'a Results,
+    transit: f64,
+    bench: Bench,
+}
+
+/// Width of a picture [pixels].
+const WIDTH: usize = 720;
 
 /// What went in and out of the disks until a time.
 pub struct Balance {
@@ -81,15 +91,23 @@ impl<'a> Chain<'a> {
         Ok(Some((arrivals.len() - 1) as f64 / (last - first)))
     }
 
-    /// The picture of the fringes nearest to a time in transits, and its time in transits.
+    /// Takes pictures of the fringes.
     ///
     /// # Errors
-    /// The list of pictures cannot be read.
-    pub fn picture(&self, time: f64) -> Result<Option<(f64, PathBuf)>, Failure> {
-        let rows = self.results.fringes_table().map_err(Failure::input)?;
-        let off = |row_time: f64| (row_time / self.transit - time).abs();
-        let nearest = rows.iter().min_by(|a, b| off(a.time).total_cmp(&off(b.time)));
-        Ok(nearest.map(|row| (row.time / self.transit, self.results.fringe_picture(row.frame))))
+    /// The first snapshot cannot be read.
+    pub fn camera(&self) -> Result<Option<Camera<'a>>, Failure> {
+        let manifest = self.results.manifest();
+        let fringes: Option<Fringes> =
+            serde_json::from_value(manifest.scene["outputs"]["fringes"].clone()).ok();
+        let (Some(fringes), Some(first)) = (fringes, self.results.frames().first()) else { return Ok(None) };
+        let specimens: Vec<usize> = (0..manifest.bodies.len())
+            .filter(|&body| fringes.bodies.contains(&manifest.bodies[body]))
+            .collect();
+        let particles = self.results.particles(first).map_err(Failure::input)?;
+        let Some(bounds) = polariscope::bounds(&particles, &specimens) else { return Ok(None) };
+        let stage = Stage { window: Window::around(bounds, WIDTH), specimens };
+        let bench = Bench::new(&fringes.polariscope, stage);
+        Ok(Some(Camera { results: self.results, transit: self.transit, bench }))
     }
 
     /// The balance of the disks at a time in transits, or at the end of the run if that is earlier.
@@ -112,6 +130,23 @@ impl<'a> Chain<'a> {
             energy: end.total / end.external_work.abs(),
             momentum: missing / pushed[0].hypot(pushed[1]),
         })
+    }
+}
+
+impl Camera<'_> {
+    /// The picture of the snapshot nearest to a time in transits, as PNG, and its time in transits.
+    ///
+    /// # Errors
+    /// The snapshot cannot be read.
+    pub fn picture(&self, time: f64) -> Result<(f64, Vec<u8>), Failure> {
+        let off = |frame: &&Frame| (frame.time / self.transit - time).abs();
+        let frames = self.results.frames().iter();
+        let frame = frames.min_by(|a, b| off(a).total_cmp(&off(b))).expect("a camera has seen a snapshot");
+        let particles = self.results.particles(frame).map_err(Failure::input)?;
+        let mut png = Vec::new();
+        let written = self.bench.photograph(&particles).write_png(&mut png);
+        written.expect("a vector takes all bytes");
+        Ok((frame.time / self.transit, png))
     }
 }
 

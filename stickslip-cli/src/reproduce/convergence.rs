@@ -101,7 +101,7 @@ impl Study for Convergence {
 }
 
 fn case(rule: Rule, cells: usize) -> Case {
-    let settings = [("speed", SPEED), ("outputs.fringes.interval", "100 * transit")];
+    let settings = [("speed", SPEED)];
     chain::case(PaperScene::COLLINEAR, rule, cells, &settings).labelled("experiment")
 }
 

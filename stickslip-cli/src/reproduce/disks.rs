@@ -6,7 +6,6 @@ use super::chain::{self, Chain};
 use crate::failure::Failure;
 use crate::page::{Cell, Column, Figure, Image, Section, Table, Verdict};
 use maud::html;
-use miette::miette;
 
 /// The study.
 pub struct Disks;
@@ -64,7 +63,7 @@ impl Study for Disks {
     fn cases(&self, level: Level) -> Vec<Case> {
         let mut cases = Vec::new();
         for rule in Rule::BOTH {
-            cases.extend(ARRANGEMENTS.iter().map(|each| chain::case(each.scene, rule, cells(level), &[])));
+            cases.extend(ARRANGEMENTS.iter().map(|each| each.case(rule, level)));
             cases.push(frictionless(rule, level));
         }
         cases.push(kinematic(level));
@@ -95,27 +94,32 @@ impl Study for Disks {
 }
 
 impl Arrangement {
+    fn case(&self, rule: Rule, level: Level) -> Case {
+        let times = self.simulated.iter().chain(&self.measured);
+        let times: Vec<String> = times.map(|time| format!("\"{time} * transit\"")).collect();
+        let times = format!("[{}]", times.join(", "));
+        chain::case(self.scene, rule, cells(level), &[("outputs.particles_at", &times)])
+    }
+
     fn figure(&self, level: Level, runs: &Runs) -> Result<Figure, Failure> {
         let caption = html! {
             (self.title) ". Times in transits; above the paper's of its simulation, below its experiment's, for each rule."
         };
         let mut figure = Figure::new(self.figure, caption);
         for rule in Rule::BOTH {
-            let case = chain::case(self.scene, rule, cells(level), &[]);
+            let case = self.case(rule, level);
             let Some(chain) = runs.get(&case).and_then(Chain::new) else { continue };
+            let Some(camera) = chain.camera()? else { continue };
             for (times, whose) in
                 [(self.simulated, "the paper's simulation"), (self.measured, "its experiment")]
             {
                 let mut row = Vec::new();
                 for time in times {
-                    let Some((shown, path)) = chain.picture(time)? else { continue };
-                    let png = std::fs::read(&path)
-                        .map_err(|error| Failure::Run(miette!("cannot read {}: {error}", path.display())))?;
+                    let (shown, png) = camera.picture(time)?;
                     let description =
                         format!("{}, {} at t = {shown:.1}, a time of {whose}", self.title, rule.title());
                     row.push(
-                        Image::png(&png, description)
-                            .label(format!("{}, t = {shown:.1} ({whose})", rule.short())),
+                        Image::png(&png, description).label(format!("{}, t = {shown:.1}", rule.short())),
                     );
                 }
                 figure = figure.row(row);
@@ -145,11 +149,8 @@ fn kinematic(level: Level) -> Case {
 
 /// When the wave comes to each disk of the zig-zag.
 fn arrivals(rule: Rule, level: Level, runs: &Runs) -> Result<Table, Failure> {
-    let cases = [
-        chain::case(PaperScene::GLUED, rule, cells(level), &[]),
-        chain::case(PaperScene::ZIGZAG, rule, cells(level), &[]),
-        frictionless(rule, level),
-    ];
+    let [_, sliding, glued] = &ARRANGEMENTS;
+    let cases = [glued.case(rule, level), sliding.case(rule, level), frictionless(rule, level)];
     let mut times: Vec<Vec<Option<f64>>> = Vec::new();
     for case in &cases {
         times.push(runs.get(case).and_then(Chain::new).map_or(Ok(Vec::new()), |chain| chain.arrivals())?);
@@ -226,7 +227,7 @@ fn balance(level: Level, runs: &Runs) -> Result<Table, Failure> {
     add("in a row", Rule::Kinematic, &kinematic(level))?;
     for rule in Rule::BOTH {
         for each in &ARRANGEMENTS {
-            add(each.short, rule, &chain::case(each.scene, rule, cells(level), &[]))?;
+            add(each.short, rule, &each.case(rule, level))?;
         }
         add("zig-zag, frictionless", rule, &frictionless(rule, level))?;
     }

@@ -98,7 +98,7 @@ impl Study for Poisson {
 }
 
 fn case(rule: Rule, level: Level, nu: &str) -> Case {
-    let settings = [("nu", nu), ("time.end", "24 * transit"), ("outputs.fringes.interval", "100 * transit")];
+    let settings = [("nu", nu), ("time.end", "24 * transit")];
     chain::case(PaperScene::COLLINEAR, rule, cells(level), &settings).labelled(&format!("nu{nu}"))
 }
 

@@ -30,11 +30,6 @@ pub struct FringeRow {
     pub samples: usize,
 }
 
-/// The file of a frame, in the folder of the run.
-pub(super) fn picture(frame: usize) -> String {
-    format!("{FRINGES}/{frame:05}.png")
-}
-
 impl Row for FringeRow {
     fn time(&self) -> f64 {
         self.time
@@ -146,7 +141,7 @@ impl Fringes {
         draw_links(&mut image, &view.bench.stage().window, (&view.links, self.largest));
         let times = std::mem::take(&mut view.times);
         view.film = view.bench.film();
-        let path = self.folder.join(&picture(self.frames.len()));
+        let path = self.folder.join(&format!("{FRINGES}/{:05}.png", self.frames.len()));
         replace(&path, |file| image.write_png(file))?;
         self.table.append([FringeRow {
             frame: self.frames.len(),

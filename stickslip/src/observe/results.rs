@@ -6,7 +6,7 @@ use super::contacts::ContactRow;
 use super::energy::EnergyRow;
 use super::file::ReadError;
 use super::frames::{Frame, read_frames};
-use super::fringes::{FringeRow, picture};
+use super::fringes::FringeRow;
 use super::fronts::{FrontRow, FrontSpeedRow};
 use super::manifest::Manifest;
 use super::particles::read_particles;
@@ -82,11 +82,6 @@ impl Results {
     /// The file is missing or damaged.
     pub fn contacts_table(&self) -> Result<Vec<ContactRow>, ReadError> {
         read_rows(&self.folder.join(CONTACTS))
-    }
-
-    /// The picture of a frame of `fringes.csv`.
-    pub fn fringe_picture(&self, frame: usize) -> PathBuf {
-        self.folder.join(picture(frame))
     }
 
     /// `fringes.csv`: a row for each frame of the scene's camera.
