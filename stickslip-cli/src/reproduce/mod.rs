@@ -73,7 +73,7 @@ pub fn reproduce(studies: &[&dyn Study], level: Level, workshop: &Workshop) -> R
         b { "Stickslip's default" } " (" code { "gap" } "), which also asks whether their surfaces touch."
     });
     for failure in runs.failures() {
-        page = page.lead(html! { strong { "Failed: " } (failure.name) ": " (failure.error) });
+        page = page.warning(html! { strong { "Failed: " } (failure.name) ": " (failure.error) });
     }
     for section in sections {
         page = page.section(section);
