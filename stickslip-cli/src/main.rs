@@ -11,6 +11,7 @@ mod picture;
 mod progress;
 mod reproduce;
 mod sweep;
+mod validation;
 mod workshop;
 
 use clap::Parser;

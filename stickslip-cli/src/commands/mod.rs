@@ -9,6 +9,7 @@ mod reproduce;
 mod run;
 mod schema;
 mod sweep;
+mod validate;
 
 use crate::failure::Failure;
 use clap::Parser;
@@ -32,6 +33,7 @@ pub enum Command {
     Plot(plot::Arguments),
     Reproduce(reproduce::Arguments),
     Schema(schema::Arguments),
+    Validate(validate::Arguments),
 }
 
 impl Command {
@@ -46,6 +48,7 @@ impl Command {
             Command::Plot(arguments) => arguments.execute(),
             Command::Reproduce(arguments) => arguments.execute(),
             Command::Schema(arguments) => arguments.execute(),
+            Command::Validate(arguments) => arguments.execute(),
         }
     }
 }
