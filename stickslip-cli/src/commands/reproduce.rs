@@ -19,7 +19,7 @@ pub struct Arguments {
     quick: bool,
 
     /// As coarse as anything runs, to try the report itself.
-    #[arg(long, hide = true, conflicts_with = "quick")]
+    #[arg(long, hide = true)]
     sketch: bool,
 
     /// Folder for the report and the results of the runs.
