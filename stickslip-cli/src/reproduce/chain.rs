@@ -73,6 +73,23 @@ impl<'a> Chain<'a> {
         Ok(self.disks().iter().map(arrival).collect())
     }
 
+    /// When the centre of mass of each disk, counted from the striker, first moved with a part of the striker's speed, in transits.
+    ///
+    /// # Errors
+    /// The table cannot be read.
+    pub fn set_off(&self, part: f64) -> Result<Vec<Option<f64>>, Failure> {
+        let speed = part * self.results.manifest().scene["parameters"]["speed"].as_f64().unwrap_or(f64::NAN);
+        let rows = self.results.bodies_table().map_err(Failure::input)?;
+        let first = |disk: &&String| {
+            let states = rows.iter().filter(|row| row.body == **disk);
+            let states: Vec<[f64; 2]> = states.map(|row| [row.time, row.vx.hypot(row.vy)]).collect();
+            let passed = states.windows(2).find(|pair| pair[1][1] >= speed)?;
+            let [[t0, v0], [t1, v1]] = [passed[0], passed[1]];
+            Some((t0 + (speed - v0) / (v1 - v0) * (t1 - t0)) / self.transit)
+        };
+        Ok(self.disks().iter().map(first).collect())
+    }
+
     /// Names of the disks, from the striker on.
     fn disks(&self) -> Vec<&String> {
         self.results.body_names().iter().filter(|name| name.starts_with("disk")).collect()

@@ -24,7 +24,7 @@ impl Study for InclinedPlane {
         let both: Vec<Sphere> =
             no_slip.iter().chain(&slip).filter(|sphere| sphere.cells == finest).copied().collect();
         let plain: Vec<Sphere> = no_slip.iter().map(|sphere| Sphere { label: "", ..*sphere }).collect();
-        let both_title = "Sphere on an inclined plane, the finest cells, without slip (pi/4, friction 0.495) and with (pi/3, 0.286).";
+        let both_title = "Sphere on an inclined plane, the finest cells, without slip (π/4, friction 0.495) and with (π/3, 0.286).";
         let all_title = "The same without slip on cells of a part of the radius R.";
         let figures = [
             (Figure::new("Figure 3", format!("{both_title} Distance.")), DISTANCE, &both),

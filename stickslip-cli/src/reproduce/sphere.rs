@@ -32,7 +32,7 @@ pub const DISTANCE: Axis = Axis { quantity: "x", name: "distance of the centre",
 pub const SPEED: Axis = Axis { quantity: "vx", name: "velocity of the centre", unit: "m/s" };
 
 /// Width and height of a chart; the page scales it.
-const SIZE: [usize; 2] = [620, 440];
+const SIZE: [usize; 2] = [480, 360];
 const EXACT: Rgb = [0.22, 0.24, 0.27];
 
 impl Sphere {
