@@ -7,12 +7,13 @@ mod darkroom;
 mod drawing;
 mod failure;
 mod illustration;
-#[allow(dead_code, unused_imports, reason = "reports are written over it")]
 mod page;
 mod picture;
 mod progress;
+mod reproduce;
 mod sweep;
 mod validation;
+mod workshop;
 
 use clap::Parser;
 use std::process::ExitCode;

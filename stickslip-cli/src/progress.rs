@@ -12,17 +12,15 @@ pub struct Display {
     next_line: Cell<Instant>,
 }
 
-/// Parts of the bar.
-const PARTS: u64 = 1000;
+/// Parts of a bar.
+pub const PARTS: u64 = 1000;
 /// Wall time between two lines where there is no terminal.
 const BETWEEN_LINES: Duration = Duration::from_secs(10);
 
 impl Display {
     /// A display for a run until a simulated time [s].
     pub fn new(end: f64, terminal: bool) -> Self {
-        let style = ProgressStyle::with_template("{bar:24.cyan/dim} {percent:>3} %  {wide_msg}");
-        let style = style.expect("the template is well formed").progress_chars("━╸─");
-        let bar = terminal.then(|| ProgressBar::new(PARTS).with_style(style));
+        let bar = terminal.then(|| ProgressBar::new(PARTS).with_style(style()));
         if let Some(bar) = &bar {
             bar.set_message(format!("t = 0 of {end} s"));
         }
@@ -32,8 +30,7 @@ impl Display {
     /// Shows the present state.
     pub fn show(&self, progress: &Progress) {
         if let Some(bar) = &self.bar {
-            let share = (progress.time / progress.end).clamp(0.0, 1.0);
-            bar.set_position((share * PARTS as f64) as u64);
+            bar.set_position((progress.share() * PARTS as f64) as u64);
             bar.set_message(line(progress));
         } else if Instant::now() >= self.next_line.get() {
             eprintln!("{}", line(progress));
@@ -49,6 +46,12 @@ impl Display {
     }
 }
 
+/// What the bar of a run looks like.
+pub fn style() -> ProgressStyle {
+    let style = ProgressStyle::with_template("{bar:24.cyan/dim} {percent:>3} %  {wide_msg}");
+    style.expect("the template is well formed").progress_chars("━╸─")
+}
+
 /// Shows the progress of a family of runs on standard error: a bar for all of them, or a line when one ends.
 pub struct Family {
     bar: Option<ProgressBar>,
@@ -59,9 +62,7 @@ pub struct Family {
 impl Family {
     /// A display for so many runs.
     pub fn new(runs: usize, terminal: bool) -> Self {
-        let style = ProgressStyle::with_template("{bar:24.cyan/dim} {percent:>3} %  {wide_msg}");
-        let style = style.expect("the template is well formed").progress_chars("━╸─");
-        let bar = terminal.then(|| ProgressBar::new(PARTS).with_style(style));
+        let bar = terminal.then(|| ProgressBar::new(PARTS).with_style(style()));
         if let Some(bar) = &bar {
             bar.set_message(format!("0 of {runs} runs"));
         }

@@ -57,6 +57,7 @@ case "$1" in
         ;;
 esac
 case "$1" in
+    reproduce) exec "$STICKSLIP" "$@" --sketch --only backspin ;;
     run) exec "$STICKSLIP" "$@" $coarse --set time.end="$end" --set outputs.particles="$particles" ;;
     bench) exec "$STICKSLIP" "$@" --tiny ;;
     *) exec "$STICKSLIP" "$@" $coarse ;;

@@ -5,7 +5,7 @@ mod measurements;
 mod paper;
 
 pub use contents::{Choice, Table, chart};
-pub use paper::draw;
+pub use paper::{draw, svg};
 
 use crate::drawing::Rgb;
 

@@ -22,22 +22,35 @@ const FEW: usize = 12;
 /// # Errors
 /// The file cannot be written, or no panel has a curve.
 pub fn draw(chart: &Chart, path: &Path, size: [usize; 2]) -> Result<(), DrawError> {
-    if chart.panels.iter().all(|panel| panel.curves.iter().all(|curve| curve.points.is_empty())) {
-        return Err(DrawError::Empty("no rows match".to_owned()));
-    }
-    register_font();
     if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("svg")) {
-        let mut text = String::new();
-        let area = SVGBackend::with_string(&mut text, (size[0] as u32, size[1] as u32)).into_drawing_area();
-        page(&area, chart, 1)?;
-        area.present().map_err(DrawError::ink)?;
-        drop(area);
-        return std::fs::write(path, text)
+        return std::fs::write(path, svg(chart, size)?)
             .map_err(|source| DrawError::Write { path: path.to_path_buf(), source });
     }
+    something(chart)?;
     let mut canvas = Canvas::new(size, SAMPLES);
     page(&canvas.ink(), chart, SAMPLES as i32)?;
     save(&canvas.image(), path)
+}
+
+/// A chart of this width and height as the text of an SVG file.
+///
+/// # Errors
+/// No panel has a curve.
+pub fn svg(chart: &Chart, size: [usize; 2]) -> Result<String, DrawError> {
+    something(chart)?;
+    register_font();
+    let mut text = String::new();
+    let area = SVGBackend::with_string(&mut text, (size[0] as u32, size[1] as u32)).into_drawing_area();
+    page(&area, chart, 1)?;
+    area.present().map_err(DrawError::ink)?;
+    drop(area);
+    Ok(text)
+}
+
+/// An error if there is nothing to see in a chart.
+fn something(chart: &Chart) -> Result<(), DrawError> {
+    let empty = |panel: &Panel| panel.curves.iter().all(|curve| curve.points.is_empty());
+    if chart.panels.iter().all(empty) { Err(DrawError::Empty("no rows match".to_owned())) } else { Ok(()) }
 }
 
 /// All of a chart, with lengths multiplied by `pixel`.
@@ -48,6 +61,7 @@ fn page<D: DrawingBackend>(area: &DrawingArea<D, Shift>, chart: &Chart, pixel: i
     let bold = bold.color(&INK).pos(Pos::new(HPos::Left, VPos::Top));
     let title = Text::new(chart.title.clone(), (20 * pixel, 14 * pixel), bold);
     area.draw(&title).map_err(DrawError::ink)?;
+    let head = if chart.title.is_empty() { 0 } else { 44 * pixel };
     let lines: Vec<&str> = chart.caption.lines().collect();
     let foot = 12 * pixel + 24 * pixel * lines.len() as i32;
     for (row, line) in lines.iter().enumerate() {
@@ -55,7 +69,7 @@ fn page<D: DrawingBackend>(area: &DrawingArea<D, Shift>, chart: &Chart, pixel: i
         let at = (20 * pixel, height - foot + (10 + 24 * row as i32) * pixel);
         area.draw(&Text::new(*line, at, style)).map_err(DrawError::ink)?;
     }
-    let body = area.margin(44 * pixel, foot, 8 * pixel, 8 * pixel);
+    let body = area.margin(head, foot, 8 * pixel, 8 * pixel);
     let columns = chart.panels.len().clamp(1, 2);
     let rows = chart.panels.len().div_ceil(columns).max(1);
     for (cell, panel) in body.split_evenly((rows, columns)).iter().zip(&chart.panels) {
@@ -78,7 +92,9 @@ fn draw_panel<D: DrawingBackend>(
     let size = axis_prefix(largest, panel.unit);
     let values = values.map(|value| value / size.factor);
     // Above the curves there is room for their names.
-    let room = (0.04 + 0.05 * panel.curves.len() as f64).min(0.4);
+    let plot = f64::from(area.dim_in_pixel().1 as i32 - 50 * pixel).max(1.0);
+    let names = (f64::from((18 + 20 * panel.curves.len() as i32) * pixel) / plot).min(0.45);
+    let room = 1.05 * names / (1.0 - names);
     let pad = values[1] - values[0];
     let values = [values[0] - 0.05 * pad, values[1] + room * pad];
     let mut chart = ChartBuilder::on(area)

@@ -7,6 +7,7 @@ mod network;
 mod new;
 mod plot;
 mod render;
+mod reproduce;
 mod run;
 mod schema;
 mod sweep;
@@ -17,6 +18,8 @@ use clap::Parser;
 use miette::miette;
 use std::io::Write;
 use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use stickslip::observe::Results;
 use stickslip::scene::{Loaded, SceneError};
 
@@ -31,6 +34,7 @@ pub enum Command {
     Render(render::Arguments),
     Plot(plot::Arguments),
     Network(network::Arguments),
+    Reproduce(reproduce::Arguments),
     Schema(schema::Arguments),
     Bench(bench::Arguments),
     Validate(validate::Arguments),
@@ -47,6 +51,7 @@ impl Command {
             Command::Render(arguments) => arguments.execute(),
             Command::Plot(arguments) => arguments.execute(),
             Command::Network(arguments) => arguments.execute(),
+            Command::Reproduce(arguments) => arguments.execute(),
             Command::Schema(arguments) => arguments.execute(),
             Command::Bench(arguments) => arguments.execute(),
             Command::Validate(arguments) => arguments.execute(),
@@ -82,6 +87,20 @@ fn say(text: &str) -> Result<(), Failure> {
         }
         _ => Ok(()),
     }
+}
+
+/// A flag that the first Ctrl-C sets; the second ends the program at once.
+fn stop_on_interrupt() -> Result<Arc<AtomicBool>, Failure> {
+    let stop = Arc::new(AtomicBool::new(false));
+    let flag = Arc::clone(&stop);
+    let installed = ctrlc::set_handler(move || {
+        if flag.swap(true, Ordering::Relaxed) {
+            std::process::exit(i32::from(Failure::INTERRUPTED));
+        }
+        eprintln!("\nstopping after this step; Ctrl-C again ends at once");
+    });
+    installed.map_err(|error| Failure::Run(miette!("cannot watch for Ctrl-C: {error}")))?;
+    Ok(stop)
 }
 
 #[cfg(test)]

@@ -1,15 +1,13 @@
 //! `stickslip run SCENE`: from a scene file to numbers, a chart and a picture.
 
-use super::{assignment, load, say};
+use super::{assignment, load, say, stop_on_interrupt};
 use crate::failure::Failure;
 use crate::illustration::illustrate;
 use crate::progress::Display;
 use clap::Args;
-use miette::{IntoDiagnostic, miette};
+use miette::IntoDiagnostic;
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 use stickslip::observe::{ArrivalRow, FrontSpeedRow, Results, Status};
 use stickslip::run::{RunError, RunOptions};
 use stickslip::scene::Scene;
@@ -98,18 +96,4 @@ fn use_threads(threads: Option<u16>) -> Result<usize, Failure> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.map_or(0, usize::from));
     pool.build_global().into_diagnostic().map_err(Failure::Run)?;
     Ok(rayon::current_num_threads())
-}
-
-/// A flag that the first Ctrl-C sets; the second ends the program at once.
-pub fn stop_on_interrupt() -> Result<Arc<AtomicBool>, Failure> {
-    let stop = Arc::new(AtomicBool::new(false));
-    let flag = Arc::clone(&stop);
-    let installed = ctrlc::set_handler(move || {
-        if flag.swap(true, Ordering::Relaxed) {
-            std::process::exit(i32::from(Failure::INTERRUPTED));
-        }
-        eprintln!("\nstopping after this step; Ctrl-C again ends at once");
-    });
-    installed.map_err(|error| Failure::Run(miette!("cannot watch for Ctrl-C: {error}")))?;
-    Ok(stop)
 }

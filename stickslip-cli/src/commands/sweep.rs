@@ -1,7 +1,7 @@
 //! `stickslip sweep SCENE --set nu=0.22,0.30`: a family of runs, and one table of what they came to.
 
-use super::run::{default_folder, stop_on_interrupt};
-use super::{assignment, load, say};
+use super::run::default_folder;
+use super::{assignment, load, say, stop_on_interrupt};
 use crate::chart::draw;
 use crate::drawing::DrawError;
 use crate::failure::Failure;

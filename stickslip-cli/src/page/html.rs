@@ -24,7 +24,7 @@ pub(super) fn page(page: &Page) -> Markup {
                 nav { (contents(page)) }
                 main {
                     h1 { (page.title) }
-                    @for paragraph in &page.lead { p.lead { (paragraph) } }
+                    div.lead { @for block in &page.lead { (self::block(block)) } }
                     @for section in &page.sections { (self::section(section)) }
                     (making(&page.making))
                 }
@@ -65,15 +65,19 @@ fn section(section: &Section) -> Markup {
     html! {
         section id=(address(&section.title)) {
             h2 { (section.title) }
-            @for block in &section.blocks {
-                @match block {
-                    Block::Text(text) => p { (text) },
-                    Block::Sketch(text) => pre { (text) },
-                    Block::Warning(text) => p.warning { (text) },
-                    Block::Figure(figure) => (self::figure(figure)),
-                    Block::Table(table) => (self::table(table)),
-                }
-            }
+            @for block in &section.blocks { (self::block(block)) }
+        }
+    }
+}
+
+fn block(block: &Block) -> Markup {
+    html! {
+        @match block {
+            Block::Text(text) => p { (text) },
+            Block::Sketch(text) => pre { (text) },
+            Block::Warning(text) => p.warning { (text) },
+            Block::Figure(figure) => (self::figure(figure)),
+            Block::Table(table) => (self::table(table)),
         }
     }
 }

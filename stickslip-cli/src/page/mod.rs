@@ -21,7 +21,7 @@ pub struct Page {
     /// Above everything, and the name of the browser's tab.
     pub title: String,
     /// Under the title: what the reader has before them and what came out.
-    pub lead: Vec<Markup>,
+    pub lead: Vec<Block>,
     /// One after the other; the table of contents names them.
     pub sections: Vec<Section>,
     /// How it was made, folded up at the end.
@@ -60,7 +60,13 @@ impl Page {
 
     /// Adds a paragraph under the title.
     pub fn lead(mut self, paragraph: impl Render) -> Self {
-        self.lead.push(paragraph.render());
+        self.lead.push(Block::Text(paragraph.render()));
+        self
+    }
+
+    /// Adds a paragraph under the title that stands out.
+    pub fn warning(mut self, paragraph: impl Render) -> Self {
+        self.lead.push(Block::Warning(paragraph.render()));
         self
     }
 

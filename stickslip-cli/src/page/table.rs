@@ -79,6 +79,13 @@ impl Column {
     }
 }
 
+impl Verdict {
+    /// Passed if it holds, else failed.
+    pub fn of(holds: bool) -> Self {
+        if holds { Verdict::Passed } else { Verdict::Failed }
+    }
+}
+
 impl Cell {
     /// Words.
     pub fn text(text: impl Into<String>) -> Self {

@@ -98,7 +98,9 @@ mod tests {
             outputs: Outputs {
                 tables: 0.1,
                 particles: None,
+                particles_at: Vec::new(),
                 grid: None,
+                fringes: None,
                 measurements: Measurements::default(),
                 fringes: None,
             },

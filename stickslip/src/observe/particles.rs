@@ -7,6 +7,7 @@ use super::schedule::Schedule;
 use super::vtu::{NUMBER, Points, SYMMETRIC, TENSOR, VECTOR, Vtu};
 use super::{Observer, PARTICLES};
 use crate::door::{ParticleSnapshot, Simulation};
+use crate::scene::Scene;
 use crate::tensor::Symmetric;
 use std::path::Path;
 
@@ -20,8 +21,10 @@ pub(super) struct Particles {
 }
 
 impl Particles {
-    pub(super) fn create(interval: f64, folder: &OutputFolder) -> Result<Self, OutputError> {
-        Ok(Particles { schedule: Schedule::every(interval), frames: Frames::create(folder, PARTICLES)? })
+    pub(super) fn create(scene: &Scene, folder: &OutputFolder) -> Result<Self, OutputError> {
+        let interval = scene.outputs.particles.unwrap_or(f64::INFINITY);
+        let schedule = Schedule::every(interval).and_at(&scene.outputs.particles_at);
+        Ok(Particles { schedule, frames: Frames::create(folder, PARTICLES)? })
     }
 }
 

@@ -47,8 +47,8 @@ impl Recorder {
         if !wanted.fronts.is_empty() {
             observers.push(Box::new(Fronts::create(scene, folder)?));
         }
-        if let Some(interval) = scene.outputs.particles {
-            observers.push(Box::new(Particles::create(interval, folder)?));
+        if scene.outputs.particles.is_some() || !scene.outputs.particles_at.is_empty() {
+            observers.push(Box::new(Particles::create(scene, folder)?));
         }
         if let Some(interval) = scene.outputs.grid {
             observers.push(Box::new(Grid::create(interval, folder)?));

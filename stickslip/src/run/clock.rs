@@ -21,6 +21,13 @@ pub struct Progress {
     pub eta: f64,
 }
 
+impl Progress {
+    /// Part of the simulated time that is done, from 0 to 1.
+    pub fn share(&self) -> f64 {
+        if self.end > 0.0 { (self.time / self.end).clamp(0.0, 1.0) } else { 1.0 }
+    }
+}
+
 /// Wall time between two reports of progress.
 const REPORT: Duration = Duration::from_millis(100);
 

@@ -313,6 +313,8 @@ pub struct Outputs {
     pub tables: f64,
     /// Particles for ParaView.
     pub particles: Option<f64>,
+    /// Times of further snapshots of the particles, ascending [s].
+    pub particles_at: Vec<f64>,
     /// Grid nodes for ParaView.
     pub grid: Option<f64>,
     /// Photoelastic fringes.

@@ -237,7 +237,9 @@ pub fn scene() -> Scene {
         outputs: Outputs {
             tables: 0.1,
             particles: Some(0.25),
+            particles_at: Vec::new(),
             grid: Some(0.5),
+            fringes: None,
             measurements: Measurements::default(),
             fringes: None,
         },

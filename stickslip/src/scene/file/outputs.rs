@@ -21,6 +21,8 @@ table! {
         tables: Option<Quantity<Duration>>,
         /// Interval between snapshots of the particles for ParaView [s], or "never"; by default 1/40 of the run.
         particles: Option<Interval>,
+        /// Times of further snapshots of the particles [s].
+        particles_at: Option<Vec<Quantity<Duration>>>,
         /// Interval between snapshots of the grid for ParaView [s], or "never".
         #[schemars(extend("default" = "never"))]
         grid: Option<Interval>,
@@ -88,11 +90,15 @@ pub fn resolve(
 ) -> Result<scene::Outputs, Fault> {
     let tables = outputs.and_then(|outputs| outputs.tables.as_ref());
     let particles = outputs.and_then(|outputs| outputs.particles.as_ref());
+    let further = outputs.and_then(|outputs| outputs.particles_at.as_ref()).into_iter().flatten();
+    let mut further: Vec<f64> = further.map(|time| time.positive(context)).collect::<Result<_, _>>()?;
+    further.sort_by(f64::total_cmp);
     let grid = outputs.and_then(|outputs| outputs.grid.as_ref());
     let fringes = outputs.and_then(|outputs| outputs.fringes.as_ref());
     Ok(scene::Outputs {
         tables: tables.map_or(Ok(end / 200.0), |interval| interval.positive(context))?,
         particles: particles.map_or(Ok(Some(end / 40.0)), |interval| interval.value(context))?,
+        particles_at: further,
         grid: grid.map_or(Ok(None), |interval| interval.value(context))?,
         fringes: fringes.map(|fringes| fringes.resolve(bodies, context)).transpose()?,
         measurements: measurements::resolve(outputs, (bodies, end), context)?,

@@ -1,0 +1,53 @@
+//! Energy and time of every run.
+
+use super::case::Runs;
+use crate::failure::Failure;
+use crate::page::{Cell, Column, Section, Table};
+use crate::progress::duration;
+use stickslip::observe::Results;
+
+/// Every run with its energy error and what it took.
+pub fn section(runs: &Runs) -> Result<Section, Failure> {
+    let columns = vec![
+        Column::text("run"),
+        Column::number("cell [m]"),
+        Column::number("particles"),
+        Column::number("steps"),
+        Column::number("energy error"),
+        Column::number("time taken"),
+        Column::number("threads"),
+        Column::number("million particle-steps/s"),
+    ];
+    let caption = "Every run of this report. Energy error: the sum that an exact solution keeps (kinetic, strain and potential energy, \
+                   heat, less the work of what moves as prescribed), end less start, over the largest energy that was stored or turned.";
+    let mut table = Table::new(caption, columns);
+    for (name, results) in runs.iter() {
+        let performance = &results.manifest().performance;
+        table = table.row(vec![
+            Cell::text(name),
+            Cell::scientific(results.manifest().cell),
+            Cell::count(performance.particles),
+            Cell::count(performance.steps as usize),
+            Cell::percent(energy_error(results)?, 3),
+            Cell::Number(duration(performance.wall_time)),
+            Cell::count(performance.threads),
+            Cell::number(performance.particle_steps_per_second / 1e6, 2),
+        ]);
+    }
+    for failure in runs.failures() {
+        table = table.row(vec![Cell::text(failure.name), Cell::text("failed")]);
+    }
+    Ok(Section::new("Energy and time").table(table))
+}
+
+/// Change of the total energy over the largest energy that a run stored or turned into heat [-].
+///
+/// The zero of potential energy is arbitrary: its change counts, not its value.
+pub fn energy_error(results: &Results) -> Result<f64, Failure> {
+    let rows = results.energy_table().map_err(Failure::input)?;
+    let (Some(start), Some(end)) = (rows.first(), rows.last()) else { return Ok(f64::NAN) };
+    let stored = rows.iter().map(|row| row.kinetic + row.strain).fold(0.0, f64::max);
+    let heat = end.friction + end.plastic + end.damping;
+    let fallen = (end.potential - start.potential).abs();
+    Ok((end.total - start.total) / stored.max(heat).max(fallen))
+}

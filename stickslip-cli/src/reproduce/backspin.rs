@@ -1,0 +1,45 @@
+//! Section 3.2: a spinning sphere set on a plane; figures 7 and 8.
+
+use super::Study;
+use super::case::{Case, Level, PaperScene, Rule, Runs};
+use super::sphere::{DISTANCE, SPEED, Sphere, figure, table};
+use crate::failure::Failure;
+use crate::page::{Figure, Section};
+
+/// The study.
+pub struct Backspin;
+
+impl Study for Backspin {
+    fn name(&self) -> &'static str {
+        "backspin"
+    }
+
+    fn cases(&self, level: Level) -> Vec<Case> {
+        spheres(level).iter().map(Sphere::case).collect()
+    }
+
+    fn section(&self, level: Level, runs: &Runs) -> Result<Section, Failure> {
+        let spheres = spheres(level);
+        let title = "Sphere of 1 m that spins at 5 rad/s, set on a flat plane with friction 0.5.";
+        let section = Section::new("Backspin").text(
+            "Section 3.2. Friction accelerates a rigid sphere for 2/7 s; then it rolls at 10/7 m/s. The paper finds convergence toward \
+             that, with a velocity that oscillates because the soft sphere skips. Dashed: the rigid sphere.",
+        );
+        let distance =
+            figure(Figure::new("Figure 7", format!("{title} Distance.")), DISTANCE, &spheres, runs)?;
+        let speed = figure(Figure::new("Figure 8", format!("{title} Velocity.")), SPEED, &spheres, runs)?;
+        let caption = "Distance and velocity at 1 s against the rigid sphere of equations (25) and (26).";
+        Ok(section.figure(distance).figure(speed).table(table(caption, &spheres, runs)?))
+    }
+}
+
+fn spheres(level: Level) -> Vec<Sphere> {
+    let cells: &[usize] = match level {
+        Level::Sketch => &[2],
+        Level::Quick => &[4],
+        Level::Full => &[4, 8],
+    };
+    let of_rule =
+        |rule| cells.iter().map(move |&cells| Sphere { scene: PaperScene::BACKSPIN, rule, cells, label: "" });
+    Rule::BOTH.into_iter().flat_map(of_rule).collect()
+}

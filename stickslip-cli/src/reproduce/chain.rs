@@ -1,0 +1,214 @@
+//! What the studies of disks share: cases, times in transits, arrivals of the wave, the balance of momentum and energy.
+
+use super::case::{Case, PaperScene, Rule};
+use crate::failure::Failure;
+use stickslip::observe::{ContactRow, EnergyRow, Frame, Results};
+use stickslip::polariscope::{self, Bench, Stage, Window};
+use stickslip::scene::Fringes;
+
+/// The paper's disks as it ran them: touching at the start, one particle a cell, each rule with its own normals.
+pub fn case(scene: PaperScene, rule: Rule, cells: usize, more: &[(&str, &str)]) -> Case {
+    let normal = match rule {
+        Rule::Kinematic | Rule::Traction => "own",
+        Rule::Gap => "common",
+    };
+    let (label, cells) = (format!("{}-n{cells}", rule.word()), cells.to_string());
+    let settings = [
+        ("cells_per_diameter", cells.as_str()),
+        ("particles_per_side", "1"),
+        ("outputs.particles", "never"),
+        // The report takes its own pictures, from snapshots at the times that it shows.
+        ("outputs.fringes.interval", "1000 * transit"),
+        ("outputs.fringes.field", "light"),
+        ("outputs.samples", "step"),
+        ("fringe", FRINGE),
+    ];
+    // Glued disks have no rule between them; that at the frame stays as it is.
+    let rule = [("contact", rule.word()), ("normal", normal)];
+    Case::new(scene, &label, &[&settings[..], &rule, more].concat())
+}
+
+/// The paper's parameter of fringe density, as part of the pressure behind a plane wave: about five fringes, as in its pictures.
+pub const FRINGE: &str = "0.3 * density * c_L * speed";
+
+/// A chain of disks after its run.
+pub struct Chain<'a> {
+    results: &'a Results,
+    /// Time in which a longitudinal wave crosses a disk [s].
+    transit: f64,
+}
+
+/// A camera behind a polariscope, with the disks of a run before it.
+pub struct Camera<'a> {
+    results: &'a Results,
+    transit: f64,
+    bench: Bench,
+}
+
+/// Width of a picture [pixels].
+const WIDTH: usize = 720;
+
+/// What went in and out of the disks until a time.
+pub struct Balance {
+    /// Energy in the disks and turned to heat, less the work of the striker, over that work [-].
+    pub energy: f64,
+    /// Momentum of the disks less the impulses of striker and frame, over the striker's impulse [-].
+    pub momentum: f64,
+}
+
+impl<'a> Chain<'a> {
+    pub fn new(results: &'a Results) -> Option<Self> {
+        let transit = results.manifest().scene["outputs"]["measurements"]["time_unit"]["seconds"].as_f64()?;
+        Some(Chain { results, transit })
+    }
+
+    /// When the wave came to the centre of each disk, counted from the striker, in transits.
+    ///
+    /// # Errors
+    /// The table cannot be read.
+    pub fn arrivals(&self) -> Result<Vec<Option<f64>>, Failure> {
+        let rows = self.results.arrivals_table().map_err(Failure::input)?;
+        let arrival =
+            |disk: &&String| rows.iter().find(|row| row.place == **disk).map(|row| row.time / self.transit);
+        Ok(self.disks().iter().map(arrival).collect())
+    }
+
+    /// When the centre of mass of each disk, counted from the striker, first moved with a part of the striker's speed, in transits.
+    ///
+    /// # Errors
+    /// The table cannot be read.
+    pub fn set_off(&self, part: f64) -> Result<Vec<Option<f64>>, Failure> {
+        let speed = part * self.results.manifest().scene["parameters"]["speed"].as_f64().unwrap_or(f64::NAN);
+        let rows = self.results.bodies_table().map_err(Failure::input)?;
+        let first = |disk: &&String| {
+            let states = rows.iter().filter(|row| row.body == **disk);
+            let states: Vec<[f64; 2]> = states.map(|row| [row.time, row.vx.hypot(row.vy)]).collect();
+            let passed = states.windows(2).find(|pair| pair[1][1] >= speed)?;
+            let [[t0, v0], [t1, v1]] = [passed[0], passed[1]];
+            Some((t0 + (speed - v0) / (v1 - v0) * (t1 - t0)) / self.transit)
+        };
+        Ok(self.disks().iter().map(first).collect())
+    }
+
+    /// Names of the disks, from the striker on.
+    fn disks(&self) -> Vec<&String> {
+        self.results.body_names().iter().filter(|name| name.starts_with("disk")).collect()
+    }
+
+    /// Speed of the fringes from the first disk's centre to the last one's over that of longitudinal waves [-]; `None` if they have
+    /// not come to all.
+    ///
+    /// # Errors
+    /// The table cannot be read.
+    pub fn fringe_speed(&self) -> Result<Option<f64>, Failure> {
+        let Some(arrivals) = self.arrivals()?.into_iter().collect::<Option<Vec<f64>>>() else {
+            return Ok(None);
+        };
+        let ([first, ..], [.., last]) = (&arrivals[..], &arrivals[..]) else { return Ok(None) };
+        Ok(Some((arrivals.len() - 1) as f64 / (last - first)))
+    }
+
+    /// Takes pictures of the fringes.
+    ///
+    /// # Errors
+    /// The first snapshot cannot be read.
+    pub fn camera(&self) -> Result<Option<Camera<'a>>, Failure> {
+        let manifest = self.results.manifest();
+        let fringes: Option<Fringes> =
+            serde_json::from_value(manifest.scene["outputs"]["fringes"].clone()).ok();
+        let (Some(fringes), Some(first)) = (fringes, self.results.frames().first()) else { return Ok(None) };
+        let specimens: Vec<usize> = (0..manifest.bodies.len())
+            .filter(|&body| fringes.bodies.contains(&manifest.bodies[body]))
+            .collect();
+        let particles = self.results.particles(first).map_err(Failure::input)?;
+        let Some(bounds) = polariscope::bounds(&particles, &specimens) else { return Ok(None) };
+        let stage = Stage { window: Window::around(bounds, WIDTH), specimens };
+        let bench = Bench::new(&fringes.polariscope, stage);
+        Ok(Some(Camera { results: self.results, transit: self.transit, bench }))
+    }
+
+    /// The balance of the disks at a time in transits, or at the end of the run if that is earlier.
+    ///
+    /// # Errors
+    /// A table cannot be read.
+    pub fn balance(&self, time: f64) -> Result<Balance, Failure> {
+        let until = time * self.transit * (1.0 + 1e-9);
+        let energy = self.results.energy_table().map_err(Failure::input)?;
+        let bodies = self.results.bodies_table().map_err(Failure::input)?;
+        let contacts = self.results.contacts_table().map_err(Failure::input)?;
+        let Some(end) = energy.iter().rfind(|row| row.time <= until) else {
+            return Ok(Balance { energy: f64::NAN, momentum: f64::NAN });
+        };
+        let disks = bodies.iter().filter(|row| row.time == end.time && row.body.starts_with("disk"));
+        let momentum = disks.fold([0.0; 2], |[x, y], row| [x + row.mass * row.vx, y + row.mass * row.vy]);
+        let [given, pushed] = impulses(&contacts, &energy, end.time);
+        let missing = (momentum[0] - given[0]).hypot(momentum[1] - given[1]);
+        Ok(Balance {
+            energy: end.total / end.external_work.abs(),
+            momentum: missing / pushed[0].hypot(pushed[1]),
+        })
+    }
+}
+
+impl Camera<'_> {
+    /// The picture of the snapshot nearest to a time in transits, as PNG, and its time in transits.
+    ///
+    /// # Errors
+    /// The snapshot cannot be read.
+    pub fn picture(&self, time: f64) -> Result<(f64, Vec<u8>), Failure> {
+        let off = |frame: &&Frame| (frame.time / self.transit - time).abs();
+        let frames = self.results.frames().iter();
+        let frame = frames.min_by(|a, b| off(a).total_cmp(&off(b))).expect("a camera has seen a snapshot");
+        let particles = self.results.particles(frame).map_err(Failure::input)?;
+        let mut png = Vec::new();
+        let written = self.bench.photograph(&particles).write_png(&mut png);
+        written.expect("a vector takes all bytes");
+        Ok((frame.time / self.transit, png))
+    }
+}
+
+/// Impulses on the disks until a time [N s]: of striker and frame together, and of the striker alone.
+fn impulses(contacts: &[ContactRow], energy: &[EnergyRow], until: f64) -> [[f64; 2]; 2] {
+    let [mut all, mut striker] = [[0.0; 2]; 2];
+    for row in contacts.iter().filter(|row| row.time <= until) {
+        // A row is a mean from the row of all tables before it to its own.
+        let before = energy.iter().rfind(|other| other.time < row.time).map_or(0.0, |other| other.time);
+        let sign = match (row.body_a.starts_with("disk"), row.body_b.starts_with("disk")) {
+            (false, true) => row.time - before,
+            (true, false) => before - row.time,
+            _ => continue,
+        };
+        let impulse = [sign * row.fx, sign * row.fy];
+        let of_striker = row.body_a == "striker" || row.body_b == "striker";
+        for axis in 0..2 {
+            all[axis] += impulse[axis];
+            striker[axis] += if of_striker { impulse[axis] } else { 0.0 };
+        }
+    }
+    [all, striker]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn impulses_are_forces_times_intervals_whoever_comes_first() {
+        let time = |time| EnergyRow { time, ..EnergyRow::default() };
+        let row = |time, body_a: &str, body_b: &str, fx| ContactRow {
+            time,
+            body_a: body_a.to_owned(),
+            body_b: body_b.to_owned(),
+            fx,
+            ..ContactRow::default()
+        };
+        let contacts = [
+            row(0.5, "striker", "disk_1", -4.0),
+            row(0.5, "disk_1", "disk_2", -9.0),
+            row(1.5, "disk_2", "end_wall", -1.0),
+            row(2.5, "striker", "disk_1", -100.0),
+        ];
+        let [all, striker] = impulses(&contacts, &[time(0.0), time(0.5), time(1.5), time(2.5)], 1.5);
+        assert_eq!((all, striker), ([-2.0 + 1.0, 0.0], [-2.0, 0.0]));
+    }
+}

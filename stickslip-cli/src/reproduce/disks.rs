@@ -1,0 +1,258 @@
+//! Section 3.3: stress waves through disks, seen as fringes; figures 9 to 11.
+
+use super::Study;
+use super::case::{Case, Level, PaperScene, Rule, Runs};
+use super::chain::{self, Chain};
+use crate::failure::Failure;
+use crate::page::{Cell, Column, Figure, Image, Section, Table, Verdict};
+use maud::html;
+
+/// The study.
+pub struct Disks;
+
+/// One of the paper's arrangements with the times of its frames in transits.
+struct Arrangement {
+    figure: &'static str,
+    scene: PaperScene,
+    title: &'static str,
+    /// Its name in tables.
+    short: &'static str,
+    /// Of the paper's simulation.
+    simulated: [f64; 3],
+    /// Of its experiment.
+    measured: [f64; 3],
+}
+
+const ARRANGEMENTS: [Arrangement; 3] = [
+    Arrangement {
+        figure: "Figure 9",
+        scene: PaperScene::COLLINEAR,
+        title: "Four disks in a row",
+        short: "in a row",
+        simulated: [2.2, 5.5, 7.7],
+        measured: [2.6, 6.6, 9.2],
+    },
+    Arrangement {
+        figure: "Figure 10",
+        scene: PaperScene::ZIGZAG,
+        title: "Five disks in a zig-zag that slide on each other with friction 0.5",
+        short: "zig-zag, sliding",
+        simulated: [3.0, 6.0, 9.0],
+        measured: [5.3, 10.5, 15.8],
+    },
+    Arrangement {
+        figure: "Figure 11",
+        scene: PaperScene::GLUED,
+        title: "The same five disks, glued",
+        short: "zig-zag, glued",
+        simulated: [1.4, 3.6, 5.8],
+        measured: [1.6, 4.2, 6.8],
+    },
+];
+
+/// Time at which the balance is drawn up, 3 us after impact [transits].
+const BALANCE: f64 = 3.0;
+/// Part of the striker's speed with which a disk moves that the wave has come to.
+const SET_OFF: f64 = 0.1;
+/// The last disk is to be this much later sliding than glued.
+const LATER: f64 = 1.3;
+
+impl Study for Disks {
+    fn name(&self) -> &'static str {
+        "disks"
+    }
+
+    fn cases(&self, level: Level) -> Vec<Case> {
+        let mut cases = Vec::new();
+        for rule in Rule::BOTH {
+            cases.extend(ARRANGEMENTS.iter().map(|each| each.case(rule, level)));
+            cases.push(frictionless(rule, level));
+        }
+        cases.extend([kinematic(level), common_normals(level)]);
+        cases
+    }
+
+    fn section(&self, level: Level, runs: &Runs) -> Result<Section, Failure> {
+        let mut section = Section::new("Stress waves through disks").text(html! {
+            "Section 3.3. Disks of 1 cm in a frame are struck at the right by a step of velocity, and light between polarisers shows the \
+             difference of the principal stresses as fringes, cos((σ" sub { "1" } " − σ" sub { "2" } ") / s). Here s = 0.3 ρ c V is the same \
+             in all pictures, as in the paper, with " (cells(level)) " cells across a disk and one particle a cell; the paper has 80. \
+             Times are in transits, those of a longitudinal wave through one disk: 1 µs. In the upper row are the paper's times of its own \
+             simulation; in the lower, those at which its experiment showed the same pattern. The paper's fringes, and these, run ahead of the \
+             experiment's, whose disks are of another material and in plane stress."
+        });
+        for each in &ARRANGEMENTS {
+            section = section.figure(each.figure(level, runs)?);
+        }
+        section = section.text(
+            "Sliding slows the fringes, gluing speeds them up. The wave counts as arrived when a disk's centre moves with a tenth of the \
+             striker's speed: in the zig-zag its path leaves the centres aside, so their stress tells little.",
+        );
+        for rule in Rule::BOTH {
+            section = section.table(arrivals(rule, level, runs)?);
+        }
+        Ok(section.table(balance(level, runs)?))
+    }
+}
+
+impl Arrangement {
+    fn case(&self, rule: Rule, level: Level) -> Case {
+        let times = self.simulated.iter().chain(&self.measured);
+        let times: Vec<String> = times.map(|time| format!("\"{time} * transit\"")).collect();
+        let times = format!("[{}]", times.join(", "));
+        chain::case(self.scene, rule, cells(level), &[("outputs.particles_at", &times)])
+    }
+
+    fn figure(&self, level: Level, runs: &Runs) -> Result<Figure, Failure> {
+        let caption = html! {
+            (self.title) ". Times in transits; above the paper's of its simulation, below its experiment's, for each rule."
+        };
+        let mut figure = Figure::new(self.figure, caption);
+        for rule in Rule::BOTH {
+            let case = self.case(rule, level);
+            let Some(chain) = runs.get(&case).and_then(Chain::new) else { continue };
+            let Some(camera) = chain.camera()? else { continue };
+            for (times, whose) in
+                [(self.simulated, "the paper's simulation"), (self.measured, "its experiment")]
+            {
+                let mut row = Vec::new();
+                for time in times {
+                    let (shown, png) = camera.picture(time)?;
+                    let description =
+                        format!("{}, {} at t = {shown:.1}, a time of {whose}", self.title, rule.title());
+                    row.push(
+                        Image::png(&png, description).label(format!("{}, t = {shown:.1}", rule.short())),
+                    );
+                }
+                figure = figure.row(row);
+            }
+        }
+        Ok(figure)
+    }
+}
+
+fn cells(level: Level) -> usize {
+    match level {
+        Level::Sketch => 20,
+        Level::Quick => 40,
+        Level::Full => 80,
+    }
+}
+
+/// The zig-zag without friction, which the paper does not show: the other end of the order.
+fn frictionless(rule: Rule, level: Level) -> Case {
+    chain::case(PaperScene::ZIGZAG, rule, cells(level), &[("friction", "0")]).labelled("frictionless")
+}
+
+/// The rule before the paper's, for the energy that it gains.
+fn kinematic(level: Level) -> Case {
+    chain::case(PaperScene::COLLINEAR, Rule::Kinematic, cells(level), &[])
+}
+
+/// The paper's rule in a row with one normal for each pair of disks, which keeps momentum.
+fn common_normals(level: Level) -> Case {
+    let settings = [("normal", "common"), ("outputs.particles", "never")];
+    chain::case(PaperScene::COLLINEAR, Rule::Traction, cells(level), &settings).labelled("common")
+}
+
+/// When the wave comes to each disk of the zig-zag.
+fn arrivals(rule: Rule, level: Level, runs: &Runs) -> Result<Table, Failure> {
+    let [_, sliding, glued] = &ARRANGEMENTS;
+    let cases = [glued.case(rule, level), sliding.case(rule, level), frictionless(rule, level)];
+    let mut times: Vec<Vec<Option<f64>>> = Vec::new();
+    for case in &cases {
+        times.push(
+            runs.get(case).and_then(Chain::new).map_or(Ok(Vec::new()), |chain| chain.set_off(SET_OFF))?,
+        );
+    }
+    let columns = vec![
+        Column::text("disk, from the striker"),
+        Column::number("glued"),
+        Column::number("sliding, friction 0.5"),
+        Column::number("frictionless"),
+        Column::number("sliding / glued"),
+        Column::text("glued < sliding < frictionless"),
+    ];
+    let caption = format!(
+        "Arrival at the disks of the zig-zag in transits by {}. From the third disk on, the order is to hold; at the last, sliding is to be \
+         {LATER} times as late as glued.",
+        rule.title()
+    );
+    let mut table = Table::new(caption, columns);
+    for disk in 0..DISKS {
+        let at = |case: usize| times[case].get(disk).copied().flatten();
+        let [glued, sliding, frictionless] = [at(0), at(1), at(2)];
+        let mut row = vec![Cell::count(disk + 1)];
+        row.extend(
+            [glued, sliding, frictionless]
+                .map(|time| time.map_or(Cell::text("not yet"), |time| Cell::number(time, 2))),
+        );
+        row.push(glued.zip(sliding).map_or(Cell::Empty, |(glued, sliding)| Cell::number(sliding / glued, 2)));
+        let ordered = before(glued, sliding) && before(sliding, frictionless);
+        let late = before(glued.map(|time| LATER * time), sliding);
+        row.push(match disk + 1 {
+            1 | 2 => Cell::Empty,
+            DISKS => Cell::Verdict(Verdict::of(ordered && late)),
+            _ => Cell::Verdict(Verdict::of(ordered)),
+        });
+        table = table.row(row);
+    }
+    Ok(table)
+}
+
+/// Disks in the zig-zag.
+const DISKS: usize = 5;
+
+/// Whether one came before the other, which may never have come.
+fn before(one: Option<f64>, other: Option<f64>) -> bool {
+    one.is_some_and(|one| other.is_none_or(|other| one < other))
+}
+
+/// Energy and momentum of the disks against what striker and frame gave.
+fn balance(level: Level, runs: &Runs) -> Result<Table, Failure> {
+    let columns = vec![
+        Column::text("disks"),
+        Column::text("contact rule"),
+        Column::number("energy from nowhere / work of the striker"),
+        Column::number("momentum from nowhere / impulse of the striker"),
+    ];
+    let caption = format!(
+        "Balance {BALANCE} us after impact. The paper's rule is to keep the energy in a row of disks within 0.5 % at 80 cells; the rule \
+         before it (kinematic) gains energy. These two take each disk's own normal, as the paper prints it. Disks and walls have normals that do not \
+         oppose each other where a surface is stairs of particles, and momentum is lost there (its equation 16); a common normal keeps it."
+    );
+    let mut table = Table::new(caption, columns);
+    let mut add = |title: &str, rule: Rule, case: &Case| -> Result<(), Failure> {
+        let mut row = vec![Cell::text(title), Cell::text(rule.short())];
+        match runs.get(case).and_then(Chain::new) {
+            None => row.push(Cell::text("failed")),
+            Some(chain) => {
+                let balance = chain.balance(BALANCE)?;
+                row.push(Cell::percent(balance.energy, 2));
+                row.push(Cell::percent(balance.momentum, 4));
+            }
+        }
+        table.rows.push(row);
+        Ok(())
+    };
+    add("in a row", Rule::Kinematic, &kinematic(level))?;
+    add("in a row, common normals", Rule::Traction, &common_normals(level))?;
+    for rule in Rule::BOTH {
+        for each in &ARRANGEMENTS {
+            add(each.short, rule, &each.case(rule, level))?;
+        }
+        add("zig-zag, frictionless", rule, &frictionless(rule, level))?;
+    }
+    Ok(table)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_never_comes_comes_after_all() {
+        assert!(before(Some(1.0), Some(2.0)) && before(Some(1.0), None));
+        assert!(!before(Some(2.0), Some(1.0)) && !before(None, Some(1.0)) && !before(None, None));
+    }
+}
