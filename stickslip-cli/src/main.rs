@@ -9,6 +9,7 @@ mod illustration;
 mod page;
 mod picture;
 mod progress;
+mod sweep;
 mod validation;
 
 use clap::Parser;

@@ -6,6 +6,7 @@ mod plot;
 mod render;
 mod run;
 mod schema;
+mod sweep;
 mod validate;
 
 use crate::failure::Failure;
@@ -21,6 +22,7 @@ use stickslip::scene::{Loaded, SceneError};
 #[command(name = "stickslip", version, arg_required_else_help = true)]
 pub enum Command {
     Run(run::Arguments),
+    Sweep(sweep::Arguments),
     Check(check::Arguments),
     New(new::Arguments),
     Render(render::Arguments),
@@ -34,6 +36,7 @@ impl Command {
     pub fn execute(self) -> Result<(), Failure> {
         match self {
             Command::Run(arguments) => arguments.execute(),
+            Command::Sweep(arguments) => arguments.execute(),
             Command::Check(arguments) => arguments.execute(),
             Command::New(arguments) => arguments.execute(),
             Command::Render(arguments) => arguments.execute(),
