@@ -1,6 +1,7 @@
 //! A body: particles that share a material, and what they add up to.
 
 use crate::material::Material;
+use crate::particles::Particles;
 use crate::tensor::{Matrix, Real, Symmetric, Vector, cross};
 
 /// A material point.
@@ -34,7 +35,7 @@ pub struct Body<T, const D: usize> {
     /// Mass per undeformed volume [kg/m^3].
     pub density: T,
     /// Its particles, in the order of memory.
-    pub particles: Vec<Particle<T, D>>,
+    pub particles: Particles<T, D>,
     /// Whether its motion is prescribed, whatever pushes it.
     pub rigid: bool,
 }
@@ -61,7 +62,7 @@ impl<T: Real, const D: usize> Body<T, D> {
     pub fn totals(&self) -> Totals {
         let mut totals = Totals::default();
         let law = self.material.law();
-        for particle in &self.particles {
+        for particle in self.particles.iter() {
             let (m, x, v) = (particle.mass.f64(), particle.position.space(), particle.velocity.space());
             let l = cross(x, v);
             totals.mass += m;
@@ -86,7 +87,7 @@ impl<T: Real, const D: usize> Body<T, D> {
         let mean = totals.momentum.map(|p| p / totals.mass);
         let mut inertia = Matrix::<f64>::ZERO;
         let mut angular = [0.0; 3];
-        for particle in &self.particles {
+        for particle in self.particles.iter() {
             let m = particle.mass.f64();
             let (x, v) = (particle.position.space(), particle.velocity.space());
             let r: [f64; 3] = std::array::from_fn(|i| x[i] - center[i]);

@@ -1,6 +1,6 @@
 //! The stable time step.
 
-use crate::body::Body;
+use crate::body::{Body, Particle};
 use crate::tensor::Real;
 use rayon::prelude::*;
 
@@ -13,12 +13,15 @@ use rayon::prelude::*;
 pub fn fastest_signal<T: Real, const D: usize>(bodies: &[Body<T, D>]) -> f64 {
     let of_body = |body: &Body<T, D>| {
         let law = body.material.law();
-        let signal = |particle: &crate::body::Particle<T, D>| {
+        let signal = |particle: Particle<T, D>| {
             let speed = particle.velocity.norm();
             let modulus = law.wave_modulus(&particle.deformation, particle.deformation.det());
             ((modulus / body.density).sqrt() + speed).f64()
         };
-        body.particles.par_iter().map(signal).reduce(|| 0.0, f64::max)
+        (0..body.particles.len())
+            .into_par_iter()
+            .map(|i| signal(body.particles.get(i)))
+            .reduce(|| 0.0, f64::max)
     };
     bodies.par_iter().map(of_body).reduce(|| 0.0, f64::max)
 }

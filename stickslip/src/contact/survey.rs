@@ -227,7 +227,7 @@ impl<T: Real, const D: usize> Near<'_, T, D> {
             for offset in offsets::<D>(B::WIDTH) {
                 let cell = std::array::from_fn(|i| image.node[i] - offset[i] as i32);
                 for &index in self.cover.particles_in(body, cell) {
-                    let particle = &self.bodies[body].particles[index as usize];
+                    let particle = &self.bodies[body].particles.get(index as usize);
                     let (weight, gradient) = Stencil::<T, D, B>::new(&self.lattice, particle).at(offset);
                     if weight > T::ZERO {
                         f(particle, weight, gradient, image);

@@ -4,6 +4,7 @@ use super::Engine;
 use crate::basis::Basis;
 use crate::door::{BodyState, ContactState, GridSnapshot, Ledger, ParticleSnapshot, Simulation, StepError};
 use crate::grid::{node_at, nodes_per_block};
+use crate::lanes::Laned;
 use crate::tensor::Real;
 
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
@@ -14,7 +15,7 @@ fn add(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     std::array::from_fn(|i| a[i] + b[i])
 }
 
-impl<T: Real, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
+impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
     fn time(&self) -> f64 {
         self.time
     }

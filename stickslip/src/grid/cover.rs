@@ -13,10 +13,8 @@ pub struct Tile<const D: usize> {
     pub body: usize,
     /// Home block.
     pub block: [i32; D],
-    /// Place of its first particle in the body's order.
-    pub start: usize,
-    /// Place after its last particle.
-    pub end: usize,
+    /// Its number among the body's tiles.
+    pub number: usize,
     /// Field slots of the blocks at `block` + {0, 1}^D, the last axis fastest.
     pub slots: [u32; 8],
 }
@@ -57,8 +55,6 @@ pub struct Cover<const D: usize> {
     pub slots: Vec<(u32, [i32; D])>,
     /// First slot of each body, and the number of slots.
     first_slot: Vec<usize>,
-    /// First tile of each body, and the number of tiles.
-    first_tile: Vec<usize>,
     /// Blocks that two or more bodies hold.
     pub meetings: Vec<Meeting<D>>,
     shared: Vec<u32>,
@@ -77,7 +73,7 @@ pub enum Blocks {
 const REACH: i32 = 1 << 20;
 
 /// Cells from the origin of the grid, along an axis, within which blocks have keys.
-const MOST_CELLS: i32 = (REACH - 2) * SIDE;
+pub const MOST_CELLS: i32 = (REACH - 2) * SIDE;
 
 /// Whether a base node lies where blocks have keys.
 pub fn addressable<const D: usize>(base: [i32; D]) -> bool {
@@ -114,39 +110,25 @@ impl<const D: usize> Cover<D> {
             .map(|(body, (holding, &count))| holding.update(count, |particle| base(body, particle)))
             .reduce(|| Change::None, Change::max);
         match changed {
-            Change::None => {}
-            Change::Cells => self.refresh_tiles(),
+            Change::None | Change::Cells => {}
             Change::Blocks => self.rebuild(),
         }
         if changed == Change::Blocks { Blocks::New } else { Blocks::Same }
-    }
-
-    fn refresh_tiles(&mut self) {
-        let n = nodes_per_block(D);
-        for (body, holding) in self.holdings.iter().enumerate() {
-            let first = self.first_tile[body];
-            for (t, tile) in self.tiles[first..self.first_tile[body + 1]].iter_mut().enumerate() {
-                tile.start = holding.cells[t * n] as usize;
-                tile.end = holding.cells[(t + 1) * n] as usize;
-            }
-        }
     }
 
     fn rebuild(&mut self) {
         self.slots.clear();
         self.tiles.clear();
         self.first_slot.clear();
-        self.first_tile.clear();
         let mut keys = Vec::new();
         for (body, holding) in self.holdings.iter().enumerate() {
             let first = self.slots.len();
             self.first_slot.push(first);
-            self.first_tile.push(self.tiles.len());
             for (i, &key) in holding.blocks.iter().enumerate() {
                 self.slots.push((body as u32, block_of(key)));
                 keys.push((key, (first + i) as u32));
             }
-            for &home in &holding.homes {
+            for (number, &home) in holding.homes.iter().enumerate() {
                 let block = block_of(home);
                 let mut slots = [0; 8];
                 for (corner, slot) in slots.iter_mut().enumerate().take(1 << D) {
@@ -155,12 +137,10 @@ impl<const D: usize> Cover<D> {
                         holding.blocks.binary_search(&key).expect("a body holds every block its tiles reach");
                     *slot = (first + place) as u32;
                 }
-                self.tiles.push(Tile { body, block, start: 0, end: 0, slots });
+                self.tiles.push(Tile { body, block, number, slots });
             }
         }
         self.first_slot.push(self.slots.len());
-        self.first_tile.push(self.tiles.len());
-        self.refresh_tiles();
         self.color();
         self.meet(keys);
     }
@@ -188,9 +168,10 @@ impl<const D: usize> Cover<D> {
         }
     }
 
-    /// Indices of a tile's particles in its body.
-    pub fn particles_of(&self, tile: &Tile<D>) -> &[u32] {
-        &self.holdings[tile.body].order[tile.start..tile.end]
+    /// Places in the body's order where the particles of each cell of a tile begin, and where the last ends.
+    pub fn cells_of(&self, tile: &Tile<D>) -> &[u32] {
+        let n = nodes_per_block(D);
+        &self.holdings[tile.body].cells[tile.number * n..=(tile.number + 1) * n]
     }
 
     /// Indices of a body's particles by tile, cell and index.

@@ -11,7 +11,7 @@ pub use elastic::Isotropic;
 pub use hypoelastic::Hypoelastic;
 pub use neo_hookean::NeoHookean;
 
-use crate::tensor::{Matrix, Real, Symmetric};
+use crate::tensor::{Matrix, Number, Real, Symmetric};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -29,7 +29,9 @@ pub struct Motion<T> {
 }
 
 /// A constitutive law in three dimensions.
-pub trait Law<T: Real>: Send + Sync {
+///
+/// A law is written once over [`Number`], with no branch on the motion: the engine calls it for several particles at a time.
+pub trait Law<T: Number>: Send + Sync {
     /// Cauchy stress at the end of the step, tension positive [Pa].
     fn stress(&self, motion: &Motion<T>) -> Symmetric<T>;
 
@@ -116,10 +118,7 @@ impl Description {
 impl Material<f64> {
     /// The same material in the precision of the engine.
     pub fn cast<T: Real>(&self) -> Material<T> {
-        match self {
-            Material::NeoHookean(law) => Material::NeoHookean(NeoHookean { elastic: law.elastic.cast() }),
-            Material::Hypoelastic(law) => Material::Hypoelastic(Hypoelastic { elastic: law.elastic.cast() }),
-        }
+        self.map(T::of)
     }
 
     /// Elastic moduli at small strain.
@@ -131,12 +130,39 @@ impl Material<f64> {
     }
 }
 
-impl<T: Real> Material<T> {
+impl<T: Number> Material<T> {
+    /// The same material with its constants in other numbers.
+    #[inline(always)]
+    pub fn map<U: Number>(&self, f: impl Fn(T) -> U) -> Material<U> {
+        match self {
+            Material::NeoHookean(law) => Material::NeoHookean(NeoHookean { elastic: law.elastic.map(f) }),
+            Material::Hypoelastic(law) => Material::Hypoelastic(Hypoelastic { elastic: law.elastic.map(f) }),
+        }
+    }
+
     /// The law behind the name; ask once per body, not once per particle.
     pub fn law(&self) -> &dyn Law<T> {
         match self {
             Material::NeoHookean(law) => law,
             Material::Hypoelastic(law) => law,
+        }
+    }
+
+    /// [`Law::stress`] where the compiler can see it.
+    #[inline(always)]
+    pub fn stress(&self, motion: &Motion<T>) -> Symmetric<T> {
+        match self {
+            Material::NeoHookean(law) => law.stress(motion),
+            Material::Hypoelastic(law) => law.stress(motion),
+        }
+    }
+
+    /// [`Law::wave_modulus`] where the compiler can see it.
+    #[inline(always)]
+    pub fn wave_modulus(&self, deformation: &Matrix<T>, jacobian: T) -> T {
+        match self {
+            Material::NeoHookean(law) => law.wave_modulus(deformation, jacobian),
+            Material::Hypoelastic(law) => law.wave_modulus(deformation, jacobian),
         }
     }
 }

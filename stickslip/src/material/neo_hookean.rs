@@ -6,7 +6,7 @@
 //! ```
 
 use super::{Isotropic, Law, Motion};
-use crate::tensor::{Matrix, Real, Symmetric};
+use crate::tensor::{Matrix, Number, Symmetric};
 use serde::Serialize;
 
 /// Compressible neo-Hookean elasticity.
@@ -17,8 +17,8 @@ pub struct NeoHookean<T> {
     pub elastic: Isotropic<T>,
 }
 
-impl<T: Real> Law<T> for NeoHookean<T> {
-    #[inline]
+impl<T: Number> Law<T> for NeoHookean<T> {
+    #[inline(always)]
     fn stress(&self, motion: &Motion<T>) -> Symmetric<T> {
         let Isotropic { bulk_modulus: k, shear_modulus: g } = self.elastic;
         let j = motion.jacobian;
@@ -37,7 +37,7 @@ impl<T: Real> Law<T> for NeoHookean<T> {
             + T::HALF * g * (trace / (root * root) - T::of(3.0))
     }
 
-    #[inline]
+    #[inline(always)]
     fn wave_modulus(&self, deformation: &Matrix<T>, jacobian: T) -> T {
         let Isotropic { bulk_modulus: k, shear_modulus: g } = self.elastic;
         let j = jacobian;
