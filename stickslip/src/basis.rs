@@ -67,10 +67,12 @@ impl<T: Real> Basis<T> for Linear {
 /// (uniform GIMP; Bardenhagen and Kober 2004, eq. 34).
 ///
 /// ```text
-/// with l = half-width, r = x - base in [l, 1 + l), beyond = max(r - 1 + l, 0):
-/// S_2 = beyond^2 / (4l),   S_0 = 1 - r + S_2,   S_1 = r - 2 S_2
+/// with l = half-width, r = x - base in [l, 1 + l):
+/// r <= 1 - l:  S_0 = 1 - r,                 S_2 = 0
+/// else:        S_0 = (1 + l - r)^2 / (4l),  S_2 = (r - 1 + l)^2 / (4l)
+/// S_1 = 1 - S_0 - S_2
 /// ```
-/// where (1 + l - r)^2 / (4l) = 1 - r + S_2 for any r. Needs l <= 1/2.
+/// Needs l <= 1/2.
 #[derive(Clone, Copy, Debug)]
 pub struct Gimp;
 
@@ -84,13 +86,17 @@ impl<T: Real> Basis<T> for Gimp {
 
     #[inline(always)]
     fn shape<N: Number>(r: N, half: N) -> Shape<N> {
+        // Without a branch: `near` stops at 2l, where S_0 goes on as a straight line. No sum cancels, so that a node that a particle
+        // hardly reaches gets hardly any mass, but not less than none.
+        let width = half + half;
+        let per_width = N::ONE / width;
+        let before = (N::ONE + half) - r;
+        let near = before.min(width);
         let beyond = (r - (N::ONE - half)).max(N::ZERO);
-        let slope = beyond / (half + half);
-        let weight = N::HALF * beyond * slope;
-        Shape {
-            weight: [(N::ONE - r) + weight, r - (weight + weight), weight],
-            slope: [slope - N::ONE, N::ONE - (slope + slope), slope],
-        }
+        let (falling, rising) = (near * per_width, beyond * per_width);
+        let first = N::HALF * near * falling + (before - near);
+        let last = N::HALF * beyond * rising;
+        Shape { weight: [first, N::ONE - first - last, last], slope: [-falling, falling - rising, rising] }
     }
 }
 

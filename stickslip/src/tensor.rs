@@ -7,6 +7,20 @@ pub use crate::number::{Number, Real};
 use std::iter::Sum;
 use std::ops::{Add, AddAssign, Div, Index, IndexMut, Mul, Neg, Sub, SubAssign};
 
+/// The array whose entry `i` is `f(i)`.
+///
+/// The loop is written out: the standard library's is a call, across which a register of several numbers would go through memory.
+#[inline(always)]
+pub(crate) fn array<X: Copy, const N: usize>(fill: X, mut f: impl FnMut(usize) -> X) -> [X; N] {
+    let mut entries = [fill; N];
+    let mut i = 0;
+    while i < N {
+        entries[i] = f(i);
+        i += 1;
+    }
+    entries
+}
+
 /// A vector of `D` components.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Vector<T, const D: usize>(pub [T; D]);
@@ -18,7 +32,7 @@ impl<T: Number, const D: usize> Vector<T, D> {
     /// The vector whose component along axis `i` is `f(i)`.
     #[inline(always)]
     pub fn from_fn(f: impl FnMut(usize) -> T) -> Self {
-        Vector(std::array::from_fn(f))
+        Vector(array(T::ZERO, f))
     }
 
     /// a . b
@@ -151,7 +165,13 @@ impl<T: Number> Matrix<T> {
     /// The matrix whose entry in row `i`, column `j` is `f(i, j)`.
     #[inline(always)]
     pub fn from_fn(mut f: impl FnMut(usize, usize) -> T) -> Self {
-        Matrix(std::array::from_fn(|i| std::array::from_fn(|j| f(i, j))))
+        let mut entries = [[T::ZERO; 3]; 3];
+        for (i, row) in entries.iter_mut().enumerate() {
+            for (j, entry) in row.iter_mut().enumerate() {
+                *entry = f(i, j);
+            }
+        }
+        Matrix(entries)
     }
 
     /// Determinant.
@@ -198,8 +218,11 @@ impl<T: Number> Matrix<T> {
     #[inline(always)]
     pub fn times_transpose(&self) -> Symmetric<T> {
         let m = &self.0;
-        let row = |i: usize, j: usize| m[i][0] * m[j][0] + m[i][1] * m[j][1] + m[i][2] * m[j][2];
-        Symmetric([row(0, 0), row(1, 1), row(2, 2), row(0, 1), row(1, 2), row(0, 2)])
+        const PAIRS: [[usize; 2]; 6] = [[0, 0], [1, 1], [2, 2], [0, 1], [1, 2], [0, 2]];
+        Symmetric(array(T::ZERO, |k| {
+            let [i, j] = PAIRS[k];
+            m[i][0] * m[j][0] + m[i][1] * m[j][1] + m[i][2] * m[j][2]
+        }))
     }
 }
 
@@ -286,7 +309,13 @@ impl<T: Number> Symmetric<T> {
     /// A v in the dimension of v.
     #[inline(always)]
     pub fn times<const D: usize>(&self, v: Vector<T, D>) -> Vector<T, D> {
-        Vector::from_fn(|i| (0..D).fold(T::ZERO, |sum, j| sum + self.at(i, j) * v[j]))
+        let mut product = Vector::ZERO;
+        for i in 0..D {
+            for j in 0..D {
+                product[i] += self.at(i, j) * v[j];
+            }
+        }
+        product
     }
 
     /// R A R^T
@@ -308,7 +337,7 @@ impl<T: Number> Add for Symmetric<T> {
     type Output = Self;
     #[inline(always)]
     fn add(self, other: Self) -> Self {
-        Symmetric(std::array::from_fn(|i| self.0[i] + other.0[i]))
+        Symmetric(array(T::ZERO, |i| self.0[i] + other.0[i]))
     }
 }
 
@@ -323,7 +352,7 @@ impl<T: Number> Sub for Symmetric<T> {
     type Output = Self;
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
-        Symmetric(std::array::from_fn(|i| self.0[i] - other.0[i]))
+        Symmetric(array(T::ZERO, |i| self.0[i] - other.0[i]))
     }
 }
 
@@ -331,6 +360,6 @@ impl<T: Number> Mul<T> for Symmetric<T> {
     type Output = Self;
     #[inline(always)]
     fn mul(self, factor: T) -> Self {
-        Symmetric(self.0.map(|x| x * factor))
+        Symmetric(array(T::ZERO, |i| self.0[i] * factor))
     }
 }

@@ -33,9 +33,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> SeveralAtATime<'_, '_, T, D, B> {
         let constants = Constants {
             material: visit.body.material.map(V::splat),
             density: V::splat(visit.body.density),
-            origin: Vector(visit.pass.lattice.origin.0.map(V::splat)),
+            origin: splat(&visit.pass.lattice.origin),
             per_cell: V::splat(visit.pass.lattice.per_cell),
-            domain: visit.pass.domain.map(|corners| corners.map(|x| Vector(x.0.map(V::splat)))),
+            domain: visit.pass.domain.map(|[min, max]| [splat(&min), splat(&max)]),
         };
         let (columns, order, cells) = (visit.columns, visit.order, visit.cells);
         for (cell, ends) in cells.windows(2).enumerate() {
@@ -66,6 +66,18 @@ struct Constants<V, const D: usize> {
     origin: Vector<V, D>,
     per_cell: V,
     domain: Option<[Vector<V, D>; 2]>,
+}
+
+impl<V: Lanes, const D: usize> Constants<V, D> {
+    #[inline(always)]
+    fn in_cells(&self, position: &Vector<V, D>) -> Vector<V, D> {
+        (*position - self.origin) * self.per_cell
+    }
+}
+
+#[inline(always)]
+fn splat<V: Lanes, const D: usize>(vector: &Vector<V::Real, D>) -> Vector<V, D> {
+    Vector::from_fn(|i| V::splat(vector[i]))
 }
 
 /// A cell.
@@ -221,11 +233,11 @@ fn group<T: Laned, V: Lanes<Real = T>, M: Machine<T>, const D: usize, B: Basis<T
 ) -> Option<bool> {
     let Pass { verbs, dt, pic, .. } = *visit.pass;
     let Verbs { accept, strain, displace, scatter } = verbs;
-    let in_cells = |x: Vector<V, D>| Vector::from_fn(|i| (x[i] - constants.origin[i]) * constants.per_cell);
     let position = members.vector::<V>(Column::<D>::POSITION);
     let half = members.load::<V>(Column::<D>::HALF_WIDTH) * constants.per_cell;
     let base = Vector::from_fn(|i| V::splat(T::of(f64::from(place.base[i]))));
-    let group = Group::<V, D, B>::new(in_cells(position) - base, half, place.start, members.index.len());
+    let group =
+        Group::<V, D, B>::new(constants.in_cells(&position) - base, half, place.start, members.index.len());
     let mut sound = u32::MAX;
 
     let mut velocity = Vector::ZERO;
@@ -264,7 +276,7 @@ fn group<T: Laned, V: Lanes<Real = T>, M: Machine<T>, const D: usize, B: Basis<T
     if displace {
         let moved = position + group.interpolate(&visit.window.carry) * V::splat(dt);
         sound &= finite(&moved.0);
-        let cells = in_cells(moved);
+        let cells = constants.in_cells(&moved);
         for i in 0..D {
             let reach = B::reach(cells[i], half);
             inside &= reach.at_least(base[i]) & !reach.at_least(base[i] + V::ONE);
@@ -320,6 +332,9 @@ fn every<V: Lanes>(bits: u32) -> bool {
 /// Lanes in which every number is finite.
 #[inline(always)]
 fn finite<V: Lanes>(numbers: &[V]) -> u32 {
-    let sum = numbers.iter().fold(V::ZERO, |sum, x| sum + x.abs());
+    let mut sum = V::ZERO;
+    for x in numbers {
+        sum += x.abs();
+    }
     V::splat(V::Real::LARGEST).at_least(sum)
 }

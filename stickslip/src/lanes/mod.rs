@@ -5,10 +5,12 @@
 //! and additions are never contracted, so that results have the same bits on every machine.
 
 mod pack;
+mod pair;
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
 pub use pack::Pack;
+pub use pair::Pair;
 
 use crate::number::{Number, Real};
 
@@ -105,7 +107,7 @@ pub struct Numbers<T>(pub [T; MOST_LANES]);
 
 /// A kind of processor: how many numbers it holds side by side.
 pub trait Machine<T>: Copy + 'static {
-    /// As many as pay off, at most [`MOST_LANES`].
+    /// Eight: as many particles as a cell in space holds as a rule.
     type Wide: Lanes<Real = T>;
     /// Four.
     type Quad: Lanes<Real = T>;
@@ -116,7 +118,7 @@ pub trait Machine<T>: Copy + 'static {
 pub struct Any;
 
 impl<T: Real> Machine<T> for Any {
-    type Wide = Pack<T, 4>;
+    type Wide = Pair<Pack<T, 4>>;
     type Quad = Pack<T, 4>;
 }
 

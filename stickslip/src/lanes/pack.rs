@@ -2,6 +2,7 @@
 
 use super::Lanes;
 use crate::number::{Number, Real};
+use crate::tensor::array;
 use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
 /// `N` numbers in an array.
@@ -11,12 +12,12 @@ pub struct Pack<T, const N: usize>(pub [T; N]);
 impl<T: Real, const N: usize> Pack<T, N> {
     #[inline(always)]
     fn map(self, f: impl Fn(T) -> T) -> Self {
-        Pack(self.0.map(f))
+        Pack(array(T::ZERO, |i| f(self.0[i])))
     }
 
     #[inline(always)]
     fn with(self, other: Self, f: impl Fn(T, T) -> T) -> Self {
-        Pack(std::array::from_fn(|i| f(self.0[i], other.0[i])))
+        Pack(array(T::ZERO, |i| f(self.0[i], other.0[i])))
     }
 }
 
@@ -61,7 +62,7 @@ impl<T: Real, const N: usize> Number for Pack<T, N> {
     }
     #[inline(always)]
     fn sqrt(self) -> Self {
-        self.map(T::sqrt)
+        self.map(Number::sqrt)
     }
     #[inline(always)]
     fn cbrt(self) -> Self {

@@ -1,6 +1,6 @@
 //! Lanes of x86-64 processors.
 
-use super::{Lanes, Machine, Work};
+use super::{Lanes, Machine, Pair, Work};
 use crate::number::Number;
 use std::arch::x86_64::*;
 use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
@@ -30,7 +30,7 @@ impl Machine<f32> for Avx512 {
     type Quad = F32x4;
 }
 impl Machine<f64> for Avx2 {
-    type Wide = F64x4;
+    type Wide = Pair<F64x4>;
     type Quad = F64x4;
 }
 impl Machine<f32> for Avx2 {

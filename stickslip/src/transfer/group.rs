@@ -5,8 +5,8 @@
 
 use crate::basis::{Basis, MAX_WIDTH, Shape};
 use crate::grid::{WINDOW, WINDOW_NODES, Window};
-use crate::lanes::{Lanes, MOST_LANES, Machine};
-use crate::tensor::{Matrix, Number, Real, Symmetric, Vector};
+use crate::lanes::{Lanes, MOST_LANES, Machine, Numbers};
+use crate::tensor::{Matrix, Number, Real, Symmetric, Vector, array};
 use std::marker::PhantomData;
 
 /// Several particles of one cell with their shape functions.
@@ -29,9 +29,6 @@ pub struct Load<V, const D: usize> {
     pub stress: Option<Symmetric<V>>,
 }
 
-/// Most pairs of nodes across the first axis.
-const ACROSS: usize = MAX_WIDTH * MAX_WIDTH;
-
 /// Nodes of a window that come before the last reach of a particle.
 const fn last_start(dimension: usize) -> usize {
     let mut place = 0;
@@ -48,11 +45,11 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>> Group<V, D, B> {
     #[inline(always)]
     pub fn new(r: Vector<V, D>, half: V, start: usize, count: usize) -> Self {
         assert!(start <= last_start(D), "a tile's cells lie in its block");
-        let shapes = std::array::from_fn(|i| B::shape(r[i], half));
+        let shapes = array(B::shape(r[0], half), |i| B::shape(r[i], half));
         Group { shapes, start, count, basis: PhantomData }
     }
 
-    /// Calls `f(node, i, j, k)` with the place of every node's row: `k` runs along the last axis, `i` and `j` across.
+    /// Place of a node in the window.
     #[inline(always)]
     fn place(&self, i: usize, j: usize, k: usize) -> usize {
         self.start + if D == 2 { i * WINDOW + j } else { (i * WINDOW + j) * WINDOW + k }
@@ -86,7 +83,7 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>> Group<V, D, B> {
     /// h L = sum v_i (x) h grad S_i, embedded in space [m/s].
     #[inline(always)]
     pub fn velocity_gradient(&self, nodes: &[Vector<V::Real, D>; WINDOW_NODES]) -> Matrix<V> {
-        let [x, y, z] = [0, 1, D - 1].map(|axis| &self.shapes[axis]);
+        let [x, y, z] = [&self.shapes[0], &self.shapes[1], &self.shapes[D - 1]];
         let mut l = Matrix::<V>::ZERO;
         for i in 0..B::WIDTH {
             // Sums over a plane of nodes: of values, and of slopes along y and z.
@@ -132,26 +129,21 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>> Group<V, D, B> {
     #[inline(always)]
     pub fn scatter<M: Machine<V::Real>>(&self, window: &mut Window<V::Real, D>, load: &Load<V, D>) {
         if let Some((momentum, mass)) = load.momentum {
-            let column = |c: usize| if c < D { momentum[c] } else { V::ZERO };
-            let [x, y, z] = [0, 1, 2].map(column);
-            self.scatter_momentum::<M>(window, rows([x, y, z, mass]));
+            let z = if D == 2 { V::ZERO } else { momentum[D - 1] };
+            self.scatter_momentum::<M>(window, &rows([momentum[0], momentum[1], z, mass]));
         }
         if let Some(stress) = load.stress {
-            let stress = stress * -V::ONE;
-            let column = |c: usize| {
-                let [x, y, z] = [0, 1, 2].map(|i| if i < D { stress.at(i, c) } else { V::ZERO });
-                rows([x, y, z, V::ZERO])
-            };
-            self.scatter_force::<M>(
-                window,
-                &[column(0), column(1), if D == 3 { column(2) } else { column(1) }],
-            );
+            let [xx, yy, zz, xy, yz, xz] = (stress * -V::ONE).0;
+            let x = rows([xx, xy, xz, V::ZERO]);
+            let y = rows([xy, yy, yz, V::ZERO]);
+            let z = if D == 2 { y } else { rows([xz, yz, zz, V::ZERO]) };
+            self.scatter_force::<M>(window, [&x, &y, &z]);
         }
     }
 
     #[inline(always)]
-    fn scatter_momentum<M: Machine<V::Real>>(&self, window: &mut Window<V::Real, D>, load: Rows<V::Real>) {
-        let along = self.shapes[0].weight.map(Lanes::numbers);
+    fn scatter_momentum<M: Machine<V::Real>>(&self, window: &mut Window<V::Real, D>, load: &Rows<V::Real>) {
+        let along = numbers(&self.shapes[0].weight);
         for j in 0..B::WIDTH {
             for k in 0..Self::DEPTH {
                 let across = self.across(j, k).numbers();
@@ -170,9 +162,9 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>> Group<V, D, B> {
     }
 
     #[inline(always)]
-    fn scatter_force<M: Machine<V::Real>>(&self, window: &mut Window<V::Real, D>, load: &[Rows<V::Real>; 3]) {
-        let [x, y, z] = [0, 1, D - 1].map(|axis| &self.shapes[axis]);
-        let (weight, slope) = (x.weight.map(Lanes::numbers), x.slope.map(Lanes::numbers));
+    fn scatter_force<M: Machine<V::Real>>(&self, window: &mut Window<V::Real, D>, load: [&Rows<V::Real>; 3]) {
+        let [x, y, z] = [&self.shapes[0], &self.shapes[1], &self.shapes[D - 1]];
+        let (weight, slope) = (numbers(&x.weight), numbers(&x.slope));
         for j in 0..B::WIDTH {
             for k in 0..Self::DEPTH {
                 let across = self.across(j, k).numbers();
@@ -180,9 +172,8 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>> Group<V, D, B> {
                 let across_z = if D == 2 { V::ZERO } else { y.weight[j] * z.slope[k] }.numbers();
                 let mut sums = [M::Quad::ZERO; MAX_WIDTH];
                 for p in 0..self.count {
-                    let [mut sloped, mut level] = [&across, &across_y].map(|w| M::Quad::splat(w.0[p]));
-                    sloped *= load[0].get::<M>(p);
-                    level *= load[1].get::<M>(p);
+                    let sloped = load[0].get::<M>(p) * M::Quad::splat(across.0[p]);
+                    let mut level = load[1].get::<M>(p) * M::Quad::splat(across_y.0[p]);
                     if D == 3 {
                         level += load[2].get::<M>(p) * M::Quad::splat(across_z.0[p]);
                     }
@@ -221,8 +212,19 @@ impl<T: Real> Rows<T> {
 
 #[inline(always)]
 fn rows<V: Lanes>(columns: [V; 4]) -> Rows<V::Real> {
-    let columns = columns.map(Lanes::numbers);
-    Rows(std::array::from_fn(|p| std::array::from_fn(|c| columns[c].0[p])))
+    let columns = [columns[0].numbers(), columns[1].numbers(), columns[2].numbers(), columns[3].numbers()];
+    let mut rows = [[V::Real::ZERO; 4]; MOST_LANES];
+    for (p, row) in rows.iter_mut().enumerate() {
+        for (c, entry) in row.iter_mut().enumerate() {
+            *entry = columns[c].0[p];
+        }
+    }
+    Rows(rows)
+}
+
+#[inline(always)]
+fn numbers<V: Lanes>(lanes: &[V; MAX_WIDTH]) -> [Numbers<V::Real>; MAX_WIDTH] {
+    [lanes[0].numbers(), lanes[1].numbers(), lanes[2].numbers()]
 }
 
 #[inline(always)]

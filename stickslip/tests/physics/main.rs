@@ -13,6 +13,7 @@ mod friction;
 mod glued_identity;
 mod many_bodies;
 mod mirror;
+mod paths;
 mod precision;
 mod rigid_bodies;
 mod spinning_disk;
