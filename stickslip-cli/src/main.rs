@@ -5,6 +5,8 @@ mod commands;
 mod drawing;
 mod failure;
 mod illustration;
+#[allow(dead_code, unused_imports, reason = "reports are written over it")]
+mod page;
 mod picture;
 mod progress;
 

@@ -63,7 +63,7 @@ fn line(progress: &Progress) -> String {
 }
 
 /// `1 h 02 min`, `3 min 20 s`, `4 s`; unknown before there is a pace.
-fn duration(seconds: f64) -> String {
+pub fn duration(seconds: f64) -> String {
     if !seconds.is_finite() {
         return "unknown time".to_owned();
     }

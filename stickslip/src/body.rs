@@ -1,6 +1,6 @@
 //! A body: particles that share a material, and what they add up to.
 
-use crate::material::Material;
+use crate::material::{Material, Motion, Thickness};
 use crate::particles::Particles;
 use crate::tensor::{Matrix, Real, Symmetric, Vector, cross};
 
@@ -13,16 +13,25 @@ pub struct Particle<T, const D: usize> {
     pub velocity: Vector<T, D>,
     /// Mass [kg].
     pub mass: T,
-    /// Undeformed volume [m^3].
+    /// Undeformed volume [m^3]; in the plane per metre of undeformed thickness.
     pub volume: T,
     /// Half the side of its undeformed box [m].
     pub half_width: T,
-    /// Deformation gradient F, embedded in space [-].
+    /// Deformation gradient F, embedded in space; in the plane F_zz is the thickness over the undeformed one [-].
     pub deformation: Matrix<T>,
     /// Cauchy stress, tension positive [Pa].
     pub stress: Symmetric<T>,
     /// Its number in its body, from the filling.
     pub number: u32,
+}
+
+impl<T: Real, const D: usize> Particle<T, D> {
+    /// The room that it takes on the grid: its volume now, in the plane its area [m^D].
+    pub fn room(&self) -> T {
+        let f = &self.deformation.0;
+        let stretch = if D == 2 { f[0][0] * f[1][1] - f[0][1] * f[1][0] } else { self.deformation.det() };
+        self.volume * stretch
+    }
 }
 
 /// Particles that share a material and move as one body.
@@ -38,6 +47,8 @@ pub struct Body<T, const D: usize> {
     pub particles: Particles<T, D>,
     /// Whether its motion is prescribed, whatever pushes it.
     pub rigid: bool,
+    /// Which thickness its particles take.
+    pub thickness: Thickness,
 }
 
 /// Sums over the particles of one body, in `f64` and SI units whatever the precision.
@@ -79,6 +90,18 @@ impl<T: Real, const D: usize> Body<T, D> {
             }
         }
         totals
+    }
+
+    /// A particle's motion with the thickness that it takes, and its Cauchy stress after it [Pa]; `None` if no thickness is free of stress.
+    #[inline]
+    pub fn respond(&self, motion: Motion<T>) -> Option<(Motion<T>, Symmetric<T>)> {
+        self.material.respond(self.thickness, motion)
+    }
+
+    /// Stiffness against the fastest wave in a state of deformation, times J [Pa].
+    #[inline]
+    pub fn wave_modulus(&self, deformation: &Matrix<T>, jacobian: T) -> T {
+        self.material.wave_modulus(self.thickness, deformation, jacobian)
     }
 
     /// Angular velocity: the inverse of the inertia tensor times the angular momentum, both about the centre of mass [rad/s].

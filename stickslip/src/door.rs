@@ -168,6 +168,21 @@ pub enum StepError {
         /// When [s].
         time: f64,
     },
+    /// Plane stress found no thickness of a particle without stress out of the plane.
+    #[error(
+        "particle {number} of body `{body}` finds no thickness without stress out of the plane at {} m, t = {time:.6e} s",
+        place(position)
+    )]
+    NoThickness {
+        /// Name of the body.
+        body: String,
+        /// Number of the particle in its body.
+        number: u32,
+        /// Where it is [m].
+        position: [f64; 3],
+        /// When [s].
+        time: f64,
+    },
     /// A particle's position, velocity or stress is not a finite number.
     #[error(
         "particle {number} of body `{body}` has a value that is not finite near {} m, t = {time:.6e} s",
@@ -200,6 +215,9 @@ impl StepError {
             }
             StepError::Escaped { .. } => {
                 "make the domain larger, end the run earlier, or put a face in the way"
+            }
+            StepError::NoThickness { .. } => {
+                "it strained far in one step: try a smaller time.courant; look at the last frame for what went wrong first"
             }
             StepError::NotFinite { .. } => {
                 "try a smaller time.courant, or mend the formula of a prescribed motion; look at the last frame for what went wrong first"

@@ -152,11 +152,15 @@ fn types_and_units() {
                 "0",
                 "15:25: bodies[0].shape.ball.center: found 0; allowed: a list such as [0, \"0.4 m\", 0], two in the plane",
             ),
-            ("\"3d\"", "\"2d\"", "2:13: space.dimension: found \"2d\"; allowed: \"plane-strain\" or \"3d\""),
+            (
+                "\"3d\"",
+                "\"2d\"",
+                "2:13: space.dimension: found \"2d\"; allowed: \"plane-strain\", \"plane-stress\" or \"3d\"",
+            ),
             (
                 "\"3d\"",
                 "\"plane_strain\"",
-                "2:13: space.dimension: found \"plane_strain\"; allowed: \"plane-strain\" or \"3d\"; did you mean `plane-strain`?",
+                "2:13: space.dimension: found \"plane_strain\"; allowed: \"plane-strain\", \"plane-stress\" or \"3d\"; did you mean `plane-strain`?",
             ),
             (
                 "\"1 s\"",

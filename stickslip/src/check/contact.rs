@@ -97,7 +97,7 @@ fn estimate(touch: &Touch, scene: &Scene) -> Option<ContactEstimate> {
     let rigid = bodies.map(|body| matches!(body.motion, Motion::Rigid { .. }));
     let materials =
         std::array::from_fn(|i| (!rigid[i]).then(|| scene.materials[bodies[i].material].law.elastic()));
-    let modulus = Hertz::effective_modulus(materials);
+    let modulus = Hertz::effective_modulus(materials, scene.dimension);
     let hertz = Hertz { modulus, radius: touch.radius, dimension: axes(scene) };
     let gravity = Vector(scene.gravity);
     // The one above rests on the other; gravity along the surface presses nothing, but for round-off.

@@ -19,7 +19,7 @@ pub use hertz::{Hertz, Patch};
 pub use report::{BodyReport, Machine, MaterialReport, Report, report};
 
 use crate::geometry::Lattice;
-use crate::scene::{Dimension, Problem, Scene};
+use crate::scene::{Problem, Scene};
 
 /// Finds what is wrong with a scene and takes its geometry to see.
 ///
@@ -51,10 +51,7 @@ pub fn lattice(scene: &Scene) -> Lattice {
 
 /// 2 or 3.
 fn axes(scene: &Scene) -> usize {
-    match scene.dimension {
-        Dimension::PlaneStrain => 2,
-        Dimension::Space => 3,
-    }
+    scene.dimension.axes()
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use super::bodies::{Extent, smallest_extent};
 use super::contact::{ContactEstimate, Verdict, estimates, starting_velocity};
 use super::table::short;
 use super::{axes, examine, lattice};
-use crate::scene::{Body, Motion, Precision, Problem, Scene};
+use crate::scene::{Body, Dimension, Motion, Precision, Problem, Scene};
 use crate::tensor::{Matrix, Vector};
 use serde::Serialize;
 
@@ -37,8 +37,8 @@ impl Default for Machine {
 pub struct Report {
     /// The scene's title.
     pub title: String,
-    /// 2 or 3.
-    pub dimension: usize,
+    /// Plane or space.
+    pub dimension: Dimension,
     /// Side of a grid cell [m].
     pub cell: f64,
     /// Particles along each side of a cell.
@@ -89,7 +89,7 @@ pub struct BodyReport {
 pub struct MaterialReport {
     /// Its name.
     pub name: String,
-    /// sqrt((K + 4G/3) / rho) [m/s]
+    /// sqrt((K + 4G/3) / rho), in plane stress sqrt(E / (rho (1 - nu^2))) [m/s]
     pub longitudinal_speed: f64,
     /// sqrt(G / rho) [m/s]
     pub shear_speed: f64,
@@ -106,7 +106,7 @@ pub fn report(scene: &Scene) -> Result<Report, Problem> {
     let contacts = estimates(scene, &extents);
     let report = Report {
         title: scene.title.clone(),
-        dimension: axes(scene),
+        dimension: scene.dimension,
         cell: scene.discretization.cell,
         particles_per_side: scene.discretization.particles_per_side,
         bodies: scene
@@ -160,7 +160,8 @@ fn of_materials(scene: &Scene) -> Vec<MaterialReport> {
 
 fn longitudinal_speed(scene: &Scene, material: usize) -> f64 {
     let material = &scene.materials[material];
-    (material.law.law().wave_modulus(&Matrix::IDENTITY, 1.0) / material.density).sqrt()
+    let modulus = material.law.wave_modulus(scene.dimension.thickness(), &Matrix::IDENTITY, 1.0);
+    (modulus / material.density).sqrt()
 }
 
 /// courant h / max(c + |v|) at the start, at most the longest step that the scene allows [s].
@@ -225,7 +226,6 @@ mod tests {
     use super::*;
     use crate::check::tests::{free, incline, scene};
     use crate::geometry::Shape;
-    use crate::scene::Dimension;
 
     #[test]
     fn the_papers_incline_is_reported_with_its_waves_and_steps() {

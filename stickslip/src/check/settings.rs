@@ -2,7 +2,7 @@
 
 use super::axes;
 use super::table::short;
-use crate::scene::{Domain, Expression, Face, Motion, NamedMaterial, Problem, Scene};
+use crate::scene::{Dimension, Domain, Expression, Face, Motion, NamedMaterial, Problem, Scene};
 use crate::tensor::Matrix;
 
 /// Walls may miss the nodes of the grid by this share of a cell.
@@ -24,7 +24,7 @@ pub(super) fn check(scene: &Scene) -> Result<(), Problem> {
         return Err(problem("bodies", "no body".into(), "at least one body"));
     }
     for material in &scene.materials {
-        check_material(&format!("materials.{}", material.name), material)?;
+        check_material(&format!("materials.{}", material.name), material, scene.dimension)?;
     }
     if let Some(domain) = &scene.domain {
         check_domain(domain, scene.discretization.cell, axes(scene))?;
@@ -43,10 +43,10 @@ fn require_positive(key: &str, value: f64, unit: &str) -> Result<(), Problem> {
     Err(problem(key, format!("{value} {unit}").trim_end().into(), "a finite number above 0"))
 }
 
-/// A material is stable if waves in it have a real speed: positive density, K > 0 and G >= 0.
-fn check_material(key: &str, material: &NamedMaterial) -> Result<(), Problem> {
+/// A material is stable if waves in it have a real speed: positive density, K > 0 and G >= 0; a thin plate needs G > 0.
+fn check_material(key: &str, material: &NamedMaterial, dimension: Dimension) -> Result<(), Problem> {
     require_positive(&format!("{key}.density"), material.density, "kg/m^3")?;
-    let modulus = material.law.law().wave_modulus(&Matrix::IDENTITY, 1.0);
+    let modulus = material.law.wave_modulus(dimension.thickness(), &Matrix::IDENTITY, 1.0);
     let elastic = material.law.elastic();
     let (k, g) = (elastic.bulk_modulus, elastic.shear_modulus);
     let speed = (modulus / material.density).sqrt();
@@ -57,7 +57,12 @@ fn check_material(key: &str, material: &NamedMaterial) -> Result<(), Problem> {
     Err(problem(
         key,
         found,
-        "K above 0, G at least 0 and a finite wave speed, else the material is not stable",
+        match dimension {
+            Dimension::PlaneStress => {
+                "K and G above 0 and a finite wave speed, else a thin plate is not stable"
+            }
+            _ => "K above 0, G at least 0 and a finite wave speed, else the material is not stable",
+        },
     ))
 }
 
@@ -121,7 +126,6 @@ mod tests {
     use super::*;
     use crate::check::tests::{free, incline, scene};
     use crate::geometry::Shape;
-    use crate::scene::Dimension;
 
     fn key_of(change: impl FnOnce(&mut Scene)) -> String {
         let mut scene = incline(4.0);

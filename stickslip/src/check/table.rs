@@ -10,7 +10,7 @@ const CONTACTS: usize = 5;
 
 impl Display for Report {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
-        let space = if self.dimension == 2 { "plane strain" } else { "space" };
+        let space = self.dimension.name();
         let (cell, per_cell) = (short(self.cell), self.particles_per_side.pow(self.dimension as u32));
         writeln!(f, "{}", self.title)?;
         writeln!(f, "{space}, cells of {cell} m, {per_cell} particles a cell\n")?;
@@ -46,7 +46,7 @@ impl Display for Report {
 
 impl Report {
     fn write_bodies(&self, f: &mut Formatter<'_>) -> Result {
-        let unit = if self.dimension == 2 { "mass [kg/m]" } else { "mass [kg]" };
+        let unit = if self.dimension.is_plane() { "mass [kg/m]" } else { "mass [kg]" };
         let width = column(self.bodies.iter().take(BODIES).map(|body| &body.name), "body");
         let material = column(self.bodies.iter().take(BODIES).map(|body| &body.material), "material");
         writeln!(
@@ -56,7 +56,7 @@ impl Report {
         )?;
         for body in self.bodies.iter().take(BODIES) {
             let BodyReport { name, material: of, particles, mass, size, .. } = body;
-            let size: Vec<_> = size[..self.dimension].iter().map(|&s| short(s)).collect();
+            let size: Vec<_> = size[..self.dimension.axes()].iter().map(|&s| short(s)).collect();
             let (mass, size) = (short(*mass), size.join(" x "));
             let rigid = if body.rigid { ", rigid" } else { "" };
             writeln!(f, "{name:width$}  {of:material$}  {particles:>11}  {mass:>11}  {size}{rigid}")?;
@@ -74,7 +74,7 @@ impl Report {
         let name = |contact: &ContactEstimate| contact.bodies.join(" on ");
         let names: Vec<_> = self.contacts.iter().take(CONTACTS).map(name).collect();
         let width = column(names.iter(), "contact (Hertz)");
-        let patch = if self.dimension == 2 { "half-width [m]" } else { "radius [m]" };
+        let patch = if self.dimension.is_plane() { "half-width [m]" } else { "radius [m]" };
         writeln!(
             f,
             "\n{:width$}  {patch:>14}  {:>9}  {:>7}  verdict",

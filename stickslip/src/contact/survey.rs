@@ -167,7 +167,7 @@ impl<T: Real, const D: usize> Near<'_, T, D> {
         let (mut mass_gradient, mut volume_gradient) = (Vector::ZERO, Vector::ZERO);
         let mut stress = Symmetric::ZERO;
         self.each_particle::<B>(body, node, |particle, weight, gradient, image| {
-            let v = particle.volume * particle.deformation.det();
+            let v = particle.room();
             // The node sees a particle move away as the particle sees the node move: grad at the node = -grad S(x_p).
             let gradient = Vector::from_fn(|i| -gradient[i] * image.sign[i]);
             volume += v * weight;
@@ -182,7 +182,7 @@ impl<T: Real, const D: usize> Near<'_, T, D> {
             normal: (-mass_gradient).direction(),
             stress: stress * (T::ONE / volume),
             volume,
-            modulus: owner.material.law().wave_modulus(&Matrix::IDENTITY, T::ONE),
+            modulus: owner.wave_modulus(&Matrix::IDENTITY, T::ONE),
         };
         Side { body, index, surface, volume_gradient }
     }

@@ -32,8 +32,12 @@ pub fn build(scene: &Scene) -> Result<Box<dyn Simulation>, Problem> {
 /// What [`check::problems`] finds.
 pub fn build_on(scene: &Scene, path: Path) -> Result<Box<dyn Simulation>, Problem> {
     match (scene.dimension, scene.precision) {
-        (Dimension::PlaneStrain, Precision::Double) => with_basis::<f64, 2>(scene, path),
-        (Dimension::PlaneStrain, Precision::Single) => with_basis::<f32, 2>(scene, path),
+        (Dimension::PlaneStrain | Dimension::PlaneStress, Precision::Double) => {
+            with_basis::<f64, 2>(scene, path)
+        }
+        (Dimension::PlaneStrain | Dimension::PlaneStress, Precision::Single) => {
+            with_basis::<f32, 2>(scene, path)
+        }
         (Dimension::Space, Precision::Double) => with_basis::<f64, 3>(scene, path),
         (Dimension::Space, Precision::Single) => with_basis::<f32, 3>(scene, path),
     }
@@ -70,6 +74,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                     _ => [0.0; 3],
                 }),
                 rigid: motion.is_some(),
+                thickness: scene.dimension.thickness(),
             });
             rigid.push(motion);
         }

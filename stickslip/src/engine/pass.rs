@@ -78,6 +78,8 @@ pub enum FaultKind {
     Inverted,
     /// It left the domain.
     Escaped,
+    /// No thickness leaves it without stress out of the plane.
+    NoThickness,
     /// A value of it is not a finite number.
     NotFinite,
 }
@@ -189,7 +191,8 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
                 return Err(FaultKind::Inverted);
             }
             let motion = Motion { deformation, jacobian, increment, stress: particle.stress };
-            particle.stress = self.body.material.stress(&motion);
+            let (motion, stress) = self.body.respond(motion).ok_or(FaultKind::NoThickness)?;
+            (particle.deformation, particle.stress) = (motion.deformation, stress);
             particle.stress.is_finite().then_some(()).ok_or(FaultKind::NotFinite)?;
         }
         if verbs.displace {
@@ -225,7 +228,7 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
 /// Wave speed plus particle speed [m/s], see [`crate::clock`].
 pub fn signal<T: Real, const D: usize>(body: &Body<T, D>, particle: &Particle<T, D>) -> T {
     let f = &particle.deformation;
-    (body.material.wave_modulus(f, f.det()) / body.density).sqrt() + particle.velocity.norm()
+    (body.wave_modulus(f, f.det()) / body.density).sqrt() + particle.velocity.norm()
 }
 
 /// Whether a particle is outside the domain, or so far away that its cell has no number.

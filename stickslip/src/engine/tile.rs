@@ -5,11 +5,12 @@
 
 use super::pass::{Pass, Verbs, Visit};
 use crate::basis::Basis;
+use crate::body::Body;
 use crate::grid::{WINDOW, node_at};
-use crate::lanes::{Laned, Lanes, MOST_LANES, Machine, Work};
-use crate::material::{Material, Motion};
+use crate::lanes::{Laned, Lanes, MOST_LANES, Machine, Numbers, Work};
+use crate::material::{Material, Motion, Thickness};
 use crate::particles::{Column, Columns, deformation_entries, stress_entries};
-use crate::tensor::{Matrix, Real, Symmetric, Vector};
+use crate::tensor::{Matrix, Real, Symmetric, Vector, array};
 use crate::transfer::{Group, Load, Share};
 
 /// A tile's particles, several at a time.
@@ -202,13 +203,13 @@ impl<'a, T: Real, const D: usize> Members<'a, T, D> {
 /// # Safety
 /// They must be there, and nobody may write to them meanwhile.
 #[inline(never)]
-unsafe fn collect<T: Real>(column: *const T, index: &[u32]) -> crate::lanes::Numbers<T> {
+unsafe fn collect<T: Real>(column: *const T, index: &[u32]) -> Numbers<T> {
     let mut numbers = [T::ZERO; MOST_LANES];
     for (lane, x) in numbers.iter_mut().enumerate() {
         // SAFETY: the caller's.
         *x = unsafe { *column.add(index[if lane < index.len() { lane } else { 0 }] as usize) };
     }
-    crate::lanes::Numbers(numbers)
+    Numbers(numbers)
 }
 
 /// Writes numbers that lie apart.
@@ -266,7 +267,13 @@ fn group<T: Laned, V: Lanes<Real = T>, M: Machine<T>, const D: usize, B: Basis<T
         deformation = increment * deformation;
         jacobian = deformation.det();
         sound &= jacobian.at_least(V::splat(T::TINY)) & finite(&[jacobian]);
-        stress = constants.material.stress(&Motion { deformation, jacobian, increment, stress });
+        let motion = Motion { deformation, jacobian, increment, stress };
+        if D == 2 && visit.body.thickness == Thickness::Free {
+            let motion = free_thickness(visit.body, motion)?;
+            (deformation, jacobian, stress) = (motion.deformation, motion.jacobian, motion.stress);
+        } else {
+            stress = constants.material.stress(&motion);
+        }
         sound &= finite(&stress.0);
     } else if displace || pushes {
         jacobian = deformation.det();
@@ -290,7 +297,7 @@ fn group<T: Laned, V: Lanes<Real = T>, M: Machine<T>, const D: usize, B: Basis<T
             return None;
         }
         members.store_vector(Column::<D>::POSITION, &moved);
-        let modulus = constants.material.wave_modulus(&deformation, jacobian);
+        let modulus = constants.material.wave_modulus(visit.body.thickness, &deformation, jacobian);
         let signal = (modulus / constants.density).sqrt() + velocity.norm();
         let signals = signal.numbers();
         for &signal in &signals.0[..V::COUNT] {
@@ -320,6 +327,63 @@ fn group<T: Laned, V: Lanes<Real = T>, M: Machine<T>, const D: usize, B: Basis<T
         group.scatter::<M>(visit.window, &load);
     }
     Some(!every::<V>(inside))
+}
+
+/// The motion with the thickness that every particle takes, one by one, and the stress after it; `None` if any has none.
+#[inline(always)]
+fn free_thickness<T: Real, V: Lanes<Real = T>, const D: usize>(
+    body: &Body<T, D>,
+    motion: Motion<V>,
+) -> Option<Motion<V>> {
+    let mut numbers = [Numbers([T::ZERO; MOST_LANES]); 25];
+    {
+        let mut next = numbers.iter_mut();
+        let mut put = |x: V| next.next().map(|place| *place = x.numbers());
+        for row in motion.deformation.0.iter().chain(&motion.increment.0) {
+            for &x in row {
+                put(x);
+            }
+        }
+        for x in motion.stress.0 {
+            put(x);
+        }
+        put(motion.jacobian);
+    }
+    one_thickness_after_another(body, &mut numbers, V::COUNT)?;
+    // SAFETY: `numbers` are as long as any machine's lanes.
+    let get = |k: usize| unsafe { V::load(numbers[k].0.as_ptr()) };
+    let matrix = |first: usize| Matrix::from_fn(|i, j| get(first + 3 * i + j));
+    let stress = Symmetric(array(V::ZERO, |k| get(18 + k)));
+    Some(Motion { deformation: matrix(0), increment: matrix(9), stress, jacobian: get(24) })
+}
+
+/// F, the increment, the stress and J of every lane before and after its thickness is found.
+#[inline(never)]
+fn one_thickness_after_another<T: Real, const D: usize>(
+    body: &Body<T, D>,
+    numbers: &mut [Numbers<T>; 25],
+    lanes: usize,
+) -> Option<()> {
+    for lane in 0..lanes {
+        let get = |k: usize| numbers[k].0[lane];
+        let motion = Motion {
+            deformation: Matrix::from_fn(|i, j| get(3 * i + j)),
+            increment: Matrix::from_fn(|i, j| get(9 + 3 * i + j)),
+            stress: Symmetric(std::array::from_fn(|k| get(18 + k))),
+            jacobian: get(24),
+        };
+        let (motion, stress) = body.respond(motion)?;
+        for i in 0..3 {
+            for j in 0..3 {
+                numbers[3 * i + j].0[lane] = motion.deformation.0[i][j];
+            }
+        }
+        for (k, x) in stress.0.into_iter().enumerate() {
+            numbers[18 + k].0[lane] = x;
+        }
+        numbers[24].0[lane] = motion.jacobian;
+    }
+    Some(())
 }
 
 /// Whether the bits of all lanes are set.

@@ -237,6 +237,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 determinant: particle.deformation.det().f64(),
             },
             FaultKind::Escaped => StepError::Escaped { body: name, number, position, time },
+            FaultKind::NoThickness => StepError::NoThickness { body: name, number, position, time },
             FaultKind::NotFinite => StepError::NotFinite { body: name, number, position, time },
         }
     }

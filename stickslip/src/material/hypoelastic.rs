@@ -48,6 +48,11 @@ impl<T: Number> Law<T> for Hypoelastic<T> {
         let Isotropic { bulk_modulus: k, shear_modulus: g } = self.elastic;
         (k + T::of(4.0 / 3.0) * g) * jacobian
     }
+
+    #[inline(always)]
+    fn shear_modulus(&self, _deformation: &Matrix<T>, jacobian: T) -> T {
+        self.elastic.shear_modulus * jacobian
+    }
 }
 
 #[cfg(test)]

@@ -6,10 +6,12 @@
 mod elastic;
 mod hypoelastic;
 mod neo_hookean;
+mod plane_stress;
 
 pub use elastic::Isotropic;
 pub use hypoelastic::Hypoelastic;
 pub use neo_hookean::NeoHookean;
+pub use plane_stress::Thickness;
 
 use crate::tensor::{Matrix, Number, Real, Symmetric};
 use serde::Serialize;
@@ -40,6 +42,9 @@ pub trait Law<T: Number>: Send + Sync {
 
     /// Stiffness against a longitudinal wave in the present state, times J [Pa]: over the undeformed density it is the squared wave speed.
     fn wave_modulus(&self, deformation: &Matrix<T>, jacobian: T) -> T;
+
+    /// Stiffness against a shear wave in the present state, times J [Pa]; plane stress needs it for its waves.
+    fn shear_modulus(&self, deformation: &Matrix<T>, jacobian: T) -> T;
 }
 
 /// The shelf: every law with its constants.
@@ -157,13 +162,32 @@ impl<T: Number> Material<T> {
         }
     }
 
-    /// [`Law::wave_modulus`] where the compiler can see it.
+    /// Stiffness against the fastest wave in the present state, times J [Pa]: [`Law::wave_modulus`], in plane stress that of a plate.
     #[inline(always)]
-    pub fn wave_modulus(&self, deformation: &Matrix<T>, jacobian: T) -> T {
+    pub fn wave_modulus(&self, thickness: Thickness, deformation: &Matrix<T>, jacobian: T) -> T {
         match self {
-            Material::NeoHookean(law) => law.wave_modulus(deformation, jacobian),
-            Material::Hypoelastic(law) => law.wave_modulus(deformation, jacobian),
+            Material::NeoHookean(law) => fastest(law, thickness, deformation, jacobian),
+            Material::Hypoelastic(law) => fastest(law, thickness, deformation, jacobian),
         }
+    }
+}
+
+impl<T: Real> Material<T> {
+    /// The motion with the thickness that the particle takes, and Cauchy stress after it [Pa]; `None` if no thickness is free of stress.
+    pub fn respond(&self, thickness: Thickness, motion: Motion<T>) -> Option<(Motion<T>, Symmetric<T>)> {
+        match thickness {
+            Thickness::Moved => Some((motion, self.stress(&motion))),
+            Thickness::Free => plane_stress::with_free_thickness(self.law(), &motion),
+        }
+    }
+}
+
+#[inline(always)]
+fn fastest<T: Number>(law: &impl Law<T>, thickness: Thickness, deformation: &Matrix<T>, jacobian: T) -> T {
+    let waves = law.wave_modulus(deformation, jacobian);
+    match thickness {
+        Thickness::Moved => waves,
+        Thickness::Free => plane_stress::plate_modulus(waves, law.shear_modulus(deformation, jacobian)),
     }
 }
 

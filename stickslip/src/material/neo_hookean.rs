@@ -39,12 +39,16 @@ impl<T: Number> Law<T> for NeoHookean<T> {
 
     #[inline(always)]
     fn wave_modulus(&self, deformation: &Matrix<T>, jacobian: T) -> T {
-        let Isotropic { bulk_modulus: k, shear_modulus: g } = self.elastic;
+        let k = self.elastic.bulk_modulus;
         let j = jacobian;
-        let root = j.cbrt();
+        T::HALF * k * (j * j + T::ONE) + T::of(4.0 / 3.0) * self.shear_modulus(deformation, jacobian)
+    }
+
+    #[inline(always)]
+    fn shear_modulus(&self, deformation: &Matrix<T>, jacobian: T) -> T {
+        let root = jacobian.cbrt();
         let b = deformation.times_transpose();
-        let stretch = b.0[0].max(b.0[1]).max(b.0[2]) / (root * root);
-        T::HALF * k * (j * j + T::ONE) + T::of(4.0 / 3.0) * g * stretch
+        self.elastic.shear_modulus * (b.0[0].max(b.0[1]).max(b.0[2]) / (root * root))
     }
 }
 

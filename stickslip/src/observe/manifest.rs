@@ -2,7 +2,7 @@
 
 use super::file::{OutputError, ReadError, ReadProblem, replace};
 use super::folder::OutputFolder;
-use crate::scene::{Dimension, Scene};
+use crate::scene::Scene;
 use serde::{Deserialize, Serialize};
 use std::fs;
 use std::path::Path;
@@ -104,10 +104,7 @@ impl Manifest {
             status: Status::Running,
             error: None,
             title: scene.title.clone(),
-            dimension: match scene.dimension {
-                Dimension::PlaneStrain => 2,
-                Dimension::Space => 3,
-            },
+            dimension: scene.dimension.axes(),
             cell: scene.discretization.cell,
             bodies: scene.bodies.iter().map(|body| body.name.clone()).collect(),
             performance,

@@ -24,7 +24,7 @@ pub use schema::schema;
 pub use source::Source;
 
 use crate::geometry::Shape;
-use crate::material::Material;
+use crate::material::{Material, Thickness};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -77,8 +77,42 @@ pub enum Parameter {
 pub enum Dimension {
     /// Plane strain: two dimensions, no strain out of the plane; masses and forces are per metre of depth.
     PlaneStrain,
+    /// Plane stress: two dimensions, no stress out of the plane; masses and forces are per metre of undeformed thickness.
+    PlaneStress,
     /// Three dimensions.
     Space,
+}
+
+impl Dimension {
+    /// Its name in sentences.
+    pub fn name(self) -> &'static str {
+        match self {
+            Dimension::PlaneStrain => "plane strain",
+            Dimension::PlaneStress => "plane stress",
+            Dimension::Space => "space",
+        }
+    }
+
+    /// Number of axes: 2 or 3.
+    pub fn axes(self) -> usize {
+        match self {
+            Dimension::PlaneStrain | Dimension::PlaneStress => 2,
+            Dimension::Space => 3,
+        }
+    }
+
+    /// Whether vectors have two components.
+    pub fn is_plane(self) -> bool {
+        self.axes() == 2
+    }
+
+    /// The thickness that particles take.
+    pub fn thickness(self) -> Thickness {
+        match self {
+            Dimension::PlaneStress => Thickness::Free,
+            Dimension::PlaneStrain | Dimension::Space => Thickness::Moved,
+        }
+    }
 }
 
 /// Number format of the particles and the grid.

@@ -14,6 +14,7 @@ mod glued_identity;
 mod many_bodies;
 mod mirror;
 mod paths;
+mod plane_stress;
 mod precision;
 mod rigid_bodies;
 mod spinning_disk;

@@ -142,7 +142,7 @@ impl Shape {
 
 impl Cylinder {
     fn resolve(&self, context: &Context) -> Result<geometry::Shape, Fault> {
-        if context.dimension == Dimension::PlaneStrain {
+        if context.dimension.is_plane() {
             return Err(self.start.node().fault("shapes other than a cylinder, as the scene is plane"));
         }
         let (start, end) = (self.start.value(context)?, self.end.value(context)?);
@@ -160,7 +160,7 @@ impl Polygon {
             return Err(self.points.1.fault("at least 3 corners"));
         }
         let height = match (&self.height, context.dimension) {
-            (None, Dimension::PlaneStrain) => [0.0, 0.0],
+            (None, plane) if plane.is_plane() => [0.0, 0.0],
             (Some(height), Dimension::Space) => {
                 let [lower, upper] = height.pair(context)?;
                 if lower >= upper {
@@ -168,10 +168,10 @@ impl Polygon {
                 }
                 [lower, upper]
             }
-            (Some(height), Dimension::PlaneStrain) => {
+            (Some(height), _) => {
                 return Err(height.node().fault("no height, as the scene is plane"));
             }
-            (None, Dimension::Space) => {
+            (None, _) => {
                 let key = self.points.1.key.replace("points", "height");
                 let fault =
                     Fault::new(&key, "nothing, the key is missing", "lower and upper z: [0, \"1 m\"]");
@@ -185,12 +185,12 @@ impl Polygon {
 impl Rotated {
     fn resolve(&self, context: &Context) -> Result<geometry::Shape, Fault> {
         let axis = match (&self.axis, context.dimension) {
-            (None, Dimension::PlaneStrain) => [0.0, 0.0, 1.0],
+            (None, plane) if plane.is_plane() => [0.0, 0.0, 1.0],
             (Some(axis), Dimension::Space) => direction(axis, context)?,
-            (Some(axis), Dimension::PlaneStrain) => {
+            (Some(axis), _) => {
                 return Err(axis.node().fault("no axis, as the scene is plane"));
             }
-            (None, Dimension::Space) => {
+            (None, _) => {
                 let key = self.angle.node().key.replace("angle", "axis");
                 return Err(Fault::new(
                     &key,

@@ -11,7 +11,7 @@ use crate::scene::{self, BasisKind, Dimension, Discretization, Face, Precision};
 table! {
     /// Dimensions, cells, particles and domain.
     Space {
-        /// Plane strain or three dimensions.
+        /// Plane strain, plane stress or three dimensions.
         dimension: Word<Dimension>,
         /// Side of a grid cell [m].
         cell: Quantity<Length>,
@@ -60,6 +60,7 @@ table! {
 impl Choice for Dimension {
     const WORDS: &'static [(&'static str, Self, &'static str)] = &[
         ("plane-strain", Dimension::PlaneStrain, "Two dimensions, no strain out of the plane."),
+        ("plane-stress", Dimension::PlaneStress, "Two dimensions, no stress out of the plane: a thin plate."),
         ("3d", Dimension::Space, "Three dimensions."),
     ];
 }
@@ -116,7 +117,7 @@ impl Domain {
         for (axis, pair) in written.iter().enumerate() {
             for (side, word) in pair.iter().enumerate() {
                 let Some(word) = word else { continue };
-                if axis == 2 && context.dimension == Dimension::PlaneStrain {
+                if axis == 2 && context.dimension.is_plane() {
                     return Err(word
                         .node()
                         .fault("x_min, x_max, y_min and y_max only, as the scene is plane"));
@@ -135,8 +136,7 @@ pub fn corners(
     context: &Context,
 ) -> Result<([f64; 3], [f64; 3]), Fault> {
     let (lower, upper) = (min.value(context)?, max.value(context)?);
-    let axes = if context.dimension == Dimension::Space { 3 } else { 2 };
-    match (0..axes).find(|axis| lower[*axis] >= upper[*axis]) {
+    match (0..context.dimension.axes()).find(|axis| lower[*axis] >= upper[*axis]) {
         None => Ok((lower, upper)),
         Some(axis) => {
             let allowed = format!("more than {} m, the {} of min", lower[axis], ["x", "y", "z"][axis]);

@@ -55,10 +55,12 @@ impl<M: Measure> Vector<M> {
         zero: T,
     ) -> Result<[T; 3], Fault> {
         match (&self.parts[..], context.dimension) {
-            ([x, y], Dimension::PlaneStrain) => Ok([of(x)?, of(y)?, zero]),
+            ([x, y], plane) if plane.is_plane() => Ok([of(x)?, of(y)?, zero]),
             ([x, y, z], Dimension::Space) => Ok([of(x)?, of(y)?, of(z)?]),
-            (_, Dimension::PlaneStrain) => Err(self.node.fault("2 numbers, as the scene is plane: [x, y]")),
-            (_, Dimension::Space) => Err(self.node.fault("3 numbers, as the scene is 3d: [x, y, z]")),
+            (_, plane) if plane.is_plane() => {
+                Err(self.node.fault("2 numbers, as the scene is plane: [x, y]"))
+            }
+            _ => Err(self.node.fault("3 numbers, as the scene is 3d: [x, y, z]")),
         }
     }
 }
@@ -67,7 +69,7 @@ impl Spin {
     /// Its components in SI units; in the plane only the third is not zero.
     pub fn value(&self, context: &Context) -> Result<[f64; 3], Fault> {
         match context.dimension {
-            Dimension::PlaneStrain => Ok([0.0, 0.0, self.turn()?.value(context)?]),
+            Dimension::PlaneStrain | Dimension::PlaneStress => Ok([0.0, 0.0, self.turn()?.value(context)?]),
             Dimension::Space => self.vector()?.value(context),
         }
     }
@@ -76,7 +78,9 @@ impl Spin {
     pub fn over_time(&self, context: &Context) -> Result<[Expression; 3], Fault> {
         let zero = || Expression::Constant(0.0);
         match context.dimension {
-            Dimension::PlaneStrain => Ok([zero(), zero(), self.turn()?.over_time(context)?]),
+            Dimension::PlaneStrain | Dimension::PlaneStress => {
+                Ok([zero(), zero(), self.turn()?.over_time(context)?])
+            }
             Dimension::Space => self.vector()?.over_time(context),
         }
     }

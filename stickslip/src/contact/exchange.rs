@@ -1,0 +1,126 @@
+//! Eq. (10) of Bardenhagen et al. (2001), whatever decides about contact: with one normal for the pair, and with each body's own.
+
+use super::{Change, Pair, Surface};
+use crate::tensor::{Real, Vector};
+
+/// One normal for the pair and one decision, `touching(approach [m/s], n)`.
+///
+/// ```text
+/// J_n = -m* u . n,   J_t = -m* min(|u_t|, mu max(u . n, 0)) u_t/|u_t|,   u = v_1 - v_2,  m* = m_1 m_2/(m_1 + m_2)
+/// ```
+/// which is eq. (10) for n_2 = -n_1. While compressed bodies depart, the normal impulse gives back strain energy by
+/// pulling, and a pull bears no friction.
+pub fn common_normal<T: Real, const D: usize>(
+    pair: &Pair<T, D>,
+    [v, w]: [Vector<T, D>; 2],
+    touching: impl FnOnce(T, Vector<T, D>) -> bool,
+) -> Change<T, D> {
+    let Some(n) = pair.normal else { return Change::NONE };
+    let u = v - w;
+    let approach = u.dot(n);
+    if !touching(approach, n) {
+        return Change::NONE;
+    }
+    let slip = u - n * approach;
+    let m = pair.reduced_mass();
+    let tangential = slip * (m * sticking(slip.norm(), pair.rule.friction, approach.max(T::ZERO)));
+    pair.exchange(-m * approach, -tangential, n)
+}
+
+/// Each body by its own normal and its own decision, `touching(surface, approach [m/s], n)`, as the paper prints it,
+/// eqs. (5), (8)-(13).
+pub fn own_normals<T: Real, const D: usize>(
+    pair: &Pair<T, D>,
+    velocities: [Vector<T, D>; 2],
+    touching: impl Fn(&Surface<T, D>, T, Vector<T, D>) -> bool,
+) -> Change<T, D> {
+    let [a, b] = pair.surfaces;
+    let share = a.inverse_mass + b.inverse_mass;
+    if share <= T::ZERO {
+        return Change::NONE;
+    }
+    // m_2/M = (1/m_1)/(1/m_1 + 1/m_2)
+    let center = velocities[1] * (a.inverse_mass / share) + velocities[0] * (b.inverse_mass / share);
+    let mut change = Change::NONE;
+    for (i, surface) in pair.surfaces.into_iter().enumerate() {
+        let Some(n) = surface.normal else { continue };
+        let dv = velocities[i] - center;
+        let approach = dv.dot(n);
+        if !touching(surface, approach, n) {
+            continue;
+        }
+        let slip = dv - n * approach;
+        let tangential = slip * -sticking(slip.norm(), pair.rule.friction, approach.abs());
+        if surface.inverse_mass > T::ZERO {
+            let mass = T::ONE / surface.inverse_mass;
+            change.impulse[i] = (tangential - n * approach) * mass;
+            if i == 0 || a.inverse_mass <= T::ZERO {
+                change.normal = -approach * mass;
+                change.tangential = if i == 0 { tangential * mass } else { -tangential * mass };
+            }
+        }
+    }
+    change
+}
+
+/// The fraction of the slip that friction stops: min(|slip|, mu |dv_n|)/|slip|.
+pub fn sticking<T: Real>(slip: T, friction: T, normal: T) -> T {
+    let bound = friction * normal;
+    // An infinite coefficient sticks even without any normal velocity.
+    if !friction.is_finite() || bound >= slip { T::ONE } else { bound / slip }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::pair::tests::{rule, surface};
+    use super::*;
+    use crate::scene::{ContactLaw, Normal};
+
+    /// m = 1, 3; v = (4, -8), 0: v_cm = (1, -2), dv_1 = (3, -6), dv_2 = (-1, 2); n_1 = (0, -1), so dv_n1 = 6, dv_t1 = 3.
+    /// mu = 1/4: v~_1 = v_1 - 6 (n_1 + t_1/4) = (4 - 1.5, -8 + 6), eq. (10); n_2 at atan(3/4) from -n_1, so dv_n2 = 1,
+    /// dv_t2 = 2, v~_2 = -(n_2 + t_2/4).
+    #[test]
+    fn own_normals_give_the_papers_equation_10() {
+        let rule = rule(ContactLaw::Kinematic, Normal::Own, 0.25);
+        let surfaces = [surface(1.0, [0.0, -1.0]), surface(3.0, [0.6, 0.8])];
+        let pair = Pair {
+            rule: &rule,
+            surfaces: [&surfaces[0], &surfaces[1]],
+            normal: None,
+            gap: 0.0,
+            limit: 100.0,
+        };
+        let change = pair.change([Vector([4.0, -8.0]), Vector::ZERO]);
+        let tangent = [-1.6 / 2.0, 1.2 / 2.0];
+        let expected = [[-1.5, 6.0], [0, 1].map(|i| -3.0 * ([0.6, 0.8][i] + 0.25 * tangent[i]))];
+        for (impulse, expected) in change.impulse.iter().zip(expected) {
+            for i in 0..2 {
+                assert!((impulse[i] - expected[i]).abs() < 1e-14, "{:?} {expected:?}", impulse);
+            }
+        }
+    }
+
+    /// With n_2 = -n_1 both forms are the same law.
+    #[test]
+    fn opposite_normals_make_own_and_common_equal() {
+        let surfaces = [surface(1.0, [0.0, -1.0]), surface(3.0, [0.0, 1.0])];
+        for friction in [0.0, 0.25, 2.0, f64::INFINITY] {
+            let [own, common] = [Normal::Own, Normal::Common].map(|normal| {
+                let rule = rule(ContactLaw::Traction, normal, friction);
+                let normal = Some(Vector([0.0, -1.0]));
+                let pair = Pair {
+                    rule: &rule,
+                    surfaces: [&surfaces[0], &surfaces[1]],
+                    normal,
+                    gap: 0.0,
+                    limit: 100.0,
+                };
+                pair.change([Vector([4.0, -8.0]), Vector::ZERO])
+            });
+            for body in 0..2 {
+                let difference = (own.impulse[body] - common.impulse[body]).norm();
+                assert!(difference < 1e-14, "friction {friction}: {own:?} {common:?}");
+            }
+        }
+    }
+}

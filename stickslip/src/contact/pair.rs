@@ -1,0 +1,124 @@
+//! Two bodies at a node: what is known of them there, and what contact may do to them.
+
+use super::Rule;
+use super::law::law;
+use crate::tensor::{Real, Symmetric, Vector};
+
+/// What the particles around a node say of one body's surface there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Surface<T, const D: usize> {
+    /// 1/m of the body's share of the node, zero for a rigid body [1/kg].
+    pub inverse_mass: T,
+    /// Outward normal from the gradient of the body's own grid mass, if it has one [-].
+    pub normal: Option<Vector<T, D>>,
+    /// Cauchy stress: the body's particle stresses interpolated by volume [Pa].
+    pub stress: Symmetric<T>,
+    /// Volume with which the stress was weighted [m^3].
+    pub volume: T,
+    /// P-wave modulus of the material: stresses far below it count as none [Pa].
+    pub modulus: T,
+}
+
+/// Two bodies at a node.
+#[derive(Clone, Copy, Debug)]
+pub struct Pair<'a, T, const D: usize> {
+    /// The rule that holds between them.
+    pub rule: &'a Rule<T>,
+    /// Their surfaces.
+    pub surfaces: [&'a Surface<T, D>; 2],
+    /// Common normal from the first to the second, from the difference of their volume gradients [-].
+    pub normal: Option<Vector<T, D>>,
+    /// Distance between the surfaces at the node, negative where they overlap [cells].
+    pub gap: T,
+    /// Largest change of velocity that a cell bears in this step: gamma h/dt [m/s].
+    pub limit: T,
+}
+
+/// What contact does to two bodies at a node.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Change<T, const D: usize> {
+    /// Impulse on each body [N s]; equal and opposite with a common normal.
+    pub impulse: [Vector<T, D>; 2],
+    /// Impulse on the first body along the normal; negative pushes it away from the second [N s].
+    pub normal: T,
+    /// Impulse on the first body across the normal [N s].
+    pub tangential: Vector<T, D>,
+}
+
+impl<T: Real, const D: usize> Change<T, D> {
+    /// No contact.
+    pub const NONE: Self = Change { impulse: [Vector::ZERO; 2], normal: T::ZERO, tangential: Vector::ZERO };
+}
+
+impl<T: Real, const D: usize> Pair<'_, T, D> {
+    /// What contact does to two bodies with these velocities [m/s], by the rule's law and scaled.
+    pub fn change(&self, velocities: [Vector<T, D>; 2]) -> Change<T, D> {
+        self.scaled(law(self.rule.law).change(self, velocities))
+    }
+
+    /// m_1 m_2 / (m_1 + m_2) [kg]
+    pub fn reduced_mass(&self) -> T {
+        let [a, b] = self.surfaces;
+        let sum = a.inverse_mass + b.inverse_mass;
+        if sum > T::ZERO { T::ONE / sum } else { T::ZERO }
+    }
+
+    /// Equal and opposite impulses: `normal` along the common normal `n` and `tangential` across it, on the first body [N s].
+    pub fn exchange(&self, normal: T, tangential: Vector<T, D>, n: Vector<T, D>) -> Change<T, D> {
+        let impulse = n * normal + tangential;
+        Change { impulse: [impulse, -impulse], normal, tangential }
+    }
+
+    /// The change reduced so that no cell strains by more than the rule allows, eqs. (20)-(22).
+    fn scaled(&self, change: Change<T, D>) -> Change<T, D> {
+        let largest = (change.impulse.iter().zip(self.surfaces))
+            .flat_map(|(impulse, surface)| (*impulse * surface.inverse_mass).0)
+            .fold(T::ZERO, |max, x| max.max(x.abs()));
+        if largest <= self.limit {
+            return change;
+        }
+        let factor = self.limit / largest;
+        Change {
+            impulse: change.impulse.map(|j| j * factor),
+            normal: change.normal * factor,
+            tangential: change.tangential * factor,
+        }
+    }
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+    use crate::scene::{ContactLaw, Normal};
+
+    pub fn surface(mass: f64, normal: [f64; 2]) -> Surface<f64, 2> {
+        Surface {
+            inverse_mass: 1.0 / mass,
+            normal: Some(Vector(normal)),
+            stress: Symmetric([0.0, -1.0, 0.0, 0.0, 0.0, 0.0]),
+            volume: 1.0,
+            modulus: 10.0,
+        }
+    }
+
+    pub fn rule(law: ContactLaw, normal: Normal, friction: f64) -> Rule<f64> {
+        Rule { law, normal, friction, max_strain: 0.5 }
+    }
+
+    /// The lighter body's velocity changes by 6 m/s; eqs. (20)-(22) allow the limit along an axis, and both bodies get less.
+    #[test]
+    fn scaling_limits_the_change_and_keeps_the_momentum() {
+        let surfaces = [surface(1.0, [0.0, -1.0]), surface(3.0, [0.0, 1.0])];
+        for law in [ContactLaw::Kinematic, ContactLaw::Glued] {
+            for (limit, factor) in [(100.0, 1.0), (6.0, 1.0), (1.5, 0.25)] {
+                let rule = rule(law, Normal::Common, 0.25);
+                let normal = Some(Vector([0.0, -1.0]));
+                let pair =
+                    Pair { rule: &rule, surfaces: [&surfaces[0], &surfaces[1]], normal, gap: 0.0, limit };
+                let change = pair.change([Vector([0.0, -8.0]), Vector::ZERO]);
+                assert!((change.impulse[0][1] - 6.0 * factor).abs() < 1e-14, "{law:?}, {limit}: {change:?}");
+                assert_eq!(change.impulse[0] + change.impulse[1], Vector::ZERO);
+            }
+        }
+    }
+}
