@@ -75,6 +75,13 @@ impl<T: Real, const D: usize> Particles<T, D> {
         Particle { number: self.numbers[i], ..unsafe { columns.get(i) } }
     }
 
+    /// Position [m] and half the side of the undeformed box [m] of particle `i`.
+    #[inline]
+    pub fn place(&self, i: usize) -> (Vector<T, D>, T) {
+        let at = |column: usize| self.columns[column * self.stride + i];
+        (Vector::from_fn(|k| at(Column::<D>::POSITION + k)), at(Column::<D>::HALF_WIDTH))
+    }
+
     /// Writes particle `i`.
     pub fn set(&mut self, i: usize, particle: &Particle<T, D>) {
         assert!(i < self.len(), "a particle of the body");

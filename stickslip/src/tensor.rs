@@ -296,7 +296,7 @@ impl<T: Number> Symmetric<T> {
     /// The matrix less a third of its trace.
     #[inline(always)]
     pub fn deviator(&self) -> Self {
-        *self - Symmetric::isotropic(self.trace() / T::of(3.0))
+        *self - Symmetric::isotropic(self.trace() * T::of(1.0 / 3.0))
     }
 
     /// A : B, the sum of products of all nine entries.

@@ -33,7 +33,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> SeveralAtATime<'_, '_, T, D, B> {
         let visit = self.0;
         let constants = Constants {
             material: visit.body.material.map(V::splat),
-            density: V::splat(visit.body.density),
+            per_density: V::splat(T::ONE / visit.body.density),
             origin: splat(&visit.pass.lattice.origin),
             per_cell: V::splat(visit.pass.lattice.per_cell),
             domain: visit.pass.domain.map(|[min, max]| [splat(&min), splat(&max)]),
@@ -63,7 +63,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> SeveralAtATime<'_, '_, T, D, B> {
 /// What all particles of a tile have in common.
 struct Constants<V, const D: usize> {
     material: Material<V>,
-    density: V,
+    /// 1/rho_0 [m^3/kg]
+    per_density: V,
     origin: Vector<V, D>,
     per_cell: V,
     domain: Option<[Vector<V, D>; 2]>,
@@ -298,7 +299,7 @@ fn group<T: Laned, V: Lanes<Real = T>, M: Machine<T>, const D: usize, B: Basis<T
         }
         members.store_vector(Column::<D>::POSITION, &moved);
         let modulus = constants.material.wave_modulus(visit.body.thickness, &deformation, jacobian);
-        let signal = (modulus / constants.density).sqrt() + velocity.norm();
+        let signal = (modulus * constants.per_density).sqrt() + velocity.norm();
         let signals = signal.numbers();
         for &signal in &signals.0[..V::COUNT] {
             visit.found.signal = visit.found.signal.max(signal);

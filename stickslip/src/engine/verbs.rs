@@ -8,21 +8,22 @@ use crate::door::StepError;
 use crate::grid::{Blocks, Node, node_at, nodes_per_block};
 use crate::lanes::Laned;
 use crate::tensor::{Matrix, Vector};
-use crate::transfer::{Share, Stencil};
+use crate::transfer::Share;
 use rayon::prelude::*;
 use std::time::Instant;
-
-/// Steps between sorts of the particles in memory.
-const SORT_INTERVAL: u64 = 256;
 
 impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     pub(super) fn cover(&mut self) {
         let start = Instant::now();
-        let mut blocks = self.cover_particles();
-        if self.steps.is_multiple_of(SORT_INTERVAL) {
-            self.sort_particles();
-            blocks = blocks.max(self.cover_particles());
-        }
+        let counts: Vec<usize> = self.bodies.iter().map(|body| body.particles.len()).collect();
+        let (bodies, lattice) = (&self.bodies, &self.lattice);
+        let left = (self.steps > 0).then_some(&self.left[..]);
+        let blocks = self.cover.update(&counts, left, |body, particle| {
+            let (position, half_width) = bodies[body].particles.place(particle);
+            let x = lattice.cells(position);
+            std::array::from_fn(|i| B::reach(x[i], half_width * lattice.per_cell).floor())
+        });
+        self.tidy();
         if blocks == Blocks::New {
             self.boundary.cover(&self.cover);
         }
@@ -32,18 +33,16 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.watch.lap("cover", start);
     }
 
-    fn cover_particles(&mut self) -> Blocks {
-        let counts: Vec<usize> = self.bodies.iter().map(|body| body.particles.len()).collect();
-        let (bodies, lattice) = (&self.bodies, &self.lattice);
-        self.cover.update(&counts, |body, particle| {
-            Stencil::<T, D, B>::new(lattice, &bodies[body].particles.get(particle)).base()
-        })
-    }
-
-    /// Brings the particles' order in memory close to the order in which tiles visit them.
-    fn sort_particles(&mut self) {
-        for (i, body) in self.bodies.iter_mut().enumerate() {
-            body.particles.permute(self.cover.order_of(i));
+    /// Sorts particles in memory into the order in which tiles visit them, where they are no longer nearly so.
+    fn tidy(&mut self) {
+        let cover = &self.cover;
+        (self.bodies.par_iter_mut().with_min_len(16).enumerate())
+            .filter(|(i, _)| cover.untidy(*i))
+            .for_each(|(i, body)| body.particles.permute(cover.order_of(i)));
+        for i in 0..self.bodies.len() {
+            if self.cover.untidy(i) {
+                self.cover.tidied(i);
+            }
         }
     }
 
@@ -135,8 +134,10 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// Prescribed velocities of rigid bodies and walls.
     fn hold(&mut self) {
         let n = nodes_per_block(D);
-        for (slot, &(body, block)) in self.cover.slots.iter().enumerate() {
-            if let Some(motion) = &self.rigid[body as usize] {
+        for (body, motion) in self.rigid.iter().enumerate() {
+            let Some(motion) = motion else { continue };
+            for slot in self.cover.slots_held(body) {
+                let (_, block) = self.cover.slots[slot];
                 for local in 0..n {
                     let position = self.lattice.position(node_at(block, local)).space();
                     self.field.nodes[slot * n + local].velocity = Vector::of(motion.velocity_at(position));
@@ -219,6 +220,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 found = found.and(Found { fault, signal: signal(body, &particle) });
             }
             motion.advance(dt);
+            self.left[self.cover.tiles_held(i)].fill(u64::MAX);
         }
         found
     }

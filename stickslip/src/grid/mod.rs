@@ -5,9 +5,11 @@
 
 mod cover;
 mod field;
+mod holding;
 
-pub use cover::{Blocks, Cover, MOST_CELLS, Meeting, Tile, addressable};
+pub use cover::{Blocks, Cover, Meeting, Tile};
 pub use field::{Disjoint, Field, Node, Sought, WINDOW, WINDOW_NODES, Window};
+pub use holding::{MOST_CELLS, addressable};
 
 use crate::tensor::{Real, Vector};
 

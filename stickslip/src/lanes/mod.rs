@@ -85,6 +85,18 @@ pub trait Lanes: Number {
         numbers
     }
 
+    /// Writes the lanes of four registers as rows: in row `i` the lanes `i` of all four.
+    #[inline(always)]
+    fn store_rows(columns: [Self; 4], rows: &mut [[Self::Real; 4]; MOST_LANES]) {
+        let columns =
+            [columns[0].numbers(), columns[1].numbers(), columns[2].numbers(), columns[3].numbers()];
+        for (i, row) in rows.iter_mut().enumerate().take(Self::COUNT) {
+            for (entry, column) in row.iter_mut().zip(&columns) {
+                *entry = column.0[i];
+            }
+        }
+    }
+
     /// Cube root by Halley's iteration, y <- y (y^3 + 2x)/(2 y^3 + x), which triples the digits each time.
     #[inline(always)]
     fn cube_root(self) -> Self {

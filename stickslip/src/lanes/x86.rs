@@ -1,6 +1,6 @@
 //! Lanes of x86-64 processors.
 
-use super::{Lanes, Machine, Pair, Work};
+use super::{Lanes, MOST_LANES, Machine, Pair, Work};
 use crate::number::Number;
 use std::arch::x86_64::*;
 use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
@@ -191,21 +191,81 @@ lanes! { F64x8: __m512d as [f64; 8];
         // SAFETY: lanes beyond the mask are not written.
         unsafe { _mm512_mask_storeu_pd(first, mask(count), self.0) }
     }
+    #[inline(always)]
+    fn store_rows(columns: [Self; 4], rows: &mut [[f64; 4]; MOST_LANES]) {
+        let [a, b, c, d] = columns;
+        // SAFETY: values of this type exist only where the processor has the instructions.
+        unsafe {
+            turn_pd([low(a.0), low(b.0), low(c.0), low(d.0)], rows.as_mut_ptr().cast());
+            turn_pd([high(a.0), high(b.0), high(c.0), high(d.0)], rows.as_mut_ptr().add(4).cast());
+        }
+    }
 }
 lanes! { F64x4: __m256d as [f64; 4];
     _mm256_set1_pd _mm256_loadu_pd _mm256_storeu_pd;
     _mm256_add_pd _mm256_sub_pd _mm256_mul_pd _mm256_div_pd; _mm256_sqrt_pd _mm256_min_pd _mm256_max_pd;
     |a, b| _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_GE_OQ>(a, b)) as u32;
+    #[inline(always)]
+    fn store_rows([a, b, c, d]: [Self; 4], rows: &mut [[f64; 4]; MOST_LANES]) {
+        // SAFETY: values of this type exist only where the processor has the instructions.
+        unsafe { turn_pd([a.0, b.0, c.0, d.0], rows.as_mut_ptr().cast()) }
+    }
 }
 lanes! { F32x8: __m256 as [f32; 8];
     _mm256_set1_ps _mm256_loadu_ps _mm256_storeu_ps;
     _mm256_add_ps _mm256_sub_ps _mm256_mul_ps _mm256_div_ps; _mm256_sqrt_ps _mm256_min_ps _mm256_max_ps;
     |a, b| _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_GE_OQ>(a, b)) as u32;
+    #[inline(always)]
+    fn store_rows([a, b, c, d]: [Self; 4], rows: &mut [[f32; 4]; MOST_LANES]) {
+        // SAFETY: values of this type exist only where the processor has the instructions.
+        unsafe {
+            let [ab, cd] = [_mm256_unpacklo_ps(a.0, b.0), _mm256_unpacklo_ps(c.0, d.0)];
+            let [ab_high, cd_high] = [_mm256_unpackhi_ps(a.0, b.0), _mm256_unpackhi_ps(c.0, d.0)];
+            let turned = [
+                _mm256_shuffle_ps::<0b01_00_01_00>(ab, cd),
+                _mm256_shuffle_ps::<0b11_10_11_10>(ab, cd),
+                _mm256_shuffle_ps::<0b01_00_01_00>(ab_high, cd_high),
+                _mm256_shuffle_ps::<0b11_10_11_10>(ab_high, cd_high),
+            ];
+            let mut i = 0;
+            while i < 4 {
+                _mm_storeu_ps(rows[i].as_mut_ptr(), _mm256_castps256_ps128(turned[i]));
+                _mm_storeu_ps(rows[i + 4].as_mut_ptr(), _mm256_extractf128_ps::<1>(turned[i]));
+                i += 1;
+            }
+        }
+    }
 }
 lanes! { F32x4: __m128 as [f32; 4];
     _mm_set1_ps _mm_loadu_ps _mm_storeu_ps;
     _mm_add_ps _mm_sub_ps _mm_mul_ps _mm_div_ps; _mm_sqrt_ps _mm_min_ps _mm_max_ps;
     |a, b| _mm_movemask_ps(_mm_cmpge_ps(a, b)) as u32;
+}
+
+#[inline(always)]
+unsafe fn low(x: __m512d) -> __m256d {
+    // SAFETY: the caller has AVX-512.
+    unsafe { _mm512_castpd512_pd256(x) }
+}
+
+#[inline(always)]
+unsafe fn high(x: __m512d) -> __m256d {
+    // SAFETY: the caller has AVX-512.
+    unsafe { _mm512_extractf64x4_pd::<1>(x) }
+}
+
+/// Writes the columns of a 4 x 4 matrix as its rows.
+#[inline(always)]
+unsafe fn turn_pd([a, b, c, d]: [__m256d; 4], rows: *mut f64) {
+    // SAFETY: the caller has AVX2 and room for sixteen numbers.
+    unsafe {
+        let [ab, cd] = [_mm256_unpacklo_pd(a, b), _mm256_unpacklo_pd(c, d)];
+        let [ab_odd, cd_odd] = [_mm256_unpackhi_pd(a, b), _mm256_unpackhi_pd(c, d)];
+        _mm256_storeu_pd(rows, _mm256_permute2f128_pd::<0x20>(ab, cd));
+        _mm256_storeu_pd(rows.add(4), _mm256_permute2f128_pd::<0x20>(ab_odd, cd_odd));
+        _mm256_storeu_pd(rows.add(8), _mm256_permute2f128_pd::<0x31>(ab, cd));
+        _mm256_storeu_pd(rows.add(12), _mm256_permute2f128_pd::<0x31>(ab_odd, cd_odd));
+    }
 }
 
 #[inline(always)]

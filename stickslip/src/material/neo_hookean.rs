@@ -24,8 +24,10 @@ impl<T: Number> Law<T> for NeoHookean<T> {
         let j = motion.jacobian;
         let b = motion.deformation.times_transpose();
         let root = j.cbrt();
-        let pressure = T::HALF * k * (j - T::ONE / j);
-        b.deviator() * (g / (j * root * root)) + Symmetric::isotropic(pressure)
+        // J^(-2/3) = J^(1/3)/J
+        let inverse = T::ONE / j;
+        let pressure = T::HALF * k * (j - inverse);
+        b.deviator() * (g * inverse * (root * inverse)) + Symmetric::isotropic(pressure)
     }
 
     fn strain_energy(&self, deformation: &Matrix<T>, _stress: &Symmetric<T>) -> T {
@@ -48,7 +50,7 @@ impl<T: Number> Law<T> for NeoHookean<T> {
     fn shear_modulus(&self, deformation: &Matrix<T>, jacobian: T) -> T {
         let root = jacobian.cbrt();
         let b = deformation.times_transpose();
-        self.elastic.shear_modulus * (b.0[0].max(b.0[1]).max(b.0[2]) / (root * root))
+        self.elastic.shear_modulus * (b.0[0].max(b.0[1]).max(b.0[2]) * (root * (T::ONE / jacobian)))
     }
 }
 

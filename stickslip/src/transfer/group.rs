@@ -148,7 +148,7 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>> Group<V, D, B> {
             for k in 0..Self::DEPTH {
                 let across = self.across(j, k).numbers();
                 let mut sums = [M::Quad::ZERO; MAX_WIDTH];
-                for p in 0..self.count {
+                for p in 0..self.count.min(MOST_LANES) {
                     let row = load.get::<M>(p) * M::Quad::splat(across.0[p]);
                     for i in 0..B::WIDTH {
                         sums[i] += row * M::Quad::splat(along[i].0[p]);
@@ -171,7 +171,7 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>> Group<V, D, B> {
                 let across_y = if D == 2 { y.slope[j] } else { y.slope[j] * z.weight[k] }.numbers();
                 let across_z = if D == 2 { V::ZERO } else { y.weight[j] * z.slope[k] }.numbers();
                 let mut sums = [M::Quad::ZERO; MAX_WIDTH];
-                for p in 0..self.count {
+                for p in 0..self.count.min(MOST_LANES) {
                     let sloped = load[0].get::<M>(p) * M::Quad::splat(across.0[p]);
                     let mut level = load[1].get::<M>(p) * M::Quad::splat(across_y.0[p]);
                     if D == 3 {
@@ -212,14 +212,9 @@ impl<T: Real> Rows<T> {
 
 #[inline(always)]
 fn rows<V: Lanes>(columns: [V; 4]) -> Rows<V::Real> {
-    let columns = [columns[0].numbers(), columns[1].numbers(), columns[2].numbers(), columns[3].numbers()];
-    let mut rows = [[V::Real::ZERO; 4]; MOST_LANES];
-    for (p, row) in rows.iter_mut().enumerate() {
-        for (c, entry) in row.iter_mut().enumerate() {
-            *entry = columns[c].0[p];
-        }
-    }
-    Rows(rows)
+    let mut rows = Rows([[V::Real::ZERO; 4]; MOST_LANES]);
+    V::store_rows(columns, &mut rows.0);
+    rows
 }
 
 #[inline(always)]

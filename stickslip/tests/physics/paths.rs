@@ -65,7 +65,7 @@ fn outcome(scene: &str, path: Path, steps: usize) -> ParticleSnapshot {
 
 fn compare(dimension: &str, precision: &str, basis: &str, update: &str) {
     let scene = scene(dimension, precision, basis, update);
-    // Linear functions with the stress updated last do not live long, on any path.
+    // Linear functions do not live long.
     let steps = if basis == "linear" { 15 } else { 60 };
     let reference = outcome(&scene, Path::Reference, steps);
     let mut first: Option<ParticleSnapshot> = None;
@@ -87,7 +87,9 @@ fn compare(dimension: &str, precision: &str, basis: &str, update: &str) {
 fn in_the_plane() {
     for precision in ["double", "single"] {
         for basis in ["linear", "gimp"] {
-            for update in STRESS_UPDATES {
+            // Linear functions with the stress updated last tear the ball apart at once, on any path.
+            let lives = |update: &&str| basis == "gimp" || *update != "last";
+            for update in STRESS_UPDATES.into_iter().filter(lives) {
                 compare("plane-strain", precision, basis, update);
             }
         }
