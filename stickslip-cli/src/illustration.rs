@@ -128,8 +128,10 @@ fn mirror(setting: &Setting, choice: &PictureChoice) -> Result<Option<Mirror>, F
 pub fn illustrate(folder: &Path) -> Result<String, Failure> {
     let results = Results::open(folder).map_err(Failure::input)?;
     let mut drawn = vec!["bodies.csv", "energy.csv", "contacts.csv", "run.json"];
+    let measured = ["probes.csv", "arrivals.csv", "fronts.csv", "front_speeds.csv"];
+    drawn.extend(measured.into_iter().filter(|name| folder.join(name).exists()));
     let chart = chart(&results, &Choice::default()).map_err(Failure::input)?;
-    match crate::chart::draw(&chart, &folder.join("plot.png"), [1280, 560]) {
+    match crate::chart::draw(&chart, &folder.join("plot.png"), chart.size()) {
         Ok(()) => drawn.push("plot.png"),
         Err(DrawError::Empty(_)) => {}
         Err(error) => return Err(error.into()),

@@ -9,6 +9,8 @@ mod illustration;
 mod page;
 mod picture;
 mod progress;
+mod sweep;
+mod validation;
 
 use clap::Parser;
 use std::process::ExitCode;

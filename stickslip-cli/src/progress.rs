@@ -49,6 +49,53 @@ impl Display {
     }
 }
 
+/// Shows the progress of a family of runs on standard error: a bar for all of them, or a line when one ends.
+pub struct Family {
+    bar: Option<ProgressBar>,
+    shares: Vec<f64>,
+    ended: usize,
+}
+
+impl Family {
+    /// A display for so many runs.
+    pub fn new(runs: usize, terminal: bool) -> Self {
+        let style = ProgressStyle::with_template("{bar:24.cyan/dim} {percent:>3} %  {wide_msg}");
+        let style = style.expect("the template is well formed").progress_chars("━╸─");
+        let bar = terminal.then(|| ProgressBar::new(PARTS).with_style(style));
+        if let Some(bar) = &bar {
+            bar.set_message(format!("0 of {runs} runs"));
+        }
+        Family { bar, shares: vec![0.0; runs], ended: 0 }
+    }
+
+    /// The run of this number has done this share.
+    pub fn show(&mut self, run: usize, share: f64) {
+        self.shares[run] = share.clamp(0.0, 1.0);
+        if let Some(bar) = &self.bar {
+            let all = self.shares.iter().sum::<f64>() / self.shares.len() as f64;
+            bar.set_position((all * PARTS as f64) as u64);
+        }
+    }
+
+    /// The run of this number has ended; `line` says how.
+    pub fn ended(&mut self, run: usize, line: &str) {
+        self.ended += 1;
+        self.show(run, 1.0);
+        let line = format!("{} of {} runs, {}", self.ended, self.shares.len(), line.trim_end());
+        match &self.bar {
+            Some(bar) => bar.set_message(line),
+            None => eprintln!("{line}"),
+        }
+    }
+
+    /// Takes the bar away.
+    pub fn finish(&self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}
+
 fn line(progress: &Progress) -> String {
     let rate = prefix(progress.particle_steps_per_second);
     format!(

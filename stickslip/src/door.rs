@@ -27,6 +27,19 @@ pub trait Simulation: Send {
     fn take_contacts(&mut self) -> Vec<ContactState>;
     /// All particles now, ordered by body and then by the particle's number in its body.
     fn snapshot(&self) -> ParticleSnapshot;
+    /// Shows every particle of a body to `look`, in no order that means anything.
+    fn visit(&self, body: usize, look: &mut dyn FnMut(&ParticleView)) {
+        let all = self.snapshot();
+        for i in (0..all.body.len()).filter(|&i| all.body[i] as usize == body) {
+            look(&ParticleView {
+                number: all.number[i],
+                mass: all.mass[i],
+                position: all.position[i],
+                velocity: all.velocity[i],
+                stress: all.stress[i],
+            });
+        }
+    }
     /// The nodes of the last step's grid that carry mass.
     fn grid_snapshot(&self) -> GridSnapshot;
     /// Wall time spent so far in each verb of the step [s].
@@ -113,6 +126,21 @@ pub struct ParticleSnapshot {
     pub stress: Vec<[f64; 6]>,
     /// Deformation gradient, row by row [-].
     pub deformation: Vec<[f64; 9]>,
+}
+
+/// A particle now, as [`Simulation::visit`] shows it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ParticleView {
+    /// Number of the particle in its body, from the filling; it never changes.
+    pub number: u32,
+    /// Mass [kg].
+    pub mass: f64,
+    /// Position [m].
+    pub position: [f64; 3],
+    /// Velocity [m/s].
+    pub velocity: [f64; 3],
+    /// Cauchy stress xx, yy, zz, xy, yz, xz, tension positive [Pa].
+    pub stress: [f64; 6],
 }
 
 /// Grid nodes with mass as columns of equal length; a node that two bodies share stands there twice.

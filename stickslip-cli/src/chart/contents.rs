@@ -1,7 +1,9 @@
 //! What a chart shows: the quantities that the scene knows answers for, or those that the user asks for.
 
+use super::measurements::{self, Clock};
 use super::{Chart, Curve, Panel};
 use crate::drawing::{Rgb, body_color};
+use clap::ValueEnum;
 use stickslip::observe::{BodyRow, EnergyRow, ReadError, ReferenceCurve, Results};
 
 /// What the user asks for; nothing at all gives what the scene is about.
@@ -9,12 +11,43 @@ use stickslip::observe::{BodyRow, EnergyRow, ReadError, ReferenceCurve, Results}
 pub struct Choice {
     /// Names of bodies; none means all that have something to show.
     pub bodies: Vec<String>,
-    /// Columns of `bodies.csv`; none means those with known answers.
+    /// Columns of the table; none means those with known answers, or the table's first.
     pub quantities: Vec<String>,
+    /// The table; none means those that the scene asks for.
+    pub table: Option<Table>,
+}
+
+/// Tables that can be drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Table {
+    /// Bodies through time
+    Bodies,
+    /// Force between each pair of bodies that touch
+    Contacts,
+    /// Stress and velocity at probes
+    Probes,
+    /// How far from the first place each came when it arrived
+    Arrivals,
+    /// How far fronts have come
+    Fronts,
+}
+
+impl Table {
+    /// Its columns that can be drawn, the usual one first.
+    pub fn columns(self) -> &'static [&'static str] {
+        match self {
+            Table::Bodies => {
+                &["x", "y", "z", "vx", "vy", "vz", "wx", "wy", "wz", "mass", "kinetic", "strain"]
+            }
+            Table::Contacts => &["normal", "tangential", "fx", "fy", "fz", "nodes"],
+            Table::Probes => measurements::PROBE_COLUMNS,
+            Table::Arrivals | Table::Fronts => &["distance"],
+        }
+    }
 }
 
 /// More curves than this in one panel cannot be told apart.
-const MOST_CURVES: usize = 8;
+pub(super) const MOST_CURVES: usize = 8;
 const EXACT: Rgb = [0.22, 0.24, 0.27];
 
 /// The chart of a run.
@@ -22,17 +55,43 @@ const EXACT: Rgb = [0.22, 0.24, 0.27];
 /// # Errors
 /// The tables cannot be read.
 pub fn chart(results: &Results, choice: &Choice) -> Result<Chart, ReadError> {
+    let mut chart = match choice.table {
+        Some(Table::Bodies) => of_bodies(results, choice)?,
+        Some(table) => measurements::chart(results, (table, choice))?,
+        None if choice.bodies.is_empty() && choice.quantities.is_empty() => of_everything(results)?,
+        None => of_bodies(results, choice)?,
+    };
+    Clock::of(results).apply(&mut chart);
+    Ok(chart)
+}
+
+/// What the scene knows answers for and what it measures; without either, energy and the way of the centres.
+fn of_everything(results: &Results) -> Result<Chart, ReadError> {
+    let nothing = Choice::default();
+    let mut chart = of_bodies(results, &nothing)?;
+    let measured = measurements::all(results)?;
+    if !measured.panels.is_empty() {
+        if results.manifest().references.is_empty() {
+            chart.panels.clear();
+        }
+        chart.panels.extend(measured.panels);
+        chart.caption = [chart.caption, measured.caption].join("\n").trim().to_owned();
+    }
+    Ok(chart)
+}
+
+fn of_bodies(results: &Results, choice: &Choice) -> Result<Chart, ReadError> {
     let rows = results.bodies_table()?;
-    let title = results.manifest().title.clone();
     let references = &results.manifest().references;
     let shown = shown(results, choice);
+    let mut chart = measurements::empty(results);
     if !shown.is_empty() {
-        let panels = panels(&rows, references, &shown);
-        return Ok(Chart { title, panels, caption: caption(&rows, references, &shown) });
+        chart.panels = panels(&rows, references, &shown);
+        chart.caption = caption(&rows, references, &shown);
+        return Ok(chart);
     }
-    let energy = energy_panel(&results.energy_table()?);
-    let centers = center_panel(&rows, results.body_names());
-    Ok(Chart { title, panels: vec![energy, centers], caption: String::new() })
+    chart.panels = vec![energy_panel(&results.energy_table()?), center_panel(&rows, results.body_names())];
+    Ok(chart)
 }
 
 /// A quantity of a body.

@@ -1,9 +1,10 @@
-//! Charts of what a run recorded, over time.
+//! Charts of what a run recorded, over time or over a parameter.
 
 mod contents;
+mod measurements;
 mod paper;
 
-pub use contents::{Choice, chart};
+pub use contents::{Choice, Table, chart};
 pub use paper::draw;
 
 use crate::drawing::Rgb;
@@ -13,13 +14,15 @@ use crate::drawing::Rgb;
 pub struct Chart {
     /// Above everything.
     pub title: String,
+    /// What all panels are drawn over: `time [s]`.
+    pub over: String,
     /// One after the other, two in a row.
     pub panels: Vec<Panel>,
     /// Below everything; may be empty.
     pub caption: String,
 }
 
-/// Curves over time that share an axis.
+/// Curves that share an axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Panel {
     /// What the axis shows: `position`.
@@ -30,7 +33,7 @@ pub struct Panel {
     pub curves: Vec<Curve>,
 }
 
-/// A curve over time.
+/// A curve; one of few points has them marked.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
     /// Its name in the legend.
@@ -39,6 +42,14 @@ pub struct Curve {
     pub color: Rgb,
     /// Drawn as dashes: a known answer rather than a result.
     pub dashed: bool,
-    /// Time [s] and value in SI units.
+    /// Time, or what the chart is drawn over, and value in SI units.
     pub points: Vec<[f64; 2]>,
+}
+
+impl Chart {
+    /// Width and height that suit its panels [pixels].
+    pub fn size(&self) -> [usize; 2] {
+        let rows = self.panels.len().div_ceil(2).max(1);
+        [1280, 120 + 440 * rows]
+    }
 }

@@ -14,6 +14,8 @@ const FAINT: RGBColor = RGBColor(226, 229, 233);
 const SAMPLES: usize = 4;
 /// Numbers along an axis, about.
 const MARKS: usize = 6;
+/// Curves of so few points have them marked.
+const FEW: usize = 12;
 
 /// Draws a chart into a file of this width and height in pixels; a name that ends in `.svg` gives SVG, any other PNG.
 ///
@@ -57,7 +59,7 @@ fn page<D: DrawingBackend>(area: &DrawingArea<D, Shift>, chart: &Chart, pixel: i
     let columns = chart.panels.len().clamp(1, 2);
     let rows = chart.panels.len().div_ceil(columns).max(1);
     for (cell, panel) in body.split_evenly((rows, columns)).iter().zip(&chart.panels) {
-        draw_panel(cell, panel, pixel)?;
+        draw_panel(cell, (panel, &chart.over), pixel)?;
     }
     Ok(())
 }
@@ -68,7 +70,7 @@ fn letters(size: i32, pixel: i32) -> TextStyle<'static> {
 
 fn draw_panel<D: DrawingBackend>(
     area: &DrawingArea<D, Shift>,
-    panel: &Panel,
+    (panel, over): (&Panel, &str),
     pixel: i32,
 ) -> Result<(), DrawError> {
     let [times, values] = [0, 1].map(|axis| range(&panel.curves, axis));
@@ -98,14 +100,19 @@ fn draw_panel<D: DrawingBackend>(
         .set_all_tick_mark_size(4 * pixel)
         .x_label_formatter(&|time| label(*time, times, MARKS))
         .y_label_formatter(&|value| label(*value, values, MARKS))
-        .x_desc("time [s]")
+        .x_desc(over)
         .y_desc(axis_name(panel, size))
         .draw()
         .map_err(DrawError::ink)?;
     for curve in &panel.curves {
         let points = curve.points.iter().map(|[time, value]| (*time, value / size.factor));
+        let points = points.filter(|(_, value)| value.is_finite());
         let style = stroke(curve, pixel);
         let dashes = curve.dashed;
+        if curve.points.len() <= FEW && !dashes {
+            let mark = |point| Circle::new(point, 3 * pixel, style.filled());
+            chart.draw_series(points.clone().map(mark)).map_err(DrawError::ink)?;
+        }
         let series = if dashes {
             chart.draw_series(DashedLineSeries::new(points, 7 * pixel, 5 * pixel, style))
         } else {
@@ -182,6 +189,7 @@ mod tests {
         };
         Chart {
             title: "A sphere rolls down a plane".to_owned(),
+            over: "time [s]".to_owned(),
             panels: vec![panel("position", "m"), panel("velocity", "m/s")],
             caption: "at t = 2 s: sphere x is 0.970 of exact".to_owned(),
         }
@@ -202,7 +210,8 @@ mod tests {
 
     #[test]
     fn a_chart_of_nothing_is_an_error() {
-        let nothing = Chart { title: String::new(), panels: Vec::new(), caption: String::new() };
+        let nothing =
+            Chart { title: String::new(), over: String::new(), panels: Vec::new(), caption: String::new() };
         assert!(matches!(draw(&nothing, Path::new("x.png"), [64, 64]), Err(DrawError::Empty(_))));
     }
 

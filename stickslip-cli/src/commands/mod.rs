@@ -6,6 +6,8 @@ mod plot;
 mod render;
 mod run;
 mod schema;
+mod sweep;
+mod validate;
 
 use crate::failure::Failure;
 use clap::Parser;
@@ -20,11 +22,13 @@ use stickslip::scene::{Loaded, SceneError};
 #[command(name = "stickslip", version, arg_required_else_help = true)]
 pub enum Command {
     Run(run::Arguments),
+    Sweep(sweep::Arguments),
     Check(check::Arguments),
     New(new::Arguments),
     Render(render::Arguments),
     Plot(plot::Arguments),
     Schema(schema::Arguments),
+    Validate(validate::Arguments),
 }
 
 impl Command {
@@ -32,11 +36,13 @@ impl Command {
     pub fn execute(self) -> Result<(), Failure> {
         match self {
             Command::Run(arguments) => arguments.execute(),
+            Command::Sweep(arguments) => arguments.execute(),
             Command::Check(arguments) => arguments.execute(),
             Command::New(arguments) => arguments.execute(),
             Command::Render(arguments) => arguments.execute(),
             Command::Plot(arguments) => arguments.execute(),
             Command::Schema(arguments) => arguments.execute(),
+            Command::Validate(arguments) => arguments.execute(),
         }
     }
 }

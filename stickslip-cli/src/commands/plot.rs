@@ -1,48 +1,35 @@
 //! `stickslip plot DIR`: charts over time.
 
 use super::{open, say};
-use crate::chart::{Choice, chart, draw};
+use crate::chart::{Choice, Table, chart, draw};
 use crate::failure::Failure;
+use crate::sweep;
 use clap::Args;
 use miette::miette;
 use std::path::PathBuf;
-use stickslip::observe::BodyRow;
+use stickslip::observe::{ReadError, Results};
 
-/// Draw what a run recorded over time, with the exact solution where the scene has one.
+/// Draw what a run recorded over time, with the exact solution where the scene has one; or what a sweep came to.
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// Folder of results.
+    /// Folder of results, of a run or of a sweep.
     folder: PathBuf,
 
-    /// Only this body; may be repeated.
+    /// The table to draw; without this, what the scene knows answers for or measures.
+    #[arg(long)]
+    table: Option<Table>,
+
+    /// Only this body, or the probe or front of this name; may be repeated.
     #[arg(long = "body", value_name = "NAME")]
     bodies: Vec<String>,
 
-    /// Columns of bodies.csv, separated by commas; those with exact solutions without this.
-    #[arg(long = "quantity", value_name = "COLUMN", value_delimiter = ',', value_parser = column)]
+    /// Columns of the table, separated by commas; those with exact solutions, or the table's usual one, without this.
+    #[arg(long = "quantity", value_name = "COLUMN", value_delimiter = ',')]
     quantities: Vec<String>,
 
     /// The chart, .png or .svg; DIR/plot.png without this.
     #[arg(long, value_parser = chart_file)]
     out: Option<PathBuf>,
-}
-
-/// Width and height of a chart [pixels].
-const SIZE: [usize; 2] = [1280, 560];
-/// Columns of `bodies.csv` that can be drawn.
-const COLUMNS: &str = "mass, x, y, z, vx, vy, vz, wx, wy, wz, kinetic, strain";
-
-fn column(text: &str) -> Result<String, String> {
-    let known = text != "time" && BodyRow::default().quantity(text).is_some();
-    if known { Ok(text.to_owned()) } else { Err(format!("allowed: {COLUMNS}")) }
-}
-
-#[test]
-fn every_column_that_is_offered_can_be_drawn() {
-    for name in COLUMNS.split(", ") {
-        assert_eq!(column(name).as_deref(), Ok(name));
-    }
-    assert!(column("speed").is_err() && column("time").is_err());
 }
 
 fn chart_file(text: &str) -> Result<PathBuf, String> {
@@ -60,16 +47,53 @@ fn charts_are_png_or_svg() {
 
 impl Arguments {
     pub fn execute(self) -> Result<(), Failure> {
+        if sweep::is_sweep(&self.folder) {
+            return self.sweep();
+        }
         let results = open(&self.folder)?;
-        let names = results.body_names();
+        let table = self.table.unwrap_or(Table::Bodies);
+        let names = names(&results, table).map_err(Failure::input)?;
         if let Some(unknown) = self.bodies.iter().find(|body| !names.contains(body)) {
             return Err(Failure::Input(miette!("--body: found `{unknown}`; allowed: {}", names.join(", "))));
         }
-        let choice = Choice { bodies: self.bodies, quantities: self.quantities };
+        if let Some(unknown) = self.quantities.iter().find(|name| !table.columns().contains(&name.as_str())) {
+            let allowed = table.columns().join(", ");
+            return Err(Failure::Input(miette!("--quantity: found `{unknown}`; allowed: {allowed}")));
+        }
+        let choice = Choice { bodies: self.bodies, quantities: self.quantities, table: self.table };
         let out = self.out.unwrap_or_else(|| self.folder.join("plot.png"));
         let chart = chart(&results, &choice).map_err(Failure::input)?;
-        draw(&chart, &out, SIZE)?;
+        draw(&chart, &out, chart.size())?;
         say(&format!("{} is written", out.display()))?;
         if chart.caption.is_empty() { Ok(()) } else { say(&chart.caption) }
     }
+}
+
+impl Arguments {
+    fn sweep(self) -> Result<(), Failure> {
+        if self.table.is_some() || !self.bodies.is_empty() || !self.quantities.is_empty() {
+            let folder = self.folder.display();
+            return Err(Failure::Input(miette!(
+                help = format!("draw one of its runs: stickslip plot {folder}/RUN"),
+                "{folder} is a sweep; allowed with it: --out"
+            )));
+        }
+        let chart = sweep::chart(&sweep::read(&self.folder)?);
+        let out = self.out.unwrap_or_else(|| self.folder.join("plot.png"));
+        draw(&chart, &out, chart.size())?;
+        say(&format!("{} is written", out.display()))
+    }
+}
+
+/// What the rows of a table are about.
+fn names(results: &Results, table: Table) -> Result<Vec<String>, ReadError> {
+    let mut names: Vec<String> = match table {
+        Table::Bodies | Table::Contacts => return Ok(results.body_names().to_vec()),
+        Table::Probes => results.probes_table()?.into_iter().map(|row| row.probe).collect(),
+        Table::Arrivals => results.arrivals_table()?.into_iter().map(|row| row.place).collect(),
+        Table::Fronts => results.fronts_table()?.into_iter().map(|row| row.front).collect(),
+    };
+    names.sort();
+    names.dedup();
+    Ok(names)
 }

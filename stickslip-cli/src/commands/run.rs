@@ -10,8 +10,9 @@ use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use stickslip::observe::Status;
+use stickslip::observe::{ArrivalRow, FrontSpeedRow, Results, Status};
 use stickslip::run::{RunError, RunOptions};
+use stickslip::scene::Scene;
 
 /// Run a scene and write its results.
 #[derive(Debug, Args)]
@@ -33,15 +34,15 @@ pub struct Arguments {
 }
 
 /// Where the results go if the user does not say.
-fn default_folder(scene: &Path) -> PathBuf {
+pub fn default_folder(scene: &Path, kind: &str) -> PathBuf {
     let mut name = scene.file_stem().unwrap_or(scene.as_os_str()).to_owned();
-    name.push(".results");
+    name.push(format!(".{kind}"));
     PathBuf::from(name)
 }
 
 #[test]
 fn results_go_beside_the_user_not_beside_the_scene() {
-    let folder = default_folder(Path::new("scenes/paper/inclined_plane_no_slip.toml"));
+    let folder = default_folder(Path::new("scenes/paper/inclined_plane_no_slip.toml"), "results");
     assert_eq!(folder, PathBuf::from("inclined_plane_no_slip.results"));
 }
 
@@ -52,7 +53,7 @@ impl Arguments {
         let threads = use_threads(self.threads)?;
         let mut simulation = stickslip::engine::build(scene)
             .map_err(|problem| Failure::input(loaded.source.locate(problem)))?;
-        let out = self.out.clone().unwrap_or_else(|| default_folder(&self.scene));
+        let out = self.out.clone().unwrap_or_else(|| default_folder(&self.scene, "results"));
         let options = RunOptions { out: out.clone(), stop: stop_on_interrupt()?, threads };
         let display = Display::new(scene.time.end, std::io::stderr().is_terminal());
         let outcome =
@@ -67,11 +68,29 @@ impl Arguments {
                 return Err(Failure::run(error));
             }
         };
-        say(&format!("{}\n{summary}", scene.title))?;
+        say(&format!("{}\n{summary}{}", scene.title, measured(&out, scene)?))?;
         let drawn = illustrate(&out)?;
         say(&format!("results in {}/: {drawn}", out.display()))?;
         if summary.status == Status::Interrupted { Err(Failure::Interrupted) } else { Ok(()) }
     }
+}
+
+/// A line for each arrival and each front's speed; a threshold that was not passed has none.
+fn measured(folder: &Path, scene: &Scene) -> Result<String, Failure> {
+    let results = Results::open(folder).map_err(Failure::input)?;
+    let unit = scene.outputs.measurements.unit();
+    let arrival = |row: &ArrivalRow| {
+        let units = unit.map_or(String::new(), |unit| format!(", {:.4} time units", row.time / unit));
+        let ArrivalRow { time, quantity, threshold, place, reading, .. } = row;
+        format!("  arrival    {quantity} {threshold:.3e} at {place} ({reading}): t = {time:.6e} s{units}\n")
+    };
+    let speed = |row: &FrontSpeedRow| {
+        let FrontSpeedRow { front, speed, error, .. } = row;
+        format!("  front      {front}: {speed:.6} m/s by fit, standard error {error:.2}\n")
+    };
+    let arrivals = results.arrivals_table().map_err(Failure::input)?;
+    let speeds = results.front_speeds_table().map_err(Failure::input)?;
+    Ok(arrivals.iter().map(arrival).chain(speeds.iter().map(speed)).collect())
 }
 
 /// Makes the threads of the run, and says how many there are.
@@ -82,7 +101,7 @@ fn use_threads(threads: Option<u16>) -> Result<usize, Failure> {
 }
 
 /// A flag that the first Ctrl-C sets; the second ends the program at once.
-fn stop_on_interrupt() -> Result<Arc<AtomicBool>, Failure> {
+pub fn stop_on_interrupt() -> Result<Arc<AtomicBool>, Failure> {
     let stop = Arc::new(AtomicBool::new(false));
     let flag = Arc::clone(&stop);
     let installed = ctrlc::set_handler(move || {

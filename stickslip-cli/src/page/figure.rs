@@ -70,7 +70,7 @@ impl Image {
 }
 
 /// The address on a page that a heading or a name has: `Poisson's ratio` is at `poisson-s-ratio`.
-pub(super) fn address(name: &str) -> String {
+pub fn address(name: &str) -> String {
     let words = name.split(|c: char| !c.is_ascii_alphanumeric()).filter(|word| !word.is_empty());
     words.map(str::to_ascii_lowercase).collect::<Vec<_>>().join("-")
 }

@@ -68,6 +68,7 @@ fn section(section: &Section) -> Markup {
             @for block in &section.blocks {
                 @match block {
                     Block::Text(text) => p { (text) },
+                    Block::Sketch(text) => pre { (text) },
                     Block::Warning(text) => p.warning { (text) },
                     Block::Figure(figure) => (self::figure(figure)),
                     Block::Table(table) => (self::table(table)),
@@ -130,10 +131,20 @@ fn cell(cell: &Cell) -> Markup {
     html! {
         @match cell {
             Cell::Text(text) | Cell::Number(text) => (text),
-            Cell::Verdict(Verdict::Passed) => span.passed { "passed" },
-            Cell::Verdict(Verdict::Failed) => span.failed { "failed" },
-            Cell::Verdict(Verdict::Known) => span.known { "known" },
+            Cell::Verdict(verdict) => span class=(verdict.class()) { (verdict.class()) },
+            Cell::Judged(text, verdict, address) => a class=(verdict.class()) href={ "#" (address) } { (text) },
             Cell::Empty => "",
+        }
+    }
+}
+
+impl Verdict {
+    /// The word for it, which is its class of style too.
+    fn class(self) -> &'static str {
+        match self {
+            Verdict::Passed => "passed",
+            Verdict::Failed => "failed",
+            Verdict::Known => "known",
         }
     }
 }

@@ -7,7 +7,7 @@ mod html;
 mod making;
 mod table;
 
-pub use figure::{Figure, Image};
+pub use figure::{Figure, Image, address};
 pub use making::Making;
 pub use table::{Cell, Column, Table, Verdict};
 
@@ -44,6 +44,8 @@ pub enum Block {
     Text(Markup),
     /// A paragraph that the reader must not miss: something failed.
     Warning(Markup),
+    /// A sketch in characters.
+    Sketch(String),
     /// Pictures and charts with a caption.
     Figure(Figure),
     /// Numbers.
@@ -97,6 +99,11 @@ impl Section {
     /// Adds a paragraph that stands out.
     pub fn warning(self, paragraph: impl Render) -> Self {
         self.block(Block::Warning(paragraph.render()))
+    }
+
+    /// Adds a sketch in characters, line by line as it stands.
+    pub fn sketch(self, lines: impl Into<String>) -> Self {
+        self.block(Block::Sketch(lines.into()))
     }
 
     /// Adds a figure.

@@ -36,6 +36,8 @@ pub enum Cell {
     Number(String),
     /// Whether something holds.
     Verdict(Verdict),
+    /// Words or a number that show whether something holds by their colour, with the address of more on the page.
+    Judged(String, Verdict, String),
     /// Nothing to say.
     Empty,
 }

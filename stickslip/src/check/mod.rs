@@ -6,6 +6,7 @@
 mod bodies;
 mod contact;
 mod hertz;
+mod measurements;
 mod neighbours;
 mod overlap;
 mod report;
@@ -34,6 +35,7 @@ pub fn problems(scene: &Scene) -> Result<(), Problem> {
 fn examine(scene: &Scene) -> Result<Vec<bodies::Extent>, Problem> {
     settings::check(scene)?;
     shapes::check(scene)?;
+    measurements::check(scene)?;
     let extents = bodies::measure(scene)?;
     bodies::check_domain(scene, &extents)?;
     overlap::check(scene, &extents)?;
@@ -93,7 +95,12 @@ mod tests {
             materials: vec![neo_hookean("soft", 1.0), neo_hookean("stiff", 10.0)],
             bodies,
             contact: vec![],
-            outputs: Outputs { tables: 0.1, particles: None, grid: None },
+            outputs: Outputs {
+                tables: 0.1,
+                particles: None,
+                grid: None,
+                measurements: Measurements::default(),
+            },
             references: vec![],
         }
     }

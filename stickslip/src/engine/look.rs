@@ -2,7 +2,9 @@
 
 use super::Engine;
 use crate::basis::Basis;
-use crate::door::{BodyState, ContactState, GridSnapshot, Ledger, ParticleSnapshot, Simulation, StepError};
+use crate::door::{
+    BodyState, ContactState, GridSnapshot, Ledger, ParticleSnapshot, ParticleView, Simulation, StepError,
+};
 use crate::grid::{node_at, nodes_per_block};
 use crate::lanes::Laned;
 use crate::tensor::Real;
@@ -103,6 +105,18 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
             }
         }
         snapshot
+    }
+
+    fn visit(&self, body: usize, look: &mut dyn FnMut(&ParticleView)) {
+        for particle in &self.bodies[body].particles {
+            look(&ParticleView {
+                number: particle.number,
+                mass: particle.mass.f64(),
+                position: particle.position.space(),
+                velocity: particle.velocity.space(),
+                stress: particle.stress.0.map(Real::f64),
+            });
+        }
     }
 
     fn grid_snapshot(&self) -> GridSnapshot {

@@ -3,7 +3,7 @@
 use super::file::OutputError;
 use super::folder::OutputFolder;
 use super::schedule::Schedule;
-use super::table::Table;
+use super::table::{Row, Table};
 use super::{BODIES, Observer};
 use crate::door::{BodyState, Simulation};
 use crate::scene::Scene;
@@ -71,6 +71,12 @@ impl BodyRow {
     }
 }
 
+impl Row for BodyRow {
+    fn time(&self) -> f64 {
+        self.time
+    }
+}
+
 /// Writes `bodies.csv`.
 pub(super) struct Bodies {
     names: Vec<String>,
@@ -83,7 +89,7 @@ impl Bodies {
         Ok(Bodies {
             names: scene.bodies.iter().map(|body| body.name.clone()).collect(),
             schedule: Schedule::every(scene.outputs.tables),
-            table: Table::create(folder.join(BODIES))?,
+            table: Table::create(folder.join(BODIES), scene.outputs.measurements.unit())?,
         })
     }
 }

@@ -3,7 +3,7 @@
 use super::file::OutputError;
 use super::folder::OutputFolder;
 use super::schedule::Schedule;
-use super::table::Table;
+use super::table::{Row, Table};
 use super::{CONTACTS, Observer};
 use crate::door::Simulation;
 use crate::scene::Scene;
@@ -34,6 +34,12 @@ pub struct ContactRow {
     pub nodes: usize,
 }
 
+impl Row for ContactRow {
+    fn time(&self) -> f64 {
+        self.time
+    }
+}
+
 /// Writes `contacts.csv`. It alone calls [`Simulation::take_contacts`], so that each row's average starts at the row before.
 pub(super) struct Contacts {
     names: Vec<String>,
@@ -46,7 +52,7 @@ impl Contacts {
         Ok(Contacts {
             names: scene.bodies.iter().map(|body| body.name.clone()).collect(),
             schedule: Schedule::every(scene.outputs.tables),
-            table: Table::create(folder.join(CONTACTS))?,
+            table: Table::create(folder.join(CONTACTS), scene.outputs.measurements.unit())?,
         })
     }
 }

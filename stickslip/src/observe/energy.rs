@@ -3,7 +3,7 @@
 use super::file::OutputError;
 use super::folder::OutputFolder;
 use super::schedule::Schedule;
-use super::table::Table;
+use super::table::{Row, Table};
 use super::{ENERGY, Observer};
 use crate::door::{Ledger, Simulation};
 use crate::scene::Scene;
@@ -70,6 +70,12 @@ impl EnergyRow {
     }
 }
 
+impl Row for EnergyRow {
+    fn time(&self) -> f64 {
+        self.time
+    }
+}
+
 /// Writes `energy.csv`.
 pub(super) struct Energy {
     schedule: Schedule,
@@ -80,7 +86,7 @@ impl Energy {
     pub(super) fn create(scene: &Scene, folder: &OutputFolder) -> Result<Self, OutputError> {
         Ok(Energy {
             schedule: Schedule::every(scene.outputs.tables),
-            table: Table::create(folder.join(ENERGY))?,
+            table: Table::create(folder.join(ENERGY), scene.outputs.measurements.unit())?,
         })
     }
 }

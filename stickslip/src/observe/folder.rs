@@ -2,14 +2,25 @@
 
 use super::file::part_of;
 use super::manifest::Manifest;
-use super::{BODIES, CONTACTS, ENERGY, GRID, PARTICLES};
+use super::{ARRIVALS, BODIES, CONTACTS, ENERGY, FRONT_SPEEDS, FRONTS, GRID, PARTICLES, PROBES};
 use miette::Diagnostic;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
 /// Files that a run may leave in its folder.
-const FILES: [&str; 6] = [BODIES, ENERGY, CONTACTS, "particles.pvd", "grid.pvd", Manifest::FILE];
+const FILES: [&str; 10] = [
+    BODIES,
+    ENERGY,
+    CONTACTS,
+    PROBES,
+    ARRIVALS,
+    FRONTS,
+    FRONT_SPEEDS,
+    "particles.pvd",
+    "grid.pvd",
+    Manifest::FILE,
+];
 /// Folders of snapshots that a run may leave in its folder.
 const SNAPSHOTS: [&str; 2] = [PARTICLES, GRID];
 

@@ -6,15 +6,19 @@
 //! failing step, a full disk), every file that is there can be read: tables hold whole rows only, and snapshots, their `.pvd` list
 //! and `run.json` are written under another name and renamed when complete.
 
+mod arrivals;
 mod bodies;
 mod contacts;
 mod energy;
 mod file;
 mod folder;
 mod frames;
+mod fronts;
 mod grid;
 mod manifest;
 mod particles;
+mod points;
+mod probes;
 mod recorder;
 mod results;
 mod schedule;
@@ -22,15 +26,18 @@ mod table;
 mod vtu;
 mod xml;
 
+pub use arrivals::ArrivalRow;
 pub use bodies::BodyRow;
 pub use contacts::ContactRow;
 pub use energy::EnergyRow;
 pub use file::{OutputError, ReadError, ReadProblem};
 pub use folder::{FolderError, OutputFolder};
 pub use frames::Frame;
+pub use fronts::{FrontRow, FrontSpeedRow};
 pub use grid::encode_grid;
 pub use manifest::{Manifest, Performance, ReferenceCurve, Status, Timing};
 pub use particles::{encode_particles, read_particles};
+pub use probes::ProbeRow;
 pub use recorder::Recorder;
 pub use results::Results;
 pub use vtu::Vtu;
@@ -40,6 +47,10 @@ use crate::door::Simulation;
 const BODIES: &str = "bodies.csv";
 const ENERGY: &str = "energy.csv";
 const CONTACTS: &str = "contacts.csv";
+const PROBES: &str = "probes.csv";
+const ARRIVALS: &str = "arrivals.csv";
+const FRONTS: &str = "fronts.csv";
+const FRONT_SPEEDS: &str = "front_speeds.csv";
 const PARTICLES: &str = "particles";
 const GRID: &str = "grid";
 
@@ -53,6 +64,14 @@ pub trait Observer {
     /// # Errors
     /// The disk is full or refuses; what was recorded before stays readable.
     fn observe(&mut self, simulation: &mut dyn Simulation) -> Result<(), OutputError>;
+
+    /// Writes what only the whole of the records tells: called once, after the last.
+    ///
+    /// # Errors
+    /// The disk is full or refuses.
+    fn conclude(&mut self) -> Result<(), OutputError> {
+        Ok(())
+    }
 
     /// Whether a second record at the same time takes the place of the first, as for snapshots; tables would repeat a row.
     fn replaces(&self) -> bool {

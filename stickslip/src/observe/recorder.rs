@@ -1,13 +1,16 @@
 //! All observers of a run, asked at the right times.
 
 use super::Observer;
+use super::arrivals::Arrivals;
 use super::bodies::Bodies;
 use super::contacts::Contacts;
 use super::energy::Energy;
 use super::file::OutputError;
 use super::folder::OutputFolder;
+use super::fronts::Fronts;
 use super::grid::Grid;
 use super::particles::Particles;
+use super::probes::Probes;
 use crate::door::Simulation;
 use crate::scene::Scene;
 
@@ -33,6 +36,16 @@ impl Recorder {
             Box::new(Energy::create(scene, folder)?),
             Box::new(Contacts::create(scene, folder)?),
         ];
+        let wanted = &scene.outputs.measurements;
+        if !wanted.probes.is_empty() {
+            observers.push(Box::new(Probes::create(scene, folder)?));
+        }
+        if !wanted.arrivals.is_empty() {
+            observers.push(Box::new(Arrivals::create(scene, folder)?));
+        }
+        if !wanted.fronts.is_empty() {
+            observers.push(Box::new(Fronts::create(scene, folder)?));
+        }
         if let Some(interval) = scene.outputs.particles {
             observers.push(Box::new(Particles::create(interval, folder)?));
         }
@@ -69,6 +82,14 @@ impl Recorder {
     pub fn record_failure(&mut self, simulation: &mut dyn Simulation) -> Result<(), OutputError> {
         let time = simulation.time();
         self.record_where(simulation, |seat| seat.last != Some(time) || seat.observer.replaces())
+    }
+
+    /// Lets every output write what only the whole run tells: to be called once, after the last record.
+    ///
+    /// # Errors
+    /// A file cannot be written.
+    pub fn conclude(&mut self) -> Result<(), OutputError> {
+        self.seats.iter_mut().try_for_each(|seat| seat.observer.conclude())
     }
 
     fn record_where(

@@ -1,15 +1,19 @@
 //! Reading what a run wrote: for plots, pictures and tests.
 
+use super::arrivals::ArrivalRow;
 use super::bodies::BodyRow;
 use super::contacts::ContactRow;
 use super::energy::EnergyRow;
 use super::file::ReadError;
 use super::frames::{Frame, read_frames};
+use super::fronts::{FrontRow, FrontSpeedRow};
 use super::manifest::Manifest;
 use super::particles::read_particles;
+use super::probes::ProbeRow;
 use super::table::read_rows;
-use super::{BODIES, CONTACTS, ENERGY, PARTICLES};
+use super::{ARRIVALS, BODIES, CONTACTS, ENERGY, FRONT_SPEEDS, FRONTS, PARTICLES, PROBES};
 use crate::door::ParticleSnapshot;
+use serde::de::DeserializeOwned;
 use std::path::{Path, PathBuf};
 
 /// The results of a run, finished or not.
@@ -77,5 +81,43 @@ impl Results {
     /// The file is missing or damaged.
     pub fn contacts_table(&self) -> Result<Vec<ContactRow>, ReadError> {
         read_rows(&self.folder.join(CONTACTS))
+    }
+
+    /// `probes.csv`: at each sample a row for each probe that has material around it; none if the scene has no probes.
+    ///
+    /// # Errors
+    /// The file is damaged; so for the tables of the other measurements.
+    pub fn probes_table(&self) -> Result<Vec<ProbeRow>, ReadError> {
+        self.measured(PROBES)
+    }
+
+    /// `arrivals.csv`: a row for each threshold that was passed, in the order of passing.
+    ///
+    /// # Errors
+    /// The file is damaged.
+    pub fn arrivals_table(&self) -> Result<Vec<ArrivalRow>, ReadError> {
+        self.measured(ARRIVALS)
+    }
+
+    /// `fronts.csv`: at each sample a row for each front that there is.
+    ///
+    /// # Errors
+    /// The file is damaged.
+    pub fn fronts_table(&self) -> Result<Vec<FrontRow>, ReadError> {
+        self.measured(FRONTS)
+    }
+
+    /// `front_speeds.csv`: a row for each front that went far enough.
+    ///
+    /// # Errors
+    /// The file is damaged.
+    pub fn front_speeds_table(&self) -> Result<Vec<FrontSpeedRow>, ReadError> {
+        self.measured(FRONT_SPEEDS)
+    }
+
+    /// The rows of a table that is there only if the scene asks for it.
+    fn measured<R: DeserializeOwned>(&self, name: &str) -> Result<Vec<R>, ReadError> {
+        let path = self.folder.join(name);
+        if path.exists() { read_rows(&path) } else { Ok(Vec::new()) }
     }
 }

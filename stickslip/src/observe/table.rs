@@ -8,23 +8,35 @@ use std::io::{self, Write};
 use std::marker::PhantomData;
 use std::path::{Path, PathBuf};
 
-/// A growing table whose columns are the fields of `Row`.
-pub(super) struct Table<Row> {
+/// A row of a table through time.
+pub(super) trait Row: Serialize + Default {
+    /// Simulated time [s].
+    fn time(&self) -> f64;
+}
+
+/// Column of the time in the scene's own unit, after those of the row.
+pub(super) const TIME_UNITS: &str = "time_units";
+
+/// A growing table whose columns are the fields of a row and, if the scene has a unit of time, the time in it.
+pub(super) struct Table<R> {
     path: PathBuf,
     file: File,
     /// Bytes of the whole rows written so far.
     length: u64,
-    row: PhantomData<Row>,
+    /// Length of the scene's unit of time [s].
+    unit: Option<f64>,
+    row: PhantomData<R>,
 }
 
-impl<Row: Serialize + Default> Table<Row> {
+impl<R: Row> Table<R> {
     /// A table with its header and no rows yet.
-    pub(super) fn create(path: PathBuf) -> Result<Self, OutputError> {
+    pub(super) fn create(path: PathBuf, unit: Option<f64>) -> Result<Self, OutputError> {
         let file = File::create(&path).map_err(OutputError::at(&path))?;
-        let mut table = Table { path, file, length: 0, row: PhantomData };
-        let with_header = encode([Row::default()], true);
-        let header = with_header.split_inclusive(|&byte| byte == b'\n').next().unwrap_or_default();
-        table.write(header)?;
+        let mut table = Table { path, file, length: 0, unit, row: PhantomData };
+        let with_header = encode([R::default()], true);
+        let header = with_header.split(|&byte| byte == b'\n').next().unwrap_or_default();
+        let more = if unit.is_some() { format!(",{TIME_UNITS}\n") } else { "\n".to_string() };
+        table.write(&[header, more.as_bytes()].concat())?;
         Ok(table)
     }
 
@@ -32,8 +44,17 @@ impl<Row: Serialize + Default> Table<Row> {
     ///
     /// # Errors
     /// The disk is full or refuses; then the file ends with the rows it had before.
-    pub(super) fn append(&mut self, rows: impl IntoIterator<Item = Row>) -> Result<(), OutputError> {
-        self.write(&encode(rows, false))
+    pub(super) fn append(&mut self, rows: impl IntoIterator<Item = R>) -> Result<(), OutputError> {
+        self.write(&match self.unit {
+            None => encode(rows, false),
+            Some(unit) => {
+                let timed = rows.into_iter().map(|row| {
+                    let time = row.time() / unit;
+                    (row, time)
+                });
+                encode(timed, false)
+            }
+        })
     }
 
     fn write(&mut self, bytes: &[u8]) -> Result<(), OutputError> {
@@ -47,7 +68,7 @@ impl<Row: Serialize + Default> Table<Row> {
     }
 }
 
-fn encode<Row: Serialize>(rows: impl IntoIterator<Item = Row>, header: bool) -> Vec<u8> {
+fn encode<R: Serialize>(rows: impl IntoIterator<Item = R>, header: bool) -> Vec<u8> {
     let mut writer = csv::WriterBuilder::new().has_headers(header).from_writer(Vec::new());
     for row in rows {
         writer.serialize(row).expect("rows are flat structs of numbers and names");
@@ -59,8 +80,8 @@ fn encode<Row: Serialize>(rows: impl IntoIterator<Item = Row>, header: bool) -> 
 ///
 /// # Errors
 /// The file is missing or is not a table of such rows. A last line that is cut short is ignored: a run may be writing it.
-pub(super) fn read_rows<Row: DeserializeOwned>(path: &Path) -> Result<Vec<Row>, ReadError> {
-    let rows = || -> Result<Vec<Row>, ReadProblem> {
+pub(super) fn read_rows<R: DeserializeOwned>(path: &Path) -> Result<Vec<R>, ReadError> {
+    let rows = || -> Result<Vec<R>, ReadProblem> {
         let bytes = fs::read(path)?;
         let whole = bytes.iter().rposition(|&byte| byte == b'\n').map_or(0, |last| last + 1);
         if whole == 0 {
@@ -77,31 +98,47 @@ mod tests {
     use serde::Deserialize;
 
     #[derive(Debug, Default, PartialEq, Serialize, Deserialize)]
-    struct Row {
+    struct Place {
         time: f64,
         body: String,
     }
 
-    fn row(time: f64, body: &str) -> Row {
-        Row { time, body: body.into() }
+    impl Row for Place {
+        fn time(&self) -> f64 {
+            self.time
+        }
+    }
+
+    fn row(time: f64, body: &str) -> Place {
+        Place { time, body: body.into() }
     }
 
     #[test]
     fn numbers_and_names_come_back_exactly() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("table.csv");
-        let mut table = Table::create(path.clone()).unwrap();
+        let mut table = Table::create(path.clone(), None).unwrap();
         assert_eq!(fs::read_to_string(&path).unwrap(), "time,body\n");
         table.append([row(0.1 + 0.2, "a"), row(-1e-300, "ball, \"left\"")]).unwrap();
-        assert_eq!(read_rows::<Row>(&path).unwrap(), [row(0.1 + 0.2, "a"), row(-1e-300, "ball, \"left\"")]);
+        assert_eq!(read_rows::<Place>(&path).unwrap(), [row(0.1 + 0.2, "a"), row(-1e-300, "ball, \"left\"")]);
         fs::OpenOptions::new().append(true).open(&path).unwrap().write_all(b"0.5,ca").unwrap();
-        assert_eq!(read_rows::<Row>(&path).unwrap().len(), 2);
+        assert_eq!(read_rows::<Place>(&path).unwrap().len(), 2);
+    }
+
+    #[test]
+    fn a_unit_of_time_adds_a_column_that_readers_may_leave_out() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("table.csv");
+        let mut table = Table::create(path.clone(), Some(0.25)).unwrap();
+        table.append([row(0.5, "a"), row(1.0, "b, c")]).unwrap();
+        assert_eq!(fs::read_to_string(&path).unwrap(), "time,body,time_units\n0.5,a,2.0\n1.0,\"b, c\",4.0\n");
+        assert_eq!(read_rows::<Place>(&path).unwrap(), [row(0.5, "a"), row(1.0, "b, c")]);
     }
 
     #[test]
     #[cfg(target_os = "linux")]
     fn a_full_disk_is_an_error_that_names_the_table() {
-        let error = Table::<Row>::create("/dev/full".into()).err().unwrap();
+        let error = Table::<Place>::create("/dev/full".into(), None).err().unwrap();
         assert!(error.to_string().contains("/dev/full"), "{error}");
         assert_eq!(error.source.kind(), io::ErrorKind::StorageFull);
     }

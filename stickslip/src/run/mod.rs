@@ -90,6 +90,7 @@ impl March<'_> {
             }
         };
         self.recorder.record_present(self.simulation)?;
+        self.recorder.conclude()?;
         progress(&self.clock.progress(self.simulation, end));
         Ok(status)
     }
@@ -98,7 +99,9 @@ impl March<'_> {
     fn step(&mut self, longest: f64) -> Result<f64, RunError> {
         let before = self.simulation.time();
         if let Err(error) = self.simulation.step(longest) {
-            let unsaved = self.recorder.record_failure(self.simulation).err();
+            let recorder = &mut self.recorder;
+            let recorded = recorder.record_failure(self.simulation).and_then(|()| recorder.conclude());
+            let unsaved = recorded.err();
             return Err(RunError::Step { error, unsaved });
         }
         let time = self.simulation.time();
@@ -106,6 +109,7 @@ impl March<'_> {
             return Ok(time - before);
         }
         self.recorder.record_failure(self.simulation)?;
+        self.recorder.conclude()?;
         Err(RunError::Stuck { time, step: self.simulation.stable_step() })
     }
 }

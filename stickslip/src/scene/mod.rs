@@ -8,6 +8,7 @@ mod expression;
 mod file;
 mod formula;
 mod load;
+mod measurements;
 mod overrides;
 mod parameters;
 mod problem;
@@ -19,6 +20,7 @@ mod units;
 pub use error::{Mistake, SceneError};
 pub use expression::{Expression, Program};
 pub use load::{Loaded, load, parse};
+pub use measurements::{Anchor, Arrival, Front, Measurements, Observable, Probe, Reading, TimeUnit};
 pub use problem::Problem;
 pub use schema::schema;
 pub use source::Source;
@@ -291,6 +293,8 @@ pub struct Outputs {
     pub particles: Option<f64>,
     /// Grid nodes for ParaView.
     pub grid: Option<f64>,
+    /// Probes, arrivals and fronts.
+    pub measurements: Measurements,
 }
 
 /// A known answer for one quantity of one body.

@@ -218,7 +218,12 @@ pub fn scene() -> Scene {
         materials: vec![NamedMaterial { name: "rubber".into(), density: 1000.0, law }],
         bodies: vec![body("sphere"), body("plane")],
         contact: vec![ContactRule { friction: f64::INFINITY, ..Default::default() }],
-        outputs: Outputs { tables: 0.1, particles: Some(0.25), grid: Some(0.5) },
+        outputs: Outputs {
+            tables: 0.1,
+            particles: Some(0.25),
+            grid: Some(0.5),
+            measurements: Measurements::default(),
+        },
         references: vec![Reference {
             body: "sphere".into(),
             quantity: "vx".into(),

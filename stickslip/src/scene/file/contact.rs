@@ -48,6 +48,13 @@ impl Choice for ContactLaw {
     ];
 }
 
+impl ContactLaw {
+    /// Every law: its word in scene files, the law, and when its bodies push on each other, in a sentence.
+    pub fn words() -> impl Iterator<Item = (&'static str, Self, &'static str)> {
+        Self::WORDS.iter().copied()
+    }
+}
+
 impl Choice for Normal {
     const WORDS: &'static [(&'static str, Self, &'static str)] = &[
         ("common", Normal::Common, "One direction for the pair; conserves momentum."),

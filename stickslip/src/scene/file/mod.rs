@@ -4,6 +4,7 @@
 mod body;
 mod contact;
 mod material;
+mod measurements;
 mod outputs;
 mod quantity;
 mod read;
@@ -92,7 +93,7 @@ pub(super) fn resolve(source: &Source) -> Result<Scene, Fault> {
         discretization: file.space.discretization(context)?,
         domain: file.space.domain(context)?,
         gravity: file.gravity.map_or(Ok([0.0; 3]), |gravity| gravity.value(context))?,
-        outputs: outputs::resolve(file.outputs.as_ref(), time.end, context)?,
+        outputs: outputs::resolve(file.outputs.as_ref(), (&bodies, time.end), context)?,
         references: outputs::references(file.references.as_deref().unwrap_or_default(), &bodies, context)?,
         time,
         materials,

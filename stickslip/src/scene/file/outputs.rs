@@ -1,6 +1,7 @@
 //! `[outputs]` and `[[references]]`: what is written, and what it is held against.
 
 use super::Context;
+use super::measurements::{self, Arrival, Front, Probe, Sampling};
 use super::quantity::{Duration, Quantity, evaluate};
 use super::read::{Read, table};
 use super::text::Text;
@@ -22,6 +23,16 @@ table! {
         /// Interval between snapshots of the grid for ParaView [s], or "never".
         #[schemars(extend("default" = "never"))]
         grid: Option<Interval>,
+        /// What non-dimensional time counts in, such as "diameter / c_L" [s]; tables then have a column `time_units`.
+        time_unit: Option<Quantity<Duration>>,
+        /// Interval between samples of probes, arrivals and fronts [s], or "step" for every step; by default 1/1000 of the run.
+        samples: Option<Sampling>,
+        /// Points at which velocity and stress are recorded: [[outputs.probes]].
+        probes: Option<Vec<Probe>>,
+        /// Thresholds whose first passing is recorded: [[outputs.arrivals]].
+        arrivals: Option<Vec<Arrival>>,
+        /// Fronts whose position and speed are recorded: [[outputs.fronts]].
+        fronts: Option<Vec<Front>>,
     }
 }
 
@@ -67,7 +78,11 @@ const QUANTITIES: &[(&str, [i8; 3])] = &[
 ];
 
 /// What is written in a run of length `end` [s].
-pub fn resolve(outputs: Option<&Outputs>, end: f64, context: &Context) -> Result<scene::Outputs, Fault> {
+pub fn resolve(
+    outputs: Option<&Outputs>,
+    (bodies, end): (&[Body], f64),
+    context: &Context,
+) -> Result<scene::Outputs, Fault> {
     let tables = outputs.and_then(|outputs| outputs.tables.as_ref());
     let particles = outputs.and_then(|outputs| outputs.particles.as_ref());
     let grid = outputs.and_then(|outputs| outputs.grid.as_ref());
@@ -75,6 +90,7 @@ pub fn resolve(outputs: Option<&Outputs>, end: f64, context: &Context) -> Result
         tables: tables.map_or(Ok(end / 200.0), |interval| interval.positive(context))?,
         particles: particles.map_or(Ok(Some(end / 40.0)), |interval| interval.value(context))?,
         grid: grid.map_or(Ok(None), |interval| interval.value(context))?,
+        measurements: measurements::resolve(outputs, (bodies, end), context)?,
     })
 }
 

@@ -54,6 +54,14 @@ impl Text {
         Err(self.refused(&name, allowed).help(did_you_mean(&name, known.iter().copied())))
     }
 
+    /// Refuses a name that is empty or among those that are `taken`.
+    pub fn unlike<'n>(&self, name: &str, mut taken: impl Iterator<Item = &'n str>) -> Result<(), Fault> {
+        if name.trim().is_empty() || taken.any(|other| other == name) {
+            return Err(self.refused(name, "a name that no other in the list has"));
+        }
+        Ok(())
+    }
+
     /// The fault of a text that is not allowed.
     pub fn refused(&self, value: &str, allowed: impl Into<String>) -> Fault {
         let mut fault = self.0.fault(allowed);

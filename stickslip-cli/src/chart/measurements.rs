@@ -1,0 +1,266 @@
+//! What a chart shows of forces, probes, arrivals and fronts.
+
+use super::contents::{Choice, MOST_CURVES, Table};
+use super::{Chart, Curve, Panel};
+use crate::drawing::body_color;
+use stickslip::observe::{ArrivalRow, ContactRow, FrontSpeedRow, ProbeRow, ReadError, Results};
+
+/// Columns of `probes.csv` that can be drawn.
+pub const PROBE_COLUMNS: &[&str] = &[
+    "stress_difference",
+    "pressure",
+    "von_mises",
+    "xx",
+    "yy",
+    "zz",
+    "xy",
+    "yz",
+    "xz",
+    "vx",
+    "vy",
+    "vz",
+    "x",
+    "y",
+    "z",
+];
+
+/// The time that a chart is drawn over: seconds, or the scene's own unit.
+pub struct Clock {
+    unit: f64,
+    name: String,
+}
+
+impl Clock {
+    /// The unit of a run.
+    pub fn of(results: &Results) -> Self {
+        let unit = &results.manifest().scene["outputs"]["measurements"]["time_unit"];
+        match (unit["seconds"].as_f64(), unit["name"].as_str()) {
+            (Some(seconds), Some(name)) => Clock { unit: seconds, name: format!("time / ({name})") },
+            _ => Clock { unit: 1.0, name: "time [s]".to_owned() },
+        }
+    }
+
+    /// Draws a chart that is in seconds over this time.
+    pub fn apply(&self, chart: &mut Chart) {
+        chart.over.clone_from(&self.name);
+        let curves = chart.panels.iter_mut().flat_map(|panel| &mut panel.curves);
+        curves.flat_map(|curve| &mut curve.points).for_each(|point| point[0] /= self.unit);
+    }
+}
+
+/// A chart of a run without panels.
+pub fn empty(results: &Results) -> Chart {
+    let title = results.manifest().title.clone();
+    Chart { title, over: String::new(), panels: Vec::new(), caption: String::new() }
+}
+
+/// The chart of a table other than that of the bodies.
+///
+/// # Errors
+/// The table cannot be read.
+pub fn chart(results: &Results, (table, choice): (Table, &Choice)) -> Result<Chart, ReadError> {
+    let mut chart = empty(results);
+    let usual = [table.columns()[0].to_owned()];
+    let columns = if choice.quantities.is_empty() { &usual } else { &choice.quantities[..] };
+    let wanted = |name: &str| choice.bodies.is_empty() || choice.bodies.iter().any(|body| body == name);
+    match table {
+        Table::Bodies => {}
+        Table::Contacts => {
+            let rows: Vec<ContactRow> = results.contacts_table()?;
+            let rows = rows.into_iter().filter(|row| wanted(&row.body_a) || wanted(&row.body_b)).collect();
+            let times: Vec<f64> = results.energy_table()?.iter().map(|row| row.time).collect();
+            chart.panels = forces(rows, &times, columns);
+        }
+        Table::Probes => {
+            let mut rows = results.probes_table()?;
+            rows.retain(|row| wanted(&row.probe));
+            chart.panels = probes(&rows, columns);
+        }
+        Table::Arrivals => {
+            let mut rows = results.arrivals_table()?;
+            rows.retain(|row| wanted(&row.place));
+            chart.panels.extend(arrivals(&rows));
+        }
+        Table::Fronts => {
+            let mut speeds = results.front_speeds_table()?;
+            speeds.retain(|row| wanted(&row.front));
+            let mut fronts =
+                named(results.fronts_table()?.iter().map(|row| (&row.front, [row.time, row.distance])));
+            fronts.retain(|curve| wanted(&curve.label));
+            chart.panels.extend(panel("distance of front", "m", fronts));
+            chart.caption = speed_caption(&speeds);
+        }
+    }
+    Ok(chart)
+}
+
+/// Everything that a run measured; nothing at all if its scene has neither probes nor arrivals nor fronts.
+///
+/// # Errors
+/// A table cannot be read.
+pub fn all(results: &Results) -> Result<Chart, ReadError> {
+    let mut all = empty(results);
+    let choice = Choice::default();
+    for table in [Table::Probes, Table::Fronts, Table::Arrivals] {
+        let Chart { panels, caption, .. } = chart(results, (table, &choice))?;
+        all.panels.extend(panels);
+        all.caption += &caption;
+    }
+    if !all.panels.is_empty() {
+        let forces = chart(results, (Table::Contacts, &choice))?;
+        all.panels.extend(forces.panels);
+    }
+    Ok(all)
+}
+
+/// A panel, if it has curves.
+fn panel(name: &str, unit: &'static str, mut curves: Vec<Curve>) -> Option<Panel> {
+    curves.truncate(MOST_CURVES);
+    (!curves.is_empty()).then(|| Panel { name: name.to_owned(), unit, curves })
+}
+
+/// A curve for each name, in the order in which names first occur.
+fn named<'a>(points: impl Iterator<Item = (&'a String, [f64; 2])>) -> Vec<Curve> {
+    let mut curves: Vec<Curve> = Vec::new();
+    for (name, point) in points {
+        match curves.iter_mut().find(|curve| curve.label == *name) {
+            Some(curve) => curve.points.push(point),
+            None => curves.push(Curve {
+                label: name.clone(),
+                color: body_color(curves.len()),
+                dashed: false,
+                points: vec![point],
+            }),
+        }
+    }
+    curves
+}
+
+/// Force against time of the pairs with the largest forces. Pairs that did not touch have no row, and no force.
+fn forces(rows: Vec<ContactRow>, times: &[f64], columns: &[String]) -> Vec<Panel> {
+    let panels = columns.iter().filter_map(|column| {
+        let pairs: Vec<(String, [f64; 2])> = rows
+            .iter()
+            .map(|row| (format!("{}, {}", row.body_a, row.body_b), [row.time, force(row, column)]))
+            .collect();
+        let mut curves = named(pairs.iter().map(|(pair, point)| (pair, *point)));
+        for curve in &mut curves {
+            let touching = std::mem::take(&mut curve.points);
+            let mut next = touching.iter().peekable();
+            let at = |&time: &f64| next.next_if(|point| point[0] == time).copied().unwrap_or([time, 0.0]);
+            curve.points = times.iter().map(at).collect();
+        }
+        let most = |curve: &Curve| curve.points.iter().map(|point| point[1].abs()).fold(0.0, f64::max);
+        curves.sort_by(|a, b| most(b).total_cmp(&most(a)));
+        let unit = if column == "nodes" { "" } else { "N" };
+        panel(if column == "nodes" { "nodes" } else { "force" }, unit, curves).map(|panel| {
+            match column.as_str() {
+                "normal" | "nodes" => panel,
+                other => Panel { name: format!("force {other}"), ..panel },
+            }
+        })
+    });
+    panels.collect()
+}
+
+fn force(row: &ContactRow, column: &str) -> f64 {
+    match column {
+        "tangential" => row.tangential,
+        "fx" => row.fx,
+        "fy" => row.fy,
+        "fz" => row.fz,
+        "nodes" => row.nodes as f64,
+        _ => row.normal,
+    }
+}
+
+fn probes(rows: &[ProbeRow], columns: &[String]) -> Vec<Panel> {
+    let panels = columns.iter().filter_map(|column| {
+        let curves = named(rows.iter().map(|row| (&row.probe, [row.time, probe(row, column)])));
+        let unit = match column.as_str() {
+            "x" | "y" | "z" => "m",
+            "vx" | "vy" | "vz" => "m/s",
+            _ => "Pa",
+        };
+        panel(&column.replace('_', " "), unit, curves)
+    });
+    panels.collect()
+}
+
+fn probe(row: &ProbeRow, column: &str) -> f64 {
+    match column {
+        "x" => row.x,
+        "y" => row.y,
+        "z" => row.z,
+        "vx" => row.vx,
+        "vy" => row.vy,
+        "vz" => row.vz,
+        "xx" => row.xx,
+        "yy" => row.yy,
+        "zz" => row.zz,
+        "xy" => row.xy,
+        "yz" => row.yz,
+        "xz" => row.xz,
+        "pressure" => row.pressure,
+        "von_mises" => row.von_mises,
+        _ => row.stress_difference,
+    }
+}
+
+/// Distance from the place where each threshold was first passed, against time.
+fn arrivals(rows: &[ArrivalRow]) -> Option<Panel> {
+    let series: Vec<(String, &ArrivalRow)> = rows
+        .iter()
+        .map(|row| (format!("{} {:.3e}, {}", row.quantity, row.threshold, row.reading), row))
+        .collect();
+    let point = |(name, row): &(String, &ArrivalRow)| {
+        let first = series.iter().find(|(other, _)| other == name).map_or(*row, |(_, first)| first);
+        let way = [row.x - first.x, row.y - first.y, row.z - first.z];
+        [row.time, way.iter().map(|x| x * x).sum::<f64>().sqrt()]
+    };
+    panel("distance of arrival", "m", named(series.iter().map(|each| (&each.0, point(each)))))
+}
+
+fn speed_caption(speeds: &[FrontSpeedRow]) -> String {
+    let each: Vec<String> = speeds.iter().map(|row| format!("{} {:.1} m/s", row.front, row.speed)).collect();
+    if each.is_empty() { String::new() } else { format!("Speed by fit: {}", each.join(", ")) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pairs_that_do_not_touch_have_no_force() {
+        let row = |time: f64, b: &str, normal: f64| ContactRow {
+            time,
+            body_a: "disk".to_owned(),
+            body_b: b.to_owned(),
+            normal,
+            ..ContactRow::default()
+        };
+        let rows = vec![row(1.0, "wall", 2.0), row(2.0, "wall", 3.0), row(2.0, "striker", 9.0)];
+        let panels = forces(rows, &[0.0, 1.0, 2.0, 3.0], &["normal".to_owned()]);
+        assert_eq!((panels.len(), panels[0].unit), (1, "N"));
+        let [striker, wall] = &panels[0].curves[..] else { panic!("{panels:?}") };
+        assert_eq!(striker.label, "disk, striker", "the largest force first");
+        assert_eq!(wall.points, [[0.0, 0.0], [1.0, 2.0], [2.0, 3.0], [3.0, 0.0]]);
+    }
+
+    #[test]
+    fn arrivals_are_drawn_by_their_distance_from_the_first() {
+        let row =
+            |time: f64, x: f64| ArrivalRow { time, x, quantity: "vx".to_owned(), ..ArrivalRow::default() };
+        let panel = arrivals(&[row(1.0, 5.0), row(3.0, 2.0)]).unwrap();
+        assert_eq!(panel.curves[0].points, [[1.0, 0.0], [3.0, 3.0]]);
+        assert_eq!(arrivals(&[]), None);
+    }
+
+    #[test]
+    fn every_column_of_probes_is_itself() {
+        let row =
+            ProbeRow { xx: 1.0, vy: 2.0, von_mises: 3.0, stress_difference: 4.0, ..ProbeRow::default() };
+        let values: f64 = PROBE_COLUMNS.iter().map(|column| probe(&row, column)).sum();
+        assert_eq!(values, 10.0);
+    }
+}

@@ -1,0 +1,80 @@
+//! `stickslip validate`: the contact laws against problems with known answers.
+
+use super::say;
+use crate::failure::Failure;
+use crate::validation::{line, page, table, write_scenes};
+use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use miette::miette;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+use stickslip_validation::{BENCHMARKS, Benchmark, Law, Suite, Tier, laws};
+
+/// Run problems with known answers by every contact law, and say how close each law comes.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// Benchmarks to run; all without this.
+    #[arg(value_name = "NAME", value_parser = benchmark_names(), ignore_case = true)]
+    names: Vec<&'static Benchmark>,
+
+    /// Contact law to run; may be repeated; all without this.
+    #[arg(long = "law", value_name = "LAW", value_parser = law_words())]
+    laws: Vec<Law>,
+
+    /// Every resolution and every variant, which takes long; without this, about two minutes on two cores.
+    #[arg(long)]
+    all: bool,
+
+    /// Folder for the page and the scenes.
+    #[arg(long, value_name = "DIR", default_value = "validation.results")]
+    out: PathBuf,
+
+    /// Runs at a time; as many as there are processors without this.
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+}
+
+fn benchmark_names() -> impl TypedValueParser<Value = &'static Benchmark> {
+    let names = BENCHMARKS.iter().map(|benchmark| PossibleValue::new(benchmark.name).help(benchmark.title));
+    PossibleValuesParser::new(names).map(|name| {
+        let found = BENCHMARKS.iter().find(|benchmark| benchmark.name.eq_ignore_ascii_case(&name));
+        found.expect("the name is one of them")
+    })
+}
+
+fn law_words() -> impl TypedValueParser<Value = Law> {
+    let words = laws().into_iter().map(|law| PossibleValue::new(law.word).help(law.meaning));
+    PossibleValuesParser::new(words)
+        .map(|word| laws().into_iter().find(|law| law.word == word).expect("the word is one of them"))
+}
+
+fn unwritable(folder: &Path, error: &std::io::Error) -> Failure {
+    Failure::Input(miette!("cannot write to {}: {error}", folder.display()))
+}
+
+impl Arguments {
+    pub fn execute(self) -> Result<(), Failure> {
+        let chosen = |benchmark: &&'static Benchmark| {
+            self.names.is_empty() || self.names.iter().any(|named| named.name == benchmark.name)
+        };
+        let suite = Suite {
+            benchmarks: BENCHMARKS.iter().filter(chosen).collect(),
+            laws: if self.laws.is_empty() { laws() } else { self.laws.clone() },
+            tier: if self.all { Tier::Full } else { Tier::Quick },
+            threads: match self.threads {
+                Some(threads) => threads.into(),
+                None => std::thread::available_parallelism().map_or(1, usize::from),
+            },
+        };
+        // A folder that cannot be written shall be known before the work, not after it.
+        fs::create_dir_all(&self.out).map_err(|error| unwritable(&self.out, &error))?;
+        let begin = Instant::now();
+        let report = suite.run(&mut |finished| eprintln!("{}", line(finished)));
+        write_scenes(&report, &self.out.join("scenes")).map_err(|error| unwritable(&self.out, &error))?;
+        let file = self.out.join("index.html");
+        page(&report, begin.elapsed()).write(&file)?;
+        say(&table(&report))?;
+        say(&format!("\npage in {}, scenes in {}", file.display(), self.out.join("scenes").display()))
+    }
+}

@@ -1,0 +1,172 @@
+//! A family of runs: planned, run side by side, recorded in one table.
+
+mod chart;
+mod plan;
+mod record;
+
+pub use chart::chart;
+pub use plan::{Member, Variation, members, varied};
+pub use record::{Record, Row, Sweep, is_sweep, prepare, read, write_table};
+
+use crate::illustration::illustrate;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::mpsc::{Receiver, Sender, channel};
+use stickslip::observe::{ArrivalRow, Results, Status};
+use stickslip::run::{RunOptions, Summary};
+use stickslip::scene::{Loaded, Parameter};
+
+/// How a family is run.
+pub struct Crew {
+    /// Runs at a time.
+    pub jobs: usize,
+    /// Threads of each run.
+    pub threads: usize,
+    /// Folder of the sweep.
+    pub folder: PathBuf,
+    /// Set by whoever wants the runs to stop.
+    pub stop: Arc<AtomicBool>,
+}
+
+/// What happens to the run of this number.
+pub enum News {
+    /// It has come so far, as a share of its end time.
+    Progress(usize, f64),
+    /// It has ended.
+    Ended(usize, Box<Row>),
+}
+
+/// Values of the varied parameters in a scene: in SI units where they are numbers, else as they were given.
+pub fn values(loaded: &Loaded, member: &Member, varied: &[String]) -> Vec<String> {
+    let value = |name: &String| match loaded.scene.parameters.get(name) {
+        Some(Parameter::Number(number)) => number.to_string(),
+        Some(Parameter::Text(text)) => text.clone(),
+        None => {
+            member.settings.iter().find(|(other, _)| other == name).map_or(String::new(), |(_, v)| v.clone())
+        }
+    };
+    varied.iter().map(value).collect()
+}
+
+impl Crew {
+    /// Runs scenes side by side, each in its folder, and tells `listen` what happens, on this thread. Runs that have not begun when
+    /// the user stops are not begun.
+    pub fn run(&self, scenes: &[(Member, Loaded)], listen: impl FnOnce(&Receiver<News>)) {
+        let next = AtomicUsize::new(0);
+        let (sender, receiver) = channel();
+        std::thread::scope(|scope| {
+            for _ in 0..self.jobs {
+                let (sender, next) = (sender.clone(), &next);
+                scope.spawn(move || {
+                    while !self.stop.load(Ordering::Relaxed) {
+                        let number = next.fetch_add(1, Ordering::Relaxed);
+                        let Some((member, loaded)) = scenes.get(number) else { break };
+                        let row = self.run_one(&self.folder.join(&member.folder), loaded, (number, &sender));
+                        // Nobody listens only if the listener has failed, which is told elsewhere.
+                        let _ = sender.send(News::Ended(number, Box::new(row)));
+                    }
+                });
+            }
+            drop(sender);
+            listen(&receiver);
+        });
+    }
+
+    fn run_one(&self, out: &Path, loaded: &Loaded, (number, sender): (usize, &Sender<News>)) -> Row {
+        let pool = match rayon::ThreadPoolBuilder::new().num_threads(self.threads).build() {
+            Ok(pool) => pool,
+            Err(error) => return failed(error.to_string()),
+        };
+        let outcome = pool.install(|| {
+            let mut simulation = stickslip::engine::build(&loaded.scene)
+                .map_err(|problem| loaded.source.locate(problem).to_string())?;
+            let options =
+                RunOptions { out: out.to_path_buf(), stop: Arc::clone(&self.stop), threads: self.threads };
+            let mut progress = |progress: &stickslip::run::Progress| {
+                let _ = sender.send(News::Progress(number, progress.time / progress.end));
+            };
+            stickslip::run::run(&loaded.scene, &mut *simulation, &options, &mut progress)
+                .map_err(|error| error.to_string())
+        });
+        let drawn = illustrate(out);
+        match outcome {
+            Err(error) => failed(error),
+            Ok(summary) => match (drawn, Results::open(out)) {
+                (Ok(_), Ok(results)) => row(&summary, loaded, &results),
+                (Err(failure), _) => failed(failure.to_string()),
+                (_, Err(error)) => failed(error.to_string()),
+            },
+        }
+    }
+}
+
+fn failed(error: String) -> Row {
+    Row { status: "failed".to_owned(), error, ..Row::default() }
+}
+
+/// What a run that reached its end, or was stopped, came to.
+fn row(summary: &Summary, loaded: &Loaded, results: &Results) -> Row {
+    let performance = &summary.performance;
+    let mut figures = vec![
+        ("time".to_owned(), performance.time),
+        ("steps".to_owned(), performance.steps as f64),
+        ("particles".to_owned(), performance.particles as f64),
+        ("wall_time".to_owned(), performance.wall_time),
+        ("kinetic_energy".to_owned(), summary.end.kinetic),
+        ("strain_energy".to_owned(), summary.end.strain),
+        ("friction_heat".to_owned(), summary.end.friction),
+        ("external_work".to_owned(), summary.end.external_work),
+        ("energy_drift".to_owned(), summary.relative_energy_drift()),
+    ];
+    figures.extend(loaded.scene.outputs.measurements.unit().map(|unit| ("time_unit".to_owned(), unit)));
+    let ratio = |reference: &stickslip::run::ReferenceResult| {
+        (format!("ratio {} {}", reference.body, reference.quantity), reference.ratio())
+    };
+    figures.extend(summary.references.iter().map(ratio));
+    figures.extend(arrivals(results.arrivals_table().unwrap_or_default()));
+    let speeds = results.front_speeds_table().unwrap_or_default();
+    figures.extend(speeds.into_iter().map(|row| (format!("speed {}", row.front), row.speed)));
+    let status = if summary.status == Status::Interrupted { "interrupted" } else { "finished" };
+    Row { status: status.to_owned(), figures, ..Row::default() }
+}
+
+/// Columns of arrivals. Thresholds may differ from run to run, so their names leave them out; where one place watches
+/// several of a quantity, they are numbered from the lowest.
+fn arrivals(mut rows: Vec<ArrivalRow>) -> Vec<(String, f64)> {
+    rows.sort_by(|a, b| a.threshold.abs().total_cmp(&b.threshold.abs()));
+    let mut columns: Vec<(String, f64)> = Vec::new();
+    for row in rows {
+        let reading = if row.reading == "any" || row.reading == "mean" {
+            format!(" {}", row.reading)
+        } else {
+            String::new()
+        };
+        let name = format!("arrival {} {}{reading}", row.quantity, row.place);
+        let same = columns.iter().filter(|(other, _)| other.split(" #").next() == Some(&name)).count();
+        columns.push((if same > 0 { format!("{name} #{}", same + 1) } else { name }, row.time));
+    }
+    columns
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn arrivals_of_several_thresholds_are_told_apart() {
+        let row = |threshold: f64, reading: &str, time: f64| ArrivalRow {
+            time,
+            threshold,
+            quantity: "xx".to_owned(),
+            place: "bar".to_owned(),
+            reading: reading.to_owned(),
+            ..ArrivalRow::default()
+        };
+        let columns =
+            arrivals(vec![row(-2.0, "center", 3.0), row(-1.0, "center", 1.0), row(-1.0, "any", 0.5)]);
+        let names: Vec<&str> = columns.iter().map(|(name, _)| name.as_str()).collect();
+        assert_eq!(names, ["arrival xx bar", "arrival xx bar any", "arrival xx bar #2"]);
+        assert_eq!(columns[2].1, 3.0);
+    }
+}

@@ -1,0 +1,211 @@
+//! `sweep.json` and `sweep.csv`: what a sweep varied, and what each run came to.
+
+use crate::failure::Failure;
+use miette::miette;
+use serde::{Deserialize, Serialize};
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// What was swept.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Record {
+    /// `stickslip`.
+    program: String,
+    /// Version of the program.
+    version: String,
+    /// Title of the scene with the first values.
+    pub title: String,
+    /// Names of the parameters that vary, in the order of the columns.
+    pub parameters: Vec<String>,
+}
+
+/// One run; a row of `sweep.csv`.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Row {
+    /// Name of its folder.
+    pub run: String,
+    /// `finished`, `interrupted`, `failed`, or `pending`.
+    pub status: String,
+    /// Values of the parameters that vary.
+    pub parameters: Vec<String>,
+    /// Numbers by the names of their columns.
+    pub figures: Vec<(String, f64)>,
+    /// What went wrong.
+    pub error: String,
+}
+
+/// A sweep that was run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sweep {
+    /// What was swept.
+    pub record: Record,
+    /// The runs in the order of the plan.
+    pub rows: Vec<Row>,
+}
+
+const RECORD: &str = "sweep.json";
+const TABLE: &str = "sweep.csv";
+
+impl Record {
+    pub fn new(title: &str, parameters: Vec<String>) -> Self {
+        let (program, version) = ("stickslip".to_owned(), env!("CARGO_PKG_VERSION").to_owned());
+        Record { program, version, title: title.to_owned(), parameters }
+    }
+}
+
+/// Whether a folder is that of a sweep.
+pub fn is_sweep(folder: &Path) -> bool {
+    read_record(folder).is_some()
+}
+
+fn read_record(folder: &Path) -> Option<Record> {
+    let record: Record = serde_json::from_slice(&fs::read(folder.join(RECORD)).ok()?).ok()?;
+    (record.program == "stickslip").then_some(record)
+}
+
+/// Makes the folder of a sweep, or takes over that of an earlier one; its runs are replaced as they are run again.
+///
+/// # Errors
+/// The folder holds files that are not those of a sweep, or cannot be written.
+pub fn prepare(folder: &Path, record: &Record) -> Result<(), Failure> {
+    let unusable = |source: io::Error| {
+        let help = "give a folder that you may write to with --out";
+        Failure::Input(miette!(help = help, "cannot write results to {}: {source}", folder.display()))
+    };
+    fs::create_dir_all(folder).map_err(unusable)?;
+    let first = fs::read_dir(folder).map_err(unusable)?.next().transpose().map_err(unusable)?;
+    if let Some(entry) = first
+        && !is_sweep(folder)
+    {
+        return Err(Failure::Input(miette!(
+            help = "give a folder that is new or empty, or one that `stickslip sweep` wrote, with --out",
+            "{} holds files that are not the results of a sweep, such as `{}`",
+            folder.display(),
+            entry.file_name().display()
+        )));
+    }
+    let text = serde_json::to_vec_pretty(record).expect("a record is plain data");
+    write(&folder.join(RECORD), &text).map_err(unusable)
+}
+
+/// Writes `sweep.csv` as it stands.
+///
+/// # Errors
+/// It cannot be written.
+pub fn write_table(folder: &Path, sweep: &Sweep) -> Result<(), Failure> {
+    let mut figures: Vec<&str> = Vec::new();
+    for (name, _) in sweep.rows.iter().flat_map(|row| &row.figures) {
+        if !figures.contains(&name.as_str()) {
+            figures.push(name);
+        }
+    }
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    let parameters = sweep.record.parameters.iter().map(String::as_str);
+    // A parameter may have the name of a figure.
+    let figure_name = |name: &&str| {
+        let taken = sweep.record.parameters.iter().any(|parameter| parameter == name);
+        if taken { format!("{name}_of_run") } else { (*name).to_owned() }
+    };
+    let header = ["run", "status"].into_iter().chain(parameters).map(str::to_owned);
+    let header = header.chain(figures.iter().map(figure_name)).chain(["error".to_owned()]);
+    writer.write_record(header).expect("a vector takes all bytes");
+    for row in &sweep.rows {
+        let value = |name: &&str| {
+            let figure = row.figures.iter().find(|(other, _)| other == name);
+            figure.map_or(String::new(), |(_, value)| value.to_string())
+        };
+        let mut fields = vec![row.run.clone(), row.status.clone()];
+        fields.extend(row.parameters.iter().cloned());
+        fields.extend(figures.iter().map(value));
+        fields.push(row.error.clone());
+        writer.write_record(fields).expect("rows are as long as the header");
+    }
+    let path = folder.join(TABLE);
+    let bytes = writer.into_inner().expect("a vector takes all bytes");
+    write(&path, &bytes).map_err(|source| Failure::Run(miette!("cannot write {}: {source}", path.display())))
+}
+
+/// Reads the folder of a sweep.
+///
+/// # Errors
+/// It is none, or its table is damaged.
+pub fn read(folder: &Path) -> Result<Sweep, Failure> {
+    let damaged = |why: &str| Failure::Input(miette!("cannot read {}: {why}", folder.join(TABLE).display()));
+    let record = read_record(folder).ok_or_else(|| damaged("the folder is not that of a sweep"))?;
+    let mut reader =
+        csv::Reader::from_path(folder.join(TABLE)).map_err(|error| damaged(&error.to_string()))?;
+    let header = reader.headers().map_err(|error| damaged(&error.to_string()))?.clone();
+    let end = 2 + record.parameters.len();
+    if header.len() <= end {
+        return Err(damaged("columns are missing"));
+    }
+    let mut rows = Vec::new();
+    for line in reader.records() {
+        let line = line.map_err(|error| damaged(&error.to_string()))?;
+        let figures =
+            (end..header.len() - 1).filter_map(|i| Some((header[i].to_owned(), line[i].parse().ok()?)));
+        rows.push(Row {
+            run: line[0].to_owned(),
+            status: line[1].to_owned(),
+            parameters: (2..end).map(|i| line[i].to_owned()).collect(),
+            figures: figures.collect(),
+            error: line[header.len() - 1].to_owned(),
+        });
+    }
+    Ok(Sweep { record, rows })
+}
+
+/// Under another name first: a reader sees the old file or the new one.
+fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let part: PathBuf = path.with_extension("part");
+    fs::write(&part, bytes).and_then(|()| fs::rename(&part, path))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_table_comes_back_with_its_holes() {
+        let folder = tempfile::tempdir().unwrap();
+        let record = Record::new("waves", vec!["nu".to_owned()]);
+        prepare(folder.path(), &record).unwrap();
+        let row = |run: &str, figures: &[(&str, f64)], error: &str| Row {
+            run: run.to_owned(),
+            status: "finished".to_owned(),
+            parameters: vec![run.to_owned()],
+            figures: figures.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect(),
+            error: error.to_owned(),
+        };
+        let rows = vec![
+            row("0.3", &[("time", 0.1 + 0.2)], ""),
+            row("0.4", &[("time", 1.0), ("speed fringe", 2.5e3)], "a, \"b\""),
+            row("0.5", &[], ""),
+        ];
+        let sweep = Sweep { record, rows };
+        write_table(folder.path(), &sweep).unwrap();
+        assert_eq!(read(folder.path()).unwrap(), sweep);
+        assert!(is_sweep(folder.path()));
+    }
+
+    #[test]
+    fn a_parameter_with_the_name_of_a_figure_keeps_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let record = Record::new("waves", vec!["steps".to_owned()]);
+        let figures = vec![("steps".to_owned(), 7.0)];
+        let row = Row { parameters: vec!["3".to_owned()], figures, ..Row::default() };
+        write_table(folder.path(), &Sweep { record, rows: vec![row] }).unwrap();
+        let text = fs::read_to_string(folder.path().join(TABLE)).unwrap();
+        assert_eq!(text, "run,status,steps,steps_of_run,error\n,,3,7,\n");
+    }
+
+    #[test]
+    fn a_folder_with_other_files_is_refused_and_left_alone() {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("thesis.tex"), "years of work").unwrap();
+        let refused = prepare(folder.path(), &Record::new("waves", Vec::new()));
+        assert!(matches!(refused, Err(Failure::Input(_))));
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+}

@@ -1,0 +1,100 @@
+//! The results of validation as text.
+
+use std::fmt::Write;
+use stickslip_validation::{Entry, Finished, Report, Target, Verdict};
+
+/// One case that ended, on one line.
+pub fn line(finished: &Finished) -> String {
+    let Finished { benchmark, law, cells, result, done, all } = finished;
+    let outcome = match result {
+        Ok(outcome) => format!("{:.1} s", outcome.record.wall_time),
+        Err(failure) => failure.to_string(),
+    };
+    format!("[{done}/{all}] {} {law}, {} = {cells}: {outcome}", benchmark.name, benchmark.measure)
+}
+
+/// A number in few characters.
+pub fn short(value: f64) -> String {
+    match value.abs() {
+        size if size == 0.0 || (0.01..1000.0).contains(&size) => format!("{value:.4}"),
+        _ => format!("{value:.1e}"),
+    }
+}
+
+/// A table for each benchmark: a line for each law and quantity.
+pub fn table(report: &Report) -> String {
+    let mut text = String::new();
+    let mut heading = "";
+    for entry in &report.entries {
+        if heading != entry.benchmark.name {
+            heading = entry.benchmark.name;
+            write_heading(entry, &mut text);
+        }
+        write_entry(entry, &mut text);
+    }
+    text
+}
+
+fn write_heading(entry: &Entry, text: &mut String) {
+    let benchmark = entry.benchmark;
+    let cells: String = entry.runs.iter().map(|run| format!("{:>11}", run.resolution.cells)).collect();
+    let title = format!("{} {} ({})", benchmark.name, benchmark.title, benchmark.measure);
+    let _ = writeln!(text, "\n{title:<52}{cells}  {:>5}  target", "order");
+}
+
+fn write_entry(entry: &Entry, text: &mut String) {
+    let targets = entry.benchmark.targets.iter().filter(|target| !repeated(entry, target));
+    for (i, target) in targets.enumerate() {
+        let law = if i == 0 { entry.law.word } else { "" };
+        let order = entry.order(target).map_or(String::new(), |order| format!("{order:.1}"));
+        let values: String = values(entry, target).map(|value| format!("{value:>11}")).collect();
+        let verdict = match entry.verdict(target) {
+            Verdict::Reached => "reached",
+            Verdict::Missed => "missed",
+            Verdict::Open => "not judged at these cells",
+        };
+        let _ = writeln!(
+            text,
+            "  {law:<10} {:<39}{values}  {order:>5}  {:<14} {verdict}",
+            target.metric,
+            target.to_string()
+        );
+    }
+    for run in &entry.runs {
+        match &run.result {
+            Ok(outcome) => {
+                let record = &outcome.record;
+                let drift = |drift: Option<f64>| drift.map_or("-".to_owned(), |drift| format!("{drift:.0e}"));
+                let _ = writeln!(
+                    text,
+                    "  {:<10} at {}: energy {:+.1e}, most gained {:.0e}; momentum {}, angular {}; deepest {:.2} h; {:.1} s",
+                    "",
+                    run.resolution.cells,
+                    record.energy_drift,
+                    record.energy_gain,
+                    drift(record.momentum_drift),
+                    drift(record.angular_drift),
+                    record.penetration,
+                    record.wall_time
+                );
+            }
+            Err(failure) => {
+                let _ = writeln!(text, "  {:<10} at {}: {failure}", "", run.resolution.cells);
+            }
+        }
+    }
+}
+
+/// Whether a target that is not judged asks something of a quantity that another target judges.
+fn repeated(entry: &Entry, target: &Target) -> bool {
+    let judges = |other: &Target| other.metric == target.metric && entry.verdict(other) != Verdict::Open;
+    entry.verdict(target) == Verdict::Open && entry.benchmark.targets.iter().any(judges)
+}
+
+/// What was measured at each resolution.
+fn values<'a>(entry: &'a Entry, target: &'a Target) -> impl Iterator<Item = String> + 'a {
+    entry.runs.iter().map(|run| {
+        let value = run.result.as_ref().ok().and_then(|outcome| outcome.value(target.metric));
+        value.map_or("-".to_owned(), short)
+    })
+}

@@ -1,0 +1,172 @@
+//! What a benchmark is: its report, its targets, its resolutions.
+
+use crate::failure::Failure;
+use crate::outcome::Outcome;
+
+/// A problem with a known answer.
+#[derive(Debug)]
+pub struct Benchmark {
+    /// Short name: `B5`.
+    pub name: &'static str,
+    /// What it is, in a few words.
+    pub title: &'static str,
+    /// Where problem and answer come from.
+    pub source: &'static str,
+    /// A sketch in characters.
+    pub picture: &'static str,
+    /// Geometry, materials, loads, discretisation.
+    pub set_up: &'static str,
+    /// The exact answer.
+    pub exact: &'static str,
+    /// Which laws it can be put to.
+    pub laws: Laws,
+    /// What [`Resolution::cells`] counts: `"L/h"`.
+    pub measure: &'static str,
+    /// From coarse to fine.
+    pub resolutions: &'static [Resolution],
+    /// What is asked of the measured quantities.
+    pub targets: &'static [Target],
+    /// Runs it.
+    pub run: fn(&Case) -> Result<Outcome, Failure>,
+}
+
+/// Which laws a benchmark can be put to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Laws {
+    /// All by which bodies touch and part.
+    Contact,
+    /// Only the law that joins bodies for good.
+    Glued,
+}
+
+/// Cells on the benchmark's length.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Resolution {
+    /// Number of cells.
+    pub cells: f64,
+    /// The tier from which on it runs.
+    pub tier: Tier,
+}
+
+/// How much is run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Tier {
+    /// All benchmarks within minutes.
+    Quick,
+    /// Every resolution.
+    Full,
+}
+
+/// What is asked of one measured quantity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Target {
+    /// Name of the quantity.
+    pub metric: &'static str,
+    /// Its exact value.
+    pub exact: f64,
+    /// What may be measured.
+    pub allowed: Allowed,
+    /// The resolution that the target is stated for; at others it is not judged. `None`: at each.
+    pub at: Option<f64>,
+    /// Why that much and no less.
+    pub why: &'static str,
+}
+
+/// What may be measured.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Allowed {
+    /// The exact value, give or take.
+    Within(f64),
+    /// No less than this.
+    AtLeast(f64),
+    /// No more than this.
+    AtMost(f64),
+    /// From the first to the second, both included.
+    Between(f64, f64),
+}
+
+/// One law at one resolution.
+#[derive(Clone, Copy, Debug)]
+pub struct Case {
+    /// The law's word in scene files.
+    pub law: &'static str,
+    /// Cells on the benchmark's length.
+    pub cells: f64,
+    /// How much is run.
+    pub tier: Tier,
+}
+
+impl Resolution {
+    /// Runs in every tier.
+    pub const fn quick(cells: f64) -> Self {
+        Resolution { cells, tier: Tier::Quick }
+    }
+
+    /// Runs in the full tier only.
+    pub const fn full(cells: f64) -> Self {
+        Resolution { cells, tier: Tier::Full }
+    }
+}
+
+impl Target {
+    /// A target at every resolution.
+    pub const fn new(metric: &'static str, exact: f64, allowed: Allowed, why: &'static str) -> Self {
+        Target { metric, exact, allowed, at: None, why }
+    }
+
+    /// The same target, stated for one resolution.
+    pub const fn at(self, cells: f64) -> Self {
+        Target { at: Some(cells), ..self }
+    }
+
+    /// Whether a measured value is good enough; what is not a number never is.
+    pub fn holds(&self, value: f64) -> bool {
+        match self.allowed {
+            Allowed::Within(tolerance) => (value - self.exact).abs() <= tolerance,
+            Allowed::AtLeast(least) => value >= least,
+            Allowed::AtMost(most) => value <= most,
+            Allowed::Between(least, most) => value >= least && value <= most,
+        }
+    }
+}
+
+impl std::fmt::Display for Target {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self.allowed {
+            Allowed::Within(tolerance) => write!(f, "{} ± {tolerance}", self.exact),
+            Allowed::AtLeast(least) => write!(f, "≥ {least}"),
+            Allowed::AtMost(most) => write!(f, "≤ {most}"),
+            Allowed::Between(least, most) => write!(f, "{least} to {most}"),
+        }
+    }
+}
+
+impl Case {
+    /// The scene's `[[contact]]` between all bodies.
+    pub fn contact(&self, friction: f64) -> String {
+        format!("[[contact]]\nlaw = \"{}\"\nfriction = {friction}\n", self.law)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn targets_hold_up_to_their_border_and_never_for_what_is_no_number() {
+        let allowed = [
+            (Allowed::Within(0.25), [0.75, 1.25], [0.7, 1.3]),
+            (Allowed::Between(0.5, 2.0), [0.5, 2.0], [0.4, 2.1]),
+        ];
+        for (allowed, holds, fails) in allowed {
+            let target = Target::new("x", 1.0, allowed, "a test");
+            assert!(holds.into_iter().all(|x| target.holds(x)), "{target}");
+            assert!(!fails.into_iter().any(|x| target.holds(x)), "{target}");
+            assert!(!target.holds(f64::NAN));
+        }
+        let [least, most] = [Allowed::AtLeast(0.9), Allowed::AtMost(0.9)]
+            .map(|allowed| Target::new("x", 1.0, allowed, "a test"));
+        assert!(least.holds(0.9) && !least.holds(0.8) && !least.holds(f64::NAN));
+        assert!(most.holds(0.9) && !most.holds(1.0) && !most.holds(f64::NAN));
+    }
+}

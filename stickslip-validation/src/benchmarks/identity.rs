@@ -1,0 +1,124 @@
+//! Identity: a body cut in two and glued is the body.
+
+use crate::benchmark::{Allowed, Benchmark, Case, Laws, Resolution, Target};
+use crate::failure::Failure;
+use crate::outcome::Outcome;
+use crate::trial::Trial;
+use stickslip::door::ParticleSnapshot;
+
+pub const BENCHMARK: Benchmark = Benchmark {
+    name: "identity",
+    title: "Glued parts equal the whole",
+    source: "Identity: with one velocity for all bodies at each node the grid sums the same particles",
+    picture: "
+             __________           __________
+            |         |          |    /    |
+            |  whole  |    =     |   / glued
+            |_________|          |__/______|
+",
+    set_up: "Plane strain; a block of soft rubber 0.8 m x 0.6 m (E = 0.1 MPa, nu = 0.3), flying at (2, -1) m/s onto a rigid floor 0.1 m below that glues it; once whole, and cut along the \
+grid, at 30 and at 70 degrees to it. 0.3 s.",
+    exact: "The same motion of every particle. Measured are the largest differences of position over 1 m and of velocity over 3 m/s.",
+    laws: Laws::Glued,
+    measure: "1 m/h",
+    resolutions: &[Resolution::quick(10.0), Resolution::full(20.0)],
+    targets: &[
+        Target::new(
+            "difference of position",
+            0.0,
+            Allowed::Within(1e-9),
+            "round-off of some hundred steps, summed in another order",
+        ),
+        Target::new(
+            "difference of velocity",
+            0.0,
+            Allowed::Within(1e-9),
+            "round-off of some hundred steps, summed in another order",
+        ),
+    ],
+    run,
+};
+
+fn run(case: &Case) -> Result<Outcome, Failure> {
+    let mut outcome = Outcome::default();
+    let whole = drop(case, None, &mut outcome)?;
+    let (mut place, mut speed) = (0.0_f64, 0.0_f64);
+    for degrees in [90.0, 30.0, 70.0] {
+        let parts = drop(case, Some(degrees), &mut outcome)?;
+        if parts.len() != whole.len() {
+            return Err(Failure::Absent("the parts have not the particles of the whole"));
+        }
+        for (part, whole) in parts.iter().zip(&whole) {
+            for i in 0..2 {
+                place = place.max((part.position[i] - whole.position[i]).abs());
+                speed = speed.max((part.velocity[i] - whole.velocity[i]).abs() / 3.0);
+            }
+        }
+    }
+    outcome.measure("difference of position", place);
+    outcome.measure("difference of velocity", speed);
+    Ok(outcome)
+}
+
+struct Particle {
+    start: [i64; 2],
+    position: [f64; 3],
+    velocity: [f64; 3],
+}
+
+/// The block's particles at the end in the order of their places at the start; cut at an angle to the x axis, or whole.
+fn drop(case: &Case, cut: Option<f64>, outcome: &mut Outcome) -> Result<Vec<Particle>, Failure> {
+    let h = 1.0 / case.cells;
+    let body = |name: &str, shape: &str| {
+        format!("[[bodies]]\nname = \"{name}\"\nmaterial = \"rubber\"\n{shape}\nvelocity = [2, -1]\n")
+    };
+    let block = "{ box = { min = [0, 0], max = [0.8, 0.6] } }";
+    let bodies = match cut {
+        None => body("whole", &format!("shape.union = [{block}, {block}]")),
+        Some(degrees) => {
+            let (sin, cos) = f64::to_radians(degrees).sin_cos();
+            let part = |name: &str, normal: [f64; 2]| {
+                let half = format!("{{ half_space = {{ point = [0.4, 0.3], normal = {normal:?} }} }}");
+                body(name, &format!("shape.intersection = [{block}, {half}]"))
+            };
+            part("first", [-sin, cos]) + &part("second", [sin, -cos])
+        }
+    };
+    let mut trial = Trial::start(
+        cut.map_or("whole".to_owned(), |degrees| format!("cut_{degrees}_degrees")),
+        format!(
+            r#"title = "Glued parts equal the whole"
+gravity = [0, -10]
+space = {{ dimension = "plane-strain", cell = {h} }}
+time.end = 0.3
+materials.rubber = {{ density = 1000, neo_hookean = {{ young_modulus = 1e5, poisson_ratio = 0.3 }} }}
+{bodies}
+[[bodies]]
+name = "floor"
+material = "rubber"
+shape.box = {{ min = [-0.5, -0.4], max = [2.5, -0.1] }}
+rigid = {{}}
+{}"#,
+            case.contact(0.0)
+        ),
+    )?;
+    let start = trial.snapshot();
+    while trial.advance()? {}
+    let particles = arranged(&trial.snapshot(), &start);
+    outcome.include(trial);
+    Ok(particles)
+}
+
+/// Deformable particles in the order of their places at the start, which the parts share with the whole.
+fn arranged(end: &ParticleSnapshot, start: &ParticleSnapshot) -> Vec<Particle> {
+    let mut particles: Vec<Particle> = (0..end.body.len())
+        .filter(|&p| start.position[p][1] > -0.05)
+        .map(|p| Particle {
+            start: [0, 1].map(|i| (start.position[p][i] * 1e6).round() as i64),
+            position: end.position[p],
+            velocity: end.velocity[p],
+        })
+        .collect();
+    particles.sort_by_key(|particle| particle.start);
+    particles
+}

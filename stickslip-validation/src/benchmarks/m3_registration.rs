@@ -1,0 +1,108 @@
+//! M3: where the grid lies must not matter.
+
+use crate::benchmark::{Allowed, Benchmark, Case, Laws, Resolution, Target, Tier};
+use crate::failure::Failure;
+use crate::measuring::deviation;
+use crate::outcome::Outcome;
+use crate::trial::Trial;
+
+pub const BENCHMARK: Benchmark = Benchmark {
+    name: "M3",
+    title: "Registration",
+    source: "Invariance: a collision does not depend on the origin and the direction of the grid",
+    picture: "
+               __          __
+              /  \\  v->   /  \\      the same collision at sub-cell offsets
+              \\__/        \\__/      and turned through the grid
+",
+    set_up: "Plane strain; two disks of radius R, nu = 0.3, neo-Hookean, 4 particles a cell, a gap of R/3 (at R = 6 h, two cells), v/c = 0.05, without friction. 16 offsets of a quarter of a cell \
+in both directions and 8 directions from 0 to 78.75 degrees (quick: 4 and 2). Particles sit on the grid's lattice, so each run has stairs of its own.",
+    exact: "No scatter. Measured are the standard deviations of restitution and of the time of first contact times v/h.",
+    laws: Laws::Contact,
+    measure: "R/h",
+    resolutions: &[Resolution::quick(6.0), Resolution::full(12.0)],
+    targets: &[
+        Target::new(
+            "deviation of restitution",
+            0.0,
+            Allowed::Within(0.01),
+            "a hundredth is what results of one grid may be trusted to",
+        ),
+        Target::new(
+            "deviation of first contact [cells]",
+            0.0,
+            Allowed::Within(0.1),
+            "a tenth of a cell; stairs of half a cell scatter by 0.15",
+        ),
+    ],
+    run,
+};
+
+const SPEED: f64 = 0.05;
+
+fn run(case: &Case) -> Result<Outcome, Failure> {
+    let mut outcome = Outcome::default();
+    let (offsets, directions) = match case.tier {
+        Tier::Quick => (2, 2),
+        Tier::Full => (4, 8),
+    };
+    let (mut restitution, mut first) = (Vec::new(), Vec::new());
+    for i in 0..offsets {
+        for j in 0..offsets {
+            for k in 0..directions {
+                let offset = [i, j].map(|i| f64::from(i) / f64::from(offsets));
+                let direction = f64::from(k) / f64::from(directions) * 0.5 * std::f64::consts::PI;
+                let (e, t) = collide(case, offset, direction, &mut outcome)?;
+                restitution.push(e);
+                first.push(t * SPEED * case.cells);
+            }
+        }
+    }
+    outcome.measure("deviation of restitution", deviation(&restitution));
+    outcome.measure("deviation of first contact [cells]", deviation(&first));
+    Ok(outcome)
+}
+
+/// Restitution and time of first contact. Units of R = rho = E = 1; `offset` in cells, `direction` of flight in radians.
+fn collide(
+    case: &Case,
+    offset: [f64; 2],
+    direction: f64,
+    outcome: &mut Outcome,
+) -> Result<(f64, f64), Failure> {
+    let h = 1.0 / case.cells;
+    let (sin, cos) = direction.sin_cos();
+    let [x, y] = offset.map(|offset| offset * h);
+    let apart = 2.0 + 1.0 / 3.0;
+    let mut trial = Trial::start(
+        format!("offset_{}_{}_direction_{:.2}", offset[0], offset[1], direction.to_degrees()),
+        format!(
+            r#"title = "Registration"
+space = {{ dimension = "plane-strain", cell = {h} }}
+time.end = 20
+materials.elastic = {{ density = 1, neo_hookean = {{ young_modulus = 1, poisson_ratio = 0.3 }} }}
+[[bodies]]
+name = "first"
+material = "elastic"
+shape.ball = {{ center = [{x}, {y}], radius = 1 }}
+velocity = [{}, {}]
+[[bodies]]
+name = "second"
+material = "elastic"
+shape.ball = {{ center = [{}, {}], radius = 1 }}
+{}"#,
+            SPEED * cos,
+            SPEED * sin,
+            x + apart * cos,
+            y + apart * sin,
+            case.contact(0.0)
+        ),
+    )?;
+    while trial.advance()? {}
+    let bodies = trial.bodies();
+    let along = |v: [f64; 3]| v[0] * cos + v[1] * sin;
+    let restitution = (along(bodies[1].velocity) - along(bodies[0].velocity)) / SPEED;
+    let first = trial.first_contact().ok_or(Failure::Absent("the disks never push"))?;
+    outcome.include(trial);
+    Ok((restitution, first))
+}

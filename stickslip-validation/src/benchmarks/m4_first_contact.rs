@@ -1,0 +1,86 @@
+//! M4: contact begins when surfaces touch, and no earlier.
+
+use crate::benchmark::{Allowed, Benchmark, Case, Laws, Resolution, Target};
+use crate::failure::Failure;
+use crate::measuring::farthest;
+use crate::outcome::Outcome;
+use crate::trial::Trial;
+
+pub const BENCHMARK: Benchmark = Benchmark {
+    name: "M4",
+    title: "First contact",
+    source: "Geometry: a gap g closes at v after g/v",
+    picture: "
+      v ->   +---------+          +---------+
+             |  first  |<-- g --> | second  |
+             +---------+          +---------+
+",
+    set_up: "Plane strain, Poisson's ratio 0; two bars of 8 x 4 cells, faces on the lattice of particles, a gap of 2 cells and so every smaller gap on \
+the way; v/c = 0.02. The whole drifts against the grid so that the surfaces meet on a node and a quarter, a half and three quarters of a cell behind it. 1 to 4 \
+particles a cell and direction.",
+    exact: "Contact begins at g/v. Measured is (g/v - t) v/h, in cells: positive is too early; the worst of the four meeting places.",
+    laws: Laws::Contact,
+    measure: "bar length/h",
+    resolutions: &[Resolution::quick(8.0)],
+    targets: &[
+        Target::new(METRICS[0], 0.0, Allowed::Within(0.05), WHY),
+        Target::new(METRICS[1], 0.0, Allowed::Within(0.05), WHY),
+        Target::new(METRICS[2], 0.0, Allowed::Within(0.05), WHY),
+        Target::new(METRICS[3], 0.0, Allowed::Within(0.05), WHY),
+    ],
+    run,
+};
+
+const METRICS: [&str; 4] =
+    ["cells too early, 1 particle a side", "2 particles a side", "3 particles a side", "4 particles a side"];
+const WHY: &str = "a twentieth of a cell is small against elastic approach at any resolution; published laws: 1 to 2 cells, gap tests 0.3";
+const GAP: f64 = 2.0;
+const SPEED: f64 = 0.02;
+
+fn run(case: &Case) -> Result<Outcome, Failure> {
+    let mut outcome = Outcome::default();
+    for (metric, particles) in METRICS.into_iter().zip(1..) {
+        let mut early = Vec::new();
+        for meeting in [0.0, 0.25, 0.5, 0.75] {
+            early.push(approach(case, particles, meeting, &mut outcome)?);
+        }
+        outcome.measure(metric, farthest(&early));
+    }
+    Ok(outcome)
+}
+
+/// Cells by which contact is too early when surfaces meet `meeting` cells behind a node. Units of h = rho = E = 1.
+fn approach(case: &Case, particles: usize, meeting: f64, outcome: &mut Outcome) -> Result<f64, Failure> {
+    let (length, exact) = (case.cells, GAP / SPEED);
+    // The second bar's face starts on a node.
+    let drift = meeting / exact;
+    let mut trial = Trial::start(
+        format!("{particles}_per_side_meeting_{meeting}"),
+        format!(
+            r#"title = "First contact"
+space = {{ dimension = "plane-strain", cell = 1, particles_per_side = {particles} }}
+time.end = {}
+materials.elastic = {{ density = 1, neo_hookean = {{ young_modulus = 1, poisson_ratio = 0 }} }}
+[[bodies]]
+name = "first"
+material = "elastic"
+shape.box = {{ min = [{}, 0], max = [{}, 4] }}
+velocity = [{}, 0]
+[[bodies]]
+name = "second"
+material = "elastic"
+shape.box = {{ min = [0, 0], max = [{length}, 4] }}
+velocity = [{drift}, 0]
+{}"#,
+            exact * 1.5,
+            -GAP - length,
+            -GAP,
+            SPEED + drift,
+            case.contact(0.0)
+        ),
+    )?;
+    while trial.first_contact().is_none() && trial.advance()? {}
+    let seen = trial.first_contact().ok_or(Failure::Absent("the bars never push"))?;
+    outcome.include(trial);
+    Ok((exact - seen) * SPEED)
+}

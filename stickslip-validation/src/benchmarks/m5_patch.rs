@@ -1,0 +1,121 @@
+//! M5: an interface under uniform pressure leaves the stress uniform.
+
+use crate::benchmark::{Allowed, Benchmark, Case, Laws, Resolution, Target};
+use crate::failure::Failure;
+use crate::outcome::Outcome;
+use crate::trial::Trial;
+
+pub const BENCHMARK: Benchmark = Benchmark {
+    name: "M5",
+    title: "Patch",
+    source: "Homogeneous deformation solves the equations of a body cut in two whose parts stick",
+    picture: "
+              | platen, down  |
+              |===============|
+              |       upper _/|
+              |          _/   |   symmetry on the three other sides
+              |       _/      |
+              |    _/  lower  |
+              |_/_____________|
+",
+    set_up: "Plane strain; a unit square, E = rho = 1, nu = 0.3, cut through its centre at 0, 15, 30 and 45 degrees to the grid; both parts by the law with infinite friction. \
+A rigid platen glued on top comes down by 0.001 within 10 L/c_L, smoothly, and rests for 10 L/c_L more; the stress is averaged over that time.",
+    exact: "Confined compression: sigma_yy = -p everywhere, with p the platen's force over its width. Measured is the largest difference from it among all \
+particles more than two cells below the platen, over p; glue grips up to a cell deep.",
+    laws: Laws::Contact,
+    measure: "L/h",
+    resolutions: &[Resolution::quick(8.0), Resolution::quick(16.0), Resolution::full(32.0)],
+    targets: &[
+        Target::new(METRICS[0], 0.0, Allowed::Within(0.02), "faces along the grid are represented exactly"),
+        Target::new(METRICS[1], 0.0, Allowed::Within(0.05), SLANTED),
+        Target::new(METRICS[2], 0.0, Allowed::Within(0.05), SLANTED),
+        Target::new(METRICS[3], 0.0, Allowed::Within(0.05), SLANTED),
+    ],
+    run,
+};
+
+const METRICS: [&str; 4] = ["largest error of stress, 0 degrees", "15 degrees", "30 degrees", "45 degrees"];
+const SLANTED: &str =
+    "a slanted face is stairs on the particles' lattice; the error shall stay within them and fall with h";
+
+fn run(case: &Case) -> Result<Outcome, Failure> {
+    let mut outcome = Outcome::default();
+    for (metric, degrees) in METRICS.into_iter().zip([0.0_f64, 15.0, 30.0, 45.0]) {
+        let error = press(case, degrees, &mut outcome)?;
+        outcome.measure(metric, error);
+    }
+    Ok(outcome)
+}
+
+const PRESS: f64 = 0.001;
+
+fn press(case: &Case, degrees: f64, outcome: &mut Outcome) -> Result<f64, Failure> {
+    let h = 1.0 / case.cells;
+    let modulus: f64 = 0.7 / (1.3 * 0.4);
+    let ramp = 10.0 / modulus.sqrt();
+    let (sin, cos) = degrees.to_radians().sin_cos();
+    let part = |normal: [f64; 2]| {
+        format!(
+            "shape.intersection = [{{ box = {{ min = [0, 0], max = [1, 1] }} }}, {{ half_space = {{ point = [0.5, 0.5], normal = {normal:?} }} }}]"
+        )
+    };
+    let mut trial = Trial::start(
+        format!("{degrees}_degrees"),
+        format!(
+            r#"title = "Patch"
+[space]
+dimension = "plane-strain"
+cell = {h}
+domain = {{ min = [0, 0], max = [1, {}], x_min = "symmetry", x_max = "symmetry", y_min = "symmetry" }}
+[time]
+end = {}
+[materials]
+elastic = {{ density = 1, hypoelastic = {{ young_modulus = 1, poisson_ratio = 0.3 }} }}
+[[bodies]]
+name = "lower"
+material = "elastic"
+{}
+[[bodies]]
+name = "upper"
+material = "elastic"
+{}
+[[bodies]]
+name = "platen"
+material = "elastic"
+shape.box = {{ min = [0, 1], max = [1, {}] }}
+rigid.velocity = [0, "{} * (1 - cos(2 * pi * min(t / {ramp}, 1)))"]
+[[contact]]
+between = ["platen", "any"]
+law = "glued"
+{}"#,
+            1.0 + 4.0 * h,
+            2.0 * ramp,
+            part([-sin, cos]),
+            part([sin, -cos]),
+            1.0 + 2.0 * h,
+            -PRESS / ramp,
+            case.contact(f64::INFINITY)
+        ),
+    )?;
+    let (mut sums, mut pressure) = (Vec::new(), 0.0);
+    while trial.advance()? {
+        if trial.time() < ramp {
+            continue;
+        }
+        pressure += trial.force(0, 2)[1] + trial.force(1, 2)[1];
+        let now = trial.snapshot();
+        sums.resize(now.stress.len(), 0.0);
+        for (sum, stress) in sums.iter_mut().zip(&now.stress) {
+            *sum += stress[1];
+        }
+    }
+    let last = trial.snapshot();
+    let mut largest = 0.0_f64;
+    for (p, sum) in sums.iter().enumerate() {
+        if last.body[p] < 2 && last.position[p][1] < 1.0 - 2.0 * h {
+            largest = largest.max((sum / -pressure - 1.0).abs());
+        }
+    }
+    outcome.include(trial);
+    Ok(largest)
+}

@@ -1,0 +1,45 @@
+//! The benchmarks, one file each; every file reads like a report. To add one, write its file and seat it in [`BENCHMARKS`].
+
+mod b10_collinear_disks;
+mod b11_cylinder;
+mod b12_sphere_impact;
+mod b13_oblique_impact;
+mod b1_incline;
+mod b29_stack;
+mod b2_backspin;
+mod b3_block_on_incline;
+mod b5_equal_bars;
+mod b7_impedance_mismatch;
+mod b9_two_disks;
+mod corners;
+mod identity;
+mod m3_registration;
+mod m4_first_contact;
+mod m5_patch;
+mod m6_friction_ratio;
+mod rigid_half_space;
+mod rolling_sphere;
+
+use crate::benchmark::Benchmark;
+
+/// All benchmarks, in the order of the page.
+pub static BENCHMARKS: &[Benchmark] = &[
+    m3_registration::BENCHMARK,
+    m4_first_contact::BENCHMARK,
+    m5_patch::BENCHMARK,
+    m6_friction_ratio::BENCHMARK,
+    identity::BENCHMARK,
+    corners::BENCHMARK,
+    rigid_half_space::BENCHMARK,
+    b1_incline::BENCHMARK,
+    b2_backspin::BENCHMARK,
+    b3_block_on_incline::BENCHMARK,
+    b5_equal_bars::BENCHMARK,
+    b7_impedance_mismatch::BENCHMARK,
+    b9_two_disks::BENCHMARK,
+    b10_collinear_disks::BENCHMARK,
+    b11_cylinder::BENCHMARK,
+    b12_sphere_impact::BENCHMARK,
+    b13_oblique_impact::BENCHMARK,
+    b29_stack::BENCHMARK,
+];

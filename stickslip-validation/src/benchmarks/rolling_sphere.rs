@@ -1,0 +1,64 @@
+//! What B1 and B2 share: the paper's soft sphere on its plane, held against a rigid one.
+
+use crate::benchmark::Case;
+use crate::failure::Failure;
+use crate::measuring::{mean, slope};
+use crate::outcome::Outcome;
+use crate::scenery::with_parameter;
+use crate::trial::Trial;
+use stickslip::scene::Parameter;
+
+/// What the sphere did.
+pub struct Roll {
+    /// Distance at the end over that of the rigid sphere.
+    pub distance: f64,
+    /// Speed at the end over that of the rigid sphere.
+    pub speed: f64,
+    /// Acceleration by least squares over the second half of the run over that of the rigid sphere at the end; infinite where that is zero.
+    pub acceleration: f64,
+    /// Spin times radius over speed at the end.
+    pub rolling: f64,
+    /// Mean height of the centre in the last four fifths of the run [m].
+    pub height: f64,
+    /// Side of a cell [m].
+    pub cell: f64,
+    /// Kinetic energy at the end over that at the start.
+    pub kinetic: f64,
+}
+
+/// Rolls the sphere of one of the paper's scenes; the cells are those on its radius.
+pub fn roll(name: &str, scene: &str, case: &Case, outcome: &mut Outcome) -> Result<Roll, Failure> {
+    let text = with_parameter(scene, "cells_per_radius", &case.cells.to_string());
+    let mut trial = Trial::start(name, with_parameter(&text, "contact", &format!("\"{}\"", case.law)))?;
+    let end = trial.scene().time.end;
+    let (mut speeds, mut heights) = (Vec::new(), Vec::new());
+    while trial.advance()? {
+        let sphere = trial.bodies().swap_remove(0);
+        if trial.time() > 0.5 * end {
+            speeds.push((trial.time(), sphere.velocity[0]));
+        }
+        if trial.time() > 0.2 * end {
+            heights.push(sphere.position[2]);
+        }
+    }
+    let sphere = trial.bodies().swap_remove(0);
+    let scene = trial.scene();
+    let Some(Parameter::Number(radius)) = scene.parameters.get("radius") else {
+        return Err(Failure::Absent("the scene has no radius"));
+    };
+    let exact = |quantity: &str, time: f64| {
+        let stated = scene.references.iter().find(|reference| reference.quantity == quantity);
+        stated.map_or(f64::NAN, |reference| reference.value.at(time))
+    };
+    let roll = Roll {
+        distance: sphere.position[0] / exact("x", end),
+        speed: sphere.velocity[0] / exact("vx", end),
+        acceleration: slope(&speeds) / ((exact("vx", end) - exact("vx", 0.5 * end)) / (0.5 * end)),
+        rolling: sphere.spin[1] * radius / sphere.velocity[0],
+        height: mean(&heights),
+        cell: scene.discretization.cell,
+        kinetic: sphere.kinetic / trial.first_ledger().kinetic,
+    };
+    outcome.include(trial);
+    Ok(roll)
+}

@@ -1,0 +1,39 @@
+//! Problems with known answers, and how close each contact law comes to them.
+//!
+//! The laws come from the engine's list, the problems from [`BENCHMARKS`]: one file each, which reads like a report. To add a
+//! benchmark, write its file and seat it there. Everything here drives the engine as any user can: scenes are text, and
+//! simulations are stepped and looked at through [`stickslip::door`].
+
+// What a benchmark is: its report, its targets, its resolutions.
+mod benchmark;
+
+// What went wrong with a run.
+mod failure;
+
+// How deep bodies reach into each other.
+mod penetration;
+
+// A scene under way, and what every run records.
+mod trial;
+
+// What a benchmark measured.
+mod outcome;
+
+// Small mathematics of measuring: slope, mean, deviation.
+mod measuring;
+
+// Pieces of scenes that benchmarks share.
+mod scenery;
+
+// The benchmarks, one file each.
+mod benchmarks;
+
+// All chosen laws through all chosen benchmarks, side by side on the machine's cores.
+mod suite;
+
+pub use benchmark::{Allowed, Benchmark, Case, Laws, Resolution, Target, Tier};
+pub use benchmarks::BENCHMARKS;
+pub use failure::Failure;
+pub use outcome::{Measurement, Outcome};
+pub use suite::{Entry, Finished, Law, Report, Run, Suite, Verdict, laws};
+pub use trial::{Record, Trial};

@@ -1,0 +1,91 @@
+//! The law that scenes get which name none, held to the targets that it reaches.
+//!
+//! # Source
+//! The benchmarks themselves: each states its source, its target and why it is that.
+//!
+//! # Expected
+//! What the default law reaches at the quick tier's resolutions, it keeps. Targets that it misses are on the page of
+//! `stickslip validate` and not here. Every benchmark named measures every quantity that it has a target for.
+
+use stickslip_validation::{BENCHMARKS, Benchmark, Entry, Suite, Tier, Verdict, laws};
+
+fn run(name: &str) -> Entry {
+    let benchmarks: Vec<&'static Benchmark> =
+        BENCHMARKS.iter().filter(|benchmark| benchmark.name == name).collect();
+    let default = laws().into_iter().filter(|law| law.default).collect();
+    let suite = Suite { benchmarks, laws: default, tier: Tier::Quick, threads: 1 };
+    let mut report = suite.run(&mut |_| {});
+    report.entries.swap_remove(0)
+}
+
+/// Runs a benchmark and holds the default law to some of its quantities.
+fn holds(name: &str, metrics: &[&str]) {
+    let entry = run(name);
+    for run in &entry.runs {
+        let outcome = run.result.as_ref().unwrap_or_else(|failure| panic!("{name}: {failure}"));
+        for target in entry.benchmark.targets {
+            assert!(outcome.value(target.metric).is_some(), "{name} does not measure {}", target.metric);
+        }
+    }
+    for metric in metrics {
+        let targets: Vec<_> =
+            entry.benchmark.targets.iter().filter(|target| target.metric == *metric).collect();
+        assert!(!targets.is_empty(), "{name} has no target for {metric}");
+        for target in targets {
+            let measured = entry.judged(target).map(|run| run.result.as_ref().map(|o| o.value(metric)));
+            assert_eq!(
+                entry.verdict(target),
+                Verdict::Reached,
+                "{name}, {metric}: {measured:?}, target {target}"
+            );
+        }
+    }
+}
+
+#[test]
+fn contact_begins_when_surfaces_touch() {
+    holds(
+        "M4",
+        &[
+            "cells too early, 1 particle a side",
+            "2 particles a side",
+            "3 particles a side",
+            "4 particles a side",
+        ],
+    );
+}
+
+#[test]
+fn an_interface_along_the_grid_leaves_the_stress_uniform() {
+    holds("M5", &["largest error of stress, 0 degrees"]);
+}
+
+#[test]
+fn equal_bars_exchange_their_velocities() {
+    holds(
+        "B5",
+        &[
+            "restitution, v/c = 0.002",
+            "restitution, v/c = 0.02",
+            "contact ends over 2L/c, v/c = 0.002",
+            "contact ends over 2L/c, v/c = 0.02",
+            "energy left over, v/c = 0.002",
+            "energy left over, v/c = 0.02",
+        ],
+    );
+}
+
+#[test]
+fn tractions_of_unlike_bars_are_equal() {
+    holds("B7", &["tractions apart"]);
+}
+
+#[test]
+fn a_block_with_corners_slides_along_the_grid() {
+    holds("corners", &["acceleration, aligned"]);
+}
+
+#[test]
+fn a_rigid_floor_is_the_limit_of_a_stiff_one() {
+    holds("rigid", &["restitution, rigid over stiff", "largest force, rigid over stiff"]);
+}

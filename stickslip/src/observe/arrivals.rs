@@ -1,0 +1,260 @@
+//! `arrivals.csv`: when quantities first pass their thresholds.
+
+use super::file::OutputError;
+use super::folder::OutputFolder;
+use super::points::{Point, Points};
+use super::probes::points;
+use super::schedule::Schedule;
+use super::table::{Row, Table};
+use super::{ARRIVALS, Observer};
+use crate::door::Simulation;
+use crate::scene::{Anchor, Arrival, Observable, Reading, Scene};
+use serde::{Deserialize, Serialize};
+
+/// A threshold that was passed; the columns of `arrivals.csv`. A threshold that was not passed has no row.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ArrivalRow {
+    /// Simulated time at which it was passed, on a straight line between the samples before and after [s].
+    pub time: f64,
+    /// Name of the quantity.
+    pub quantity: String,
+    /// The threshold [Pa or m/s].
+    pub threshold: f64,
+    /// `probe`, or what stands for the body: `center`, `any`, `mean`.
+    pub reading: String,
+    /// Name of the probe or the body.
+    pub place: String,
+    /// Where it was passed, first component [m].
+    pub x: f64,
+    /// Where it was passed, second component [m].
+    pub y: f64,
+    /// Where it was passed, third component [m].
+    pub z: f64,
+}
+
+impl Row for ArrivalRow {
+    fn time(&self) -> f64 {
+        self.time
+    }
+}
+
+/// Writes `arrivals.csv`.
+pub(super) struct Arrivals {
+    scene: Scene,
+    lookout: Option<Lookout>,
+    schedule: Schedule,
+    table: Table<ArrivalRow>,
+}
+
+/// What has not arrived yet, and the points to look at.
+struct Lookout {
+    watches: Vec<Watch>,
+    points: Points,
+}
+
+/// One quantity at one place, until it arrives.
+struct Watch {
+    quantity: Observable,
+    source: Source,
+    crossing: Crossing,
+    /// The row, but for time and place.
+    row: ArrivalRow,
+}
+
+/// Where a watch looks.
+#[derive(Clone, Copy, Debug)]
+enum Source {
+    /// The point with this index.
+    Point(usize),
+    /// The body with this index: its furthest particle.
+    Any(usize),
+    /// The body with this index: its mean.
+    Mean(usize),
+}
+
+/// Notices when a value first passes a threshold.
+#[derive(Clone, Debug)]
+pub(super) struct Crossing {
+    threshold: f64,
+    before: Option<[f64; 2]>,
+}
+
+impl Crossing {
+    /// A threshold, which is passed away from zero.
+    pub(super) fn of(threshold: f64) -> Self {
+        Crossing { threshold, before: None }
+    }
+
+    /// Takes the value at a time [s]; the time of passing if it is at the threshold or beyond:
+    ///
+    /// ```text
+    /// t = t0 + (threshold - q0) / (q1 - q0) (t1 - t0)
+    /// ```
+    ///
+    /// and t1 itself where there was no value before.
+    pub(super) fn at(&mut self, time: f64, value: f64) -> Option<f64> {
+        let before = self.before.replace([time, value]);
+        if value * self.threshold.signum() < self.threshold.abs() {
+            return None;
+        }
+        Some(match before {
+            Some([t0, q0]) if value != q0 => t0 + (self.threshold - q0) / (value - q0) * (time - t0),
+            _ => time,
+        })
+    }
+}
+
+impl Arrivals {
+    pub(super) fn create(scene: &Scene, folder: &OutputFolder) -> Result<Self, OutputError> {
+        let wanted = &scene.outputs.measurements;
+        Ok(Arrivals {
+            scene: scene.clone(),
+            lookout: None,
+            schedule: Schedule::every(wanted.samples),
+            table: Table::create(folder.join(ARRIVALS), wanted.unit())?,
+        })
+    }
+}
+
+impl Observer for Arrivals {
+    fn next(&self) -> f64 {
+        match &self.lookout {
+            Some(lookout) if lookout.watches.is_empty() => f64::INFINITY,
+            _ => self.schedule.next(),
+        }
+    }
+
+    fn observe(&mut self, simulation: &mut dyn Simulation) -> Result<(), OutputError> {
+        let lookout = self.lookout.get_or_insert_with(|| Lookout::new(&self.scene, simulation));
+        let rows = lookout.arrived(simulation);
+        self.table.append(rows)?;
+        self.schedule.recorded(simulation.time());
+        Ok(())
+    }
+}
+
+impl Lookout {
+    fn new(scene: &Scene, simulation: &dyn Simulation) -> Self {
+        let wanted = &scene.outputs.measurements;
+        let mut points: Vec<Point> = points(scene, wanted.probes.iter()).collect();
+        let mut watches = Vec::new();
+        for arrival in &wanted.arrivals {
+            for name in &arrival.probes {
+                let probe = wanted.probes.iter().position(|probe| probe.name == *name);
+                let probe = probe.expect("arrivals name probes of their scene");
+                watches.push(Watch::new(arrival, ("probe", name), Source::Point(probe)));
+            }
+            for name in &arrival.bodies {
+                let body = scene.bodies.iter().position(|body| body.name == *name);
+                let body = body.expect("arrivals name bodies of their scene");
+                let (reading, source) = match arrival.reading {
+                    Reading::Center => ("center", Source::Point(points.len())),
+                    Reading::Any => ("any", Source::Any(body)),
+                    Reading::Mean => ("mean", Source::Mean(body)),
+                };
+                if arrival.reading == Reading::Center {
+                    let at = simulation.bodies()[body].position;
+                    points.push(Point { at, body: Some(body), fixed_in: Anchor::Material });
+                }
+                watches.push(Watch::new(arrival, (reading, name), source));
+            }
+        }
+        Lookout { watches, points: Points::new(scene, points) }
+    }
+
+    /// What arrived since the last look, in the order of time; it is watched no longer.
+    fn arrived(&mut self, simulation: &dyn Simulation) -> Vec<ArrivalRow> {
+        let samples = self.points.sample(simulation);
+        let mut rows = Vec::new();
+        self.watches.retain_mut(|watch| {
+            let seen = match watch.source {
+                Source::Point(point) => samples[point]
+                    .map(|sample| (watch.value(&sample.velocity, &sample.stress), sample.position)),
+                Source::Any(body) => furthest(simulation, body, watch),
+                Source::Mean(body) => mean(simulation, body, watch),
+            };
+            let Some((value, [x, y, z])) = seen else { return true };
+            let passed = watch.crossing.at(simulation.time(), value);
+            rows.extend(passed.map(|time| ArrivalRow { time, x, y, z, ..watch.row.clone() }));
+            passed.is_none()
+        });
+        rows.sort_by(|a, b| a.time.total_cmp(&b.time));
+        rows
+    }
+}
+
+impl Watch {
+    fn new(arrival: &Arrival, (reading, place): (&str, &str), source: Source) -> Self {
+        let Arrival { quantity, threshold, .. } = *arrival;
+        let row = ArrivalRow {
+            quantity: quantity.name().to_string(),
+            threshold,
+            reading: reading.to_string(),
+            place: place.to_string(),
+            ..ArrivalRow::default()
+        };
+        Watch { quantity, source, crossing: Crossing::of(threshold), row }
+    }
+
+    fn value(&self, velocity: &[f64; 3], stress: &[f64; 6]) -> f64 {
+        self.quantity.value(velocity, stress)
+    }
+}
+
+/// The value furthest to the threshold's side in a body, and where it is.
+fn furthest(simulation: &dyn Simulation, body: usize, watch: &Watch) -> Option<(f64, [f64; 3])> {
+    let mut furthest: Option<(f64, [f64; 3])> = None;
+    let side = watch.crossing.threshold.signum();
+    simulation.visit(body, &mut |particle| {
+        let value = watch.value(&particle.velocity, &particle.stress);
+        if furthest.is_none_or(|(most, _)| side * value > side * most) {
+            furthest = Some((value, particle.position));
+        }
+    });
+    furthest
+}
+
+/// The mean of the values over the mass of a body, and its centre of mass.
+fn mean(simulation: &dyn Simulation, body: usize, watch: &Watch) -> Option<(f64, [f64; 3])> {
+    let (mut mass, mut sum, mut moment) = (0.0, 0.0, [0.0; 3]);
+    simulation.visit(body, &mut |particle| {
+        mass += particle.mass;
+        sum += particle.mass * watch.value(&particle.velocity, &particle.stress);
+        moment = std::array::from_fn(|k| moment[k] + particle.mass * particle.position[k]);
+    });
+    (mass > 0.0).then(|| (sum / mass, moment.map(|x| x / mass)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Time of passing of a quantity that is sampled at these times and values.
+    fn passing(threshold: f64, samples: &[[f64; 2]]) -> Option<f64> {
+        let mut crossing = Crossing::of(threshold);
+        samples.iter().find_map(|&[time, value]| crossing.at(time, value))
+    }
+
+    #[test]
+    fn a_ramp_is_passed_exactly_between_samples() {
+        let ramp: Vec<[f64; 2]> =
+            (0..10).map(|i| [0.5 * f64::from(i), 3.0 * 0.5 * f64::from(i) - 2.0]).collect();
+        // q = 3 t - 2: at 4 when t = 2, a sample; at 5 when t = 7/3, between samples.
+        assert_eq!(passing(4.0, &ramp), Some(2.0));
+        assert!((passing(5.0, &ramp).unwrap() - 7.0 / 3.0).abs() < 1e-15);
+        assert_eq!(passing(100.0, &ramp), None);
+    }
+
+    #[test]
+    fn a_negative_threshold_is_passed_downward() {
+        let falling = [[0.0, 1.0], [1.0, -1.0], [2.0, -5.0]];
+        assert_eq!(passing(-3.0, &falling), Some(1.5));
+        assert_eq!(passing(3.0, &falling), None);
+    }
+
+    #[test]
+    fn what_is_beyond_the_threshold_when_first_seen_arrives_then() {
+        assert_eq!(passing(1.0, &[[0.25, 2.0], [0.5, 3.0]]), Some(0.25));
+        assert_eq!(passing(2.0, &[[0.25, 2.0]]), Some(0.25), "at the threshold is passed");
+    }
+}

@@ -1,0 +1,174 @@
+//! Points at which the material is sampled, by a smooth mean over the particles around.
+
+use crate::check;
+use crate::door::{ParticleView, Simulation};
+use crate::scene::{Anchor, Motion, Scene};
+
+/// Motion and stress of the material at a point.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Sample {
+    /// Where it is [m].
+    pub position: [f64; 3],
+    /// Its velocity [m/s].
+    pub velocity: [f64; 3],
+    /// Cauchy stress xx, yy, zz, xy, yz, xz, tension positive [Pa].
+    pub stress: [f64; 6],
+}
+
+/// A point to sample.
+#[derive(Clone, Debug)]
+pub(super) struct Point {
+    /// Where it is at the start [m].
+    pub at: [f64; 3],
+    /// Index of the body that it looks at; without it, all that are not rigid.
+    pub body: Option<usize>,
+    /// What it stays with.
+    pub fixed_in: Anchor,
+}
+
+/// Points that are sampled together. Each looks at the particles within two cells:
+///
+/// ```text
+/// q = sum_p m_p w(r_p) q_p / sum_p m_p w(r_p),   w(r) = (1 - r/R)^4 (1 + 4 r/R),   R = 2 cells     (Wendland's C2 function)
+/// ```
+///
+/// with r the distance from the point. The mean is smooth in space and time and never beyond the values of the particles; it
+/// smears a sharp front over about a cell, and within a cell of a surface it leans to the inside. A point of space takes the
+/// particles that are there now; a point of the material takes those of the first sample, with their weights, for ever.
+pub(super) struct Points {
+    points: Vec<(Point, Hold)>,
+    /// Indices of the bodies that are not rigid.
+    bodies: Vec<usize>,
+    radius: f64,
+}
+
+/// Which particles a point takes.
+#[derive(Clone, Debug)]
+enum Hold {
+    /// Those around it now.
+    Around,
+    /// These: number and weight, in the order of the numbers. The point lies at their mean position and this beside it [m].
+    These { weights: Vec<(u32, f64)>, beside: [f64; 3] },
+}
+
+/// R in cells.
+const RADIUS: f64 = 2.0;
+
+impl Points {
+    /// Points in a scene. A point of the material that names no body belongs to the nearest.
+    pub(super) fn new(scene: &Scene, points: impl IntoIterator<Item = Point>) -> Self {
+        let free = |i: &usize| matches!(scene.bodies[*i].motion, Motion::Free { .. });
+        let bodies: Vec<usize> = (0..scene.bodies.len()).filter(free).collect();
+        let nearest = |at: [f64; 3]| {
+            let distance = |i: usize| scene.bodies[i].shape.distance(at, check::lattice(scene).dimension);
+            bodies.iter().copied().min_by(|&a, &b| distance(a).total_cmp(&distance(b)))
+        };
+        let points = points.into_iter().map(|mut point| {
+            if point.fixed_in == Anchor::Material && point.body.is_none() {
+                point.body = nearest(point.at);
+            }
+            (point, Hold::Around)
+        });
+        Points { points: points.collect(), bodies, radius: RADIUS * scene.discretization.cell }
+    }
+
+    /// The material at each point now; `None` where no particle is around. The first call binds the points of the material.
+    pub(super) fn sample(&mut self, simulation: &dyn Simulation) -> Vec<Option<Sample>> {
+        let mut sums = vec![Sum::default(); self.points.len()];
+        let mut found: Vec<Vec<(u32, f64)>> = vec![Vec::new(); self.points.len()];
+        for &body in &self.bodies {
+            let mut here: Vec<usize> = Vec::new();
+            here.extend((0..self.points.len()).filter(|&i| self.points[i].0.body.is_none_or(|b| b == body)));
+            if here.is_empty() {
+                continue;
+            }
+            simulation.visit(body, &mut |particle| {
+                for &i in &here {
+                    let weight = self.weight(i, particle);
+                    if weight > 0.0 {
+                        sums[i].add(weight, particle);
+                        if self.binds(i) {
+                            found[i].push((particle.number, weight));
+                        }
+                    }
+                }
+            });
+        }
+        let samples: Vec<_> = sums.iter().map(Sum::mean).collect();
+        for (i, mut weights) in found.into_iter().enumerate() {
+            let Some(mean) = samples[i].filter(|_| self.binds(i)) else { continue };
+            weights.sort_unstable_by_key(|(number, _)| *number);
+            let (point, hold) = &mut self.points[i];
+            *hold = Hold::These { weights, beside: std::array::from_fn(|k| point.at[k] - mean.position[k]) };
+        }
+        let place = |(sample, (point, hold)): (Option<Sample>, &(Point, Hold))| {
+            let mut sample = sample?;
+            sample.position = match hold {
+                Hold::Around => point.at,
+                Hold::These { beside, .. } => std::array::from_fn(|k| sample.position[k] + beside[k]),
+            };
+            Some(sample)
+        };
+        samples.into_iter().zip(&self.points).map(place).collect()
+    }
+
+    /// Whether a point of the material has no particles yet.
+    fn binds(&self, i: usize) -> bool {
+        let (point, hold) = &self.points[i];
+        point.fixed_in == Anchor::Material && matches!(hold, Hold::Around)
+    }
+
+    /// m w, zero for most particles.
+    fn weight(&self, i: usize, particle: &ParticleView) -> f64 {
+        match &self.points[i] {
+            (point, Hold::Around) => particle.mass * wendland(&point.at, &particle.position, self.radius),
+            (_, Hold::These { weights, .. }) => {
+                let (Some(first), Some(last)) = (weights.first(), weights.last()) else { return 0.0 };
+                if particle.number < first.0 || particle.number > last.0 {
+                    return 0.0;
+                }
+                let place = weights.binary_search_by_key(&particle.number, |(number, _)| *number);
+                place.map_or(0.0, |place| weights[place].1)
+            }
+        }
+    }
+}
+
+fn wendland(a: &[f64; 3], b: &[f64; 3], radius: f64) -> f64 {
+    let squared = (a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2) + (a[2] - b[2]).powi(2);
+    if squared >= radius * radius {
+        return 0.0;
+    }
+    let r = squared.sqrt() / radius;
+    (1.0 - r).powi(4) * (1.0 + 4.0 * r)
+}
+
+/// Weighted sums over particles.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Sum {
+    weight: f64,
+    sample: Sample,
+}
+
+impl Sum {
+    /// Adds a particle.
+    pub(super) fn add(&mut self, weight: f64, particle: &ParticleView) {
+        self.weight += weight;
+        for k in 0..3 {
+            self.sample.position[k] += weight * particle.position[k];
+            self.sample.velocity[k] += weight * particle.velocity[k];
+        }
+        for k in 0..6 {
+            self.sample.stress[k] += weight * particle.stress[k];
+        }
+    }
+
+    /// The mean; `None` of nothing.
+    pub(super) fn mean(&self) -> Option<Sample> {
+        (self.weight > 0.0).then(|| Sample {
+            position: self.sample.position.map(|x| x / self.weight),
+            velocity: self.sample.velocity.map(|v| v / self.weight),
+            stress: self.sample.stress.map(|s| s / self.weight),
+        })
+    }
+}

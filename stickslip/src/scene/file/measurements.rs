@@ -1,0 +1,333 @@
+//! `outputs.probes`, `outputs.arrivals`, `outputs.fronts`: what is measured while a scene runs.
+
+use super::Context;
+use super::outputs::Outputs;
+use super::quantity::{Duration, Length, Quantity, Ratio, evaluate};
+use super::read::{Read, table};
+use super::text::{Choice, Text, Word};
+use super::vector::Vector;
+use crate::scene::error::Fault;
+use crate::scene::parameters::Variation;
+use crate::scene::source::{Node, Value};
+use crate::scene::units::Powers;
+use crate::scene::{self, Anchor, Body, Motion, Observable, Reading};
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use std::borrow::Cow;
+
+table! {
+    /// A point at which velocity and stress are recorded.
+    Probe {
+        /// Its name.
+        name: Text,
+        /// Where it is at the start [m].
+        at: Vector<Length>,
+        /// Name of the body that it looks at; by default whichever is there.
+        body: Option<Text>,
+        /// What it stays with.
+        #[schemars(extend("default" = "space"))]
+        fixed_in: Option<Word<Anchor>>,
+    }
+}
+
+table! {
+    /// A threshold whose first passing is recorded, at probes and in bodies.
+    Arrival {
+        /// The quantity.
+        quantity: Word<Observable>,
+        /// It has arrived once it is this or beyond, seen from zero; a negative threshold is passed downward.
+        threshold: Threshold,
+        /// Names of probes; by default all of them if no bodies are named.
+        probes: Option<Vec<Text>>,
+        /// Names of bodies; by default none.
+        bodies: Option<Vec<Text>>,
+        /// What stands for a body.
+        #[schemars(extend("default" = "center"))]
+        reading: Option<Word<Reading>>,
+    }
+}
+
+table! {
+    /// A front: the furthest point along a direction at which a quantity is at a threshold or beyond.
+    Front {
+        /// Its name.
+        name: Text,
+        /// The quantity.
+        quantity: Word<Observable>,
+        /// As that of an arrival.
+        threshold: Threshold,
+        /// The point from which its way is measured [m].
+        from: Vector<Length>,
+        /// The direction along which it is measured; any length.
+        direction: Vector<Ratio>,
+        /// Only material within this distance of the line along `direction` counts [m]; by default all.
+        within: Option<Quantity<Length>>,
+        /// Names of the bodies in which it runs; by default all but rigid ones.
+        bodies: Option<Vec<Text>>,
+        /// Start and end of the way over which its speed is fitted [m]; by default from 10 % to 90 % of the way that it went.
+        fit: Option<Way>,
+    }
+}
+
+/// A number whose dimension depends on the quantity it is for.
+pub struct Threshold(Node);
+
+/// Start and end of a way.
+#[derive(JsonSchema)]
+#[schemars(transparent)]
+pub struct Way([Quantity<Length>; 2]);
+
+/// An interval, or every step.
+pub enum Sampling {
+    /// The word "step".
+    EveryStep,
+    /// The interval.
+    Every(Quantity<Duration>),
+}
+
+impl Choice for Anchor {
+    const WORDS: &'static [(&'static str, Self, &'static str)] = &[
+        ("space", Anchor::Space, "A point of space, through which material may move."),
+        ("material", Anchor::Material, "A point of the material, with which it moves."),
+    ];
+}
+
+impl Choice for Reading {
+    const WORDS: &'static [(&'static str, Self, &'static str)] = &[
+        ("center", Reading::Center, "The material at the centre of mass at the start."),
+        ("any", Reading::Any, "The particle that is furthest beyond zero."),
+        ("mean", Reading::Mean, "The mean over the mass."),
+    ];
+}
+
+impl Choice for Observable {
+    const WORDS: &'static [(&'static str, Self, &'static str)] = &[
+        ("vx", Observable::Vx, "Velocity along x."),
+        ("vy", Observable::Vy, "Velocity along y."),
+        ("vz", Observable::Vz, "Velocity along z."),
+        ("speed", Observable::Speed, "Magnitude of the velocity."),
+        ("xx", Observable::Xx, "Normal stress along x, tension positive."),
+        ("yy", Observable::Yy, "Normal stress along y."),
+        ("zz", Observable::Zz, "Normal stress along z."),
+        ("xy", Observable::Xy, "Shear stress in the plane of x and y."),
+        ("yz", Observable::Yz, "Shear stress in the plane of y and z."),
+        ("xz", Observable::Xz, "Shear stress in the plane of x and z."),
+        ("pressure", Observable::Pressure, "Minus a third of the trace of the stress."),
+        (
+            "stress_difference",
+            Observable::StressDifference,
+            "Difference of the principal stresses in the plane of x and y, as light along z sees it.",
+        ),
+        ("von_mises", Observable::VonMises, "Equivalent stress of von Mises."),
+    ];
+}
+
+/// Samples in a run where the scene does not say.
+const SAMPLES: f64 = 1000.0;
+
+/// What is measured in a run of length `end` [s].
+pub fn resolve(
+    outputs: Option<&Outputs>,
+    (bodies, end): (&[Body], f64),
+    context: &Context,
+) -> Result<scene::Measurements, Fault> {
+    let default = scene::Measurements { samples: end / SAMPLES, ..Default::default() };
+    let Some(outputs) = outputs else { return Ok(default) };
+    let free = bodies.iter().filter(|body| matches!(body.motion, Motion::Free { .. }));
+    let bodies: Vec<&str> = free.map(|body| body.name.as_str()).collect();
+    let mut probes: Vec<scene::Probe> = Vec::new();
+    for probe in outputs.probes.iter().flatten() {
+        let resolved = probe.resolve(&bodies, context)?;
+        probe.name.unlike(&resolved.name, probes.iter().map(|probe| probe.name.as_str()))?;
+        probes.push(resolved);
+    }
+    let names: Vec<&str> = probes.iter().map(|probe| probe.name.as_str()).collect();
+    let arrivals = outputs.arrivals.iter().flatten();
+    let arrivals =
+        arrivals.map(|arrival| arrival.resolve((&names, &bodies), context)).collect::<Result<_, _>>()?;
+    let mut fronts: Vec<scene::Front> = Vec::new();
+    for front in outputs.fronts.iter().flatten() {
+        let resolved = front.resolve(&bodies, context)?;
+        front.name.unlike(&resolved.name, fronts.iter().map(|front| front.name.as_str()))?;
+        fronts.push(resolved);
+    }
+    let time_unit = outputs.time_unit.as_ref().map(|unit| time_unit(unit, context)).transpose()?;
+    let samples = match &outputs.samples {
+        None => default.samples,
+        Some(Sampling::EveryStep) => 0.0,
+        Some(Sampling::Every(interval)) => interval.positive(context)?,
+    };
+    Ok(scene::Measurements { time_unit, samples, probes, arrivals, fronts })
+}
+
+fn time_unit(unit: &Quantity<Duration>, context: &Context) -> Result<scene::TimeUnit, Fault> {
+    let seconds = unit.positive(context)?;
+    let name = match &unit.node().value {
+        Value::Text(text) => text.clone(),
+        _ => format!("{seconds} s"),
+    };
+    Ok(scene::TimeUnit { seconds, name })
+}
+
+/// Names in a list, each of which must be known.
+fn names(list: &[Text], (what, known): (&str, &[&str]), context: &Context) -> Result<Vec<String>, Fault> {
+    list.iter().map(|name| name.name_of(context, what, known)).collect()
+}
+
+const A_BODY: &str = "the name of a body that is not rigid";
+
+impl Probe {
+    fn resolve(&self, bodies: &[&str], context: &Context) -> Result<scene::Probe, Fault> {
+        let body = self.body.as_ref().map(|name| name.name_of(context, A_BODY, bodies)).transpose()?;
+        let fixed_in = self.fixed_in.as_ref();
+        Ok(scene::Probe {
+            name: self.name.value(context)?,
+            at: self.at.value(context)?,
+            body,
+            fixed_in: fixed_in.map_or(Ok(Anchor::Space), |word| word.value(context))?,
+        })
+    }
+}
+
+impl Arrival {
+    fn resolve(
+        &self,
+        (probes, bodies): (&[&str], &[&str]),
+        context: &Context,
+    ) -> Result<scene::Arrival, Fault> {
+        let quantity = self.quantity.value(context)?;
+        let at = match (&self.probes, &self.bodies) {
+            (Some(list), _) => names(list, ("the name of a probe", probes), context)?,
+            (None, Some(_)) => Vec::new(),
+            (None, None) => probes.iter().map(|name| name.to_string()).collect(),
+        };
+        let bodies = names(self.bodies.as_deref().unwrap_or_default(), (A_BODY, bodies), context)?;
+        if at.is_empty() && bodies.is_empty() {
+            let mut fault =
+                self.quantity.node().fault("probes or bodies to watch: probes = [...], bodies = [...]");
+            fault.problem.found = "an arrival that watches no probe and no body".to_string();
+            return Err(fault);
+        }
+        let reading = self.reading.as_ref();
+        Ok(scene::Arrival {
+            quantity,
+            threshold: self.threshold.value(quantity, context)?,
+            probes: at,
+            bodies,
+            reading: reading.map_or(Ok(Reading::Center), |word| word.value(context))?,
+        })
+    }
+}
+
+impl Front {
+    fn resolve(&self, bodies: &[&str], context: &Context) -> Result<scene::Front, Fault> {
+        let quantity = self.quantity.value(context)?;
+        let direction = self.direction.value(context)?;
+        let length = direction.iter().map(|d| d * d).sum::<f64>().sqrt();
+        if !(length > 0.0 && length.is_finite()) {
+            return Err(self.direction.node().fault("a direction that is not zero, such as [1, 0]"));
+        }
+        Ok(scene::Front {
+            name: self.name.value(context)?,
+            quantity,
+            threshold: self.threshold.value(quantity, context)?,
+            from: self.from.value(context)?,
+            direction: direction.map(|d| d / length),
+            within: self.within.as_ref().map(|width| width.positive(context)).transpose()?,
+            bodies: match &self.bodies {
+                Some(list) => names(list, (A_BODY, bodies), context)?,
+                None => bodies.iter().map(|name| name.to_string()).collect(),
+            },
+            fit: self.fit.as_ref().map(|way| way.value(context)).transpose()?,
+        })
+    }
+}
+
+impl Threshold {
+    fn value(&self, quantity: Observable, context: &Context) -> Result<f64, Fault> {
+        let powers = Powers::from(quantity.powers());
+        let allowed = format!("{} other than 0, like \"{}\"", powers.name(), powers.example());
+        let value = evaluate(&self.0, powers, &allowed, (context, Variation::Constant))?.at(0.0);
+        if value != 0.0 && value.is_finite() { Ok(value) } else { Err(self.0.fault(allowed)) }
+    }
+}
+
+impl Way {
+    fn value(&self, context: &Context) -> Result<[f64; 2], Fault> {
+        let [start, end] = [self.0[0].value(context)?, self.0[1].value(context)?];
+        if start < end {
+            Ok([start, end])
+        } else {
+            Err(self.0[1].refused(end, format!("more than {start} m")))
+        }
+    }
+}
+
+impl Read for Threshold {
+    fn wanted() -> String {
+        "a number with the unit of the quantity, like \"2 MPa\"".to_string()
+    }
+
+    fn read(node: &Node) -> Result<Self, Fault> {
+        match node.value {
+            Value::Text(_) | Value::Number(_) => Ok(Threshold(node.clone())),
+            _ => Err(node.fault(Self::wanted())),
+        }
+    }
+}
+
+impl Read for Way {
+    fn wanted() -> String {
+        "two lengths: [\"5 mm\", \"30 mm\"]".to_string()
+    }
+
+    fn read(node: &Node) -> Result<Self, Fault> {
+        match &node.value {
+            Value::List(items) if items.len() == 2 => {
+                Ok(Way([Quantity::read(&items[0])?, Quantity::read(&items[1])?]))
+            }
+            _ => Err(node.fault(Self::wanted())),
+        }
+    }
+}
+
+impl Read for Sampling {
+    fn wanted() -> String {
+        format!("{}, or \"step\"", Quantity::<Duration>::wanted())
+    }
+
+    fn read(node: &Node) -> Result<Self, Fault> {
+        match &node.value {
+            Value::Text(text) if text == "step" => Ok(Sampling::EveryStep),
+            Value::Text(_) | Value::Number(_) => Ok(Sampling::Every(Quantity::new(node))),
+            _ => Err(node.fault(Self::wanted())),
+        }
+    }
+}
+
+impl JsonSchema for Threshold {
+    fn schema_name() -> Cow<'static, str> {
+        "Threshold".into()
+    }
+
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({ "type": ["number", "string"], "examples": ["2 MPa"] })
+    }
+}
+
+impl JsonSchema for Sampling {
+    fn schema_name() -> Cow<'static, str> {
+        "Sampling".into()
+    }
+
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({ "type": ["number", "string"], "examples": ["10 ns", "step"] })
+    }
+}

@@ -1,0 +1,193 @@
+//! Probes, arrivals and fronts tell what a step wave in a bar does.
+//!
+//! Source: elementary theory of bars. A rigid striker pushes the end of a bar at rest with the constant velocity v; nu = 0, so
+//! that the bar is one-dimensional:
+//!
+//! ```text
+//! v_x = v and sigma_xx = -rho c v behind the front at x = c t, zero before it;   c = sqrt(E/rho)
+//! mean velocity of the bar v c t / L
+//! ```
+//!
+//! Set-up: the plane, L of 80 cells, 4 cells high, v/c = 0.002; units of L = rho = c = 1. Thresholds are half of the step.
+//!
+//! Expected: arrivals at x/c within three cells, as lumped mass on a grid disperses the step to a ramp some cells wide; the
+//! speed between two arrivals, and of the front by fit, within 2 % of c; the mean velocity v/2 at t = L/2c within three cells;
+//! the probe that rides with the material moves with it, the other stays.
+
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use stickslip::observe::{ArrivalRow, ProbeRow, Results};
+use stickslip::run::RunOptions;
+use stickslip::scene::Scene;
+use stickslip::{engine, run, scene};
+
+const CELLS: f64 = 80.0;
+const SPEED: f64 = 0.002;
+
+fn bar() -> String {
+    let h = 1.0 / CELLS;
+    let (height, middle) = (4.0 * h, 2.0 * h);
+    let half = 0.5 * SPEED;
+    let probe = |name: &str, x: f64, anchor: &str| {
+        format!("[[outputs.probes]]\nname = \"{name}\"\nat = [{x}, {middle}]\nfixed_in = \"{anchor}\"\n")
+    };
+    let probes = [("quarter", 0.25, "material"), ("half", 0.5, "space"), ("three quarters", 0.75, "space")];
+    let probes: String = probes.iter().map(|(name, x, anchor)| probe(name, *x, anchor)).collect();
+    format!(
+        r#"
+        space = {{ dimension = "plane-strain", cell = {h} }}
+        time.end = 0.9
+        materials.steel = {{ density = 1, neo_hookean = {{ young_modulus = 1, poisson_ratio = 0 }} }}
+        [[bodies]]
+        name = "bar"
+        material = "steel"
+        shape.box = {{ min = [0, 0], max = [1, {height}] }}
+        [[bodies]]
+        name = "striker"
+        material = "steel"
+        shape.box = {{ min = [-0.1, {}], max = [0, {}] }}
+        rigid.velocity = [{SPEED}, 0]
+        [outputs]
+        time_unit = "0.5 s"
+        particles = "never"
+        samples = "step"
+        {probes}
+        [[outputs.arrivals]]
+        quantity = "stress_difference"
+        threshold = {half}
+        bodies = ["bar"]
+        probes = ["quarter", "half", "three quarters"]
+        [[outputs.arrivals]]
+        quantity = "xx"
+        threshold = {}
+        bodies = ["bar"]
+        reading = "any"
+        [[outputs.arrivals]]
+        quantity = "vx"
+        threshold = {half}
+        bodies = ["bar"]
+        reading = "mean"
+        [[outputs.arrivals]]
+        quantity = "pressure"
+        threshold = 1
+        [[outputs.fronts]]
+        name = "step"
+        quantity = "von_mises"
+        threshold = {half}
+        from = [0, {middle}]
+        direction = [2, 0]
+        within = {}
+        "#,
+        -2.0 * h,
+        height + 2.0 * h,
+        -half,
+        0.8 * h
+    )
+}
+
+fn run_to(out: &Path, scene: &Scene) -> Results {
+    let mut simulation = engine::build(scene).unwrap();
+    let options = RunOptions { out: out.to_path_buf(), stop: Arc::new(AtomicBool::new(false)), threads: 1 };
+    run::run(scene, &mut *simulation, &options, &mut |_| {}).unwrap();
+    Results::open(out).unwrap()
+}
+
+fn arrival<'a>(rows: &'a [ArrivalRow], quantity: &str, place: &str) -> &'a ArrivalRow {
+    let row = rows.iter().find(|row| row.quantity == quantity && row.place == place);
+    row.unwrap_or_else(|| panic!("{quantity} does not arrive at {place}: {rows:?}"))
+}
+
+#[test]
+fn a_step_wave_arrives_and_runs_at_the_speed_of_the_bar() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = scene::parse("bar.toml", &bar(), &[]).unwrap_or_else(|error| panic!("{error}")).scene;
+    let results = run_to(folder.path(), &scene);
+    let h = 1.0 / CELLS;
+
+    let arrivals = results.arrivals_table().unwrap();
+    for (place, x) in [("quarter", 0.25), ("half", 0.5), ("three quarters", 0.75), ("bar", 0.5)] {
+        let row = arrival(&arrivals, "stress_difference", place);
+        println!("{place}: {} ({x})", row.time);
+        assert!((row.time - x).abs() < 3.0 * h, "{row:?}");
+        assert!(
+            (row.x - x).abs() < 0.5 * SPEED && row.reading == if place == "bar" { "center" } else { "probe" }
+        );
+    }
+    let [first, last] =
+        ["quarter", "three quarters"].map(|place| arrival(&arrivals, "stress_difference", place).time);
+    assert!((0.5 / (last - first) - 1.0).abs() < 0.02, "speed {}", 0.5 / (last - first));
+    let any = arrival(&arrivals, "xx", "bar");
+    assert!(any.time < 3.0 * h && any.x < 2.0 * h && any.reading == "any", "{any:?}");
+    let mean = arrival(&arrivals, "vx", "bar");
+    println!("mean: {} (0.5)", mean.time);
+    assert!((mean.time - 0.5).abs() < 3.0 * h && (mean.x - 0.5).abs() < SPEED, "{mean:?}");
+    assert_eq!(arrivals.len(), 6, "what does not arrive has no row: {arrivals:?}");
+    assert!(arrivals.is_sorted_by(|a, b| a.time <= b.time));
+
+    let speeds = results.front_speeds_table().unwrap();
+    println!("{speeds:?}");
+    assert!((speeds[0].speed - 1.0).abs() < 0.02 && speeds[0].error < 0.01, "{speeds:?}");
+    let fronts = results.fronts_table().unwrap();
+    let reached = fronts.iter().rfind(|row| row.time < 0.5).unwrap();
+    assert!((reached.distance - reached.time).abs() < 3.0 * h, "{reached:?}");
+    assert!((reached.y - 2.0 * h).abs() < 0.8 * h, "{reached:?}");
+
+    let probes = results.probes_table().unwrap();
+    let of = |name: &str| probes.iter().filter(|row| row.probe == name).collect::<Vec<_>>();
+    let (riding, fixed) = (of("quarter"), of("half"));
+    assert_eq!(riding.len(), fixed.len());
+    // After the front has passed x = 1/4, the material there has moved at v for the rest of 0.9 - 1/4.
+    let way = riding.last().unwrap().x - 0.25;
+    assert!((way / (SPEED * 0.65) - 1.0).abs() < 0.03, "way {way}");
+    assert_eq!(fixed.last().unwrap().x, 0.5);
+    for (rows, x) in [(riding, 0.25), (fixed, 0.5)] {
+        // Means over time: FLIP rings behind a sharp front.
+        let behind: Vec<_> = rows.into_iter().filter(|row| row.time > x + 0.1).collect();
+        let mean = |value: fn(&ProbeRow) -> f64| {
+            behind.iter().map(|row| value(row)).sum::<f64>() / behind.len() as f64
+        };
+        let (vx, xx) = (mean(|row| row.vx), mean(|row| row.xx));
+        println!("x = {x}: vx {vx} ({SPEED}), xx {xx} (-{SPEED})");
+        assert!((vx / SPEED - 1.0).abs() < 0.02 && (xx / -SPEED - 1.0).abs() < 0.02, "{vx}, {xx}");
+        assert!(behind.iter().all(|row| (row.pressure + row.xx / 3.0).abs() < 0.01 * SPEED), "{behind:?}");
+    }
+
+    for name in ["bodies", "energy", "contacts", "probes", "arrivals", "fronts", "front_speeds"] {
+        let text = std::fs::read_to_string(folder.path().join(format!("{name}.csv"))).unwrap();
+        let (header, last) = (text.lines().next().unwrap(), text.lines().last().unwrap());
+        assert!(header.ends_with(",time_units"), "{header}");
+        let number = |text: &str| text.parse::<f64>().unwrap();
+        let [time, units] =
+            [last.split(',').next(), last.rsplit(',').next()].map(|text| number(text.unwrap()));
+        assert_eq!(units, time / 0.5, "{name}");
+    }
+    let contacts = results.contacts_table().unwrap();
+    assert!(contacts.iter().all(|row| (row.body_a.as_str(), row.body_b.as_str()) == ("bar", "striker")));
+    // The bar pushes the striker back with rho c v on its height: -x, as the force is that of the first on the second.
+    let force = contacts.iter().find(|row| row.time > 0.5).unwrap().fx;
+    assert!((force / (-SPEED * 4.0 * h) - 1.0).abs() < 0.05, "force {force}");
+}
+
+#[test]
+fn visiting_shows_the_particles_of_the_snapshot() {
+    let scene = scene::parse("bar.toml", &bar(), &[]).unwrap().scene;
+    let mut simulation = engine::build(&scene).unwrap();
+    for _ in 0..10 {
+        simulation.step(f64::INFINITY).unwrap();
+    }
+    let snapshot = simulation.snapshot();
+    for body in 0..2 {
+        let mut seen = Vec::new();
+        simulation.visit(body, &mut |particle| seen.push(*particle));
+        seen.sort_by_key(|particle| particle.number);
+        let expected: Vec<usize> =
+            (0..snapshot.body.len()).filter(|&i| snapshot.body[i] as usize == body).collect();
+        assert_eq!(seen.len(), expected.len());
+        for (particle, i) in seen.iter().zip(expected) {
+            assert_eq!((particle.number, particle.mass), (snapshot.number[i], snapshot.mass[i]));
+            assert_eq!((particle.position, particle.velocity), (snapshot.position[i], snapshot.velocity[i]));
+            assert_eq!(particle.stress, snapshot.stress[i]);
+        }
+    }
+}
