@@ -108,7 +108,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
     }
 
     fn visit(&self, body: usize, look: &mut dyn FnMut(&ParticleView)) {
-        for particle in &self.bodies[body].particles {
+        for particle in self.bodies[body].particles.iter() {
             look(&ParticleView {
                 number: particle.number,
                 mass: particle.mass.f64(),
