@@ -3,7 +3,7 @@
 //! A basis is a product over axes of one-dimensional functions. Along an axis, a particle reaches `WIDTH` nodes from a
 //! base node on. Coordinates are in cells.
 
-use crate::tensor::Real;
+use crate::tensor::{Number, Real};
 
 /// Most nodes that any basis reaches along an axis.
 pub const MAX_WIDTH: usize = 3;
@@ -13,10 +13,17 @@ pub const MAX_WIDTH: usize = 3;
 pub struct Axis<T> {
     /// Base node, in cells from the origin of the grid.
     pub base: i32,
+    /// Weights and slopes.
+    pub shape: Shape<T>,
+}
+
+/// Weights and slopes along one axis, for the nodes from the base node on.
+#[derive(Clone, Copy, Debug)]
+pub struct Shape<N> {
     /// S(x_p - x_i) [-]; zero beyond the basis' width.
-    pub weight: [T; MAX_WIDTH],
+    pub weight: [N; MAX_WIDTH],
     /// dS/dx [1/cell].
-    pub slope: [T; MAX_WIDTH],
+    pub slope: [N; MAX_WIDTH],
 }
 
 /// One-dimensional shape functions. Weights sum to one, slopes to zero, and a linear field is reproduced.
@@ -24,8 +31,18 @@ pub trait Basis<T: Real>: Copy + Send + Sync + 'static {
     /// Nodes that a particle reaches along an axis.
     const WIDTH: usize;
 
+    /// Where the reach of a particle at `x` with half-width `half` begins: its base node is the next one below [cells].
+    fn reach<N: Number>(x: N, half: N) -> N;
+
+    /// Weights and slopes of a particle at `r` from its base node.
+    fn shape<N: Number>(r: N, half: N) -> Shape<N>;
+
     /// Base node, weights and slopes of a particle at `x` with half-width `half` [cells].
-    fn axis(x: T, half: T) -> Axis<T>;
+    #[inline(always)]
+    fn axis(x: T, half: T) -> Axis<T> {
+        let base = Self::reach(x, half).floor();
+        Axis { base, shape: Self::shape(x - T::of(f64::from(base)), half) }
+    }
 }
 
 /// Tent functions of the particle's centre (Sulsky, Chen and Schreyer 1994).
@@ -36,10 +53,13 @@ impl<T: Real> Basis<T> for Linear {
     const WIDTH: usize = 2;
 
     #[inline(always)]
-    fn axis(x: T, _half: T) -> Axis<T> {
-        let base = x.floor();
-        let r = x - T::of(f64::from(base));
-        Axis { base, weight: [T::ONE - r, r, T::ZERO], slope: [-T::ONE, T::ONE, T::ZERO] }
+    fn reach<N: Number>(x: N, _half: N) -> N {
+        x
+    }
+
+    #[inline(always)]
+    fn shape<N: Number>(r: N, _half: N) -> Shape<N> {
+        Shape { weight: [N::ONE - r, r, N::ZERO], slope: [-N::ONE, N::ONE, N::ZERO] }
     }
 }
 
@@ -60,23 +80,23 @@ impl<T: Real> Basis<T> for Gimp {
     const WIDTH: usize = 3;
 
     #[inline(always)]
-    fn axis(x: T, half: T) -> Axis<T> {
-        let base = (x - half).floor();
-        let r = x - T::of(f64::from(base));
-        let inner = T::ONE - half;
-        let (first, last, first_slope, last_slope) = if r <= inner {
-            (T::ONE - r, T::ZERO, -T::ONE, T::ZERO)
-        } else {
-            let (before, beyond) = (T::ONE + half - r, r - inner);
-            let width = T::of(2.0) * half;
-            let area = T::of(2.0) * width;
-            (before * before / area, beyond * beyond / area, -before / width, beyond / width)
-        };
-        Axis {
-            base,
-            weight: [first, T::ONE - first - last, last],
-            slope: [first_slope, -first_slope - last_slope, last_slope],
-        }
+    fn reach<N: Number>(x: N, half: N) -> N {
+        x - half
+    }
+
+    #[inline(always)]
+    fn shape<N: Number>(r: N, half: N) -> Shape<N> {
+        // Without a branch: `near` stops at 2l, where S_0 goes on as a straight line. No sum cancels, so that a node that a particle
+        // hardly reaches gets hardly any mass, but not less than none.
+        let width = half + half;
+        let per_width = N::ONE / width;
+        let before = (N::ONE + half) - r;
+        let near = before.min(width);
+        let beyond = (r - (N::ONE - half)).max(N::ZERO);
+        let (falling, rising) = (near * per_width, beyond * per_width);
+        let first = N::HALF * near * falling + (before - near);
+        let last = N::HALF * beyond * rising;
+        Shape { weight: [first, N::ONE - first - last, last], slope: [-falling, falling - rising, rising] }
     }
 }
 
@@ -90,11 +110,11 @@ mod tests {
             let axis = B::axis(x, half);
             let node = |k: usize| f64::from(axis.base) + k as f64;
             let sum = |f: &dyn Fn(usize) -> f64| (0..MAX_WIDTH).map(f).sum::<f64>();
-            assert!((sum(&|k| axis.weight[k]) - 1.0).abs() < 1e-14);
-            assert!((sum(&|k| axis.weight[k] * node(k)) - x).abs() < 1e-13, "x = {x}");
-            assert!(sum(&|k| axis.slope[k]).abs() < 1e-14);
-            assert!((sum(&|k| axis.slope[k] * node(k)) - 1.0).abs() < 1e-13, "x = {x}");
-            assert!(axis.weight.iter().all(|&w| (-1e-15..=1.0).contains(&w)));
+            assert!((sum(&|k| axis.shape.weight[k]) - 1.0).abs() < 1e-14);
+            assert!((sum(&|k| axis.shape.weight[k] * node(k)) - x).abs() < 1e-13, "x = {x}");
+            assert!(sum(&|k| axis.shape.slope[k]).abs() < 1e-14);
+            assert!((sum(&|k| axis.shape.slope[k] * node(k)) - 1.0).abs() < 1e-13, "x = {x}");
+            assert!(axis.shape.weight.iter().all(|&w| (-1e-15..=1.0).contains(&w)));
         }
     }
 
@@ -121,7 +141,7 @@ mod tests {
                     .map(|y| (1.0 - (y - node).abs()).max(0.0))
                     .sum::<f64>()
                     / n as f64;
-                assert!((average - axis.weight[k]).abs() < 1e-7, "x = {x}, node {k}");
+                assert!((average - axis.shape.weight[k]).abs() < 1e-7, "x = {x}, node {k}");
             }
         }
     }

@@ -2,6 +2,7 @@
 
 use crate::geometry::Whole;
 use crate::material::{Material, Motion, Thickness};
+use crate::particles::Particles;
 use crate::tensor::{Matrix, Real, Symmetric, Vector, cross};
 
 /// A material point.
@@ -44,7 +45,7 @@ pub struct Body<T, const D: usize> {
     /// Mass per undeformed volume [kg/m^3].
     pub density: T,
     /// Its particles, in the order of memory.
-    pub particles: Vec<Particle<T, D>>,
+    pub particles: Particles<T, D>,
     /// Whether its motion is prescribed, whatever pushes it.
     pub rigid: bool,
     /// Its undeformed shape with its images in the domain's mirrors.
@@ -77,7 +78,7 @@ impl<T: Real, const D: usize> Body<T, D> {
     pub fn totals(&self) -> Totals {
         let mut totals = Totals::default();
         let law = self.material.law();
-        for particle in &self.particles {
+        for particle in self.particles.iter() {
             let (m, x, v) = (particle.mass.f64(), particle.position.space(), particle.velocity.space());
             let l = cross(x, v);
             totals.mass += m;
@@ -114,7 +115,7 @@ impl<T: Real, const D: usize> Body<T, D> {
         let mean = totals.momentum.map(|p| p / totals.mass);
         let mut inertia = Matrix::<f64>::ZERO;
         let mut angular = [0.0; 3];
-        for particle in &self.particles {
+        for particle in self.particles.iter() {
             let m = particle.mass.f64();
             let (x, v) = (particle.position.space(), particle.velocity.space());
             let r: [f64; 3] = std::array::from_fn(|i| x[i] - center[i]);

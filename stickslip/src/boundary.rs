@@ -6,6 +6,7 @@
 use crate::grid::{Cover, Field, SIDE, node_at, nodes_per_block};
 use crate::scene::Face;
 use crate::tensor::{Real, Vector};
+use crate::transfer::Share;
 
 /// A face of the domain that does something.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -97,25 +98,23 @@ impl Boundary {
         }
     }
 
-    /// Adds the images' mass and momentum to the nodes before the mirrors.
-    pub fn fold_momentum<T: Real, const D: usize>(&self, field: &mut Field<T, D>) {
+    /// Adds what was scattered behind the mirrors to the nodes before them.
+    pub fn fold<T: Real, const D: usize>(&self, field: &mut Field<T, D>, share: Share) {
         for &(behind, before, axis) in &self.mirrored {
             let image = field.nodes[behind];
-            field.nodes[before].mass += image.mass;
-            field.nodes[before].velocity += reflect(image.velocity, axis);
+            let node = &mut field.nodes[before];
+            if matches!(share, Share::Mass | Share::Everything) {
+                node.mass += image.mass;
+            }
+            if share != Share::Force {
+                node.velocity += reflect(image.velocity, axis);
+            }
+            if matches!(share, Share::Force | Share::Everything) {
+                node.force += reflect(image.force, axis);
+            }
         }
         for &(node, axis) in &self.on_mirror {
             field.nodes[node].velocity[axis] = T::ZERO;
-        }
-    }
-
-    /// Adds the images' forces to the nodes before the mirrors.
-    pub fn fold_force<T: Real, const D: usize>(&self, field: &mut Field<T, D>) {
-        for &(behind, before, axis) in &self.mirrored {
-            let force = field.nodes[behind].force;
-            field.nodes[before].force += reflect(force, axis);
-        }
-        for &(node, axis) in &self.on_mirror {
             field.nodes[node].force[axis] = T::ZERO;
         }
     }

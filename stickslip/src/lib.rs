@@ -2,7 +2,13 @@
 //!
 //! The rooms below are in reading order: each uses only rooms above it.
 
-// Real, Vector<T, D>, Matrix<T>, Symmetric<T>
+// One number, or several side by side: what laws compute with.
+pub mod number;
+
+// Several numbers in a register, on whatever the processor has.
+pub mod lanes;
+
+// Vector<T, D>, Matrix<T>, Symmetric<T>
 pub mod tensor;
 
 // Shapes: inside(x), bounds; filling them with particles.
@@ -22,6 +28,9 @@ pub mod basis;
 
 // Particles, and what they add up to.
 pub mod body;
+
+// A body's particles as columns in memory.
+pub mod particles;
 
 // The sparse field: blocks of nodes under each body's particles.
 pub mod grid;

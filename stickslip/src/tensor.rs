@@ -3,139 +3,36 @@
 //! Transfer between particles and grid works in the dimension of the scene, `Vector<T, D>`; laws live in three dimensions,
 //! `Matrix<T>` and `Symmetric<T>`, whatever the scene: a plane scene embeds its motion with [`Vector::space`].
 
-use std::fmt::Debug;
+pub use crate::number::{Number, Real};
 use std::iter::Sum;
-use std::ops::{Add, AddAssign, Div, DivAssign, Index, IndexMut, Mul, MulAssign, Neg, Sub, SubAssign};
+use std::ops::{Add, AddAssign, Div, Index, IndexMut, Mul, Neg, Sub, SubAssign};
 
-/// A floating-point number: `f32` or `f64`.
+/// The array whose entry `i` is `f(i)`.
 ///
-/// Transcendental functions come from `libm`, so that every build gives the same bits.
-pub trait Real:
-    Copy
-    + Debug
-    + Default
-    + PartialOrd
-    + Send
-    + Sync
-    + Sum
-    + Add<Output = Self>
-    + Sub<Output = Self>
-    + Mul<Output = Self>
-    + Div<Output = Self>
-    + Neg<Output = Self>
-    + AddAssign
-    + SubAssign
-    + MulAssign
-    + DivAssign
-    + 'static
-{
-    /// 0.
-    const ZERO: Self;
-    /// 1.
-    const ONE: Self;
-    /// 1/2.
-    const HALF: Self;
-    /// Distance from 1 to the next number.
-    const EPSILON: Self;
-    /// The nearest number to an `f64`.
-    fn of(value: f64) -> Self;
-    /// The same number in `f64`.
-    fn f64(self) -> f64;
-    /// Largest integer not above.
-    fn floor(self) -> i32;
-    /// Square root.
-    fn sqrt(self) -> Self;
-    /// Cube root.
-    fn cbrt(self) -> Self;
-    /// Natural logarithm.
-    fn ln(self) -> Self;
-    /// Magnitude.
-    fn abs(self) -> Self;
-    /// The smaller of two; the other one where one is not a number.
-    fn min(self, other: Self) -> Self;
-    /// The larger of two; the other one where one is not a number.
-    fn max(self, other: Self) -> Self;
-    /// Neither infinite nor not a number.
-    fn is_finite(self) -> bool;
+/// The loop is written out: the standard library's is a call, across which a register of several numbers would go through memory.
+#[inline(always)]
+pub(crate) fn array<X: Copy, const N: usize>(fill: X, mut f: impl FnMut(usize) -> X) -> [X; N] {
+    let mut entries = [fill; N];
+    let mut i = 0;
+    while i < N {
+        entries[i] = f(i);
+        i += 1;
+    }
+    entries
 }
-
-macro_rules! real {
-    ($t:ty, $cbrt:path, $ln:path) => {
-        impl Real for $t {
-            const ZERO: Self = 0.0;
-            const ONE: Self = 1.0;
-            const HALF: Self = 0.5;
-            const EPSILON: Self = <$t>::EPSILON;
-            #[inline(always)]
-            fn of(value: f64) -> Self {
-                value as $t
-            }
-            #[inline(always)]
-            fn f64(self) -> f64 {
-                self as f64
-            }
-            #[inline(always)]
-            fn floor(self) -> i32 {
-                let truncated = self as i32;
-                truncated - i32::from(truncated as $t > self)
-            }
-            #[inline(always)]
-            fn sqrt(self) -> Self {
-                self.sqrt()
-            }
-            #[inline(always)]
-            fn cbrt(self) -> Self {
-                $cbrt(self)
-            }
-            #[inline(always)]
-            fn ln(self) -> Self {
-                $ln(self)
-            }
-            #[inline(always)]
-            fn abs(self) -> Self {
-                self.abs()
-            }
-            #[inline(always)]
-            fn min(self, other: Self) -> Self {
-                self.min(other)
-            }
-            #[inline(always)]
-            fn max(self, other: Self) -> Self {
-                self.max(other)
-            }
-            #[inline(always)]
-            fn is_finite(self) -> bool {
-                self.is_finite()
-            }
-        }
-    };
-}
-real!(f32, libm::cbrtf, libm::logf);
-real!(f64, libm::cbrt, libm::log);
 
 /// A vector of `D` components.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Vector<T, const D: usize>(pub [T; D]);
 
-impl<T: Real, const D: usize> Vector<T, D> {
+impl<T: Number, const D: usize> Vector<T, D> {
     /// All components zero.
     pub const ZERO: Self = Vector([T::ZERO; D]);
 
     /// The vector whose component along axis `i` is `f(i)`.
     #[inline(always)]
     pub fn from_fn(f: impl FnMut(usize) -> T) -> Self {
-        Vector(std::array::from_fn(f))
-    }
-
-    /// The first `D` of three components.
-    pub fn of(space: [f64; 3]) -> Self {
-        Self::from_fn(|i| T::of(space[i]))
-    }
-
-    /// The vector in space; a plane vector has no third component.
-    #[inline(always)]
-    pub fn space(self) -> [f64; 3] {
-        std::array::from_fn(|i| if i < D { self.0[i].f64() } else { 0.0 })
+        Vector(array(T::ZERO, f))
     }
 
     /// a . b
@@ -152,6 +49,19 @@ impl<T: Real, const D: usize> Vector<T, D> {
     #[inline(always)]
     pub fn norm(self) -> T {
         self.dot(self).sqrt()
+    }
+}
+
+impl<T: Real, const D: usize> Vector<T, D> {
+    /// The first `D` of three components.
+    pub fn of(space: [f64; 3]) -> Self {
+        Self::from_fn(|i| T::of(space[i]))
+    }
+
+    /// The vector in space; a plane vector has no third component.
+    #[inline(always)]
+    pub fn space(self) -> [f64; 3] {
+        std::array::from_fn(|i| if i < D { self.0[i].f64() } else { 0.0 })
     }
 
     /// The vector of length one in the same direction; `None` for a vector too short to have one.
@@ -171,14 +81,14 @@ impl<T: Real, const D: usize> Vector<T, D> {
 
 macro_rules! componentwise {
     ($op:ident, $f:ident, $assign:ident, $g:ident) => {
-        impl<T: Real, const D: usize> $op for Vector<T, D> {
+        impl<T: Number, const D: usize> $op for Vector<T, D> {
             type Output = Self;
             #[inline(always)]
             fn $f(self, other: Self) -> Self {
                 Vector::from_fn(|i| self.0[i].$f(other.0[i]))
             }
         }
-        impl<T: Real, const D: usize> $assign for Vector<T, D> {
+        impl<T: Number, const D: usize> $assign for Vector<T, D> {
             #[inline(always)]
             fn $g(&mut self, other: Self) {
                 for i in 0..D {
@@ -191,7 +101,7 @@ macro_rules! componentwise {
 componentwise!(Add, add, AddAssign, add_assign);
 componentwise!(Sub, sub, SubAssign, sub_assign);
 
-impl<T: Real, const D: usize> Mul<T> for Vector<T, D> {
+impl<T: Number, const D: usize> Mul<T> for Vector<T, D> {
     type Output = Self;
     #[inline(always)]
     fn mul(self, factor: T) -> Self {
@@ -199,7 +109,7 @@ impl<T: Real, const D: usize> Mul<T> for Vector<T, D> {
     }
 }
 
-impl<T: Real, const D: usize> Div<T> for Vector<T, D> {
+impl<T: Number, const D: usize> Div<T> for Vector<T, D> {
     type Output = Self;
     #[inline(always)]
     fn div(self, divisor: T) -> Self {
@@ -207,7 +117,7 @@ impl<T: Real, const D: usize> Div<T> for Vector<T, D> {
     }
 }
 
-impl<T: Real, const D: usize> Neg for Vector<T, D> {
+impl<T: Number, const D: usize> Neg for Vector<T, D> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
@@ -215,7 +125,7 @@ impl<T: Real, const D: usize> Neg for Vector<T, D> {
     }
 }
 
-impl<T: Real, const D: usize> Sum for Vector<T, D> {
+impl<T: Number, const D: usize> Sum for Vector<T, D> {
     fn sum<I: Iterator<Item = Self>>(vectors: I) -> Self {
         vectors.fold(Self::ZERO, |a, b| a + b)
     }
@@ -245,7 +155,7 @@ pub fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Matrix<T>(pub [[T; 3]; 3]);
 
-impl<T: Real> Matrix<T> {
+impl<T: Number> Matrix<T> {
     /// All entries zero.
     pub const ZERO: Self = Matrix([[T::ZERO; 3]; 3]);
     /// The identity.
@@ -255,7 +165,13 @@ impl<T: Real> Matrix<T> {
     /// The matrix whose entry in row `i`, column `j` is `f(i, j)`.
     #[inline(always)]
     pub fn from_fn(mut f: impl FnMut(usize, usize) -> T) -> Self {
-        Matrix(std::array::from_fn(|i| std::array::from_fn(|j| f(i, j))))
+        let mut entries = [[T::ZERO; 3]; 3];
+        for (i, row) in entries.iter_mut().enumerate() {
+            for (j, entry) in row.iter_mut().enumerate() {
+                *entry = f(i, j);
+            }
+        }
+        Matrix(entries)
     }
 
     /// Determinant.
@@ -267,6 +183,7 @@ impl<T: Real> Matrix<T> {
     }
 
     /// Inverse; entries are not finite where the determinant is zero.
+    #[inline(always)]
     pub fn inverse(&self) -> Self {
         let m = &self.0;
         let det = self.det();
@@ -300,12 +217,16 @@ impl<T: Real> Matrix<T> {
     /// A A^T
     #[inline(always)]
     pub fn times_transpose(&self) -> Symmetric<T> {
-        let row = |i: usize, j: usize| (0..3).map(|k| self.0[i][k] * self.0[j][k]).sum();
-        Symmetric([row(0, 0), row(1, 1), row(2, 2), row(0, 1), row(1, 2), row(0, 2)])
+        let m = &self.0;
+        const PAIRS: [[usize; 2]; 6] = [[0, 0], [1, 1], [2, 2], [0, 1], [1, 2], [0, 2]];
+        Symmetric(array(T::ZERO, |k| {
+            let [i, j] = PAIRS[k];
+            m[i][0] * m[j][0] + m[i][1] * m[j][1] + m[i][2] * m[j][2]
+        }))
     }
 }
 
-impl<T: Real> Add for Matrix<T> {
+impl<T: Number> Add for Matrix<T> {
     type Output = Self;
     #[inline(always)]
     fn add(self, other: Self) -> Self {
@@ -313,7 +234,7 @@ impl<T: Real> Add for Matrix<T> {
     }
 }
 
-impl<T: Real> Sub for Matrix<T> {
+impl<T: Number> Sub for Matrix<T> {
     type Output = Self;
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
@@ -321,7 +242,7 @@ impl<T: Real> Sub for Matrix<T> {
     }
 }
 
-impl<T: Real> Mul for Matrix<T> {
+impl<T: Number> Mul for Matrix<T> {
     type Output = Self;
     #[inline(always)]
     fn mul(self, other: Self) -> Self {
@@ -331,7 +252,7 @@ impl<T: Real> Mul for Matrix<T> {
     }
 }
 
-impl<T: Real> Mul<T> for Matrix<T> {
+impl<T: Number> Mul<T> for Matrix<T> {
     type Output = Self;
     #[inline(always)]
     fn mul(self, factor: T) -> Self {
@@ -343,7 +264,7 @@ impl<T: Real> Mul<T> for Matrix<T> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Symmetric<T>(pub [T; 6]);
 
-impl<T: Real> Symmetric<T> {
+impl<T: Number> Symmetric<T> {
     /// All entries zero.
     pub const ZERO: Self = Symmetric([T::ZERO; 6]);
 
@@ -361,6 +282,7 @@ impl<T: Real> Symmetric<T> {
     }
 
     /// The full matrix.
+    #[inline(always)]
     pub fn matrix(&self) -> Matrix<T> {
         Matrix::from_fn(|i, j| self.at(i, j))
     }
@@ -374,7 +296,7 @@ impl<T: Real> Symmetric<T> {
     /// The matrix less a third of its trace.
     #[inline(always)]
     pub fn deviator(&self) -> Self {
-        *self - Symmetric::isotropic(self.trace() / T::of(3.0))
+        *self - Symmetric::isotropic(self.trace() * T::of(1.0 / 3.0))
     }
 
     /// A : B, the sum of products of all nine entries.
@@ -387,7 +309,13 @@ impl<T: Real> Symmetric<T> {
     /// A v in the dimension of v.
     #[inline(always)]
     pub fn times<const D: usize>(&self, v: Vector<T, D>) -> Vector<T, D> {
-        Vector::from_fn(|i| (0..D).map(|j| self.at(i, j) * v[j]).sum())
+        let mut product = Vector::ZERO;
+        for i in 0..D {
+            for j in 0..D {
+                product[i] += self.at(i, j) * v[j];
+            }
+        }
+        product
     }
 
     /// R A R^T
@@ -395,7 +323,9 @@ impl<T: Real> Symmetric<T> {
     pub fn rotated(&self, r: &Matrix<T>) -> Self {
         (*r * self.matrix() * r.transpose()).symmetric_part()
     }
+}
 
+impl<T: Real> Symmetric<T> {
     /// Every entry is finite.
     #[inline(always)]
     pub fn is_finite(&self) -> bool {
@@ -403,33 +333,33 @@ impl<T: Real> Symmetric<T> {
     }
 }
 
-impl<T: Real> Add for Symmetric<T> {
+impl<T: Number> Add for Symmetric<T> {
     type Output = Self;
     #[inline(always)]
     fn add(self, other: Self) -> Self {
-        Symmetric(std::array::from_fn(|i| self.0[i] + other.0[i]))
+        Symmetric(array(T::ZERO, |i| self.0[i] + other.0[i]))
     }
 }
 
-impl<T: Real> AddAssign for Symmetric<T> {
+impl<T: Number> AddAssign for Symmetric<T> {
     #[inline(always)]
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;
     }
 }
 
-impl<T: Real> Sub for Symmetric<T> {
+impl<T: Number> Sub for Symmetric<T> {
     type Output = Self;
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
-        Symmetric(std::array::from_fn(|i| self.0[i] - other.0[i]))
+        Symmetric(array(T::ZERO, |i| self.0[i] - other.0[i]))
     }
 }
 
-impl<T: Real> Mul<T> for Symmetric<T> {
+impl<T: Number> Mul<T> for Symmetric<T> {
     type Output = Self;
     #[inline(always)]
     fn mul(self, factor: T) -> Self {
-        Symmetric(self.0.map(|x| x * factor))
+        Symmetric(array(T::ZERO, |i| self.0[i] * factor))
     }
 }

@@ -8,10 +8,10 @@ use crate::scene::{Body, Dimension, Motion, Precision, Problem, Scene};
 use crate::tensor::{Matrix, Vector};
 use serde::Serialize;
 
-/// What a particle in `f64` and space takes: 200 for itself, the rest for its place in the order [bytes].
+/// What a particle in `f64` and space takes: 196 for itself, the rest for its place in the order [bytes].
 const PARTICLE_BYTES: f64 = 220.0;
-/// What a grid node in `f64` and space takes: mass, two velocities, force [bytes].
-const NODE_BYTES: f64 = 80.0;
+/// What a grid node in `f64` and space takes: mass, three velocities, force [bytes].
+const NODE_BYTES: f64 = 104.0;
 /// Nodes per cell that particles fill: blocks are covered whole, with those that a body's rim reaches.
 const NODES_PER_CELL: f64 = 4.0;
 

@@ -128,7 +128,7 @@ impl<T: Real, const D: usize> Near<'_, T, D> {
             }
             let home = std::array::from_fn(|i| lowest[i] + base[i]);
             for &index in self.cover.particles_in(body, home) {
-                let particle = &self.bodies[body].particles[index as usize];
+                let particle = &self.bodies[body].particles.get(index as usize);
                 let stencil = Stencil::<T, D, B>::new(&self.lattice, particle);
                 let share = self.share((body, block), particle, mirrors);
                 for &(offset, local) in &reached[..count] {

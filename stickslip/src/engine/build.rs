@@ -1,8 +1,9 @@
 //! From a scene to a simulation.
 
-use super::Engine;
+use super::cpu::Workshop;
 use super::rigid::RigidMotion;
 use super::watch::Watch;
+use super::{Engine, Path};
 use crate::basis::{Basis, Gimp, Linear};
 use crate::body::{Body, Particle};
 use crate::boundary::{Boundary, Wall};
@@ -11,6 +12,8 @@ use crate::contact::{Rules, Tally};
 use crate::door::Simulation;
 use crate::geometry::{Filling, Mirror, Site, Whole, fill};
 use crate::grid::{Cover, Field, Lattice};
+use crate::lanes::{Laned, Processor};
+use crate::particles::Particles;
 use crate::scene::{self, BasisKind, Dimension, Face, Motion, Precision, Problem, Scene};
 use crate::tensor::{Matrix, Real, Symmetric, Vector, cross};
 use std::marker::PhantomData;
@@ -20,27 +23,39 @@ use std::marker::PhantomData;
 /// # Errors
 /// What [`check::problems`] finds.
 pub fn build(scene: &Scene) -> Result<Box<dyn Simulation>, Problem> {
+    build_on(scene, Path::Lanes(Processor::best()))
+}
+
+/// The simulation of a scene, with its particles taken one at a time or several.
+///
+/// # Errors
+/// What [`check::problems`] finds.
+pub fn build_on(scene: &Scene, path: Path) -> Result<Box<dyn Simulation>, Problem> {
     match (scene.dimension, scene.precision) {
-        (Dimension::PlaneStrain | Dimension::PlaneStress, Precision::Double) => with_basis::<f64, 2>(scene),
-        (Dimension::PlaneStrain | Dimension::PlaneStress, Precision::Single) => with_basis::<f32, 2>(scene),
-        (Dimension::Space, Precision::Double) => with_basis::<f64, 3>(scene),
-        (Dimension::Space, Precision::Single) => with_basis::<f32, 3>(scene),
+        (Dimension::PlaneStrain | Dimension::PlaneStress, Precision::Double) => {
+            with_basis::<f64, 2>(scene, path)
+        }
+        (Dimension::PlaneStrain | Dimension::PlaneStress, Precision::Single) => {
+            with_basis::<f32, 2>(scene, path)
+        }
+        (Dimension::Space, Precision::Double) => with_basis::<f64, 3>(scene, path),
+        (Dimension::Space, Precision::Single) => with_basis::<f32, 3>(scene, path),
     }
 }
 
-fn with_basis<T: Real, const D: usize>(scene: &Scene) -> Result<Box<dyn Simulation>, Problem> {
+fn with_basis<T: Laned, const D: usize>(scene: &Scene, path: Path) -> Result<Box<dyn Simulation>, Problem> {
     Ok(match scene.discretization.basis {
-        BasisKind::Linear => Box::new(Engine::<T, D, Linear>::new(scene)?),
-        BasisKind::Gimp => Box::new(Engine::<T, D, Gimp>::new(scene)?),
+        BasisKind::Linear => Box::new(Engine::<T, D, Linear>::new(scene, path)?),
+        BasisKind::Gimp => Box::new(Engine::<T, D, Gimp>::new(scene, path)?),
     })
 }
 
-impl<T: Real, const D: usize, B: Basis<T>> Engine<T, D, B> {
+impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// The simulation of a scene of this dimension and precision.
     ///
     /// # Errors
     /// What [`check::problems`] finds.
-    pub fn new(scene: &Scene) -> Result<Self, Problem> {
+    pub fn new(scene: &Scene, path: Path) -> Result<Self, Problem> {
         check::problems(scene)?;
         let sites = check::lattice(scene);
         let mut bodies = Vec::new();
@@ -68,7 +83,7 @@ impl<T: Real, const D: usize, B: Basis<T>> Engine<T, D, B> {
         Ok(Engine {
             bodies,
             rigid,
-            lattice: Lattice { origin: Vector::of(sites.origin), cell: T::of(scene.discretization.cell) },
+            lattice: Lattice::new(Vector::of(sites.origin), T::of(scene.discretization.cell)),
             domain: scene.domain.as_ref().map(|domain| [domain.min, domain.max].map(Vector::of)),
             gravity: Vector::of(scene.gravity),
             pic_share: T::of(scene.time.pic_share),
@@ -79,6 +94,10 @@ impl<T: Real, const D: usize, B: Basis<T>> Engine<T, D, B> {
             field: Field { nodes: Vec::new() },
             impulses: Vec::new(),
             tally: Tally::default(),
+            signal: None,
+            left: Vec::new(),
+            path,
+            workshop: Workshop::default(),
             time: 0.0,
             steps: 0,
             watch: Watch::default(),
@@ -106,7 +125,7 @@ fn particles<T: Real, const D: usize>(
     body: &scene::Body,
     filling: &Filling,
     velocity: impl Fn([f64; 3]) -> [f64; 3],
-) -> Vec<Particle<T, D>> {
+) -> Particles<T, D> {
     let density = scene.materials[body.material].density;
     let particle = |(number, &site): (usize, &Site)| Particle {
         position: Vector::of(site.position),

@@ -1,110 +1,99 @@
-//! Loops over tiles on threads, with the same bits for any number of them.
+//! Passes over tiles on threads, with the same bits for any number of them.
 //!
 //! Tiles of one colour scatter side by side, colours one after the other, and a tile's particles in their own order: no sum
 //! depends on which thread comes first.
 
 use super::Engine;
+use super::pass::{Found, Pass, Path, Verbs, Visit};
+use super::tile::SeveralAtATime;
 use crate::basis::Basis;
-use crate::body::{Body, Particle};
-use crate::grid::{Disjoint, Tile, Window};
-use crate::tensor::Real;
-use crate::transfer::Stencil;
+use crate::grid::{Disjoint, SIDE, Window};
+use crate::lanes::Laned;
+use crate::particles::Columns;
 use rayon::prelude::*;
+use std::marker::PhantomData;
+use std::sync::{Mutex, PoisonError};
 
-/// A particle that a verb cannot go on with.
-pub struct Fault {
-    /// Index of the body.
-    pub body: usize,
-    /// Index of the particle in memory.
-    pub particle: usize,
-    /// What is wrong with it.
-    pub kind: FaultKind,
+/// What threads work with, kept from pass to pass.
+pub struct Workshop<T, const D: usize> {
+    /// A window for each thread.
+    windows: Vec<Mutex<Box<Window<T, D>>>>,
+    columns: Vec<Columns<T, D>>,
 }
 
-/// What can be wrong with a particle.
-pub enum FaultKind {
-    /// Its deformation gradient has no positive determinant.
-    Inverted,
-    /// It left the domain.
-    Escaped,
-    /// No thickness leaves it without stress out of the plane.
-    NoThickness,
-    /// A value of it is not a finite number.
-    NotFinite,
+impl<T, const D: usize> Default for Workshop<T, D> {
+    fn default() -> Self {
+        Workshop { windows: Vec::new(), columns: Vec::new() }
+    }
 }
 
-impl<T: Real, const D: usize, B: Basis<T>> Engine<T, D, B> {
-    /// Lets every particle add to its tile's window, and the windows to the field.
-    pub(super) fn scatter_each(
-        &mut self,
-        scatter: impl Fn(&Particle<T, D>, &Stencil<T, D, B>, &mut Window<T, D>, [i32; D]) + Sync,
-    ) {
+/// Tiles that a thread takes at a time.
+const TILES: usize = 8;
+
+impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
+    /// Takes every particle through a pass; those of rigid bodies only scatter.
+    pub(super) fn pass(&mut self, pass: &Pass<T, D>) -> Found<T> {
+        let threads = rayon::current_num_threads();
+        self.workshop.windows.resize_with(threads.max(self.workshop.windows.len()), Mutex::default);
+        self.workshop.columns.clear();
+        self.workshop.columns.extend(self.bodies.iter_mut().map(|body| body.particles.open()));
         let nodes = Disjoint::new(&mut self.field.nodes);
-        let (cover, bodies, lattice) = (&self.cover, &self.bodies, &self.lattice);
-        for color in &cover.colors {
-            color.par_iter().with_min_len(4).for_each_init(Window::default, |window, &tile| {
-                let tile = &cover.tiles[tile as usize];
-                window.clear();
-                for &index in cover.particles_of(tile) {
-                    let particle = &bodies[tile.body].particles[index as usize];
-                    let stencil = Stencil::<T, D, B>::new(lattice, particle);
-                    scatter(particle, &stencil, window, tile.block);
-                }
-                // SAFETY: tiles of one colour share no slot, and colours follow one another.
-                unsafe { window.add_to(&nodes, tile) };
-            });
-        }
-    }
-
-    /// Visits every particle of the deformable bodies with its stencil and window; returns the first fault by body and particle.
-    pub(super) fn each_particle(
-        &mut self,
-        visit: impl Fn(
-            &Body<T, D>,
-            &mut Particle<T, D>,
-            &Stencil<T, D, B>,
-            &Window<T, D>,
-            [i32; D],
-        ) -> Result<(), FaultKind>
-        + Sync,
-    ) -> Option<Fault> {
-        let mut particles: Vec<Vec<Particle<T, D>>> =
-            self.bodies.iter_mut().map(|body| std::mem::take(&mut body.particles)).collect();
-        let columns: Vec<Disjoint<Particle<T, D>>> = particles.iter_mut().map(|p| Disjoint::new(p)).collect();
-        let (cover, field, bodies, lattice) = (&self.cover, &self.field, &self.bodies, &self.lattice);
-        let of_tile = |window: &mut Window<T, D>, tile: &Tile<D>| -> Option<Fault> {
+        let left = Disjoint::new(&mut self.left);
+        let (cover, bodies, workshop, path) = (&self.cover, &self.bodies, &self.workshop, self.path);
+        let side = SIDE as usize + B::WIDTH - 1;
+        let visit = |index: u32, window: &mut Window<T, D>| -> Found<T> {
+            let tile = &cover.tiles[index as usize];
             let body = &bodies[tile.body];
-            if body.rigid {
-                return None;
+            let for_rigid = Verbs { scatter: pass.verbs.scatter, ..Verbs::default() };
+            let pass = &Pass { verbs: if body.rigid { for_rigid } else { pass.verbs }, ..*pass };
+            if pass.gathers() {
+                // SAFETY: nobody writes to the field in a pass without scatter, and only this tile to its slots in one with.
+                unsafe { window.load(&nodes, tile, side, pass.sought()) };
             }
-            window.load(field, tile);
-            let mut first = None;
-            for &index in cover.particles_of(tile) {
+            if pass.verbs.scatter.is_some() {
+                window.clear();
+            }
+            let mut visit = Visit {
+                pass,
+                tile,
+                body,
+                columns: workshop.columns[tile.body],
+                order: cover.order_of(tile.body),
+                cells: cover.cells_of(tile),
+                window,
+                left: 0,
+                found: Found::NOTHING,
+                basis: PhantomData::<B>,
+            };
+            match path {
+                Path::Lanes(processor) => T::run(processor, SeveralAtATime(&mut visit)),
                 // SAFETY: every particle belongs to one tile, and every tile to one call.
-                let particle = unsafe { columns[tile.body].get(index as usize) };
-                let stencil = Stencil::<T, D, B>::new(lattice, particle);
-                if let Err(kind) = visit(body, particle, &stencil, window, tile.block) {
-                    let fault = Fault { body: tile.body, particle: index as usize, kind };
-                    first = earlier(first, Some(fault));
-                }
+                Path::Reference => unsafe { visit.one_by_one() },
             }
-            first
+            // SAFETY: every tile has a place of its own.
+            unsafe { *left.get(index as usize) |= visit.left };
+            let found = visit.found;
+            if pass.verbs.scatter.is_some() {
+                // SAFETY: tiles of one colour share no slot, and colours follow one another.
+                unsafe { window.add_to(&nodes, tile, side) };
+            }
+            found
         };
-        let fault = (cover.tiles.par_iter().with_min_len(4))
-            .map_init(Window::default, of_tile)
-            .reduce(|| None, earlier);
-        drop(columns);
-        for (body, particles) in self.bodies.iter_mut().zip(particles) {
-            body.particles = particles;
+        let several = |tiles: &mut dyn Iterator<Item = u32>| -> Found<T> {
+            let thread = rayon::current_thread_index().unwrap_or(0);
+            let mut window = workshop.windows[thread].lock().unwrap_or_else(PoisonError::into_inner);
+            tiles.fold(Found::NOTHING, |found, tile| found.and(visit(tile, &mut window)))
+        };
+        if pass.verbs.scatter.is_none() {
+            let all = 0..cover.tiles.len() as u32;
+            let chunks = (0..cover.tiles.len().div_ceil(TILES)).into_par_iter();
+            let chunk = |i: usize| several(&mut all.clone().skip(i * TILES).take(TILES));
+            return chunks.map(chunk).reduce(|| Found::NOTHING, Found::and);
         }
-        fault
-    }
-}
-
-/// The fault of the lower body and particle.
-fn earlier(a: Option<Fault>, b: Option<Fault>) -> Option<Fault> {
-    match (a, b) {
-        (Some(a), Some(b)) => Some(if (b.body, b.particle) < (a.body, a.particle) { b } else { a }),
-        (a, b) => a.or(b),
+        let color = |color: &Vec<u32>| {
+            let chunks = color.par_chunks(TILES);
+            chunks.map(|tiles| several(&mut tiles.iter().copied())).reduce(|| Found::NOTHING, Found::and)
+        };
+        cover.colors.iter().map(color).fold(Found::NOTHING, Found::and)
     }
 }

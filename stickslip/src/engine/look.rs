@@ -7,6 +7,7 @@ use crate::door::{
     StepError,
 };
 use crate::grid::{node_at, nodes_per_block};
+use crate::lanes::Laned;
 use crate::tensor::Real;
 
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
@@ -17,7 +18,7 @@ fn add(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     std::array::from_fn(|i| a[i] + b[i])
 }
 
-impl<T: Real, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
+impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
     fn time(&self) -> f64 {
         self.time
     }
@@ -120,7 +121,7 @@ impl<T: Real, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
     }
 
     fn visit(&self, body: usize, look: &mut dyn FnMut(&ParticleView)) {
-        for particle in &self.bodies[body].particles {
+        for particle in self.bodies[body].particles.iter() {
             look(&ParticleView {
                 number: particle.number,
                 mass: particle.mass.f64(),

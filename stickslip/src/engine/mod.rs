@@ -3,11 +3,14 @@
 mod build;
 mod cpu;
 mod look;
+mod pass;
 mod rigid;
+mod tile;
 mod verbs;
 mod watch;
 
-pub use build::build;
+pub use build::{build, build_on};
+pub use pass::Path;
 
 use crate::basis::Basis;
 use crate::body::Body;
@@ -16,11 +19,13 @@ use crate::clock::fastest_signal;
 use crate::contact::{Impulse, Rules, Tally};
 use crate::door::StepError;
 use crate::grid::{Cover, Field, Lattice};
+use crate::lanes::Laned;
 use crate::scene::{StressUpdate, Time};
-use crate::tensor::{Real, Vector};
+use crate::tensor::Vector;
+use crate::transfer::Share;
+use cpu::Workshop;
 use rigid::RigidMotion;
 use std::marker::PhantomData;
-use verbs::Share;
 use watch::Watch;
 
 /// A simulation in `D` dimensions and precision `T`, with shape functions `B`.
@@ -41,13 +46,19 @@ pub struct Engine<T, const D: usize, B> {
     /// What contact did in the last step, both uses.
     impulses: Vec<Impulse<T, D>>,
     tally: Tally,
+    /// Fastest signal now [m/s]; unknown before the first step.
+    signal: Option<f64>,
+    /// Cells of each tile that particles have left.
+    left: Vec<u64>,
+    path: Path,
+    workshop: Workshop<T, D>,
     time: f64,
     steps: u64,
     watch: Watch,
     basis: PhantomData<B>,
 }
 
-impl<T: Real, const D: usize, B: Basis<T>> Engine<T, D, B> {
+impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// One step of `dt`. Numbers are equations of Bardenhagen et al. (2001).
     ///
     /// Contact is applied to the interpolated and to the integrated velocities. The strain comes from the first
@@ -57,39 +68,39 @@ impl<T: Real, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let when = self.clock.stress_update;
         self.cover(); //                                blocks under each body's particles
         self.scatter(match when {
-            StressUpdate::First => Share::Momentum, //  m, p
-            _ => Share::Everything,                 //                  m, p, f = -sum V sigma grad S
+            StressUpdate::First => Share::Mass, //      m, p
+            _ => Share::Everything,             //                  m, p, f = -sum V sigma grad S
         });
         self.interpolated_velocities(); //              v = p / m                           (4)
         let survey = self.survey(); //                  surfaces, normals and gaps where bodies meet
         let given = self.first_contact(&survey, dt); // v~ from interpolated velocities     (5)-(13), (20)-(22)
         if when == StressUpdate::First {
-            self.strain(dt)?;
-            self.scatter(Share::Force);
+            self.strain_and_scatter(dt)?; //            F = (I + L dt) F, sigma = law(F), f
         }
         self.accelerate(dt); //                         v += dt (f / m + g)                 (3)
         self.contact(&survey, &given, dt); //           v~ from integrated velocities
-        self.accept()?; //                              particles: v += dv
         match when {
-            StressUpdate::First => self.displace(dt), // particles: x += v dt
+            StressUpdate::First => {
+                self.carry();
+                self.accept_and_displace(dt) //         particles: v += dv, x += v dt
+            }
             StressUpdate::Last => {
-                self.strain(dt)?; //                    F = (I + L dt) F, sigma = law(F)
-                self.displace(dt)
+                self.carry();
+                self.accept_strain_and_displace(dt) //  particles: v += dv, F, sigma, x += v dt
             }
             StressUpdate::ModifiedLast => {
-                self.set_velocities_aside();
-                self.scatter(Share::Momentum);
-                self.modified_velocities();
-                self.contact_unrecorded(&survey, dt);
-                self.strain(dt)?;
-                self.displace_aside(dt)
+                self.carry_and_make_room();
+                self.accept_and_scatter()?; //          particles: v += dv; p
+                self.modified_velocities(); //          v = p / m
+                self.contact_unrecorded(&survey, dt); //v~
+                self.strain_and_displace(dt) //         particles: F, sigma, x += v dt
             }
         }
     }
 
     /// Longest stable step now [s].
     fn stable(&self) -> f64 {
-        let signal = fastest_signal(&self.bodies);
+        let signal = self.signal.unwrap_or_else(|| fastest_signal(&self.bodies));
         let step = self.clock.courant * self.lattice.cell.f64() / signal;
         self.clock.max_step.map_or(step, |longest| step.min(longest))
     }

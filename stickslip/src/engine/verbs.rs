@@ -1,85 +1,97 @@
 //! The verbs of the step: what each does to a node or a particle.
 
 use super::Engine;
-use super::cpu::{Fault, FaultKind};
+use super::pass::{Fault, FaultKind, Found, Pass, Verbs, escaped, signal};
 use crate::basis::Basis;
-use crate::body::Particle;
 use crate::contact::{Impulse, Near, Solve, Span, Step, Survey, Use};
 use crate::door::StepError;
-use crate::grid::{Blocks, Lattice, Node, Window, addressable, node_at, nodes_per_block};
-use crate::material::Motion;
-use crate::tensor::{Matrix, Real, Vector};
-use crate::transfer::Stencil;
+use crate::grid::{Blocks, Node, node_at, nodes_per_block};
+use crate::lanes::Laned;
+use crate::tensor::{Matrix, Vector};
+use crate::transfer::Share;
 use rayon::prelude::*;
 use std::time::Instant;
 
-/// Steps between sorts of the particles in memory.
-const SORT_INTERVAL: u64 = 256;
-
-/// What a scatter gives to the nodes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Share {
-    /// Mass and momentum.
-    Momentum,
-    /// Force.
-    Force,
-    /// Mass, momentum and force.
-    Everything,
-}
-
-impl<T: Real, const D: usize, B: Basis<T>> Engine<T, D, B> {
+impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     pub(super) fn cover(&mut self) {
         let start = Instant::now();
-        let mut blocks = self.cover_particles();
-        if self.steps.is_multiple_of(SORT_INTERVAL) {
-            self.sort_particles();
-            blocks = blocks.max(self.cover_particles());
-        }
+        let counts: Vec<usize> = self.bodies.iter().map(|body| body.particles.len()).collect();
+        let (bodies, lattice) = (&self.bodies, &self.lattice);
+        let left = (self.steps > 0).then_some(&self.left[..]);
+        let blocks = self.cover.update(&counts, left, |body, particle| {
+            let (position, half_width) = bodies[body].particles.place(particle);
+            let x = lattice.cells(position);
+            std::array::from_fn(|i| B::reach(x[i], half_width * lattice.per_cell).floor())
+        });
+        self.tidy();
         if blocks == Blocks::New {
             self.boundary.cover(&self.cover);
         }
+        self.left.clear();
+        self.left.resize(self.cover.tiles.len(), 0);
         self.field.clear(&self.cover);
         self.watch.lap("cover", start);
     }
 
-    fn cover_particles(&mut self) -> Blocks {
-        let counts: Vec<usize> = self.bodies.iter().map(|body| body.particles.len()).collect();
-        let (bodies, lattice) = (&self.bodies, &self.lattice);
-        self.cover.update(&counts, |body, particle| {
-            Stencil::<T, D, B>::new(lattice, &bodies[body].particles[particle]).base()
-        })
-    }
-
-    /// Brings the particles' order in memory close to the order in which tiles visit them.
-    fn sort_particles(&mut self) {
-        for (i, body) in self.bodies.iter_mut().enumerate() {
-            body.particles = self.cover.order_of(i).iter().map(|&p| body.particles[p as usize]).collect();
+    /// Sorts particles in memory into the order in which tiles visit them, where they are no longer nearly so.
+    fn tidy(&mut self) {
+        let cover = &self.cover;
+        (self.bodies.par_iter_mut().with_min_len(16).enumerate())
+            .filter(|(i, _)| cover.untidy(*i))
+            .for_each(|(i, body)| body.particles.permute(cover.order_of(i)));
+        for i in 0..self.bodies.len() {
+            if self.cover.untidy(i) {
+                self.cover.tidied(i);
+            }
         }
     }
 
+    /// The particles' share in the nodes.
     pub(super) fn scatter(&mut self, share: Share) {
+        let verbs = Verbs { scatter: Some(share), ..Verbs::default() };
+        self.run_pass("scatter", verbs, T::ZERO).expect("a scatter changes no particle");
+    }
+
+    /// v_p = (1 - a) (v_p + sum S_i (v_i - v_i^0)) + a sum S_i v_i,   a: PIC share
+    pub(super) fn accept_and_scatter(&mut self) -> Result<(), StepError> {
+        let verbs = Verbs { accept: true, scatter: Some(Share::Momentum), ..Verbs::default() };
+        self.run_pass("accept", verbs, T::ZERO)
+    }
+
+    /// F = (I + L dt) F,  sigma = law(F), and the force of the new stress.
+    pub(super) fn strain_and_scatter(&mut self, dt: T) -> Result<(), StepError> {
+        let verbs = Verbs { strain: true, scatter: Some(Share::Force), ..Verbs::default() };
+        self.run_pass("strain", verbs, dt)
+    }
+
+    /// v += dv,  x += v dt
+    pub(super) fn accept_and_displace(&mut self, dt: T) -> Result<(), StepError> {
+        self.run_pass("displace", Verbs { accept: true, displace: true, ..Verbs::default() }, dt)
+    }
+
+    /// v += dv,  F = (I + L dt) F,  sigma = law(F),  x += v dt
+    pub(super) fn accept_strain_and_displace(&mut self, dt: T) -> Result<(), StepError> {
+        self.run_pass("strain", Verbs { accept: true, strain: true, displace: true, scatter: None }, dt)
+    }
+
+    /// F = (I + L dt) F,  sigma = law(F),  x += v dt
+    pub(super) fn strain_and_displace(&mut self, dt: T) -> Result<(), StepError> {
+        self.run_pass("strain", Verbs { strain: true, displace: true, ..Verbs::default() }, dt)
+    }
+
+    fn run_pass(&mut self, name: &'static str, verbs: Verbs, dt: T) -> Result<(), StepError> {
         let start = Instant::now();
-        let momentum = |p: &Particle<T, D>, stencil: &Stencil<T, D, B>, window: &mut Window<T, D>, block| {
-            stencil.scatter_momentum(window, block, (p.mass, p.velocity));
-        };
-        let force = |p: &Particle<T, D>, stencil: &Stencil<T, D, B>, window: &mut Window<T, D>, block| {
-            stencil.scatter_force(window, block, &(p.stress * (p.volume * p.deformation.det())));
-        };
-        match share {
-            Share::Momentum => self.scatter_each(momentum),
-            Share::Force => self.scatter_each(force),
-            Share::Everything => self.scatter_each(|p, stencil, window, block| {
-                momentum(p, stencil, window, block);
-                force(p, stencil, window, block);
-            }),
+        let mut found =
+            self.pass(&Pass { verbs, dt, pic: self.pic_share, lattice: self.lattice, domain: self.domain });
+        if verbs.displace {
+            found = found.and(self.move_rigid_bodies(dt));
+            self.signal = Some(found.signal.f64());
         }
-        if share != Share::Force {
-            self.boundary.fold_momentum(&mut self.field);
+        if let Some(share) = verbs.scatter {
+            self.boundary.fold(&mut self.field, share);
         }
-        if share != Share::Momentum {
-            self.boundary.fold_force(&mut self.field);
-        }
-        self.watch.lap("scatter", start);
+        self.watch.lap(name, start);
+        found.fault.map_or(Ok(()), |fault| Err(self.error(&fault)))
     }
 
     /// v = p / m
@@ -87,20 +99,30 @@ impl<T: Real, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.velocities(|node| node.start = node.velocity);
     }
 
-    /// Sets the integrated velocities aside in `start` and makes room for mass and momentum.
-    pub(super) fn set_velocities_aside(&mut self) {
-        self.field.nodes.par_iter_mut().with_min_len(4096).for_each(|node| {
-            *node = Node { start: node.velocity, force: node.force, ..Node::EMPTY };
+    /// Lets the nodes' velocities carry the particles.
+    pub(super) fn carry(&mut self) {
+        self.each_node(|node| node.carry = node.velocity);
+    }
+
+    /// Lets the nodes' velocities carry the particles and makes room for momentum.
+    pub(super) fn carry_and_make_room(&mut self) {
+        self.each_node(|node| {
+            node.carry = node.velocity;
+            node.velocity = Vector::ZERO;
         });
     }
 
-    /// v = p / m, with the integrated velocities kept in `start`.
+    fn each_node(&mut self, f: impl Fn(&mut Node<T, D>) + Sync + Send) {
+        self.field.nodes.par_iter_mut().with_min_len(4096).for_each(f);
+    }
+
+    /// v = p / m of the particles' new velocities.
     pub(super) fn modified_velocities(&mut self) {
         self.velocities(|_| {});
     }
 
     fn velocities(&mut self, before_walls: impl Fn(&mut Node<T, D>) + Sync) {
-        self.field.nodes.par_iter_mut().with_min_len(4096).for_each(|node| {
+        self.each_node(|node| {
             if node.mass > T::ZERO {
                 node.velocity = node.velocity / node.mass;
                 before_walls(node);
@@ -112,8 +134,10 @@ impl<T: Real, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// Prescribed velocities of rigid bodies and walls.
     fn hold(&mut self) {
         let n = nodes_per_block(D);
-        for (slot, &(body, block)) in self.cover.slots.iter().enumerate() {
-            if let Some(motion) = &self.rigid[body as usize] {
+        for (body, motion) in self.rigid.iter().enumerate() {
+            let Some(motion) = motion else { continue };
+            for slot in self.cover.slots_held(body) {
+                let (_, block) = self.cover.slots[slot];
                 for local in 0..n {
                     let position = self.lattice.position(node_at(block, local)).space();
                     self.field.nodes[slot * n + local].velocity = Vector::of(motion.velocity_at(position));
@@ -182,7 +206,7 @@ impl<T: Real, const D: usize, B: Basis<T>> Engine<T, D, B> {
     pub(super) fn accelerate(&mut self, dt: T) {
         let start = Instant::now();
         let gravity = self.gravity;
-        self.field.nodes.par_iter_mut().with_min_len(4096).for_each(|node| {
+        self.each_node(|node| {
             if node.mass > T::ZERO {
                 node.velocity += (node.force / node.mass + gravity) * dt;
             }
@@ -191,102 +215,39 @@ impl<T: Real, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.watch.lap("accelerate", start);
     }
 
-    /// v_p = (1 - a) (v_p + sum S_i (v_i - v_i^0)) + a sum S_i v_i,   a: PIC share
-    pub(super) fn accept(&mut self) -> Result<(), StepError> {
-        let start = Instant::now();
-        let pic = self.pic_share;
-        let fault = self.each_particle(|_, particle, stencil, window, block| {
-            let [velocity, before] = stencil.interpolate(window, block, |node| [node.velocity, node.start]);
-            let flip = particle.velocity + (velocity - before);
-            particle.velocity = flip * (T::ONE - pic) + velocity * pic;
-            particle.velocity.is_finite().then_some(()).ok_or(FaultKind::NotFinite)
-        });
-        self.watch.lap("gather", start);
-        fault.map_or(Ok(()), |fault| Err(self.error(&fault)))
-    }
-
-    pub(super) fn displace(&mut self, dt: T) -> Result<(), StepError> {
-        self.displace_by(dt, |node| node.velocity)
-    }
-
-    pub(super) fn displace_aside(&mut self, dt: T) -> Result<(), StepError> {
-        self.displace_by(dt, |node| node.start)
-    }
-
-    fn displace_by(
-        &mut self,
-        dt: T,
-        velocity: impl Fn(&Node<T, D>) -> Vector<T, D> + Sync,
-    ) -> Result<(), StepError> {
-        let start = Instant::now();
-        let (lattice, domain) = (self.lattice, self.domain);
-        let fault = self.each_particle(|_, particle, stencil, window, block| {
-            let [velocity] = stencil.interpolate(window, block, |node| [velocity(node)]);
-            let position = particle.position + velocity * dt;
-            if !position.is_finite() {
-                return Err(FaultKind::NotFinite);
-            }
-            particle.position = position;
-            if escaped::<T, D, B>(particle, &lattice, domain) { Err(FaultKind::Escaped) } else { Ok(()) }
-        });
-        let fault = fault.or(self.move_rigid_bodies(dt));
-        self.watch.lap("gather", start);
-        fault.map_or(Ok(()), |fault| Err(self.error(&fault)))
-    }
-
-    /// Moves rigid bodies as prescribed; returns the first fault by body and particle.
-    fn move_rigid_bodies(&mut self, dt: T) -> Option<Fault> {
-        let mut first = None;
+    /// Moves rigid bodies as prescribed.
+    fn move_rigid_bodies(&mut self, dt: T) -> Found<T> {
+        let mut found = Found::NOTHING;
         for (i, (body, motion)) in self.bodies.iter_mut().zip(&mut self.rigid).enumerate() {
-            if let Some(motion) = motion {
-                let dt = dt.f64();
-                let rotation = motion.rotation(dt);
-                let turn = Matrix::from_fn(|i, j| T::of(rotation.0[i][j]));
-                for (p, particle) in body.particles.iter_mut().enumerate() {
-                    let position = particle.position.space();
-                    let moved = Vector::of(motion.moved(position, &rotation, dt));
-                    let kind = if !moved.is_finite() {
-                        Some(FaultKind::NotFinite)
-                    } else {
-                        particle.velocity = Vector::of(motion.velocity_at(position));
-                        particle.position = moved;
-                        particle.deformation = turn * particle.deformation;
-                        escaped::<T, D, B>(particle, &self.lattice, self.domain).then_some(FaultKind::Escaped)
-                    };
-                    first = first.or(kind.map(|kind| Fault { body: i, particle: p, kind }));
-                }
-                motion.advance(dt);
+            let Some(motion) = motion else { continue };
+            let dt = dt.f64();
+            let rotation = motion.rotation(dt);
+            let turn = Matrix::from_fn(|i, j| T::of(rotation.0[i][j]));
+            for p in 0..body.particles.len() {
+                let mut particle = body.particles.get(p);
+                let position = particle.position.space();
+                let moved = Vector::of(motion.moved(position, &rotation, dt));
+                let kind = if !moved.is_finite() {
+                    Some(FaultKind::NotFinite)
+                } else {
+                    particle.velocity = Vector::of(motion.velocity_at(position));
+                    particle.position = moved;
+                    particle.deformation = turn * particle.deformation;
+                    escaped::<T, D, B>(&particle, &self.lattice, self.domain).then_some(FaultKind::Escaped)
+                };
+                body.particles.set(p, &particle);
+                let fault = kind.map(|kind| Fault { body: i, particle: p, kind });
+                found = found.and(Found { fault, signal: signal(body, &particle) });
             }
+            motion.advance(dt);
+            self.left[self.cover.tiles_held(i)].fill(u64::MAX);
         }
-        first
-    }
-
-    /// F = (I + L dt) F,  sigma = law(F)
-    pub(super) fn strain(&mut self, dt: T) -> Result<(), StepError> {
-        let start = Instant::now();
-        let fault = self.each_particle(|body, particle, stencil, window, block| {
-            let increment = Matrix::IDENTITY + stencil.velocity_gradient(window, block) * dt;
-            let deformation = increment * particle.deformation;
-            let jacobian = deformation.det();
-            if !jacobian.is_finite() {
-                return Err(FaultKind::NotFinite);
-            }
-            particle.deformation = deformation;
-            if jacobian <= T::ZERO {
-                return Err(FaultKind::Inverted);
-            }
-            let motion = Motion { deformation, jacobian, increment, stress: particle.stress };
-            let (motion, stress) = body.respond(motion).ok_or(FaultKind::NoThickness)?;
-            (particle.deformation, particle.stress) = (motion.deformation, stress);
-            particle.stress.is_finite().then_some(()).ok_or(FaultKind::NotFinite)
-        });
-        self.watch.lap("strain", start);
-        fault.map_or(Ok(()), |fault| Err(self.error(&fault)))
+        found
     }
 
     fn error(&self, fault: &Fault) -> StepError {
         let body = &self.bodies[fault.body];
-        let particle = &body.particles[fault.particle];
+        let particle = body.particles.get(fault.particle);
         let (name, number, position, time) =
             (body.name.clone(), particle.number, particle.position.space(), self.time);
         match fault.kind {
@@ -302,16 +263,4 @@ impl<T: Real, const D: usize, B: Basis<T>> Engine<T, D, B> {
             FaultKind::NotFinite => StepError::NotFinite { body: name, number, position, time },
         }
     }
-}
-
-/// Whether a particle is outside the domain, or so far away that its cell has no number.
-fn escaped<T: Real, const D: usize, B: Basis<T>>(
-    particle: &Particle<T, D>,
-    lattice: &Lattice<T, D>,
-    domain: Option<[Vector<T, D>; 2]>,
-) -> bool {
-    let outside = domain.is_some_and(|[min, max]| {
-        (0..D).any(|i| particle.position[i] < min[i] || particle.position[i] > max[i])
-    });
-    outside || !addressable(Stencil::<T, D, B>::new(lattice, particle).base())
 }

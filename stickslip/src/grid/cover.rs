@@ -3,8 +3,10 @@
 //! A particle's *home* is the cell of its base node. Particles that share a home block form a tile; a tile writes to its own
 //! block and to the next one along each axis, since no basis reaches more than three nodes.
 
-use super::{SIDE, locate, nodes_per_block};
+use super::holding::{Holding, block_of, corner_block, key};
+use super::{locate, nodes_per_block};
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Particles of one body that share a home block.
 #[derive(Clone, Copy, Debug)]
@@ -13,27 +15,10 @@ pub struct Tile<const D: usize> {
     pub body: usize,
     /// Home block.
     pub block: [i32; D],
-    /// Place of its first particle in the body's order.
-    pub start: usize,
-    /// Place after its last particle.
-    pub end: usize,
+    /// Its number among the body's tiles.
+    pub number: usize,
     /// Field slots of the blocks at `block` + {0, 1}^D, the last axis fastest.
     pub slots: [u32; 8],
-}
-
-/// The blocks of one body.
-#[derive(Clone, Debug, Default)]
-struct Holding {
-    /// Indices of the particles, by tile, then cell, then index.
-    order: Vec<u32>,
-    /// Place in `order` of each cell of each tile, and the end.
-    cells: Vec<u32>,
-    /// Home blocks with particles, sorted.
-    homes: Vec<u64>,
-    /// Blocks that the particles reach, sorted.
-    blocks: Vec<u64>,
-    /// Home (tile and cell) of each particle.
-    home: Vec<u32>,
 }
 
 /// Bodies that hold the same block: `slots[start..end]` of [`Cover::shared_slots`].
@@ -73,63 +58,34 @@ pub enum Blocks {
     New,
 }
 
-/// Blocks further than this from the origin have no key.
-const REACH: i32 = 1 << 20;
-
-/// Cells from the origin of the grid, along an axis, within which blocks have keys.
-const MOST_CELLS: i32 = (REACH - 2) * SIDE;
-
-/// Whether a base node lies where blocks have keys.
-pub fn addressable<const D: usize>(base: [i32; D]) -> bool {
-    base.iter().all(|n| n.unsigned_abs() < MOST_CELLS as u32)
-}
-
-fn key<const D: usize>(block: [i32; D]) -> u64 {
-    block.iter().fold(0, |key, &b| (key << 21) | (b + REACH) as u64)
-}
-
-fn block_of<const D: usize>(mut key: u64) -> [i32; D] {
-    let mut block = [0; D];
-    for b in block.iter_mut().rev() {
-        *b = (key & ((1 << 21) - 1)) as i32 - REACH;
-        key >>= 21;
-    }
-    block
-}
-
-/// The block at `block` + the bits of `corner`, the last axis in the lowest bit.
-fn corner_block<const D: usize>(block: [i32; D], corner: usize) -> [i32; D] {
-    std::array::from_fn(|i| block[i] + (corner >> (D - 1 - i) & 1) as i32)
-}
-
 impl<const D: usize> Cover<D> {
-    /// Covers bodies of `counts` particles and says whether their blocks are others than before; `base(body, particle)` is a particle's base node, which must be [`addressable`].
-    pub fn update(&mut self, counts: &[usize], base: impl Fn(usize, usize) -> [i32; D] + Sync) -> Blocks {
+    /// Covers bodies of `counts` particles and says whether their blocks are others than before; `base(body, particle)` is a particle's
+    /// base node, which must be [`addressable`].
+    ///
+    /// `left` says which cells of each tile particles have left since the last time, from the lowest bit on; without it all particles
+    /// are looked at.
+    pub fn update(
+        &mut self,
+        counts: &[usize],
+        left: Option<&[u64]>,
+        base: impl Fn(usize, usize) -> [i32; D] + Sync,
+    ) -> Blocks {
         self.holdings.resize_with(counts.len(), Holding::default);
-        let changed = self
-            .holdings
-            .par_iter_mut()
-            .zip(counts)
+        let first_tile = &self.first_tile;
+        let changed = (self.holdings.par_iter_mut().with_min_len(16))
             .enumerate()
-            .map(|(body, (holding, &count))| holding.update(count, |particle| base(body, particle)))
-            .reduce(|| Change::None, Change::max);
-        match changed {
-            Change::None => {}
-            Change::Cells => self.refresh_tiles(),
-            Change::Blocks => self.rebuild(),
+            .map(|(body, holding)| match left {
+                Some(left) => {
+                    let left = &left[first_tile[body]..first_tile[body + 1]];
+                    holding.update(left, |particle| base(body, particle))
+                }
+                None => holding.start(counts[body], |particle| base(body, particle)),
+            })
+            .reduce(|| Blocks::Same, Blocks::max);
+        if changed == Blocks::New {
+            self.rebuild();
         }
-        if changed == Change::Blocks { Blocks::New } else { Blocks::Same }
-    }
-
-    fn refresh_tiles(&mut self) {
-        let n = nodes_per_block(D);
-        for (body, holding) in self.holdings.iter().enumerate() {
-            let first = self.first_tile[body];
-            for (t, tile) in self.tiles[first..self.first_tile[body + 1]].iter_mut().enumerate() {
-                tile.start = holding.cells[t * n] as usize;
-                tile.end = holding.cells[(t + 1) * n] as usize;
-            }
-        }
+        changed
     }
 
     fn rebuild(&mut self) {
@@ -146,7 +102,7 @@ impl<const D: usize> Cover<D> {
                 self.slots.push((body as u32, block_of(key)));
                 keys.push((key, (first + i) as u32));
             }
-            for &home in &holding.homes {
+            for (number, &home) in holding.homes.iter().enumerate() {
                 let block = block_of(home);
                 let mut slots = [0; 8];
                 for (corner, slot) in slots.iter_mut().enumerate().take(1 << D) {
@@ -155,12 +111,11 @@ impl<const D: usize> Cover<D> {
                         holding.blocks.binary_search(&key).expect("a body holds every block its tiles reach");
                     *slot = (first + place) as u32;
                 }
-                self.tiles.push(Tile { body, block, start: 0, end: 0, slots });
+                self.tiles.push(Tile { body, block, number, slots });
             }
         }
         self.first_slot.push(self.slots.len());
         self.first_tile.push(self.tiles.len());
-        self.refresh_tiles();
         self.color();
         self.meet(keys);
     }
@@ -188,14 +143,35 @@ impl<const D: usize> Cover<D> {
         }
     }
 
-    /// Indices of a tile's particles in its body.
-    pub fn particles_of(&self, tile: &Tile<D>) -> &[u32] {
-        &self.holdings[tile.body].order[tile.start..tile.end]
+    /// Places in the body's order where the particles of each cell of a tile begin, and where the last ends.
+    pub fn cells_of(&self, tile: &Tile<D>) -> &[u32] {
+        let n = nodes_per_block(D);
+        &self.holdings[tile.body].cells[tile.number * n..=(tile.number + 1) * n]
     }
 
     /// Indices of a body's particles by tile, cell and index.
     pub fn order_of(&self, body: usize) -> &[u32] {
         &self.holdings[body].order
+    }
+
+    /// The slots of a body.
+    pub fn slots_held(&self, body: usize) -> Range<usize> {
+        self.first_slot[body]..self.first_slot[body + 1]
+    }
+
+    /// The tiles of a body.
+    pub fn tiles_held(&self, body: usize) -> Range<usize> {
+        self.first_tile[body]..self.first_tile[body + 1]
+    }
+
+    /// Whether so many particles of a body have moved to other cells that sorting them in memory pays.
+    pub fn untidy(&self, body: usize) -> bool {
+        self.holdings[body].untidy()
+    }
+
+    /// Takes note that a body's particles have been brought into their order in memory.
+    pub fn tidied(&mut self, body: usize) {
+        self.holdings[body].tidied();
     }
 
     /// Slots of the bodies that hold a shared block, ordered by body.
@@ -220,78 +196,6 @@ impl<const D: usize> Cover<D> {
                 &holding.order[holding.cells[place] as usize..holding.cells[place + 1] as usize]
             }
             Err(_) => &[],
-        }
-    }
-}
-
-/// What a new look at the particles changed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Change {
-    None,
-    Cells,
-    Blocks,
-}
-
-impl Holding {
-    fn update<const D: usize>(&mut self, count: usize, base: impl Fn(usize) -> [i32; D]) -> Change {
-        let n = nodes_per_block(D);
-        let mut homes = Vec::new();
-        for particle in 0..count {
-            let (block, _) = locate(base(particle));
-            let key = key(block);
-            if homes.last() != Some(&key) {
-                homes.push(key);
-            }
-        }
-        homes.sort_unstable();
-        homes.dedup();
-
-        let mut home = Vec::with_capacity(count);
-        let (mut last_key, mut last_tile) = (u64::MAX, 0);
-        for particle in 0..count {
-            let (block, cell) = locate(base(particle));
-            let key = key(block);
-            if key != last_key {
-                last_tile = homes.binary_search(&key).expect("every home was collected above");
-                last_key = key;
-            }
-            home.push((last_tile * n + cell) as u32);
-        }
-        let same_homes = homes == self.homes;
-        if same_homes && home == self.home {
-            return Change::None;
-        }
-        self.home = home;
-        self.sort(homes.len() * n);
-        if same_homes {
-            return Change::Cells;
-        }
-        self.blocks.clear();
-        for &home in &homes {
-            self.blocks.extend((0..1 << D).map(|corner| key(corner_block::<D>(block_of(home), corner))));
-        }
-        self.blocks.sort_unstable();
-        self.blocks.dedup();
-        self.homes = homes;
-        Change::Blocks
-    }
-
-    /// Counting sort of the particles by home.
-    fn sort(&mut self, cells: usize) {
-        self.cells.clear();
-        self.cells.resize(cells + 1, 0);
-        for &home in &self.home {
-            self.cells[home as usize + 1] += 1;
-        }
-        for i in 0..cells {
-            self.cells[i + 1] += self.cells[i];
-        }
-        let mut next = self.cells.clone();
-        self.order.resize(self.home.len(), 0);
-        for (particle, &home) in self.home.iter().enumerate() {
-            let place = &mut next[home as usize];
-            self.order[*place as usize] = particle as u32;
-            *place += 1;
         }
     }
 }

@@ -1,6 +1,6 @@
 //! What the nodes carry: all bodies' blocks in one slab, and the window through which a tile sees its part of it.
 
-use super::{Cover, SIDE, Tile, locate, nodes_per_block};
+use super::{Cover, SIDE, Tile, nodes_per_block};
 use crate::basis::MAX_WIDTH;
 use crate::tensor::{Real, Vector};
 use std::marker::PhantomData;
@@ -16,12 +16,19 @@ pub struct Node<T, const D: usize> {
     pub velocity: Vector<T, D>,
     /// Force of the body's own stress [N].
     pub force: Vector<T, D>,
+    /// Velocity as integrated, which moves the particles [m/s].
+    pub carry: Vector<T, D>,
 }
 
 impl<T: Real, const D: usize> Node<T, D> {
     /// A node that nothing reaches.
-    pub const EMPTY: Self =
-        Node { mass: T::ZERO, start: Vector::ZERO, velocity: Vector::ZERO, force: Vector::ZERO };
+    pub const EMPTY: Self = Node {
+        mass: T::ZERO,
+        start: Vector::ZERO,
+        velocity: Vector::ZERO,
+        force: Vector::ZERO,
+        carry: Vector::ZERO,
+    };
 }
 
 /// All bodies' blocks, in the order of [`Cover::slots`].
@@ -42,59 +49,124 @@ impl<T: Real, const D: usize> Field<T, D> {
 /// Nodes along a side of a window: what a tile's particles reach.
 pub const WINDOW: usize = SIDE as usize + MAX_WIDTH - 1;
 
-/// A tile's part of the field, copied to one place: nodes `block * 4` to `block * 4 + 5` along each axis, the last fastest.
+/// Nodes of a window in space; in the plane the first [`WINDOW`] squared are used.
+pub const WINDOW_NODES: usize = WINDOW * WINDOW * WINDOW;
+
+/// What a gather takes from the nodes, see [`Window::load`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sought<T> {
+    /// v - (1 - a) v0, from which particles take their velocities; `a` is the PIC share.
+    pub change: Option<T>,
+    /// The velocities that strain particles.
+    pub flow: bool,
+    /// The velocities that move particles.
+    pub carry: bool,
+}
+
+/// A tile's part of the field in one place: nodes `block * 4` to `block * 4 + 5` along each axis, the last fastest.
 #[derive(Clone, Debug)]
 pub struct Window<T, const D: usize> {
-    /// The nodes.
-    pub nodes: Vec<Node<T, D>>,
+    /// v - (1 - a) v0 [m/s].
+    pub change: [Vector<T, D>; WINDOW_NODES],
+    /// The velocities that strain particles [m/s].
+    pub flow: [Vector<T, D>; WINDOW_NODES],
+    /// The velocities that move particles [m/s].
+    pub carry: [Vector<T, D>; WINDOW_NODES],
+    /// Momentum scattered so far [kg m/s], and mass [kg] in the last place.
+    pub momentum: [[T; 4]; WINDOW_NODES],
+    /// Force scattered so far [N].
+    pub force: [[T; 4]; WINDOW_NODES],
 }
 
 impl<T: Real, const D: usize> Default for Window<T, D> {
     fn default() -> Self {
-        Window { nodes: vec![Node::EMPTY; WINDOW.pow(D as u32)] }
+        Window {
+            change: [Vector::ZERO; WINDOW_NODES],
+            flow: [Vector::ZERO; WINDOW_NODES],
+            carry: [Vector::ZERO; WINDOW_NODES],
+            momentum: [[T::ZERO; 4]; WINDOW_NODES],
+            force: [[T::ZERO; 4]; WINDOW_NODES],
+        }
+    }
+}
+
+/// Calls `f(node of the window, node of the field, how many in a row)` for the `side`^D first nodes of a tile's window.
+#[inline(always)]
+fn each_run<const D: usize>(tile: &Tile<D>, side: usize, mut f: impl FnMut(usize, usize, usize)) {
+    const S: usize = SIDE as usize;
+    let mut run = |place: usize, corner: usize, local: usize| {
+        let block = |corner: usize| tile.slots[corner] as usize * nodes_per_block(D) + local;
+        f(place, block(corner), S.min(side));
+        f(place + S, block(corner + 1), side.saturating_sub(S));
+    };
+    for x in 0..side {
+        if D == 2 {
+            run(x * WINDOW, x / S * 2, x % S * S);
+        } else {
+            for y in 0..side {
+                run((x * WINDOW + y) * WINDOW, x / S * 4 + y / S * 2, (x % S * S + y % S) * S);
+            }
+        }
     }
 }
 
 impl<T: Real, const D: usize> Window<T, D> {
-    /// Empties every node.
+    /// Empties what particles scatter into.
+    #[inline(always)]
     pub fn clear(&mut self) {
-        self.nodes.fill(Node::EMPTY);
+        self.momentum[..WINDOW.pow(D as u32)].fill([T::ZERO; 4]);
+        self.force[..WINDOW.pow(D as u32)].fill([T::ZERO; 4]);
     }
 
-    /// Copies the tile's nodes from the field.
-    pub fn load(&mut self, field: &Field<T, D>, tile: &Tile<D>) {
-        for (i, node) in self.nodes.iter_mut().enumerate() {
-            *node = field.nodes[field_index(tile, i)];
-        }
+    /// Takes from the field what is sought at the `side`^D first nodes.
+    ///
+    /// # Safety
+    /// No other thread may write to the tile's slots meanwhile.
+    #[inline(always)]
+    pub unsafe fn load(
+        &mut self,
+        field: &Disjoint<Node<T, D>>,
+        tile: &Tile<D>,
+        side: usize,
+        sought: Sought<T>,
+    ) {
+        each_run(tile, side, |place, first, count| {
+            for k in 0..count {
+                // SAFETY: the caller keeps writers away from the tile's slots.
+                let node = unsafe { &*field.get(first + k) };
+                let place = place + k;
+                if let Some(pic) = sought.change {
+                    self.change[place] = node.carry - node.start * (T::ONE - pic);
+                }
+                if sought.flow {
+                    self.flow[place] = node.velocity;
+                }
+                if sought.carry {
+                    self.carry[place] = node.carry;
+                }
+            }
+        });
     }
 
-    /// Adds what was scattered into the window to the field.
+    /// Adds to the field what was scattered into the `side`^D first nodes.
     ///
     /// # Safety
     /// No other thread may touch the tile's slots meanwhile.
-    pub unsafe fn add_to(&self, field: &Disjoint<Node<T, D>>, tile: &Tile<D>) {
-        for (i, share) in self.nodes.iter().enumerate() {
-            // SAFETY: the caller keeps other threads away from the tile's slots.
-            let node = unsafe { field.get(field_index(tile, i)) };
-            node.mass += share.mass;
-            node.velocity += share.velocity;
-            node.force += share.force;
-        }
+    #[inline(always)]
+    pub unsafe fn add_to(&self, field: &Disjoint<Node<T, D>>, tile: &Tile<D>, side: usize) {
+        each_run(tile, side, |place, first, count| {
+            for k in 0..count {
+                // SAFETY: the caller keeps other threads away from the tile's slots.
+                let node = unsafe { field.get(first + k) };
+                let (momentum, force) = (&self.momentum[place + k], &self.force[place + k]);
+                node.mass += momentum[3];
+                for i in 0..D {
+                    node.velocity[i] += momentum[i];
+                    node.force[i] += force[i];
+                }
+            }
+        });
     }
-}
-
-/// Where node `i` of a window lies in the field.
-#[inline(always)]
-fn field_index<const D: usize>(tile: &Tile<D>, i: usize) -> usize {
-    let mut rest = i;
-    let mut node = [0; D];
-    for n in node.iter_mut().rev() {
-        *n = (rest % WINDOW) as i32;
-        rest /= WINDOW;
-    }
-    let (block, local) = locate(node);
-    let corner = block.iter().fold(0, |corner, &b| corner << 1 | b as usize);
-    tile.slots[corner] as usize * nodes_per_block(D) + local
 }
 
 /// A slice whose entries threads write to without overlap.

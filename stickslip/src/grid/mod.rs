@@ -5,9 +5,11 @@
 
 mod cover;
 mod field;
+mod holding;
 
-pub use cover::{Blocks, Cover, Meeting, Tile, addressable};
-pub use field::{Disjoint, Field, Node, WINDOW, Window};
+pub use cover::{Blocks, Cover, Meeting, Tile};
+pub use field::{Disjoint, Field, Node, Sought, WINDOW, WINDOW_NODES, Window};
+pub use holding::{MOST_CELLS, addressable};
 
 use crate::tensor::{Real, Vector};
 
@@ -26,13 +28,20 @@ pub struct Lattice<T, const D: usize> {
     pub origin: Vector<T, D>,
     /// Side of a cell [m].
     pub cell: T,
+    /// Its inverse [1/m].
+    pub per_cell: T,
 }
 
 impl<T: Real, const D: usize> Lattice<T, D> {
+    /// A grid with a node at `origin` and cells of side `cell` [m].
+    pub fn new(origin: Vector<T, D>, cell: T) -> Self {
+        Lattice { origin, cell, per_cell: T::ONE / cell }
+    }
+
     /// Position in cells from the origin.
     #[inline(always)]
     pub fn cells(&self, position: Vector<T, D>) -> Vector<T, D> {
-        (position - self.origin) / self.cell
+        (position - self.origin) * self.per_cell
     }
 
     /// Position of a node [m].

@@ -1,7 +1,6 @@
 //! Isotropic linear elasticity: any two of its constants give the others.
 
 use super::{BadConstants, Constant};
-use crate::tensor::Real;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -31,6 +30,14 @@ pub struct Isotropic<T> {
     pub bulk_modulus: T,
     /// Shear modulus G [Pa].
     pub shear_modulus: T,
+}
+
+impl<T: Copy> Isotropic<T> {
+    /// The same moduli in other numbers.
+    #[inline(always)]
+    pub fn map<U>(&self, f: impl Fn(T) -> U) -> Isotropic<U> {
+        Isotropic { bulk_modulus: f(self.bulk_modulus), shear_modulus: f(self.shear_modulus) }
+    }
 }
 
 impl Isotropic<f64> {
@@ -93,11 +100,6 @@ impl Isotropic<f64> {
             return bad(None, found, "K above 0 and G at least 0, else the material is not stable");
         }
         Ok(Isotropic { bulk_modulus: k, shear_modulus: g })
-    }
-
-    /// The same moduli in another precision.
-    pub fn cast<T: Real>(&self) -> Isotropic<T> {
-        Isotropic { bulk_modulus: T::of(self.bulk_modulus), shear_modulus: T::of(self.shear_modulus) }
     }
 
     /// M = K + 4G/3 [Pa]

@@ -9,7 +9,7 @@
 //! A step that is a pure rotation gives D = 0 exactly, and Q is that rotation.
 
 use super::{Isotropic, Law, Motion};
-use crate::tensor::{Matrix, Real, Symmetric};
+use crate::tensor::{Matrix, Number, Symmetric};
 use serde::Serialize;
 
 /// Linear elasticity in rate form.
@@ -20,8 +20,8 @@ pub struct Hypoelastic<T> {
     pub elastic: Isotropic<T>,
 }
 
-impl<T: Real> Law<T> for Hypoelastic<T> {
-    #[inline]
+impl<T: Number> Law<T> for Hypoelastic<T> {
+    #[inline(always)]
     fn stress(&self, motion: &Motion<T>) -> Symmetric<T> {
         let Isotropic { bulk_modulus: k, shear_modulus: g } = self.elastic;
         let identity = Matrix::IDENTITY;
@@ -38,17 +38,18 @@ impl<T: Real> Law<T> for Hypoelastic<T> {
         let Isotropic { bulk_modulus: k, shear_modulus: g } = self.elastic;
         let mean = stress.trace() / T::of(3.0);
         let deviator = stress.deviator();
-        let shear = if g > T::ZERO { deviator.double_dot(&deviator) / (T::of(4.0) * g) } else { T::ZERO };
+        // A fluid has no deviator, whatever it is divided by.
+        let shear = deviator.double_dot(&deviator) / (T::of(4.0) * g.max(T::EPSILON * k));
         deformation.det() * (T::HALF * mean * mean / k + shear)
     }
 
-    #[inline]
+    #[inline(always)]
     fn wave_modulus(&self, _deformation: &Matrix<T>, jacobian: T) -> T {
         let Isotropic { bulk_modulus: k, shear_modulus: g } = self.elastic;
         (k + T::of(4.0 / 3.0) * g) * jacobian
     }
 
-    #[inline]
+    #[inline(always)]
     fn shear_modulus(&self, _deformation: &Matrix<T>, jacobian: T) -> T {
         self.elastic.shear_modulus * jacobian
     }

@@ -13,7 +13,7 @@ pub use hypoelastic::Hypoelastic;
 pub use neo_hookean::NeoHookean;
 pub use plane_stress::Thickness;
 
-use crate::tensor::{Matrix, Real, Symmetric};
+use crate::tensor::{Matrix, Number, Real, Symmetric};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -31,7 +31,9 @@ pub struct Motion<T> {
 }
 
 /// A constitutive law in three dimensions.
-pub trait Law<T: Real>: Send + Sync {
+///
+/// A law is written once over [`Number`], with no branch on the motion: the engine calls it for several particles at a time.
+pub trait Law<T: Number>: Send + Sync {
     /// Cauchy stress at the end of the step, tension positive [Pa].
     fn stress(&self, motion: &Motion<T>) -> Symmetric<T>;
 
@@ -121,10 +123,7 @@ impl Description {
 impl Material<f64> {
     /// The same material in the precision of the engine.
     pub fn cast<T: Real>(&self) -> Material<T> {
-        match self {
-            Material::NeoHookean(law) => Material::NeoHookean(NeoHookean { elastic: law.elastic.cast() }),
-            Material::Hypoelastic(law) => Material::Hypoelastic(Hypoelastic { elastic: law.elastic.cast() }),
-        }
+        self.map(T::of)
     }
 
     /// Elastic moduli at small strain.
@@ -136,7 +135,16 @@ impl Material<f64> {
     }
 }
 
-impl<T: Real> Material<T> {
+impl<T: Number> Material<T> {
+    /// The same material with its constants in other numbers.
+    #[inline(always)]
+    pub fn map<U: Number>(&self, f: impl Fn(T) -> U) -> Material<U> {
+        match self {
+            Material::NeoHookean(law) => Material::NeoHookean(NeoHookean { elastic: law.elastic.map(f) }),
+            Material::Hypoelastic(law) => Material::Hypoelastic(Hypoelastic { elastic: law.elastic.map(f) }),
+        }
+    }
+
     /// The law behind the name; ask once per body, not once per particle.
     pub fn law(&self) -> &dyn Law<T> {
         match self {
@@ -145,23 +153,41 @@ impl<T: Real> Material<T> {
         }
     }
 
-    /// The motion with the thickness that the particle takes, and Cauchy stress after it [Pa]; `None` if no thickness is free of stress.
-    #[inline]
-    pub fn respond(&self, thickness: Thickness, motion: Motion<T>) -> Option<(Motion<T>, Symmetric<T>)> {
-        match thickness {
-            Thickness::Moved => Some((motion, self.law().stress(&motion))),
-            Thickness::Free => plane_stress::with_free_thickness(self.law(), &motion),
+    /// [`Law::stress`] where the compiler can see it.
+    #[inline(always)]
+    pub fn stress(&self, motion: &Motion<T>) -> Symmetric<T> {
+        match self {
+            Material::NeoHookean(law) => law.stress(motion),
+            Material::Hypoelastic(law) => law.stress(motion),
         }
     }
 
     /// Stiffness against the fastest wave in the present state, times J [Pa]: [`Law::wave_modulus`], in plane stress that of a plate.
+    #[inline(always)]
     pub fn wave_modulus(&self, thickness: Thickness, deformation: &Matrix<T>, jacobian: T) -> T {
-        let law = self.law();
-        let waves = law.wave_modulus(deformation, jacobian);
-        match thickness {
-            Thickness::Moved => waves,
-            Thickness::Free => plane_stress::plate_modulus(waves, law.shear_modulus(deformation, jacobian)),
+        match self {
+            Material::NeoHookean(law) => fastest(law, thickness, deformation, jacobian),
+            Material::Hypoelastic(law) => fastest(law, thickness, deformation, jacobian),
         }
+    }
+}
+
+impl<T: Real> Material<T> {
+    /// The motion with the thickness that the particle takes, and Cauchy stress after it [Pa]; `None` if no thickness is free of stress.
+    pub fn respond(&self, thickness: Thickness, motion: Motion<T>) -> Option<(Motion<T>, Symmetric<T>)> {
+        match thickness {
+            Thickness::Moved => Some((motion, self.stress(&motion))),
+            Thickness::Free => plane_stress::with_free_thickness(self.law(), &motion),
+        }
+    }
+}
+
+#[inline(always)]
+fn fastest<T: Number>(law: &impl Law<T>, thickness: Thickness, deformation: &Matrix<T>, jacobian: T) -> T {
+    let waves = law.wave_modulus(deformation, jacobian);
+    match thickness {
+        Thickness::Moved => waves,
+        Thickness::Free => plane_stress::plate_modulus(waves, law.shear_modulus(deformation, jacobian)),
     }
 }
 

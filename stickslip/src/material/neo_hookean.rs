@@ -6,7 +6,7 @@
 //! ```
 
 use super::{Isotropic, Law, Motion};
-use crate::tensor::{Matrix, Real, Symmetric};
+use crate::tensor::{Matrix, Number, Symmetric};
 use serde::Serialize;
 
 /// Compressible neo-Hookean elasticity.
@@ -17,15 +17,17 @@ pub struct NeoHookean<T> {
     pub elastic: Isotropic<T>,
 }
 
-impl<T: Real> Law<T> for NeoHookean<T> {
-    #[inline]
+impl<T: Number> Law<T> for NeoHookean<T> {
+    #[inline(always)]
     fn stress(&self, motion: &Motion<T>) -> Symmetric<T> {
         let Isotropic { bulk_modulus: k, shear_modulus: g } = self.elastic;
         let j = motion.jacobian;
         let b = motion.deformation.times_transpose();
         let root = j.cbrt();
-        let pressure = T::HALF * k * (j - T::ONE / j);
-        b.deviator() * (g / (j * root * root)) + Symmetric::isotropic(pressure)
+        // J^(-2/3) = J^(1/3)/J
+        let inverse = T::ONE / j;
+        let pressure = T::HALF * k * (j - inverse);
+        b.deviator() * (g * inverse * (root * inverse)) + Symmetric::isotropic(pressure)
     }
 
     fn strain_energy(&self, deformation: &Matrix<T>, _stress: &Symmetric<T>) -> T {
@@ -37,18 +39,18 @@ impl<T: Real> Law<T> for NeoHookean<T> {
             + T::HALF * g * (trace / (root * root) - T::of(3.0))
     }
 
-    #[inline]
+    #[inline(always)]
     fn wave_modulus(&self, deformation: &Matrix<T>, jacobian: T) -> T {
         let k = self.elastic.bulk_modulus;
         let j = jacobian;
         T::HALF * k * (j * j + T::ONE) + T::of(4.0 / 3.0) * self.shear_modulus(deformation, jacobian)
     }
 
-    #[inline]
+    #[inline(always)]
     fn shear_modulus(&self, deformation: &Matrix<T>, jacobian: T) -> T {
         let root = jacobian.cbrt();
         let b = deformation.times_transpose();
-        self.elastic.shear_modulus * (b.0[0].max(b.0[1]).max(b.0[2]) / (root * root))
+        self.elastic.shear_modulus * (b.0[0].max(b.0[1]).max(b.0[2]) * (root * (T::ONE / jacobian)))
     }
 }
 

@@ -15,6 +15,7 @@ mod friction;
 mod glued_identity;
 mod many_bodies;
 mod mirror;
+mod paths;
 mod plane_stress;
 mod precision;
 mod resistance;

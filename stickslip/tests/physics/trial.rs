@@ -1,6 +1,7 @@
 //! Scenes written in the tests, and how they are run.
 
 use stickslip::door::{ParticleSnapshot, Simulation};
+use stickslip::engine::Path;
 use stickslip::{engine, scene};
 
 /// Every stress update by its word in scene files.
@@ -10,6 +11,12 @@ pub const STRESS_UPDATES: [&str; 3] = ["first", "last", "modified-last"];
 pub fn start(text: &str) -> Box<dyn Simulation> {
     let loaded = scene::parse("trial.toml", text, &[]).unwrap_or_else(|error| panic!("{error:?}\n{text}"));
     engine::build(&loaded.scene).unwrap_or_else(|problem| panic!("{problem:?}\n{text}"))
+}
+
+/// The simulation of a scene on a path.
+pub fn start_on(text: &str, path: Path) -> Box<dyn Simulation> {
+    let loaded = scene::parse("trial.toml", text, &[]).unwrap_or_else(|error| panic!("{error:?}\n{text}"));
+    engine::build_on(&loaded.scene, path).unwrap_or_else(|problem| panic!("{problem:?}\n{text}"))
 }
 
 /// Takes `count` steps of the stable length.

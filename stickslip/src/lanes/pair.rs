@@ -1,0 +1,104 @@
+//! Lanes in two registers, where one holds half of what is wanted.
+
+use super::Lanes;
+use crate::number::Number;
+use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
+
+/// The lanes of one register and then those of another.
+#[derive(Clone, Copy, Debug)]
+pub struct Pair<V>(V, V);
+
+macro_rules! lanewise {
+    ($op:ident, $f:ident, $assign:ident, $g:ident) => {
+        impl<V: Lanes> $op for Pair<V> {
+            type Output = Self;
+            #[inline(always)]
+            fn $f(self, other: Self) -> Self {
+                Pair(self.0.$f(other.0), self.1.$f(other.1))
+            }
+        }
+        impl<V: Lanes> $assign for Pair<V> {
+            #[inline(always)]
+            fn $g(&mut self, other: Self) {
+                *self = self.$f(other);
+            }
+        }
+    };
+}
+lanewise!(Add, add, AddAssign, add_assign);
+lanewise!(Sub, sub, SubAssign, sub_assign);
+lanewise!(Mul, mul, MulAssign, mul_assign);
+lanewise!(Div, div, DivAssign, div_assign);
+
+impl<V: Lanes> Neg for Pair<V> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Pair(-self.0, -self.1)
+    }
+}
+
+impl<V: Lanes> Number for Pair<V> {
+    const ZERO: Self = Pair(V::ZERO, V::ZERO);
+    const ONE: Self = Pair(V::ONE, V::ONE);
+    const HALF: Self = Pair(V::HALF, V::HALF);
+    const EPSILON: Self = Pair(V::EPSILON, V::EPSILON);
+    #[inline(always)]
+    fn of(value: f64) -> Self {
+        Pair(V::of(value), V::of(value))
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Pair(self.0.sqrt(), self.1.sqrt())
+    }
+    #[inline(always)]
+    fn cbrt(self) -> Self {
+        Pair(self.0.cbrt(), self.1.cbrt())
+    }
+    #[inline(always)]
+    fn ln(self) -> Self {
+        Pair(self.0.ln(), self.1.ln())
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Pair(self.0.abs(), self.1.abs())
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        Pair(self.0.min(other.0), self.1.min(other.1))
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        Pair(self.0.max(other.0), self.1.max(other.1))
+    }
+}
+
+impl<V: Lanes> Lanes for Pair<V> {
+    type Real = V::Real;
+    const COUNT: usize = 2 * V::COUNT;
+
+    #[inline(always)]
+    fn splat(x: V::Real) -> Self {
+        Pair(V::splat(x), V::splat(x))
+    }
+
+    #[inline(always)]
+    unsafe fn load(first: *const V::Real) -> Self {
+        // SAFETY: the caller has as many numbers there as both registers hold.
+        unsafe { Pair(V::load(first), V::load(first.add(V::COUNT))) }
+    }
+
+    #[inline(always)]
+    unsafe fn store(self, first: *mut V::Real) {
+        // SAFETY: the caller has room for as many numbers as both registers hold.
+        unsafe {
+            self.0.store(first);
+            self.1.store(first.add(V::COUNT));
+        }
+    }
+
+    #[inline(always)]
+    fn at_least(self, other: Self) -> u32 {
+        self.0.at_least(other.0) | self.1.at_least(other.1) << V::COUNT
+    }
+}

@@ -1,0 +1,86 @@
+use super::*;
+
+fn samples() -> Vec<f64> {
+    (0..4000).map(|i| 1e-3 * 1.005_f64.powi(i)).collect()
+}
+
+/// Everything that lanes compute, one after the other.
+struct Everything<'a, T>(&'a [T]);
+
+impl<T: Laned> Work for Everything<'_, T> {
+    type Real = T;
+    type Output = Vec<T>;
+
+    #[inline(always)]
+    fn run<M: Machine<T>>(self) -> Vec<T> {
+        let mut found = Vec::new();
+        let count = <M::Wide as Lanes>::COUNT;
+        for chunk in self.0.chunks(count) {
+            // SAFETY: parts of a slice, no longer than it says.
+            let x = unsafe { M::Wide::load_part(chunk.as_ptr(), chunk.len()) };
+            let two = M::Wide::splat(T::of(2.0));
+            let above = T::of(f64::from((x.at_least(two)).count_ones()));
+            let results = [
+                x.cbrt(),
+                (x + two).sqrt(),
+                -(x - two) / (x * two),
+                x.min(two),
+                x.max(two),
+                (x - two).abs(),
+                x.ln(),
+                M::Wide::HALF - M::Wide::ONE,
+                M::Wide::splat(above),
+            ];
+            for result in results {
+                let mut part = [T::ZERO; MOST_LANES];
+                // SAFETY: the array is as long as any machine's lanes.
+                unsafe { result.store_part(part.as_mut_ptr(), chunk.len()) };
+                found.extend(&part[..chunk.len()]);
+                assert!(part[chunk.len()..].iter().all(|&x| x == T::ZERO), "nothing is written beyond");
+            }
+        }
+        found
+    }
+}
+
+/// In the order of the samples, one list a result.
+fn unfolded<T: Laned>(found: &[T], samples: usize) -> Vec<Vec<T>> {
+    let mut results = vec![Vec::new(); 9];
+    let mut rest = found;
+    while results[8].len() < samples {
+        let lanes = MOST_LANES.min(samples - results[8].len());
+        for result in &mut results {
+            result.extend(&rest[..lanes]);
+            rest = &rest[lanes..];
+        }
+    }
+    results
+}
+
+fn agree<T: Laned>() {
+    let x: Vec<T> = samples().into_iter().map(T::of).collect();
+    let first = unfolded(&T::run(Processor::Any, Everything(&x)), x.len());
+    for processor in Processor::available() {
+        let found = unfolded(&T::run(processor, Everything(&x)), x.len());
+        assert!(found == first, "{processor:?} differs from the portable lanes");
+    }
+    for (i, &x) in x.iter().enumerate() {
+        let off = (first[0][i] / x.cbrt() - T::ONE).abs();
+        assert!(off <= T::of(2.0) * T::EPSILON, "cube root of {x:?} off by {off:?}");
+        assert_eq!(first[1][i], (x + T::of(2.0)).sqrt());
+        assert_eq!(first[3][i], if x < T::of(2.0) { x } else { T::of(2.0) });
+        assert_eq!(first[5][i], (x - T::of(2.0)).abs());
+    }
+    let above = first[8].chunks(MOST_LANES).map(|chunk| chunk[0].f64()).sum::<f64>();
+    assert_eq!(above, x.iter().filter(|&&x| x >= T::of(2.0)).count() as f64);
+}
+
+#[test]
+fn every_machine_gives_the_same_bits_in_double_precision() {
+    agree::<f64>();
+}
+
+#[test]
+fn every_machine_gives_the_same_bits_in_single_precision() {
+    agree::<f32>();
+}

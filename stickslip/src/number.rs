@@ -1,0 +1,132 @@
+//! Numbers: one at a time, [`Real`], or several side by side in a register, [`crate::lanes`].
+//!
+//! Laws and shape functions are written over [`Number`], so that the same text serves one particle and a group of them.
+
+use std::fmt::Debug;
+use std::iter::Sum;
+use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
+
+/// What laws compute with: a real number, or several side by side.
+///
+/// Every operation rounds as IEEE 754 says, and nothing is contracted, so that one number and each of several have the same bits.
+pub trait Number:
+    Copy
+    + Debug
+    + Send
+    + Sync
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + AddAssign
+    + SubAssign
+    + MulAssign
+    + DivAssign
+    + 'static
+{
+    /// 0.
+    const ZERO: Self;
+    /// 1.
+    const ONE: Self;
+    /// 1/2.
+    const HALF: Self;
+    /// Distance from 1 to the next number.
+    const EPSILON: Self;
+    /// The nearest number to an `f64`.
+    fn of(value: f64) -> Self;
+    /// Square root.
+    fn sqrt(self) -> Self;
+    /// Cube root of a positive, normal number, to within an ulp or two.
+    fn cbrt(self) -> Self;
+    /// Natural logarithm.
+    fn ln(self) -> Self;
+    /// Magnitude.
+    fn abs(self) -> Self;
+    /// The smaller of two numbers.
+    fn min(self, other: Self) -> Self;
+    /// The larger of two numbers.
+    fn max(self, other: Self) -> Self;
+}
+
+/// A floating-point number: `f32` or `f64`.
+///
+/// Transcendental functions come from `libm`, so that every build gives the same bits.
+pub trait Real: Number + Default + PartialOrd + Sum {
+    /// The smallest positive number of full precision.
+    const TINY: Self;
+    /// The largest finite number.
+    const LARGEST: Self;
+    /// The same number in `f64`.
+    fn f64(self) -> f64;
+    /// Largest integer not above.
+    fn floor(self) -> i32;
+    /// Neither infinite nor not a number.
+    fn is_finite(self) -> bool;
+    /// A number with about a third of the exponent of this one, which is positive and normal: the cube root to within 4 %.
+    fn cube_root_guess(self) -> Self;
+}
+
+macro_rules! real {
+    ($t:ty, $cbrt:path, $ln:path, $guess:expr) => {
+        impl Number for $t {
+            const ZERO: Self = 0.0;
+            const ONE: Self = 1.0;
+            const HALF: Self = 0.5;
+            const EPSILON: Self = <$t>::EPSILON;
+            #[inline(always)]
+            fn of(value: f64) -> Self {
+                value as $t
+            }
+            #[inline(always)]
+            fn sqrt(self) -> Self {
+                self.sqrt()
+            }
+            #[inline(always)]
+            fn cbrt(self) -> Self {
+                $cbrt(self)
+            }
+            #[inline(always)]
+            fn ln(self) -> Self {
+                $ln(self)
+            }
+            #[inline(always)]
+            fn abs(self) -> Self {
+                self.abs()
+            }
+            #[inline(always)]
+            fn min(self, other: Self) -> Self {
+                self.min(other)
+            }
+            #[inline(always)]
+            fn max(self, other: Self) -> Self {
+                self.max(other)
+            }
+        }
+
+        impl Real for $t {
+            const TINY: Self = <$t>::MIN_POSITIVE;
+            const LARGEST: Self = <$t>::MAX;
+            #[inline(always)]
+            fn f64(self) -> f64 {
+                self as f64
+            }
+            #[inline(always)]
+            fn floor(self) -> i32 {
+                let truncated = self as i32;
+                truncated - i32::from(truncated as $t > self)
+            }
+            #[inline(always)]
+            fn is_finite(self) -> bool {
+                self.is_finite()
+            }
+            #[inline(always)]
+            fn cube_root_guess(self) -> Self {
+                <$t>::from_bits($guess(self.to_bits()))
+            }
+        }
+    };
+}
+// Dividing the bits by three divides the exponent by three; the constants make up for its bias and spread the error evenly.
+real!(f32, libm::cbrtf, libm::logf, |bits: u32| bits / 3 + 709_958_130);
+real!(f64, libm::cbrt, libm::log, |bits: u64| ((bits >> 32) / 3 + 715_094_163) << 32);

@@ -1,0 +1,208 @@
+//! Particles of one body as columns, so that a processor can take several at a time; seen from outside, they are rows.
+
+use crate::body::Particle;
+use crate::tensor::{Matrix, Real, Symmetric, Vector};
+use rayon::prelude::*;
+
+/// Entries of F that a motion in `D` dimensions leaves free, by row and column; the others are zero.
+pub const fn deformation_entries(dimension: usize) -> &'static [[usize; 2]] {
+    if dimension == 2 {
+        &[[0, 0], [0, 1], [1, 0], [1, 1], [2, 2]]
+    } else {
+        &[[0, 0], [0, 1], [0, 2], [1, 0], [1, 1], [1, 2], [2, 0], [2, 1], [2, 2]]
+    }
+}
+
+/// Entries of the stress that a motion in `D` dimensions leaves free: xx, yy, zz, xy, then yz, xz.
+pub const fn stress_entries(dimension: usize) -> usize {
+    if dimension == 2 { 4 } else { 6 }
+}
+
+/// Which column holds what.
+#[derive(Clone, Copy, Debug)]
+pub struct Column<const D: usize>;
+
+impl<const D: usize> Column<D> {
+    /// First component of the position.
+    pub const POSITION: usize = 0;
+    /// First component of the velocity.
+    pub const VELOCITY: usize = D;
+    /// Mass.
+    pub const MASS: usize = 2 * D;
+    /// Undeformed volume.
+    pub const VOLUME: usize = 2 * D + 1;
+    /// Half the side of the undeformed box.
+    pub const HALF_WIDTH: usize = 2 * D + 2;
+    /// First of [`deformation_entries`].
+    pub const DEFORMATION: usize = 2 * D + 3;
+    /// First of [`stress_entries`].
+    pub const STRESS: usize = Self::DEFORMATION + deformation_entries(D).len();
+    /// Number of columns.
+    pub const COUNT: usize = Self::STRESS + stress_entries(D);
+}
+
+/// Particles of one body.
+#[derive(Clone, Debug, Default)]
+pub struct Particles<T, const D: usize> {
+    /// One column after the other, [`Particles::stride`] apart.
+    columns: Vec<T>,
+    /// Room for a column: an odd number of cache lines, else all columns would fall into the same places of a cache.
+    stride: usize,
+    /// Each particle's number in its body.
+    numbers: Vec<u32>,
+}
+
+/// Bytes in a cache line.
+const LINE: usize = 64;
+
+impl<T: Real, const D: usize> Particles<T, D> {
+    /// How many.
+    pub fn len(&self) -> usize {
+        self.numbers.len()
+    }
+
+    /// None at all.
+    pub fn is_empty(&self) -> bool {
+        self.numbers.is_empty()
+    }
+
+    /// Particle `i`.
+    #[inline]
+    pub fn get(&self, i: usize) -> Particle<T, D> {
+        assert!(i < self.len(), "a particle of the body");
+        let columns = Columns { start: self.columns.as_ptr().cast_mut(), stride: self.stride };
+        // SAFETY: in range, and borrowed for reading.
+        Particle { number: self.numbers[i], ..unsafe { columns.get(i) } }
+    }
+
+    /// Position [m] and half the side of the undeformed box [m] of particle `i`.
+    #[inline]
+    pub fn place(&self, i: usize) -> (Vector<T, D>, T) {
+        let at = |column: usize| self.columns[column * self.stride + i];
+        (Vector::from_fn(|k| at(Column::<D>::POSITION + k)), at(Column::<D>::HALF_WIDTH))
+    }
+
+    /// Writes particle `i`.
+    pub fn set(&mut self, i: usize, particle: &Particle<T, D>) {
+        assert!(i < self.len(), "a particle of the body");
+        self.numbers[i] = particle.number;
+        // SAFETY: in range, and borrowed for writing.
+        unsafe { self.open().set(i, particle) };
+    }
+
+    /// All particles in the order of memory.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = Particle<T, D>> + '_ {
+        (0..self.len()).map(|i| self.get(i))
+    }
+
+    /// Opens the columns to many threads.
+    pub fn open(&mut self) -> Columns<T, D> {
+        Columns { start: self.columns.as_mut_ptr(), stride: self.stride }
+    }
+
+    /// Puts the particles into the order of a permutation: first the one whose index comes first.
+    pub fn permute(&mut self, order: &[u32]) {
+        assert_eq!(order.len(), self.len(), "a permutation names every particle");
+        self.numbers = order.iter().map(|&i| self.numbers[i as usize]).collect();
+        let (len, stride) = (self.len(), self.stride.max(1));
+        let permute = |scratch: &mut Vec<T>, column: &mut [T]| {
+            scratch.clear();
+            scratch.extend(order.iter().map(|&i| column[i as usize]));
+            column[..len].copy_from_slice(scratch);
+        };
+        self.columns.par_chunks_mut(stride).for_each_init(|| Vec::with_capacity(len), permute);
+    }
+}
+
+impl<T: Real, const D: usize> FromIterator<Particle<T, D>> for Particles<T, D> {
+    fn from_iter<I: IntoIterator<Item = Particle<T, D>>>(particles: I) -> Self {
+        let rows: Vec<_> = particles.into_iter().collect();
+        let lines = (rows.len() * size_of::<T>()).div_ceil(LINE) | 1;
+        let stride = lines * LINE / size_of::<T>();
+        let mut particles = Particles {
+            columns: vec![T::ZERO; stride * Column::<D>::COUNT],
+            stride,
+            numbers: vec![0; rows.len()],
+        };
+        for (i, row) in rows.iter().enumerate() {
+            particles.set(i, row);
+        }
+        particles
+    }
+}
+
+/// The columns of a body's particles, open to many threads that keep to particles of their own. Good until the particles are used in
+/// any other way.
+#[derive(Clone, Copy, Debug)]
+pub struct Columns<T, const D: usize> {
+    start: *mut T,
+    stride: usize,
+}
+
+// SAFETY: entries are only reached through unsafe functions, whose callers keep threads apart.
+unsafe impl<T: Send, const D: usize> Sync for Columns<T, D> {}
+// SAFETY: as above.
+unsafe impl<T: Send, const D: usize> Send for Columns<T, D> {}
+
+impl<T: Real, const D: usize> Columns<T, D> {
+    /// The entry of particle `i` in a column.
+    ///
+    /// # Safety
+    /// The column and the particle must exist, and nobody may use the entry but by this pointer.
+    #[inline(always)]
+    pub unsafe fn at(&self, column: usize, i: usize) -> *mut T {
+        debug_assert!(column < Column::<D>::COUNT && i < self.stride, "an entry");
+        // SAFETY: the caller's.
+        unsafe { self.start.add(column * self.stride + i) }
+    }
+
+    /// Particle `i` but for its number.
+    ///
+    /// # Safety
+    /// The particle must exist, and nobody may write to it meanwhile.
+    #[inline]
+    pub unsafe fn get(&self, i: usize) -> Particle<T, D> {
+        // SAFETY: the caller's.
+        let at = |column: usize| unsafe { *self.at(column, i) };
+        let mut deformation = Matrix::ZERO;
+        for (k, &[row, column]) in deformation_entries(D).iter().enumerate() {
+            deformation.0[row][column] = at(Column::<D>::DEFORMATION + k);
+        }
+        let mut stress = Symmetric::ZERO;
+        for (k, entry) in stress.0.iter_mut().enumerate().take(stress_entries(D)) {
+            *entry = at(Column::<D>::STRESS + k);
+        }
+        Particle {
+            position: Vector::from_fn(|k| at(Column::<D>::POSITION + k)),
+            velocity: Vector::from_fn(|k| at(Column::<D>::VELOCITY + k)),
+            mass: at(Column::<D>::MASS),
+            volume: at(Column::<D>::VOLUME),
+            half_width: at(Column::<D>::HALF_WIDTH),
+            deformation,
+            stress,
+            number: 0,
+        }
+    }
+
+    /// Writes particle `i` but for its number.
+    ///
+    /// # Safety
+    /// The particle must exist, and nobody may use it meanwhile.
+    pub unsafe fn set(&self, i: usize, particle: &Particle<T, D>) {
+        // SAFETY: the caller's.
+        let put = |column: usize, x: T| unsafe { *self.at(column, i) = x };
+        for k in 0..D {
+            put(Column::<D>::POSITION + k, particle.position[k]);
+            put(Column::<D>::VELOCITY + k, particle.velocity[k]);
+        }
+        put(Column::<D>::MASS, particle.mass);
+        put(Column::<D>::VOLUME, particle.volume);
+        put(Column::<D>::HALF_WIDTH, particle.half_width);
+        for (k, &[row, column]) in deformation_entries(D).iter().enumerate() {
+            put(Column::<D>::DEFORMATION + k, particle.deformation.0[row][column]);
+        }
+        for (k, &x) in particle.stress.0.iter().enumerate().take(stress_entries(D)) {
+            put(Column::<D>::STRESS + k, x);
+        }
+    }
+}

@@ -1,0 +1,144 @@
+//! Particles to field, field to particles: the sums over the nodes that particles reach.
+//!
+//! [`Stencil`] takes one particle at a time and reads like the equations; [`Group`] takes several particles of one cell at once. The
+//! second must give what the first gives, but for round-off.
+
+mod group;
+
+pub use group::{Group, Load};
+
+use crate::basis::{Axis, Basis};
+use crate::body::Particle;
+use crate::grid::{Lattice, SIDE, WINDOW, WINDOW_NODES, Window};
+use crate::tensor::{Matrix, Real, Symmetric, Vector};
+use std::marker::PhantomData;
+
+/// What a scatter gives to the nodes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Share {
+    /// Mass and momentum.
+    Mass,
+    /// Momentum alone, where the nodes have their mass already.
+    Momentum,
+    /// Force.
+    Force,
+    /// Mass, momentum and force.
+    Everything,
+}
+
+/// The nodes that one particle reaches, with its shape functions there.
+#[derive(Clone, Copy, Debug)]
+pub struct Stencil<T, const D: usize, B> {
+    axes: [Axis<T>; D],
+    /// 1/cell [1/m]
+    per_cell: T,
+    basis: PhantomData<B>,
+}
+
+impl<T: Real, const D: usize, B: Basis<T>> Stencil<T, D, B> {
+    /// The stencil of a particle.
+    #[inline(always)]
+    pub fn new(lattice: &Lattice<T, D>, particle: &Particle<T, D>) -> Self {
+        let x = lattice.cells(particle.position);
+        let half = particle.half_width * lattice.per_cell;
+        let axes = std::array::from_fn(|i| B::axis(x[i], half));
+        Stencil { axes, per_cell: lattice.per_cell, basis: PhantomData }
+    }
+
+    /// Base node: the first that the particle reaches along each axis.
+    #[inline(always)]
+    pub fn base(&self) -> [i32; D] {
+        self.axes.map(|axis| axis.base)
+    }
+
+    /// Weight [-] and gradient [1/m] of the node at `base + offset`.
+    #[inline(always)]
+    pub fn at(&self, offset: [usize; D]) -> (T, Vector<T, D>) {
+        let weight = |skip: usize| {
+            let axis =
+                |w, i: usize| w * if i == skip { T::ONE } else { self.axes[i].shape.weight[offset[i]] };
+            (0..D).fold(T::ONE, axis)
+        };
+        let gradient = Vector::from_fn(|i| weight(i) * self.axes[i].shape.slope[offset[i]] * self.per_cell);
+        (weight(D), gradient)
+    }
+
+    /// Calls `f(place in the window of a block, weight [-], gradient [1/m])` for every node.
+    #[inline(always)]
+    fn each(&self, block: [i32; D], mut f: impl FnMut(usize, T, Vector<T, D>)) {
+        let place = |node: [i32; D]| node.iter().fold(0, |place, &n| place * WINDOW + n as usize);
+        let start = place(std::array::from_fn(|i| self.axes[i].base - block[i] * SIDE));
+        for offset in offsets::<D>(B::WIDTH) {
+            let (weight, gradient) = self.at(offset);
+            f(start + place(offset.map(|o| o as i32)), weight, gradient);
+        }
+    }
+
+    /// Adds a particle's mass and momentum to the window's nodes.
+    ///
+    /// ```text
+    /// m_i += S_i m,   p_i += S_i m v          Sulsky, Chen and Schreyer (1994)
+    /// ```
+    pub fn scatter_momentum(
+        &self,
+        window: &mut Window<T, D>,
+        block: [i32; D],
+        (mass, momentum): (T, Vector<T, D>),
+    ) {
+        self.each(block, |place, weight, _| {
+            let node = &mut window.momentum[place];
+            for i in 0..D {
+                node[i] += momentum[i] * weight;
+            }
+            node[3] += mass * weight;
+        });
+    }
+
+    /// Adds the force of a particle's stress to the window's nodes.
+    ///
+    /// ```text
+    /// f_i += -V sigma grad S_i                Sulsky, Chen and Schreyer (1994)
+    /// ```
+    /// `stress` is V sigma, tension positive [J].
+    pub fn scatter_force(&self, window: &mut Window<T, D>, block: [i32; D], stress: &Symmetric<T>) {
+        self.each(block, |place, _, gradient| {
+            let force = stress.times(gradient);
+            for i in 0..D {
+                window.force[place][i] -= force[i];
+            }
+        });
+    }
+
+    /// sum S_i of a value at the window's nodes.
+    pub fn interpolate(&self, nodes: &[Vector<T, D>; WINDOW_NODES], block: [i32; D]) -> Vector<T, D> {
+        let mut sum = Vector::ZERO;
+        self.each(block, |place, weight, _| sum += nodes[place] * weight);
+        sum
+    }
+
+    /// L = sum v_i (x) grad S_i, embedded in space [1/s].
+    pub fn velocity_gradient(&self, nodes: &[Vector<T, D>; WINDOW_NODES], block: [i32; D]) -> Matrix<T> {
+        let mut l = Matrix::ZERO;
+        self.each(block, |place, _, gradient| {
+            for i in 0..D {
+                for j in 0..D {
+                    l.0[i][j] += nodes[place][i] * gradient[j];
+                }
+            }
+        });
+        l
+    }
+}
+
+/// Whole steps from 0 to below `width` along every axis: the nodes that a basis reaches from its base node.
+pub fn offsets<const D: usize>(width: usize) -> impl Iterator<Item = [usize; D]> {
+    (0..width.pow(D as u32)).map(move |i| {
+        let mut rest = i;
+        let mut offset = [0; D];
+        for o in offset.iter_mut().rev() {
+            *o = rest % width;
+            rest /= width;
+        }
+        offset
+    })
+}
