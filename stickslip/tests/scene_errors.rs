@@ -622,3 +622,62 @@ fn a_camera_behind_a_polariscope() {
         )],
     );
 }
+
+#[test]
+fn measurements() {
+    let cases = [
+        ("time_unit = \"1 m\"", "outputs.time_unit: found \"1 m\"", "a time [s]"),
+        ("time_unit = 0", "outputs.time_unit: found 0", "a time [s] above 0"),
+        ("samples = \"steps\"", "outputs.samples: found unknown name `steps`", "a time [s]"),
+        ("probes = [{ name = \"p\", at = [0, 0] }]", "outputs.probes[0].at: found", "3 numbers"),
+        (
+            "probes = [{ name = \"p\", at = [0, 0, 0] }, { name = \"p\", at = [0, 0, 0] }]",
+            "outputs.probes[1].name: found \"p\"",
+            "a name that no other in the list has",
+        ),
+        (
+            "probes = [{ name = \"p\", at = [0, 0, 0], body = \"plane\" }]",
+            "\"plane\"",
+            "a body that is not rigid (\"sphere\")",
+        ),
+        (
+            "probes = [{ name = \"p\", at = [0, 0, 0], fixed_in = \"materiel\" }]",
+            "outputs.probes[0].fixed_in: found \"materiel\"",
+            "did you mean `material`?",
+        ),
+        (
+            "arrivals = [{ quantity = \"vx\", threshold = \"1 Pa\", bodies = [\"sphere\"] }]",
+            "outputs.arrivals[0].threshold: found \"1 Pa\", a pressure [Pa]",
+            "a velocity [m/s] other than 0",
+        ),
+        (
+            "arrivals = [{ quantity = \"vx\", threshold = 0, bodies = [\"sphere\"] }]",
+            "outputs.arrivals[0].threshold: found 0",
+            "other than 0",
+        ),
+        (
+            "arrivals = [{ quantity = \"vx\", threshold = 1 }]",
+            "watches no probe and no body",
+            "probes = [...]",
+        ),
+        (
+            "arrivals = [{ quantity = \"vx\", threshold = 1, probes = [\"p\"] }]",
+            "outputs.arrivals[0].probes[0]: found \"p\"",
+            "the name of a probe ()",
+        ),
+        (
+            "fronts = [{ name = \"f\", quantity = \"xx\", threshold = 1, from = [0, 0, 0], direction = [0, 0, 0] }]",
+            "outputs.fronts[0].direction: found",
+            "a direction that is not zero",
+        ),
+        (
+            "fronts = [{ name = \"f\", quantity = \"xx\", threshold = 1, from = [0, 0, 0], direction = [1, 0, 0], fit = [2, 1] }]",
+            "outputs.fronts[0].fit[1]: found 1",
+            "more than 2 m",
+        ),
+    ];
+    for (text, found, allowed) in cases {
+        let message = message(&edited(ROLLING, "grid = \"never\"", text));
+        assert!(message.contains(found) && message.contains(allowed), "`{text}`\n  gives {message}");
+    }
+}

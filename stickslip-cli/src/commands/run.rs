@@ -8,8 +8,9 @@ use clap::Args;
 use miette::IntoDiagnostic;
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
-use stickslip::observe::Status;
+use stickslip::observe::{ArrivalRow, FrontSpeedRow, Results, Status};
 use stickslip::run::{RunError, RunOptions};
+use stickslip::scene::Scene;
 
 /// Run a scene and write its results.
 #[derive(Debug, Args)]
@@ -65,11 +66,29 @@ impl Arguments {
                 return Err(Failure::run(error));
             }
         };
-        say(&format!("{}\n{summary}", scene.title))?;
+        say(&format!("{}\n{summary}{}", scene.title, measured(&out, scene)?))?;
         let drawn = illustrate(&out)?;
         say(&format!("results in {}/: {drawn}", out.display()))?;
         if summary.status == Status::Interrupted { Err(Failure::Interrupted) } else { Ok(()) }
     }
+}
+
+/// A line for each arrival and each front's speed; a threshold that was not passed has none.
+fn measured(folder: &Path, scene: &Scene) -> Result<String, Failure> {
+    let results = Results::open(folder).map_err(Failure::input)?;
+    let unit = scene.outputs.measurements.unit();
+    let arrival = |row: &ArrivalRow| {
+        let units = unit.map_or(String::new(), |unit| format!(", {:.4} time units", row.time / unit));
+        let ArrivalRow { time, quantity, threshold, place, reading, .. } = row;
+        format!("  arrival    {quantity} {threshold:.3e} at {place} ({reading}): t = {time:.6e} s{units}\n")
+    };
+    let speed = |row: &FrontSpeedRow| {
+        let FrontSpeedRow { front, speed, error, .. } = row;
+        format!("  front      {front}: {speed:.6} m/s by fit, standard error {error:.2}\n")
+    };
+    let arrivals = results.arrivals_table().map_err(Failure::input)?;
+    let speeds = results.front_speeds_table().map_err(Failure::input)?;
+    Ok(arrivals.iter().map(arrival).chain(speeds.iter().map(speed)).collect())
 }
 
 /// Makes the threads of the run, and says how many there are.

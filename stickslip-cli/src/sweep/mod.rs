@@ -113,9 +113,9 @@ fn row(summary: &Summary, loaded: &Loaded, results: &Results) -> Row {
         ("steps".to_owned(), performance.steps as f64),
         ("particles".to_owned(), performance.particles as f64),
         ("wall_time".to_owned(), performance.wall_time),
-        ("kinetic".to_owned(), summary.end.kinetic),
-        ("strain".to_owned(), summary.end.strain),
-        ("friction".to_owned(), summary.end.friction),
+        ("kinetic_energy".to_owned(), summary.end.kinetic),
+        ("strain_energy".to_owned(), summary.end.strain),
+        ("friction_heat".to_owned(), summary.end.friction),
         ("external_work".to_owned(), summary.end.external_work),
         ("energy_drift".to_owned(), summary.relative_energy_drift()),
     ];

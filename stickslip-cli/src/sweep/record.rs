@@ -102,8 +102,13 @@ pub fn write_table(folder: &Path, sweep: &Sweep) -> Result<(), Failure> {
     }
     let mut writer = csv::Writer::from_writer(Vec::new());
     let parameters = sweep.record.parameters.iter().map(String::as_str);
-    let header =
-        ["run", "status"].into_iter().chain(parameters).chain(figures.iter().copied()).chain(["error"]);
+    // A parameter may have the name of a figure.
+    let figure_name = |name: &&str| {
+        let taken = sweep.record.parameters.iter().any(|parameter| parameter == name);
+        if taken { format!("{name}_of_run") } else { (*name).to_owned() }
+    };
+    let header = ["run", "status"].into_iter().chain(parameters).map(str::to_owned);
+    let header = header.chain(figures.iter().map(figure_name)).chain(["error".to_owned()]);
     writer.write_record(header).expect("a vector takes all bytes");
     for row in &sweep.rows {
         let value = |name: &&str| {
@@ -182,6 +187,17 @@ mod tests {
         write_table(folder.path(), &sweep).unwrap();
         assert_eq!(read(folder.path()).unwrap(), sweep);
         assert!(is_sweep(folder.path()));
+    }
+
+    #[test]
+    fn a_parameter_with_the_name_of_a_figure_keeps_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let record = Record::new("waves", vec!["steps".to_owned()]);
+        let figures = vec![("steps".to_owned(), 7.0)];
+        let row = Row { parameters: vec!["3".to_owned()], figures, ..Row::default() };
+        write_table(folder.path(), &Sweep { record, rows: vec![row] }).unwrap();
+        let text = fs::read_to_string(folder.path().join(TABLE)).unwrap();
+        assert_eq!(text, "run,status,steps,steps_of_run,error\n,,3,7,\n");
     }
 
     #[test]
