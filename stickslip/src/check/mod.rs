@@ -102,6 +102,7 @@ mod tests {
                 grid: None,
                 fringes: None,
                 measurements: Measurements::default(),
+                fringes: None,
             },
             references: vec![],
         }

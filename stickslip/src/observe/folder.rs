@@ -2,8 +2,10 @@
 
 use super::file::part_of;
 use super::manifest::Manifest;
-use super::{ARRIVALS, BODIES, CONTACTS, ENERGY, FRONT_SPEEDS, FRONTS, GRID, PARTICLES, PROBES};
-use super::{FRINGES, FRINGES_ANIMATION, FRINGES_TABLE};
+use super::{
+    ARRIVALS, BODIES, CONTACTS, ENERGY, FRINGES, FRINGES_ANIMATION, FRINGES_TABLE, FRONT_SPEEDS, FRONTS,
+    GRID, PARTICLES, PROBES,
+};
 use miette::Diagnostic;
 use std::fs;
 use std::io;
@@ -18,10 +20,10 @@ const FILES: [&str; 12] = [
     ARRIVALS,
     FRONTS,
     FRONT_SPEEDS,
-    "particles.pvd",
-    "grid.pvd",
     FRINGES_TABLE,
     FRINGES_ANIMATION,
+    "particles.pvd",
+    "grid.pvd",
     Manifest::FILE,
 ];
 /// Folders of snapshots that a run may leave in its folder.

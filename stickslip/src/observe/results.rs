@@ -84,12 +84,12 @@ impl Results {
         read_rows(&self.folder.join(CONTACTS))
     }
 
-    /// `fringes.csv`: a row for each frame of the scene's camera.
+    /// `fringes.csv`: a row for each frame of the scene's camera; none if it has none.
     ///
     /// # Errors
-    /// The file is missing, as where the scene asks for no fringes, or damaged.
+    /// The file is damaged.
     pub fn fringes_table(&self) -> Result<Vec<FringeRow>, ReadError> {
-        read_rows(&self.folder.join(FRINGES_TABLE))
+        self.measured(FRINGES_TABLE)
     }
 
     /// `probes.csv`: at each sample a row for each probe that has material around it; none if the scene has no probes.
