@@ -62,8 +62,11 @@ impl<T, const D: usize> Default for Survey<T, D> {
     }
 }
 
-/// Mass below this fraction of a full cell's does not make a node shared.
-const TRACE: f64 = 1e-10;
+/// Mass below this fraction of a full cell's does not make a node shared: that of a particle which reaches into the node's
+/// surroundings by round-off of a cell. More would leave parts of a glued body that stick out by less to themselves.
+fn trace<T: Real>() -> T {
+    T::EPSILON * T::EPSILON
+}
 
 /// What a survey looks at.
 pub struct Near<'a, T, const D: usize> {
@@ -125,7 +128,7 @@ impl<T: Real, const D: usize> Near<'_, T, D> {
             let present = |&&slot: &&u32| {
                 let body = self.cover.slots[slot as usize].0 as usize;
                 self.field.nodes[slot as usize * n + local].mass
-                    > T::of(TRACE) * cell_volume * self.bodies[body].density
+                    > trace::<T>() * cell_volume * self.bodies[body].density
             };
             let slots = self.cover.slots_of(meeting);
             if slots.iter().filter(present).count() < 2 {

@@ -2,6 +2,7 @@
 
 mod build;
 mod cpu;
+mod join;
 mod look;
 mod rigid;
 mod verbs;
@@ -62,6 +63,7 @@ impl<T: Real, const D: usize, B: Basis<T>> Engine<T, D, B> {
         });
         self.interpolated_velocities(); //              v = p / m                           (4)
         let survey = self.survey(); //                  surfaces, normals and gaps where bodies meet
+        self.join(&survey); //                         glued bodies interpolate as one
         self.contact(&survey, dt); //                   v~ from interpolated velocities     (5)-(13), (20)-(22)
         if when == StressUpdate::First {
             self.strain(dt)?;
