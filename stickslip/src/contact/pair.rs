@@ -2,6 +2,7 @@
 
 use super::Rule;
 use super::law::law;
+use crate::scene::ContactLaw;
 use crate::tensor::{Real, Symmetric, Vector};
 
 /// What the particles around a node say of one body's surface there.
@@ -92,7 +93,7 @@ impl<T: Real, const D: usize> Pair<'_, T, D> {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
-    use crate::scene::{ContactLaw, Normal};
+    use crate::scene::Normal;
 
     pub fn surface(mass: f64, normal: [f64; 2]) -> Surface<f64, 2> {
         Surface {
