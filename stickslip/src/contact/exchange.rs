@@ -63,6 +63,12 @@ pub fn own_normals<T: Real, const D: usize>(
             }
         }
     }
+    // A rigid body decides nothing; the force on it is the other's reaction.
+    for i in 0..2 {
+        if pair.surfaces[i].inverse_mass <= T::ZERO {
+            change.impulse[i] = -change.impulse[1 - i];
+        }
+    }
     change
 }
 
@@ -119,6 +125,20 @@ mod tests {
                 let difference = (own.impulse[body] - common.impulse[body]).norm();
                 assert!(difference < 1e-14, "friction {friction}: {own:?} {common:?}");
             }
+        }
+    }
+
+    #[test]
+    fn a_rigid_body_feels_the_reaction() {
+        let rule = rule(ContactLaw::Kinematic, Normal::Own, 0.25);
+        let free = surface(2.0, [0.0, -1.0]);
+        let rigid = Surface { inverse_mass: 0.0, ..surface(1.0, [0.0, 1.0]) };
+        for surfaces in [[&free, &rigid], [&rigid, &free]] {
+            let pair = Pair { rule: &rule, surfaces, normal: None, gap: 0.0, area: 0.0, step: step(100.0) };
+            let down = Vector([0.0, -8.0]);
+            let velocities = surfaces.map(|side| if side.inverse_mass > 0.0 { down } else { Vector::ZERO });
+            let [a, b] = pair.change(velocities).impulse;
+            assert_eq!((a + b, a.norm()), (Vector::ZERO, 16.0));
         }
     }
 }

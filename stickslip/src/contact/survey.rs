@@ -86,8 +86,11 @@ impl<T, const D: usize> Default for Survey<T, D> {
     }
 }
 
-/// Mass below this fraction of a full cell's does not make a node shared.
-const TRACE: f64 = 1e-10;
+/// Mass below this fraction of a full cell's does not make a node shared: that of a particle which reaches into the node's
+/// surroundings by round-off of a cell. More would leave parts of a glued body that stick out by less to themselves.
+fn trace<T: Real>() -> T {
+    T::EPSILON * T::EPSILON
+}
 
 /// What a survey looks at.
 pub struct Near<'a, T, const D: usize> {
@@ -144,7 +147,7 @@ impl<T: Real, const D: usize> Near<'_, T, D> {
     ) {
         let (n, slots) = (nodes_per_block(D), self.cover.slots_of(meeting));
         let body = |slot: u32| self.cover.slots[slot as usize].0 as usize;
-        let trace = T::of(TRACE) * self.cell_volume();
+        let trace = trace::<T>() * self.cell_volume();
         let present: Vec<Nodes> = (slots.iter())
             .map(|&slot| {
                 let least = trace * self.bodies[body(slot)].density;

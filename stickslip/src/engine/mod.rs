@@ -2,6 +2,7 @@
 
 mod build;
 mod cpu;
+mod join;
 mod look;
 mod pass;
 mod rigid;
@@ -73,6 +74,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         });
         self.interpolated_velocities(); //              v = p / m                           (4)
         let survey = self.survey(); //                  surfaces, normals and gaps where bodies meet
+        self.join(&survey); //                          glued bodies interpolate as one
         let given = self.first_contact(&survey, dt); // v~ from interpolated velocities     (5)-(13), (20)-(22)
         if when == StressUpdate::First {
             self.strain_and_scatter(dt)?; //            F = (I + L dt) F, sigma = law(F), f
