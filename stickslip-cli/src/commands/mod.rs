@@ -26,7 +26,7 @@ pub enum Command {
     Sweep(sweep::Arguments),
     Check(check::Arguments),
     New(new::Arguments),
-    Render(render::Arguments),
+    Render(Box<render::Arguments>),
     Plot(plot::Arguments),
     Schema(schema::Arguments),
     Validate(validate::Arguments),
