@@ -31,7 +31,7 @@ pub enum Command {
     Sweep(sweep::Arguments),
     Check(check::Arguments),
     New(new::Arguments),
-    Render(render::Arguments),
+    Render(Box<render::Arguments>),
     Plot(plot::Arguments),
     Network(network::Arguments),
     Reproduce(reproduce::Arguments),
