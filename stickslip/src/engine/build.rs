@@ -125,9 +125,9 @@ fn particles<T: Real, const D: usize>(
     velocity: impl Fn([f64; 3]) -> [f64; 3],
 ) -> Particles<T, D> {
     let mass = filling.volume * scene.materials[body.material].density;
-    let particle = |(number, &x): (usize, &[f64; 3])| Particle {
-        position: Vector::of(x),
-        velocity: Vector::of(velocity(x)),
+    let particle = |number: usize| Particle {
+        position: Vector::of(filling.positions[number]),
+        velocity: Vector::of(velocity(filling.positions[number])),
         mass: T::of(mass),
         volume: T::of(filling.volume),
         half_width: T::of(filling.half_width),
@@ -135,7 +135,7 @@ fn particles<T: Real, const D: usize>(
         stress: Symmetric::ZERO,
         number: number as u32,
     };
-    filling.positions.iter().enumerate().map(particle).collect()
+    Particles::from_fn(filling.positions.len(), particle)
 }
 
 /// The domain's faces that do something.
