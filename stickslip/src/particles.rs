@@ -56,6 +56,21 @@ pub struct Particles<T, const D: usize> {
 const LINE: usize = 64;
 
 impl<T: Real, const D: usize> Particles<T, D> {
+    /// The particles `f(0)` to `f(count - 1)`.
+    pub fn from_fn(count: usize, f: impl Fn(usize) -> Particle<T, D>) -> Self {
+        let lines = (count * size_of::<T>()).div_ceil(LINE) | 1;
+        let stride = lines * LINE / size_of::<T>();
+        let mut particles = Particles {
+            columns: vec![T::ZERO; stride * Column::<D>::COUNT],
+            stride,
+            numbers: vec![0; count],
+        };
+        for i in 0..count {
+            particles.set(i, &f(i));
+        }
+        particles
+    }
+
     /// How many.
     pub fn len(&self) -> usize {
         self.numbers.len()
@@ -111,23 +126,6 @@ impl<T: Real, const D: usize> Particles<T, D> {
             column[..len].copy_from_slice(scratch);
         };
         self.columns.par_chunks_mut(stride).for_each_init(|| Vec::with_capacity(len), permute);
-    }
-}
-
-impl<T: Real, const D: usize> FromIterator<Particle<T, D>> for Particles<T, D> {
-    fn from_iter<I: IntoIterator<Item = Particle<T, D>>>(particles: I) -> Self {
-        let rows: Vec<_> = particles.into_iter().collect();
-        let lines = (rows.len() * size_of::<T>()).div_ceil(LINE) | 1;
-        let stride = lines * LINE / size_of::<T>();
-        let mut particles = Particles {
-            columns: vec![T::ZERO; stride * Column::<D>::COUNT],
-            stride,
-            numbers: vec![0; rows.len()],
-        };
-        for (i, row) in rows.iter().enumerate() {
-            particles.set(i, row);
-        }
-        particles
     }
 }
 

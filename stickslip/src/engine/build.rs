@@ -127,17 +127,20 @@ fn particles<T: Real, const D: usize>(
     velocity: impl Fn([f64; 3]) -> [f64; 3],
 ) -> Particles<T, D> {
     let density = scene.materials[body.material].density;
-    let particle = |(number, &site): (usize, &Site)| Particle {
-        position: Vector::of(site.position),
-        velocity: Vector::of(velocity(site.position)),
-        mass: T::of(site.volume * density),
-        volume: T::of(site.volume),
-        half_width: T::of(site.half_width),
-        deformation: Matrix::IDENTITY,
-        stress: Symmetric::ZERO,
-        number: number as u32,
+    let particle = |number: usize| {
+        let site: &Site = &filling.sites[number];
+        Particle {
+            position: Vector::of(site.position),
+            velocity: Vector::of(velocity(site.position)),
+            mass: T::of(site.volume * density),
+            volume: T::of(site.volume),
+            half_width: T::of(site.half_width),
+            deformation: Matrix::IDENTITY,
+            stress: Symmetric::ZERO,
+            number: number as u32,
+        }
     };
-    filling.sites.iter().enumerate().map(particle).collect()
+    Particles::from_fn(filling.sites.len(), particle)
 }
 
 /// The domain's faces that are mirrors.

@@ -1,7 +1,7 @@
 //! Passes over tiles on threads, with the same bits for any number of them.
 //!
-//! Tiles of one colour scatter side by side, colours one after the other, and a tile's particles in their own order: no sum
-//! depends on which thread comes first.
+//! Small bodies scatter each on one thread, tile after tile. Tiles of one colour of large bodies scatter side by side, colours one after the
+//! other, and a tile's particles in their own order: no sum depends on which thread comes first.
 
 use super::Engine;
 use super::pass::{Found, Pass, Path, Verbs, Visit};
@@ -12,6 +12,7 @@ use crate::lanes::Laned;
 use crate::particles::Columns;
 use rayon::prelude::*;
 use std::marker::PhantomData;
+use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 
 /// What threads work with, kept from pass to pass.
@@ -28,7 +29,7 @@ impl<T, const D: usize> Default for Workshop<T, D> {
 }
 
 /// Tiles that a thread takes at a time.
-const TILES: usize = 8;
+const TILES: usize = 2;
 
 impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// Takes every particle through a pass; those of rigid bodies only scatter.
@@ -74,7 +75,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             unsafe { *left.get(index as usize) |= visit.left };
             let found = visit.found;
             if pass.verbs.scatter.is_some() {
-                // SAFETY: tiles of one colour share no slot, and colours follow one another.
+                // SAFETY: portions and tiles of one colour share no slot, and they follow one another.
                 unsafe { window.add_to(&nodes, tile, side) };
             }
             found
@@ -90,10 +91,12 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             let chunk = |i: usize| several(&mut all.clone().skip(i * TILES).take(TILES));
             return chunks.map(chunk).reduce(|| Found::NOTHING, Found::and);
         }
+        let portion = |tiles: &Range<usize>| several(&mut tiles.clone().map(|tile| tile as u32));
+        let found = cover.portions.par_iter().map(portion).reduce(|| Found::NOTHING, Found::and);
         let color = |color: &Vec<u32>| {
             let chunks = color.par_chunks(TILES);
             chunks.map(|tiles| several(&mut tiles.iter().copied())).reduce(|| Found::NOTHING, Found::and)
         };
-        cover.colors.iter().map(color).fold(Found::NOTHING, Found::and)
+        cover.colors.iter().map(color).fold(found, Found::and)
     }
 }

@@ -36,7 +36,9 @@ pub struct Cover<const D: usize> {
     holdings: Vec<Holding>,
     /// Tiles of all bodies, by body and block.
     pub tiles: Vec<Tile<D>>,
-    /// Indices of the tiles by colour: tiles of one colour never write to the same slot.
+    /// Tiles of small bodies, all tiles of several bodies in each range: ranges never write to the same slot.
+    pub portions: Vec<Range<usize>>,
+    /// Indices of the other tiles by colour: tiles of one colour never write to the same slot.
     pub colors: Vec<Vec<u32>>,
     /// Body and block of each field slot.
     pub slots: Vec<(u32, [i32; D])>,
@@ -48,6 +50,15 @@ pub struct Cover<const D: usize> {
     pub meetings: Vec<Meeting<D>>,
     shared: Vec<u32>,
 }
+
+/// Most tiles of a small body.
+const MOST_SMALL: usize = 64;
+
+/// A small body has at most this part of all tiles: so there are enough of them to share out.
+const LEAST_SMALL: usize = 64;
+
+/// Tiles of a portion, or a few more.
+const PORTION: usize = 32;
 
 /// Whether the blocks under the particles, and with them the field's slots, are others than before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -116,16 +127,31 @@ impl<const D: usize> Cover<D> {
         }
         self.first_slot.push(self.slots.len());
         self.first_tile.push(self.tiles.len());
-        self.color();
+        self.share_out();
         self.meet(keys);
     }
 
-    fn color(&mut self) {
-        self.colors.clear();
+    /// Small bodies together make portions, each for one thread; the tiles of large ones get colours.
+    fn share_out(&mut self) {
+        self.portions.clear();
         self.colors.resize_with(1 << D, Vec::new);
-        for (i, tile) in self.tiles.iter().enumerate() {
-            let color = tile.block.iter().fold(0, |color, b| color << 1 | (b & 1) as usize);
-            self.colors[color].push(i as u32);
+        self.colors.iter_mut().for_each(Vec::clear);
+        let mut open = false;
+        for body in 0..self.holdings.len() {
+            let tiles = self.tiles_held(body);
+            let small = tiles.len() <= MOST_SMALL && tiles.len() * LEAST_SMALL <= self.tiles.len();
+            if !small {
+                for i in tiles {
+                    let block = self.tiles[i].block;
+                    let color = block.iter().fold(0, |color, b| color << 1 | (b & 1) as usize);
+                    self.colors[color].push(i as u32);
+                }
+            } else if open && let Some(portion) = self.portions.last_mut() {
+                portion.end = tiles.end;
+            } else {
+                self.portions.push(tiles);
+            }
+            open = small && self.portions.last().is_some_and(|portion| portion.len() < PORTION);
         }
     }
 

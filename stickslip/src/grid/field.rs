@@ -3,6 +3,7 @@
 use super::{Cover, SIDE, Tile, nodes_per_block};
 use crate::basis::MAX_WIDTH;
 use crate::tensor::{Real, Vector};
+use rayon::prelude::*;
 use std::marker::PhantomData;
 
 /// One body's share of one grid node.
@@ -41,7 +42,8 @@ pub struct Field<T, const D: usize> {
 impl<T: Real, const D: usize> Field<T, D> {
     /// Empties the field and gives it the blocks of a cover.
     pub fn clear(&mut self, cover: &Cover<D>) {
-        self.nodes.clear();
+        self.nodes.truncate(cover.slots.len() * nodes_per_block(D));
+        self.nodes.par_iter_mut().with_min_len(4096).for_each(|node| *node = Node::EMPTY);
         self.nodes.resize(cover.slots.len() * nodes_per_block(D), Node::EMPTY);
     }
 }

@@ -107,7 +107,9 @@ impl Holding {
         let n = nodes_per_block(D);
         self.movers.sort_unstable();
         let Next { order, cells, homes } = &mut self.next;
-        (order.clear(), cells.clear(), homes.clear());
+        order.clear();
+        cells.clear();
+        homes.clear();
         let (mut tile, mut movers) = (0, &self.movers[..]);
         while tile < self.homes.len() || !movers.is_empty() {
             let old = self.homes.get(tile).copied().unwrap_or(u64::MAX);

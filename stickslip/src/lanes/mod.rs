@@ -106,7 +106,7 @@ pub trait Lanes: Number {
         let iterations = if Self::Real::EPSILON.f64() > 1e-10 { 2 } else { 3 };
         for _ in 0..iterations {
             let cube = y * y * y;
-            y = y * ((cube + (self + self)) / ((cube + cube) + self));
+            y *= (cube + (self + self)) / ((cube + cube) + self);
         }
         y
     }

@@ -3,6 +3,9 @@
 //! A gather has a particle in each lane and hands every node's values to all of them. A scatter has the components of momentum or force
 //! in the lanes and adds up one particle after the other, in the order in which they come. Sums run axis by axis.
 
+// Sums over nodes and components read better by their indices.
+#![allow(clippy::needless_range_loop)]
+
 use crate::basis::{Basis, MAX_WIDTH, Shape};
 use crate::grid::{WINDOW, WINDOW_NODES, Window};
 use crate::lanes::{Lanes, MOST_LANES, Machine, Numbers};

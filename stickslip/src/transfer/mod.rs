@@ -120,9 +120,10 @@ impl<T: Real, const D: usize, B: Basis<T>> Stencil<T, D, B> {
     pub fn velocity_gradient(&self, nodes: &[Vector<T, D>; WINDOW_NODES], block: [i32; D]) -> Matrix<T> {
         let mut l = Matrix::ZERO;
         self.each(block, |place, _, gradient| {
-            for i in 0..D {
-                for j in 0..D {
-                    l.0[i][j] += nodes[place][i] * gradient[j];
+            let velocity = nodes[place];
+            for (i, row) in l.0.iter_mut().enumerate().take(D) {
+                for (j, entry) in row.iter_mut().enumerate().take(D) {
+                    *entry += velocity[i] * gradient[j];
                 }
             }
         });
