@@ -323,7 +323,7 @@ fn bodies_contact_and_references() {
             (
                 "contact = \"gap\"",
                 "contact = \"gapp\"",
-                "56:7: contact[0].law: found \"{contact}\", which is \"gapp\"; allowed: \"gap\", \"traction\", \"kinematic\", \"glued\" or \"none\"; did you mean `gap`?",
+                "56:7: contact[0].law: found \"{contact}\", which is \"gapp\"; allowed: \"surface\", \"gap\", \"traction\", \"kinematic\", \"glued\" or \"none\"; did you mean `gap`?",
             ),
             (
                 "law = \"{contact}\"",

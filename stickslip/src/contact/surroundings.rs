@@ -22,6 +22,8 @@ pub type Nodes = u64;
 pub struct Sums<T, const D: usize> {
     /// sum V S [m^3]
     pub volume: T,
+    /// sum m S [kg]
+    pub mass: T,
     /// sum m grad S, with the gradient at the node [kg/m]
     pub mass_gradient: Vector<T, D>,
     /// sum V grad S, likewise [m^2]
@@ -38,6 +40,7 @@ impl<T: Real, const D: usize> Sums<T, D> {
     /// Of no particle.
     pub const EMPTY: Self = Sums {
         volume: T::ZERO,
+        mass: T::ZERO,
         mass_gradient: Vector::ZERO,
         volume_gradient: Vector::ZERO,
         stress: Symmetric::ZERO,
@@ -182,6 +185,7 @@ impl<T: Real, const D: usize> Share<T, D> {
         let gradient = Vector::from_fn(|i| -gradient[i] * self.sign[i]);
         let share = self.room * weight;
         sums.volume += share;
+        sums.mass += self.mass * weight;
         sums.mass_gradient += gradient * self.mass;
         sums.volume_gradient += gradient * self.room;
         sums.stress += self.stress * share;

@@ -221,13 +221,15 @@ impl<T: Real, const D: usize> Near<'_, T, D> {
         let body = self.cover.slots[index / nodes_per_block(D)].0 as usize;
         let owner = &self.bodies[body];
         let arm = Vector::from_fn(|i| T::of(f64::from(node[i].rem_euclid(SIDE))) * self.lattice.cell);
+        let mass = self.field.nodes[index].mass;
         let surface = Surface {
-            inverse_mass: if owner.rigid { T::ZERO } else { T::ONE / self.field.nodes[index].mass },
+            inverse_mass: if owner.rigid { T::ZERO } else { T::ONE / mass },
             normal: (-sums.mass_gradient).direction(),
             stress: sums.stress * (T::ONE / sums.volume),
             volume: sums.volume,
             modulus: owner.wave_modulus(&Matrix::IDENTITY, T::ONE),
-            force: sums.force,
+            // A node on a mirror carries its half of the mass, and so of the force.
+            force: sums.force * (mass / sums.mass),
             place: sums.place.over(sums.volume).seen_from(arm),
         };
         Side { body, index, surface, volume_gradient: sums.volume_gradient }

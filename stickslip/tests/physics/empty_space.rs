@@ -36,7 +36,7 @@ fn text(min: f64, max: f64) -> String {
 
 fn run(text: &str) -> (ParticleSnapshot, GridSnapshot) {
     let mut simulation = start(text);
-    take_steps(&mut *simulation, 100);
+    take_steps(&mut *simulation, 80);
     assert!(!simulation.take_contacts().is_empty(), "the disks meet");
     (simulation.snapshot(), simulation.grid_snapshot())
 }
