@@ -155,11 +155,8 @@ fn window(
     snapshots: &[ParticleSnapshot],
     (specimens, size): (&[usize], Option<[usize; 2]>),
 ) -> Result<Window, Failure> {
-    let join = |[a, b]: [[f64; 2]; 2], [c, d]: [[f64; 2]; 2]| {
-        [[a[0].min(c[0]), a[1].min(c[1])], [b[0].max(d[0]), b[1].max(d[1])]]
-    };
     let seen = snapshots.iter().filter_map(|particles| polariscope::bounds(particles, specimens));
-    let bounds = view.or_else(|| seen.reduce(join));
+    let bounds = view.or_else(|| seen.reduce(polariscope::joined));
     let nothing =
         || Failure::Input(miette!("there is nothing to draw: the snapshots hold no birefringent body"));
     let bounds = bounds.ok_or_else(nothing)?;

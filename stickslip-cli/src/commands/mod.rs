@@ -29,7 +29,7 @@ pub enum Command {
     Sweep(sweep::Arguments),
     Check(check::Arguments),
     New(new::Arguments),
-    Render(render::Arguments),
+    Render(Box<render::Arguments>),
     Plot(plot::Arguments),
     Reproduce(reproduce::Arguments),
     Schema(schema::Arguments),

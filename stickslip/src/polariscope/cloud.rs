@@ -88,14 +88,16 @@ fn columns(particles: &ParticleSnapshot, range: std::ops::Range<usize>, side: f6
     columns.into_values().map(point).collect()
 }
 
+/// The smallest rectangle around two, each given by its lower and upper corner.
+pub fn joined([a, b]: [[f64; 2]; 2], [c, d]: [[f64; 2]; 2]) -> [[f64; 2]; 2] {
+    [[a[0].min(c[0]), a[1].min(c[1])], [b[0].max(d[0]), b[1].max(d[1])]]
+}
+
 impl Cloud {
     fn sorted(body: usize, points: Vec<Point>, (center, reach): ([f64; 2], f64)) -> Self {
         let mut bounds = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
         for point in &points {
-            for axis in 0..2 {
-                bounds[0][axis] = bounds[0][axis].min(point.place[axis]);
-                bounds[1][axis] = bounds[1][axis].max(point.place[axis]);
-            }
+            bounds = joined(bounds, [point.place; 2]);
         }
         // A few particles that flew far away must not ask for a bin on every square metre between.
         let most = (4 * points.len()).max(64) as f64;

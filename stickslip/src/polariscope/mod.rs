@@ -26,6 +26,7 @@ mod tests;
 mod window;
 
 pub use chains::{Link, Push, draw_links, links};
+pub use cloud::joined;
 pub use film::Film;
 pub use optics::{Optics, Phase, Rgb};
 pub use stress_map::{Ray, StressMap};
@@ -167,14 +168,8 @@ pub fn stress_maps(particles: &ParticleSnapshot, window: &Window) -> Vec<StressM
 /// Lower and upper corner of a rectangle around some bodies, with a little room [m]; `None` if they have no particles.
 pub fn bounds(particles: &ParticleSnapshot, specimens: &[usize]) -> Option<[[f64; 2]; 2]> {
     let clouds = cloud::clouds(particles, stress_map::REACH);
-    let mut bounds: Option<[[f64; 2]; 2]> = None;
-    for cloud in clouds.iter().filter(|cloud| specimens.contains(&cloud.body)) {
-        let all = bounds.get_or_insert(cloud.bounds);
-        for axis in 0..2 {
-            all[0][axis] = all[0][axis].min(cloud.bounds[0][axis]);
-            all[1][axis] = all[1][axis].max(cloud.bounds[1][axis]);
-        }
-    }
+    let chosen = clouds.iter().filter(|cloud| specimens.contains(&cloud.body)).map(|cloud| cloud.bounds);
+    let bounds = chosen.reduce(joined);
     bounds.map(|[low, high]| {
         let room = MARGIN * (high[0] - low[0]).max(high[1] - low[1]).max(1e-9);
         [low.map(|x| x - room), high.map(|x| x + room)]
