@@ -1,21 +1,127 @@
 //! The paper's disks (Bardenhagen et al. 2001, section 3.3), run from their scene files.
 //!
-//! Every scene is built with each of its choices and run at 20 cells a disk until the wave is in the second disk. Expected: momentum
-//! is the sum of what the striker and the frame gave within round-off; energy is the striker's work within 15 %: on so coarse a grid
-//! each first touch of the gap law is inelastic. Measured: 1.5 % in a row, 12 % in the zig-zag.
+//! Arrival, where nothing else is said: sigma_1 - sigma_2 at the centre of a disk above 0.3 rho c_L V, in transits D/c_L, as in the
+//! sharp-contact reference.
+//!
+//! Every claim has a quick form on coarse grids, which always runs, and a slow one at the paper's 80 cells.
+//! `cargo test --release -p stickslip --test paper_disks -- --nocapture --include-ignored` prints what was measured.
 
 mod disk_chain;
 
 use disk_chain::Chain;
 
+const COARSE: (&str, &str) = ("cells_per_diameter", "20");
+const PAPER: (&str, &str) = ("cells_per_diameter", "80");
+
+/// Momentum of the disks is what the striker and the frame gave, within round-off, for every scene and choice; their energy is
+/// the striker's work within 5 % after two transits on a coarse grid.
 #[test]
 fn every_choice_of_the_scenes_runs_and_keeps_the_balance() {
+    let experiment = [COARSE, ("dimension", "plane-stress"), ("nu", "0.32"), ("speed", "2.07e-3 * c_L")];
+    let lattice = [COARSE, ("particles", "lattice"), ("particles_per_side", "2"), ("contact", "traction")];
     for scene in ["collinear", "zigzag", "glued"] {
-        for choice in [&[][..], &[("dimension", "plane-stress"), ("nu", "0.32"), ("speed", "2.07e-3 * c_L")]]
-        {
-            let chain = Chain::run(scene, choice, ("cells_per_diameter", "20"), 2.0);
+        for choice in [&[COARSE][..], &experiment, &lattice] {
+            let chain = Chain::run(scene, choice, 2.0);
             assert!(chain.momentum < 1e-9, "{scene} {choice:?}: momentum {:e}", chain.momentum);
-            assert!(chain.energy.abs() < 0.15, "{scene} {choice:?}: energy {}", chain.energy);
+            assert!(chain.energy.abs() < 0.05, "{scene} {choice:?}: energy {}", chain.energy);
         }
     }
+}
+
+/// The paper: frictionless contacts slow the waves most, sliding ones less, glued ones least. From the third disk on the order holds,
+/// and the last disk moves at least `ratio` times later where contacts slide than where they are glued. A disk has the wave when its centre
+/// of mass moves at 0.05 V: in the glued zig-zag the wave passes a disk's centre with little difference of stress.
+/// Measured at 20 cells: 4.26, 5.90 and 8.21 transits at the last disk, 1.386 times later; at 80 cells
+/// 5.02, 7.20 and 9.77, 1.435 times later.
+fn friction_orders_arrivals(cells: (&str, &str), ratio: f64) {
+    let chain = |scene: &str, choice: &[(&str, &str)]| {
+        Chain::until_start(scene, &[&[cells, ("contact", "traction")], choice].concat(), 16.0)
+    };
+    let glued = chain("glued", &[]);
+    let [sliding, frictionless] = ["0.5", "0"].map(|friction| chain("zigzag", &[("friction", friction)]));
+    for disk in 3..=5 {
+        let times = [&glued, &sliding, &frictionless].map(|chain| chain.start(disk));
+        assert!(times[0] < times[1] && times[1] < times[2], "disk {disk}: {times:?}");
+    }
+    let later = sliding.start(5) / glued.start(5);
+    println!("last disk {later:.3} times later where contacts slide");
+    assert!(later >= ratio, "{later}");
+}
+
+#[test]
+fn friction_orders_arrivals_on_a_coarse_grid() {
+    friction_orders_arrivals(COARSE, 1.3);
+}
+
+#[test]
+#[ignore = "slow: minutes at the paper's resolution"]
+fn friction_orders_arrivals_at_the_papers_resolution() {
+    friction_orders_arrivals(PAPER, 1.3);
+}
+
+/// The paper: with the longitudinal speed held, raising Poisson's ratio from 0.22 to 0.48 slows the fringes by more than a factor of two;
+/// asked here: 2.2. Speed: one disk over the mean interval between centres, from the second disk on. Measured: 2.43 at 80 cells, 2.11 at 20.
+fn poissons_ratio_slows_fringes(cells: (&str, &str), ratio: f64) {
+    let interval = |nu: &str, transits: f64| {
+        Chain::until_arrival("collinear", &[cells, ("contact", "traction"), ("nu", nu)], transits).interval()
+    };
+    let slower = interval("0.48", 22.0) / interval("0.22", 9.0);
+    println!("fringes {slower:.3} times slower at 0.48 than at 0.22");
+    assert!(slower >= ratio, "{slower}");
+}
+
+#[test]
+fn poissons_ratio_slows_fringes_on_a_coarse_grid() {
+    poissons_ratio_slows_fringes(COARSE, 2.0);
+}
+
+#[test]
+#[ignore = "slow: minutes at the paper's resolution"]
+fn poissons_ratio_slows_fringes_at_the_papers_resolution() {
+    poissons_ratio_slows_fringes(PAPER, 2.2);
+}
+
+/// At 3 us (3.06 transits) the energy of the disks is the striker's work by the paper's rule, and less rather than more; the kinematic
+/// rule gains. Measured at 80 cells: -0.45 % and +1.74 %; at 20 cells: -1.9 % and +1.5 %.
+fn the_papers_rule_balances_energy(cells: (&str, &str), tolerance: f64) {
+    let energy = |contact: &str| Chain::run("collinear", &[cells, ("contact", contact)], 3.0623).energy;
+    let [traction, kinematic] = ["traction", "kinematic"].map(energy);
+    assert!((-tolerance..=0.0).contains(&traction), "traction {traction}");
+    assert!(kinematic > 0.01, "kinematic {kinematic}");
+}
+
+#[test]
+fn the_papers_rule_balances_energy_on_a_coarse_grid() {
+    the_papers_rule_balances_energy(COARSE, 0.03);
+}
+
+#[test]
+#[ignore = "slow: a minute at the paper's resolution"]
+fn the_papers_rule_balances_energy_at_its_resolution() {
+    the_papers_rule_balances_energy(PAPER, 0.005);
+}
+
+/// A 3D plate of the experiment's thickness and plane stress by the paper's rule: arrivals within 2 % of each other, with the same cells.
+/// By the gap rule they differ: the gap at first touch, a part of a cell, counts for transits at this speed, and the plate's rounded
+/// edge of blocks makes it another one (at 32 cells the second disk sees the wave at 4.5 in the plate, at 3.6 in plane stress).
+fn plate_and_plane_stress_agree(cells: (&str, &str), disks: usize) {
+    let choice = [cells, ("contact", "traction"), ("dimension", "plane-stress")];
+    let plane = Chain::until_arrival("collinear", &choice, 9.5);
+    let plate = Chain::run("plate", &choice[..2], 1.03 * plane.arrival(disks));
+    for disk in 1..=disks {
+        let ratio = plate.arrival(disk) / plane.arrival(disk);
+        println!("disk {disk}: plate over plane stress {ratio:.4}");
+        assert!((ratio - 1.0).abs() < 0.02, "disk {disk}: {ratio}");
+    }
+}
+
+#[test]
+fn plate_and_plane_stress_agree_on_a_coarse_grid() {
+    plate_and_plane_stress_agree(("cells_per_diameter", "32"), 2);
+}
+
+#[test]
+#[ignore = "slow: minutes with 64 cells a diameter"]
+fn plate_and_plane_stress_agree_on_a_finer_grid() {
+    plate_and_plane_stress_agree(("cells_per_diameter", "64"), 4);
 }

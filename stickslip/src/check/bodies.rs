@@ -2,7 +2,7 @@
 
 use super::lattice;
 use super::table::short;
-use crate::geometry::{Bounds, Shape};
+use crate::geometry::{self, Bounds, Shape, Site};
 use crate::scene::{Problem, Scene};
 use rayon::prelude::*;
 
@@ -24,6 +24,8 @@ pub(super) struct Extent {
     pub mass: f64,
     /// Holds all particles with their width [m].
     pub bounds: Bounds,
+    /// Holds all particles' centres [m].
+    pub centers: Bounds,
 }
 
 /// Each body's extent, in the order of the scene.
@@ -61,19 +63,22 @@ fn measure_body(scene: &Scene, i: usize) -> Result<Extent, Problem> {
             help: Some("put the corner space.domain.min near the bodies: the grid starts there".into()),
         });
     }
-    let mut extent = Extent { particles: 0, mass: 0.0, bounds: Bounds::EMPTY };
-    for position in lattice.sites_inside(&body.shape).into_iter().flatten() {
+    let mut extent = Extent { particles: 0, mass: 0.0, bounds: Bounds::EMPTY, centers: Bounds::EMPTY };
+    let density = scene.materials[body.material].density;
+    let all =
+        geometry::sites(&body.shape, &lattice, body.particles).expect("other shapes are refused before");
+    for Site { position, volume, half_width } in all {
         extent.particles += 1;
-        extent.bounds = extent.bounds.united(&Bounds { min: position, max: position });
+        extent.mass += volume * density;
+        extent.centers = extent.centers.united(&Bounds { min: position, max: position });
+        let reach = |sign: f64| {
+            std::array::from_fn(|k| position[k] + if k < lattice.dimension { sign * half_width } else { 0.0 })
+        };
+        extent.bounds = extent.bounds.united(&Bounds { min: reach(-1.0), max: reach(1.0) });
     }
     if extent.particles == 0 {
         return Err(no_particles(scene, i, &bounds));
     }
-    extent.mass = extent.particles as f64 * lattice.volume() * scene.materials[body.material].density;
-    let half: [f64; 3] =
-        std::array::from_fn(|k| if k < lattice.dimension { 0.5 * lattice.spacing } else { 0.0 });
-    extent.bounds.min = std::array::from_fn(|k| extent.bounds.min[k] - half[k]);
-    extent.bounds.max = std::array::from_fn(|k| extent.bounds.max[k] + half[k]);
     Ok(extent)
 }
 
@@ -121,15 +126,15 @@ pub(super) fn smallest_extent(shape: &Shape, dimension: usize) -> f64 {
 pub(super) fn check_domain(scene: &Scene, extents: &[Extent]) -> Result<(), Problem> {
     let Some(domain) = &scene.domain else { return Ok(()) };
     let lattice = lattice(scene);
-    let half = (0.5 - ROUND_OFF) * lattice.spacing;
     for (i, extent) in extents.iter().enumerate() {
         for k in 0..lattice.dimension {
             let sides = [
-                (domain.min[k] - extent.bounds.min[k], "below its lower", domain.min[k]),
-                (extent.bounds.max[k] - domain.max[k], "above its upper", domain.max[k]),
+                (extent.bounds.min[k], extent.centers.min[k], domain.min[k], -1.0, "below its lower"),
+                (extent.bounds.max[k], extent.centers.max[k], domain.max[k], 1.0, "above its upper"),
             ];
-            for (beyond, side, at) in sides {
-                if beyond > half {
+            for (reach, center, at, outward, side) in sides {
+                if outward * (center - at) > -ROUND_OFF * lattice.spacing {
+                    let beyond = outward * (reach - at);
                     let axis = ["x", "y", "z"][k];
                     return Err(Problem {
                         key: format!("bodies[{i}].shape"),

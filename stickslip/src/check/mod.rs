@@ -59,7 +59,7 @@ fn axes(scene: &Scene) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::Shape;
+    use crate::geometry::{Arrangement, Shape};
     use crate::material::{Isotropic, Material, NeoHookean};
     use crate::scene::*;
 
@@ -71,7 +71,7 @@ mod tests {
 
     pub fn free(name: &str, material: usize, shape: Shape) -> Body {
         let motion = Motion::Free { velocity: [0.0; 3], spin: [0.0; 3] };
-        Body { name: name.into(), material, shape, motion }
+        Body { name: name.into(), material, shape, particles: Arrangement::Lattice, motion }
     }
 
     /// Bodies of two materials, the second ten times stiffer and denser, in unbounded space without gravity.

@@ -1,7 +1,7 @@
 //! Shapes that are none: no radius, corners the wrong way round, only of three dimensions in the plane, without bounds.
 
 use super::axes;
-use crate::geometry::Shape;
+use crate::geometry::{Arrangement, FITTED_SHAPES, Shape, fits};
 use crate::scene::{Problem, Scene};
 
 pub(super) fn check(scene: &Scene) -> Result<(), Problem> {
@@ -14,6 +14,14 @@ pub(super) fn check(scene: &Scene) -> Result<(), Problem> {
                 found: format!("`{}` is unbounded", body.name),
                 allowed: "a shape of finite size".into(),
                 help: Some("cut it with a box: an intersection of the box and the half-space".into()),
+            });
+        }
+        if body.particles == Arrangement::Fitted && !fits(&body.shape, axes(scene)) {
+            return Err(Problem {
+                key: format!("bodies[{i}].particles"),
+                found: format!("particles fitted to the shape of `{}`", body.name),
+                allowed: FITTED_SHAPES.into(),
+                help: Some("particles = \"lattice\" fills every shape".into()),
             });
         }
     }

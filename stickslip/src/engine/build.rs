@@ -9,7 +9,7 @@ use crate::boundary::{Boundary, Wall};
 use crate::check;
 use crate::contact::{Rules, Tally};
 use crate::door::Simulation;
-use crate::geometry::{Filling, fill};
+use crate::geometry::{Filling, Site, fill};
 use crate::grid::{Cover, Field, Lattice};
 use crate::scene::{self, BasisKind, Dimension, Face, Motion, Precision, Problem, Scene};
 use crate::tensor::{Matrix, Real, Symmetric, Vector, cross};
@@ -46,8 +46,8 @@ impl<T: Real, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let mut bodies = Vec::new();
         let mut rigid = Vec::new();
         for body in &scene.bodies {
-            let filling = fill(&body.shape, &sites).expect("a checked shape is bounded");
-            let center = mean(&filling.positions);
+            let filling = fill(&body.shape, &sites, body.particles).expect("a checked shape can be filled");
+            let center = filling.center();
             let motion = prescribed(body, center);
             bodies.push(Body {
                 name: body.name.clone(),
@@ -105,18 +105,18 @@ fn particles<T: Real, const D: usize>(
     filling: &Filling,
     velocity: impl Fn([f64; 3]) -> [f64; 3],
 ) -> Vec<Particle<T, D>> {
-    let mass = filling.volume * scene.materials[body.material].density;
-    let particle = |(number, &x): (usize, &[f64; 3])| Particle {
-        position: Vector::of(x),
-        velocity: Vector::of(velocity(x)),
-        mass: T::of(mass),
-        volume: T::of(filling.volume),
-        half_width: T::of(filling.half_width),
+    let density = scene.materials[body.material].density;
+    let particle = |(number, &site): (usize, &Site)| Particle {
+        position: Vector::of(site.position),
+        velocity: Vector::of(velocity(site.position)),
+        mass: T::of(site.volume * density),
+        volume: T::of(site.volume),
+        half_width: T::of(site.half_width),
         deformation: Matrix::IDENTITY,
         stress: Symmetric::ZERO,
         number: number as u32,
     };
-    filling.positions.iter().enumerate().map(particle).collect()
+    filling.sites.iter().enumerate().map(particle).collect()
 }
 
 /// The domain's faces that do something.
@@ -132,9 +132,4 @@ fn walls<const D: usize>(scene: &Scene) -> Vec<Wall> {
         }
     }
     walls
-}
-
-fn mean(positions: &[[f64; 3]]) -> [f64; 3] {
-    let sum = positions.iter().fold([0.0; 3], |sum: [f64; 3], x| std::array::from_fn(|i| sum[i] + x[i]));
-    sum.map(|x| x / positions.len() as f64)
 }

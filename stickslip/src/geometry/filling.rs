@@ -1,7 +1,9 @@
 //! Filling a shape with particles.
 
+use super::fitted::fit;
 use super::inside::Probe;
 use super::{Bounds, Shape};
+use serde::Serialize;
 
 /// Ties nearer to a border than this share of the spacing are round-off.
 const ROUND_OFF: f64 = 1e-7;
@@ -19,15 +21,62 @@ pub struct Lattice {
     pub dimension: usize,
 }
 
+/// How particles are laid out in a shape.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Arrangement {
+    /// On the lattice of space; curved surfaces become stairs.
+    #[default]
+    Lattice,
+    /// In rings, shells or boxes that follow the shape's own surface; the volume is exact.
+    Fitted,
+}
+
+/// Where a particle starts, and how large.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Site {
+    /// Centre [m]; in the plane z is zero.
+    pub position: [f64; 3],
+    /// Volume [m^3], in the plane area [m^2].
+    pub volume: f64,
+    /// Half the side of the cube, in the plane the square, of that volume [m].
+    pub half_width: f64,
+}
+
 /// The particles of one shape.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Filling {
-    /// Centres [m], ordered by x, then y, then z; in the plane z is zero.
-    pub positions: Vec<[f64; 3]>,
-    /// Volume of each particle [m^3], in the plane area [m^2].
-    pub volume: f64,
-    /// Half the side of each particle [m].
-    pub half_width: f64,
+    /// In an order of space: on the lattice by x, then y, then z.
+    pub sites: Vec<Site>,
+}
+
+impl Site {
+    /// A site with the half-width of its volume.
+    pub(super) fn of_volume(position: [f64; 3], volume: f64, dimension: usize) -> Self {
+        let side = if dimension == 2 { volume.sqrt() } else { libm::cbrt(volume) };
+        Site { position, volume, half_width: 0.5 * side }
+    }
+}
+
+impl Filling {
+    /// Volume of all particles [m^3], in the plane area [m^2].
+    pub fn volume(&self) -> f64 {
+        self.sites.iter().map(|site| site.volume).sum()
+    }
+
+    /// Centre of volume [m].
+    pub fn center(&self) -> [f64; 3] {
+        let volume = self.volume();
+        let add = |sum: [f64; 3], site: &Site| {
+            std::array::from_fn(|k| sum[k] + site.position[k] * (site.volume / volume))
+        };
+        self.sites.iter().fold([0.0; 3], add)
+    }
+}
+
+/// The least number of equal parts of a length, area or volume of which none is larger than `most`, but for round-off.
+pub(super) fn parts(whole: f64, most: f64) -> usize {
+    (whole / most - ROUND_OFF).ceil().max(1.0) as usize
 }
 
 impl Lattice {
@@ -45,7 +94,7 @@ impl Lattice {
         self.spacing.powi(self.dimension as i32)
     }
 
-    /// The sites that [`fill`] gives particles, one after the other [m]; `None` for a shape without bounds.
+    /// The sites inside a shape, one after the other [m]; `None` for a shape without bounds.
     pub fn sites_inside<'a>(&self, shape: &'a Shape) -> Option<impl Iterator<Item = [f64; 3]> + use<'a>> {
         let bounds = shape.bounds(self.dimension)?;
         let (margin, dimension) = (ROUND_OFF * self.spacing, self.dimension);
@@ -77,14 +126,30 @@ impl Lattice {
     }
 }
 
-/// Particles on every site of the lattice that lies inside the shape; `None` for a shape without bounds.
+/// The particles of a shape; `None` for a shape without bounds, and for one that cannot be fitted.
 ///
-/// Each particle stands for a cube of the lattice, so the volume of all particles differs from the shape's by the stairs
-/// along its surface, and agrees with it exactly for a box on the lattice. A site on the border but for round-off counts
-/// as [`Shape::contains`] says of a point exactly on it.
-pub fn fill(shape: &Shape, lattice: &Lattice) -> Option<Filling> {
-    let positions = lattice.sites_inside(shape)?.collect();
-    Some(Filling { positions, volume: lattice.volume(), half_width: 0.5 * lattice.spacing })
+/// On the lattice every site inside is a particle. Each stands for a cube of the lattice, so the volume of all particles
+/// differs from the shape's by the stairs along its surface, and agrees with it exactly for a box on the lattice. A site
+/// on the border but for round-off counts as [`Shape::contains`] says of a point exactly on it.
+///
+/// Fitted particles are at most the lattice's spacing apart, and their volumes add up to the shape's.
+pub fn fill(shape: &Shape, lattice: &Lattice, arrangement: Arrangement) -> Option<Filling> {
+    Some(Filling { sites: sites(shape, lattice, arrangement)?.collect() })
+}
+
+/// The particles that [`fill`] gives a shape, one after the other.
+pub fn sites<'a>(
+    shape: &'a Shape,
+    lattice: &Lattice,
+    arrangement: Arrangement,
+) -> Option<Box<dyn Iterator<Item = Site> + 'a>> {
+    Some(match arrangement {
+        Arrangement::Lattice => {
+            let (volume, half_width) = (lattice.volume(), 0.5 * lattice.spacing);
+            Box::new(lattice.sites_inside(shape)?.map(move |position| Site { position, volume, half_width }))
+        }
+        Arrangement::Fitted => Box::new(fit(shape, lattice.spacing, lattice.dimension)?.into_iter()),
+    })
 }
 
 #[cfg(test)]
@@ -96,8 +161,12 @@ mod tests {
 
     const UNIT: Lattice = Lattice { origin: [0.0; 3], spacing: 1.0, dimension: 3 };
 
+    fn on_lattice(shape: &Shape, lattice: &Lattice) -> Option<Filling> {
+        fill(shape, lattice, Arrangement::Lattice)
+    }
+
     fn count(shape: &Shape, lattice: &Lattice) -> usize {
-        fill(shape, lattice).expect("bounded").positions.len()
+        on_lattice(shape, lattice).expect("bounded").sites.len()
     }
 
     proptest! {
@@ -137,11 +206,12 @@ mod tests {
         ) {
             let lattice = Lattice { origin: [0.03, -0.07, 0.11], spacing: 0.3, dimension };
             for shape in [a.clone(), Shape::Difference(vec![a, b])] {
-                let Some(filling) = fill(&shape, &lattice) else { continue };
+                let Some(filling) = on_lattice(&shape, &lattice) else { continue };
                 let everywhere = crate::geometry::Bounds { min: [-6.0; 3], max: [6.0; 3] };
                 let expected: Vec<_> =
                     lattice.sites_around(&everywhere).filter(|&site| shape.contains(site, dimension)).collect();
-                prop_assert_eq!(filling.positions, expected);
+                let positions: Vec<_> = filling.sites.iter().map(|site| site.position).collect();
+                prop_assert_eq!(positions, expected);
             }
         }
 
@@ -152,9 +222,9 @@ mod tests {
         ) {
             let lattice = Lattice { origin: [0.0; 3], spacing: 0.25, dimension: 3 };
             let pair = vec![whole.clone(), cutter];
-            let Some(all) = fill(&whole, &lattice) else { return Ok(()) };
+            let Some(all) = on_lattice(&whole, &lattice) else { return Ok(()) };
             let parts = count(&Shape::Difference(pair.clone()), &lattice) + count(&Shape::Intersection(pair), &lattice);
-            prop_assert_eq!(parts, all.positions.len());
+            prop_assert_eq!(parts, all.sites.len());
         }
     }
 
@@ -173,8 +243,8 @@ mod tests {
             };
             let exact = shape.volume(3).expect("closed form");
             for (spacing, tolerance) in [(0.1, 0.02), (0.05, 0.01), (0.025, 0.005)] {
-                let filling = fill(&shape, &Lattice { spacing, ..UNIT }).expect("bounded");
-                let error = filling.positions.len() as f64 * filling.volume / exact - 1.0;
+                let filling = on_lattice(&shape, &Lattice { spacing, ..UNIT }).expect("bounded");
+                let error = filling.volume() / exact - 1.0;
                 assert!(error.abs() < tolerance, "{shape:?} at {spacing}: {error}");
             }
         }
@@ -186,14 +256,16 @@ mod tests {
         let spacing = 0.1 / 3.0;
         let center = [0.5 * spacing; 3];
         let ball = Shape::Ball { center, radius: 5.0 * spacing };
-        let filling = fill(&ball, &Lattice { spacing, ..UNIT }).expect("bounded");
-        let sum =
-            filling.positions.iter().fold([0.0; 3], |s, p| std::array::from_fn(|k| s[k] + p[k] - center[k]));
+        let filling = on_lattice(&ball, &Lattice { spacing, ..UNIT }).expect("bounded");
+        let sum = filling
+            .sites
+            .iter()
+            .fold([0.0; 3], |s, site| std::array::from_fn(|k| s[k] + site.position[k] - center[k]));
         assert!(sum.iter().all(|s| s.abs() < 1e-12), "{sum:?}");
         // And what is left around it takes exactly the other sites.
         let around = Shape::Box { min: [-6.0 * spacing; 3], max: [7.0 * spacing; 3] };
         let left = count(&Shape::Difference(vec![around, ball]), &Lattice { spacing, ..UNIT });
-        assert_eq!(left + filling.positions.len(), 13 * 13 * 13);
+        assert_eq!(left + filling.sites.len(), 13 * 13 * 13);
     }
 
     #[test]
@@ -210,6 +282,6 @@ mod tests {
 
     #[test]
     fn a_half_space_cannot_be_filled() {
-        assert_eq!(fill(&Shape::HalfSpace { point: [0.0; 3], normal: [1.0, 0.0, 0.0] }, &UNIT), None);
+        assert_eq!(on_lattice(&Shape::HalfSpace { point: [0.0; 3], normal: [1.0, 0.0, 0.0] }, &UNIT), None);
     }
 }

@@ -6,14 +6,18 @@
 mod bounds;
 mod distance;
 mod filling;
+mod fitted;
 mod inside;
 mod polygon;
+mod rings;
 mod rotation;
 mod round;
+mod shells;
 mod volume;
 
 pub use bounds::Bounds;
-pub use filling::{Filling, Lattice, fill};
+pub use filling::{Arrangement, Filling, Lattice, Site, fill, sites};
+pub use fitted::{FITTED_SHAPES, fits};
 pub use round::RoundPart;
 
 use serde::Serialize;

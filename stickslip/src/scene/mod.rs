@@ -27,7 +27,7 @@ pub use problem::Problem;
 pub use schema::schema;
 pub use source::Source;
 
-use crate::geometry::Shape;
+use crate::geometry::{Arrangement, Shape};
 use crate::material::{Material, Thickness};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -220,6 +220,8 @@ pub struct Body {
     pub material: usize,
     /// Where it is at the start.
     pub shape: Shape,
+    /// How its particles are laid out.
+    pub particles: Arrangement,
     /// How it moves.
     pub motion: Motion,
 }

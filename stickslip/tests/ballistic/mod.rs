@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use stickslip::door::{
     BodyState, ContactState, GridSnapshot, Ledger, ParticleSnapshot, Simulation, StepError,
 };
-use stickslip::geometry::Shape;
+use stickslip::geometry::{Arrangement, Shape};
 use stickslip::material::SHELF;
 use stickslip::scene::*;
 
@@ -203,6 +203,7 @@ pub fn scene() -> Scene {
         name: name.into(),
         material: 0,
         shape: Shape::Ball { center: [0.0; 3], radius: 1.0 },
+        particles: Arrangement::Lattice,
         motion: Motion::Free { velocity: [2.0, 0.0, 0.0], spin: [0.0; 3] },
     };
     Scene {

@@ -1,6 +1,7 @@
 //! The paper's scenes with disks, run for some transits of a longitudinal wave through a disk.
 
 use std::path::Path;
+use stickslip::door::{ParticleSnapshot, Simulation};
 use stickslip::engine;
 use stickslip::scene::{self, Parameter, Scene};
 
@@ -11,40 +12,181 @@ pub struct Chain {
     pub momentum: f64,
     /// Energy of the disks less the striker's work, over that work [-].
     pub energy: f64,
+    /// When the stress difference at the centre of each disk, from the striker on, first is above 0.3 rho c_L V [transits].
+    pub arrivals: Vec<Option<f64>>,
+    /// When each disk's centre of mass first is faster than 0.05 V [transits].
+    pub starts: Vec<Option<f64>>,
+}
+
+/// Stress difference that counts as arrived [rho c_L V]: that of the reference with sharp contact.
+const THRESHOLD: f64 = 0.3;
+
+/// Speed of a disk that counts as moving [V].
+const MOVING: f64 = 0.05;
+
+/// Transits between looks at the centres.
+const LOOK: f64 = 0.01;
+
+/// When a run ends: a time [transits], or when it has shown enough.
+type Until = (f64, fn(&Chain) -> bool);
+
+/// Numbers that a scene of disks names.
+struct Setting {
+    transit: f64,
+    cell: f64,
+    /// Stress difference that counts as arrived [Pa].
+    threshold: f64,
+    /// Speed that counts as moving [m/s].
+    moving: f64,
+    /// Bodies of the disks with their first centres, in the plane.
+    disks: Vec<(usize, [f64; 2])>,
 }
 
 impl Chain {
     /// Runs a scene with overrides, written as `stickslip run --set` takes them, to a time [transits].
-    pub fn run(name: &str, overrides: &[(&str, &str)], cells: (&str, &str), transits: f64) -> Chain {
-        let overrides: Vec<_> = overrides.iter().copied().chain([cells]).collect();
-        let scene = load(name, &overrides);
-        let chain = Chain::of(&scene, transits * number(&scene, "transit"));
-        println!("{name} {overrides:?}: {chain:.4?}");
+    pub fn run(name: &str, overrides: &[(&str, &str)], transits: f64) -> Chain {
+        Chain::stopped(name, overrides, (transits, |_| false))
+    }
+
+    /// Runs a scene until the wave has arrived at every disk, at most to a time [transits].
+    pub fn until_arrival(name: &str, overrides: &[(&str, &str)], transits: f64) -> Chain {
+        Chain::stopped(name, overrides, (transits, |chain| chain.arrivals.iter().all(Option::is_some)))
+    }
+
+    /// Runs a scene until every disk moves, at most to a time [transits].
+    pub fn until_start(name: &str, overrides: &[(&str, &str)], transits: f64) -> Chain {
+        Chain::stopped(name, overrides, (transits, |chain| chain.starts.iter().all(Option::is_some)))
+    }
+
+    fn stopped(name: &str, overrides: &[(&str, &str)], until: Until) -> Chain {
+        let scene = load(name, overrides);
+        let chain = Chain::of(&scene, until);
+        println!(
+            "{name} {overrides:?}: energy {:+.4}, momentum {:.1e}, arrivals {:.3?}, starts {:.3?}",
+            chain.energy, chain.momentum, chain.arrivals, chain.starts
+        );
         chain
     }
 
-    fn of(scene: &Scene, end: f64) -> Chain {
+    fn of(scene: &Scene, (transits, enough): Until) -> Chain {
         let mut simulation = engine::build(scene).unwrap_or_else(|error| panic!("{error:?}"));
-        let deformable = |body: usize| scene.bodies[body].name.starts_with("disk");
-        let mut impulse = [0.0; 2];
-        let mut pushed = 0.0_f64;
+        let setting = Setting::of(scene, &*simulation);
+        let end = transits * setting.transit;
+        let disks = setting.disks.len();
+        let mut chain =
+            Chain { momentum: 0.0, energy: 0.0, arrivals: vec![None; disks], starts: vec![None; disks] };
+        let (mut impulse, mut pushed) = ([0.0; 2], 0.0_f64);
+        let (mut stresses, mut speeds) = (First::new(disks), First::new(disks));
         simulation.take_contacts();
-        while simulation.time() < end * (1.0 - 1e-12) {
+        while simulation.time() < end * (1.0 - 1e-12) && !enough(&chain) {
             let start = simulation.time();
             simulation.step(end - start).unwrap_or_else(|error| panic!("{error}"));
             let dt = simulation.time() - start;
             for contact in simulation.take_contacts() {
-                let (a, b) = (contact.body_a, contact.body_b);
-                if deformable(a) != deformable(b) {
-                    let sign = if deformable(a) { -dt } else { dt };
+                let deformable = [contact.body_a, contact.body_b].map(|body| setting.is_disk(body));
+                if deformable[0] != deformable[1] {
+                    let sign = if deformable[0] { -dt } else { dt };
                     (0..2).for_each(|i| impulse[i] += sign * contact.force[i]);
                     pushed = pushed.max(impulse[0].abs());
                 }
             }
+            let now = simulation.time() / setting.transit;
+            if now - stresses.time >= LOOK {
+                stresses.look(now, setting.differences(&simulation.snapshot()), setting.threshold);
+                speeds.look(now, setting.speeds(&*simulation), setting.moving);
+                (chain.arrivals, chain.starts) = (stresses.found.clone(), speeds.found.clone());
+            }
         }
         let ledger = simulation.ledger();
         let missing = (0..2).map(|i| (ledger.momentum[i] - impulse[i]).abs()).fold(0.0, f64::max);
-        Chain { momentum: missing / pushed, energy: ledger.total / ledger.external_work }
+        (chain.momentum, chain.energy) = (missing / pushed, ledger.total / ledger.external_work);
+        chain
+    }
+
+    /// Arrival at a disk, counted from the striker and from 1 [transits].
+    pub fn arrival(&self, disk: usize) -> f64 {
+        self.arrivals[disk - 1].unwrap_or_else(|| panic!("nothing arrived at disk {disk}: {self:?}"))
+    }
+
+    /// When a disk starts, counted from the striker and from 1 [transits].
+    pub fn start(&self, disk: usize) -> f64 {
+        self.starts[disk - 1].unwrap_or_else(|| panic!("disk {disk} did not move: {self:?}"))
+    }
+
+    /// Mean time from centre to centre, from the second disk on [transits].
+    pub fn interval(&self) -> f64 {
+        let last = self.arrivals.len();
+        (self.arrival(last) - self.arrival(2)) / (last - 2) as f64
+    }
+}
+
+/// When each of some values first is above a threshold.
+struct First {
+    found: Vec<Option<f64>>,
+    time: f64,
+    values: Vec<f64>,
+}
+
+impl First {
+    fn new(count: usize) -> Self {
+        First { found: vec![None; count], time: 0.0, values: vec![0.0; count] }
+    }
+
+    fn look(&mut self, now: f64, values: Vec<f64>, threshold: f64) {
+        for ((found, before), after) in self.found.iter_mut().zip(&self.values).zip(&values) {
+            if found.is_none() && *after >= threshold {
+                let share = (threshold - before) / (after - before);
+                *found = Some(self.time + share * (now - self.time));
+            }
+        }
+        (self.time, self.values) = (now, values);
+    }
+}
+
+impl Setting {
+    fn of(scene: &Scene, simulation: &dyn Simulation) -> Setting {
+        let number = |name: &str| match scene.parameters[name] {
+            Parameter::Number(value) => value,
+            Parameter::Text(_) => panic!("{name} is a number"),
+        };
+        let disks = (scene.bodies.iter().zip(simulation.bodies()).enumerate())
+            .filter(|(_, (body, _))| body.name.starts_with("disk"))
+            .map(|(i, (_, state))| (i, [state.position[0], state.position[1]]));
+        Setting {
+            transit: number("transit"),
+            cell: number("cell"),
+            moving: MOVING * number("speed"),
+            threshold: THRESHOLD * number("density") * number("c_L") * number("speed"),
+            disks: disks.collect(),
+        }
+    }
+
+    fn is_disk(&self, body: usize) -> bool {
+        self.disks.iter().any(|&(disk, _)| disk == body)
+    }
+
+    /// Speed of each disk's centre of mass [m/s].
+    fn speeds(&self, simulation: &dyn Simulation) -> Vec<f64> {
+        let bodies = simulation.bodies();
+        self.disks.iter().map(|&(disk, _)| bodies[disk].velocity[0].hypot(bodies[disk].velocity[1])).collect()
+    }
+
+    /// sigma_1 - sigma_2 of the mean stress within a cell and a half of each disk's centre [Pa].
+    fn differences(&self, snapshot: &ParticleSnapshot) -> Vec<f64> {
+        let mut sums = vec![[0.0; 4]; self.disks.len()];
+        for (p, x) in snapshot.position.iter().enumerate() {
+            let Some(i) = self.disks.iter().position(|&(disk, _)| disk == snapshot.body[p] as usize) else {
+                continue;
+            };
+            let center = self.disks[i].1;
+            if (x[0] - center[0]).hypot(x[1] - center[1]) < 1.5 * self.cell {
+                let s = snapshot.stress[p];
+                for (sum, value) in sums[i].iter_mut().zip([s[0], s[1], s[3], 1.0]) {
+                    *sum += value;
+                }
+            }
+        }
+        sums.iter().map(|[xx, yy, xy, n]| (xx - yy).hypot(2.0 * xy) / n).collect()
     }
 }
 
@@ -54,11 +196,4 @@ fn load(name: &str, overrides: &[(&str, &str)]) -> Scene {
     let overrides: Vec<_> =
         overrides.iter().map(|(key, value)| (key.to_string(), value.to_string())).collect();
     scene::load(&path, &overrides).unwrap_or_else(|error| panic!("{error}")).scene
-}
-
-fn number(scene: &Scene, name: &str) -> f64 {
-    match scene.parameters[name] {
-        Parameter::Number(value) => value,
-        Parameter::Text(_) => panic!("{name} is a number"),
-    }
 }

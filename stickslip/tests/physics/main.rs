@@ -5,6 +5,7 @@
 mod trial;
 
 mod body_at_rest;
+mod brazilian_disk;
 mod colliding_disks;
 mod empty_space;
 mod failing_steps;

@@ -4,8 +4,9 @@ use super::Context;
 use super::quantity::Velocity;
 use super::read::table;
 use super::shape::Shape;
-use super::text::Text;
+use super::text::{Choice, Text, Word};
 use super::vector::{Spin, Vector};
+use crate::geometry::Arrangement;
 use crate::scene::error::Fault;
 use crate::scene::{self, Expression, Motion, NamedMaterial};
 
@@ -18,6 +19,9 @@ table! {
         material: Text,
         /// Where it is at the start: shape.ball = { center = [0, 0, 1], radius = 1 }.
         shape: Shape,
+        /// How its particles are laid out.
+        #[schemars(extend("default" = "lattice"))]
+        particles: Option<Word<Arrangement>>,
         /// Velocity at the start [m/s]; by default none.
         velocity: Option<Vector<Velocity>>,
         /// Angular velocity about its centre of mass at the start [rad/s]; in the plane one number. By default none.
@@ -35,6 +39,17 @@ table! {
         /// Angular velocity about its centre of mass [rad/s]; in the plane one number. By default none.
         spin: Option<Spin>,
     }
+}
+
+impl Choice for Arrangement {
+    const WORDS: &'static [(&'static str, Self, &'static str)] = &[
+        ("lattice", Arrangement::Lattice, "On the lattice of space; curved surfaces become stairs."),
+        (
+            "fitted",
+            Arrangement::Fitted,
+            "In rings, shells or boxes that follow the surface, with exact volume: balls, boxes, cylinders, halves of round ones.",
+        ),
+    ];
 }
 
 /// The bodies in the order of the file.
@@ -61,6 +76,10 @@ pub fn resolve(
             name,
             material: names.iter().position(|name| *name == material).expect("name_of found it in names"),
             shape: body.shape.resolve(context)?,
+            particles: body
+                .particles
+                .as_ref()
+                .map_or(Ok(Arrangement::Lattice), |word| word.value(context))?,
             motion: body.motion(context)?,
         });
     }
