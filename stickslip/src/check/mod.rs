@@ -102,7 +102,6 @@ mod tests {
                 grid: None,
                 fringes: None,
                 measurements: Measurements::default(),
-                fringes: None,
             },
             references: vec![],
         }

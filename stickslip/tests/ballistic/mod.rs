@@ -232,7 +232,6 @@ pub fn scene() -> Scene {
             grid: Some(0.5),
             fringes: None,
             measurements: Measurements::default(),
-            fringes: None,
         },
         references: vec![Reference {
             body: "sphere".into(),
