@@ -59,13 +59,17 @@ def requests(driver):
     """Addresses that the page asked for, itself apart."""
     events = [json.loads(entry["message"])["message"] for entry in driver.get_log("performance")]
     sent = [event["params"]["request"]["url"] for event in events if event["method"] == "Network.requestWillBeSent"]
-    return [address for address in sent if not address.startswith(("data:", "file:", "chrome:"))]
+    return [address for address in sent if not address.startswith(("data:", "file:"))]
 
 
 def main(page, screenshot=None):
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
         driver = browser(profile)
         try:
+            # What the browser's own first tab says is no word of the page's.
+            driver.get("about:blank")
+            for log in ["browser", "performance"]:
+                driver.get_log(log)
             driver.get(pathlib.Path(page).resolve().as_uri())
             found = driver.execute_script(FIND)
             links = driver.find_elements("css selector", "nav a")

@@ -121,8 +121,8 @@ impl Rule {
     /// Its name in tables.
     pub fn short(self) -> &'static str {
         match self {
-            Rule::Kinematic => "kinematic (before the paper)",
-            Rule::Traction => "traction (the paper's)",
+            Rule::Kinematic => "kinematic (older)",
+            Rule::Traction => "traction (paper)",
             Rule::Gap => "gap (default)",
         }
     }

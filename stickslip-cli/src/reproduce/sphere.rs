@@ -40,7 +40,8 @@ impl Sphere {
     pub fn case(&self) -> Case {
         let cells = self.cells.to_string();
         let label = format!("{}-R{cells}", self.rule.word());
-        let settings = [("contact", self.rule.word()), ("cells_per_radius", &cells)];
+        let settings =
+            [("contact", self.rule.word()), ("cells_per_radius", &cells), ("outputs.particles", "0.5 s")];
         Case::new(self.scene, &label, &settings)
     }
 
@@ -107,10 +108,10 @@ pub fn table(caption: &str, spheres: &[Sphere], runs: &Runs) -> Result<Table, Fa
         Column::text("contact rule"),
         Column::number("cells"),
         Column::number("x [m]"),
-        Column::number("rigid x [m]"),
+        Column::number("rigid [m]"),
         Column::number("difference"),
         Column::number("v [m/s]"),
-        Column::number("rigid v [m/s]"),
+        Column::number("rigid [m/s]"),
         Column::number("difference"),
         Column::number("energy error"),
     ];

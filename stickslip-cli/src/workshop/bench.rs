@@ -135,7 +135,7 @@ mod tests {
     #[test]
     fn the_longest_comes_first_and_gets_its_share_of_threads() {
         let bench = Bench::with_memory(needs(&[1.0, 6.0, 1.0], 0.0), 8, 1.0);
-        let taken = [(); 3].map(|()| bench.take().map(|(need, threads)| (need.job, threads)));
+        let taken = [(); 2].map(|()| bench.take().map(|(need, threads)| (need.job, threads)));
         assert_eq!(taken[0], Some((1, 6)));
         assert_eq!(
             taken[1].map(|(_, threads)| threads),
