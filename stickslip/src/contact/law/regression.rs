@@ -128,11 +128,10 @@ fn gap<T: Real, const D: usize>(points: &[Point<T, D>], normal: Vector<T, D>) ->
 /// Solves a symmetric positive definite system of `n` equations by elimination.
 fn solve(mut matrix: [[f64; 4]; 4], mut right: [f64; 4], n: usize) -> [f64; 4] {
     for i in 0..n {
+        let pivot = matrix[i];
         for j in i + 1..n {
-            let factor = matrix[j][i] / matrix[i][i];
-            for k in i..n {
-                matrix[j][k] -= factor * matrix[i][k];
-            }
+            let factor = matrix[j][i] / pivot[i];
+            matrix[j].iter_mut().zip(pivot).for_each(|(entry, above)| *entry -= factor * above);
             right[j] -= factor * right[i];
         }
     }
