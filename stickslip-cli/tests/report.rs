@@ -71,7 +71,7 @@ fn every_figure_of_the_paper_is_seen_in_a_browser() {
         );
     }
     let text = found["text"].as_str().unwrap();
-    for word in ["traction", "gap", "2.097", "Poisson", "How this was made"] {
+    for word in ["traction", "surface", "2.097", "Poisson", "How this was made"] {
         assert!(text.contains(word), "no word on {word}");
     }
     assert_eq!(found["warnings"], 0, "no run failed");
@@ -83,7 +83,7 @@ fn finished_runs_stand_and_failures_are_told() {
     let part = ["reproduce", "--sketch", "--only", "backspin", "--out", "paper"];
     workplace.succeed(&part);
     let wall_time = || {
-        let record = std::fs::read(workplace.path("paper/runs/backspin-gap-R2/run.json")).unwrap();
+        let record = std::fs::read(workplace.path("paper/runs/backspin-surface-R2/run.json")).unwrap();
         serde_json::from_slice::<Value>(&record).unwrap()["performance"]["wall_time"].clone()
     };
     let first = wall_time();
@@ -91,12 +91,12 @@ fn finished_runs_stand_and_failures_are_told() {
     assert_eq!((again.code, wall_time()), (Some(0), first), "{}", again.stderr);
 
     // What is no folder of results cannot be written to: that run fails, the report says so, and the other stands.
-    std::fs::remove_dir_all(workplace.path("paper/runs/backspin-gap-R2")).unwrap();
-    std::fs::create_dir(workplace.path("paper/runs/backspin-gap-R2")).unwrap();
-    workplace.write("paper/runs/backspin-gap-R2/thesis.tex", "years of work");
+    std::fs::remove_dir_all(workplace.path("paper/runs/backspin-surface-R2")).unwrap();
+    std::fs::create_dir(workplace.path("paper/runs/backspin-surface-R2")).unwrap();
+    workplace.write("paper/runs/backspin-surface-R2/thesis.tex", "years of work");
     let failed = workplace.run(&part);
     assert_eq!(failed.code, Some(1), "{}", failed.stderr);
-    assert!(failed.stderr.contains("backspin-gap-R2"), "{}", failed.stderr);
+    assert!(failed.stderr.contains("backspin-surface-R2"), "{}", failed.stderr);
     let report = std::fs::read_to_string(workplace.path("paper/report.html")).unwrap();
     assert!(report.contains("class=\"warning\"") && report.contains("thesis.tex"));
 }

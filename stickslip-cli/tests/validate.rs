@@ -8,13 +8,13 @@ use stickslip::Workplace;
 #[test]
 fn a_page_says_what_each_law_reaches_and_the_scenes_can_be_run() {
     let workplace = Workplace::new();
-    let said = workplace.succeed(&["validate", "m4", "--law", "gap", "--law", "traction", "--out", "seen"]);
+    let said = workplace.succeed(&["validate", "m4", "--law", "surface", "--law", "traction", "--out", "seen"]);
     assert!(said.contains("M4 First contact") && said.contains("seen/index.html"), "{said}");
     let html = fs::read_to_string(workplace.path("seen/index.html")).unwrap();
     for part in [
         "<title>Contact laws against known answers</title>",
         "<section id=\"m4-first-contact\">",
-        "gap *",
+        "surface *",
         "traction",
         "<a class=\"passed\" href=\"#m4-first-contact\">4 of 4</a>",
         "<a class=\"failed\" href=\"#m4-first-contact\">0 of 4</a>",
@@ -22,7 +22,7 @@ fn a_page_says_what_each_law_reaches_and_the_scenes_can_be_run() {
     ] {
         assert!(html.contains(part), "{part} is missing in {html}");
     }
-    let scene = "seen/scenes/M4/gap/8/2_per_side_meeting_0.25.toml";
+    let scene = "seen/scenes/M4/surface/8/2_per_side_meeting_0.25.toml";
     workplace.succeed(&["check", scene]);
 }
 

@@ -55,7 +55,7 @@ pub enum Rule {
     /// The paper's of 2001.
     Traction,
     /// Stickslip's default.
-    Gap,
+    Surface,
 }
 
 /// What came of the runs.
@@ -107,14 +107,14 @@ impl Case {
 
 impl Rule {
     /// The two that everything is run with, the paper's first.
-    pub const BOTH: [Rule; 2] = [Rule::Traction, Rule::Gap];
+    pub const BOTH: [Rule; 2] = [Rule::Traction, Rule::Surface];
 
     /// Its word in scenes.
     pub fn word(self) -> &'static str {
         match self {
             Rule::Kinematic => "kinematic",
             Rule::Traction => "traction",
-            Rule::Gap => "gap",
+            Rule::Surface => "surface",
         }
     }
 
@@ -123,7 +123,7 @@ impl Rule {
         match self {
             Rule::Kinematic => "kinematic (older)",
             Rule::Traction => "traction (paper)",
-            Rule::Gap => "gap (default)",
+            Rule::Surface => "surface (default)",
         }
     }
 
@@ -132,7 +132,7 @@ impl Rule {
         match self {
             Rule::Kinematic => "the rule before the paper's (kinematic)",
             Rule::Traction => "the paper's rule (traction)",
-            Rule::Gap => "Stickslip's default (gap)",
+            Rule::Surface => "Stickslip's default (surface)",
         }
     }
 }

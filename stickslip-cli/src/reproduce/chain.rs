@@ -10,7 +10,7 @@ use stickslip::scene::Fringes;
 pub fn case(scene: PaperScene, rule: Rule, cells: usize, more: &[(&str, &str)]) -> Case {
     let normal = match rule {
         Rule::Kinematic | Rule::Traction => "own",
-        Rule::Gap => "common",
+        Rule::Surface => "common",
     };
     let (label, cells) = (format!("{}-n{cells}", rule.word()), cells.to_string());
     let settings = [

@@ -70,7 +70,7 @@ pub fn reproduce(studies: &[&dyn Study], level: Level, workshop: &Workshop) -> R
         i { "An Improved Contact Algorithm for the Material Point Method and Application to Stress Propagation in Granular Material" }
         ", CMES 2(4), 509-522, run again with its own numbers. Each is run with two contact rules: "
         b { "the paper's rule" } " (" code { "traction" } "), which holds bodies together while the traction between them is compressive, and "
-        b { "Stickslip's default" } " (" code { "gap" } "), which also asks whether their surfaces touch."
+        b { "Stickslip's default" } " (" code { "surface" } "), which pushes where their exact surfaces touch."
     });
     for failure in runs.failures() {
         page = page.warning(html! { strong { "Failed: " } (failure.name) ": " (failure.error) });
