@@ -1,4 +1,4 @@
-//! The law that scenes get which name none, held to the targets that it reaches.
+//! The law that scenes get which name none, and glue, held to the targets that they reach.
 //!
 //! # Source
 //! The benchmarks themselves: each states its source, its target and why it is that.
@@ -12,8 +12,8 @@ use stickslip_validation::{BENCHMARKS, Benchmark, Entry, Suite, Tier, Verdict, l
 fn run(name: &str) -> Entry {
     let benchmarks: Vec<&'static Benchmark> =
         BENCHMARKS.iter().filter(|benchmark| benchmark.name == name).collect();
-    let default = laws().into_iter().filter(|law| law.default).collect();
-    let suite = Suite { benchmarks, laws: default, tier: Tier::Quick, threads: 1 };
+    let kept = laws().into_iter().filter(|law| law.default || law.word == "glued").collect();
+    let suite = Suite { benchmarks, laws: kept, tier: Tier::Quick, threads: 1 };
     let mut report = suite.run(&mut |_| {});
     report.entries.swap_remove(0)
 }
@@ -88,4 +88,9 @@ fn a_block_with_corners_slides_along_the_grid() {
 #[test]
 fn a_rigid_floor_is_the_limit_of_a_stiff_one() {
     holds("rigid", &["restitution, rigid over stiff", "largest force, rigid over stiff"]);
+}
+
+#[test]
+fn a_body_cut_in_two_and_glued_is_the_body() {
+    holds("identity", &["difference of position", "difference of velocity"]);
 }

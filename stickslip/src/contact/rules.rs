@@ -83,6 +83,11 @@ impl<T: Real> Rules<T> {
         pairs.filter_map(|pair| self.first.get(&pair)).min().copied().unwrap_or(self.rules.len() - 1)
     }
 
+    /// Whether a law holds for any pair that there may be.
+    pub fn uses(&self, law: ContactLaw) -> bool {
+        self.rules.iter().any(|rule| rule.law == law)
+    }
+
     /// A rule by its number.
     pub fn rule(&self, number: usize) -> &Rule<T> {
         &self.rules[number]

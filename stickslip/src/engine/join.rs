@@ -16,6 +16,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// A particle takes what changes at a node after interpolation, v - v^0. With v^0 of the part alone it would be drawn toward the
     /// velocity of the whole in each step, which damps; as one body the parts' particles would not be.
     pub(super) fn join(&mut self, survey: &Survey<T, D>) {
+        if !self.rules.uses(ContactLaw::Glued) {
+            return;
+        }
         for site in &survey.sites {
             let mut groups: Vec<usize> = site.sides.clone().collect();
             for encounter in &survey.encounters[site.encounters.clone()] {
