@@ -6,12 +6,9 @@ use stickslip::observe::{ContactRow, EnergyRow, Frame, Results};
 use stickslip::polariscope::{self, Bench, Stage, Window};
 use stickslip::scene::Fringes;
 
-/// The paper's disks as it ran them: touching at the start, one particle a cell, each rule with its own normals.
+/// The paper's disks: touching at the start, one particle a cell; surfaces that follow the disks and one normal for each pair, unless
+/// `more` says otherwise.
 pub fn case(scene: PaperScene, rule: Rule, cells: usize, more: &[(&str, &str)]) -> Case {
-    let normal = match rule {
-        Rule::Kinematic | Rule::Traction => "own",
-        Rule::Surface => "common",
-    };
     let (label, cells) = (format!("{}-n{cells}", rule.word()), cells.to_string());
     let settings = [
         ("cells_per_diameter", cells.as_str()),
@@ -24,7 +21,7 @@ pub fn case(scene: PaperScene, rule: Rule, cells: usize, more: &[(&str, &str)]) 
         ("fringe", FRINGE),
     ];
     // Glued disks have no rule between them; that at the frame stays as it is.
-    let rule = [("contact", rule.word()), ("normal", normal)];
+    let rule = [("contact", rule.word())];
     Case::new(scene, &label, &[&settings[..], &rule, more].concat())
 }
 
@@ -95,7 +92,7 @@ impl<'a> Chain<'a> {
         self.results.body_names().iter().filter(|name| name.starts_with("disk")).collect()
     }
 
-    /// Speed of the fringes from the first disk's centre to the last one's over that of longitudinal waves [-]; `None` if they have
+    /// Speed of the fringes from the second disk's centre to the last one's over that of longitudinal waves [-]; `None` if they have
     /// not come to all.
     ///
     /// # Errors
@@ -104,8 +101,8 @@ impl<'a> Chain<'a> {
         let Some(arrivals) = self.arrivals()?.into_iter().collect::<Option<Vec<f64>>>() else {
             return Ok(None);
         };
-        let ([first, ..], [.., last]) = (&arrivals[..], &arrivals[..]) else { return Ok(None) };
-        Ok(Some((arrivals.len() - 1) as f64 / (last - first)))
+        let [_, second, .., last] = &arrivals[..] else { return Ok(None) };
+        Ok(Some((arrivals.len() - 2) as f64 / (last - second)))
     }
 
     /// Takes pictures of the fringes.

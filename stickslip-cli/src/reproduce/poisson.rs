@@ -33,7 +33,7 @@ impl Study for Poisson {
         columns.extend(
             Rule::BOTH.map(|rule| Column::number(format!("fringes / longitudinal, {}", rule.short()))),
         );
-        let caption = "Speed of the fringes from the first disk's centre to the last one's, over the longitudinal speed.";
+        let caption = "Speed of the fringes from the second disk's centre to the last one's, over the longitudinal speed.";
         let mut table = Table::new(caption, columns);
         let mut curves: Vec<Curve> = Rule::BOTH
             .into_iter()
