@@ -8,7 +8,8 @@ use stickslip::Workplace;
 #[test]
 fn a_page_says_what_each_law_reaches_and_the_scenes_can_be_run() {
     let workplace = Workplace::new();
-    let said = workplace.succeed(&["validate", "m4", "--law", "surface", "--law", "traction", "--out", "seen"]);
+    let said =
+        workplace.succeed(&["validate", "m4", "--law", "surface", "--law", "traction", "--out", "seen"]);
     assert!(said.contains("M4 First contact") && said.contains("seen/index.html"), "{said}");
     let html = fs::read_to_string(workplace.path("seen/index.html")).unwrap();
     for part in [

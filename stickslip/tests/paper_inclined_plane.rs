@@ -27,13 +27,13 @@
 //! | R/4   | traction | 0.820, 0.905   | x 0.80 to 0.92  | 0.859, 0.916   |           |
 //! | R/8   | traction | 0.948, 0.987   | x 0.93, v 0.96  | 0.924, 0.967   | x 0.91    |
 //! | R/12  | traction | 0.976, 1.001   | x nearer still  |                |           |
-//! | R/4   | default  | 0.952, 0.927   | x within 7 %    | 0.995, 0.986   |           |
-//! | R/8   | default  | 1.000, 0.990   | x within 3 %    | 0.999, 0.996   | x within 3 % |
+//! | R/4   | default  | 0.950, 0.926   | x within 7 %    | 1.004          |           |
+//! | R/8   | default  | 0.993, 0.987   | x within 3 %    | 1.001, 0.991   | x within 3 % |
 //!
 //! The older, kinematic rule gives 0.860, 0.950 at R/4 and 0.965, 1.010 at R/8 without slip, and 0.937, 0.980 at R/8 with it. Over the
-//! kinetic energy at the end, energy comes from nowhere by 3.4 % with the older rule at R/4, 1.1 % with the paper's, 0.02 % with the default.
+//! kinetic energy at the end, energy comes from nowhere by 3.4 % with the older rule at R/4, 1.1 % with the paper's; the default loses 1.0 % there.
 //!
-//! Room is left for where nodes lie under the sphere: shifted along the slope by quarters of a cell, the default at R/4 without slip gives
+//! Room is left for where nodes lie under the sphere: shifted along the slope by quarters of a cell, the law gap at R/4 without slip gives
 //! 0.952 to 0.958, shifted across it 0.930 to 0.952. Runs repeat bit for bit.
 
 mod paper_sphere;
@@ -54,7 +54,7 @@ fn the_default_rolls_on_coarse_cells() {
     assert!((roll.distance - 1.0).abs() < 0.07, "{roll:?}");
     assert!((roll.rolling - 1.0).abs() < 0.1, "{roll:?}");
     assert!((roll.height - 1.555).abs() < 0.1 * COARSE_CELL, "{roll:?}");
-    assert!(roll.gain.abs() < 0.005, "{roll:?}");
+    assert!((-0.015..0.002).contains(&roll.gain), "{roll:?}");
 }
 
 #[test]

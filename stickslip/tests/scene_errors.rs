@@ -83,7 +83,7 @@ fn keys() {
             (
                 "[[bodies]]",
                 "[bodies]",
-                "12:2: bodies: found a table; allowed: a list [...] of a table with the keys name, material, shape, velocity, spin, rigid; tables in a list have two brackets: [[bodies]]",
+                "12:2: bodies: found a table; allowed: a list [...] of a table with the keys name, material, shape, particles, velocity, spin, rigid; tables in a list have two brackets: [[bodies]]",
             ),
             (
                 "radius = \"0.4 m\"",
@@ -323,7 +323,7 @@ fn bodies_contact_and_references() {
             (
                 "contact = \"gap\"",
                 "contact = \"gapp\"",
-                "56:7: contact[0].law: found \"{contact}\", which is \"gapp\"; allowed: \"surface\", \"gap\", \"traction\", \"kinematic\", \"glued\" or \"none\"; did you mean `gap`?",
+                "56:7: contact[0].law: found \"{contact}\", which is \"gapp\"; allowed: \"surface\", \"gap\", \"separation\", \"regression\", \"traction\", \"kinematic\", \"glued\" or \"none\"; did you mean `gap`?",
             ),
             (
                 "law = \"{contact}\"",
@@ -628,7 +628,7 @@ fn measurements() {
     let cases = [
         ("time_unit = \"1 m\"", "outputs.time_unit: found \"1 m\"", "a time [s]"),
         ("time_unit = 0", "outputs.time_unit: found 0", "a time [s] above 0"),
-        ("samples = \"steps\"", "outputs.samples: found unknown name `steps`", "a time [s]"),
+        ("samples = \"steps\"", "outputs.samples: found unknown name `steps`", "a parameter"),
         ("probes = [{ name = \"p\", at = [0, 0] }]", "outputs.probes[0].at: found", "3 numbers"),
         (
             "probes = [{ name = \"p\", at = [0, 0, 0] }, { name = \"p\", at = [0, 0, 0] }]",

@@ -19,14 +19,16 @@ pub fn common_normal<T: Real, const D: usize>(
     let u = v - w;
     let approach = u.dot(n);
     let m = pair.reduced_mass();
-    let load = pair.load(m * approach.max(T::ZERO));
-    let bonded = pair.gap <= T::ZERO && -m * approach <= pair.rule.friction.pull(load);
-    if !bonded && !touching(approach, n) {
-        return Change::NONE;
-    }
+    let friction = &pair.rule.friction;
+    let (normal, load) = match (touching(approach, n), friction.borne(m * approach, pair)) {
+        (true, _) => (m * approach, pair.load(m * approach.max(T::ZERO))),
+        // Surfaces that adhere pull as they part.
+        (false, Some(bond)) if approach <= T::ZERO => bond,
+        _ => return Change::NONE,
+    };
     let slip = u - n * approach;
-    let tangential = slip * (m * pair.rule.friction.stopped(slip.norm(), load));
-    pair.exchange(-m * approach, -tangential, n)
+    let tangential = slip * (m * friction.stopped(slip.norm(), load));
+    pair.exchange(-normal, -tangential, n)
 }
 
 /// Each body by its own normal and its own decision, `touching(surface, approach [m/s], n)`, as the paper prints it,

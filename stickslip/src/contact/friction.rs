@@ -4,7 +4,7 @@
 //! mu(s)   = mu_k + (mu_s - mu_k) exp(-s / s_c)        velocity weakening; s_c = 0: mu_k as soon as they slip
 //! stick:    m* s <= mu_s J_n + c A dt
 //! slip:     J_t   = mu(s) J_n + c A dt + eta A dt s'   towards rest, s' = s - J_t / m*
-//! pull:     J_n  >= - a A dt
+//! pull:     J_n  >= - a A dt                           while the gap is below 1 % of a cell
 //! ```
 //! s, s': speed of slip before and after [m/s]; m*: reduced mass [kg]; J_n: push [N s]; A: contact area of the node [m^2].
 //! Coulomb's law is mu_s = mu_k and nothing else. Static and kinetic coefficients with an exponential between them are those of
@@ -13,6 +13,7 @@
 //! The tangential history of sticking nodes is the deformation of the bodies themselves: a node sticks until its load exceeds the
 //! bound, so partial slip (Cattaneo 1938, Mindlin 1949) needs no spring of its own.
 
+use super::Pair;
 use crate::scene::ContactRule;
 use crate::tensor::Real;
 
@@ -32,6 +33,9 @@ pub struct Friction<T> {
     /// eta: shear traction over speed of slip [Pa s/m].
     pub viscosity: T,
 }
+
+/// Gap over which surfaces that adhere hold each other [cells].
+const BOND: f64 = 0.01;
 
 /// How two surfaces are loaded at a node in one use of contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,9 +80,13 @@ impl<T: Real> Friction<T> {
         T::ONE - left.max(T::ZERO) / (slip * (load.mass + viscous))
     }
 
-    /// The largest pulling impulse that the surfaces bear before they part [N s].
-    pub fn pull(&self, load: Load<T>) -> T {
-        self.adhesion * load.exposure
+    /// The normal impulse that the surfaces bear where `wanted` keeps them together, and how they are loaded by it; `None` where they
+    /// part. Positive pushes [N s].
+    pub fn borne<const D: usize>(&self, wanted: T, pair: &Pair<T, D>) -> Option<(T, Load<T>)> {
+        let load = pair.load(wanted.max(T::ZERO));
+        let pull = if pair.gap <= T::of(BOND) { self.adhesion * load.exposure } else { T::ZERO };
+        let borne = wanted.max(-pull);
+        (wanted > T::ZERO || pull > T::ZERO).then_some((borne, load))
     }
 }
 
@@ -125,12 +133,11 @@ mod tests {
     }
 
     #[test]
-    fn cohesion_bears_shear_and_adhesion_bears_tension_without_a_push() {
-        let friction = Friction { cohesion: 10.0, adhesion: 20.0, ..Friction::default() };
+    fn cohesion_bears_shear_without_a_push() {
+        let friction = Friction { cohesion: 10.0, ..Friction::default() };
         let load = Load { push: 0.0, ..LOAD };
         assert_eq!(friction.stopped(0.5, load), 1.0);
         assert!((friction.stopped(2.0, load) - 0.25).abs() < 1e-15);
-        assert_eq!(friction.pull(load), 2.0);
     }
 
     /// J_t = eta A dt s' with s' = s - J_t/m: s' = s m/(m + eta A dt), however viscous.

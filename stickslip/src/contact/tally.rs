@@ -35,6 +35,9 @@ struct Touching {
     slip: f64,
 }
 
+/// Surfaces closer than this are part of the area over which bodies touch, pushing in this step or not: single nodes push by turns [cells].
+const CLOSE: f64 = 0.01;
+
 /// Impulses by pair since the last look, and works since the start.
 #[derive(Clone, Debug, Default)]
 pub struct Tally {
@@ -73,16 +76,20 @@ impl Tally {
         self.uses += 1;
         for impulse in impulses {
             let [on_a, on_b] = impulse.change.impulse.map(|j| j.space());
-            if on_a == [0.0; 3] && on_b == [0.0; 3] {
+            let pushes = on_a != [0.0; 3] || on_b != [0.0; 3];
+            if !pushes && impulse.gap > T::of(CLOSE) {
                 continue;
             }
             let sum = self.pairs.entry(impulse.bodies).or_default();
             sum.close(self.uses);
             let area = impulse.area.f64();
-            sum.last.nodes += 1;
             sum.last.area += area;
             sum.last.gap += area * (impulse.gap * lattice.cell).f64();
             sum.last.slip += area * impulse.slip.f64();
+            if !pushes {
+                continue;
+            }
+            sum.last.nodes += 1;
             let (place, tangential) =
                 (lattice.position(impulse.node).space(), impulse.change.tangential.space());
             let magnitude =
@@ -100,7 +107,9 @@ impl Tally {
             self.friction += impulse.friction.f64();
             self.work += impulse.work.f64();
         }
-        for (pair, sum) in self.pairs.iter().filter(|(_, sum)| sum.last_use == self.uses) {
+        for (pair, sum) in
+            self.pairs.iter().filter(|(_, sum)| sum.last_use == self.uses && sum.last.nodes > 0)
+        {
             let largest = self.largest.entry(*pair).or_default();
             *largest = largest.max(sum.last.area);
         }
@@ -126,6 +135,7 @@ impl Tally {
     fn means(&self, now: f64) -> Vec<ContactState> {
         let elapsed = now - self.since;
         (self.pairs.iter())
+            .filter(|(_, sum)| sum.magnitude > 0.0)
             .map(|(&[body_a, body_b], sum)| ContactState {
                 body_a,
                 body_b,

@@ -59,21 +59,16 @@ impl<T: Real, const D: usize> Law<T, D> for Surface {
         let closing = pair.gap.max(T::ZERO) * pair.step.cell_speed();
         let normal = |u: Vector<T, D>| m * (u.dot(n) - closing);
         let across = |u: Vector<T, D>| u - n * u.dot(n);
-        // What presses the pair together, if it does not part.
-        let pressed = |normal: T| {
-            let load = pair.load(normal.max(T::ZERO));
-            (normal > T::ZERO || pair.gap <= T::ZERO && -normal < friction.pull(load)).then_some(load)
-        };
         match pair.step.purpose {
             Use::Motion => {
-                let (normal, slip) = (normal(u), across(u));
-                let Some(load) = pressed(normal) else { return Change::NONE };
+                let slip = across(u);
+                let Some((normal, load)) = friction.borne(normal(u), pair) else { return Change::NONE };
                 pair.exchange(-normal, -slip * (m * friction.stopped(slip.norm(), load)), n)
             }
             Use::Strain => {
                 let [a, b] = pair.surfaces;
                 let ahead = u + (a.force * a.inverse_mass - b.force * b.inverse_mass) * pair.step.duration;
-                let Some(load) = pressed(normal(ahead)) else { return Change::NONE };
+                let Some((_, load)) = friction.borne(normal(ahead), pair) else { return Change::NONE };
                 let sticks = friction.stopped(across(ahead).norm(), load) == T::ONE;
                 let u_n = u.dot(n);
                 let tangential = if sticks { across(u) * m } else { Vector::ZERO };
