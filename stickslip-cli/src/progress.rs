@@ -100,7 +100,7 @@ impl Family {
 fn line(progress: &Progress) -> String {
     let rate = prefix(progress.particle_steps_per_second);
     format!(
-        "t = {:.4} of {} s, step {}, {:.1} {} particle-steps/s, {} left",
+        "t = {:.4e} of {:.4e} s, step {}, {:.1} {} particle-steps/s, {} left",
         progress.time,
         progress.end,
         progress.steps,

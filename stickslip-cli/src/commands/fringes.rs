@@ -16,11 +16,11 @@ pub struct FringeArguments {
     pub fringes: bool,
 
     /// The paper's s [Pa]: a circular polariscope shows cos((sigma_1 - sigma_2) / s).
-    #[arg(long, value_name = "S", value_parser = positive, requires = "fringes")]
+    #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = positive, requires = "fringes")]
     stress_parameter: Option<f64>,
 
     /// Stress-optic coefficient of the bodies [1/Pa], such as 4e-12; in a plane scene with --thickness.
-    #[arg(long, value_name = "C", value_parser = positive, requires = "fringes", conflicts_with = "stress_parameter")]
+    #[arg(long, value_name = "C", allow_negative_numbers = true, value_parser = positive, requires = "fringes", conflicts_with = "stress_parameter")]
     stress_optic_coefficient: Option<f64>,
 
     /// Thickness of the bodies of a plane scene [m].

@@ -87,6 +87,27 @@ impl<'a> Chain<'a> {
         Ok(self.disks().iter().map(first).collect())
     }
 
+    /// When two bodies, named in any order, first pressed on each other with a part of the striker's first force, rho c_L V times a disk's
+    /// radius, in transits.
+    ///
+    /// # Errors
+    /// The table cannot be read.
+    pub fn pressed(&self, pair: [&str; 2], part: f64) -> Result<Option<f64>, Failure> {
+        let parameters = &self.results.manifest().scene["parameters"];
+        let value = |name: &str| parameters[name].as_f64().unwrap_or(f64::NAN);
+        let force = part * value("density") * value("c_L") * value("speed") * 0.5 * value("diameter");
+        let rows = self.results.contacts_table().map_err(Failure::input)?;
+        let of_pair =
+            |row: &&ContactRow| [&row.body_a, &row.body_b] == pair || [&row.body_b, &row.body_a] == pair;
+        Ok(rows.iter().filter(of_pair).find(|row| row.normal >= force).map(|row| row.time / self.transit))
+    }
+
+    /// Names of the bodies of the frame but for the striker.
+    pub fn walls(&self) -> Vec<&str> {
+        let names = self.results.body_names().iter().map(String::as_str);
+        names.filter(|name| !name.starts_with("disk") && *name != "striker").collect()
+    }
+
     /// Names of the disks, from the striker on.
     fn disks(&self) -> Vec<&String> {
         self.results.body_names().iter().filter(|name| name.starts_with("disk")).collect()

@@ -86,8 +86,8 @@ impl Study for Convergence {
         };
         let mut section = Section::new("Convergence of the arrivals").text(
             "How long the wave takes from one disk of a row to the next, with the experiment's V/c = 0.00207. Disks touch in a point, and the \
-             wave waits until the contact has grown wide enough to carry it. The grid widens every contact to about a cell, so it carries the \
-             wave too early: that is why the paper's fringes run ahead, and finer cells help slowly.",
+             wave waits until the contact has grown wide enough to carry it. By the paper's rule the grid lets bodies touch within a cell, so every contact \
+             is too wide and carries the wave too early: that is one reason why the paper's fringes run ahead, and finer cells help slowly.",
         );
         if let Some(svg) = drawn(svg(&chart, [760, 420]))? {
             let figure = Figure::new(

@@ -55,7 +55,7 @@ table! {
         /// The bodies: [[bodies]].
         bodies: Vec<body::Body>,
         /// Rules for how bodies touch: [[contact]]. The first that matches a pair holds; a pair that none matches has the
-        /// gap law without friction.
+        /// surface law without friction.
         contact: Option<Vec<contact::Contact>>,
         /// What is written, and how often.
         outputs: Option<outputs::Outputs>,
