@@ -99,10 +99,13 @@ impl Family {
 
 fn line(progress: &Progress) -> String {
     let rate = prefix(progress.particle_steps_per_second);
+    // A wave crosses the paper's disks in a microsecond.
+    let time = match progress.end < 1e-2 {
+        true => format!("{:.3e} of {:.3e}", progress.time, progress.end),
+        false => format!("{:.4} of {}", progress.time, progress.end),
+    };
     format!(
-        "t = {:.4e} of {:.4e} s, step {}, {:.1} {} particle-steps/s, {} left",
-        progress.time,
-        progress.end,
+        "t = {time} s, step {}, {:.1} {} particle-steps/s, {} left",
         progress.steps,
         progress.particle_steps_per_second / rate.factor,
         rate.letter,
