@@ -1,6 +1,5 @@
 //! Whether the grid resolves contacts: the patch that Hertz predicts, in cells.
 
-use super::axes;
 use super::bodies::Extent;
 use super::hertz::{Hertz, Patch};
 use super::neighbours::pairs_within;
@@ -111,7 +110,7 @@ fn estimate(touch: &Touch, scene: &Scene) -> Option<ContactEstimate> {
     let materials =
         std::array::from_fn(|i| (!rigid[i]).then(|| scene.materials[bodies[i].material].law.elastic()));
     let modulus = Hertz::effective_modulus(materials, scene.dimension);
-    let hertz = Hertz { modulus, radius: touch.radius, dimension: axes(scene) };
+    let hertz = Hertz { modulus, radius: touch.radius, dimension: scene.dimension.axes() };
     let gravity = Vector(scene.gravity);
     // The one above rests on the other; gravity along the surface presses nothing, but for round-off.
     let along = touch.direction.dot(gravity);

@@ -1,6 +1,5 @@
 //! Probes that would ride with no material.
 
-use super::axes;
 use crate::scene::{Anchor, Motion, Problem, Scene};
 
 /// Each point of the material must start in its body, or within a cell of it.
@@ -13,14 +12,20 @@ pub(super) fn check(scene: &Scene) -> Result<(), Problem> {
             matches!(body.motion, Motion::Free { .. })
                 && probe.body.as_ref().is_none_or(|name| *name == body.name)
         };
-        let distances =
-            scene.bodies.iter().filter(holds).map(|body| body.shape.distance(probe.at, axes(scene)));
+        let distances = scene
+            .bodies
+            .iter()
+            .filter(holds)
+            .map(|body| body.shape.distance(probe.at, scene.dimension.axes()));
         let distance = distances.fold(f64::INFINITY, f64::min);
         if distance > scene.discretization.cell {
             let body = probe.body.as_ref().map_or("any body".to_string(), |name| format!("`{name}`"));
             return Err(Problem {
                 key: format!("outputs.probes[{i}].at"),
-                found: format!("{:?} m, {distance:.3e} m outside {body}", &probe.at[..axes(scene)]),
+                found: format!(
+                    "{:?} m, {distance:.3e} m outside {body}",
+                    &probe.at[..scene.dimension.axes()]
+                ),
                 allowed: "a point in the body, as the probe moves with its material".into(),
                 help: Some("a probe with fixed_in = \"space\" may wait where no material is".into()),
             });

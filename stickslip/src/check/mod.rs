@@ -47,13 +47,8 @@ pub fn lattice(scene: &Scene) -> Lattice {
     Lattice {
         origin: scene.domain.as_ref().map_or([0.0; 3], |domain| domain.min),
         spacing: scene.discretization.cell / scene.discretization.particles_per_side as f64,
-        dimension: axes(scene),
+        dimension: scene.dimension.axes(),
     }
-}
-
-/// 2 or 3.
-fn axes(scene: &Scene) -> usize {
-    scene.dimension.axes()
 }
 
 #[cfg(test)]

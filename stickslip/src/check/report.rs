@@ -3,7 +3,7 @@
 use super::bodies::{Extent, smallest_extent};
 use super::contact::{ContactEstimate, Verdict, estimates, starting_velocity};
 use super::table::short;
-use super::{axes, examine, lattice};
+use super::{examine, lattice};
 use crate::scene::{Body, Dimension, Motion, Precision, Problem, Scene};
 use crate::tensor::{Matrix, Vector};
 use serde::Serialize;
@@ -181,7 +181,7 @@ fn time_step(scene: &Scene, extents: &[Extent]) -> f64 {
 }
 
 fn memory(scene: &Scene, particles: usize) -> f64 {
-    let per_cell = (scene.discretization.particles_per_side as f64).powi(axes(scene) as i32);
+    let per_cell = (scene.discretization.particles_per_side as f64).powi(scene.dimension.axes() as i32);
     let nodes = NODES_PER_CELL * particles as f64 / per_cell;
     let doubles = PARTICLE_BYTES * particles as f64 + NODE_BYTES * nodes;
     match scene.precision {

@@ -1,6 +1,5 @@
 //! Numbers that do not fit each other: the grid, the domain, time, materials, motion out of the plane.
 
-use super::axes;
 use super::table::short;
 use crate::scene::{Dimension, Domain, Expression, Face, Motion, NamedMaterial, Problem, Scene};
 use crate::tensor::Matrix;
@@ -27,9 +26,9 @@ pub(super) fn check(scene: &Scene) -> Result<(), Problem> {
         check_material(&format!("materials.{}", material.name), material, scene.dimension)?;
     }
     if let Some(domain) = &scene.domain {
-        check_domain(domain, scene.discretization.cell, axes(scene))?;
+        check_domain(domain, scene.discretization.cell, scene.dimension.axes())?;
     }
-    if axes(scene) == 2 { check_plane(scene) } else { Ok(()) }
+    if scene.dimension.axes() == 2 { check_plane(scene) } else { Ok(()) }
 }
 
 fn problem(key: &str, found: String, allowed: &str) -> Problem {

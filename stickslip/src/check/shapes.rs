@@ -1,14 +1,13 @@
 //! Shapes that are none: no radius, corners the wrong way round, only of three dimensions in the plane, without bounds.
 
-use super::axes;
 use crate::geometry::{Arrangement, FITTED_SHAPES, Shape, fits};
 use crate::scene::{Problem, Scene};
 
 pub(super) fn check(scene: &Scene) -> Result<(), Problem> {
     for (i, body) in scene.bodies.iter().enumerate() {
         let key = format!("bodies[{i}].shape");
-        check_shape(&body.shape, &key, axes(scene))?;
-        if body.shape.bounds(axes(scene)).is_none() {
+        check_shape(&body.shape, &key, scene.dimension.axes())?;
+        if body.shape.bounds(scene.dimension.axes()).is_none() {
             return Err(Problem {
                 key,
                 found: format!("`{}` is unbounded", body.name),
@@ -16,7 +15,7 @@ pub(super) fn check(scene: &Scene) -> Result<(), Problem> {
                 help: Some("cut it with a box: an intersection of the box and the half-space".into()),
             });
         }
-        if body.particles == Arrangement::Fitted && !fits(&body.shape, axes(scene)) {
+        if body.particles == Arrangement::Fitted && !fits(&body.shape, scene.dimension.axes()) {
             return Err(Problem {
                 key: format!("bodies[{i}].particles"),
                 found: format!("particles fitted to the shape of `{}`", body.name),

@@ -1,6 +1,5 @@
 //! Where a ball of one body is nearest to another body.
 
-use super::axes;
 use super::bodies::Extent;
 use crate::geometry::{RoundPart, Shape};
 use crate::scene::{Body, Scene};
@@ -26,15 +25,16 @@ impl Touch {
     pub(super) fn of(scene: &Scene, extents: &[Extent], pair: [usize; 2]) -> Option<Touch> {
         let [first, second] = pair.map(|i| &scene.bodies[i]);
         let full = |part: &RoundPart| !part.hollow;
-        let balls = first.shape.round_parts(axes(scene)).into_iter().filter(full);
+        let balls = first.shape.round_parts(scene.dimension.axes()).into_iter().filter(full);
         let touches = balls.filter_map(|ball| {
-            let (gap, direction) = facing(&ball, first, second, axes(scene))?;
-            let opposite = opposite_ball(&second.shape, &ball, gap, direction, axes(scene));
+            let (gap, direction) = facing(&ball, first, second, scene.dimension.axes())?;
+            let opposite = opposite_ball(&second.shape, &ball, gap, direction, scene.dimension.axes());
             let curvature = opposite.map_or(0.0, |part| if part.hollow { -1.0 } else { 1.0 } / part.radius);
             let radius = 1.0 / (1.0 / ball.radius + curvature);
             let whole = |part: RoundPart, body: &Body| {
                 let ball = Shape::Ball { center: part.center, radius: part.radius };
-                ball.volume(axes(scene)).map(|volume| volume * scene.materials[body.material].density)
+                ball.volume(scene.dimension.axes())
+                    .map(|volume| volume * scene.materials[body.material].density)
             };
             let other_ball = opposite.filter(full).and_then(|part| whole(part, second));
             let masses = [whole(ball, first)?, other_ball.unwrap_or(extents[pair[1]].mass)];

@@ -63,7 +63,7 @@ pub struct Encounter<T, const D: usize> {
     /// The two sides, in [`Survey::sides`].
     pub sides: [usize; 2],
     /// Number of the pair's rule.
-    pub(super) rule: usize,
+    pub rule: usize,
     pub(super) facing: Facing<T, D>,
     /// The node's share of the contact area [m^2], in the plane per depth [m].
     pub(super) area: T,

@@ -23,7 +23,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             let mut groups: Vec<usize> = site.sides.clone().collect();
             for encounter in &survey.encounters[site.encounters.clone()] {
                 let bodies = encounter.sides.map(|side| survey.sides[side].body);
-                let glued = self.rules.rule(self.rules.number(bodies[0], bodies[1])).law == ContactLaw::Glued;
+                let glued = self.rules.rule(encounter.rule).law == ContactLaw::Glued;
                 if glued && bodies.iter().all(|&body| self.rigid[body].is_none()) {
                     let [a, b] = encounter.sides.map(|side| groups[side - site.sides.start]);
                     groups.iter_mut().filter(|group| **group == b).for_each(|group| *group = a);
