@@ -38,8 +38,10 @@ impl<const D: usize> Column<D> {
     pub const DEFORMATION: usize = 2 * D + 3;
     /// First of [`stress_entries`].
     pub const STRESS: usize = Self::DEFORMATION + deformation_entries(D).len();
+    /// First component of the position before anything moved, which no step writes to.
+    pub const START: usize = Self::STRESS + stress_entries(D);
     /// Number of columns.
-    pub const COUNT: usize = Self::STRESS + stress_entries(D);
+    pub const COUNT: usize = Self::START + D;
 }
 
 /// Particles of one body.
@@ -57,7 +59,7 @@ pub struct Particles<T, const D: usize> {
 const LINE: usize = 64;
 
 impl<T: Real, const D: usize> Particles<T, D> {
-    /// The particles `f(0)` to `f(count - 1)`.
+    /// The particles `f(0)` to `f(count - 1)`, before anything moves.
     pub fn from_fn(count: usize, f: impl Fn(usize) -> Particle<T, D>) -> Self {
         let lines = (count * size_of::<T>()).div_ceil(LINE) | 1;
         let stride = lines * LINE / size_of::<T>();
@@ -67,7 +69,11 @@ impl<T: Real, const D: usize> Particles<T, D> {
             numbers: vec![0; count],
         };
         for i in 0..count {
-            particles.set(i, &f(i));
+            let particle = f(i);
+            particles.set(i, &particle);
+            for k in 0..D {
+                particles.columns[(Column::<D>::START + k) * stride + i] = particle.position[k];
+            }
         }
         particles
     }
@@ -108,12 +114,6 @@ impl<T: Real, const D: usize> Particles<T, D> {
     /// All particles in the order of memory.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = Particle<T, D>> + '_ {
         (0..self.len()).map(|i| self.get(i))
-    }
-
-    /// Number of particle `i` in its body.
-    #[inline(always)]
-    pub fn number(&self, i: usize) -> u32 {
-        self.numbers[i]
     }
 
     /// The columns, to be read only.

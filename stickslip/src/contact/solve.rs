@@ -34,8 +34,11 @@ pub struct Impulse<T, const D: usize> {
     pub work: T,
 }
 
-/// Sweeps over the pairs of a node until no velocity changes by more than this fraction of the largest.
+/// Sweeps over the pairs of a node until no velocity changes by more than this fraction of the largest change that contact makes, or than
+/// round-off of the velocities themselves: bodies that fly fast and hardly touch would never come to rest otherwise.
 const TOLERANCE: f64 = 1e-14;
+/// Round-off of a velocity after a sweep, in units of its last place.
+const ROUND_OFF: f64 = 4.0;
 const MAX_SWEEPS: usize = 200;
 
 /// Impulses of a use of contact, part by part of the survey, and room for them that is kept from step to step.
@@ -159,7 +162,7 @@ impl<T: Real, const D: usize> Solve<'_, T, D> {
         }));
         let impulses = &mut impulses[first..];
         for _ in 0..MAX_SWEEPS {
-            let (mut largest, mut moved) = (T::ZERO, T::ZERO);
+            let (mut largest, mut moved, mut speed) = (T::ZERO, T::ZERO, T::ZERO);
             for (encounter, impulse) in encounters.iter().zip(&mut *impulses) {
                 let pair = part.pair(encounter, rules, step);
                 let places = encounter.sides.map(|side| side - site.sides.start);
@@ -174,6 +177,7 @@ impl<T: Real, const D: usize> Solve<'_, T, D> {
                     velocities[places[i]] = free[i] + new;
                     moved = moved.max((new - old[i]).norm());
                     largest = largest.max(new.norm());
+                    speed = speed.max(free[i].norm());
                     if inverse_mass == T::ZERO {
                         impulse.work += impulse.change.impulse[1 - i].dot(free[i]);
                     }
@@ -187,7 +191,10 @@ impl<T: Real, const D: usize> Solve<'_, T, D> {
                     _ => -impulse.change.tangential.dot(slip),
                 };
             }
-            if encounters.len() == 1 || moved <= T::of(TOLERANCE.max(T::EPSILON.f64() * 4.0)) * largest {
+            let round_off = T::EPSILON * T::of(ROUND_OFF);
+            if encounters.len() == 1
+                || moved <= (round_off.max(T::of(TOLERANCE)) * largest).max(round_off * speed)
+            {
                 break;
             }
         }

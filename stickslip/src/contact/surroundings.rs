@@ -8,7 +8,6 @@
 
 use super::{Near, Place};
 use crate::basis::{Basis, MAX_WIDTH};
-use crate::body::Body;
 use crate::boundary::Wall;
 use crate::grid::{Nodes, SIDE, next_of, node_at, nodes_per_block};
 use crate::lanes::{Laned, Lanes, MOST_LANES, Machine, Numbers, Work};
@@ -278,7 +277,6 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
         mut nodes: Nodes,
     ) {
         // No closure: the compiler may leave one of some size uninlined, and then its instructions are calls.
-        let body = &self.near.bodies[self.body];
         let mut position = Vector::<V, D>::ZERO;
         let half = load::<T, V, D>(columns, Column::<D>::HALF_WIDTH, index) * seen.per_cell;
         let mut shapes = [B::shape(V::ZERO, half); D];
@@ -316,11 +314,10 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
             }
         }
         let (mut arm, mut place) = (Vector::<V, D>::ZERO, Vector::<V, D>::ZERO);
-        let starts = starts(body, index);
         for i in 0..D {
             arm[i] = seen.offset[i] + seen.sign[i] * position[i] - seen.first[i];
-            // SAFETY: as many numbers as any machine has lanes.
-            place[i] = seen.offset[i] + seen.sign[i] * unsafe { V::load(starts[i].0.as_ptr()) };
+            let start: V = load(columns, Column::<D>::START + i, index);
+            place[i] = seen.offset[i] + seen.sign[i] * start;
         }
         for i in 0..D {
             for j in 0..D {
@@ -446,20 +443,6 @@ fn load<T: Real, V: Lanes<Real = T>, const D: usize>(
     }
 }
 
-/// Where particles were before the body moved, by component, and the first in the lanes beyond.
-#[inline(never)]
-fn starts<T: Real, const D: usize>(body: &Body<T, D>, index: &[u32]) -> [Numbers<T>; D] {
-    let mut starts = [Numbers([T::ZERO; MOST_LANES]); D];
-    for lane in 0..MOST_LANES {
-        let particle = index[if lane < index.len() { lane } else { 0 }] as usize;
-        let start = body.places[body.particles.number(particle) as usize];
-        for i in 0..D {
-            starts[i].0[lane] = start[i];
-        }
-    }
-    starts
-}
-
 /// Numbers that lie apart, and the first in the lanes beyond.
 ///
 /// # Safety
@@ -498,7 +481,7 @@ impl<T: Real> Rows<T> {
 mod tests {
     use super::*;
     use crate::basis::{Gimp, Linear};
-    use crate::body::Particle;
+    use crate::body::{Body, Particle};
     use crate::boundary::{Boundary, reflect};
     use crate::contact::{Rules, rules};
     use crate::geometry::{Shape, Whole};
@@ -511,6 +494,7 @@ mod tests {
     /// Particles strewn over a few cells before two mirrors, deformed and stressed.
     fn body<const D: usize>() -> Body<f64, D> {
         let random = |i: usize| (i as f64 * 0.754_877_666_2).fract();
+        let place = |i: usize, n: usize| Vector::from_fn(|k| 5.0 * random((k + n) * i + k));
         let particle = |i: usize| {
             let mut deformation = Matrix::IDENTITY;
             let mut stress = Symmetric::ZERO;
@@ -519,26 +503,30 @@ mod tests {
             }
             (0..stress_entries(D)).for_each(|k| stress.0[k] = random(17 * i + 5 * k) - 0.5);
             Particle {
-                position: Vector::from_fn(|k| 5.0 * random((k + 3) * i + k)),
+                position: place(i, 11),
                 velocity: Vector::ZERO,
                 mass: 1.0 + random(i),
                 volume: 0.5 + random(2 * i + 1),
                 half_width: 0.2 + 0.05 * random(3 * i),
                 deformation,
                 stress,
-                number: ((7 * i) % 300) as u32,
+                number: i as u32,
             }
         };
+        // Where they were at first, and where they are now.
+        let mut particles = Particles::from_fn(300, particle);
+        for i in 0..300 {
+            particles.set(i, &Particle { position: place(i, 3), ..particle(i) });
+        }
         Body {
             name: String::new(),
             material: Material::NeoHookean(NeoHookean {
                 elastic: Isotropic { bulk_modulus: 1.0, shear_modulus: 1.0 },
             }),
             density: 1.0,
-            particles: Particles::from_fn(300, particle),
+            particles,
             rigid: false,
             whole: Whole::new(&Shape::Ball { center: [0.0; 3], radius: 1.0 }, Vec::new(), D),
-            places: (0..300).map(|i| Vector::from_fn(|k| random((k + 11) * i))).collect(),
             thickness: Thickness::Moved,
         }
     }
@@ -563,7 +551,8 @@ mod tests {
                 x
             };
             let sign = |i: usize| if i < D && turned[i] == 1 { -1.0 } else { 1.0 };
-            for particle in near.bodies[0].particles.iter() {
+            let columns = near.bodies[0].particles.view();
+            for (index, particle) in near.bodies[0].particles.iter().enumerate() {
                 let stencil = Stencil::<f64, D, B>::new(&near.lattice, &particle);
                 let Some(offset) = offsets::<D>(B::WIDTH)
                     .find(|offset| (0..D).all(|i| stencil.base()[i] + offset[i] as i32 == image[i]))
@@ -578,7 +567,9 @@ mod tests {
                 let inverse = particle.deformation.inverse();
                 let inverse = Matrix::from_fn(|i, j| inverse.0[i][j] * sign(i) * sign(j));
                 let arm = seen(particle.position) - first;
-                let start = seen(near.bodies[0].places[particle.number as usize]);
+                let at = |k: usize| unsafe { *columns.at(Column::<D>::START + k, index) };
+                // SAFETY of `at`: nobody else uses the particles.
+                let start = seen(Vector::from_fn(at));
                 let mut numbers = Vec::new();
                 numbers
                     .extend((0..D).map(|i| start[i] - (0..D).map(|j| inverse.0[i][j] * arm[j]).sum::<f64>()));

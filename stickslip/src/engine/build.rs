@@ -75,7 +75,6 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 }),
                 rigid: motion.is_some(),
                 whole: Whole::new(&body.shape, mirrors::<D>(scene), D),
-                places: filling.sites.iter().map(|site| Vector::of(site.position)).collect(),
                 thickness: scene.dimension.thickness(),
             });
             rigid.push(motion);

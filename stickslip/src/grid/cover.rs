@@ -169,6 +169,8 @@ impl<const D: usize> Cover<D> {
             self.shared.extend(group.iter().map(|(_, slot)| slot));
             self.meetings.push(Meeting { block: block_of(group[0].0), start, end: self.shared.len() });
         }
+        // By first body: its particles stay in the cache from block to block.
+        self.meetings.sort_unstable_by_key(|meeting| self.shared[meeting.start]);
     }
 
     /// Places in the body's order where the particles of each cell of a tile begin, and where the last ends.
