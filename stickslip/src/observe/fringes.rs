@@ -219,6 +219,7 @@ impl Darkroom {
     /// Writes all frames as an animation; the run may have ended while the shutter was open.
     fn conclude(&mut self) -> Result<(), OutputError> {
         self.develop()?;
+        self.table.finish()?;
         if self.frames.is_empty() {
             return Ok(());
         }
