@@ -599,7 +599,7 @@ mod tests {
         let lattice = Lattice::new(Vector::ZERO, 1.0);
         let bodies = [body::<D>()];
         let mut cover = Cover::<D>::default();
-        cover.update((1, |_| 300), None, |_, particle| {
+        cover.update((1, |_| 300, B::WIDTH as i32 - 1), None, |_, particle| {
             let (position, half) = bodies[0].particles.place(particle);
             std::array::from_fn(|i| Number::max(B::reach(position[i], half), -9.0).floor() as i32)
         });

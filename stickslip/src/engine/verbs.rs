@@ -30,7 +30,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let (bodies, lattice) = (&self.bodies, &self.lattice);
         let left = (self.steps > 0).then_some(&self.left[..]);
         let count = |body: usize| bodies[body].particles.len();
-        let blocks = self.cover.update((bodies.len(), count), left, |body, particle| {
+        let blocks = self.cover.update((bodies.len(), count, B::WIDTH as i32 - 1), left, |body, particle| {
             let (position, half_width) = bodies[body].particles.place(particle);
             let x = lattice.cells(position);
             std::array::from_fn(|i| B::reach(x[i], half_width * lattice.per_cell).floor())

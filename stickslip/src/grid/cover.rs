@@ -17,7 +17,7 @@ pub struct Tile<const D: usize> {
     pub block: [i32; D],
     /// Its number among the body's tiles.
     pub number: usize,
-    /// Field slots of the blocks at `block` + {0, 1}^D, the last axis fastest.
+    /// Field slots of the blocks at `block` + {0, 1}^D, the last axis fastest; that of the home where particles do not reach so far.
     pub slots: [u32; 8],
 }
 
@@ -72,14 +72,14 @@ pub enum Blocks {
 }
 
 impl<const D: usize> Cover<D> {
-    /// Covers so many bodies of so many particles each and says whether their blocks are others than before; `base(body, particle)` is a particle's
+    /// Covers so many bodies of so many particles each, which reach so many nodes beyond their base nodes, and says whether their blocks are others than before; `base(body, particle)` is a particle's
     /// base node, which must be [`addressable`].
     ///
     /// `left` says which cells of each tile particles have left since the last time, from the lowest bit on; without it all particles
     /// are looked at.
     pub fn update(
         &mut self,
-        (bodies, count): (usize, impl Fn(usize) -> usize + Sync),
+        (bodies, count, reach): (usize, impl Fn(usize) -> usize + Sync, i32),
         left: Option<&[u64]>,
         base: impl Fn(usize, usize) -> [i32; D] + Sync,
     ) -> Blocks {
@@ -92,7 +92,7 @@ impl<const D: usize> Cover<D> {
                     let left = &left[first_tile[body]..first_tile[body + 1]];
                     holding.update(left, |particle| base(body, particle))
                 }
-                None => holding.start(count(body), |particle| base(body, particle)),
+                None => holding.start((count(body), reach), |particle| base(body, particle)),
             })
             .reduce(|| Blocks::Same, Blocks::max);
         if changed == Blocks::New {
@@ -119,7 +119,9 @@ impl<const D: usize> Cover<D> {
                 let block = block_of(home);
                 let mut slots = [0; 8];
                 for (corner, slot) in slots.iter_mut().enumerate().take(1 << D) {
-                    let key = key(corner_block(block, corner));
+                    // What is not reached is given nothing: the home block may stand for it.
+                    let reached = holding.reached[number] >> corner & 1 == 1;
+                    let key = key(if reached { corner_block(block, corner) } else { block });
                     let place =
                         holding.blocks.binary_search(&key).expect("a body holds every block its tiles reach");
                     *slot = (first + place) as u32;

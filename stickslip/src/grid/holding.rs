@@ -1,6 +1,6 @@
 //! The blocks of one body: its particles by tile and cell, kept up to date as they move.
 
-use super::{Blocks, Disjoint, SIDE, locate, nodes_per_block};
+use super::{Blocks, Disjoint, MOST_NODES, SIDE, locate, node_at, nodes_per_block};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -33,6 +33,16 @@ pub(super) fn corner_block<const D: usize>(block: [i32; D], corner: usize) -> [i
     std::array::from_fn(|i| block[i] + (corner >> (D - 1 - i) & 1) as i32)
 }
 
+/// Blocks at a block + {0, 1}^D, a bit each.
+pub(super) type Corners = u8;
+
+/// The blocks that the particles of a cell reach.
+fn corners_of<const D: usize>(cell: usize, reach: i32) -> Corners {
+    let place: [i32; D] = node_at([0; D], cell);
+    let reaches = |corner: usize| (0..D).all(|i| corner >> (D - 1 - i) & 1 == 0 || place[i] + reach >= SIDE);
+    (0..1 << D).filter(|&corner| reaches(corner)).fold(0, |corners, corner| corners | 1 << corner)
+}
+
 /// The blocks of one body.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Holding {
@@ -42,8 +52,12 @@ pub(super) struct Holding {
     pub cells: Vec<u32>,
     /// Home blocks with particles, sorted.
     pub homes: Vec<u64>,
+    /// Of each tile, which blocks at `home` + {0, 1}^D its particles reach, a bit each.
+    pub reached: Vec<Corners>,
     /// Blocks that the particles reach, sorted.
     pub blocks: Vec<u64>,
+    /// Nodes that a particle reaches beyond its base node, along each axis.
+    reach: i32,
     /// Particles that changed their cell since they were last sorted in memory.
     moved: usize,
     /// That number summed over steps: what disorder in memory has cost.
@@ -63,6 +77,7 @@ struct Next {
     order: Vec<u32>,
     cells: Vec<u32>,
     homes: Vec<u64>,
+    reached: Vec<Corners>,
     tiles: Vec<NextTile>,
 }
 
@@ -93,8 +108,12 @@ const GONE: u32 = u32::MAX;
 
 impl Holding {
     /// Looks at all particles.
-    pub fn start<const D: usize>(&mut self, count: usize, base: impl Fn(usize) -> [i32; D]) -> Blocks {
-        *self = Holding::default();
+    pub fn start<const D: usize>(
+        &mut self,
+        (count, reach): (usize, i32),
+        base: impl Fn(usize) -> [i32; D],
+    ) -> Blocks {
+        *self = Holding { reach, ..Holding::default() };
         self.movers.extend((0..count).map(|particle| mover(base(particle), particle as u32)));
         self.settle::<D>();
         self.moved = count;
@@ -149,11 +168,17 @@ impl Holding {
         // No two are equal, so their order does not depend on who sorts them.
         self.movers.par_sort_unstable();
         self.plan(n);
-        let Next { order, cells, homes, tiles } = &mut self.next;
+        let mut corners = [0; MOST_NODES];
+        for (cell, corners) in corners.iter_mut().enumerate().take(n) {
+            *corners = corners_of::<D>(cell, self.reach);
+        }
+        let Next { order, cells, homes, reached, tiles } = &mut self.next;
         let (old_order, old_cells, movers, gone) = (&self.order, &self.cells, &self.movers, &self.gone);
+        let old_reached = &self.reached;
         let places = Disjoint::new(order);
-        let filled = tiles.par_iter().zip(cells.par_chunks_exact_mut(n)).with_min_len(TILES);
-        filled.for_each(|(tile, cells)| {
+        let filled =
+            tiles.par_iter().zip(cells.par_chunks_exact_mut(n)).zip(&mut *reached).with_min_len(TILES);
+        filled.for_each(|((tile, cells), reached)| {
             let mut place = tile.start;
             let mut put = |particle: u32| {
                 // SAFETY: every place belongs to one tile.
@@ -162,7 +187,8 @@ impl Holding {
                 place
             };
             let starts = tile.old.map_or(&[][..], |old| &old_cells[old * n..=(old + 1) * n]);
-            if tile.movers.is_empty() && tile.old.is_some_and(|old| gone[old] == 0) {
+            if let Some(old) = tile.old.filter(|&old| tile.movers.is_empty() && gone[old] == 0) {
+                *reached = old_reached[old];
                 for (cell, &start) in cells.iter_mut().zip(starts) {
                     *cell = start - starts[0] + tile.start as u32;
                 }
@@ -173,7 +199,9 @@ impl Holding {
             }
             let mut arriving = &movers[tile.movers.clone()];
             let mut end = tile.start;
+            *reached = 0;
             for (cell, start) in cells.iter_mut().enumerate() {
+                let first = end;
                 *start = end as u32;
                 let here = arriving.iter().take_while(|mover| mover.cell as usize == cell).count();
                 let (new, rest) = arriving.split_at(here);
@@ -182,18 +210,23 @@ impl Holding {
                     .get(cell..cell + 2)
                     .map_or(&[][..], |ends| &old_order[ends[0] as usize..ends[1] as usize]);
                 merge(old, new, |particle| end = put(particle));
+                if end > first {
+                    *reached |= corners[cell];
+                }
             }
         });
-        let same = *homes == self.homes;
+        let same = *homes == self.homes && *reached == self.reached;
         std::mem::swap(&mut self.order, order);
         std::mem::swap(&mut self.cells, cells);
         std::mem::swap(&mut self.homes, homes);
+        std::mem::swap(&mut self.reached, reached);
         if same {
             return Blocks::Same;
         }
         self.blocks.clear();
-        for &home in &self.homes {
-            self.blocks.extend((0..1 << D).map(|corner| key(corner_block::<D>(block_of(home), corner))));
+        for (&home, &reached) in self.homes.iter().zip(&self.reached) {
+            let corners = (0..1 << D).filter(|&corner| reached >> corner & 1 == 1);
+            self.blocks.extend(corners.map(|corner| key(corner_block::<D>(block_of(home), corner))));
         }
         self.blocks.sort_unstable();
         self.blocks.dedup();
@@ -202,7 +235,7 @@ impl Holding {
 
     /// Lists the tiles that there will be, and makes room for them.
     fn plan(&mut self, n: usize) {
-        let Next { order, cells, homes, tiles } = &mut self.next;
+        let Next { order, cells, homes, reached, tiles } = &mut self.next;
         homes.clear();
         tiles.clear();
         let (mut tile, mut first, mut start) = (0, 0, 0);
@@ -224,6 +257,7 @@ impl Holding {
             }
         }
         order.resize(start, 0);
+        reached.resize(tiles.len(), 0);
         cells.resize(tiles.len() * n + 1, 0);
         cells[tiles.len() * n] = start as u32;
     }
@@ -290,7 +324,7 @@ mod tests {
         ) {
             let mut bases = start;
             let mut holding = Holding::default();
-            holding.start(bases.len(), |i| bases[i]);
+            holding.start((bases.len(), 1), |i| bases[i]);
             for jumps in jumps {
                 let mut left = vec![0; holding.homes.len()];
                 for (i, to) in jumps {
@@ -302,13 +336,20 @@ mod tests {
                         bases[i] = to;
                     }
                 }
-                let homes = holding.homes.clone();
+                let (homes, blocks_before) = (holding.homes.clone(), holding.blocks.clone());
                 let blocks = holding.update(&left, |i| bases[i]);
                 let (order, expected, cells) = sorted(&bases);
                 prop_assert_eq!(&holding.order, &order);
                 prop_assert_eq!(&holding.cells, &cells);
                 prop_assert_eq!(&holding.homes, &expected);
-                prop_assert_eq!(blocks == Blocks::Same, homes == holding.homes);
+                // Every block that a particle reaches, and no other.
+                let mut reached: Vec<u64> = (bases.iter())
+                    .flat_map(|&[x, y]| [[x, y], [x + 1, y], [x, y + 1], [x + 1, y + 1]].map(|node| key(locate(node).0)))
+                    .collect();
+                reached.sort_unstable();
+                reached.dedup();
+                prop_assert_eq!(&holding.blocks, &reached);
+                prop_assert!(blocks == Blocks::New || homes == holding.homes && blocks_before == holding.blocks);
             }
         }
     }

@@ -21,6 +21,9 @@ pub const fn nodes_per_block(dimension: usize) -> usize {
     (SIDE as usize).pow(dimension as u32)
 }
 
+/// Most nodes in a block.
+const MOST_NODES: usize = nodes_per_block(3);
+
 /// Nodes of a block, a bit each, the lowest first.
 pub type Nodes = u64;
 
