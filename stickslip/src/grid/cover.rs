@@ -1,7 +1,7 @@
 //! Which blocks a body's particles reach, and where bodies meet.
 //!
 //! A particle's *home* is the cell of its base node. Particles that share a home block form a tile; a tile writes to its own
-//! block and to the next one along each axis, since no basis reaches more than three nodes.
+//! block and to the next one along each axis, as far as its particles reach, since no basis reaches more than three nodes.
 
 use super::holding::{Holding, block_of, corner_block, key};
 use super::{locate, nodes_per_block};
