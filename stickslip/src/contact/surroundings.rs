@@ -321,7 +321,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
         }
         for i in 0..D {
             for j in 0..D {
-                place[i] = place[i] - inverse[i][j] * arm[j];
+                place[i] -= inverse[i][j] * arm[j];
             }
         }
 
