@@ -104,7 +104,8 @@ fn case(rule: Rule, level: Level, nu: &str) -> Case {
 
 fn cells(level: Level) -> usize {
     match level {
-        Level::Sketch | Level::Quick => 20,
+        Level::Sketch => 20,
+        Level::Quick => 40,
         Level::Full => 80,
     }
 }
