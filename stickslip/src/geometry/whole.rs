@@ -191,7 +191,10 @@ mod tests {
             }
         }
         let lying = cylinder([0.0; 3], [1.0, 0.0, 0.0]);
-        assert_eq!(Whole::new(&lying, vec![MIRROR], 3).level([0.5, 0.1, 0.0]), lying.level([0.5, 0.1, 0.0], 3));
+        assert_eq!(
+            Whole::new(&lying, vec![MIRROR], 3).level([0.5, 0.1, 0.0]),
+            lying.level([0.5, 0.1, 0.0], 3)
+        );
     }
 
     #[test]
