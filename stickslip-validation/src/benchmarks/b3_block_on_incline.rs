@@ -51,6 +51,7 @@ the run, with the bounce taken out (d(v_along + mu v_away)/dt = g (sin - mu cos)
             "exactly at rest; a thousandth of free fall is the shaking",
         ),
     ],
+    reasons: &[],
     run,
 };
 

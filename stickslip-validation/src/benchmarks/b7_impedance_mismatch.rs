@@ -36,6 +36,7 @@ quarters of the front's way, and the difference of the bars' stresses in the fou
             "the centre-of-mass rule shares velocity by mass, not by impedance; the first cells show it",
         ),
     ],
+    reasons: &[],
     run,
 };
 
