@@ -173,6 +173,12 @@ unsafe impl<T: Send, const D: usize> Sync for Columns<T, D> {}
 unsafe impl<T: Send, const D: usize> Send for Columns<T, D> {}
 
 impl<T: Real, const D: usize> Columns<T, D> {
+    /// Entries from a column to the next.
+    #[inline(always)]
+    pub fn stride(&self) -> usize {
+        self.stride
+    }
+
     /// The entry of particle `i` in a column.
     ///
     /// # Safety

@@ -2,6 +2,7 @@
 
 use super::{Cover, Nodes, SIDE, Tile, next_of, nodes_per_block};
 use crate::basis::MAX_WIDTH;
+use crate::lanes::prefetch;
 use crate::tensor::{Real, Vector};
 use rayon::prelude::*;
 use std::marker::PhantomData;
@@ -97,6 +98,9 @@ pub struct Sought<T> {
     pub carry: bool,
 }
 
+/// Four numbers, each the sum of two: particles are scattered two at a time.
+pub type Halves<T> = [[T; 2]; 4];
+
 /// A tile's part of the field in one place: nodes `block * 4` to `block * 4 + 5` along each axis, the last fastest.
 #[derive(Clone, Debug)]
 pub struct Window<T, const D: usize> {
@@ -107,9 +111,9 @@ pub struct Window<T, const D: usize> {
     /// The velocities that move particles [m/s].
     pub carry: [Vector<T, D>; WINDOW_NODES],
     /// Momentum scattered so far [kg m/s], and mass [kg] in the last place.
-    pub momentum: [[T; 4]; WINDOW_NODES],
+    pub momentum: [Halves<T>; WINDOW_NODES],
     /// Force scattered so far [N].
-    pub force: [[T; 4]; WINDOW_NODES],
+    pub force: [Halves<T>; WINDOW_NODES],
 }
 
 impl<T: Real, const D: usize> Default for Window<T, D> {
@@ -118,8 +122,8 @@ impl<T: Real, const D: usize> Default for Window<T, D> {
             change: [Vector::ZERO; WINDOW_NODES],
             flow: [Vector::ZERO; WINDOW_NODES],
             carry: [Vector::ZERO; WINDOW_NODES],
-            momentum: [[T::ZERO; 4]; WINDOW_NODES],
-            force: [[T::ZERO; 4]; WINDOW_NODES],
+            momentum: [[[T::ZERO; 2]; 4]; WINDOW_NODES],
+            force: [[[T::ZERO; 2]; 4]; WINDOW_NODES],
         }
     }
 }
@@ -148,8 +152,8 @@ impl<T: Real, const D: usize> Window<T, D> {
     /// Empties what particles scatter into.
     #[inline(always)]
     pub fn clear(&mut self) {
-        self.momentum[..WINDOW.pow(D as u32)].fill([T::ZERO; 4]);
-        self.force[..WINDOW.pow(D as u32)].fill([T::ZERO; 4]);
+        self.momentum[..WINDOW.pow(D as u32)].fill([[T::ZERO; 2]; 4]);
+        self.force[..WINDOW.pow(D as u32)].fill([[T::ZERO; 2]; 4]);
     }
 
     /// Takes from the field what is sought at the `side`^D first nodes.
@@ -193,11 +197,25 @@ impl<T: Real, const D: usize> Window<T, D> {
                 // SAFETY: the caller keeps other threads away from the tile's slots.
                 let node = unsafe { field.get(first + k) };
                 let (momentum, force) = (&self.momentum[place + k], &self.force[place + k]);
-                node.mass += momentum[3];
+                node.mass += momentum[3][0] + momentum[3][1];
                 for i in 0..D {
-                    node.velocity[i] += momentum[i];
-                    node.force[i] += force[i];
+                    node.velocity[i] += momentum[i][0] + momentum[i][1];
+                    node.force[i] += force[i][0] + force[i][1];
                 }
+            }
+        });
+    }
+}
+
+impl<T: Real, const D: usize> Disjoint<'_, Node<T, D>> {
+    /// Fetches the `side`^D first nodes of a tile's window into the cache.
+    #[inline(always)]
+    pub fn fetch(&self, tile: &Tile<D>, side: usize) {
+        each_run(tile, side, |_, first, count| {
+            let (mut line, end) = (self.place(first).cast::<u8>(), self.place(first + count).cast::<u8>());
+            while line < end {
+                prefetch(line);
+                line = line.wrapping_add(64);
             }
         });
     }
@@ -217,6 +235,12 @@ impl<'a, X> Disjoint<'a, X> {
     /// Opens a slice to many threads.
     pub fn new(slice: &'a mut [X]) -> Self {
         Disjoint { start: slice.as_mut_ptr(), len: slice.len(), slice: PhantomData }
+    }
+
+    /// Where entry `i` is.
+    #[inline(always)]
+    fn place(&self, i: usize) -> *const X {
+        self.start.wrapping_add(i)
     }
 
     /// Entry `i`.
