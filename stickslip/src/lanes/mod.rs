@@ -96,6 +96,18 @@ pub trait Lanes: Number {
         }
     }
 
+    /// Writes the lanes of four registers as rows: in row `i` the lanes `i` of all four.
+    #[inline(always)]
+    fn store_rows(columns: [Self; 4], rows: &mut [[Self::Real; 4]; MOST_LANES]) {
+        let columns =
+            [columns[0].numbers(), columns[1].numbers(), columns[2].numbers(), columns[3].numbers()];
+        for (i, row) in rows.iter_mut().enumerate().take(Self::COUNT) {
+            for (entry, column) in row.iter_mut().zip(&columns) {
+                *entry = column.0[i];
+            }
+        }
+    }
+
     /// [`Real::inverse_cube_root_guess`] of every lane.
     #[inline(always)]
     fn inverse_cube_root_guess(self) -> Self {

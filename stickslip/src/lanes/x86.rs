@@ -226,6 +226,17 @@ lanes! { F64x8: __m512d as [f64; 8];
             _mm512_storeu_pd(pairs.add(24), _mm512_shuffle_f64x2::<0xdd>(ab_high, cd_high));
         }
     }
+    #[inline(always)]
+    fn store_rows(columns: [Self; 4], rows: &mut [[f64; 4]; MOST_LANES]) {
+        let [a, b, c, d] = columns;
+        // SAFETY: values of this type exist only where the processor has the instructions.
+        unsafe {
+            let low = |x: Self| _mm512_castpd512_pd256(x.0);
+            let high = |x: Self| _mm512_extractf64x4_pd::<1>(x.0);
+            turn_pd([low(a), low(b), low(c), low(d)], rows.as_mut_ptr().cast());
+            turn_pd([high(a), high(b), high(c), high(d)], rows.as_mut_ptr().add(4).cast());
+        }
+    }
 }
 lanes! { F64x4: __m256d as [f64; 4];
     _mm256_set1_pd _mm256_loadu_pd _mm256_storeu_pd;
@@ -264,6 +275,11 @@ lanes! { F64x4: __m256d as [f64; 4];
             _mm256_storeu_pd(pairs.add(12), _mm256_permute2f128_pd::<0x31>(c.0, d.0));
         }
     }
+    #[inline(always)]
+    fn store_rows([a, b, c, d]: [Self; 4], rows: &mut [[f64; 4]; MOST_LANES]) {
+        // SAFETY: values of this type exist only where the processor has the instructions.
+        unsafe { turn_pd([a.0, b.0, c.0, d.0], rows.as_mut_ptr().cast()) }
+    }
 }
 lanes! { F32x8: __m256 as [f32; 8];
     _mm256_set1_ps _mm256_loadu_ps _mm256_storeu_ps;
@@ -301,6 +317,26 @@ lanes! { F32x8: __m256 as [f32; 8];
         };
         // SAFETY: values of this type exist only where the processor has the instructions.
         unsafe { turn_pd([wide(a), wide(b), wide(c), wide(d)], pairs.as_mut_ptr().cast()) }
+    }
+    #[inline(always)]
+    fn store_rows([a, b, c, d]: [Self; 4], rows: &mut [[f32; 4]; MOST_LANES]) {
+        // SAFETY: values of this type exist only where the processor has the instructions.
+        unsafe {
+            let [ab, cd] = [_mm256_unpacklo_ps(a.0, b.0), _mm256_unpacklo_ps(c.0, d.0)];
+            let [ab_high, cd_high] = [_mm256_unpackhi_ps(a.0, b.0), _mm256_unpackhi_ps(c.0, d.0)];
+            let turned = [
+                _mm256_shuffle_ps::<0b01_00_01_00>(ab, cd),
+                _mm256_shuffle_ps::<0b11_10_11_10>(ab, cd),
+                _mm256_shuffle_ps::<0b01_00_01_00>(ab_high, cd_high),
+                _mm256_shuffle_ps::<0b11_10_11_10>(ab_high, cd_high),
+            ];
+            let mut i = 0;
+            while i < 4 {
+                _mm_storeu_ps(rows[i].as_mut_ptr(), _mm256_castps256_ps128(turned[i]));
+                _mm_storeu_ps(rows[i + 4].as_mut_ptr(), _mm256_extractf128_ps::<1>(turned[i]));
+                i += 1;
+            }
+        }
     }
 }
 lanes! { F32x4: __m128 as [f32; 4];
