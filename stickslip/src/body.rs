@@ -4,6 +4,7 @@ use crate::geometry::Whole;
 use crate::material::{Material, Motion, Thickness};
 use crate::particles::Particles;
 use crate::tensor::{Matrix, Real, Symmetric, Vector, cross};
+use rayon::prelude::*;
 
 /// A material point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,12 +72,38 @@ pub struct Totals {
     pub strain: f64,
 }
 
+/// Particles that are summed up by one thread, whatever the number of threads.
+const PART: usize = 4096;
+
+impl Totals {
+    /// The sums of both.
+    fn plus(self, other: &Totals) -> Totals {
+        let vector = |a: [f64; 3], b: [f64; 3]| std::array::from_fn(|i| a[i] + b[i]);
+        Totals {
+            mass: self.mass + other.mass,
+            first_moment: vector(self.first_moment, other.first_moment),
+            momentum: vector(self.momentum, other.momentum),
+            angular_momentum: vector(self.angular_momentum, other.angular_momentum),
+            kinetic: self.kinetic + other.kinetic,
+            strain: self.strain + other.strain,
+        }
+    }
+}
+
 impl<T: Real, const D: usize> Body<T, D> {
-    /// Mass, momentum and energy, summed in the order of memory.
+    /// Mass, momentum and energy, summed in the order of memory, part by part.
     pub fn totals(&self) -> Totals {
+        let parts = (0..self.particles.len().div_ceil(PART)).into_par_iter();
+        let parts: Vec<Totals> = parts.map(|part| self.totals_of(part)).collect();
+        parts.iter().fold(Totals::default(), Totals::plus)
+    }
+
+    /// The sums over the particles of a part.
+    fn totals_of(&self, part: usize) -> Totals {
         let mut totals = Totals::default();
         let law = self.material.law();
-        for particle in self.particles.iter() {
+        for particle in part * PART..((part + 1) * PART).min(self.particles.len()) {
+            let particle = self.particles.get(particle);
             let (m, x, v) = (particle.mass.f64(), particle.position.space(), particle.velocity.space());
             let l = cross(x, v);
             totals.mass += m;

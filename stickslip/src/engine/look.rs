@@ -105,9 +105,11 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
     fn snapshot(&self) -> ParticleSnapshot {
         let mut snapshot = ParticleSnapshot { dimension: D, ..ParticleSnapshot::default() };
         for (i, body) in self.bodies.iter().enumerate() {
-            let mut particles: Vec<_> = body.particles.iter().collect();
-            particles.sort_unstable_by_key(|particle| particle.number);
-            for particle in particles {
+            // Where each number stands.
+            let mut places = vec![0; body.particles.len()];
+            body.particles.iter().enumerate().for_each(|(i, particle)| places[particle.number as usize] = i);
+            for place in places {
+                let particle = body.particles.get(place);
                 snapshot.body.push(i as u32);
                 snapshot.number.push(particle.number);
                 snapshot.position.push(particle.position.space());

@@ -360,7 +360,7 @@ unsafe fn give_back<T: Real, const D: usize>(
 #[inline(always)]
 fn columns_read<const D: usize>(verbs: &Verbs) -> usize {
     let deformed = verbs.strain || verbs.scatter.is_some_and(|share| share != Share::Momentum);
-    if deformed || verbs.displace { Column::<D>::COUNT } else { Column::<D>::DEFORMATION }
+    if deformed || verbs.displace { Column::<D>::START } else { Column::<D>::DEFORMATION }
 }
 
 /// Takes a group through a pass and says which particles did not leave their cells; nothing is done if any has a fault.
@@ -469,7 +469,7 @@ fn group<T: Laned, V: Lanes<Real = T>, M: Machine<T>, const D: usize, B: Basis<T
     if strain {
         members.store_deformation(&deformation);
         members.store_stress(&stress);
-        members.give_back(Column::<D>::DEFORMATION..Column::<D>::COUNT);
+        members.give_back(Column::<D>::DEFORMATION..Column::<D>::START);
     }
     if let Some(share) = scatter {
         let mut load = Load { momentum: None, stress: None };

@@ -135,6 +135,16 @@ impl Cloud {
         })
     }
 
+    /// Points in the rows of bins around a height: all that are nearer to it than `reach`, and some more.
+    pub fn across(&self, y: f64) -> &[Point] {
+        let [_, row] = self.bin([self.bounds[0][0], y]);
+        let start = |row: i64| {
+            let row = row.clamp(0, self.bins[1] as i64) as usize;
+            self.starts[row * self.bins[0]] as usize
+        };
+        &self.points[start(row - 2)..start(row + 3)]
+    }
+
     /// All points.
     pub fn points(&self) -> &[Point] {
         &self.points

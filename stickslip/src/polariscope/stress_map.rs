@@ -77,9 +77,13 @@ impl StressMap {
         }
         let size = [end[0] - corner[0], end[1] - corner[1]];
         let mut rays = vec![Ray::default(); size[0] * size[1]];
-        rays.par_chunks_mut(size[0]).enumerate().for_each(|(row, rays)| {
-            for (column, ray) in rays.iter_mut().enumerate() {
-                *ray = ray_at(cloud, window.position(corner[0] + column, corner[1] + row), window.scale());
+        rays.par_chunks_mut(size[0]).enumerate().for_each_init(Vec::new, |sums, (row, rays)| {
+            let first = window.position(corner[0], corner[1] + row);
+            sums.clear();
+            sums.resize(rays.len(), Sums::default());
+            sum_row(cloud, first, (window.scale(), &mut *sums));
+            for (ray, sums) in rays.iter_mut().zip(&*sums) {
+                *ray = sums.ray(cloud.reach, window.scale());
             }
         });
         Some(StressMap { body: cloud.body, corner, size, rays })
@@ -93,40 +97,69 @@ impl StressMap {
     }
 }
 
-/// The ray through a place; `scale` is in pixels per metre.
-fn ray_at(cloud: &Cloud, x: [f64; 2], scale: f64) -> Ray {
-    let mut sum = [[0.0; 5]; 3]; // of w, w dx, w dy, each times 1 and the four values
-    let mut square = [0.0; 3]; // of w dx dx, w dx dy, w dy dy
-    for point in cloud.near(x) {
-        let [dx, dy] = [0, 1].map(|axis| (point.place[axis] - x[axis]) / cloud.reach);
-        let gap = 1.0 - dx * dx - dy * dy;
-        if gap <= 0.0 {
+/// Sums over the points around a pixel, with the four values v of each, and lengths in reaches:
+///
+/// ```text
+/// w, w v, w dy, w dy v, w dy dy | w dx, w dx v, w dx dy | w dx dx
+/// ```
+#[derive(Clone, Copy, Debug, Default)]
+struct Sums {
+    plain: [f64; 11],
+    along: [f64; 6],
+    square: f64,
+}
+
+/// Adds the points of a cloud to the pixels of a row, of which the first is at a place; `scale` is in pixels per metre.
+fn sum_row(cloud: &Cloud, first: [f64; 2], (scale, row): (f64, &mut [Sums])) {
+    let step = 1.0 / (scale * cloud.reach);
+    for point in cloud.across(first[1]) {
+        let [left, dy] = [0, 1].map(|axis| (point.place[axis] - first[axis]) / cloud.reach);
+        let half = 1.0 - dy * dy;
+        if half <= 0.0 {
             continue;
         }
-        let w = point.area * gap * gap * gap;
-        for (sum, factor) in sum.iter_mut().zip([w, w * dx, w * dy]) {
-            sum[0] += factor;
-            for (sum, value) in sum[1..].iter_mut().zip(point.values) {
-                *sum += factor * value;
+        let [a, b, c, d] = point.values;
+        let plain = [1.0, a, b, c, d, dy, dy * a, dy * b, dy * c, dy * d, dy * dy];
+        let along = [1.0, a, b, c, d, dy];
+        let reach = half.sqrt();
+        // Pixels whose middle is so near; beyond the row there are none.
+        let start = ((left - reach) / step).ceil().max(0.0) as usize;
+        let end = (((left + reach) / step).floor() + 1.0).clamp(0.0, row.len() as f64) as usize;
+        for (column, sums) in row.iter_mut().enumerate().take(end).skip(start) {
+            let dx = left - column as f64 * step;
+            let gap = (half - dx * dx).max(0.0);
+            let w = point.area * gap * gap * gap;
+            let wdx = w * dx;
+            for (sum, factor) in sums.plain.iter_mut().zip(plain) {
+                *sum += w * factor;
             }
+            for (sum, factor) in sums.along.iter_mut().zip(along) {
+                *sum += wdx * factor;
+            }
+            sums.square += wdx * dx;
         }
-        square = [square[0] + w * dx * dx, square[1] + w * dx * dy, square[2] + w * dy * dy];
     }
-    let filled = sum[0][0] / (0.25 * PI * cloud.reach * cloud.reach);
-    // Across a straight surface c rises by 128 / (35 pi R) a metre where it is 1/2.
-    let rise = 128.0 / (35.0 * PI * cloud.reach * scale);
-    let coverage = (0.5 + (filled - 0.5) / rise).clamp(0.0, 1.0);
-    if coverage == 0.0 {
-        return Ray::default();
+}
+
+impl Sums {
+    /// The ray through a pixel whose points lie so far away at most [m]; `scale` is in pixels per metre.
+    fn ray(&self, reach: f64, scale: f64) -> Ray {
+        let Sums { plain, along, square } = self;
+        let filled = plain[0] / (0.25 * PI * reach * reach);
+        // Across a straight surface c rises by 128 / (35 pi R) a metre where it is 1/2.
+        let rise = 128.0 / (35.0 * PI * reach * scale);
+        let coverage = (0.5 + (filled - 0.5) / rise).clamp(0.0, 1.0);
+        if coverage == 0.0 {
+            return Ray::default();
+        }
+        let [a, b, c] = first_row_of_inverse([plain[0], along[0], plain[5]], [*square, along[5], plain[10]]);
+        let fitted = |k: usize| a * plain[k] + b * along[k] + c * plain[5 + k];
+        Ray { coverage, stress: [fitted(1), fitted(2), fitted(3)], path: fitted(4).max(0.0) }
     }
-    let [a, b, c] = first_row_of_inverse(&sum, square);
-    let fitted = |k: usize| a * sum[0][k] + b * sum[1][k] + c * sum[2][k];
-    Ray { coverage, stress: [fitted(1), fitted(2), fitted(3)], path: fitted(4).max(0.0) }
 }
 
 /// First row of the inverse of the matrix of moments, made regular by [`RIDGE`].
-fn first_row_of_inverse(sum: &[[f64; 5]; 3], [xx, xy, yy]: [f64; 3]) -> [f64; 3] {
-    let [one, x, y] = [sum[0][0], sum[1][0], sum[2][0]];
+fn first_row_of_inverse([one, x, y]: [f64; 3], [xx, xy, yy]: [f64; 3]) -> [f64; 3] {
     let (xx, yy) = (xx + RIDGE * one, yy + RIDGE * one);
     let cofactors = [xx * yy - xy * xy, xy * y - x * yy, x * xy - xx * y];
     let det = one * cofactors[0] + x * cofactors[1] + y * cofactors[2];
