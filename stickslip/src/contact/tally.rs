@@ -102,9 +102,7 @@ impl Tally {
                 sum.moment[i] += magnitude * place[i];
             }
             sum.normal -= impulse.change.normal.f64();
-            sum.friction += impulse.friction.f64();
             self.scaled += u64::from(impulse.change.scale < T::ONE);
-            self.friction += impulse.friction.f64();
             self.work += impulse.work.f64();
         }
         for (pair, sum) in
@@ -113,6 +111,12 @@ impl Tally {
             let largest = self.largest.entry(*pair).or_default();
             *largest = largest.max(sum.last.area);
         }
+    }
+
+    /// Adds work that friction took from two bodies [J].
+    pub fn rub(&mut self, bodies: [usize; 2], work: f64) {
+        self.pairs.entry(bodies).or_default().friction += work;
+        self.friction += work;
     }
 
     /// The mean forces between the last call and time `now` [s], ordered by pair.

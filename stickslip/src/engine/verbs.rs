@@ -7,6 +7,7 @@ use crate::contact::{Impulse, Near, Solve, Span, Step, Survey, Use};
 use crate::door::StepError;
 use crate::grid::{Blocks, Node, node_at, nodes_per_block};
 use crate::lanes::Laned;
+use crate::scene::{ContactLaw, StressUpdate};
 use crate::tensor::{Matrix, Vector};
 use crate::transfer::Share;
 use rayon::prelude::*;
@@ -176,6 +177,31 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let impulses = self.exchange(survey, (dt, Use::Motion), given);
         self.tally.add(&impulses, &self.lattice);
         self.impulses.extend(impulses);
+    }
+
+    /// Books the work of friction in this step: what its impulses took from the particles' kinetic energy.
+    ///
+    /// ```text
+    /// W = -sum J_t . (u^0 + u^1)/2,   u = v_a - v_b of the particles' velocities, interpolated before and after the step
+    /// ```
+    /// This is exact for FLIP, where particles take changes at nodes: sum_p m_p v_p . sum_i S_i dv_i = sum_i m_i dv_i . v_i, with v_i
+    /// interpolated from the v_p. The velocity of a node with next to no mass is mostly what forces do to it within the step, and says little of
+    /// how particles move. Where the step does not interpolate a second time, u^1 = u^0.
+    pub(super) fn friction_work(&mut self) {
+        let interpolated_twice = self.clock.stress_update == StressUpdate::ModifiedLast;
+        let seen = |node: usize| {
+            let node = &self.field.nodes[node];
+            if interpolated_twice { (node.start + node.velocity) * T::HALF } else { node.start }
+        };
+        for impulse in &self.impulses {
+            let [a, b] = impulse.bodies;
+            let rubs = impulse.change.tangential != Vector::ZERO
+                && self.rules.rule(self.rules.number(a, b)).law != ContactLaw::Glued;
+            if rubs {
+                let [v, w] = impulse.nodes.map(seen);
+                self.tally.rub(impulse.bodies, -impulse.change.tangential.dot(v - w).f64());
+            }
+        }
     }
 
     /// Contact on velocities that only strain the particles: it enters no sum of forces and works.
