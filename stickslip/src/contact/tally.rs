@@ -74,6 +74,7 @@ impl Tally {
     /// Adds the impulses of one use of contact.
     pub fn add<T: Real, const D: usize>(&mut self, impulses: &[Impulse<T, D>], lattice: &Lattice<T, D>) {
         self.uses += 1;
+        self.count_scaled(impulses);
         for impulse in impulses {
             let [on_a, on_b] = impulse.change.impulse.map(|j| j.space());
             let pushes = on_a != [0.0; 3] || on_b != [0.0; 3];
@@ -102,7 +103,6 @@ impl Tally {
                 sum.moment[i] += magnitude * place[i];
             }
             sum.normal -= impulse.change.normal.f64();
-            self.scaled += u64::from(impulse.change.scale < T::ONE);
             self.work += impulse.work.f64();
         }
         for (pair, sum) in
@@ -111,6 +111,14 @@ impl Tally {
             let largest = self.largest.entry(*pair).or_default();
             *largest = largest.max(sum.last.area);
         }
+    }
+
+    /// Counts the impulses that were reduced, so that no cell strains by more than its rule allows.
+    pub fn count_scaled<'a, T: Real, const D: usize>(
+        &mut self,
+        impulses: impl IntoIterator<Item = &'a Impulse<T, D>>,
+    ) {
+        self.scaled += impulses.into_iter().filter(|impulse| impulse.change.scale < T::ONE).count() as u64;
     }
 
     /// Adds work that friction took from two bodies [J].

@@ -164,9 +164,15 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         survey
     }
 
-    /// Contact on the interpolated velocities, which strain the particles.
+    /// Contact on the interpolated velocities, which strain the particles if the stress is updated first.
     pub(super) fn first_contact(&mut self, survey: &Survey<T, D>, dt: T) -> Vec<Impulse<T, D>> {
-        let impulses = self.exchange(survey, (dt, Use::Strain), &[]);
+        let purpose = match self.clock.stress_update {
+            StressUpdate::First => Use::Strain,
+            StressUpdate::Last | StressUpdate::ModifiedLast => Use::Start,
+        };
+        let impulses = self.exchange(survey, (dt, purpose), &[]);
+        let strains = impulses.iter().filter(|impulse| impulse.span == Span::WholeStep);
+        self.tally.count_scaled(strains);
         self.impulses.extend(impulses.iter().filter(|impulse| impulse.span == Span::EachUse));
         self.tally.add(&self.impulses, &self.lattice);
         impulses
@@ -204,9 +210,10 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         }
     }
 
-    /// Contact on velocities that only strain the particles: it enters no sum of forces and works.
+    /// Contact on velocities that only strain the particles: it enters no sum of forces and works; only what was reduced counts.
     pub(super) fn contact_unrecorded(&mut self, survey: &Survey<T, D>, dt: T) {
-        self.exchange(survey, (dt, Use::Strain), &[]);
+        let impulses = self.exchange(survey, (dt, Use::Strain), &[]);
+        self.tally.count_scaled(&impulses);
     }
 
     fn exchange(
