@@ -29,6 +29,8 @@ fn every_combination_is_run_and_stands_in_the_table() {
     let values = ["--set", "friction=0,0.5", "--set", "bodies[0].velocity=[0, 0],[0, 1e-3]", "--jobs", "2"];
     let said = workplace.succeed(&[&["sweep", "scene.toml"][..], &values, &short].concat());
     assert!(said.contains("4 of 4 runs finished") && said.contains("scene.sweep"), "{said}");
+    let heading = said.lines().next().expect("a table of what differs");
+    assert!(heading.contains("friction  bodies[0].velocity") && !heading.contains("particles"), "{said}");
     let rows = table(&workplace, "scene.sweep");
     assert_eq!(rows.len(), 4);
     let column = |name: &str| rows.iter().map(|row| row[name].as_str()).collect::<Vec<_>>();

@@ -17,13 +17,13 @@ fn a_page_says_what_each_law_reaches_and_the_scenes_can_be_run() {
         "<section id=\"m4-first-contact\">",
         "surface *",
         "traction",
-        "<a class=\"passed\" href=\"#m4-first-contact\">4 of 4</a>",
-        "<a class=\"failed\" href=\"#m4-first-contact\">0 of 4</a>",
+        "<a class=\"passed\" href=\"#m4-first-contact\">8 of 8</a>",
+        "<a class=\"failed\" href=\"#m4-first-contact\">0 of 8</a>",
         "0 ± 0.05",
     ] {
         assert!(html.contains(part), "{part} is missing in {html}");
     }
-    let scene = "seen/scenes/M4/surface/8/2_per_side_meeting_0.25.toml";
+    let scene = "seen/scenes/M4/surface/8/fitted_2_per_side_meeting_0.25.toml";
     workplace.succeed(&["check", scene]);
 }
 

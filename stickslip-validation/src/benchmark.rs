@@ -2,6 +2,7 @@
 
 use crate::failure::Failure;
 use crate::outcome::Outcome;
+use stickslip::scene::ContactLaw;
 
 /// A problem with a known answer.
 #[derive(Debug)]
@@ -26,13 +27,26 @@ pub struct Benchmark {
     pub resolutions: &'static [Resolution],
     /// What is asked of the measured quantities.
     pub targets: &'static [Target],
+    /// Why laws miss targets, as far as it is known.
+    pub reasons: &'static [Reason],
     /// Runs it.
     pub run: fn(&Case) -> Result<Outcome, Failure>,
+}
+
+/// Why some laws miss a benchmark's targets.
+#[derive(Clone, Copy, Debug)]
+pub struct Reason {
+    /// The laws' words.
+    pub laws: &'static [&'static str],
+    /// What keeps them from it.
+    pub text: &'static str,
 }
 
 /// Which laws a benchmark can be put to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Laws {
+    /// All that there are, even that by which bodies pass through each other.
+    All,
     /// All by which bodies touch and part.
     Contact,
     /// Only the law that joins bodies for good.
@@ -94,6 +108,29 @@ pub struct Case {
     pub cells: f64,
     /// How much is run.
     pub tier: Tier,
+}
+
+impl Benchmark {
+    /// The resolutions that a tier runs.
+    pub fn due(&self, tier: Tier) -> impl Iterator<Item = &'static Resolution> {
+        self.resolutions.iter().filter(move |resolution| resolution.tier <= tier)
+    }
+
+    /// Why a law misses targets, if that is known.
+    pub fn reasons(&self, law: &str) -> impl Iterator<Item = &'static str> {
+        self.reasons.iter().filter(move |reason| reason.laws.contains(&law)).map(|reason| reason.text)
+    }
+}
+
+impl Laws {
+    /// Whether a law is one of these.
+    pub fn contains(self, law: ContactLaw) -> bool {
+        match self {
+            Laws::All => true,
+            Laws::Contact => !matches!(law, ContactLaw::None | ContactLaw::Glued),
+            Laws::Glued => law == ContactLaw::Glued,
+        }
+    }
 }
 
 impl Resolution {

@@ -24,4 +24,7 @@ pub enum Failure {
     /// What was to be measured did not happen.
     #[error("not to be measured: {0}")]
     Absent(&'static str),
+    /// The program is at fault.
+    #[error("the program is at fault; it said why on its error output")]
+    Panic,
 }

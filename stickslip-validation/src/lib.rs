@@ -31,7 +31,7 @@ mod benchmarks;
 // All chosen laws through all chosen benchmarks, side by side on the machine's cores.
 mod suite;
 
-pub use benchmark::{Allowed, Benchmark, Case, Laws, Resolution, Target, Tier};
+pub use benchmark::{Allowed, Benchmark, Case, Laws, Reason, Resolution, Target, Tier};
 pub use benchmarks::BENCHMARKS;
 pub use failure::Failure;
 pub use outcome::{Measurement, Outcome};

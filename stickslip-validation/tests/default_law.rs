@@ -14,7 +14,7 @@ fn run(name: &str) -> Entry {
         BENCHMARKS.iter().filter(|benchmark| benchmark.name == name).collect();
     let kept = laws().into_iter().filter(|law| law.default || law.word == "glued").collect();
     let suite = Suite { benchmarks, laws: kept, tier: Tier::Quick, threads: 1 };
-    let mut report = suite.run(&mut |_| {});
+    let mut report = suite.run(&mut |_, _| {});
     report.entries.swap_remove(0)
 }
 
@@ -43,6 +43,16 @@ fn holds(name: &str, metrics: &[&str]) {
 }
 
 #[test]
+fn contact_of_two_to_five_bodies_keeps_momentum() {
+    holds("M1", &["momentum from nowhere, 2 bodies", "3 bodies", "4 bodies", "5 bodies"]);
+}
+
+#[test]
+fn contact_of_two_to_five_bodies_gains_no_energy() {
+    holds("M2", &["energy gained, 2 bodies", "3 bodies", "4 bodies", "5 bodies"]);
+}
+
+#[test]
 fn contact_begins_when_surfaces_touch() {
     holds(
         "M4",
@@ -51,6 +61,10 @@ fn contact_begins_when_surfaces_touch() {
             "2 particles a side",
             "3 particles a side",
             "4 particles a side",
+            "fitted, 1 particle a side",
+            "fitted, 2 particles",
+            "fitted, 3 particles",
+            "fitted, 4 particles",
         ],
     );
 }
@@ -81,8 +95,21 @@ fn tractions_of_unlike_bars_are_equal() {
 }
 
 #[test]
-fn a_block_with_corners_slides_along_the_grid() {
-    holds("corners", &["acceleration, aligned"]);
+fn a_block_with_corners_slides_at_any_angle_to_the_grid() {
+    holds(
+        "corners",
+        &[
+            "acceleration, aligned",
+            "acceleration, rotated",
+            "sinking [cells], aligned",
+            "sinking [cells], rotated",
+        ],
+    );
+}
+
+#[test]
+fn an_elastic_sphere_is_thrown_back_by_its_patch() {
+    holds("B13", &["u1/v at u0 = 4 mu v"]);
 }
 
 #[test]

@@ -122,6 +122,7 @@ fn conclude(crew: &Crew, table: &Sweep) -> Result<(), Failure> {
     };
     let count = |status: &str| table.rows.iter().filter(|row| row.status == status).count();
     let runs = table.rows.len();
+    say(&sweep::table(table))?;
     say(&format!(
         "{} of {runs} runs finished\nresults in {}/: sweep.csv{drawn}, a folder for each run",
         count("finished"),

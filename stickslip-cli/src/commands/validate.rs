@@ -69,12 +69,22 @@ impl Arguments {
         };
         // A folder that cannot be written shall be known before the work, not after it.
         fs::create_dir_all(&self.out).map_err(|error| unwritable(&self.out, &error))?;
-        let begin = Instant::now();
-        let report = suite.run(&mut |finished| eprintln!("{}", line(finished)));
-        write_scenes(&report, &self.out.join("scenes")).map_err(|error| unwritable(&self.out, &error))?;
-        let file = self.out.join("index.html");
-        page(&report, begin.elapsed()).write(&file)?;
+        let (begin, file, scenes) = (Instant::now(), self.out.join("index.html"), self.out.join("scenes"));
+        let mut written: Result<(), Failure> = Ok(());
+        let report = suite.run(&mut |finished, report| {
+            eprintln!("{}", line(finished));
+            // The page stands after each case: who stops the rest keeps what there is.
+            let write = || -> Result<(), Failure> {
+                write_scenes(finished.entry, finished.run, &scenes)
+                    .map_err(|error| unwritable(&self.out, &error))?;
+                Ok(page(report, begin.elapsed()).write(&file)?)
+            };
+            if written.is_ok() {
+                written = write();
+            }
+        });
+        written?;
         say(&table(&report))?;
-        say(&format!("\npage in {}, scenes in {}", file.display(), self.out.join("scenes").display()))
+        say(&format!("\npage in {}, scenes in {}", file.display(), scenes.display()))
     }
 }

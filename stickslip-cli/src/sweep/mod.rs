@@ -3,17 +3,19 @@
 mod chart;
 mod plan;
 mod record;
+mod table;
 
 pub use chart::chart;
 pub use plan::{Member, Variation, members, varied};
 pub use record::{Record, Row, Sweep, is_sweep, prepare, read, write_table};
+pub use table::table;
 
 use crate::illustration::illustrate;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
-use stickslip::observe::{ArrivalRow, Results, Status};
+use stickslip::observe::{ArrivalRow, ContactRow, Results, Status};
 use stickslip::run::{RunOptions, Summary};
 use stickslip::scene::{Loaded, Parameter};
 
@@ -119,6 +121,7 @@ fn row(summary: &Summary, loaded: &Loaded, results: &Results) -> Row {
         ("external_work".to_owned(), summary.end.external_work),
         ("energy_drift".to_owned(), summary.relative_energy_drift()),
     ];
+    figures.extend(contact(&results.contacts_table().unwrap_or_default()));
     figures.extend(loaded.scene.outputs.measurements.unit().map(|unit| ("time_unit".to_owned(), unit)));
     let ratio = |reference: &stickslip::run::ReferenceResult| {
         (format!("ratio {} {}", reference.body, reference.quantity), reference.ratio())
@@ -129,6 +132,13 @@ fn row(summary: &Summary, loaded: &Loaded, results: &Results) -> Row {
     figures.extend(speeds.into_iter().map(|row| (format!("speed {}", row.front), row.speed)));
     let status = if summary.status == Status::Interrupted { "interrupted" } else { "finished" };
     Row { status: status.to_owned(), figures, ..Row::default() }
+}
+
+/// When bodies first pushed on each other, to a row of the table, and the largest push of a pair. Without contact there is neither.
+fn contact(rows: &[ContactRow]) -> Vec<(String, f64)> {
+    let Some(first) = rows.iter().find(|row| row.normal > 0.0) else { return Vec::new() };
+    let largest = rows.iter().map(|row| row.normal).fold(0.0, f64::max);
+    vec![("first_contact".to_owned(), first.time), ("largest_push".to_owned(), largest)]
 }
 
 /// Columns of arrivals. Thresholds may differ from run to run, so their names leave them out; where one place watches

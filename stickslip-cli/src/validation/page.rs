@@ -78,7 +78,28 @@ fn overview(report: &Report) -> Section {
         }
         table = table.row(row);
     }
-    Section::new("Law by benchmark").table(table)
+    Section::new("Law by benchmark").table(table).table(times(report))
+}
+
+/// How long each law took for each benchmark.
+fn times(report: &Report) -> Table {
+    let laws = laws(report);
+    let mut columns = vec![Column::text("benchmark")];
+    columns.extend(laws.iter().map(|law| Column::number(word(law))));
+    let mut table = Table::new("Time taken [s], all resolutions together; one thread a run.", columns);
+    for benchmark in benchmarks(report) {
+        let mut row = vec![Cell::text(title(benchmark))];
+        for law in &laws {
+            let entry = entries(benchmark, report).find(|entry| entry.law == *law);
+            let time = |entry: &Entry| {
+                let outcomes = entry.runs.iter().filter_map(|run| run.result.as_ref().ok());
+                outcomes.map(|outcome| outcome.record.wall_time).sum::<f64>()
+            };
+            row.push(entry.map_or(Cell::Empty, |entry| Cell::number(time(entry), 1)));
+        }
+        table = table.row(row);
+    }
+    table
 }
 
 fn reached(entry: &Entry) -> Cell {
@@ -111,16 +132,20 @@ fn section(benchmark: &'static Benchmark, report: &Report) -> Section {
             }
         }
     }
-    section.table(results(benchmark, report)).table(targets(benchmark)).table(records(benchmark, report))
+    section = section.table(results(benchmark, report));
+    for entry in entries(benchmark, report).filter(|entry| entry.overall() == Judgement::Missed) {
+        for reason in benchmark.reasons(entry.law.word) {
+            section = section.text(format!("What {} misses: {reason}", entry.law.word));
+        }
+    }
+    section.table(targets(benchmark)).table(records(benchmark, report))
 }
 
 /// What each law measured at each resolution, against the targets.
 fn results(benchmark: &'static Benchmark, report: &Report) -> Table {
-    let cells = |entry: &Entry| entry.runs.iter().map(|run| run.resolution.cells).collect::<Vec<_>>();
     let mut columns = vec![Column::text("law"), Column::text("quantity")];
-    let resolutions = entries(benchmark, report).next().map_or(Vec::new(), cells);
-    columns
-        .extend(resolutions.iter().map(|cells| Column::number(format!("{} = {cells}", benchmark.measure))));
+    let heading = |r: &Resolution| Column::number(format!("{} = {}", benchmark.measure, r.cells));
+    columns.extend(benchmark.due(report.tier).map(heading));
     columns.extend([Column::number("order"), Column::text("target"), Column::text("verdict")]);
     let caption = format!(
         "Measured by each law; the observed order of convergence is that of the two finest resolutions. {} counts cells.",
@@ -131,7 +156,10 @@ fn results(benchmark: &'static Benchmark, report: &Report) -> Table {
         for (i, target) in benchmark.targets.iter().enumerate() {
             let law = if i == 0 { Cell::text(word(&entry.law)) } else { Cell::Empty };
             let mut row = vec![law, Cell::text(target.metric)];
-            row.extend(entry.runs.iter().map(|run| value(run, target)));
+            for resolution in benchmark.due(report.tier) {
+                let run = entry.runs.iter().find(|run| run.resolution == *resolution);
+                row.push(run.map_or(Cell::text("not run yet"), |run| value(run, target)));
+            }
             row.push(entry.order(target).map_or(Cell::Empty, |order| Cell::number(order, 1)));
             row.push(Cell::text(stated(benchmark, target)));
             row.push(match entry.verdict(target) {

@@ -3,23 +3,15 @@
 use std::fs;
 use std::io;
 use std::path::Path;
-use stickslip_validation::Report;
+use stickslip_validation::{Entry, Run};
 
-/// Writes every scene to `folder/BENCHMARK/LAW/CELLS/NAME.toml`.
+/// Writes every scene of a run to `folder/BENCHMARK/LAW/CELLS/NAME.toml`.
 ///
 /// # Errors
 /// The folder cannot be written.
-pub fn write_scenes(report: &Report, folder: &Path) -> io::Result<()> {
-    for entry in &report.entries {
-        for run in &entry.runs {
-            let place =
-                folder.join(entry.benchmark.name).join(entry.law.word).join(run.resolution.cells.to_string());
-            let Ok(outcome) = &run.result else { continue };
-            fs::create_dir_all(&place)?;
-            for (name, text) in &outcome.scenes {
-                fs::write(place.join(format!("{name}.toml")), text)?;
-            }
-        }
-    }
-    Ok(())
+pub fn write_scenes(entry: &Entry, run: &Run, folder: &Path) -> io::Result<()> {
+    let Ok(outcome) = &run.result else { return Ok(()) };
+    let place = folder.join(entry.benchmark.name).join(entry.law.word).join(run.resolution.cells.to_string());
+    fs::create_dir_all(&place)?;
+    outcome.scenes.iter().try_for_each(|(name, text)| fs::write(place.join(format!("{name}.toml")), text))
 }

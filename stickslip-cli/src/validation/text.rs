@@ -5,12 +5,16 @@ use stickslip_validation::{Entry, Finished, Report, Target, Verdict};
 
 /// One case that ended, on one line.
 pub fn line(finished: &Finished) -> String {
-    let Finished { benchmark, law, cells, result, done, all } = finished;
-    let outcome = match result {
+    let Finished { entry, run, done, all } = finished;
+    let outcome = match &run.result {
         Ok(outcome) => format!("{:.1} s", outcome.record.wall_time),
         Err(failure) => failure.to_string(),
     };
-    format!("[{done}/{all}] {} {law}, {} = {cells}: {outcome}", benchmark.name, benchmark.measure)
+    let (benchmark, cells) = (entry.benchmark, run.resolution.cells);
+    format!(
+        "[{done}/{all}] {} {}, {} = {cells}: {outcome}",
+        benchmark.name, entry.law.word, benchmark.measure
+    )
 }
 
 /// A number in few characters.

@@ -49,6 +49,7 @@ contacts are softer. Grids weld the disks over sqrt(h D/2), four times Hertz's h
         )
         .at(160.0),
     ],
+    reasons: &[],
     run,
 };
 

@@ -28,6 +28,7 @@ the forces at nodes, pressure as the largest of force over cell.",
         Target::new("half-width over Hertz", 1.0, Allowed::Within(0.05), WHY).at(8.0),
         Target::new("largest pressure over Hertz", 1.0, Allowed::Within(0.05), WHY).at(8.0),
     ],
+    reasons: &[],
     run,
 };
 

@@ -46,6 +46,7 @@ from a hundredth of the largest force on.",
         )
         .at(4.0),
     ],
+    reasons: &[],
     run,
 };
 

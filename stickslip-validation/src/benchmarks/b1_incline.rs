@@ -68,6 +68,7 @@ E* = 7.64 MPa 1.555 m and 1.565 m. Static contact radius: R/6.",
         )
         .at(8.0),
     ],
+    reasons: &[],
     run,
 };
 

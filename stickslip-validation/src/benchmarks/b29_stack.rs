@@ -44,6 +44,7 @@ half-height as strained; the worst interface, averaged over the last fifth of th
             "the average over the stack's oscillations",
         ),
     ],
+    reasons: &[],
     run,
 };
 

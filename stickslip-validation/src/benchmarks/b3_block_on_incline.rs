@@ -53,6 +53,7 @@ shear waves of 36.7 and 19.6 m/s goes 0.16 of the free way in that half with 1.0
             "exactly at rest; a thousandth of free fall is the shaking that is left",
         ),
     ],
+    reasons: &[],
     run,
 };
 

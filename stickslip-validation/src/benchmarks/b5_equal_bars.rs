@@ -45,6 +45,7 @@ moves at v, and no energy is lost. Contact counts as long as its force is a tent
             "exact but for the ringing behind the fronts",
         ),
     ],
+    reasons: &[],
     run,
 };
 

@@ -36,6 +36,7 @@ of the front's way, as behind the front the grid rings over ten cells and more (
             "the centre-of-mass rule shares velocity by mass, not by impedance; the first cells show it",
         ),
     ],
+    reasons: &[],
     run,
 };
 

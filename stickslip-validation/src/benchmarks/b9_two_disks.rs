@@ -39,6 +39,7 @@ measured in cells of approach, positive too early.",
         ),
         Target::new("rebound over approach", 1.0, Allowed::AtMost(1.0), "no collision gains"),
     ],
+    reasons: &[],
     run,
 };
 

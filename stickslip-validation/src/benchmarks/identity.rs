@@ -1,6 +1,6 @@
 //! Identity: a body cut in two and glued is the body.
 
-use crate::benchmark::{Allowed, Benchmark, Case, Laws, Resolution, Target};
+use crate::benchmark::{Allowed, Benchmark, Case, Laws, Resolution, Target, Tier};
 use crate::failure::Failure;
 use crate::outcome::Outcome;
 use crate::trial::Trial;
@@ -17,7 +17,7 @@ pub const BENCHMARK: Benchmark = Benchmark {
             |_________|          |__/______|
 ",
     set_up: "Plane strain; a block of soft rubber 0.8 m x 0.6 m (E = 0.1 MPa, nu = 0.3), flying at (2, -1) m/s onto a rigid floor 0.1 m below that glues it; once whole, and cut along the \
-grid, at 30 and at 70 degrees to it. 0.3 s.",
+grid, at 30 and at 70 degrees to it; in the full tier also in space, 0.4 m thick, along a plane oblique to all axes. 0.3 s.",
     exact: "The same motion of every particle. Measured are the largest differences of position over 1 m and of velocity over 3 m/s.",
     laws: Laws::Glued,
     measure: "1 m/h",
@@ -36,22 +36,31 @@ grid, at 30 and at 70 degrees to it. 0.3 s.",
             "round-off of some hundred steps, summed in another order",
         ),
     ],
+    reasons: &[],
     run,
 };
 
+/// Normals of the cuts, in the plane and in space.
+const CUTS: [(&str, &[[f64; 3]]); 2] = [
+    ("plane-strain", &[[-1.0, 0.0, 0.0], [-0.5, 0.866, 0.0], [-0.94, 0.342, 0.0]]),
+    ("3d", &[[1.0, 0.5, -0.7]]),
+];
+
 fn run(case: &Case) -> Result<Outcome, Failure> {
     let mut outcome = Outcome::default();
-    let whole = drop(case, None, &mut outcome)?;
     let (mut place, mut speed) = (0.0_f64, 0.0_f64);
-    for degrees in [90.0, 30.0, 70.0] {
-        let parts = drop(case, Some(degrees), &mut outcome)?;
-        if parts.len() != whole.len() {
-            return Err(Failure::Absent("the parts have not the particles of the whole"));
-        }
-        for (part, whole) in parts.iter().zip(&whole) {
-            for i in 0..2 {
-                place = place.max((part.position[i] - whole.position[i]).abs());
-                speed = speed.max((part.velocity[i] - whole.velocity[i]).abs() / 3.0);
+    for (dimension, cuts) in &CUTS[..if case.tier == Tier::Full { 2 } else { 1 }] {
+        let whole = drop(case, dimension, None, &mut outcome)?;
+        for &cut in *cuts {
+            let parts = drop(case, dimension, Some(cut), &mut outcome)?;
+            if parts.len() != whole.len() {
+                return Err(Failure::Absent("the parts have not the particles of the whole"));
+            }
+            for (part, whole) in parts.iter().zip(&whole) {
+                for i in 0..3 {
+                    place = place.max((part.position[i] - whole.position[i]).abs());
+                    speed = speed.max((part.velocity[i] - whole.velocity[i]).abs() / 3.0);
+                }
             }
         }
     }
@@ -61,44 +70,54 @@ fn run(case: &Case) -> Result<Outcome, Failure> {
 }
 
 struct Particle {
-    start: [i64; 2],
+    start: [i64; 3],
     position: [f64; 3],
     velocity: [f64; 3],
 }
 
-/// The block's particles at the end in the order of their places at the start; cut at an angle to the x axis, or whole.
-fn drop(case: &Case, cut: Option<f64>, outcome: &mut Outcome) -> Result<Vec<Particle>, Failure> {
+/// The block's particles at the end in the order of their places at the start; cut through its centre across a normal, or whole.
+fn drop(
+    case: &Case,
+    dimension: &str,
+    cut: Option<[f64; 3]>,
+    outcome: &mut Outcome,
+) -> Result<Vec<Particle>, Failure> {
     let h = 1.0 / case.cells;
+    // Vectors of the scene have as many components as it has dimensions.
+    let vector = |x: [f64; 3]| if dimension == "3d" { format!("{x:?}") } else { format!("{:?}", &x[..2]) };
+    let (velocity, gravity) = (vector([2.0, -1.0, 0.0]), vector([0.0, -10.0, 0.0]));
     let body = |name: &str, shape: &str| {
-        format!("[[bodies]]\nname = \"{name}\"\nmaterial = \"rubber\"\n{shape}\nvelocity = [2, -1]\n")
+        format!("[[bodies]]\nname = \"{name}\"\nmaterial = \"rubber\"\n{shape}\nvelocity = {velocity}\n")
     };
-    let block = "{ box = { min = [0, 0], max = [0.8, 0.6] } }";
+    let block = format!("{{ box = {{ min = {}, max = {} }} }}", vector([0.0; 3]), vector([0.8, 0.6, 0.4]));
     let bodies = match cut {
         None => body("whole", &format!("shape.union = [{block}, {block}]")),
-        Some(degrees) => {
-            let (sin, cos) = f64::to_radians(degrees).sin_cos();
-            let part = |name: &str, normal: [f64; 2]| {
-                let half = format!("{{ half_space = {{ point = [0.4, 0.3], normal = {normal:?} }} }}");
+        Some(normal) => {
+            let part = |name: &str, normal: [f64; 3]| {
+                let point = vector([0.4, 0.3, 0.2]);
+                let half = format!("{{ half_space = {{ point = {point}, normal = {} }} }}", vector(normal));
                 body(name, &format!("shape.intersection = [{block}, {half}]"))
             };
-            part("first", [-sin, cos]) + &part("second", [sin, -cos])
+            part("first", normal) + &part("second", normal.map(|x| -x))
         }
     };
     let mut trial = Trial::start(
-        cut.map_or("whole".to_owned(), |degrees| format!("cut_{degrees}_degrees")),
+        format!("{dimension}_{}", cut.map_or("whole".to_owned(), |[x, y, z]| format!("cut_{x}_{y}_{z}"))),
         format!(
             r#"title = "Glued parts equal the whole"
-gravity = [0, -10]
-space = {{ dimension = "plane-strain", cell = {h} }}
+gravity = {gravity}
+space = {{ dimension = "{dimension}", cell = {h} }}
 time.end = 0.3
 materials.rubber = {{ density = 1000, neo_hookean = {{ young_modulus = 1e5, poisson_ratio = 0.3 }} }}
 {bodies}
 [[bodies]]
 name = "floor"
 material = "rubber"
-shape.box = {{ min = [-0.5, -0.4], max = [2.5, -0.1] }}
+shape.box = {{ min = {}, max = {} }}
 rigid = {{}}
 {}"#,
+            vector([-0.5, -0.4, -0.5]),
+            vector([2.5, -0.1, 0.9]),
             case.contact(0.0)
         ),
     )?;
@@ -114,7 +133,7 @@ fn arranged(end: &ParticleSnapshot, start: &ParticleSnapshot) -> Vec<Particle> {
     let mut particles: Vec<Particle> = (0..end.body.len())
         .filter(|&p| start.position[p][1] > -0.05)
         .map(|p| Particle {
-            start: [0, 1].map(|i| (start.position[p][i] * 1e6).round() as i64),
+            start: [0, 1, 2].map(|i| (start.position[p][i] * 1e6).round() as i64),
             position: end.position[p],
             velocity: end.velocity[p],
         })

@@ -35,6 +35,7 @@ in both directions and 8 directions from 0 to 78.75 degrees (quick: 4 and 2). Pa
             "a tenth of a cell; stairs of half a cell scatter by 0.15",
         ),
     ],
+    reasons: &[],
     run,
 };
 

@@ -31,6 +31,7 @@ particles more than two cells below the platen, over p; glue grips up to a cell 
         Target::new(METRICS[2], 0.0, Allowed::Within(0.05), SLANTED),
         Target::new(METRICS[3], 0.0, Allowed::Within(0.05), SLANTED),
     ],
+    reasons: &[],
     run,
 };
 

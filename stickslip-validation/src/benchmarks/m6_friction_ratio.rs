@@ -31,6 +31,7 @@ slides along it at u/c = 0.05, fast enough to slide everywhere and throughout; m
         ),
         Target::new(METRICS[1], 1.0, Allowed::Within(0.02), "the same through a turned grid"),
     ],
+    reasons: &[],
     run,
 };
 

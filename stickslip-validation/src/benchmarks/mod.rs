@@ -3,7 +3,8 @@
 mod b10_collinear_disks;
 mod b11_cylinder;
 mod b12_sphere_impact;
-mod b13_oblique_impact;
+mod b13_disk;
+mod b13_sphere;
 mod b1_incline;
 mod b29_stack;
 mod b2_backspin;
@@ -13,10 +14,14 @@ mod b7_impedance_mismatch;
 mod b9_two_disks;
 mod corners;
 mod identity;
+mod m1_momentum;
+mod m2_dissipation;
 mod m3_registration;
 mod m4_first_contact;
 mod m5_patch;
 mod m6_friction_ratio;
+mod maw_curve;
+mod meeting;
 mod rigid_half_space;
 mod rolling_sphere;
 
@@ -24,6 +29,8 @@ use crate::benchmark::Benchmark;
 
 /// All benchmarks, in the order of the page.
 pub static BENCHMARKS: &[Benchmark] = &[
+    m1_momentum::BENCHMARK,
+    m2_dissipation::BENCHMARK,
     m3_registration::BENCHMARK,
     m4_first_contact::BENCHMARK,
     m5_patch::BENCHMARK,
@@ -40,6 +47,7 @@ pub static BENCHMARKS: &[Benchmark] = &[
     b10_collinear_disks::BENCHMARK,
     b11_cylinder::BENCHMARK,
     b12_sphere_impact::BENCHMARK,
-    b13_oblique_impact::BENCHMARK,
+    b13_sphere::BENCHMARK,
+    b13_disk::BENCHMARK,
     b29_stack::BENCHMARK,
 ];

@@ -37,6 +37,7 @@ largest force over a tenth of R/c, relative.",
             "three times what recoil and compliance make",
         ),
     ],
+    reasons: &[],
     run,
 };
 

@@ -16,6 +16,8 @@ pub struct Roll {
     pub speed: f64,
     /// Acceleration by least squares over the second half of the run over that of the rigid sphere at the end; infinite where that is zero.
     pub acceleration: f64,
+    /// Way in the second half of the run over that of the rigid sphere.
+    pub mean_speed: f64,
     /// Spin times radius over speed at the end.
     pub rolling: f64,
     /// Mean height of the centre in the last four fifths of the run [m].
@@ -31,11 +33,12 @@ pub fn roll(name: &str, scene: &str, case: &Case, outcome: &mut Outcome) -> Resu
     let text = with_parameter(scene, "cells_per_radius", &case.cells.to_string());
     let mut trial = Trial::start(name, with_parameter(&text, "contact", &format!("\"{}\"", case.law)))?;
     let end = trial.scene().time.end;
-    let (mut speeds, mut heights) = (Vec::new(), Vec::new());
+    let (mut speeds, mut heights, mut middle) = (Vec::new(), Vec::new(), None);
     while trial.advance()? {
         let sphere = trial.bodies().swap_remove(0);
         if trial.time() > 0.5 * end {
             speeds.push((trial.time(), sphere.velocity[0]));
+            middle.get_or_insert((trial.time(), sphere.position[0]));
         }
         if trial.time() > 0.2 * end {
             heights.push(sphere.position[2]);
@@ -50,10 +53,12 @@ pub fn roll(name: &str, scene: &str, case: &Case, outcome: &mut Outcome) -> Resu
         let stated = scene.references.iter().find(|reference| reference.quantity == quantity);
         stated.map_or(f64::NAN, |reference| reference.value.at(time))
     };
+    let (half, from) = middle.ok_or(Failure::Absent("the second half of the run"))?;
     let roll = Roll {
         distance: sphere.position[0] / exact("x", end),
         speed: sphere.velocity[0] / exact("vx", end),
         acceleration: slope(&speeds) / ((exact("vx", end) - exact("vx", 0.5 * end)) / (0.5 * end)),
+        mean_speed: (sphere.position[0] - from) / (exact("x", end) - exact("x", half)),
         rolling: sphere.spin[1] * radius / sphere.velocity[0],
         height: mean(&heights),
         cell: scene.discretization.cell,

@@ -1,4 +1,4 @@
-//! B13: a disk strikes a plane obliquely.
+//! B13-plane: a disk strikes a plane obliquely.
 
 use crate::benchmark::{Allowed, Benchmark, Case, Laws, Resolution, Target};
 use crate::failure::Failure;
@@ -6,7 +6,7 @@ use crate::outcome::Outcome;
 use crate::trial::Trial;
 
 pub const BENCHMARK: Benchmark = Benchmark {
-    name: "B13",
+    name: "B13-plane",
     title: "Oblique impact of a disk",
     source: "Rigid-body impact with Coulomb friction for gross slip; Maw, Barber and Fawcett (1976) for the reversal, here in the plane",
     picture: "
@@ -41,6 +41,7 @@ and normal compliance of a line contact are equal) above u0 = (4 chi - 1) mu v =
             "the reversal needs tangential elasticity of the patch; its exact size is not known here",
         ),
     ],
+    reasons: &[],
     run,
 };
 

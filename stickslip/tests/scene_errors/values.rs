@@ -1,0 +1,93 @@
+//! Values out of range.
+
+use crate::{MINIMAL, check, message};
+
+#[test]
+fn values_out_of_range() {
+    check(
+        MINIMAL,
+        &[
+            (
+                "\"0.1 m\"",
+                "\"-0.1 m\"",
+                "3:8: space.cell: found \"-0.1 m\"; allowed: a length [m] above 0, like \"0.4 m\"",
+            ),
+            ("\"0.1 m\"", "0", "3:8: space.cell: found 0; allowed: a length [m] above 0, like \"0.4 m\""),
+            (
+                "\"0.4 m\"",
+                "\"1 m - 2 m\"",
+                "15:45: bodies[0].shape.ball.radius: found \"1 m - 2 m\", which is -1 m; allowed: a length [m] above 0, like \"0.4 m\"",
+            ),
+            (
+                "\"1 s\"",
+                "1\ncourant = 1.5",
+                "7:11: time.courant: found 1.5; allowed: a number above 0 and up to 1",
+            ),
+            (
+                "\"1 s\"",
+                "1\npic_share = -0.1",
+                "7:13: time.pic_share: found -0.1; allowed: a number from 0 to 1",
+            ),
+            (
+                "\"1 s\"",
+                "1\nmax_step = 0",
+                "7:12: time.max_step: found 0; allowed: a time [s] above 0, like \"2.5 ms\"",
+            ),
+            (
+                "[time]",
+                "particles_per_side = 9\n[time]",
+                "5:22: space.particles_per_side: found 9; allowed: a whole number from 1 to 8",
+            ),
+            (
+                "[time]",
+                "particles_per_side = 1.5\n[time]",
+                "5:22: space.particles_per_side: found 1.5; allowed: a whole number from 1 to 8",
+            ),
+            (
+                "[time]",
+                "domain = { min = [0, 0, 0], max = [1, 0, 1] }\n[time]",
+                "5:39: space.domain.max[1]: found 0; allowed: more than 0 m, the y of min",
+            ),
+            (
+                "\"1000 kg/m^3\"",
+                "-1",
+                "9:11: materials.rubber.density: found -1; allowed: a density [kg/m^3] above 0, like \"1000 kg/m^3\"",
+            ),
+            (
+                "\"3 MPa\"",
+                "\"-3 MPa\"",
+                "10:57: materials.rubber.neo_hookean.shear_modulus: found \"-3 MPa\" (-3000000 Pa); allowed: a positive number",
+            ),
+            (
+                ", shear_modulus = \"3 MPa\"",
+                "",
+                "10:1: materials.rubber.neo_hookean: found bulk_modulus; allowed: two of bulk_modulus, shear_modulus, young_modulus, poisson_ratio, p_wave_modulus (not E with M)",
+            ),
+            (
+                "material = \"rubber\"",
+                "material = \"ruber\"",
+                "14:12: bodies[0].material: found \"ruber\"; allowed: the name of a material (\"rubber\"); did you mean `rubber`?",
+            ),
+            (
+                "neo_hookean = ",
+                "neohookean = ",
+                "10:1: materials.rubber.neohookean: found unknown key `neohookean`; allowed: density, neo_hookean, hypoelastic; did you mean `neo_hookean`?",
+            ),
+            (
+                "neo_hookean = ",
+                "#",
+                "8:12: materials.rubber: found no law; allowed: a law (neo_hookean, hypoelastic), like neo_hookean = { bulk_modulus = \"6 MPa\", shear_modulus = \"3 MPa\" }",
+            ),
+            (
+                "shear_modulus",
+                "sheer_modulus",
+                "10:41: materials.rubber.neo_hookean.sheer_modulus: found unknown key `sheer_modulus`; allowed: bulk_modulus, shear_modulus, young_modulus, poisson_ratio, p_wave_modulus; did you mean `shear_modulus`?",
+            ),
+        ],
+    );
+    let none = MINIMAL.split("[[bodies]]").next().unwrap();
+    assert_eq!(
+        message(&format!("bodies = []\n{none}")),
+        "a.toml:1:10: bodies: found no body; allowed: at least one [[bodies]]"
+    );
+}
