@@ -18,12 +18,27 @@ pub struct Axis<T> {
 }
 
 /// Weights and slopes along one axis, for the nodes from the base node on.
+///
+/// Slopes sum to zero, so what counts are differences between neighbours, and each has one factor:
+///
+/// ```text
+/// sum f_i dS_i/dx = sum (f_{i+1} - f_i) rise_i
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Shape<N> {
     /// S(x_p - x_i) [-]; zero beyond the basis' width.
     pub weight: [N; MAX_WIDTH],
-    /// dS/dx [1/cell].
-    pub slope: [N; MAX_WIDTH],
+    /// What a difference between a node and the next one adds to the gradient [1/cell]; zero beyond the basis' width.
+    pub rise: [N; MAX_WIDTH - 1],
+}
+
+impl<N: Number> Shape<N> {
+    /// dS_i/dx [1/cell].
+    #[inline(always)]
+    pub fn slope(&self, i: usize) -> N {
+        let before = if i == 0 { N::ZERO } else { self.rise[i - 1] };
+        if i == MAX_WIDTH - 1 { before } else { before - self.rise[i] }
+    }
 }
 
 /// One-dimensional shape functions. Weights sum to one, slopes to zero, and a linear field is reproduced.
@@ -59,7 +74,7 @@ impl<T: Real> Basis<T> for Linear {
 
     #[inline(always)]
     fn shape<N: Number>(r: N, _half: N) -> Shape<N> {
-        Shape { weight: [N::ONE - r, r, N::ZERO], slope: [-N::ONE, N::ONE, N::ZERO] }
+        Shape { weight: [N::ONE - r, r, N::ZERO], rise: [N::ONE, N::ZERO] }
     }
 }
 
@@ -96,7 +111,7 @@ impl<T: Real> Basis<T> for Gimp {
         let (falling, rising) = (near * per_width, beyond * per_width);
         let first = N::HALF * near * falling + (before - near);
         let last = N::HALF * beyond * rising;
-        Shape { weight: [first, N::ONE - first - last, last], slope: [-falling, falling - rising, rising] }
+        Shape { weight: [first, N::ONE - first - last, last], rise: [falling, rising] }
     }
 }
 
@@ -112,8 +127,8 @@ mod tests {
             let sum = |f: &dyn Fn(usize) -> f64| (0..MAX_WIDTH).map(f).sum::<f64>();
             assert!((sum(&|k| axis.shape.weight[k]) - 1.0).abs() < 1e-14);
             assert!((sum(&|k| axis.shape.weight[k] * node(k)) - x).abs() < 1e-13, "x = {x}");
-            assert!(sum(&|k| axis.shape.slope[k]).abs() < 1e-14);
-            assert!((sum(&|k| axis.shape.slope[k] * node(k)) - 1.0).abs() < 1e-13, "x = {x}");
+            assert!(sum(&|k| axis.shape.slope(k)).abs() < 1e-14);
+            assert!((sum(&|k| axis.shape.slope(k) * node(k)) - 1.0).abs() < 1e-13, "x = {x}");
             assert!(axis.shape.weight.iter().all(|&w| (-1e-15..=1.0).contains(&w)));
         }
     }

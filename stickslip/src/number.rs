@@ -63,8 +63,8 @@ pub trait Real: Number + Default + PartialOrd + Sum {
     fn floor(self) -> i32;
     /// Neither infinite nor not a number.
     fn is_finite(self) -> bool;
-    /// A number with about a third of the exponent of this one, which is positive and normal: the cube root to within 4 %.
-    fn cube_root_guess(self) -> Self;
+    /// One over the cube root of a positive, normal number, to within 4 %.
+    fn inverse_cube_root_guess(self) -> Self;
 }
 
 macro_rules! real {
@@ -121,12 +121,17 @@ macro_rules! real {
                 self.is_finite()
             }
             #[inline(always)]
-            fn cube_root_guess(self) -> Self {
+            fn inverse_cube_root_guess(self) -> Self {
                 <$t>::from_bits($guess(self.to_bits()))
             }
         }
     };
 }
 // Dividing the bits by three divides the exponent by three; the constants make up for its bias and spread the error evenly.
-real!(f32, libm::cbrtf, libm::logf, |bits: u32| bits / 3 + 709_958_130);
-real!(f64, libm::cbrt, libm::log, |bits: u64| ((bits >> 32) / 3 + 715_094_163) << 32);
+real!(f32, libm::cbrtf, libm::logf, |bits: u32| CUBE_ROOT_F32.wrapping_sub(bits / 3));
+real!(f64, libm::cbrt, libm::log, |bits: u64| CUBE_ROOT_F64.wrapping_sub((bits >> 32) / 3) << 32);
+
+/// Bits from which to take a third of those of an `f32`, see [`Real::inverse_cube_root_guess`].
+pub(crate) const CUBE_ROOT_F32: u32 = 1_419_917_306;
+/// The same for the upper half of the bits of an `f64`.
+pub(crate) const CUBE_ROOT_F64: u64 = 1_430_188_458;

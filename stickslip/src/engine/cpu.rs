@@ -7,9 +7,9 @@ use super::Engine;
 use super::pass::{Found, Pass, Path, Verbs, Visit};
 use super::tile::SeveralAtATime;
 use crate::basis::Basis;
-use crate::grid::{Disjoint, SIDE, Window};
+use crate::grid::{Disjoint, Window};
 use crate::lanes::Laned;
-use crate::particles::Columns;
+use crate::particles::{Columns, Room};
 use rayon::prelude::*;
 use std::marker::PhantomData;
 use std::ops::Range;
@@ -20,11 +20,13 @@ pub struct Workshop<T, const D: usize> {
     /// A window for each thread.
     windows: Vec<Mutex<Box<Window<T, D>>>>,
     columns: Vec<Columns<T, D>>,
+    /// Room to sort particles in for each thread.
+    pub rooms: Vec<Mutex<Room<T>>>,
 }
 
 impl<T, const D: usize> Default for Workshop<T, D> {
     fn default() -> Self {
-        Workshop { windows: Vec::new(), columns: Vec::new() }
+        Workshop { windows: Vec::new(), columns: Vec::new(), rooms: Vec::new() }
     }
 }
 
@@ -41,19 +43,11 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let nodes = Disjoint::new(&mut self.field.nodes);
         let left = Disjoint::new(&mut self.left);
         let (cover, bodies, workshop, path) = (&self.cover, &self.bodies, &self.workshop, self.path);
-        let side = SIDE as usize + B::WIDTH - 1;
         let visit = |index: u32, window: &mut Window<T, D>| -> Found<T> {
             let tile = &cover.tiles[index as usize];
             let body = &bodies[tile.body];
             let for_rigid = Verbs { scatter: pass.verbs.scatter, ..Verbs::default() };
             let pass = &Pass { verbs: if body.rigid { for_rigid } else { pass.verbs }, ..*pass };
-            if pass.gathers() {
-                // SAFETY: nobody writes to the field in a pass without scatter, and only this tile to its slots in one with.
-                unsafe { window.load(&nodes, tile, side, pass.sought()) };
-            }
-            if pass.verbs.scatter.is_some() {
-                window.clear();
-            }
             let mut visit = Visit {
                 pass,
                 tile,
@@ -61,24 +55,28 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 columns: workshop.columns[tile.body],
                 order: cover.order_of(tile.body),
                 cells: cover.cells_of(tile),
+                nodes: &nodes,
                 window,
+                next: cover.tiles.get(index as usize + 1),
                 left: 0,
                 found: Found::NOTHING,
                 basis: PhantomData::<B>,
             };
-            match path {
-                Path::Lanes(processor) => T::run(processor, SeveralAtATime(&mut visit)),
-                // SAFETY: every particle belongs to one tile, and every tile to one call.
-                Path::Reference => unsafe { visit.one_by_one() },
+            // SAFETY: every particle belongs to one tile, and every tile to one call. Nobody writes to the field in a pass without
+            // scatter, and only this tile to its slots in one with: portions and tiles of one colour share none.
+            unsafe {
+                match path {
+                    Path::Lanes(processor) => T::run(processor, SeveralAtATime(&mut visit)),
+                    Path::Reference => {
+                        visit.open();
+                        visit.one_by_one();
+                        visit.close();
+                    }
+                }
             }
             // SAFETY: every tile has a place of its own.
             unsafe { *left.get(index as usize) |= visit.left };
-            let found = visit.found;
-            if pass.verbs.scatter.is_some() {
-                // SAFETY: portions and tiles of one colour share no slot, and they follow one another.
-                unsafe { window.add_to(&nodes, tile, side) };
-            }
-            found
+            visit.found
         };
         let several = |tiles: &mut dyn Iterator<Item = u32>| -> Found<T> {
             let thread = rayon::current_thread_index().unwrap_or(0);

@@ -2,7 +2,7 @@
 
 use crate::basis::Basis;
 use crate::body::{Body, Particle};
-use crate::grid::{Lattice, Sought, Tile, Window, addressable};
+use crate::grid::{Disjoint, Lattice, Node, SIDE, Sought, Tile, Window, addressable};
 use crate::lanes::Processor;
 use crate::material::Motion;
 use crate::particles::Columns;
@@ -32,6 +32,14 @@ pub struct Verbs {
     pub scatter: Option<Share>,
 }
 
+impl Verbs {
+    /// Whether the velocities that strain particles are those that move them, as when all is done to them at the end of a step.
+    #[inline(always)]
+    pub fn one_flow(&self) -> bool {
+        self.accept && self.strain && self.displace
+    }
+}
+
 /// A pass.
 #[derive(Clone, Copy, Debug)]
 pub struct Pass<T, const D: usize> {
@@ -51,7 +59,8 @@ impl<T: Real, const D: usize> Pass<T, D> {
     /// What it takes from the nodes.
     pub fn sought(&self) -> Sought<T> {
         let Verbs { accept, strain, displace, .. } = self.verbs;
-        Sought { change: accept.then_some(self.pic), flow: strain, carry: displace }
+        let flow = strain && !self.verbs.one_flow();
+        Sought { change: accept.then_some(self.pic), flow, carry: displace }
     }
 
     /// Whether it takes anything from the nodes.
@@ -121,8 +130,12 @@ pub struct Visit<'a, T, const D: usize, B> {
     pub order: &'a [u32],
     /// Places in the order where the tile's cells begin and end.
     pub cells: &'a [u32],
+    /// All nodes.
+    pub nodes: &'a Disjoint<'a, Node<T, D>>,
     /// The tile's nodes.
     pub window: &'a mut Window<T, D>,
+    /// The tile that is likely to come next.
+    pub next: Option<&'a Tile<D>>,
     /// Which cells have particles that left them, from the lowest bit on.
     pub left: u64,
     /// What it found.
@@ -132,6 +145,39 @@ pub struct Visit<'a, T, const D: usize, B> {
 }
 
 impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
+    /// Nodes along a side of the window that particles reach.
+    const REACHED: usize = SIDE as usize + B::WIDTH - 1;
+
+    /// Takes from the field what the pass seeks, and makes room for what it scatters.
+    ///
+    /// # Safety
+    /// Nobody may write to the tile's nodes meanwhile.
+    #[inline(always)]
+    pub unsafe fn open(&mut self) {
+        if self.pass.gathers() {
+            // SAFETY: the caller's.
+            unsafe { self.window.load(self.nodes, self.tile, Self::REACHED, self.pass.sought()) };
+        }
+        if self.pass.verbs.scatter.is_some() {
+            self.window.clear();
+            self.nodes.fetch(self.tile, Self::REACHED);
+        } else if let Some(next) = self.next {
+            self.nodes.fetch(next, Self::REACHED);
+        }
+    }
+
+    /// Adds to the field what particles scattered.
+    ///
+    /// # Safety
+    /// Nobody else may use the tile's nodes meanwhile.
+    #[inline(always)]
+    pub unsafe fn close(&mut self) {
+        if self.pass.verbs.scatter.is_some() {
+            // SAFETY: the caller's.
+            unsafe { self.window.add_to(self.nodes, self.tile, Self::REACHED) };
+        }
+    }
+
     /// Takes the tile's particles one by one.
     ///
     /// # Safety
@@ -180,7 +226,8 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
             particle.velocity.is_finite().then_some(()).ok_or(FaultKind::NotFinite)?;
         }
         if verbs.strain {
-            let increment = Matrix::IDENTITY + stencil.velocity_gradient(&self.window.flow, block) * dt;
+            let flow = if verbs.one_flow() { &self.window.carry } else { &self.window.flow };
+            let increment = Matrix::IDENTITY + stencil.velocity_gradient(flow, block) * dt;
             let deformation = increment * particle.deformation;
             let jacobian = deformation.det();
             if !jacobian.is_finite() {

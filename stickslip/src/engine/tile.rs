@@ -1,7 +1,7 @@
 //! A pass over the particles of a tile, several at a time.
 //!
-//! Particles of one cell are taken as many at a time as the processor has lanes: straight from memory where they lie side by side there,
-//! one by one where they do not. A group with a fault is left to the reference path, which says what is wrong with whom.
+//! Particles of one cell are taken as many at a time as the processor has lanes, and where cells of the plane have too few, those of a tile: straight from memory where they lie side by side there,
+//! by copies where they do not. A group with a fault is left to the reference path, which says what is wrong with whom.
 
 use super::pass::{Pass, Verbs, Visit};
 use crate::basis::Basis;
@@ -11,7 +11,8 @@ use crate::lanes::{Laned, Lanes, MOST_LANES, Machine, Numbers, Work, prefetch};
 use crate::material::{Material, Motion, Thickness};
 use crate::particles::{Column, Columns, deformation_entries, stress_entries};
 use crate::tensor::{Matrix, Real, Symmetric, Vector, array};
-use crate::transfer::{Group, Load, Share};
+use crate::transfer::{Group, Load, Own, Share, Shared, Start};
+use std::ops::Range;
 
 /// A tile's particles, several at a time.
 pub struct SeveralAtATime<'a, 'b, T, const D: usize, B>(pub &'a mut Visit<'b, T, D, B>);
@@ -22,43 +23,128 @@ impl<T: Laned, const D: usize, B: Basis<T>> Work for SeveralAtATime<'_, '_, T, D
 
     #[inline(always)]
     fn run<M: Machine<T>>(self) {
-        // In the plane a cell holds four particles as a rule.
-        if D == 2 { self.groups::<M, M::Quad>() } else { self.groups::<M, M::Wide>() }
+        let visit = self.0;
+        // SAFETY: the caller of this work keeps others away from the tile's nodes.
+        unsafe { visit.open() };
+        if D == 3 {
+            visit.groups::<M, M::Wide>();
+        } else if visit.sparse() {
+            visit.groups_across_cells::<M, M::Quad>();
+        } else {
+            // In the plane a cell holds four particles as a rule.
+            visit.groups::<M, M::Quad>();
+        }
+        // SAFETY: as above.
+        unsafe { visit.close() };
     }
 }
 
-impl<T: Laned, const D: usize, B: Basis<T>> SeveralAtATime<'_, '_, T, D, B> {
+impl<T: Laned, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
+    /// Whether cells have too few particles to fill the lanes.
     #[inline(always)]
-    fn groups<M: Machine<T>, V: Lanes<Real = T>>(self) {
-        let visit = self.0;
-        let constants = Constants {
-            material: visit.body.material.map(V::splat),
-            per_density: V::splat(T::ONE / visit.body.density),
-            origin: splat(&visit.pass.lattice.origin),
-            per_cell: V::splat(visit.pass.lattice.per_cell),
-            domain: visit.pass.domain.map(|[min, max]| [splat(&min), splat(&max)]),
-        };
+    fn sparse(&self) -> bool {
+        let particles = self.cells[self.cells.len() - 1] - self.cells[0];
+        let occupied = self.cells.windows(2).filter(|ends| ends[0] < ends[1]).count();
+        (particles as usize) < 2 * occupied
+    }
+
+    #[inline(always)]
+    fn constants<V: Lanes<Real = T>>(&self) -> Constants<V, D> {
+        Constants {
+            material: self.body.material.map(V::splat),
+            per_density: V::splat(T::ONE / self.body.density),
+            origin: splat(&self.pass.lattice.origin),
+            per_cell: V::splat(self.pass.lattice.per_cell),
+            domain: self.pass.domain.map(|[min, max]| [splat(&min), splat(&max)]),
+        }
+    }
+
+    /// Cell by cell: particles of one cell share their nodes.
+    #[inline(always)]
+    fn groups<M: Machine<T>, V: Lanes<Real = T>>(&mut self) {
+        let visit = self;
+        let constants = visit.constants::<V>();
         let (columns, order, cells) = (visit.columns, visit.order, visit.cells);
+        let mut copies = Copies([Numbers::ZERO; MOST_COLUMNS]);
         for (cell, ends) in cells.windows(2).enumerate() {
             let (mut first, end) = (ends[0] as usize, ends[1] as usize);
             while first < end {
-                let count = (end - first).min(V::COUNT);
+                let index = &order[first..end.min(first + V::COUNT)];
                 if let Some(&later) = order.get(first + AHEAD) {
                     fetch(&columns, later as usize, &visit.pass.verbs);
                 }
-                let members = Members::new(&columns, &order[first..first + count], V::COUNT);
+                // Indices within a cell ascend.
+                let in_a_row = index[index.len() - 1] as usize - index[0] as usize == index.len() - 1;
+                let members = Members::new::<V>(&columns, index, in_a_row, &visit.pass.verbs, &mut copies);
                 let place = Place::new(visit.tile.block, cell);
-                match group::<T, V, M, D, B>(visit, &constants, &members, &place) {
-                    Some(left) => visit.left |= u64::from(left) << cell,
+                let base = Vector::from_fn(|i| V::splat(T::of(f64::from(place.base[i]))));
+                let start = Shared::new::<D>(place.start);
+                match group::<T, V, M, D, B, _>(visit, &constants, &members, (base, start)) {
+                    Some(inside) => visit.left |= u64::from(!every::<V>(inside)) << cell,
                     None => {
-                        for &index in &order[first..first + count] {
+                        for &index in index {
                             // SAFETY: the tile's particles are this call's alone.
                             unsafe { visit.one(index, cell) };
                         }
                     }
                 }
-                first += count;
+                first += index.len();
             }
+        }
+    }
+
+    /// In the order of cells, as many particles at a time as there are lanes.
+    #[inline(always)]
+    fn groups_across_cells<M: Machine<T>, V: Lanes<Real = T>>(&mut self) {
+        let visit = self;
+        let constants = visit.constants::<V>();
+        let (columns, order, cells) = (visit.columns, visit.order, visit.cells);
+        let mut copies = Copies([Numbers::ZERO; MOST_COLUMNS]);
+        let (mut first, end) = (cells[0] as usize, cells[cells.len() - 1] as usize);
+        let mut cell = 0;
+        while first < end {
+            let index = &order[first..end.min(first + V::COUNT)];
+            if let Some(&later) = order.get(first + AHEAD) {
+                fetch(&columns, later as usize, &visit.pass.verbs);
+            }
+            let mut homes = [0; MOST_LANES];
+            let (mut starts, mut bases) = ([0; MOST_LANES], [[T::ZERO; MOST_LANES]; D]);
+            let mut in_a_row = true;
+            for lane in 0..V::COUNT {
+                // Lanes beyond repeat the first.
+                if lane < index.len() {
+                    in_a_row &= index[lane] as usize == index[0] as usize + lane;
+                    while cells[cell + 1] as usize <= first + lane {
+                        cell += 1;
+                    }
+                    homes[lane] = cell;
+                } else {
+                    homes[lane] = homes[0];
+                }
+                let place = Place::new(visit.tile.block, homes[lane]);
+                starts[lane] = place.start;
+                for i in 0..D {
+                    bases[i][lane] = T::of(f64::from(place.base[i]));
+                }
+            }
+            let members = Members::new::<V>(&columns, index, in_a_row, &visit.pass.verbs, &mut copies);
+            // SAFETY: as many numbers as any machine has lanes.
+            let base = Vector::from_fn(|i| unsafe { V::load(bases[i].as_ptr()) });
+            let start = Own::new::<D>(starts);
+            match group::<T, V, M, D, B, _>(visit, &constants, &members, (base, start)) {
+                Some(inside) => {
+                    for (lane, &home) in homes.iter().enumerate().take(index.len()) {
+                        visit.left |= u64::from(inside >> lane & 1 == 0) << home;
+                    }
+                }
+                None => {
+                    for (&index, &home) in index.iter().zip(&homes) {
+                        // SAFETY: the tile's particles are this call's alone.
+                        unsafe { visit.one(index, home) };
+                    }
+                }
+            }
+            first += index.len();
         }
     }
 }
@@ -69,15 +155,9 @@ const AHEAD: usize = 32;
 /// Fetches what a pass needs of a particle and those beside it.
 #[inline(always)]
 fn fetch<T: Real, const D: usize>(columns: &Columns<T, D>, particle: usize, verbs: &Verbs) {
-    let fetch = |first: usize, last: usize| {
-        for column in first..last {
-            // SAFETY: the particle exists.
-            prefetch(unsafe { columns.at(column, particle) });
-        }
-    };
-    fetch(Column::<D>::POSITION, Column::<D>::DEFORMATION);
-    if verbs.strain || verbs.scatter.is_some_and(|share| share != Share::Momentum) {
-        fetch(Column::<D>::DEFORMATION, Column::<D>::COUNT);
+    for column in 0..columns_read::<D>(verbs) {
+        // SAFETY: the particle exists.
+        prefetch(unsafe { columns.at(column, particle) });
     }
 }
 
@@ -119,59 +199,65 @@ impl<const D: usize> Place<D> {
     }
 }
 
-/// Up to as many particles as there are lanes.
+/// Up to as many particles as there are lanes, as columns: the body's own where they lie side by side and fill the lanes, else copies.
 struct Members<'a, T, const D: usize> {
     columns: &'a Columns<T, D>,
     index: &'a [u32],
-    lie: Lie,
+    first: *mut T,
+    stride: usize,
+    copied: bool,
 }
 
-/// How the members of a group lie in memory.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Lie {
-    /// Side by side, one in every lane.
-    Full,
-    /// Side by side, with lanes to spare.
-    Part,
-    /// Anyhow.
-    Apart,
-}
+/// Columns of particles that do not lie side by side or do not fill the lanes.
+struct Copies<T>([Numbers<T>; MOST_COLUMNS]);
+
+/// Columns of a particle in space.
+const MOST_COLUMNS: usize = Column::<3>::COUNT;
 
 impl<'a, T: Real, const D: usize> Members<'a, T, D> {
     #[inline(always)]
-    fn new(columns: &'a Columns<T, D>, index: &'a [u32], lanes: usize) -> Self {
-        // Indices within a cell ascend.
-        let lie = match index[index.len() - 1] as usize - index[0] as usize == index.len() - 1 {
-            true if index.len() == lanes => Lie::Full,
-            true => Lie::Part,
-            false => Lie::Apart,
-        };
-        Members { columns, index, lie }
-    }
-
-    #[inline(always)]
-    fn load<V: Lanes<Real = T>>(&self, column: usize) -> V {
-        // SAFETY: the tile's particles are this pass' alone.
-        unsafe {
-            let first = self.columns.at(column, self.index[0] as usize);
-            match self.lie {
-                Lie::Full => V::load(first),
-                Lie::Part => V::load_part(first, self.index.len()),
-                Lie::Apart => V::load(collect(self.columns.at(column, 0), self.index).0.as_ptr()),
+    fn new<V: Lanes<Real = T>>(
+        columns: &'a Columns<T, D>,
+        index: &'a [u32],
+        in_a_row: bool,
+        verbs: &Verbs,
+        copies: &mut Copies<T>,
+    ) -> Self {
+        if in_a_row && index.len() == V::COUNT {
+            // SAFETY: the particle exists.
+            let first = unsafe { columns.at(0, index[0] as usize) };
+            Members { columns, index, first, stride: columns.stride(), copied: false }
+        } else {
+            // SAFETY: the tile's particles are this pass' alone.
+            unsafe { copies.take::<V, D>(columns, index, columns_read::<D>(verbs)) };
+            Members {
+                columns,
+                index,
+                first: copies.0.as_mut_ptr().cast(),
+                stride: Copies::<T>::STRIDE,
+                copied: true,
             }
         }
     }
 
     #[inline(always)]
+    fn load<V: Lanes<Real = T>>(&self, column: usize) -> V {
+        // SAFETY: the tile's particles are this pass' alone, and copies are as long as any machine's lanes.
+        unsafe { V::load(self.first.add(column * self.stride)) }
+    }
+
+    #[inline(always)]
     fn store<V: Lanes<Real = T>>(&self, column: usize, numbers: V) {
-        // SAFETY: the tile's particles are this pass' alone.
-        unsafe {
-            let first = self.columns.at(column, self.index[0] as usize);
-            match self.lie {
-                Lie::Full => numbers.store(first),
-                Lie::Part => numbers.store_part(first, self.index.len()),
-                Lie::Apart => spread(self.columns.at(column, 0), self.index, &numbers.numbers().0),
-            }
+        // SAFETY: as above.
+        unsafe { numbers.store(self.first.add(column * self.stride)) }
+    }
+
+    /// Writes what was stored in copies of some columns to the particles.
+    #[inline(always)]
+    fn give_back(&self, columns: Range<usize>) {
+        if self.copied {
+            // SAFETY: the tile's particles are this pass' alone.
+            unsafe { give_back(self.columns, self.index, columns, self.first) }
         }
     }
 
@@ -225,47 +311,74 @@ impl<'a, T: Real, const D: usize> Members<'a, T, D> {
     }
 }
 
-/// Numbers that lie apart, and the first in the lanes beyond.
-///
-/// # Safety
-/// They must be there, and nobody may write to them meanwhile.
-#[inline(never)]
-unsafe fn collect<T: Real>(column: *const T, index: &[u32]) -> Numbers<T> {
-    let mut numbers = [T::ZERO; MOST_LANES];
-    for (lane, x) in numbers.iter_mut().enumerate() {
-        // SAFETY: the caller's.
-        *x = unsafe { *column.add(index[if lane < index.len() { lane } else { 0 }] as usize) };
+impl<T: Real> Copies<T> {
+    /// Entries from a column to the next.
+    const STRIDE: usize = size_of::<Numbers<T>>() / size_of::<T>();
+
+    /// The first so many columns, and the first particle in the lanes beyond.
+    ///
+    /// # Safety
+    /// The particles must exist, and nobody may write to them meanwhile.
+    #[inline(always)]
+    unsafe fn take<V: Lanes<Real = T>, const D: usize>(
+        &mut self,
+        columns: &Columns<T, D>,
+        index: &[u32],
+        count: usize,
+    ) {
+        let mut padded = [index[0] as usize; MOST_LANES];
+        for (lane, &i) in padded.iter_mut().zip(index) {
+            *lane = i as usize;
+        }
+        for (column, copy) in self.0.iter_mut().enumerate().take(count) {
+            // SAFETY: the caller's.
+            unsafe { V::gather(columns.at(column, 0), &padded).store(copy.0.as_mut_ptr()) };
+        }
     }
-    Numbers(numbers)
 }
 
-/// Writes numbers that lie apart.
+/// Writes copies of some columns to the particles.
 ///
 /// # Safety
-/// There must be room for them, and nobody may use it meanwhile.
+/// The particles must exist, and nobody may use them meanwhile; `copies` are columns of [`Copies`].
 #[inline(never)]
-unsafe fn spread<T: Real>(column: *mut T, index: &[u32], numbers: &[T; MOST_LANES]) {
-    for (&i, &x) in index.iter().zip(numbers) {
-        // SAFETY: the caller's.
-        unsafe { *column.add(i as usize) = x };
+unsafe fn give_back<T: Real, const D: usize>(
+    columns: &Columns<T, D>,
+    index: &[u32],
+    which: Range<usize>,
+    copies: *const T,
+) {
+    for column in which {
+        for (lane, &i) in index.iter().enumerate() {
+            // SAFETY: the caller's.
+            unsafe { *columns.at(column, i as usize) = *copies.add(column * Copies::<T>::STRIDE + lane) };
+        }
     }
 }
 
-/// Takes a group through a pass and says whether any particle left the cell; nothing is done if any has a fault.
+/// The columns that a pass reads, from the first on.
 #[inline(always)]
-fn group<T: Laned, V: Lanes<Real = T>, M: Machine<T>, const D: usize, B: Basis<T>>(
+fn columns_read<const D: usize>(verbs: &Verbs) -> usize {
+    let deformed = verbs.strain || verbs.scatter.is_some_and(|share| share != Share::Momentum);
+    if deformed || verbs.displace { Column::<D>::COUNT } else { Column::<D>::DEFORMATION }
+}
+
+/// Takes a group through a pass and says which particles did not leave their cells; nothing is done if any has a fault.
+///
+/// Particles have base nodes and places of these in the window.
+#[inline(always)]
+fn group<T: Laned, V: Lanes<Real = T>, M: Machine<T>, const D: usize, B: Basis<T>, S: Start>(
     visit: &mut Visit<'_, T, D, B>,
     constants: &Constants<V, D>,
     members: &Members<'_, T, D>,
-    place: &Place<D>,
-) -> Option<bool> {
+    (base, start): (Vector<V, D>, S),
+) -> Option<u32> {
     let Pass { verbs, dt, pic, .. } = *visit.pass;
     let Verbs { accept, strain, displace, scatter } = verbs;
     let position = members.vector::<V>(Column::<D>::POSITION);
     let half = members.load::<V>(Column::<D>::HALF_WIDTH) * constants.per_cell;
-    let base = Vector::from_fn(|i| V::splat(T::of(f64::from(place.base[i]))));
     let group =
-        Group::<V, D, B>::new(constants.in_cells(&position) - base, half, place.start, members.index.len());
+        Group::<V, D, B, S>::new(constants.in_cells(&position) - base, half, start, members.index.len());
     let mut sound = u32::MAX;
 
     let mut velocity = Vector::ZERO;
@@ -281,6 +394,7 @@ fn group<T: Laned, V: Lanes<Real = T>, M: Machine<T>, const D: usize, B: Basis<T
     let mut deformation = Matrix::ZERO;
     let mut stress = Symmetric::ZERO;
     let mut jacobian = V::ZERO;
+    let mut carried = Vector::ZERO;
     let pushes = matches!(scatter, Some(Share::Force | Share::Everything));
     if strain || displace || pushes {
         deformation = members.deformation::<V>();
@@ -290,7 +404,10 @@ fn group<T: Laned, V: Lanes<Real = T>, M: Machine<T>, const D: usize, B: Basis<T
     }
     if strain {
         let scale = V::splat(dt) * constants.per_cell;
-        let increment = Matrix::IDENTITY + group.velocity_gradient(&visit.window.flow) * scale;
+        let flow = if verbs.one_flow() { &visit.window.carry } else { &visit.window.flow };
+        let (gradient, mean) = group.flow(flow);
+        carried = mean;
+        let increment = Matrix::IDENTITY + gradient * scale;
         deformation = increment * deformation;
         jacobian = deformation.det();
         sound &= jacobian.at_least(V::splat(T::TINY)) & finite(&[jacobian]);
@@ -308,7 +425,10 @@ fn group<T: Laned, V: Lanes<Real = T>, M: Machine<T>, const D: usize, B: Basis<T
 
     let mut inside = u32::MAX;
     if displace {
-        let moved = position + group.interpolate(&visit.window.carry) * V::splat(dt);
+        if !verbs.one_flow() {
+            carried = group.interpolate(&visit.window.carry);
+        }
+        let moved = position + carried * V::splat(dt);
         sound &= finite(&moved.0);
         let cells = constants.in_cells(&moved);
         for i in 0..D {
@@ -317,18 +437,26 @@ fn group<T: Laned, V: Lanes<Real = T>, M: Machine<T>, const D: usize, B: Basis<T
             if let Some([min, max]) = &constants.domain {
                 sound &= moved[i].at_least(min[i]) & max[i].at_least(moved[i]);
             }
+        }
+        if !every::<V>(inside) {
             let far = V::splat(T::of(f64::from(crate::grid::MOST_CELLS - 1)));
-            sound &= reach.at_least(-far) & far.at_least(reach);
+            for i in 0..D {
+                let reach = B::reach(cells[i], half);
+                sound &= reach.at_least(-far) & far.at_least(reach);
+            }
         }
         if !every::<V>(sound) {
             return None;
         }
         members.store_vector(Column::<D>::POSITION, &moved);
+        members.give_back(Column::<D>::POSITION..Column::<D>::VELOCITY);
         let modulus = constants.material.wave_modulus(visit.body.thickness, &deformation, jacobian);
-        let signal = (modulus * constants.per_density).sqrt() + velocity.norm();
-        let signals = signal.numbers();
-        for &signal in &signals.0[..V::COUNT] {
-            visit.found.signal = visit.found.signal.max(signal);
+        let [wave, speed] = [modulus * constants.per_density, velocity.dot(velocity)];
+        if !every::<V>(no_faster(wave, speed, V::splat(visit.found.signal))) {
+            let signals = (wave.sqrt() + speed.sqrt()).numbers();
+            for &signal in &signals.0[..V::COUNT] {
+                visit.found.signal = visit.found.signal.max(signal);
+            }
         }
     }
     if !every::<V>(sound) {
@@ -336,10 +464,12 @@ fn group<T: Laned, V: Lanes<Real = T>, M: Machine<T>, const D: usize, B: Basis<T
     }
     if accept {
         members.store_vector(Column::<D>::VELOCITY, &velocity);
+        members.give_back(Column::<D>::VELOCITY..Column::<D>::MASS);
     }
     if strain {
         members.store_deformation(&deformation);
         members.store_stress(&stress);
+        members.give_back(Column::<D>::DEFORMATION..Column::<D>::COUNT);
     }
     if let Some(share) = scatter {
         let mut load = Load { momentum: None, stress: None };
@@ -353,7 +483,7 @@ fn group<T: Laned, V: Lanes<Real = T>, M: Machine<T>, const D: usize, B: Basis<T
         }
         group.scatter::<M>(visit.window, &load);
     }
-    Some(!every::<V>(inside))
+    Some(inside)
 }
 
 /// The motion with the thickness that every particle takes, one by one, and the stress after it; `None` if any has none.
@@ -420,12 +550,20 @@ fn every<V: Lanes>(bits: u32) -> bool {
     bits & all == all
 }
 
-/// Lanes in which every number is finite.
+/// Lanes in which every number is finite; their sum must be, too.
 #[inline(always)]
 fn finite<V: Lanes>(numbers: &[V]) -> u32 {
     let mut sum = V::ZERO;
-    for x in numbers {
-        sum += x.abs();
+    for &x in numbers {
+        sum += x;
     }
-    V::splat(V::Real::LARGEST).at_least(sum)
+    V::splat(V::Real::LARGEST).at_least(sum.abs())
+}
+
+/// Lanes in which sqrt(a) + sqrt(b) <= most, told without a root:  2 sqrt(a b) <= most^2 - a - b.
+#[inline(always)]
+fn no_faster<V: Lanes>(a: V, b: V, most: V) -> u32 {
+    let rest = most * most - a - b;
+    let product = a * b;
+    rest.at_least(V::ZERO) & (rest * rest).at_least((product + product) + (product + product))
 }

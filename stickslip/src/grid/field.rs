@@ -1,7 +1,8 @@
 //! What the nodes carry: all bodies' blocks in one slab, and the window through which a tile sees its part of it.
 
-use super::{Cover, SIDE, Tile, nodes_per_block};
+use super::{Cover, Nodes, SIDE, Tile, next_of, nodes_per_block};
 use crate::basis::MAX_WIDTH;
+use crate::lanes::prefetch;
 use crate::tensor::{Real, Vector};
 use rayon::prelude::*;
 use std::marker::PhantomData;
@@ -32,11 +33,16 @@ impl<T: Real, const D: usize> Node<T, D> {
     };
 }
 
+/// Blocks that a thread takes at a time.
+const BLOCKS: usize = 64;
+
 /// All bodies' blocks, in the order of [`Cover::slots`].
 #[derive(Clone, Debug, Default)]
 pub struct Field<T, const D: usize> {
     /// Nodes, block by block.
     pub nodes: Vec<Node<T, D>>,
+    /// Of each block, the nodes with mass, once [`Field::find_present`] has found them.
+    pub present: Vec<Nodes>,
 }
 
 impl<T: Real, const D: usize> Field<T, D> {
@@ -45,6 +51,33 @@ impl<T: Real, const D: usize> Field<T, D> {
         self.nodes.truncate(cover.slots.len() * nodes_per_block(D));
         self.nodes.par_iter_mut().with_min_len(4096).for_each(|node| *node = Node::EMPTY);
         self.nodes.resize(cover.slots.len() * nodes_per_block(D), Node::EMPTY);
+    }
+
+    /// Finds the nodes that have mass and does something to each of them.
+    pub fn find_present(&mut self, f: impl Fn(&mut Node<T, D>) + Sync) {
+        let n = nodes_per_block(D);
+        self.present.resize(self.nodes.len() / n, 0);
+        let blocks = self.nodes.par_chunks_exact_mut(n).zip(&mut self.present).with_min_len(BLOCKS);
+        blocks.for_each(|(nodes, present)| {
+            *present = 0;
+            for (local, node) in nodes.iter_mut().enumerate() {
+                if node.mass > T::ZERO {
+                    *present |= 1 << local;
+                    f(node);
+                }
+            }
+        });
+    }
+
+    /// Does something to each node that has mass.
+    pub fn each_present(&mut self, f: impl Fn(&mut Node<T, D>) + Sync) {
+        let blocks = self.nodes.par_chunks_exact_mut(nodes_per_block(D)).zip(&self.present);
+        blocks.with_min_len(BLOCKS).for_each(|(nodes, &present)| {
+            let mut places = present;
+            while let Some(local) = next_of(&mut places) {
+                f(&mut nodes[local]);
+            }
+        });
     }
 }
 
@@ -65,6 +98,9 @@ pub struct Sought<T> {
     pub carry: bool,
 }
 
+/// Four numbers, each the sum of two: particles are scattered two at a time.
+pub type Halves<T> = [[T; 2]; 4];
+
 /// A tile's part of the field in one place: nodes `block * 4` to `block * 4 + 5` along each axis, the last fastest.
 #[derive(Clone, Debug)]
 pub struct Window<T, const D: usize> {
@@ -75,9 +111,9 @@ pub struct Window<T, const D: usize> {
     /// The velocities that move particles [m/s].
     pub carry: [Vector<T, D>; WINDOW_NODES],
     /// Momentum scattered so far [kg m/s], and mass [kg] in the last place.
-    pub momentum: [[T; 4]; WINDOW_NODES],
+    pub momentum: [Halves<T>; WINDOW_NODES],
     /// Force scattered so far [N].
-    pub force: [[T; 4]; WINDOW_NODES],
+    pub force: [Halves<T>; WINDOW_NODES],
 }
 
 impl<T: Real, const D: usize> Default for Window<T, D> {
@@ -86,8 +122,8 @@ impl<T: Real, const D: usize> Default for Window<T, D> {
             change: [Vector::ZERO; WINDOW_NODES],
             flow: [Vector::ZERO; WINDOW_NODES],
             carry: [Vector::ZERO; WINDOW_NODES],
-            momentum: [[T::ZERO; 4]; WINDOW_NODES],
-            force: [[T::ZERO; 4]; WINDOW_NODES],
+            momentum: [[[T::ZERO; 2]; 4]; WINDOW_NODES],
+            force: [[[T::ZERO; 2]; 4]; WINDOW_NODES],
         }
     }
 }
@@ -116,8 +152,8 @@ impl<T: Real, const D: usize> Window<T, D> {
     /// Empties what particles scatter into.
     #[inline(always)]
     pub fn clear(&mut self) {
-        self.momentum[..WINDOW.pow(D as u32)].fill([T::ZERO; 4]);
-        self.force[..WINDOW.pow(D as u32)].fill([T::ZERO; 4]);
+        self.momentum[..WINDOW.pow(D as u32)].fill([[T::ZERO; 2]; 4]);
+        self.force[..WINDOW.pow(D as u32)].fill([[T::ZERO; 2]; 4]);
     }
 
     /// Takes from the field what is sought at the `side`^D first nodes.
@@ -161,11 +197,25 @@ impl<T: Real, const D: usize> Window<T, D> {
                 // SAFETY: the caller keeps other threads away from the tile's slots.
                 let node = unsafe { field.get(first + k) };
                 let (momentum, force) = (&self.momentum[place + k], &self.force[place + k]);
-                node.mass += momentum[3];
+                node.mass += momentum[3][0] + momentum[3][1];
                 for i in 0..D {
-                    node.velocity[i] += momentum[i];
-                    node.force[i] += force[i];
+                    node.velocity[i] += momentum[i][0] + momentum[i][1];
+                    node.force[i] += force[i][0] + force[i][1];
                 }
+            }
+        });
+    }
+}
+
+impl<T: Real, const D: usize> Disjoint<'_, Node<T, D>> {
+    /// Fetches the `side`^D first nodes of a tile's window into the cache.
+    #[inline(always)]
+    pub fn fetch(&self, tile: &Tile<D>, side: usize) {
+        each_run(tile, side, |_, first, count| {
+            let (mut line, end) = (self.place(first).cast::<u8>(), self.place(first + count).cast::<u8>());
+            while line < end {
+                prefetch(line);
+                line = line.wrapping_add(64);
             }
         });
     }
@@ -185,6 +235,12 @@ impl<'a, X> Disjoint<'a, X> {
     /// Opens a slice to many threads.
     pub fn new(slice: &'a mut [X]) -> Self {
         Disjoint { start: slice.as_mut_ptr(), len: slice.len(), slice: PhantomData }
+    }
+
+    /// Where entry `i` is.
+    #[inline(always)]
+    fn place(&self, i: usize) -> *const X {
+        self.start.wrapping_add(i)
     }
 
     /// Entry `i`.

@@ -42,27 +42,14 @@ pub trait Lanes: Number {
     /// Which lanes are not below another's, from the lowest bit on; none that is not a number.
     fn at_least(self, other: Self) -> u32;
 
-    /// `count` numbers in a row, and the first in the lanes beyond.
+    /// Numbers that lie anyhow: in lane `i` the one at place `index[i]`.
     ///
     /// # Safety
-    /// At least one and all of them must be there, and nobody may write to them meanwhile.
+    /// They must be there, and nobody may write to them meanwhile.
     #[inline(always)]
-    unsafe fn load_part(first: *const Self::Real, count: usize) -> Self {
-        // SAFETY: only the `count` numbers are read.
-        Self::from_fn(|lane| unsafe { *first.add(if lane < count { lane } else { 0 }) })
-    }
-
-    /// Writes the first `count` numbers in a row.
-    ///
-    /// # Safety
-    /// There must be room for them, and nobody may use it meanwhile.
-    #[inline(always)]
-    unsafe fn store_part(self, first: *mut Self::Real, count: usize) {
-        let numbers = self.numbers();
-        for (lane, &x) in numbers.0.iter().enumerate().take(count) {
-            // SAFETY: only `count` numbers are written.
-            unsafe { *first.add(lane) = x };
-        }
+    unsafe fn gather(first: *const Self::Real, index: &[usize; MOST_LANES]) -> Self {
+        // SAFETY: the caller's.
+        Self::from_fn(|lane| unsafe { *first.add(index[lane]) })
     }
 
     /// The number `f(i)` in lane `i`.
@@ -85,30 +72,51 @@ pub trait Lanes: Number {
         numbers
     }
 
-    /// Writes the lanes of four registers as rows: in row `i` the lanes `i` of all four.
+    /// Two numbers over and over.
     #[inline(always)]
-    fn store_rows(columns: [Self; 4], rows: &mut [[Self::Real; 4]; MOST_LANES]) {
+    fn alternate(pair: [Self::Real; 2]) -> Self {
+        Self::from_fn(|lane| pair[lane % 2])
+    }
+
+    /// One in the first `count` lanes, zero beyond.
+    #[inline(always)]
+    fn first(count: usize) -> Self {
+        Self::from_fn(|lane| if lane < count { Self::Real::ONE } else { Self::Real::ZERO })
+    }
+
+    /// Writes the lanes of four registers by pairs: first the lanes 0 and 1 of all four, then the lanes 2 and 3, and so on.
+    #[inline(always)]
+    fn store_pairs(columns: [Self; 4], pairs: &mut [[[Self::Real; 2]; 4]; MOST_LANES / 2]) {
         let columns =
             [columns[0].numbers(), columns[1].numbers(), columns[2].numbers(), columns[3].numbers()];
-        for (i, row) in rows.iter_mut().enumerate().take(Self::COUNT) {
-            for (entry, column) in row.iter_mut().zip(&columns) {
-                *entry = column.0[i];
+        for (i, pair) in pairs.iter_mut().enumerate().take(Self::COUNT / 2) {
+            for (entry, column) in pair.iter_mut().zip(&columns) {
+                *entry = [column.0[2 * i], column.0[2 * i + 1]];
             }
         }
     }
 
-    /// Cube root by Halley's iteration, y <- y (y^3 + 2x)/(2 y^3 + x), which triples the digits each time.
+    /// [`Real::inverse_cube_root_guess`] of every lane.
+    #[inline(always)]
+    fn inverse_cube_root_guess(self) -> Self {
+        let numbers = self.numbers();
+        Self::from_fn(|lane| numbers.0[lane].inverse_cube_root_guess())
+    }
+
+    /// Cube root without a division: r = x^(-1/3) by r <- r (1 + h/3 + 2 h^2/9), h = 1 - x r^3, which triples the digits each time,
+    /// and then one step of Newton's for x r^2.
     #[inline(always)]
     fn cube_root(self) -> Self {
-        let numbers = self.numbers();
-        let mut y = Self::from_fn(|lane| numbers.0[lane].cube_root_guess());
-        // 4 % -> 4e-5 -> 1e-13 -> exact.
-        let iterations = if Self::Real::EPSILON.f64() > 1e-10 { 2 } else { 3 };
-        for _ in 0..iterations {
-            let cube = y * y * y;
-            y *= (cube + (self + self)) / ((cube + cube) + self);
+        let (third, ninths) = (Self::of(1.0 / 3.0), Self::of(2.0 / 9.0));
+        let mut r = self.inverse_cube_root_guess();
+        // 4 % -> 2e-4 -> 3e-11
+        for _ in 0..2 {
+            let h = Self::ONE - self * (r * r * r);
+            r += r * (h * (third + h * ninths));
         }
-        y
+        let square = r * r;
+        let y = self * square;
+        y - (y * y * y - self) * (square * third)
     }
 }
 
@@ -116,6 +124,11 @@ pub trait Lanes: Number {
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 pub struct Numbers<T>(pub [T; MOST_LANES]);
+
+impl<T: Real> Numbers<T> {
+    /// Zeros.
+    pub const ZERO: Self = Numbers([T::ZERO; MOST_LANES]);
+}
 
 /// A kind of processor: how many numbers it holds side by side.
 pub trait Machine<T>: Copy + 'static {

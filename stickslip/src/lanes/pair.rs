@@ -1,6 +1,6 @@
 //! Lanes in two registers, where one holds half of what is wanted.
 
-use super::Lanes;
+use super::{Lanes, MOST_LANES};
 use crate::number::Number;
 use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
@@ -94,6 +94,34 @@ impl<V: Lanes> Lanes for Pair<V> {
         unsafe {
             self.0.store(first);
             self.1.store(first.add(V::COUNT));
+        }
+    }
+
+    #[inline(always)]
+    unsafe fn gather(first: *const V::Real, index: &[usize; MOST_LANES]) -> Self {
+        let mut rest = [index[V::COUNT]; MOST_LANES];
+        rest[..V::COUNT].copy_from_slice(&index[V::COUNT..2 * V::COUNT]);
+        // SAFETY: the caller's.
+        unsafe { Pair(V::gather(first, index), V::gather(first, &rest)) }
+    }
+
+    #[inline(always)]
+    fn alternate(pair: [V::Real; 2]) -> Self {
+        Pair(V::alternate(pair), V::alternate(pair))
+    }
+
+    #[inline(always)]
+    fn inverse_cube_root_guess(self) -> Self {
+        Pair(self.0.inverse_cube_root_guess(), self.1.inverse_cube_root_guess())
+    }
+
+    #[inline(always)]
+    fn store_pairs(columns: [Self; 4], pairs: &mut [[[V::Real; 2]; 4]; MOST_LANES / 2]) {
+        let mut upper = *pairs;
+        V::store_pairs([columns[0].0, columns[1].0, columns[2].0, columns[3].0], pairs);
+        V::store_pairs([columns[0].1, columns[1].1, columns[2].1, columns[3].1], &mut upper);
+        for i in 0..V::COUNT / 2 {
+            pairs[V::COUNT / 2 + i] = upper[i];
         }
     }
 

@@ -16,8 +16,7 @@ impl<T: Laned> Work for Everything<'_, T> {
         let mut found = Vec::new();
         let count = <M::Wide as Lanes>::COUNT;
         for chunk in self.0.chunks(count) {
-            // SAFETY: parts of a slice, no longer than it says.
-            let x = unsafe { M::Wide::load_part(chunk.as_ptr(), chunk.len()) };
+            let x = M::Wide::from_fn(|lane| chunk[lane.min(chunk.len() - 1)]);
             let two = M::Wide::splat(T::of(2.0));
             let above = T::of(f64::from((x.at_least(two)).count_ones()));
             let results = [
@@ -32,11 +31,7 @@ impl<T: Laned> Work for Everything<'_, T> {
                 M::Wide::splat(above),
             ];
             for result in results {
-                let mut part = [T::ZERO; MOST_LANES];
-                // SAFETY: the array is as long as any machine's lanes.
-                unsafe { result.store_part(part.as_mut_ptr(), chunk.len()) };
-                found.extend(&part[..chunk.len()]);
-                assert!(part[chunk.len()..].iter().all(|&x| x == T::ZERO), "nothing is written beyond");
+                found.extend(&result.numbers().0[..chunk.len()]);
             }
         }
         found

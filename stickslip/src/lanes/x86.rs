@@ -1,9 +1,12 @@
 //! Lanes of x86-64 processors.
 
 use super::{Lanes, MOST_LANES, Machine, Pair, Work};
-use crate::number::Number;
+use crate::number::{CUBE_ROOT_F32, CUBE_ROOT_F64, Number};
 use std::arch::x86_64::*;
 use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
+
+/// A third of 2^33, rounded up: the upper bits of a product with it are a third, for every number of 32 bits.
+const THIRD: i64 = 0xaaaa_aaab;
 
 /// Whether the processor has all of AVX-512 that [`avx512`] uses.
 pub fn has_avx512() -> bool {
@@ -182,22 +185,45 @@ lanes! { F64x8: __m512d as [f64; 8];
     _mm512_add_pd _mm512_sub_pd _mm512_mul_pd _mm512_div_pd; _mm512_sqrt_pd _mm512_min_pd _mm512_max_pd;
     |a, b| u32::from(_mm512_cmp_pd_mask::<_CMP_GE_OQ>(a, b));
     #[inline(always)]
-    unsafe fn load_part(first: *const f64, count: usize) -> Self {
-        // SAFETY: lanes beyond the mask are not read.
-        unsafe { F64x8(_mm512_mask_loadu_pd(_mm512_set1_pd(*first), mask(count), first)) }
-    }
-    #[inline(always)]
-    unsafe fn store_part(self, first: *mut f64, count: usize) {
-        // SAFETY: lanes beyond the mask are not written.
-        unsafe { _mm512_mask_storeu_pd(first, mask(count), self.0) }
-    }
-    #[inline(always)]
-    fn store_rows(columns: [Self; 4], rows: &mut [[f64; 4]; MOST_LANES]) {
-        let [a, b, c, d] = columns;
+    fn inverse_cube_root_guess(self) -> Self {
         // SAFETY: values of this type exist only where the processor has the instructions.
         unsafe {
-            turn_pd([low(a.0), low(b.0), low(c.0), low(d.0)], rows.as_mut_ptr().cast());
-            turn_pd([high(a.0), high(b.0), high(c.0), high(d.0)], rows.as_mut_ptr().add(4).cast());
+            let upper = _mm512_srli_epi64::<32>(_mm512_castpd_si512(self.0));
+            let third = _mm512_srli_epi64::<33>(_mm512_mul_epu32(upper, _mm512_set1_epi64(THIRD)));
+            let guess = _mm512_sub_epi64(_mm512_set1_epi64(CUBE_ROOT_F64 as i64), third);
+            F64x8(_mm512_castsi512_pd(_mm512_slli_epi64::<32>(guess)))
+        }
+    }
+    #[inline(always)]
+    unsafe fn gather(first: *const f64, index: &[usize; MOST_LANES]) -> Self {
+        // SAFETY: the caller's.
+        let at = |lane: usize| unsafe { *first.add(index[lane]) };
+        // SAFETY: values of this type exist only where the processor has the instructions.
+        unsafe { F64x8(_mm512_setr_pd(at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7))) }
+    }
+    #[inline(always)]
+    fn alternate([a, b]: [f64; 2]) -> Self {
+        // SAFETY: values of this type exist only where the processor has the instructions.
+        unsafe { F64x8(_mm512_broadcast_f64x2(_mm_set_pd(b, a))) }
+    }
+    #[inline(always)]
+    fn first(count: usize) -> Self {
+        // SAFETY: values of this type exist only where the processor has the instructions.
+        unsafe { F64x8(_mm512_maskz_mov_pd(mask(count), _mm512_set1_pd(1.0))) }
+    }
+    #[inline(always)]
+    fn store_pairs([a, b, c, d]: [Self; 4], pairs: &mut [[[f64; 2]; 4]; MOST_LANES / 2]) {
+        let pairs: *mut f64 = pairs.as_mut_ptr().cast();
+        // SAFETY: values of this type exist only where the processor has the instructions.
+        unsafe {
+            // Quarters 0, 1 and 2, 3 of two columns, then of all four.
+            let [ab, cd] = [_mm512_shuffle_f64x2::<0x44>(a.0, b.0), _mm512_shuffle_f64x2::<0x44>(c.0, d.0)];
+            let [ab_high, cd_high] =
+                [_mm512_shuffle_f64x2::<0xee>(a.0, b.0), _mm512_shuffle_f64x2::<0xee>(c.0, d.0)];
+            _mm512_storeu_pd(pairs, _mm512_shuffle_f64x2::<0x88>(ab, cd));
+            _mm512_storeu_pd(pairs.add(8), _mm512_shuffle_f64x2::<0xdd>(ab, cd));
+            _mm512_storeu_pd(pairs.add(16), _mm512_shuffle_f64x2::<0x88>(ab_high, cd_high));
+            _mm512_storeu_pd(pairs.add(24), _mm512_shuffle_f64x2::<0xdd>(ab_high, cd_high));
         }
     }
 }
@@ -206,9 +232,37 @@ lanes! { F64x4: __m256d as [f64; 4];
     _mm256_add_pd _mm256_sub_pd _mm256_mul_pd _mm256_div_pd; _mm256_sqrt_pd _mm256_min_pd _mm256_max_pd;
     |a, b| _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_GE_OQ>(a, b)) as u32;
     #[inline(always)]
-    fn store_rows([a, b, c, d]: [Self; 4], rows: &mut [[f64; 4]; MOST_LANES]) {
+    fn inverse_cube_root_guess(self) -> Self {
         // SAFETY: values of this type exist only where the processor has the instructions.
-        unsafe { turn_pd([a.0, b.0, c.0, d.0], rows.as_mut_ptr().cast()) }
+        unsafe {
+            let upper = _mm256_srli_epi64::<32>(_mm256_castpd_si256(self.0));
+            let third = _mm256_srli_epi64::<33>(_mm256_mul_epu32(upper, _mm256_set1_epi64x(THIRD)));
+            let guess = _mm256_sub_epi64(_mm256_set1_epi64x(CUBE_ROOT_F64 as i64), third);
+            F64x4(_mm256_castsi256_pd(_mm256_slli_epi64::<32>(guess)))
+        }
+    }
+    #[inline(always)]
+    unsafe fn gather(first: *const f64, index: &[usize; MOST_LANES]) -> Self {
+        // SAFETY: the caller's.
+        let at = |lane: usize| unsafe { *first.add(index[lane]) };
+        // SAFETY: values of this type exist only where the processor has the instructions.
+        unsafe { F64x4(_mm256_setr_pd(at(0), at(1), at(2), at(3))) }
+    }
+    #[inline(always)]
+    fn alternate([a, b]: [f64; 2]) -> Self {
+        // SAFETY: values of this type exist only where the processor has the instructions.
+        unsafe { F64x4(_mm256_setr_pd(a, b, a, b)) }
+    }
+    #[inline(always)]
+    fn store_pairs([a, b, c, d]: [Self; 4], pairs: &mut [[[f64; 2]; 4]; MOST_LANES / 2]) {
+        let pairs: *mut f64 = pairs.as_mut_ptr().cast();
+        // SAFETY: values of this type exist only where the processor has the instructions.
+        unsafe {
+            _mm256_storeu_pd(pairs, _mm256_permute2f128_pd::<0x20>(a.0, b.0));
+            _mm256_storeu_pd(pairs.add(4), _mm256_permute2f128_pd::<0x20>(c.0, d.0));
+            _mm256_storeu_pd(pairs.add(8), _mm256_permute2f128_pd::<0x31>(a.0, b.0));
+            _mm256_storeu_pd(pairs.add(12), _mm256_permute2f128_pd::<0x31>(c.0, d.0));
+        }
     }
 }
 lanes! { F32x8: __m256 as [f32; 8];
@@ -216,42 +270,62 @@ lanes! { F32x8: __m256 as [f32; 8];
     _mm256_add_ps _mm256_sub_ps _mm256_mul_ps _mm256_div_ps; _mm256_sqrt_ps _mm256_min_ps _mm256_max_ps;
     |a, b| _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_GE_OQ>(a, b)) as u32;
     #[inline(always)]
-    fn store_rows([a, b, c, d]: [Self; 4], rows: &mut [[f32; 4]; MOST_LANES]) {
+    fn inverse_cube_root_guess(self) -> Self {
         // SAFETY: values of this type exist only where the processor has the instructions.
         unsafe {
-            let [ab, cd] = [_mm256_unpacklo_ps(a.0, b.0), _mm256_unpacklo_ps(c.0, d.0)];
-            let [ab_high, cd_high] = [_mm256_unpackhi_ps(a.0, b.0), _mm256_unpackhi_ps(c.0, d.0)];
-            let turned = [
-                _mm256_shuffle_ps::<0b01_00_01_00>(ab, cd),
-                _mm256_shuffle_ps::<0b11_10_11_10>(ab, cd),
-                _mm256_shuffle_ps::<0b01_00_01_00>(ab_high, cd_high),
-                _mm256_shuffle_ps::<0b11_10_11_10>(ab_high, cd_high),
-            ];
-            let mut i = 0;
-            while i < 4 {
-                _mm_storeu_ps(rows[i].as_mut_ptr(), _mm256_castps256_ps128(turned[i]));
-                _mm_storeu_ps(rows[i + 4].as_mut_ptr(), _mm256_extractf128_ps::<1>(turned[i]));
-                i += 1;
-            }
+            let (bits, third) = (_mm256_castps_si256(self.0), _mm256_set1_epi64x(THIRD));
+            let even = _mm256_srli_epi64::<33>(_mm256_mul_epu32(bits, third));
+            let odd = _mm256_srli_epi64::<33>(_mm256_mul_epu32(_mm256_srli_epi64::<32>(bits), third));
+            let third = _mm256_or_si256(even, _mm256_slli_epi64::<32>(odd));
+            let guess = _mm256_sub_epi32(_mm256_set1_epi32(CUBE_ROOT_F32 as i32), third);
+            F32x8(_mm256_castsi256_ps(guess))
         }
+    }
+    #[inline(always)]
+    unsafe fn gather(first: *const f32, index: &[usize; MOST_LANES]) -> Self {
+        // SAFETY: the caller's.
+        let at = |lane: usize| unsafe { *first.add(index[lane]) };
+        // SAFETY: values of this type exist only where the processor has the instructions.
+        unsafe { F32x8(_mm256_setr_ps(at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7))) }
+    }
+    #[inline(always)]
+    fn alternate([a, b]: [f32; 2]) -> Self {
+        // SAFETY: values of this type exist only where the processor has the instructions.
+        unsafe { F32x8(_mm256_setr_ps(a, b, a, b, a, b, a, b)) }
+    }
+    #[inline(always)]
+    fn store_pairs([a, b, c, d]: [Self; 4], pairs: &mut [[[f32; 2]; 4]; MOST_LANES / 2]) {
+        let wide = |x: Self| {
+            // SAFETY: values of this type exist only where the processor has the instructions.
+            unsafe { _mm256_castps_pd(x.0) }
+        };
+        // SAFETY: values of this type exist only where the processor has the instructions.
+        unsafe { turn_pd([wide(a), wide(b), wide(c), wide(d)], pairs.as_mut_ptr().cast()) }
     }
 }
 lanes! { F32x4: __m128 as [f32; 4];
     _mm_set1_ps _mm_loadu_ps _mm_storeu_ps;
     _mm_add_ps _mm_sub_ps _mm_mul_ps _mm_div_ps; _mm_sqrt_ps _mm_min_ps _mm_max_ps;
     |a, b| _mm_movemask_ps(_mm_cmpge_ps(a, b)) as u32;
-}
-
-#[inline(always)]
-unsafe fn low(x: __m512d) -> __m256d {
-    // SAFETY: the caller has AVX-512.
-    unsafe { _mm512_castpd512_pd256(x) }
-}
-
-#[inline(always)]
-unsafe fn high(x: __m512d) -> __m256d {
-    // SAFETY: the caller has AVX-512.
-    unsafe { _mm512_extractf64x4_pd::<1>(x) }
+    #[inline(always)]
+    fn inverse_cube_root_guess(self) -> Self {
+        // SAFETY: every x86-64 processor has the instructions.
+        unsafe {
+            let (bits, third) = (_mm_castps_si128(self.0), _mm_set1_epi64x(THIRD));
+            let even = _mm_srli_epi64::<33>(_mm_mul_epu32(bits, third));
+            let odd = _mm_srli_epi64::<33>(_mm_mul_epu32(_mm_srli_epi64::<32>(bits), third));
+            let third = _mm_or_si128(even, _mm_slli_epi64::<32>(odd));
+            let guess = _mm_sub_epi32(_mm_set1_epi32(CUBE_ROOT_F32 as i32), third);
+            F32x4(_mm_castsi128_ps(guess))
+        }
+    }
+    #[inline(always)]
+    unsafe fn gather(first: *const f32, index: &[usize; MOST_LANES]) -> Self {
+        // SAFETY: the caller's.
+        let at = |lane: usize| unsafe { *first.add(index[lane]) };
+        // SAFETY: values of this type exist only where the processor has the instructions.
+        unsafe { F32x4(_mm_setr_ps(at(0), at(1), at(2), at(3))) }
+    }
 }
 
 /// Writes the columns of a 4 x 4 matrix as its rows.

@@ -1,23 +1,116 @@
-//! Transfer for several particles of one cell at once: they share their nodes.
+//! Transfer for several particles at once: of one cell, which share their nodes, or of several cells of a tile.
 //!
 //! A gather has a particle in each lane and hands every node's values to all of them. A scatter has the components of momentum or force
-//! in the lanes and adds up one particle after the other, in the order in which they come. Sums run axis by axis.
+//! of two particles in the lanes and adds up one pair after the other, in the order in which they come.
 
 // Sums over nodes and components read better by their indices.
 #![allow(clippy::needless_range_loop)]
 
 use crate::basis::{Basis, MAX_WIDTH, Shape};
-use crate::grid::{WINDOW, WINDOW_NODES, Window};
+use crate::grid::{Halves, WINDOW, WINDOW_NODES, Window};
 use crate::lanes::{Lanes, MOST_LANES, Machine, Numbers};
 use crate::tensor::{Matrix, Number, Real, Symmetric, Vector};
 use std::marker::PhantomData;
 
-/// Several particles of one cell with their shape functions.
+/// Where in the window the nodes of a group's particles begin: the place of their base node.
+pub trait Start: Copy {
+    /// Of the particle in a lane.
+    fn of(&self, lane: usize) -> usize;
+
+    /// A component of the value at the node that comes `offset` after the base node.
+    fn value<V: Lanes, const D: usize>(
+        &self,
+        nodes: &[Vector<V::Real, D>; WINDOW_NODES],
+        offset: usize,
+        component: usize,
+    ) -> V;
+
+    /// The place of all, if they share one.
+    fn shared(&self) -> Option<usize>;
+}
+
+/// Particles of one cell.
 #[derive(Clone, Copy, Debug)]
-pub struct Group<V, const D: usize, B> {
+pub struct Shared(usize);
+
+/// Particles each of a cell of its own.
+#[derive(Clone, Copy, Debug)]
+pub struct Own([usize; MOST_LANES]);
+
+impl Shared {
+    /// Particles whose base node has a place in the window.
+    #[inline(always)]
+    pub fn new<const D: usize>(start: usize) -> Self {
+        assert!(start <= last_start(D), "a tile's cells lie in its block");
+        Shared(start)
+    }
+}
+
+impl Own {
+    /// Particles whose base nodes have places in the window.
+    #[inline(always)]
+    pub fn new<const D: usize>(starts: [usize; MOST_LANES]) -> Self {
+        for start in starts {
+            assert!(start <= last_start(D), "a tile's cells lie in its block");
+        }
+        Own(starts)
+    }
+}
+
+impl Start for Shared {
+    #[inline(always)]
+    fn of(&self, _lane: usize) -> usize {
+        self.0
+    }
+
+    #[inline(always)]
+    fn value<V: Lanes, const D: usize>(
+        &self,
+        nodes: &[Vector<V::Real, D>; WINDOW_NODES],
+        offset: usize,
+        component: usize,
+    ) -> V {
+        V::splat(nodes[self.0 + offset][component])
+    }
+
+    #[inline(always)]
+    fn shared(&self) -> Option<usize> {
+        Some(self.0)
+    }
+}
+
+impl Start for Own {
+    #[inline(always)]
+    fn of(&self, lane: usize) -> usize {
+        self.0[lane]
+    }
+
+    #[inline(always)]
+    fn value<V: Lanes, const D: usize>(
+        &self,
+        nodes: &[Vector<V::Real, D>; WINDOW_NODES],
+        offset: usize,
+        component: usize,
+    ) -> V {
+        let mut index = [0; MOST_LANES];
+        for lane in 0..V::COUNT {
+            index[lane] = (self.0[lane] + offset) * D + component;
+        }
+        // SAFETY: an offset is at most a particle's reach, and starts are before the last one.
+        unsafe { V::gather(nodes.as_ptr().cast(), &index) }
+    }
+
+    #[inline(always)]
+    fn shared(&self) -> Option<usize> {
+        None
+    }
+}
+
+/// Several particles of one tile with their shape functions.
+#[derive(Clone, Copy, Debug)]
+pub struct Group<V, const D: usize, B, S> {
     shapes: [Shape<V>; D],
-    /// Place in the window of the cell's base node.
-    start: usize,
+    start: S,
     /// How many particles; lanes beyond repeat the first.
     count: usize,
     basis: PhantomData<B>,
@@ -43,11 +136,11 @@ const fn last_start(dimension: usize) -> usize {
     place
 }
 
-impl<V: Lanes, const D: usize, B: Basis<V::Real>> Group<V, D, B> {
-    /// Particles at `r` from their base node with half-widths `half` [cells], `count` of them; `start` is the base node's place in the window.
+impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
+    /// Particles at `r` from their base nodes with half-widths `half` [cells], `count` of them; `start` has the base nodes' places in the
+    /// window.
     #[inline(always)]
-    pub fn new(r: Vector<V, D>, half: V, start: usize, count: usize) -> Self {
-        assert!(start <= last_start(D), "a tile's cells lie in its block");
+    pub fn new(r: Vector<V, D>, half: V, start: S, count: usize) -> Self {
         // No closure: the compiler may leave one of this size uninlined, and then its instructions are calls.
         let mut shapes = [B::shape(r[0], half); D];
         for i in 1..D {
@@ -56,10 +149,10 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>> Group<V, D, B> {
         Group { shapes, start, count, basis: PhantomData }
     }
 
-    /// Place of a node in the window.
+    /// Place of a node in the window, after that of the base node.
     #[inline(always)]
-    fn place(&self, i: usize, j: usize, k: usize) -> usize {
-        self.start + if D == 2 { i * WINDOW + j } else { (i * WINDOW + j) * WINDOW + k }
+    fn offset(i: usize, j: usize, k: usize) -> usize {
+        if D == 2 { i * WINDOW + j } else { (i * WINDOW + j) * WINDOW + k }
     }
 
     /// Nodes along the third axis.
@@ -74,9 +167,8 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>> Group<V, D, B> {
             for j in 0..B::WIDTH {
                 let mut row = Vector::<V, D>::ZERO;
                 for k in 0..Self::DEPTH {
-                    let node = &nodes[self.place(i, j, k)];
                     for c in 0..D {
-                        let value = V::splat(node[c]);
+                        let value: V = self.start.value(nodes, Self::offset(i, j, k), c);
                         row[c] = if D == 2 { value } else { row[c] + self.shapes[D - 1].weight[k] * value };
                     }
                 }
@@ -87,113 +179,239 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>> Group<V, D, B> {
         sum
     }
 
-    /// h L = sum v_i (x) h grad S_i, embedded in space [m/s].
+    /// h L = sum v_i (x) h grad S_i, embedded in space, and sum S_i v_i of the same velocities [m/s].
     #[inline(always)]
-    pub fn velocity_gradient(&self, nodes: &[Vector<V::Real, D>; WINDOW_NODES]) -> Matrix<V> {
+    pub fn flow(&self, nodes: &[Vector<V::Real, D>; WINDOW_NODES]) -> (Matrix<V>, Vector<V, D>) {
         let [x, y, z] = [&self.shapes[0], &self.shapes[1], &self.shapes[D - 1]];
         let mut l = Matrix::<V>::ZERO;
+        let mut sum = Vector::<V, D>::ZERO;
         for i in 0..B::WIDTH {
             // Sums over a plane of nodes: of values, and of slopes along y and z.
             let mut plane = [[V::ZERO; D]; 3];
             for j in 0..B::WIDTH {
                 let (mut row, mut sloped) = ([V::ZERO; D], [V::ZERO; D]);
                 for k in 0..Self::DEPTH {
-                    let node = &nodes[self.place(i, j, k)];
                     for c in 0..D {
-                        let value = V::splat(node[c]);
+                        let value: V = self.start.value(nodes, Self::offset(i, j, k), c);
                         if D == 2 {
                             row[c] = value;
                         } else {
                             row[c] += z.weight[k] * value;
-                            sloped[c] += z.slope[k] * value;
+                            sloped[c] += z.slope(k) * value;
                         }
                     }
                 }
                 for c in 0..D {
                     plane[0][c] += y.weight[j] * row[c];
-                    plane[1][c] += y.slope[j] * row[c];
+                    plane[1][c] += y.slope(j) * row[c];
                     if D == 3 {
                         plane[2][c] += y.weight[j] * sloped[c];
                     }
                 }
             }
             for c in 0..D {
-                l.0[c][0] += x.slope[i] * plane[0][c];
+                sum[c] += x.weight[i] * plane[0][c];
+                l.0[c][0] += x.slope(i) * plane[0][c];
                 l.0[c][1] += x.weight[i] * plane[1][c];
                 if D == 3 {
                     l.0[c][2] += x.weight[i] * plane[2][c];
                 }
             }
         }
-        l
+        (l, sum)
     }
 
-    /// Adds what the particles scatter to the window, one particle after the other.
+    /// Adds what the particles scatter to the window, two particles at a time.
     ///
     /// ```text
     /// m_i += S_i m,   p_i += S_i m v,   f_i += -V sigma grad S_i          Sulsky, Chen and Schreyer (1994)
     /// ```
     #[inline(always)]
     pub fn scatter<M: Machine<V::Real>>(&self, window: &mut Window<V::Real, D>, load: &Load<V, D>) {
+        let there = V::first(self.count);
         if let Some((momentum, mass)) = load.momentum {
             let z = if D == 2 { V::ZERO } else { momentum[D - 1] };
-            self.scatter_momentum::<M>(window, &rows([momentum[0], momentum[1], z, mass]));
+            let load = Rows::new([momentum[0] * there, momentum[1] * there, z * there, mass * there]);
+            match self.start.shared() {
+                Some(start) => self.scatter_momentum::<M>(window, start, &load),
+                None => self.scatter_momentum_singly::<M>(window, &load),
+            }
         }
         if let Some(stress) = load.stress {
-            let [xx, yy, zz, xy, yz, xz] = (stress * -V::ONE).0;
-            let x = rows([xx, xy, xz, V::ZERO]);
-            let y = rows([xy, yy, yz, V::ZERO]);
-            let z = if D == 2 { y } else { rows([xz, yz, zz, V::ZERO]) };
-            self.scatter_force::<M>(window, [&x, &y, &z]);
-        }
-    }
-
-    #[inline(always)]
-    fn scatter_momentum<M: Machine<V::Real>>(&self, window: &mut Window<V::Real, D>, load: &Rows<V::Real>) {
-        let along = numbers(&self.shapes[0].weight);
-        for j in 0..B::WIDTH {
-            for k in 0..Self::DEPTH {
-                let across = self.across(j, k).numbers();
-                let mut sums = [M::Quad::ZERO; MAX_WIDTH];
-                for p in 0..self.count.min(MOST_LANES) {
-                    let row = load.get::<M>(p) * M::Quad::splat(across.0[p]);
-                    for i in 0..B::WIDTH {
-                        sums[i] += row * M::Quad::splat(along[i].0[p]);
-                    }
-                }
-                for i in 0..B::WIDTH {
-                    add::<M, _>(&mut window.momentum[self.place(i, j, k)], sums[i]);
-                }
+            let [xx, yy, zz, xy, yz, xz] = (stress * there).0;
+            let x = Rows::new([xx, xy, xz, V::ZERO]);
+            let y = Rows::new([xy, yy, yz, V::ZERO]);
+            let z = if D == 2 { y } else { Rows::new([xz, yz, zz, V::ZERO]) };
+            match self.start.shared() {
+                Some(start) => self.scatter_force::<M>(window, start, [&x, &y, &z]),
+                None => self.scatter_force_singly::<M>(window, [&x, &y, &z]),
             }
         }
     }
 
     #[inline(always)]
-    fn scatter_force<M: Machine<V::Real>>(&self, window: &mut Window<V::Real, D>, load: [&Rows<V::Real>; 3]) {
+    fn scatter_momentum<M: Machine<V::Real>>(
+        &self,
+        window: &mut Window<V::Real, D>,
+        start: usize,
+        load: &Rows<V::Real>,
+    ) {
+        for i in 0..B::WIDTH {
+            let mut weights = [Numbers::ZERO; MAX_WIDTH * MAX_WIDTH];
+            for j in 0..B::WIDTH {
+                for k in 0..Self::DEPTH {
+                    weights[j * Self::DEPTH + k] = (self.shapes[0].weight[i] * self.across(j, k)).numbers();
+                }
+            }
+            let mut sums = [M::Wide::ZERO; MAX_WIDTH * MAX_WIDTH];
+            for pair in 0..self.pairs() {
+                let row = load.get::<M>(pair);
+                for n in 0..B::WIDTH * Self::DEPTH {
+                    sums[n] += row * factors::<M, _>(&weights[n], pair);
+                }
+            }
+            for j in 0..B::WIDTH {
+                for k in 0..Self::DEPTH {
+                    let node = &mut window.momentum[start + Self::offset(i, j, k)];
+                    add::<M, _>(node, sums[j * Self::DEPTH + k]);
+                }
+            }
+        }
+    }
+
+    /// Sums over particles stand between two neighbours, one of which gets what the other one gives.
+    #[inline(always)]
+    fn scatter_force<M: Machine<V::Real>>(
+        &self,
+        window: &mut Window<V::Real, D>,
+        start: usize,
+        load: [&Rows<V::Real>; 3],
+    ) {
         let [x, y, z] = [&self.shapes[0], &self.shapes[1], &self.shapes[D - 1]];
-        let (weight, slope) = (numbers(&x.weight), numbers(&x.slope));
-        for j in 0..B::WIDTH {
-            for k in 0..Self::DEPTH {
-                let across = self.across(j, k).numbers();
-                let across_y = if D == 2 { y.slope[j] } else { y.slope[j] * z.weight[k] }.numbers();
-                let across_z = if D == 2 { V::ZERO } else { y.weight[j] * z.slope[k] }.numbers();
-                let mut sums = [M::Quad::ZERO; MAX_WIDTH];
-                for p in 0..self.count.min(MOST_LANES) {
-                    let sloped = load[0].get::<M>(p) * M::Quad::splat(across.0[p]);
-                    let mut level = load[1].get::<M>(p) * M::Quad::splat(across_y.0[p]);
-                    if D == 3 {
-                        level += load[2].get::<M>(p) * M::Quad::splat(across_z.0[p]);
+        let mut below = [M::Wide::ZERO; MAX_WIDTH * MAX_WIDTH];
+        for i in 0..B::WIDTH {
+            // To the next plane of nodes, and within this one.
+            let mut along_x = [Numbers::ZERO; MAX_WIDTH * MAX_WIDTH];
+            let mut along_y = [Numbers::ZERO; MAX_WIDTH * (MAX_WIDTH - 1)];
+            let mut along_z = [Numbers::ZERO; MAX_WIDTH * (MAX_WIDTH - 1)];
+            for j in 0..B::WIDTH {
+                for k in 0..Self::DEPTH {
+                    if i + 1 < B::WIDTH {
+                        along_x[j * Self::DEPTH + k] = (self.across(j, k) * x.rise[i]).numbers();
                     }
-                    for i in 0..B::WIDTH {
-                        sums[i] +=
-                            level * M::Quad::splat(weight[i].0[p]) + sloped * M::Quad::splat(slope[i].0[p]);
+                    if j + 1 < B::WIDTH {
+                        let weight = if D == 2 { x.weight[i] } else { x.weight[i] * z.weight[k] };
+                        along_y[j * Self::DEPTH + k] = (weight * y.rise[j]).numbers();
                     }
-                }
-                for i in 0..B::WIDTH {
-                    add::<M, _>(&mut window.force[self.place(i, j, k)], sums[i]);
+                    if k + 1 < Self::DEPTH {
+                        along_z[j * (Self::DEPTH - 1) + k] =
+                            (x.weight[i] * y.weight[j] * z.rise[k]).numbers();
+                    }
                 }
             }
+            let mut above = [M::Wide::ZERO; MAX_WIDTH * MAX_WIDTH];
+            if i + 1 < B::WIDTH {
+                for pair in 0..self.pairs() {
+                    let row = load[0].get::<M>(pair);
+                    for n in 0..B::WIDTH * Self::DEPTH {
+                        above[n] += row * factors::<M, _>(&along_x[n], pair);
+                    }
+                }
+            }
+            let mut right = [M::Wide::ZERO; MAX_WIDTH * (MAX_WIDTH - 1)];
+            let mut back = [M::Wide::ZERO; MAX_WIDTH * (MAX_WIDTH - 1)];
+            for pair in 0..self.pairs() {
+                let (row_y, row_z) = (load[1].get::<M>(pair), load[2].get::<M>(pair));
+                for n in 0..(B::WIDTH - 1) * Self::DEPTH {
+                    right[n] += row_y * factors::<M, _>(&along_y[n], pair);
+                }
+                for n in 0..B::WIDTH * (Self::DEPTH - 1) {
+                    back[n] += row_z * factors::<M, _>(&along_z[n], pair);
+                }
+            }
+            for j in 0..B::WIDTH {
+                for k in 0..Self::DEPTH {
+                    let n = j * Self::DEPTH + k;
+                    let mut sum = above[n] - below[n];
+                    if j + 1 < B::WIDTH {
+                        sum += right[n];
+                    }
+                    if j > 0 {
+                        sum -= right[n - Self::DEPTH];
+                    }
+                    if k + 1 < Self::DEPTH {
+                        sum += back[j * (Self::DEPTH - 1) + k];
+                    }
+                    if k > 0 {
+                        sum -= back[j * (Self::DEPTH - 1) + k - 1];
+                    }
+                    add::<M, _>(&mut window.force[start + Self::offset(i, j, k)], sum);
+                }
+            }
+            below = above;
         }
+    }
+
+    /// What [`Group::scatter_momentum`] does, for particles that share no nodes.
+    #[inline(always)]
+    fn scatter_momentum_singly<M: Machine<V::Real>>(
+        &self,
+        window: &mut Window<V::Real, D>,
+        load: &Rows<V::Real>,
+    ) {
+        let mut weights = [Numbers::ZERO; MAX_WIDTH.pow(3)];
+        for (n, [i, j, k]) in Self::nodes() {
+            weights[n] = (self.shapes[0].weight[i] * self.across(j, k)).numbers();
+        }
+        for p in 0..self.count.min(MOST_LANES) {
+            let row = load.one::<M>(p);
+            for (n, [i, j, k]) in Self::nodes() {
+                let node = &mut window.momentum[self.start.of(p) + Self::offset(i, j, k)];
+                add::<M, _>(node, row * factors::<M, _>(&weights[n], p / 2));
+            }
+        }
+    }
+
+    /// What [`Group::scatter_force`] does, for particles that share no nodes.
+    #[inline(always)]
+    fn scatter_force_singly<M: Machine<V::Real>>(
+        &self,
+        window: &mut Window<V::Real, D>,
+        load: [&Rows<V::Real>; 3],
+    ) {
+        let [x, y, z] = [&self.shapes[0], &self.shapes[1], &self.shapes[D - 1]];
+        let mut slopes = [[Numbers::ZERO; D]; MAX_WIDTH.pow(3)];
+        for (n, [i, j, k]) in Self::nodes() {
+            let depth = if D == 2 { V::ONE } else { z.weight[k] };
+            slopes[n][0] = (x.slope(i) * self.across(j, k)).numbers();
+            slopes[n][1] = (x.weight[i] * y.slope(j) * depth).numbers();
+            if D == 3 {
+                slopes[n][2] = (x.weight[i] * y.weight[j] * z.slope(k)).numbers();
+            }
+        }
+        for p in 0..self.count.min(MOST_LANES) {
+            let rows = [load[0].one::<M>(p), load[1].one::<M>(p), load[2].one::<M>(p)];
+            for (n, [i, j, k]) in Self::nodes() {
+                let mut sum = M::Wide::ZERO;
+                for axis in 0..D {
+                    sum -= rows[axis] * factors::<M, _>(&slopes[n][axis], p / 2);
+                }
+                add::<M, _>(&mut window.force[self.start.of(p) + Self::offset(i, j, k)], sum);
+            }
+        }
+    }
+
+    /// The nodes that a particle reaches, numbered.
+    #[inline(always)]
+    fn nodes() -> impl Iterator<Item = (usize, [usize; 3])> {
+        let count = B::WIDTH * B::WIDTH * Self::DEPTH;
+        (0..count).map(|n| (n, [n / (B::WIDTH * Self::DEPTH), n / Self::DEPTH % B::WIDTH, n % Self::DEPTH]))
+    }
+
+    /// Pairs of particles; the last one of the last may be none.
+    #[inline(always)]
+    fn pairs(&self) -> usize {
+        self.count.min(MOST_LANES).div_ceil(2)
     }
 
     /// Product of the weights across the first axis.
@@ -204,33 +422,45 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>> Group<V, D, B> {
     }
 }
 
-/// Four numbers of each particle of a group.
+/// Four numbers of each particle of a group: of two particles the first, then the second and so on.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
-struct Rows<T>([[T; 4]; MOST_LANES]);
+struct Rows<T>([Halves<T>; MOST_LANES / 2]);
 
 impl<T: Real> Rows<T> {
     #[inline(always)]
-    fn get<M: Machine<T>>(&self, particle: usize) -> M::Quad {
-        // SAFETY: a row is four numbers.
-        unsafe { M::Quad::load(self.0[particle].as_ptr()) }
+    fn new<V: Lanes<Real = T>>(columns: [V; 4]) -> Self {
+        let mut rows = Rows([[[T::ZERO; 2]; 4]; MOST_LANES / 2]);
+        V::store_pairs(columns, &mut rows.0);
+        rows
+    }
+
+    #[inline(always)]
+    fn get<M: Machine<T>>(&self, pair: usize) -> M::Wide {
+        // SAFETY: a row is eight numbers.
+        unsafe { M::Wide::load(self.0[pair].as_ptr().cast()) }
     }
 }
 
+impl<T: Real> Rows<T> {
+    /// The row of a particle, with zeros in the place of its partner.
+    #[inline(always)]
+    fn one<M: Machine<T>>(&self, particle: usize) -> M::Wide {
+        let only = if particle % 2 == 0 { [T::ONE, T::ZERO] } else { [T::ZERO, T::ONE] };
+        self.get::<M>(particle / 2) * M::Wide::alternate(only)
+    }
+}
+
+/// What multiplies the rows of two particles.
 #[inline(always)]
-fn rows<V: Lanes>(columns: [V; 4]) -> Rows<V::Real> {
-    let mut rows = Rows([[V::Real::ZERO; 4]; MOST_LANES]);
-    V::store_rows(columns, &mut rows.0);
-    rows
+fn factors<M: Machine<T>, T: Real>(numbers: &Numbers<T>, pair: usize) -> M::Wide {
+    let [a, b] = [numbers.0[2 * pair], numbers.0[2 * pair + 1]];
+    M::Wide::alternate([a, b])
 }
 
 #[inline(always)]
-fn numbers<V: Lanes>(lanes: &[V; MAX_WIDTH]) -> [Numbers<V::Real>; MAX_WIDTH] {
-    [lanes[0].numbers(), lanes[1].numbers(), lanes[2].numbers()]
-}
-
-#[inline(always)]
-fn add<M: Machine<T>, T: Real>(node: &mut [T; 4], sum: M::Quad) {
-    // SAFETY: a node has four numbers, borrowed for writing.
-    unsafe { (M::Quad::load(node.as_ptr()) + sum).store(node.as_mut_ptr()) }
+fn add<M: Machine<T>, T: Real>(node: &mut Halves<T>, sum: M::Wide) {
+    let node = node.as_mut_ptr().cast();
+    // SAFETY: a node has eight numbers, borrowed for writing.
+    unsafe { (M::Wide::load(node) + sum).store(node) }
 }

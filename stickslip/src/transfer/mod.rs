@@ -1,11 +1,11 @@
 //! Particles to field, field to particles: the sums over the nodes that particles reach.
 //!
-//! [`Stencil`] takes one particle at a time and reads like the equations; [`Group`] takes several particles of one cell at once. The
+//! [`Stencil`] takes one particle at a time and reads like the equations; [`Group`] takes several particles of a tile at once. The
 //! second must give what the first gives, but for round-off.
 
 mod group;
 
-pub use group::{Group, Load};
+pub use group::{Group, Load, Own, Shared, Start};
 
 use crate::basis::{Axis, Basis};
 use crate::body::Particle;
@@ -59,7 +59,7 @@ impl<T: Real, const D: usize, B: Basis<T>> Stencil<T, D, B> {
                 |w, i: usize| w * if i == skip { T::ONE } else { self.axes[i].shape.weight[offset[i]] };
             (0..D).fold(T::ONE, axis)
         };
-        let gradient = Vector::from_fn(|i| weight(i) * self.axes[i].shape.slope[offset[i]] * self.per_cell);
+        let gradient = Vector::from_fn(|i| weight(i) * self.axes[i].shape.slope(offset[i]) * self.per_cell);
         (weight(D), gradient)
     }
 
@@ -88,9 +88,9 @@ impl<T: Real, const D: usize, B: Basis<T>> Stencil<T, D, B> {
         self.each(block, |place, weight, _| {
             let node = &mut window.momentum[place];
             for i in 0..D {
-                node[i] += momentum[i] * weight;
+                node[i][0] += momentum[i] * weight;
             }
-            node[3] += mass * weight;
+            node[3][0] += mass * weight;
         });
     }
 
@@ -104,7 +104,7 @@ impl<T: Real, const D: usize, B: Basis<T>> Stencil<T, D, B> {
         self.each(block, |place, _, gradient| {
             let force = stress.times(gradient);
             for i in 0..D {
-                window.force[place][i] -= force[i];
+                window.force[place][i][0] -= force[i];
             }
         });
     }
