@@ -27,6 +27,8 @@ pub struct Surface<T, const D: usize> {
 /// What the velocities of a pair are about to be used for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Use {
+    /// As what forces and later contact change: interpolated velocities that strain nothing.
+    Start,
     /// To strain the particles.
     Strain,
     /// To move them: velocities with all forces of the step.

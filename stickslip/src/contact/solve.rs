@@ -3,7 +3,6 @@
 use super::law::law;
 use super::{Change, Part, Rules, Site, Span, Step, Survey, Use};
 use crate::grid::{Disjoint, Node};
-use crate::scene::ContactLaw;
 use crate::tensor::{Real, Vector};
 use rayon::prelude::*;
 
@@ -28,8 +27,6 @@ pub struct Impulse<T, const D: usize> {
     pub velocity: [Vector<T, D>; 2],
     /// Whether a later use of the same step takes it back and judges the whole.
     pub span: Span,
-    /// Work that friction took from the two bodies [J].
-    pub friction: T,
     /// Work that a rigid body's prescribed motion did on the other [J].
     pub work: T,
 }
@@ -156,7 +153,6 @@ impl<T: Real, const D: usize> Solve<'_, T, D> {
                 change: Change::NONE,
                 velocity: before.map_or([Vector::ZERO; 2], |impulse| impulse.velocity),
                 span,
-                friction: T::ZERO,
                 work: T::ZERO,
             }
         }));
@@ -182,14 +178,10 @@ impl<T: Real, const D: usize> Solve<'_, T, D> {
                         impulse.work += impulse.change.impulse[1 - i].dot(free[i]);
                     }
                 }
-                let slip = velocities[places[0]] - velocities[places[1]];
                 if let (Use::Motion, Some(n)) = (step.purpose, pair.normal) {
+                    let slip = velocities[places[0]] - velocities[places[1]];
                     impulse.slip = (slip - n * slip.dot(n)).norm() * step.duration;
                 }
-                impulse.friction = match pair.rule.law {
-                    ContactLaw::Glued => T::ZERO,
-                    _ => -impulse.change.tangential.dot(slip),
-                };
             }
             let round_off = T::EPSILON * T::of(ROUND_OFF);
             if encounters.len() == 1
@@ -210,7 +202,7 @@ impl<T: Real, const D: usize> Solve<'_, T, D> {
 mod tests {
     use super::*;
     use crate::contact::{Encounter, Facing, Friction, Place, Rule, Side, Surface};
-    use crate::scene::Normal;
+    use crate::scene::{ContactLaw, Normal};
     use crate::tensor::Symmetric;
     use proptest::prelude::*;
 

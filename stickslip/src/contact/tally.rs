@@ -150,9 +150,7 @@ impl Tally {
                 sum.moment[i] += magnitude * place[i];
             }
             sum.normal -= impulse.change.normal.f64();
-            sum.friction += impulse.friction.f64();
             self.scaled += u64::from(impulse.change.scale < T::ONE);
-            self.friction += impulse.friction.f64();
             self.work += impulse.work.f64();
         }
         for &place in &self.present {
@@ -161,6 +159,13 @@ impl Tally {
                 *largest = Some(largest.unwrap_or_default().max(sum.last.area));
             }
         }
+    }
+
+    /// Adds work that friction took from two bodies [J].
+    pub fn rub(&mut self, bodies: [usize; 2], work: f64) {
+        let place = self.place(bodies);
+        self.pairs[place].sum.friction += work;
+        self.friction += work;
     }
 
     /// Where a pair stands, from now on if not before.

@@ -7,6 +7,7 @@ use crate::contact::{Near, Record, Solve, Span, Step, Use};
 use crate::door::StepError;
 use crate::grid::{Blocks, Disjoint, node_at, nodes_per_block};
 use crate::lanes::{Laned, Processor};
+use crate::scene::{ContactLaw, StressUpdate};
 use crate::tensor::{Matrix, Vector};
 use crate::transfer::Share;
 use rayon::prelude::*;
@@ -176,7 +177,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.watch.lap("survey", start);
     }
 
-    /// Contact on the interpolated velocities, which strain the particles.
+    /// Contact on the interpolated velocities, which strain the particles if the stress is updated first.
     pub(super) fn first_contact(&mut self, dt: T) {
         self.exchange(dt, Contact::Interpolated);
         let impulses = self.impulses[0].iter().filter(|impulse| impulse.span == Span::EachUse);
@@ -189,6 +190,34 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.tally.add(self.impulses[1].iter(), &self.lattice);
     }
 
+    /// Books the work of friction in this step: what its impulses took from the particles' kinetic energy.
+    ///
+    /// ```text
+    /// W = -sum J_t . (u^0 + u^1)/2,   u = v_a - v_b of the particles' velocities, interpolated before and after the step
+    /// ```
+    /// This is exact for FLIP, where particles take changes at nodes: sum_p m_p v_p . sum_i S_i dv_i = sum_i m_i dv_i . v_i, with v_i
+    /// interpolated from the v_p. The velocity of a node with next to no mass is mostly what forces do to it within the step, and says little of
+    /// how particles move. Where the step does not interpolate a second time, u^1 = u^0.
+    pub(super) fn friction_work(&mut self) {
+        let interpolated_twice = self.clock.stress_update == StressUpdate::ModifiedLast;
+        let (nodes, rules) = (&self.field.nodes, &self.rules);
+        let seen = |node: usize| {
+            let node = &nodes[node];
+            if interpolated_twice { (node.start + node.velocity) * T::HALF } else { node.start }
+        };
+        let [first, second, _] = &self.impulses;
+        let first = first.iter().filter(|impulse| impulse.span == Span::EachUse);
+        for impulse in first.chain(second.iter()) {
+            let [a, b] = impulse.bodies;
+            let rubs = impulse.change.tangential != Vector::ZERO
+                && rules.rule(rules.number(a, b)).law != ContactLaw::Glued;
+            if rubs {
+                let [v, w] = impulse.nodes.map(seen);
+                self.tally.rub(impulse.bodies, -impulse.change.tangential.dot(v - w).f64());
+            }
+        }
+    }
+
     /// Contact on velocities that only strain the particles: it enters no sum of forces and works.
     pub(super) fn contact_unrecorded(&mut self, dt: T) {
         self.exchange(dt, Contact::Unrecorded);
@@ -198,7 +227,10 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let start = Instant::now();
         let [first, second, third] = &mut self.impulses;
         let (purpose, record, given, listed) = match contact {
-            Contact::Interpolated => (Use::Strain, Record::Kept, None, first),
+            Contact::Interpolated => {
+                let strains = self.clock.stress_update == StressUpdate::First;
+                (if strains { Use::Strain } else { Use::Start }, Record::Kept, None, first)
+            }
             Contact::Integrated => (Use::Motion, Record::Kept, Some(&*first), second),
             Contact::Unrecorded => (Use::Strain, Record::Dropped, None, third),
         };

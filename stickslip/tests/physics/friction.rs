@@ -9,8 +9,8 @@
 //! Expected: without friction the acceleration within 0.1 %, by least squares over the second half of the run. With friction the tangential
 //! over the normal impulse within 1 % of mu up to 0.4 (measured 0.1 %), and the effective coefficient within 5 %. Near tan(angle) = 0.577 the shaking
 //! is as fast as the slip, so that the block sticks now and then: at mu = 0.5 the ratio is 3 % low, the same with half the cell and with a quarter of the step.
-//! Sticking: the exact answer is rest. Undamped, the block's own shaking lets it creep for mu near tan(angle); with PIC, which damps, it comes to
-//! rest: no way in the second half of the run, to 1e-4 of what gravity alone would do.
+//! Sticking: the exact answer is rest, if the load comes slowly; loaded at once, an undamped elastic block creeps. So block and floor first fall together, and within
+//! 0.2 s the floor comes to rest. Expected: no way in the second half of the run, to 1e-4 of what gravity alone would do (measured 3e-5 at most).
 
 use crate::trial::{run_to, start};
 
@@ -102,12 +102,20 @@ fn a_block_slides_down_an_incline() {
 
 #[test]
 fn a_block_rests_on_an_incline() {
+    let (sin, cos) = ANGLE.to_radians().sin_cos();
+    let gravity = [G * sin, -G * cos];
+    // g (1 + cos(pi t/T))/2 until T = 0.2 s
+    let floor =
+        gravity.map(|g| format!("if(t < 0.2, {} * (t - 0.2 + 0.2/pi * sin(pi * t / 0.2)), 0)", 0.5 * g));
     for friction in ["0.65", "0.8", "inf"] {
         let scene = incline(0.0)
             .replace("friction = 0", &format!("friction = {friction}"))
-            .replace("time.end = 1", "time = { end = 1, pic_share = 1 }");
+            .replace("rigid = {}", &format!("rigid = {{ velocity = {floor:?} }}"))
+            .replace(
+                "name = \"block\"",
+                &format!("name = \"block\"\nvelocity = {:?}", gravity.map(|g| -0.1 * g)),
+            );
         let mut simulation = start(&scene);
-        let from = simulation.bodies()[1].position[0];
         let (mut early, end) = (0.0, 0.8);
         run_to(&mut *simulation, end, |s| {
             if s.time() < 0.5 * end {
@@ -116,14 +124,47 @@ fn a_block_rests_on_an_incline() {
         });
         let now = simulation.bodies()[1].position[0];
         let free = 0.5 * G * ANGLE.to_radians().sin() * end * end;
-        println!(
-            "friction {friction}: moved {:.1e} m in all, {:.1e} m in the second half, of {free:.2} m",
-            now - from,
-            now - early
-        );
-        assert!((now - from).abs() < 0.01 * free, "friction {friction}: moved {} m", now - from);
+        println!("friction {friction}: moved {:.1e} m in the second half, of {free:.2} m", now - early);
         assert!((now - early).abs() < 1e-4 * free, "friction {friction}: creeps {} m", now - early);
     }
+}
+
+/// Two equal disks that meet head on do not slip, by symmetry, so friction takes nothing; nor may it, as nothing rubs, gain anything. Nodes at the rim of
+/// the contact, with next to no mass, do slip; booked with their velocities the work was 0.7 % of the energy of the disks.
+#[test]
+fn friction_takes_no_energy_where_nothing_slips() {
+    let mut simulation = start(
+        r#"
+        space = { dimension = "plane-strain", cell = 0.1, particles_per_side = 1 }
+        time.end = 12
+        materials.elastic = { density = 1, hypoelastic = { young_modulus = 1, poisson_ratio = 0.214 } }
+        [[bodies]]
+        name = "first"
+        material = "elastic"
+        shape.ball = { center = [-1, 0], radius = 1 }
+        particles = "fitted"
+        velocity = [0.02, 0]
+        [[bodies]]
+        name = "second"
+        material = "elastic"
+        shape.ball = { center = [1, 0], radius = 1 }
+        particles = "fitted"
+        velocity = [-0.02, 0]
+        [[contact]]
+        friction = 0.5
+        "#,
+    );
+    let before = simulation.ledger();
+    run_to(&mut *simulation, 12.0, |_| {});
+    let after = simulation.ledger();
+    println!(
+        "friction {:.1e}, total {:.4} of the energy",
+        after.friction / before.total,
+        after.total / before.total
+    );
+    assert!(simulation.bodies()[0].velocity[0] < -0.018, "they bounce");
+    assert!(after.friction.abs() < 1e-3 * before.total, "{after:?}");
+    assert!(after.total <= before.total, "{after:?}");
 }
 
 /// Blocks thrown along a floor slow down by the friction of their own pair: by names of bodies, by names of materials, by default.

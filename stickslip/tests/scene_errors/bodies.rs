@@ -57,6 +57,11 @@ fn bodies_contact_and_references() {
             ),
             (
                 "law = \"{contact}\"",
+                "law = \"surface\"\nnormal = \"own\"",
+                "57:10: contact[0].normal: found \"own\"; allowed: \"common\" with law = \"surface\", which finds one direction for the pair",
+            ),
+            (
+                "law = \"{contact}\"",
                 "law = \"{contct}\"",
                 "56:8: contact[0].law: found unknown parameter `contct`; allowed: a parameter (cells_per_radius, contact, cell, radius, angle); did you mean `contact`?",
             ),

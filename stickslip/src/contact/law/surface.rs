@@ -65,6 +65,8 @@ impl<T: Real, const D: usize> Law<T, D> for Surface {
                 let Some((normal, load)) = friction.borne(normal(u), pair) else { return Change::NONE };
                 pair.exchange(-normal, -slip * (m * friction.stopped(slip.norm(), load)), n)
             }
+            // The sum is judged later.
+            Use::Start => Change::NONE,
             Use::Strain => {
                 let [a, b] = pair.surfaces;
                 let ahead = u + (a.force * a.inverse_mass - b.force * b.inverse_mass) * pair.step.duration;

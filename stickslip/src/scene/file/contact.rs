@@ -35,7 +35,7 @@ table! {
         #[schemars(extend("default" = 0))]
         viscosity: Option<Quantity<SurfaceViscosity>>,
         /// Where the direction of contact comes from; by default "own" for the laws kinematic and traction, as the paper has it,
-        /// "common" for the others.
+        /// "common" for the others; surface, separation and regression find one direction for the pair and take no "own".
         normal: Option<Word<Normal>>,
         /// Largest strain of a cell by contact in one step, the paper's gamma, above 0 and up to 1.
         #[schemars(extend("default" = 0.5))]
@@ -135,7 +135,15 @@ impl Contact {
         let max_strain = self.max_strain.as_ref().map_or(Ok(default.max_strain), |strain| {
             strain.checked(context, "a number above 0 and up to 1", |value| value > 0.0 && value <= 1.0)
         })?;
-        let normal = self.normal.as_ref().map_or(Ok(usual), |word| word.value(context))?;
+        let normal = self.normal.as_ref().map_or(Ok(usual), |word| match (law, word.value(context)?) {
+            (ContactLaw::Surface | ContactLaw::Separation | ContactLaw::Regression, Normal::Own) => {
+                let name = ContactLaw::words().find(|word| word.1 == law).map_or("", |word| word.0);
+                let allowed =
+                    format!("\"common\" with law = {name:?}, which finds one direction for the pair");
+                Err(word.refused(context, allowed))
+            }
+            (_, normal) => Ok(normal),
+        })?;
         let kinetic_friction = self.kinetic_friction.as_ref().map_or(Ok(friction), |kinetic| {
             let value = kinetic.extended(context)?;
             let allowed = format!("a number from 0 to the rule's friction, {friction}");

@@ -85,6 +85,12 @@ impl<C: Choice> Word<C> {
         })
     }
 
+    /// The fault of a word that is not allowed beside others.
+    pub fn refused(&self, context: &Context, allowed: impl Into<String>) -> Fault {
+        let text = Text(self.node.clone());
+        text.value(context).map_or_else(|fault| fault, |word| text.refused(&word, allowed))
+    }
+
     /// Where it stands.
     pub fn node(&self) -> &Node {
         &self.node
