@@ -1,5 +1,6 @@
 //! B12: a sphere bounces off a rigid plane, by Hertz.
 
+use super::reasons::{AT_A_DISTANCE, RELEASE};
 use crate::benchmark::{Allowed, Benchmark, Case, Laws, Resolution, Target};
 use crate::failure::Failure;
 use crate::outcome::Outcome;
@@ -46,7 +47,7 @@ from a hundredth of the largest force on.",
         )
         .at(4.0),
     ],
-    reasons: &[],
+    reasons: &[AT_A_DISTANCE, RELEASE],
     run,
 };
 

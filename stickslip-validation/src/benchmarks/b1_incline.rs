@@ -1,5 +1,6 @@
 //! B1: the paper's sphere on an incline.
 
+use super::reasons::{AT_A_DISTANCE, EXTRAPOLATED, PLANE_OF_PARTICLES};
 use super::rolling_sphere::roll;
 use crate::benchmark::{Allowed, Benchmark, Case, Laws, Resolution, Target};
 use crate::failure::Failure;
@@ -68,7 +69,7 @@ E* = 7.64 MPa 1.555 m and 1.565 m. Static contact radius: R/6.",
         )
         .at(8.0),
     ],
-    reasons: &[],
+    reasons: &[AT_A_DISTANCE, EXTRAPOLATED, PLANE_OF_PARTICLES],
     run,
 };
 

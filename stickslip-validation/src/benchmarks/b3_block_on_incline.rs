@@ -1,6 +1,7 @@
 //! B3: a block on an incline slides as Coulomb says, or rests.
 
-use crate::benchmark::{Allowed, Benchmark, Case, Laws, Resolution, Target, Tier};
+use super::reasons::{EXTRAPOLATED, OWN_NORMALS, PLANE_OF_PARTICLES, STAIRS};
+use crate::benchmark::{Allowed, Benchmark, Case, Laws, Reason, Resolution, Target, Tier};
 use crate::failure::Failure;
 use crate::measuring::{farthest, slope};
 use crate::outcome::Outcome;
@@ -51,7 +52,16 @@ the run, with the bounce taken out (d(v_along + mu v_away)/dt = g (sin - mu cos)
             "exactly at rest; a thousandth of free fall is the shaking",
         ),
     ],
-    reasons: &[],
+    reasons: &[
+        OWN_NORMALS,
+        STAIRS,
+        EXTRAPOLATED,
+        PLANE_OF_PARTICLES,
+        Reason {
+            laws: &["surface"],
+            text: "The block is loaded at once and nothing damps it, so it shakes for longer than the run; at the top of each bounce it weighs little and slips a little. It does so with cells half as large and steps a quarter as long; with time.pic_share = 1 it comes to rest and stays.",
+        },
+    ],
     run,
 };
 
