@@ -7,7 +7,7 @@ use super::pass::{Pass, Verbs, Visit};
 use crate::basis::Basis;
 use crate::body::Body;
 use crate::grid::{WINDOW, node_at};
-use crate::lanes::{Laned, Lanes, MOST_LANES, Machine, Numbers, Work};
+use crate::lanes::{Laned, Lanes, MOST_LANES, Machine, Numbers, Work, prefetch};
 use crate::material::{Material, Motion, Thickness};
 use crate::particles::{Column, Columns, deformation_entries, stress_entries};
 use crate::tensor::{Matrix, Real, Symmetric, Vector, array};
@@ -43,6 +43,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> SeveralAtATime<'_, '_, T, D, B> {
             let (mut first, end) = (ends[0] as usize, ends[1] as usize);
             while first < end {
                 let count = (end - first).min(V::COUNT);
+                if let Some(&later) = order.get(first + AHEAD) {
+                    fetch(&columns, later as usize, &visit.pass.verbs);
+                }
                 let members = Members::new(&columns, &order[first..first + count], V::COUNT);
                 let place = Place::new(visit.tile.block, cell);
                 match group::<T, V, M, D, B>(visit, &constants, &members, &place) {
@@ -57,6 +60,24 @@ impl<T: Laned, const D: usize, B: Basis<T>> SeveralAtATime<'_, '_, T, D, B> {
                 first += count;
             }
         }
+    }
+}
+
+/// How many particles ahead of the present ones numbers are fetched into the cache: columns are too many for a processor to do so by itself.
+const AHEAD: usize = 32;
+
+/// Fetches what a pass needs of a particle and those beside it.
+#[inline(always)]
+fn fetch<T: Real, const D: usize>(columns: &Columns<T, D>, particle: usize, verbs: &Verbs) {
+    let fetch = |first: usize, last: usize| {
+        for column in first..last {
+            // SAFETY: the particle exists.
+            prefetch(unsafe { columns.at(column, particle) });
+        }
+    };
+    fetch(Column::<D>::POSITION, Column::<D>::DEFORMATION);
+    if verbs.strain || verbs.scatter.is_some_and(|share| share != Share::Momentum) {
+        fetch(Column::<D>::DEFORMATION, Column::<D>::COUNT);
     }
 }
 
@@ -156,7 +177,12 @@ impl<'a, T: Real, const D: usize> Members<'a, T, D> {
 
     #[inline(always)]
     fn vector<V: Lanes<Real = T>>(&self, column: usize) -> Vector<V, D> {
-        Vector::from_fn(|i| self.load(column + i))
+        // No closure: the compiler may leave one of this size uninlined, and then its instructions are calls.
+        let mut vector = Vector::ZERO;
+        for i in 0..D {
+            vector[i] = self.load(column + i);
+        }
+        vector
     }
 
     #[inline(always)]

@@ -134,6 +134,18 @@ impl<T: Real> Machine<T> for Any {
     type Quad = Pack<T, 4>;
 }
 
+/// Fetches the line of memory at a place into the cache, where the processor can be told to.
+#[inline(always)]
+pub fn prefetch<T>(place: *const T) {
+    #[cfg(target_arch = "x86_64")]
+    // SAFETY: every such processor has the instruction, and it has no effect but in the cache.
+    unsafe {
+        std::arch::x86_64::_mm_prefetch::<{ std::arch::x86_64::_MM_HINT_T0 }>(place.cast());
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = place;
+}
+
 /// Work to be compiled for every machine.
 pub trait Work {
     /// What it works with.

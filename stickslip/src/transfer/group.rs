@@ -9,7 +9,7 @@
 use crate::basis::{Basis, MAX_WIDTH, Shape};
 use crate::grid::{WINDOW, WINDOW_NODES, Window};
 use crate::lanes::{Lanes, MOST_LANES, Machine, Numbers};
-use crate::tensor::{Matrix, Number, Real, Symmetric, Vector, array};
+use crate::tensor::{Matrix, Number, Real, Symmetric, Vector};
 use std::marker::PhantomData;
 
 /// Several particles of one cell with their shape functions.
@@ -48,7 +48,11 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>> Group<V, D, B> {
     #[inline(always)]
     pub fn new(r: Vector<V, D>, half: V, start: usize, count: usize) -> Self {
         assert!(start <= last_start(D), "a tile's cells lie in its block");
-        let shapes = array(B::shape(r[0], half), |i| B::shape(r[i], half));
+        // No closure: the compiler may leave one of this size uninlined, and then its instructions are calls.
+        let mut shapes = [B::shape(r[0], half); D];
+        for i in 1..D {
+            shapes[i] = B::shape(r[i], half);
+        }
         Group { shapes, start, count, basis: PhantomData }
     }
 
