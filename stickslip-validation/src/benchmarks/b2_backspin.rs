@@ -42,7 +42,13 @@ with E* = 7.64 MPa 0.974 m.",
             "a contact at a distance holds the sphere high",
         )
         .at(8.0),
-        Target::new("spin R/v", 1.0, Allowed::Within(0.02), "rolling is rolling").at(8.0),
+        Target::new(
+            "spin R/v",
+            1.0,
+            Allowed::Within(0.02),
+            "the angle turned over the way in the second half: rolling is rolling",
+        )
+        .at(8.0),
         Target::new(
             "kinetic energy over 2/7 of the first",
             1.0,
