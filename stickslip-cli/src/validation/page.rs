@@ -23,6 +23,13 @@ pub fn page(report: &Report, took: Duration) -> Page {
     for benchmark in benchmarks(report) {
         page = page.section(section(benchmark, report));
     }
+    let due = |entry: &Entry| entry.benchmark.due(report.tier).count();
+    let (all, done) = report.entries.iter().fold((0, 0), |(a, d), e| (a + due(e), d + e.runs.len()));
+    if done < all {
+        page = page.warning(format!(
+            "Only {done} of {all} runs have ended: where finer ones are still to come, the finest that have ended are judged."
+        ));
+    }
     page
 }
 
@@ -91,11 +98,10 @@ fn times(report: &Report) -> Table {
         let mut row = vec![Cell::text(title(benchmark))];
         for law in &laws {
             let entry = entries(benchmark, report).find(|entry| entry.law == *law);
-            let time = |entry: &Entry| {
-                let outcomes = entry.runs.iter().filter_map(|run| run.result.as_ref().ok());
-                outcomes.map(|outcome| outcome.record.wall_time).sum::<f64>()
-            };
-            row.push(entry.map_or(Cell::Empty, |entry| Cell::number(time(entry), 1)));
+            let outcomes =
+                entry.iter().flat_map(|entry| &entry.runs).filter_map(|run| run.result.as_ref().ok());
+            let times: Vec<f64> = outcomes.map(|outcome| outcome.record.wall_time).collect();
+            row.push(if times.is_empty() { Cell::Empty } else { Cell::number(times.iter().sum(), 1) });
         }
         table = table.row(row);
     }

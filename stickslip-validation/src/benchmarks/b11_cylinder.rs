@@ -1,5 +1,6 @@
 //! B11: a cylinder pressed on a rigid plane, by Hertz.
 
+use super::reasons::AT_A_DISTANCE;
 use crate::benchmark::{Allowed, Benchmark, Case, Laws, Resolution, Target};
 use crate::failure::Failure;
 use crate::outcome::Outcome;
@@ -28,7 +29,7 @@ the forces at nodes, pressure as the largest of force over cell.",
         Target::new("half-width over Hertz", 1.0, Allowed::Within(0.05), WHY).at(8.0),
         Target::new("largest pressure over Hertz", 1.0, Allowed::Within(0.05), WHY).at(8.0),
     ],
-    reasons: &[],
+    reasons: &[AT_A_DISTANCE],
     run,
 };
 

@@ -1,6 +1,7 @@
 //! B13: a sphere strikes a plane obliquely.
 
 use super::maw_curve::Impact;
+use super::reasons::{AT_A_DISTANCE, EXTRAPOLATED, OWN_NORMALS, RELEASE};
 use crate::benchmark::{Allowed, Benchmark, Case, Laws, Resolution, Target, Tier};
 use crate::failure::Failure;
 use crate::measuring::farthest;
@@ -36,7 +37,7 @@ u1 = u0 - 7 mu v; in between the elastic patch throws it back, u1 < 0. A rigid f
             "half of the reversal at the least: the patch has a tangential elasticity",
         ),
     ],
-    reasons: &[],
+    reasons: &[OWN_NORMALS, AT_A_DISTANCE, RELEASE, EXTRAPOLATED],
     run,
 };
 

@@ -1,6 +1,7 @@
 //! B5: a bar hits an equal bar at rest.
 
-use crate::benchmark::{Allowed, Benchmark, Case, Laws, Resolution, Target};
+use super::reasons::{AT_A_DISTANCE, RELEASE};
+use crate::benchmark::{Allowed, Benchmark, Case, Laws, Reason, Resolution, Target};
 use crate::failure::Failure;
 use crate::outcome::Outcome;
 use crate::trial::Trial;
@@ -45,7 +46,14 @@ moves at v, and no energy is lost. Contact counts as long as its force is a tent
             "exact but for the ringing behind the fronts",
         ),
     ],
-    reasons: &[],
+    reasons: &[
+        AT_A_DISTANCE,
+        RELEASE,
+        Reason {
+            laws: &["traction"],
+            text: "Two nodes deep the bodies are held together as one while they press; what the grid does not resolve there is lost, and the second bar gets less.",
+        },
+    ],
     run,
 };
 

@@ -1,5 +1,6 @@
 //! Corners: a block with sharp corners, pressed on a bed and pushed sideways.
 
+use super::reasons::{EXTRAPOLATED, OWN_NORMALS, PLANE_OF_PARTICLES, STAIRS};
 use crate::benchmark::{Allowed, Benchmark, Case, Laws, Resolution, Target};
 use crate::failure::Failure;
 use crate::measuring::{mean, slope};
@@ -40,7 +41,7 @@ measured beside it: the mean way toward the bed in that half.",
         Target::new(SINKING[0], 0.0, Allowed::Within(0.1), CARRIED),
         Target::new(SINKING[1], 0.0, Allowed::Within(0.1), CARRIED),
     ],
-    reasons: &[],
+    reasons: &[OWN_NORMALS, STAIRS, EXTRAPOLATED, PLANE_OF_PARTICLES],
     run,
 };
 

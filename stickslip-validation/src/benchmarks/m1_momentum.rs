@@ -1,7 +1,8 @@
 //! M1: contact of any number of bodies at a node keeps momentum.
 
 use super::meeting::{BODIES, meet};
-use crate::benchmark::{Allowed, Benchmark, Case, Laws, Reason, Resolution, Target};
+use super::reasons::OWN_NORMALS;
+use crate::benchmark::{Allowed, Benchmark, Case, Laws, Resolution, Target};
 use crate::failure::Failure;
 use crate::outcome::Outcome;
 
@@ -27,10 +28,7 @@ sides at drawn velocities of about 0.02; mu = 0.3 and infinite; 25 steps. Eight 
         Target::new(METRICS[2], 0.0, Allowed::AtMost(1e-13), ROUND_OFF),
         Target::new(METRICS[3], 0.0, Allowed::AtMost(1e-13), ROUND_OFF),
     ],
-    reasons: &[Reason {
-        laws: &["traction", "kinematic"],
-        text: "Each body takes its own normal and decides by itself, as the paper has it: where the normals of two bodies are not opposite, the impulses are not (eq. 16). With normal = \"common\" they are.",
-    }],
+    reasons: &[OWN_NORMALS],
     run,
 };
 

@@ -1,6 +1,7 @@
 //! M2: contact gives no node energy.
 
 use super::meeting::{BODIES, Side, meet};
+use super::reasons::OWN_NORMALS;
 use crate::benchmark::{Allowed, Benchmark, Case, Laws, Resolution, Target};
 use crate::failure::Failure;
 use crate::outcome::Outcome;
@@ -26,7 +27,7 @@ pub const BENCHMARK: Benchmark = Benchmark {
         Target::new(METRICS[2], 0.0, Allowed::AtMost(1e-12), ROUND_OFF),
         Target::new(METRICS[3], 0.0, Allowed::AtMost(1e-12), ROUND_OFF),
     ],
-    reasons: &[],
+    reasons: &[OWN_NORMALS],
     run,
 };
 

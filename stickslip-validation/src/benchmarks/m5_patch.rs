@@ -1,5 +1,6 @@
 //! M5: an interface under uniform pressure leaves the stress uniform.
 
+use super::reasons::{PLANE_OF_PARTICLES, STAIRS};
 use crate::benchmark::{Allowed, Benchmark, Case, Laws, Resolution, Target};
 use crate::failure::Failure;
 use crate::outcome::Outcome;
@@ -31,7 +32,7 @@ particles more than two cells below the platen, over p; glue grips up to a cell 
         Target::new(METRICS[2], 0.0, Allowed::Within(0.05), SLANTED),
         Target::new(METRICS[3], 0.0, Allowed::Within(0.05), SLANTED),
     ],
-    reasons: &[],
+    reasons: &[STAIRS, PLANE_OF_PARTICLES],
     run,
 };
 

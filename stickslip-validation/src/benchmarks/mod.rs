@@ -22,6 +22,7 @@ mod m5_patch;
 mod m6_friction_ratio;
 mod maw_curve;
 mod meeting;
+mod reasons;
 mod rigid_half_space;
 mod rolling_sphere;
 

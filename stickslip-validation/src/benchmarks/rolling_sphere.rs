@@ -18,7 +18,7 @@ pub struct Roll {
     pub acceleration: f64,
     /// Way in the second half of the run over that of the rigid sphere.
     pub mean_speed: f64,
-    /// Spin times radius over speed at the end.
+    /// Angle turned times radius over the way gone in the second half of the run: both oscillate about their means.
     pub rolling: f64,
     /// Mean height of the centre in the last four fifths of the run [m].
     pub height: f64,
@@ -33,11 +33,14 @@ pub fn roll(name: &str, scene: &str, case: &Case, outcome: &mut Outcome) -> Resu
     let text = with_parameter(scene, "cells_per_radius", &case.cells.to_string());
     let mut trial = Trial::start(name, with_parameter(&text, "contact", &format!("\"{}\"", case.law)))?;
     let end = trial.scene().time.end;
-    let (mut speeds, mut heights, mut middle) = (Vec::new(), Vec::new(), None);
+    let (mut speeds, mut heights, mut middle, mut angle) = (Vec::new(), Vec::new(), None, 0.0);
     while trial.advance()? {
         let sphere = trial.bodies().swap_remove(0);
         if trial.time() > 0.5 * end {
             speeds.push((trial.time(), sphere.velocity[0]));
+            if middle.is_some() {
+                angle += sphere.spin[1] * trial.step_length();
+            }
             middle.get_or_insert((trial.time(), sphere.position[0]));
         }
         if trial.time() > 0.2 * end {
@@ -59,7 +62,7 @@ pub fn roll(name: &str, scene: &str, case: &Case, outcome: &mut Outcome) -> Resu
         speed: sphere.velocity[0] / exact("vx", end),
         acceleration: slope(&speeds) / ((exact("vx", end) - exact("vx", 0.5 * end)) / (0.5 * end)),
         mean_speed: (sphere.position[0] - from) / (exact("x", end) - exact("x", half)),
-        rolling: sphere.spin[1] * radius / sphere.velocity[0],
+        rolling: angle * radius / (sphere.position[0] - from),
         height: mean(&heights),
         cell: scene.discretization.cell,
         kinetic: sphere.kinetic / trial.first_ledger().kinetic,
