@@ -71,8 +71,15 @@ fn every_figure_of_the_paper_is_seen_in_a_browser() {
         );
     }
     let text = found["text"].as_str().unwrap();
-    for word in ["traction", "surface", "2.097", "Poisson", "How this was made"] {
+    for word in ["traction", "surface", "2.097", "Poisson", "energy error", "time taken", "How this was made"]
+    {
         assert!(text.contains(word), "no word on {word}");
+    }
+    // The paper's frames of its simulation and of its experiment.
+    for time in [2.2, 5.5, 7.7, 2.6, 6.6, 9.2, 3.0, 6.0, 9.0, 5.3, 10.5, 15.8, 1.4, 3.6, 5.8, 1.6, 4.2, 6.8] {
+        for rule in ["traction (paper)", "surface (default)"] {
+            assert!(text.contains(&format!("{rule}, t = {time:.1}")), "no fringes by {rule} at {time}");
+        }
     }
     assert_eq!(found["warnings"], 0, "no run failed");
 }

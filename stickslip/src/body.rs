@@ -50,8 +50,6 @@ pub struct Body<T, const D: usize> {
     pub rigid: bool,
     /// Its undeformed shape with its images in the domain's mirrors.
     pub whole: Whole,
-    /// Where its particles were before it moved, by number [m].
-    pub places: Vec<Vector<T, D>>,
     /// Which thickness its particles take.
     pub thickness: Thickness,
 }

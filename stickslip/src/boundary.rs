@@ -106,7 +106,8 @@ impl Boundary {
             if matches!(share, Share::Mass | Share::Everything) {
                 node.mass += image.mass;
             }
-            if share != Share::Force {
+            // Nodes without mass keep the velocity that they had.
+            if share != Share::Force && image.mass > T::ZERO {
                 node.velocity += reflect(image.velocity, axis);
             }
             if matches!(share, Share::Force | Share::Everything) {

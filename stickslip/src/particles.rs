@@ -3,6 +3,7 @@
 use crate::body::Particle;
 use crate::tensor::{Matrix, Real, Symmetric, Vector};
 use rayon::prelude::*;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Entries of F that a motion in `D` dimensions leaves free, by row and column; the others are zero.
 pub const fn deformation_entries(dimension: usize) -> &'static [[usize; 2]] {
@@ -37,8 +38,10 @@ impl<const D: usize> Column<D> {
     pub const DEFORMATION: usize = 2 * D + 3;
     /// First of [`stress_entries`].
     pub const STRESS: usize = Self::DEFORMATION + deformation_entries(D).len();
+    /// First component of the position before anything moved, which no step writes to.
+    pub const START: usize = Self::STRESS + stress_entries(D);
     /// Number of columns.
-    pub const COUNT: usize = Self::STRESS + stress_entries(D);
+    pub const COUNT: usize = Self::START + D;
 }
 
 /// Particles of one body.
@@ -56,7 +59,7 @@ pub struct Particles<T, const D: usize> {
 const LINE: usize = 64;
 
 impl<T: Real, const D: usize> Particles<T, D> {
-    /// The particles `f(0)` to `f(count - 1)`.
+    /// The particles `f(0)` to `f(count - 1)`, before anything moves.
     pub fn from_fn(count: usize, f: impl Fn(usize) -> Particle<T, D>) -> Self {
         let lines = (count * size_of::<T>()).div_ceil(LINE) | 1;
         let stride = lines * LINE / size_of::<T>();
@@ -66,7 +69,11 @@ impl<T: Real, const D: usize> Particles<T, D> {
             numbers: vec![0; count],
         };
         for i in 0..count {
-            particles.set(i, &f(i));
+            let particle = f(i);
+            particles.set(i, &particle);
+            for k in 0..D {
+                particles.columns[(Column::<D>::START + k) * stride + i] = particle.position[k];
+            }
         }
         particles
     }
@@ -85,9 +92,8 @@ impl<T: Real, const D: usize> Particles<T, D> {
     #[inline]
     pub fn get(&self, i: usize) -> Particle<T, D> {
         assert!(i < self.len(), "a particle of the body");
-        let columns = Columns { start: self.columns.as_ptr().cast_mut(), stride: self.stride };
         // SAFETY: in range, and borrowed for reading.
-        Particle { number: self.numbers[i], ..unsafe { columns.get(i) } }
+        Particle { number: self.numbers[i], ..unsafe { self.view().get(i) } }
     }
 
     /// Position [m] and half the side of the undeformed box [m] of particle `i`.
@@ -110,23 +116,47 @@ impl<T: Real, const D: usize> Particles<T, D> {
         (0..self.len()).map(|i| self.get(i))
     }
 
+    /// The columns, to be read only.
+    #[inline(always)]
+    pub fn view(&self) -> Columns<T, D> {
+        Columns { start: self.columns.as_ptr().cast_mut(), stride: self.stride }
+    }
+
     /// Opens the columns to many threads.
     pub fn open(&mut self) -> Columns<T, D> {
         Columns { start: self.columns.as_mut_ptr(), stride: self.stride }
     }
 
-    /// Puts the particles into the order of a permutation: first the one whose index comes first.
-    pub fn permute(&mut self, order: &[u32]) {
+    /// Puts the particles into the order of a permutation: first the one whose index comes first. `room` is for threads to work in.
+    pub fn permute(&mut self, order: &[u32], room: &[Mutex<Room<T>>]) {
         assert_eq!(order.len(), self.len(), "a permutation names every particle");
-        self.numbers = order.iter().map(|&i| self.numbers[i as usize]).collect();
         let (len, stride) = (self.len(), self.stride.max(1));
-        let permute = |scratch: &mut Vec<T>, column: &mut [T]| {
-            scratch.clear();
-            scratch.extend(order.iter().map(|&i| column[i as usize]));
-            column[..len].copy_from_slice(scratch);
-        };
-        self.columns.par_chunks_mut(stride).for_each_init(|| Vec::with_capacity(len), permute);
+        {
+            let numbers = &mut lock(room).numbers;
+            numbers.clear();
+            numbers.extend(order.iter().map(|&i| self.numbers[i as usize]));
+            self.numbers.copy_from_slice(numbers);
+        }
+        self.columns.par_chunks_mut(stride).for_each(|column| {
+            let sorted = &mut lock(room).column;
+            sorted.clear();
+            sorted.extend(order.iter().map(|&i| column[i as usize]));
+            column[..len].copy_from_slice(sorted);
+        });
     }
+}
+
+/// Where a thread sorts a column of particles.
+#[derive(Debug, Default)]
+pub struct Room<T> {
+    column: Vec<T>,
+    numbers: Vec<u32>,
+}
+
+/// The room of this thread.
+fn lock<T>(room: &[Mutex<Room<T>>]) -> MutexGuard<'_, Room<T>> {
+    let thread = rayon::current_thread_index().unwrap_or(0);
+    room[thread].lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// The columns of a body's particles, open to many threads that keep to particles of their own. Good until the particles are used in

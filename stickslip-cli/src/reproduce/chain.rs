@@ -47,6 +47,8 @@ const WIDTH: usize = 720;
 
 /// What went in and out of the disks until a time.
 pub struct Balance {
+    /// The time, in transits.
+    pub time: f64,
     /// Energy in the disks and turned to heat, less the work of the striker, over that work [-].
     pub energy: f64,
     /// Momentum of the disks less the impulses of striker and frame, over the striker's impulse [-].
@@ -145,23 +147,24 @@ impl<'a> Chain<'a> {
         Ok(Some(Camera { results: self.results, transit: self.transit, bench }))
     }
 
-    /// The balance of the disks at a time in transits, or at the end of the run if that is earlier.
+    /// The balance of the disks at a time [s], or at the end of the run if that is earlier.
     ///
     /// # Errors
     /// A table cannot be read.
     pub fn balance(&self, time: f64) -> Result<Balance, Failure> {
-        let until = time * self.transit * (1.0 + 1e-9);
+        let until = time * (1.0 + 1e-9);
         let energy = self.results.energy_table().map_err(Failure::input)?;
         let bodies = self.results.bodies_table().map_err(Failure::input)?;
         let contacts = self.results.contacts_table().map_err(Failure::input)?;
         let Some(end) = energy.iter().rfind(|row| row.time <= until) else {
-            return Ok(Balance { energy: f64::NAN, momentum: f64::NAN });
+            return Ok(Balance { time: f64::NAN, energy: f64::NAN, momentum: f64::NAN });
         };
         let disks = bodies.iter().filter(|row| row.time == end.time && row.body.starts_with("disk"));
         let momentum = disks.fold([0.0; 2], |[x, y], row| [x + row.mass * row.vx, y + row.mass * row.vy]);
         let [given, pushed] = impulses(&contacts, &energy, end.time);
         let missing = (momentum[0] - given[0]).hypot(momentum[1] - given[1]);
         Ok(Balance {
+            time: end.time / self.transit,
             energy: end.total / end.external_work.abs(),
             momentum: missing / pushed[0].hypot(pushed[1]),
         })

@@ -22,6 +22,6 @@ pub use law::{Law, Span};
 pub use pair::{Change, Pair, Step, Surface, Use};
 pub use place::Place;
 pub use rules::{Rule, Rules};
-pub use solve::{Impulse, Solve};
-pub use survey::{Encounter, Facing, Look, Near, Side, Site, Survey, room};
+pub use solve::{Impulse, Impulses, Record, Solve};
+pub use survey::{Encounter, Facing, Look, Near, Part, Side, Site, Survey, room};
 pub use tally::Tally;

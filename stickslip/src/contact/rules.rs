@@ -38,6 +38,8 @@ pub struct Rules<T> {
     names: Vec<[Option<u32>; 3]>,
     /// The first rule that mentions two names.
     first: HashMap<[u32; 2], usize>,
+    /// The rule for two bodies of which rules mention no name.
+    plain: usize,
 }
 
 /// Stands for every body.
@@ -64,18 +66,23 @@ impl<T: Real> Rules<T> {
             .map(|body| [number(&body.name), number(&scene.materials[body.material].name), Some(ANY)])
             .collect();
         let default = ContactRule::default();
-        Rules { rules: scene.contact.iter().chain([&default]).map(Rule::from).collect(), names, first }
+        let rules: Vec<_> = scene.contact.iter().chain([&default]).map(Rule::from).collect();
+        let plain = first.get(&[ANY; 2]).copied().unwrap_or(rules.len() - 1);
+        Rules { rules, names, first, plain }
     }
 
     /// One rule between all bodies.
     #[cfg(test)]
     pub fn of_all(bodies: usize, rule: Rule<T>) -> Self {
         let first = HashMap::from([([ANY, ANY], 0)]);
-        Rules { rules: vec![rule], names: vec![[None, None, Some(ANY)]; bodies], first }
+        Rules { rules: vec![rule], names: vec![[None, None, Some(ANY)]; bodies], first, plain: 0 }
     }
 
     /// Number of the rule for two bodies: the first in the scene that matches, else the last.
     pub fn number(&self, a: usize, b: usize) -> usize {
+        if [a, b].iter().all(|&body| self.names[body] == [None, None, Some(ANY)]) {
+            return self.plain;
+        }
         let pairs = self.names[a]
             .iter()
             .flatten()

@@ -1,8 +1,8 @@
 //! From pairs to a whole node: any number of bodies, each pair by its own law.
 
 use super::law::law;
-use super::{Change, Rules, Site, Span, Step, Survey, Use};
-use crate::grid::Field;
+use super::{Change, Part, Rules, Site, Span, Step, Survey, Use};
+use crate::grid::{Disjoint, Node};
 use crate::scene::ContactLaw;
 use crate::tensor::{Real, Vector};
 use rayon::prelude::*;
@@ -34,9 +34,49 @@ pub struct Impulse<T, const D: usize> {
     pub work: T,
 }
 
-/// Sweeps over the pairs of a node until no velocity changes by more than this fraction of the largest.
+/// Sweeps over the pairs of a node until no velocity changes by more than this fraction of the largest change that contact makes, or than
+/// round-off of the velocities themselves: bodies that fly fast and hardly touch would never come to rest otherwise.
 const TOLERANCE: f64 = 1e-14;
+/// Round-off of a velocity after a sweep, in units of its last place.
+const ROUND_OFF: f64 = 4.0;
 const MAX_SWEEPS: usize = 200;
+
+/// Impulses of a use of contact, part by part of the survey, and room for them that is kept from step to step.
+#[derive(Clone, Debug)]
+pub struct Impulses<T, const D: usize> {
+    parts: Vec<List<T, D>>,
+}
+
+#[derive(Clone, Debug)]
+struct List<T, const D: usize> {
+    impulses: Vec<Impulse<T, D>>,
+    /// Velocities of the bodies at a node while it is being solved [m/s].
+    velocities: Vec<Vector<T, D>>,
+}
+
+impl<T, const D: usize> Default for Impulses<T, D> {
+    fn default() -> Self {
+        Impulses { parts: Vec::new() }
+    }
+}
+
+impl<T, const D: usize> Default for List<T, D> {
+    fn default() -> Self {
+        List { impulses: Vec::new(), velocities: Vec::new() }
+    }
+}
+
+impl<T, const D: usize> Impulses<T, D> {
+    /// The impulses in the order of their encounters.
+    pub fn iter(&self) -> impl Iterator<Item = &Impulse<T, D>> {
+        self.parts.iter().flat_map(|list| &list.impulses)
+    }
+
+    /// Those of a part; none if nothing was solved yet.
+    fn of(&self, part: usize) -> &[Impulse<T, D>] {
+        self.parts.get(part).map_or(&[], |list| &list.impulses)
+    }
+}
 
 /// A use of contact.
 pub struct Solve<'a, T, const D: usize> {
@@ -44,72 +84,105 @@ pub struct Solve<'a, T, const D: usize> {
     pub survey: &'a Survey<T, D>,
     /// Which law holds for which pair.
     pub rules: &'a Rules<T>,
-    /// The velocities.
-    pub field: &'a Field<T, D>,
+    /// The nodes with the velocities, which contact changes.
+    pub nodes: Disjoint<'a, Node<T, D>>,
     /// The step.
     pub step: Step<T>,
-    /// What an earlier use of contact in this step did, as [`Solve::impulses`] gave it; empty in the first use.
-    pub given: &'a [Impulse<T, D>],
+    /// What an earlier use of contact in this step did.
+    pub given: Option<&'a Impulses<T, D>>,
+}
+
+/// What becomes of the impulses of a use.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Record {
+    /// They are kept.
+    Kept,
+    /// Nobody asks for them.
+    Dropped,
 }
 
 impl<T: Real, const D: usize> Solve<'_, T, D> {
-    /// The impulses of all encounters in their order.
+    /// Changes the velocities by the impulses of all encounters, which are listed in their order.
     ///
     /// Where more than two bodies meet, each pair's impulse is solved in turn with the others held until none changes
     /// (block Gauss-Seidel), so that every pair obeys its own law and momentum is conserved pair by pair. A law that judges
     /// the whole step sees the velocities without what it gave before.
-    pub fn impulses(&self) -> Vec<Impulse<T, D>> {
-        (self.survey.sites.par_iter().with_min_len(64)).flat_map_iter(|site| self.site(site)).collect()
+    pub fn impulses(&self, record: Record, listed: &mut Impulses<T, D>) {
+        let parts = self.survey.parts();
+        listed.parts.resize_with(parts.len().max(listed.parts.len()), List::default);
+        let (used, unused) = listed.parts.split_at_mut(parts.len());
+        unused.iter_mut().for_each(|list| list.impulses.clear());
+        parts.par_iter().zip(used).enumerate().with_min_len(4).for_each(|(i, (part, list))| {
+            let given = self.given.map_or(&[][..], |given| given.of(i));
+            list.impulses.clear();
+            for site in &part.sites {
+                let given = if given.is_empty() { given } else { &given[site.encounters.clone()] };
+                let first = list.impulses.len();
+                self.site((part, site), given, list);
+                for impulse in &list.impulses[first..] {
+                    for (node, velocity) in impulse.nodes.into_iter().zip(impulse.velocity) {
+                        // SAFETY: a node of a body belongs to one site.
+                        unsafe { self.nodes.get(node) }.velocity += velocity;
+                    }
+                }
+                if record == Record::Dropped {
+                    list.impulses.clear();
+                }
+            }
+        });
     }
 
-    fn site(&self, site: &Site<D>) -> Vec<Impulse<T, D>> {
-        let Solve { survey, rules, field, step, .. } = *self;
-        let sides = &survey.sides[site.sides.clone()];
-        let mut velocity: Vec<Vector<T, D>> =
-            sides.iter().map(|side| field.nodes[side.index].velocity).collect();
-        let encounters = &survey.encounters[site.encounters.clone()];
-        let given = if self.given.is_empty() { &[] } else { &self.given[site.encounters.clone()] };
-        let mut impulses: Vec<Impulse<T, D>> = (encounters.iter().enumerate())
-            .map(|(i, encounter)| {
-                let [a, b] = encounter.sides.map(|side| &survey.sides[side]);
-                let span = law::<T, D>(rules.rule(encounter.rule).law).span();
-                let before = given.get(i).filter(|_| span == Span::WholeStep);
-                Impulse {
-                    bodies: [a.body, b.body],
-                    nodes: [a.index, b.index],
-                    node: site.node,
-                    gap: encounter.facing.gap,
-                    area: encounter.area,
-                    slip: T::ZERO,
-                    change: Change::NONE,
-                    velocity: before.map_or([Vector::ZERO; 2], |impulse| impulse.velocity),
-                    span,
-                    friction: T::ZERO,
-                    work: T::ZERO,
-                }
-            })
-            .collect();
+    /// Lists the impulses at a site.
+    fn site(&self, (part, site): (&Part<T, D>, &Site<D>), given: &[Impulse<T, D>], list: &mut List<T, D>) {
+        let Solve { rules, step, .. } = *self;
+        let sides = &part.sides[site.sides.clone()];
+        let List { impulses, velocities } = list;
+        velocities.clear();
+        // SAFETY: a node of a body belongs to one site.
+        velocities.extend(sides.iter().map(|side| unsafe { self.nodes.get(side.index) }.velocity));
+        let encounters = &part.encounters[site.encounters.clone()];
+        let first = impulses.len();
+        impulses.extend(encounters.iter().enumerate().map(|(i, encounter)| {
+            let [a, b] = encounter.sides.map(|side| &part.sides[side]);
+            let span = law::<T, D>(rules.rule(encounter.rule).law).span();
+            let before = given.get(i).filter(|_| span == Span::WholeStep);
+            Impulse {
+                bodies: [a.body, b.body],
+                nodes: [a.index, b.index],
+                node: site.node,
+                gap: encounter.facing.gap,
+                area: encounter.area,
+                slip: T::ZERO,
+                change: Change::NONE,
+                velocity: before.map_or([Vector::ZERO; 2], |impulse| impulse.velocity),
+                span,
+                friction: T::ZERO,
+                work: T::ZERO,
+            }
+        }));
+        let impulses = &mut impulses[first..];
         for _ in 0..MAX_SWEEPS {
-            let (mut largest, mut moved) = (T::ZERO, T::ZERO);
-            for (encounter, impulse) in encounters.iter().zip(&mut impulses) {
-                let pair = survey.pair(encounter, rules, step);
+            let (mut largest, mut moved, mut speed) = (T::ZERO, T::ZERO, T::ZERO);
+            for (encounter, impulse) in encounters.iter().zip(&mut *impulses) {
+                let pair = part.pair(encounter, rules, step);
                 let places = encounter.sides.map(|side| side - site.sides.start);
                 let old = impulse.velocity;
-                let free = [0, 1].map(|i| velocity[places[i]] - old[i]);
+                let free = [0, 1].map(|i| velocities[places[i]] - old[i]);
                 impulse.change = pair.change(free);
                 impulse.work = T::ZERO;
                 for i in 0..2 {
                     let inverse_mass = pair.surfaces[i].inverse_mass;
                     let new = impulse.change.impulse[i] * inverse_mass;
                     impulse.velocity[i] = new;
-                    velocity[places[i]] = free[i] + new;
+                    velocities[places[i]] = free[i] + new;
                     moved = moved.max((new - old[i]).norm());
                     largest = largest.max(new.norm());
+                    speed = speed.max(free[i].norm());
                     if inverse_mass == T::ZERO {
                         impulse.work += impulse.change.impulse[1 - i].dot(free[i]);
                     }
                 }
-                let slip = velocity[places[0]] - velocity[places[1]];
+                let slip = velocities[places[0]] - velocities[places[1]];
                 if let (Use::Motion, Some(n)) = (step.purpose, pair.normal) {
                     impulse.slip = (slip - n * slip.dot(n)).norm() * step.duration;
                 }
@@ -118,7 +191,10 @@ impl<T: Real, const D: usize> Solve<'_, T, D> {
                     _ => -impulse.change.tangential.dot(slip),
                 };
             }
-            if encounters.len() == 1 || moved <= T::of(TOLERANCE.max(T::EPSILON.f64() * 4.0)) * largest {
+            let round_off = T::EPSILON * T::of(ROUND_OFF);
+            if encounters.len() == 1
+                || moved <= (round_off.max(T::of(TOLERANCE)) * largest).max(round_off * speed)
+            {
                 break;
             }
         }
@@ -127,7 +203,6 @@ impl<T: Real, const D: usize> Solve<'_, T, D> {
                 (0..2).for_each(|i| impulse.velocity[i] -= before.velocity[i]);
             }
         }
-        impulses
     }
 }
 
@@ -135,7 +210,6 @@ impl<T: Real, const D: usize> Solve<'_, T, D> {
 mod tests {
     use super::*;
     use crate::contact::{Encounter, Facing, Friction, Place, Rule, Side, Surface};
-    use crate::grid::Node;
     use crate::scene::Normal;
     use crate::tensor::Symmetric;
     use proptest::prelude::*;
@@ -165,10 +239,10 @@ mod tests {
 
     /// What one rule does to bodies that touch at one node under pressure.
     fn at_node(state: &State, law: ContactLaw, friction: f64) -> Outcome {
-        let mut field = Field { nodes: Vec::new() };
-        let mut survey = Survey::default();
+        let mut nodes = Vec::new();
+        let mut part = Part::default();
         for (body, &(mass, velocity, gradient)) in state.iter().enumerate() {
-            field.nodes.push(Node { mass, velocity: Vector(velocity), ..Node::EMPTY });
+            nodes.push(Node { mass, velocity: Vector(velocity), ..Node::EMPTY });
             let volume_gradient = Vector(gradient);
             let surface = Surface {
                 inverse_mass: 1.0 / mass,
@@ -179,13 +253,13 @@ mod tests {
                 force: Vector::ZERO,
                 place: Place::EMPTY,
             };
-            survey.sides.push(Side { body, index: body, surface, volume_gradient });
+            part.sides.push(Side { body, index: body, surface, volume_gradient });
         }
         let n = state.len();
         for a in 0..n {
             for b in a + 1..n {
-                let normal = (survey.sides[b].volume_gradient - survey.sides[a].volume_gradient).direction();
-                survey.encounters.push(Encounter {
+                let normal = (part.sides[b].volume_gradient - part.sides[a].volume_gradient).direction();
+                part.encounters.push(Encounter {
                     sides: [a, b],
                     rule: 0,
                     facing: Facing { normal, gap: 0.0 },
@@ -193,21 +267,23 @@ mod tests {
                 });
             }
         }
-        survey.sites.push(Site { node: [0; 3], sides: 0..n, encounters: 0..survey.encounters.len() });
+        part.sites.push(Site { node: [0; 3], sides: 0..n, encounters: 0..part.encounters.len() });
         let rules = Rules::of_all(
             n,
             Rule { law, normal: Normal::Common, friction: Friction::coulomb(friction), max_strain: 1.0 },
         );
         let step = Step { duration: 1e-6, cell: 1.0, purpose: Use::Motion };
-        let impulses = Solve { survey: &survey, rules: &rules, field: &field, step, given: &[] }.impulses();
-        let before: Vec<_> = field.nodes.iter().map(|node| node.velocity).collect();
-        let mut after = before.clone();
-        for impulse in &impulses {
-            (0..2).for_each(|i| after[impulse.nodes[i]] += impulse.velocity[i]);
-        }
+        let normals = part.encounters.iter().map(|e| e.facing.normal.expect("gradients differ")).collect();
+        let velocities = |nodes: &[Node<f64, 3>]| nodes.iter().map(|node| node.velocity).collect();
+        let before = velocities(&nodes);
+        let mut impulses = Impulses::default();
+        let survey = Survey::of(vec![part]);
+        let solve =
+            Solve { survey: &survey, rules: &rules, nodes: Disjoint::new(&mut nodes), step, given: None };
+        solve.impulses(Record::Kept, &mut impulses);
+        let after = velocities(&nodes);
         let masses = state.iter().map(|body| body.0).collect();
-        let normals = survey.encounters.iter().map(|e| e.facing.normal.expect("gradients differ")).collect();
-        Outcome { masses, before, after, normals, impulses }
+        Outcome { masses, before, after, normals, impulses: impulses.iter().copied().collect() }
     }
 
     proptest! {

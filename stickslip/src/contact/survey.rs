@@ -1,25 +1,27 @@
 //! Where bodies meet, and what the particles there say of their surfaces.
 
 use super::law::law;
-use super::surroundings::{Nodes, Sums, nodes_where};
+use super::surroundings::{Sums, behind};
 use super::{Pair, Rules, Step, Surface};
 use crate::basis::Basis;
 use crate::body::Body;
 use crate::boundary::Boundary;
-use crate::grid::{Cover, Field, Lattice, Meeting, SIDE, node_at, nodes_per_block};
+use crate::grid::{Cover, Field, Lattice, Meeting, Nodes, SIDE, next_of, node_at, nodes_per_block};
+use crate::lanes::{Laned, Processor};
 use crate::scene::{ContactLaw, Face};
 use crate::tensor::{Matrix, Real, Vector};
 use rayon::prelude::*;
 use std::ops::Range;
+use std::sync::{Mutex, PoisonError};
 
 /// A node that two or more bodies share.
 #[derive(Clone, Debug)]
 pub struct Site<const D: usize> {
     /// The node.
     pub node: [i32; D],
-    /// Its bodies, in [`Survey::sides`].
+    /// Its bodies, in [`Part::sides`].
     pub sides: Range<usize>,
-    /// Its pairs, in [`Survey::encounters`].
+    /// Its pairs, in [`Part::encounters`].
     pub encounters: Range<usize>,
 }
 
@@ -45,6 +47,13 @@ pub struct Facing<T, const D: usize> {
     pub gap: T,
 }
 
+impl<T: Real, const D: usize> Facing<T, D> {
+    /// Whether the two cannot touch in this step: more than a cell apart, so that no normal was looked for.
+    fn apart(&self) -> bool {
+        self.normal.is_none() && self.gap > T::ONE
+    }
+}
+
 /// What a law may look at to tell how two bodies face each other.
 pub struct Look<'a, T, const D: usize> {
     /// Everything near.
@@ -60,7 +69,7 @@ pub struct Look<'a, T, const D: usize> {
 /// Two sides of a site.
 #[derive(Clone, Copy, Debug)]
 pub struct Encounter<T, const D: usize> {
-    /// The two sides, in [`Survey::sides`].
+    /// The two sides, in [`Part::sides`].
     pub sides: [usize; 2],
     /// Number of the pair's rule.
     pub rule: usize,
@@ -69,9 +78,9 @@ pub struct Encounter<T, const D: usize> {
     pub(super) area: T,
 }
 
-/// All sites of a step.
+/// Sites of some blocks.
 #[derive(Clone, Debug)]
-pub struct Survey<T, const D: usize> {
+pub struct Part<T, const D: usize> {
     /// Nodes that two or more bodies share.
     pub sites: Vec<Site<D>>,
     /// Bodies at the sites.
@@ -80,11 +89,73 @@ pub struct Survey<T, const D: usize> {
     pub encounters: Vec<Encounter<T, D>>,
 }
 
-impl<T, const D: usize> Default for Survey<T, D> {
+impl<T, const D: usize> Default for Part<T, D> {
     fn default() -> Self {
-        Survey { sites: Vec::new(), sides: Vec::new(), encounters: Vec::new() }
+        Part { sites: Vec::new(), sides: Vec::new(), encounters: Vec::new() }
     }
 }
+
+/// All sites of a step, and room to find them in, kept from step to step.
+#[derive(Debug)]
+pub struct Survey<T, const D: usize> {
+    parts: Vec<Part<T, D>>,
+    /// How many parts this step has.
+    count: usize,
+    /// One for each thread.
+    desks: Vec<Mutex<Desk<T, D>>>,
+}
+
+impl<T, const D: usize> Default for Survey<T, D> {
+    fn default() -> Self {
+        Survey { parts: Vec::new(), count: 0, desks: Vec::new() }
+    }
+}
+
+impl<T, const D: usize> Survey<T, D> {
+    /// A survey that found these sites.
+    #[cfg(test)]
+    pub fn of(parts: Vec<Part<T, D>>) -> Self {
+        Survey { count: parts.len(), parts, desks: Vec::new() }
+    }
+
+    /// The sites, part by part.
+    pub fn parts(&self) -> &[Part<T, D>] {
+        &self.parts[..self.count]
+    }
+}
+
+/// What a thread writes down while it surveys a block.
+#[derive(Debug)]
+struct Desk<T, const D: usize> {
+    /// Nodes that each body of the block reaches and shares.
+    present: Vec<Nodes>,
+    /// Places of two bodies among those of the block, and the number of their rule.
+    pairs: Vec<[usize; 3]>,
+    /// Of each body, one node after the other.
+    sums: Vec<Sums<T, D>>,
+    /// Where the next sums of each body stand.
+    next: Vec<usize>,
+    /// P-wave modulus of each body [Pa].
+    moduli: Vec<T>,
+    /// Where each body stands among the sides of a node.
+    seats: Vec<Option<usize>>,
+}
+
+impl<T, const D: usize> Default for Desk<T, D> {
+    fn default() -> Self {
+        Desk {
+            present: Vec::new(),
+            pairs: Vec::new(),
+            sums: Vec::new(),
+            next: Vec::new(),
+            moduli: Vec::new(),
+            seats: Vec::new(),
+        }
+    }
+}
+
+/// Blocks of a part.
+const BLOCKS: usize = 8;
 
 /// Mass below this fraction of a full cell's does not make a node shared: that of a particle which reaches into the node's
 /// surroundings by round-off of a cell. More would leave parts of a glued body that stick out by less to themselves.
@@ -106,133 +177,162 @@ pub struct Near<'a, T, const D: usize> {
     pub boundary: &'a Boundary,
     /// Which law holds for which pair.
     pub rules: &'a Rules<T>,
+    /// Who looks.
+    pub processor: Processor,
 }
 
 impl<T: Real, const D: usize> Near<'_, T, D> {
-    /// Surveys every node that two or more bodies share.
-    pub fn survey<B: Basis<T>>(&self) -> Survey<T, D> {
-        let parts: Vec<Survey<T, D>> = (self.cover.meetings.par_chunks(8))
-            .map_init(Vec::new, |sums, meetings| {
-                let mut part = Survey::default();
-                meetings.iter().for_each(|meeting| self.survey_block::<B>(meeting, sums, &mut part));
-                part
-            })
-            .collect();
-        let mut whole = Survey::default();
-        for part in parts {
-            let (sides, encounters) = (whole.sides.len(), whole.encounters.len());
-            whole.sides.extend(part.sides);
-            whole.encounters.extend(
-                part.encounters.into_iter().map(|e| Encounter { sides: e.sides.map(|s| s + sides), ..e }),
-            );
-            whole.sites.extend(part.sites.into_iter().map(|site| Site {
-                node: site.node,
-                sides: site.sides.start + sides..site.sides.end + sides,
-                encounters: site.encounters.start + encounters..site.encounters.end + encounters,
-            }));
-        }
-        whole
-    }
-
     /// h^D [m^3]
     fn cell_volume(&self) -> T {
         (0..D).fold(T::ONE, |v, _| v * self.lattice.cell)
     }
+}
 
-    fn survey_block<B: Basis<T>>(
-        &self,
-        meeting: &Meeting<D>,
-        sums: &mut Vec<Sums<T, D>>,
-        survey: &mut Survey<T, D>,
-    ) {
-        let (n, slots) = (nodes_per_block(D), self.cover.slots_of(meeting));
+impl<T: Laned, const D: usize> Near<'_, T, D> {
+    /// Surveys every node that two or more bodies share.
+    pub fn survey<B: Basis<T>>(&self, survey: &mut Survey<T, D>) {
+        let Survey { parts, count, desks } = survey;
+        *count = self.cover.meetings.len().div_ceil(BLOCKS);
+        parts.resize_with(parts.len().max(*count), Part::default);
+        desks.resize_with(desks.len().max(rayon::current_num_threads()), Mutex::default);
+        let chunks = self.cover.meetings.par_chunks(BLOCKS).zip(&mut parts[..*count]);
+        chunks.for_each(|(meetings, part)| {
+            let thread = rayon::current_thread_index().unwrap_or(0);
+            let mut desk = desks[thread].lock().unwrap_or_else(PoisonError::into_inner);
+            part.sites.clear();
+            part.sides.clear();
+            part.encounters.clear();
+            meetings.iter().for_each(|meeting| self.survey_block::<B>(meeting, &mut desk, part));
+        });
+    }
+
+    fn survey_block<B: Basis<T>>(&self, meeting: &Meeting<D>, desk: &mut Desk<T, D>, part: &mut Part<T, D>) {
+        let Desk { present, pairs, sums, next, moduli, seats } = desk;
+        let (n, slots, block) = (nodes_per_block(D), self.cover.slots_of(meeting), meeting.block);
         let body = |slot: u32| self.cover.slots[slot as usize].0 as usize;
-        let trace = trace::<T>() * self.cell_volume();
-        let present: Vec<Nodes> = (slots.iter())
-            .map(|&slot| {
-                let least = trace * self.bodies[body(slot)].density;
-                nodes_where::<D>(|local| self.field.nodes[slot as usize * n + local].mass > least)
-            })
-            .collect();
-        let governed = nodes_where::<D>(|local| self.governed(node_at(meeting.block, local)));
-        let pairs: Vec<[usize; 3]> = self.pairs(slots).collect();
-        let shared = (pairs.iter()).fold(0, |nodes, &[a, b, _]| nodes | present[a] & present[b]) & !governed;
+        present.clear();
+        present.extend(slots.iter().map(|&slot| self.field.present[slot as usize]));
+        let shared = self.pairs(slots, (&mut *present, !self.governed(block)), pairs);
         if shared == 0 {
             return;
         }
         sums.clear();
-        sums.resize(slots.len() * n, Sums::EMPTY);
-        for ((&slot, present), sums) in slots.iter().zip(&present).zip(sums.chunks_mut(n)) {
-            self.sum_around::<B>((body(slot), meeting.block), present & shared, sums);
+        next.clear();
+        moduli.clear();
+        moduli.extend(
+            slots.iter().map(|&slot| self.bodies[body(slot)].wave_modulus(&Matrix::IDENTITY, T::ONE)),
+        );
+        for (&slot, present) in slots.iter().zip(present.iter_mut()) {
+            *present &= shared;
+            let first = sums.len();
+            next.push(first);
+            sums.resize(first + present.count_ones() as usize, Sums::EMPTY);
+            self.sum_around::<B>((body(slot), block), *present, &mut sums[first..]);
         }
-        // Where each body of the block stands among the sides of a node.
-        let mut seats = vec![None; slots.len()];
-        for local in (0..n).filter(|local| shared >> local & 1 == 1) {
-            let node = node_at(meeting.block, local);
-            let first = survey.sides.len();
+        let mut nodes = shared;
+        while let Some(local) = next_of(&mut nodes) {
+            let node = node_at(block, local);
+            let first = part.sides.len();
+            seats.clear();
             for (i, &slot) in slots.iter().enumerate() {
                 let here = present[i] >> local & 1 == 1;
-                seats[i] = here.then_some(survey.sides.len());
+                seats.push(here.then_some(part.sides.len()));
                 if here {
-                    let index = slot as usize * n + local;
-                    survey.sides.push(self.side(index, node, &sums[i * n + local]));
+                    let modulus = moduli[i];
+                    part.sides.push(self.side((slot as usize * n + local, node), &sums[next[i]], modulus));
+                    next[i] += 1;
                 }
             }
-            let start = survey.encounters.len();
-            for &[a, b, rule] in &pairs {
+            let start = part.encounters.len();
+            for &[a, b, rule] in &*pairs {
                 if let (Some(a), Some(b)) = (seats[a], seats[b]) {
                     let pair = [a - first, b - first];
-                    let look = Look { near: self, sides: &survey.sides[first..], pair, node };
+                    let look = Look { near: self, sides: &part.sides[first..], pair, node };
                     let facing = law(self.rules.rule(rule).law).facing(&look);
+                    if facing.apart() {
+                        continue;
+                    }
                     let area = area(&look, &facing);
-                    survey.encounters.push(Encounter { sides: [a, b], rule, facing, area });
+                    part.encounters.push(Encounter { sides: [a, b], rule, facing, area });
                 }
             }
-            survey.sites.push(Site {
+            if part.encounters.len() == start {
+                part.sides.truncate(first);
+                continue;
+            }
+            part.sites.push(Site {
                 node,
-                sides: first..survey.sides.len(),
-                encounters: start..survey.encounters.len(),
+                sides: first..part.sides.len(),
+                encounters: start..part.encounters.len(),
             });
         }
     }
 
-    /// Whether a wall decides what a node does.
-    fn governed(&self, node: [i32; D]) -> bool {
-        self.boundary.walls.iter().any(|wall| match wall.face {
-            Face::Fixed => wall.depth(node) <= 0,
-            _ => wall.depth(node) < 0,
-        })
+    /// Nodes of a block where a wall decides what happens.
+    fn governed(&self, block: [i32; D]) -> Nodes {
+        let walls = self.boundary.walls.iter().map(|wall| match wall.face {
+            Face::Fixed => behind(wall, block, 0),
+            _ => behind(wall, block, -1),
+        });
+        walls.fold(0, |nodes, governed| nodes | governed)
     }
 
-    /// Places in `slots` of two bodies that may touch, and the number of their rule.
-    fn pairs(&self, slots: &[u32]) -> impl Iterator<Item = [usize; 3]> {
+    /// Lists the bodies of a block that may touch at free nodes, by their places in `slots`, with the numbers of their rules; returns the nodes
+    /// that they share. Nodes that a body reaches by a trace only are struck off `present`.
+    fn pairs(
+        &self,
+        slots: &[u32],
+        (present, free): (&mut [Nodes], Nodes),
+        pairs: &mut Vec<[usize; 3]>,
+    ) -> Nodes {
+        pairs.clear();
+        let several =
+            (present.iter()).fold([0, 0], |[once, twice], nodes| [once | nodes, twice | once & nodes])[1];
+        let (n, trace) = (nodes_per_block(D), trace::<T>() * self.cell_volume());
+        for (&slot, present) in slots.iter().zip(&mut *present) {
+            let least = trace * self.bodies[self.cover.slots[slot as usize].0 as usize].density;
+            let mut nodes = *present & several & free;
+            while let Some(local) = next_of(&mut nodes) {
+                if self.field.nodes[slot as usize * n + local].mass <= least {
+                    *present &= !(1 << local);
+                }
+            }
+        }
         let body = |place: usize| self.cover.slots[slots[place] as usize].0 as usize;
-        let places = (0..slots.len()).flat_map(move |a| (a + 1..slots.len()).map(move |b| [a, b]));
-        places.filter_map(move |[a, b]| {
-            let bodies = [body(a), body(b)];
-            let rule = self.rules.number(bodies[0], bodies[1]);
-            let rigid = bodies.map(|body| self.bodies[body].rigid);
-            let touch = self.rules.rule(rule).law != ContactLaw::None && rigid != [true; 2];
-            touch.then_some([a, b, rule])
-        })
+        let mut all = 0;
+        for a in 0..slots.len() {
+            for b in a + 1..slots.len() {
+                let shared = present[a] & present[b] & free;
+                let bodies = [body(a), body(b)];
+                if shared == 0 || bodies.iter().all(|&body| self.bodies[body].rigid) {
+                    continue;
+                }
+                let rule = self.rules.number(bodies[0], bodies[1]);
+                if self.rules.rule(rule).law != ContactLaw::None {
+                    pairs.push([a, b, rule]);
+                    all |= shared;
+                }
+            }
+        }
+        all
     }
 
-    fn side(&self, index: usize, node: [i32; D], sums: &Sums<T, D>) -> Side<T, D> {
+    fn side(&self, (index, node): (usize, [i32; D]), sums: &Sums<T, D>, modulus: T) -> Side<T, D> {
         let body = self.cover.slots[index / nodes_per_block(D)].0 as usize;
         let owner = &self.bodies[body];
         let arm = Vector::from_fn(|i| T::of(f64::from(node[i].rem_euclid(SIDE))) * self.lattice.cell);
         let mass = self.field.nodes[index].mass;
         let surface = Surface {
             inverse_mass: if owner.rigid { T::ZERO } else { T::ONE / mass },
-            normal: (-sums.mass_gradient).direction(),
-            stress: sums.stress * (T::ONE / sums.volume),
-            volume: sums.volume,
-            modulus: owner.wave_modulus(&Matrix::IDENTITY, T::ONE),
+            normal: (-sums.mass_gradient()).direction(),
+            stress: sums.stress(),
+            volume: sums.volume(),
+            modulus,
             // A node on a mirror carries its half of the mass, and so of the force.
-            force: sums.force * (mass / sums.mass),
-            place: sums.place.over(sums.volume).seen_from(arm),
+            force: sums.force() * (mass / sums.mass()),
+            place: sums.place().seen_from(arm),
         };
-        Side { body, index, surface, volume_gradient: sums.volume_gradient }
+        Side { body, index, surface, volume_gradient: sums.volume_gradient() }
     }
 }
 
@@ -270,7 +370,7 @@ fn area<T: Real, const D: usize>(look: &Look<T, D>, facing: &Facing<T, D>) -> T 
     (-a).min(b).max(T::ZERO)
 }
 
-impl<T: Real, const D: usize> Survey<T, D> {
+impl<T: Real, const D: usize> Part<T, D> {
     /// The pair of an encounter.
     pub fn pair<'a>(
         &'a self,

@@ -4,7 +4,8 @@ use super::Impulse;
 use crate::door::{ContactState, Patch};
 use crate::grid::Lattice;
 use crate::tensor::Real;
-use std::collections::BTreeMap;
+use std::collections::HashMap;
+use std::hash::{BuildHasherDefault, Hasher};
 
 #[derive(Clone, Debug, Default)]
 struct Sum {
@@ -41,9 +42,12 @@ const CLOSE: f64 = 0.01;
 /// Impulses by pair since the last look, and works since the start.
 #[derive(Clone, Debug, Default)]
 pub struct Tally {
-    pairs: BTreeMap<[usize; 2], Sum>,
-    /// Largest area over which each pair touched since the start [m^2].
-    largest: BTreeMap<[usize; 2], f64>,
+    /// Pairs that ever touched, in the order in which they first did.
+    pairs: Vec<Touched>,
+    /// Where each of them stands.
+    places: HashMap<[usize; 2], usize, BuildHasherDefault<Mixer>>,
+    /// Those that are part of a use.
+    present: Vec<usize>,
     since: f64,
     /// What was taken last.
     taken: Vec<ContactState>,
@@ -54,6 +58,35 @@ pub struct Tally {
     pub scaled: u64,
     /// Work that rigid bodies' prescribed motion did on the others [J].
     pub work: f64,
+}
+
+/// Two bodies that touched.
+#[derive(Clone, Debug)]
+struct Touched {
+    bodies: [usize; 2],
+    sum: Sum,
+    /// Largest area over which they touched since the start [m^2], if they pushed.
+    largest: Option<f64>,
+}
+
+/// Mixes the numbers of two bodies: nobody chooses them to collide.
+#[derive(Clone, Debug, Default)]
+struct Mixer(u64);
+
+impl Hasher for Mixer {
+    fn finish(&self) -> u64 {
+        self.0
+    }
+
+    fn write(&mut self, bytes: &[u8]) {
+        for bytes in bytes.chunks(8) {
+            let mut number = [0; 8];
+            number[..bytes.len()].copy_from_slice(bytes);
+            // The golden ratio in fixed point spreads every bit over those above it.
+            let mixed = self.0.rotate_left(32) ^ u64::from_le_bytes(number);
+            self.0 = mixed.wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        }
+    }
 }
 
 impl Sum {
@@ -72,16 +105,31 @@ impl Sum {
 
 impl Tally {
     /// Adds the impulses of one use of contact.
-    pub fn add<T: Real, const D: usize>(&mut self, impulses: &[Impulse<T, D>], lattice: &Lattice<T, D>) {
+    pub fn add<'a, T: Real, const D: usize>(
+        &mut self,
+        impulses: impl Iterator<Item = &'a Impulse<T, D>>,
+        lattice: &Lattice<T, D>,
+    ) {
         self.uses += 1;
+        self.present.clear();
+        let mut last: Option<([usize; 2], usize)> = None;
         for impulse in impulses {
             let [on_a, on_b] = impulse.change.impulse.map(|j| j.space());
             let pushes = on_a != [0.0; 3] || on_b != [0.0; 3];
             if !pushes && impulse.gap > T::of(CLOSE) {
                 continue;
             }
-            let sum = self.pairs.entry(impulse.bodies).or_default();
-            sum.close(self.uses);
+            // Pairs follow one another at the nodes of a block.
+            let place = match last {
+                Some((bodies, place)) if bodies == impulse.bodies => place,
+                _ => self.place(impulse.bodies),
+            };
+            last = Some((impulse.bodies, place));
+            let sum = &mut self.pairs[place].sum;
+            if sum.last_use != self.uses {
+                sum.close(self.uses);
+                self.present.push(place);
+            }
             let area = impulse.area.f64();
             sum.last.area += area;
             sum.last.gap += area * (impulse.gap * lattice.cell).f64();
@@ -107,12 +155,29 @@ impl Tally {
             self.friction += impulse.friction.f64();
             self.work += impulse.work.f64();
         }
-        for (pair, sum) in
-            self.pairs.iter().filter(|(_, sum)| sum.last_use == self.uses && sum.last.nodes > 0)
-        {
-            let largest = self.largest.entry(*pair).or_default();
-            *largest = largest.max(sum.last.area);
+        for &place in &self.present {
+            let Touched { sum, largest, .. } = &mut self.pairs[place];
+            if sum.last.nodes > 0 {
+                *largest = Some(largest.unwrap_or_default().max(sum.last.area));
+            }
         }
+    }
+
+    /// Where a pair stands, from now on if not before.
+    fn place(&mut self, bodies: [usize; 2]) -> usize {
+        let Tally { pairs, places, .. } = self;
+        *places.entry(bodies).or_insert_with(|| {
+            pairs.push(Touched { bodies, sum: Sum::default(), largest: None });
+            pairs.len() - 1
+        })
+    }
+
+    /// Those of all pairs that something is known of, ordered by pair.
+    fn ordered<X>(&self, known: impl Fn(&Touched) -> Option<X>) -> Vec<X> {
+        let mut all: Vec<_> =
+            self.pairs.iter().filter_map(|pair| known(pair).map(|x| (pair.bodies, x))).collect();
+        all.sort_unstable_by_key(|(bodies, _)| *bodies);
+        all.into_iter().map(|(_, x)| x).collect()
     }
 
     /// The mean forces between the last call and time `now` [s], ordered by pair.
@@ -123,7 +188,7 @@ impl Tally {
             self.taken.clear();
         }
         self.since = now;
-        self.pairs.clear();
+        self.pairs.iter_mut().for_each(|pair| pair.sum = Sum::default());
         self.taken.clone()
     }
 
@@ -134,11 +199,10 @@ impl Tally {
 
     fn means(&self, now: f64) -> Vec<ContactState> {
         let elapsed = now - self.since;
-        (self.pairs.iter())
-            .filter(|(_, sum)| sum.magnitude > 0.0)
-            .map(|(&[body_a, body_b], sum)| ContactState {
-                body_a,
-                body_b,
+        self.ordered(|Touched { bodies: [body_a, body_b], sum, .. }| {
+            (sum.magnitude > 0.0).then(|| ContactState {
+                body_a: *body_a,
+                body_b: *body_b,
                 force: sum.impulse.map(|j| j / elapsed),
                 normal: sum.normal / elapsed,
                 tangential: sum.tangential.iter().map(|j| j * j).sum::<f64>().sqrt() / elapsed,
@@ -149,12 +213,13 @@ impl Tally {
                 slip: sum.slipped(),
                 friction: sum.friction,
             })
-            .collect()
+        })
     }
 
     /// The largest area over which each pair touched since the start, ordered by pair.
     pub fn patches(&self) -> Vec<Patch> {
-        let patch = |(&[body_a, body_b], &area): (&[usize; 2], &f64)| Patch { body_a, body_b, area };
-        self.largest.iter().map(patch).collect()
+        self.ordered(|Touched { bodies: [body_a, body_b], largest, .. }| {
+            largest.map(|area| Patch { body_a: *body_a, body_b: *body_b, area })
+        })
     }
 }

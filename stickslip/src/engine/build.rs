@@ -8,7 +8,7 @@ use crate::basis::{Basis, Gimp, Linear};
 use crate::body::{Body, Particle};
 use crate::boundary::{Boundary, Wall};
 use crate::check;
-use crate::contact::{Rules, Tally};
+use crate::contact::{Rules, Survey, Tally};
 use crate::door::Simulation;
 use crate::geometry::{Filling, Mirror, Site, Whole, fill};
 use crate::grid::{Cover, Field, Lattice};
@@ -75,7 +75,6 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 }),
                 rigid: motion.is_some(),
                 whole: Whole::new(&body.shape, mirrors::<D>(scene), D),
-                places: filling.sites.iter().map(|site| Vector::of(site.position)).collect(),
                 thickness: scene.dimension.thickness(),
             });
             rigid.push(motion);
@@ -91,8 +90,10 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             boundary: Boundary::new(walls::<D>(scene)),
             clock: scene.time.clone(),
             cover: Cover::default(),
-            field: Field { nodes: Vec::new() },
-            impulses: Vec::new(),
+            field: Field { nodes: Vec::new(), present: Vec::new() },
+            meeting: Survey::default(),
+            groups: Vec::new(),
+            impulses: Default::default(),
             tally: Tally::default(),
             signal: None,
             left: Vec::new(),

@@ -2,7 +2,6 @@
 
 use super::Engine;
 use crate::basis::Basis;
-use crate::contact::Survey;
 use crate::lanes::Laned;
 use crate::scene::ContactLaw;
 use crate::tensor::Vector;
@@ -15,35 +14,40 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// ```
     /// A particle takes what changes at a node after interpolation, v - v^0. With v^0 of the part alone it would be drawn toward the
     /// velocity of the whole in each step, which damps; as one body the parts' particles would not be.
-    pub(super) fn join(&mut self, survey: &Survey<T, D>) {
+    pub(super) fn join(&mut self) {
         if !self.rules.uses(ContactLaw::Glued) {
             return;
         }
-        for site in &survey.sites {
-            let mut groups: Vec<usize> = site.sides.clone().collect();
-            for encounter in &survey.encounters[site.encounters.clone()] {
-                let bodies = encounter.sides.map(|side| survey.sides[side].body);
-                let glued = self.rules.rule(encounter.rule).law == ContactLaw::Glued;
-                if glued && bodies.iter().all(|&body| self.rigid[body].is_none()) {
-                    let [a, b] = encounter.sides.map(|side| groups[side - site.sides.start]);
-                    groups.iter_mut().filter(|group| **group == b).for_each(|group| *group = a);
+        let groups = &mut self.groups;
+        for part in self.meeting.parts() {
+            for site in &part.sites {
+                groups.clear();
+                groups.extend(site.sides.clone());
+                for encounter in &part.encounters[site.encounters.clone()] {
+                    let bodies = encounter.sides.map(|side| part.sides[side].body);
+                    let glued = self.rules.rule(encounter.rule).law == ContactLaw::Glued;
+                    if glued && bodies.iter().all(|&body| self.rigid[body].is_none()) {
+                        let [a, b] = encounter.sides.map(|side| groups[side - site.sides.start]);
+                        groups.iter_mut().filter(|group| **group == b).for_each(|group| *group = a);
+                    }
                 }
-            }
-            for first in site.sides.clone() {
-                let members = || groups.iter().zip(site.sides.clone()).filter(|(group, _)| **group == first);
-                if members().count() < 2 {
-                    continue;
-                }
-                let (mut mass, mut velocity, mut start) = (T::ZERO, Vector::ZERO, Vector::ZERO);
-                for (_, side) in members() {
-                    let node = &self.field.nodes[survey.sides[side].index];
-                    mass += node.mass;
-                    velocity += node.velocity * node.mass;
-                    start += node.start * node.mass;
-                }
-                for (_, side) in members() {
-                    let node = &mut self.field.nodes[survey.sides[side].index];
-                    (node.velocity, node.start) = (velocity / mass, start / mass);
+                for first in site.sides.clone() {
+                    let members =
+                        || groups.iter().zip(site.sides.clone()).filter(|(group, _)| **group == first);
+                    if members().count() < 2 {
+                        continue;
+                    }
+                    let (mut mass, mut velocity, mut start) = (T::ZERO, Vector::ZERO, Vector::ZERO);
+                    for (_, side) in members() {
+                        let node = &self.field.nodes[part.sides[side].index];
+                        mass += node.mass;
+                        velocity += node.velocity * node.mass;
+                        start += node.start * node.mass;
+                    }
+                    for (_, side) in members() {
+                        let node = &mut self.field.nodes[part.sides[side].index];
+                        (node.velocity, node.start) = (velocity / mass, start / mass);
+                    }
                 }
             }
         }

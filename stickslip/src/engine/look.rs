@@ -2,6 +2,7 @@
 
 use super::Engine;
 use crate::basis::Basis;
+use crate::contact::Span;
 use crate::door::{
     BodyState, ContactState, GridSnapshot, Ledger, ParticleSnapshot, ParticleView, Patch, Simulation,
     StepError,
@@ -40,7 +41,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
         for motion in self.rigid.iter_mut().flatten() {
             motion.set_time(self.time + 0.5 * dt);
         }
-        self.advance(T::of(dt))?;
+        // One of the pool's threads takes the whole step: handing it every loop from outside would cost more than many a loop.
+        rayon::scope(|_| self.advance(T::of(dt)))?;
         self.time += dt;
         self.steps += 1;
         Ok(())
@@ -136,7 +138,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
         let mut snapshot =
             GridSnapshot { dimension: D, cell: self.lattice.cell.f64(), ..GridSnapshot::default() };
         let mut impulse = vec![[0.0; 3]; self.field.nodes.len()];
-        for contact in &self.impulses {
+        let [first, second, _] = &self.impulses;
+        let first = first.iter().filter(|impulse| impulse.span == Span::EachUse);
+        for contact in first.chain(second.iter()) {
             for (node, on_body) in contact.nodes.into_iter().zip(contact.change.impulse) {
                 impulse[node] = add(impulse[node], on_body.space());
             }

@@ -17,7 +17,7 @@ use crate::basis::Basis;
 use crate::body::Body;
 use crate::boundary::Boundary;
 use crate::clock::fastest_signal;
-use crate::contact::{Impulse, Rules, Tally};
+use crate::contact::{Impulses, Rules, Survey, Tally};
 use crate::door::StepError;
 use crate::grid::{Cover, Field, Lattice};
 use crate::lanes::Laned;
@@ -44,8 +44,12 @@ pub struct Engine<T, const D: usize, B> {
     clock: Time,
     cover: Cover<D>,
     field: Field<T, D>,
-    /// What contact did in the last step, both uses.
-    impulses: Vec<Impulse<T, D>>,
+    /// Where bodies meet in this step.
+    meeting: Survey<T, D>,
+    /// Which bodies glue joins at a node.
+    groups: Vec<usize>,
+    /// What contact did in the last step, use by use.
+    impulses: [Impulses<T, D>; 3],
     tally: Tally,
     /// Fastest signal now [m/s]; unknown before the first step.
     signal: Option<f64>,
@@ -73,14 +77,14 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             _ => Share::Everything,             //                  m, p, f = -sum V sigma grad S
         });
         self.interpolated_velocities(); //              v = p / m                           (4)
-        let survey = self.survey(); //                  surfaces, normals and gaps where bodies meet
-        self.join(&survey); //                          glued bodies interpolate as one
-        let given = self.first_contact(&survey, dt); // v~ from interpolated velocities     (5)-(13), (20)-(22)
+        self.survey(); //                               surfaces, normals and gaps where bodies meet
+        self.join(); //                                 glued bodies interpolate as one
+        self.first_contact(dt); //                      v~ from interpolated velocities     (5)-(13), (20)-(22)
         if when == StressUpdate::First {
             self.strain_and_scatter(dt)?; //            F = (I + L dt) F, sigma = law(F), f
         }
         self.accelerate(dt); //                         v += dt (f / m + g)                 (3)
-        self.contact(&survey, &given, dt); //           v~ from integrated velocities
+        self.contact(dt); //                            v~ from integrated velocities
         match when {
             StressUpdate::First => {
                 self.carry();
@@ -94,7 +98,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 self.carry_and_make_room();
                 self.accept_and_scatter()?; //          particles: v += dv; p
                 self.modified_velocities(); //          v = p / m
-                self.contact_unrecorded(&survey, dt); //v~
+                self.contact_unrecorded(dt); //         v~
                 self.strain_and_displace(dt) //         particles: F, sigma, x += v dt
             }
         }

@@ -1,24 +1,36 @@
 //! The verbs of the step: what each does to a node or a particle.
 
 use super::Engine;
-use super::pass::{Fault, FaultKind, Found, Pass, Verbs, escaped, signal};
+use super::pass::{Fault, FaultKind, Found, Pass, Path, Verbs, escaped, signal};
 use crate::basis::Basis;
-use crate::contact::{Impulse, Near, Solve, Span, Step, Survey, Use};
+use crate::contact::{Near, Record, Solve, Span, Step, Use};
 use crate::door::StepError;
-use crate::grid::{Blocks, Node, node_at, nodes_per_block};
-use crate::lanes::Laned;
+use crate::grid::{Blocks, Disjoint, node_at, nodes_per_block};
+use crate::lanes::{Laned, Processor};
 use crate::tensor::{Matrix, Vector};
 use crate::transfer::Share;
 use rayon::prelude::*;
+use std::sync::Mutex;
 use std::time::Instant;
+
+/// The uses of contact in a step.
+#[derive(Clone, Copy)]
+enum Contact {
+    /// Of the interpolated velocities.
+    Interpolated,
+    /// Of the integrated velocities.
+    Integrated,
+    /// Of velocities that nobody asks about.
+    Unrecorded,
+}
 
 impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     pub(super) fn cover(&mut self) {
         let start = Instant::now();
-        let counts: Vec<usize> = self.bodies.iter().map(|body| body.particles.len()).collect();
         let (bodies, lattice) = (&self.bodies, &self.lattice);
         let left = (self.steps > 0).then_some(&self.left[..]);
-        let blocks = self.cover.update(&counts, left, |body, particle| {
+        let count = |body: usize| bodies[body].particles.len();
+        let blocks = self.cover.update((bodies.len(), count, B::WIDTH as i32 - 1), left, |body, particle| {
             let (position, half_width) = bodies[body].particles.place(particle);
             let x = lattice.cells(position);
             std::array::from_fn(|i| B::reach(x[i], half_width * lattice.per_cell).floor())
@@ -35,10 +47,12 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
 
     /// Sorts particles in memory into the order in which tiles visit them, where they are no longer nearly so.
     fn tidy(&mut self) {
-        let cover = &self.cover;
+        let (cover, rooms) = (&self.cover, &mut self.workshop.rooms);
+        rooms.resize_with(rooms.len().max(rayon::current_num_threads()), Mutex::default);
+        let rooms = &*rooms;
         (self.bodies.par_iter_mut().with_min_len(16).enumerate())
             .filter(|(i, _)| cover.untidy(*i))
-            .for_each(|(i, body)| body.particles.permute(cover.order_of(i)));
+            .for_each(|(i, body)| body.particles.permute(cover.order_of(i), rooms));
         for i in 0..self.bodies.len() {
             if self.cover.untidy(i) {
                 self.cover.tidied(i);
@@ -96,39 +110,36 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
 
     /// v = p / m
     pub(super) fn interpolated_velocities(&mut self) {
-        self.velocities(|node| node.start = node.velocity);
+        let start = Instant::now();
+        self.field.find_present(|node| {
+            node.velocity = node.velocity / node.mass;
+            node.start = node.velocity;
+        });
+        self.hold();
+        self.watch.lap("velocities", start);
     }
 
     /// Lets the nodes' velocities carry the particles.
     pub(super) fn carry(&mut self) {
-        self.each_node(|node| node.carry = node.velocity);
+        self.field.each_present(|node| node.carry = node.velocity);
     }
 
     /// Lets the nodes' velocities carry the particles and makes room for momentum.
     pub(super) fn carry_and_make_room(&mut self) {
-        self.each_node(|node| {
+        let start = Instant::now();
+        self.field.each_present(|node| {
             node.carry = node.velocity;
             node.velocity = Vector::ZERO;
         });
-    }
-
-    fn each_node(&mut self, f: impl Fn(&mut Node<T, D>) + Sync + Send) {
-        self.field.nodes.par_iter_mut().with_min_len(4096).for_each(f);
+        self.watch.lap("velocities", start);
     }
 
     /// v = p / m of the particles' new velocities.
     pub(super) fn modified_velocities(&mut self) {
-        self.velocities(|_| {});
-    }
-
-    fn velocities(&mut self, before_walls: impl Fn(&mut Node<T, D>) + Sync) {
-        self.each_node(|node| {
-            if node.mass > T::ZERO {
-                node.velocity = node.velocity / node.mass;
-                before_walls(node);
-            }
-        });
+        let start = Instant::now();
+        self.field.each_present(|node| node.velocity = node.velocity / node.mass);
         self.hold();
+        self.watch.lap("velocities", start);
     }
 
     /// Prescribed velocities of rigid bodies and walls.
@@ -147,7 +158,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.boundary.hold(&mut self.field);
     }
 
-    pub(super) fn survey(&mut self) -> Survey<T, D> {
+    pub(super) fn survey(&mut self) {
         let start = Instant::now();
         let near = Near {
             cover: &self.cover,
@@ -156,61 +167,52 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             lattice: self.lattice,
             boundary: &self.boundary,
             rules: &self.rules,
+            processor: match self.path {
+                Path::Lanes(processor) => processor,
+                Path::Reference => Processor::Any,
+            },
         };
-        let survey = near.survey::<B>();
-        self.impulses.clear();
+        near.survey::<B>(&mut self.meeting);
         self.watch.lap("survey", start);
-        survey
     }
 
     /// Contact on the interpolated velocities, which strain the particles.
-    pub(super) fn first_contact(&mut self, survey: &Survey<T, D>, dt: T) -> Vec<Impulse<T, D>> {
-        let impulses = self.exchange(survey, (dt, Use::Strain), &[]);
-        self.impulses.extend(impulses.iter().filter(|impulse| impulse.span == Span::EachUse));
-        self.tally.add(&self.impulses, &self.lattice);
-        impulses
+    pub(super) fn first_contact(&mut self, dt: T) {
+        self.exchange(dt, Contact::Interpolated);
+        let impulses = self.impulses[0].iter().filter(|impulse| impulse.span == Span::EachUse);
+        self.tally.add(impulses, &self.lattice);
     }
 
     /// Contact on the integrated velocities, after what it gave to the interpolated ones.
-    pub(super) fn contact(&mut self, survey: &Survey<T, D>, given: &[Impulse<T, D>], dt: T) {
-        let impulses = self.exchange(survey, (dt, Use::Motion), given);
-        self.tally.add(&impulses, &self.lattice);
-        self.impulses.extend(impulses);
+    pub(super) fn contact(&mut self, dt: T) {
+        self.exchange(dt, Contact::Integrated);
+        self.tally.add(self.impulses[1].iter(), &self.lattice);
     }
 
     /// Contact on velocities that only strain the particles: it enters no sum of forces and works.
-    pub(super) fn contact_unrecorded(&mut self, survey: &Survey<T, D>, dt: T) {
-        self.exchange(survey, (dt, Use::Strain), &[]);
+    pub(super) fn contact_unrecorded(&mut self, dt: T) {
+        self.exchange(dt, Contact::Unrecorded);
     }
 
-    fn exchange(
-        &mut self,
-        survey: &Survey<T, D>,
-        (duration, purpose): (T, Use),
-        given: &[Impulse<T, D>],
-    ) -> Vec<Impulse<T, D>> {
+    fn exchange(&mut self, duration: T, contact: Contact) {
         let start = Instant::now();
+        let [first, second, third] = &mut self.impulses;
+        let (purpose, record, given, listed) = match contact {
+            Contact::Interpolated => (Use::Strain, Record::Kept, None, first),
+            Contact::Integrated => (Use::Motion, Record::Kept, Some(&*first), second),
+            Contact::Unrecorded => (Use::Strain, Record::Dropped, None, third),
+        };
         let step = Step { duration, cell: self.lattice.cell, purpose };
-        let solve = Solve { survey, rules: &self.rules, field: &self.field, step, given };
-        let impulses = solve.impulses();
-        for impulse in &impulses {
-            for (node, velocity) in impulse.nodes.into_iter().zip(impulse.velocity) {
-                self.field.nodes[node].velocity += velocity;
-            }
-        }
+        let nodes = Disjoint::new(&mut self.field.nodes);
+        Solve { survey: &self.meeting, rules: &self.rules, nodes, step, given }.impulses(record, listed);
         self.boundary.hold(&mut self.field);
         self.watch.lap("contact", start);
-        impulses
     }
 
     pub(super) fn accelerate(&mut self, dt: T) {
         let start = Instant::now();
         let gravity = self.gravity;
-        self.each_node(|node| {
-            if node.mass > T::ZERO {
-                node.velocity += (node.force / node.mass + gravity) * dt;
-            }
-        });
+        self.field.each_present(|node| node.velocity += (node.force / node.mass + gravity) * dt);
         self.hold();
         self.watch.lap("accelerate", start);
     }

@@ -26,8 +26,8 @@ pub struct Whole {
 impl Whole {
     /// A shape before mirrors.
     ///
-    /// Faces on a mirror are left out of half-spaces, boxes, and polygons, also where these are combined; of turned shapes
-    /// only out of half-spaces.
+    /// Faces on a mirror are left out of half-spaces, boxes, cylinders and polygons, also where these are combined; of turned
+    /// shapes only out of half-spaces.
     pub fn new(shape: &Shape, mirrors: Vec<Mirror>, dimension: usize) -> Self {
         let shape = mirrors.iter().fold(shape.clone(), |shape, mirror| continued(shape, mirror, dimension));
         Whole { shape, mirrors, dimension }
@@ -87,7 +87,11 @@ fn continued(shape: Shape, mirror: &Mirror, dimension: usize) -> Shape {
             }
             shape => Shape::Rotated { shape: Box::new(shape), center, axis, angle },
         },
-        shape @ (Shape::Ball { .. } | Shape::Cylinder { .. }) => shape,
+        Shape::Cylinder { start, end, radius } => {
+            let [start, end] = [[start, end], [end, start]].map(|ends| beyond(ends, mirror));
+            Shape::Cylinder { start, end, radius }
+        }
+        Shape::Ball { .. } => shape,
     }
 }
 
@@ -104,12 +108,26 @@ fn half_space(point: [f64; 3], normal: [f64; 3], mirror: &Mirror, dimension: usi
     }
 }
 
+/// How far behind a mirror counts as endless, in sizes of the shape.
+const FAR: f64 = 1e3;
+
+/// The first end of a cylinder's axis, moved far behind the mirror if its flat face lies on it.
+fn beyond([mut end, other]: [[f64; 3]; 2], mirror: &Mirror) -> [f64; 3] {
+    let Mirror { axis, inward, .. } = *mirror;
+    let length = (end[axis] - other[axis]).abs();
+    let upright = (0..3).all(|k| k == axis || (end[k] - other[k]).abs() <= ROUND_OFF * length);
+    if upright && on(mirror, end[axis]) {
+        end[axis] -= FAR * length * inward;
+    }
+    end
+}
+
 /// A polygon whose edges on the mirror are moved far behind it.
 fn drawn_out(points: &[[f64; 2]], mirror: &Mirror) -> Vec<[f64; 2]> {
     let Mirror { axis, position, inward } = *mirror;
     let size = points.iter().flatten().fold(1.0, |size: f64, x| size.max((x - position).abs()));
     let behind = |mut point: [f64; 2]| {
-        point[axis] = position - 1e3 * inward * size;
+        point[axis] = position - FAR * inward * size;
         point
     };
     let next = |i: usize| points[(i + 1) % points.len()];
@@ -153,6 +171,30 @@ mod tests {
             let level = Whole::new(&shape, vec![MIRROR], 2).level([0.9, 0.01, 0.0]);
             assert!((level.distance + 0.1).abs() < 1e-12 && level.gradient[0] == 1.0, "{level:?}");
         }
+    }
+
+    /// A cylinder upon the mirror, either way round, is twice as long; between two mirrors it is endless; across the mirror it stays.
+    #[test]
+    fn a_cylinder_goes_on_behind_the_mirror_that_it_stands_on() {
+        let [foot, top] = [[1.0, 0.0, 2.0], [1.0, 0.1, 2.0]];
+        let cylinder = |start, end| Shape::Cylinder { start, end, radius: 0.5 };
+        let twice = cylinder([1.0, -0.1, 2.0], top);
+        let lid = Mirror { position: 0.1, inward: -1.0, ..MIRROR };
+        for [start, end] in [[foot, top], [top, foot]] {
+            let upon = Whole::new(&cylinder(start, end), vec![MIRROR], 3);
+            let between = Whole::new(&cylinder(start, end), vec![MIRROR, lid], 3);
+            for point in [[1.4, 0.0, 2.0], [1.0, -0.05, 2.51], [1.4, 0.04, 2.0], [1.1, 0.2, 2.0]] {
+                let (found, exact) = (upon.level(point), twice.level(point, 3));
+                assert!((found.distance - exact.distance).abs() < 1e-12, "{point:?}: {found:?} {exact:?}");
+                let side = f64::hypot(point[0] - 1.0, point[2] - 2.0) - 0.5;
+                assert!((between.level(point).distance - side).abs() < 1e-12, "{point:?}");
+            }
+        }
+        let lying = cylinder([0.0; 3], [1.0, 0.0, 0.0]);
+        assert_eq!(
+            Whole::new(&lying, vec![MIRROR], 3).level([0.5, 0.1, 0.0]),
+            lying.level([0.5, 0.1, 0.0], 3)
+        );
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Which blocks a body's particles reach, and where bodies meet.
 //!
 //! A particle's *home* is the cell of its base node. Particles that share a home block form a tile; a tile writes to its own
-//! block and to the next one along each axis, since no basis reaches more than three nodes.
+//! block and to the next one along each axis, as far as its particles reach, since no basis reaches more than three nodes.
 
 use super::holding::{Holding, block_of, corner_block, key};
 use super::{locate, nodes_per_block};
@@ -17,7 +17,7 @@ pub struct Tile<const D: usize> {
     pub block: [i32; D],
     /// Its number among the body's tiles.
     pub number: usize,
-    /// Field slots of the blocks at `block` + {0, 1}^D, the last axis fastest.
+    /// Field slots of the blocks at `block` + {0, 1}^D, the last axis fastest; that of the home where particles do not reach so far.
     pub slots: [u32; 8],
 }
 
@@ -49,6 +49,8 @@ pub struct Cover<const D: usize> {
     /// Blocks that two or more bodies hold.
     pub meetings: Vec<Meeting<D>>,
     shared: Vec<u32>,
+    /// Key and slot of every block, sorted.
+    keys: Vec<(u64, u32)>,
 }
 
 /// Most tiles of a small body.
@@ -70,18 +72,18 @@ pub enum Blocks {
 }
 
 impl<const D: usize> Cover<D> {
-    /// Covers bodies of `counts` particles and says whether their blocks are others than before; `base(body, particle)` is a particle's
+    /// Covers so many bodies of so many particles each, which reach so many nodes beyond their base nodes, and says whether their blocks are others than before; `base(body, particle)` is a particle's
     /// base node, which must be [`addressable`].
     ///
     /// `left` says which cells of each tile particles have left since the last time, from the lowest bit on; without it all particles
     /// are looked at.
     pub fn update(
         &mut self,
-        counts: &[usize],
+        (bodies, count, reach): (usize, impl Fn(usize) -> usize + Sync, i32),
         left: Option<&[u64]>,
         base: impl Fn(usize, usize) -> [i32; D] + Sync,
     ) -> Blocks {
-        self.holdings.resize_with(counts.len(), Holding::default);
+        self.holdings.resize_with(bodies, Holding::default);
         let first_tile = &self.first_tile;
         let changed = (self.holdings.par_iter_mut().with_min_len(16))
             .enumerate()
@@ -90,7 +92,7 @@ impl<const D: usize> Cover<D> {
                     let left = &left[first_tile[body]..first_tile[body + 1]];
                     holding.update(left, |particle| base(body, particle))
                 }
-                None => holding.start(counts[body], |particle| base(body, particle)),
+                None => holding.start((count(body), reach), |particle| base(body, particle)),
             })
             .reduce(|| Blocks::Same, Blocks::max);
         if changed == Blocks::New {
@@ -104,20 +106,22 @@ impl<const D: usize> Cover<D> {
         self.tiles.clear();
         self.first_slot.clear();
         self.first_tile.clear();
-        let mut keys = Vec::new();
+        self.keys.clear();
         for (body, holding) in self.holdings.iter().enumerate() {
             let first = self.slots.len();
             self.first_slot.push(first);
             self.first_tile.push(self.tiles.len());
             for (i, &key) in holding.blocks.iter().enumerate() {
                 self.slots.push((body as u32, block_of(key)));
-                keys.push((key, (first + i) as u32));
+                self.keys.push((key, (first + i) as u32));
             }
             for (number, &home) in holding.homes.iter().enumerate() {
                 let block = block_of(home);
                 let mut slots = [0; 8];
                 for (corner, slot) in slots.iter_mut().enumerate().take(1 << D) {
-                    let key = key(corner_block(block, corner));
+                    // What is not reached is given nothing: the home block may stand for it.
+                    let reached = holding.reached[number] >> corner & 1 == 1;
+                    let key = key(if reached { corner_block(block, corner) } else { block });
                     let place =
                         holding.blocks.binary_search(&key).expect("a body holds every block its tiles reach");
                     *slot = (first + place) as u32;
@@ -128,7 +132,7 @@ impl<const D: usize> Cover<D> {
         self.first_slot.push(self.slots.len());
         self.first_tile.push(self.tiles.len());
         self.share_out();
-        self.meet(keys);
+        self.meet();
     }
 
     /// Small bodies together make portions, each for one thread; the tiles of large ones get colours.
@@ -155,18 +159,20 @@ impl<const D: usize> Cover<D> {
         }
     }
 
-    fn meet(&mut self, mut keys: Vec<(u64, u32)>) {
+    fn meet(&mut self) {
         self.meetings.clear();
         self.shared.clear();
         if self.holdings.len() < 2 {
             return;
         }
-        keys.sort_unstable();
-        for group in keys.chunk_by(|a, b| a.0 == b.0).filter(|group| group.len() > 1) {
+        self.keys.sort_unstable();
+        for group in self.keys.chunk_by(|a, b| a.0 == b.0).filter(|group| group.len() > 1) {
             let start = self.shared.len();
             self.shared.extend(group.iter().map(|(_, slot)| slot));
             self.meetings.push(Meeting { block: block_of(group[0].0), start, end: self.shared.len() });
         }
+        // By first body: its particles stay in the cache from block to block.
+        self.meetings.sort_unstable_by_key(|meeting| self.shared[meeting.start]);
     }
 
     /// Places in the body's order where the particles of each cell of a tile begin, and where the last ends.
@@ -212,16 +218,20 @@ impl<const D: usize> Cover<D> {
         Some((self.first_slot[body] + place) * nodes_per_block(D) + local)
     }
 
+    /// A body's particles whose home is a block: indices of all its particles, and places there where those of each cell begin, and where
+    /// the last ends.
+    #[inline]
+    pub fn tile_at(&self, body: usize, block: [i32; D]) -> Option<(&[u32], &[u32])> {
+        let holding = &self.holdings[body];
+        let tile = holding.homes.binary_search(&key(block)).ok()?;
+        let n = nodes_per_block(D);
+        Some((&holding.order, &holding.cells[tile * n..=(tile + 1) * n]))
+    }
+
     /// Indices of a body's particles whose home is a cell.
     pub fn particles_in(&self, body: usize, cell: [i32; D]) -> &[u32] {
         let (block, local) = locate(cell);
-        let holding = &self.holdings[body];
-        match holding.homes.binary_search(&key(block)) {
-            Ok(tile) => {
-                let place = tile * nodes_per_block(D) + local;
-                &holding.order[holding.cells[place] as usize..holding.cells[place + 1] as usize]
-            }
-            Err(_) => &[],
-        }
+        let Some((order, cells)) = self.tile_at(body, block) else { return &[] };
+        &order[cells[local] as usize..cells[local + 1] as usize]
     }
 }

@@ -1,6 +1,6 @@
 //! What the nodes carry: all bodies' blocks in one slab, and the window through which a tile sees its part of it.
 
-use super::{Cover, SIDE, Tile, nodes_per_block};
+use super::{Cover, Nodes, SIDE, Tile, next_of, nodes_per_block};
 use crate::basis::MAX_WIDTH;
 use crate::lanes::prefetch;
 use crate::tensor::{Real, Vector};
@@ -33,11 +33,16 @@ impl<T: Real, const D: usize> Node<T, D> {
     };
 }
 
+/// Blocks that a thread takes at a time.
+const BLOCKS: usize = 64;
+
 /// All bodies' blocks, in the order of [`Cover::slots`].
 #[derive(Clone, Debug, Default)]
 pub struct Field<T, const D: usize> {
     /// Nodes, block by block.
     pub nodes: Vec<Node<T, D>>,
+    /// Of each block, the nodes with mass, once [`Field::find_present`] has found them.
+    pub present: Vec<Nodes>,
 }
 
 impl<T: Real, const D: usize> Field<T, D> {
@@ -46,6 +51,33 @@ impl<T: Real, const D: usize> Field<T, D> {
         self.nodes.truncate(cover.slots.len() * nodes_per_block(D));
         self.nodes.par_iter_mut().with_min_len(4096).for_each(|node| *node = Node::EMPTY);
         self.nodes.resize(cover.slots.len() * nodes_per_block(D), Node::EMPTY);
+    }
+
+    /// Finds the nodes that have mass and does something to each of them.
+    pub fn find_present(&mut self, f: impl Fn(&mut Node<T, D>) + Sync) {
+        let n = nodes_per_block(D);
+        self.present.resize(self.nodes.len() / n, 0);
+        let blocks = self.nodes.par_chunks_exact_mut(n).zip(&mut self.present).with_min_len(BLOCKS);
+        blocks.for_each(|(nodes, present)| {
+            *present = 0;
+            for (local, node) in nodes.iter_mut().enumerate() {
+                if node.mass > T::ZERO {
+                    *present |= 1 << local;
+                    f(node);
+                }
+            }
+        });
+    }
+
+    /// Does something to each node that has mass.
+    pub fn each_present(&mut self, f: impl Fn(&mut Node<T, D>) + Sync) {
+        let blocks = self.nodes.par_chunks_exact_mut(nodes_per_block(D)).zip(&self.present);
+        blocks.with_min_len(BLOCKS).for_each(|(nodes, &present)| {
+            let mut places = present;
+            while let Some(local) = next_of(&mut places) {
+                f(&mut nodes[local]);
+            }
+        });
     }
 }
 

@@ -1,6 +1,8 @@
 //! The blocks of one body: its particles by tile and cell, kept up to date as they move.
 
-use super::{Blocks, SIDE, locate, nodes_per_block};
+use super::{Blocks, Disjoint, MOST_NODES, SIDE, locate, node_at, nodes_per_block};
+use rayon::prelude::*;
+use std::ops::Range;
 
 /// Blocks further than this from the origin have no key.
 const REACH: i32 = 1 << 20;
@@ -31,6 +33,16 @@ pub(super) fn corner_block<const D: usize>(block: [i32; D], corner: usize) -> [i
     std::array::from_fn(|i| block[i] + (corner >> (D - 1 - i) & 1) as i32)
 }
 
+/// Blocks at a block + {0, 1}^D, a bit each.
+pub(super) type Corners = u8;
+
+/// The blocks that the particles of a cell reach.
+fn corners_of<const D: usize>(cell: usize, reach: i32) -> Corners {
+    let place: [i32; D] = node_at([0; D], cell);
+    let reaches = |corner: usize| (0..D).all(|i| corner >> (D - 1 - i) & 1 == 0 || place[i] + reach >= SIDE);
+    (0..1 << D).filter(|&corner| reaches(corner)).fold(0, |corners, corner| corners | 1 << corner)
+}
+
 /// The blocks of one body.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Holding {
@@ -40,14 +52,22 @@ pub(super) struct Holding {
     pub cells: Vec<u32>,
     /// Home blocks with particles, sorted.
     pub homes: Vec<u64>,
+    /// Of each tile, which blocks at `home` + {0, 1}^D its particles reach, a bit each.
+    pub reached: Vec<Corners>,
     /// Blocks that the particles reach, sorted.
     pub blocks: Vec<u64>,
+    /// Nodes that a particle reaches beyond its base node, along each axis.
+    reach: i32,
     /// Particles that changed their cell since they were last sorted in memory.
     moved: usize,
     /// That number summed over steps: what disorder in memory has cost.
     disorder: usize,
-    /// Particles on the move.
+    /// Particles on the move, by their new homes.
     movers: Vec<Mover>,
+    /// The same as threads find them.
+    leaving: Vec<Vec<Mover>>,
+    /// How many have left each tile.
+    gone: Vec<u32>,
     /// What the lists above become next.
     next: Next,
 }
@@ -57,7 +77,23 @@ struct Next {
     order: Vec<u32>,
     cells: Vec<u32>,
     homes: Vec<u64>,
+    reached: Vec<Corners>,
+    tiles: Vec<NextTile>,
 }
+
+/// What becomes a tile.
+#[derive(Clone, Debug)]
+struct NextTile {
+    /// The tile with this home before, if there was one.
+    old: Option<usize>,
+    /// Those who come, in [`Holding::movers`].
+    movers: Range<usize>,
+    /// Its place in the order.
+    start: usize,
+}
+
+/// Tiles that a thread takes at a time.
+const TILES: usize = 32;
 
 /// A particle and its new home, ordered by home.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -72,89 +108,158 @@ const GONE: u32 = u32::MAX;
 
 impl Holding {
     /// Looks at all particles.
-    pub fn start<const D: usize>(&mut self, count: usize, base: impl Fn(usize) -> [i32; D]) -> Blocks {
-        *self = Holding::default();
+    pub fn start<const D: usize>(
+        &mut self,
+        (count, reach): (usize, i32),
+        base: impl Fn(usize) -> [i32; D],
+    ) -> Blocks {
+        *self = Holding { reach, ..Holding::default() };
         self.movers.extend((0..count).map(|particle| mover(base(particle), particle as u32)));
-        self.settle::<D>(&[]);
+        self.settle::<D>();
         self.moved = count;
         self.disorder = count;
         Blocks::New
     }
 
     /// Looks at the particles in cells that particles have left.
-    pub fn update<const D: usize>(&mut self, left: &[u64], base: impl Fn(usize) -> [i32; D]) -> Blocks {
+    pub fn update<const D: usize>(
+        &mut self,
+        left: &[u64],
+        base: impl Fn(usize) -> [i32; D] + Sync,
+    ) -> Blocks {
         let n = nodes_per_block(D);
-        self.movers.clear();
-        for (tile, &left) in left.iter().enumerate().filter(|(_, left)| **left != 0) {
-            for cell in (0..n).filter(|cell| left >> cell & 1 == 1) {
-                let ends = [0, 1].map(|end| self.cells[tile * n + cell + end] as usize);
-                for place in &mut self.order[ends[0]..ends[1]] {
-                    let new = mover(base(*place as usize), *place);
-                    if (new.block, new.cell as usize) != (self.homes[tile], cell) {
-                        self.movers.push(new);
-                        *place = GONE;
+        self.gone.clear();
+        self.gone.resize(left.len(), 0);
+        let parts = left.len().div_ceil(TILES);
+        self.leaving.resize_with(parts.max(self.leaving.len()), Vec::new);
+        let (cells, homes, order) = (&self.cells, &self.homes, Disjoint::new(&mut self.order));
+        let parts =
+            left.par_chunks(TILES).zip(self.gone.par_chunks_mut(TILES)).zip(&mut self.leaving[..parts]);
+        parts.enumerate().for_each(|(part, ((left, gone), leaving))| {
+            leaving.clear();
+            for (i, &left) in left.iter().enumerate().filter(|(_, left)| **left != 0) {
+                let tile = part * TILES + i;
+                for cell in (0..n).filter(|cell| left >> cell & 1 == 1) {
+                    for place in cells[tile * n + cell]..cells[tile * n + cell + 1] {
+                        // SAFETY: every place belongs to one tile, and every tile to one part.
+                        let particle = unsafe { order.get(place as usize) };
+                        let new = mover(base(*particle as usize), *particle);
+                        if (new.block, new.cell as usize) != (homes[tile], cell) {
+                            leaving.push(new);
+                            gone[i] += 1;
+                            *particle = GONE;
+                        }
                     }
                 }
             }
+        });
+        self.movers.clear();
+        for leaving in &self.leaving[..left.len().div_ceil(TILES)] {
+            self.movers.extend_from_slice(leaving);
         }
         self.moved += self.movers.len();
         self.disorder += self.moved;
-        if self.movers.is_empty() { Blocks::Same } else { self.settle::<D>(left) }
+        if self.movers.is_empty() { Blocks::Same } else { self.settle::<D>() }
     }
 
     /// Gives the movers their places in the order.
-    fn settle<const D: usize>(&mut self, left: &[u64]) -> Blocks {
+    fn settle<const D: usize>(&mut self) -> Blocks {
         let n = nodes_per_block(D);
-        self.movers.sort_unstable();
-        let Next { order, cells, homes } = &mut self.next;
-        order.clear();
-        cells.clear();
-        homes.clear();
-        let (mut tile, mut movers) = (0, &self.movers[..]);
-        while tile < self.homes.len() || !movers.is_empty() {
-            let old = self.homes.get(tile).copied().unwrap_or(u64::MAX);
-            let block = movers.first().map_or(old, |mover| old.min(mover.block));
-            let (mut arriving, later) = movers.split_at(movers.partition_point(|mover| mover.block == block));
-            movers = later;
-            let start = order.len();
-            let starts: &[u32] = if old == block { &self.cells[tile * n..=(tile + 1) * n] } else { &[] };
-            if arriving.is_empty() && left[tile] == 0 {
-                order.extend_from_slice(&self.order[starts[0] as usize..starts[n] as usize]);
-                cells.extend(starts[..n].iter().map(|&place| place - starts[0] + start as u32));
-            } else {
-                for cell in 0..n {
-                    cells.push(order.len() as u32);
-                    let here = arriving.partition_point(|mover| mover.cell as usize == cell);
-                    let (new, rest) = arriving.split_at(here);
-                    arriving = rest;
-                    let old = starts
-                        .get(cell..cell + 2)
-                        .map_or(&[][..], |ends| &self.order[ends[0] as usize..ends[1] as usize]);
-                    merge(order, old, new);
+        // No two are equal, so their order does not depend on who sorts them.
+        self.movers.par_sort_unstable();
+        self.plan(n);
+        let mut corners = [0; MOST_NODES];
+        for (cell, corners) in corners.iter_mut().enumerate().take(n) {
+            *corners = corners_of::<D>(cell, self.reach);
+        }
+        let Next { order, cells, homes, reached, tiles } = &mut self.next;
+        let (old_order, old_cells, movers, gone) = (&self.order, &self.cells, &self.movers, &self.gone);
+        let old_reached = &self.reached;
+        let places = Disjoint::new(order);
+        let filled =
+            tiles.par_iter().zip(cells.par_chunks_exact_mut(n)).zip(&mut *reached).with_min_len(TILES);
+        filled.for_each(|((tile, cells), reached)| {
+            let mut place = tile.start;
+            let mut put = |particle: u32| {
+                // SAFETY: every place belongs to one tile.
+                unsafe { *places.get(place) = particle };
+                place += 1;
+                place
+            };
+            let starts = tile.old.map_or(&[][..], |old| &old_cells[old * n..=(old + 1) * n]);
+            if let Some(old) = tile.old.filter(|&old| tile.movers.is_empty() && gone[old] == 0) {
+                *reached = old_reached[old];
+                for (cell, &start) in cells.iter_mut().zip(starts) {
+                    *cell = start - starts[0] + tile.start as u32;
+                }
+                old_order[starts[0] as usize..starts[n] as usize].iter().for_each(|&particle| {
+                    put(particle);
+                });
+                return;
+            }
+            let mut arriving = &movers[tile.movers.clone()];
+            let mut end = tile.start;
+            *reached = 0;
+            for (cell, start) in cells.iter_mut().enumerate() {
+                let first = end;
+                *start = end as u32;
+                let here = arriving.iter().take_while(|mover| mover.cell as usize == cell).count();
+                let (new, rest) = arriving.split_at(here);
+                arriving = rest;
+                let old = starts
+                    .get(cell..cell + 2)
+                    .map_or(&[][..], |ends| &old_order[ends[0] as usize..ends[1] as usize]);
+                merge(old, new, |particle| end = put(particle));
+                if end > first {
+                    *reached |= corners[cell];
                 }
             }
-            if order.len() > start {
-                homes.push(block);
-            } else {
-                cells.truncate(cells.len() - n);
-            }
-            tile += usize::from(old == block);
-        }
-        cells.push(order.len() as u32);
-        let same = *homes == self.homes;
+        });
+        let same = *homes == self.homes && *reached == self.reached;
         std::mem::swap(&mut self.order, order);
         std::mem::swap(&mut self.cells, cells);
         std::mem::swap(&mut self.homes, homes);
+        std::mem::swap(&mut self.reached, reached);
         if same {
             return Blocks::Same;
         }
         self.blocks.clear();
-        for &home in &self.homes {
-            self.blocks.extend((0..1 << D).map(|corner| key(corner_block::<D>(block_of(home), corner))));
+        for (&home, &reached) in self.homes.iter().zip(&self.reached) {
+            let corners = (0..1 << D).filter(|&corner| reached >> corner & 1 == 1);
+            self.blocks.extend(corners.map(|corner| key(corner_block::<D>(block_of(home), corner))));
         }
         self.blocks.sort_unstable();
         self.blocks.dedup();
         Blocks::New
+    }
+
+    /// Lists the tiles that there will be, and makes room for them.
+    fn plan(&mut self, n: usize) {
+        let Next { order, cells, homes, reached, tiles } = &mut self.next;
+        homes.clear();
+        tiles.clear();
+        let (mut tile, mut first, mut start) = (0, 0, 0);
+        while tile < self.homes.len() || first < self.movers.len() {
+            let old = self.homes.get(tile).copied().unwrap_or(u64::MAX);
+            let block = self.movers.get(first).map_or(old, |mover| old.min(mover.block));
+            let movers = first..first + self.movers[first..].partition_point(|mover| mover.block == block);
+            let was = (old == block).then_some(tile);
+            let stay = was.map_or(0, |tile| {
+                (self.cells[(tile + 1) * n] - self.cells[tile * n] - self.gone[tile]) as usize
+            });
+            let count = stay + movers.len();
+            first = movers.end;
+            tile += usize::from(was.is_some());
+            if count > 0 {
+                homes.push(block);
+                tiles.push(NextTile { old: was, movers, start });
+                start += count;
+            }
+        }
+        order.resize(start, 0);
+        reached.resize(tiles.len(), 0);
+        cells.resize(tiles.len() * n + 1, 0);
+        cells[tiles.len() * n] = start as u32;
     }
 
     /// Whether disorder in memory has cost about as much as sorting does.
@@ -176,18 +281,18 @@ fn mover<const D: usize>(base: [i32; D], particle: u32) -> Mover {
     Mover { block: key(block), cell: cell as u32, particle }
 }
 
-/// Appends those who stayed and those who came, in the order of their indices.
-fn merge(order: &mut Vec<u32>, old: &[u32], mut new: &[Mover]) {
+/// Hands out those who stayed and those who came, in the order of their indices.
+fn merge(old: &[u32], mut new: &[Mover], mut put: impl FnMut(u32)) {
     for &particle in old.iter().filter(|&&particle| particle != GONE) {
         while let Some((first, rest)) = new.split_first()
             && first.particle < particle
         {
-            order.push(first.particle);
+            put(first.particle);
             new = rest;
         }
-        order.push(particle);
+        put(particle);
     }
-    order.extend(new.iter().map(|mover| mover.particle));
+    new.iter().for_each(|mover| put(mover.particle));
 }
 
 #[cfg(test)]
@@ -219,7 +324,7 @@ mod tests {
         ) {
             let mut bases = start;
             let mut holding = Holding::default();
-            holding.start(bases.len(), |i| bases[i]);
+            holding.start((bases.len(), 1), |i| bases[i]);
             for jumps in jumps {
                 let mut left = vec![0; holding.homes.len()];
                 for (i, to) in jumps {
@@ -231,13 +336,20 @@ mod tests {
                         bases[i] = to;
                     }
                 }
-                let homes = holding.homes.clone();
+                let (homes, blocks_before) = (holding.homes.clone(), holding.blocks.clone());
                 let blocks = holding.update(&left, |i| bases[i]);
                 let (order, expected, cells) = sorted(&bases);
                 prop_assert_eq!(&holding.order, &order);
                 prop_assert_eq!(&holding.cells, &cells);
                 prop_assert_eq!(&holding.homes, &expected);
-                prop_assert_eq!(blocks == Blocks::Same, homes == holding.homes);
+                // Every block that a particle reaches, and no other.
+                let mut reached: Vec<u64> = (bases.iter())
+                    .flat_map(|&[x, y]| [[x, y], [x + 1, y], [x, y + 1], [x + 1, y + 1]].map(|node| key(locate(node).0)))
+                    .collect();
+                reached.sort_unstable();
+                reached.dedup();
+                prop_assert_eq!(&holding.blocks, &reached);
+                prop_assert!(blocks == Blocks::New || homes == holding.homes && blocks_before == holding.blocks);
             }
         }
     }

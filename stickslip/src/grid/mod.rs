@@ -21,6 +21,20 @@ pub const fn nodes_per_block(dimension: usize) -> usize {
     (SIDE as usize).pow(dimension as u32)
 }
 
+/// Most nodes in a block.
+const MOST_NODES: usize = nodes_per_block(3);
+
+/// Nodes of a block, a bit each, the lowest first.
+pub type Nodes = u64;
+
+/// The lowest place in `nodes`, which is taken out of it.
+#[inline(always)]
+pub fn next_of(nodes: &mut Nodes) -> Option<usize> {
+    let place = nodes.trailing_zeros();
+    *nodes &= nodes.wrapping_sub(1);
+    (place < Nodes::BITS).then_some(place as usize)
+}
+
 /// Where the nodes are.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lattice<T, const D: usize> {

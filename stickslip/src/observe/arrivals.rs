@@ -131,6 +131,10 @@ impl Observer for Arrivals {
         self.schedule.recorded(simulation.time());
         Ok(())
     }
+
+    fn conclude(&mut self) -> Result<(), OutputError> {
+        self.table.finish()
+    }
 }
 
 impl Lookout {

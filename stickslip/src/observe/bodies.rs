@@ -107,6 +107,10 @@ impl Observer for Bodies {
         self.schedule.recorded(time);
         Ok(())
     }
+
+    fn conclude(&mut self) -> Result<(), OutputError> {
+        self.table.finish()
+    }
 }
 
 #[cfg(test)]

@@ -103,4 +103,8 @@ impl Observer for Contacts {
         self.schedule.recorded(time);
         Ok(())
     }
+
+    fn conclude(&mut self) -> Result<(), OutputError> {
+        self.table.finish()
+    }
 }

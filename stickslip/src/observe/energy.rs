@@ -102,4 +102,8 @@ impl Observer for Energy {
         self.schedule.recorded(time);
         Ok(())
     }
+
+    fn conclude(&mut self) -> Result<(), OutputError> {
+        self.table.finish()
+    }
 }

@@ -2,14 +2,18 @@
 
 use super::file::{OutputError, replace};
 use super::folder::OutputFolder;
+use super::particles::PARTICLE_BYTES;
 use super::table::{Row, Table};
+use super::writer::Writer;
 use super::{FRINGES, FRINGES_ANIMATION, FRINGES_TABLE, Observer};
-use crate::door::{ParticleSnapshot, Simulation};
+use crate::door::{ContactState, ParticleSnapshot, Simulation};
 use crate::image::{Image, write_animation};
 use crate::polariscope::{Bench, Film, Link, Push, Stage, Window, bounds, draw_links, links};
 use crate::scene::{self, Overlay, Scene};
+use rayon::{ThreadPool, ThreadPoolBuilder};
 use serde::{Deserialize, Serialize};
 use std::fs;
+use std::num::NonZero;
 use std::path::PathBuf;
 
 /// Frames of an animation that a viewer sees in a second.
@@ -36,11 +40,19 @@ impl Row for FringeRow {
     }
 }
 
-/// Writes `fringes.csv`, the frames in `fringes/`, and at the end `fringes.png`.
+/// Writes `fringes.csv`, the frames in `fringes/`, and at the end `fringes.png`, all by a thread of its own.
 pub(super) struct Fringes {
+    shutter: Shutter,
+    overlay: Overlay,
+    /// Whether there was a first look.
+    looked: bool,
+    darkroom: Writer<Darkroom>,
+}
+
+/// Where light falls on film and becomes pictures.
+struct Darkroom {
     camera: scene::Fringes,
     specimens: Vec<usize>,
-    shutter: Shutter,
     folder: OutputFolder,
     table: Table<FringeRow>,
     frames: Vec<PathBuf>,
@@ -48,6 +60,8 @@ pub(super) struct Fringes {
     view: Option<View>,
     /// Largest force between two bodies so far [N].
     largest: f64,
+    /// Processors that the run leaves free, if any; else pictures share those of the run.
+    hands: Option<ThreadPool>,
 }
 
 /// The bench, and what has fallen on the film since the shutter opened.
@@ -56,6 +70,16 @@ struct View {
     film: Film,
     times: Vec<f64>,
     links: Vec<Link>,
+}
+
+/// What an instant leaves on the film.
+struct Exposure {
+    /// [s]
+    time: f64,
+    /// What bodies push on each other, where that is drawn.
+    pushes: Option<Vec<Push>>,
+    /// Whether it is the last of its frame.
+    last: bool,
 }
 
 /// When light falls on film: at instants spread evenly over each open time, the middles of equal parts.
@@ -114,24 +138,62 @@ impl Fringes {
         let path = folder.join(FRINGES);
         fs::create_dir_all(&path).map_err(OutputError::at(&path))?;
         let birefringent = |body: &scene::Body| camera.bodies.contains(&body.name);
-        Ok(Fringes {
+        let darkroom = Darkroom {
             specimens: (0..scene.bodies.len()).filter(|&i| birefringent(&scene.bodies[i])).collect(),
-            shutter: Shutter::new(camera),
             folder: folder.clone(),
             table: Table::create(folder.join(FRINGES_TABLE), scene.outputs.measurements.unit())?,
             frames: Vec::new(),
             view: None,
             largest: 0.0,
+            hands: idle_processors(),
             camera: camera.clone(),
+        };
+        Ok(Fringes {
+            shutter: Shutter::new(camera),
+            overlay: camera.overlay,
+            looked: false,
+            darkroom: Writer::start(darkroom).map_err(OutputError::at(&path))?,
         })
     }
+}
 
+/// Threads for the processors that the simulation does not use.
+fn idle_processors() -> Option<ThreadPool> {
+    let all = std::thread::available_parallelism().map_or(1, NonZero::get);
+    let idle = all.saturating_sub(rayon::current_num_threads());
+    if idle == 0 {
+        return None;
+    }
+    // Without threads of their own, pictures are made by those of the simulation.
+    ThreadPoolBuilder::new().num_threads(idle).thread_name(|i| format!("pictures {i}")).build().ok()
+}
+
+impl Darkroom {
     fn view(&self, particles: &ParticleSnapshot) -> View {
         let shown = self.camera.view.or_else(|| bounds(particles, &self.specimens));
         // Bodies without particles leave nothing to frame.
         let window = Window::around(shown.unwrap_or([[0.0; 2], [1.0; 2]]), self.camera.width);
         let bench = Bench::new(&self.camera.polariscope, Stage { window, specimens: self.specimens.clone() });
         View { film: bench.film(), bench, times: Vec::new(), links: Vec::new() }
+    }
+
+    /// Looks at particles, and lets their light fall on the film if it is time.
+    fn look(&mut self, particles: &ParticleSnapshot, exposure: Option<Exposure>) -> Result<(), OutputError> {
+        let mut view = self.view.take().unwrap_or_else(|| self.view(particles));
+        if let Some(Exposure { time, pushes, .. }) = &exposure {
+            let View { bench, film, .. } = &mut view;
+            match &self.hands {
+                Some(hands) => hands.install(|| bench.expose(particles, film)),
+                None => bench.expose(particles, film),
+            }
+            view.times.push(*time);
+            if let Some(pushes) = pushes {
+                self.largest = pushes.iter().fold(self.largest, |largest, push| largest.max(push.force));
+                view.links = links(particles, pushes, &self.specimens);
+            }
+        }
+        self.view = Some(view);
+        if exposure.is_some_and(|exposure| exposure.last) { self.develop() } else { Ok(()) }
     }
 
     /// Writes what is on the film, and puts in new film.
@@ -153,45 +215,49 @@ impl Fringes {
         self.frames.push(path);
         Ok(())
     }
-}
 
-impl Observer for Fringes {
-    fn next(&self) -> f64 {
-        // The first look, at the start, says where the bodies are.
-        if self.view.is_none() { f64::NEG_INFINITY } else { self.shutter.next() }
-    }
-
-    fn observe(&mut self, simulation: &mut dyn Simulation) -> Result<(), OutputError> {
-        let (time, due) = (simulation.time(), simulation.time() >= self.shutter.next());
-        if !due && self.view.is_some() {
-            return Ok(());
-        }
-        let particles = simulation.snapshot();
-        let mut view = self.view.take().unwrap_or_else(|| self.view(&particles));
-        if due {
-            view.bench.expose(&particles, &mut view.film);
-            view.times.push(time);
-        }
-        if due && self.camera.overlay == Overlay::ForceChains {
-            let contacts = simulation.contacts().into_iter();
-            let pushes: Vec<Push> = contacts
-                .map(|contact| Push { bodies: [contact.body_a, contact.body_b], force: contact.normal })
-                .collect();
-            self.largest = pushes.iter().fold(self.largest, |largest, push| largest.max(push.force));
-            view.links = links(&particles, &pushes, &self.specimens);
-        }
-        self.view = Some(view);
-        if due && self.shutter.pass(time) { self.develop() } else { Ok(()) }
-    }
-
+    /// Writes all frames as an animation; the run may have ended while the shutter was open.
     fn conclude(&mut self) -> Result<(), OutputError> {
-        // The run may end while the shutter is open.
         self.develop()?;
+        self.table.finish()?;
         if self.frames.is_empty() {
             return Ok(());
         }
         let frames = self.frames.iter().map(|path| Image::read_png(path));
         replace(&self.folder.join(FRINGES_ANIMATION), |file| write_animation(frames, FRAMES_PER_SECOND, file))
+    }
+}
+
+impl Observer for Fringes {
+    fn next(&self) -> f64 {
+        // The first look, at the start, says where the bodies are.
+        if self.looked { self.shutter.next() } else { f64::NEG_INFINITY }
+    }
+
+    fn observe(&mut self, simulation: &mut dyn Simulation) -> Result<(), OutputError> {
+        let (time, due) = (simulation.time(), simulation.time() >= self.shutter.next());
+        if !due && self.looked {
+            return Ok(());
+        }
+        self.darkroom.make_room()?;
+        let particles = simulation.snapshot();
+        let pushes = (due && self.overlay == Overlay::ForceChains).then(|| {
+            let push = |contact: ContactState| Push {
+                bodies: [contact.body_a, contact.body_b],
+                force: contact.normal,
+            };
+            simulation.contacts().into_iter().map(push).collect()
+        });
+        let exposure = due.then(|| Exposure { time, pushes, last: self.shutter.pass(time) });
+        let bytes = PARTICLE_BYTES * particles.mass.len();
+        self.darkroom.hand_over(bytes, move |darkroom| darkroom.look(&particles, exposure));
+        self.looked = true;
+        Ok(())
+    }
+
+    fn conclude(&mut self) -> Result<(), OutputError> {
+        self.darkroom.hand_over(0, Darkroom::conclude);
+        self.darkroom.finish()
     }
 }
 

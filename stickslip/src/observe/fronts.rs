@@ -117,7 +117,9 @@ impl Observer for Fronts {
 
     fn conclude(&mut self) -> Result<(), OutputError> {
         let rows: Vec<FrontSpeedRow> = self.tracks.iter().filter_map(Track::speed).collect();
-        self.speeds.append(rows)
+        self.speeds.append(rows)?;
+        self.speeds.finish()?;
+        self.table.finish()
     }
 }
 

@@ -12,7 +12,7 @@ use crate::tensor::Symmetric;
 use std::path::Path;
 
 /// Bytes of a particle in a snapshot: 23 numbers and two whole ones.
-const PARTICLE_BYTES: usize = 23 * size_of::<f64>() + 2 * size_of::<u32>();
+pub(super) const PARTICLE_BYTES: usize = 23 * size_of::<f64>() + 2 * size_of::<u32>();
 
 /// Writes `particles.pvd` and `particles/`.
 pub(super) struct Particles {

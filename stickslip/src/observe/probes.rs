@@ -138,4 +138,8 @@ impl Observer for Probes {
         self.schedule.recorded(time);
         Ok(())
     }
+
+    fn conclude(&mut self) -> Result<(), OutputError> {
+        self.table.finish()
+    }
 }

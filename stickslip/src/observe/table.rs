@@ -1,6 +1,7 @@
 //! Tables in CSV: a header, then whole rows only, whatever stops the run.
 
 use super::file::{OutputError, ReadError, ReadProblem};
+use super::writer::Writer;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::fs::{self, File};
@@ -17,35 +18,41 @@ pub(super) trait Row: Serialize + Default {
 /// Column of the time in the scene's own unit, after those of the row.
 pub(super) const TIME_UNITS: &str = "time_units";
 
-/// A growing table whose columns are the fields of a row and, if the scene has a unit of time, the time in it.
+/// A growing table whose columns are the fields of a row and, if the scene has a unit of time, the time in it. A thread of its own writes it.
 pub(super) struct Table<R> {
+    writer: Writer<Sheet>,
+    /// Length of the scene's unit of time [s].
+    unit: Option<f64>,
+    row: PhantomData<R>,
+}
+
+/// The file of a table.
+struct Sheet {
     path: PathBuf,
     file: File,
     /// Bytes of the whole rows written so far.
     length: u64,
-    /// Length of the scene's unit of time [s].
-    unit: Option<f64>,
-    row: PhantomData<R>,
 }
 
 impl<R: Row> Table<R> {
     /// A table with its header and no rows yet.
     pub(super) fn create(path: PathBuf, unit: Option<f64>) -> Result<Self, OutputError> {
         let file = File::create(&path).map_err(OutputError::at(&path))?;
-        let mut table = Table { path, file, length: 0, unit, row: PhantomData };
+        let mut sheet = Sheet { path: path.clone(), file, length: 0 };
         let with_header = encode([R::default()], true);
         let header = with_header.split(|&byte| byte == b'\n').next().unwrap_or_default();
         let more = if unit.is_some() { format!(",{TIME_UNITS}\n") } else { "\n".to_string() };
-        table.write(&[header, more.as_bytes()].concat())?;
-        Ok(table)
+        sheet.write(&[header, more.as_bytes()].concat())?;
+        Ok(Table { writer: Writer::start(sheet).map_err(OutputError::at(&path))?, unit, row: PhantomData })
     }
 
-    /// Adds rows. They are in the file, complete, when this returns.
+    /// Adds rows. They are complete when they are in the file, which is soon.
     ///
     /// # Errors
-    /// The disk is full or refuses; then the file ends with the rows it had before.
+    /// The disk was full or refused when rows were added before; then the file ends with those before them.
     pub(super) fn append(&mut self, rows: impl IntoIterator<Item = R>) -> Result<(), OutputError> {
-        self.write(&match self.unit {
+        self.writer.make_room()?;
+        let bytes = match self.unit {
             None => encode(rows, false),
             Some(unit) => {
                 let timed = rows.into_iter().map(|row| {
@@ -54,9 +61,21 @@ impl<R: Row> Table<R> {
                 });
                 encode(timed, false)
             }
-        })
+        };
+        self.writer.hand_over(bytes.len(), move |sheet| sheet.write(&bytes));
+        Ok(())
     }
 
+    /// Waits until all rows are in the file.
+    ///
+    /// # Errors
+    /// As [`Table::append`].
+    pub(super) fn finish(&mut self) -> Result<(), OutputError> {
+        self.writer.finish()
+    }
+}
+
+impl Sheet {
     fn write(&mut self, bytes: &[u8]) -> Result<(), OutputError> {
         if let Err(source) = self.file.write_all(bytes) {
             // Cutting off the half of a row that went in; the write's own error is the one to report.
@@ -120,6 +139,7 @@ mod tests {
         let mut table = Table::create(path.clone(), None).unwrap();
         assert_eq!(fs::read_to_string(&path).unwrap(), "time,body\n");
         table.append([row(0.1 + 0.2, "a"), row(-1e-300, "ball, \"left\"")]).unwrap();
+        table.finish().unwrap();
         assert_eq!(read_rows::<Place>(&path).unwrap(), [row(0.1 + 0.2, "a"), row(-1e-300, "ball, \"left\"")]);
         fs::OpenOptions::new().append(true).open(&path).unwrap().write_all(b"0.5,ca").unwrap();
         assert_eq!(read_rows::<Place>(&path).unwrap().len(), 2);
@@ -131,8 +151,21 @@ mod tests {
         let path = folder.path().join("table.csv");
         let mut table = Table::create(path.clone(), Some(0.25)).unwrap();
         table.append([row(0.5, "a"), row(1.0, "b, c")]).unwrap();
+        table.finish().unwrap();
         assert_eq!(fs::read_to_string(&path).unwrap(), "time,body,time_units\n0.5,a,2.0\n1.0,\"b, c\",4.0\n");
         assert_eq!(read_rows::<Place>(&path).unwrap(), [row(0.5, "a"), row(1.0, "b, c")]);
+    }
+
+    #[test]
+    #[cfg(target_os = "linux")]
+    fn a_disk_that_gets_full_is_an_error_at_the_end_at_the_latest() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("table.csv");
+        let sheet = Sheet { path: path.clone(), file: File::create("/dev/full").unwrap(), length: 0 };
+        let mut table =
+            Table::<Place> { writer: Writer::start(sheet).unwrap(), unit: None, row: PhantomData };
+        let error = table.append([row(0.5, "a")]).and_then(|()| table.finish()).unwrap_err();
+        assert_eq!((error.path, error.source.kind()), (path, io::ErrorKind::StorageFull));
     }
 
     #[test]

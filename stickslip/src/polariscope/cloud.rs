@@ -19,7 +19,7 @@ pub struct Point {
 pub struct Cloud {
     /// Index of the body.
     pub body: usize,
-    /// How far points are looked for, and side of a bin [m].
+    /// How far points are looked for, twice the side of a bin [m].
     pub reach: f64,
     /// Lower and upper corner of the points [m].
     pub bounds: [[f64; 2]; 2],
@@ -103,7 +103,7 @@ impl Cloud {
         let most = (4 * points.len()).max(64) as f64;
         let wide = [0, 1].map(|axis| (bounds[1][axis] - bounds[0][axis]) / reach + 1.0);
         let reach = reach * (wide[0] * wide[1] / most).sqrt().max(1.0);
-        let bins = [0, 1].map(|axis| ((bounds[1][axis] - bounds[0][axis]) / reach) as usize + 1);
+        let bins = [0, 1].map(|axis| (2.0 * (bounds[1][axis] - bounds[0][axis]) / reach) as usize + 1);
         let mut cloud = Cloud { body, reach, bounds, center, bins, starts: Vec::new(), points: Vec::new() };
         let bin = |point: &Point| {
             let [column, row] = cloud.bin(point.place).map(|index| index as usize);
@@ -120,15 +120,15 @@ impl Cloud {
     }
 
     fn bin(&self, x: [f64; 2]) -> [i64; 2] {
-        [0, 1].map(|axis| ((x[axis] - self.bounds[0][axis]) / self.reach).floor() as i64)
+        [0, 1].map(|axis| (2.0 * (x[axis] - self.bounds[0][axis]) / self.reach).floor() as i64)
     }
 
     /// Points in the bins around a place: all that are nearer than `reach`, and some more.
     pub fn near(&self, x: [f64; 2]) -> impl Iterator<Item = &Point> {
         let [column, row] = self.bin(x);
         let [columns, rows] = self.bins.map(|count| count as i64);
-        let (left, right) = ((column - 1).max(0), (column + 2).min(columns));
-        ((row - 1).max(0)..(row + 2).min(rows)).flat_map(move |row| {
+        let (left, right) = ((column - 2).max(0), (column + 3).min(columns));
+        ((row - 2).max(0)..(row + 3).min(rows)).flat_map(move |row| {
             // The bins of a row follow one another.
             let bin = |column: i64| self.starts[(row * columns + column) as usize] as usize;
             if left < right { &self.points[bin(left)..bin(right)] } else { &[] }

@@ -35,6 +35,41 @@ pub fn srgb_byte(linear: f64) -> u8 {
     (encoded * 255.0).round() as u8
 }
 
+/// [`srgb_byte`] without its power: where each byte begins, and the byte at the start of equal parts of 0 to 1.
+pub struct Screen {
+    /// Byte `k + 1` begins at entry `k`.
+    begins: [f64; 255],
+    first: [u8; PARTS],
+}
+
+const PARTS: usize = 1024;
+
+impl Screen {
+    /// The table.
+    pub fn new() -> Self {
+        let begins = std::array::from_fn(|k| {
+            let (mut below, mut above) = (0.0, 1.0);
+            while let middle = 0.5 * (below + above)
+                && below < middle
+                && middle < above
+            {
+                if usize::from(srgb_byte(middle)) > k { above = middle } else { below = middle }
+            }
+            above
+        });
+        Screen { begins, first: std::array::from_fn(|part| srgb_byte(part as f64 / PARTS as f64)) }
+    }
+
+    /// The byte of a linear share of a colour, 0 to 1.
+    pub fn byte(&self, linear: f64) -> u8 {
+        let mut byte = self.first[((linear.clamp(0.0, 1.0) * PARTS as f64) as usize).min(PARTS - 1)];
+        while byte < u8::MAX && linear >= self.begins[usize::from(byte)] {
+            byte += 1;
+        }
+        byte
+    }
+}
+
 /// Each visible nanometre's share of linear red, green and blue in light of equal power at all wavelengths, adapted so that the
 /// sum is the screen's white.
 pub fn white_light() -> Vec<(f64, [f64; 3])> {
@@ -75,6 +110,16 @@ mod tests {
                 assert!((fit - table).abs() < 0.03, "{nm} nm: {fit} {table}");
             }
         }
+    }
+
+    #[test]
+    fn the_screen_has_the_bytes_of_the_equation() {
+        let screen = Screen::new();
+        for i in -100..200_100 {
+            let linear = f64::from(i) / 200_000.0;
+            assert_eq!(screen.byte(linear), srgb_byte(linear), "{linear}");
+        }
+        assert_eq!(screen.byte(f64::NAN), srgb_byte(f64::NAN));
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Film: sums up light while the shutter is open.
 
-use super::color::srgb_byte;
+use super::color::Screen;
 use super::optics::Rgb;
 use crate::image::Image;
 
@@ -34,7 +34,11 @@ impl Film {
     /// The image of the mean light; what is too bright or out of the screen's gamut is clipped.
     pub fn develop(&self) -> Image {
         let share = 1.0 / self.exposures.max(1) as f64;
-        let bytes = self.light.iter().flatten().map(|&light| srgb_byte(f64::from(light) * share));
-        Image { size: self.size, pixels: bytes.collect() }
+        let screen = Screen::new();
+        let mut pixels = vec![0; 3 * self.light.len()];
+        for (pixel, light) in pixels.chunks_exact_mut(3).zip(&self.light) {
+            (0..3).for_each(|i| pixel[i] = screen.byte(f64::from(light[i]) * share));
+        }
+        Image { size: self.size, pixels }
     }
 }

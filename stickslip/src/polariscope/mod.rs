@@ -105,7 +105,13 @@ impl Bench {
                     };
                     covered += ray.coverage;
                     let own = match &layer.orders {
-                        Some(orders) => self.optics.light(&layer.map.phase(orders, column, row)),
+                        Some(orders) => {
+                            let mut phase = layer.map.phase(orders, column, row);
+                            if self.optics.sees_directions() {
+                                phase.angle = ray.principal_angle();
+                            }
+                            self.optics.light(&phase)
+                        }
                         None => OPAQUE,
                     };
                     (0..3).for_each(|i| sum[i] += ray.coverage * own[i]);
@@ -152,8 +158,7 @@ impl StressMap {
                 (None, None) => 0.0,
             }
         });
-        let angle = self.rays[place[1] * self.size[0] + place[0]].principal_angle();
-        Phase { order, change, angle }
+        Phase { order, change, angle: 0.0 }
     }
 }
 

@@ -42,7 +42,7 @@ pub struct Phase {
     pub order: f64,
     /// Change of N over the pixel's width and height.
     pub change: [f64; 2],
-    /// Angle of the larger principal stress from the x axis [rad].
+    /// Angle of the larger principal stress from the x axis [rad]; only for optics that see directions.
     pub angle: f64,
 }
 
@@ -66,6 +66,11 @@ impl Optics {
         }
     }
 
+    /// Whether the light depends on the principal direction.
+    pub fn sees_directions(&self) -> bool {
+        self.polariscope.polarizer.is_some()
+    }
+
     /// Light that leaves the polariscope, of a lamp of brightness 1, averaged over the pixel.
     pub fn light(&self, phase: &Phase) -> Rgb {
         // Mean of cos(2 pi N) over a pixel on which N is linear.
@@ -85,7 +90,8 @@ impl Optics {
     /// The lamp's light times cos(2 pi N), by colour.
     fn cosine(&self, order: f64) -> Rgb {
         if self.polariscope.light != Light::White {
-            return self.lamp.map(|light| light * (2.0 * PI * order).cos());
+            let cosine = (2.0 * PI * order).cos();
+            return self.lamp.map(|light| light * cosine);
         }
         let place = order * PER_ORDER as f64;
         let (entry, share) = (place as usize, place.fract());
@@ -113,5 +119,11 @@ fn white_cosines(wavelength: f64) -> Vec<Rgb> {
 /// sin(pi x) / (pi x)
 fn sinc(x: f64) -> f64 {
     let phase = PI * x;
-    if phase.abs() < 1e-4 { 1.0 } else { phase.sin() / phase }
+    let square = phase * phase;
+    // The series where fringes are wide, which is nearly everywhere: within 1e-9.
+    if square < 0.25 {
+        1.0 - square / 6.0 * (1.0 - square / 20.0 * (1.0 - square / 42.0))
+    } else {
+        phase.sin() / phase
+    }
 }
