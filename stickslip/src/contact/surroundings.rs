@@ -285,8 +285,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
             let r = (position[i] - seen.origin[i]) * seen.per_cell - V::splat(T::of(f64::from(cell[i])));
             shapes[i] = B::shape(r, half);
             // The node sees a particle move away as the particle sees the node move: grad at the node = -grad S(x_p).
-            for k in 0..MAX_WIDTH {
-                shapes[i].slope[k] *= seen.per_cell * -seen.sign[i];
+            for rise in &mut shapes[i].rise {
+                *rise *= seen.per_cell * -seen.sign[i];
             }
         }
         let mass: V = load(columns, Column::<D>::MASS, index);
@@ -354,13 +354,13 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
         while let Some(node) = next_of(&mut nodes) {
             let steps = node_at([0; D], node);
             let offset: [usize; D] = array(0, |i| (self.along(i, steps[i]) - base[i]) as usize);
-            let [x, dx] = [shapes[0].weight[offset[0]], shapes[0].slope[offset[0]]];
-            let [y, dy] = [shapes[1].weight[offset[1]], shapes[1].slope[offset[1]]];
+            let [x, dx] = [shapes[0].weight[offset[0]], shapes[0].slope(offset[0])];
+            let [y, dy] = [shapes[1].weight[offset[1]], shapes[1].slope(offset[1])];
             let mut shares = Rows::<T>::EMPTY;
             if D == 2 {
                 shares.fill([dx * y, x * dy, V::ZERO, x * y]);
             } else {
-                let [z, dz] = [shapes[D - 1].weight[offset[D - 1]], shapes[D - 1].slope[offset[D - 1]]];
+                let [z, dz] = [shapes[D - 1].weight[offset[D - 1]], shapes[D - 1].slope(offset[D - 1])];
                 let yz = y * z;
                 shares.fill([dx * yz, x * (dy * z), x * (y * dz), x * yz]);
             }

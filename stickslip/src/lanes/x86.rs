@@ -226,6 +226,20 @@ lanes! { F64x8: __m512d as [f64; 8];
             _mm512_storeu_pd(pairs.add(24), _mm512_shuffle_f64x2::<0xdd>(ab_high, cd_high));
         }
     }
+    #[inline(always)]
+    unsafe fn load_part(first: *const f64, count: usize) -> Self {
+        // SAFETY: lanes beyond the mask are not read.
+        unsafe { F64x8(_mm512_mask_loadu_pd(_mm512_set1_pd(*first), mask(count), first)) }
+    }
+    #[inline(always)]
+    fn store_rows(columns: [Self; 4], rows: &mut [[f64; 4]; MOST_LANES]) {
+        let [a, b, c, d] = columns;
+        // SAFETY: values of this type exist only where the processor has the instructions.
+        unsafe {
+            turn_pd([low(a.0), low(b.0), low(c.0), low(d.0)], rows.as_mut_ptr().cast());
+            turn_pd([high(a.0), high(b.0), high(c.0), high(d.0)], rows.as_mut_ptr().add(4).cast());
+        }
+    }
 }
 lanes! { F64x4: __m256d as [f64; 4];
     _mm256_set1_pd _mm256_loadu_pd _mm256_storeu_pd;
@@ -263,6 +277,11 @@ lanes! { F64x4: __m256d as [f64; 4];
             _mm256_storeu_pd(pairs.add(8), _mm256_permute2f128_pd::<0x31>(a.0, b.0));
             _mm256_storeu_pd(pairs.add(12), _mm256_permute2f128_pd::<0x31>(c.0, d.0));
         }
+    }
+    #[inline(always)]
+    fn store_rows([a, b, c, d]: [Self; 4], rows: &mut [[f64; 4]; MOST_LANES]) {
+        // SAFETY: values of this type exist only where the processor has the instructions.
+        unsafe { turn_pd([a.0, b.0, c.0, d.0], rows.as_mut_ptr().cast()) }
     }
 }
 lanes! { F32x8: __m256 as [f32; 8];
@@ -302,6 +321,26 @@ lanes! { F32x8: __m256 as [f32; 8];
         // SAFETY: values of this type exist only where the processor has the instructions.
         unsafe { turn_pd([wide(a), wide(b), wide(c), wide(d)], pairs.as_mut_ptr().cast()) }
     }
+    #[inline(always)]
+    fn store_rows([a, b, c, d]: [Self; 4], rows: &mut [[f32; 4]; MOST_LANES]) {
+        // SAFETY: values of this type exist only where the processor has the instructions.
+        unsafe {
+            let [ab, cd] = [_mm256_unpacklo_ps(a.0, b.0), _mm256_unpacklo_ps(c.0, d.0)];
+            let [ab_high, cd_high] = [_mm256_unpackhi_ps(a.0, b.0), _mm256_unpackhi_ps(c.0, d.0)];
+            let turned = [
+                _mm256_shuffle_ps::<0b01_00_01_00>(ab, cd),
+                _mm256_shuffle_ps::<0b11_10_11_10>(ab, cd),
+                _mm256_shuffle_ps::<0b01_00_01_00>(ab_high, cd_high),
+                _mm256_shuffle_ps::<0b11_10_11_10>(ab_high, cd_high),
+            ];
+            let mut i = 0;
+            while i < 4 {
+                _mm_storeu_ps(rows[i].as_mut_ptr(), _mm256_castps256_ps128(turned[i]));
+                _mm_storeu_ps(rows[i + 4].as_mut_ptr(), _mm256_extractf128_ps::<1>(turned[i]));
+                i += 1;
+            }
+        }
+    }
 }
 lanes! { F32x4: __m128 as [f32; 4];
     _mm_set1_ps _mm_loadu_ps _mm_storeu_ps;
@@ -326,6 +365,18 @@ lanes! { F32x4: __m128 as [f32; 4];
         // SAFETY: values of this type exist only where the processor has the instructions.
         unsafe { F32x4(_mm_setr_ps(at(0), at(1), at(2), at(3))) }
     }
+}
+
+#[inline(always)]
+unsafe fn low(x: __m512d) -> __m256d {
+    // SAFETY: the caller has AVX-512.
+    unsafe { _mm512_castpd512_pd256(x) }
+}
+
+#[inline(always)]
+unsafe fn high(x: __m512d) -> __m256d {
+    // SAFETY: the caller has AVX-512.
+    unsafe { _mm512_extractf64x4_pd::<1>(x) }
 }
 
 /// Writes the columns of a 4 x 4 matrix as its rows.
