@@ -279,16 +279,14 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
         // No closure: the compiler may leave one of some size uninlined, and then its instructions are calls.
         let mut position = Vector::<V, D>::ZERO;
         let half = load::<T, V, D>(columns, Column::<D>::HALF_WIDTH, index) * seen.per_cell;
-        let mut weights = [[V::ZERO; MAX_WIDTH]; D];
-        let mut slopes = [[V::ZERO; MAX_WIDTH]; D];
+        let mut shapes = [B::shape(V::ZERO, half); D];
         for i in 0..D {
             position[i] = load(columns, Column::<D>::POSITION + i, index);
             let r = (position[i] - seen.origin[i]) * seen.per_cell - V::splat(T::of(f64::from(cell[i])));
-            let shape = B::shape(r, half);
-            weights[i] = shape.weight;
+            shapes[i] = B::shape(r, half);
             // The node sees a particle move away as the particle sees the node move: grad at the node = -grad S(x_p).
-            for k in 0..MAX_WIDTH {
-                slopes[i][k] = shape.slope(k) * (seen.per_cell * -seen.sign[i]);
+            for rise in &mut shapes[i].rise {
+                *rise *= seen.per_cell * -seen.sign[i];
             }
         }
         let mass: V = load(columns, Column::<D>::MASS, index);
@@ -356,13 +354,13 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
         while let Some(node) = next_of(&mut nodes) {
             let steps = node_at([0; D], node);
             let offset: [usize; D] = array(0, |i| (self.along(i, steps[i]) - base[i]) as usize);
-            let [x, dx] = [weights[0][offset[0]], slopes[0][offset[0]]];
-            let [y, dy] = [weights[1][offset[1]], slopes[1][offset[1]]];
+            let [x, dx] = [shapes[0].weight[offset[0]], shapes[0].slope(offset[0])];
+            let [y, dy] = [shapes[1].weight[offset[1]], shapes[1].slope(offset[1])];
             let mut shares = Rows::<T>::EMPTY;
             if D == 2 {
                 shares.fill([dx * y, x * dy, V::ZERO, x * y]);
             } else {
-                let [z, dz] = [weights[D - 1][offset[D - 1]], slopes[D - 1][offset[D - 1]]];
+                let [z, dz] = [shapes[D - 1].weight[offset[D - 1]], shapes[D - 1].slope(offset[D - 1])];
                 let yz = y * z;
                 shares.fill([dx * yz, x * (dy * z), x * (y * dz), x * yz]);
             }
@@ -437,10 +435,10 @@ fn load<T: Real, V: Lanes<Real = T>, const D: usize>(
     // SAFETY: the particles exist, and nobody writes to them in a survey. Indices within a cell ascend.
     unsafe {
         let start = columns.at(column, first);
-        if index.len() == V::COUNT && last - first == index.len() - 1 {
-            V::load(start)
-        } else {
-            V::load(collect(columns.at(column, 0), index).0.as_ptr())
+        match last - first == index.len() - 1 {
+            true if index.len() == V::COUNT => V::load(start),
+            true => V::load_part(start, index.len()),
+            false => V::load(collect(columns.at(column, 0), index).0.as_ptr()),
         }
     }
 }

@@ -123,8 +123,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
                 }
                 let place = Place::new(visit.tile.block, homes[lane]);
                 starts[lane] = place.start;
-                for i in 0..D {
-                    bases[i][lane] = T::of(f64::from(place.base[i]));
+                for (bases, base) in bases.iter_mut().zip(place.base) {
+                    bases[lane] = T::of(f64::from(base));
                 }
             }
             let members = Members::new::<V>(&columns, index, in_a_row, &visit.pass.verbs, &mut copies);

@@ -42,6 +42,16 @@ pub trait Lanes: Number {
     /// Which lanes are not below another's, from the lowest bit on; none that is not a number.
     fn at_least(self, other: Self) -> u32;
 
+    /// `count` numbers in a row, and the first in the lanes beyond.
+    ///
+    /// # Safety
+    /// At least one and all of them must be there, and nobody may write to them meanwhile.
+    #[inline(always)]
+    unsafe fn load_part(first: *const Self::Real, count: usize) -> Self {
+        // SAFETY: only the `count` numbers are read.
+        Self::from_fn(|lane| unsafe { *first.add(if lane < count { lane } else { 0 }) })
+    }
+
     /// Numbers that lie anyhow: in lane `i` the one at place `index[i]`.
     ///
     /// # Safety
@@ -84,18 +94,6 @@ pub trait Lanes: Number {
         Self::from_fn(|lane| if lane < count { Self::Real::ONE } else { Self::Real::ZERO })
     }
 
-    /// Writes the lanes of four registers by pairs: first the lanes 0 and 1 of all four, then the lanes 2 and 3, and so on.
-    #[inline(always)]
-    fn store_pairs(columns: [Self; 4], pairs: &mut [[[Self::Real; 2]; 4]; MOST_LANES / 2]) {
-        let columns =
-            [columns[0].numbers(), columns[1].numbers(), columns[2].numbers(), columns[3].numbers()];
-        for (i, pair) in pairs.iter_mut().enumerate().take(Self::COUNT / 2) {
-            for (entry, column) in pair.iter_mut().zip(&columns) {
-                *entry = [column.0[2 * i], column.0[2 * i + 1]];
-            }
-        }
-    }
-
     /// Writes the lanes of four registers as rows: in row `i` the lanes `i` of all four.
     #[inline(always)]
     fn store_rows(columns: [Self; 4], rows: &mut [[Self::Real; 4]; MOST_LANES]) {
@@ -104,6 +102,18 @@ pub trait Lanes: Number {
         for (i, row) in rows.iter_mut().enumerate().take(Self::COUNT) {
             for (entry, column) in row.iter_mut().zip(&columns) {
                 *entry = column.0[i];
+            }
+        }
+    }
+
+    /// Writes the lanes of four registers by pairs: first the lanes 0 and 1 of all four, then the lanes 2 and 3, and so on.
+    #[inline(always)]
+    fn store_pairs(columns: [Self; 4], pairs: &mut [[[Self::Real; 2]; 4]; MOST_LANES / 2]) {
+        let columns =
+            [columns[0].numbers(), columns[1].numbers(), columns[2].numbers(), columns[3].numbers()];
+        for (i, pair) in pairs.iter_mut().enumerate().take(Self::COUNT / 2) {
+            for (entry, column) in pair.iter_mut().zip(&columns) {
+                *entry = [column.0[2 * i], column.0[2 * i + 1]];
             }
         }
     }

@@ -227,14 +227,17 @@ lanes! { F64x8: __m512d as [f64; 8];
         }
     }
     #[inline(always)]
+    unsafe fn load_part(first: *const f64, count: usize) -> Self {
+        // SAFETY: lanes beyond the mask are not read.
+        unsafe { F64x8(_mm512_mask_loadu_pd(_mm512_set1_pd(*first), mask(count), first)) }
+    }
+    #[inline(always)]
     fn store_rows(columns: [Self; 4], rows: &mut [[f64; 4]; MOST_LANES]) {
         let [a, b, c, d] = columns;
         // SAFETY: values of this type exist only where the processor has the instructions.
         unsafe {
-            let low = |x: Self| _mm512_castpd512_pd256(x.0);
-            let high = |x: Self| _mm512_extractf64x4_pd::<1>(x.0);
-            turn_pd([low(a), low(b), low(c), low(d)], rows.as_mut_ptr().cast());
-            turn_pd([high(a), high(b), high(c), high(d)], rows.as_mut_ptr().add(4).cast());
+            turn_pd([low(a.0), low(b.0), low(c.0), low(d.0)], rows.as_mut_ptr().cast());
+            turn_pd([high(a.0), high(b.0), high(c.0), high(d.0)], rows.as_mut_ptr().add(4).cast());
         }
     }
 }
@@ -362,6 +365,18 @@ lanes! { F32x4: __m128 as [f32; 4];
         // SAFETY: values of this type exist only where the processor has the instructions.
         unsafe { F32x4(_mm_setr_ps(at(0), at(1), at(2), at(3))) }
     }
+}
+
+#[inline(always)]
+unsafe fn low(x: __m512d) -> __m256d {
+    // SAFETY: the caller has AVX-512.
+    unsafe { _mm512_castpd512_pd256(x) }
+}
+
+#[inline(always)]
+unsafe fn high(x: __m512d) -> __m256d {
+    // SAFETY: the caller has AVX-512.
+    unsafe { _mm512_extractf64x4_pd::<1>(x) }
 }
 
 /// Writes the columns of a 4 x 4 matrix as its rows.

@@ -446,7 +446,7 @@ impl<T: Real> Rows<T> {
     /// The row of a particle, with zeros in the place of its partner.
     #[inline(always)]
     fn one<M: Machine<T>>(&self, particle: usize) -> M::Wide {
-        let only = if particle % 2 == 0 { [T::ONE, T::ZERO] } else { [T::ZERO, T::ONE] };
+        let only = if particle.is_multiple_of(2) { [T::ONE, T::ZERO] } else { [T::ZERO, T::ONE] };
         self.get::<M>(particle / 2) * M::Wide::alternate(only)
     }
 }
