@@ -1,12 +1,14 @@
 """Opens a page in headless Chromium and prints, as JSON, what a reader finds in it.
 
 Usage: look_at_page.py PAGE [SCREENSHOT]
+       look_at_page.py ANIMATION.png    how many different pictures are seen in the first seconds
 """
 
 import json
 import pathlib
 import sys
 import tempfile
+import time
 
 from selenium import webdriver
 from selenium.webdriver.chrome.service import Service
@@ -62,7 +64,24 @@ def requests(driver):
     return [address for address in sent if not address.startswith(("data:", "file:"))]
 
 
+def watch(animation):
+    """The number of different pictures that a viewer sees within three seconds."""
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
+        driver = browser(profile)
+        try:
+            driver.get(pathlib.Path(animation).resolve().as_uri())
+            pictures, end = set(), time.monotonic() + 3
+            while time.monotonic() < end:
+                pictures.add(driver.get_screenshot_as_png())
+        finally:
+            driver.quit()
+    return {"pictures": len(pictures)}
+
+
 def main(page, screenshot=None):
+    if page.endswith(".png"):
+        json.dump(watch(page), sys.stdout)
+        return
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
         driver = browser(profile)
         try:

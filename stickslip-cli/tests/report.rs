@@ -7,7 +7,7 @@ mod stickslip;
 use serde_json::Value;
 use std::path::Path;
 use std::process::Command;
-use stickslip::Workplace;
+use stickslip::{Workplace, new_scene};
 
 /// What the browser finds on a page; `None` where there is no browser and nobody requires one.
 fn look_at(page: &Path) -> Option<Value> {
@@ -82,6 +82,18 @@ fn every_figure_of_the_paper_is_seen_in_a_browser() {
         }
     }
     assert_eq!(found["warnings"], 0, "no run failed");
+}
+
+#[test]
+fn a_browser_plays_an_animation_of_fringes() {
+    let workplace = Workplace::new();
+    workplace.write("scene.toml", &new_scene());
+    let short = ["--set", "cells_per_radius=4", "--set", "time.end=0.5 s", "--set", "outputs.particles=0.1 s"];
+    workplace.succeed(&[&["run", "scene.toml"][..], &short].concat());
+    let fringes = ["--fringes", "--stress-parameter", "2000", "--animate", "--rate", "4", "--size", "300x200"];
+    workplace.succeed(&[&["render", "scene.results"][..], &fringes].concat());
+    let Some(found) = look_at(&workplace.path("scene.results/fringes_animation.png")) else { return };
+    assert!(found["pictures"].as_u64() >= Some(4), "of six pictures, four a second: {found}");
 }
 
 #[test]

@@ -49,6 +49,8 @@ struct List<T, const D: usize> {
     impulses: Vec<Impulse<T, D>>,
     /// Velocities of the bodies at a node while it is being solved [m/s].
     velocities: Vec<Vector<T, D>>,
+    /// How many impulses that nobody asks for were reduced, so that no cell strains by more than its rule allows.
+    reduced: u64,
 }
 
 impl<T, const D: usize> Default for Impulses<T, D> {
@@ -59,7 +61,7 @@ impl<T, const D: usize> Default for Impulses<T, D> {
 
 impl<T, const D: usize> Default for List<T, D> {
     fn default() -> Self {
-        List { impulses: Vec::new(), velocities: Vec::new() }
+        List { impulses: Vec::new(), velocities: Vec::new(), reduced: 0 }
     }
 }
 
@@ -67,6 +69,11 @@ impl<T, const D: usize> Impulses<T, D> {
     /// The impulses in the order of their encounters.
     pub fn iter(&self) -> impl Iterator<Item = &Impulse<T, D>> {
         self.parts.iter().flat_map(|list| &list.impulses)
+    }
+
+    /// How many impulses were reduced of a use whose impulses were dropped.
+    pub fn reduced(&self) -> u64 {
+        self.parts.iter().map(|list| list.reduced).sum()
     }
 
     /// Those of a part; none if nothing was solved yet.
@@ -108,10 +115,14 @@ impl<T: Real, const D: usize> Solve<'_, T, D> {
         let parts = self.survey.parts();
         listed.parts.resize_with(parts.len().max(listed.parts.len()), List::default);
         let (used, unused) = listed.parts.split_at_mut(parts.len());
-        unused.iter_mut().for_each(|list| list.impulses.clear());
+        for list in unused {
+            list.impulses.clear();
+            list.reduced = 0;
+        }
         parts.par_iter().zip(used).enumerate().with_min_len(4).for_each(|(i, (part, list))| {
             let given = self.given.map_or(&[][..], |given| given.of(i));
             list.impulses.clear();
+            list.reduced = 0;
             for site in &part.sites {
                 let given = if given.is_empty() { given } else { &given[site.encounters.clone()] };
                 let first = list.impulses.len();
@@ -123,6 +134,7 @@ impl<T: Real, const D: usize> Solve<'_, T, D> {
                     }
                 }
                 if record == Record::Dropped {
+                    list.reduced += list.impulses.iter().filter(|j| j.change.scale < T::ONE).count() as u64;
                     list.impulses.clear();
                 }
             }
@@ -133,7 +145,7 @@ impl<T: Real, const D: usize> Solve<'_, T, D> {
     fn site(&self, (part, site): (&Part<T, D>, &Site<D>), given: &[Impulse<T, D>], list: &mut List<T, D>) {
         let Solve { rules, step, .. } = *self;
         let sides = &part.sides[site.sides.clone()];
-        let List { impulses, velocities } = list;
+        let List { impulses, velocities, .. } = list;
         velocities.clear();
         // SAFETY: a node of a body belongs to one site.
         velocities.extend(sides.iter().map(|side| unsafe { self.nodes.get(side.index) }.velocity));

@@ -237,6 +237,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let step = Step { duration, cell: self.lattice.cell, purpose };
         let nodes = Disjoint::new(&mut self.field.nodes);
         Solve { survey: &self.meeting, rules: &self.rules, nodes, step, given }.impulses(record, listed);
+        self.tally.scaled += listed.reduced();
         self.boundary.hold(&mut self.field);
         self.watch.lap("contact", start);
     }

@@ -14,7 +14,7 @@
 //! (measured 0.06), `gap` within half a cell (0.37). How much energy is left is printed only: `surface` loses 10 % head on, `gap` 7 %, where the benchmark asks
 //! 1 %: nodes that meet collide inelastically, and the loss shrinks with the cell (`surface`: 3.6 % at half, 1.3 % at a quarter).
 
-use crate::trial::{distance, run_to, start};
+use crate::trial::{distance, run_to, start, take_steps};
 
 const RULES: [(&str, &str); 6] = [
     ("surface", "common"),
@@ -163,5 +163,21 @@ fn oblique_balls() {
             "#
         );
         check("balls", (law, normal, 0.3), &collide(&scene, 1.5));
+    }
+}
+
+/// Every law counts the impulses that it reduces, so that no cell strains by more than `max_strain`; `surface` does so for the velocities
+/// that strain, whose impulses stand in no table.
+#[test]
+fn reduced_impulses_are_counted() {
+    for rule in RULES {
+        let reduced = |max_strain: f64| {
+            let scene = format!("{}max_strain = {max_strain}\n", disks([0.6, 0.3], rule, 0.0));
+            let mut simulation = start(&scene);
+            take_steps(&mut *simulation, 20);
+            simulation.ledger().scaled_impulses
+        };
+        let (never, often) = (reduced(1.0), reduced(1e-6));
+        assert!(never < often, "{rule:?}: {never} at 1, {often} at 1e-6");
     }
 }
