@@ -75,9 +75,10 @@ impl<T: Real> Friction<T> {
         if !self.at_rest.is_finite() || momentum <= self.at_rest * load.push + cohesion {
             return T::ONE;
         }
-        let left = momentum - self.coefficient(slip) * load.push - cohesion;
+        // What opposes the slip over what would stop it; not one minus what is left of it, which is round-off where the push is small.
         let viscous = self.viscosity * load.exposure;
-        T::ONE - left.max(T::ZERO) / (slip * (load.mass + viscous))
+        let opposed = self.coefficient(slip) * load.push + cohesion + viscous * slip;
+        (opposed / (slip * (load.mass + viscous))).min(T::ONE)
     }
 
     /// The normal impulse that the surfaces bear where `wanted` keeps them together, and how they are loaded by it; `None` where they
