@@ -88,9 +88,11 @@ fn every_figure_of_the_paper_is_seen_in_a_browser() {
 fn a_browser_plays_an_animation_of_fringes() {
     let workplace = Workplace::new();
     workplace.write("scene.toml", &new_scene());
-    let short = ["--set", "cells_per_radius=4", "--set", "time.end=0.5 s", "--set", "outputs.particles=0.1 s"];
+    let short =
+        ["--set", "cells_per_radius=4", "--set", "time.end=0.5 s", "--set", "outputs.particles=0.1 s"];
     workplace.succeed(&[&["run", "scene.toml"][..], &short].concat());
-    let fringes = ["--fringes", "--stress-parameter", "2000", "--animate", "--rate", "4", "--size", "300x200"];
+    let fringes =
+        ["--fringes", "--stress-parameter", "2000", "--animate", "--rate", "4", "--size", "300x200"];
     workplace.succeed(&[&["render", "scene.results"][..], &fringes].concat());
     let Some(found) = look_at(&workplace.path("scene.results/fringes_animation.png")) else { return };
     assert!(found["pictures"].as_u64() >= Some(4), "of six pictures, four a second: {found}");

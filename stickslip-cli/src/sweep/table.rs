@@ -74,7 +74,7 @@ mod tests {
         let record = Record::new("laws", vec!["law".to_owned()]);
         let rows = vec![row("surface", -0.0312, false), row("gap", 4e-5, false)];
         let mut sweep = Sweep { record, rows };
-        assert_eq!(table(&sweep), "    law  energy_drift\nsurface       -0.0312\n    gap     4.000e-5\n");
+        assert_eq!(table(&sweep), "    law  energy_drift\nsurface       -0.0312\n    gap      4.000e-5\n");
         sweep.rows.push(row("none", 0.0, true));
         assert!(table(&sweep).ends_with("   none          -             -    failed\n"), "{}", table(&sweep));
     }
