@@ -268,8 +268,8 @@ fn balance(level: Level, runs: &Runs) -> Result<Table, Failure> {
         Column::number("momentum, at the end"),
     ];
     let caption = "Balance of the disks 3 us after impact and at the end of each run. The paper's rule is to keep the energy in a row of disks within \
-         0.5 % at 3 us with 80 cells; the rule before it (kinematic) gains energy. Where disks slide in a zig-zag the paper's rule gains energy \
-         as well, and no rule keeps it to the end: the rows say how much came from nowhere or was lost. To the letter, the paper's rule takes \
+         0.5 % at 3 us with 80 cells; the rule before it (kinematic) gains energy. No rule keeps it exactly \
+         to the end: the rows say how much came from nowhere (+) or was lost. To the letter, the paper's rule takes \
          each body's own normal, and particles stand on a lattice: where a surface is stairs, the normals of two bodies do not oppose each \
          other, and momentum is lost (its equation 16). All other runs take a common normal for each pair, and particles in rings that \
          follow the disks.";
