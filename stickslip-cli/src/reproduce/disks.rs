@@ -86,7 +86,8 @@ impl Study for Disks {
         }
         section = section.text(
             "Sliding slows the fringes, gluing speeds them up. The wave counts as arrived when a disk's centre moves with a twentieth of the \
-             striker's speed: in the zig-zag its path leaves the centres aside, so their stress tells little.",
+             striker's speed: in the zig-zag its path leaves the centres aside, so their stress tells little. What comes first is what is ordered: \
+             by the paper's rule the fourth and fifth disks reach a tenth of the striker's speed and more no later without friction than with it.",
         );
         for rule in Rule::BOTH {
             section = section.table(arrivals(rule, level, runs)?);

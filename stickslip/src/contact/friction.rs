@@ -82,12 +82,14 @@ impl<T: Real> Friction<T> {
     }
 
     /// The normal impulse that the surfaces bear where `wanted` keeps them together, and how they are loaded by it; `None` where they
-    /// part. Positive pushes [N s].
+    /// part. Positive pushes [N s]. Surfaces that touch and resist slip without a push bear none.
     pub fn borne<const D: usize>(&self, wanted: T, pair: &Pair<T, D>) -> Option<(T, Load<T>)> {
         let load = pair.load(wanted.max(T::ZERO));
-        let pull = if pair.gap <= T::of(BOND) { self.adhesion * load.exposure } else { T::ZERO };
+        let touch = pair.gap <= T::of(BOND);
+        let pull = if touch { self.adhesion * load.exposure } else { T::ZERO };
+        let resist = touch && (self.cohesion > T::ZERO || self.viscosity > T::ZERO);
         let borne = wanted.max(-pull);
-        (wanted > T::ZERO || pull > T::ZERO).then_some((borne, load))
+        (wanted > T::ZERO || pull > T::ZERO || resist).then_some((borne, load))
     }
 }
 

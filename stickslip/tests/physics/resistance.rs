@@ -79,14 +79,21 @@ fn a_viscous_contact_slows_the_block_exponentially() {
     assert!((v - exact).abs() < 0.03, "{v} {exact}");
 }
 
+/// Surfaces that touch resist slip without any push, whether they adhere or not.
 #[test]
-fn cohesion_bears_shear_without_weight() {
+fn cohesion_and_viscosity_bear_shear_without_weight() {
     let time = 0.2;
-    let v =
-        velocity(&Block { gravity: 0.0, speed: 2.0, contact: "cohesion = 2000\nadhesion = 1e5" }, time)[0];
-    let exact = 2.0 - 2000.0 * AREA / MASS * time;
-    println!("cohesion: {v:.4} m/s, exact {exact:.4}");
-    assert!((v - exact).abs() < 0.1 * (2.0 - exact), "{v} {exact}");
+    let cohesion = 2.0 - 2000.0 * AREA / MASS * time;
+    let viscosity = 2.0 * (-1000.0 * AREA * time / MASS).exp();
+    for (contact, exact) in [
+        ("cohesion = 2000", cohesion),
+        ("cohesion = 2000\nadhesion = 1e5", cohesion),
+        ("viscosity = 1000", viscosity),
+    ] {
+        let v = velocity(&Block { gravity: 0.0, speed: 2.0, contact }, time)[0];
+        println!("{contact}: {v:.4} m/s, exact {exact:.4}");
+        assert!((v - exact).abs() < 0.1 * (2.0 - exact), "{contact}: {v} {exact}");
+    }
 }
 
 /// The weight comes at once: the block's own ringing doubles the load on the bond.

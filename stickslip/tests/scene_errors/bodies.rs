@@ -62,6 +62,11 @@ fn bodies_contact_and_references() {
             ),
             (
                 "law = \"{contact}\"",
+                "law = \"traction\"\ncohesion = 10",
+                "57:12: contact[0].cohesion: found 10; allowed: 0 with each body's own normal; normal = \"common\" gives the pair one direction and an area",
+            ),
+            (
+                "law = \"{contact}\"",
                 "law = \"{contct}\"",
                 "56:8: contact[0].law: found unknown parameter `contct`; allowed: a parameter (cells_per_radius, contact, cell, radius, angle); did you mean `contact`?",
             ),

@@ -70,11 +70,12 @@ impl<T: Real, const D: usize> Law<T, D> for Surface {
             Use::Strain => {
                 let [a, b] = pair.surfaces;
                 let ahead = u + (a.force * a.inverse_mass - b.force * b.inverse_mass) * pair.step.duration;
-                let Some((_, load)) = friction.borne(normal(ahead), pair) else { return Change::NONE };
+                let Some((held, load)) = friction.borne(normal(ahead), pair) else { return Change::NONE };
                 let sticks = friction.stopped(across(ahead).norm(), load) == T::ONE;
                 let u_n = u.dot(n);
                 let tangential = if sticks { across(u) * m } else { Vector::ZERO };
-                pair.exchange(-m * (u_n - u_n.max(T::ZERO).min(closing)), -tangential, n)
+                let together = m * (u_n - u_n.max(T::ZERO).min(closing));
+                pair.exchange(if held == T::ZERO { T::ZERO } else { -together }, -tangential, n)
             }
         }
     }

@@ -155,9 +155,9 @@ impl Contact {
             friction,
             kinetic_friction,
             friction_decay_speed: not_negative(&self.friction_decay_speed, context)?,
-            cohesion: not_negative(&self.cohesion, context)?,
-            adhesion: not_negative(&self.adhesion, context)?,
-            viscosity: not_negative(&self.viscosity, context)?,
+            cohesion: bond(&self.cohesion, normal, context)?,
+            adhesion: bond(&self.adhesion, normal, context)?,
+            viscosity: bond(&self.viscosity, normal, context)?,
             normal,
             max_strain,
         })
@@ -169,6 +169,19 @@ fn not_negative<M: Measure>(quantity: &Option<Quantity<M>>, context: &Context) -
     quantity
         .as_ref()
         .map_or(Ok(0.0), |quantity| quantity.checked(context, "a quantity from 0 on", |value| value >= 0.0))
+}
+
+/// What surfaces bear over the contact's area, for which a pair needs one direction; zero where the file is silent.
+fn bond<M: Measure>(quantity: &Option<Quantity<M>>, normal: Normal, context: &Context) -> Result<f64, Fault> {
+    let Some(quantity) = quantity else { return Ok(0.0) };
+    match normal {
+        Normal::Common => quantity.checked(context, "a quantity from 0 on", |value| value >= 0.0),
+        Normal::Own => quantity.checked(
+            context,
+            "0 with each body's own normal; normal = \"common\" gives the pair one direction and an area",
+            |value| value == 0.0,
+        ),
+    }
 }
 
 impl Read for Pair {
