@@ -10,7 +10,7 @@ use super::{Near, Place};
 use crate::basis::{Basis, MAX_WIDTH};
 use crate::boundary::Wall;
 use crate::grid::{Nodes, SIDE, next_of, node_at, nodes_per_block};
-use crate::lanes::{Laned, Lanes, MOST_LANES, Machine, Numbers, Work};
+use crate::lanes::{Laned, Lanes, MOST_LANES, Machine, Work, in_lanes};
 use crate::particles::{Column, Columns, deformation_entries, stress_entries};
 use crate::scene::Face;
 use crate::tensor::{Matrix, Number, Real, Symmetric, Vector, array};
@@ -278,10 +278,11 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
     ) {
         // No closure: the compiler may leave one of some size uninlined, and then its instructions are calls.
         let mut position = Vector::<V, D>::ZERO;
-        let half = load::<T, V, D>(columns, Column::<D>::HALF_WIDTH, index) * seen.per_cell;
+        let members = Members::new(columns, index);
+        let half = members.load::<V>(Column::<D>::HALF_WIDTH) * seen.per_cell;
         let mut shapes = [B::shape(V::ZERO, half); D];
         for i in 0..D {
-            position[i] = load(columns, Column::<D>::POSITION + i, index);
+            position[i] = members.load(Column::<D>::POSITION + i);
             let r = (position[i] - seen.origin[i]) * seen.per_cell - V::splat(T::of(f64::from(cell[i])));
             shapes[i] = B::shape(r, half);
             // The node sees a particle move away as the particle sees the node move: grad at the node = -grad S(x_p).
@@ -289,15 +290,15 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
                 *rise *= seen.per_cell * -seen.sign[i];
             }
         }
-        let mass: V = load(columns, Column::<D>::MASS, index);
-        let volume: V = load(columns, Column::<D>::VOLUME, index);
+        let mass: V = members.load(Column::<D>::MASS);
+        let volume: V = members.load(Column::<D>::VOLUME);
         let mut f = Matrix::ZERO;
         for (k, &[row, column]) in deformation_entries(D).iter().enumerate() {
-            f.0[row][column] = load(columns, Column::<D>::DEFORMATION + k, index);
+            f.0[row][column] = members.load(Column::<D>::DEFORMATION + k);
         }
         let mut stress = Symmetric::<V>::ZERO;
         for k in 0..stress_entries(D) {
-            stress.0[k] = load::<T, V, D>(columns, Column::<D>::STRESS + k, index) * seen.turn[k];
+            stress.0[k] = members.load::<V>(Column::<D>::STRESS + k) * seen.turn[k];
         }
         let jacobian = f.det();
         // The room on the grid, in the plane an area, and the volume that the stress fills.
@@ -316,7 +317,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
         let (mut arm, mut place) = (Vector::<V, D>::ZERO, Vector::<V, D>::ZERO);
         for i in 0..D {
             arm[i] = seen.offset[i] + seen.sign[i] * position[i] - seen.first[i];
-            let start: V = load(columns, Column::<D>::START + i, index);
+            let start: V = members.load(Column::<D>::START + i);
             place[i] = seen.offset[i] + seen.sign[i] * start;
         }
         for i in 0..D {
@@ -424,37 +425,36 @@ impl<V: Lanes, const D: usize> Seen<V, D> {
     }
 }
 
-/// Numbers of particles in a column, and the first in the lanes beyond.
-#[inline(always)]
-fn load<T: Real, V: Lanes<Real = T>, const D: usize>(
-    columns: &Columns<T, D>,
-    column: usize,
-    index: &[u32],
-) -> V {
-    let (first, last) = (index[0] as usize, index[index.len() - 1] as usize);
-    // SAFETY: the particles exist, and nobody writes to them in a survey. Indices within a cell ascend.
-    unsafe {
-        let start = columns.at(column, first);
-        match last - first == index.len() - 1 {
-            true if index.len() == V::COUNT => V::load(start),
-            true => V::load_part(start, index.len()),
-            false => V::load(collect(columns.at(column, 0), index).0.as_ptr()),
-        }
-    }
+/// Particles of a cell, one in each lane; the first in the lanes beyond.
+struct Members<'a, T, const D: usize> {
+    columns: &'a Columns<T, D>,
+    index: [usize; MOST_LANES],
+    count: usize,
+    /// Whether they lie side by side in memory.
+    in_a_row: bool,
 }
 
-/// Numbers that lie apart, and the first in the lanes beyond.
-///
-/// # Safety
-/// They must be there, and nobody may write to them meanwhile.
-#[inline(never)]
-unsafe fn collect<T: Real>(column: *const T, index: &[u32]) -> Numbers<T> {
-    let mut numbers = [T::ZERO; MOST_LANES];
-    for (lane, x) in numbers.iter_mut().enumerate() {
-        // SAFETY: the caller's.
-        *x = unsafe { *column.add(index[if lane < index.len() { lane } else { 0 }] as usize) };
+impl<'a, T: Real, const D: usize> Members<'a, T, D> {
+    #[inline(always)]
+    fn new(columns: &'a Columns<T, D>, index: &[u32]) -> Self {
+        // Indices within a cell ascend.
+        let in_a_row = (index[index.len() - 1] - index[0]) as usize == index.len() - 1;
+        Members { columns, index: in_lanes(index), count: index.len(), in_a_row }
     }
-    Numbers(numbers)
+
+    /// Their numbers in a column.
+    #[inline(always)]
+    fn load<V: Lanes<Real = T>>(&self, column: usize) -> V {
+        // SAFETY: the particles exist, and nobody writes to them in a survey.
+        unsafe {
+            let first = self.columns.at(column, self.index[0]);
+            match self.in_a_row {
+                true if self.count == V::COUNT => V::load(first),
+                true => V::load_part(first, self.count),
+                false => V::gather(self.columns.at(column, 0), &self.index),
+            }
+        }
+    }
 }
 
 /// Four numbers of each particle of a group.

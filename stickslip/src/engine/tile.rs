@@ -7,7 +7,7 @@ use super::pass::{Pass, Verbs, Visit};
 use crate::basis::Basis;
 use crate::body::Body;
 use crate::grid::{WINDOW, node_at};
-use crate::lanes::{Laned, Lanes, MOST_LANES, Machine, Numbers, Work, prefetch};
+use crate::lanes::{Laned, Lanes, MOST_LANES, Machine, Numbers, Work, in_lanes, prefetch};
 use crate::material::{Material, Motion, Thickness};
 use crate::particles::{Column, Columns, deformation_entries, stress_entries};
 use crate::tensor::{Matrix, Real, Symmetric, Vector, array};
@@ -326,13 +326,10 @@ impl<T: Real> Copies<T> {
         index: &[u32],
         count: usize,
     ) {
-        let mut padded = [index[0] as usize; MOST_LANES];
-        for (lane, &i) in padded.iter_mut().zip(index) {
-            *lane = i as usize;
-        }
+        let index = in_lanes(index);
         for (column, copy) in self.0.iter_mut().enumerate().take(count) {
             // SAFETY: the caller's.
-            unsafe { V::gather(columns.at(column, 0), &padded).store(copy.0.as_mut_ptr()) };
+            unsafe { V::gather(columns.at(column, 0), &index).store(copy.0.as_mut_ptr()) };
         }
     }
 }

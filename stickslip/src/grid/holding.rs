@@ -130,11 +130,11 @@ impl Holding {
         let n = nodes_per_block(D);
         self.gone.clear();
         self.gone.resize(left.len(), 0);
-        let parts = left.len().div_ceil(TILES);
-        self.leaving.resize_with(parts.max(self.leaving.len()), Vec::new);
+        let count = left.len().div_ceil(TILES);
+        self.leaving.resize_with(count.max(self.leaving.len()), Vec::new);
         let (cells, homes, order) = (&self.cells, &self.homes, Disjoint::new(&mut self.order));
         let parts =
-            left.par_chunks(TILES).zip(self.gone.par_chunks_mut(TILES)).zip(&mut self.leaving[..parts]);
+            left.par_chunks(TILES).zip(self.gone.par_chunks_mut(TILES)).zip(&mut self.leaving[..count]);
         parts.enumerate().for_each(|(part, ((left, gone), leaving))| {
             leaving.clear();
             for (i, &left) in left.iter().enumerate().filter(|(_, left)| **left != 0) {
@@ -154,7 +154,7 @@ impl Holding {
             }
         });
         self.movers.clear();
-        for leaving in &self.leaving[..left.len().div_ceil(TILES)] {
+        for leaving in &self.leaving[..count] {
             self.movers.extend_from_slice(leaving);
         }
         self.moved += self.movers.len();

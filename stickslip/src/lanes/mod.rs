@@ -142,6 +142,16 @@ pub trait Lanes: Number {
     }
 }
 
+/// Indices for [`Lanes::gather`]: one for each lane, and the first again in the lanes beyond.
+#[inline(always)]
+pub fn in_lanes(index: &[u32]) -> [usize; MOST_LANES] {
+    let mut lanes = [index[0] as usize; MOST_LANES];
+    for (lane, &i) in lanes.iter_mut().zip(index) {
+        *lane = i as usize;
+    }
+    lanes
+}
+
 /// Numbers of a group in memory.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]

@@ -440,9 +440,7 @@ impl<T: Real> Rows<T> {
         // SAFETY: a row is eight numbers.
         unsafe { M::Wide::load(self.0[pair].as_ptr().cast()) }
     }
-}
 
-impl<T: Real> Rows<T> {
     /// The row of a particle, with zeros in the place of its partner.
     #[inline(always)]
     fn one<M: Machine<T>>(&self, particle: usize) -> M::Wide {

@@ -173,14 +173,13 @@ fn not_negative<M: Measure>(quantity: &Option<Quantity<M>>, context: &Context) -
 
 /// What surfaces bear over the contact's area, for which a pair needs one direction; zero where the file is silent.
 fn bond<M: Measure>(quantity: &Option<Quantity<M>>, normal: Normal, context: &Context) -> Result<f64, Fault> {
-    let Some(quantity) = quantity else { return Ok(0.0) };
-    match normal {
-        Normal::Common => quantity.checked(context, "a quantity from 0 on", |value| value >= 0.0),
-        Normal::Own => quantity.checked(
+    match (quantity, normal) {
+        (Some(quantity), Normal::Own) => quantity.checked(
             context,
             "0 with each body's own normal; normal = \"common\" gives the pair one direction and an area",
             |value| value == 0.0,
         ),
+        _ => not_negative(quantity, context),
     }
 }
 
