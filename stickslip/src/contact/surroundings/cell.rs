@@ -1,0 +1,221 @@
+//! Particles of a cell, side by side, added to the nodes that they reach.
+
+use super::Around;
+use super::sums::{FIRST, ROWS, weighted_rows};
+use crate::basis::Basis;
+use crate::grid::{Nodes, next_of, node_at};
+use crate::lanes::{Laned, Lanes, MOST_LANES, Machine, in_lanes};
+use crate::particles::{Column, Columns, deformation_entries, stress_entries};
+use crate::tensor::{Matrix, Number, Real, Symmetric, Vector, array};
+
+impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
+    /// Adds particles of one cell to nodes; the cell, and its steps from the lowest node.
+    #[inline(always)]
+    pub(super) fn group<M: Machine<T>, V: Lanes<Real = T>>(
+        &mut self,
+        seen: &Seen<V, D>,
+        columns: &Columns<T, D>,
+        index: &[u32],
+        [cell, base]: [[i32; D]; 2],
+        mut nodes: Nodes,
+    ) {
+        // No closure: the compiler may leave one of some size uninlined, and then its instructions are calls.
+        let mut position = Vector::<V, D>::ZERO;
+        let members = Members::new(columns, index);
+        let half = members.load::<V>(Column::<D>::HALF_WIDTH) * seen.per_cell;
+        let mut shapes = [B::shape(V::ZERO, half); D];
+        for i in 0..D {
+            position[i] = members.load(Column::<D>::POSITION + i);
+            let r = (position[i] - seen.origin[i]) * seen.per_cell - V::splat(T::of(f64::from(cell[i])));
+            shapes[i] = B::shape(r, half);
+            // The node sees a particle move away as the particle sees the node move: grad at the node = -grad S(x_p).
+            for rise in &mut shapes[i].rise {
+                *rise *= seen.per_cell * -seen.sign[i];
+            }
+        }
+        let mass: V = members.load(Column::<D>::MASS);
+        let volume: V = members.load(Column::<D>::VOLUME);
+        let mut f = Matrix::ZERO;
+        for (k, &[row, column]) in deformation_entries(D).iter().enumerate() {
+            f.0[row][column] = members.load(Column::<D>::DEFORMATION + k);
+        }
+        let mut stress = Symmetric::<V>::ZERO;
+        for k in 0..stress_entries(D) {
+            stress.0[k] = members.load::<V>(Column::<D>::STRESS + k) * seen.turn[k];
+        }
+        let jacobian = f.det();
+        // The room on the grid, in the plane an area, and the volume that the stress fills.
+        let room =
+            if D == 2 { volume * (f.0[0][0] * f.0[1][1] - f.0[0][1] * f.0[1][0]) } else { volume * jacobian };
+        let filled = volume * jacobian;
+        let per_jacobian = V::ONE / jacobian;
+        let mut inverse = [[V::ZERO; D]; D];
+        for i in 0..D {
+            for j in 0..D {
+                let (a, b, c, d) = ((j + 1) % 3, (j + 2) % 3, (i + 1) % 3, (i + 2) % 3);
+                let minor = f.0[a][c] * f.0[b][d] - f.0[a][d] * f.0[b][c];
+                inverse[i][j] = minor * per_jacobian * (seen.sign[i] * seen.sign[j]);
+            }
+        }
+        let (mut arm, mut place) = (Vector::<V, D>::ZERO, Vector::<V, D>::ZERO);
+        for i in 0..D {
+            arm[i] = seen.offset[i] + seen.sign[i] * position[i] - seen.first[i];
+            let start: V = members.load(Column::<D>::START + i);
+            place[i] = seen.offset[i] + seen.sign[i] * start;
+        }
+        for i in 0..D {
+            for j in 0..D {
+                place[i] -= inverse[i][j] * arm[j];
+            }
+        }
+
+        let mut by_volume = [V::ZERO; 4 * (ROWS - FIRST)];
+        for i in 0..D {
+            by_volume[i] = place[i] * room;
+            by_volume[D + i] = arm[i] * room;
+            for j in 0..D {
+                by_volume[2 * D + i * D + j] = inverse[i][j] * room;
+            }
+        }
+        for k in 0..stress_entries(D) {
+            by_volume[2 * D + D * D + k] = stress.0[k] * room;
+        }
+        let mut rows = [Rows::<T>::EMPTY; ROWS - FIRST];
+        for row in 0..weighted_rows(D) {
+            let k = 4 * row;
+            rows[row].fill([by_volume[k], by_volume[k + 1], by_volume[k + 2], by_volume[k + 3]]);
+        }
+        let mut force = [Rows::<T>::EMPTY; D];
+        for j in 0..D {
+            let mut column = [V::ZERO; 4];
+            for i in 0..D {
+                column[i] = stress.at(i, j) * filled;
+            }
+            force[j].fill(column);
+        }
+        let (room, mass) = (room.numbers(), mass.numbers());
+
+        while let Some(node) = next_of(&mut nodes) {
+            let steps = node_at([0; D], node);
+            let offset: [usize; D] = array(0, |i| (self.along(i, steps[i]) - base[i]) as usize);
+            let [x, dx] = [shapes[0].weight[offset[0]], shapes[0].slope(offset[0])];
+            let [y, dy] = [shapes[1].weight[offset[1]], shapes[1].slope(offset[1])];
+            let mut shares = Rows::<T>::EMPTY;
+            if D == 2 {
+                shares.fill([dx * y, x * dy, V::ZERO, x * y]);
+            } else {
+                let [z, dz] = [shapes[D - 1].weight[offset[D - 1]], shapes[D - 1].slope(offset[D - 1])];
+                let yz = y * z;
+                shares.fill([dx * yz, x * (dy * z), x * (y * dz), x * yz]);
+            }
+            let mut added = [M::Quad::ZERO; ROWS];
+            for p in 0..index.len().min(MOST_LANES) {
+                let share = shares.get::<M>(p);
+                added[0] += share * M::Quad::splat(room.0[p]);
+                added[1] += share * M::Quad::splat(mass.0[p]);
+                for j in 0..D {
+                    added[2] += force[j].get::<M>(p) * M::Quad::splat(shares.0[p][j]);
+                }
+                let weight = M::Quad::splat(shares.0[p][3]);
+                for row in 0..weighted_rows(D) {
+                    added[FIRST + row] += rows[row].get::<M>(p) * weight;
+                }
+            }
+            let rank = (self.wanted & ((1 << node) - 1)).count_ones() as usize;
+            let sums = &mut self.sums[rank].0;
+            for row in 0..FIRST + weighted_rows(D) {
+                // SAFETY: a row has four numbers, borrowed for writing.
+                unsafe { (M::Quad::load(sums[row].as_ptr()) + added[row]).store(sums[row].as_mut_ptr()) }
+            }
+        }
+    }
+}
+
+/// How a block's particles are seen, in every lane.
+pub(super) struct Seen<V, const D: usize> {
+    origin: Vector<V, D>,
+    per_cell: V,
+    /// The first node of the block [m].
+    first: Vector<V, D>,
+    /// A point `x` is seen at `offset + sign x`.
+    offset: Vector<V, D>,
+    sign: Vector<V, D>,
+    /// Signs of the entries of a stress.
+    turn: [V; 6],
+}
+
+impl<V: Lanes, const D: usize> Seen<V, D> {
+    #[inline(always)]
+    pub(super) fn new<B>(around: &Around<'_, V::Real, D, B>) -> Self {
+        let lattice = &around.near.lattice;
+        let splat = |x: Vector<V::Real, D>| Vector::<V, D>::from_fn(|i| V::splat(x[i]));
+        let sign = |i: usize| if i < D && around.mirrors[i].is_some() { -V::ONE } else { V::ONE };
+        let offset = Vector::from_fn(|i| match around.mirrors[i] {
+            Some(wall) => {
+                let position = lattice.origin[i] + V::Real::of(f64::from(wall.node)) * lattice.cell;
+                V::splat(position + position)
+            }
+            None => V::ZERO,
+        });
+        Seen {
+            origin: splat(lattice.origin),
+            per_cell: V::splat(lattice.per_cell),
+            first: splat(lattice.position(node_at(around.block, 0))),
+            offset,
+            sign: Vector::from_fn(sign),
+            turn: [V::ONE, V::ONE, V::ONE, sign(0) * sign(1), sign(1) * sign(2), sign(0) * sign(2)],
+        }
+    }
+}
+
+/// Particles of a cell, one in each lane; the first in the lanes beyond.
+struct Members<'a, T, const D: usize> {
+    columns: &'a Columns<T, D>,
+    index: [usize; MOST_LANES],
+    count: usize,
+    /// Whether they lie side by side in memory.
+    in_a_row: bool,
+}
+
+impl<'a, T: Real, const D: usize> Members<'a, T, D> {
+    #[inline(always)]
+    fn new(columns: &'a Columns<T, D>, index: &[u32]) -> Self {
+        // Indices within a cell ascend.
+        let in_a_row = (index[index.len() - 1] - index[0]) as usize == index.len() - 1;
+        Members { columns, index: in_lanes(index), count: index.len(), in_a_row }
+    }
+
+    /// Their numbers in a column.
+    #[inline(always)]
+    fn load<V: Lanes<Real = T>>(&self, column: usize) -> V {
+        // SAFETY: the particles exist, and nobody writes to them in a survey.
+        unsafe {
+            let first = self.columns.at(column, self.index[0]);
+            match self.in_a_row {
+                true if self.count == V::COUNT => V::load(first),
+                true => V::load_part(first, self.count),
+                false => V::gather(self.columns.at(column, 0), &self.index),
+            }
+        }
+    }
+}
+
+/// Four numbers of each particle of a group.
+#[derive(Clone, Copy)]
+#[repr(align(64))]
+struct Rows<T>([[T; 4]; MOST_LANES]);
+
+impl<T: Real> Rows<T> {
+    const EMPTY: Self = Rows([[T::ZERO; 4]; MOST_LANES]);
+
+    #[inline(always)]
+    fn fill<V: Lanes<Real = T>>(&mut self, columns: [V; 4]) {
+        V::store_rows(columns, &mut self.0);
+    }
+
+    #[inline(always)]
+    fn get<M: Machine<T>>(&self, particle: usize) -> M::Quad {
+        // SAFETY: a row is four numbers.
+        unsafe { M::Quad::load(self.0[particle].as_ptr()) }
+    }
+}

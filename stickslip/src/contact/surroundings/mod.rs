@@ -1,0 +1,195 @@
+//! What a body's particles say at the nodes of a block where it meets others.
+//!
+//! Every particle near such nodes is visited once and added to all that it reaches, those of a cell side by side. Behind a mirror its image
+//! is added.
+
+// Sums over nodes and components read better by their indices.
+#![allow(clippy::needless_range_loop)]
+
+mod cell;
+mod sums;
+#[cfg(test)]
+mod tests;
+
+pub use sums::Sums;
+
+use super::Near;
+use crate::basis::{Basis, MAX_WIDTH};
+use crate::boundary::Wall;
+use crate::grid::{Nodes, SIDE, nodes_per_block};
+use crate::lanes::{Laned, Lanes, Machine, Work};
+use crate::scene::Face;
+use crate::tensor::array;
+use cell::Seen;
+use std::marker::PhantomData;
+
+/// Nodes of a block whose coordinate along an axis is `n`; bits beyond the block mean nothing.
+fn layer<const D: usize>(axis: usize, n: i32) -> Nodes {
+    let every: Nodes = match D - 1 - axis {
+        0 => 0x1111_1111_1111_1111,
+        1 => 0x000f_000f_000f_000f,
+        _ => 0xffff,
+    };
+    every << (n as u32 * (SIDE as u32).pow((D - 1 - axis) as u32))
+}
+
+/// All nodes of a block.
+pub const fn every_node(dimension: usize) -> Nodes {
+    Nodes::MAX >> (Nodes::BITS as usize - nodes_per_block(dimension))
+}
+
+/// The nodes of a block that lie so deep behind a wall: `depth` or further out.
+pub fn behind<const D: usize>(wall: &Wall, block: [i32; D], depth: i32) -> Nodes {
+    let depth_of = |n: i32| (block[wall.axis] * SIDE + n - wall.node) * wall.inward;
+    let layers = (0..SIDE).filter(|&n| depth_of(n) <= depth).map(|n| layer::<D>(wall.axis, n));
+    layers.fold(0, |nodes, layer| nodes | layer) & every_node(D)
+}
+
+/// For each axis, the mirror that particles are seen in, if any.
+pub type Mirrors<'a, const D: usize> = [Option<&'a Wall>; D];
+
+impl<T: Laned, const D: usize> Near<'_, T, D> {
+    /// Adds a body's particles to the wanted nodes of a block: the sums of the n-th of them are `sums[n]`.
+    pub fn sum_around<B: Basis<T>>(
+        &self,
+        (body, block): (usize, [i32; D]),
+        wanted: Nodes,
+        sums: &mut [Sums<T, D>],
+    ) {
+        let mut walls = self.boundary.walls.iter().filter(|wall| self.reflects::<B>(wall, block));
+        let near: [Option<&Wall>; 6] = std::array::from_fn(|_| walls.next());
+        // No mirror, and every mirror and combination of mirrors whose images reach nodes of the block.
+        for combination in 0..1_u32 << near.iter().flatten().count() {
+            let mut mirrors: Mirrors<D> = [None; D];
+            let chosen = near.iter().flatten().enumerate().filter(|(i, _)| combination >> i & 1 == 1);
+            if chosen.into_iter().all(|(_, &wall)| mirrors[wall.axis].replace(wall).is_none()) {
+                let around = Around {
+                    near: self,
+                    body,
+                    block,
+                    wanted,
+                    mirrors,
+                    sums: &mut *sums,
+                    basis: PhantomData::<B>,
+                };
+                T::run(self.processor, around);
+            }
+        }
+    }
+
+    /// Whether images of particles before a wall reach nodes of a block.
+    fn reflects<B: Basis<T>>(&self, wall: &Wall, block: [i32; D]) -> bool {
+        let near = if wall.inward > 0 { 0 } else { SIDE - 1 };
+        let depth = (block[wall.axis] * SIDE + near - wall.node) * wall.inward;
+        wall.face == Face::Symmetry && depth < B::WIDTH as i32
+    }
+}
+
+/// The particles of a body around a block, as they are or as they are seen in mirrors.
+struct Around<'a, T, const D: usize, B> {
+    near: &'a Near<'a, T, D>,
+    body: usize,
+    block: [i32; D],
+    wanted: Nodes,
+    mirrors: Mirrors<'a, D>,
+    sums: &'a mut [Sums<T, D>],
+    basis: PhantomData<B>,
+}
+
+impl<T: Laned, const D: usize, B: Basis<T>> Work for Around<'_, T, D, B> {
+    type Real = T;
+    type Output = ();
+
+    #[inline(always)]
+    fn run<M: Machine<T>>(self) {
+        if D == 2 { self.sum::<M, M::Quad>() } else { self.sum::<M, M::Wide>() }
+    }
+}
+
+/// Cells along an axis whose particles reach nodes of a block, at most.
+const SPAN: usize = SIDE as usize + MAX_WIDTH - 1;
+
+impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
+    #[inline(always)]
+    fn sum<M: Machine<T>, V: Lanes<Real = T>>(mut self) {
+        let reach = B::WIDTH as i32 - 1;
+        // The lowest cell, where it is and not as it is seen, and the nodes that each cell from there on reaches along each axis.
+        let mut lowest = [0; D];
+        let mut reached = [[Nodes::MAX; SPAN]; 3];
+        for i in 0..D {
+            let first = self.block[i] * SIDE;
+            lowest[i] = self.mirrors[i].map_or(first, |wall| 2 * wall.node - first - (SIDE - 1)) - reach;
+            for cell in 0..SIDE + reach {
+                let steps = (cell - reach).max(0)..(cell + 1).min(SIDE);
+                let nodes = steps.map(|step| layer::<D>(i, self.along(i, step)));
+                reached[i][cell as usize] = nodes.fold(0, |all, nodes| all | nodes);
+            }
+        }
+        let seen = Seen::<V, D>::new(&self);
+        let columns = self.near.bodies[self.body].particles.view();
+        let ends: [[i32; 2]; D] =
+            array([0; 2], |i| [lowest[i], lowest[i] + SIDE + reach - 1].map(|cell| cell.div_euclid(SIDE)));
+        let mut home: [i32; D] = array(0, |i| ends[i][0]);
+        loop {
+            // Of the home block, the cells that count, as steps from the lowest; in the plane the third axis has one step.
+            let mut steps = [[0, 1]; 3];
+            let mut nodes = self.wanted;
+            for i in 0..D {
+                let first = home[i] * SIDE - lowest[i];
+                steps[i] = [first.max(0), (first + SIDE).min(SIDE + reach)];
+                let along = &reached[i][steps[i][0] as usize..steps[i][1] as usize];
+                nodes &= along.iter().fold(0, |all, nodes| all | nodes);
+            }
+            let tile = if nodes == 0 { None } else { self.near.cover.tile_at(self.body, home) };
+            if let Some((order, cells)) = tile {
+                for x in steps[0][0]..steps[0][1] {
+                    for y in steps[1][0]..steps[1][1] {
+                        for z in steps[2][0]..steps[2][1] {
+                            let step: [i32; D] = array(0, |i| [x, y, z][i]);
+                            let mut nodes = self.wanted;
+                            let mut local = 0;
+                            for i in 0..D {
+                                nodes &= reached[i][step[i] as usize];
+                                local = local * SIDE + (lowest[i] + step[i] - home[i] * SIDE);
+                            }
+                            let local = local as usize;
+                            let (mut first, end) = (cells[local] as usize, cells[local + 1] as usize);
+                            while nodes != 0 && first < end {
+                                let count = (end - first).min(V::COUNT);
+                                let place: [[i32; D]; 2] =
+                                    [array(0, |i| lowest[i] + step[i]), array(0, |i| step[i] - reach)];
+                                self.group::<M, V>(
+                                    &seen,
+                                    &columns,
+                                    &order[first..first + count],
+                                    place,
+                                    nodes,
+                                );
+                                first += count;
+                            }
+                        }
+                    }
+                }
+            }
+            // The next home block, the last axis fastest.
+            let mut axis = D;
+            loop {
+                if axis == 0 {
+                    return;
+                }
+                axis -= 1;
+                home[axis] += 1;
+                if home[axis] <= ends[axis][1] {
+                    break;
+                }
+                home[axis] = ends[axis][0];
+            }
+        }
+    }
+
+    /// Coordinate in the block of the node that is `step` from the lowest along an axis, and the other way round.
+    #[inline(always)]
+    fn along(&self, axis: usize, step: i32) -> i32 {
+        if self.mirrors[axis].is_some() { SIDE - 1 - step } else { step }
+    }
+}
