@@ -1,15 +1,15 @@
 //! Where bodies meet, and what the particles there say of their surfaces.
 
 use super::law::law;
-use super::surroundings::{Sums, behind};
+use super::surroundings::{Sums, Wanted, behind};
 use super::{Pair, Rules, Step, Surface};
 use crate::basis::Basis;
 use crate::body::Body;
 use crate::boundary::Boundary;
-use crate::grid::{Cover, Field, Lattice, Meeting, Nodes, SIDE, next_of, node_at, nodes_per_block};
+use crate::grid::{Cover, Field, Lattice, Meeting, Node, Nodes, SIDE, next_of, node_at, nodes_per_block};
 use crate::lanes::{Laned, Processor};
 use crate::scene::{ContactLaw, Face};
-use crate::tensor::{Matrix, Real, Vector};
+use crate::tensor::{Matrix, Real, Symmetric, Vector};
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
@@ -47,13 +47,6 @@ pub struct Facing<T, const D: usize> {
     pub gap: T,
 }
 
-impl<T: Real, const D: usize> Facing<T, D> {
-    /// Whether the two cannot touch in this step: more than a cell apart, so that no normal was looked for.
-    fn apart(&self) -> bool {
-        self.normal.is_none() && self.gap > T::ONE
-    }
-}
-
 /// What a law may look at to tell how two bodies face each other.
 pub struct Look<'a, T, const D: usize> {
     /// Everything near.
@@ -64,6 +57,8 @@ pub struct Look<'a, T, const D: usize> {
     pub pair: [usize; 2],
     /// The node.
     pub node: [i32; D],
+    /// Surfaces further apart cannot touch in this step [cells].
+    pub reach: T,
 }
 
 /// Two sides of a site.
@@ -177,6 +172,8 @@ pub struct Near<'a, T, const D: usize> {
     pub boundary: &'a Boundary,
     /// Which law holds for which pair.
     pub rules: &'a Rules<T>,
+    /// Step [s], if the nodes have the forces of the stress already.
+    pub ahead: Option<T>,
     /// Who looks.
     pub processor: Processor,
 }
@@ -222,12 +219,15 @@ impl<T: Laned, const D: usize> Near<'_, T, D> {
         moduli.extend(
             slots.iter().map(|&slot| self.bodies[body(slot)].wave_modulus(&Matrix::IDENTITY, T::ONE)),
         );
+        let by_place = |&[_, _, rule]: &[usize; 3]| law::<T, D>(self.rules.rule(rule).law).by_place();
+        let places = self.ahead.is_some() && pairs.iter().all(by_place);
+        let sought = if places { Wanted::Places } else { Wanted::Everything };
         for (&slot, present) in slots.iter().zip(present.iter_mut()) {
             *present &= shared;
             let first = sums.len();
             next.push(first);
             sums.resize(first + present.count_ones() as usize, Sums::EMPTY);
-            self.sum_around::<B>((body(slot), block), *present, &mut sums[first..]);
+            self.sum_around::<B>((body(slot), block), (*present, sought), &mut sums[first..]);
         }
         let mut nodes = shared;
         while let Some(local) = next_of(&mut nodes) {
@@ -239,19 +239,18 @@ impl<T: Laned, const D: usize> Near<'_, T, D> {
                 seats.push(here.then_some(part.sides.len()));
                 if here {
                     let modulus = moduli[i];
-                    part.sides.push(self.side((slot as usize * n + local, node), &sums[next[i]], modulus));
+                    let index = slot as usize * n + local;
+                    part.sides.push(self.side((index, node, modulus), &sums[next[i]], sought));
                     next[i] += 1;
                 }
             }
+            let reach = self.reach(&part.sides[first..]);
             let start = part.encounters.len();
             for &[a, b, rule] in &*pairs {
                 if let (Some(a), Some(b)) = (seats[a], seats[b]) {
                     let pair = [a - first, b - first];
-                    let look = Look { near: self, sides: &part.sides[first..], pair, node };
-                    let facing = law(self.rules.rule(rule).law).facing(&look);
-                    if facing.apart() {
-                        continue;
-                    }
+                    let look = Look { near: self, sides: &part.sides[first..], pair, node, reach };
+                    let Some(facing) = law(self.rules.rule(rule).law).facing(&look) else { continue };
                     let area = area(&look, &facing);
                     part.encounters.push(Encounter { sides: [a, b], rule, facing, area });
                 }
@@ -317,22 +316,52 @@ impl<T: Laned, const D: usize> Near<'_, T, D> {
         all
     }
 
-    fn side(&self, (index, node): (usize, [i32; D]), sums: &Sums<T, D>, modulus: T) -> Side<T, D> {
+    fn side(
+        &self,
+        (index, node, modulus): (usize, [i32; D], T),
+        sums: &Sums<T, D>,
+        sought: Wanted,
+    ) -> Side<T, D> {
         let body = self.cover.slots[index / nodes_per_block(D)].0 as usize;
         let owner = &self.bodies[body];
         let arm = Vector::from_fn(|i| T::of(f64::from(node[i].rem_euclid(SIDE))) * self.lattice.cell);
-        let mass = self.field.nodes[index].mass;
+        let Node { mass, force, .. } = self.field.nodes[index];
+        let (normal, stress, force) = match sought {
+            Wanted::Places => (None, Symmetric::ZERO, force),
+            // A node on a mirror carries its half of the mass, and so of the force.
+            Wanted::Everything => {
+                ((-sums.mass_gradient()).direction(), sums.stress(), sums.force() * (mass / sums.mass()))
+            }
+        };
         let surface = Surface {
             inverse_mass: if owner.rigid { T::ZERO } else { T::ONE / mass },
-            normal: (-sums.mass_gradient()).direction(),
-            stress: sums.stress(),
+            normal,
+            stress,
             volume: sums.volume(),
             modulus,
-            // A node on a mirror carries its half of the mass, and so of the force.
-            force: sums.force() * (mass / sums.mass()),
+            force,
             place: sums.place().seen_from(arm),
         };
         Side { body, index, surface, volume_gradient: sums.volume_gradient() }
+    }
+
+    /// Surfaces further apart at a node cannot touch in this step [cells].
+    ///
+    /// Twice the largest way that the bodies could go against each other with the velocities and forces that they have, and a tenth of a cell
+    /// for what they get in the step from elsewhere; a cell where forces are not known yet: nothing moves by that in a step.
+    fn reach(&self, sides: &[Side<T, D>]) -> T {
+        let Some(dt) = self.ahead else { return T::ONE };
+        let node = |side: &Side<T, D>| &self.field.nodes[side.index];
+        let ahead = |side: &Side<T, D>| side.surface.force * (side.surface.inverse_mass * dt);
+        let mut fastest = T::ZERO;
+        for (i, a) in sides.iter().enumerate() {
+            for b in &sides[..i] {
+                let speed = (node(a).velocity - node(b).velocity).norm() + (ahead(a) - ahead(b)).norm();
+                fastest = fastest.max(speed);
+            }
+        }
+        let way = fastest * dt * self.lattice.per_cell;
+        (way + way + T::of(0.1)).min(T::ONE)
     }
 }
 

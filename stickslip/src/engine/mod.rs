@@ -77,7 +77,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             _ => Share::Everything,             //                  m, p, f = -sum V sigma grad S
         });
         self.interpolated_velocities(); //              v = p / m                           (4)
-        self.survey(); //                               surfaces, normals and gaps where bodies meet
+        self.survey(dt); //                             surfaces, normals and gaps where bodies meet
         self.join(); //                                 glued bodies interpolate as one
         self.first_contact(dt); //                      v~ from interpolated velocities     (5)-(13), (20)-(22)
         if when == StressUpdate::First {

@@ -159,7 +159,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.boundary.hold(&mut self.field);
     }
 
-    pub(super) fn survey(&mut self) {
+    pub(super) fn survey(&mut self, dt: T) {
         let start = Instant::now();
         let near = Near {
             cover: &self.cover,
@@ -168,6 +168,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             lattice: self.lattice,
             boundary: &self.boundary,
             rules: &self.rules,
+            ahead: (self.clock.stress_update != StressUpdate::First).then_some(dt),
             processor: match self.path {
                 Path::Lanes(processor) => processor,
                 Path::Reference => Processor::Any,

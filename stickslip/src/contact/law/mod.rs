@@ -32,9 +32,15 @@ pub trait Law<T: Real, const D: usize>: Sync {
         Span::EachUse
     }
 
-    /// Normal and gap of a pair at a node.
-    fn facing(&self, look: &Look<T, D>) -> Facing<T, D> {
-        room(look)
+    /// Normal and gap of a pair at a node, unless they are so far apart that they cannot touch in this step.
+    fn facing(&self, look: &Look<T, D>) -> Option<Facing<T, D>> {
+        Some(room(look))
+    }
+
+    /// Whether of what the bodies are like at a node the law looks at their places, volumes and forces alone, not at their stresses and own
+    /// normals.
+    fn by_place(&self) -> bool {
+        false
     }
 }
 

@@ -34,10 +34,10 @@ struct Point<T, const D: usize> {
 }
 
 impl<T: Real, const D: usize> Law<T, D> for Regression {
-    fn facing(&self, look: &Look<T, D>) -> Facing<T, D> {
+    fn facing(&self, look: &Look<T, D>) -> Option<Facing<T, D>> {
         let [a, b] = look.pair.map(|side| &look.sides[side]);
         let Some(start) = (b.volume_gradient - a.volume_gradient).direction() else {
-            return Facing { normal: None, gap: T::ONE };
+            return Some(Facing { normal: None, gap: T::ONE });
         };
         let per_cell = T::ONE / look.near.lattice.cell;
         let mut points = Vec::new();
@@ -51,7 +51,7 @@ impl<T: Real, const D: usize> Law<T, D> for Regression {
             });
         }
         let normal = plane(&points, start);
-        Facing { normal: Some(normal), gap: gap(&points, normal) }
+        Some(Facing { normal: Some(normal), gap: gap(&points, normal) })
     }
 
     fn change(&self, pair: &Pair<T, D>, velocities: [Vector<T, D>; 2]) -> Change<T, D> {

@@ -28,13 +28,13 @@ fn edge<T: Real>(center: T) -> T {
 }
 
 impl<T: Real, const D: usize> Law<T, D> for Separation {
-    fn facing(&self, look: &Look<T, D>) -> Facing<T, D> {
+    fn facing(&self, look: &Look<T, D>) -> Option<Facing<T, D>> {
         let [a, b] = look.pair.map(|side| &look.sides[side]);
         let Some(normal) = (b.volume_gradient - a.volume_gradient).direction() else {
-            return Facing { normal: None, gap: T::ONE };
+            return Some(Facing { normal: None, gap: T::ONE });
         };
         let edges = [a, b].map(|side| edge(side.surface.place.center.dot(normal) / look.near.lattice.cell));
-        Facing { normal: Some(normal), gap: -(edges[0] + edges[1]) }
+        Some(Facing { normal: Some(normal), gap: -(edges[0] + edges[1]) })
     }
 
     fn change(&self, pair: &Pair<T, D>, velocities: [Vector<T, D>; 2]) -> Change<T, D> {

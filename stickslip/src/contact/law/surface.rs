@@ -23,7 +23,11 @@ impl<T: Real, const D: usize> Law<T, D> for Surface {
         Span::WholeStep
     }
 
-    fn facing(&self, look: &Look<T, D>) -> Facing<T, D> {
+    fn by_place(&self) -> bool {
+        true
+    }
+
+    fn facing(&self, look: &Look<T, D>) -> Option<Facing<T, D>> {
         let pair = look.pair.map(|side| &look.sides[side]);
         // Seen from the body with less volume there: the other may go on far beyond it.
         let near = if pair[0].surface.volume <= pair[1].surface.volume { 0 } else { 1 };
@@ -38,16 +42,15 @@ impl<T: Real, const D: usize> Law<T, D> for Surface {
         let cell = look.near.lattice.cell;
         let [a, b] = [0, 1].map(|side| seen(side, point));
         let gap = (a.distance + b.distance) / cell;
-        // Nothing moves by a cell in a step.
-        if gap > T::ONE {
-            return Facing { normal: None, gap };
+        if gap > look.reach {
+            return None;
         }
         // Where the normals agree, it does not matter whose counts more.
         let weights = match (a.normal + b.normal).norm() < T::of(AGREEING) {
             true => [T::ONE; 2],
             false => [0, 1].map(|side| flatness(|arm| seen(side, point + arm).normal, cell)),
         };
-        Facing { normal: (a.normal * weights[0] - b.normal * weights[1]).direction(), gap }
+        Some(Facing { normal: (a.normal * weights[0] - b.normal * weights[1]).direction(), gap })
     }
 
     fn change(&self, pair: &Pair<T, D>, [v, w]: [Vector<T, D>; 2]) -> Change<T, D> {

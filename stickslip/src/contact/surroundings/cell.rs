@@ -1,8 +1,8 @@
 //! Particles of a cell, side by side, added to the nodes that they reach.
 
 use super::Around;
-use super::sums::{FIRST, ROWS, weighted_rows};
-use crate::basis::Basis;
+use super::sums::{FIRST, FORCE, MASS, Sums, Wanted, placed_rows, stress_rows};
+use crate::basis::{Basis, Shape};
 use crate::grid::{Nodes, next_of, node_at};
 use crate::lanes::{Laned, Lanes, MOST_LANES, Machine, in_lanes};
 use crate::particles::{Column, Columns, deformation_entries, stress_entries};
@@ -17,7 +17,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
         columns: &Columns<T, D>,
         index: &[u32],
         [cell, base]: [[i32; D]; 2],
-        mut nodes: Nodes,
+        nodes: Nodes,
     ) {
         // No closure: the compiler may leave one of some size uninlined, and then its instructions are calls.
         let mut position = Vector::<V, D>::ZERO;
@@ -33,21 +33,15 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
                 *rise *= seen.per_cell * -seen.sign[i];
             }
         }
-        let mass: V = members.load(Column::<D>::MASS);
         let volume: V = members.load(Column::<D>::VOLUME);
         let mut f = Matrix::ZERO;
         for (k, &[row, column]) in deformation_entries(D).iter().enumerate() {
             f.0[row][column] = members.load(Column::<D>::DEFORMATION + k);
         }
-        let mut stress = Symmetric::<V>::ZERO;
-        for k in 0..stress_entries(D) {
-            stress.0[k] = members.load::<V>(Column::<D>::STRESS + k) * seen.turn[k];
-        }
         let jacobian = f.det();
-        // The room on the grid, in the plane an area, and the volume that the stress fills.
+        // The room on the grid, in the plane an area.
         let room =
             if D == 2 { volume * (f.0[0][0] * f.0[1][1] - f.0[0][1] * f.0[1][0]) } else { volume * jacobian };
-        let filled = volume * jacobian;
         let per_jacobian = V::ONE / jacobian;
         let mut inverse = [[V::ZERO; D]; D];
         for i in 0..D {
@@ -69,7 +63,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
             }
         }
 
-        let mut by_volume = [V::ZERO; 4 * (ROWS - FIRST)];
+        let mut by_volume = [V::ZERO; 4 * MOST_PLACED];
         for i in 0..D {
             by_volume[i] = place[i] * room;
             by_volume[D + i] = arm[i] * room;
@@ -77,13 +71,55 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
                 by_volume[2 * D + i * D + j] = inverse[i][j] * room;
             }
         }
-        for k in 0..stress_entries(D) {
-            by_volume[2 * D + D * D + k] = stress.0[k] * room;
-        }
-        let mut rows = [Rows::<T>::EMPTY; ROWS - FIRST];
-        for row in 0..weighted_rows(D) {
+        let mut rows = [Rows::<T>::EMPTY; MOST_PLACED];
+        for row in 0..placed_rows(D) {
             let k = 4 * row;
             rows[row].fill([by_volume[k], by_volume[k + 1], by_volume[k + 2], by_volume[k + 3]]);
+        }
+        let volumes = room.numbers();
+        let mut left = nodes;
+        while let Some(node) = next_of(&mut left) {
+            let shares = self.shares(&shapes, base, node);
+            let mut added = [M::Quad::ZERO; FIRST + MOST_PLACED];
+            for p in 0..index.len().min(MOST_LANES) {
+                added[0] += shares.get::<M>(p) * M::Quad::splat(volumes.0[p]);
+                let weight = M::Quad::splat(shares.0[p][3]);
+                for row in 0..placed_rows(D) {
+                    added[FIRST + row] += rows[row].get::<M>(p) * weight;
+                }
+            }
+            let sums = self.sums_at(node);
+            for row in 0..FIRST + placed_rows(D) {
+                add::<M, T>(&mut sums.0[row], added[row]);
+            }
+        }
+        if self.sought == Wanted::Everything {
+            self.stress_and_mass::<M, V>(seen, &members, (&shapes, base, nodes), [room, volume * jacobian]);
+        }
+    }
+
+    /// Adds what else there is than places, by the room on the grid and the volume that the stress fills.
+    #[inline(always)]
+    fn stress_and_mass<M: Machine<T>, V: Lanes<Real = T>>(
+        &mut self,
+        seen: &Seen<V, D>,
+        members: &Members<'_, T, D>,
+        (shapes, base, mut nodes): (&[Shape<V>; D], [i32; D], Nodes),
+        [room, filled]: [V; 2],
+    ) {
+        let mut stress = Symmetric::<V>::ZERO;
+        for k in 0..stress_entries(D) {
+            stress.0[k] = members.load::<V>(Column::<D>::STRESS + k) * seen.turn[k];
+        }
+        let mut rows = [Rows::<T>::EMPTY; MOST_STRESS];
+        for row in 0..stress_rows(D) {
+            let mut columns = [V::ZERO; 4];
+            for i in 0..4 {
+                if 4 * row + i < stress_entries(D) {
+                    columns[i] = stress.0[4 * row + i] * room;
+                }
+            }
+            rows[row].fill(columns);
         }
         let mut force = [Rows::<T>::EMPTY; D];
         for j in 0..D {
@@ -93,42 +129,65 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
             }
             force[j].fill(column);
         }
-        let (room, mass) = (room.numbers(), mass.numbers());
-
+        let mass = members.load::<V>(Column::<D>::MASS).numbers();
         while let Some(node) = next_of(&mut nodes) {
-            let steps = node_at([0; D], node);
-            let offset: [usize; D] = array(0, |i| (self.along(i, steps[i]) - base[i]) as usize);
-            let [x, dx] = [shapes[0].weight[offset[0]], shapes[0].slope(offset[0])];
-            let [y, dy] = [shapes[1].weight[offset[1]], shapes[1].slope(offset[1])];
-            let mut shares = Rows::<T>::EMPTY;
-            if D == 2 {
-                shares.fill([dx * y, x * dy, V::ZERO, x * y]);
-            } else {
-                let [z, dz] = [shapes[D - 1].weight[offset[D - 1]], shapes[D - 1].slope(offset[D - 1])];
-                let yz = y * z;
-                shares.fill([dx * yz, x * (dy * z), x * (y * dz), x * yz]);
-            }
-            let mut added = [M::Quad::ZERO; ROWS];
-            for p in 0..index.len().min(MOST_LANES) {
-                let share = shares.get::<M>(p);
-                added[0] += share * M::Quad::splat(room.0[p]);
-                added[1] += share * M::Quad::splat(mass.0[p]);
-                for j in 0..D {
-                    added[2] += force[j].get::<M>(p) * M::Quad::splat(shares.0[p][j]);
-                }
+            let shares = self.shares(shapes, base, node);
+            let mut added = [M::Quad::ZERO; MOST_STRESS];
+            let (mut masses, mut pushed) = (M::Quad::ZERO, M::Quad::ZERO);
+            for p in 0..members.count.min(MOST_LANES) {
                 let weight = M::Quad::splat(shares.0[p][3]);
-                for row in 0..weighted_rows(D) {
-                    added[FIRST + row] += rows[row].get::<M>(p) * weight;
+                for row in 0..stress_rows(D) {
+                    added[row] += rows[row].get::<M>(p) * weight;
+                }
+                masses += shares.get::<M>(p) * M::Quad::splat(mass.0[p]);
+                for j in 0..D {
+                    pushed += force[j].get::<M>(p) * M::Quad::splat(shares.0[p][j]);
                 }
             }
-            let rank = (self.wanted & ((1 << node) - 1)).count_ones() as usize;
-            let sums = &mut self.sums[rank].0;
-            for row in 0..FIRST + weighted_rows(D) {
-                // SAFETY: a row has four numbers, borrowed for writing.
-                unsafe { (M::Quad::load(sums[row].as_ptr()) + added[row]).store(sums[row].as_mut_ptr()) }
+            let sums = self.sums_at(node);
+            for row in 0..stress_rows(D) {
+                add::<M, T>(&mut sums.0[FIRST + placed_rows(D) + row], added[row]);
             }
+            add::<M, T>(&mut sums.0[MASS], masses);
+            add::<M, T>(&mut sums.0[FORCE], pushed);
         }
     }
+
+    /// grad S and S of each particle at a node of the block.
+    #[inline(always)]
+    fn shares<V: Lanes<Real = T>>(&self, shapes: &[Shape<V>; D], base: [i32; D], node: usize) -> Rows<T> {
+        let steps = node_at([0; D], node);
+        let offset: [usize; D] = array(0, |i| (self.along(i, steps[i]) - base[i]) as usize);
+        let [x, dx] = [shapes[0].weight[offset[0]], shapes[0].slope(offset[0])];
+        let [y, dy] = [shapes[1].weight[offset[1]], shapes[1].slope(offset[1])];
+        let mut shares = Rows::<T>::EMPTY;
+        if D == 2 {
+            shares.fill([dx * y, x * dy, V::ZERO, x * y]);
+        } else {
+            let [z, dz] = [shapes[D - 1].weight[offset[D - 1]], shapes[D - 1].slope(offset[D - 1])];
+            let yz = y * z;
+            shares.fill([dx * yz, x * (dy * z), x * (y * dz), x * yz]);
+        }
+        shares
+    }
+
+    /// The sums at a node of the block.
+    #[inline(always)]
+    fn sums_at(&mut self, node: usize) -> &mut Sums<T, D> {
+        &mut self.sums[(self.wanted & ((1 << node) - 1)).count_ones() as usize]
+    }
+}
+
+/// Rows of place, centre and inverse of F, in space.
+const MOST_PLACED: usize = placed_rows(3);
+/// Rows of the stress, in space.
+const MOST_STRESS: usize = stress_rows(3);
+
+#[inline(always)]
+fn add<M: Machine<T>, T: Real>(row: &mut [T; 4], added: M::Quad) {
+    let row = row.as_mut_ptr();
+    // SAFETY: a row has four numbers, borrowed for writing.
+    unsafe { (M::Quad::load(row) + added).store(row) }
 }
 
 /// How a block's particles are seen, in every lane.

@@ -11,7 +11,7 @@ mod sums;
 #[cfg(test)]
 mod tests;
 
-pub use sums::Sums;
+pub use sums::{Sums, Wanted};
 
 use super::Near;
 use crate::basis::{Basis, MAX_WIDTH};
@@ -53,7 +53,7 @@ impl<T: Laned, const D: usize> Near<'_, T, D> {
     pub fn sum_around<B: Basis<T>>(
         &self,
         (body, block): (usize, [i32; D]),
-        wanted: Nodes,
+        (wanted, sought): (Nodes, Wanted),
         sums: &mut [Sums<T, D>],
     ) {
         let mut walls = self.boundary.walls.iter().filter(|wall| self.reflects::<B>(wall, block));
@@ -68,6 +68,7 @@ impl<T: Laned, const D: usize> Near<'_, T, D> {
                     body,
                     block,
                     wanted,
+                    sought,
                     mirrors,
                     sums: &mut *sums,
                     basis: PhantomData::<B>,
@@ -91,6 +92,7 @@ struct Around<'a, T, const D: usize, B> {
     body: usize,
     block: [i32; D],
     wanted: Nodes,
+    sought: Wanted,
     mirrors: Mirrors<'a, D>,
     sums: &'a mut [Sums<T, D>],
     basis: PhantomData<B>,

@@ -4,30 +4,43 @@ use crate::contact::Place;
 use crate::particles::stress_entries;
 use crate::tensor::{Matrix, Real, Symmetric, Vector};
 
+/// Which sums are wanted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wanted {
+    /// Of volume and places.
+    Places,
+    /// All of them.
+    Everything,
+}
+
 /// Sums over the particles around a node.
 ///
 /// ```text
-/// row 0     sum V grad S [m^2], sum V S [m^3]       with the gradient at the node
-/// row 1     sum m grad S [kg/m], sum m S [kg]       likewise
-/// row 2     force of the stress on the node [N]
-/// beyond    sum V S of place, centre, inverse of F, and stress, one number after the other
+/// row 0         sum V grad S [m^2], sum V S [m^3]       with the gradient at the node
+/// then          sum V S of place, centre and inverse of F, one number after the other
+/// then          sum V S of the stress
+/// row MASS      sum m grad S [kg/m], sum m S [kg]       likewise
+/// row FORCE     force of the stress on the node [N]
 /// ```
-/// Places are seen from the first node of the block.
+/// Places are seen from the first node of the block. Where only places are wanted, all from the stress on is zero.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(32))]
 pub struct Sums<T, const D: usize>(pub(super) [[T; 4]; ROWS]);
 
 pub(super) const ROWS: usize = 9;
-/// Rows before those that are weighted by volume.
-pub(super) const FIRST: usize = 3;
+pub(super) const MASS: usize = 7;
+pub(super) const FORCE: usize = 8;
+/// First row of what is weighted by volume.
+pub(super) const FIRST: usize = 1;
 
-/// Numbers of a particle that are weighted by volume.
-const fn weighted(dimension: usize) -> usize {
-    2 * dimension + dimension * dimension + stress_entries(dimension)
+/// Rows of place, centre and inverse of F.
+pub(super) const fn placed_rows(dimension: usize) -> usize {
+    (2 * dimension + dimension * dimension).div_ceil(4)
 }
 
-pub(super) const fn weighted_rows(dimension: usize) -> usize {
-    weighted(dimension).div_ceil(4)
+/// Rows of the stress, which follow.
+pub(super) const fn stress_rows(dimension: usize) -> usize {
+    stress_entries(dimension).div_ceil(4)
 }
 
 impl<T: Real, const D: usize> Sums<T, D> {
@@ -41,7 +54,7 @@ impl<T: Real, const D: usize> Sums<T, D> {
 
     /// sum m S [kg]
     pub fn mass(&self) -> T {
-        self.0[1][3]
+        self.0[MASS][3]
     }
 
     /// sum V grad S [m^2]
@@ -51,12 +64,12 @@ impl<T: Real, const D: usize> Sums<T, D> {
 
     /// sum m grad S [kg/m]
     pub fn mass_gradient(&self) -> Vector<T, D> {
-        Vector::from_fn(|i| self.0[1][i])
+        Vector::from_fn(|i| self.0[MASS][i])
     }
 
     /// Force of the stress on the node [N].
     pub fn force(&self) -> Vector<T, D> {
-        Vector::from_fn(|i| self.0[2][i])
+        Vector::from_fn(|i| self.0[FORCE][i])
     }
 
     fn number(&self, k: usize) -> T {
@@ -67,7 +80,7 @@ impl<T: Real, const D: usize> Sums<T, D> {
     pub fn stress(&self) -> Symmetric<T> {
         let mut stress = Symmetric::ZERO;
         for (k, entry) in stress.0.iter_mut().enumerate().take(stress_entries(D)) {
-            *entry = self.number(2 * D + D * D + k) / self.volume();
+            *entry = self.number(4 * placed_rows(D) + k) / self.volume();
         }
         stress
     }

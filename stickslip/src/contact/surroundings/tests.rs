@@ -1,4 +1,4 @@
-use super::sums::FIRST;
+use super::sums::{FIRST, FORCE, MASS, placed_rows};
 use super::*;
 use crate::basis::{Gimp, Linear};
 use crate::body::{Body, Particle};
@@ -90,24 +90,25 @@ fn plainly<const D: usize, B: Basis<f64>>(
             let at = |k: usize| unsafe { *columns.at(Column::<D>::START + k, index) };
             // SAFETY of `at`: nobody else uses the particles.
             let start = seen(Vector::from_fn(at));
-            let mut numbers = Vec::new();
-            numbers.extend((0..D).map(|i| start[i] - (0..D).map(|j| inverse.0[i][j] * arm[j]).sum::<f64>()));
-            numbers.extend(arm.0);
-            numbers.extend((0..D * D).map(|k| inverse.0[k / D][k % D]));
-            let pairs = [[0, 0], [1, 1], [2, 2], [0, 1], [1, 2], [0, 2]];
-            numbers.extend(
-                (0..stress_entries(D)).map(|k| particle.stress.0[k] * sign(pairs[k][0]) * sign(pairs[k][1])),
-            );
-            for i in 0..D {
-                sums.0[0][i] += gradient[i] * particle.room();
-                sums.0[1][i] += gradient[i] * particle.mass;
-                sums.0[2][i] += force[i];
-            }
-            sums.0[0][3] += share;
-            sums.0[1][3] += particle.mass * weight;
-            for (k, number) in numbers.into_iter().enumerate() {
+            let mut placed = Vec::new();
+            placed.extend((0..D).map(|i| start[i] - (0..D).map(|j| inverse.0[i][j] * arm[j]).sum::<f64>()));
+            placed.extend(arm.0);
+            placed.extend((0..D * D).map(|k| inverse.0[k / D][k % D]));
+            for (k, number) in placed.into_iter().enumerate() {
                 sums.0[FIRST + k / 4][k % 4] += share * number;
             }
+            let pairs = [[0, 0], [1, 1], [2, 2], [0, 1], [1, 2], [0, 2]];
+            for k in 0..stress_entries(D) {
+                let stress = particle.stress.0[k] * sign(pairs[k][0]) * sign(pairs[k][1]);
+                sums.0[FIRST + placed_rows(D) + k / 4][k % 4] += share * stress;
+            }
+            for i in 0..D {
+                sums.0[0][i] += gradient[i] * particle.room();
+                sums.0[MASS][i] += gradient[i] * particle.mass;
+                sums.0[FORCE][i] += force[i];
+            }
+            sums.0[0][3] += share;
+            sums.0[MASS][3] += particle.mass * weight;
         }
     }
     sums
@@ -133,19 +134,25 @@ fn particles_of_a_cell_side_by_side_give_the_sums<const D: usize, B: Basis<f64>>
             lattice,
             boundary: &boundary,
             rules: &rules,
+            ahead: None,
             processor,
         };
         for block in offsets::<D>(2).map(|block| block.map(|b| b as i32)) {
             let wanted = every_node(D) & 0x9e37_79b9_7f4a_7c15;
-            let mut sums = vec![Sums::EMPTY; wanted.count_ones() as usize];
-            near.sum_around::<B>((0, block), wanted, &mut sums);
+            let [everything, places] = [Wanted::Everything, Wanted::Places].map(|sought| {
+                let mut sums = vec![Sums::EMPTY; wanted.count_ones() as usize];
+                near.sum_around::<B>((0, block), (wanted, sought), &mut sums);
+                sums
+            });
             let mut nodes = wanted;
-            for sums in &sums {
+            for (sums, places) in everything.iter().zip(&places) {
                 let node = node_at(block, next_of(&mut nodes).expect("as many nodes as sums"));
                 let plain = plainly::<D, B>(&near, node, lattice.position(node_at(block, 0)));
                 for (a, b) in sums.0.as_flattened().iter().zip(plain.0.as_flattened()) {
                     assert!((a - b).abs() < 1e-10, "{block:?} {node:?}: {sums:?} {plain:?}");
                 }
+                let placed = FIRST + placed_rows(D);
+                assert_eq!(sums.0[..placed], places.0[..placed], "{block:?} {node:?}");
             }
         }
     }
