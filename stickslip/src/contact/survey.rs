@@ -1,7 +1,7 @@
 //! Where bodies meet, and what the particles there say of their surfaces.
 
 use super::law::law;
-use super::surroundings::{Sums, Wanted, behind};
+use super::surroundings::{Handful, Sums, Wanted, behind};
 use super::{Pair, Rules, Step, Surface};
 use crate::basis::Basis;
 use crate::body::Body;
@@ -128,6 +128,8 @@ struct Desk<T, const D: usize> {
     pairs: Vec<[usize; 3]>,
     /// Of each body, one node after the other.
     sums: Vec<Sums<T, D>>,
+    /// Particles that are about to be added to them.
+    handfuls: Vec<Handful<D>>,
     /// Where the next sums of each body stand.
     next: Vec<usize>,
     /// P-wave modulus of each body [Pa].
@@ -142,6 +144,7 @@ impl<T, const D: usize> Default for Desk<T, D> {
             present: Vec::new(),
             pairs: Vec::new(),
             sums: Vec::new(),
+            handfuls: Vec::new(),
             next: Vec::new(),
             moduli: Vec::new(),
             seats: Vec::new(),
@@ -204,7 +207,7 @@ impl<T: Laned, const D: usize> Near<'_, T, D> {
     }
 
     fn survey_block<B: Basis<T>>(&self, meeting: &Meeting<D>, desk: &mut Desk<T, D>, part: &mut Part<T, D>) {
-        let Desk { present, pairs, sums, next, moduli, seats } = desk;
+        let Desk { present, pairs, sums, handfuls, next, moduli, seats } = desk;
         let (n, slots, block) = (nodes_per_block(D), self.cover.slots_of(meeting), meeting.block);
         let body = |slot: u32| self.cover.slots[slot as usize].0 as usize;
         present.clear();
@@ -227,7 +230,7 @@ impl<T: Laned, const D: usize> Near<'_, T, D> {
             let first = sums.len();
             next.push(first);
             sums.resize(first + present.count_ones() as usize, Sums::EMPTY);
-            self.sum_around::<B>((body(slot), block), (*present, sought), &mut sums[first..]);
+            self.sum_around::<B>((body(slot), block), (*present, sought), (&mut sums[first..], handfuls));
         }
         let mut nodes = shared;
         while let Some(local) = next_of(&mut nodes) {

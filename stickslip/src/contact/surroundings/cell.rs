@@ -1,27 +1,44 @@
 //! Particles of a cell, side by side, added to the nodes that they reach.
 
-use super::Around;
 use super::sums::{FIRST, FORCE, MASS, Sums, Wanted, placed_rows, stress_rows};
+use super::{Around, Handful};
 use crate::basis::{Basis, Shape};
 use crate::grid::{Nodes, next_of, node_at};
-use crate::lanes::{Laned, Lanes, MOST_LANES, Machine, in_lanes};
+use crate::lanes::{Laned, Lanes, MOST_LANES, Machine, Numbers, in_lanes, prefetch};
 use crate::particles::{Column, Columns, deformation_entries, stress_entries};
 use crate::tensor::{Matrix, Number, Real, Symmetric, Vector, array};
+use std::marker::PhantomData;
+use std::ops::Range;
 
 impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
-    /// Adds particles of one cell to nodes; the cell, and its steps from the lowest node.
+    /// Adds the particles that are listed to the nodes that they reach.
     #[inline(always)]
-    pub(super) fn group<M: Machine<T>, V: Lanes<Real = T>>(
+    pub(super) fn add<M: Machine<T>, V: Lanes<Real = T>>(mut self) {
+        let seen = Seen::<V, D>::new(&self);
+        let columns = self.near.bodies[self.body].particles.view();
+        let order = self.near.cover.order_of(self.body);
+        let index = |handful: &Handful<D>| &order[handful.first as usize..][..handful.count as usize];
+        let mut copies = Copies([Numbers::ZERO; Column::<3>::COUNT]);
+        for place in 0..self.handfuls.len() {
+            if let Some(later) = self.handfuls.get(place + AHEAD) {
+                let index = index(later);
+                fetch(&columns, [index[0], index[index.len() - 1]], self.sought);
+            }
+            let handful = self.handfuls[place];
+            let members = Members::new::<V>(&columns, index(&handful), self.sought, &mut copies);
+            self.handful::<M, V>(&seen, &members, &handful);
+        }
+    }
+
+    #[inline(always)]
+    fn handful<M: Machine<T>, V: Lanes<Real = T>>(
         &mut self,
         seen: &Seen<V, D>,
-        columns: &Columns<T, D>,
-        index: &[u32],
-        [cell, base]: [[i32; D]; 2],
-        nodes: Nodes,
+        members: &Members<'_, T, D>,
+        &Handful { cell, base, nodes, .. }: &Handful<D>,
     ) {
         // No closure: the compiler may leave one of some size uninlined, and then its instructions are calls.
         let mut position = Vector::<V, D>::ZERO;
-        let members = Members::new(columns, index);
         let half = members.load::<V>(Column::<D>::HALF_WIDTH) * seen.per_cell;
         let mut shapes = [B::shape(V::ZERO, half); D];
         for i in 0..D {
@@ -81,7 +98,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
         while let Some(node) = next_of(&mut left) {
             let shares = self.shares(&shapes, base, node);
             let mut added = [M::Quad::ZERO; FIRST + MOST_PLACED];
-            for p in 0..index.len().min(MOST_LANES) {
+            for p in 0..members.count.min(MOST_LANES) {
                 added[0] += shares.get::<M>(p) * M::Quad::splat(volumes.0[p]);
                 let weight = M::Quad::splat(shares.0[p][3]);
                 for row in 0..placed_rows(D) {
@@ -94,7 +111,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
             }
         }
         if self.sought == Wanted::Everything {
-            self.stress_and_mass::<M, V>(seen, &members, (&shapes, base, nodes), [room, volume * jacobian]);
+            self.stress_and_mass::<M, V>(seen, members, (&shapes, base, nodes), [room, volume * jacobian]);
         }
     }
 
@@ -227,35 +244,77 @@ impl<V: Lanes, const D: usize> Seen<V, D> {
     }
 }
 
-/// Particles of a cell, one in each lane; the first in the lanes beyond.
-struct Members<'a, T, const D: usize> {
-    columns: &'a Columns<T, D>,
-    index: [usize; MOST_LANES],
-    count: usize,
-    /// Whether they lie side by side in memory.
-    in_a_row: bool,
+/// How many handfuls ahead of the present one numbers are fetched into the cache.
+const AHEAD: usize = 3;
+
+/// The columns that sums are made of.
+#[inline(always)]
+fn columns_read<const D: usize>(sought: Wanted) -> [Range<usize>; 3] {
+    let (stress, start) = (Column::<D>::STRESS, Column::<D>::START);
+    let [first, last] = match sought {
+        Wanted::Places => [Column::<D>::VOLUME, stress],
+        Wanted::Everything => [Column::<D>::MASS, start],
+    };
+    [Column::<D>::POSITION..Column::<D>::VELOCITY, first..last, start..Column::<D>::COUNT]
 }
+
+/// Fetches what is read of two particles and those beside them.
+#[inline(always)]
+fn fetch<T: Real, const D: usize>(columns: &Columns<T, D>, particles: [u32; 2], sought: Wanted) {
+    for range in columns_read::<D>(sought) {
+        for column in range {
+            for particle in particles {
+                // SAFETY: the particle exists.
+                prefetch(unsafe { columns.at(column, particle as usize) });
+            }
+        }
+    }
+}
+
+/// Particles of a cell, one in each lane, the first in the lanes beyond: as columns, the body's own where they lie side by side, else copies.
+struct Members<'a, T, const D: usize> {
+    first: *const T,
+    stride: usize,
+    count: usize,
+    source: PhantomData<&'a T>,
+}
+
+/// Columns of particles that do not lie side by side.
+struct Copies<T>([Numbers<T>; Column::<3>::COUNT]);
 
 impl<'a, T: Real, const D: usize> Members<'a, T, D> {
     #[inline(always)]
-    fn new(columns: &'a Columns<T, D>, index: &[u32]) -> Self {
+    fn new<V: Lanes<Real = T>>(
+        columns: &'a Columns<T, D>,
+        index: &[u32],
+        sought: Wanted,
+        copies: &'a mut Copies<T>,
+    ) -> Self {
         // Indices within a cell ascend.
         let in_a_row = (index[index.len() - 1] - index[0]) as usize == index.len() - 1;
-        Members { columns, index: in_lanes(index), count: index.len(), in_a_row }
+        let (first, stride) = if in_a_row {
+            // SAFETY: the particle exists.
+            (unsafe { columns.at(0, index[0] as usize) }.cast_const(), columns.stride())
+        } else {
+            let lanes = in_lanes(index);
+            for range in columns_read::<D>(sought) {
+                for column in range {
+                    // SAFETY: the particles exist, and nobody writes to them in a survey.
+                    unsafe {
+                        V::gather(columns.at(column, 0), &lanes).store(copies.0[column].0.as_mut_ptr())
+                    };
+                }
+            }
+            (copies.0.as_ptr().cast(), size_of::<Numbers<T>>() / size_of::<T>())
+        };
+        Members { first, stride, count: index.len(), source: PhantomData }
     }
 
     /// Their numbers in a column.
     #[inline(always)]
     fn load<V: Lanes<Real = T>>(&self, column: usize) -> V {
-        // SAFETY: the particles exist, and nobody writes to them in a survey.
-        unsafe {
-            let first = self.columns.at(column, self.index[0]);
-            match self.in_a_row {
-                true if self.count == V::COUNT => V::load(first),
-                true => V::load_part(first, self.count),
-                false => V::gather(self.columns.at(column, 0), &self.index),
-            }
-        }
+        // SAFETY: as many numbers as there are particles; nobody writes to them in a survey.
+        unsafe { V::load_part(self.first.add(column * self.stride), self.count) }
     }
 }
 

@@ -20,7 +20,6 @@ use crate::grid::{Nodes, SIDE, nodes_per_block};
 use crate::lanes::{Laned, Lanes, Machine, Work};
 use crate::scene::Face;
 use crate::tensor::array;
-use cell::Seen;
 use std::marker::PhantomData;
 
 /// Nodes of a block whose coordinate along an axis is `n`; bits beyond the block mean nothing.
@@ -49,12 +48,12 @@ pub fn behind<const D: usize>(wall: &Wall, block: [i32; D], depth: i32) -> Nodes
 pub type Mirrors<'a, const D: usize> = [Option<&'a Wall>; D];
 
 impl<T: Laned, const D: usize> Near<'_, T, D> {
-    /// Adds a body's particles to the wanted nodes of a block: the sums of the n-th of them are `sums[n]`.
+    /// Adds a body's particles to the wanted nodes of a block: the sums of the n-th of them are `sums[n]`. `handfuls` is room to work in.
     pub fn sum_around<B: Basis<T>>(
         &self,
         (body, block): (usize, [i32; D]),
         (wanted, sought): (Nodes, Wanted),
-        sums: &mut [Sums<T, D>],
+        (sums, handfuls): (&mut [Sums<T, D>], &mut Vec<Handful<D>>),
     ) {
         let mut walls = self.boundary.walls.iter().filter(|wall| self.reflects::<B>(wall, block));
         let near: [Option<&Wall>; 6] = std::array::from_fn(|_| walls.next());
@@ -70,6 +69,7 @@ impl<T: Laned, const D: usize> Near<'_, T, D> {
                     wanted,
                     sought,
                     mirrors,
+                    handfuls: &mut *handfuls,
                     sums: &mut *sums,
                     basis: PhantomData::<B>,
                 };
@@ -94,6 +94,7 @@ struct Around<'a, T, const D: usize, B> {
     wanted: Nodes,
     sought: Wanted,
     mirrors: Mirrors<'a, D>,
+    handfuls: &'a mut Vec<Handful<D>>,
     sums: &'a mut [Sums<T, D>],
     basis: PhantomData<B>,
 }
@@ -106,6 +107,18 @@ impl<T: Laned, const D: usize, B: Basis<T>> Work for Around<'_, T, D, B> {
     fn run<M: Machine<T>>(self) {
         if D == 2 { self.sum::<M, M::Quad>() } else { self.sum::<M, M::Wide>() }
     }
+}
+
+/// Particles of a cell, no more than there are lanes, and the nodes that they reach.
+#[derive(Clone, Copy, Debug)]
+pub struct Handful<const D: usize> {
+    /// Place of the first in the body's order.
+    first: u32,
+    count: u32,
+    cell: [i32; D],
+    /// Its steps from the first node of the block.
+    base: [i32; D],
+    nodes: Nodes,
 }
 
 /// Cells along an axis whose particles reach nodes of a block, at most.
@@ -127,8 +140,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
                 reached[i][cell as usize] = nodes.fold(0, |all, nodes| all | nodes);
             }
         }
-        let seen = Seen::<V, D>::new(&self);
-        let columns = self.near.bodies[self.body].particles.view();
+        self.handfuls.clear();
         let ends: [[i32; 2]; D] =
             array([0; 2], |i| [lowest[i], lowest[i] + SIDE + reach - 1].map(|cell| cell.div_euclid(SIDE)));
         let mut home: [i32; D] = array(0, |i| ends[i][0]);
@@ -143,41 +155,14 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
                 nodes &= along.iter().fold(0, |all, nodes| all | nodes);
             }
             let tile = if nodes == 0 { None } else { self.near.cover.tile_at(self.body, home) };
-            if let Some((order, cells)) = tile {
-                for x in steps[0][0]..steps[0][1] {
-                    for y in steps[1][0]..steps[1][1] {
-                        for z in steps[2][0]..steps[2][1] {
-                            let step: [i32; D] = array(0, |i| [x, y, z][i]);
-                            let mut nodes = self.wanted;
-                            let mut local = 0;
-                            for i in 0..D {
-                                nodes &= reached[i][step[i] as usize];
-                                local = local * SIDE + (lowest[i] + step[i] - home[i] * SIDE);
-                            }
-                            let local = local as usize;
-                            let (mut first, end) = (cells[local] as usize, cells[local + 1] as usize);
-                            while nodes != 0 && first < end {
-                                let count = (end - first).min(V::COUNT);
-                                let place: [[i32; D]; 2] =
-                                    [array(0, |i| lowest[i] + step[i]), array(0, |i| step[i] - reach)];
-                                self.group::<M, V>(
-                                    &seen,
-                                    &columns,
-                                    &order[first..first + count],
-                                    place,
-                                    nodes,
-                                );
-                                first += count;
-                            }
-                        }
-                    }
-                }
+            if let Some((_, cells)) = tile {
+                self.list(cells, (lowest, home), (&reached, steps), V::COUNT);
             }
             // The next home block, the last axis fastest.
             let mut axis = D;
             loop {
                 if axis == 0 {
-                    return;
+                    return self.add::<M, V>();
                 }
                 axis -= 1;
                 home[axis] += 1;
@@ -185,6 +170,43 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
                     break;
                 }
                 home[axis] = ends[axis][0];
+            }
+        }
+    }
+
+    /// Lists the particles of a tile that reach wanted nodes, as many at a time as there are lanes.
+    #[inline(always)]
+    fn list(
+        &mut self,
+        cells: &[u32],
+        (lowest, home): ([i32; D], [i32; D]),
+        (reached, steps): (&[[Nodes; SPAN]; 3], [[i32; 2]; 3]),
+        lanes: usize,
+    ) {
+        let reach = B::WIDTH as i32 - 1;
+        for x in steps[0][0]..steps[0][1] {
+            let along_x = self.wanted & reached[0][x as usize];
+            for y in steps[1][0]..steps[1][1] {
+                let along_y = along_x & reached[1][y as usize];
+                if along_y == 0 {
+                    continue;
+                }
+                for z in steps[2][0]..steps[2][1] {
+                    let step: [i32; D] = array(0, |i| [x, y, z][i]);
+                    let cell: [i32; D] = array(0, |i| lowest[i] + step[i]);
+                    let nodes = if D == 2 { along_y } else { along_y & reached[2][z as usize] };
+                    let mut local = 0;
+                    for i in 0..D {
+                        local = local * SIDE + (cell[i] - home[i] * SIDE);
+                    }
+                    let (mut first, end) = (cells[local as usize], cells[local as usize + 1]);
+                    while nodes != 0 && first < end {
+                        let count = (end - first).min(lanes as u32);
+                        let base = array(0, |i| step[i] - reach);
+                        self.handfuls.push(Handful { first, count, cell, base, nodes });
+                        first += count;
+                    }
+                }
             }
         }
     }

@@ -141,7 +141,7 @@ fn particles_of_a_cell_side_by_side_give_the_sums<const D: usize, B: Basis<f64>>
             let wanted = every_node(D) & 0x9e37_79b9_7f4a_7c15;
             let [everything, places] = [Wanted::Everything, Wanted::Places].map(|sought| {
                 let mut sums = vec![Sums::EMPTY; wanted.count_ones() as usize];
-                near.sum_around::<B>((0, block), (wanted, sought), &mut sums);
+                near.sum_around::<B>((0, block), (wanted, sought), (&mut sums, &mut Vec::new()));
                 sums
             });
             let mut nodes = wanted;
