@@ -1,0 +1,185 @@
+//! What a pass does to a group of particles.
+
+use super::members::Members;
+use super::thickness::free_thickness;
+use crate::basis::Basis;
+use crate::engine::pass::{Pass, Verbs, Visit};
+use crate::lanes::{Laned, Lanes, Machine};
+use crate::material::{Material, Motion, Thickness};
+use crate::particles::Column;
+use crate::tensor::{Matrix, Real, Symmetric, Vector};
+use crate::transfer::{Group, Load, Share, Start};
+
+/// What all particles of a tile have in common.
+pub struct Constants<V, const D: usize> {
+    /// Its law.
+    pub material: Material<V>,
+    /// 1/rho_0 [m^3/kg]
+    pub per_density: V,
+    /// Position of the node at zero [m].
+    pub origin: Vector<V, D>,
+    /// Inverse of a cell's side [1/m].
+    pub per_cell: V,
+    /// Lower and upper corner of the domain [m].
+    pub domain: Option<[Vector<V, D>; 2]>,
+}
+
+impl<V: Lanes, const D: usize> Constants<V, D> {
+    #[inline(always)]
+    fn in_cells(&self, position: &Vector<V, D>) -> Vector<V, D> {
+        (*position - self.origin) * self.per_cell
+    }
+}
+
+#[inline(always)]
+pub fn splat<V: Lanes, const D: usize>(vector: &Vector<V::Real, D>) -> Vector<V, D> {
+    Vector::from_fn(|i| V::splat(vector[i]))
+}
+
+/// Takes a group through a pass and says which particles did not leave their cells; nothing is done if any has a fault.
+///
+/// Particles have base nodes and places of these in the window.
+#[inline(always)]
+pub fn group<T: Laned, V: Lanes<Real = T>, M: Machine<T>, const D: usize, B: Basis<T>, S: Start>(
+    visit: &mut Visit<'_, T, D, B>,
+    constants: &Constants<V, D>,
+    members: &Members<'_, T, D>,
+    (base, start): (Vector<V, D>, S),
+) -> Option<u32> {
+    let Pass { verbs, dt, pic, .. } = *visit.pass;
+    let Verbs { accept, strain, displace, scatter } = verbs;
+    let position = members.vector::<V>(Column::<D>::POSITION);
+    let half = members.load::<V>(Column::<D>::HALF_WIDTH) * constants.per_cell;
+    let group =
+        Group::<V, D, B, S>::new(constants.in_cells(&position) - base, half, start, members.index.len());
+    let mut sound = u32::MAX;
+
+    let mut velocity = Vector::ZERO;
+    if accept || displace || scatter.is_some_and(|share| share != Share::Force) {
+        velocity = members.vector::<V>(Column::<D>::VELOCITY);
+    }
+    if accept {
+        let change = group.interpolate(&visit.window.change);
+        velocity = velocity * V::splat(T::ONE - pic) + change;
+        sound &= finite(&velocity.0);
+    }
+
+    let mut deformation = Matrix::ZERO;
+    let mut stress = Symmetric::ZERO;
+    let mut jacobian = V::ZERO;
+    let mut carried = Vector::ZERO;
+    let pushes = matches!(scatter, Some(Share::Force | Share::Everything));
+    if strain || displace || pushes {
+        deformation = members.deformation::<V>();
+    }
+    if strain || pushes {
+        stress = members.stress::<V>();
+    }
+    if strain {
+        let scale = V::splat(dt) * constants.per_cell;
+        let flow = if verbs.one_flow() { &visit.window.carry } else { &visit.window.flow };
+        let (gradient, mean) = group.flow(flow);
+        carried = mean;
+        let increment = Matrix::IDENTITY + gradient * scale;
+        deformation = increment * deformation;
+        jacobian = deformation.det();
+        sound &= jacobian.at_least(V::splat(T::TINY)) & finite(&[jacobian]);
+        let motion = Motion { deformation, jacobian, increment, stress };
+        if D == 2 && visit.body.thickness == Thickness::Free {
+            let motion = free_thickness(visit.body, motion)?;
+            (deformation, jacobian, stress) = (motion.deformation, motion.jacobian, motion.stress);
+        } else {
+            stress = constants.material.stress(&motion);
+        }
+        sound &= finite(&stress.0);
+    } else if displace || pushes {
+        jacobian = deformation.det();
+    }
+
+    let mut inside = u32::MAX;
+    if displace {
+        if !verbs.one_flow() {
+            carried = group.interpolate(&visit.window.carry);
+        }
+        let moved = position + carried * V::splat(dt);
+        sound &= finite(&moved.0);
+        let cells = constants.in_cells(&moved);
+        for i in 0..D {
+            let reach = B::reach(cells[i], half);
+            inside &= reach.at_least(base[i]) & !reach.at_least(base[i] + V::ONE);
+            if let Some([min, max]) = &constants.domain {
+                sound &= moved[i].at_least(min[i]) & max[i].at_least(moved[i]);
+            }
+        }
+        if !every::<V>(inside) {
+            let far = V::splat(T::of(f64::from(crate::grid::MOST_CELLS - 1)));
+            for i in 0..D {
+                let reach = B::reach(cells[i], half);
+                sound &= reach.at_least(-far) & far.at_least(reach);
+            }
+        }
+        if !every::<V>(sound) {
+            return None;
+        }
+        members.store_vector(Column::<D>::POSITION, &moved);
+        members.give_back(Column::<D>::POSITION..Column::<D>::VELOCITY);
+        let modulus = constants.material.wave_modulus(visit.body.thickness, &deformation, jacobian);
+        let [wave, speed] = [modulus * constants.per_density, velocity.dot(velocity)];
+        if !every::<V>(no_faster(wave, speed, V::splat(visit.found.signal))) {
+            let signals = (wave.sqrt() + speed.sqrt()).numbers();
+            for &signal in &signals.0[..V::COUNT] {
+                visit.found.signal = visit.found.signal.max(signal);
+            }
+        }
+    }
+    if !every::<V>(sound) {
+        return None;
+    }
+    if accept {
+        members.store_vector(Column::<D>::VELOCITY, &velocity);
+        members.give_back(Column::<D>::VELOCITY..Column::<D>::MASS);
+    }
+    if strain {
+        members.store_deformation(&deformation);
+        members.store_stress(&stress);
+        members.give_back(Column::<D>::DEFORMATION..Column::<D>::START);
+    }
+    if let Some(share) = scatter {
+        let mut load = Load { momentum: None, stress: None };
+        if share != Share::Force {
+            let mass = members.load::<V>(Column::<D>::MASS);
+            load.momentum = Some((velocity * mass, if share == Share::Momentum { V::ZERO } else { mass }));
+        }
+        if pushes {
+            let volume = members.load::<V>(Column::<D>::VOLUME);
+            load.stress = Some(stress * (volume * jacobian * constants.per_cell));
+        }
+        group.scatter::<M>(visit.window, &load);
+    }
+    Some(inside)
+}
+
+/// Whether the bits of all lanes are set.
+#[inline(always)]
+pub fn every<V: Lanes>(bits: u32) -> bool {
+    let all = (1 << V::COUNT) - 1;
+    bits & all == all
+}
+
+/// Lanes in which every number is finite; their sum must be, too.
+#[inline(always)]
+fn finite<V: Lanes>(numbers: &[V]) -> u32 {
+    let mut sum = V::ZERO;
+    for &x in numbers {
+        sum += x;
+    }
+    V::splat(V::Real::LARGEST).at_least(sum.abs())
+}
+
+/// Lanes in which sqrt(a) + sqrt(b) <= most, told without a root:  2 sqrt(a b) <= most^2 - a - b.
+#[inline(always)]
+fn no_faster<V: Lanes>(a: V, b: V, most: V) -> u32 {
+    let rest = most * most - a - b;
+    let product = a * b;
+    rest.at_least(V::ZERO) & (rest * rest).at_least((product + product) + (product + product))
+}

@@ -1,0 +1,185 @@
+//! The particles of a group in memory: side by side, or copied so that they are.
+
+use crate::engine::pass::Verbs;
+use crate::lanes::{Lanes, Numbers, in_lanes, prefetch};
+use crate::particles::{Column, Columns, deformation_entries, stress_entries};
+use crate::tensor::{Matrix, Real, Symmetric, Vector};
+use crate::transfer::Share;
+use std::ops::Range;
+
+/// How many particles ahead of the present ones numbers are fetched into the cache: columns are too many for a processor to do so by itself.
+pub const AHEAD: usize = 32;
+
+/// Fetches what a pass needs of a particle and those beside it.
+#[inline(always)]
+pub fn fetch<T: Real, const D: usize>(columns: &Columns<T, D>, particle: usize, verbs: &Verbs) {
+    for column in 0..columns_read::<D>(verbs) {
+        // SAFETY: the particle exists.
+        prefetch(unsafe { columns.at(column, particle) });
+    }
+}
+
+/// The columns that a pass reads, from the first on.
+#[inline(always)]
+fn columns_read<const D: usize>(verbs: &Verbs) -> usize {
+    let deformed = verbs.strain || verbs.scatter.is_some_and(|share| share != Share::Momentum);
+    if deformed || verbs.displace { Column::<D>::START } else { Column::<D>::DEFORMATION }
+}
+
+/// Up to as many particles as there are lanes, as columns: the body's own where they lie side by side and fill the lanes, else copies.
+pub struct Members<'a, T, const D: usize> {
+    columns: &'a Columns<T, D>,
+    /// Their indices.
+    pub index: &'a [u32],
+    first: *mut T,
+    stride: usize,
+    copied: bool,
+}
+
+/// Columns of particles that do not lie side by side or do not fill the lanes.
+pub struct Copies<T>([Numbers<T>; MOST_COLUMNS]);
+
+/// Columns of a particle in space.
+const MOST_COLUMNS: usize = Column::<3>::COUNT;
+
+impl<'a, T: Real, const D: usize> Members<'a, T, D> {
+    #[inline(always)]
+    pub fn new<V: Lanes<Real = T>>(
+        columns: &'a Columns<T, D>,
+        index: &'a [u32],
+        in_a_row: bool,
+        verbs: &Verbs,
+        copies: &mut Copies<T>,
+    ) -> Self {
+        if in_a_row && index.len() == V::COUNT {
+            // SAFETY: the particle exists.
+            let first = unsafe { columns.at(0, index[0] as usize) };
+            Members { columns, index, first, stride: columns.stride(), copied: false }
+        } else {
+            // SAFETY: the tile's particles are this pass' alone.
+            unsafe { copies.take::<V, D>(columns, index, columns_read::<D>(verbs)) };
+            Members {
+                columns,
+                index,
+                first: copies.0.as_mut_ptr().cast(),
+                stride: Copies::<T>::STRIDE,
+                copied: true,
+            }
+        }
+    }
+
+    #[inline(always)]
+    pub fn load<V: Lanes<Real = T>>(&self, column: usize) -> V {
+        // SAFETY: the tile's particles are this pass' alone, and copies are as long as any machine's lanes.
+        unsafe { V::load(self.first.add(column * self.stride)) }
+    }
+
+    #[inline(always)]
+    pub fn store<V: Lanes<Real = T>>(&self, column: usize, numbers: V) {
+        // SAFETY: as above.
+        unsafe { numbers.store(self.first.add(column * self.stride)) }
+    }
+
+    /// Writes what was stored in copies of some columns to the particles.
+    #[inline(always)]
+    pub fn give_back(&self, columns: Range<usize>) {
+        if self.copied {
+            // SAFETY: the tile's particles are this pass' alone.
+            unsafe { give_back(self.columns, self.index, columns, self.first) }
+        }
+    }
+
+    #[inline(always)]
+    pub fn vector<V: Lanes<Real = T>>(&self, column: usize) -> Vector<V, D> {
+        // No closure: the compiler may leave one of this size uninlined, and then its instructions are calls.
+        let mut vector = Vector::ZERO;
+        for i in 0..D {
+            vector[i] = self.load(column + i);
+        }
+        vector
+    }
+
+    #[inline(always)]
+    pub fn store_vector<V: Lanes<Real = T>>(&self, column: usize, vector: &Vector<V, D>) {
+        for i in 0..D {
+            self.store(column + i, vector[i]);
+        }
+    }
+
+    #[inline(always)]
+    pub fn deformation<V: Lanes<Real = T>>(&self) -> Matrix<V> {
+        let mut f = Matrix::ZERO;
+        for (k, &[row, column]) in deformation_entries(D).iter().enumerate() {
+            f.0[row][column] = self.load(Column::<D>::DEFORMATION + k);
+        }
+        f
+    }
+
+    #[inline(always)]
+    pub fn store_deformation<V: Lanes<Real = T>>(&self, f: &Matrix<V>) {
+        for (k, &[row, column]) in deformation_entries(D).iter().enumerate() {
+            self.store(Column::<D>::DEFORMATION + k, f.0[row][column]);
+        }
+    }
+
+    #[inline(always)]
+    pub fn stress<V: Lanes<Real = T>>(&self) -> Symmetric<V> {
+        let mut stress = Symmetric::ZERO;
+        for k in 0..stress_entries(D) {
+            stress.0[k] = self.load(Column::<D>::STRESS + k);
+        }
+        stress
+    }
+
+    #[inline(always)]
+    pub fn store_stress<V: Lanes<Real = T>>(&self, stress: &Symmetric<V>) {
+        for k in 0..stress_entries(D) {
+            self.store(Column::<D>::STRESS + k, stress.0[k]);
+        }
+    }
+}
+
+impl<T: Real> Copies<T> {
+    /// Nothing yet.
+    pub const EMPTY: Self = Copies([Numbers::ZERO; MOST_COLUMNS]);
+
+    /// Entries from a column to the next.
+    const STRIDE: usize = size_of::<Numbers<T>>() / size_of::<T>();
+
+    /// The first so many columns, and the first particle in the lanes beyond.
+    ///
+    /// # Safety
+    /// The particles must exist, and nobody may write to them meanwhile.
+    #[inline(always)]
+    unsafe fn take<V: Lanes<Real = T>, const D: usize>(
+        &mut self,
+        columns: &Columns<T, D>,
+        index: &[u32],
+        count: usize,
+    ) {
+        let index = in_lanes(index);
+        for (column, copy) in self.0.iter_mut().enumerate().take(count) {
+            // SAFETY: the caller's.
+            unsafe { V::gather(columns.at(column, 0), &index).store(copy.0.as_mut_ptr()) };
+        }
+    }
+}
+
+/// Writes copies of some columns to the particles.
+///
+/// # Safety
+/// The particles must exist, and nobody may use them meanwhile; `copies` are columns of [`Copies`].
+#[inline(never)]
+unsafe fn give_back<T: Real, const D: usize>(
+    columns: &Columns<T, D>,
+    index: &[u32],
+    which: Range<usize>,
+    copies: *const T,
+) {
+    for column in which {
+        for (lane, &i) in index.iter().enumerate() {
+            // SAFETY: the caller's.
+            unsafe { *columns.at(column, i as usize) = *copies.add(column * Copies::<T>::STRIDE + lane) };
+        }
+    }
+}
