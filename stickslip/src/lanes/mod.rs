@@ -52,6 +52,19 @@ pub trait Lanes: Number {
         Self::from_fn(|lane| unsafe { *first.add(if lane < count { lane } else { 0 }) })
     }
 
+    /// Writes the first `count` lanes in a row.
+    ///
+    /// # Safety
+    /// There must be room for them, and nobody else may use it meanwhile.
+    #[inline(always)]
+    unsafe fn store_part(self, first: *mut Self::Real, count: usize) {
+        let numbers = self.numbers();
+        for (lane, &x) in numbers.0.iter().enumerate().take(count.min(Self::COUNT)) {
+            // SAFETY: the caller's.
+            unsafe { *first.add(lane) = x }
+        }
+    }
+
     /// Numbers that lie anyhow: in lane `i` the one at place `index[i]`.
     ///
     /// # Safety

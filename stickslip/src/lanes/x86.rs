@@ -232,6 +232,11 @@ lanes! { F64x8: __m512d as [f64; 8];
         unsafe { F64x8(_mm512_mask_loadu_pd(_mm512_set1_pd(*first), mask(count), first)) }
     }
     #[inline(always)]
+    unsafe fn store_part(self, first: *mut f64, count: usize) {
+        // SAFETY: lanes beyond the mask are not written.
+        unsafe { _mm512_mask_storeu_pd(first, mask(count), self.0) }
+    }
+    #[inline(always)]
     fn store_rows(columns: [Self; 4], rows: &mut [[f64; 4]; MOST_LANES]) {
         let [a, b, c, d] = columns;
         // SAFETY: values of this type exist only where the processor has the instructions.

@@ -50,8 +50,7 @@ pub fn group<T: Laned, V: Lanes<Real = T>, M: Machine<T>, const D: usize, B: Bas
     let Verbs { accept, strain, displace, scatter } = verbs;
     let position = members.vector::<V>(Column::<D>::POSITION);
     let half = members.load::<V>(Column::<D>::HALF_WIDTH) * constants.per_cell;
-    let group =
-        Group::<V, D, B, S>::new(constants.in_cells(&position) - base, half, start, members.index.len());
+    let group = Group::<V, D, B, S>::new(constants.in_cells(&position) - base, half, start, members.count);
     let mut sound = u32::MAX;
 
     let mut velocity = Vector::ZERO;
@@ -122,7 +121,7 @@ pub fn group<T: Laned, V: Lanes<Real = T>, M: Machine<T>, const D: usize, B: Bas
             return None;
         }
         members.store_vector(Column::<D>::POSITION, &moved);
-        members.give_back(Column::<D>::POSITION..Column::<D>::VELOCITY);
+        members.give_back::<V>(Column::<D>::POSITION..Column::<D>::VELOCITY);
         let modulus = constants.material.wave_modulus(visit.body.thickness, &deformation, jacobian);
         let [wave, speed] = [modulus * constants.per_density, velocity.dot(velocity)];
         if !every::<V>(no_faster(wave, speed, V::splat(visit.found.signal))) {
@@ -137,12 +136,12 @@ pub fn group<T: Laned, V: Lanes<Real = T>, M: Machine<T>, const D: usize, B: Bas
     }
     if accept {
         members.store_vector(Column::<D>::VELOCITY, &velocity);
-        members.give_back(Column::<D>::VELOCITY..Column::<D>::MASS);
+        members.give_back::<V>(Column::<D>::VELOCITY..Column::<D>::MASS);
     }
     if strain {
         members.store_deformation(&deformation);
         members.store_stress(&stress);
-        members.give_back(Column::<D>::DEFORMATION..Column::<D>::START);
+        members.give_back::<V>(Column::<D>::DEFORMATION..Column::<D>::START);
     }
     if let Some(share) = scatter {
         let mut load = Load { momentum: None, stress: None };

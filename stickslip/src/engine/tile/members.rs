@@ -1,7 +1,7 @@
 //! The particles of a group in memory: side by side, or copied so that they are.
 
 use crate::engine::pass::Verbs;
-use crate::lanes::{Lanes, Numbers, in_lanes, prefetch};
+use crate::lanes::{Lanes, MOST_LANES, Numbers, prefetch};
 use crate::particles::{Column, Columns, deformation_entries, stress_entries};
 use crate::tensor::{Matrix, Real, Symmetric, Vector};
 use crate::transfer::Share;
@@ -29,15 +29,55 @@ fn columns_read<const D: usize>(verbs: &Verbs) -> usize {
 /// Up to as many particles as there are lanes, as columns: the body's own where they lie side by side and fill the lanes, else copies.
 pub struct Members<'a, T, const D: usize> {
     columns: &'a Columns<T, D>,
-    /// Their indices.
-    pub index: &'a [u32],
+    /// How many.
+    pub count: usize,
     first: *mut T,
     stride: usize,
-    copied: bool,
+    /// Whence they were copied, if they were.
+    runs: Option<&'a Runs>,
 }
 
-/// Columns of particles that do not lie side by side or do not fill the lanes.
-pub struct Copies<T>([Numbers<T>; MOST_COLUMNS]);
+/// Columns of particles that do not lie side by side or do not fill the lanes, with room for a register from any lane on.
+pub struct Copies<T> {
+    columns: [[Numbers<T>; 2]; MOST_COLUMNS],
+    runs: Runs,
+}
+
+/// Particles of a group that lie side by side in memory.
+#[derive(Clone, Copy)]
+struct Run {
+    /// Lane of the first.
+    lane: usize,
+    /// Its index.
+    first: usize,
+    count: usize,
+}
+
+/// All particles of a group.
+struct Runs {
+    runs: [Run; MOST_LANES],
+    count: usize,
+}
+
+impl Runs {
+    const NONE: Self = Runs { runs: [Run { lane: 0, first: 0, count: 0 }; MOST_LANES], count: 0 };
+
+    /// The runs of a group's indices, one after the other.
+    #[inline(always)]
+    fn find(&mut self, index: &[u32]) {
+        self.count = 0;
+        for (lane, &i) in index.iter().enumerate().take(MOST_LANES) {
+            let first = i as usize;
+            match self.runs[..self.count].last_mut() {
+                Some(run) if run.first + run.count == first => run.count += 1,
+                _ => {
+                    self.runs[self.count] = Run { lane, first, count: 1 };
+                    self.count += 1;
+                }
+            }
+        }
+    }
+}
 
 /// Columns of a particle in space.
 const MOST_COLUMNS: usize = Column::<3>::COUNT;
@@ -46,24 +86,24 @@ impl<'a, T: Real, const D: usize> Members<'a, T, D> {
     #[inline(always)]
     pub fn new<V: Lanes<Real = T>>(
         columns: &'a Columns<T, D>,
-        index: &'a [u32],
+        index: &[u32],
         in_a_row: bool,
         verbs: &Verbs,
-        copies: &mut Copies<T>,
+        copies: &'a mut Copies<T>,
     ) -> Self {
         if in_a_row && index.len() == V::COUNT {
             // SAFETY: the particle exists.
             let first = unsafe { columns.at(0, index[0] as usize) };
-            Members { columns, index, first, stride: columns.stride(), copied: false }
+            Members { columns, count: V::COUNT, first, stride: columns.stride(), runs: None }
         } else {
             // SAFETY: the tile's particles are this pass' alone.
             unsafe { copies.take::<V, D>(columns, index, columns_read::<D>(verbs)) };
             Members {
                 columns,
-                index,
-                first: copies.0.as_mut_ptr().cast(),
+                count: index.len(),
+                first: copies.columns.as_mut_ptr().cast(),
                 stride: Copies::<T>::STRIDE,
-                copied: true,
+                runs: Some(&copies.runs),
             }
         }
     }
@@ -82,10 +122,16 @@ impl<'a, T: Real, const D: usize> Members<'a, T, D> {
 
     /// Writes what was stored in copies of some columns to the particles.
     #[inline(always)]
-    pub fn give_back(&self, columns: Range<usize>) {
-        if self.copied {
-            // SAFETY: the tile's particles are this pass' alone.
-            unsafe { give_back(self.columns, self.index, columns, self.first) }
+    pub fn give_back<V: Lanes<Real = T>>(&self, columns: Range<usize>) {
+        let Some(Runs { runs, count }) = self.runs else { return };
+        for run in &runs[..*count] {
+            for column in columns.clone() {
+                // SAFETY: the tile's particles are this pass' alone, and copies have room for a register from any lane on.
+                unsafe {
+                    let copy = V::load(self.first.add(column * self.stride + run.lane));
+                    copy.store_part(self.columns.at(column, run.first), run.count);
+                }
+            }
         }
     }
 
@@ -141,10 +187,10 @@ impl<'a, T: Real, const D: usize> Members<'a, T, D> {
 
 impl<T: Real> Copies<T> {
     /// Nothing yet.
-    pub const EMPTY: Self = Copies([Numbers::ZERO; MOST_COLUMNS]);
+    pub const EMPTY: Self = Copies { columns: [[Numbers::ZERO; 2]; MOST_COLUMNS], runs: Runs::NONE };
 
     /// Entries from a column to the next.
-    const STRIDE: usize = size_of::<Numbers<T>>() / size_of::<T>();
+    const STRIDE: usize = size_of::<[Numbers<T>; 2]>() / size_of::<T>();
 
     /// The first so many columns, and the first particle in the lanes beyond.
     ///
@@ -157,29 +203,24 @@ impl<T: Real> Copies<T> {
         index: &[u32],
         count: usize,
     ) {
-        let index = in_lanes(index);
-        for (column, copy) in self.0.iter_mut().enumerate().take(count) {
-            // SAFETY: the caller's.
-            unsafe { V::gather(columns.at(column, 0), &index).store(copy.0.as_mut_ptr()) };
+        self.runs.find(index);
+        for run in &self.runs.runs[..self.runs.count] {
+            for (column, copy) in self.columns.iter_mut().enumerate().take(count) {
+                // SAFETY: the caller's, and there is room for a register from any lane on.
+                unsafe {
+                    let place = copy.as_mut_ptr().cast::<T>().add(run.lane);
+                    V::load_part(columns.at(column, run.first), run.count).store(place);
+                }
+            }
         }
-    }
-}
-
-/// Writes copies of some columns to the particles.
-///
-/// # Safety
-/// The particles must exist, and nobody may use them meanwhile; `copies` are columns of [`Copies`].
-#[inline(never)]
-unsafe fn give_back<T: Real, const D: usize>(
-    columns: &Columns<T, D>,
-    index: &[u32],
-    which: Range<usize>,
-    copies: *const T,
-) {
-    for column in which {
-        for (lane, &i) in index.iter().enumerate() {
-            // SAFETY: the caller's.
-            unsafe { *columns.at(column, i as usize) = *copies.add(column * Copies::<T>::STRIDE + lane) };
+        if index.len() < V::COUNT {
+            for (column, copy) in self.columns.iter_mut().enumerate().take(count) {
+                // SAFETY: as above.
+                unsafe {
+                    let place = copy.as_mut_ptr().cast::<T>().add(index.len());
+                    V::splat(*columns.at(column, index[0] as usize)).store(place);
+                }
+            }
         }
     }
 }
