@@ -8,7 +8,7 @@ use super::pass::{Found, Pass, Path, Verbs, Visit};
 use super::tile::SeveralAtATime;
 use crate::basis::Basis;
 use crate::grid::{Disjoint, Window};
-use crate::lanes::{Any, Laned};
+use crate::lanes::Laned;
 use crate::particles::{Columns, Room};
 use rayon::prelude::*;
 use std::marker::PhantomData;
@@ -68,9 +68,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 match path {
                     Path::Lanes(processor) => T::run(processor, SeveralAtATime(&mut visit)),
                     Path::Reference => {
-                        visit.open::<Any>();
+                        visit.open();
                         visit.one_by_one();
-                        visit.close::<Any>();
+                        visit.close();
                     }
                 }
             }

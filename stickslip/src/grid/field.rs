@@ -2,26 +2,24 @@
 
 use super::{Cover, Nodes, SIDE, Tile, next_of, nodes_per_block};
 use crate::basis::MAX_WIDTH;
-use crate::lanes::{Lanes, Machine, prefetch};
+use crate::lanes::prefetch;
 use crate::tensor::{Real, Vector};
-use crate::transfer::Share;
 use rayon::prelude::*;
 use std::marker::PhantomData;
 
-/// One body's share of one grid node, one number after the other: windows take four of them at a time.
+/// One body's share of one grid node.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(C)]
 pub struct Node<T, const D: usize> {
-    /// Velocity as interpolated from the particles, before contact and forces [m/s].
-    pub start: Vector<T, D>,
-    /// Velocity as integrated, which moves the particles [m/s].
-    pub carry: Vector<T, D>,
-    /// Force of the body's own stress [N].
-    pub force: Vector<T, D>,
-    /// Velocity now [m/s]; momentum [kg m/s] while particles are being scattered.
-    pub velocity: Vector<T, D>,
     /// Mass [kg].
     pub mass: T,
+    /// Velocity as interpolated from the particles, before contact and forces [m/s].
+    pub start: Vector<T, D>,
+    /// Velocity now [m/s]; momentum [kg m/s] while particles are being scattered.
+    pub velocity: Vector<T, D>,
+    /// Force of the body's own stress [N].
+    pub force: Vector<T, D>,
+    /// Velocity as integrated, which moves the particles [m/s].
+    pub carry: Vector<T, D>,
 }
 
 impl<T: Real, const D: usize> Node<T, D> {
@@ -103,30 +101,27 @@ pub struct Sought<T> {
 /// Four numbers, each the sum of two: particles are scattered two at a time.
 pub type Halves<T> = [[T; 2]; 4];
 
-/// A vector of each node of a window, with room for four numbers.
-pub type Vectors<T> = [[T; 4]; WINDOW_NODES];
-
 /// A tile's part of the field in one place: nodes `block * 4` to `block * 4 + 5` along each axis, the last fastest.
 #[derive(Clone, Debug)]
 pub struct Window<T, const D: usize> {
     /// v - (1 - a) v0 [m/s].
-    pub change: Vectors<T>,
+    pub change: [Vector<T, D>; WINDOW_NODES],
     /// The velocities that strain particles [m/s].
-    pub flow: Vectors<T>,
+    pub flow: [Vector<T, D>; WINDOW_NODES],
     /// The velocities that move particles [m/s].
-    pub carry: Vectors<T>,
-    /// Momentum scattered so far [kg m/s], and mass [kg] in the last place; nothing between passes.
+    pub carry: [Vector<T, D>; WINDOW_NODES],
+    /// Momentum scattered so far [kg m/s], and mass [kg] in the last place.
     pub momentum: [Halves<T>; WINDOW_NODES],
-    /// Force scattered so far [N]; nothing between passes.
+    /// Force scattered so far [N].
     pub force: [Halves<T>; WINDOW_NODES],
 }
 
 impl<T: Real, const D: usize> Default for Window<T, D> {
     fn default() -> Self {
         Window {
-            change: [[T::ZERO; 4]; WINDOW_NODES],
-            flow: [[T::ZERO; 4]; WINDOW_NODES],
-            carry: [[T::ZERO; 4]; WINDOW_NODES],
+            change: [Vector::ZERO; WINDOW_NODES],
+            flow: [Vector::ZERO; WINDOW_NODES],
+            carry: [Vector::ZERO; WINDOW_NODES],
             momentum: [[[T::ZERO; 2]; 4]; WINDOW_NODES],
             force: [[[T::ZERO; 2]; 4]; WINDOW_NODES],
         }
@@ -137,137 +132,75 @@ impl<T: Real, const D: usize> Default for Window<T, D> {
 #[inline(always)]
 fn each_run<const D: usize>(tile: &Tile<D>, side: usize, mut f: impl FnMut(usize, usize, usize)) {
     const S: usize = SIDE as usize;
+    let mut run = |place: usize, corner: usize, local: usize| {
+        let block = |corner: usize| tile.slots[corner] as usize * nodes_per_block(D) + local;
+        f(place, block(corner), S.min(side));
+        f(place + S, block(corner + 1), side.saturating_sub(S));
+    };
     for x in 0..side {
-        for y in 0..if D == 2 { 1 } else { side } {
-            for half in 0..2 {
-                let (place, corner, local) = match D {
-                    2 => (x * WINDOW, x / S * 2, x % S * S),
-                    _ => ((x * WINDOW + y) * WINDOW, x / S * 4 + y / S * 2, (x % S * S + y % S) * S),
-                };
-                let first = tile.slots[corner + half] as usize * nodes_per_block(D) + local;
-                let count = if half == 0 { S.min(side) } else { side.saturating_sub(S) };
-                f(place + half * S, first, count);
+        if D == 2 {
+            run(x * WINDOW, x / S * 2, x % S * S);
+        } else {
+            for y in 0..side {
+                run((x * WINDOW + y) * WINDOW, x / S * 4 + y / S * 2, (x % S * S + y % S) * S);
             }
         }
     }
 }
 
-/// Vectors of a node: its numbers from so many dimensions on.
-const START: usize = 0;
-const CARRY: usize = 1;
-const FORCE: usize = 2;
-const VELOCITY: usize = 3;
-
-/// Four numbers of a node in space, from a vector on: the next one's first number, or the mass, comes with it.
-///
-/// # Safety
-/// The node must exist, and nobody may write to it meanwhile.
-#[inline(always)]
-unsafe fn four<Q: Lanes, const D: usize>(node: *const Node<Q::Real, D>, vector: usize) -> Q {
-    // SAFETY: a node in space has thirteen numbers, four from its last vector on.
-    unsafe { Q::load(node.cast::<Q::Real>().add(vector * D)) }
-}
-
-/// Writes such numbers back.
-///
-/// # Safety
-/// The node must exist, and nobody else may use it meanwhile.
-#[inline(always)]
-unsafe fn put<Q: Lanes, const D: usize>(node: *mut Node<Q::Real, D>, vector: usize, numbers: Q) {
-    // SAFETY: as above.
-    unsafe { numbers.store(node.cast::<Q::Real>().add(vector * D)) }
-}
-
 impl<T: Real, const D: usize> Window<T, D> {
+    /// Empties what particles scatter into.
+    #[inline(always)]
+    pub fn clear(&mut self) {
+        self.momentum[..WINDOW.pow(D as u32)].fill([[T::ZERO; 2]; 4]);
+        self.force[..WINDOW.pow(D as u32)].fill([[T::ZERO; 2]; 4]);
+    }
+
     /// Takes from the field what is sought at the `side`^D first nodes.
     ///
     /// # Safety
     /// No other thread may write to the tile's slots meanwhile.
     #[inline(always)]
-    pub unsafe fn load<M: Machine<T>>(
+    pub unsafe fn load(
         &mut self,
         field: &Disjoint<Node<T, D>>,
         tile: &Tile<D>,
         side: usize,
         sought: Sought<T>,
     ) {
-        let rest = T::ONE - sought.change.unwrap_or(T::ZERO);
-        let rests = M::Quad::splat(rest);
         each_run(tile, side, |place, first, count| {
-            let nodes = field.run(first, count);
-            for (k, place) in (place..place + count).enumerate() {
-                let node = nodes.wrapping_add(k);
-                // SAFETY: a node of the run, and the caller keeps writers away from the tile's slots.
-                unsafe {
-                    if D == 3 {
-                        if sought.change.is_some() {
-                            let change =
-                                four::<M::Quad, D>(node, CARRY) - four::<M::Quad, D>(node, START) * rests;
-                            change.store(self.change[place].as_mut_ptr());
-                        }
-                        if sought.flow {
-                            four::<M::Quad, D>(node, VELOCITY).store(self.flow[place].as_mut_ptr());
-                        }
-                        if sought.carry {
-                            four::<M::Quad, D>(node, CARRY).store(self.carry[place].as_mut_ptr());
-                        }
-                    } else {
-                        let node = &*node;
-                        for i in 0..D {
-                            self.change[place][i] = node.carry[i] - node.start[i] * rest;
-                            self.flow[place][i] = node.velocity[i];
-                            self.carry[place][i] = node.carry[i];
-                        }
-                    }
+            for k in 0..count {
+                // SAFETY: the caller keeps writers away from the tile's slots.
+                let node = unsafe { &*field.get(first + k) };
+                let place = place + k;
+                if let Some(pic) = sought.change {
+                    self.change[place] = node.carry - node.start * (T::ONE - pic);
+                }
+                if sought.flow {
+                    self.flow[place] = node.velocity;
+                }
+                if sought.carry {
+                    self.carry[place] = node.carry;
                 }
             }
         });
     }
 
-    /// Adds to the field what was scattered into the `side`^D first nodes, and empties them.
+    /// Adds to the field what was scattered into the `side`^D first nodes.
     ///
     /// # Safety
     /// No other thread may touch the tile's slots meanwhile.
     #[inline(always)]
-    pub unsafe fn add_to<M: Machine<T>>(
-        &mut self,
-        field: &Disjoint<Node<T, D>>,
-        tile: &Tile<D>,
-        (side, share): (usize, Share),
-    ) {
-        let moves = share != Share::Force;
-        let pushes = matches!(share, Share::Force | Share::Everything);
+    pub unsafe fn add_to(&self, field: &Disjoint<Node<T, D>>, tile: &Tile<D>, side: usize) {
         each_run(tile, side, |place, first, count| {
-            let nodes = field.run(first, count);
-            for (k, place) in (place..place + count).enumerate() {
-                let node = nodes.wrapping_add(k);
-                let (momentum, force) = (&mut self.momentum[place], &mut self.force[place]);
-                // SAFETY: a node of the run, and the caller keeps other threads away from the tile's slots.
-                unsafe {
-                    if D == 3 {
-                        // The velocity's first number comes with the force: both are read before either is written.
-                        let velocity = four::<M::Quad, D>(node, VELOCITY) + M::Quad::pair_sums(momentum);
-                        if pushes {
-                            let force = four::<M::Quad, D>(node, FORCE) + M::Quad::pair_sums(force);
-                            put(node, FORCE, force);
-                        }
-                        if moves {
-                            put(node, VELOCITY, velocity);
-                        }
-                    } else {
-                        let node = &mut *node;
-                        node.mass += momentum[3][0] + momentum[3][1];
-                        for i in 0..D {
-                            node.velocity[i] += momentum[i][0] + momentum[i][1];
-                            node.force[i] += force[i][0] + force[i][1];
-                        }
-                    }
-                }
-                if moves {
-                    *momentum = [[T::ZERO; 2]; 4];
-                }
-                if pushes {
-                    *force = [[T::ZERO; 2]; 4];
+            for k in 0..count {
+                // SAFETY: the caller keeps other threads away from the tile's slots.
+                let node = unsafe { field.get(first + k) };
+                let (momentum, force) = (&self.momentum[place + k], &self.force[place + k]);
+                node.mass += momentum[3][0] + momentum[3][1];
+                for i in 0..D {
+                    node.velocity[i] += momentum[i][0] + momentum[i][1];
+                    node.force[i] += force[i][0] + force[i][1];
                 }
             }
         });
@@ -308,13 +241,6 @@ impl<'a, X> Disjoint<'a, X> {
     #[inline(always)]
     fn place(&self, i: usize) -> *const X {
         self.start.wrapping_add(i)
-    }
-
-    /// Where `count` entries from `first` on are.
-    #[inline(always)]
-    fn run(&self, first: usize, count: usize) -> *mut X {
-        assert!(first + count <= self.len, "entries of the slice");
-        self.start.wrapping_add(first)
     }
 
     /// Entry `i`.

@@ -131,12 +131,6 @@ pub trait Lanes: Number {
         }
     }
 
-    /// The sums of four pairs, one in each of four lanes.
-    #[inline(always)]
-    fn pair_sums(pairs: &[[Self::Real; 2]; 4]) -> Self {
-        Self::from_fn(|lane| pairs[lane][0] + pairs[lane][1])
-    }
-
     /// [`Real::inverse_cube_root_guess`] of every lane.
     #[inline(always)]
     fn inverse_cube_root_guess(self) -> Self {

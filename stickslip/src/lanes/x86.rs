@@ -268,15 +268,6 @@ lanes! { F64x4: __m256d as [f64; 4];
         unsafe { F64x4(_mm256_setr_pd(at(0), at(1), at(2), at(3))) }
     }
     #[inline(always)]
-    fn pair_sums(pairs: &[[f64; 2]; 4]) -> Self {
-        let pairs: *const f64 = pairs.as_ptr().cast();
-        // SAFETY: values of this type exist only where the processor has the instructions.
-        unsafe {
-            let sums = _mm256_hadd_pd(_mm256_loadu_pd(pairs), _mm256_loadu_pd(pairs.add(4)));
-            F64x4(_mm256_permute4x64_pd::<0b11_01_10_00>(sums))
-        }
-    }
-    #[inline(always)]
     fn alternate([a, b]: [f64; 2]) -> Self {
         // SAFETY: values of this type exist only where the processor has the instructions.
         unsafe { F64x4(_mm256_setr_pd(a, b, a, b)) }
@@ -371,12 +362,6 @@ lanes! { F32x4: __m128 as [f32; 4];
             let guess = _mm_sub_epi32(_mm_set1_epi32(CUBE_ROOT_F32 as i32), third);
             F32x4(_mm_castsi128_ps(guess))
         }
-    }
-    #[inline(always)]
-    fn pair_sums(pairs: &[[f32; 2]; 4]) -> Self {
-        let pairs: *const f32 = pairs.as_ptr().cast();
-        // SAFETY: values of this type exist only where the processor has the instructions.
-        unsafe { F32x4(_mm_hadd_ps(_mm_loadu_ps(pairs), _mm_loadu_ps(pairs.add(4)))) }
     }
     #[inline(always)]
     unsafe fn gather(first: *const f32, index: &[usize; MOST_LANES]) -> Self {
