@@ -77,8 +77,7 @@ pub fn table(level: Level, runs: &Runs) -> Result<Table, Failure> {
          each body's own normal, and particles stand on a lattice: where a surface is stairs, the normals of two bodies do not oppose each \
          other, and momentum is lost (its equation 16). All other runs take a common normal for each pair, and particles in rings that \
          follow the disks.";
-    let mut table = Table::new(caption, columns);
-    let mut add = |title: &str, rule: Rule, case: &Case| -> Result<(), Failure> {
+    let row = |title: &str, rule: Rule, case: &Case| -> Result<Vec<Cell>, Failure> {
         let mut row = vec![Cell::text(title), Cell::text(rule.short())];
         match runs.get(case).and_then(Chain::new) {
             None => row.push(Cell::text("failed")),
@@ -90,16 +89,16 @@ pub fn table(level: Level, runs: &Runs) -> Result<Table, Failure> {
                 row.extend([Cell::percent(late.energy, 2), Cell::percent(late.momentum, 4)]);
             }
         }
-        table.rows.push(row);
-        Ok(())
+        Ok(row)
     };
-    add("in a row", Rule::Kinematic, &kinematic(level))?;
-    add("in a row, to the letter", Rule::Traction, &to_the_letter(level))?;
+    let mut table = Table::new(caption, columns)
+        .row(row("in a row", Rule::Kinematic, &kinematic(level))?)
+        .row(row("in a row, to the letter", Rule::Traction, &to_the_letter(level))?);
     for rule in Rule::BOTH {
         for each in &ARRANGEMENTS {
-            add(each.short, rule, &each.case(rule, level))?;
+            table = table.row(row(each.short, rule, &each.case(rule, level))?);
         }
-        add("zig-zag, frictionless", rule, &frictionless(rule, level))?;
+        table = table.row(row("zig-zag, frictionless", rule, &frictionless(rule, level))?);
     }
     Ok(table)
 }

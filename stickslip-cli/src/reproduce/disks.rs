@@ -77,8 +77,8 @@ impl Study for Disks {
         let mut section = Section::new("Stress waves through disks").text(html! {
             "Section 3.3. Disks of 1 cm in a frame are struck at the right by a step of velocity, and light between polarisers shows the \
              difference of the principal stresses as fringes, cos((σ" sub { "1" } " − σ" sub { "2" } ") / s). Here s = 0.3 ρ c V is the same \
-             in all pictures, as in the paper, with " (cells(level)) " cells across a disk and one particle a cell; the paper has 80. \
-             Times are in transits, those of a longitudinal wave through one disk: 1 µs. In the upper row are the paper's times of its own \
+             in all pictures; the paper, too, chose its own once. There are " (cells(level)) " cells across a disk and one particle a cell; the paper has 80 cells. \
+             Times are in transits, those of a longitudinal wave through one disk: 0.98 µs. In the upper row are the paper's times of its own \
              simulation; in the lower, those at which its experiment showed the same pattern. The paper's fringes, and these by its \
              rule, run ahead of the experiment's, whose disks are of another material and in plane stress."
         });
@@ -89,7 +89,7 @@ impl Study for Disks {
         section = section.text(
             "Sliding slows the fringes, gluing speeds them up. The wave counts as arrived when a disk's centre moves with a twentieth of the \
              striker's speed: in the zig-zag its path leaves the centres aside, so their stress tells little. What comes first is what is ordered: \
-             by the paper's rule the fourth and fifth disks reach a tenth of the striker's speed and more no later without friction than with it.",
+             by the paper's rule, with 40 cells and more, the fifth disk reaches a tenth of the striker's speed sooner without friction than with it.",
         );
         for rule in Rule::BOTH {
             section = section.table(arrivals(rule, level, runs)?);

@@ -22,9 +22,9 @@ pub fn table(arrangements: &[Arrangement], level: Level, runs: &Runs) -> Result<
         Column::number("the default off the experiment"),
     ];
     let caption = "Times of the frames in transits. The paper's simulation and its experiment show the same pattern at the times in the first two columns; \
-         the third says how far from the striker the foremost fringe is at the paper's time when its rule is run here, and the fourth when it has come there by the default; not once they are at the end of the row. \
-         The disks of the experiment are of another material, in plane stress, and struck faster by the measure of its waves; \
-         the table on convergence has them struck as fast.";
+         the third says how far the foremost fringe is from the striker at the paper's time, in the run by its rule; the fourth, when it is as far in the run by the default. \
+         Once it is at the far end it tells nothing more. The experiment's disks are of another material, in plane stress, and struck four times as fast by the measure of their waves, \
+         which makes sharp contacts carry sooner; the table on convergence has a row of disks struck as fast.";
     let number = |value: Option<f64>| value.map_or(Cell::text("not yet"), |value| Cell::number(value, 2));
     let off = |value: Option<f64>, other: f64| {
         value.map_or(Cell::Empty, |value| Cell::percent(value / other - 1.0, 0))
@@ -37,8 +37,8 @@ pub fn table(arrangements: &[Arrangement], level: Level, runs: &Runs) -> Result<
         let (paper, default) = (track(Rule::Traction)?, track(Rule::Surface)?);
         for (simulated, measured) in each.simulated.into_iter().zip(each.measured) {
             let all = paper.as_ref().and_then(|track| track.last()).map_or(f64::NAN, |last| last[1]);
-            let place = paper.as_ref().and_then(|track| place(track, simulated));
-            if place.is_some_and(|place| place > END * all) {
+            let foremost = paper.as_ref().and_then(|track| place(track, simulated));
+            if foremost.is_some_and(|place| place > END * all) {
                 table = table.row(vec![
                     Cell::text(each.figure),
                     Cell::number(simulated, 1),
@@ -50,12 +50,12 @@ pub fn table(arrangements: &[Arrangement], level: Level, runs: &Runs) -> Result<
                 ]);
                 continue;
             }
-            let there = default.as_ref().zip(place).and_then(|(track, place)| time(track, place));
+            let there = default.as_ref().zip(foremost).and_then(|(track, place)| time(track, place));
             table = table.row(vec![
                 Cell::text(each.figure),
                 Cell::number(simulated, 1),
                 Cell::number(measured, 1),
-                number(place),
+                number(foremost),
                 number(there),
                 off(there, simulated),
                 off(Some(simulated), measured),
@@ -79,9 +79,14 @@ fn time(track: &[[f64; 2]], place: f64) -> Option<f64> {
     track.iter().find(|sample| sample[1] >= place).map(|sample| sample[0])
 }
 
-#[test]
-fn a_front_is_where_it_was_last_and_comes_when_it_first_is_there() {
-    let track = [[1.0, 0.5], [2.0, 0.5], [3.0, 1.5]];
-    assert_eq!([0.5, 1.0, 2.9, 9.0].map(|t| place(&track, t)), [None, Some(0.5), Some(0.5), Some(1.5)]);
-    assert_eq!([0.5, 0.6, 2.0].map(|x| time(&track, x)), [Some(1.0), Some(3.0), None]);
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_front_is_where_it_was_last_and_comes_when_it_first_is_there() {
+        let track = [[1.0, 0.5], [2.0, 0.5], [3.0, 1.5]];
+        assert_eq!([0.5, 1.0, 2.9, 9.0].map(|t| place(&track, t)), [None, Some(0.5), Some(0.5), Some(1.5)]);
+        assert_eq!([0.5, 0.6, 2.0].map(|x| time(&track, x)), [Some(1.0), Some(3.0), None]);
+    }
 }

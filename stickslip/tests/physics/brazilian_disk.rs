@@ -183,7 +183,9 @@ fn at_40_cells() {
 #[test]
 #[ignore = "slow: a minute at 80 cells"]
 fn at_80_cells() {
-    let errors = pressed(80, "fitted");
-    assert!(errors.center.abs() < 0.02, "{errors:?}");
-    assert!(errors.load_axis.abs() < 0.03 && errors.cross_axis.abs() < 0.03, "{errors:?}");
+    for particles in ["fitted", "lattice"] {
+        let errors = pressed(80, particles);
+        assert!(errors.center.abs() < 0.02, "{particles}: {errors:?}");
+        assert!(errors.load_axis.abs() < 0.03 && errors.cross_axis.abs() < 0.03, "{particles}: {errors:?}");
+    }
 }
