@@ -53,9 +53,9 @@ pub trait Simulation: Send {
 /// One body at one time.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct BodyState {
-    /// Mass [kg].
+    /// Mass; zero for a rigid body without bounds [kg].
     pub mass: f64,
-    /// Centre of mass [m].
+    /// Centre of mass; of a rigid body without bounds the point about which it turns [m].
     pub position: [f64; 3],
     /// Velocity of the centre of mass [m/s].
     pub velocity: [f64; 3],

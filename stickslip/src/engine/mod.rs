@@ -7,6 +7,7 @@ mod look;
 mod pass;
 mod rigid;
 mod tile;
+mod unbounded;
 mod verbs;
 mod watch;
 
@@ -27,6 +28,7 @@ use crate::transfer::Share;
 use cpu::Workshop;
 use rigid::RigidMotion;
 use std::marker::PhantomData;
+use unbounded::Unbounded;
 use watch::Watch;
 
 /// A simulation in `D` dimensions and precision `T`, with shape functions `B`.
@@ -34,6 +36,8 @@ pub struct Engine<T, const D: usize, B> {
     bodies: Vec<Body<T, D>>,
     /// Prescribed motion of rigid bodies.
     rigid: Vec<Option<RigidMotion>>,
+    /// Rigid bodies without bounds.
+    unbounded: Vec<Unbounded<D>>,
     lattice: Lattice<T, D>,
     /// Lower and upper corner of the domain [m].
     domain: Option<[Vector<T, D>; 2]>,

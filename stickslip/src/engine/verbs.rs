@@ -36,6 +36,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             let x = lattice.cells(position);
             std::array::from_fn(|i| B::reach(x[i], half_width * lattice.per_cell).floor())
         });
+        let blocks = blocks.max(self.spread(blocks));
         self.tidy();
         if blocks == Blocks::New {
             self.boundary.cover(&self.cover);
@@ -258,6 +259,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             let Some(motion) = motion else { continue };
             let dt = dt.f64();
             let rotation = motion.rotation(dt);
+            // One without bounds is everywhere: its particles stand for what the others are near.
+            let domain = self.domain.filter(|_| !self.unbounded.iter().any(|unbounded| unbounded.body == i));
             let turn = Matrix::from_fn(|i, j| T::of(rotation.0[i][j]));
             for p in 0..body.particles.len() {
                 let mut particle = body.particles.get(p);
@@ -269,13 +272,13 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                     particle.velocity = Vector::of(motion.velocity_at(position));
                     particle.position = moved;
                     particle.deformation = turn * particle.deformation;
-                    escaped::<T, D, B>(&particle, &self.lattice, self.domain).then_some(FaultKind::Escaped)
+                    escaped::<T, D, B>(&particle, &self.lattice, domain).then_some(FaultKind::Escaped)
                 };
                 body.particles.set(p, &particle);
                 let fault = kind.map(|kind| Fault { body: i, particle: p, kind });
                 found = found.and(Found { fault, signal: signal(body, &particle) });
             }
-            motion.advance(dt);
+            motion.advance(&rotation, dt);
             self.left[self.cover.tiles_held(i)].fill(u64::MAX);
         }
         found

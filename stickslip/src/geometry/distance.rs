@@ -58,7 +58,7 @@ impl Shape {
     /// Signed distance from a point to the shape's surface and its gradient.
     ///
     /// Exact for simple and turned shapes; of shapes combined, the sign is exact and the magnitude is at most the true one:
-    /// `min` over a union, `max` over an intersection. In the plane, a cylinder is infinitely far away.
+    /// `min` over a union, `max` over an intersection. In the plane, a cylinder or a mesh is infinitely far away.
     pub fn level(&self, point: [f64; 3], dimension: usize) -> Level {
         match self {
             Shape::Ball { center, radius } => {
@@ -91,6 +91,8 @@ impl Shape {
                 let base = Level::new(distance, [x, y, 0.0]);
                 if dimension == 2 { base } else { base.square(slab(2, *height, point[2])) }
             }
+            Shape::Mesh(_) if dimension == 2 => Level::NOWHERE,
+            Shape::Mesh(mesh) => mesh.level(point),
             Shape::Union(shapes) => {
                 shapes.iter().map(|shape| shape.level(point, dimension)).fold(Level::NOWHERE, Level::united)
             }

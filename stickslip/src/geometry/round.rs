@@ -21,9 +21,11 @@ impl Shape {
             Shape::Ball { center, radius } => {
                 vec![RoundPart { center: *center, radius: *radius, hollow: false }]
             }
-            Shape::Box { .. } | Shape::Cylinder { .. } | Shape::HalfSpace { .. } | Shape::Polygon { .. } => {
-                vec![]
-            }
+            Shape::Box { .. }
+            | Shape::Cylinder { .. }
+            | Shape::HalfSpace { .. }
+            | Shape::Polygon { .. }
+            | Shape::Mesh(_) => vec![],
             Shape::Union(shapes) | Shape::Intersection(shapes) => {
                 shapes.iter().flat_map(|shape| shape.round_parts(dimension)).collect()
             }
