@@ -5,6 +5,7 @@
 
 mod bodies;
 mod contact;
+mod flat;
 mod hertz;
 mod measurements;
 mod neighbours;
@@ -15,7 +16,7 @@ mod shapes;
 mod table;
 mod touch;
 
-pub use contact::{ContactEstimate, Verdict};
+pub use contact::{ContactEstimate, Errors, Verdict};
 pub use hertz::{Hertz, Patch};
 pub use report::{BodyReport, Machine, MaterialReport, Report, report};
 

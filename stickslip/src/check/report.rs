@@ -225,8 +225,9 @@ fn narrow_contacts(contacts: &[ContactEstimate]) -> Option<String> {
     let narrow = contacts.iter().filter(|contact| contact.verdict == Verdict::NotResolved).count();
     let narrowest = contacts.first().filter(|_| narrow > 0)?;
     Some(format!(
-        "not resolved: {narrow} of {} contacts; the narrowest needs cells of {} m to be marginal, {} m to be resolved",
+        "not resolved: {narrow} of {} contacts; in the narrowest {}; it needs cells of {} m to be marginal, {} m to be resolved",
         contacts.len(),
+        narrowest.off,
         short(narrowest.patch.radius),
         short(0.25 * narrowest.patch.radius)
     ))

@@ -78,7 +78,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
         let mut ledger = Ledger {
             friction: self.tally.friction,
             external_work: self.tally.work,
+            adhesion: self.tally.adhesion,
             scaled_impulses: self.tally.scaled,
+            unsettled_nodes: self.tally.unsettled,
             ..Ledger::default()
         };
         let gravity = self.gravity.space();
@@ -94,6 +96,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
             + ledger.strain
             + ledger.potential
             + ledger.friction
+            + ledger.adhesion
             + ledger.plastic
             + ledger.damping
             - ledger.external_work;

@@ -91,12 +91,12 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.contact(dt); //                            v~ from integrated velocities
         match when {
             StressUpdate::First => {
-                self.friction_work();
+                self.friction_work(dt);
                 self.carry();
                 self.accept_and_displace(dt) //         particles: v += dv, x += v dt
             }
             StressUpdate::Last => {
-                self.friction_work();
+                self.friction_work(dt);
                 self.carry();
                 self.accept_strain_and_displace(dt) //  particles: v += dv, F, sigma, x += v dt
             }
@@ -104,7 +104,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 self.carry_and_make_room();
                 self.accept_and_scatter()?; //          particles: v += dv; p
                 self.modified_velocities(); //          v = p / m
-                self.friction_work();
+                self.friction_work(dt);
                 self.contact_unrecorded(dt); //         v~
                 self.strain_and_displace(dt) //         particles: F, sigma, x += v dt
             }

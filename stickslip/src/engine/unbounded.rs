@@ -134,7 +134,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let mut changed = Blocks::Same;
         for i in 0..self.unbounded.len() {
             let unbounded = &self.unbounded[i];
-            let motion = self.rigid[unbounded.body].as_ref().expect("only rigid bodies may be without bounds");
+            let motion =
+                self.rigid[unbounded.body].as_ref().expect("only rigid bodies may be without bounds");
             let pose = motion.pose();
             if blocks == Blocks::Same && unbounded.pose == Some(pose) {
                 continue;

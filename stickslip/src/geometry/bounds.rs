@@ -98,9 +98,9 @@ impl Shape {
             Shape::Rotated { shape, center, axis, angle } => {
                 Rotation::new(*center, *axis, *angle, dimension).forward(shape.anchor(dimension))
             }
-            shape => shape.bounds(dimension).map_or([0.0; 3], |bounds| {
-                std::array::from_fn(|k| 0.5 * (bounds.min[k] + bounds.max[k]))
-            }),
+            shape => shape
+                .bounds(dimension)
+                .map_or([0.0; 3], |bounds| std::array::from_fn(|k| 0.5 * (bounds.min[k] + bounds.max[k]))),
         }
     }
 

@@ -50,6 +50,15 @@ impl Level {
 }
 
 impl Shape {
+    /// Where a turn about an axis by an angle, as of [`Shape::Rotated`], takes a point [m].
+    pub fn turned_point(
+        point: [f64; 3],
+        (center, axis, angle): ([f64; 3], [f64; 3], f64),
+        dimension: usize,
+    ) -> [f64; 3] {
+        Rotation::new(center, axis, angle, dimension).forward(point)
+    }
+
     /// Distance from a point to the shape's surface [m], negative inside; see [`Shape::level`].
     pub fn distance(&self, point: [f64; 3], dimension: usize) -> f64 {
         self.level(point, dimension).distance

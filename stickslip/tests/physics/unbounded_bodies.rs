@@ -122,8 +122,7 @@ fn a_face_that_rises_and_turns_does_what_that_of_a_block_does() {
     };
     let block = "{ box = { min = [-2, -2], max = [2, 0] } }";
     // It turns about the first of the shapes that make it up.
-    let half_space =
-        "{ union = [{ ball = { center = [0, -1], radius = 0.5 } }, { half_space = { point = [0, 0], normal = [0, 1] } }] }";
+    let half_space = "{ union = [{ ball = { center = [0, -1], radius = 0.5 } }, { half_space = { point = [0, 0], normal = [0, 1] } }] }";
     let found = difference(scene, [block, half_space], 0.15);
     println!("punch: position off by {:.1e}, velocity by {:.1e}", found[0], found[1]);
     assert!(found.iter().all(|off| *off < 1e-9), "{found:?}");

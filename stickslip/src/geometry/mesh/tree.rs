@@ -35,10 +35,8 @@ impl Tree {
         while next < tree.boxes.len() {
             let Branch { first, count, .. } = tree.boxes[next];
             let here = &mut tree.order[first as usize..(first + count) as usize];
-            let around = |triangles: &[u32]| {
-                triangles.iter().fold(Bounds::EMPTY, |all, &i| all.united(&boxes[i as usize]))
-            };
-            tree.boxes[next].bounds = around(here);
+            tree.boxes[next].bounds =
+                here.iter().fold(Bounds::EMPTY, |all, &i| all.united(&boxes[i as usize]));
             if here.len() > MOST {
                 let middle = |i: u32, k: usize| boxes[i as usize].min[k] + boxes[i as usize].max[k];
                 let spread =
