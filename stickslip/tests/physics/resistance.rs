@@ -117,7 +117,7 @@ fn adhesion_holds_what_its_strength_bears() {
 }
 
 /// A block that adheres to the floor is thrown off it or along it. Nothing drives it: kinetic and strain energy never rise above the start's. Bonds that give way
-/// are in the ledger, which may stand 1 % too high, as friction and bonds count some of what bodies keep as strain: they take about their strength times the way over which they act, a hundredth of a cell and a step's way.
+/// are in the ledger, whose total ends no higher: they take about their strength times the way over which they act, a hundredth of a cell and a step's way.
 #[test]
 fn bonds_create_no_energy() {
     for (velocity, cohesion, adhesion) in [
@@ -144,7 +144,7 @@ fn bonds_create_no_energy() {
             end.friction, end.adhesion
         );
         assert!(most < 1e-6, "{velocity:?} {cohesion} {adhesion}: gains {most:e}");
-        assert!(drift < 0.02, "{velocity:?} {cohesion} {adhesion}: total rises by {drift:e}");
+        assert!(drift < 1e-3, "{velocity:?} {cohesion} {adhesion}: total rises by {drift:e}");
         if velocity == [0.0, 1.0] && adhesion == 1e4 {
             let way = 0.001 + 1.0 * 0.0011;
             assert!(
