@@ -29,6 +29,10 @@ impl Display {
 
     /// Shows the present state.
     pub fn show(&self, progress: &Progress) {
+        if let Some(note) = &progress.note {
+            let line = format!("t = {:.4e} s: warning: {note}", progress.time);
+            self.bar.as_ref().map_or_else(|| eprintln!("{line}"), |bar| bar.println(&line));
+        }
         if let Some(bar) = &self.bar {
             bar.set_position((progress.share() * PARTS as f64) as u64);
             bar.set_message(line(progress));
@@ -139,6 +143,7 @@ mod tests {
             particles: 1000,
             particle_steps_per_second: 2.5e6,
             eta: 200.0,
+            note: None,
         };
         let expected = "t = 0.5000 of 2 s, step 321, 2.5 M particle-steps/s, 3 min 20 s left";
         assert_eq!(line(&progress), expected);

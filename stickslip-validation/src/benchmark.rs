@@ -84,6 +84,8 @@ pub struct Target {
     pub at: Option<f64>,
     /// Why that much and no less.
     pub why: &'static str,
+    /// Resolutions at which the law of scenes that name none is known to miss it; at others a miss is a fault of the program.
+    pub missed_at: &'static [f64],
 }
 
 /// What may be measured.
@@ -148,12 +150,17 @@ impl Resolution {
 impl Target {
     /// A target at every resolution.
     pub const fn new(metric: &'static str, exact: f64, allowed: Allowed, why: &'static str) -> Self {
-        Target { metric, exact, allowed, at: None, why }
+        Target { metric, exact, allowed, at: None, why, missed_at: &[] }
     }
 
     /// The same target, stated for one resolution.
     pub const fn at(self, cells: f64) -> Self {
         Target { at: Some(cells), ..self }
+    }
+
+    /// The same target, known to be missed by the law of scenes that name none at these resolutions.
+    pub const fn missed_at(self, cells: &'static [f64]) -> Self {
+        Target { missed_at: cells, ..self }
     }
 
     /// Whether a measured value is good enough; what is not a number never is.

@@ -180,6 +180,18 @@ impl Entry {
         }
     }
 
+    /// The targets that the law has come to miss: those that it misses though it is the one that scenes get which name none, or glue, and is not known to
+    /// miss them there. Nothing is asked of other laws, which are there to be compared.
+    pub fn broken(&self) -> impl Iterator<Item = &'static Target> {
+        let held = self.law.default || self.law.law == ContactLaw::Glued;
+        let known = |target: &Target| {
+            self.judged(target)
+                .is_some_and(|run| run.result.is_ok() && target.missed_at.contains(&run.resolution.cells))
+        };
+        let targets = self.benchmark.targets.iter().filter(move |_| held);
+        targets.filter(move |target| self.verdict(target) == Verdict::Missed && !known(target))
+    }
+
     /// How the law did by all targets: missed if one is, open if all are.
     pub fn overall(&self) -> Verdict {
         let verdicts: Vec<_> = self.benchmark.targets.iter().map(|target| self.verdict(target)).collect();
@@ -219,6 +231,12 @@ mod tests {
         Target::new("error", 0.0, Allowed::Within(0.02), "a test"),
         Target::new("late", 1.0, Allowed::AtLeast(0.9), "a test").at(40.0),
     ];
+    const TOO_MUCH: &[Target] = &[
+        Target::new("error", 0.0, Allowed::Within(1e-6), "a test"),
+        Target::new("error", 0.0, Allowed::Within(1e-6), "a test").missed_at(&[20.0]),
+        Target::new("error", 0.0, Allowed::Within(1e-6), "a test").missed_at(&[10.0]),
+        Target::new("not measured", 0.0, Allowed::Within(1e-6), "a test"),
+    ];
 
     /// An error of 1/n^2; with the law "traction" the finest run fails, with "gap" by a fault.
     fn square(case: &Case) -> Result<Outcome, Failure> {
@@ -231,7 +249,7 @@ mod tests {
         Ok(outcome)
     }
 
-    static BENCHMARK: Benchmark = Benchmark {
+    const BENCHMARK: Benchmark = Benchmark {
         name: "test",
         title: "a test",
         source: "",
@@ -251,10 +269,12 @@ mod tests {
         run: square,
     };
 
+    static TEST: Benchmark = BENCHMARK;
+
     #[test]
     fn order_and_verdicts_come_from_the_finest_runs_however_many_threads() {
         for threads in [1, 3] {
-            let suite = Suite { benchmarks: vec![&BENCHMARK], laws: laws(), tier: Tier::Quick, threads };
+            let suite = Suite { benchmarks: vec![&TEST], laws: laws(), tier: Tier::Quick, threads };
             let mut seen = 0;
             let mut least = 0.0;
             let report = suite.run(&mut |finished, report| {
@@ -276,6 +296,18 @@ mod tests {
                 assert_eq!(entry.overall(), entry.verdict(error));
                 assert_eq!(entry.order(error).map(|p| (p * 1e9).round() / 1e9), (!fails).then_some(2.0));
             }
+        }
+    }
+
+    #[test]
+    fn the_default_law_may_miss_what_it_is_known_to_miss_and_others_anything() {
+        let demanding: &'static Benchmark =
+            Box::leak(Box::new(Benchmark { targets: TOO_MUCH, name: "demanding", ..BENCHMARK }));
+        let suite = Suite { benchmarks: vec![demanding], laws: laws(), tier: Tier::Quick, threads: 2 };
+        for entry in &suite.run(&mut |_, _| {}).entries {
+            let broken: Vec<_> =
+                entry.broken().map(|target| TOO_MUCH.iter().position(|of| of == target).unwrap()).collect();
+            assert_eq!(broken, if entry.law.default { &[0, 2, 3][..] } else { &[] }, "{:?}", entry.law);
         }
     }
 

@@ -67,6 +67,12 @@ impl Boundary {
         self.walls.iter().any(|wall| wall.face == Face::Symmetry && wall.depth(node) < 0)
     }
 
+    /// The mirrors on which a node lies, a bit each.
+    pub fn mirrors_through<const D: usize>(&self, node: [i32; D]) -> u32 {
+        let on = |(_, wall): &(usize, &Wall)| wall.face == Face::Symmetry && wall.depth(node) == 0;
+        self.walls.iter().enumerate().filter(on).fold(0, |mirrors, (i, _)| mirrors | 1 << i)
+    }
+
     /// Finds the nodes that walls govern.
     pub fn cover<const D: usize>(&mut self, cover: &Cover<D>) {
         self.mirrored.clear();

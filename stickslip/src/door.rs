@@ -53,9 +53,9 @@ pub trait Simulation: Send {
 /// One body at one time.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct BodyState {
-    /// Mass [kg].
+    /// Mass; zero for a rigid body without bounds [kg].
     pub mass: f64,
-    /// Centre of mass [m].
+    /// Centre of mass; of a rigid body without bounds the point about which it turns [m].
     pub position: [f64; 3],
     /// Velocity of the centre of mass [m/s].
     pub velocity: [f64; 3],
@@ -78,13 +78,15 @@ pub struct Ledger {
     pub potential: f64,
     /// Work done on the bodies by prescribed motion [J].
     pub external_work: f64,
-    /// Dissipated by friction [J].
+    /// Dissipated by friction, cohesion and viscosity of contacts [J].
     pub friction: f64,
+    /// Taken by bonds of contacts that adhere, where they give way [J].
+    pub adhesion: f64,
     /// Dissipated by plastic flow [J].
     pub plastic: f64,
     /// Dissipated by damping [J].
     pub damping: f64,
-    /// kinetic + strain + potential + friction + plastic + damping - external work [J]; constant in an exact solution.
+    /// kinetic + strain + potential + friction + adhesion + plastic + damping - external work [J]; constant in an exact solution.
     pub total: f64,
     /// Linear momentum [kg m/s].
     pub momentum: [f64; 3],
@@ -92,6 +94,8 @@ pub struct Ledger {
     pub angular_momentum: [f64; 3],
     /// Impulses of contact at nodes that were reduced to the rule's `max_strain`, since the start.
     pub scaled_impulses: u64,
+    /// Nodes of three bodies and more where contact was still changing velocities when it was cut short, since the start.
+    pub unsettled_nodes: u64,
 }
 
 /// Contact between two bodies, averaged over the time since the last look.
@@ -111,9 +115,9 @@ pub struct ContactState {
     pub nodes: usize,
     /// Centre of the forces over nodes and time [m].
     pub position: [f64; 3],
-    /// Area over which the bodies touched in that last step [m^2], in the plane length per depth [m].
+    /// Area over which the bodies touched, its mean over the time as the force's [m^2], in the plane length per depth [m].
     pub area: f64,
-    /// Mean distance between the surfaces over that area, negative where they overlap [m].
+    /// Mean distance between the surfaces over area and time, negative where they overlap [m].
     pub gap: f64,
     /// How far the surfaces slipped on each other, the mean over their area [m].
     pub slip: f64,
@@ -128,7 +132,7 @@ pub struct Patch {
     pub body_a: usize,
     /// Index of the second body.
     pub body_b: usize,
-    /// Largest area over which they touched in a step [m^2], in the plane length per depth [m].
+    /// Largest area over which they touched in a step, images in mirrors included [m^2], in the plane length per depth [m].
     pub area: f64,
 }
 

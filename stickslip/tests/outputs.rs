@@ -87,7 +87,7 @@ fn the_tables_have_the_columns_that_the_manual_lists() {
     assert_eq!(header("bodies.csv"), "time,body,mass,x,y,z,vx,vy,vz,wx,wy,wz,kinetic,strain");
     assert_eq!(
         header("energy.csv"),
-        "time,kinetic,strain,potential,external_work,friction,plastic,damping,total,px,py,pz,lx,ly,lz"
+        "time,kinetic,strain,potential,external_work,friction,adhesion,plastic,damping,total,px,py,pz,lx,ly,lz"
     );
     assert_eq!(
         header("contacts.csv"),

@@ -31,8 +31,8 @@ fn every_choice_of_the_scenes_runs_and_keeps_the_balance() {
 /// The paper: frictionless contacts slow the waves most, sliding ones less, glued ones least. From the third disk on the order holds,
 /// and the last disk moves at least `ratio` times later where contacts slide than where they are glued. A disk has the wave when its centre
 /// of mass moves at 0.05 V: in the glued zig-zag the wave passes a disk's centre with little difference of stress.
-/// Measured at 20 cells: 4.26, 5.90 and 8.21 transits at the last disk, 1.386 times later; at 80 cells
-/// 5.02, 7.20 and 9.77, 1.435 times later.
+/// Measured at 20 cells: 4.41, 5.91 and 8.24 transits at the last disk, 1.339 times later; at 80 cells
+/// 5.10, 7.22 and 9.79, 1.415 times later.
 fn friction_orders_arrivals(cells: (&str, &str), ratio: f64) {
     let chain = |scene: &str, choice: &[(&str, &str)]| {
         Chain::until_start(scene, &[&[cells, ("contact", "traction")], choice].concat(), 16.0)
@@ -59,8 +59,36 @@ fn friction_orders_arrivals_at_the_papers_resolution() {
     friction_orders_arrivals(PAPER, 1.3);
 }
 
+/// The paper: sliding disks load the wall that they lean on before the next disk; glued ones pass the load from contact to contact. At the
+/// third disk of the zig-zag, by the paper's rule; a push of 0.2 rho c_L V R counts.
+fn friction_decides_the_path_of_the_load(cells: (&str, &str)) {
+    let load = |scene: &str, transits: f64| {
+        let chain = Chain::run(scene, &[cells, ("contact", "traction")], transits);
+        let wall = chain.load("disk_3", &["lower_wall", "upper_wall"]);
+        let next = chain.load("disk_3", &["disk_4"]);
+        println!("{scene}: disk 3 presses on the wall at {wall:.3}, on disk 4 at {next:.3}");
+        (wall, next)
+    };
+    let (wall, next) = load("zigzag", 9.0);
+    assert!(wall < next, "sliding: wall {wall}, next disk {next}");
+    let (wall, next) = load("glued", 6.0);
+    assert!(next < wall && next.is_finite(), "glued: wall {wall}, next disk {next}");
+}
+
+#[test]
+fn friction_decides_the_path_of_the_load_on_a_coarse_grid() {
+    friction_decides_the_path_of_the_load(COARSE);
+}
+
+#[test]
+#[ignore = "slow: minutes at the paper's resolution"]
+fn friction_decides_the_path_of_the_load_at_the_papers_resolution() {
+    friction_decides_the_path_of_the_load(PAPER);
+}
+
 /// The paper: with the longitudinal speed held, raising Poisson's ratio from 0.22 to 0.48 slows the fringes by more than a factor of two;
-/// asked here: 2.2. Speed: one disk over the mean interval between centres, from the second disk on. Measured: 2.43 at 80 cells, 2.11 at 20.
+/// asked here: 2.2. Speed: one disk over the mean interval between centres, from the second disk on. Measured: 2.42 at 80 cells, 2.31 at
+/// 40; at 20 the threshold passes too late in slow waves, 1.92.
 fn poissons_ratio_slows_fringes(cells: (&str, &str), ratio: f64) {
     let interval = |nu: &str, transits: f64| {
         Chain::until_arrival("collinear", &[cells, ("contact", "traction"), ("nu", nu)], transits).interval()
@@ -72,7 +100,7 @@ fn poissons_ratio_slows_fringes(cells: (&str, &str), ratio: f64) {
 
 #[test]
 fn poissons_ratio_slows_fringes_on_a_coarse_grid() {
-    poissons_ratio_slows_fringes(COARSE, 2.0);
+    poissons_ratio_slows_fringes(("cells_per_diameter", "40"), 2.2);
 }
 
 #[test]

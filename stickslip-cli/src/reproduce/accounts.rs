@@ -1,6 +1,7 @@
 //! Energy and time of every run.
 
 use super::case::Runs;
+use super::momentum::momentum_error;
 use crate::failure::Failure;
 use crate::page::{Cell, Column, Section, Table};
 use crate::progress::duration;
@@ -14,12 +15,14 @@ pub fn section(runs: &Runs) -> Result<Section, Failure> {
         Column::number("particles"),
         Column::number("steps"),
         Column::number("energy error"),
+        Column::number("momentum error"),
         Column::number("time taken"),
         Column::number("threads"),
         Column::number("million particle-steps/s"),
     ];
     let caption = "Every run of this report. Energy error: the sum that an exact solution keeps (kinetic, strain and potential energy, \
-                   heat, less the work of what moves as prescribed), end less start, over the largest energy that was stored or turned.";
+                   heat, less the work of what moves as prescribed), end less start, over the largest energy that was stored or turned. Momentum error: what the disks or the sphere have \
+                   at the end beyond the impulses of everything else and gravity, over the sum of these impulses.";
     let mut table = Table::new(caption, columns);
     for (name, results) in runs.iter() {
         let performance = &results.manifest().performance;
@@ -29,6 +32,7 @@ pub fn section(runs: &Runs) -> Result<Section, Failure> {
             Cell::count(performance.particles),
             Cell::count(performance.steps as usize),
             Cell::percent(energy_error(results)?, 3),
+            momentum_error(results, f64::INFINITY)?.map_or(Cell::Empty, Cell::scientific),
             Cell::Number(duration(performance.wall_time)),
             Cell::count(performance.threads),
             Cell::number(performance.particle_steps_per_second / 1e6, 2),

@@ -1,8 +1,9 @@
 //! What the studies of disks share: cases, times in transits, arrivals of the wave, the balance of momentum and energy.
 
 use super::case::{Case, PaperScene, Rule};
+use super::momentum::momentum_error;
 use crate::failure::Failure;
-use stickslip::observe::{ContactRow, EnergyRow, Frame, Results};
+use stickslip::observe::{ArrivalRow, ContactRow, Frame, Results};
 use stickslip::polariscope::{self, Bench, Stage, Window};
 use stickslip::scene::Fringes;
 
@@ -18,15 +19,11 @@ pub fn case(scene: PaperScene, rule: Rule, cells: usize, more: &[(&str, &str)]) 
         ("outputs.fringes.interval", "1000 * transit"),
         ("outputs.fringes.field", "light"),
         ("outputs.samples", "step"),
-        ("fringe", FRINGE),
     ];
     // Glued disks have no rule between them; that at the frame stays as it is.
     let rule = [("contact", rule.word())];
     Case::new(scene, &label, &[&settings[..], &rule, more].concat())
 }
-
-/// The paper's parameter of fringe density, as part of the pressure behind a plane wave: about five fringes, as in its pictures.
-pub const FRINGE: &str = "0.3 * density * c_L * speed";
 
 /// A chain of disks after its run.
 pub struct Chain<'a> {
@@ -51,7 +48,7 @@ pub struct Balance {
     pub time: f64,
     /// Energy in the disks and turned to heat, less the work of the striker, over that work [-].
     pub energy: f64,
-    /// Momentum of the disks less the impulses of striker and frame, over the striker's impulse [-].
+    /// Momentum of the disks less the impulses of striker and frame, over these impulses [-].
     pub momentum: f64,
 }
 
@@ -67,8 +64,10 @@ impl<'a> Chain<'a> {
     /// The table cannot be read.
     pub fn arrivals(&self) -> Result<Vec<Option<f64>>, Failure> {
         let rows = self.results.arrivals_table().map_err(Failure::input)?;
-        let arrival =
-            |disk: &&String| rows.iter().find(|row| row.place == **disk).map(|row| row.time / self.transit);
+        let arrival = |disk: &&String| {
+            let of_disk = |row: &&ArrivalRow| row.place == **disk && row.quantity == "stress_difference";
+            rows.iter().find(of_disk).map(|row| row.time / self.transit)
+        };
         Ok(self.disks().iter().map(arrival).collect())
     }
 
@@ -128,6 +127,31 @@ impl<'a> Chain<'a> {
         Ok(Some((arrivals.len() - 2) as f64 / (last - second)))
     }
 
+    /// How far the fringes have come from the striker until each sample: time in transits, distance in diameters.
+    ///
+    /// # Errors
+    /// The table cannot be read.
+    pub fn front(&self) -> Result<Vec<[f64; 2]>, Failure> {
+        let diameter = self.results.manifest().scene["parameters"]["diameter"].as_f64().unwrap_or(f64::NAN);
+        let rows = self.results.fronts_table().map_err(Failure::input)?;
+        let mut furthest = 0.0_f64;
+        let track = rows.iter().map(|row| {
+            furthest = furthest.max(row.distance / diameter);
+            [row.time / self.transit, furthest]
+        });
+        Ok(track.collect())
+    }
+
+    /// Energy from nowhere over the striker's work until then, at each row of the table: time in transits, and the share.
+    ///
+    /// # Errors
+    /// The table cannot be read.
+    pub fn energy_gain(&self) -> Result<Vec<[f64; 2]>, Failure> {
+        let rows = self.results.energy_table().map_err(Failure::input)?;
+        let worked = rows.iter().filter(|row| row.external_work != 0.0);
+        Ok(worked.map(|row| [row.time / self.transit, row.total / row.external_work.abs()]).collect())
+    }
+
     /// Takes pictures of the fringes.
     ///
     /// # Errors
@@ -154,19 +178,13 @@ impl<'a> Chain<'a> {
     pub fn balance(&self, time: f64) -> Result<Balance, Failure> {
         let until = time * (1.0 + 1e-9);
         let energy = self.results.energy_table().map_err(Failure::input)?;
-        let bodies = self.results.bodies_table().map_err(Failure::input)?;
-        let contacts = self.results.contacts_table().map_err(Failure::input)?;
         let Some(end) = energy.iter().rfind(|row| row.time <= until) else {
             return Ok(Balance { time: f64::NAN, energy: f64::NAN, momentum: f64::NAN });
         };
-        let disks = bodies.iter().filter(|row| row.time == end.time && row.body.starts_with("disk"));
-        let momentum = disks.fold([0.0; 2], |[x, y], row| [x + row.mass * row.vx, y + row.mass * row.vy]);
-        let [given, pushed] = impulses(&contacts, &energy, end.time);
-        let missing = (momentum[0] - given[0]).hypot(momentum[1] - given[1]);
         Ok(Balance {
             time: end.time / self.transit,
             energy: end.total / end.external_work.abs(),
-            momentum: missing / pushed[0].hypot(pushed[1]),
+            momentum: momentum_error(self.results, time)?.unwrap_or(f64::NAN),
         })
     }
 }
@@ -185,51 +203,5 @@ impl Camera<'_> {
         let written = self.bench.photograph(&particles).write_png(&mut png);
         written.expect("a vector takes all bytes");
         Ok((frame.time / self.transit, png))
-    }
-}
-
-/// Impulses on the disks until a time [N s]: of striker and frame together, and of the striker alone.
-fn impulses(contacts: &[ContactRow], energy: &[EnergyRow], until: f64) -> [[f64; 2]; 2] {
-    let [mut all, mut striker] = [[0.0; 2]; 2];
-    for row in contacts.iter().filter(|row| row.time <= until) {
-        // A row is a mean from the row of all tables before it to its own.
-        let before = energy.iter().rfind(|other| other.time < row.time).map_or(0.0, |other| other.time);
-        let sign = match (row.body_a.starts_with("disk"), row.body_b.starts_with("disk")) {
-            (false, true) => row.time - before,
-            (true, false) => before - row.time,
-            _ => continue,
-        };
-        let impulse = [sign * row.fx, sign * row.fy];
-        let of_striker = row.body_a == "striker" || row.body_b == "striker";
-        for axis in 0..2 {
-            all[axis] += impulse[axis];
-            striker[axis] += if of_striker { impulse[axis] } else { 0.0 };
-        }
-    }
-    [all, striker]
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn impulses_are_forces_times_intervals_whoever_comes_first() {
-        let time = |time| EnergyRow { time, ..EnergyRow::default() };
-        let row = |time, body_a: &str, body_b: &str, fx| ContactRow {
-            time,
-            body_a: body_a.to_owned(),
-            body_b: body_b.to_owned(),
-            fx,
-            ..ContactRow::default()
-        };
-        let contacts = [
-            row(0.5, "striker", "disk_1", -4.0),
-            row(0.5, "disk_1", "disk_2", -9.0),
-            row(1.5, "disk_2", "end_wall", -1.0),
-            row(2.5, "striker", "disk_1", -100.0),
-        ];
-        let [all, striker] = impulses(&contacts, &[time(0.0), time(0.5), time(1.5), time(2.5)], 1.5);
-        assert_eq!((all, striker), ([-2.0 + 1.0, 0.0], [-2.0, 0.0]));
     }
 }

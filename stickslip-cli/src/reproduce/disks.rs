@@ -1,8 +1,10 @@
 //! Section 3.3: stress waves through disks, seen as fringes; figures 9 to 11.
 
 use super::Study;
+use super::balance;
 use super::case::{Case, Level, PaperScene, Rule, Runs};
 use super::chain::{self, Chain};
+use super::frames;
 use crate::failure::Failure;
 use crate::page::{Cell, Column, Figure, Image, Section, Table, Verdict};
 use maud::html;
@@ -11,19 +13,20 @@ use maud::html;
 pub struct Disks;
 
 /// One of the paper's arrangements with the times of its frames in transits.
-struct Arrangement {
-    figure: &'static str,
+pub struct Arrangement {
+    pub figure: &'static str,
     scene: PaperScene,
     title: &'static str,
     /// Its name in tables.
-    short: &'static str,
+    pub short: &'static str,
     /// Of the paper's simulation.
-    simulated: [f64; 3],
+    pub simulated: [f64; 3],
     /// Of its experiment.
-    measured: [f64; 3],
+    pub measured: [f64; 3],
 }
 
-const ARRANGEMENTS: [Arrangement; 3] = [
+/// The three that the paper shows.
+pub const ARRANGEMENTS: [Arrangement; 3] = [
     Arrangement {
         figure: "Figure 9",
         scene: PaperScene::COLLINEAR,
@@ -50,8 +53,6 @@ const ARRANGEMENTS: [Arrangement; 3] = [
     },
 ];
 
-/// Times at which the balance is drawn up, 3 us after impact and at the end [s].
-const BALANCES: [f64; 2] = [3e-6, f64::INFINITY];
 /// Part of the striker's speed with which a disk moves that the wave has come to.
 const SET_OFF: f64 = 0.05;
 /// The last disk is to be this much later sliding than glued.
@@ -76,28 +77,34 @@ impl Study for Disks {
         let mut section = Section::new("Stress waves through disks").text(html! {
             "Section 3.3. Disks of 1 cm in a frame are struck at the right by a step of velocity, and light between polarisers shows the \
              difference of the principal stresses as fringes, cos((σ" sub { "1" } " − σ" sub { "2" } ") / s). Here s = 0.3 ρ c V is the same \
-             in all pictures, as in the paper, with " (cells(level)) " cells across a disk and one particle a cell; the paper has 80. \
-             Times are in transits, those of a longitudinal wave through one disk: 1 µs. In the upper row are the paper's times of its own \
+             in all pictures; the paper, too, chose its own once. There are " (cells(level)) " cells across a disk and one particle a cell; the paper has 80 cells. \
+             Times are in transits, those of a longitudinal wave through one disk: 0.98 µs. In the upper row are the paper's times of its own \
              simulation; in the lower, those at which its experiment showed the same pattern. The paper's fringes, and these by its \
              rule, run ahead of the experiment's, whose disks are of another material and in plane stress."
         });
         for each in &ARRANGEMENTS {
             section = section.figure(each.figure(level, runs)?);
         }
+        section = section.table(frames::table(&ARRANGEMENTS, level, runs)?);
         section = section.text(
             "Sliding slows the fringes, gluing speeds them up. The wave counts as arrived when a disk's centre moves with a twentieth of the \
              striker's speed: in the zig-zag its path leaves the centres aside, so their stress tells little. What comes first is what is ordered: \
-             by the paper's rule the fourth and fifth disks reach a tenth of the striker's speed and more no later without friction than with it.",
+             by the paper's rule, with 40 cells and more, the fifth disk reaches a tenth of the striker's speed sooner without friction than with it.",
         );
         for rule in Rule::BOTH {
             section = section.table(arrivals(rule, level, runs)?);
         }
-        Ok(section.table(load_paths(level, runs)?).table(balance(level, runs)?))
+        section = section.table(load_paths(level, runs)?);
+        if let Some(figure) = balance::figure(level, runs)? {
+            section = section.figure(figure);
+        }
+        Ok(section.table(balance::table(level, runs)?))
     }
 }
 
 impl Arrangement {
-    fn case(&self, rule: Rule, level: Level) -> Case {
+    /// What is run of it.
+    pub fn case(&self, rule: Rule, level: Level) -> Case {
         let times = self.simulated.iter().chain(&self.measured);
         let times: Vec<String> = times.map(|time| format!("\"{time} * transit\"")).collect();
         let times = format!("[{}]", times.join(", "));
@@ -106,7 +113,7 @@ impl Arrangement {
 
     fn figure(&self, level: Level, runs: &Runs) -> Result<Figure, Failure> {
         let caption = html! {
-            (self.title) ". Times in transits; above the paper's of its simulation, below its experiment's, for each rule."
+            (self.title) ", " (cells(level)) " cells across each. Times in transits; above the paper's of its simulation, below its experiment's, for each rule."
         };
         let mut figure = Figure::new(self.figure, caption);
         for rule in Rule::BOTH {
@@ -132,7 +139,8 @@ impl Arrangement {
     }
 }
 
-fn cells(level: Level) -> usize {
+/// Cells across a disk.
+pub fn cells(level: Level) -> usize {
     match level {
         Level::Sketch => 20,
         Level::Quick => 40,
@@ -141,17 +149,17 @@ fn cells(level: Level) -> usize {
 }
 
 /// The zig-zag without friction, which the paper does not show: the other end of the order.
-fn frictionless(rule: Rule, level: Level) -> Case {
+pub fn frictionless(rule: Rule, level: Level) -> Case {
     chain::case(PaperScene::ZIGZAG, rule, cells(level), &[("friction", "0")]).labelled("frictionless")
 }
 
 /// The rule before the paper's, for the energy that it gains.
-fn kinematic(level: Level) -> Case {
+pub fn kinematic(level: Level) -> Case {
     chain::case(PaperScene::COLLINEAR, Rule::Kinematic, cells(level), &[])
 }
 
 /// The paper's rule in a row to the letter: each disk's own normals, and surfaces that are stairs of particles.
-fn to_the_letter(level: Level) -> Case {
+pub fn to_the_letter(level: Level) -> Case {
     let settings = [("normal", "own"), ("particles", "lattice")];
     chain::case(PaperScene::COLLINEAR, Rule::Traction, cells(level), &settings).labelled("letter")
 }
@@ -255,50 +263,6 @@ const DISKS: usize = 5;
 /// Whether one came before the other, which may never have come.
 fn before(one: Option<f64>, other: Option<f64>) -> bool {
     one.is_some_and(|one| other.is_none_or(|other| one < other))
-}
-
-/// Energy and momentum of the disks against what striker and frame gave.
-fn balance(level: Level, runs: &Runs) -> Result<Table, Failure> {
-    let columns = vec![
-        Column::text("disks"),
-        Column::text("contact rule"),
-        Column::number("energy from nowhere / work of the striker, at 3 us"),
-        Column::number("momentum from nowhere / impulse of the striker, at 3 us"),
-        Column::number("the end, in transits"),
-        Column::number("energy, at the end"),
-        Column::number("momentum, at the end"),
-    ];
-    let caption = "Balance of the disks 3 us after impact and at the end of each run. The paper's rule is to keep the energy in a row of disks within \
-         0.5 % at 3 us with 80 cells; the rule before it (kinematic) gains energy. No rule keeps it exactly \
-         to the end: the rows say how much came from nowhere (+) or was lost. To the letter, the paper's rule takes \
-         each body's own normal, and particles stand on a lattice: where a surface is stairs, the normals of two bodies do not oppose each \
-         other, and momentum is lost (its equation 16). All other runs take a common normal for each pair, and particles in rings that \
-         follow the disks.";
-    let mut table = Table::new(caption, columns);
-    let mut add = |title: &str, rule: Rule, case: &Case| -> Result<(), Failure> {
-        let mut row = vec![Cell::text(title), Cell::text(rule.short())];
-        match runs.get(case).and_then(Chain::new) {
-            None => row.push(Cell::text("failed")),
-            Some(chain) => {
-                let [early, late] = BALANCES.map(|time| chain.balance(time));
-                let (early, late) = (early?, late?);
-                row.extend([Cell::percent(early.energy, 2), Cell::percent(early.momentum, 4)]);
-                row.push(Cell::number(late.time, 1));
-                row.extend([Cell::percent(late.energy, 2), Cell::percent(late.momentum, 4)]);
-            }
-        }
-        table.rows.push(row);
-        Ok(())
-    };
-    add("in a row", Rule::Kinematic, &kinematic(level))?;
-    add("in a row, to the letter", Rule::Traction, &to_the_letter(level))?;
-    for rule in Rule::BOTH {
-        for each in &ARRANGEMENTS {
-            add(each.short, rule, &each.case(rule, level))?;
-        }
-        add("zig-zag, frictionless", rule, &frictionless(rule, level))?;
-    }
-    Ok(table)
 }
 
 #[cfg(test)]

@@ -5,11 +5,14 @@
 
 mod accounts;
 mod backspin;
+mod balance;
 mod case;
 mod chain;
 mod convergence;
 mod disks;
+mod frames;
 mod inclined_plane;
+mod momentum;
 mod poisson;
 mod sphere;
 

@@ -103,11 +103,7 @@ impl Study for Poisson {
 }
 
 fn case(rule: Rule, level: Level, nu: &str) -> Case {
-    // Nearly incompressible disks take three times as long.
-    let slow = nu.parse().is_ok_and(|nu: f64| nu > 0.4);
-    let end = if slow { "28 * transit" } else { "16 * transit" };
-    let settings = [("nu", nu), ("time.end", end)];
-    chain::case(PaperScene::COLLINEAR, rule, cells(level), &settings).labelled(&format!("nu{nu}"))
+    chain::case(PaperScene::COLLINEAR, rule, cells(level), &[("nu", nu)]).labelled(&format!("nu{nu}"))
 }
 
 fn cells(level: Level) -> usize {

@@ -6,4 +6,4 @@ mod text;
 
 pub use page::page;
 pub use scenes::write_scenes;
-pub use text::{line, table};
+pub use text::{broken, line, table};

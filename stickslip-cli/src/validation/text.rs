@@ -17,6 +17,21 @@ pub fn line(finished: &Finished) -> String {
     )
 }
 
+/// What the default law and glue miss and are not known to miss; `None` if there is nothing.
+pub fn broken(report: &Report) -> Option<String> {
+    let lines: Vec<String> = (report.entries.iter())
+        .flat_map(|entry| entry.broken().map(move |target| (entry, target)))
+        .map(|(entry, target)| {
+            let (name, law, cells) =
+                (entry.benchmark.name, entry.law.word, entry.judged(target).map(|run| run.resolution.cells));
+            let cells =
+                cells.map_or(String::new(), |cells| format!(", {} = {cells}", entry.benchmark.measure));
+            format!("{name} by {law}{cells}: {}, asked {target}", target.metric)
+        })
+        .collect();
+    (!lines.is_empty()).then(|| format!("missed, and not known to be missed:\n{}", lines.join("\n")))
+}
+
 /// A number in few characters.
 pub fn short(value: f64) -> String {
     match value.abs() {
@@ -54,6 +69,9 @@ fn write_entry(entry: &Entry, text: &mut String) {
         let values: String = values(entry, target).map(|value| format!("{value:>11}")).collect();
         let verdict = match entry.verdict(target) {
             Verdict::Reached => "reached",
+            Verdict::Missed if entry.law.default && entry.broken().all(|broken| broken != target) => {
+                "missed, as known"
+            }
             Verdict::Missed => "missed",
             Verdict::Open => "not judged at these cells",
         };
@@ -101,4 +119,27 @@ fn values<'a>(entry: &'a Entry, target: &'a Target) -> impl Iterator<Item = Stri
         let value = run.result.as_ref().ok().and_then(|outcome| outcome.value(target.metric));
         value.map_or("-".to_owned(), short)
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use stickslip_validation::{BENCHMARKS, Outcome, Run, Tier, laws};
+
+    /// First contact as if measured a cell too early by every law.
+    #[test]
+    fn a_miss_of_the_default_law_that_is_not_known_is_named_and_those_of_others_are_not() {
+        let benchmark = BENCHMARKS.iter().find(|benchmark| benchmark.name == "M4").unwrap();
+        let resolution = *benchmark.due(Tier::Quick).last().unwrap();
+        for law in laws() {
+            let mut outcome = Outcome::default();
+            benchmark.targets.iter().for_each(|target| outcome.measure(target.metric, 1.0));
+            let entry = Entry { benchmark, law, runs: vec![Run { resolution, result: Ok(outcome) }] };
+            let said = broken(&Report { tier: Tier::Quick, entries: vec![entry] });
+            let expected = format!("M4 by {}, {} = {}: ", law.word, benchmark.measure, resolution.cells);
+            let held = law.default || law.word == "glued";
+            assert_eq!(said.is_some(), held, "{}: {said:?}", law.word);
+            assert!(!held || said.unwrap().contains(&expected), "{expected}");
+        }
+    }
 }

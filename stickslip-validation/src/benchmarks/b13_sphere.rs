@@ -2,7 +2,7 @@
 
 use super::maw_curve::Impact;
 use super::reasons::{AT_A_DISTANCE, EXTRAPOLATED, OWN_NORMALS, RELEASE};
-use crate::benchmark::{Allowed, Benchmark, Case, Laws, Resolution, Target, Tier};
+use crate::benchmark::{Allowed, Benchmark, Case, Laws, Reason, Resolution, Target, Tier};
 use crate::failure::Failure;
 use crate::measuring::farthest;
 use crate::outcome::Outcome;
@@ -19,34 +19,48 @@ pub const BENCHMARK: Benchmark = Benchmark {
               \\___/
         ________________  rigid floor
 ",
-    set_up: "Three dimensions, half of the sphere behind a plane of symmetry; R = E = rho = 1, nu = 0.4, touching the floor at the start, not spinning, at a normal speed v that Hertz \
-lets dent it by 0.09 R, so that the contact's largest radius a is 0.3 R; mu = 0.3; u0 = 1 to 9 mu v (quick: 1, 4 and 8).",
+    set_up: "Three dimensions, half of the sphere behind a plane of symmetry; R = E = rho = 1, nu = 0.47, touching the floor at the start, not spinning, at a normal speed v that Hertz \
+lets dent it by 0.04 R, so that the contact's largest radius a is 0.2 R; mu = 0.3; u0 = 1 to 9 mu v (quick: 1, 4 and 8).",
     exact: "The contact point's tangential velocity u = v_x - omega R after the impact. Below psi = 2(1 - nu) u0/((2 - nu) mu v) = 1 it sticks at first, above 4 chi - 1, chi = (7/2)(1 - nu)/(2 - nu), it slips throughout and \
-u1 = u0 - 7 mu v; in between the elastic patch throws it back, u1 < 0. A rigid floor couples normal and tangential compliance, which the curve leaves out; with nu = 0.4 Dundurs' constant is 0.17, and 0 at 0.5. Velocities over v.",
+u1 = u0 - 7 mu v; in between the elastic patch throws it back, u1 < 0. Friction acts on the floor, R less the dent below the centre, which shortens its arm by up to 4 %: the curve has that in it. A rigid floor couples normal and tangential compliance, which the curve \
+leaves out: Dundurs' constant is (1 - 2 nu)/(2 - 2 nu), here 0.06. Velocities over v.",
     laws: Laws::Contact,
     measure: "a/h",
-    resolutions: &[Resolution::quick(2.0), Resolution::full(4.0)],
+    resolutions: &[Resolution::quick(1.5), Resolution::full(4.0)],
     targets: &[
-        Target::new(OFF[0], 0.0, Allowed::Within(0.05), WHY).at(4.0),
+        Target::new(OFF[0], 0.0, Allowed::Within(0.05), WHY).at(4.0).missed_at(&[4.0]),
         Target::new(OFF[1], 0.0, Allowed::Within(0.05), WHY).at(4.0),
         Target::new(OFF[2], 0.0, Allowed::Within(0.05), WHY).at(4.0),
         Target::new(
             REVERSAL,
-            -0.572,
-            Allowed::AtMost(-0.286),
+            REVERSED,
+            Allowed::AtMost(0.5 * REVERSED),
             "half of the reversal at the least: the patch has a tangential elasticity",
         ),
     ],
-    reasons: &[OWN_NORMALS, AT_A_DISTANCE, RELEASE, EXTRAPOLATED],
+    reasons: &[
+        OWN_NORMALS,
+        AT_A_DISTANCE,
+        RELEASE,
+        EXTRAPOLATED,
+        Reason {
+            laws: &["surface"],
+            text: "Where it sticks, what counts is the ratio of two stiffnesses. Four cells on the patch make the normal one too large: the force is 7 % above Hertz, the contact 5 % shorter, \
+and friction's swing is cut off with it; springs 10 % stiffer along the normal move the curve by -0.05. Dundurs' coupling adds -0.02 (at nu = 0.4 it is -0.04). The nodes' pushes are smooth in time, to 1 % from step to step, \
+so that no sticking node slips for a short push, and where the sphere slips throughout it is within 0.01 of the curve.",
+        },
+    ],
     run,
 };
 
 const OFF: [&str; 3] = ["u1/v off at u0 = 1 to 3 mu v", "u1/v off at 4 to 6 mu v", "u1/v off at 7 to 9 mu v"];
 const REVERSAL: &str = "u1/v at u0 = 4 mu v";
+/// The curve there.
+const REVERSED: f64 = -0.642;
 const WHY: &str = "the benchmark's figure, the farthest of the angles; restitution 0.97 alone makes 0.03";
-const DENT: f64 = 0.09;
-const CONTACT_RADIUS: f64 = 0.3;
-const IMPACT: Impact = Impact { poisson_ratio: 0.4, friction: 0.3 };
+const DENT: f64 = 0.04;
+const CONTACT_RADIUS: f64 = 0.2;
+const IMPACT: Impact = Impact { poisson_ratio: 0.47, friction: 0.3, dent: DENT };
 
 fn run(case: &Case) -> Result<Outcome, Failure> {
     let mut outcome = Outcome::default();

@@ -2,7 +2,7 @@
 
 use super::reasons::{AT_A_DISTANCE, EXTRAPOLATED, PLANE_OF_PARTICLES};
 use super::rolling_sphere::roll;
-use crate::benchmark::{Allowed, Benchmark, Case, Laws, Resolution, Target};
+use crate::benchmark::{Allowed, Benchmark, Case, Laws, Reason, Resolution, Target};
 use crate::failure::Failure;
 use crate::outcome::Outcome;
 
@@ -57,7 +57,8 @@ E* = 7.64 MPa 1.555 m and 1.565 m. Static contact radius: R/6.",
             Allowed::Within(0.02),
             "the angle turned over the way in the second half: rolling is rolling",
         )
-        .at(8.0),
+        .at(8.0)
+        .missed_at(&[8.0]),
         Target::new("x, slipping", 1.0, Allowed::Within(0.01), FINE).at(8.0),
         Target::new("v, slipping", 1.0, Allowed::Within(0.02), FINE).at(8.0),
         Target::new(
@@ -75,7 +76,16 @@ E* = 7.64 MPa 1.555 m and 1.565 m. Static contact radius: R/6.",
         )
         .at(8.0),
     ],
-    reasons: &[AT_A_DISTANCE, EXTRAPOLATED, PLANE_OF_PARTICLES],
+    reasons: &[
+        AT_A_DISTANCE,
+        EXTRAPOLATED,
+        PLANE_OF_PARTICLES,
+        Reason {
+            laws: &["surface"],
+            text: "A soft sphere does not roll as a rigid one: the spin is the elastic sphere's. Friction that drives it lets it creep, by Kalker's linear theory by Q/(G a^2 C11) = 0.021 of its speed (Q/P = 2/7, a = R/6, C11 = 4.3, G = 5.5 MPa for both bodies), \
+more where part of the patch slips, while its surface, shorter by 0.02 under Hertz's pressure, turns it faster. R/8 gives 0.977.",
+        },
+    ],
     run,
 };
 

@@ -43,6 +43,12 @@ half-height as strained; the worst interface, averaged over the last fifth of th
             Allowed::Within(0.03),
             "the average over the stack's oscillations",
         ),
+        Target::new(
+            "energy drift",
+            0.0,
+            Allowed::Between(-1.0, 0.01),
+            "over the largest energy that moved or was stored; the stack may come to rest, it must not gain",
+        ),
     ],
     reasons: &[],
     run,
@@ -110,6 +116,7 @@ rigid = {{}}
     outcome.measure("creep [cells]", after - before);
     outcome.measure("base stress over weight", -mean(&stresses) / weight);
     outcome.include(trial);
+    outcome.measure("energy drift", outcome.record.energy_drift);
     Ok(outcome)
 }
 

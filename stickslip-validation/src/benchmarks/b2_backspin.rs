@@ -25,7 +25,9 @@ with E* = 7.64 MPa 0.974 m.",
     measure: "R/h",
     resolutions: &[Resolution::quick(4.0), Resolution::full(8.0)],
     targets: &[
-        Target::new("x", 1.0, Allowed::Within(0.05), "cells of R/4 do not resolve a contact of R/6").at(4.0),
+        Target::new("x", 1.0, Allowed::Within(0.05), "cells of R/4 do not resolve a contact of R/6")
+            .at(4.0)
+            .missed_at(&[4.0]),
         Target::new("x", 1.0, Allowed::Within(0.01), FINE).at(8.0),
         Target::new("v", 1.0, Allowed::Within(0.02), FINE).at(8.0),
         Target::new(
@@ -48,14 +50,16 @@ with E* = 7.64 MPa 0.974 m.",
             Allowed::Within(0.02),
             "the angle turned over the way in the second half: rolling is rolling",
         )
-        .at(8.0),
+        .at(8.0)
+        .missed_at(&[8.0]),
         Target::new(
             "kinetic energy over 2/7 of the first",
             1.0,
             Allowed::Within(0.04),
             "twice what the velocity may be off",
         )
-        .at(8.0),
+        .at(8.0)
+        .missed_at(&[8.0]),
     ],
     reasons: &[
         OWN_NORMALS,
@@ -64,7 +68,13 @@ with E* = 7.64 MPa 0.974 m.",
         PLANE_OF_PARTICLES,
         Reason {
             laws: &["surface"],
-            text: "The sphere is set down spinning on a patch of two thirds of a cell at R/4, and skips: it is off the plane for part of the time in which it should be rubbing. At R/8 it is not.",
+            text: "The sphere is set down spinning on a patch of two thirds of a cell at R/4, and skips: it is off the plane for part of the time in which it should be rubbing. At R/8 it is not. \
+The push is also a twentieth of a cell ahead of the centre, for nodes that come into contact stop and those that leave are not pulled: that brakes the roll.",
+        },
+        Reason {
+            laws: &["surface"],
+            text: "A soft sphere does not roll as a rigid one. Hertz's pressure shortens its surface in the patch, by (1 - 2 nu)(1 + nu) p0/(3 E) = 0.019, and the arc is longer than its chord by a^2/(6 R^2) = 0.004, so that it turns by 0.02 more than its way over R. \
+And set down at once it bounces for the whole run, with some 0.4 m/s (sqrt(g d) is 0.5), which is in its kinetic energy: 0.05 of it.",
         },
     ],
     run,

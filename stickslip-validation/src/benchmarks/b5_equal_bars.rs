@@ -23,28 +23,32 @@ moves at v, and no energy is lost. Contact counts as long as its force is a tent
     measure: "L/h",
     resolutions: &[Resolution::quick(25.0), Resolution::quick(50.0), Resolution::full(100.0)],
     targets: &[
-        Target::new(RESTITUTION[0], 1.0, Allowed::AtLeast(0.95), SHARP),
-        Target::new(RESTITUTION[1], 1.0, Allowed::AtLeast(0.95), SHARP),
+        Target::new(RESTITUTION[0], 1.0, Allowed::AtLeast(0.95), SHARP).at(50.0),
+        Target::new(RESTITUTION[1], 1.0, Allowed::AtLeast(0.95), SHARP).at(50.0),
         Target::new(
             END[0],
             1.0,
             Allowed::Between(1.0, 1.04),
             "bars must not let go early; two cells of travel of the wave are 0.04 at 50 cells",
-        ),
-        Target::new(END[1], 1.0, Allowed::Between(1.0, 1.04), "the same at ten times the speed"),
+        )
+        .at(50.0),
+        Target::new(END[1], 1.0, Allowed::Between(1.0, 1.04), "the same at ten times the speed").at(50.0),
         Target::new(
             ENERGY[0],
             0.0,
             Allowed::Between(-0.03, 1e-4),
             "what restitution allows; a gain is never right, and 1e-4 is the time step's",
-        ),
-        Target::new(ENERGY[1], 0.0, Allowed::Between(-0.03, 1e-4), "the same at ten times the speed"),
+        )
+        .at(50.0),
+        Target::new(ENERGY[1], 0.0, Allowed::Between(-0.03, 1e-4), "the same at ten times the speed")
+            .at(50.0),
         Target::new(
             "strain/kinetic energy at L/c",
             1.0,
             Allowed::Within(0.05),
             "exact but for the ringing behind the fronts",
-        ),
+        )
+        .at(50.0),
     ],
     reasons: &[
         AT_A_DISTANCE,

@@ -37,7 +37,8 @@ measured in cells of approach, positive too early.",
             0.0,
             Allowed::Within(0.01),
             "smooth loading: nothing may be lost but to what the grid does not resolve",
-        ),
+        )
+        .missed_at(&[20.0, 40.0]),
         Target::new("rebound over approach", 1.0, Allowed::AtMost(1.0), "no collision gains"),
     ],
     reasons: &[

@@ -28,7 +28,8 @@ in both directions and 8 directions from 0 to 78.75 degrees (quick: 4 and 2). Pa
             0.0,
             Allowed::Within(0.01),
             "a hundredth is what results of one grid may be trusted to",
-        ),
+        )
+        .missed_at(&[6.0]),
         Target::new(
             "deviation of first contact [cells]",
             0.0,

@@ -13,6 +13,7 @@ mod b5_equal_bars;
 mod b7_impedance_mismatch;
 mod b9_two_disks;
 mod corners;
+mod die;
 mod identity;
 mod m1_momentum;
 mod m2_dissipation;
@@ -25,6 +26,7 @@ mod meeting;
 mod reasons;
 mod rigid_half_space;
 mod rolling_sphere;
+mod turning_disk;
 
 use crate::benchmark::Benchmark;
 
@@ -39,6 +41,8 @@ pub static BENCHMARKS: &[Benchmark] = &[
     identity::BENCHMARK,
     corners::BENCHMARK,
     rigid_half_space::BENCHMARK,
+    die::BENCHMARK,
+    turning_disk::BENCHMARK,
     b1_incline::BENCHMARK,
     b2_backspin::BENCHMARK,
     b3_block_on_incline::BENCHMARK,

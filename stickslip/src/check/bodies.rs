@@ -28,6 +28,12 @@ pub(super) struct Extent {
     pub centers: Bounds,
 }
 
+impl Extent {
+    /// Of a rigid body without bounds.
+    const UNBOUNDED: Extent =
+        Extent { particles: 0, mass: 0.0, bounds: Bounds::EVERYTHING, centers: Bounds::EVERYTHING };
+}
+
 /// Each body's extent, in the order of the scene.
 pub(super) fn measure(scene: &Scene) -> Result<Vec<Extent>, Problem> {
     // Collected before the first problem is taken, so that it is the first in the scene and not the first in time.
@@ -37,7 +43,8 @@ pub(super) fn measure(scene: &Scene) -> Result<Vec<Extent>, Problem> {
 
 fn measure_body(scene: &Scene, i: usize) -> Result<Extent, Problem> {
     let (body, lattice) = (&scene.bodies[i], lattice(scene));
-    let bounds = body.shape.bounds(lattice.dimension).expect("unbounded shapes are refused before");
+    // Only rigid bodies may be without bounds; those have particles where others come near.
+    let Some(bounds) = body.shape.bounds(lattice.dimension) else { return Ok(Extent::UNBOUNDED) };
     let sites = lattice.sites(&bounds);
     if sites > MOST_SITES {
         return Err(Problem {
@@ -126,7 +133,7 @@ pub(super) fn smallest_extent(shape: &Shape, dimension: usize) -> f64 {
 pub(super) fn check_domain(scene: &Scene, extents: &[Extent]) -> Result<(), Problem> {
     let Some(domain) = &scene.domain else { return Ok(()) };
     let lattice = lattice(scene);
-    for (i, extent) in extents.iter().enumerate() {
+    for (i, extent) in extents.iter().enumerate().filter(|(_, extent)| extent.bounds.is_finite()) {
         for k in 0..lattice.dimension {
             let sides = [
                 (extent.bounds.min[k], extent.centers.min[k], domain.min[k], -1.0, "below its lower"),

@@ -5,6 +5,7 @@
 
 mod bodies;
 mod contact;
+mod flat;
 mod hertz;
 mod measurements;
 mod neighbours;
@@ -15,7 +16,7 @@ mod shapes;
 mod table;
 mod touch;
 
-pub use contact::{ContactEstimate, Verdict};
+pub use contact::{ContactEstimate, Errors, Verdict};
 pub use hertz::{Hertz, Patch};
 pub use report::{BodyReport, Machine, MaterialReport, Report, report};
 
@@ -26,7 +27,7 @@ use crate::scene::{Problem, Scene};
 ///
 /// # Errors
 /// The first of: settings that allow no step, a material that is not stable, a domain whose walls miss the grid, motion out
-/// of the plane, a shape that is not one, is unbounded or holds no particle, a body outside the domain, two bodies in one place.
+/// of the plane, a shape that is not one or holds no particle, a body that deforms and is unbounded, a body outside the domain, two bodies in one place.
 pub fn problems(scene: &Scene) -> Result<(), Problem> {
     examine(scene).map(|_| ())
 }
@@ -67,6 +68,12 @@ mod tests {
     pub fn free(name: &str, material: usize, shape: Shape) -> Body {
         let motion = Motion::Free { velocity: [0.0; 3], spin: [0.0; 3] };
         Body { name: name.into(), material, shape, particles: Arrangement::Lattice, motion }
+    }
+
+    /// A rigid body that does not move.
+    pub fn at_rest(name: &str, shape: Shape) -> Body {
+        let still = || [0.0; 3].map(Expression::Constant);
+        Body { motion: Motion::Rigid { velocity: still(), spin: still() }, ..free(name, 1, shape) }
     }
 
     /// Bodies of two materials, the second ten times stiffer and denser, in unbounded space without gravity.

@@ -4,6 +4,7 @@ use super::bodies::{Extent, smallest_extent};
 use super::contact::{ContactEstimate, Verdict, estimates, starting_velocity};
 use super::table::short;
 use super::{examine, lattice};
+use crate::geometry::Bounds;
 use crate::scene::{Body, Dimension, Motion, Precision, Problem, Scene};
 use crate::tensor::{Matrix, Vector};
 use serde::Serialize;
@@ -80,7 +81,7 @@ pub struct BodyReport {
     pub particles: usize,
     /// Mass of the particles [kg], in the plane per metre of depth.
     pub mass: f64,
-    /// Sides of the box round the particles [m].
+    /// Sides of the box round the particles, infinite without bounds [m].
     pub size: [f64; 3],
 }
 
@@ -164,6 +165,16 @@ fn longitudinal_speed(scene: &Scene, material: usize) -> f64 {
     (modulus / material.density).sqrt()
 }
 
+/// Half the diagonal of a body's box; of one without bounds, of the box around all that have some [m].
+fn half_diagonal(extent: &Extent, extents: &[Extent]) -> f64 {
+    let finite = extents.iter().map(|extent| extent.bounds).filter(Bounds::is_finite);
+    let bounds = match extent.bounds.is_finite() {
+        true => extent.bounds,
+        false => finite.fold(Bounds::EMPTY, |all, bounds| all.united(&bounds)),
+    };
+    0.5 * Vector(bounds.size()).norm()
+}
+
 /// courant h / max(c + |v|) at the start, at most the longest step that the scene allows [s].
 fn time_step(scene: &Scene, extents: &[Extent]) -> f64 {
     let signal = |(body, extent): (&Body, &Extent)| {
@@ -171,7 +182,7 @@ fn time_step(scene: &Scene, extents: &[Extent]) -> f64 {
             Motion::Free { spin, .. } => (longitudinal_speed(scene, body.material), *spin),
             Motion::Rigid { spin, .. } => (0.0, spin.each_ref().map(|s| s.at(0.0))),
         };
-        let reach = 0.5 * Vector(extent.bounds.size()).norm();
+        let reach = half_diagonal(extent, extents);
         wave + Vector(starting_velocity(body)).norm() + Vector(spin).norm() * reach
     };
     let fastest = scene.bodies.iter().zip(extents).map(signal).fold(0.0, f64::max);
@@ -214,8 +225,9 @@ fn narrow_contacts(contacts: &[ContactEstimate]) -> Option<String> {
     let narrow = contacts.iter().filter(|contact| contact.verdict == Verdict::NotResolved).count();
     let narrowest = contacts.first().filter(|_| narrow > 0)?;
     Some(format!(
-        "not resolved: {narrow} of {} contacts; the narrowest needs cells of {} m to be marginal, {} m to be resolved",
+        "not resolved: {narrow} of {} contacts; in the narrowest {}; it needs cells of {} m to be marginal, {} m to be resolved",
         contacts.len(),
+        narrowest.off,
         short(narrowest.patch.radius),
         short(0.25 * narrowest.patch.radius)
     ))

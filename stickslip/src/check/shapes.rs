@@ -1,18 +1,22 @@
 //! Shapes that are none: no radius, corners the wrong way round, only of three dimensions in the plane, without bounds.
 
 use crate::geometry::{Arrangement, FITTED_SHAPES, Shape, fits};
-use crate::scene::{Problem, Scene};
+use crate::scene::{Motion, Problem, Scene};
 
 pub(super) fn check(scene: &Scene) -> Result<(), Problem> {
     for (i, body) in scene.bodies.iter().enumerate() {
         let key = format!("bodies[{i}].shape");
         check_shape(&body.shape, &key, scene.dimension.axes())?;
-        if body.shape.bounds(scene.dimension.axes()).is_none() {
+        let rigid = matches!(body.motion, Motion::Rigid { .. });
+        if !rigid && body.shape.bounds(scene.dimension.axes()).is_none() {
             return Err(Problem {
                 key,
-                found: format!("`{}` is unbounded", body.name),
-                allowed: "a shape of finite size".into(),
-                help: Some("cut it with a box: an intersection of the box and the half-space".into()),
+                found: format!("`{}` deforms and is unbounded", body.name),
+                allowed: "a shape of finite size; a rigid body may be unbounded".into(),
+                help: Some(
+                    "make it rigid = {}, or cut it with a box: an intersection of the box and the half-space"
+                        .into(),
+                ),
             });
         }
         if body.particles == Arrangement::Fitted && !fits(&body.shape, scene.dimension.axes()) {
@@ -86,6 +90,9 @@ fn check_shape(shape: &Shape, key: &str, dimension: usize) -> Result<(), Problem
             let upright = dimension == 2 || height[0] < height[1] && finite(height);
             require(upright, "polygon.height", format!("{height:?} m"), "the lower z, then the upper z")
         }
+        Shape::Mesh(_) => {
+            require(dimension == 3, "mesh", "a mesh in a plane scene".into(), "a ball, box or polygon")
+        }
         Shape::Union(shapes) => check_all(shapes, &format!("{key}.union"), dimension),
         Shape::Intersection(shapes) => check_all(shapes, &format!("{key}.intersection"), dimension),
         Shape::Difference(shapes) => check_all(shapes, &format!("{key}.difference"), dimension),
@@ -112,7 +119,7 @@ fn check_all(shapes: &[Shape], key: &str, dimension: usize) -> Result<(), Proble
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::check::tests::{free, scene};
+    use crate::check::tests::{at_rest, free, scene};
     use crate::scene::Dimension;
 
     fn key_of(dimension: Dimension, shape: Shape) -> String {
@@ -149,14 +156,20 @@ mod tests {
     }
 
     #[test]
-    fn an_unbounded_body_is_refused_with_the_way_out() {
+    fn an_unbounded_body_that_deforms_is_refused_with_the_way_out() {
         let floor = Shape::HalfSpace { point: [0.0; 3], normal: [0.0, 0.0, 1.0] };
         let problem =
             check(&scene(Dimension::Space, 0.1, vec![free("floor", 0, floor)])).expect_err("unbounded");
         assert_eq!(
             (problem.key.as_str(), problem.found.as_str()),
-            ("bodies[0].shape", "`floor` is unbounded")
+            ("bodies[0].shape", "`floor` deforms and is unbounded")
         );
         assert!(problem.help.is_some());
+    }
+
+    #[test]
+    fn a_rigid_body_may_be_unbounded() {
+        let floor = Shape::HalfSpace { point: [0.0; 3], normal: [0.0, 0.0, 1.0] };
+        assert_eq!(check(&scene(Dimension::Space, 0.1, vec![at_rest("floor", floor)])), Ok(()));
     }
 }

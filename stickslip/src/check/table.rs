@@ -57,7 +57,10 @@ impl Report {
         for body in self.bodies.iter().take(BODIES) {
             let BodyReport { name, material: of, particles, mass, size, .. } = body;
             let size: Vec<_> = size[..self.dimension.axes()].iter().map(|&s| short(s)).collect();
-            let (mass, size) = (short(*mass), size.join(" x "));
+            let (particles, mass, size) = match body.size.iter().all(|side| side.is_finite()) {
+                true => (particles.to_string(), short(*mass), size.join(" x ")),
+                false => ("near others".to_string(), "-".to_string(), "unbounded".to_string()),
+            };
             let rigid = if body.rigid { ", rigid" } else { "" };
             writeln!(f, "{name:width$}  {of:material$}  {particles:>11}  {mass:>11}  {size}{rigid}")?;
         }

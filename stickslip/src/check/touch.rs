@@ -1,27 +1,29 @@
-//! Where a ball of one body is nearest to another body.
+//! Where a ball or a cylinder of one body is nearest to another body.
 
 use super::bodies::Extent;
 use crate::geometry::{RoundPart, Shape};
 use crate::scene::{Body, Scene};
-use crate::tensor::Vector;
+use crate::tensor::{Vector, cross};
 
 /// Lengths that differ by this share of a radius are the same.
 pub(super) const SAME: f64 = 1e-6;
 
-/// A ball of one body that faces another body.
+/// A ball of one body that faces another body, or a cylinder that does so all along.
 pub(super) struct Touch {
     pub pair: [usize; 2],
-    /// Masses that move: of the ball itself, even if a symmetry plane cuts it, and of the other body [kg].
+    /// Masses that move: of the ball or cylinder itself, even if a symmetry plane cuts it, and of the other body [kg].
     pub masses: [f64; 2],
     /// Effective radius [m].
     pub radius: f64,
     pub gap: f64,
     /// Unit vector from the ball's centre to the other body.
     pub direction: Vector<f64, 3>,
+    /// Length of the line in which cylinders touch in space [m].
+    pub length: Option<f64>,
 }
 
 impl Touch {
-    /// Where a ball of the first body is nearest to the second; `None` if no ball faces it.
+    /// Where a ball or cylinder of the first body is nearest to the second; `None` if none faces it.
     pub(super) fn of(scene: &Scene, extents: &[Extent], pair: [usize; 2]) -> Option<Touch> {
         let [first, second] = pair.map(|i| &scene.bodies[i]);
         let full = |part: &RoundPart| !part.hollow;
@@ -32,13 +34,21 @@ impl Touch {
             let curvature = opposite.map_or(0.0, |part| if part.hollow { -1.0 } else { 1.0 } / part.radius);
             let radius = 1.0 / (1.0 / ball.radius + curvature);
             let whole = |part: RoundPart, body: &Body| {
-                let ball = Shape::Ball { center: part.center, radius: part.radius };
-                ball.volume(scene.dimension.axes())
-                    .map(|volume| volume * scene.materials[body.material].density)
+                let volume = solid(&part).volume(scene.dimension.axes());
+                volume.map(|volume| volume * scene.materials[body.material].density)
             };
+            let lengths = [Some(ball), opposite].into_iter().flatten().filter_map(|part| part.axis);
+            let length = lengths.map(|axis| Vector(axis).norm()).reduce(f64::min);
             let other_ball = opposite.filter(full).and_then(|part| whole(part, second));
             let masses = [whole(ball, first)?, other_ball.unwrap_or(extents[pair[1]].mass)];
-            (radius > 0.0 && radius.is_finite()).then_some(Touch { pair, masses, radius, gap, direction })
+            (radius > 0.0 && radius.is_finite()).then_some(Touch {
+                pair,
+                masses,
+                radius,
+                gap,
+                direction,
+                length,
+            })
         });
         touches.min_by(|a, b| a.gap.total_cmp(&b.gap))
     }
@@ -49,11 +59,19 @@ fn facing(ball: &RoundPart, first: &Body, second: &Body, dimension: usize) -> Op
     let distance = second.shape.distance(ball.center, dimension);
     let direction = Vector(second.shape.direction_to(ball.center, SAME * ball.radius, dimension)?);
     let point = Vector(ball.center) + direction * ball.radius;
+    if let Some(axis) = ball.axis {
+        // All along, and not with an end.
+        let ends = [-0.5, 0.5].map(|part| std::array::from_fn(|k| ball.center[k] + part * axis[k]));
+        let even = |end| (second.shape.distance(end, dimension) - distance).abs() <= SAME * ball.radius;
+        if direction.dot(Vector(axis)).abs() > SAME * ball.radius || !ends.into_iter().all(even) {
+            return None;
+        }
+    }
     let on_surface = first.shape.distance(point.0, dimension).abs() < SAME * ball.radius;
     (distance > 0.0 && on_surface).then_some((distance - ball.radius, direction))
 }
 
-/// The ball of the opposite shape that holds the point nearest to a ball.
+/// The ball of the opposite shape, to a cylinder the cylinder beside it, that holds the point nearest to a ball.
 fn opposite_ball(
     opposite: &Shape,
     ball: &RoundPart,
@@ -62,11 +80,23 @@ fn opposite_ball(
     dimension: usize,
 ) -> Option<RoundPart> {
     let foot = Vector(ball.center) + direction * (ball.radius + gap);
-    let holds = |part: &RoundPart| {
-        let sphere = Shape::Ball { center: part.center, radius: part.radius };
-        sphere.distance(foot.0, dimension).abs() < SAME * part.radius
+    let along = |part: &RoundPart| match (ball.axis, part.axis) {
+        (Some(a), Some(b)) => Vector(cross(a, b)).norm() <= SAME * Vector(a).norm() * Vector(b).norm(),
+        (None, None) => true,
+        _ => false,
     };
+    let holds =
+        |part: &RoundPart| along(part) && solid(part).distance(foot.0, dimension).abs() < SAME * part.radius;
     opposite.round_parts(dimension).into_iter().find(holds)
+}
+
+/// A round part by itself.
+fn solid(part: &RoundPart) -> Shape {
+    let RoundPart { center, radius, .. } = *part;
+    part.axis.map_or(Shape::Ball { center, radius }, |axis| {
+        let [start, end] = [-0.5, 0.5].map(|part| std::array::from_fn(|k| center[k] + part * axis[k]));
+        Shape::Cylinder { start, end, radius }
+    })
 }
 
 #[cfg(test)]

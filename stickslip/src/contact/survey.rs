@@ -161,6 +161,12 @@ fn trace<T: Real>() -> T {
     T::EPSILON * T::EPSILON
 }
 
+/// The same for a rigid body, which acts in full wherever it is: a larger one, so that round-off of its position does not decide where. It is
+/// that of a particle that reaches into the node's surroundings by this fraction of a cell.
+fn rigid_trace<T: Real>() -> T {
+    T::EPSILON.sqrt()
+}
+
 /// What a survey looks at.
 pub struct Near<'a, T, const D: usize> {
     /// The blocks.
@@ -290,9 +296,11 @@ impl<T: Laned, const D: usize> Near<'_, T, D> {
         pairs.clear();
         let several =
             (present.iter()).fold([0, 0], |[once, twice], nodes| [once | nodes, twice | once & nodes])[1];
-        let (n, trace) = (nodes_per_block(D), trace::<T>() * self.cell_volume());
+        let n = nodes_per_block(D);
         for (&slot, present) in slots.iter().zip(&mut *present) {
-            let least = trace * self.bodies[self.cover.slots[slot as usize].0 as usize].density;
+            let owner = &self.bodies[self.cover.slots[slot as usize].0 as usize];
+            let trace = if owner.rigid { rigid_trace::<T>() } else { trace::<T>() };
+            let least = trace * self.cell_volume() * owner.density;
             let mut nodes = *present & several & free;
             while let Some(local) = next_of(&mut nodes) {
                 if self.field.nodes[slot as usize * n + local].mass <= least {

@@ -1,6 +1,7 @@
 //! What contact did to each pair of bodies, summed over nodes and steps.
 
 use super::Impulse;
+use crate::boundary::Boundary;
 use crate::door::{ContactState, Patch};
 use crate::grid::Lattice;
 use crate::tensor::Real;
@@ -20,6 +21,9 @@ struct Sum {
     friction: f64,
     /// Way of slip, the mean over the area of each use [m].
     slip: f64,
+    /// Area times duration [m^2 s], and with the gap [m^3 s].
+    area: f64,
+    gap: f64,
     /// The last use in which the pair touched.
     last_use: u64,
     last: Touching,
@@ -28,9 +32,13 @@ struct Sum {
 /// What a pair is like in one use of contact.
 #[derive(Clone, Copy, Debug, Default)]
 struct Touching {
+    /// For how long [s].
+    duration: f64,
     nodes: usize,
     /// [m^2]
     area: f64,
+    /// Mirrors that the contact goes through, a bit each.
+    mirrors: u32,
     /// Area times gap [m^3] and area times slip [m^3].
     gap: f64,
     slip: f64,
@@ -56,6 +64,10 @@ pub struct Tally {
     pub friction: f64,
     /// How many impulses were reduced, so that no cell strains by more than its rule allows.
     pub scaled: u64,
+    /// At how many nodes pairs had not come to rest when the last sweep over them was done.
+    pub unsettled: u64,
+    /// Work that bonds took from the bodies where they gave way [J].
+    pub adhesion: f64,
     /// Work that rigid bodies' prescribed motion did on the others [J].
     pub work: f64,
 }
@@ -65,7 +77,7 @@ pub struct Tally {
 struct Touched {
     bodies: [usize; 2],
     sum: Sum,
-    /// Largest area over which they touched since the start [m^2], if they pushed.
+    /// Largest area over which they touched since the start, images in mirrors included [m^2], if they pushed.
     largest: Option<f64>,
 }
 
@@ -90,6 +102,12 @@ impl Hasher for Mixer {
 }
 
 impl Sum {
+    /// Area times duration [m^2 s], and with the gap [m^3 s], with those of the last use.
+    fn touched(&self) -> [f64; 2] {
+        let Touching { duration, area, gap, .. } = self.last;
+        [self.area + area * duration, self.gap + gap * duration]
+    }
+
     /// Way of slip with that of the last use [m].
     fn slipped(&self) -> f64 {
         if self.last.area > 0.0 { self.slip + self.last.slip / self.last.area } else { self.slip }
@@ -98,17 +116,19 @@ impl Sum {
     /// Closes the use before `next`, whose touching nodes are all known now.
     fn close(&mut self, next: u64) {
         if self.last_use != next {
+            [self.area, self.gap] = self.touched();
             (self.slip, self.last_use, self.last) = (self.slipped(), next, Touching::default());
         }
     }
 }
 
 impl Tally {
-    /// Adds the impulses of one use of contact.
+    /// Adds the impulses of one use of contact; surfaces count as touching for `duration` [s].
     pub fn add<'a, T: Real, const D: usize>(
         &mut self,
         impulses: impl Iterator<Item = &'a Impulse<T, D>>,
-        lattice: &Lattice<T, D>,
+        (lattice, boundary): (&Lattice<T, D>, &Boundary),
+        duration: f64,
     ) {
         self.uses += 1;
         self.present.clear();
@@ -128,9 +148,13 @@ impl Tally {
             let sum = &mut self.pairs[place].sum;
             if sum.last_use != self.uses {
                 sum.close(self.uses);
+                sum.last.duration = duration;
                 self.present.push(place);
             }
-            let area = impulse.area.f64();
+            // A node on a mirror sees the whole of the surface around it, and half of that is the image's.
+            let mirrors = boundary.mirrors_through(impulse.node);
+            let area = impulse.area.f64() / f64::from(1_u32 << mirrors.count_ones());
+            sum.last.mirrors |= mirrors;
             sum.last.area += area;
             sum.last.gap += area * (impulse.gap * lattice.cell).f64();
             sum.last.slip += area * impulse.slip.f64();
@@ -156,7 +180,8 @@ impl Tally {
         for &place in &self.present {
             let Touched { sum, largest, .. } = &mut self.pairs[place];
             if sum.last.nodes > 0 {
-                *largest = Some(largest.unwrap_or_default().max(sum.last.area));
+                let whole = sum.last.area * f64::from(1_u32 << sum.last.mirrors.count_ones());
+                *largest = Some(largest.unwrap_or_default().max(whole));
             }
         }
     }
@@ -205,6 +230,7 @@ impl Tally {
     fn means(&self, now: f64) -> Vec<ContactState> {
         let elapsed = now - self.since;
         self.ordered(|Touched { bodies: [body_a, body_b], sum, .. }| {
+            let [area, gap] = sum.touched();
             (sum.magnitude > 0.0).then(|| ContactState {
                 body_a: *body_a,
                 body_b: *body_b,
@@ -213,8 +239,8 @@ impl Tally {
                 tangential: sum.tangential.iter().map(|j| j * j).sum::<f64>().sqrt() / elapsed,
                 nodes: sum.last.nodes,
                 position: sum.moment.map(|x| x / sum.magnitude),
-                area: sum.last.area,
-                gap: if sum.last.area > 0.0 { sum.last.gap / sum.last.area } else { 0.0 },
+                area: area / elapsed,
+                gap: if area > 0.0 { gap / area } else { 0.0 },
                 slip: sum.slipped(),
                 friction: sum.friction,
             })
@@ -226,5 +252,57 @@ impl Tally {
         self.ordered(|Touched { bodies: [body_a, body_b], largest, .. }| {
             largest.map(|area| Patch { body_a: *body_a, body_b: *body_b, area })
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::boundary::Wall;
+    use crate::contact::{Change, Span};
+    use crate::scene::Face;
+    use crate::tensor::Vector;
+
+    fn pushing(node: [i32; 2]) -> Impulse<f64, 2> {
+        let push = Vector([0.0, 1.0]);
+        Impulse {
+            bodies: [0, 1],
+            nodes: [0, 1],
+            node,
+            gap: -0.2,
+            area: 0.5,
+            slip: 0.0,
+            change: Change { impulse: [push, -push], normal: -1.0, ..Change::NONE },
+            velocity: [Vector::ZERO; 2],
+            span: Span::WholeStep,
+            work: 0.0,
+        }
+    }
+
+    /// Two nodes of 0.5 m touch for a quarter of the time: mean force and mean area have the pressure of that quarter. The first use of a
+    /// step counts for no time.
+    #[test]
+    fn area_and_gap_are_means_over_time() {
+        let (mut tally, lattice) = (Tally::default(), Lattice::new(Vector::ZERO, 0.5));
+        let nodes = [pushing([3, 0]), pushing([4, 0])];
+        tally.add(nodes.iter(), (&lattice, &Boundary::default()), 0.0);
+        tally.add(nodes.iter(), (&lattice, &Boundary::default()), 0.1);
+        tally.add([].iter(), (&lattice, &Boundary::default()), 0.3);
+        let found = &tally.take(0.4)[0];
+        assert!((found.area - 0.25).abs() < 1e-15 && (found.gap + 0.1).abs() < 1e-15, "{found:?}");
+        assert_eq!(tally.patches()[0].area, 1.0);
+    }
+
+    /// On the mirror half a node's surface is the image's, and the patch is twice what is before the mirror.
+    #[test]
+    fn a_patch_goes_on_behind_the_mirror() {
+        let (mut tally, lattice) = (Tally::default(), Lattice::new(Vector::ZERO, 0.5));
+        let mirror = Wall { axis: 0, node: 3, inward: 1, face: Face::Symmetry };
+        let boundary = Boundary::new(vec![mirror]);
+        tally.add([pushing([3, 0]), pushing([4, 0])].iter(), (&lattice, &boundary), 1.0);
+        assert_eq!((tally.take(1.0)[0].area, tally.patches()[0].area), (0.75, 1.5));
+        let (mut aside, far) = (Tally::default(), pushing([4, 0]));
+        aside.add([far].iter(), (&lattice, &boundary), 1.0);
+        assert_eq!(aside.patches()[0].area, 0.5);
     }
 }

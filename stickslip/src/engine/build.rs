@@ -2,6 +2,7 @@
 
 use super::cpu::Workshop;
 use super::rigid::RigidMotion;
+use super::unbounded::Unbounded;
 use super::watch::Watch;
 use super::{Engine, Path};
 use crate::basis::{Basis, Gimp, Linear};
@@ -60,9 +61,22 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let sites = check::lattice(scene);
         let mut bodies = Vec::new();
         let mut rigid = Vec::new();
+        let mut unbounded = Vec::new();
         for body in &scene.bodies {
-            let filling = fill(&body.shape, &sites, body.particles).expect("a checked shape can be filled");
-            let center = filling.center();
+            let filled = fill(&body.shape, &sites, body.particles);
+            let center = filled.as_ref().map_or(body.shape.anchor(sites.dimension), Filling::center);
+            let filling = filled.unwrap_or_else(|| {
+                unbounded.push(Unbounded {
+                    body: bodies.len(),
+                    shape: body.shape.clone(),
+                    sites,
+                    cell: scene.discretization.cell,
+                    mirrors: mirrors::<D>(scene),
+                    served: Vec::new(),
+                    pose: None,
+                });
+                Filling { sites: Vec::new() }
+            });
             let motion = prescribed(body, center);
             bodies.push(Body {
                 name: body.name.clone(),
@@ -82,6 +96,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         Ok(Engine {
             bodies,
             rigid,
+            unbounded,
             lattice: Lattice::new(Vector::of(sites.origin), T::of(scene.discretization.cell)),
             domain: scene.domain.as_ref().map(|domain| [domain.min, domain.max].map(Vector::of)),
             gravity: Vector::of(scene.gravity),

@@ -49,8 +49,18 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
     }
 
     fn bodies(&self) -> Vec<BodyState> {
-        (self.bodies.iter())
-            .map(|body| {
+        (self.bodies.iter().enumerate())
+            .map(|(i, body)| {
+                if let Some(motion) = self.without_bounds(i) {
+                    return BodyState {
+                        mass: 0.0,
+                        position: motion.center,
+                        velocity: motion.velocity(),
+                        spin: motion.spin(),
+                        kinetic: 0.0,
+                        strain: 0.0,
+                    };
+                }
                 let totals = body.totals();
                 BodyState {
                     mass: totals.mass,
@@ -68,7 +78,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
         let mut ledger = Ledger {
             friction: self.tally.friction,
             external_work: self.tally.work,
+            adhesion: self.tally.adhesion,
             scaled_impulses: self.tally.scaled,
+            unsettled_nodes: self.tally.unsettled,
             ..Ledger::default()
         };
         let gravity = self.gravity.space();
@@ -84,6 +96,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
             + ledger.strain
             + ledger.potential
             + ledger.friction
+            + ledger.adhesion
             + ledger.plastic
             + ledger.damping
             - ledger.external_work;

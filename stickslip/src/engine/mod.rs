@@ -7,6 +7,7 @@ mod look;
 mod pass;
 mod rigid;
 mod tile;
+mod unbounded;
 mod verbs;
 mod watch;
 
@@ -27,6 +28,7 @@ use crate::transfer::Share;
 use cpu::Workshop;
 use rigid::RigidMotion;
 use std::marker::PhantomData;
+use unbounded::Unbounded;
 use watch::Watch;
 
 /// A simulation in `D` dimensions and precision `T`, with shape functions `B`.
@@ -34,6 +36,8 @@ pub struct Engine<T, const D: usize, B> {
     bodies: Vec<Body<T, D>>,
     /// Prescribed motion of rigid bodies.
     rigid: Vec<Option<RigidMotion>>,
+    /// Rigid bodies without bounds.
+    unbounded: Vec<Unbounded<D>>,
     lattice: Lattice<T, D>,
     /// Lower and upper corner of the domain [m].
     domain: Option<[Vector<T, D>; 2]>,
@@ -87,12 +91,12 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.contact(dt); //                            v~ from integrated velocities
         match when {
             StressUpdate::First => {
-                self.friction_work();
+                self.friction_work(dt);
                 self.carry();
                 self.accept_and_displace(dt) //         particles: v += dv, x += v dt
             }
             StressUpdate::Last => {
-                self.friction_work();
+                self.friction_work(dt);
                 self.carry();
                 self.accept_strain_and_displace(dt) //  particles: v += dv, F, sigma, x += v dt
             }
@@ -100,7 +104,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 self.carry_and_make_room();
                 self.accept_and_scatter()?; //          particles: v += dv; p
                 self.modified_velocities(); //          v = p / m
-                self.friction_work();
+                self.friction_work(dt);
                 self.contact_unrecorded(dt); //         v~
                 self.strain_and_displace(dt) //         particles: F, sigma, x += v dt
             }

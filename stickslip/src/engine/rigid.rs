@@ -8,6 +8,10 @@ use crate::tensor::{Matrix, cross};
 pub struct RigidMotion {
     /// Centre of mass now [m].
     pub center: [f64; 3],
+    /// Centre of mass before anything moved [m].
+    start: [f64; 3],
+    /// How it has turned since then.
+    orientation: Matrix<f64>,
     velocity: [Expression; 3],
     spin: [Expression; 3],
     /// Velocity of the centre in this step [m/s].
@@ -19,7 +23,9 @@ pub struct RigidMotion {
 impl RigidMotion {
     /// A body at rest at `center` until its first step.
     pub fn new(center: [f64; 3], velocity: [Expression; 3], spin: [Expression; 3]) -> Self {
-        let mut motion = RigidMotion { center, velocity, spin, now: [0.0; 3], turning: [0.0; 3] };
+        let (start, orientation) = (center, Matrix::IDENTITY);
+        let mut motion =
+            RigidMotion { center, start, orientation, velocity, spin, now: [0.0; 3], turning: [0.0; 3] };
         motion.set_time(0.0);
         motion
     }
@@ -51,10 +57,53 @@ impl RigidMotion {
         })
     }
 
-    /// Moves the centre by a step of `dt`.
-    pub fn advance(&mut self, dt: f64) {
+    /// Moves the whole by a step of `dt` with this rotation.
+    pub fn advance(&mut self, rotation: &Matrix<f64>, dt: f64) {
         for i in 0..3 {
             self.center[i] += self.now[i] * dt;
         }
+        self.orientation = *rotation * self.orientation;
+    }
+
+    /// Where the body is now.
+    pub fn pose(&self) -> Pose {
+        Pose { start: self.start, center: self.center, orientation: self.orientation }
+    }
+
+    /// Velocity of the centre now [m/s].
+    pub fn velocity(&self) -> [f64; 3] {
+        self.now
+    }
+
+    /// Angular velocity now [rad/s].
+    pub fn spin(&self) -> [f64; 3] {
+        self.turning
+    }
+}
+
+/// Where a rigid body is: x = c + Q (X - c_0).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pose {
+    start: [f64; 3],
+    center: [f64; 3],
+    /// Q, the turn since the start.
+    pub orientation: Matrix<f64>,
+}
+
+impl Pose {
+    /// Where a point of the body is now that was at `place` at the start [m].
+    pub fn now(&self, place: [f64; 3]) -> [f64; 3] {
+        let turn = &self.orientation.0;
+        std::array::from_fn(|i| {
+            self.center[i] + (0..3).map(|j| turn[i][j] * (place[j] - self.start[j])).sum::<f64>()
+        })
+    }
+
+    /// Where the point of the body was at the start that is here now [m].
+    pub fn start(&self, position: [f64; 3]) -> [f64; 3] {
+        let turn = &self.orientation.0;
+        std::array::from_fn(|i| {
+            self.start[i] + (0..3).map(|j| turn[j][i] * (position[j] - self.center[j])).sum::<f64>()
+        })
     }
 }

@@ -3,7 +3,7 @@
 use super::Engine;
 use super::pass::{Fault, FaultKind, Found, Pass, Path, Verbs, escaped, signal};
 use crate::basis::Basis;
-use crate::contact::{Near, Record, Solve, Span, Step, Use};
+use crate::contact::{Change, Near, Record, Solve, Span, Step, Use};
 use crate::door::StepError;
 use crate::grid::{Blocks, Disjoint, node_at, nodes_per_block};
 use crate::lanes::{Laned, Processor};
@@ -36,6 +36,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             let x = lattice.cells(position);
             std::array::from_fn(|i| B::reach(x[i], half_width * lattice.per_cell).floor())
         });
+        let blocks = blocks.max(self.spread(blocks));
         self.tidy();
         if blocks == Blocks::New {
             self.boundary.cover(&self.cover);
@@ -182,24 +183,25 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     pub(super) fn first_contact(&mut self, dt: T) {
         self.exchange(dt, Contact::Interpolated);
         let impulses = self.impulses[0].iter().filter(|impulse| impulse.span == Span::EachUse);
-        self.tally.add(impulses, &self.lattice);
+        // How long surfaces touch is counted once a step.
+        self.tally.add(impulses, (&self.lattice, &self.boundary), 0.0);
     }
 
     /// Contact on the integrated velocities, after what it gave to the interpolated ones.
     pub(super) fn contact(&mut self, dt: T) {
         self.exchange(dt, Contact::Integrated);
-        self.tally.add(self.impulses[1].iter(), &self.lattice);
+        self.tally.add(self.impulses[1].iter(), (&self.lattice, &self.boundary), dt.f64());
     }
 
-    /// Books the work of friction in this step: what its impulses took from the particles' kinetic energy.
+    /// Books the work of friction in this step, what its impulses took from the particles' kinetic energy, and likewise that of bonds that give way.
     ///
     /// ```text
-    /// W = -sum J_t . (u^0 + u^1)/2,   u = v_a - v_b of the particles' velocities, interpolated before and after the step
+    /// W = -sum J . (u^0 + u^1)/2,   u = v_a - v_b of the particles' velocities, interpolated before and after the step
     /// ```
     /// This is exact for FLIP, where particles take changes at nodes: sum_p m_p v_p . sum_i S_i dv_i = sum_i m_i dv_i . v_i, with v_i
     /// interpolated from the v_p. The velocity of a node with next to no mass is mostly what forces do to it within the step, and says little of
     /// how particles move. Where the step does not interpolate a second time, u^1 = u^0.
-    pub(super) fn friction_work(&mut self) {
+    pub(super) fn friction_work(&mut self, dt: T) {
         let interpolated_twice = self.clock.stress_update == StressUpdate::ModifiedLast;
         let (nodes, rules) = (&self.field.nodes, &self.rules);
         let seen = |node: usize| {
@@ -210,11 +212,21 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let first = first.iter().filter(|impulse| impulse.span == Span::EachUse);
         for impulse in first.chain(second.iter()) {
             let [a, b] = impulse.bodies;
-            let rubs = impulse.change.tangential != Vector::ZERO
-                && rules.rule(rules.number(a, b)).law != ContactLaw::Glued;
+            let rule = rules.rule(rules.number(a, b));
+            let Change { impulse: [on_a, _], normal, tangential, .. } = impulse.change;
+            let rubs = tangential != Vector::ZERO && rule.law != ContactLaw::Glued;
+            // A bond that holds passes work on to the strain, as a push does; one that gives way takes it.
+            let strength = rule.friction.adhesion * impulse.area * dt;
+            let pulls = strength > T::ZERO && normal >= strength * T::of(0.999);
+            if !rubs && !pulls {
+                continue;
+            }
+            let [v, w] = impulse.nodes.map(seen);
             if rubs {
-                let [v, w] = impulse.nodes.map(seen);
-                self.tally.rub(impulse.bodies, -impulse.change.tangential.dot(v - w).f64());
+                self.tally.rub(impulse.bodies, -tangential.dot(v - w).f64());
+            }
+            if pulls {
+                self.tally.adhesion -= (on_a - tangential).dot(v - w).f64();
             }
         }
     }
@@ -239,6 +251,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let nodes = Disjoint::new(&mut self.field.nodes);
         Solve { survey: &self.meeting, rules: &self.rules, nodes, step, given }.impulses(record, listed);
         self.tally.scaled += listed.reduced();
+        self.tally.unsettled += listed.unsettled();
         self.boundary.hold(&mut self.field);
         self.watch.lap("contact", start);
     }
@@ -258,6 +271,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             let Some(motion) = motion else { continue };
             let dt = dt.f64();
             let rotation = motion.rotation(dt);
+            // One without bounds is everywhere: its particles stand for what the others are near.
+            let domain = self.domain.filter(|_| !self.unbounded.iter().any(|unbounded| unbounded.body == i));
             let turn = Matrix::from_fn(|i, j| T::of(rotation.0[i][j]));
             for p in 0..body.particles.len() {
                 let mut particle = body.particles.get(p);
@@ -269,13 +284,13 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                     particle.velocity = Vector::of(motion.velocity_at(position));
                     particle.position = moved;
                     particle.deformation = turn * particle.deformation;
-                    escaped::<T, D, B>(&particle, &self.lattice, self.domain).then_some(FaultKind::Escaped)
+                    escaped::<T, D, B>(&particle, &self.lattice, domain).then_some(FaultKind::Escaped)
                 };
                 body.particles.set(p, &particle);
                 let fault = kind.map(|kind| Fault { body: i, particle: p, kind });
                 found = found.and(Found { fault, signal: signal(body, &particle) });
             }
-            motion.advance(dt);
+            motion.advance(&rotation, dt);
             self.left[self.cover.tiles_held(i)].fill(u64::MAX);
         }
         found

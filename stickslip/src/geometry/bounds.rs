@@ -17,7 +17,7 @@ impl Bounds {
     /// Holds no point.
     pub const EMPTY: Bounds = Bounds { min: [f64::INFINITY; 3], max: [f64::NEG_INFINITY; 3] };
     /// Holds every point.
-    const EVERYTHING: Bounds = Bounds { min: [f64::NEG_INFINITY; 3], max: [f64::INFINITY; 3] };
+    pub const EVERYTHING: Bounds = Bounds { min: [f64::NEG_INFINITY; 3], max: [f64::INFINITY; 3] };
 
     /// The smallest box that holds all points.
     pub fn around(points: impl IntoIterator<Item = [f64; 3]>) -> Self {
@@ -52,12 +52,18 @@ impl Bounds {
         Bounds { min: self.min.map(|x| x - margin), max: self.max.map(|x| x + margin) }
     }
 
+    /// Whether it reaches to infinity nowhere.
+    pub fn is_finite(&self) -> bool {
+        self.min.iter().chain(&self.max).all(|x| x.is_finite())
+    }
+
     /// Length of each side [m], zero for an empty box.
     pub fn size(&self) -> [f64; 3] {
         std::array::from_fn(|k| (self.max[k] - self.min[k]).max(0.0))
     }
 
-    fn corners(&self) -> impl Iterator<Item = [f64; 3]> {
+    /// Its corners.
+    pub fn corners(&self) -> impl Iterator<Item = [f64; 3]> {
         let sides = [self.min, self.max];
         (0..8usize).map(move |i| std::array::from_fn(|k| sides[i >> k & 1][k]))
     }
@@ -76,8 +82,26 @@ impl Shape {
         if dimension == 2 {
             (bounds.min[2], bounds.max[2]) = (0.0, 0.0);
         }
-        let bounded = bounds.min.iter().chain(&bounds.max).all(|x| x.is_finite());
-        bounded.then_some(bounds)
+        bounds.is_finite().then_some(bounds)
+    }
+
+    /// A point that belongs to the shape, bounded or not: about it a rigid body without bounds turns [m].
+    ///
+    /// Of a half-space its point, of a ball its centre, of another shape with bounds the middle of its box; of shapes combined that of the
+    /// first.
+    pub fn anchor(&self, dimension: usize) -> [f64; 3] {
+        match self {
+            Shape::HalfSpace { point, .. } => *point,
+            Shape::Union(shapes) | Shape::Intersection(shapes) | Shape::Difference(shapes) => {
+                shapes.first().map_or([0.0; 3], |shape| shape.anchor(dimension))
+            }
+            Shape::Rotated { shape, center, axis, angle } => {
+                Rotation::new(*center, *axis, *angle, dimension).forward(shape.anchor(dimension))
+            }
+            shape => shape
+                .bounds(dimension)
+                .map_or([0.0; 3], |bounds| std::array::from_fn(|k| 0.5 * (bounds.min[k] + bounds.max[k]))),
+        }
     }
 
     /// As [`Shape::bounds`], with infinite sides.
@@ -116,6 +140,8 @@ impl Shape {
                 Bounds::around(points.iter().map(|&[x, y]| [x, y, height[0]]))
                     .united(&Bounds::around(points.iter().map(|&[x, y]| [x, y, height[1]]))),
             ),
+            Shape::Mesh(_) if dimension == 2 => Bounds::EMPTY,
+            Shape::Mesh(mesh) => mesh.bounds(),
             Shape::Union(shapes) => shapes
                 .iter()
                 .map(|shape| shape.reach(dimension))

@@ -50,6 +50,15 @@ impl Level {
 }
 
 impl Shape {
+    /// Where a turn about an axis by an angle, as of [`Shape::Rotated`], takes a point [m].
+    pub fn turned_point(
+        point: [f64; 3],
+        (center, axis, angle): ([f64; 3], [f64; 3], f64),
+        dimension: usize,
+    ) -> [f64; 3] {
+        Rotation::new(center, axis, angle, dimension).forward(point)
+    }
+
     /// Distance from a point to the shape's surface [m], negative inside; see [`Shape::level`].
     pub fn distance(&self, point: [f64; 3], dimension: usize) -> f64 {
         self.level(point, dimension).distance
@@ -58,7 +67,7 @@ impl Shape {
     /// Signed distance from a point to the shape's surface and its gradient.
     ///
     /// Exact for simple and turned shapes; of shapes combined, the sign is exact and the magnitude is at most the true one:
-    /// `min` over a union, `max` over an intersection. In the plane, a cylinder is infinitely far away.
+    /// `min` over a union, `max` over an intersection. In the plane, a cylinder or a mesh is infinitely far away.
     pub fn level(&self, point: [f64; 3], dimension: usize) -> Level {
         match self {
             Shape::Ball { center, radius } => {
@@ -91,6 +100,8 @@ impl Shape {
                 let base = Level::new(distance, [x, y, 0.0]);
                 if dimension == 2 { base } else { base.square(slab(2, *height, point[2])) }
             }
+            Shape::Mesh(_) if dimension == 2 => Level::NOWHERE,
+            Shape::Mesh(mesh) => mesh.level(point),
             Shape::Union(shapes) => {
                 shapes.iter().map(|shape| shape.level(point, dimension)).fold(Level::NOWHERE, Level::united)
             }

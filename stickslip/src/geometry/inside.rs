@@ -32,7 +32,7 @@ impl Probe {
 }
 
 impl Shape {
-    /// Whether a point [m] is inside; faces are half-open, balls open. In the plane, a cylinder holds no point.
+    /// Whether a point [m] is inside; faces are half-open, balls open. In the plane, a cylinder or a mesh holds no point.
     pub fn contains(&self, point: [f64; 3], dimension: usize) -> bool {
         self.holds(Probe::new(point, 0.0, dimension))
     }
@@ -58,6 +58,7 @@ impl Shape {
                 polygon::contains(points, [nudged[0], nudged[1]])
                     && (dimension == 2 || height[0] <= nudged[2] && nudged[2] < height[1])
             }
+            Shape::Mesh(mesh) => dimension == 3 && mesh.contains(nudged),
             Shape::Union(shapes) => shapes.iter().any(|shape| shape.holds(probe)),
             Shape::Intersection(shapes) => shapes.iter().all(|shape| shape.holds(probe)),
             Shape::Difference(shapes) => shapes.split_first().is_some_and(|(first, others)| {

@@ -8,6 +8,7 @@ mod distance;
 mod filling;
 mod fitted;
 mod inside;
+mod mesh;
 mod polygon;
 mod rings;
 mod rotation;
@@ -20,6 +21,7 @@ pub use bounds::Bounds;
 pub use distance::Level;
 pub use filling::{Arrangement, Filling, Lattice, Site, fill, sites};
 pub use fitted::{FITTED_SHAPES, fits};
+pub use mesh::{Mesh, MeshFault};
 pub use round::RoundPart;
 pub use whole::{Mirror, Whole};
 
@@ -52,7 +54,7 @@ pub enum Shape {
         /// Radius [m].
         radius: f64,
     },
-    /// All points behind a plane; unbounded, so it serves to cut other shapes.
+    /// All points behind a plane; unbounded: it cuts other shapes, or is a rigid body.
     HalfSpace {
         /// A point on the plane [m].
         point: [f64; 3],
@@ -66,6 +68,8 @@ pub enum Shape {
         /// Lower and upper z of the prism [m]; not used in the plane.
         height: [f64; 2],
     },
+    /// What a closed surface of triangles holds; three dimensions only.
+    Mesh(Mesh),
     /// Points in any of the shapes.
     Union(Vec<Shape>),
     /// Points in all of the shapes.

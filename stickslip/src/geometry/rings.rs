@@ -17,21 +17,26 @@ pub(super) struct Sector {
 /// Sectors that tile a disk, or the half of it with angles from 0 to pi.
 ///
 /// ```text
-/// n = ceil(R/s) rings of width w = R/n,   ring k: area A = pi (r_out^2 - r_in^2) in an even number of sectors, none above w^2
-/// particle at r^2 = (r_in^2 + r_out^2)/2
+/// n = ceil(R/s) rings of width w = R/n,   ring k: area A = pi (r_out^2 - r_in^2) in an even number m of sectors, none above w^2
+/// particle at the sector's centroid: r = 2/3 (r_out^3 - r_in^3)/(r_out^2 - r_in^2) sin(pi/m)/(pi/m)
 /// ```
-/// The areas add up to pi R^2 and the moments of inertia to pi R^4/4, both exactly. An even number, the first half a sector from
-/// angle 0, makes the disk its own mirror image and lets a line of angle 0 cut it between particles.
+/// The areas add up to pi R^2 exactly, and the moment of inertia lacks what the sectors have about their centroids, some (w/R)^2/3. Volumes
+/// at their centroids balance a uniform stress best: particles at the radius of gyration, which would make the moment exact, leave the
+/// stress at the centre 3 to 5 % off, however fine the rings. An even number, the first half a sector from angle 0, makes the disk its own
+/// mirror image and lets a line of angle 0 cut it between particles.
 pub(super) fn sectors(disk: f64, spacing: f64, half: bool) -> impl Iterator<Item = Sector> {
     let rings = parts(disk, spacing);
     let edge = move |k: usize| disk * k as f64 / rings as f64;
     (0..rings).flat_map(move |k| {
-        let [inner, outer] = [edge(k), edge(k + 1)].map(|r| r * r);
-        let area = PI * (outer - inner);
+        let [inner, outer] = [edge(k), edge(k + 1)];
+        let area = PI * (outer * outer - inner * inner);
         let pairs = parts(area, 2.0 * edge(1) * edge(1));
+        let half_angle = 0.5 * PI / pairs as f64;
+        let chord = libm::sin(half_angle) / half_angle;
+        let radius = 2.0 / 3.0 * PI * (outer.powi(3) - inner.powi(3)) / area * chord;
         let sector = move |j: usize| Sector {
-            radius: (0.5 * (inner + outer)).sqrt(),
-            angle: PI * (j as f64 + 0.5) / pairs as f64,
+            radius,
+            angle: half_angle * (2 * j + 1) as f64,
             area: 0.5 * area / pairs as f64,
         };
         (0..if half { pairs } else { 2 * pairs }).map(sector)
@@ -43,17 +48,25 @@ mod tests {
     use super::*;
 
     #[test]
-    fn area_and_moments_are_those_of_the_disk() {
+    fn areas_are_exact_and_moments_lack_what_sectors_have_about_their_centroids() {
         for (radius, spacing) in [(1.0, 0.1), (0.5, 1.0), (3.0, 0.07), (1.0, 1.0 / 3.0)] {
             let sum = |half: bool, f: &dyn Fn(&Sector) -> f64| {
                 sectors(radius, spacing, half).map(|s| s.area * f(&s)).sum::<f64>()
             };
             assert!((sum(false, &|_| 1.0) / (PI * radius * radius) - 1.0).abs() < 1e-13);
             assert!((sum(true, &|_| 2.0) / (PI * radius * radius) - 1.0).abs() < 1e-13);
+            // Half a disk has its centroid 4 R/(3 pi) above its edge.
+            let above = sum(true, &|s| s.radius * s.angle.sin());
+            assert!((above / (2.0 / 3.0 * radius.powi(3)) - 1.0).abs() < 1e-12, "{radius} {spacing}");
             let moment = 0.25 * PI * radius.powi(4);
+            let width = radius / parts(radius, spacing) as f64;
             for trig in [f64::sin, f64::cos] {
                 let found = sum(false, &|s| (s.radius * trig(s.angle)).powi(2));
-                assert!((found / moment - 1.0).abs() < 1e-12, "{radius} {spacing}");
+                let lacks = 1.0 - found / moment;
+                assert!(
+                    lacks > 0.0 && lacks < 0.36 * (width / radius).powi(2),
+                    "{radius} {spacing}: {lacks}"
+                );
                 assert!(sum(false, &|s| s.radius * trig(s.angle)).abs() < 1e-12 * radius.powi(3));
             }
         }

@@ -12,18 +12,26 @@ pub struct RoundPart {
     pub radius: f64,
     /// The ball is cut out of the shape: its wall is hollow.
     pub hollow: bool,
+    /// From one end of a cylinder to the other [m]; a ball has none.
+    pub axis: Option<[f64; 3]>,
 }
 
 impl Shape {
-    /// All balls that the shape is made of.
+    /// All balls and cylinders that the shape is made of.
     pub fn round_parts(&self, dimension: usize) -> Vec<RoundPart> {
         match self {
             Shape::Ball { center, radius } => {
-                vec![RoundPart { center: *center, radius: *radius, hollow: false }]
+                vec![RoundPart { center: *center, radius: *radius, hollow: false, axis: None }]
             }
-            Shape::Box { .. } | Shape::Cylinder { .. } | Shape::HalfSpace { .. } | Shape::Polygon { .. } => {
-                vec![]
+            Shape::Cylinder { start, end, radius } => {
+                let [center, axis] = [0.5, 1.0].map(|part| {
+                    std::array::from_fn(|k| {
+                        part * (end[k] - start[k]) + if part < 1.0 { start[k] } else { 0.0 }
+                    })
+                });
+                vec![RoundPart { center, radius: *radius, hollow: false, axis: Some(axis) }]
             }
+            Shape::Box { .. } | Shape::HalfSpace { .. } | Shape::Polygon { .. } | Shape::Mesh(_) => vec![],
             Shape::Union(shapes) | Shape::Intersection(shapes) => {
                 shapes.iter().flat_map(|shape| shape.round_parts(dimension)).collect()
             }
@@ -37,7 +45,13 @@ impl Shape {
             Shape::Rotated { shape, center, axis, angle } => {
                 let rotation = Rotation::new(*center, *axis, *angle, dimension);
                 let parts = shape.round_parts(dimension).into_iter();
-                parts.map(|part| RoundPart { center: rotation.forward(part.center), ..part }).collect()
+                parts
+                    .map(|part| RoundPart {
+                        center: rotation.forward(part.center),
+                        axis: part.axis.map(|axis| rotation.turned(axis)),
+                        ..part
+                    })
+                    .collect()
             }
         }
     }

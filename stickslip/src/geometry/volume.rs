@@ -21,6 +21,8 @@ impl Shape {
                 let depth = if dimension == 2 { 1.0 } else { height[1] - height[0] };
                 Some(polygon::area(points) * depth)
             }
+            Shape::Mesh(_) if dimension == 2 => None,
+            Shape::Mesh(mesh) => Some(mesh.volume()),
             Shape::Rotated { shape, .. } => shape.volume(dimension),
             Shape::HalfSpace { .. } | Shape::Union(_) | Shape::Intersection(_) | Shape::Difference(_) => None,
         }

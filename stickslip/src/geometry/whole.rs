@@ -26,8 +26,8 @@ pub struct Whole {
 impl Whole {
     /// A shape before mirrors.
     ///
-    /// Faces on a mirror are left out of half-spaces, boxes, cylinders and polygons, also where these are combined; of turned
-    /// shapes only out of half-spaces.
+    /// Faces on a mirror are left out of half-spaces, boxes, cylinders, polygons and meshes, also where these are combined; of turned
+    /// shapes only out of half-spaces and meshes.
     pub fn new(shape: &Shape, mirrors: Vec<Mirror>, dimension: usize) -> Self {
         let shape = mirrors.iter().fold(shape.clone(), |shape, mirror| continued(shape, mirror, dimension));
         Whole { shape, mirrors, dimension }
@@ -85,8 +85,16 @@ fn continued(shape: Shape, mirror: &Mirror, dimension: usize) -> Shape {
                 let rotation = Rotation::new(center, axis, angle, dimension);
                 half_space(rotation.forward(point), rotation.turned(normal), mirror, dimension)
             }
+            Shape::Mesh(mesh) => {
+                let turned = mesh.turned(&Rotation::new(center, axis, angle, dimension));
+                match turned.continued(mirror) {
+                    Some(whole) => Shape::Mesh(whole),
+                    None => Shape::Rotated { shape: Box::new(Shape::Mesh(mesh)), center, axis, angle },
+                }
+            }
             shape => Shape::Rotated { shape: Box::new(shape), center, axis, angle },
         },
+        Shape::Mesh(mesh) => Shape::Mesh(mesh.continued(mirror).unwrap_or(mesh)),
         Shape::Cylinder { start, end, radius } => {
             let [start, end] = [[start, end], [end, start]].map(|ends| beyond(ends, mirror));
             Shape::Cylinder { start, end, radius }

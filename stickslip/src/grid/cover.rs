@@ -101,6 +101,12 @@ impl<const D: usize> Cover<D> {
         changed
     }
 
+    /// Covers a body anew: all its particles are others than before. Counts as [`Cover::update`] does.
+    pub fn replace(&mut self, (body, count, reach): (usize, usize, i32), base: impl Fn(usize) -> [i32; D]) {
+        self.holdings[body].start((count, reach), base);
+        self.rebuild();
+    }
+
     fn rebuild(&mut self) {
         self.slots.clear();
         self.tiles.clear();

@@ -38,9 +38,9 @@ pub struct ContactRow {
     pub y: f64,
     /// Centre of the forces, third component [m].
     pub z: f64,
-    /// Area over which the bodies touched in that last step [m^2], in the plane length per depth [m].
+    /// Area over which the bodies touched, averaged as the force is [m^2], in the plane length per depth [m].
     pub area: f64,
-    /// Mean distance between the surfaces over that area, negative where they overlap [m].
+    /// Mean distance between the surfaces over area and time, negative where they overlap [m].
     pub gap: f64,
     /// How far the surfaces slipped on each other since the row before, the mean over their area [m].
     pub slip: f64,

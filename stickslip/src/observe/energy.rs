@@ -22,8 +22,10 @@ pub struct EnergyRow {
     pub potential: f64,
     /// Work of prescribed motion since the start [J].
     pub external_work: f64,
-    /// Dissipated by friction since the start [J].
+    /// Dissipated by friction, cohesion and viscosity of contacts since the start [J].
     pub friction: f64,
+    /// Taken by bonds of contacts that adhere since the start, where they give way [J].
+    pub adhesion: f64,
     /// Dissipated by plastic flow since the start [J].
     pub plastic: f64,
     /// Dissipated by damping since the start [J].
@@ -47,8 +49,18 @@ pub struct EnergyRow {
 impl EnergyRow {
     /// The row of a ledger at a time [s].
     pub fn new(time: f64, ledger: &Ledger) -> Self {
-        let Ledger { kinetic, strain, potential, external_work, friction, plastic, damping, total, .. } =
-            *ledger;
+        let Ledger {
+            kinetic,
+            strain,
+            potential,
+            external_work,
+            friction,
+            adhesion,
+            plastic,
+            damping,
+            total,
+            ..
+        } = *ledger;
         let ([px, py, pz], [lx, ly, lz]) = (ledger.momentum, ledger.angular_momentum);
         EnergyRow {
             time,
@@ -57,6 +69,7 @@ impl EnergyRow {
             potential,
             external_work,
             friction,
+            adhesion,
             plastic,
             damping,
             total,

@@ -2,6 +2,7 @@
 
 mod clock;
 mod error;
+mod lookout;
 mod summary;
 mod widest;
 
@@ -14,6 +15,7 @@ use crate::door::Simulation;
 use crate::observe::{Manifest, OutputFolder, Recorder, Status};
 use crate::scene::Scene;
 use clock::Clock;
+use lookout::Lookout;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -31,7 +33,8 @@ pub struct RunOptions {
 
 /// Runs a scene from the present state of its simulation to the end time, and writes what the scene asks for.
 ///
-/// Nothing is written before the folder is found usable. `progress` is called about ten times a second of wall time, and at the end.
+/// Nothing is written before the folder is found usable. `progress` is called about ten times a second of wall time, when there is
+/// something to note, and at the end.
 ///
 /// # Errors
 /// The folder cannot be used, a step fails, or an output cannot be written. In the last two cases the record of the run says so, and
@@ -49,7 +52,7 @@ pub fn run(
     let start = simulation.ledger();
 
     let outcome = Recorder::new(scene, &folder).map_err(RunError::from).and_then(|recorder| {
-        March { simulation, recorder, options, clock: &clock }.to(scene.time.end, progress)
+        March { scene, simulation, recorder, options, clock: &clock }.to(scene.time.end, progress)
     });
 
     manifest.performance = clock.performance(simulation);
@@ -63,6 +66,7 @@ pub fn run(
 
 /// A run under way.
 struct March<'a> {
+    scene: &'a Scene,
     simulation: &'a mut dyn Simulation,
     recorder: Recorder,
     options: &'a RunOptions,
@@ -77,6 +81,7 @@ impl March<'_> {
         self.recorder.record_present(self.simulation)?;
         let mut last_step = 0.0;
         let mut reports = self.clock.reports();
+        let mut lookout = Lookout::new(self.simulation.time());
         let status = loop {
             let remaining = end - self.simulation.time();
             if remaining <= ROUNDING * last_step {
@@ -87,8 +92,9 @@ impl March<'_> {
             }
             last_step = self.step(longest_step(remaining, last_step, self.simulation))?;
             self.recorder.record_due(self.simulation)?;
-            if reports.due() {
-                progress(&self.clock.progress(self.simulation, end));
+            let note = lookout.look(self.scene, self.simulation);
+            if reports.due() || note.is_some() {
+                progress(&Progress { note, ..self.clock.progress(self.simulation, end) });
             }
         };
         self.recorder.record_present(self.simulation)?;

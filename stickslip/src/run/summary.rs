@@ -74,7 +74,7 @@ impl Summary {
     /// the potential energy, whose zero is arbitrary, but counting its change [-].
     pub fn relative_energy_drift(&self) -> f64 {
         let moving = |ledger: &Ledger| ledger.kinetic + ledger.strain;
-        let heat = self.end.friction + self.end.plastic + self.end.damping;
+        let heat = self.end.friction + self.end.adhesion + self.end.plastic + self.end.damping;
         let fallen = (self.end.potential - self.start.potential).abs();
         let scale = moving(&self.start).max(moving(&self.end)).max(heat).max(fallen);
         if scale > 0.0 { self.energy_drift() / scale } else { 0.0 }
@@ -108,6 +108,13 @@ impl Display for Summary {
                 f,
                 "  contact    {} impulses at nodes were reduced to max_strain",
                 self.end.scaled_impulses
+            )?;
+        }
+        if self.end.unsettled_nodes > 0 {
+            writeln!(
+                f,
+                "  contact    {} times bodies at a node had not come to rest on each other when the last sweep over them was done",
+                self.end.unsettled_nodes
             )?;
         }
         write!(f, "{}", self.contacts)?;

@@ -1,6 +1,6 @@
-//! After a run: which contacts the grid resolved, from how wide the bodies touched.
+//! During and after a run: which contacts the grid resolved, from how wide the bodies touched.
 
-use crate::check::Verdict;
+use crate::check::{Errors, Verdict};
 use crate::door::Patch;
 use crate::scene::Scene;
 use std::f64::consts::PI;
@@ -11,12 +11,14 @@ use std::fmt::{self, Display, Formatter};
 pub struct WidestContact {
     /// Names of the bodies.
     pub bodies: [String; 2],
-    /// Radius of a circle with the contact's area, in the plane half its length [m].
+    /// Radius of a circle with the contact's area, in the plane half its length, with its images in mirrors [m].
     pub radius: f64,
     /// The same over the cell size [-].
     pub cells: f64,
     /// What to expect of the contact.
     pub verdict: Verdict,
+    /// By how much its results may be off.
+    pub off: Errors,
 }
 
 /// The contacts of a run, narrowest first.
@@ -35,30 +37,37 @@ impl WidestContacts {
                 let radius = if plane { 0.5 * patch.area } else { (patch.area / PI).sqrt() };
                 let cells = radius / scene.discretization.cell;
                 let bodies = [patch.body_a, patch.body_b].map(|body| scene.bodies[body].name.clone());
-                WidestContact { bodies, radius, cells, verdict: Verdict::of(cells) }
+                WidestContact { bodies, radius, cells, verdict: Verdict::of(cells), off: Errors::of(cells) }
             })
             .collect();
         contacts.sort_by(|a, b| a.cells.total_cmp(&b.cells));
         WidestContacts(contacts)
     }
-}
 
-impl Display for WidestContacts {
-    fn fmt(&self, f: &mut Formatter) -> fmt::Result {
-        let coarse: Vec<_> = self.0.iter().filter(|contact| contact.verdict != Verdict::Resolved).collect();
-        let Some(narrowest) = coarse.first() else { return Ok(()) };
-        let named: Vec<_> = (coarse.iter().take(NAMED))
+    /// The narrowest with their cells, and how many there are more.
+    pub(super) fn named(&self) -> String {
+        let named: Vec<_> = (self.0.iter().take(NAMED))
             .map(|contact| {
                 format!("{} and {} {:.2} cells", contact.bodies[0], contact.bodies[1], contact.cells)
             })
             .collect();
-        let others = coarse.len().saturating_sub(NAMED);
+        let others = self.0.len().saturating_sub(NAMED);
         let more = if others > 0 { format!(" and {others} more") } else { String::new() };
+        named.join(", ") + &more
+    }
+}
+
+impl Display for WidestContacts {
+    fn fmt(&self, f: &mut Formatter) -> fmt::Result {
+        let coarse = self.0.iter().filter(|contact| contact.verdict != Verdict::Resolved).cloned();
+        let coarse = WidestContacts(coarse.collect());
+        let Some(narrowest) = coarse.0.first() else { return Ok(()) };
         writeln!(
             f,
-            "  contact    touched within a radius of at most: {}{more}; {}",
-            named.join(", "),
-            narrowest.verdict.consequence()
+            "  contact    {}: touched within a radius of at most {}; {}",
+            narrowest.verdict,
+            coarse.named(),
+            narrowest.off
         )
     }
 }

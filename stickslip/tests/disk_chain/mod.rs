@@ -16,6 +16,8 @@ pub struct Chain {
     pub arrivals: Vec<Option<f64>>,
     /// When each disk's centre of mass first is faster than 0.05 V [transits].
     pub starts: Vec<Option<f64>>,
+    /// When two bodies, by name, first press on each other with 0.2 rho c_L V R [transits].
+    loaded: Vec<([String; 2], f64)>,
 }
 
 /// Stress difference that counts as arrived [rho c_L V]: that of the reference with sharp contact.
@@ -23,6 +25,9 @@ const THRESHOLD: f64 = 0.3;
 
 /// Speed of a disk that counts as moving [V].
 const MOVING: f64 = 0.05;
+
+/// Push that counts as load [rho c_L V R].
+const LOAD: f64 = 0.2;
 
 /// Transits between looks at the centres.
 const LOOK: f64 = 0.01;
@@ -38,6 +43,10 @@ struct Setting {
     threshold: f64,
     /// Speed that counts as moving [m/s].
     moving: f64,
+    /// Push that counts as load [N/m].
+    load: f64,
+    /// Names of all bodies.
+    names: Vec<String>,
     /// Bodies of the disks with their first centres, in the plane.
     disks: Vec<(usize, [f64; 2])>,
 }
@@ -73,8 +82,13 @@ impl Chain {
         let setting = Setting::of(scene, &*simulation);
         let end = transits * setting.transit;
         let disks = setting.disks.len();
-        let mut chain =
-            Chain { momentum: 0.0, energy: 0.0, arrivals: vec![None; disks], starts: vec![None; disks] };
+        let mut chain = Chain {
+            momentum: 0.0,
+            energy: 0.0,
+            arrivals: vec![None; disks],
+            starts: vec![None; disks],
+            loaded: Vec::new(),
+        };
         let (mut impulse, mut pushed) = ([0.0; 2], 0.0_f64);
         let (mut stresses, mut speeds) = (First::new(disks), First::new(disks));
         simulation.take_contacts();
@@ -83,6 +97,10 @@ impl Chain {
             simulation.step(end - start).unwrap_or_else(|error| panic!("{error}"));
             let dt = simulation.time() - start;
             for contact in simulation.take_contacts() {
+                let pair = [contact.body_a, contact.body_b].map(|body| setting.names[body].clone());
+                if contact.normal >= setting.load && chain.loaded.iter().all(|(other, _)| *other != pair) {
+                    chain.loaded.push((pair, simulation.time() / setting.transit));
+                }
                 let deformable = [contact.body_a, contact.body_b].map(|body| setting.is_disk(body));
                 if deformable[0] != deformable[1] {
                     let sign = if deformable[0] { -dt } else { dt };
@@ -111,6 +129,18 @@ impl Chain {
     /// When a disk starts, counted from the striker and from 1 [transits].
     pub fn start(&self, disk: usize) -> f64 {
         self.starts[disk - 1].unwrap_or_else(|| panic!("disk {disk} did not move: {self:?}"))
+    }
+
+    /// When a body and one of some others first press on each other; infinity if they do not [transits].
+    pub fn load(&self, body: &str, others: &[&str]) -> f64 {
+        let meets = |[a, b]: &[String; 2]| {
+            (a == body && others.contains(&b.as_str())) || (b == body && others.contains(&a.as_str()))
+        };
+        self.loaded
+            .iter()
+            .filter(|(pair, _)| meets(pair))
+            .map(|(_, time)| *time)
+            .fold(f64::INFINITY, f64::min)
     }
 
     /// Mean time from centre to centre, from the second disk on [transits].
@@ -156,6 +186,8 @@ impl Setting {
             transit: number("transit"),
             cell: number("cell"),
             moving: MOVING * number("speed"),
+            load: LOAD * number("density") * number("c_L") * number("speed") * number("radius"),
+            names: scene.bodies.iter().map(|body| body.name.clone()).collect(),
             threshold: THRESHOLD * number("density") * number("c_L") * number("speed"),
             disks: disks.collect(),
         }

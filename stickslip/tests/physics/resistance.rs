@@ -116,6 +116,46 @@ fn adhesion_holds_what_its_strength_bears() {
     assert!((weak - 3.0).abs() < 0.15, "{weak}");
 }
 
+/// A block that adheres to the floor is thrown off it or along it. Nothing drives it: kinetic and strain energy never rise above the start's. Bonds that give way
+/// are in the ledger, whose total ends no higher: they take about their strength times the way over which they act, a hundredth of a cell and a step's way.
+#[test]
+fn bonds_create_no_energy() {
+    for (velocity, cohesion, adhesion) in [
+        ([0.0, 1.0], 0.0, 1e4),
+        ([0.0, 1.0], 0.0, 1e5),
+        ([2.0, 0.0], 2000.0, 1e5),
+        ([2.0, 0.0], 2e4, 1e4),
+        ([2.0, 0.5], 2e4, 3e4),
+    ] {
+        let contact = format!("cohesion = {cohesion}\nadhesion = {adhesion}");
+        let text = scene(&Block { gravity: 0.0, speed: velocity[0], contact: &contact });
+        let text =
+            text.replace(&format!("velocity = [{}, 0]", velocity[0]), &format!("velocity = {velocity:?}"));
+        let mut simulation = start(&text);
+        let first = simulation.ledger().total;
+        let mut most = f64::NEG_INFINITY;
+        run_to(&mut *simulation, 0.3, |s| {
+            most = most.max((s.ledger().kinetic + s.ledger().strain) / first - 1.0)
+        });
+        let end = simulation.ledger();
+        let drift = end.total / first - 1.0;
+        println!(
+            "{velocity:?} cohesion {cohesion} adhesion {adhesion}: mechanical at most {most:+.1e}, total at the end {drift:+.1e}; friction {:.2} J, adhesion {:.2} J of {first:.0} J",
+            end.friction, end.adhesion
+        );
+        assert!(most < 1e-6, "{velocity:?} {cohesion} {adhesion}: gains {most:e}");
+        assert!(drift < 1e-3, "{velocity:?} {cohesion} {adhesion}: total rises by {drift:e}");
+        if velocity == [0.0, 1.0] && adhesion == 1e4 {
+            let way = 0.001 + 1.0 * 0.0011;
+            assert!(
+                end.adhesion > 0.5 * adhesion * 0.001 && end.adhesion < adhesion * way,
+                "{}",
+                end.adhesion
+            );
+        }
+    }
+}
+
 /// The block of 500 kg slides by 0.6 m under mu = 0.2: area 1 m, gap 0, the slip of its centre, work mu m g s.
 #[test]
 fn contact_says_where_how_wide_and_how_far() {

@@ -4,6 +4,7 @@
 
 mod bodies;
 mod keys;
+mod meshes;
 mod outputs;
 mod parameters;
 mod places;

@@ -60,7 +60,8 @@ impl<T: Real, const D: usize> Law<T, D> for Surface {
         let friction = &pair.rule.friction;
         // The speed that closes the gap in this step.
         let closing = pair.gap.max(T::ZERO) * pair.step.cell_speed();
-        let normal = |u: Vector<T, D>| m * (u.dot(n) - closing);
+        // What keeps the surfaces from crossing, or from parting; a bond does not draw them over a gap.
+        let normal = |u: Vector<T, D>| m * (u.dot(n) - u.dot(n).max(T::ZERO).min(closing));
         let across = |u: Vector<T, D>| u - n * u.dot(n);
         match pair.step.purpose {
             Use::Motion => {
@@ -73,12 +74,13 @@ impl<T: Real, const D: usize> Law<T, D> for Surface {
             Use::Strain => {
                 let [a, b] = pair.surfaces;
                 let ahead = u + (a.force * a.inverse_mass - b.force * b.inverse_mass) * pair.step.duration;
-                let Some((held, load)) = friction.borne(normal(ahead), pair) else { return Change::NONE };
+                let wanted = normal(ahead);
+                let Some((borne, load)) = friction.borne(wanted, pair) else { return Change::NONE };
+                // A bond that gives way lets the bodies part, and strains none.
+                let held = wanted != T::ZERO && borne == wanted;
                 let sticks = friction.stopped(across(ahead).norm(), load) == T::ONE;
-                let u_n = u.dot(n);
                 let tangential = if sticks { across(u) * m } else { Vector::ZERO };
-                let together = m * (u_n - u_n.max(T::ZERO).min(closing));
-                pair.exchange(if held == T::ZERO { T::ZERO } else { -together }, -tangential, n)
+                pair.exchange(if held { -normal(u) } else { T::ZERO }, -tangential, n)
             }
         }
     }
@@ -113,7 +115,13 @@ mod tests {
 
     /// Masses 1 and 3, so m* = 3/4; the first flies down at the second, one cell of 1 m a step of 1 s.
     fn impulse(gap: f64, purpose: Use, force: f64, velocity: [f64; 2]) -> [f64; 2] {
-        let rule = rule(ContactLaw::Surface, Normal::Common, 0.5);
+        bonded(0.0, gap, purpose, force, velocity)
+    }
+
+    /// The same where an area of 1 m adheres.
+    fn bonded(adhesion: f64, gap: f64, purpose: Use, force: f64, velocity: [f64; 2]) -> [f64; 2] {
+        let mut rule = rule(ContactLaw::Surface, Normal::Common, 0.5);
+        rule.friction.adhesion = adhesion;
         let surfaces = [
             crate::contact::Surface { force: Vector([0.0, force]), ..surface(1.0, [0.0, -1.0]) },
             surface(3.0, [0.0, 1.0]),
@@ -123,7 +131,7 @@ mod tests {
             surfaces: [&surfaces[0], &surfaces[1]],
             normal: Some(Vector([0.0, -1.0])),
             gap,
-            area: 0.0,
+            area: 1.0,
             step: Step { duration: 1.0, cell: 1.0, purpose },
         };
         Surface.change(&pair, [Vector(velocity), Vector::ZERO]).impulse[0].0
@@ -135,6 +143,17 @@ mod tests {
         assert_eq!(impulse(0.5, Use::Motion, 0.0, [0.0, -0.9]), [0.0, 0.75 * 0.4]);
         assert_eq!(impulse(-0.5, Use::Motion, 0.0, [0.0, -0.4]), [0.0, 0.75 * 0.4]);
         assert_eq!(impulse(-0.5, Use::Motion, 0.0, [0.0, 0.4]), [0.0, 0.0]);
+    }
+
+    /// A bond stops surfaces that part, up to its strength, within a hundredth of a cell; it does not draw them together, and what it cannot hold it does
+    /// not strain.
+    #[test]
+    fn a_bond_holds_what_it_bears_and_draws_nothing() {
+        let bonded = |gap, purpose, speed| bonded(0.3, gap, purpose, 0.0, [0.0, speed])[1];
+        assert_eq!((bonded(0.0, Use::Motion, 0.25), bonded(0.0, Use::Motion, 2.0)), (-0.75 * 0.25, -0.3));
+        assert_eq!((bonded(0.009, Use::Motion, 0.0), bonded(0.009, Use::Motion, -0.005)), (0.0, 0.0));
+        assert_eq!(bonded(0.011, Use::Motion, 0.25), 0.0);
+        assert_eq!((bonded(0.0, Use::Strain, 0.25), bonded(0.0, Use::Strain, 2.0)), (-0.75 * 0.25, 0.0));
     }
 
     #[test]

@@ -6,6 +6,7 @@ mod contact;
 mod fringes;
 mod material;
 mod measurements;
+mod mesh;
 mod outputs;
 mod quantity;
 mod read;
@@ -23,6 +24,7 @@ use quantity::Acceleration;
 use read::{Read, table};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use std::borrow::Cow;
+use std::path::Path;
 use text::Text;
 use vector::Vector;
 
@@ -32,6 +34,8 @@ pub struct Context<'a> {
     pub parameters: &'a Parameters<'a>,
     /// How many components vectors have.
     pub dimension: Dimension,
+    /// Where the file lies, and those that it names.
+    pub folder: &'a Path,
 }
 
 table! {
@@ -75,7 +79,8 @@ pub(super) fn resolve(source: &Source) -> Result<Scene, Fault> {
     let file = File::read(source.root())?;
     let parameters = Parameters::new(source, file.parameters.as_ref().map_or(&[], |table| &table.0))?;
     let values = parameters.resolved()?;
-    let mut context = Context { parameters: &parameters, dimension: Dimension::Space };
+    let folder = Path::new(source.name()).parent().unwrap_or(Path::new(""));
+    let mut context = Context { parameters: &parameters, dimension: Dimension::Space, folder };
     context.dimension = file.space.dimension.value(&context)?;
     let context = &context;
 

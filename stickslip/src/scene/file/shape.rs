@@ -1,6 +1,7 @@
 //! Shapes: `shape.ball = { center = [0, 0, 1], radius = 1 }`.
 
 use super::Context;
+use super::mesh::Mesh;
 use super::quantity::{Angle, Length, Quantity, Ratio};
 use super::read::{Read, table};
 use super::space::corners;
@@ -22,10 +23,12 @@ pub enum Shape {
     Box(Cuboid),
     /// A solid cylinder; three dimensions only.
     Cylinder(Cylinder),
-    /// All points behind a plane; unbounded, so it serves to cut other shapes.
+    /// All points behind a plane; unbounded: it cuts other shapes, or is a rigid body.
     HalfSpace(HalfSpace),
     /// A polygon in the plane of x and y; in three dimensions a prism over it.
     Polygon(Polygon),
+    /// What a closed surface of triangles holds, read from a file; three dimensions only.
+    Mesh(Mesh),
     /// Points in any of the shapes.
     Union(Vec<Shape>),
     /// Points in all of the shapes.
@@ -37,8 +40,18 @@ pub enum Shape {
 }
 
 /// Keys of the shapes.
-const KINDS: &[&str] =
-    &["ball", "box", "cylinder", "half_space", "polygon", "union", "intersection", "difference", "rotated"];
+const KINDS: &[&str] = &[
+    "ball",
+    "box",
+    "cylinder",
+    "half_space",
+    "polygon",
+    "mesh",
+    "union",
+    "intersection",
+    "difference",
+    "rotated",
+];
 
 table! {
     /// A ball; in the plane, a disk.
@@ -132,6 +145,7 @@ impl Shape {
                 normal: direction(&half.normal, context)?,
             },
             Shape::Polygon(polygon) => polygon.resolve(context)?,
+            Shape::Mesh(mesh) => geometry::Shape::Mesh(mesh.resolve(context)?),
             Shape::Union(shapes) => geometry::Shape::Union(all(shapes)?),
             Shape::Intersection(shapes) => geometry::Shape::Intersection(all(shapes)?),
             Shape::Difference(shapes) => geometry::Shape::Difference(all(shapes)?),
@@ -238,6 +252,7 @@ impl Read for Shape {
             "cylinder" => Shape::Cylinder(Cylinder::read(child)?),
             "half_space" => Shape::HalfSpace(HalfSpace::read(child)?),
             "polygon" => Shape::Polygon(Polygon::read(child)?),
+            "mesh" => Shape::Mesh(Mesh::read(child)?),
             "union" => Shape::Union(several(child, 1)?),
             "intersection" => Shape::Intersection(several(child, 1)?),
             "difference" => Shape::Difference(several(child, 2)?),

@@ -1,0 +1,89 @@
+//! During a run: contacts that have become as wide as they will be, and are not resolved by the grid.
+
+use super::widest::WidestContacts;
+use crate::check::Verdict;
+use crate::door::{Patch, Simulation};
+use crate::scene::Scene;
+use std::collections::BTreeSet;
+
+/// Looks at the widest contact of each pair as often as tables are written, and tells of each pair once.
+pub(super) struct Lookout {
+    next: f64,
+    /// Areas when it looked last.
+    before: Vec<Patch>,
+    told: BTreeSet<[usize; 2]>,
+    lines: usize,
+}
+
+/// A contact that has grown by less since the last look has ceased to grow.
+const GROWTH: f64 = 0.01;
+
+/// Lines in a run: beyond, the summary tells.
+const MOST_LINES: usize = 5;
+
+impl Lookout {
+    pub(super) fn new(start: f64) -> Self {
+        Lookout { next: start, before: Vec::new(), told: BTreeSet::new(), lines: 0 }
+    }
+
+    /// What is new, if it is time to look.
+    pub(super) fn look(&mut self, scene: &Scene, simulation: &dyn Simulation) -> Option<String> {
+        if simulation.time() < self.next || self.lines == MOST_LINES {
+            return None;
+        }
+        self.next = simulation.time() + scene.outputs.tables;
+        let patches = simulation.patches();
+        let new = self.grown_up(&patches);
+        self.before = patches;
+        let mut found = WidestContacts::new(scene, &new);
+        found.0.retain(|contact| contact.verdict == Verdict::NotResolved);
+        // Others may widen yet.
+        let pair = |patch: &Patch| [patch.body_a, patch.body_b];
+        let name = |body: usize| &scene.bodies[body].name;
+        let narrow =
+            |patch: &&Patch| found.0.iter().any(|contact| contact.bodies.each_ref() == pair(patch).map(name));
+        self.told.extend(new.iter().filter(narrow).map(pair));
+        let narrowest = found.0.first()?;
+        self.lines += 1;
+        let last = if self.lines == MOST_LINES { "; no more of this until the summary" } else { "" };
+        Some(format!("contact not resolved: {}; {}{last}", found.named(), narrowest.off))
+    }
+
+    /// Those that have not been told of, and no longer grow.
+    fn grown_up(&self, patches: &[Patch]) -> Vec<Patch> {
+        let pair = |patch: &Patch| [patch.body_a, patch.body_b];
+        let mut before = self.before.iter().peekable();
+        let grown = |patch: &&Patch| {
+            // Both are ordered by pair, and none is lost.
+            while before.next_if(|old| pair(old) < pair(patch)).is_some() {}
+            let old = before.next_if(|old| pair(old) == pair(patch));
+            old.is_some_and(|old| patch.area <= (1.0 + GROWTH) * old.area)
+        };
+        let grown: Vec<Patch> = patches.iter().filter(grown).copied().collect();
+        grown.into_iter().filter(|patch| patch.area > 0.0 && !self.told.contains(&pair(patch))).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn patches(areas: &[f64]) -> Vec<Patch> {
+        areas.iter().enumerate().map(|(i, &area)| Patch { body_a: i, body_b: i + 1, area }).collect()
+    }
+
+    /// Only those that were there at the last look and have not grown, once.
+    #[test]
+    fn a_contact_is_told_of_once_and_when_it_no_longer_grows() {
+        let mut lookout = Lookout::new(0.0);
+        let grown = |lookout: &Lookout, areas: &[f64]| -> Vec<usize> {
+            lookout.grown_up(&patches(areas)).iter().map(|patch| patch.body_a).collect()
+        };
+        assert!(grown(&lookout, &[1.0, 2.0]).is_empty());
+        lookout.before = patches(&[1.0, 2.0]);
+        assert_eq!(grown(&lookout, &[1.5, 2.0, 3.0]), [1]);
+        lookout.told.insert([1, 2]);
+        lookout.before = patches(&[1.5, 2.0, 3.0]);
+        assert_eq!(grown(&lookout, &[1.5, 2.0, 3.0]), [0, 2]);
+    }
+}

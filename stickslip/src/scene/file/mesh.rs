@@ -1,0 +1,119 @@
+//! Shapes from files: `shape.mesh = { file = "gear.stl", scale = "1 mm" }`.
+
+use super::Context;
+use super::quantity::{Length, Quantity};
+use super::read::table;
+use super::text::Text;
+use super::vector::Vector;
+use crate::geometry::{self, MeshFault};
+use crate::scene::error::Fault;
+use std::io::Cursor;
+use std::path::Path;
+
+table! {
+    /// What a closed surface of triangles holds, read from a file; three dimensions only.
+    Mesh {
+        /// An STL file (text or binary) or an OBJ file; a relative path starts at the folder of the scene file.
+        file: Text,
+        /// Length of the file's unit [m]: "1 mm". By default 1 m.
+        scale: Option<Quantity<Length>>,
+        /// How far it is moved after it is scaled [m]. By default not at all.
+        translation: Option<Vector<Length>>,
+    }
+}
+
+/// Corners of triangles in the units of their file.
+type Triangles = Vec<[[f64; 3]; 3]>;
+
+/// A file that holds no mesh.
+enum Unread {
+    /// It is no text, it ends early, it has words or numbers where there should be others.
+    Garbled(String),
+    /// Its triangles bound no solid.
+    Fault(MeshFault),
+}
+
+impl Mesh {
+    /// The mesh in SI units.
+    pub fn resolve(&self, context: &Context) -> Result<geometry::Mesh, Fault> {
+        let name = self.file.value(context)?;
+        if context.dimension.is_plane() {
+            return Err(self.file.refused(&name, "shapes other than a mesh, as the scene is plane"));
+        }
+        let scale = self.scale.as_ref().map_or(Ok(1.0), |scale| scale.positive(context))?;
+        let translation = self.translation.as_ref().map_or(Ok([0.0; 3]), |vector| vector.value(context))?;
+        let path = context.folder.join(&name);
+        let kind = path.extension().unwrap_or_default().to_ascii_lowercase();
+        let read = match kind.to_str() {
+            Some("stl") => stl,
+            Some("obj") => obj,
+            _ => return Err(self.file.refused(&name, "a file of triangles that ends in .stl or .obj")),
+        };
+        let bytes = std::fs::read(&path).map_err(|reason| {
+            let fault = self.file.refused(&name, "a file that can be read");
+            fault.help(Some(format!(
+                "{}: {reason}; a relative path starts at the scene's folder",
+                path.display()
+            )))
+        })?;
+        let solid = read(&bytes).and_then(|triangles| {
+            let placed = |x: [f64; 3]| std::array::from_fn(|k| scale * x[k] + translation[k]);
+            // Faults are told in the units of the file.
+            geometry::Mesh::new(&name, triangles.iter().copied()).map_err(Unread::Fault)?;
+            geometry::Mesh::new(&name, triangles.iter().map(|corners| corners.map(placed)))
+                .map_err(Unread::Fault)
+        });
+        solid.map_err(|unread| {
+            let (found, help) = match &unread {
+                Unread::Garbled(found) => (found.clone(), "write it anew, as STL or OBJ"),
+                Unread::Fault(fault) => (fault.to_string(), fault.advice()),
+            };
+            let mut fault = self.file.refused(&name, "a closed surface of triangles that face outward");
+            fault.problem.found = format!("in {}: {found}", file_name(&path));
+            fault.help(Some(help.to_string()))
+        })
+    }
+}
+
+fn file_name(path: &Path) -> String {
+    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
+}
+
+/// The triangles of an STL file. A binary one says how many it has, and its length agrees; its header may begin as a text does.
+fn stl(bytes: &[u8]) -> Result<Triangles, Unread> {
+    let garbled = |reason: std::io::Error| Unread::Garbled(format!("no STL: {reason}"));
+    let mut bytes = bytes.to_vec();
+    let count = bytes.get(80..84).map(|count| u32::from_le_bytes(count.try_into().expect("four bytes")));
+    if count.is_some_and(|count| bytes.len() as u64 == 84 + 50 * u64::from(count)) {
+        bytes[..80].fill(0);
+    }
+    let mut bytes = Cursor::new(bytes);
+    let corners = |triangle: stl_io::Triangle| triangle.vertices.map(|corner| corner.0.map(f64::from));
+    let triangles = stl_io::create_stl_reader(&mut bytes).map_err(garbled)?;
+    triangles.map(|triangle| triangle.map(corners).map_err(garbled)).collect()
+}
+
+/// The triangles of an OBJ file, of all its objects; polygons are cut into fans.
+fn obj(bytes: &[u8]) -> Result<Triangles, Unread> {
+    let options = tobj::LoadOptions {
+        triangulate: true,
+        ignore_points: true,
+        ignore_lines: true,
+        ..Default::default()
+    };
+    let mut text = Cursor::new(bytes);
+    let no_materials = |_: &Path| Ok((Vec::new(), Default::default()));
+    let (models, _) = tobj::load_obj_buf(&mut text, &options, no_materials)
+        .map_err(|reason| Unread::Garbled(format!("no OBJ: {reason}")))?;
+    let mut triangles = Vec::new();
+    for model in &models {
+        let corner = |&number: &u32| {
+            let first = 3 * number as usize;
+            [0, 1, 2].map(|k| model.mesh.positions[first + k])
+        };
+        triangles.extend(
+            model.mesh.indices.chunks_exact(3).map(|c| [corner(&c[0]), corner(&c[1]), corner(&c[2])]),
+        );
+    }
+    Ok(triangles)
+}
