@@ -12,6 +12,7 @@ import time
 
 from selenium import webdriver
 from selenium.webdriver.chrome.service import Service
+from selenium.webdriver.support.ui import WebDriverWait
 
 FIND = """
 const seen = element => { const box = element.getBoundingClientRect(); return [box.width, box.height]; };
@@ -33,6 +34,8 @@ return {
     text: document.body.innerText,
 };
 """
+
+LOADED = "return location.protocol === 'file:' && document.readyState === 'complete';"
 
 FOLLOW = """
 const link = arguments[0];
@@ -90,6 +93,8 @@ def main(page, screenshot=None):
             for log in ["browser", "performance"]:
                 driver.get_log(log)
             driver.get(pathlib.Path(page).resolve().as_uri())
+            # The driver may still hold the blank page, which is complete, for that which it waits for.
+            WebDriverWait(driver, 60).until(lambda d: d.execute_script(LOADED))
             found = driver.execute_script(FIND)
             links = driver.find_elements("css selector", "nav a")
             found["links"] = {link.get_attribute("href").split("#")[-1]: driver.execute_script(FOLLOW, link) for link in links}
