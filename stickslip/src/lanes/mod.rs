@@ -42,24 +42,24 @@ pub trait Lanes: Number {
     /// Which lanes are not below another's, from the lowest bit on; none that is not a number.
     fn at_least(self, other: Self) -> u32;
 
-    /// `count` numbers in a row, and the first in the lanes beyond.
+    /// At most `COUNT` numbers in a row, and `rest` in the lanes beyond.
     ///
     /// # Safety
-    /// At least one and all of them must be there, and nobody may write to them meanwhile.
+    /// `count` numbers must be there, and nobody may write to them meanwhile.
     #[inline(always)]
-    unsafe fn load_part(first: *const Self::Real, count: usize) -> Self {
+    unsafe fn load_part(first: *const Self::Real, count: usize, rest: Self::Real) -> Self {
         // SAFETY: only the `count` numbers are read.
-        Self::from_fn(|lane| unsafe { *first.add(if lane < count { lane } else { 0 }) })
+        Self::from_fn(|lane| if lane < count { unsafe { *first.add(lane) } } else { rest })
     }
 
-    /// Writes the first `count` lanes in a row.
+    /// Writes the first `count` lanes, at most `COUNT`, in a row.
     ///
     /// # Safety
     /// There must be room for them, and nobody else may use it meanwhile.
     #[inline(always)]
     unsafe fn store_part(self, first: *mut Self::Real, count: usize) {
         let numbers = self.numbers();
-        for (lane, &x) in numbers.0.iter().enumerate().take(count.min(Self::COUNT)) {
+        for (lane, &x) in numbers.0.iter().enumerate().take(count) {
             // SAFETY: the caller's.
             unsafe { *first.add(lane) = x }
         }

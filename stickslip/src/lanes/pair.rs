@@ -98,6 +98,28 @@ impl<V: Lanes> Lanes for Pair<V> {
     }
 
     #[inline(always)]
+    unsafe fn load_part(first: *const V::Real, count: usize, rest: V::Real) -> Self {
+        let upper = first.wrapping_add(V::COUNT);
+        // SAFETY: the caller's.
+        unsafe {
+            Pair(
+                V::load_part(first, count.min(V::COUNT), rest),
+                V::load_part(upper, count.saturating_sub(V::COUNT), rest),
+            )
+        }
+    }
+
+    #[inline(always)]
+    unsafe fn store_part(self, first: *mut V::Real, count: usize) {
+        let upper = first.wrapping_add(V::COUNT);
+        // SAFETY: the caller's.
+        unsafe {
+            self.0.store_part(first, count.min(V::COUNT));
+            self.1.store_part(upper, count.saturating_sub(V::COUNT));
+        }
+    }
+
+    #[inline(always)]
     unsafe fn gather(first: *const V::Real, index: &[usize; MOST_LANES]) -> Self {
         let mut rest = [index[V::COUNT]; MOST_LANES];
         rest[..V::COUNT].copy_from_slice(&index[V::COUNT..2 * V::COUNT]);

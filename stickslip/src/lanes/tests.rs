@@ -79,3 +79,41 @@ fn every_machine_gives_the_same_bits_in_double_precision() {
 fn every_machine_gives_the_same_bits_in_single_precision() {
     agree::<f32>();
 }
+
+/// Parts of a row, loaded and stored again between numbers that must stay.
+struct Parts<T>(T);
+
+impl<T: Laned> Work for Parts<T> {
+    type Real = T;
+    type Output = ();
+
+    #[inline(always)]
+    fn run<M: Machine<T>>(self) {
+        parts_of::<M::Wide>();
+        parts_of::<M::Quad>();
+    }
+}
+
+#[inline(always)]
+fn parts_of<V: Lanes>() {
+    let of = |i: usize| V::Real::of(i as f64);
+    let row: Vec<V::Real> = (0..MOST_LANES).map(|i| of(i + 1)).collect();
+    for count in 0..=V::COUNT {
+        let mut copy = [of(77); MOST_LANES + 1];
+        // SAFETY: the row and the copy are as long as any lanes.
+        let loaded = unsafe { V::load_part(row.as_ptr(), count, of(55)) };
+        let expected = |lane: usize| if lane < count { row[lane] } else { of(55) };
+        assert!((0..V::COUNT).all(|lane| loaded.numbers().0[lane] == expected(lane)), "{count}");
+        // SAFETY: as above.
+        unsafe { loaded.store_part(copy.as_mut_ptr(), count) };
+        assert!(copy[..count] == row[..count] && copy[count..].iter().all(|&x| x == of(77)), "{count}");
+    }
+}
+
+#[test]
+fn parts_of_a_row_are_loaded_and_stored_and_nothing_beside_them() {
+    for processor in Processor::available() {
+        f64::run(processor, Parts(0.0));
+        f32::run(processor, Parts(0.0));
+    }
+}

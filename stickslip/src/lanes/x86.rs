@@ -8,6 +8,10 @@ use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssi
 /// A third of 2^33, rounded up: the upper bits of a product with it are a third, for every number of 32 bits.
 const THIRD: i64 = 0xaaaa_aaab;
 
+/// The last `n` of the first half and what follows is a mask of `n` lanes.
+static MASKS_32: [i32; 16] = [-1, -1, -1, -1, -1, -1, -1, -1, 0, 0, 0, 0, 0, 0, 0, 0];
+static MASKS_64: [i64; 8] = [-1, -1, -1, -1, 0, 0, 0, 0];
+
 /// Whether the processor has all of AVX-512 that [`avx512`] uses.
 pub fn has_avx512() -> bool {
     std::arch::is_x86_feature_detected!("avx512f")
@@ -227,9 +231,9 @@ lanes! { F64x8: __m512d as [f64; 8];
         }
     }
     #[inline(always)]
-    unsafe fn load_part(first: *const f64, count: usize) -> Self {
+    unsafe fn load_part(first: *const f64, count: usize, rest: f64) -> Self {
         // SAFETY: lanes beyond the mask are not read.
-        unsafe { F64x8(_mm512_mask_loadu_pd(_mm512_set1_pd(*first), mask(count), first)) }
+        unsafe { F64x8(_mm512_mask_loadu_pd(_mm512_set1_pd(rest), mask(count), first)) }
     }
     #[inline(always)]
     unsafe fn store_part(self, first: *mut f64, count: usize) {
@@ -266,6 +270,33 @@ lanes! { F64x4: __m256d as [f64; 4];
         let at = |lane: usize| unsafe { *first.add(index[lane]) };
         // SAFETY: values of this type exist only where the processor has the instructions.
         unsafe { F64x4(_mm256_setr_pd(at(0), at(1), at(2), at(3))) }
+    }
+    #[inline(always)]
+    unsafe fn load_part(first: *const f64, count: usize, rest: f64) -> Self {
+        // SAFETY: lanes beyond the mask are not read.
+        unsafe {
+            let mask = _mm256_loadu_si256(MASKS_64.as_ptr().add(4 - count).cast());
+            let numbers = _mm256_maskload_pd(first, mask);
+            F64x4(_mm256_blendv_pd(_mm256_set1_pd(rest), numbers, _mm256_castsi256_pd(mask)))
+        }
+    }
+    #[inline(always)]
+    unsafe fn store_part(self, mut first: *mut f64, count: usize) {
+        // SAFETY: the caller's. Masked stores of AVX take ten times as long as these on some processors.
+        unsafe {
+            if count == 4 {
+                return self.store(first);
+            }
+            let mut lanes = _mm256_castpd256_pd128(self.0);
+            if count & 2 != 0 {
+                _mm_storeu_pd(first, lanes);
+                lanes = _mm256_extractf128_pd::<1>(self.0);
+                first = first.add(2);
+            }
+            if count & 1 != 0 {
+                _mm_store_sd(first, lanes);
+            }
+        }
     }
     #[inline(always)]
     fn alternate([a, b]: [f64; 2]) -> Self {
@@ -311,6 +342,38 @@ lanes! { F32x8: __m256 as [f32; 8];
         let at = |lane: usize| unsafe { *first.add(index[lane]) };
         // SAFETY: values of this type exist only where the processor has the instructions.
         unsafe { F32x8(_mm256_setr_ps(at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7))) }
+    }
+    #[inline(always)]
+    unsafe fn load_part(first: *const f32, count: usize, rest: f32) -> Self {
+        // SAFETY: lanes beyond the mask are not read.
+        unsafe {
+            let mask = _mm256_loadu_si256(MASKS_32.as_ptr().add(8 - count).cast());
+            let numbers = _mm256_maskload_ps(first, mask);
+            F32x8(_mm256_blendv_ps(_mm256_set1_ps(rest), numbers, _mm256_castsi256_ps(mask)))
+        }
+    }
+    #[inline(always)]
+    unsafe fn store_part(self, mut first: *mut f32, count: usize) {
+        // SAFETY: the caller's. Masked stores of AVX take ten times as long as these on some processors.
+        unsafe {
+            if count == 8 {
+                return self.store(first);
+            }
+            let mut lanes = _mm256_castps256_ps128(self.0);
+            if count & 4 != 0 {
+                _mm_storeu_ps(first, lanes);
+                lanes = _mm256_extractf128_ps::<1>(self.0);
+                first = first.add(4);
+            }
+            if count & 2 != 0 {
+                _mm_storel_pd(first.cast(), _mm_castps_pd(lanes));
+                lanes = _mm_movehl_ps(lanes, lanes);
+                first = first.add(2);
+            }
+            if count & 1 != 0 {
+                _mm_store_ss(first, lanes);
+            }
+        }
     }
     #[inline(always)]
     fn alternate([a, b]: [f32; 2]) -> Self {

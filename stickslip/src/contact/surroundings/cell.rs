@@ -314,7 +314,10 @@ impl<'a, T: Real, const D: usize> Members<'a, T, D> {
     #[inline(always)]
     fn load<V: Lanes<Real = T>>(&self, column: usize) -> V {
         // SAFETY: as many numbers as there are particles; nobody writes to them in a survey.
-        unsafe { V::load_part(self.first.add(column * self.stride), self.count) }
+        unsafe {
+            let first = self.first.add(column * self.stride);
+            V::load_part(first, self.count, *first)
+        }
     }
 }
 

@@ -209,7 +209,8 @@ impl<T: Real> Copies<T> {
                 // SAFETY: the caller's, and there is room for a register from any lane on.
                 unsafe {
                     let place = copy.as_mut_ptr().cast::<T>().add(run.lane);
-                    V::load_part(columns.at(column, run.first), run.count).store(place);
+                    let there = columns.at(column, run.first);
+                    V::load_part(there, run.count, *there).store(place);
                 }
             }
         }
