@@ -3,7 +3,7 @@
 use super::case::{Case, PaperScene, Rule};
 use super::momentum::momentum_error;
 use crate::failure::Failure;
-use stickslip::observe::{ArrivalRow, ContactRow, Frame, Results};
+use stickslip::observe::{ArrivalRow, ContactRow, EnergyRow, Frame, Results};
 use stickslip::polariscope::{self, Bench, Stage, Window};
 use stickslip::scene::Fringes;
 
@@ -149,7 +149,7 @@ impl<'a> Chain<'a> {
     pub fn energy_gain(&self) -> Result<Vec<[f64; 2]>, Failure> {
         let rows = self.results.energy_table().map_err(Failure::input)?;
         let worked = rows.iter().filter(|row| row.external_work != 0.0);
-        Ok(worked.map(|row| [row.time / self.transit, row.total / row.external_work.abs()]).collect())
+        Ok(worked.map(|row| [row.time / self.transit, gain(row)]).collect())
     }
 
     /// Takes pictures of the fringes.
@@ -183,10 +183,15 @@ impl<'a> Chain<'a> {
         };
         Ok(Balance {
             time: end.time / self.transit,
-            energy: end.total / end.external_work.abs(),
+            energy: gain(end),
             momentum: momentum_error(self.results, time)?.unwrap_or(f64::NAN),
         })
     }
+}
+
+/// Energy from nowhere over the striker's work until then [-].
+fn gain(row: &EnergyRow) -> f64 {
+    row.total / row.external_work.abs()
 }
 
 impl Camera<'_> {

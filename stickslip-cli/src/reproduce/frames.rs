@@ -36,27 +36,19 @@ pub fn table(arrangements: &[Arrangement], level: Level, runs: &Runs) -> Result<
         };
         let (paper, default) = (track(Rule::Traction)?, track(Rule::Surface)?);
         for (simulated, measured) in each.simulated.into_iter().zip(each.measured) {
-            let all = paper.as_ref().and_then(|track| track.last()).map_or(f64::NAN, |last| last[1]);
             let foremost = paper.as_ref().and_then(|track| place(track, simulated));
-            if foremost.is_some_and(|place| place > END * all) {
-                table = table.row(vec![
-                    Cell::text(each.figure),
-                    Cell::number(simulated, 1),
-                    Cell::number(measured, 1),
-                    Cell::text("at the end"),
-                    Cell::Empty,
-                    Cell::Empty,
-                    off(Some(simulated), measured),
-                ]);
-                continue;
-            }
-            let there = default.as_ref().zip(foremost).and_then(|(track, place)| time(track, place));
+            let all = paper.as_ref().and_then(|track| track.last()).map(|last| last[1]);
+            let arrived = foremost.zip(all).is_some_and(|(place, all)| place > END * all);
+            let there = match (&default, foremost) {
+                (Some(track), Some(place)) if !arrived => time(track, place),
+                _ => None,
+            };
             table = table.row(vec![
                 Cell::text(each.figure),
                 Cell::number(simulated, 1),
                 Cell::number(measured, 1),
-                number(foremost),
-                number(there),
+                if arrived { Cell::text("at the end") } else { number(foremost) },
+                if arrived { Cell::Empty } else { number(there) },
                 off(there, simulated),
                 off(Some(simulated), measured),
                 off(there, measured),

@@ -1,7 +1,6 @@
 //! The balance of momentum of a run: what the disks or the sphere have, against what everything else and gravity gave them.
 
 use crate::failure::Failure;
-use std::collections::HashSet;
 use stickslip::observe::{BodyRow, ContactRow, EnergyRow, Results};
 
 /// Momentum from nowhere until a time [s], over all impulses [-]; M is the mass of the disks or the sphere, p their momentum:
@@ -30,9 +29,8 @@ pub fn momentum_error(results: &Results, until: f64) -> Result<Option<f64>, Fail
         mass * scene["gravity"][axis].as_f64().unwrap_or(0.0) * (end.time - start.time)
     });
     let names = results.body_names().iter().map(String::as_str);
-    let others: HashSet<&str> = names.filter(|name| !is_watched(name)).collect();
-    let impulses: Vec<[f64; 3]> =
-        others.iter().map(|body| impulse(body, &others, &contacts, &energy, end.time)).collect();
+    let others = names.filter(|name| !is_watched(name));
+    let impulses: Vec<[f64; 3]> = others.map(|body| impulse(body, &contacts, &energy, end.time)).collect();
     let missing = norm(std::array::from_fn(|axis| {
         after[axis] - before[axis] - weight[axis] - impulses.iter().map(|each| each[axis]).sum::<f64>()
     }));
@@ -53,25 +51,20 @@ fn moving(bodies: &[BodyRow], time: f64) -> (f64, [f64; 3]) {
 }
 
 /// Impulse of one of the others on all watched bodies until a time [N s].
-fn impulse(
-    body: &str,
-    others: &HashSet<&str>,
-    contacts: &[ContactRow],
-    energy: &[EnergyRow],
-    until: f64,
-) -> [f64; 3] {
+fn impulse(body: &str, contacts: &[ContactRow], energy: &[EnergyRow], until: f64) -> [f64; 3] {
     let mut sum = [0.0; 3];
     for row in contacts.iter().filter(|row| row.time <= until) {
         // The force is that of the first body on the second.
         let sign = match (&*row.body_a, &*row.body_b) {
-            (a, b) if a == body && !others.contains(b) => 1.0,
-            (a, b) if b == body && !others.contains(a) => -1.0,
+            (a, b) if a == body && is_watched(b) => 1.0,
+            (a, b) if b == body && is_watched(a) => -1.0,
             _ => continue,
         };
         // A row is a mean from the row of all tables before it to its own.
-        let before = energy.iter().rfind(|other| other.time < row.time).map_or(0.0, |other| other.time);
+        let before = energy[..energy.partition_point(|other| other.time < row.time)].last();
+        let duration = row.time - before.map_or(0.0, |other| other.time);
         for (sum, force) in sum.iter_mut().zip([row.fx, row.fy, row.fz]) {
-            *sum += sign * force * (row.time - before);
+            *sum += sign * force * duration;
         }
     }
     sum
@@ -98,10 +91,8 @@ mod tests {
             row(1.5, "striker", "end_wall", 70.0),
             row(2.5, "striker", "disk_1", -100.0),
         ];
-        let others = HashSet::from(["striker", "end_wall"]);
         let times = [time(0.0), time(0.5), time(1.5), time(2.5)];
-        let [striker, wall] =
-            ["striker", "end_wall"].map(|body| impulse(body, &others, &contacts, &times, 1.5)[0]);
+        let [striker, wall] = ["striker", "end_wall"].map(|body| impulse(body, &contacts, &times, 1.5)[0]);
         assert_eq!((striker, wall), (-2.0, 1.0));
     }
 }

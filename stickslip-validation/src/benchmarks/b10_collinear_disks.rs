@@ -8,6 +8,7 @@ use crate::outcome::Outcome;
 use crate::scenery::with_parameter;
 use crate::trial::Trial;
 use stickslip::door::ParticleSnapshot;
+use stickslip::scene::Parameter;
 
 pub const BENCHMARK: Benchmark = Benchmark {
     name: "B10",
@@ -81,10 +82,8 @@ fn wave(case: &Case, speed: &str, outcome: &mut Outcome) -> Result<f64, Failure>
     let scene = with_parameter(&scene, "contact", &format!("\"{}\"", case.law));
     let scene = with_parameter(&scene, "speed", &format!("\"{speed}\""));
     let mut trial = Trial::start(format!("striker_{}", speed.replace(" * ", "_")), scene)?;
-    let number = |name: &str| match trial.scene().parameters.get(name) {
-        Some(stickslip::scene::Parameter::Number(value)) => *value,
-        _ => f64::NAN,
-    };
+    let number =
+        |name: &str| trial.scene().parameters.get(name).and_then(Parameter::number).unwrap_or(f64::NAN);
     let (transit, diameter) = (number("transit"), number("diameter"));
     let threshold = THRESHOLD * number("speed") / number("c_L") * number("p_wave");
     let start = trial.snapshot();

@@ -49,7 +49,7 @@ pub fn roll(name: &str, scene: &str, case: &Case, outcome: &mut Outcome) -> Resu
     }
     let sphere = trial.bodies().swap_remove(0);
     let scene = trial.scene();
-    let Some(Parameter::Number(radius)) = scene.parameters.get("radius") else {
+    let Some(radius) = scene.parameters.get("radius").and_then(Parameter::number) else {
         return Err(Failure::Absent("the scene has no radius"));
     };
     let exact = |quantity: &str, time: f64| {

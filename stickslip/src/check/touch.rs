@@ -59,9 +59,8 @@ fn facing(ball: &RoundPart, first: &Body, second: &Body, dimension: usize) -> Op
     let distance = second.shape.distance(ball.center, dimension);
     let direction = Vector(second.shape.direction_to(ball.center, SAME * ball.radius, dimension)?);
     let point = Vector(ball.center) + direction * ball.radius;
-    if let Some(axis) = ball.axis {
+    if let Some((axis, ends)) = ball.axis.zip(ball.ends()) {
         // All along, and not with an end.
-        let ends = [-0.5, 0.5].map(|part| std::array::from_fn(|k| ball.center[k] + part * axis[k]));
         let even = |end| (second.shape.distance(end, dimension) - distance).abs() <= SAME * ball.radius;
         if direction.dot(Vector(axis)).abs() > SAME * ball.radius || !ends.into_iter().all(even) {
             return None;
@@ -93,10 +92,7 @@ fn opposite_ball(
 /// A round part by itself.
 fn solid(part: &RoundPart) -> Shape {
     let RoundPart { center, radius, .. } = *part;
-    part.axis.map_or(Shape::Ball { center, radius }, |axis| {
-        let [start, end] = [-0.5, 0.5].map(|part| std::array::from_fn(|k| center[k] + part * axis[k]));
-        Shape::Cylinder { start, end, radius }
-    })
+    part.ends().map_or(Shape::Ball { center, radius }, |[start, end]| Shape::Cylinder { start, end, radius })
 }
 
 #[cfg(test)]

@@ -16,6 +16,14 @@ pub struct RoundPart {
     pub axis: Option<[f64; 3]>,
 }
 
+impl RoundPart {
+    /// The ends of a cylinder [m]; a ball has none.
+    pub fn ends(&self) -> Option<[[f64; 3]; 2]> {
+        let at = |part: f64, axis: [f64; 3]| std::array::from_fn(|k| self.center[k] + part * axis[k]);
+        self.axis.map(|axis| [at(-0.5, axis), at(0.5, axis)])
+    }
+}
+
 impl Shape {
     /// All balls and cylinders that the shape is made of.
     pub fn round_parts(&self, dimension: usize) -> Vec<RoundPart> {
@@ -24,11 +32,8 @@ impl Shape {
                 vec![RoundPart { center: *center, radius: *radius, hollow: false, axis: None }]
             }
             Shape::Cylinder { start, end, radius } => {
-                let [center, axis] = [0.5, 1.0].map(|part| {
-                    std::array::from_fn(|k| {
-                        part * (end[k] - start[k]) + if part < 1.0 { start[k] } else { 0.0 }
-                    })
-                });
+                let axis: [f64; 3] = std::array::from_fn(|k| end[k] - start[k]);
+                let center = std::array::from_fn(|k| start[k] + 0.5 * axis[k]);
                 vec![RoundPart { center, radius: *radius, hollow: false, axis: Some(axis) }]
             }
             Shape::Box { .. } | Shape::HalfSpace { .. } | Shape::Polygon { .. } | Shape::Mesh(_) => vec![],

@@ -75,6 +75,16 @@ pub enum Parameter {
     Text(String),
 }
 
+impl Parameter {
+    /// Its number in SI units, if it is one.
+    pub fn number(&self) -> Option<f64> {
+        match self {
+            Parameter::Number(value) => Some(*value),
+            Parameter::Text(_) => None,
+        }
+    }
+}
+
 /// Two or three dimensions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]

@@ -3,7 +3,7 @@
 use std::path::Path;
 use stickslip::door::{ParticleSnapshot, Simulation};
 use stickslip::engine;
-use stickslip::scene::{self, Parameter, Scene};
+use stickslip::scene::{self, Scene};
 
 /// What happened to the disks.
 #[derive(Debug)]
@@ -175,10 +175,8 @@ impl First {
 
 impl Setting {
     fn of(scene: &Scene, simulation: &dyn Simulation) -> Setting {
-        let number = |name: &str| match scene.parameters[name] {
-            Parameter::Number(value) => value,
-            Parameter::Text(_) => panic!("{name} is a number"),
-        };
+        let number =
+            |name: &str| scene.parameters[name].number().unwrap_or_else(|| panic!("{name} is a number"));
         let disks = (scene.bodies.iter().zip(simulation.bodies()).enumerate())
             .filter(|(_, (body, _))| body.name.starts_with("disk"))
             .map(|(i, (_, state))| (i, [state.position[0], state.position[1]]));

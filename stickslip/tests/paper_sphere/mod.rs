@@ -2,7 +2,7 @@
 
 use std::path::Path;
 use stickslip::engine;
-use stickslip::scene::{self, Parameter, Scene};
+use stickslip::scene::{self, Scene};
 
 /// What a sphere did in a scene.
 #[derive(Debug)]
@@ -53,7 +53,7 @@ impl Roll {
             }
         }
         let state = &simulation.bodies()[sphere];
-        let Parameter::Number(radius) = scene.parameters["radius"] else { panic!("a radius is a number") };
+        let radius = scene.parameters["radius"].number().expect("a radius is a number");
         let ledger = simulation.ledger();
         Roll {
             distance: state.position[0] / reference(scene, "x"),

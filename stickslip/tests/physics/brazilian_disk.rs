@@ -21,7 +21,7 @@
 use std::f64::consts::PI;
 use std::path::Path;
 use stickslip::polariscope::{StressMap, Window, stress_maps};
-use stickslip::scene::{Parameter, Scene};
+use stickslip::scene::Scene;
 use stickslip::{engine, scene};
 
 use crate::trial::run_to;
@@ -50,10 +50,7 @@ fn brazilian(cells: usize, particles: &str) -> Scene {
 
 fn pressed(cells: usize, particles: &str) -> Errors {
     let scene = brazilian(cells, particles);
-    let number = |name: &str| match scene.parameters[name] {
-        Parameter::Number(value) => value,
-        Parameter::Text(_) => panic!("{name} is a number"),
-    };
+    let number = |name: &str| scene.parameters[name].number().unwrap_or_else(|| panic!("{name} is a number"));
     let (radius, transit) = (number("radius"), number("transit"));
     let mut simulation = engine::build(&scene).unwrap_or_else(|problem| panic!("{problem:?}"));
     run_to(&mut *simulation, 35.0 * transit, |_| {});

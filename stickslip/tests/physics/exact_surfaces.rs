@@ -10,7 +10,7 @@
 //! Expected: acceleration within 1 % and friction ratio within 1 % (measured 0.1 % and 0.02 %); first contact within 0.05 cells (0.004);
 //! stresses within 3 % (1.3 %); the disks' mean interval within 5 % at only 20 cells a disk (1.4 %; with the gap law, 25 % off at 40 cells).
 
-use crate::trial::{mean_where, run_to, start};
+use crate::trial::{RUBBER, mean_where, run_to, start};
 
 /// A block on a floor, both turned by 30 degrees through the grid under gravity along it.
 fn slope(friction: f64, per_side: usize) -> String {
@@ -20,7 +20,7 @@ fn slope(friction: f64, per_side: usize) -> String {
         gravity = [0, -10]
         space = {{ dimension = "plane-strain", cell = 0.1, particles_per_side = {per_side} }}
         time.end = 1
-        materials.rubber = {{ density = 1000, neo_hookean = {{ young_modulus = 1e6, poisson_ratio = 0.3 }} }}
+        {RUBBER}
         [[bodies]]
         name = "floor"
         material = "rubber"

@@ -12,7 +12,7 @@
 //! Sticking: the exact answer is rest, if the load comes slowly; loaded at once, an undamped elastic block creeps. So block and floor first fall together, and within
 //! 0.2 s the floor comes to rest. Expected: no way in the second half of the run, to 1e-4 of what gravity alone would do (measured 3e-5 at most).
 
-use crate::trial::{run_to, start};
+use crate::trial::{RUBBER, run_to, start};
 
 const ANGLE: f64 = 30.0;
 const G: f64 = 10.0;
@@ -24,7 +24,7 @@ fn incline(friction: f64) -> String {
         gravity = [{}, {}]
         space = {{ dimension = "plane-strain", cell = 0.1 }}
         time.end = 1
-        materials.rubber = {{ density = 1000, neo_hookean = {{ young_modulus = 1e6, poisson_ratio = 0.3 }} }}
+        {RUBBER}
         [[bodies]]
         name = "floor"
         material = "rubber"

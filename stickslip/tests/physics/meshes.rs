@@ -6,11 +6,9 @@
 //! Expected: corners have few binary digits, so files say exactly what scenes say, and the motion is the same but for round-off: 1e-9 of the way.
 //! The filled ball has the volume of its polyhedron, 0.4 % below the ball's, within the stairs of its lattice: 1 %.
 
-use crate::trial::{distance, run_to};
+use crate::trial::{RUBBER, distance, run_to, start_in};
 use std::fs;
-use std::path::Path;
 use stickslip::door::Simulation;
-use stickslip::{engine, scene};
 
 type Triangles = Vec<[[f64; 3]; 3]>;
 
@@ -92,13 +90,6 @@ fn obj(triangles: &Triangles) -> Vec<u8> {
     text.into_bytes()
 }
 
-/// The simulation of a scene that lies in a folder.
-fn start_in(folder: &Path, text: &str) -> Box<dyn Simulation> {
-    let name = folder.join("trial.toml").display().to_string();
-    let loaded = scene::parse(&name, text, &[]).unwrap_or_else(|error| panic!("{error}\n{text}"));
-    engine::build(&loaded.scene).unwrap_or_else(|problem| panic!("{problem:?}\n{text}"))
-}
-
 /// Asserts that the second body moves alike in two scenes, and returns its masses.
 fn alike(what: &str, simulations: [Box<dyn Simulation>; 2], end: f64) -> [f64; 2] {
     let runs = simulations.map(|mut simulation| {
@@ -125,7 +116,7 @@ fn a_meshed_block_slides_on_a_meshed_slab_as_boxes_do() {
             gravity = [5, 0, -8]
             space = {{ dimension = "3d", cell = 0.125 }}
             time.end = 1
-            materials.rubber = {{ density = 1000, neo_hookean = {{ young_modulus = 1e6, poisson_ratio = 0.3 }} }}
+            {RUBBER}
             [[bodies]]
             name = "slab"
             material = "rubber"
@@ -159,7 +150,7 @@ fn a_ball_rolls_on_a_turned_and_scaled_slab_as_on_a_box() {
             gravity = [0, 0, -8]
             space = {{ dimension = "3d", cell = 0.125 }}
             time.end = 1
-            materials.rubber = {{ density = 1000, neo_hookean = {{ young_modulus = 1e6, poisson_ratio = 0.3 }} }}
+            {RUBBER}
             [[bodies]]
             name = "slab"
             material = "rubber"
@@ -189,7 +180,7 @@ fn a_ball_of_triangles_has_its_mass() {
             r#"
             space = {{ dimension = "3d", cell = {cell} }}
             time.end = 1
-            materials.rubber = {{ density = 1000, neo_hookean = {{ young_modulus = 1e6, poisson_ratio = 0.3 }} }}
+            {RUBBER}
             [[bodies]]
             name = "ball"
             material = "rubber"

@@ -11,7 +11,7 @@
 //! Set-up: a block 1 m long and 0.5 m high on a rigid floor, 10 cells a metre; light and stiff enough to move as one, surfaces by the law
 //! `surface`. Sheared at its lower face it also shears, turns and shakes, hence the tolerances of some per cent.
 
-use crate::trial::{run_to, start};
+use crate::trial::{RUBBER, run_to, start};
 
 struct Block<'a> {
     gravity: f64,
@@ -26,7 +26,7 @@ fn scene(block: &Block) -> String {
         gravity = [0, {gravity}]
         space = {{ dimension = "plane-strain", cell = 0.1 }}
         time.end = 1
-        materials.rubber = {{ density = 1000, neo_hookean = {{ young_modulus = 1e6, poisson_ratio = 0.3 }} }}
+        {RUBBER}
         [[bodies]]
         name = "floor"
         material = "rubber"

@@ -9,7 +9,7 @@
 //! for the punch, whose speed has a kink. A turn of w dt a step by (I - W dt/2)^-1 (I + W dt/2) lags by (w dt)^2/12 of the angle: 1.33e-4
 //! of a radian in all for the cylinder, whose steps of 0.02 s only its own rim limits; 1 % above that is allowed.
 
-use crate::trial::{largest_difference, run_to, start};
+use crate::trial::{RUBBER, largest_difference, run_to, start};
 
 #[test]
 fn a_punch_pushes_a_block() {
@@ -18,7 +18,7 @@ fn a_punch_pushes_a_block() {
             r#"
             space = {{ dimension = "plane-strain", cell = 0.05 }}
             time.end = 1
-            materials.rubber = {{ density = 1000, neo_hookean = {{ young_modulus = 1e6, poisson_ratio = 0.3 }} }}
+            {RUBBER}
             [[bodies]]
             name = "block"
             material = "rubber"
@@ -71,7 +71,7 @@ fn a_belt_drags_a_block() {
         gravity = [0, -10]
         space = {{ dimension = "plane-strain", cell = 0.1 }}
         time.end = 1
-        materials.rubber = {{ density = 1000, neo_hookean = {{ young_modulus = 1e6, poisson_ratio = 0.3 }} }}
+        {RUBBER}
         [[bodies]]
         name = "belt"
         material = "rubber"
@@ -134,7 +134,7 @@ fn a_hair_of_a_rigid_body_at_a_node_does_nothing() {
             r#"
             space = {{ dimension = "plane-strain", cell = 0.1 }}
             time = {{ end = 1, max_step = "0.5 ms" }}
-            materials.rubber = {{ density = 1000, neo_hookean = {{ young_modulus = 1e6, poisson_ratio = 0.3 }} }}
+            {RUBBER}
             [[bodies]]
             name = "block"
             material = "rubber"

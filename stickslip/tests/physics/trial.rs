@@ -7,9 +7,19 @@ use stickslip::{engine, scene};
 /// Every stress update by its word in scene files.
 pub const STRESS_UPDATES: [&str; 3] = ["first", "last", "modified-last"];
 
+/// Rubber in scenes.
+pub const RUBBER: &str =
+    "materials.rubber = { density = 1000, neo_hookean = { young_modulus = 1e6, poisson_ratio = 0.3 } }";
+
 /// The simulation of a scene.
 pub fn start(text: &str) -> Box<dyn Simulation> {
-    let loaded = scene::parse("trial.toml", text, &[]).unwrap_or_else(|error| panic!("{error:?}\n{text}"));
+    start_in(std::path::Path::new(""), text)
+}
+
+/// The simulation of a scene that lies in a folder.
+pub fn start_in(folder: &std::path::Path, text: &str) -> Box<dyn Simulation> {
+    let name = folder.join("trial.toml").display().to_string();
+    let loaded = scene::parse(&name, text, &[]).unwrap_or_else(|error| panic!("{error:?}\n{text}"));
     engine::build(&loaded.scene).unwrap_or_else(|problem| panic!("{problem:?}\n{text}"))
 }
 

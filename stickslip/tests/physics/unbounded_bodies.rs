@@ -7,14 +7,11 @@
 //! domain. Steps have one length: the fastest particle limits it, and a wide block that turns has faster ones. That a rigid floor is the limit of a
 //! stiff one is the benchmark `rigid`; with this, so is a rigid half-space.
 
-use crate::trial::{distance, run_to, start};
+use crate::trial::{RUBBER, distance, run_to, start};
 use stickslip::door::Simulation;
 
-const RUBBER: &str =
-    "materials.rubber = { density = 1000, neo_hookean = { young_modulus = 1e6, poisson_ratio = 0.3 } }";
-
-/// Largest difference of the first body's position and velocity over the run, relative to its way and its largest speed.
-fn difference(of: impl Fn(&str) -> Box<dyn Simulation>, shapes: [&str; 2], end: f64) -> [f64; 2] {
+/// Asserts that the first body moves alike against both shapes: position and velocity over the run, relative to its way and its largest speed.
+fn assert_alike(what: &str, of: impl Fn(&str) -> Box<dyn Simulation>, shapes: [&str; 2], end: f64) {
     let paths = shapes.map(|shape| {
         let mut path = Vec::new();
         let mut simulation = of(shape);
@@ -26,10 +23,12 @@ fn difference(of: impl Fn(&str) -> Box<dyn Simulation>, shapes: [&str; 2], end: 
     let way = distance(a[0].position, a[a.len() - 1].position);
     let speed = a.iter().map(|state| distance(state.velocity, [0.0; 3])).fold(0.0, f64::max);
     let largest = |off: &dyn Fn(usize) -> f64| (0..a.len()).map(off).fold(0.0, f64::max);
-    [
+    let found = [
         largest(&|i| distance(a[i].position, b[i].position)) / way,
         largest(&|i| distance(a[i].velocity, b[i].velocity)) / speed,
-    ]
+    ];
+    println!("{what}: position off by {:.1e}, velocity by {:.1e}", found[0], found[1]);
+    assert!(found.iter().all(|off| *off < 1e-9), "{what}: {found:?}");
 }
 
 #[test]
@@ -60,9 +59,7 @@ fn a_ball_rolls_on_a_half_space_as_on_a_block() {
         let half_space = format!("{{ half_space = {{ point = [0, 0{zero}], normal = [0, 1{zero}] }} }}");
         let far = extra.replace('-', "");
         let block = format!("{{ box = {{ min = [-2, -1.2{extra}], max = [4, 0{far}] }} }}");
-        let found = difference(scene, [&block, &half_space], 0.45);
-        println!("{dimension}: position off by {:.1e}, velocity by {:.1e}", found[0], found[1]);
-        assert!(found.iter().all(|off| *off < 1e-9), "{dimension}: {found:?}");
+        assert_alike(dimension, scene, [&block, &half_space], 0.45);
     }
 }
 
@@ -92,9 +89,7 @@ fn a_belt_without_end_drags_as_a_long_one() {
     };
     let long = "{ box = { min = [-2, -0.6], max = [4, 0] } }";
     let endless = "{ half_space = { point = [0, 0], normal = [0, 1] } }";
-    let found = difference(scene, [long, endless], 0.3);
-    println!("belt: position off by {:.1e}, velocity by {:.1e}", found[0], found[1]);
-    assert!(found.iter().all(|off| *off < 1e-9), "{found:?}");
+    assert_alike("belt", scene, [long, endless], 0.3);
 }
 
 /// A punch that rises and turns about a point a metre below its face.
@@ -123,9 +118,7 @@ fn a_face_that_rises_and_turns_does_what_that_of_a_block_does() {
     let block = "{ box = { min = [-2, -2], max = [2, 0] } }";
     // It turns about the first of the shapes that make it up.
     let half_space = "{ union = [{ ball = { center = [0, -1], radius = 0.5 } }, { half_space = { point = [0, 0], normal = [0, 1] } }] }";
-    let found = difference(scene, [block, half_space], 0.15);
-    println!("punch: position off by {:.1e}, velocity by {:.1e}", found[0], found[1]);
-    assert!(found.iter().all(|off| *off < 1e-9), "{found:?}");
+    assert_alike("punch", scene, [block, half_space], 0.15);
 }
 
 /// The layer of particles under one body in a domain of ten thousand cells and more.
