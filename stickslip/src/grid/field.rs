@@ -98,8 +98,8 @@ pub struct Sought<T> {
     pub carry: bool,
 }
 
-/// Four numbers, each the sum of two: particles are scattered two at a time.
-pub type Halves<T> = [[T; 2]; 4];
+/// What a node is given: momentum [kg m/s] and force [N] along each axis, mass [kg] and nothing in the last place.
+pub type Sums<T> = [[T; 2]; 4];
 
 /// A tile's part of the field in one place: nodes `block * 4` to `block * 4 + 5` along each axis, the last fastest.
 #[derive(Clone, Debug)]
@@ -110,10 +110,8 @@ pub struct Window<T, const D: usize> {
     pub flow: [Vector<T, D>; WINDOW_NODES],
     /// The velocities that move particles [m/s].
     pub carry: [Vector<T, D>; WINDOW_NODES],
-    /// Momentum scattered so far [kg m/s], and mass [kg] in the last place.
-    pub momentum: [Halves<T>; WINDOW_NODES],
-    /// Force scattered so far [N].
-    pub force: [Halves<T>; WINDOW_NODES],
+    /// What was scattered so far.
+    pub sums: [Sums<T>; WINDOW_NODES],
 }
 
 impl<T: Real, const D: usize> Default for Window<T, D> {
@@ -122,8 +120,7 @@ impl<T: Real, const D: usize> Default for Window<T, D> {
             change: [Vector::ZERO; WINDOW_NODES],
             flow: [Vector::ZERO; WINDOW_NODES],
             carry: [Vector::ZERO; WINDOW_NODES],
-            momentum: [[[T::ZERO; 2]; 4]; WINDOW_NODES],
-            force: [[[T::ZERO; 2]; 4]; WINDOW_NODES],
+            sums: [[[T::ZERO; 2]; 4]; WINDOW_NODES],
         }
     }
 }
@@ -152,8 +149,7 @@ impl<T: Real, const D: usize> Window<T, D> {
     /// Empties what particles scatter into.
     #[inline(always)]
     pub fn clear(&mut self) {
-        self.momentum[..WINDOW.pow(D as u32)].fill([[T::ZERO; 2]; 4]);
-        self.force[..WINDOW.pow(D as u32)].fill([[T::ZERO; 2]; 4]);
+        self.sums[..WINDOW.pow(D as u32)].fill([[T::ZERO; 2]; 4]);
     }
 
     /// Takes from the field what is sought at the `side`^D first nodes.
@@ -196,11 +192,11 @@ impl<T: Real, const D: usize> Window<T, D> {
             for k in 0..count {
                 // SAFETY: the caller keeps other threads away from the tile's slots.
                 let node = unsafe { field.get(first + k) };
-                let (momentum, force) = (&self.momentum[place + k], &self.force[place + k]);
-                node.mass += momentum[3][0] + momentum[3][1];
+                let sums = &self.sums[place + k];
+                node.mass += sums[3][0];
                 for i in 0..D {
-                    node.velocity[i] += momentum[i][0] + momentum[i][1];
-                    node.force[i] += force[i][0] + force[i][1];
+                    node.velocity[i] += sums[i][0];
+                    node.force[i] += sums[i][1];
                 }
             }
         });

@@ -52,6 +52,22 @@ pub trait Lanes: Number {
         Self::from_fn(|lane| if lane < count { unsafe { *first.add(lane) } } else { rest })
     }
 
+    /// The first `count` numbers in a row, at most `COUNT`, and zero in the lanes beyond.
+    ///
+    /// # Safety
+    /// As for [`Lanes::load_part`].
+    #[inline(always)]
+    unsafe fn load_first(first: *const Self::Real, count: usize) -> Self {
+        // SAFETY: the caller's.
+        unsafe {
+            if count >= Self::COUNT {
+                Self::load(first)
+            } else {
+                Self::load_part(first, count, Self::Real::ZERO)
+            }
+        }
+    }
+
     /// Writes the first `count` lanes, at most `COUNT`, in a row.
     ///
     /// # Safety
@@ -101,10 +117,21 @@ pub trait Lanes: Number {
         Self::from_fn(|lane| pair[lane % 2])
     }
 
-    /// One in the first `count` lanes, zero beyond.
+    /// Sums of neighbours, of one and another in turn:  a_0 + a_1, b_0 + b_1, a_2 + a_3, b_2 + b_3, ...
     #[inline(always)]
-    fn first(count: usize) -> Self {
-        Self::from_fn(|lane| if lane < count { Self::Real::ONE } else { Self::Real::ZERO })
+    fn fold(self, other: Self) -> Self {
+        let (a, b) = (self.numbers(), other.numbers());
+        Self::from_fn(|lane| {
+            let pair = if lane % 2 == 0 { &a.0 } else { &b.0 };
+            pair[lane / 2 * 2] + pair[lane / 2 * 2 + 1]
+        })
+    }
+
+    /// The first `count` lanes, and zero beyond.
+    #[inline(always)]
+    fn first(self, count: usize) -> Self {
+        let numbers = self.numbers();
+        Self::from_fn(|lane| if lane < count { numbers.0[lane] } else { Self::Real::ZERO })
     }
 
     /// Writes the lanes of four registers as rows: in row `i` the lanes `i` of all four.

@@ -110,6 +110,18 @@ impl<V: Lanes> Lanes for Pair<V> {
     }
 
     #[inline(always)]
+    unsafe fn load_first(first: *const V::Real, count: usize) -> Self {
+        let upper = first.wrapping_add(V::COUNT);
+        // SAFETY: the caller's.
+        unsafe {
+            Pair(
+                V::load_first(first, count.min(V::COUNT)),
+                V::load_first(upper, count.saturating_sub(V::COUNT)),
+            )
+        }
+    }
+
+    #[inline(always)]
     unsafe fn store_part(self, first: *mut V::Real, count: usize) {
         let upper = first.wrapping_add(V::COUNT);
         // SAFETY: the caller's.
@@ -130,6 +142,16 @@ impl<V: Lanes> Lanes for Pair<V> {
     #[inline(always)]
     fn alternate(pair: [V::Real; 2]) -> Self {
         Pair(V::alternate(pair), V::alternate(pair))
+    }
+
+    #[inline(always)]
+    fn first(self, count: usize) -> Self {
+        Pair(self.0.first(count.min(V::COUNT)), self.1.first(count.saturating_sub(V::COUNT)))
+    }
+
+    #[inline(always)]
+    fn fold(self, other: Self) -> Self {
+        Pair(self.0.fold(other.0), self.1.fold(other.1))
     }
 
     #[inline(always)]

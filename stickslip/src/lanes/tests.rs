@@ -29,6 +29,7 @@ impl<T: Laned> Work for Everything<'_, T> {
                 x.ln(),
                 M::Wide::HALF - M::Wide::ONE,
                 M::Wide::splat(above),
+                x.fold(-two),
             ];
             for result in results {
                 found.extend(&result.numbers().0[..chunk.len()]);
@@ -40,7 +41,7 @@ impl<T: Laned> Work for Everything<'_, T> {
 
 /// In the order of the samples, one list a result.
 fn unfolded<T: Laned>(found: &[T], samples: usize) -> Vec<Vec<T>> {
-    let mut results = vec![Vec::new(); 9];
+    let mut results = vec![Vec::new(); 10];
     let mut rest = found;
     while results[8].len() < samples {
         let lanes = MOST_LANES.min(samples - results[8].len());
@@ -65,6 +66,9 @@ fn agree<T: Laned>() {
         assert_eq!(first[1][i], (x + T::of(2.0)).sqrt());
         assert_eq!(first[3][i], if x < T::of(2.0) { x } else { T::of(2.0) });
         assert_eq!(first[5][i], (x - T::of(2.0)).abs());
+    }
+    for (i, pair) in x.chunks_exact(2).enumerate() {
+        assert_eq!(first[9][2 * i..2 * i + 2], [pair[0] + pair[1], T::of(-4.0)]);
     }
     let above = first[8].chunks(MOST_LANES).map(|chunk| chunk[0].f64()).sum::<f64>();
     assert_eq!(above, x.iter().filter(|&&x| x >= T::of(2.0)).count() as f64);
@@ -104,6 +108,12 @@ fn parts_of<V: Lanes>() {
         let loaded = unsafe { V::load_part(row.as_ptr(), count, of(55)) };
         let expected = |lane: usize| if lane < count { row[lane] } else { of(55) };
         assert!((0..V::COUNT).all(|lane| loaded.numbers().0[lane] == expected(lane)), "{count}");
+        // SAFETY: as above.
+        let zeros = unsafe { V::load_first(row.as_ptr(), count) };
+        for zeros in [zeros, loaded.first(count)] {
+            let expected = |lane: usize| if lane < count { row[lane] } else { of(0) };
+            assert!((0..V::COUNT).all(|lane| zeros.numbers().0[lane] == expected(lane)), "{count}");
+        }
         // SAFETY: as above.
         unsafe { loaded.store_part(copy.as_mut_ptr(), count) };
         assert!(copy[..count] == row[..count] && copy[count..].iter().all(|&x| x == of(77)), "{count}");

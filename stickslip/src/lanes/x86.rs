@@ -211,9 +211,21 @@ lanes! { F64x8: __m512d as [f64; 8];
         unsafe { F64x8(_mm512_broadcast_f64x2(_mm_set_pd(b, a))) }
     }
     #[inline(always)]
-    fn first(count: usize) -> Self {
+    fn fold(self, other: Self) -> Self {
         // SAFETY: values of this type exist only where the processor has the instructions.
-        unsafe { F64x8(_mm512_maskz_mov_pd(mask(count), _mm512_set1_pd(1.0))) }
+        unsafe {
+            F64x8(_mm512_add_pd(_mm512_unpacklo_pd(self.0, other.0), _mm512_unpackhi_pd(self.0, other.0)))
+        }
+    }
+    #[inline(always)]
+    unsafe fn load_first(first: *const f64, count: usize) -> Self {
+        // SAFETY: lanes beyond the mask are not read.
+        unsafe { F64x8(_mm512_maskz_loadu_pd(mask(count), first)) }
+    }
+    #[inline(always)]
+    fn first(self, count: usize) -> Self {
+        // SAFETY: values of this type exist only where the processor has the instructions.
+        unsafe { F64x8(_mm512_maskz_mov_pd(mask(count), self.0)) }
     }
     #[inline(always)]
     fn store_pairs([a, b, c, d]: [Self; 4], pairs: &mut [[[f64; 2]; 4]; MOST_LANES / 2]) {
@@ -281,6 +293,19 @@ lanes! { F64x4: __m256d as [f64; 4];
         }
     }
     #[inline(always)]
+    unsafe fn load_first(first: *const f64, count: usize) -> Self {
+        // SAFETY: lanes beyond the mask are not read.
+        unsafe { F64x4(_mm256_maskload_pd(first, _mm256_loadu_si256(MASKS_64.as_ptr().add(4 - count).cast()))) }
+    }
+    #[inline(always)]
+    fn first(self, count: usize) -> Self {
+        // SAFETY: values of this type exist only where the processor has the instructions.
+        unsafe {
+            let mask = _mm256_loadu_si256(MASKS_64.as_ptr().add(4 - count).cast());
+            F64x4(_mm256_and_pd(self.0, _mm256_castsi256_pd(mask)))
+        }
+    }
+    #[inline(always)]
     unsafe fn store_part(self, mut first: *mut f64, count: usize) {
         // SAFETY: the caller's. Masked stores of AVX take ten times as long as these on some processors.
         unsafe {
@@ -302,6 +327,13 @@ lanes! { F64x4: __m256d as [f64; 4];
     fn alternate([a, b]: [f64; 2]) -> Self {
         // SAFETY: values of this type exist only where the processor has the instructions.
         unsafe { F64x4(_mm256_setr_pd(a, b, a, b)) }
+    }
+    #[inline(always)]
+    fn fold(self, other: Self) -> Self {
+        // SAFETY: values of this type exist only where the processor has the instructions.
+        unsafe {
+            F64x4(_mm256_add_pd(_mm256_unpacklo_pd(self.0, other.0), _mm256_unpackhi_pd(self.0, other.0)))
+        }
     }
     #[inline(always)]
     fn store_pairs([a, b, c, d]: [Self; 4], pairs: &mut [[[f64; 2]; 4]; MOST_LANES / 2]) {
@@ -353,6 +385,19 @@ lanes! { F32x8: __m256 as [f32; 8];
         }
     }
     #[inline(always)]
+    unsafe fn load_first(first: *const f32, count: usize) -> Self {
+        // SAFETY: lanes beyond the mask are not read.
+        unsafe { F32x8(_mm256_maskload_ps(first, _mm256_loadu_si256(MASKS_32.as_ptr().add(8 - count).cast()))) }
+    }
+    #[inline(always)]
+    fn first(self, count: usize) -> Self {
+        // SAFETY: values of this type exist only where the processor has the instructions.
+        unsafe {
+            let mask = _mm256_loadu_si256(MASKS_32.as_ptr().add(8 - count).cast());
+            F32x8(_mm256_and_ps(self.0, _mm256_castsi256_ps(mask)))
+        }
+    }
+    #[inline(always)]
     unsafe fn store_part(self, mut first: *mut f32, count: usize) {
         // SAFETY: the caller's. Masked stores of AVX take ten times as long as these on some processors.
         unsafe {
@@ -379,6 +424,15 @@ lanes! { F32x8: __m256 as [f32; 8];
     fn alternate([a, b]: [f32; 2]) -> Self {
         // SAFETY: values of this type exist only where the processor has the instructions.
         unsafe { F32x8(_mm256_setr_ps(a, b, a, b, a, b, a, b)) }
+    }
+    #[inline(always)]
+    fn fold(self, other: Self) -> Self {
+        // SAFETY: values of this type exist only where the processor has the instructions.
+        unsafe {
+            let even = _mm256_shuffle_ps::<0b10_00_10_00>(self.0, other.0);
+            let odd = _mm256_shuffle_ps::<0b11_01_11_01>(self.0, other.0);
+            F32x8(_mm256_permute_ps::<0b11_01_10_00>(_mm256_add_ps(even, odd)))
+        }
     }
     #[inline(always)]
     fn store_pairs([a, b, c, d]: [Self; 4], pairs: &mut [[[f32; 2]; 4]; MOST_LANES / 2]) {

@@ -7,7 +7,7 @@
 #![allow(clippy::needless_range_loop)]
 
 use crate::basis::{Basis, MAX_WIDTH, Shape};
-use crate::grid::{Halves, WINDOW, WINDOW_NODES, Window};
+use crate::grid::{Sums, WINDOW, WINDOW_NODES, Window};
 use crate::lanes::{Lanes, MOST_LANES, Machine, Numbers};
 use crate::tensor::{Matrix, Number, Real, Symmetric, Vector};
 use std::marker::PhantomData;
@@ -111,7 +111,7 @@ impl Start for Own {
 pub struct Group<V, const D: usize, B, S> {
     shapes: [Shape<V>; D],
     start: S,
-    /// How many particles; lanes beyond repeat the first.
+    /// How many particles; lanes beyond have their place.
     count: usize,
     basis: PhantomData<B>,
 }
@@ -228,175 +228,190 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
     /// ```
     #[inline(always)]
     pub fn scatter<M: Machine<V::Real>>(&self, window: &mut Window<V::Real, D>, load: &Load<V, D>) {
-        let there = V::first(self.count);
-        if let Some((momentum, mass)) = load.momentum {
-            let z = if D == 2 { V::ZERO } else { momentum[D - 1] };
-            let load = Rows::new([momentum[0] * there, momentum[1] * there, z * there, mass * there]);
-            match self.start.shared() {
-                Some(start) => self.scatter_momentum::<M>(window, start, &load),
-                None => self.scatter_momentum_singly::<M>(window, &load),
-            }
-        }
-        if let Some(stress) = load.stress {
-            let [xx, yy, zz, xy, yz, xz] = (stress * there).0;
+        let n = self.count;
+        let momentum = load.momentum.map(|(momentum, mass)| {
+            let z = if D == 2 { V::ZERO } else { momentum[D - 1].first(n) };
+            Rows::new([momentum[0].first(n), momentum[1].first(n), z, mass.first(n)])
+        });
+        let stress = load.stress.map(|stress| {
+            let [xx, yy, zz, xy, yz, xz] = stress.0;
+            let [xx, yy, zz] = [xx.first(n), yy.first(n), zz.first(n)];
+            let [xy, yz, xz] = [xy.first(n), yz.first(n), xz.first(n)];
             let x = Rows::new([xx, xy, xz, V::ZERO]);
             let y = Rows::new([xy, yy, yz, V::ZERO]);
             let z = if D == 2 { y } else { Rows::new([xz, yz, zz, V::ZERO]) };
-            match self.start.shared() {
-                Some(start) => self.scatter_force::<M>(window, start, [&x, &y, &z]),
-                None => self.scatter_force_singly::<M>(window, [&x, &y, &z]),
-            }
+            [x, y, z]
+        });
+        match self.start.shared() {
+            Some(start) => self.scatter_together::<M>(window, start, (&momentum, &stress)),
+            None => self.scatter_singly::<M>(window, (&momentum, &stress)),
         }
     }
 
+    /// For particles that share their nodes: sums over particles first.
     #[inline(always)]
-    fn scatter_momentum<M: Machine<V::Real>>(
+    fn scatter_together<M: Machine<V::Real>>(
         &self,
         window: &mut Window<V::Real, D>,
         start: usize,
-        load: &Rows<V::Real>,
+        (momentum, stress): (&Option<Rows<V::Real>>, &Option<[Rows<V::Real>; 3]>),
     ) {
-        for i in 0..B::WIDTH {
-            let mut weights = [Numbers::ZERO; MAX_WIDTH * MAX_WIDTH];
-            for j in 0..B::WIDTH {
-                for k in 0..Self::DEPTH {
-                    weights[j * Self::DEPTH + k] = (self.shapes[0].weight[i] * self.across(j, k)).numbers();
-                }
-            }
-            let mut sums = [M::Wide::ZERO; MAX_WIDTH * MAX_WIDTH];
-            for pair in 0..self.pairs() {
-                let row = load.get::<M>(pair);
-                for n in 0..B::WIDTH * Self::DEPTH {
-                    sums[n] += row * factors::<M, _>(&weights[n], pair);
-                }
-            }
-            for j in 0..B::WIDTH {
-                for k in 0..Self::DEPTH {
-                    let node = &mut window.momentum[start + Self::offset(i, j, k)];
-                    add::<M, _>(node, sums[j * Self::DEPTH + k]);
-                }
-            }
-        }
-    }
-
-    /// Sums over particles stand between two neighbours, one of which gets what the other one gives.
-    #[inline(always)]
-    fn scatter_force<M: Machine<V::Real>>(
-        &self,
-        window: &mut Window<V::Real, D>,
-        start: usize,
-        load: [&Rows<V::Real>; 3],
-    ) {
-        let [x, y, z] = [&self.shapes[0], &self.shapes[1], &self.shapes[D - 1]];
         let mut below = [M::Wide::ZERO; MAX_WIDTH * MAX_WIDTH];
         for i in 0..B::WIDTH {
-            // To the next plane of nodes, and within this one.
-            let mut along_x = [Numbers::ZERO; MAX_WIDTH * MAX_WIDTH];
-            let mut along_y = [Numbers::ZERO; MAX_WIDTH * (MAX_WIDTH - 1)];
-            let mut along_z = [Numbers::ZERO; MAX_WIDTH * (MAX_WIDTH - 1)];
-            for j in 0..B::WIDTH {
-                for k in 0..Self::DEPTH {
-                    if i + 1 < B::WIDTH {
-                        along_x[j * Self::DEPTH + k] = (self.across(j, k) * x.rise[i]).numbers();
-                    }
-                    if j + 1 < B::WIDTH {
-                        let weight = if D == 2 { x.weight[i] } else { x.weight[i] * z.weight[k] };
-                        along_y[j * Self::DEPTH + k] = (weight * y.rise[j]).numbers();
-                    }
-                    if k + 1 < Self::DEPTH {
-                        along_z[j * (Self::DEPTH - 1) + k] =
-                            (x.weight[i] * y.weight[j] * z.rise[k]).numbers();
-                    }
-                }
+            let (mut momenta, mut forces) = ([M::Wide::ZERO; MAX_WIDTH * MAX_WIDTH], below);
+            if let Some(momentum) = momentum {
+                momenta = self.momenta::<M>(i, momentum);
             }
-            let mut above = [M::Wide::ZERO; MAX_WIDTH * MAX_WIDTH];
-            if i + 1 < B::WIDTH {
-                for pair in 0..self.pairs() {
-                    let row = load[0].get::<M>(pair);
-                    for n in 0..B::WIDTH * Self::DEPTH {
-                        above[n] += row * factors::<M, _>(&along_x[n], pair);
-                    }
-                }
-            }
-            let mut right = [M::Wide::ZERO; MAX_WIDTH * (MAX_WIDTH - 1)];
-            let mut back = [M::Wide::ZERO; MAX_WIDTH * (MAX_WIDTH - 1)];
-            for pair in 0..self.pairs() {
-                let (row_y, row_z) = (load[1].get::<M>(pair), load[2].get::<M>(pair));
-                for n in 0..(B::WIDTH - 1) * Self::DEPTH {
-                    right[n] += row_y * factors::<M, _>(&along_y[n], pair);
-                }
-                for n in 0..B::WIDTH * (Self::DEPTH - 1) {
-                    back[n] += row_z * factors::<M, _>(&along_z[n], pair);
-                }
+            if let Some(stress) = stress {
+                (forces, below) = self.forces::<M>(i, stress, &below);
             }
             for j in 0..B::WIDTH {
                 for k in 0..Self::DEPTH {
                     let n = j * Self::DEPTH + k;
-                    let mut sum = above[n] - below[n];
-                    if j + 1 < B::WIDTH {
-                        sum += right[n];
-                    }
-                    if j > 0 {
-                        sum -= right[n - Self::DEPTH];
-                    }
-                    if k + 1 < Self::DEPTH {
-                        sum += back[j * (Self::DEPTH - 1) + k];
-                    }
-                    if k > 0 {
-                        sum -= back[j * (Self::DEPTH - 1) + k - 1];
-                    }
-                    add::<M, _>(&mut window.force[start + Self::offset(i, j, k)], sum);
+                    add::<M, _>(&mut window.sums[start + Self::offset(i, j, k)], momenta[n], forces[n]);
                 }
             }
-            below = above;
         }
     }
 
-    /// What [`Group::scatter_momentum`] does, for particles that share no nodes.
+    /// Momentum and mass that the nodes of a plane across the first axis get.
     #[inline(always)]
-    fn scatter_momentum_singly<M: Machine<V::Real>>(
+    fn momenta<M: Machine<V::Real>>(
         &self,
-        window: &mut Window<V::Real, D>,
+        i: usize,
         load: &Rows<V::Real>,
-    ) {
-        let mut weights = [Numbers::ZERO; MAX_WIDTH.pow(3)];
-        for (n, [i, j, k]) in Self::nodes() {
-            weights[n] = (self.shapes[0].weight[i] * self.across(j, k)).numbers();
-        }
-        for p in 0..self.count.min(MOST_LANES) {
-            let row = load.one::<M>(p);
-            for (n, [i, j, k]) in Self::nodes() {
-                let node = &mut window.momentum[self.start.of(p) + Self::offset(i, j, k)];
-                add::<M, _>(node, row * factors::<M, _>(&weights[n], p / 2));
+    ) -> [M::Wide; MAX_WIDTH * MAX_WIDTH] {
+        let mut weights = [Numbers::ZERO; MAX_WIDTH * MAX_WIDTH];
+        for j in 0..B::WIDTH {
+            for k in 0..Self::DEPTH {
+                weights[j * Self::DEPTH + k] = (self.shapes[0].weight[i] * self.across(j, k)).numbers();
             }
         }
+        let mut sums = [M::Wide::ZERO; MAX_WIDTH * MAX_WIDTH];
+        for pair in 0..self.pairs() {
+            let row = load.get::<M>(pair);
+            for n in 0..B::WIDTH * Self::DEPTH {
+                sums[n] += row * factors::<M, _>(&weights[n], pair);
+            }
+        }
+        sums
     }
 
-    /// What [`Group::scatter_force`] does, for particles that share no nodes.
+    /// Forces that the nodes of a plane across the first axis get, and what passes to the next plane, given what passed to this one:
+    /// sums over particles stand between two neighbours, one of which gets what the other one gives.
     #[inline(always)]
-    fn scatter_force_singly<M: Machine<V::Real>>(
+    fn forces<M: Machine<V::Real>>(
+        &self,
+        i: usize,
+        load: &[Rows<V::Real>; 3],
+        below: &[M::Wide; MAX_WIDTH * MAX_WIDTH],
+    ) -> ([M::Wide; MAX_WIDTH * MAX_WIDTH], [M::Wide; MAX_WIDTH * MAX_WIDTH]) {
+        let [x, y, z] = [&self.shapes[0], &self.shapes[1], &self.shapes[D - 1]];
+        // To the next plane of nodes, and within this one.
+        let mut along_x = [Numbers::ZERO; MAX_WIDTH * MAX_WIDTH];
+        let mut along_y = [Numbers::ZERO; MAX_WIDTH * (MAX_WIDTH - 1)];
+        let mut along_z = [Numbers::ZERO; MAX_WIDTH * (MAX_WIDTH - 1)];
+        for j in 0..B::WIDTH {
+            for k in 0..Self::DEPTH {
+                if i + 1 < B::WIDTH {
+                    along_x[j * Self::DEPTH + k] = (self.across(j, k) * x.rise[i]).numbers();
+                }
+                if j + 1 < B::WIDTH {
+                    let weight = if D == 2 { x.weight[i] } else { x.weight[i] * z.weight[k] };
+                    along_y[j * Self::DEPTH + k] = (weight * y.rise[j]).numbers();
+                }
+                if k + 1 < Self::DEPTH {
+                    along_z[j * (Self::DEPTH - 1) + k] = (x.weight[i] * y.weight[j] * z.rise[k]).numbers();
+                }
+            }
+        }
+        let mut above = [M::Wide::ZERO; MAX_WIDTH * MAX_WIDTH];
+        if i + 1 < B::WIDTH {
+            for pair in 0..self.pairs() {
+                let row = load[0].get::<M>(pair);
+                for n in 0..B::WIDTH * Self::DEPTH {
+                    above[n] += row * factors::<M, _>(&along_x[n], pair);
+                }
+            }
+        }
+        let mut right = [M::Wide::ZERO; MAX_WIDTH * (MAX_WIDTH - 1)];
+        let mut back = [M::Wide::ZERO; MAX_WIDTH * (MAX_WIDTH - 1)];
+        for pair in 0..self.pairs() {
+            let (row_y, row_z) = (load[1].get::<M>(pair), load[2].get::<M>(pair));
+            for n in 0..(B::WIDTH - 1) * Self::DEPTH {
+                right[n] += row_y * factors::<M, _>(&along_y[n], pair);
+            }
+            for n in 0..B::WIDTH * (Self::DEPTH - 1) {
+                back[n] += row_z * factors::<M, _>(&along_z[n], pair);
+            }
+        }
+        let mut forces = [M::Wide::ZERO; MAX_WIDTH * MAX_WIDTH];
+        for j in 0..B::WIDTH {
+            for k in 0..Self::DEPTH {
+                let n = j * Self::DEPTH + k;
+                let mut sum = above[n] - below[n];
+                if j + 1 < B::WIDTH {
+                    sum += right[n];
+                }
+                if j > 0 {
+                    sum -= right[n - Self::DEPTH];
+                }
+                if k + 1 < Self::DEPTH {
+                    sum += back[j * (Self::DEPTH - 1) + k];
+                }
+                if k > 0 {
+                    sum -= back[j * (Self::DEPTH - 1) + k - 1];
+                }
+                forces[n] = sum;
+            }
+        }
+        (forces, above)
+    }
+
+    /// For particles that share no nodes.
+    #[inline(always)]
+    fn scatter_singly<M: Machine<V::Real>>(
         &self,
         window: &mut Window<V::Real, D>,
-        load: [&Rows<V::Real>; 3],
+        (momentum, stress): (&Option<Rows<V::Real>>, &Option<[Rows<V::Real>; 3]>),
     ) {
         let [x, y, z] = [&self.shapes[0], &self.shapes[1], &self.shapes[D - 1]];
+        let mut weights = [Numbers::ZERO; MAX_WIDTH.pow(3)];
         let mut slopes = [[Numbers::ZERO; D]; MAX_WIDTH.pow(3)];
         for (n, [i, j, k]) in Self::nodes() {
-            let depth = if D == 2 { V::ONE } else { z.weight[k] };
-            slopes[n][0] = (x.slope(i) * self.across(j, k)).numbers();
-            slopes[n][1] = (x.weight[i] * y.slope(j) * depth).numbers();
-            if D == 3 {
-                slopes[n][2] = (x.weight[i] * y.weight[j] * z.slope(k)).numbers();
+            if momentum.is_some() {
+                weights[n] = (x.weight[i] * self.across(j, k)).numbers();
+            }
+            if stress.is_some() {
+                let depth = if D == 2 { V::ONE } else { z.weight[k] };
+                slopes[n][0] = (x.slope(i) * self.across(j, k)).numbers();
+                slopes[n][1] = (x.weight[i] * y.slope(j) * depth).numbers();
+                if D == 3 {
+                    slopes[n][2] = (x.weight[i] * y.weight[j] * z.slope(k)).numbers();
+                }
             }
         }
         for p in 0..self.count.min(MOST_LANES) {
-            let rows = [load[0].one::<M>(p), load[1].one::<M>(p), load[2].one::<M>(p)];
-            for (n, [i, j, k]) in Self::nodes() {
-                let mut sum = M::Wide::ZERO;
+            let mut rows = [M::Wide::ZERO; 4];
+            if let Some(momentum) = momentum {
+                rows[3] = momentum.one::<M>(p);
+            }
+            if let Some(stress) = stress {
                 for axis in 0..D {
-                    sum -= rows[axis] * factors::<M, _>(&slopes[n][axis], p / 2);
+                    rows[axis] = stress[axis].one::<M>(p);
                 }
-                add::<M, _>(&mut window.force[self.start.of(p) + Self::offset(i, j, k)], sum);
+            }
+            for (n, [i, j, k]) in Self::nodes() {
+                let (mut given, mut force) = (M::Wide::ZERO, M::Wide::ZERO);
+                if momentum.is_some() {
+                    given = rows[3] * factors::<M, _>(&weights[n], p / 2);
+                }
+                if stress.is_some() {
+                    for axis in 0..D {
+                        force -= rows[axis] * factors::<M, _>(&slopes[n][axis], p / 2);
+                    }
+                }
+                add::<M, _>(&mut window.sums[self.start.of(p) + Self::offset(i, j, k)], given, force);
             }
         }
     }
@@ -425,7 +440,7 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
 /// Four numbers of each particle of a group: of two particles the first, then the second and so on.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
-struct Rows<T>([Halves<T>; MOST_LANES / 2]);
+struct Rows<T>([[[T; 2]; 4]; MOST_LANES / 2]);
 
 impl<T: Real> Rows<T> {
     #[inline(always)]
@@ -456,9 +471,10 @@ fn factors<M: Machine<T>, T: Real>(numbers: &Numbers<T>, pair: usize) -> M::Wide
     M::Wide::alternate([a, b])
 }
 
+/// Adds momentum and force, each of two particles, to a node.
 #[inline(always)]
-fn add<M: Machine<T>, T: Real>(node: &mut Halves<T>, sum: M::Wide) {
+fn add<M: Machine<T>, T: Real>(node: &mut Sums<T>, momentum: M::Wide, force: M::Wide) {
     let node = node.as_mut_ptr().cast();
     // SAFETY: a node has eight numbers, borrowed for writing.
-    unsafe { (M::Wide::load(node) + sum).store(node) }
+    unsafe { (M::Wide::load(node) + momentum.fold(force)).store(node) }
 }

@@ -86,7 +86,7 @@ impl<T: Real, const D: usize, B: Basis<T>> Stencil<T, D, B> {
         (mass, momentum): (T, Vector<T, D>),
     ) {
         self.each(block, |place, weight, _| {
-            let node = &mut window.momentum[place];
+            let node = &mut window.sums[place];
             for i in 0..D {
                 node[i][0] += momentum[i] * weight;
             }
@@ -104,7 +104,7 @@ impl<T: Real, const D: usize, B: Basis<T>> Stencil<T, D, B> {
         self.each(block, |place, _, gradient| {
             let force = stress.times(gradient);
             for i in 0..D {
-                window.force[place][i][0] -= force[i];
+                window.sums[place][i][1] -= force[i];
             }
         });
     }

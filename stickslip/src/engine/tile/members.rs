@@ -22,8 +22,13 @@ pub fn fetch<T: Real, const D: usize>(columns: &Columns<T, D>, particle: usize, 
 /// The columns that a pass reads, from the first on.
 #[inline(always)]
 fn columns_read<const D: usize>(verbs: &Verbs) -> usize {
-    let deformed = verbs.strain || verbs.scatter.is_some_and(|share| share != Share::Momentum);
-    if deformed || verbs.displace { Column::<D>::START } else { Column::<D>::DEFORMATION }
+    if reads_deformation(verbs) { Column::<D>::START } else { Column::<D>::DEFORMATION }
+}
+
+/// Whether a pass reads deformation and stress.
+#[inline(always)]
+fn reads_deformation(verbs: &Verbs) -> bool {
+    verbs.strain || verbs.displace || verbs.scatter.is_some_and(|share| share != Share::Momentum)
 }
 
 /// Up to as many particles as there are lanes, as columns: the body's own where they lie side by side and fill the lanes, else copies.
@@ -91,16 +96,17 @@ impl<'a, T: Real, const D: usize> Members<'a, T, D> {
         verbs: &Verbs,
         copies: &'a mut Copies<T>,
     ) -> Self {
-        if in_a_row && index.len() == V::COUNT {
+        let count = index.len();
+        if in_a_row && count == V::COUNT {
             // SAFETY: the particle exists.
             let first = unsafe { columns.at(0, index[0] as usize) };
-            Members { columns, count: V::COUNT, first, stride: columns.stride(), runs: None }
+            Members { columns, count, first, stride: columns.stride(), runs: None }
         } else {
             // SAFETY: the tile's particles are this pass' alone.
-            unsafe { copies.take::<V, D>(columns, index, columns_read::<D>(verbs)) };
+            unsafe { copies.take::<V, D>(columns, index, reads_deformation(verbs)) };
             Members {
                 columns,
-                count: index.len(),
+                count,
                 first: copies.columns.as_mut_ptr().cast(),
                 stride: Copies::<T>::STRIDE,
                 runs: Some(&copies.runs),
@@ -108,6 +114,7 @@ impl<'a, T: Real, const D: usize> Members<'a, T, D> {
         }
     }
 
+    /// A column; lanes beyond repeat a particle of the group.
     #[inline(always)]
     pub fn load<V: Lanes<Real = T>>(&self, column: usize) -> V {
         // SAFETY: the tile's particles are this pass' alone, and copies are as long as any machine's lanes.
@@ -192,7 +199,7 @@ impl<T: Real> Copies<T> {
     /// Entries from a column to the next.
     const STRIDE: usize = size_of::<[Numbers<T>; 2]>() / size_of::<T>();
 
-    /// The first so many columns, and the first particle in the lanes beyond.
+    /// What a pass reads; lanes beyond repeat a particle of the group.
     ///
     /// # Safety
     /// The particles must exist, and nobody may write to them meanwhile.
@@ -201,26 +208,36 @@ impl<T: Real> Copies<T> {
         &mut self,
         columns: &Columns<T, D>,
         index: &[u32],
-        count: usize,
+        deformed: bool,
     ) {
         self.runs.find(index);
-        for run in &self.runs.runs[..self.runs.count] {
-            for (column, copy) in self.columns.iter_mut().enumerate().take(count) {
-                // SAFETY: the caller's, and there is room for a register from any lane on.
-                unsafe {
-                    let place = copy.as_mut_ptr().cast::<T>().add(run.lane);
-                    let there = columns.at(column, run.first);
-                    V::load_part(there, run.count, *there).store(place);
+        for i in 0..self.runs.count {
+            let run = self.runs.runs[i];
+            // SAFETY: the caller's.
+            unsafe {
+                self.take_run::<V, D>(columns, run, 0..Column::<D>::DEFORMATION);
+                if deformed {
+                    self.take_run::<V, D>(columns, run, Column::<D>::DEFORMATION..Column::<D>::START);
                 }
             }
         }
-        if index.len() < V::COUNT {
-            for (column, copy) in self.columns.iter_mut().enumerate().take(count) {
-                // SAFETY: as above.
-                unsafe {
-                    let place = copy.as_mut_ptr().cast::<T>().add(index.len());
-                    V::splat(*columns.at(column, index[0] as usize)).store(place);
-                }
+    }
+
+    /// Columns whose number the compiler knows, so that it needs no loop.
+    #[inline(always)]
+    unsafe fn take_run<V: Lanes<Real = T>, const D: usize>(
+        &mut self,
+        columns: &Columns<T, D>,
+        run: Run,
+        which: Range<usize>,
+    ) {
+        // SAFETY: the caller's, and there is room for a register from any lane on.
+        unsafe {
+            let mut there = columns.at(which.start, run.first);
+            let mut place = self.columns.as_mut_ptr().cast::<T>().add(which.start * Self::STRIDE + run.lane);
+            for _ in which {
+                V::load_part(there, run.count, *there).store(place);
+                (there, place) = (there.wrapping_add(columns.stride()), place.wrapping_add(Self::STRIDE));
             }
         }
     }

@@ -72,8 +72,13 @@ impl<T: Laned, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
             let (mut first, end) = (ends[0] as usize, ends[1] as usize);
             while first < end {
                 let index = &order[first..end.min(first + V::COUNT)];
-                if let Some(&later) = order.get(first + AHEAD) {
-                    fetch(&columns, later as usize, &visit.pass.verbs);
+                let later =
+                    &order[(first + AHEAD).min(order.len())..order.len().min(first + AHEAD + V::COUNT)];
+                if let [first, .., last] = *later {
+                    fetch(&columns, first as usize, &visit.pass.verbs);
+                    if last - first >= V::COUNT as u32 {
+                        fetch(&columns, last as usize, &visit.pass.verbs);
+                    }
                 }
                 // Indices within a cell ascend.
                 let in_a_row = index[index.len() - 1] as usize - index[0] as usize == index.len() - 1;
