@@ -29,6 +29,9 @@ pub mod basis;
 // Particles, and what they add up to.
 pub mod body;
 
+// Large pages of memory.
+pub mod pages;
+
 // A body's particles as columns in memory.
 pub mod particles;
 

@@ -1,6 +1,7 @@
 //! Particles of one body as columns, so that a processor can take several at a time; seen from outside, they are rows.
 
 use crate::body::Particle;
+use crate::pages::ask_for_large;
 use crate::tensor::{Matrix, Real, Symmetric, Vector};
 use rayon::prelude::*;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -63,11 +64,9 @@ impl<T: Real, const D: usize> Particles<T, D> {
     pub fn from_fn(count: usize, f: impl Fn(usize) -> Particle<T, D>) -> Self {
         let lines = (count * size_of::<T>()).div_ceil(LINE) | 1;
         let stride = lines * LINE / size_of::<T>();
-        let mut particles = Particles {
-            columns: vec![T::ZERO; stride * Column::<D>::COUNT],
-            stride,
-            numbers: vec![0; count],
-        };
+        let columns = vec![T::ZERO; stride * Column::<D>::COUNT];
+        ask_for_large(columns.as_ptr(), columns.len());
+        let mut particles = Particles { columns, stride, numbers: vec![0; count] };
         for i in 0..count {
             let particle = f(i);
             particles.set(i, &particle);

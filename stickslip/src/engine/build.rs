@@ -18,6 +18,7 @@ use crate::particles::Particles;
 use crate::scene::{self, BasisKind, Dimension, Face, Motion, Precision, Problem, Scene};
 use crate::tensor::{Matrix, Real, Symmetric, Vector, cross};
 use std::marker::PhantomData;
+use std::sync::Mutex;
 
 /// The simulation of a scene.
 ///
@@ -112,6 +113,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             tally: Tally::default(),
             signal: None,
             left: Vec::new(),
+            totals: Mutex::new(None),
             path,
             workshop: Workshop::default(),
             time: 0.0,

@@ -2,6 +2,7 @@
 
 use super::Engine;
 use crate::basis::Basis;
+use crate::body::{Body, Totals};
 use crate::contact::Span;
 use crate::door::{
     BodyState, ContactState, GridSnapshot, Ledger, ParticleSnapshot, ParticleView, Patch, Simulation,
@@ -10,6 +11,8 @@ use crate::door::{
 use crate::grid::{node_at, nodes_per_block};
 use crate::lanes::Laned;
 use crate::tensor::Real;
+use rayon::prelude::*;
+use std::sync::{Arc, PoisonError};
 
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
@@ -17,6 +20,15 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
 
 fn add(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     std::array::from_fn(|i| a[i] + b[i])
+}
+
+impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
+    /// What the particles of each body add up to, summed once a step for whoever asks.
+    fn totals(&self) -> Arc<[Totals]> {
+        let mut known = self.totals.lock().unwrap_or_else(PoisonError::into_inner);
+        let sum = || self.bodies.par_iter().map(Body::totals).collect();
+        known.get_or_insert_with(sum).clone()
+    }
 }
 
 impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
@@ -37,6 +49,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
     }
 
     fn step(&mut self, longest: f64) -> Result<(), StepError> {
+        *self.totals.get_mut().unwrap_or_else(PoisonError::into_inner) = None;
         let dt = self.stable().min(longest);
         for motion in self.rigid.iter_mut().flatten() {
             motion.set_time(self.time + 0.5 * dt);
@@ -49,6 +62,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
     }
 
     fn bodies(&self) -> Vec<BodyState> {
+        let all = self.totals();
         (self.bodies.iter().enumerate())
             .map(|(i, body)| {
                 if let Some(motion) = self.without_bounds(i) {
@@ -61,12 +75,12 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
                         strain: 0.0,
                     };
                 }
-                let totals = body.totals();
+                let totals = &all[i];
                 BodyState {
                     mass: totals.mass,
                     position: totals.first_moment.map(|x| x / totals.mass),
                     velocity: totals.momentum.map(|p| p / totals.mass),
-                    spin: body.spin(&totals),
+                    spin: body.spin(totals),
                     kinetic: totals.kinetic,
                     strain: totals.strain,
                 }
@@ -84,8 +98,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
             ..Ledger::default()
         };
         let gravity = self.gravity.space();
-        for body in self.bodies.iter().filter(|body| !body.rigid) {
-            let totals = body.totals();
+        let all = self.totals();
+        for (_, totals) in self.bodies.iter().zip(&*all).filter(|(body, _)| !body.rigid) {
             ledger.kinetic += totals.kinetic;
             ledger.strain += totals.strain;
             ledger.potential -= dot(gravity, totals.first_moment);

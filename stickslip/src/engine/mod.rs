@@ -15,7 +15,7 @@ pub use build::{build, build_on};
 pub use pass::Path;
 
 use crate::basis::Basis;
-use crate::body::Body;
+use crate::body::{Body, Totals};
 use crate::boundary::Boundary;
 use crate::clock::fastest_signal;
 use crate::contact::{Impulses, Rules, Survey, Tally};
@@ -28,6 +28,7 @@ use crate::transfer::Share;
 use cpu::Workshop;
 use rigid::RigidMotion;
 use std::marker::PhantomData;
+use std::sync::{Arc, Mutex};
 use unbounded::Unbounded;
 use watch::Watch;
 
@@ -59,6 +60,8 @@ pub struct Engine<T, const D: usize, B> {
     signal: Option<f64>,
     /// Cells of each tile that particles have left.
     left: Vec<u64>,
+    /// What the particles of each body add up to since the last step, once somebody has asked.
+    totals: Mutex<Option<Arc<[Totals]>>>,
     path: Path,
     workshop: Workshop<T, D>,
     time: f64,

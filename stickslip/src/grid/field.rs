@@ -3,6 +3,7 @@
 use super::{Cover, Nodes, SIDE, Tile, next_of, nodes_per_block};
 use crate::basis::MAX_WIDTH;
 use crate::lanes::prefetch;
+use crate::pages::ask_for_large;
 use crate::tensor::{Real, Vector};
 use rayon::prelude::*;
 use std::marker::PhantomData;
@@ -48,9 +49,15 @@ pub struct Field<T, const D: usize> {
 impl<T: Real, const D: usize> Field<T, D> {
     /// Empties the field and gives it the blocks of a cover.
     pub fn clear(&mut self, cover: &Cover<D>) {
-        self.nodes.truncate(cover.slots.len() * nodes_per_block(D));
+        let count = cover.slots.len() * nodes_per_block(D);
+        if count > self.nodes.capacity() {
+            // Nothing in it is of use any more, and a slab of its own gets pages of its own.
+            self.nodes = Vec::with_capacity(count + count / 4);
+            ask_for_large(self.nodes.as_ptr(), self.nodes.capacity());
+        }
+        self.nodes.truncate(count);
         self.nodes.par_iter_mut().with_min_len(4096).for_each(|node| *node = Node::EMPTY);
-        self.nodes.resize(cover.slots.len() * nodes_per_block(D), Node::EMPTY);
+        self.nodes.resize(count, Node::EMPTY);
     }
 
     /// Finds the nodes that have mass and does something to each of them.

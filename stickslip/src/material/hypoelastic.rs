@@ -34,6 +34,7 @@ impl<T: Number> Law<T> for Hypoelastic<T> {
         motion.stress.rotated(&rotation) + Symmetric::isotropic(lame * strain.trace()) + strain * (two * g)
     }
 
+    #[inline(always)]
     fn strain_energy(&self, deformation: &Matrix<T>, stress: &Symmetric<T>) -> T {
         let Isotropic { bulk_modulus: k, shear_modulus: g } = self.elastic;
         let mean = stress.trace() / T::of(3.0);

@@ -162,6 +162,15 @@ impl<T: Number> Material<T> {
         }
     }
 
+    /// [`Law::strain_energy`] where the compiler can see it.
+    #[inline(always)]
+    pub fn strain_energy(&self, deformation: &Matrix<T>, stress: &Symmetric<T>) -> T {
+        match self {
+            Material::NeoHookean(law) => law.strain_energy(deformation, stress),
+            Material::Hypoelastic(law) => law.strain_energy(deformation, stress),
+        }
+    }
+
     /// Stiffness against the fastest wave in the present state, times J [Pa]: [`Law::wave_modulus`], in plane stress that of a plate.
     #[inline(always)]
     pub fn wave_modulus(&self, thickness: Thickness, deformation: &Matrix<T>, jacobian: T) -> T {

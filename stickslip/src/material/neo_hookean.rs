@@ -30,6 +30,7 @@ impl<T: Number> Law<T> for NeoHookean<T> {
         b.deviator() * (g * inverse * (root * inverse)) + Symmetric::isotropic(pressure)
     }
 
+    #[inline(always)]
     fn strain_energy(&self, deformation: &Matrix<T>, _stress: &Symmetric<T>) -> T {
         let Isotropic { bulk_modulus: k, shear_modulus: g } = self.elastic;
         let j = deformation.det();

@@ -1,0 +1,73 @@
+//! A body: particles that share a material, and what they add up to.
+
+mod totals;
+
+pub use totals::Totals;
+
+use crate::geometry::Whole;
+use crate::material::{Material, Motion, Thickness};
+use crate::particles::Particles;
+use crate::tensor::{Matrix, Real, Symmetric, Vector};
+
+/// A material point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Particle<T, const D: usize> {
+    /// Position [m].
+    pub position: Vector<T, D>,
+    /// Velocity [m/s].
+    pub velocity: Vector<T, D>,
+    /// Mass [kg].
+    pub mass: T,
+    /// Undeformed volume [m^3]; in the plane per metre of undeformed thickness.
+    pub volume: T,
+    /// Half the side of its undeformed box [m].
+    pub half_width: T,
+    /// Deformation gradient F, embedded in space; in the plane F_zz is the thickness over the undeformed one [-].
+    pub deformation: Matrix<T>,
+    /// Cauchy stress, tension positive [Pa].
+    pub stress: Symmetric<T>,
+    /// Its number in its body, from the filling.
+    pub number: u32,
+}
+
+impl<T: Real, const D: usize> Particle<T, D> {
+    /// The room that it takes on the grid: its volume now, in the plane its area [m^D].
+    pub fn room(&self) -> T {
+        let f = &self.deformation.0;
+        let stretch = if D == 2 { f[0][0] * f[1][1] - f[0][1] * f[1][0] } else { self.deformation.det() };
+        self.volume * stretch
+    }
+}
+
+/// Particles that share a material and move as one body.
+#[derive(Clone, Debug)]
+pub struct Body<T, const D: usize> {
+    /// Name in the scene.
+    pub name: String,
+    /// Constitutive law.
+    pub material: Material<T>,
+    /// Mass per undeformed volume [kg/m^3].
+    pub density: T,
+    /// Its particles, in the order of memory.
+    pub particles: Particles<T, D>,
+    /// Whether its motion is prescribed, whatever pushes it.
+    pub rigid: bool,
+    /// Its undeformed shape with its images in the domain's mirrors.
+    pub whole: Whole,
+    /// Which thickness its particles take.
+    pub thickness: Thickness,
+}
+
+impl<T: Real, const D: usize> Body<T, D> {
+    /// A particle's motion with the thickness that it takes, and its Cauchy stress after it [Pa]; `None` if no thickness is free of stress.
+    #[inline]
+    pub fn respond(&self, motion: Motion<T>) -> Option<(Motion<T>, Symmetric<T>)> {
+        self.material.respond(self.thickness, motion)
+    }
+
+    /// Stiffness against the fastest wave in a state of deformation, times J [Pa].
+    #[inline]
+    pub fn wave_modulus(&self, deformation: &Matrix<T>, jacobian: T) -> T {
+        self.material.wave_modulus(self.thickness, deformation, jacobian)
+    }
+}

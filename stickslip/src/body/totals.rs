@@ -1,0 +1,265 @@
+//! Sums over the particles of a body, several at a time.
+
+use super::Body;
+use crate::lanes::{Laned, Lanes, MOST_LANES, Machine, Processor, Work};
+use crate::material::Material;
+use crate::particles::{Column, Columns, deformation_entries, stress_entries};
+use crate::tensor::{Matrix, Real, Symmetric, cross};
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// Sums over the particles of one body, in `f64` and SI units whatever the precision.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Totals {
+    /// sum m [kg]
+    pub mass: f64,
+    /// sum m x [kg m]
+    pub first_moment: [f64; 3],
+    /// sum m v [kg m/s]
+    pub momentum: [f64; 3],
+    /// sum m x cross v, about the origin [kg m^2/s]
+    pub angular_momentum: [f64; 3],
+    /// sum m v^2 / 2 [J]
+    pub kinetic: f64,
+    /// sum V W [J]
+    pub strain: f64,
+}
+
+/// Particles that are summed up by one thread, whatever the number of threads.
+const PART: usize = 4096;
+
+impl Totals {
+    /// The sums of both.
+    fn plus(self, other: &Totals) -> Totals {
+        let vector = |a: [f64; 3], b: [f64; 3]| std::array::from_fn(|i| a[i] + b[i]);
+        Totals {
+            mass: self.mass + other.mass,
+            first_moment: vector(self.first_moment, other.first_moment),
+            momentum: vector(self.momentum, other.momentum),
+            angular_momentum: vector(self.angular_momentum, other.angular_momentum),
+            kinetic: self.kinetic + other.kinetic,
+            strain: self.strain + other.strain,
+        }
+    }
+}
+
+/// One number of each particle of a handful.
+type Each = [f64; MOST_LANES];
+
+/// Sums by lane.
+type ByLane = [f64; MOST_LANES];
+
+/// Mass, position and velocity of a few particles that lie side by side in memory; zero in the lanes beyond.
+struct Handful {
+    mass: Each,
+    position: [Each; 3],
+    velocity: [Each; 3],
+}
+
+impl Handful {
+    /// # Safety
+    /// The particles must exist, and nobody may write to them meanwhile.
+    #[inline(always)]
+    unsafe fn new<V: Lanes, const D: usize>(
+        columns: &Columns<V::Real, D>,
+        first: usize,
+        count: usize,
+    ) -> Self {
+        let mut handful = Handful {
+            mass: [0.0; MOST_LANES],
+            position: [[0.0; MOST_LANES]; 3],
+            velocity: [[0.0; MOST_LANES]; 3],
+        };
+        // SAFETY: the caller's.
+        unsafe {
+            handful.mass = each(V::load_first(columns.at(Column::<D>::MASS, first), count));
+            for i in 0..D {
+                handful.position[i] =
+                    each(V::load_first(columns.at(Column::<D>::POSITION + i, first), count));
+                handful.velocity[i] =
+                    each(V::load_first(columns.at(Column::<D>::VELOCITY + i, first), count));
+            }
+        }
+        handful
+    }
+
+    /// m x cross v, about a point that moves.
+    #[inline(always)]
+    fn angular_momentum(&self, lane: usize, center: [f64; 3], mean: [f64; 3]) -> [f64; 3] {
+        let [r, v] = [(&self.position, center), (&self.velocity, mean)]
+            .map(|(x, of)| [x[0][lane] - of[0], x[1][lane] - of[1], x[2][lane] - of[2]]);
+        cross(r, v).map(|l| self.mass[lane] * l)
+    }
+}
+
+#[inline(always)]
+fn each<V: Lanes>(numbers: V) -> Each {
+    let numbers = numbers.numbers();
+    let mut each = [0.0; MOST_LANES];
+    for (x, number) in each.iter_mut().zip(numbers.0) {
+        *x = number.f64();
+    }
+    each
+}
+
+/// The particles of a part, handful by handful.
+#[inline(always)]
+fn handfuls<V: Lanes>(part: &Range<usize>) -> impl Iterator<Item = (usize, usize)> + use<V> {
+    let end = part.end;
+    part.clone().step_by(V::COUNT).map(move |first| (first, V::COUNT.min(end - first)))
+}
+
+/// Totals of some particles of a body.
+struct Sum<'a, T, const D: usize> {
+    columns: Columns<T, D>,
+    part: Range<usize>,
+    /// The law, but for rigid bodies.
+    material: Option<&'a Material<T>>,
+}
+
+impl<T: Laned, const D: usize> Work for Sum<'_, T, D> {
+    type Real = T;
+    type Output = Totals;
+
+    #[inline(always)]
+    fn run<M: Machine<T>>(self) -> Totals {
+        let mut mass: ByLane = [0.0; MOST_LANES];
+        let [mut first_moment, mut momentum, mut angular_momentum] = [[[0.0; MOST_LANES]; 3]; 3];
+        let (mut kinetic, mut strain): (ByLane, ByLane) = ([0.0; MOST_LANES], [0.0; MOST_LANES]);
+        let material = self.material.map(|material| material.map(M::Wide::splat));
+        for (first, count) in handfuls::<M::Wide>(&self.part) {
+            // SAFETY: the particles are the body's, which is borrowed for reading.
+            let some = unsafe { Handful::new::<M::Wide, D>(&self.columns, first, count) };
+            for lane in 0..MOST_LANES {
+                let m = some.mass[lane];
+                mass[lane] += m;
+                let l = some.angular_momentum(lane, [0.0; 3], [0.0; 3]);
+                for i in 0..3 {
+                    let v = some.velocity[i][lane];
+                    first_moment[i][lane] += m * some.position[i][lane];
+                    momentum[i][lane] += m * v;
+                    angular_momentum[i][lane] += l[i];
+                    kinetic[lane] += 0.5 * m * v * v;
+                }
+            }
+            if let Some(material) = &material {
+                // SAFETY: as above.
+                let (energy, jacobian, volume) =
+                    unsafe { stored::<M::Wide, D>(&self.columns, material, first, count) };
+                for lane in 0..count {
+                    // A particle that turned inside out has stopped the run and has no energy.
+                    if jacobian[lane] > 0.0 {
+                        strain[lane] += volume[lane] * energy[lane];
+                    }
+                }
+            }
+        }
+        let sum = |lanes: ByLane| lanes.iter().sum::<f64>();
+        Totals {
+            mass: sum(mass),
+            first_moment: first_moment.map(sum),
+            momentum: momentum.map(sum),
+            angular_momentum: angular_momentum.map(sum),
+            kinetic: sum(kinetic),
+            strain: sum(strain),
+        }
+    }
+}
+
+/// Strain energy per undeformed volume [J/m^3], J [-] and undeformed volume [m^3].
+///
+/// # Safety
+/// The particles must exist, and nobody may write to them meanwhile.
+#[inline(always)]
+unsafe fn stored<V: Lanes, const D: usize>(
+    columns: &Columns<V::Real, D>,
+    material: &Material<V>,
+    first: usize,
+    count: usize,
+) -> (Each, Each, Each) {
+    let (mut f, mut stress) = (Matrix::ZERO, Symmetric::ZERO);
+    // SAFETY: the caller's.
+    let volume = unsafe {
+        for (k, &[row, column]) in deformation_entries(D).iter().enumerate() {
+            f.0[row][column] = V::load_first(columns.at(Column::<D>::DEFORMATION + k, first), count);
+        }
+        for k in 0..stress_entries(D) {
+            stress.0[k] = V::load_first(columns.at(Column::<D>::STRESS + k, first), count);
+        }
+        V::load_first(columns.at(Column::<D>::VOLUME, first), count)
+    };
+    (each(material.strain_energy(&f, &stress)), each(f.det()), each(volume))
+}
+
+/// Inertia tensor [kg m^2] and angular momentum [kg m^2/s] of some particles of a body about a point that moves.
+struct Turning<T, const D: usize> {
+    columns: Columns<T, D>,
+    part: Range<usize>,
+    center: [f64; 3],
+    mean: [f64; 3],
+}
+
+impl<T: Laned, const D: usize> Work for Turning<T, D> {
+    type Real = T;
+    type Output = (Matrix<f64>, [f64; 3]);
+
+    #[inline(always)]
+    fn run<M: Machine<T>>(self) -> (Matrix<f64>, [f64; 3]) {
+        // sum m x x, sum m x cross v
+        let mut moments = [[0.0; MOST_LANES]; 6];
+        let mut angular = [[0.0; MOST_LANES]; 3];
+        for (first, count) in handfuls::<M::Wide>(&self.part) {
+            // SAFETY: the particles are the body's, which is borrowed for reading.
+            let some = unsafe { Handful::new::<M::Wide, D>(&self.columns, first, count) };
+            for lane in 0..MOST_LANES {
+                let [m, l] = [[some.mass[lane]; 3], some.angular_momentum(lane, self.center, self.mean)];
+                let [x, y, z] = [0, 1, 2].map(|i| some.position[i][lane] - self.center[i]);
+                for (sum, product) in moments.iter_mut().zip([x * x, y * y, z * z, x * y, y * z, x * z]) {
+                    sum[lane] += m[0] * product;
+                }
+                for (sum, l) in angular.iter_mut().zip(l) {
+                    sum[lane] += l;
+                }
+            }
+        }
+        let [xx, yy, zz, xy, yz, xz] = moments.map(|lanes| lanes.iter().sum::<f64>());
+        let inertia = Matrix([[yy + zz, -xy, -xz], [-xy, xx + zz, -yz], [-xz, -yz, xx + yy]]);
+        (inertia, angular.map(|lanes| lanes.iter().sum()))
+    }
+}
+
+impl<T: Laned, const D: usize> Body<T, D> {
+    /// Mass, momentum and energy, summed in the order of memory, part by part.
+    pub fn totals(&self) -> Totals {
+        let sum = |part| {
+            let material = (!self.rigid).then_some(&self.material);
+            T::run(Processor::best(), Sum { columns: self.particles.view(), part, material })
+        };
+        self.by_parts(sum).iter().fold(Totals::default(), Totals::plus)
+    }
+
+    /// Angular velocity: the inverse of the inertia tensor times the angular momentum, both about the centre of mass [rad/s].
+    pub fn spin(&self, totals: &Totals) -> [f64; 3] {
+        let center = totals.first_moment.map(|x| x / totals.mass);
+        let mean = totals.momentum.map(|p| p / totals.mass);
+        let turning =
+            |part| T::run(Processor::best(), Turning { columns: self.particles.view(), part, center, mean });
+        let (mut inertia, mut angular) = (Matrix::<f64>::ZERO, [0.0; 3]);
+        for (some_inertia, some_angular) in self.by_parts(turning) {
+            inertia = inertia + some_inertia;
+            angular = std::array::from_fn(|i| angular[i] + some_angular[i]);
+        }
+        if D == 2 {
+            return [0.0, 0.0, angular[2] / inertia.0[2][2]];
+        }
+        let inverse = inertia.inverse();
+        std::array::from_fn(|i| (0..3).map(|j| inverse.0[i][j] * angular[j]).sum())
+    }
+
+    /// What comes of each part of the particles, in their order.
+    fn by_parts<R: Send>(&self, f: impl Fn(Range<usize>) -> R + Sync) -> Vec<R> {
+        let count = self.particles.len();
+        let parts = (0..count.div_ceil(PART)).into_par_iter();
+        parts.map(|part| f(part * PART..count.min((part + 1) * PART))).collect()
+    }
+}
