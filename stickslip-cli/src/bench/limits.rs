@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use std::hint::black_box;
 use std::sync::Barrier;
 use std::time::{Duration, Instant};
+use stickslip::pages::ask_for_large;
 
 /// The limits of so many threads together.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -52,7 +53,14 @@ fn in_step<R>(barrier: &Barrier, measure: impl FnOnce() -> R) -> R {
 /// Bytes read plus bytes written in a second by this thread, while the others copy too.
 fn copy(care: Care, barrier: &Barrier) -> f64 {
     let numbers = care.bytes / size_of::<u64>();
-    let (from, mut to) = (vec![1_u64; numbers], vec![2_u64; numbers]);
+    // In pages as large as the engine's.
+    let filled = |number: u64| {
+        let mut array = Vec::with_capacity(numbers);
+        ask_for_large(array.as_ptr(), numbers);
+        array.resize(numbers, number);
+        array
+    };
+    let (from, mut to) = (filled(1), filled(2));
     in_step(barrier, || {
         let mut best: f64 = 0.0;
         let begin = Instant::now();

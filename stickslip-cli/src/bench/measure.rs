@@ -42,9 +42,11 @@ pub struct Effort {
     pub warm_up: u64,
     /// Repetitions, each of as many steps as the other.
     pub repetitions: usize,
+    /// Fewest steps in a repetition: enough that sorting is paid for as often as it is due.
+    pub least: u64,
     /// Most steps in a repetition.
     pub steps: u64,
-    /// Wall time for all repetitions, unless that is less than a step each [s].
+    /// Wall time for all repetitions, unless that is less than the fewest steps take [s].
     pub seconds: f64,
 }
 
@@ -164,7 +166,7 @@ impl Effort {
     /// Steps of a repetition if a step takes `pace` [s].
     fn steps_in(&self, pace: f64) -> u64 {
         let affordable = self.seconds / (self.repetitions as f64 * pace.max(1e-9));
-        (affordable as u64).clamp(1, self.steps)
+        (affordable as u64).clamp(self.least, self.steps)
     }
 }
 
@@ -179,7 +181,7 @@ mod tests {
 
     #[test]
     fn steps_fit_into_the_time_that_there_is() {
-        let effort = Effort { warm_up: 0, repetitions: 5, steps: 64, seconds: 10.0 };
+        let effort = Effort { warm_up: 0, repetitions: 5, least: 1, steps: 64, seconds: 10.0 };
         assert_eq!(effort.steps_in(0.1), 20);
         assert_eq!(effort.steps_in(1e-3), 64);
         assert_eq!(effort.steps_in(60.0), 1);
@@ -188,7 +190,7 @@ mod tests {
     #[test]
     fn steps_are_counted_and_timed() {
         let case = cases(Extent::Tiny, 1).swap_remove(0);
-        let effort = Effort { warm_up: 2, repetitions: 3, steps: 4, seconds: 60.0 };
+        let effort = Effort { warm_up: 2, repetitions: 3, least: 1, steps: 4, seconds: 60.0 };
         let order = Order { scene: case.scene, overrides: Vec::new(), threads: 1, task: Task::Steps(effort) };
         let sample = take(&order).unwrap();
         assert_eq!((sample.bodies, sample.particles, sample.steps), (1, 512, 4));

@@ -100,9 +100,9 @@ impl Suite {
     fn measure(&self, case: Case, machine: &Machine) -> Result<Measured, Failure> {
         eprintln!("{} ...", case.label());
         let effort = match self.extent {
-            Extent::Full => Effort { warm_up: 8, repetitions: 5, steps: 64, seconds: 15.0 },
-            Extent::Quick => Effort { warm_up: 2, repetitions: 3, steps: 32, seconds: 1.2 },
-            Extent::Tiny => Effort { warm_up: 1, repetitions: 2, steps: 2, seconds: 0.1 },
+            Extent::Full => Effort { warm_up: 8, repetitions: 5, least: 12, steps: 64, seconds: 15.0 },
+            Extent::Quick => Effort { warm_up: 2, repetitions: 3, least: 1, steps: 32, seconds: 1.2 },
+            Extent::Tiny => Effort { warm_up: 1, repetitions: 2, least: 1, steps: 2, seconds: 0.1 },
         };
         let order = Order {
             scene: case.scene.clone(),

@@ -130,7 +130,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
     }
 
     fn snapshot(&self) -> ParticleSnapshot {
-        let mut snapshot = ParticleSnapshot { dimension: D, ..ParticleSnapshot::default() };
+        let mut snapshot = ParticleSnapshot::with_room(D, self.particles());
         for (i, body) in self.bodies.iter().enumerate() {
             // Where each number stands.
             let mut places = vec![0; body.particles.len()];
