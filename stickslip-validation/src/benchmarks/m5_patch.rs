@@ -1,7 +1,7 @@
 //! M5: an interface under uniform pressure leaves the stress uniform.
 
 use super::reasons::{PLANE_OF_PARTICLES, STAIRS};
-use crate::benchmark::{Allowed, Benchmark, Case, Laws, Resolution, Target, Tier};
+use crate::benchmark::{Allowed, Benchmark, Case, Laws, Reason, Resolution, Target, Tier};
 use crate::failure::Failure;
 use crate::outcome::Outcome;
 use crate::trial::Trial;
@@ -34,13 +34,26 @@ particles more than two cells below the platen, over p; glue grips up to a cell 
         Target::new(UNLIKE[0], 0.0, Allowed::Within(0.02), "faces along the grid are represented exactly")
             .at(32.0),
         Target::new(UNLIKE[1], 0.0, Allowed::Within(0.05), SLANTED).at(32.0),
+        Target::new(UNLIKE[2], 0.0, Allowed::Within(0.05), SLANTED).at(32.0).missed_at(&[32.0]),
     ],
-    reasons: &[STAIRS, PLANE_OF_PARTICLES],
+    reasons: &[
+        STAIRS,
+        PLANE_OF_PARTICLES,
+        Reason {
+            laws: &["surface"],
+            text: "Stairs of two unlike lattices do not fill space: along a slanted interface material is missing here and twice there, and particles within a cell of it bear 0.09 to 0.24 too much or too little. Glue, by which the parts are one body, has the \
+same: 0.14, 0.19 and 0.09 at 15, 30 and 45 degrees where surface has 0.18, 0.24 and 0.09 (L/32). More than a cell off the two agree.",
+        },
+    ],
     run,
 };
 
 const METRICS: [&str; 4] = ["largest error of stress, 0 degrees", "15 degrees", "30 degrees", "45 degrees"];
-const UNLIKE: [&str; 2] = ["2 particles a side on 3, 0 degrees", "2 on 3, 15 to 45 degrees"];
+const UNLIKE: [&str; 3] = [
+    "2 particles a side on 3, 0 degrees",
+    "2 on 3, 15 to 45 degrees, over a cell off the interface",
+    "2 on 3, 15 to 45 degrees, everywhere",
+];
 const ANGLES: [f64; 4] = [0.0, 15.0, 30.0, 45.0];
 const SLANTED: &str =
     "a slanted face is stairs on the particles' lattice; the error shall stay within them and fall with h";
@@ -48,24 +61,35 @@ const SLANTED: &str =
 fn run(case: &Case) -> Result<Outcome, Failure> {
     let mut outcome = Outcome::default();
     for (metric, degrees) in METRICS.into_iter().zip(ANGLES) {
-        let error = press(case, degrees, [2, 2], &mut outcome)?;
-        outcome.measure(metric, error);
+        let [everywhere, _] = press(case, degrees, [2, 2], &mut outcome)?;
+        outcome.measure(metric, everywhere);
     }
     if case.tier == Tier::Full {
-        let mut errors = [0.0_f64; 2];
+        let mut slanted = [0.0_f64; 2];
         for degrees in ANGLES {
-            let of_angle = &mut errors[usize::from(degrees > 0.0)];
-            *of_angle = of_angle.max(press(case, degrees, [2, 3], &mut outcome)?);
+            let errors = press(case, degrees, [2, 3], &mut outcome)?;
+            if degrees == 0.0 {
+                outcome.measure(UNLIKE[0], errors[0]);
+            } else {
+                slanted = [0, 1].map(|i| slanted[i].max(errors[i]));
+            }
         }
-        UNLIKE.into_iter().zip(errors).for_each(|(metric, error)| outcome.measure(metric, error));
+        outcome.measure(UNLIKE[1], slanted[1]);
+        outcome.measure(UNLIKE[2], slanted[0]);
     }
     Ok(outcome)
 }
 
 const PRESS: f64 = 0.001;
 
-/// The largest error of stress with an interface at an angle and so many particles a side in the lower and the upper part.
-fn press(case: &Case, degrees: f64, per_side: [usize; 2], outcome: &mut Outcome) -> Result<f64, Failure> {
+/// The largest error of stress, everywhere and more than a cell off the interface, which lies at an angle, with so many particles a side in the
+/// lower and the upper part.
+fn press(
+    case: &Case,
+    degrees: f64,
+    per_side: [usize; 2],
+    outcome: &mut Outcome,
+) -> Result<[f64; 2], Failure> {
     let h = 1.0 / case.cells;
     let modulus: f64 = 0.7 / (1.3 * 0.4);
     let ramp = 10.0 / modulus.sqrt();
@@ -119,10 +143,13 @@ law = "glued"
         }
     }
     let last = trial.snapshot();
-    let mut largest = 0.0_f64;
+    let mut largest = [0.0_f64; 2];
     for (p, sum) in sums.iter().enumerate() {
         if last.body[p] < 2 && last.position[p][1] < 1.0 - 2.0 * h {
-            largest = largest.max((sum / -pressure - 1.0).abs());
+            let error = (sum / -pressure - 1.0).abs();
+            let [x, y, _] = last.position[p];
+            let off = ((y - 0.5) * cos - (x - 0.5) * sin).abs();
+            largest = [largest[0].max(error), if off > h { largest[1].max(error) } else { largest[1] }];
         }
     }
     outcome.include(trial);
