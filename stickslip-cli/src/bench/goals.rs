@@ -1,5 +1,6 @@
 //! Ratios of what was measured, and what they are to be.
 
+use super::problems::{BLOCKS_APART, BLOCKS_IN_CONTACT};
 use super::record::{EndToEnd, Measured, PeerResult, median};
 use serde::Serialize;
 
@@ -62,6 +63,11 @@ pub fn goals(findings: Findings) -> Vec<Goal> {
     let [gimp, single] =
         [["gimp", "double", "last"], ["linear", "single", "last"]].map(|how| findings.one("P1", how));
     let [cube, blocks, wide] = ["P1", "P2", "P4"].map(default);
+    let contact = |basis| {
+        let [on, off] =
+            [BLOCKS_IN_CONTACT, BLOCKS_APART].map(|variant| rate(findings.blocks(variant, basis)));
+        ratio(off, on)
+    };
     let packs = findings.packs();
     let pack_rates: Vec<f64> = packs.iter().map(|pack| pack.rate).collect();
     let pack_memory: Vec<f64> = packs.iter().filter_map(|pack| pack.memory).collect();
@@ -82,6 +88,8 @@ pub fn goals(findings: Findings) -> Vec<Goal> {
             (AtLeast, 10.0, Some(20.0)),
         ),
         goal("P1 linear, f32 over f64", ratio(rate(single), rate(linear)), (AtLeast, 1.6, Some(1.9))),
+        goal("P2 linear, contact on over off", contact("linear"), (AtMost, 1.25, Some(1.1))),
+        goal("P2 GIMP, contact on over off", contact("gimp"), (AtMost, 1.25, Some(1.1))),
         goal("P2 time over P1's", ratio(rate(cube), rate(blocks)), (AtMost, 1.25, Some(1.1))),
         goal(
             "P3 time a particle, 64 balls and more: most over least",
@@ -140,6 +148,11 @@ impl<'a> Findings<'a> {
         })
     }
 
+    /// Two blocks in contact, or without it.
+    fn blocks(self, variant: &str, basis: &str) -> Option<&'a Measured> {
+        self.of("P2").find(|Measured { case, .. }| case.variant == variant && case.scheme.basis == basis)
+    }
+
     fn packs(self) -> Vec<&'a Measured> {
         self.of("P3").filter(|measured| measured.bodies >= MANY_BALLS).collect()
     }
@@ -185,7 +198,7 @@ mod tests {
         Measured {
             case: Case {
                 problem,
-                variant: String::new(),
+                variant: if problem == "P2" { BLOCKS_IN_CONTACT.to_owned() } else { String::new() },
                 scheme,
                 threads: 1,
                 scene: String::new(),
@@ -229,6 +242,9 @@ mod tests {
         results[5].bodies = 64;
         results[6].bodies = 4096;
         results[6].memory = Some(500.0);
+        let mut apart = measured("P2", plain, 20e6);
+        apart.case.variant = BLOCKS_APART.to_owned();
+        results.push(apart);
         let mut parallel = measured("P1", plain, 19.5e6);
         parallel.case.threads = 2;
         results.push(parallel);
@@ -248,7 +264,9 @@ mod tests {
         assert_eq!(value(&goals, "P1 linear f64, M"), Some((20.0, true)));
         assert_eq!(value(&goals, "P1 GIMP"), Some((8.0, false)));
         assert_eq!(value(&goals, "P1 linear, f32"), Some((1.8, true)));
-        assert_eq!(value(&goals, "P2"), Some((1.25, true)));
+        assert_eq!(value(&goals, "P2 time over P1's"), Some((1.25, true)));
+        assert_eq!(value(&goals, "P2 linear, contact"), Some((1.25, true)));
+        assert_eq!(value(&goals, "P2 GIMP"), None, "nothing was measured");
         let (flatness, met) = value(&goals, "P3 time a particle, 64").unwrap();
         assert!((flatness - 16.0 / 14.4).abs() < 1e-12 && !met);
         assert_eq!(value(&goals, "P3 memory"), Some((1.25, false)));

@@ -69,6 +69,23 @@ pub struct Sample {
     pub at_work: Option<f64>,
 }
 
+impl Sample {
+    /// Adds the repetitions of another process, which took as many steps.
+    pub fn add(&mut self, other: Sample) {
+        let parts = [&*self, &other].map(|sample| sample.repetitions.iter().sum::<f64>());
+        self.at_work = self
+            .at_work
+            .zip(other.at_work)
+            .map(|(own, others)| (own * parts[0] + others * parts[1]) / (parts[0] + parts[1]));
+        self.repetitions.extend(other.repetitions);
+        for (verb, seconds) in &mut self.verbs {
+            *seconds +=
+                other.verbs.iter().find(|(name, _)| name == verb).map_or(0.0, |(_, seconds)| *seconds);
+        }
+        self.memory = self.memory.max(other.memory);
+    }
+}
+
 impl Order {
     /// Has a process of its own measure this.
     ///
@@ -185,6 +202,22 @@ mod tests {
         assert_eq!(effort.steps_in(0.1), 20);
         assert_eq!(effort.steps_in(1e-3), 64);
         assert_eq!(effort.steps_in(60.0), 1);
+    }
+
+    #[test]
+    fn samples_of_one_case_add_up() {
+        let sample = |seconds: f64, at_work| Sample {
+            steps: 4,
+            repetitions: vec![seconds; 2],
+            verbs: vec![("scatter".to_owned(), seconds)],
+            at_work: Some(at_work),
+            memory: Some((100.0 * seconds) as u64),
+            ..Sample::default()
+        };
+        let mut sum = sample(1.0, 1.0);
+        sum.add(sample(3.0, 0.6));
+        assert_eq!((sum.repetitions, sum.verbs[0].1), (vec![1.0, 1.0, 3.0, 3.0], 4.0));
+        assert_eq!((sum.at_work, sum.memory, sum.steps), (Some(0.7), Some(300), 4));
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! The problems: scenes like any other, as text.
 
 use serde::Serialize;
-use std::fmt::Write as _;
+use std::fmt::{Display, Write as _};
 
 /// How a problem is computed, in the words of scene files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -41,6 +41,11 @@ pub struct Case {
 }
 
 impl Case {
+    /// Whether the two differ in one thing whose cost is asked for: blocks with and without contact.
+    pub fn is_compared_with(&self, other: &Case) -> bool {
+        [self, other].iter().all(|case| case.problem == "P2") && self.scheme == other.scheme
+    }
+
     /// A few words that no other case has: `P3 64 balls, linear f64 last, 2 threads`.
     pub fn label(&self) -> String {
         let Scheme { basis, stress_update, .. } = self.scheme;
@@ -71,6 +76,11 @@ pub enum Extent {
 const CUBE: &str = include_str!("../../../scenes/bench/cube.toml");
 const BLOCKS: &str = include_str!("../../../scenes/bench/blocks.toml");
 const BALLS: &str = include_str!("../../../scenes/bench/balls.toml");
+
+/// P2 as it is.
+pub const BLOCKS_IN_CONTACT: &str = "two blocks";
+/// P2 with the same particles, and nothing between the blocks.
+pub const BLOCKS_APART: &str = "without contact";
 
 /// Cells of empty space round problem P4: its domain is 100 times larger than P1's, (32 + 2 * 207)^3 against (32 + 2 * 32)^3 cells.
 const WIDE_MARGIN: usize = 207;
@@ -122,8 +132,11 @@ pub fn cases(extent: Extent, threads: usize) -> Vec<Case> {
     }
     for scheme in [linear, gimp] {
         let cells = extent.cells();
-        let scene = with(BLOCKS, scheme, &[("cells", cells)]);
-        add("P2", "two blocks", (scheme, 1), (8 * cells.pow(3), scene));
+        let size: (_, &dyn Display) = ("cells", &cells);
+        let apart: [(_, &dyn Display); 3] = [size, ("law", &"\"none\""), ("weight", &0)];
+        for (variant, values) in [(BLOCKS_IN_CONTACT, &apart[..1]), (BLOCKS_APART, &apart)] {
+            add("P2", variant, (scheme, 1), (8 * cells.pow(3), with(BLOCKS, scheme, values)));
+        }
     }
     add("P4", "wide domain", (linear, 1), cube(linear, extent.cells(), WIDE_MARGIN));
     for &side in extent.balls() {
@@ -160,16 +173,16 @@ fn schemes(extent: Extent) -> Vec<Scheme> {
 /// A cube and its number of particles.
 fn cube(scheme: Scheme, cells: usize, margin: usize) -> (usize, String) {
     let turn = usize::from(scheme.stress_update != "last");
-    (8 * cells.pow(3), with(CUBE, scheme, &[("cells", cells), ("margin", margin), ("turn", turn)]))
+    (8 * cells.pow(3), with(CUBE, scheme, &[("cells", &cells), ("margin", &margin), ("turn", &turn)]))
 }
 
 /// A scene with other parameters than its file has.
-fn with(scene: &str, scheme: Scheme, sizes: &[(&str, usize)]) -> String {
+fn with(scene: &str, scheme: Scheme, others: &[(&str, &dyn Display)]) -> String {
     let Scheme { basis, precision, stress_update } = scheme;
     let words = [("basis", basis), ("precision", precision), ("stress_update", stress_update)];
     let mut values: Vec<(String, String)> =
         words.iter().map(|(name, word)| (format!("{name} = "), format!("\"{word}\""))).collect();
-    values.extend(sizes.iter().map(|(name, size)| (format!("{name} = "), size.to_string())));
+    values.extend(others.iter().map(|(name, value)| (format!("{name} = "), value.to_string())));
     let mut text = String::new();
     let mut within = false;
     for line in scene.lines() {
@@ -236,6 +249,14 @@ mod tests {
         };
         assert_eq!(report(&cube(Scheme::default(), 32, 32).1).particles, 262_144);
         assert_eq!(report(&with(BLOCKS, Scheme::default(), &[])).particles, 262_144);
+        let blocks = |variant| {
+            let cases = cases(Extent::Tiny, 1);
+            let case = cases.into_iter().find(|case| case.variant == variant).expect("it is measured");
+            report(&case.scene)
+        };
+        let [pressed, apart] = [BLOCKS_IN_CONTACT, BLOCKS_APART].map(blocks);
+        assert_eq!((pressed.particles, pressed.contacts.len()), (apart.particles, 1));
+        assert!(apart.contacts.is_empty(), "{apart}");
         let pack = report(&balls(Scheme::default(), 2));
         assert_eq!(pack.bodies.len(), 8);
         assert!(pack.bodies.iter().all(|ball| (2080..2200).contains(&ball.particles)), "{pack}");

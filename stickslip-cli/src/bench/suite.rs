@@ -3,7 +3,7 @@
 use super::end_to_end::wholes;
 use super::goals::{Findings, goals};
 use super::limits::{self, Care};
-use super::measure::{Effort, Order, Task};
+use super::measure::{Effort, Order, Sample, Task};
 use super::memory;
 use super::multiply_add::instructions;
 use super::peers::Peers;
@@ -52,10 +52,13 @@ impl Suite {
             peers: Vec::new(),
             goals: Vec::new(),
         };
-        for case in self.cases() {
-            match too_large(&case) {
-                Some(reason) => record.skipped.push(Skipped { case, reason }),
-                None => record.results.push(self.measure(case, &record.machine)?),
+        let cases: Vec<Case> = self.cases().collect();
+        for compared in cases.chunk_by(Case::is_compared_with) {
+            match compared.iter().find_map(too_large) {
+                Some(reason) => record.skipped.extend(
+                    compared.iter().map(|case| Skipped { case: case.clone(), reason: reason.clone() }),
+                ),
+                None => record.results.extend(self.measure(compared, &record.machine)?),
             }
         }
         if self.wants("P6") {
@@ -97,21 +100,44 @@ impl Suite {
         }
     }
 
-    fn measure(&self, case: Case, machine: &Machine) -> Result<Measured, Failure> {
-        eprintln!("{} ...", case.label());
-        let effort = match self.extent {
+    /// Measures cases that are compared in turns: what slows the machine for a while slows all of them.
+    fn measure(&self, compared: &[Case], machine: &Machine) -> Result<Vec<Measured>, Failure> {
+        let mut effort = match self.extent {
             Extent::Full => Effort { warm_up: 8, repetitions: 5, least: 12, steps: 64, seconds: 15.0 },
             Extent::Quick => Effort { warm_up: 2, repetitions: 3, least: 1, steps: 32, seconds: 1.2 },
             Extent::Tiny => Effort { warm_up: 1, repetitions: 2, least: 1, steps: 2, seconds: 0.1 },
         };
-        let order = Order {
-            scene: case.scene.clone(),
-            overrides: Vec::new(),
-            threads: case.threads,
-            task: Task::Steps(effort),
-        };
-        let sample = order.measure()?;
-        Ok(Measured::new(case, sample, machine))
+        let turns = if compared.len() == 1 { 1 } else { TURNS };
+        effort.seconds /= turns as f64;
+        let mut samples: Vec<Sample> = Vec::new();
+        for turn in 0..turns {
+            for (i, case) in compared.iter().enumerate() {
+                if turn == 0 {
+                    eprintln!("{} ...", case.label());
+                }
+                let sample = order(case, effort).measure()?;
+                match samples.get_mut(i) {
+                    Some(sum) => sum.add(sample),
+                    None => samples.push(sample),
+                }
+                // All repetitions have as many steps as the first.
+                (effort.steps, effort.seconds) = (samples[0].steps, f64::MAX);
+            }
+        }
+        let measured = |(case, sample): (&Case, _)| Measured::new(case.clone(), sample, machine);
+        Ok(compared.iter().zip(samples).map(measured).collect())
+    }
+}
+
+/// How often cases that are compared take turns.
+const TURNS: usize = 5;
+
+fn order(case: &Case, effort: Effort) -> Order {
+    Order {
+        scene: case.scene.clone(),
+        overrides: Vec::new(),
+        threads: case.threads,
+        task: Task::Steps(effort),
     }
 }
 

@@ -45,7 +45,7 @@ leaves out: Dundurs' constant is (1 - 2 nu)/(2 - 2 nu), here 0.06. Velocities ov
         EXTRAPOLATED,
         Reason {
             laws: &["surface"],
-            text: "Where it sticks, what counts is the ratio of two stiffnesses. Four cells on the patch make the normal one too large: the force is 7 % above Hertz, the contact 5 % shorter, \
+            text: "Where it sticks (u0 = 1 and 2 mu v) it is 0.07 below the curve at a/h = 4. What counts there is the ratio of two stiffnesses. Four cells on the patch make the normal one too large: the force is 7 % above Hertz, the contact 5 % shorter, \
 and friction's swing is cut off with it; springs 10 % stiffer along the normal move the curve by -0.05. Dundurs' coupling adds -0.02 (at nu = 0.4 it is -0.04). The nodes' pushes are smooth in time, to 1 % from step to step, \
 so that no sticking node slips for a short push, and where the sphere slips throughout it is within 0.01 of the curve.",
         },

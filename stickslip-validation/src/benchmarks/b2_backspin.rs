@@ -68,13 +68,13 @@ with E* = 7.64 MPa 0.974 m.",
         PLANE_OF_PARTICLES,
         Reason {
             laws: &["surface"],
-            text: "The sphere is set down spinning on a patch of two thirds of a cell at R/4, and skips: it is off the plane for part of the time in which it should be rubbing. At R/8 it is not. \
+            text: "The sphere is set down spinning on a patch of two thirds of a cell at R/4, and skips (x 0.944): it is off the plane for part of the time in which it should be rubbing. At R/8 it is not. \
 The push is also a twentieth of a cell ahead of the centre, for nodes that come into contact stop and those that leave are not pulled: that brakes the roll.",
         },
         Reason {
             laws: &["surface"],
             text: "A soft sphere does not roll as a rigid one. Hertz's pressure shortens its surface in the patch, by (1 - 2 nu)(1 + nu) p0/(3 E) = 0.019, and the arc is longer than its chord by a^2/(6 R^2) = 0.004, so that it turns by 0.02 more than its way over R. \
-And set down at once it bounces for the whole run, with some 0.4 m/s (sqrt(g d) is 0.5), which is in its kinetic energy: 0.05 of it.",
+And set down at once it bounces for the whole run, with some 0.4 m/s (sqrt(g d) is 0.5), which is in its kinetic energy: 0.05 of it. R/8 gives 1.030 and 1.053.",
         },
     ],
     run,

@@ -1,7 +1,7 @@
 //! Bodies as their particles show them: how many, how large, and whether the domain holds them.
 
-use super::lattice;
 use super::table::short;
+use super::{lattice, per_side};
 use crate::geometry::{self, Bounds, Shape, Site};
 use crate::scene::{Problem, Scene};
 use rayon::prelude::*;
@@ -42,7 +42,8 @@ pub(super) fn measure(scene: &Scene) -> Result<Vec<Extent>, Problem> {
 }
 
 fn measure_body(scene: &Scene, i: usize) -> Result<Extent, Problem> {
-    let (body, lattice) = (&scene.bodies[i], lattice(scene));
+    let body = &scene.bodies[i];
+    let lattice = lattice(scene, body);
     // Only rigid bodies may be without bounds; those have particles where others come near.
     let Some(bounds) = body.shape.bounds(lattice.dimension) else { return Ok(Extent::UNBOUNDED) };
     let sites = lattice.sites(&bounds);
@@ -90,7 +91,8 @@ fn measure_body(scene: &Scene, i: usize) -> Result<Extent, Problem> {
 }
 
 fn no_particles(scene: &Scene, i: usize, bounds: &Bounds) -> Problem {
-    let (body, lattice) = (&scene.bodies[i], lattice(scene));
+    let body = &scene.bodies[i];
+    let lattice = lattice(scene, body);
     let thickness = smallest_extent(&body.shape, lattice.dimension);
     let (found, help) = if bounds.is_empty() {
         (
@@ -103,7 +105,7 @@ fn no_particles(scene: &Scene, i: usize, bounds: &Bounds) -> Problem {
             body.name, lattice.spacing
         );
         // Two particles through the thickness.
-        let cell = 0.5 * thickness * scene.discretization.particles_per_side as f64;
+        let cell = 0.5 * thickness * per_side(scene, body);
         (found, format!("take cells of at most {cell:.3e} m, or a larger shape"))
     };
     Problem {
@@ -132,8 +134,8 @@ pub(super) fn smallest_extent(shape: &Shape, dimension: usize) -> f64 {
 /// Refuses a body with particles' centres outside the domain, where a step would refuse them.
 pub(super) fn check_domain(scene: &Scene, extents: &[Extent]) -> Result<(), Problem> {
     let Some(domain) = &scene.domain else { return Ok(()) };
-    let lattice = lattice(scene);
     for (i, extent) in extents.iter().enumerate().filter(|(_, extent)| extent.bounds.is_finite()) {
+        let lattice = lattice(scene, &scene.bodies[i]);
         for k in 0..lattice.dimension {
             let sides = [
                 (extent.bounds.min[k], extent.centers.min[k], domain.min[k], -1.0, "below its lower"),

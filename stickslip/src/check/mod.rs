@@ -21,7 +21,7 @@ pub use hertz::{Hertz, Patch};
 pub use report::{BodyReport, Machine, MaterialReport, Report, report};
 
 use crate::geometry::Lattice;
-use crate::scene::{Problem, Scene};
+use crate::scene::{Body, Problem, Scene};
 
 /// Finds what is wrong with a scene and takes its geometry to see.
 ///
@@ -43,13 +43,18 @@ fn examine(scene: &Scene) -> Result<Vec<bodies::Extent>, Problem> {
     Ok(extents)
 }
 
-/// The particle sites of a scene: every cell of its grid divided into equal parts.
-pub fn lattice(scene: &Scene) -> Lattice {
+/// The particle sites of a body: every cell of the scene's grid divided into equal parts.
+pub fn lattice(scene: &Scene, body: &Body) -> Lattice {
     Lattice {
         origin: scene.domain.as_ref().map_or([0.0; 3], |domain| domain.min),
-        spacing: scene.discretization.cell / scene.discretization.particles_per_side as f64,
+        spacing: scene.discretization.cell / per_side(scene, body),
         dimension: scene.dimension.axes(),
     }
+}
+
+/// Particles of a body along each side of a cell.
+fn per_side(scene: &Scene, body: &Body) -> f64 {
+    body.particles_per_side.unwrap_or(scene.discretization.particles_per_side) as f64
 }
 
 #[cfg(test)]
@@ -67,7 +72,14 @@ mod tests {
 
     pub fn free(name: &str, material: usize, shape: Shape) -> Body {
         let motion = Motion::Free { velocity: [0.0; 3], spin: [0.0; 3] };
-        Body { name: name.into(), material, shape, particles: Arrangement::Lattice, motion }
+        Body {
+            name: name.into(),
+            material,
+            shape,
+            particles: Arrangement::Lattice,
+            particles_per_side: None,
+            motion,
+        }
     }
 
     /// A rigid body that does not move.

@@ -3,7 +3,7 @@
 use super::bodies::{Extent, smallest_extent};
 use super::contact::{ContactEstimate, Verdict, estimates, starting_velocity};
 use super::table::short;
-use super::{examine, lattice};
+use super::{examine, lattice, per_side};
 use crate::geometry::Bounds;
 use crate::scene::{Body, Dimension, Motion, Precision, Problem, Scene};
 use crate::tensor::{Matrix, Vector};
@@ -118,7 +118,7 @@ pub fn report(scene: &Scene) -> Result<Report, Problem> {
             .collect(),
         materials: of_materials(scene),
         particles,
-        memory: memory(scene, particles),
+        memory: memory(scene, &extents),
         end: scene.time.end,
         time_step,
         // A last step that is only round-off is none.
@@ -191,10 +191,12 @@ fn time_step(scene: &Scene, extents: &[Extent]) -> f64 {
     if step.is_finite() { step } else { scene.time.end }
 }
 
-fn memory(scene: &Scene, particles: usize) -> f64 {
-    let per_cell = (scene.discretization.particles_per_side as f64).powi(scene.dimension.axes() as i32);
-    let nodes = NODES_PER_CELL * particles as f64 / per_cell;
-    let doubles = PARTICLE_BYTES * particles as f64 + NODE_BYTES * nodes;
+fn memory(scene: &Scene, extents: &[Extent]) -> f64 {
+    let of_body = |(body, extent): (&Body, &Extent)| {
+        let per_cell = per_side(scene, body).powi(scene.dimension.axes() as i32);
+        extent.particles as f64 * (PARTICLE_BYTES + NODE_BYTES * NODES_PER_CELL / per_cell)
+    };
+    let doubles: f64 = scene.bodies.iter().zip(extents).map(of_body).sum();
     match scene.precision {
         Precision::Single => 0.5 * doubles,
         Precision::Double => doubles,
@@ -203,16 +205,15 @@ fn memory(scene: &Scene, particles: usize) -> f64 {
 
 /// Fewer than two particles through a body cannot bend or bulge.
 fn thin_bodies(scene: &Scene) -> Option<String> {
-    let lattice = lattice(scene);
-    let needed = 2.0 * lattice.spacing * (1.0 - 1e-9);
-    let thickness = |body: &Body| smallest_extent(&body.shape, lattice.dimension);
-    let mut thin = scene.bodies.iter().filter(|body| thickness(body) < needed);
+    let needed = |body: &Body| 2.0 * lattice(scene, body).spacing * (1.0 - 1e-9);
+    let thickness = |body: &Body| smallest_extent(&body.shape, scene.dimension.axes());
+    let mut thin = scene.bodies.iter().filter(|body| thickness(body) < needed(body));
     let first = thin.next()?;
     let others = match thin.count() {
         0 => String::new(),
         more => format!(" and {more} more"),
     };
-    let cell = 0.5 * thickness(first) * scene.discretization.particles_per_side as f64;
+    let cell = 0.5 * thickness(first) * per_side(scene, first);
     Some(format!(
         "thinner than two particles: `{}` ({} m){others}; cells of at most {} m give it two",
         first.name,
@@ -259,6 +260,15 @@ mod tests {
         let report = report(&incline(4.0)).expect("no problem").on(machine);
         let exact = report.particles as f64 * report.steps as f64 / 4e6;
         assert!((report.wall_time / exact - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_body_may_have_finer_particles_than_the_scene() {
+        let cube = |x: f64| free("cube", 0, Shape::Box { min: [x, 0.0, 0.0], max: [x + 0.3, 0.3, 0.3] });
+        let fine = Body { particles_per_side: Some(3), ..cube(0.3) };
+        let report = report(&scene(Dimension::Space, 0.1, vec![cube(0.0), fine])).unwrap();
+        assert_eq!(report.bodies.iter().map(|body| body.particles).collect::<Vec<_>>(), [216, 729]);
+        assert!((report.bodies[1].mass / report.bodies[0].mass - 1.0).abs() < 1e-12);
     }
 
     #[test]

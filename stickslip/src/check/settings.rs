@@ -12,6 +12,9 @@ pub(super) fn check(scene: &Scene) -> Result<(), Problem> {
     if scene.discretization.particles_per_side == 0 {
         return Err(problem("space.particles_per_side", "0".into(), "1 or more"));
     }
+    if let Some(i) = scene.bodies.iter().position(|body| body.particles_per_side == Some(0)) {
+        return Err(problem(&format!("bodies[{i}].particles_per_side"), "0".into(), "1 or more"));
+    }
     require_positive("time.courant", scene.time.courant, "")?;
     if let Some(step) = scene.time.max_step {
         require_positive("time.max_step", step, "s")?;
@@ -137,6 +140,7 @@ mod tests {
         assert_eq!(key_of(|s| s.discretization.cell = 0.0), "space.cell");
         assert_eq!(key_of(|s| s.discretization.cell = f64::NAN), "space.cell");
         assert_eq!(key_of(|s| s.discretization.particles_per_side = 0), "space.particles_per_side");
+        assert_eq!(key_of(|s| s.bodies[0].particles_per_side = Some(0)), "bodies[0].particles_per_side");
         assert_eq!(key_of(|s| s.time.courant = -0.1), "time.courant");
         assert_eq!(key_of(|s| s.time.max_step = Some(0.0)), "time.max_step");
         assert_eq!(key_of(|s| s.time.end = f64::INFINITY), "time.end");

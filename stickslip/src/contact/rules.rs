@@ -71,11 +71,11 @@ impl<T: Real> Rules<T> {
         Rules { rules, names, first, plain }
     }
 
-    /// One rule between all bodies.
+    /// Rules to be asked for by their numbers; the first holds between all bodies.
     #[cfg(test)]
-    pub fn of_all(bodies: usize, rule: Rule<T>) -> Self {
+    pub fn listed(bodies: usize, rules: Vec<Rule<T>>) -> Self {
         let first = HashMap::from([([ANY, ANY], 0)]);
-        Rules { rules: vec![rule], names: vec![[None, None, Some(ANY)]; bodies], first, plain: 0 }
+        Rules { rules, names: vec![[None, None, Some(ANY)]; bodies], first, plain: 0 }
     }
 
     /// Number of the rule for two bodies: the first in the scene that matches, else the last.

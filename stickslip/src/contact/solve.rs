@@ -1,7 +1,7 @@
 //! From pairs to a whole node: any number of bodies, each pair by its own law.
 
 use super::law::law;
-use super::{Change, Part, Rules, Site, Span, Step, Survey, Use};
+use super::{Change, Encounter, Part, Rules, Site, Span, Step, Survey, Use};
 use crate::grid::{Disjoint, Node};
 use crate::tensor::{Real, Vector};
 use rayon::prelude::*;
@@ -29,6 +29,21 @@ pub struct Impulse<T, const D: usize> {
     pub span: Span,
     /// Work that a rigid body's prescribed motion did on the other [J].
     pub work: T,
+}
+
+impl<T: Real, const D: usize> Impulse<T, D> {
+    /// Leaves this share of it.
+    fn reduce(&mut self, share: T) {
+        let Change { impulse, normal, tangential, scale } = self.change;
+        self.change = Change {
+            impulse: impulse.map(|j| j * share),
+            normal: normal * share,
+            tangential: tangential * share,
+            scale,
+        };
+        self.velocity = self.velocity.map(|dv| dv * share);
+        self.work *= share;
+    }
 }
 
 /// Sweeps over the pairs of a node until no velocity changes by more than this fraction of the largest change that contact makes, or than
@@ -176,7 +191,7 @@ impl<T: Real, const D: usize> Solve<'_, T, D> {
             }
         }));
         let impulses = &mut impulses[first..];
-        *unsettled += 1;
+        let mut settled = false;
         for _ in 0..MAX_SWEEPS {
             let (mut largest, mut moved, mut speed) = (T::ZERO, T::ZERO, T::ZERO);
             for (encounter, impulse) in encounters.iter().zip(&mut *impulses) {
@@ -207,9 +222,14 @@ impl<T: Real, const D: usize> Solve<'_, T, D> {
             if encounters.len() == 1
                 || moved <= (round_off.max(T::of(TOLERANCE)) * largest).max(round_off * speed)
             {
-                *unsettled -= 1;
+                settled = true;
                 break;
             }
+        }
+        if !settled {
+            *unsettled += 1;
+            let share = harmless(encounters, impulses, (site.sides.start, velocities));
+            impulses.iter_mut().for_each(|impulse| impulse.reduce(share));
         }
         for (impulse, before) in impulses.iter_mut().zip(given) {
             if impulse.span == Span::WholeStep {
@@ -219,10 +239,36 @@ impl<T: Real, const D: usize> Solve<'_, T, D> {
     }
 }
 
+/// The share of a node's impulses that takes the most kinetic energy from it, where all of them would give it some.
+///
+/// ```text
+/// E(s) - E(0) = s b + s^2 c/2,   c = sum_a m_a |dv_a|^2,   b + c = sum J . v,   v = v_0 + dv
+/// ```
+/// Pairs that all obey their laws at once never gain: then J . v <= 0. Those that still change each other may.
+fn harmless<T: Real, const D: usize>(
+    encounters: &[Encounter<T, D>],
+    impulses: &[Impulse<T, D>],
+    (first, velocities): (usize, &[Vector<T, D>]),
+) -> T {
+    let (mut after, mut change) = (T::ZERO, T::ZERO);
+    for (place, v) in velocities.iter().enumerate() {
+        let (mut impulse, mut dv) = (Vector::ZERO, Vector::ZERO);
+        for (encounter, given) in encounters.iter().zip(impulses) {
+            for i in (0..2).filter(|&i| encounter.sides[i] == first + place) {
+                impulse += given.change.impulse[i];
+                dv += given.velocity[i];
+            }
+        }
+        after += impulse.dot(*v);
+        change += impulse.dot(dv);
+    }
+    if after + after <= change { T::ONE } else { (T::ONE - after / change).max(T::ZERO) }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::{Encounter, Facing, Friction, Place, Rule, Side, Surface};
+    use crate::contact::{Facing, Friction, Place, Rule, Side, Surface};
     use crate::scene::{ContactLaw, Normal};
     use crate::tensor::Symmetric;
     use proptest::prelude::*;
@@ -245,24 +291,62 @@ mod tests {
         unsettled: u64,
     }
 
+    const LAWS: [ContactLaw; 7] = [
+        ContactLaw::Kinematic,
+        ContactLaw::Traction,
+        ContactLaw::Gap,
+        ContactLaw::Separation,
+        ContactLaw::Regression,
+        ContactLaw::Surface,
+        ContactLaw::Glued,
+    ];
+
+    /// Laws that never pull.
+    const UNILATERAL: [ContactLaw; 3] = [ContactLaw::Kinematic, ContactLaw::Regression, ContactLaw::Surface];
+
+    /// What holds between each two of five bodies.
+    fn mixtures() -> impl Strategy<Value = Vec<Option<Touch>>> {
+        let friction = prop_oneof![0.0..2.0_f64, Just(f64::INFINITY)];
+        let touch = (prop::sample::select(&LAWS[..]), friction, prop::array::uniform3(-1.0..1.0_f64));
+        let touch = touch.prop_map(|(law, friction, normal)| {
+            let normal = (law == ContactLaw::Regression).then_some(normal);
+            Touch { law, friction, normal }
+        });
+        prop::collection::vec(prop::option::weighted(0.8, touch), 10)
+    }
+
     impl Outcome {
+        /// |sum of m dv| over the sum of m |v|.
+        fn momentum_gained(&self) -> f64 {
+            let (mut change, mut size) = (Vector::ZERO, 0.0);
+            for (i, &mass) in self.masses.iter().enumerate() {
+                change += (self.after[i] - self.before[i]) * mass;
+                size += self.before[i].norm() * mass;
+            }
+            change.norm() / size
+        }
+
         fn kinetic(&self, velocities: &[Vector<f64, 3>]) -> f64 {
             velocities.iter().zip(&self.masses).map(|(v, m)| 0.5 * m * v.dot(*v)).sum()
         }
     }
 
-    /// What one rule does to bodies that all touch each other at one node under pressure.
-    fn at_node(state: &State, law: ContactLaw, friction: f64) -> Outcome {
-        at_node_of(state, law, friction, |_| true)
-    }
-
-    /// The same where only some pairs touch.
-    fn at_node_of(
-        state: &State,
+    /// What holds between two bodies that touch.
+    #[derive(Clone, Copy, Debug)]
+    struct Touch {
         law: ContactLaw,
         friction: f64,
-        touch: impl Fn([usize; 2]) -> bool,
-    ) -> Outcome {
+        /// Any direction, as one that regression finds; that of the volume gradients if there is none.
+        normal: Option<[f64; 3]>,
+    }
+
+    /// What one rule does to bodies that all touch each other at one node under pressure.
+    fn at_node(state: &State, law: ContactLaw, friction: f64) -> Outcome {
+        at_node_of(state, |_| Some(Touch { law, friction, normal: None }))
+    }
+
+    /// The same where each pair has a rule of its own, or does not touch.
+    fn at_node_of(state: &State, between: impl Fn([usize; 2]) -> Option<Touch>) -> Outcome {
         let mut nodes = Vec::new();
         let mut part = Part::default();
         for (body, &(mass, velocity, gradient)) in state.iter().enumerate() {
@@ -280,22 +364,23 @@ mod tests {
             part.sides.push(Side { body, index: body, surface, volume_gradient });
         }
         let n = state.len();
+        let mut rules = Vec::new();
         for a in 0..n {
-            for b in (a + 1..n).filter(|&b| touch([a, b])) {
-                let normal = (part.sides[b].volume_gradient - part.sides[a].volume_gradient).direction();
+            for b in a + 1..n {
+                let Some(Touch { law, friction, normal }) = between([a, b]) else { continue };
+                let own = part.sides[b].volume_gradient - part.sides[a].volume_gradient;
                 part.encounters.push(Encounter {
                     sides: [a, b],
-                    rule: 0,
-                    facing: Facing { normal, gap: 0.0 },
+                    rule: rules.len(),
+                    facing: Facing { normal: normal.map_or(own, Vector).direction(), gap: 0.0 },
                     area: 1.0,
                 });
+                let friction = Friction::coulomb(friction);
+                rules.push(Rule { law, normal: Normal::Common, friction, max_strain: 1.0 });
             }
         }
         part.sites.push(Site { node: [0; 3], sides: 0..n, encounters: 0..part.encounters.len() });
-        let rules = Rules::of_all(
-            n,
-            Rule { law, normal: Normal::Common, friction: Friction::coulomb(friction), max_strain: 1.0 },
-        );
+        let rules = Rules::listed(n, rules);
         let step = Step { duration: 1e-6, cell: 1.0, purpose: Use::Motion };
         let normals = part.encounters.iter().map(|e| e.facing.normal.expect("gradients differ")).collect();
         let velocities = |nodes: &[Node<f64, 3>]| nodes.iter().map(|node| node.velocity).collect();
@@ -321,46 +406,65 @@ mod tests {
                 (1.0, [-1.0, 0.5, 0.0], [0.0, 0.0, 1.0]),
             ]
         };
-        let in_a_row = |[a, b]: [usize; 2]| b == a + 1;
+        let glue = Touch { law: ContactLaw::Glued, friction: 0.0, normal: None };
+        let in_a_row = |[a, b]: [usize; 2]| (b == a + 1).then_some(glue);
         for (middle, unsettled) in [(1.0, 0), (1e-6, 1)] {
-            let node = at_node_of(&state(middle), ContactLaw::Glued, 0.0, in_a_row);
+            let node = at_node_of(&state(middle), in_a_row);
             assert_eq!(node.unsettled, unsettled, "{middle}");
         }
+    }
+
+    /// Three bodies that stick as soon as they approach: stopping one pair sets off the next, for ever. Before the impulses were reduced they
+    /// gained 30 % of the energy; a proptest of 20,000 nodes found them.
+    #[test]
+    fn pairs_that_go_round_in_circles_gain_no_energy() {
+        let state = vec![
+            (0.00182, [0.644, 0.0986, -0.405], [0.661, -0.575, -0.721]),
+            (0.00561, [-0.255, 0.465, -0.550], [0.516, -0.777, -0.277]),
+            (0.00141, [0.864, 0.0, -0.121], [0.982, 0.171, -0.546]),
+        ];
+        let node = at_node(&state, ContactLaw::Kinematic, f64::INFINITY);
+        assert_eq!(node.unsettled, 1);
+        assert!(node.kinetic(&node.after) <= node.kinetic(&node.before));
+        assert!(node.momentum_gained() <= 1e-13);
     }
 
     proptest! {
         #[test]
         fn momentum_stays_for_any_number_of_bodies(state in states(), friction in 0.0..2.0_f64) {
-            use ContactLaw::{Gap, Glued, Kinematic, Surface, Traction};
-            for (law, friction) in
-                [Kinematic, Traction, Gap, Surface, Glued].into_iter().flat_map(|law| [(law, friction), (law, f64::INFINITY)])
-            {
+            for (law, friction) in LAWS.into_iter().flat_map(|law| [(law, friction), (law, f64::INFINITY)]) {
                 let node = at_node(&state, law, friction);
-                let change = (0..state.len())
-                    .fold(Vector::<f64, 3>::ZERO, |sum, i| sum + (node.after[i] - node.before[i]) * node.masses[i]);
-                let size: f64 = (0..state.len()).map(|i| node.before[i].norm() * node.masses[i]).sum();
-                prop_assert!(change.norm() <= 1e-13 * size, "{law:?} {friction}: {:e} of {size:e}", change.norm());
+                prop_assert!(node.momentum_gained() <= 1e-13, "{law:?} {friction}: {:e}", node.momentum_gained());
             }
         }
 
         #[test]
-        fn contact_of_approaching_bodies_gains_no_energy(state in states(), friction in 0.0..2.0_f64) {
-            for law in [ContactLaw::Kinematic, ContactLaw::Surface, ContactLaw::Glued] {
+        fn contact_gains_no_energy(state in states(), friction in 0.0..2.0_f64) {
+            for (law, friction) in LAWS.into_iter().flat_map(|law| [(law, friction), (law, f64::INFINITY)]) {
                 let node = at_node(&state, law, friction);
                 let (before, after) = (node.kinetic(&node.before), node.kinetic(&node.after));
-                prop_assert!(after <= before * (1.0 + 1e-12), "{law:?}: {before} to {after}");
+                prop_assert!(after <= before * (1.0 + 1e-12), "{law:?} {friction}: {before} to {after}");
             }
+        }
+
+        /// Each pair has its own law, friction and, with regression, a direction that has nothing to do with the others'; some do not touch.
+        #[test]
+        fn laws_that_meet_at_a_node_keep_momentum_and_gain_no_energy(state in states(), pairs in mixtures()) {
+            let node = at_node_of(&state, |[a, b]| pairs[b * (b - 1) / 2 + a]);
+            let (before, after) = (node.kinetic(&node.before), node.kinetic(&node.after));
+            prop_assert!(node.momentum_gained() <= 1e-13, "{:e}", node.momentum_gained());
+            prop_assert!(after <= before * (1.0 + 1e-12), "{before} to {after}, {} unsettled", node.unsettled);
         }
 
         #[test]
         fn every_pair_obeys_coulomb(state in states(), friction in 0.0..2.0_f64) {
-            for law in [ContactLaw::Kinematic, ContactLaw::Traction, ContactLaw::Gap, ContactLaw::Surface] {
+            for law in LAWS.into_iter().filter(|&law| law != ContactLaw::Glued) {
                 let node = at_node(&state, law, friction);
                 for (impulse, normal) in node.impulses.iter().zip(&node.normals) {
                     let (push, across) = (-impulse.change.normal, impulse.change.tangential);
                     prop_assert!(across.norm() <= friction * push.max(0.0) * (1.0 + 1e-12), "{law:?}: {impulse:?}");
                     prop_assert!(across.dot(*normal).abs() <= 1e-14, "{law:?}: {impulse:?}");
-                    prop_assert!(!matches!(law, ContactLaw::Kinematic | ContactLaw::Surface) || push >= 0.0, "{law:?} pulls: {impulse:?}");
+                    prop_assert!(!UNILATERAL.contains(&law) || push >= 0.0, "{law:?} pulls: {impulse:?}");
                 }
             }
         }

@@ -59,11 +59,11 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// What [`check::problems`] finds.
     pub fn new(scene: &Scene, path: Path) -> Result<Self, Problem> {
         check::problems(scene)?;
-        let sites = check::lattice(scene);
         let mut bodies = Vec::new();
         let mut rigid = Vec::new();
         let mut unbounded = Vec::new();
         for body in &scene.bodies {
+            let sites = check::lattice(scene, body);
             let filled = fill(&body.shape, &sites, body.particles);
             let center = filled.as_ref().map_or(body.shape.anchor(sites.dimension), Filling::center);
             let filling = filled.unwrap_or_else(|| {
@@ -94,11 +94,12 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             });
             rigid.push(motion);
         }
+        let origin = scene.domain.as_ref().map_or([0.0; 3], |domain| domain.min);
         Ok(Engine {
             bodies,
             rigid,
             unbounded,
-            lattice: Lattice::new(Vector::of(sites.origin), T::of(scene.discretization.cell)),
+            lattice: Lattice::new(Vector::of(origin), T::of(scene.discretization.cell)),
             domain: scene.domain.as_ref().map(|domain| [domain.min, domain.max].map(Vector::of)),
             gravity: Vector::of(scene.gravity),
             pic_share: T::of(scene.time.pic_share),

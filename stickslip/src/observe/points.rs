@@ -1,6 +1,5 @@
 //! Points at which the material is sampled, by a smooth mean over the particles around.
 
-use crate::check;
 use crate::door::{ParticleView, Simulation};
 use crate::scene::{Anchor, Motion, Scene};
 
@@ -60,7 +59,7 @@ impl Points {
         let free = |i: &usize| matches!(scene.bodies[*i].motion, Motion::Free { .. });
         let bodies: Vec<usize> = (0..scene.bodies.len()).filter(free).collect();
         let nearest = |at: [f64; 3]| {
-            let distance = |i: usize| scene.bodies[i].shape.distance(at, check::lattice(scene).dimension);
+            let distance = |i: usize| scene.bodies[i].shape.distance(at, scene.dimension.axes());
             bodies.iter().copied().min_by(|&a, &b| distance(a).total_cmp(&distance(b)))
         };
         let points = points.into_iter().map(|mut point| {

@@ -232,6 +232,8 @@ pub struct Body {
     pub shape: Shape,
     /// How its particles are laid out.
     pub particles: Arrangement,
+    /// Particles along each side of a cell, where it has not those of the scene.
+    pub particles_per_side: Option<usize>,
     /// How it moves.
     pub motion: Motion,
 }

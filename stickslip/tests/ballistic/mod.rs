@@ -213,6 +213,7 @@ pub fn scene() -> Scene {
         material: 0,
         shape: Shape::Ball { center: [0.0; 3], radius: 1.0 },
         particles: Arrangement::Lattice,
+        particles_per_side: None,
         motion: Motion::Free { velocity: [2.0, 0.0, 0.0], spin: [0.0; 3] },
     };
     Scene {

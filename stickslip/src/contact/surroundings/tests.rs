@@ -124,7 +124,7 @@ fn particles_of_a_cell_side_by_side_give_the_sums<const D: usize, B: Basis<f64>>
     });
     let wall = |axis, node, inward| Wall { axis, node, inward, face: Face::Symmetry };
     let boundary = Boundary::new(vec![wall(0, 0, 1), wall(D - 1, 5, -1)]);
-    let rules = Rules::of_all(1, rules::Rule::from(&crate::scene::ContactRule::default()));
+    let rules = Rules::listed(1, vec![rules::Rule::from(&crate::scene::ContactRule::default())]);
     let field = Field { nodes: Vec::new(), present: Vec::new() };
     for processor in Processor::available() {
         let near = Near {

@@ -4,7 +4,7 @@ use super::Context;
 use super::quantity::Velocity;
 use super::read::table;
 use super::shape::Shape;
-use super::text::{Choice, Text, Word};
+use super::text::{Choice, Count, Text, Word};
 use super::vector::{Spin, Vector};
 use crate::geometry::Arrangement;
 use crate::scene::error::Fault;
@@ -22,6 +22,8 @@ table! {
         /// How its particles are laid out.
         #[schemars(extend("default" = "lattice"))]
         particles: Option<Word<Arrangement>>,
+        /// Particles along each side of a cell, 1 to 8; by default as many as space has.
+        particles_per_side: Option<Count>,
         /// Velocity at the start [m/s]; by default none.
         velocity: Option<Vector<Velocity>>,
         /// Angular velocity about its centre of mass at the start [rad/s]; in the plane one number. By default none.
@@ -80,6 +82,9 @@ pub fn resolve(
                 .particles
                 .as_ref()
                 .map_or(Ok(Arrangement::Lattice), |word| word.value(context))?,
+            particles_per_side: (body.particles_per_side.as_ref())
+                .map(|n| n.value(context, 1..=8))
+                .transpose()?,
             motion: body.motion(context)?,
         });
     }
