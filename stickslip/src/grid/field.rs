@@ -201,9 +201,9 @@ impl<T: Real, const D: usize> Window<T, D> {
                 let node = unsafe { field.get(first + k) };
                 let sums = &self.sums[place + k];
                 node.mass += sums[3][0];
-                for i in 0..D {
-                    node.velocity[i] += sums[i][0];
-                    node.force[i] += sums[i][1];
+                for (i, &[momentum, force]) in sums.iter().enumerate().take(D) {
+                    node.velocity[i] += momentum;
+                    node.force[i] += force;
                 }
             }
         });

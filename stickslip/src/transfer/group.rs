@@ -243,8 +243,8 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
             [x, y, z]
         });
         match self.start.shared() {
-            Some(start) => self.scatter_together::<M>(window, start, (&momentum, &stress)),
-            None => self.scatter_singly::<M>(window, (&momentum, &stress)),
+            Some(start) => self.scatter_together::<M>(window, start, &PairLoad { momentum, stress }),
+            None => self.scatter_singly::<M>(window, &PairLoad { momentum, stress }),
         }
     }
 
@@ -254,7 +254,7 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
         &self,
         window: &mut Window<V::Real, D>,
         start: usize,
-        (momentum, stress): (&Option<Rows<V::Real>>, &Option<[Rows<V::Real>; 3]>),
+        PairLoad { momentum, stress }: &PairLoad<V::Real>,
     ) {
         let mut below = [M::Wide::ZERO; MAX_WIDTH * MAX_WIDTH];
         for i in 0..B::WIDTH {
@@ -373,7 +373,7 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
     fn scatter_singly<M: Machine<V::Real>>(
         &self,
         window: &mut Window<V::Real, D>,
-        (momentum, stress): (&Option<Rows<V::Real>>, &Option<[Rows<V::Real>; 3]>),
+        PairLoad { momentum, stress }: &PairLoad<V::Real>,
     ) {
         let [x, y, z] = [&self.shapes[0], &self.shapes[1], &self.shapes[D - 1]];
         let mut weights = [Numbers::ZERO; MAX_WIDTH.pow(3)];
@@ -435,6 +435,14 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
         let weight = self.shapes[1].weight[j];
         if D == 2 { weight } else { weight * self.shapes[D - 1].weight[k] }
     }
+}
+
+/// What a group scatters, by pairs of particles.
+struct PairLoad<T> {
+    /// Momentum and mass.
+    momentum: Option<Rows<T>>,
+    /// Columns of V sigma/h.
+    stress: Option<[Rows<T>; 3]>,
 }
 
 /// Four numbers of each particle of a group: of two particles the first, then the second and so on.
