@@ -114,7 +114,7 @@ impl<'a, T: Real, const D: usize> Members<'a, T, D> {
         }
     }
 
-    /// A column; lanes beyond repeat a particle of the group.
+    /// A column; lanes beyond repeat the first particle.
     #[inline(always)]
     pub fn load<V: Lanes<Real = T>>(&self, column: usize) -> V {
         // SAFETY: the tile's particles are this pass' alone, and copies are as long as any machine's lanes.
@@ -199,7 +199,7 @@ impl<T: Real> Copies<T> {
     /// Entries from a column to the next.
     const STRIDE: usize = size_of::<[Numbers<T>; 2]>() / size_of::<T>();
 
-    /// What a pass reads; lanes beyond repeat a particle of the group.
+    /// What a pass reads; lanes beyond repeat the first particle.
     ///
     /// # Safety
     /// The particles must exist, and nobody may write to them meanwhile.
@@ -219,6 +219,13 @@ impl<T: Real> Copies<T> {
                 if deformed {
                     self.take_run::<V, D>(columns, run, Column::<D>::DEFORMATION..Column::<D>::START);
                 }
+            }
+        }
+        if self.runs.count > 1 && index.len() < V::COUNT {
+            let count = if deformed { Column::<D>::START } else { Column::<D>::DEFORMATION };
+            for copy in &mut self.columns[..count] {
+                // SAFETY: there is room for a register from any lane on.
+                unsafe { V::splat(copy[0].0[0]).store(copy.as_mut_ptr().cast::<T>().add(index.len())) };
             }
         }
     }
