@@ -41,9 +41,16 @@ pub struct Case {
 }
 
 impl Case {
-    /// Whether the two differ in one thing whose cost is asked for: blocks with and without contact.
+    /// Whether the two differ in one thing whose cost is asked for: blocks with and without contact, a cube in a wide domain, threads.
     pub fn is_compared_with(&self, other: &Case) -> bool {
-        [self, other].iter().all(|case| case.problem == "P2") && self.scheme == other.scheme
+        let same = |of: fn(&Case) -> &str| of(self) == of(other);
+        let alike = match self.problem {
+            "P1" | "P4" => matches!(other.problem, "P1" | "P4"),
+            "P2" => same(|case| case.problem),
+            "P3" => same(|case| case.problem) && same(|case| &case.variant),
+            _ => false,
+        };
+        alike && self.scheme == other.scheme
     }
 
     /// A few words that no other case has: `P3 64 balls, linear f64 last, 2 threads`.
@@ -129,6 +136,9 @@ pub fn cases(extent: Extent, threads: usize) -> Vec<Case> {
         for &threads in if parallel { &in_parallel[..] } else { &[1] } {
             add("P1", "cube", (scheme, threads), cube(scheme, extent.cells(), 32));
         }
+        if scheme == linear {
+            add("P4", "wide domain", (linear, 1), cube(linear, extent.cells(), WIDE_MARGIN));
+        }
     }
     for scheme in [linear, gimp] {
         let cells = extent.cells();
@@ -138,7 +148,6 @@ pub fn cases(extent: Extent, threads: usize) -> Vec<Case> {
             add("P2", variant, (scheme, 1), (8 * cells.pow(3), with(BLOCKS, scheme, values)));
         }
     }
-    add("P4", "wide domain", (linear, 1), cube(linear, extent.cells(), WIDE_MARGIN));
     for &side in extent.balls() {
         let count = side.pow(3);
         let variant = format!("{count} ball{}", if count == 1 { "" } else { "s" });
