@@ -104,10 +104,14 @@ impl Suite {
     fn measure(&self, compared: &[Case], machine: &Machine) -> Result<Vec<Measured>, Failure> {
         let mut effort = match self.extent {
             Extent::Full => Effort { warm_up: 8, repetitions: 5, least: 12, steps: 64, seconds: 15.0 },
-            Extent::Quick => Effort { warm_up: 2, repetitions: 3, least: 1, steps: 32, seconds: 1.2 },
+            Extent::Quick => Effort { warm_up: 2, repetitions: 3, least: 8, steps: 32, seconds: 1.2 },
             Extent::Tiny => Effort { warm_up: 1, repetitions: 2, least: 1, steps: 2, seconds: 0.1 },
         };
-        let turns = if compared.len() == 1 { 1 } else { TURNS };
+        let turns = match (compared.len(), self.extent) {
+            (1, _) => 1,
+            (_, Extent::Full) => TURNS,
+            (_, _) => TURNS_OF_QUICK,
+        };
         effort.seconds /= turns as f64;
         let mut samples: Vec<Sample> = Vec::new();
         for turn in 0..turns {
@@ -131,6 +135,7 @@ impl Suite {
 
 /// How often cases that are compared take turns.
 const TURNS: usize = 5;
+const TURNS_OF_QUICK: usize = 2;
 
 fn order(case: &Case, effort: Effort) -> Order {
     Order {

@@ -76,7 +76,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
                     &order[(first + AHEAD).min(order.len())..order.len().min(first + AHEAD + V::COUNT)];
                 if let [first, .., last] = *later {
                     fetch(&columns, first as usize, &visit.pass.verbs);
-                    if last - first >= V::COUNT as u32 {
+                    if last.abs_diff(first) >= V::COUNT as u32 {
                         fetch(&columns, last as usize, &visit.pass.verbs);
                     }
                 }
