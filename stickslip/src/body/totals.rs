@@ -43,11 +43,8 @@ impl Totals {
     }
 }
 
-/// One number of each particle of a handful.
+/// A number in each lane: of each particle of a handful, or the sum over those that stood there.
 type Each = [f64; MOST_LANES];
-
-/// Sums by lane.
-type ByLane = [f64; MOST_LANES];
 
 /// Mass, position and velocity of a few particles that lie side by side in memory; zero in the lanes beyond.
 struct Handful {
@@ -123,9 +120,9 @@ impl<T: Laned, const D: usize> Work for Sum<'_, T, D> {
 
     #[inline(always)]
     fn run<M: Machine<T>>(self) -> Totals {
-        let mut mass: ByLane = [0.0; MOST_LANES];
+        let mut mass: Each = [0.0; MOST_LANES];
         let [mut first_moment, mut momentum, mut angular_momentum] = [[[0.0; MOST_LANES]; 3]; 3];
-        let (mut kinetic, mut strain): (ByLane, ByLane) = ([0.0; MOST_LANES], [0.0; MOST_LANES]);
+        let (mut kinetic, mut strain): (Each, Each) = ([0.0; MOST_LANES], [0.0; MOST_LANES]);
         let material = self.material.map(|material| material.map(M::Wide::splat));
         for (first, count) in handfuls::<M::Wide>(&self.part) {
             // SAFETY: the particles are the body's, which is borrowed for reading.
@@ -154,7 +151,7 @@ impl<T: Laned, const D: usize> Work for Sum<'_, T, D> {
                 }
             }
         }
-        let sum = |lanes: ByLane| lanes.iter().sum::<f64>();
+        let sum = |lanes: Each| lanes.iter().sum::<f64>();
         Totals {
             mass: sum(mass),
             first_moment: first_moment.map(sum),
@@ -212,10 +209,10 @@ impl<T: Laned, const D: usize> Work for Turning<T, D> {
             // SAFETY: the particles are the body's, which is borrowed for reading.
             let some = unsafe { Handful::new::<M::Wide, D>(&self.columns, first, count) };
             for lane in 0..MOST_LANES {
-                let [m, l] = [[some.mass[lane]; 3], some.angular_momentum(lane, self.center, self.mean)];
+                let (m, l) = (some.mass[lane], some.angular_momentum(lane, self.center, self.mean));
                 let [x, y, z] = [0, 1, 2].map(|i| some.position[i][lane] - self.center[i]);
                 for (sum, product) in moments.iter_mut().zip([x * x, y * y, z * z, x * y, y * z, x * z]) {
-                    sum[lane] += m[0] * product;
+                    sum[lane] += m * product;
                 }
                 for (sum, l) in angular.iter_mut().zip(l) {
                     sum[lane] += l;

@@ -287,7 +287,7 @@ lanes! { F64x4: __m256d as [f64; 4];
     unsafe fn load_part(first: *const f64, count: usize, rest: f64) -> Self {
         // SAFETY: lanes beyond the mask are not read.
         unsafe {
-            let mask = _mm256_loadu_si256(MASKS_64.as_ptr().add(4 - count).cast());
+            let mask = mask_64(count);
             let numbers = _mm256_maskload_pd(first, mask);
             F64x4(_mm256_blendv_pd(_mm256_set1_pd(rest), numbers, _mm256_castsi256_pd(mask)))
         }
@@ -295,13 +295,13 @@ lanes! { F64x4: __m256d as [f64; 4];
     #[inline(always)]
     unsafe fn load_first(first: *const f64, count: usize) -> Self {
         // SAFETY: lanes beyond the mask are not read.
-        unsafe { F64x4(_mm256_maskload_pd(first, _mm256_loadu_si256(MASKS_64.as_ptr().add(4 - count).cast()))) }
+        unsafe { F64x4(_mm256_maskload_pd(first, mask_64(count))) }
     }
     #[inline(always)]
     fn first(self, count: usize) -> Self {
         // SAFETY: values of this type exist only where the processor has the instructions.
         unsafe {
-            let mask = _mm256_loadu_si256(MASKS_64.as_ptr().add(4 - count).cast());
+            let mask = mask_64(count);
             F64x4(_mm256_and_pd(self.0, _mm256_castsi256_pd(mask)))
         }
     }
@@ -379,7 +379,7 @@ lanes! { F32x8: __m256 as [f32; 8];
     unsafe fn load_part(first: *const f32, count: usize, rest: f32) -> Self {
         // SAFETY: lanes beyond the mask are not read.
         unsafe {
-            let mask = _mm256_loadu_si256(MASKS_32.as_ptr().add(8 - count).cast());
+            let mask = mask_32(count);
             let numbers = _mm256_maskload_ps(first, mask);
             F32x8(_mm256_blendv_ps(_mm256_set1_ps(rest), numbers, _mm256_castsi256_ps(mask)))
         }
@@ -387,13 +387,13 @@ lanes! { F32x8: __m256 as [f32; 8];
     #[inline(always)]
     unsafe fn load_first(first: *const f32, count: usize) -> Self {
         // SAFETY: lanes beyond the mask are not read.
-        unsafe { F32x8(_mm256_maskload_ps(first, _mm256_loadu_si256(MASKS_32.as_ptr().add(8 - count).cast()))) }
+        unsafe { F32x8(_mm256_maskload_ps(first, mask_32(count))) }
     }
     #[inline(always)]
     fn first(self, count: usize) -> Self {
         // SAFETY: values of this type exist only where the processor has the instructions.
         unsafe {
-            let mask = _mm256_loadu_si256(MASKS_32.as_ptr().add(8 - count).cast());
+            let mask = mask_32(count);
             F32x8(_mm256_and_ps(self.0, _mm256_castsi256_ps(mask)))
         }
     }
@@ -518,4 +518,18 @@ unsafe fn turn_pd([a, b, c, d]: [__m256d; 4], rows: *mut f64) {
 #[inline(always)]
 fn mask(count: usize) -> u8 {
     ((1_u32 << count) - 1) as u8
+}
+
+/// All bits of the first `count` of four lanes.
+#[inline(always)]
+unsafe fn mask_64(count: usize) -> __m256i {
+    // SAFETY: the caller has AVX2, and at most four lanes.
+    unsafe { _mm256_loadu_si256(MASKS_64.as_ptr().add(4 - count).cast()) }
+}
+
+/// All bits of the first `count` of eight lanes.
+#[inline(always)]
+unsafe fn mask_32(count: usize) -> __m256i {
+    // SAFETY: the caller has AVX2, and at most eight lanes.
+    unsafe { _mm256_loadu_si256(MASKS_32.as_ptr().add(8 - count).cast()) }
 }

@@ -258,7 +258,7 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
     ) {
         let mut below = [M::Wide::ZERO; MAX_WIDTH * MAX_WIDTH];
         for i in 0..B::WIDTH {
-            let (mut momenta, mut forces) = ([M::Wide::ZERO; MAX_WIDTH * MAX_WIDTH], below);
+            let [mut momenta, mut forces] = [[M::Wide::ZERO; MAX_WIDTH * MAX_WIDTH]; 2];
             if let Some(momentum) = momentum {
                 momenta = self.momenta::<M>(i, momentum);
             }

@@ -13,16 +13,16 @@ pub const AHEAD: usize = 32;
 /// Fetches what a pass needs of a particle and those beside it.
 #[inline(always)]
 pub fn fetch<T: Real, const D: usize>(columns: &Columns<T, D>, particle: usize, verbs: &Verbs) {
-    for column in 0..columns_read::<D>(verbs) {
+    for column in 0..columns_read::<D>(reads_deformation(verbs)) {
         // SAFETY: the particle exists.
         prefetch(unsafe { columns.at(column, particle) });
     }
 }
 
-/// The columns that a pass reads, from the first on.
+/// The columns that a pass reads, from the first on, with or without deformation and stress.
 #[inline(always)]
-fn columns_read<const D: usize>(verbs: &Verbs) -> usize {
-    if reads_deformation(verbs) { Column::<D>::START } else { Column::<D>::DEFORMATION }
+fn columns_read<const D: usize>(deformed: bool) -> usize {
+    if deformed { Column::<D>::START } else { Column::<D>::DEFORMATION }
 }
 
 /// Whether a pass reads deformation and stress.
@@ -222,8 +222,7 @@ impl<T: Real> Copies<T> {
             }
         }
         if self.runs.count > 1 && index.len() < V::COUNT {
-            let count = if deformed { Column::<D>::START } else { Column::<D>::DEFORMATION };
-            for copy in &mut self.columns[..count] {
+            for copy in &mut self.columns[..columns_read::<D>(deformed)] {
                 // SAFETY: there is room for a register from any lane on.
                 unsafe { V::splat(copy[0].0[0]).store(copy.as_mut_ptr().cast::<T>().add(index.len())) };
             }

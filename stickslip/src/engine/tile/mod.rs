@@ -74,10 +74,10 @@ impl<T: Laned, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
                 let index = &order[first..end.min(first + V::COUNT)];
                 let later =
                     &order[(first + AHEAD).min(order.len())..order.len().min(first + AHEAD + V::COUNT)];
-                if let [first, .., last] = *later {
-                    fetch(&columns, first as usize, &visit.pass.verbs);
-                    if last.abs_diff(first) >= V::COUNT as u32 {
-                        fetch(&columns, last as usize, &visit.pass.verbs);
+                if let [one, .., other] = *later {
+                    fetch(&columns, one as usize, &visit.pass.verbs);
+                    if other.abs_diff(one) >= V::COUNT as u32 {
+                        fetch(&columns, other as usize, &visit.pass.verbs);
                     }
                 }
                 // Indices within a cell ascend.
