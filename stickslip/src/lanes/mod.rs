@@ -23,6 +23,8 @@ pub trait Lanes: Number {
     type Real: Real;
     /// How many.
     const COUNT: usize;
+    /// Whether some lanes are read and written by one instruction, as all of them are.
+    const MASKED: bool = false;
 
     /// The same number in every lane.
     fn splat(x: Self::Real) -> Self;

@@ -188,6 +188,7 @@ lanes! { F64x8: __m512d as [f64; 8];
     _mm512_set1_pd _mm512_loadu_pd _mm512_storeu_pd;
     _mm512_add_pd _mm512_sub_pd _mm512_mul_pd _mm512_div_pd; _mm512_sqrt_pd _mm512_min_pd _mm512_max_pd;
     |a, b| u32::from(_mm512_cmp_pd_mask::<_CMP_GE_OQ>(a, b));
+    const MASKED: bool = true;
     #[inline(always)]
     fn inverse_cube_root_guess(self) -> Self {
         // SAFETY: values of this type exist only where the processor has the instructions.

@@ -229,22 +229,24 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
     #[inline(always)]
     pub fn scatter<M: Machine<V::Real>>(&self, window: &mut Window<V::Real, D>, load: &Load<V, D>) {
         let n = self.count;
-        let momentum = load.momentum.map(|(momentum, mass)| {
+        // No closures, see `Group::new`.
+        let mut pairs = PairLoad { momentum: None, stress: None };
+        if let Some((momentum, mass)) = load.momentum {
             let z = if D == 2 { V::ZERO } else { momentum[D - 1].first(n) };
-            Rows::new([momentum[0].first(n), momentum[1].first(n), z, mass.first(n)])
-        });
-        let stress = load.stress.map(|stress| {
+            pairs.momentum = Some(Rows::new([momentum[0].first(n), momentum[1].first(n), z, mass.first(n)]));
+        }
+        if let Some(stress) = load.stress {
             let [xx, yy, zz, xy, yz, xz] = stress.0;
             let [xx, yy, zz] = [xx.first(n), yy.first(n), zz.first(n)];
             let [xy, yz, xz] = [xy.first(n), yz.first(n), xz.first(n)];
             let x = Rows::new([xx, xy, xz, V::ZERO]);
             let y = Rows::new([xy, yy, yz, V::ZERO]);
             let z = if D == 2 { y } else { Rows::new([xz, yz, zz, V::ZERO]) };
-            [x, y, z]
-        });
+            pairs.stress = Some([x, y, z]);
+        }
         match self.start.shared() {
-            Some(start) => self.scatter_together::<M>(window, start, &PairLoad { momentum, stress }),
-            None => self.scatter_singly::<M>(window, &PairLoad { momentum, stress }),
+            Some(start) => self.scatter_together::<M>(window, start, &pairs),
+            None => self.scatter_singly::<M>(window, &pairs),
         }
     }
 

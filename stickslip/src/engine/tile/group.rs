@@ -40,17 +40,26 @@ pub fn splat<V: Lanes, const D: usize>(vector: &Vector<V::Real, D>) -> Vector<V,
 ///
 /// Particles have base nodes and places of these in the window.
 #[inline(always)]
-pub fn group<T: Laned, V: Lanes<Real = T>, M: Machine<T>, const D: usize, B: Basis<T>, S: Start>(
+pub fn group<
+    T: Laned,
+    V: Lanes<Real = T>,
+    M: Machine<T>,
+    const D: usize,
+    B: Basis<T>,
+    S: Start,
+    const WHOLE: bool,
+>(
     visit: &mut Visit<'_, T, D, B>,
     constants: &Constants<V, D>,
-    members: &Members<'_, T, D>,
+    members: &Members<'_, T, D, WHOLE>,
     (base, start): (Vector<V, D>, S),
 ) -> Option<u32> {
     let Pass { verbs, dt, pic, .. } = *visit.pass;
     let Verbs { accept, strain, displace, scatter } = verbs;
     let position = members.vector::<V>(Column::<D>::POSITION);
     let half = members.load::<V>(Column::<D>::HALF_WIDTH) * constants.per_cell;
-    let group = Group::<V, D, B, S>::new(constants.in_cells(&position) - base, half, start, members.count);
+    let group =
+        Group::<V, D, B, S>::new(constants.in_cells(&position) - base, half, start, members.count::<V>());
     let mut sound = u32::MAX;
 
     let mut velocity = Vector::ZERO;

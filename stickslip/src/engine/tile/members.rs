@@ -31,11 +31,14 @@ fn reads_deformation(verbs: &Verbs) -> bool {
     verbs.strain || verbs.displace || verbs.scatter.is_some_and(|share| share != Share::Momentum)
 }
 
-/// Up to as many particles as there are lanes, as columns: the body's own where they lie side by side and fill the lanes, else copies.
-pub struct Members<'a, T, const D: usize> {
+/// Up to as many particles as there are lanes, as columns: the body's own where they lie side by side, else copies.
+///
+/// `WHOLE` ones are read and written whole registers at a time: those that fill the lanes, and on processors that do not mask lanes
+/// all of them, from copies. The others are a type of their own, for masks cost those that need none.
+pub struct Members<'a, T, const D: usize, const WHOLE: bool> {
     columns: &'a Columns<T, D>,
     /// How many.
-    pub count: usize,
+    count: usize,
     first: *mut T,
     stride: usize,
     /// Whence they were copied, if they were.
@@ -87,44 +90,57 @@ impl Runs {
 /// Columns of a particle in space.
 const MOST_COLUMNS: usize = Column::<3>::COUNT;
 
-impl<'a, T: Real, const D: usize> Members<'a, T, D> {
+impl<'a, T: Real, const D: usize, const WHOLE: bool> Members<'a, T, D, WHOLE> {
+    /// Particles that lie side by side.
     #[inline(always)]
-    pub fn new<V: Lanes<Real = T>>(
+    pub fn in_a_row(columns: &'a Columns<T, D>, index: &[u32]) -> Self {
+        // SAFETY: the particle exists.
+        let first = unsafe { columns.at(0, index[0] as usize) };
+        Members { columns, count: index.len(), first, stride: columns.stride(), runs: None }
+    }
+
+    /// Particles anywhere.
+    #[inline(always)]
+    pub fn copied<V: Lanes<Real = T>>(
         columns: &'a Columns<T, D>,
         index: &[u32],
-        in_a_row: bool,
         verbs: &Verbs,
         copies: &'a mut Copies<T>,
     ) -> Self {
-        let count = index.len();
-        if in_a_row && count == V::COUNT {
-            // SAFETY: the particle exists.
-            let first = unsafe { columns.at(0, index[0] as usize) };
-            Members { columns, count, first, stride: columns.stride(), runs: None }
-        } else {
-            // SAFETY: the tile's particles are this pass' alone.
-            unsafe { copies.take::<V, D>(columns, index, reads_deformation(verbs)) };
-            Members {
-                columns,
-                count,
-                first: copies.columns.as_mut_ptr().cast(),
-                stride: Copies::<T>::STRIDE,
-                runs: Some(&copies.runs),
-            }
+        // SAFETY: the tile's particles are this pass' alone.
+        unsafe { copies.take::<V, D>(columns, index, reads_deformation(verbs)) };
+        Members {
+            columns,
+            count: index.len(),
+            first: copies.columns.as_mut_ptr().cast(),
+            stride: Copies::<T>::STRIDE,
+            runs: Some(&copies.runs),
         }
+    }
+
+    /// How many.
+    #[inline(always)]
+    pub fn count<V: Lanes<Real = T>>(&self) -> usize {
+        if WHOLE && V::MASKED { V::COUNT } else { self.count }
     }
 
     /// A column; lanes beyond repeat the first particle.
     #[inline(always)]
     pub fn load<V: Lanes<Real = T>>(&self, column: usize) -> V {
-        // SAFETY: the tile's particles are this pass' alone, and copies are as long as any machine's lanes.
-        unsafe { V::load(self.first.add(column * self.stride)) }
+        // SAFETY: the tile's particles are this pass' alone.
+        unsafe {
+            let first = self.first.add(column * self.stride);
+            if WHOLE { V::load(first) } else { V::load_part(first, self.count, *first) }
+        }
     }
 
     #[inline(always)]
     pub fn store<V: Lanes<Real = T>>(&self, column: usize, numbers: V) {
         // SAFETY: as above.
-        unsafe { numbers.store(self.first.add(column * self.stride)) }
+        unsafe {
+            let first = self.first.add(column * self.stride);
+            if WHOLE { numbers.store(first) } else { numbers.store_part(first, self.count) }
+        }
     }
 
     /// Writes what was stored in copies of some columns to the particles.
@@ -221,7 +237,7 @@ impl<T: Real> Copies<T> {
                 }
             }
         }
-        if self.runs.count > 1 && index.len() < V::COUNT {
+        if !V::MASKED && self.runs.count > 1 && index.len() < V::COUNT {
             for copy in &mut self.columns[..columns_read::<D>(deformed)] {
                 // SAFETY: there is room for a register from any lane on.
                 unsafe { V::splat(copy[0].0[0]).store(copy.as_mut_ptr().cast::<T>().add(index.len())) };

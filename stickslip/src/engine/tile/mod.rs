@@ -12,7 +12,7 @@ use crate::basis::Basis;
 use crate::grid::{WINDOW, node_at};
 use crate::lanes::{Laned, Lanes, MOST_LANES, Machine, Work};
 use crate::tensor::Vector;
-use crate::transfer::{Own, Shared};
+use crate::transfer::{Own, Shared, Start};
 use group::{Constants, every, group, splat};
 use members::{AHEAD, Copies, Members, fetch};
 
@@ -82,11 +82,10 @@ impl<T: Laned, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
                 }
                 // Indices within a cell ascend.
                 let in_a_row = index[index.len() - 1] as usize - index[0] as usize == index.len() - 1;
-                let members = Members::new::<V>(&columns, index, in_a_row, &visit.pass.verbs, &mut copies);
                 let place = Place::new(visit.tile.block, cell);
                 let base = Vector::from_fn(|i| V::splat(T::of(f64::from(place.base[i]))));
                 let start = Shared::new::<D>(place.start);
-                match group::<T, V, M, D, B, _>(visit, &constants, &members, (base, start)) {
+                match visit.group::<M, V, _>(&constants, (index, in_a_row), (base, start), &mut copies) {
                     Some(inside) => visit.left |= u64::from(!every::<V>(inside)) << cell,
                     None => {
                         for &index in index {
@@ -97,6 +96,32 @@ impl<T: Laned, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
                 }
                 first += index.len();
             }
+        }
+    }
+
+    /// One group, its particles side by side in memory or not.
+    #[inline(always)]
+    fn group<M: Machine<T>, V: Lanes<Real = T>, S: Start>(
+        &mut self,
+        constants: &Constants<V, D>,
+        (index, in_a_row): (&[u32], bool),
+        place: (Vector<V, D>, S),
+        copies: &mut Copies<T>,
+    ) -> Option<u32> {
+        let (columns, verbs) = (self.columns, self.pass.verbs);
+        let in_full = in_a_row && index.len() == V::COUNT;
+        if V::MASKED && !in_full {
+            let members = match in_a_row {
+                true => Members::in_a_row(&columns, index),
+                false => Members::copied::<V>(&columns, index, &verbs, copies),
+            };
+            group::<T, V, M, D, B, S, false>(self, constants, &members, place)
+        } else {
+            let members = match in_full {
+                true => Members::in_a_row(&columns, index),
+                false => Members::copied::<V>(&columns, index, &verbs, copies),
+            };
+            group::<T, V, M, D, B, S, true>(self, constants, &members, place)
         }
     }
 
@@ -134,11 +159,10 @@ impl<T: Laned, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
                     bases[lane] = T::of(f64::from(base));
                 }
             }
-            let members = Members::new::<V>(&columns, index, in_a_row, &visit.pass.verbs, &mut copies);
             // SAFETY: as many numbers as any machine has lanes.
             let base = Vector::from_fn(|i| unsafe { V::load(bases[i].as_ptr()) });
             let start = Own::new::<D>(starts);
-            match group::<T, V, M, D, B, _>(visit, &constants, &members, (base, start)) {
+            match visit.group::<M, V, _>(&constants, (index, in_a_row), (base, start), &mut copies) {
                 Some(inside) => {
                     for (lane, &home) in homes.iter().enumerate().take(index.len()) {
                         visit.left |= u64::from(inside >> lane & 1 == 0) << home;
