@@ -11,7 +11,10 @@ const CONTACTS: usize = 5;
 impl Display for Report {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
         let space = self.dimension.name();
-        let (cell, per_cell) = (short(self.cell), self.particles_per_side.pow(self.dimension.axes() as u32));
+        let cell = short(self.cell);
+        let [fewest, most] =
+            self.particles_per_side.map(|per_side| per_side.pow(self.dimension.axes() as u32));
+        let per_cell = if fewest == most { fewest.to_string() } else { format!("{fewest} to {most}") };
         writeln!(f, "{}", self.title)?;
         writeln!(f, "{space}, cells of {cell} m, {per_cell} particles a cell\n")?;
         self.write_bodies(f)?;
