@@ -1,7 +1,7 @@
 //! What a run will be, before it runs.
 
 use super::bodies::{Extent, smallest_extent};
-use super::contact::{ContactEstimate, Verdict, estimates, starting_velocity};
+use super::contact::{ContactEstimate, Estimates, Verdict, estimates, starting_velocity};
 use super::table::short;
 use super::{examine, lattice, per_side};
 use crate::geometry::Bounds;
@@ -64,6 +64,8 @@ pub struct Report {
     pub wall_time: f64,
     /// Whether contacts are resolved, the narrowest first.
     pub contacts: Vec<ContactEstimate>,
+    /// Names of pairs that are near each other, or in a contact rule, and whose shapes tell no estimate.
+    pub contacts_unknown: Vec<[String; 2]>,
     /// What is doubtful but allowed.
     pub warnings: Vec<String>,
 }
@@ -104,7 +106,7 @@ pub fn report(scene: &Scene) -> Result<Report, Problem> {
     let extents = examine(scene)?;
     let particles = extents.iter().map(|extent| extent.particles).sum();
     let time_step = time_step(scene, &extents);
-    let contacts = estimates(scene, &extents);
+    let Estimates { found: contacts, unknown: contacts_unknown } = estimates(scene, &extents);
     let report = Report {
         title: scene.title.clone(),
         dimension: scene.dimension,
@@ -127,6 +129,7 @@ pub fn report(scene: &Scene) -> Result<Report, Problem> {
         wall_time: 0.0,
         warnings: thin_bodies(scene).into_iter().chain(narrow_contacts(&contacts)).collect(),
         contacts,
+        contacts_unknown,
     };
     Ok(report.on(Machine::default()))
 }
