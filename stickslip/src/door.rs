@@ -134,6 +134,9 @@ pub struct Patch {
     pub body_b: usize,
     /// Largest area over which they touched in a step, images in mirrors included [m^2], in the plane length per depth [m].
     pub area: f64,
+    /// Half of its shorter side: of a circle the radius, of an ellipse the shorter half-axis, of a strip 1.1 of its half-width; in the plane half of its
+    /// length [m].
+    pub half_width: f64,
 }
 
 /// Particles of all bodies as columns of equal length.

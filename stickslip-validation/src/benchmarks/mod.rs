@@ -56,3 +56,19 @@ pub static BENCHMARKS: &[Benchmark] = &[
     b13_disk::BENCHMARK,
     b29_stack::BENCHMARK,
 ];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whoever reads that a miss is known wants to know why, and by how much.
+    #[test]
+    fn known_misses_have_reasons_with_figures() {
+        let known =
+            |benchmark: &&Benchmark| benchmark.targets.iter().any(|target| !target.missed_at.is_empty());
+        for benchmark in BENCHMARKS.iter().filter(known) {
+            let figures = |text: &str| text.contains(|c: char| c.is_ascii_digit());
+            assert!(benchmark.reasons("surface").any(figures), "{}", benchmark.name);
+        }
+    }
+}

@@ -5,6 +5,7 @@ use super::flat::Flat;
 use super::hertz::{Hertz, Patch};
 use super::neighbours::pairs_within;
 use super::touch::{SAME, Touch};
+use crate::geometry::Lattice;
 use crate::scene::{Body, ContactLaw, ContactRule, Motion, Scene};
 use crate::tensor::Vector;
 use serde::Serialize;
@@ -95,31 +96,55 @@ impl Display for Errors {
     }
 }
 
-/// Estimates for all pairs within a cell of each other or named by a contact rule, narrowest first.
+/// What the start of a scene lets expect of its contacts.
+pub(super) struct Estimates {
+    /// Narrowest first.
+    pub found: Vec<ContactEstimate>,
+    /// Pairs whose shapes tell no patch, by name.
+    pub unknown: Vec<[String; 2]>,
+}
+
+/// Estimates for all pairs within a cell of each other or named by a contact rule.
 ///
 /// Only balls, cylinders that lie all along, and faces of boxes that lie flat touch in a patch that the start tells; to a ball the other body may be a
 /// ball, to a cylinder a cylinder, hollow or full, and it counts as flat where it is something else. The load is the weight of the upper body alone, without what rests on it. Pairs that nothing
 /// presses together at the start are left out, as are rigid or glued pairs.
-pub(super) fn estimates(scene: &Scene, extents: &[Extent]) -> Vec<ContactEstimate> {
+pub(super) fn estimates(scene: &Scene, extents: &[Extent]) -> Estimates {
     let named = named_pairs(scene);
     let boxes: Vec<_> = extents.iter().map(|extent| extent.bounds).collect();
     let near = pairs_within(&boxes, scene.discretization.cell);
     let pairs: BTreeSet<_> = near.into_iter().chain(named.iter().copied()).collect();
-    let of_pair = |pair: [usize; 2]| {
+    let (mut found, mut unknown) = (Vec::new(), Vec::new());
+    for pair in pairs.into_iter().filter(|&pair| pushes(scene, pair)) {
         let [a, b] = pair;
         let touches = [Touch::of(scene, extents, [a, b]), Touch::of(scene, extents, [b, a])];
         let near = |gap: f64| gap <= scene.discretization.cell || named.contains(&pair);
         if let Some(nearest) = touches.into_iter().flatten().min_by(|a, b| a.gap.total_cmp(&b.gap)) {
-            return if near(nearest.gap) { estimate(&nearest, scene) } else { None };
+            found.extend(estimate(&nearest, scene).filter(|_| near(nearest.gap)));
+            continue;
         }
         let flats = [Flat::of(scene, [a, b]), Flat::of(scene, [b, a])];
-        let flat = flats.into_iter().flatten().min_by(|a, b| a.gap.total_cmp(&b.gap))?;
-        if near(flat.gap) { of_face(&flat, scene, extents) } else { None }
-    };
-    let mut found: Vec<_> =
-        pairs.into_iter().filter(|&pair| pushes(scene, pair)).filter_map(of_pair).collect();
+        if let Some(flat) = flats.into_iter().flatten().min_by(|a, b| a.gap.total_cmp(&b.gap)) {
+            found.extend(of_face(&flat, scene, extents).filter(|_| near(flat.gap)));
+        } else if named.contains(&pair) || within_a_cell(scene, extents, pair) {
+            unknown.push(pair.map(|i| scene.bodies[i].name.clone()));
+        }
+    }
     found.sort_by(|a, b| a.cells.total_cmp(&b.cells));
-    found
+    Estimates { found, unknown }
+}
+
+/// Whether two shapes are less than a cell apart: surely if they touch, and not if they are further apart than that.
+///
+/// From a point the two are as far away as they are apart, or more. Around a point where they touch, one on a lattice of half a cell
+/// is within a quarter of a cell along each axis.
+fn within_a_cell(scene: &Scene, extents: &[Extent], [a, b]: [usize; 2]) -> bool {
+    let (cell, dimension) = (scene.discretization.cell, scene.dimension.axes());
+    let around = |i: usize| extents[i].bounds.grown(0.5 * cell);
+    let away = |i: usize, point| scene.bodies[i].shape.distance(point, dimension).max(0.0);
+    Lattice { origin: [0.0; 3], spacing: 0.5 * cell, dimension }
+        .sites_around(&around(a).intersected(&around(b)))
+        .any(|point| away(a, point) + away(b, point) <= cell)
 }
 
 /// Pairs of bodies, not of materials, that contact rules name.
@@ -220,7 +245,7 @@ mod tests {
     use std::f64::consts::PI;
 
     fn estimates_of(scene: &Scene) -> Vec<ContactEstimate> {
-        estimates(scene, &measure(scene).expect("filled"))
+        estimates(scene, &measure(scene).expect("filled")).found
     }
 
     fn ball(x: f64, radius: f64) -> Shape {
@@ -357,6 +382,27 @@ mod tests {
         let hollow = on(Shape::Difference(vec![block(), bowl]));
         // 1/R* = 1 - 1/2, so R* doubles and a grows by the cube root of 2.
         assert!((hollow / flat - 2f64.cbrt()).abs() < 1e-6, "{hollow} {flat}");
+    }
+
+    /// A cylinder on its rim, and one 1.1 cells above the floor, which a rule may name.
+    #[test]
+    fn pairs_that_are_near_and_whose_shapes_tell_nothing_are_named() {
+        let askew = |name: &str, x: f64, gap: f64| {
+            // The rim is lowest 0.3 cos below the lower end's centre.
+            let (sin, cos) = 0.5f64.sin_cos();
+            let [start, end] = [0.0, 1.0].map(|s| [x + s * cos, 0.0, 0.3 * cos + gap + s * sin]);
+            free(name, 0, Shape::Cylinder { start, end, radius: 0.3 })
+        };
+        let floor = at_rest("floor", Shape::HalfSpace { point: [0.0; 3], normal: [0.0, 0.0, 1.0] });
+        let bodies = vec![askew("rim", 0.0, 0.0), askew("far", 3.0, 0.11), floor];
+        let mut scene = scene(Dimension::Space, 0.1, bodies);
+        let unknown = |scene: &Scene| estimates(scene, &measure(scene).expect("filled")).unknown;
+        assert_eq!(unknown(&scene), [["rim", "floor"]]);
+        let between = [Some("far".to_string()), Some("floor".to_string())];
+        scene.contact = vec![ContactRule { between, ..Default::default() }];
+        assert_eq!(unknown(&scene), [["rim", "floor"], ["far", "floor"]]);
+        scene.contact[0].law = ContactLaw::Glued;
+        assert_eq!(unknown(&scene), [["rim", "floor"]]);
     }
 
     #[test]

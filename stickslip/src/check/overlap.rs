@@ -3,6 +3,7 @@
 use super::bodies::Extent;
 use super::lattice;
 use super::neighbours::pairs_within;
+use crate::geometry::Lattice;
 use crate::scene::{Problem, Scene};
 use rayon::prelude::*;
 
@@ -11,7 +12,8 @@ const ROUND_OFF: f64 = 1e-6;
 
 /// Refuses particle sites that lie inside two bodies.
 ///
-/// Bodies that overlap by more than the lattice resolves share sites of it: of the finer one, if each has its own.
+/// Bodies that overlap by more than a lattice resolves share sites of it. If each has its own, the coarser one may see what lies between the
+/// sites of the finer one.
 pub(super) fn check(scene: &Scene, extents: &[Extent]) -> Result<(), Problem> {
     let boxes: Vec<_> = extents.iter().map(|extent| extent.bounds).collect();
     let pairs = pairs_within(&boxes, 0.0);
@@ -24,18 +26,23 @@ pub(super) fn check(scene: &Scene, extents: &[Extent]) -> Result<(), Problem> {
 /// The problem with a pair of bodies, if they share sites.
 fn shared(scene: &Scene, extents: &[Extent], [a, b]: [usize; 2]) -> Option<Problem> {
     let (first, second) = (&scene.bodies[a], &scene.bodies[b]);
-    let lattices = [first, second].map(|body| lattice(scene, body));
-    let lattice = if lattices[0].spacing <= lattices[1].spacing { lattices[0] } else { lattices[1] };
+    let mut lattices = [first, second].map(|body| lattice(scene, body));
+    lattices.sort_by(|a, b| a.spacing.total_cmp(&b.spacing));
+    let dimension = lattices[0].dimension;
     let depth = |point: [f64; 3]| {
-        let inside = |body: &crate::scene::Body| -body.shape.distance(point, lattice.dimension);
+        let inside = |body: &crate::scene::Body| -body.shape.distance(point, dimension);
         inside(first).min(inside(second))
     };
     let common = extents[a].bounds.intersected(&extents[b].bounds);
-    let deep = |&point: &[f64; 3]| depth(point) > ROUND_OFF * lattice.spacing;
-    let mut sites = lattice.sites_around(&common).filter(deep);
-    let at = sites.next()?;
-    let count = 1 + sites.count();
-    let place: Vec<_> = at[..lattice.dimension].iter().map(|x| format!("{x:.4}")).collect();
+    let in_both = |lattice: &Lattice| {
+        let deep = |&point: &[f64; 3]| depth(point) > ROUND_OFF * lattice.spacing;
+        let mut sites = lattice.sites_around(&common).filter(deep);
+        Some((sites.next()?, 1 + sites.count()))
+    };
+    let [finer, coarser] = &lattices;
+    let one = finer.spacing == coarser.spacing;
+    let (at, count) = in_both(finer).or_else(|| if one { None } else { in_both(coarser) })?;
+    let place: Vec<_> = at[..dimension].iter().map(|x| format!("{x:.4}")).collect();
     Some(Problem {
         key: format!("bodies[{b}].shape"),
         found: format!(
@@ -91,16 +98,25 @@ mod tests {
         assert!(overlap(Dimension::PlaneStrain, vec![turned(0.0), turned(0.9)]).is_err());
     }
 
-    /// Sites of the coarse lattice at 0.05, 0.15, ... miss an overlap that those of the finer one see.
+    /// Sites of one a side at 0.05, 0.15, ... miss an overlap that those of five see, and sites of three at 0.25 and 0.283 one that those of two
+    /// see, at 0.275.
     #[test]
-    fn the_finer_of_two_lattices_tells_an_overlap() {
-        let square = |x: f64, per_side| Body {
-            particles_per_side: Some(per_side),
-            ..free("square", 0, Shape::Box { min: [x, 0.0, 0.0], max: [x + 0.3, 0.3, 0.0] })
+    fn either_of_two_lattices_tells_an_overlap() {
+        let overlap = |[end, start]: [f64; 2], per_side: [usize; 2]| {
+            let square = |[min, max]: [f64; 2], per_side| Body {
+                particles_per_side: Some(per_side),
+                ..free("square", 0, Shape::Box { min: [min, 0.0, 0.0], max: [max, 0.3, 0.0] })
+            };
+            let bodies = vec![square([0.0, end], per_side[0]), square([start, 0.6], per_side[1])];
+            overlap(Dimension::PlaneStrain, bodies)
         };
-        let bodies = |second| vec![square(0.0, 1), square(0.26, second)];
-        assert_eq!(overlap(Dimension::PlaneStrain, bodies(1)), Ok(()));
-        assert!(overlap(Dimension::PlaneStrain, bodies(5)).is_err());
+        assert_eq!(overlap([0.3, 0.26], [1, 1]), Ok(()));
+        assert!(overlap([0.3, 0.26], [1, 5]).is_err());
+        assert_eq!(overlap([0.28, 0.26], [3, 3]), Ok(()));
+        for per_side in [[2, 3], [3, 2]] {
+            let problem = overlap([0.28, 0.26], per_side).expect_err("0.02 m");
+            assert!(problem.found.contains("in 6 particles near (0.2750, 0.0250) m"), "{problem}");
+        }
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! What a run will be, before it runs.
 
 use super::bodies::{Extent, smallest_extent};
-use super::contact::{ContactEstimate, Verdict, estimates, starting_velocity};
+use super::contact::{ContactEstimate, Estimates, Verdict, estimates, starting_velocity};
 use super::table::short;
 use super::{examine, lattice, per_side};
 use crate::geometry::Bounds;
@@ -42,8 +42,8 @@ pub struct Report {
     pub dimension: Dimension,
     /// Side of a grid cell [m].
     pub cell: f64,
-    /// Particles along each side of a cell.
-    pub particles_per_side: usize,
+    /// Particles along each side of a cell, in the bodies with the fewest and with the most.
+    pub particles_per_side: [usize; 2],
     /// The bodies, in the order of the scene.
     pub bodies: Vec<BodyReport>,
     /// The materials, in the order of the scene.
@@ -64,6 +64,8 @@ pub struct Report {
     pub wall_time: f64,
     /// Whether contacts are resolved, the narrowest first.
     pub contacts: Vec<ContactEstimate>,
+    /// Names of pairs that are near each other, or in a contact rule, and whose shapes tell no estimate.
+    pub contacts_unknown: Vec<[String; 2]>,
     /// What is doubtful but allowed.
     pub warnings: Vec<String>,
 }
@@ -104,12 +106,12 @@ pub fn report(scene: &Scene) -> Result<Report, Problem> {
     let extents = examine(scene)?;
     let particles = extents.iter().map(|extent| extent.particles).sum();
     let time_step = time_step(scene, &extents);
-    let contacts = estimates(scene, &extents);
+    let Estimates { found: contacts, unknown: contacts_unknown } = estimates(scene, &extents);
     let report = Report {
         title: scene.title.clone(),
         dimension: scene.dimension,
         cell: scene.discretization.cell,
-        particles_per_side: scene.discretization.particles_per_side,
+        particles_per_side: fewest_and_most(scene),
         bodies: scene
             .bodies
             .iter()
@@ -127,6 +129,7 @@ pub fn report(scene: &Scene) -> Result<Report, Problem> {
         wall_time: 0.0,
         warnings: thin_bodies(scene).into_iter().chain(narrow_contacts(&contacts)).collect(),
         contacts,
+        contacts_unknown,
     };
     Ok(report.on(Machine::default()))
 }
@@ -137,6 +140,13 @@ impl Report {
         let rate = machine.particle_steps_per_second * machine.cores as f64;
         Report { machine, wall_time: self.particles as f64 * self.steps as f64 / rate, ..self }
     }
+}
+
+/// Particles along each side of a cell, in the bodies with the fewest and with the most.
+fn fewest_and_most(scene: &Scene) -> [usize; 2] {
+    let usual = scene.discretization.particles_per_side;
+    let of = || scene.bodies.iter().map(|body| body.particles_per_side.unwrap_or(usual));
+    [of().min().unwrap_or(usual), of().max().unwrap_or(usual)]
 }
 
 fn of_body(scene: &Scene, body: &Body, extent: &Extent) -> BodyReport {
@@ -268,6 +278,10 @@ mod tests {
         let fine = Body { particles_per_side: Some(3), ..cube(0.3) };
         let report = report(&scene(Dimension::Space, 0.1, vec![cube(0.0), fine])).unwrap();
         assert_eq!(report.bodies.iter().map(|body| body.particles).collect::<Vec<_>>(), [216, 729]);
+        assert!(
+            report.to_string().contains("\nspace, cells of 0.1 m, 8 to 27 particles a cell\n"),
+            "{report}"
+        );
         assert!((report.bodies[1].mass / report.bodies[0].mass - 1.0).abs() < 1e-12);
     }
 

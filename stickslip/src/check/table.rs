@@ -7,11 +7,16 @@ use std::fmt::{Display, Formatter, Result};
 /// Rows that each list of the report takes on the screen.
 const BODIES: usize = 10;
 const CONTACTS: usize = 5;
+/// Pairs without an estimate that are named.
+const UNKNOWN: usize = 3;
 
 impl Display for Report {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
         let space = self.dimension.name();
-        let (cell, per_cell) = (short(self.cell), self.particles_per_side.pow(self.dimension.axes() as u32));
+        let cell = short(self.cell);
+        let [fewest, most] =
+            self.particles_per_side.map(|per_side| per_side.pow(self.dimension.axes() as u32));
+        let per_cell = if fewest == most { fewest.to_string() } else { format!("{fewest} to {most}") };
         writeln!(f, "{}", self.title)?;
         writeln!(f, "{space}, cells of {cell} m, {per_cell} particles a cell\n")?;
         self.write_bodies(f)?;
@@ -37,6 +42,7 @@ impl Display for Report {
             duration(self.wall_time)
         )?;
         self.write_contacts(f)?;
+        self.write_unknown(f)?;
         for warning in &self.warnings {
             writeln!(f, "\nwarning: {warning}")?;
         }
@@ -77,11 +83,10 @@ impl Report {
         let name = |contact: &ContactEstimate| contact.bodies.join(" on ");
         let names: Vec<_> = self.contacts.iter().take(CONTACTS).map(name).collect();
         let width = column(names.iter(), "contact (Hertz)");
-        let patch = if self.dimension.is_plane() { "half-width [m]" } else { "radius [m]" };
         writeln!(
             f,
-            "\n{:width$}  {patch:>14}  {:>9}  {:>7}  verdict",
-            "contact (Hertz)", "depth [m]", "cells"
+            "\n{:width$}  {:>14}  {:>9}  {:>7}  verdict",
+            "contact (Hertz)", "half-width [m]", "depth [m]", "cells"
         )?;
         for (name, contact) in names.iter().zip(&self.contacts) {
             let (radius, depth) = (short(contact.patch.radius), short(contact.patch.depth));
@@ -95,6 +100,23 @@ impl Report {
             writeln!(f, "in all {}: {}", self.contacts.len(), counts.join(", "))?;
         }
         Ok(())
+    }
+
+    fn write_unknown(&self, f: &mut Formatter<'_>) -> Result {
+        let unknown = &self.contacts_unknown;
+        if unknown.is_empty() {
+            return Ok(());
+        }
+        let names: Vec<_> = unknown.iter().take(UNKNOWN).map(|pair| pair.join(" on ")).collect();
+        let more = unknown.len().saturating_sub(UNKNOWN);
+        let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+        let plural = if unknown.len() == 1 { "" } else { "s" };
+        writeln!(
+            f,
+            "\nno estimate for {} contact{plural}, {}{more}: the shapes tell none; the summary of the run says how wide bodies touched",
+            unknown.len(),
+            names.join(", ")
+        )
     }
 }
 
@@ -146,7 +168,7 @@ fn duration(seconds: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::check::tests::{free, incline, scene};
+    use crate::check::tests::{at_rest, free, incline, scene};
     use crate::check::{Machine, report};
     use crate::geometry::Shape;
     use crate::scene::Dimension;
@@ -170,6 +192,24 @@ mod tests {
 {text}"
             );
         }
+    }
+
+    /// Cylinders on end.
+    #[test]
+    fn contacts_without_an_estimate_are_counted_and_the_first_named() {
+        let pillar = |i: usize| {
+            let x = i as f64;
+            let [start, end] = [0.0, 1.0].map(|z| [x, 0.0, z]);
+            free(&format!("pillar {i}"), 0, Shape::Cylinder { start, end, radius: 0.3 })
+        };
+        let text = |pillars: usize| {
+            let floor = at_rest("floor", Shape::HalfSpace { point: [0.0; 3], normal: [0.0, 0.0, 1.0] });
+            let bodies = (0..pillars).map(pillar).chain([floor]).collect();
+            report(&scene(Dimension::Space, 0.1, bodies)).expect("no problem").to_string()
+        };
+        assert!(text(1).contains("\nno estimate for 1 contact, pillar 0 on floor: "), "{}", text(1));
+        let four = "\nno estimate for 4 contacts, pillar 0 on floor, pillar 1 on floor, pillar 2 on floor and 1 more: ";
+        assert!(text(4).contains(four), "{}", text(4));
     }
 
     #[test]

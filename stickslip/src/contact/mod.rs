@@ -12,6 +12,7 @@ mod pair;
 mod place;
 mod rules;
 mod solve;
+mod spread;
 mod surroundings;
 mod survey;
 mod tally;

@@ -1,6 +1,7 @@
 //! What contact did to each pair of bodies, summed over nodes and steps.
 
 use super::Impulse;
+use super::spread::Spread;
 use crate::boundary::Boundary;
 use crate::door::{ContactState, Patch};
 use crate::grid::Lattice;
@@ -35,8 +36,7 @@ struct Touching {
     /// For how long [s].
     duration: f64,
     nodes: usize,
-    /// [m^2]
-    area: f64,
+    spread: Spread,
     /// Mirrors that the contact goes through, a bit each.
     mirrors: u32,
     /// Area times gap [m^3] and area times slip [m^3].
@@ -77,8 +77,8 @@ pub struct Tally {
 struct Touched {
     bodies: [usize; 2],
     sum: Sum,
-    /// Largest area over which they touched since the start, images in mirrors included [m^2], if they pushed.
-    largest: Option<f64>,
+    /// Largest area over which they touched since the start, images in mirrors included, if they pushed.
+    largest: Option<Patch>,
 }
 
 /// Mixes the numbers of two bodies: nobody chooses them to collide.
@@ -104,13 +104,14 @@ impl Hasher for Mixer {
 impl Sum {
     /// Area times duration [m^2 s], and with the gap [m^3 s], with those of the last use.
     fn touched(&self) -> [f64; 2] {
-        let Touching { duration, area, gap, .. } = self.last;
+        let Touching { duration, spread: Spread { area, .. }, gap, .. } = self.last;
         [self.area + area * duration, self.gap + gap * duration]
     }
 
     /// Way of slip with that of the last use [m].
     fn slipped(&self) -> f64 {
-        if self.last.area > 0.0 { self.slip + self.last.slip / self.last.area } else { self.slip }
+        let area = self.last.spread.area;
+        if area > 0.0 { self.slip + self.last.slip / area } else { self.slip }
     }
 
     /// Closes the use before `next`, whose touching nodes are all known now.
@@ -155,15 +156,15 @@ impl Tally {
             let mirrors = boundary.mirrors_through(impulse.node);
             let area = impulse.area.f64() / f64::from(1_u32 << mirrors.count_ones());
             sum.last.mirrors |= mirrors;
-            sum.last.area += area;
+            let place = lattice.position(impulse.node).space();
+            sum.last.spread.add(area, place);
             sum.last.gap += area * (impulse.gap * lattice.cell).f64();
             sum.last.slip += area * impulse.slip.f64();
             if !pushes {
                 continue;
             }
             sum.last.nodes += 1;
-            let (place, tangential) =
-                (lattice.position(impulse.node).space(), impulse.change.tangential.space());
+            let tangential = impulse.change.tangential.space();
             let magnitude =
                 impulse.change.impulse[0].norm().f64().max(impulse.change.impulse[1].norm().f64());
             sum.magnitude += magnitude;
@@ -178,10 +179,18 @@ impl Tally {
             self.work += impulse.work.f64();
         }
         for &place in &self.present {
-            let Touched { sum, largest, .. } = &mut self.pairs[place];
-            if sum.last.nodes > 0 {
-                let whole = sum.last.area * f64::from(1_u32 << sum.last.mirrors.count_ones());
-                *largest = Some(largest.unwrap_or_default().max(whole));
+            let Touched { bodies: [body_a, body_b], sum: Sum { last, .. }, largest } = &mut self.pairs[place];
+            let images = f64::from(1_u32 << last.mirrors.count_ones());
+            let wider = largest.is_none_or(|patch| last.spread.area * images > patch.area);
+            if last.nodes > 0 && wider {
+                let through = |i: usize| last.mirrors >> i & 1 == 1;
+                let mirrors = boundary.walls.iter().enumerate().filter(|(i, _)| through(*i));
+                let whole = mirrors.fold(last.spread, |spread, (_, wall)| {
+                    spread.with_image(wall.axis, lattice.position([wall.node; D])[wall.axis].f64())
+                });
+                let area = whole.area;
+                let half_width = if D == 2 { 0.5 * area } else { whole.half_width(lattice.cell.f64()) };
+                *largest = Some(Patch { body_a: *body_a, body_b: *body_b, area, half_width });
             }
         }
     }
@@ -249,9 +258,7 @@ impl Tally {
 
     /// The largest area over which each pair touched since the start, ordered by pair.
     pub fn patches(&self) -> Vec<Patch> {
-        self.ordered(|Touched { bodies: [body_a, body_b], largest, .. }| {
-            largest.map(|area| Patch { body_a: *body_a, body_b: *body_b, area })
-        })
+        self.ordered(|pair| pair.largest)
     }
 }
 

@@ -69,7 +69,9 @@ mod tests {
     use super::*;
 
     fn patches(areas: &[f64]) -> Vec<Patch> {
-        areas.iter().enumerate().map(|(i, &area)| Patch { body_a: i, body_b: i + 1, area }).collect()
+        let patch =
+            |(i, &area): (usize, &f64)| Patch { body_a: i, body_b: i + 1, area, half_width: 0.5 * area };
+        areas.iter().enumerate().map(patch).collect()
     }
 
     /// Only those that were there at the last look and have not grown, once.

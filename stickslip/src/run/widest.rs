@@ -3,7 +3,6 @@
 use crate::check::{Errors, Verdict};
 use crate::door::Patch;
 use crate::scene::Scene;
-use std::f64::consts::PI;
 use std::fmt::{self, Display, Formatter};
 
 /// How wide two bodies touched at most.
@@ -11,8 +10,8 @@ use std::fmt::{self, Display, Formatter};
 pub struct WidestContact {
     /// Names of the bodies.
     pub bodies: [String; 2],
-    /// Radius of a circle with the contact's area, in the plane half its length, with its images in mirrors [m].
-    pub radius: f64,
+    /// Half of the contact's shorter side, a circle's radius, with its images in mirrors [m].
+    pub half_width: f64,
     /// The same over the cell size [-].
     pub cells: f64,
     /// What to expect of the contact.
@@ -30,14 +29,19 @@ const NAMED: usize = 3;
 
 impl WidestContacts {
     pub(super) fn new(scene: &Scene, patches: &[Patch]) -> Self {
-        let plane = scene.dimension.axes() == 2;
         let mut contacts: Vec<_> = (patches.iter())
             .filter(|patch| patch.area > 0.0)
             .map(|patch| {
-                let radius = if plane { 0.5 * patch.area } else { (patch.area / PI).sqrt() };
-                let cells = radius / scene.discretization.cell;
+                let half_width = patch.half_width;
+                let cells = half_width / scene.discretization.cell;
                 let bodies = [patch.body_a, patch.body_b].map(|body| scene.bodies[body].name.clone());
-                WidestContact { bodies, radius, cells, verdict: Verdict::of(cells), off: Errors::of(cells) }
+                WidestContact {
+                    bodies,
+                    half_width,
+                    cells,
+                    verdict: Verdict::of(cells),
+                    off: Errors::of(cells),
+                }
             })
             .collect();
         contacts.sort_by(|a, b| a.cells.total_cmp(&b.cells));
@@ -64,7 +68,7 @@ impl Display for WidestContacts {
         let Some(narrowest) = coarse.0.first() else { return Ok(()) };
         writeln!(
             f,
-            "  contact    {}: touched within a radius of at most {}; {}",
+            "  contact    {}: touched over a half-width of at most {}; {}",
             narrowest.verdict,
             coarse.named(),
             narrowest.off
@@ -76,39 +80,43 @@ impl Display for WidestContacts {
 mod tests {
     use super::*;
 
-    fn widest(dimension: &str, areas: &[f64]) -> WidestContacts {
-        let third = if dimension == "3d" { ", 0" } else { "" };
-        let bodies: String = (0..=areas.len())
+    fn widest(half_widths: &[f64]) -> WidestContacts {
+        let bodies: String = (0..=half_widths.len())
             .map(|i| {
                 format!(
-                    "[[bodies]]\nname = 'b{i}'\nmaterial = 'clay'\nshape.ball = {{ center = [{}, 0{third}], radius = 1 }}\n",
+                    "[[bodies]]\nname = 'b{i}'\nmaterial = 'clay'\nshape.ball = {{ center = [{}, 0], radius = 1 }}\n",
                     4 * i
                 )
             })
             .collect();
         let text = format!(
-            "space = {{ dimension = '{dimension}', cell = 0.1 }}\ntime.end = 1\n\
+            "space = {{ dimension = 'plane-strain', cell = 0.1 }}\ntime.end = 1\n\
              materials.clay = {{ density = 1, neo_hookean = {{ young_modulus = 1, poisson_ratio = 0 }} }}\n{bodies}"
         );
         let scene = crate::scene::parse("widest.toml", &text, &[]).expect("a scene").scene;
-        let patches: Vec<_> =
-            areas.iter().enumerate().map(|(i, &area)| Patch { body_a: i, body_b: i + 1, area }).collect();
+        let patch = |(i, &half_width): (usize, &f64)| Patch {
+            body_a: i,
+            body_b: i + 1,
+            area: 2.0 * half_width,
+            half_width,
+        };
+        let patches: Vec<_> = half_widths.iter().enumerate().map(patch).collect();
         WidestContacts::new(&scene, &patches)
     }
 
     #[test]
-    fn the_area_tells_the_radius_in_cells() {
-        let plane = widest("plane-strain", &[0.5]);
-        assert!((plane.0[0].cells - 2.5).abs() < 1e-12 && plane.0[0].verdict == Verdict::Marginal);
-        let space = widest("3d", &[PI * 0.09, PI * 0.25]);
-        let cells: Vec<_> = space.0.iter().map(|contact| contact.cells).collect();
-        assert!((cells[0] - 3.0).abs() < 1e-12 && (cells[1] - 5.0).abs() < 1e-12, "{cells:?}");
+    fn the_half_width_in_cells_gives_the_verdict() {
+        let found = widest(&[0.5, 0.25, 0.05]);
+        let cells: Vec<_> = found.0.iter().map(|contact| contact.cells).collect();
+        assert!((0..3).all(|i| (cells[i] - [0.5, 2.5, 5.0][i]).abs() < 1e-12), "{cells:?}");
+        let verdicts: Vec<_> = found.0.iter().map(|contact| contact.verdict).collect();
+        assert_eq!(verdicts, [Verdict::NotResolved, Verdict::Marginal, Verdict::Resolved]);
     }
 
     #[test]
     fn only_contacts_that_the_grid_does_not_resolve_are_named() {
-        assert_eq!(widest("plane-strain", &[2.0]).to_string(), "");
-        let text = widest("plane-strain", &[2.0, 0.1, 0.3, 0.2, 0.4, 0.5]).to_string();
+        assert_eq!(widest(&[1.0]).to_string(), "");
+        let text = widest(&[1.0, 0.05, 0.15, 0.1, 0.2, 0.25]).to_string();
         assert!(
             text.contains("b1 and b2 0.50 cells, b3 and b4 1.00 cells, b2 and b3 1.50 cells and 2 more"),
             "{text}"
