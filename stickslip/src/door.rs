@@ -162,23 +162,6 @@ pub struct ParticleSnapshot {
     pub deformation: Vec<[f64; 9]>,
 }
 
-impl ParticleSnapshot {
-    /// None yet, with room for so many particles.
-    pub fn with_room(dimension: usize, particles: usize) -> Self {
-        ParticleSnapshot {
-            dimension,
-            body: Vec::with_capacity(particles),
-            number: Vec::with_capacity(particles),
-            position: Vec::with_capacity(particles),
-            velocity: Vec::with_capacity(particles),
-            mass: Vec::with_capacity(particles),
-            volume: Vec::with_capacity(particles),
-            stress: Vec::with_capacity(particles),
-            deformation: Vec::with_capacity(particles),
-        }
-    }
-}
-
 /// A particle now, as [`Simulation::visit`] shows it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ParticleView {

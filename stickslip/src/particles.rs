@@ -87,6 +87,11 @@ impl<T: Real, const D: usize> Particles<T, D> {
         self.numbers.is_empty()
     }
 
+    /// Each particle's number in its body, in the order of memory.
+    pub fn numbers(&self) -> &[u32] {
+        &self.numbers
+    }
+
     /// Particle `i`.
     #[inline]
     pub fn get(&self, i: usize) -> Particle<T, D> {

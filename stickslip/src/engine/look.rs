@@ -2,7 +2,7 @@
 
 use super::Engine;
 use crate::basis::Basis;
-use crate::body::{Body, Totals};
+use crate::body::{Body, Particle, Totals};
 use crate::contact::Span;
 use crate::door::{
     BodyState, ContactState, GridSnapshot, Ledger, ParticleSnapshot, ParticleView, Patch, Simulation,
@@ -28,6 +28,11 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let mut known = self.totals.lock().unwrap_or_else(PoisonError::into_inner);
         let sum = || self.bodies.par_iter().map(Body::totals).collect();
         known.get_or_insert_with(sum).clone()
+    }
+
+    /// Something of each particle, given by body and place in memory.
+    fn column<X: Send>(&self, places: &[[usize; 2]], of: impl Fn(&Particle<T, D>) -> X + Sync) -> Vec<X> {
+        places.par_iter().map(|&[body, place]| of(&self.bodies[body].particles.get(place))).collect()
     }
 }
 
@@ -130,25 +135,29 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
     }
 
     fn snapshot(&self) -> ParticleSnapshot {
-        let mut snapshot = ParticleSnapshot::with_room(D, self.particles());
+        // By body, then by number: where each particle stands.
+        let mut rows = Vec::with_capacity(self.particles());
         for (i, body) in self.bodies.iter().enumerate() {
-            // Where each number stands.
-            let mut places = vec![0; body.particles.len()];
-            body.particles.iter().enumerate().for_each(|(i, particle)| places[particle.number as usize] = i);
-            for place in places {
-                let particle = body.particles.get(place);
-                snapshot.body.push(i as u32);
-                snapshot.number.push(particle.number);
-                snapshot.position.push(particle.position.space());
-                snapshot.velocity.push(particle.velocity.space());
-                snapshot.mass.push(particle.mass.f64());
-                snapshot.volume.push((particle.volume * particle.deformation.det()).f64());
-                snapshot.stress.push(particle.stress.0.map(Real::f64));
-                let f = &particle.deformation.0;
-                snapshot.deformation.push(std::array::from_fn(|k| f[k / 3][k % 3].f64()));
+            let first = rows.len();
+            rows.resize(first + body.particles.len(), [i, 0]);
+            for (place, &number) in body.particles.numbers().iter().enumerate() {
+                rows[first + number as usize][1] = place;
             }
         }
-        snapshot
+        ParticleSnapshot {
+            dimension: D,
+            body: rows.par_iter().map(|&[body, _]| body as u32).collect(),
+            number: self.column(&rows, |particle| particle.number),
+            position: self.column(&rows, |particle| particle.position.space()),
+            velocity: self.column(&rows, |particle| particle.velocity.space()),
+            mass: self.column(&rows, |particle| particle.mass.f64()),
+            volume: self.column(&rows, |particle| (particle.volume * particle.deformation.det()).f64()),
+            stress: self.column(&rows, |particle| particle.stress.0.map(Real::f64)),
+            deformation: self.column(&rows, |particle| {
+                let f = &particle.deformation.0;
+                std::array::from_fn(|k| f[k / 3][k % 3].f64())
+            }),
+        }
     }
 
     fn visit(&self, body: usize, look: &mut dyn FnMut(&ParticleView)) {

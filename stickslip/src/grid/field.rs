@@ -136,17 +136,18 @@ impl<T: Real, const D: usize> Default for Window<T, D> {
 #[inline(always)]
 fn each_run<const D: usize>(tile: &Tile<D>, side: usize, mut f: impl FnMut(usize, usize, usize)) {
     const S: usize = SIDE as usize;
-    let mut run = |place: usize, corner: usize, local: usize| {
-        let block = |corner: usize| tile.slots[corner] as usize * nodes_per_block(D) + local;
-        f(place, block(corner), S.min(side));
-        f(place + S, block(corner + 1), side.saturating_sub(S));
-    };
+    let rows = if D == 2 { 1 } else { side };
     for x in 0..side {
-        if D == 2 {
-            run(x * WINDOW, x / S * 2, x % S * S);
-        } else {
-            for y in 0..side {
-                run((x * WINDOW + y) * WINDOW, x / S * 4 + y / S * 2, (x % S * S + y % S) * S);
+        for y in 0..rows {
+            // `f` is called in one place, else the compiler may leave it uninlined, and its instructions are not the machine's.
+            for half in 0..2 {
+                let (place, corner, local) = match D {
+                    2 => (x * WINDOW, x / S * 2, x % S * S),
+                    _ => ((x * WINDOW + y) * WINDOW, x / S * 4 + y / S * 2, (x % S * S + y % S) * S),
+                };
+                let count = if half == 0 { S.min(side) } else { side.saturating_sub(S) };
+                let node = tile.slots[corner + half] as usize * nodes_per_block(D) + local;
+                f(place + half * S, node, count);
             }
         }
     }
