@@ -18,7 +18,7 @@ pub struct Whole {
 const SPHERE: &str = include_str!("../../../scenes/paper/inclined_plane_no_slip.toml");
 const DISKS: &str = include_str!("../../../scenes/paper/disks_collinear.toml");
 /// Runs with and runs without outputs; they take turns, so that a disturbance hits both kinds.
-const REPETITIONS: usize = 2;
+const REPETITIONS: usize = 3;
 /// What takes the outputs away, but for the first and the last row of each table.
 const SILENT: [(&str, &str); 3] =
     [("outputs.tables", "1e9 s"), ("outputs.particles", "never"), ("outputs.grid", "never")];

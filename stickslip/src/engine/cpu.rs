@@ -43,7 +43,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let nodes = Disjoint::new(&mut self.field.nodes);
         let left = Disjoint::new(&mut self.left);
         let (cover, bodies, workshop, path) = (&self.cover, &self.bodies, &self.workshop, self.path);
-        let visit = |index: u32, window: &mut Window<T, D>| -> Found<T> {
+        // Fed with the fastest signal so far, which spares it to look at slower ones.
+        let visit = |index: u32, window: &mut Window<T, D>, signal: T| -> Found<T> {
             let tile = &cover.tiles[index as usize];
             let body = &bodies[tile.body];
             let for_rigid = Verbs { scatter: pass.verbs.scatter, ..Verbs::default() };
@@ -59,7 +60,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 window,
                 next: cover.tiles.get(index as usize + 1),
                 left: 0,
-                found: Found::NOTHING,
+                found: Found { signal, ..Found::NOTHING },
                 basis: PhantomData::<B>,
             };
             // SAFETY: every particle belongs to one tile, and every tile to one call. Nobody writes to the field in a pass without
@@ -81,7 +82,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let several = |tiles: &mut dyn Iterator<Item = u32>| -> Found<T> {
             let thread = rayon::current_thread_index().unwrap_or(0);
             let mut window = workshop.windows[thread].lock().unwrap_or_else(PoisonError::into_inner);
-            tiles.fold(Found::NOTHING, |found, tile| found.and(visit(tile, &mut window)))
+            tiles.fold(Found::NOTHING, |found, tile| found.and(visit(tile, &mut window, found.signal)))
         };
         if pass.verbs.scatter.is_none() {
             let all = 0..cover.tiles.len() as u32;
