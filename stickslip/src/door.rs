@@ -134,8 +134,8 @@ pub struct Patch {
     pub body_b: usize,
     /// Largest area over which they touched in a step, images in mirrors included [m^2], in the plane length per depth [m].
     pub area: f64,
-    /// Half of its shorter side: of a circle the radius, of an ellipse the shorter half-axis, of a strip 1.1 of its half-width; in the plane half of its
-    /// length [m].
+    /// Half of its shorter side: of a circle the radius, of an ellipse the shorter half-axis, of a strip 1.1 of its half-width, of a
+    /// ring the radius of a circle with its area; in the plane half of its length [m].
     pub half_width: f64,
 }
 

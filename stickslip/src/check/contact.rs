@@ -134,7 +134,8 @@ pub(super) fn estimates(scene: &Scene, extents: &[Extent]) -> Estimates {
     Estimates { found, unknown }
 }
 
-/// Whether two shapes are less than a cell apart: surely if they touch, and not if they are further apart than that.
+/// Whether two shapes are less than a cell apart: surely if they touch, and not if they are further apart than that, but for combined ones,
+/// whose distances are lower bounds.
 ///
 /// From a point the two are as far away as they are apart, or more. Around a point where they touch, one on a lattice of half a cell
 /// is within a quarter of a cell along each axis.

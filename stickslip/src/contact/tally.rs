@@ -270,8 +270,8 @@ mod tests {
     use crate::scene::Face;
     use crate::tensor::Vector;
 
-    fn pushing(node: [i32; 2]) -> Impulse<f64, 2> {
-        let push = Vector([0.0, 1.0]);
+    fn pushing<const D: usize>(node: [i32; D]) -> Impulse<f64, D> {
+        let push = Vector::from_fn(|i| if i == D - 1 { 1.0 } else { 0.0 });
         Impulse {
             bodies: [0, 1],
             nodes: [0, 1],
@@ -311,5 +311,23 @@ mod tests {
         let (mut aside, far) = (Tally::default(), pushing([4, 0]));
         aside.add([far].iter(), (&lattice, &boundary), 1.0);
         assert_eq!(aside.patches()[0].area, 0.5);
+    }
+
+    /// A strip of 41 nodes by 4, or its half with a mirror across its length.
+    #[test]
+    fn a_strip_is_as_wide_by_its_half_and_a_mirror() {
+        let lattice = Lattice::new(Vector::ZERO, 0.5);
+        let patch = |first: i32, boundary: &Boundary| {
+            let row = |y: i32| (first..=23).map(move |x| Impulse { area: 0.25, ..pushing([x, y, 0]) });
+            let nodes: Vec<_> = (0..4).flat_map(row).collect();
+            let mut tally = Tally::default();
+            tally.add(nodes.iter(), (&lattice, boundary), 1.0);
+            tally.patches()[0]
+        };
+        let mirror = Wall { axis: 0, node: 3, inward: 1, face: Face::Symmetry };
+        let [whole, half] = [patch(-17, &Boundary::default()), patch(3, &Boundary::new(vec![mirror]))];
+        assert!((whole.area - 41.0).abs() < 1e-12 && (half.area - 41.0).abs() < 1e-12);
+        assert!((half.half_width / whole.half_width - 1.0).abs() < 1e-12, "{half:?} {whole:?}");
+        assert!((whole.half_width - 1.1).abs() < 0.05, "{whole:?}");
     }
 }

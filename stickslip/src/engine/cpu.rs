@@ -43,7 +43,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let nodes = Disjoint::new(&mut self.field.nodes);
         let left = Disjoint::new(&mut self.left);
         let (cover, bodies, workshop, path) = (&self.cover, &self.bodies, &self.workshop, self.path);
-        // Fed with the fastest signal so far, which spares it to look at slower ones.
+        // Fed with the fastest signal of the tiles before it in its list, which spares it the roots of slower ones. Lists do not depend on threads.
         let visit = |index: u32, window: &mut Window<T, D>, signal: T| -> Found<T> {
             let tile = &cover.tiles[index as usize];
             let body = &bodies[tile.body];

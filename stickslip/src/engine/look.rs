@@ -31,8 +31,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     }
 
     /// Something of each particle, given by body and place in memory.
-    fn column<X: Send>(&self, places: &[[usize; 2]], of: impl Fn(&Particle<T, D>) -> X + Sync) -> Vec<X> {
-        places.par_iter().map(|&[body, place]| of(&self.bodies[body].particles.get(place))).collect()
+    fn column<X: Send>(&self, places: &[[u32; 2]], of: impl Fn(&Particle<T, D>) -> X + Sync) -> Vec<X> {
+        let at = |&[body, place]: &[u32; 2]| self.bodies[body as usize].particles.get(place as usize);
+        places.par_iter().map(|place| of(&at(place))).collect()
     }
 }
 
@@ -139,14 +140,14 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
         let mut rows = Vec::with_capacity(self.particles());
         for (i, body) in self.bodies.iter().enumerate() {
             let first = rows.len();
-            rows.resize(first + body.particles.len(), [i, 0]);
+            rows.resize(first + body.particles.len(), [i as u32, 0]);
             for (place, &number) in body.particles.numbers().iter().enumerate() {
-                rows[first + number as usize][1] = place;
+                rows[first + number as usize][1] = place as u32;
             }
         }
         ParticleSnapshot {
             dimension: D,
-            body: rows.par_iter().map(|&[body, _]| body as u32).collect(),
+            body: rows.par_iter().map(|&[body, _]| body).collect(),
             number: self.column(&rows, |particle| particle.number),
             position: self.column(&rows, |particle| particle.position.space()),
             velocity: self.column(&rows, |particle| particle.velocity.space()),

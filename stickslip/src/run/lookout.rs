@@ -9,7 +9,7 @@ use std::collections::BTreeSet;
 /// Looks at the widest contact of each pair as often as tables are written, and tells of each pair once.
 pub(super) struct Lookout {
     next: f64,
-    /// Areas when it looked last.
+    /// Patches when it looked last.
     before: Vec<Patch>,
     told: BTreeSet<[usize; 2]>,
     lines: usize,

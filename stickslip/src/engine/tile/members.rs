@@ -45,7 +45,7 @@ pub struct Members<'a, T, const D: usize, const WHOLE: bool> {
     runs: Option<&'a Runs>,
 }
 
-/// Columns of particles that do not lie side by side or do not fill the lanes, with room for a register from any lane on.
+/// Columns of particles that do not lie side by side or, without masks, do not fill the lanes, with room for a register from any lane on.
 pub struct Copies<T> {
     columns: [[Numbers<T>; 2]; MOST_COLUMNS],
     runs: Runs,
@@ -215,7 +215,7 @@ impl<T: Real> Copies<T> {
     /// Entries from a column to the next.
     const STRIDE: usize = size_of::<[Numbers<T>; 2]>() / size_of::<T>();
 
-    /// What a pass reads; lanes beyond repeat the first particle.
+    /// What a pass reads; lanes beyond repeat the first particle, but where masks see to that.
     ///
     /// # Safety
     /// The particles must exist, and nobody may write to them meanwhile.
