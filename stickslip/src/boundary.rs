@@ -3,10 +3,11 @@
 //! Behind a mirror the particles' images are summed: nodes behind it give their share to the nodes before it and take
 //! their values back with the sign of the normal component turned, as if the other half of the bodies were there.
 
-use crate::grid::{Cover, Field, SIDE, node_at, nodes_per_block};
+use crate::grid::{Cover, Disjoint, Field, Node, SIDE, node_at, nodes_per_block};
 use crate::scene::Face;
 use crate::tensor::{Real, Vector};
 use crate::transfer::Share;
+use rayon::prelude::*;
 
 /// A face of the domain that does something.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,8 +49,8 @@ pub fn reflect<T: Real, const D: usize>(mut v: Vector<T, D>, axis: usize) -> Vec
 pub struct Boundary {
     /// Faces that are not open.
     pub walls: Vec<Wall>,
-    /// Nodes behind a mirror with their images before it, by wall.
-    mirrored: Vec<(usize, usize, usize)>,
+    /// Nodes behind each wall that is a mirror, with their images before it.
+    mirrored: Vec<Vec<(usize, usize)>>,
     /// Nodes on a mirror, and its axis.
     on_mirror: Vec<(usize, usize)>,
     /// Nodes on or behind a fixed face.
@@ -75,11 +76,12 @@ impl Boundary {
 
     /// Finds the nodes that walls govern.
     pub fn cover<const D: usize>(&mut self, cover: &Cover<D>) {
-        self.mirrored.clear();
+        self.mirrored.resize_with(self.walls.len(), Vec::new);
         self.on_mirror.clear();
         self.fixed.clear();
         let n = nodes_per_block(D);
-        for wall in &self.walls {
+        for (wall, mirrored) in self.walls.iter().zip(&mut self.mirrored) {
+            mirrored.clear();
             for (slot, &(body, block)) in cover.slots.iter().enumerate() {
                 let first = block[wall.axis] * SIDE;
                 let nearest = if wall.inward > 0 { first } else { first + SIDE - 1 };
@@ -94,7 +96,7 @@ impl Boundary {
                         Face::Symmetry if depth == 0 => self.on_mirror.push((index, wall.axis)),
                         Face::Symmetry if depth < 0 => {
                             if let Some(image) = cover.node_index(body as usize, wall.image(node)) {
-                                self.mirrored.push((index, image, wall.axis));
+                                mirrored.push((index, image));
                             }
                         }
                         _ => {}
@@ -106,19 +108,19 @@ impl Boundary {
 
     /// Adds what was scattered behind the mirrors to the nodes before them.
     pub fn fold<T: Real, const D: usize>(&self, field: &mut Field<T, D>, share: Share) {
-        for &(behind, before, axis) in &self.mirrored {
-            let image = field.nodes[behind];
-            let node = &mut field.nodes[before];
-            if matches!(share, Share::Mass | Share::Everything) {
-                node.mass += image.mass;
-            }
-            // Nodes without mass keep the velocity that they had.
-            if share != Share::Force && image.mass > T::ZERO {
-                node.velocity += reflect(image.velocity, axis);
-            }
-            if matches!(share, Share::Force | Share::Everything) {
-                node.force += reflect(image.force, axis);
-            }
+        for (wall, mirrored) in self.walls.iter().zip(&self.mirrored) {
+            each_image(mirrored, field, |image, node| {
+                if matches!(share, Share::Mass | Share::Everything) {
+                    node.mass += image.mass;
+                }
+                // Nodes without mass keep the velocity that they had.
+                if share != Share::Force && image.mass > T::ZERO {
+                    node.velocity += reflect(image.velocity, wall.axis);
+                }
+                if matches!(share, Share::Force | Share::Everything) {
+                    node.force += reflect(image.force, wall.axis);
+                }
+            });
         }
         for &(node, axis) in &self.on_mirror {
             field.nodes[node].velocity[axis] = T::ZERO;
@@ -134,11 +136,28 @@ impl Boundary {
         for &(node, axis) in &self.on_mirror {
             field.nodes[node].velocity[axis] = T::ZERO;
         }
-        for &(behind, before, axis) in self.mirrored.iter().rev() {
-            let node = field.nodes[before];
-            let image = &mut field.nodes[behind];
-            image.start = reflect(node.start, axis);
-            image.velocity = reflect(node.velocity, axis);
+        for (wall, mirrored) in self.walls.iter().zip(&self.mirrored).rev() {
+            each_image(mirrored, field, |image, node| {
+                image.start = reflect(node.start, wall.axis);
+                image.velocity = reflect(node.velocity, wall.axis);
+            });
         }
     }
+}
+
+/// Nodes that a thread takes at a time.
+const NODES: usize = 1024;
+
+/// Does something to each node behind a mirror and its image before it.
+fn each_image<T: Real, const D: usize>(
+    mirrored: &[(usize, usize)],
+    field: &mut Field<T, D>,
+    f: impl Fn(&mut Node<T, D>, &mut Node<T, D>) + Sync,
+) {
+    let nodes = Disjoint::new(&mut field.nodes);
+    mirrored.par_iter().with_min_len(NODES).for_each(|&(behind, before)| {
+        // SAFETY: no node lies behind a mirror and before it, and each has one image.
+        let (image, node) = unsafe { (nodes.get(behind), nodes.get(before)) };
+        f(image, node);
+    });
 }
