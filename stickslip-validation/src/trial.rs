@@ -165,7 +165,7 @@ impl Trial {
     fn balance(&mut self) {
         let (now, first) = (self.simulation.ledger(), &self.first);
         let fallen = (now.potential - first.potential).abs();
-        self.scale = self.scale.max(now.kinetic + now.strain).max(now.friction).max(fallen);
+        self.scale = self.scale.max(now.kinetic + now.strain).max(now.friction).max(now.plastic).max(fallen);
         if self.scale > 0.0 {
             self.record.energy_drift = (now.total - first.total) / self.scale;
             self.record.energy_gain = self.record.energy_gain.max(self.record.energy_drift);

@@ -160,6 +160,8 @@ pub struct ParticleSnapshot {
     pub stress: Vec<[f64; 6]>,
     /// Deformation gradient, row by row [-].
     pub deformation: Vec<[f64; 9]>,
+    /// Equivalent plastic strain [-]; empty where no body's law flows.
+    pub plastic_strain: Vec<f64>,
 }
 
 /// A particle now, as [`Simulation::visit`] shows it.

@@ -41,8 +41,10 @@ impl<const D: usize> Column<D> {
     pub const STRESS: usize = Self::DEFORMATION + deformation_entries(D).len();
     /// First component of the position before anything moved, which no step writes to.
     pub const START: usize = Self::STRESS + stress_entries(D);
-    /// Number of columns.
+    /// Number of columns that all bodies have.
     pub const COUNT: usize = Self::START + D;
+    /// Equivalent plastic strain, of bodies that flow.
+    pub const PLASTIC_STRAIN: usize = Self::COUNT;
 }
 
 /// Particles of one body.
@@ -54,19 +56,21 @@ pub struct Particles<T, const D: usize> {
     stride: usize,
     /// Each particle's number in its body.
     numbers: Vec<u32>,
+    /// Whether there is a column of plastic strain.
+    flow: bool,
 }
 
 /// Bytes in a cache line.
 const LINE: usize = 64;
 
 impl<T: Real, const D: usize> Particles<T, D> {
-    /// The particles `f(0)` to `f(count - 1)`, before anything moves.
-    pub fn from_fn(count: usize, f: impl Fn(usize) -> Particle<T, D>) -> Self {
+    /// The particles `f(0)` to `f(count - 1)`, before anything moves, of a body that may `flow` plastically or not.
+    pub fn from_fn(count: usize, flow: bool, f: impl Fn(usize) -> Particle<T, D>) -> Self {
         let lines = (count * size_of::<T>()).div_ceil(LINE) | 1;
         let stride = lines * LINE / size_of::<T>();
-        let columns = vec![T::ZERO; stride * Column::<D>::COUNT];
+        let columns = vec![T::ZERO; stride * (Column::<D>::COUNT + usize::from(flow))];
         ask_for_large(columns.as_ptr(), columns.len());
-        let mut particles = Particles { columns, stride, numbers: vec![0; count] };
+        let mut particles = Particles { columns, stride, numbers: vec![0; count], flow };
         for i in 0..count {
             let particle = f(i);
             particles.set(i, &particle);
@@ -80,6 +84,11 @@ impl<T: Real, const D: usize> Particles<T, D> {
     /// How many.
     pub fn len(&self) -> usize {
         self.numbers.len()
+    }
+
+    /// Whether they have plastic strain.
+    pub fn flow(&self) -> bool {
+        self.flow
     }
 
     /// None at all.
@@ -123,12 +132,12 @@ impl<T: Real, const D: usize> Particles<T, D> {
     /// The columns, to be read only.
     #[inline(always)]
     pub fn view(&self) -> Columns<T, D> {
-        Columns { start: self.columns.as_ptr().cast_mut(), stride: self.stride }
+        Columns { start: self.columns.as_ptr().cast_mut(), stride: self.stride, flow: self.flow }
     }
 
     /// Opens the columns to many threads.
     pub fn open(&mut self) -> Columns<T, D> {
-        Columns { start: self.columns.as_mut_ptr(), stride: self.stride }
+        Columns { start: self.columns.as_mut_ptr(), stride: self.stride, flow: self.flow }
     }
 
     /// Puts the particles into the order of a permutation: first the one whose index comes first. `room` is for threads to work in.
@@ -169,6 +178,7 @@ fn lock<T>(room: &[Mutex<Room<T>>]) -> MutexGuard<'_, Room<T>> {
 pub struct Columns<T, const D: usize> {
     start: *mut T,
     stride: usize,
+    flow: bool,
 }
 
 // SAFETY: entries are only reached through unsafe functions, whose callers keep threads apart.
@@ -183,13 +193,19 @@ impl<T: Real, const D: usize> Columns<T, D> {
         self.stride
     }
 
+    /// Whether there is a column of plastic strain.
+    #[inline(always)]
+    pub fn flow(&self) -> bool {
+        self.flow
+    }
+
     /// The entry of particle `i` in a column.
     ///
     /// # Safety
     /// The column and the particle must exist, and nobody may use the entry but by this pointer.
     #[inline(always)]
     pub unsafe fn at(&self, column: usize, i: usize) -> *mut T {
-        debug_assert!(column < Column::<D>::COUNT && i < self.stride, "an entry");
+        debug_assert!(column < Column::<D>::COUNT + usize::from(self.flow) && i < self.stride, "an entry");
         // SAFETY: the caller's.
         unsafe { self.start.add(column * self.stride + i) }
     }
@@ -218,6 +234,7 @@ impl<T: Real, const D: usize> Columns<T, D> {
             half_width: at(Column::<D>::HALF_WIDTH),
             deformation,
             stress,
+            plastic_strain: if self.flow { at(Column::<D>::PLASTIC_STRAIN) } else { T::ZERO },
             number: 0,
         }
     }
@@ -241,6 +258,9 @@ impl<T: Real, const D: usize> Columns<T, D> {
         }
         for (k, &x) in particle.stress.0.iter().enumerate().take(stress_entries(D)) {
             put(Column::<D>::STRESS + k, x);
+        }
+        if self.flow {
+            put(Column::<D>::PLASTIC_STRAIN, particle.plastic_strain);
         }
     }
 }

@@ -37,6 +37,8 @@ pub enum Quantity {
     Xz,
     /// Volume over undeformed volume
     Jacobian,
+    /// Equivalent plastic strain
+    PlasticStrain,
 }
 
 /// Where the colours of a quantity come from.
@@ -68,6 +70,8 @@ impl Quantity {
             Quantity::Yz => s[4],
             Quantity::Xz => s[5],
             Quantity::Jacobian => determinant(&particles.deformation[i]),
+            // Where nothing flows there is none.
+            Quantity::PlasticStrain => particles.plastic_strain.get(i).copied().unwrap_or(0.0),
         }
     }
 
@@ -88,6 +92,7 @@ impl Quantity {
             Quantity::Yz => ("stress yz", "Pa"),
             Quantity::Xz => ("stress xz", "Pa"),
             Quantity::Jacobian => ("volume ratio J", ""),
+            Quantity::PlasticStrain => ("plastic strain", ""),
         }
     }
 
@@ -116,7 +121,9 @@ impl Quantity {
 
     fn kind(self) -> Kind {
         match self {
-            Quantity::Body | Quantity::Velocity | Quantity::VonMises => Kind::Magnitude,
+            Quantity::Body | Quantity::Velocity | Quantity::VonMises | Quantity::PlasticStrain => {
+                Kind::Magnitude
+            }
             Quantity::Jacobian => Kind::Around(1.0),
             _ => Kind::Around(0.0),
         }

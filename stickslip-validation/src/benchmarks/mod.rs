@@ -12,6 +12,7 @@ mod b3_block_on_incline;
 mod b5_equal_bars;
 mod b7_impedance_mismatch;
 mod b9_two_disks;
+mod blunted_wedge;
 mod corners;
 mod die;
 mod identity;
@@ -42,6 +43,7 @@ pub static BENCHMARKS: &[Benchmark] = &[
     corners::BENCHMARK,
     rigid_half_space::BENCHMARK,
     die::BENCHMARK,
+    blunted_wedge::BENCHMARK,
     turning_disk::BENCHMARK,
     b1_incline::BENCHMARK,
     b2_backspin::BENCHMARK,

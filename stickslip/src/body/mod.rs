@@ -5,7 +5,7 @@ mod totals;
 pub use totals::Totals;
 
 use crate::geometry::Whole;
-use crate::material::{Material, Motion, Thickness};
+use crate::material::{Material, Motion, Response, Thickness};
 use crate::particles::Particles;
 use crate::tensor::{Matrix, Real, Symmetric, Vector};
 
@@ -26,6 +26,8 @@ pub struct Particle<T, const D: usize> {
     pub deformation: Matrix<T>,
     /// Cauchy stress, tension positive [Pa].
     pub stress: Symmetric<T>,
+    /// Equivalent plastic strain, zero where nothing flows [-].
+    pub plastic_strain: T,
     /// Its number in its body, from the filling.
     pub number: u32,
 }
@@ -59,9 +61,9 @@ pub struct Body<T, const D: usize> {
 }
 
 impl<T: Real, const D: usize> Body<T, D> {
-    /// A particle's motion with the thickness that it takes, and its Cauchy stress after it [Pa]; `None` if no thickness is free of stress.
+    /// A particle's motion with the thickness that it takes, and its law's response; `None` if no thickness is free of stress.
     #[inline]
-    pub fn respond(&self, motion: Motion<T>) -> Option<(Motion<T>, Symmetric<T>)> {
+    pub fn respond(&self, motion: Motion<T>) -> Option<(Motion<T>, Response<T>)> {
         self.material.respond(self.thickness, motion)
     }
 

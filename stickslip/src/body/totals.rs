@@ -23,6 +23,8 @@ pub struct Totals {
     pub kinetic: f64,
     /// sum V W [J]
     pub strain: f64,
+    /// sum V W_p [J]
+    pub plastic: f64,
 }
 
 /// Particles that are summed up by one thread, whatever the number of threads.
@@ -39,6 +41,7 @@ impl Totals {
             angular_momentum: vector(self.angular_momentum, other.angular_momentum),
             kinetic: self.kinetic + other.kinetic,
             strain: self.strain + other.strain,
+            plastic: self.plastic + other.plastic,
         }
     }
 }
@@ -122,7 +125,7 @@ impl<T: Laned, const D: usize> Work for Sum<'_, T, D> {
     fn run<M: Machine<T>>(self) -> Totals {
         let mut mass: Each = [0.0; MOST_LANES];
         let [mut first_moment, mut momentum, mut angular_momentum] = [[[0.0; MOST_LANES]; 3]; 3];
-        let (mut kinetic, mut strain): (Each, Each) = ([0.0; MOST_LANES], [0.0; MOST_LANES]);
+        let [mut kinetic, mut strain, mut plastic]: [Each; 3] = [[0.0; MOST_LANES]; 3];
         let material = self.material.map(|material| material.map(M::Wide::splat));
         for (first, count) in handfuls::<M::Wide>(&self.part) {
             // SAFETY: the particles are the body's, which is borrowed for reading.
@@ -141,12 +144,13 @@ impl<T: Laned, const D: usize> Work for Sum<'_, T, D> {
             }
             if let Some(material) = &material {
                 // SAFETY: as above.
-                let (energy, jacobian, volume) =
+                let [energy, dissipation, jacobian, volume] =
                     unsafe { stored::<M::Wide, D>(&self.columns, material, first, count) };
                 for lane in 0..count {
                     // A particle that turned inside out has stopped the run and has no energy.
                     if jacobian[lane] > 0.0 {
                         strain[lane] += volume[lane] * energy[lane];
+                        plastic[lane] += volume[lane] * dissipation[lane];
                     }
                 }
             }
@@ -159,11 +163,12 @@ impl<T: Laned, const D: usize> Work for Sum<'_, T, D> {
             angular_momentum: angular_momentum.map(sum),
             kinetic: sum(kinetic),
             strain: sum(strain),
+            plastic: sum(plastic),
         }
     }
 }
 
-/// Strain energy per undeformed volume [J/m^3], J [-] and undeformed volume [m^3].
+/// Strain energy and dissipation per undeformed volume [J/m^3], J [-] and undeformed volume [m^3].
 ///
 /// # Safety
 /// The particles must exist, and nobody may write to them meanwhile.
@@ -173,8 +178,8 @@ unsafe fn stored<V: Lanes, const D: usize>(
     material: &Material<V>,
     first: usize,
     count: usize,
-) -> (Each, Each, Each) {
-    let (mut f, mut stress) = (Matrix::ZERO, Symmetric::ZERO);
+) -> [Each; 4] {
+    let (mut f, mut stress, mut plastic_strain) = (Matrix::ZERO, Symmetric::ZERO, V::ZERO);
     // SAFETY: the caller's.
     let volume = unsafe {
         for (k, &[row, column]) in deformation_entries(D).iter().enumerate() {
@@ -183,9 +188,13 @@ unsafe fn stored<V: Lanes, const D: usize>(
         for k in 0..stress_entries(D) {
             stress.0[k] = V::load_first(columns.at(Column::<D>::STRESS + k, first), count);
         }
+        if columns.flow() {
+            plastic_strain = V::load_first(columns.at(Column::<D>::PLASTIC_STRAIN, first), count);
+        }
         V::load_first(columns.at(Column::<D>::VOLUME, first), count)
     };
-    (each(material.strain_energy(&f, &stress)), each(f.det()), each(volume))
+    let energy = material.strain_energy(&f, &stress);
+    [energy, material.dissipation(plastic_strain), f.det(), volume].map(each)
 }
 
 /// Inertia tensor [kg m^2] and angular momentum [kg m^2/s] of some particles of a body about a point that moves.

@@ -6,10 +6,12 @@ use crate::tensor::{Matrix, Real, Vector};
 /// The undeformed place of the material around a node, linear in the position.
 ///
 /// ```text
-/// X(q) = sum_p w_p (X_p + F_p^-1 (q - x_p)) / sum_p w_p,   w_p = V_p S_i(x_p)
+/// X(q) = <X> + <F^-1> (q - <x>),   <y> = sum_p w_p y_p / sum_p w_p,   w_p = V_p S_i(x_p)
 /// ```
-/// with X_p where particle p was at the start. Exact for motions with one deformation gradient, rigid ones among them. The idea
-/// of carrying the undeformed place is the reference map's (Kamrin, Rycroft and Nave 2012, J. Mech. Phys. Solids 60, 1952).
+/// with X_p where particle p was at the start. Exact for motions with one deformation gradient, rigid ones among them. Where the
+/// material is, it rests on positions alone: plastic flow resists no error of a particle's own F, and carrying each particle by that
+/// before taking the mean would let the errors in. The idea of carrying the undeformed place is the reference map's (Kamrin, Rycroft
+/// and Nave 2012, J. Mech. Phys. Solids 60, 1952).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Place<T, const D: usize> {
     /// X at the node [m].
@@ -30,24 +32,8 @@ pub struct Offset<T, const D: usize> {
 }
 
 impl<T: Real, const D: usize> Place<T, D> {
-    /// Nothing yet; particles are summed up.
+    /// Nothing.
     pub const EMPTY: Self = Place { place: Vector::ZERO, inverse: Matrix::ZERO, center: Vector::ZERO };
-
-    /// Adds a share of another.
-    pub fn add(&mut self, other: &Self, share: T) {
-        self.place += other.place * share;
-        self.inverse = self.inverse + other.inverse * share;
-        self.center += other.center * share;
-    }
-
-    /// The mean, from a sum of shares that add up to `total`.
-    pub fn over(&self, total: T) -> Self {
-        Place {
-            place: self.place / total,
-            inverse: self.inverse * (T::ONE / total),
-            center: self.center / total,
-        }
-    }
 
     /// The same, seen from a point `arm` away [m].
     pub fn seen_from(&self, arm: Vector<T, D>) -> Self {

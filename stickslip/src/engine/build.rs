@@ -156,10 +156,12 @@ fn particles<T: Real, const D: usize>(
             half_width: T::of(site.half_width),
             deformation: Matrix::IDENTITY,
             stress: Symmetric::ZERO,
+            plastic_strain: T::ZERO,
             number: number as u32,
         }
     };
-    Particles::from_fn(filling.sites.len(), particle)
+    let flow = matches!(body.motion, Motion::Free { .. }) && scene.materials[body.material].law.flows();
+    Particles::from_fn(filling.sites.len(), flow, particle)
 }
 
 /// The domain's faces that are mirrors.

@@ -108,6 +108,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
         for (_, totals) in self.bodies.iter().zip(&*all).filter(|(body, _)| !body.rigid) {
             ledger.kinetic += totals.kinetic;
             ledger.strain += totals.strain;
+            ledger.plastic += totals.plastic;
             ledger.potential -= dot(gravity, totals.first_moment);
             ledger.momentum = add(ledger.momentum, totals.momentum);
             ledger.angular_momentum = add(ledger.angular_momentum, totals.angular_momentum);
@@ -158,6 +159,10 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
                 let f = &particle.deformation.0;
                 std::array::from_fn(|k| f[k / 3][k % 3].f64())
             }),
+            plastic_strain: match self.bodies.iter().any(|body| body.particles.flow()) {
+                true => self.column(&rows, |particle| particle.plastic_strain.f64()),
+                false => Vec::new(),
+            },
         }
     }
 

@@ -237,9 +237,16 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
             if jacobian <= T::ZERO {
                 return Err(FaultKind::Inverted);
             }
-            let motion = Motion { deformation, jacobian, increment, stress: particle.stress };
-            let (motion, stress) = self.body.respond(motion).ok_or(FaultKind::NoThickness)?;
-            (particle.deformation, particle.stress) = (motion.deformation, stress);
+            let motion = Motion {
+                deformation,
+                jacobian,
+                increment,
+                stress: particle.stress,
+                plastic_strain: particle.plastic_strain,
+            };
+            let (motion, response) = self.body.respond(motion).ok_or(FaultKind::NoThickness)?;
+            particle.deformation = motion.deformation;
+            (particle.stress, particle.plastic_strain) = (response.stress, response.plastic_strain);
             particle.stress.is_finite().then_some(()).ok_or(FaultKind::NotFinite)?;
         }
         if verbs.displace {

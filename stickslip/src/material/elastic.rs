@@ -1,13 +1,11 @@
 //! Isotropic linear elasticity: any two of its constants give the others.
 
-use super::{BadConstants, Constant};
+use super::{BadConstants, Constant, PRESSURE};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-const PRESSURE: [i8; 3] = [1, -1, -2];
-
 /// The constants that isotropic laws accept, two of them at a time.
-pub(super) const CONSTANTS: &[Constant] = &[
+pub(super) const CONSTANTS: [Constant; 5] = [
     Constant { name: "bulk_modulus", summary: "Bulk modulus K.", dimension: PRESSURE },
     Constant { name: "shear_modulus", summary: "Shear modulus G.", dimension: PRESSURE },
     Constant { name: "young_modulus", summary: "Young's modulus E.", dimension: PRESSURE },

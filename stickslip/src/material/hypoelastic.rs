@@ -80,7 +80,7 @@ mod tests {
     fn a_step_of_rotation_only_rotates_the_stress() {
         let q = rotation();
         let before = Symmetric([1.0, -2.0, 0.5, 0.3, -0.7, 0.2]);
-        let motion = Motion { deformation: q, jacobian: 1.0, increment: q, stress: before };
+        let motion = Motion { stress: before, ..motion_of(q) };
         let after = LAW.stress(&motion);
         for (s, e) in after.0.iter().zip(before.rotated(&q).0) {
             assert!((s - e).abs() < 1e-13, "{s} {e}");
@@ -96,7 +96,7 @@ mod tests {
             for i in 0..n {
                 let next = Matrix::IDENTITY + h * ((i + 1) as f64 / n as f64);
                 let increment = next * f.inverse();
-                let motion = Motion { deformation: next, jacobian: next.det(), increment, stress };
+                let motion = Motion { increment, stress, ..motion_of(next) };
                 let after = LAW.stress(&motion);
                 let strain = (increment - Matrix::IDENTITY).symmetric_part();
                 work += next.det() * ((stress + after) * 0.5).double_dot(&strain);

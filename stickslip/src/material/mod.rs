@@ -7,11 +7,13 @@ mod elastic;
 mod hypoelastic;
 mod neo_hookean;
 mod plane_stress;
+mod von_mises;
 
 pub use elastic::Isotropic;
 pub use hypoelastic::Hypoelastic;
 pub use neo_hookean::NeoHookean;
 pub use plane_stress::Thickness;
+pub use von_mises::VonMises;
 
 use crate::tensor::{Matrix, Number, Real, Symmetric};
 use serde::Serialize;
@@ -28,6 +30,17 @@ pub struct Motion<T> {
     pub increment: Matrix<T>,
     /// Cauchy stress at the start of the step, tension positive [Pa].
     pub stress: Symmetric<T>,
+    /// Equivalent plastic strain at the start of the step, sqrt(2/3 D_p : D_p) over time; zero for laws that do not flow [-].
+    pub plastic_strain: T,
+}
+
+/// What a law answers.
+#[derive(Clone, Copy, Debug)]
+pub struct Response<T> {
+    /// Cauchy stress at the end of the step, tension positive [Pa].
+    pub stress: Symmetric<T>,
+    /// Equivalent plastic strain at the end of the step [-].
+    pub plastic_strain: T,
 }
 
 /// A constitutive law in three dimensions.
@@ -36,6 +49,18 @@ pub struct Motion<T> {
 pub trait Law<T: Number>: Send + Sync {
     /// Cauchy stress at the end of the step, tension positive [Pa].
     fn stress(&self, motion: &Motion<T>) -> Symmetric<T>;
+
+    /// Stress and plastic strain at the end of the step; a law that does not flow leaves the latter alone.
+    #[inline(always)]
+    fn response(&self, motion: &Motion<T>) -> Response<T> {
+        Response { stress: self.stress(motion), plastic_strain: motion.plastic_strain }
+    }
+
+    /// What plastic flow up to this strain dissipated per undeformed volume [J/m^3].
+    #[inline(always)]
+    fn dissipation(&self, _plastic_strain: T) -> T {
+        T::ZERO
+    }
 
     /// Strain energy per undeformed volume in a state of deformation and Cauchy stress [J/m^3].
     fn strain_energy(&self, deformation: &Matrix<T>, stress: &Symmetric<T>) -> T;
@@ -55,6 +80,8 @@ pub enum Material<T> {
     NeoHookean(NeoHookean<T>),
     /// See [`Hypoelastic`].
     Hypoelastic(Hypoelastic<T>),
+    /// See [`VonMises`].
+    VonMises(VonMises<T>),
 }
 
 /// A law as scene files name it.
@@ -71,6 +98,7 @@ pub struct Description {
 type Build = fn(&BTreeMap<String, f64>) -> Result<Material<f64>, BadConstants>;
 
 /// A constant of a law as scene files name it.
+#[derive(Clone, Copy)]
 pub struct Constant {
     /// Key in a scene file.
     pub name: &'static str,
@@ -79,6 +107,9 @@ pub struct Constant {
     /// Powers of kilogram, metre and second.
     pub dimension: [i8; 3],
 }
+
+/// Powers of kilogram, metre and second of a pressure or a modulus.
+const PRESSURE: [i8; 3] = [1, -1, -2];
 
 /// Constants from which no stable material can be made.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -97,16 +128,22 @@ pub const SHELF: &[Description] = &[
     Description {
         name: "neo_hookean",
         summary: "Compressible neo-Hookean elasticity for large strains (Simo and Hughes 1998).",
-        constants: elastic::CONSTANTS,
+        constants: &elastic::CONSTANTS,
         build: |values| Ok(Material::NeoHookean(NeoHookean { elastic: Isotropic::from_constants(values)? })),
     },
     Description {
         name: "hypoelastic",
         summary: "Linear elasticity in rate form with an objective stress rate, for small strains and large rotations.",
-        constants: elastic::CONSTANTS,
+        constants: &elastic::CONSTANTS,
         build: |values| {
             Ok(Material::Hypoelastic(Hypoelastic { elastic: Isotropic::from_constants(values)? }))
         },
+    },
+    Description {
+        name: "von_mises",
+        summary: "Plastic flow at a yield stress that may harden, elastic below it as the hypoelastic law, for metals and clay.",
+        constants: von_mises::CONSTANTS,
+        build: |values| Ok(Material::VonMises(VonMises::from_constants(values)?)),
     },
 ];
 
@@ -131,6 +168,7 @@ impl Material<f64> {
         match self {
             Material::NeoHookean(law) => law.elastic,
             Material::Hypoelastic(law) => law.elastic,
+            Material::VonMises(law) => law.elastic.elastic,
         }
     }
 }
@@ -142,6 +180,7 @@ impl<T: Number> Material<T> {
         match self {
             Material::NeoHookean(law) => Material::NeoHookean(NeoHookean { elastic: law.elastic.map(f) }),
             Material::Hypoelastic(law) => Material::Hypoelastic(Hypoelastic { elastic: law.elastic.map(f) }),
+            Material::VonMises(law) => Material::VonMises(law.map(f)),
         }
     }
 
@@ -150,15 +189,23 @@ impl<T: Number> Material<T> {
         match self {
             Material::NeoHookean(law) => law,
             Material::Hypoelastic(law) => law,
+            Material::VonMises(law) => law,
         }
     }
 
-    /// [`Law::stress`] where the compiler can see it.
+    /// Whether plastic strain is a part of a particle's state.
     #[inline(always)]
-    pub fn stress(&self, motion: &Motion<T>) -> Symmetric<T> {
+    pub fn flows(&self) -> bool {
+        matches!(self, Material::VonMises(_))
+    }
+
+    /// [`Law::response`] where the compiler can see it.
+    #[inline(always)]
+    pub fn response(&self, motion: &Motion<T>) -> Response<T> {
         match self {
-            Material::NeoHookean(law) => law.stress(motion),
-            Material::Hypoelastic(law) => law.stress(motion),
+            Material::NeoHookean(law) => law.response(motion),
+            Material::Hypoelastic(law) => law.response(motion),
+            Material::VonMises(law) => law.response(motion),
         }
     }
 
@@ -168,6 +215,17 @@ impl<T: Number> Material<T> {
         match self {
             Material::NeoHookean(law) => law.strain_energy(deformation, stress),
             Material::Hypoelastic(law) => law.strain_energy(deformation, stress),
+            Material::VonMises(law) => law.strain_energy(deformation, stress),
+        }
+    }
+
+    /// [`Law::dissipation`] where the compiler can see it.
+    #[inline(always)]
+    pub fn dissipation(&self, plastic_strain: T) -> T {
+        match self {
+            Material::NeoHookean(law) => law.dissipation(plastic_strain),
+            Material::Hypoelastic(law) => law.dissipation(plastic_strain),
+            Material::VonMises(law) => law.dissipation(plastic_strain),
         }
     }
 
@@ -177,15 +235,16 @@ impl<T: Number> Material<T> {
         match self {
             Material::NeoHookean(law) => fastest(law, thickness, deformation, jacobian),
             Material::Hypoelastic(law) => fastest(law, thickness, deformation, jacobian),
+            Material::VonMises(law) => fastest(law, thickness, deformation, jacobian),
         }
     }
 }
 
 impl<T: Real> Material<T> {
-    /// The motion with the thickness that the particle takes, and Cauchy stress after it [Pa]; `None` if no thickness is free of stress.
-    pub fn respond(&self, thickness: Thickness, motion: Motion<T>) -> Option<(Motion<T>, Symmetric<T>)> {
+    /// The motion with the thickness that the particle takes, and the response to it; `None` if no thickness is free of stress.
+    pub fn respond(&self, thickness: Thickness, motion: Motion<T>) -> Option<(Motion<T>, Response<T>)> {
         match thickness {
-            Thickness::Moved => Some((motion, self.stress(&motion))),
+            Thickness::Moved => Some((motion, self.response(&motion))),
             Thickness::Free => plane_stress::with_free_thickness(self.law(), &motion),
         }
     }
@@ -215,7 +274,13 @@ mod tests {
 
     /// The motion that leads to `f` in one step from rest.
     pub fn motion_of(f: Matrix<f64>) -> Motion<f64> {
-        Motion { deformation: f, jacobian: f.det(), increment: f, stress: Symmetric::ZERO }
+        Motion {
+            deformation: f,
+            jacobian: f.det(),
+            increment: f,
+            stress: Symmetric::ZERO,
+            plastic_strain: 0.0,
+        }
     }
 
     /// sigma = (K - 2G/3) tr(e) I + 2 G e

@@ -8,8 +8,8 @@
 //! and the in-plane force of a particle is -V0 det F sigma grad S as in every scene: the stress acts on the present thickness.
 //! F is block diagonal, so isotropic laws leave no shear out of the plane, and one unknown is left.
 
-use super::{Law, Motion};
-use crate::tensor::{Number, Real, Symmetric};
+use super::{Law, Motion, Response};
+use crate::tensor::{Number, Real};
 
 /// Which thickness a particle takes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -33,7 +33,7 @@ struct Trial<T> {
     stress: T,
 }
 
-/// The motion with its free thickness, and the stress of it; `None` if the law has none.
+/// The motion with its free thickness, and the response to it; `None` if the law has none.
 ///
 /// `motion` has the thickness of the start of the step, which its increment leaves alone. The first trial is Hooke's,
 /// `a = 1 - (1 - 2G/M) tr(dF - I)`, the next are Newton's with M and the secant's; once two trials enclose the answer, none leaves
@@ -42,7 +42,7 @@ struct Trial<T> {
 pub(super) fn with_free_thickness<T: Real>(
     law: &dyn Law<T>,
     motion: &Motion<T>,
-) -> Option<(Motion<T>, Symmetric<T>)> {
+) -> Option<(Motion<T>, Response<T>)> {
     let (one, two) = (T::ONE, T::of(2.0));
     let waves = law.wave_modulus(&motion.deformation, motion.jacobian);
     let shear = law.shear_modulus(&motion.deformation, motion.jacobian);
@@ -56,8 +56,8 @@ pub(super) fn with_free_thickness<T: Real>(
         (None, None, None);
     for count in 1..=MOST_TRIALS {
         let trial = stretched(motion, stretch);
-        let mut stress = law.stress(&trial);
-        let now = Trial { stretch, stress: stress.0[2] };
+        let mut response = law.response(&trial);
+        let now = Trial { stretch, stress: response.stress.0[2] };
         if !now.stress.is_finite() {
             return None;
         }
@@ -67,8 +67,8 @@ pub(super) fn with_free_thickness<T: Real>(
             _ => false,
         };
         if now.stress.abs() <= round_off * stiffness || enclosed {
-            stress.0[2] = T::ZERO;
-            return Some((trial, stress));
+            response.stress.0[2] = T::ZERO;
+            return Some((trial, response));
         }
         let newton = stretch * (one - now.stress / stiffness);
         let next =
@@ -114,7 +114,7 @@ pub(super) fn plate_modulus<T: Number>(waves: T, shear: T) -> T {
 mod tests {
     use super::*;
     use crate::material::{Hypoelastic, Isotropic, NeoHookean};
-    use crate::tensor::Matrix;
+    use crate::tensor::{Matrix, Symmetric};
 
     const ELASTIC: Isotropic<f64> = Isotropic { bulk_modulus: 6.0, shear_modulus: 3.0 };
 
@@ -124,7 +124,13 @@ mod tests {
 
     fn in_plane(a: f64, b: f64, c: f64, d: f64) -> Motion<f64> {
         let f = Matrix([[a, b, 0.0], [c, d, 0.0], [0.0, 0.0, 1.0]]);
-        Motion { deformation: f, jacobian: f.det(), increment: f, stress: Symmetric::ZERO }
+        Motion {
+            deformation: f,
+            jacobian: f.det(),
+            increment: f,
+            stress: Symmetric::ZERO,
+            plastic_strain: 0.0,
+        }
     }
 
     #[test]
@@ -133,7 +139,7 @@ mod tests {
         let (x, y, xy) = (2e-7, -5e-7, 3e-7);
         for law in laws() {
             let motion = in_plane(1.0 + x, xy, xy, 1.0 + y);
-            let (moved, stress) = with_free_thickness(&*law, &motion).expect("a stable law");
+            let (moved, Response { stress, .. }) = with_free_thickness(&*law, &motion).expect("a stable law");
             let plate = e / (1.0 - nu * nu);
             let exact = [plate * (x + nu * y), plate * (y + nu * x), 0.0, e / (1.0 + nu) * xy, 0.0, 0.0];
             for (found, exact) in stress.0.iter().zip(exact) {
@@ -149,7 +155,7 @@ mod tests {
         for law in laws() {
             for a in [0.05, 0.3, 0.7, 0.999, 1.0, 1.4, 3.0, 20.0] {
                 for shear in [0.0, 0.3, -2.0] {
-                    let (moved, stress) =
+                    let (moved, Response { stress, .. }) =
                         with_free_thickness(&*law, &in_plane(a, shear, 0.0, 1.0)).expect("a stable law");
                     let exact = law.stress(&moved).0[2];
                     let scale = law.wave_modulus(&moved.deformation, moved.jacobian) / moved.jacobian;
@@ -171,12 +177,12 @@ mod tests {
         let (n, mut work) = (2000, 0.0);
         for i in 0..n {
             let t = (i as f64 + 0.5) / f64::from(n);
-            let (motion, stress) = state(t);
+            let (motion, Response { stress, .. }) = state(t);
             let rate = Matrix([[0.4, 0.3, 0.0], [0.0, -0.2, 0.0], [0.0, 0.0, 0.0]]);
             let l = (rate * motion.deformation.inverse()).symmetric_part();
             work += motion.jacobian * stress.double_dot(&l) / f64::from(n);
         }
-        let (motion, stress) = state(1.0);
+        let (motion, Response { stress, .. }) = state(1.0);
         let energy = law.strain_energy(&motion.deformation, &stress);
         assert!((work / energy - 1.0).abs() < 1e-6, "{work} {energy}");
     }
@@ -206,7 +212,13 @@ mod tests {
         let law = NeoHookean { elastic: ELASTIC.map(|x| x as f32) };
         for a in [0.5, 0.99, 1.00001, 2.0] {
             let f = Matrix([[a, 0.1, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
-            let motion = Motion { deformation: f, jacobian: f.det(), increment: f, stress: Symmetric::ZERO };
+            let motion = Motion {
+                deformation: f,
+                jacobian: f.det(),
+                increment: f,
+                stress: Symmetric::ZERO,
+                plastic_strain: 0.0,
+            };
             assert!(with_free_thickness(&law, &motion).is_some(), "{a}");
         }
     }

@@ -11,8 +11,11 @@ use crate::scene::Scene;
 use crate::tensor::Symmetric;
 use std::path::Path;
 
-/// Bytes of a particle in a snapshot: 23 numbers and two whole ones.
-pub(super) const PARTICLE_BYTES: usize = 23 * size_of::<f64>() + 2 * size_of::<u32>();
+/// Most bytes of a particle in a snapshot: 24 numbers and two whole ones.
+pub(super) const PARTICLE_BYTES: usize = 24 * size_of::<f64>() + 2 * size_of::<u32>();
+
+/// The array that only scenes with a law that flows have.
+const PLASTIC_STRAIN: &str = "plastic_strain";
 
 /// Writes `particles.pvd` and `particles/`.
 pub(super) struct Particles {
@@ -82,6 +85,9 @@ pub fn encode_particles(snapshot: &ParticleSnapshot, time: f64) -> Vtu {
     file.point_data("number", NUMBER, &snapshot.number);
     file.point_data("mass", NUMBER, &snapshot.mass);
     file.point_data("volume", NUMBER, &snapshot.volume);
+    if !snapshot.plastic_strain.is_empty() {
+        file.point_data(PLASTIC_STRAIN, NUMBER, &snapshot.plastic_strain);
+    }
     file
 }
 
@@ -101,6 +107,10 @@ pub fn read_particles(path: &Path) -> Result<ParticleSnapshot, ReadError> {
         volume: file.numbers("volume")?,
         stress: file.array("stress")?,
         deformation: file.array("deformation")?,
+        plastic_strain: match file.has(PLASTIC_STRAIN) {
+            true => file.numbers(PLASTIC_STRAIN)?,
+            false => Vec::new(),
+        },
     })
 }
 
@@ -123,6 +133,8 @@ mod tests {
             volume: columns(3).collect(),
             stress: columns(4).map(|x| [x, 2.0 * x, 3.0 * x, -x, 0.5 * x, 0.0]).collect(),
             deformation: columns(5).map(|x| [x, 1.0, 2.0, 3.0, x, 5.0, 6.0, 7.0, x]).collect(),
+            // A file has it or not.
+            plastic_strain: columns(6).filter(|_| particles % 2 == 1).collect(),
         }
     }
 

@@ -18,6 +18,7 @@ mod meshes;
 mod mirror;
 mod paths;
 mod plane_stress;
+mod plastic_flow;
 mod precision;
 mod resistance;
 mod rigid_bodies;

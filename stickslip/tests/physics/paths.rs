@@ -80,6 +80,9 @@ fn compare_paths(scene: &str, steps: usize, name: &str) {
         println!("{name} {processor:?}: position {position:.1e}, velocity {velocity:.1e}");
         let [most, fastest] = if scene.contains("double") { [1e-10, 1e-9] } else { [1e-5, 1e-3] };
         assert!(position < most && velocity < fastest, "{processor:?} differs");
+        let flows = found.plastic_strain.iter().zip(&reference.plastic_strain);
+        let flow = flows.fold(0.0, |largest: f64, (a, b)| largest.max((a - b).abs()));
+        assert!(flow < fastest, "{processor:?}: plastic strain differs by {flow:.1e}");
         // Steps follow the fastest signal of any particle.
         assert!((found_time / time - 1.0).abs() < most, "{processor:?}: {found_time} s, {time} s");
         let same = first.get_or_insert_with(|| found.clone()) == &found;
@@ -108,6 +111,23 @@ fn in_the_plane_with_one_particle_a_cell() {
         let sparse = scene.replace("cell = 0.1,", "cell = 0.1, particles_per_side = 1,");
         assert_ne!(sparse, scene);
         compare_paths(&sparse, 60, &format!("one particle a cell, {update}"));
+    }
+}
+
+/// The block yields: its particles have a column more.
+#[test]
+fn metal() {
+    let spaces = [("plane-strain", 2), ("plane-strain", 1), ("plane-stress", 2), ("3d", 2)];
+    for (dimension, particles) in spaces {
+        let elastic = "hypoelastic = { young_modulus = 3e5, poisson_ratio = 0.2 }";
+        let metal = "von_mises = { young_modulus = 3e5, poisson_ratio = 0.2, yield_stress = 2e3, hardening_modulus = 1e4 }";
+        let scene = scene(dimension, "double", "gimp", "modified-last")
+            .replace(elastic, metal)
+            .replace("cell = 0.1,", &format!("cell = 0.1, particles_per_side = {particles},"));
+        let (found, _) = outcome(&scene, Path::Reference, 60);
+        let most = found.plastic_strain.iter().fold(0.0, |a: f64, &b| a.max(b));
+        assert!(most > 1e-3, "{dimension}: {most}");
+        compare_paths(&scene, 60, &format!("metal, {dimension}, {particles} a side"));
     }
 }
 

@@ -105,6 +105,12 @@ fn in_the_plane() {
     for update in STRESS_UPDATES {
         compare(&format!("gimp, {update}"), &scene("plane-strain", "gimp", update), 200);
     }
+    let metal = scene("plane-strain", "gimp", "last").replace(
+        "hypoelastic = { young_modulus = 3e5, poisson_ratio = 0.2 }",
+        "von_mises = { young_modulus = 3e5, poisson_ratio = 0.2, yield_stress = 2e3 }",
+    );
+    assert!(metal.contains("von_mises"));
+    compare("metal", &metal, 200);
     // Linear functions with the stress updated last do not live long, whatever the threads.
     compare("linear, modified-last", &scene("plane-strain", "linear", "modified-last"), 200);
 }

@@ -71,12 +71,12 @@ fn values_out_of_range() {
             (
                 "neo_hookean = ",
                 "neohookean = ",
-                "10:1: materials.rubber.neohookean: found unknown key `neohookean`; allowed: density, neo_hookean, hypoelastic; did you mean `neo_hookean`?",
+                "10:1: materials.rubber.neohookean: found unknown key `neohookean`; allowed: density, neo_hookean, hypoelastic, von_mises; did you mean `neo_hookean`?",
             ),
             (
                 "neo_hookean = ",
                 "#",
-                "8:12: materials.rubber: found no law; allowed: a law (neo_hookean, hypoelastic), like neo_hookean = { bulk_modulus = \"6 MPa\", shear_modulus = \"3 MPa\" }",
+                "8:12: materials.rubber: found no law; allowed: a law (neo_hookean, hypoelastic, von_mises), like neo_hookean = { bulk_modulus = \"6 MPa\", shear_modulus = \"3 MPa\" }",
             ),
             (
                 "shear_modulus",

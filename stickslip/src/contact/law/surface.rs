@@ -1,7 +1,7 @@
 //! Contact of exact surfaces: bodies touch where their undeformed shapes, carried along by the deformation, touch.
 //!
 //! Our own. Each body knows where the material around a node was before it deformed ([`crate::contact::Place`]), hence the distance
-//! and the normal of its surface there. The pair takes one normal from both, the flatter surface deciding, and one gap, where the
+//! and the normal of its surface there. The pair takes one normal from both, the flatter and surer one deciding, and one gap, where the
 //! smaller share of the node lies. Contact is one unilateral impulse a step, with Coulomb's bound on the whole of it (Moreau 1988):
 //!
 //! ```text
@@ -12,6 +12,7 @@
 //! whether they are being compressed or released.
 
 use super::Law;
+use crate::body::Body;
 use crate::contact::{Change, Facing, Look, Pair, Side, Span, Use};
 use crate::tensor::{Real, Vector};
 
@@ -48,7 +49,10 @@ impl<T: Real, const D: usize> Law<T, D> for Surface {
         // Where the normals agree, it does not matter whose counts more.
         let weights = match (a.normal + b.normal).norm() < T::of(AGREEING) {
             true => [T::ONE; 2],
-            false => [0, 1].map(|side| flatness(|arm| seen(side, point + arm).normal, cell)),
+            false => [0, 1].map(|side| {
+                let doubt = doubt(&look.near.bodies[pair[side].body]);
+                flatness(|arm| seen(side, point + arm).normal, cell, doubt)
+            }),
         };
         Some(Facing { normal: (a.normal * weights[0] - b.normal * weights[1]).direction(), gap })
     }
@@ -89,12 +93,18 @@ impl<T: Real, const D: usize> Law<T, D> for Surface {
 /// Angle between two normals that are the same for all that contact does [rad].
 const AGREEING: f64 = 1e-3;
 
+/// How far the normal of a body's face may be off, as the square of an angle in radians: it is as good as the deformation that carries
+/// it, which is known to two degrees, and to ten where plastic flow resists no error of it.
+fn doubt<T: Real, const D: usize>(body: &Body<T, D>) -> T {
+    T::of(if body.material.flows() && !body.rigid { 0.03 } else { 1e-3 })
+}
+
 /// How flat a surface is around a point: large on a face, 2 at a right-angled edge.
 ///
 /// ```text
-/// 1 / (1 - c^2),   c = |mean of the normals half a cell away|
+/// 1 / max(1 - c^2, doubt),   c = |mean of the normals half a cell away|
 /// ```
-fn flatness<T: Real, const D: usize>(normal: impl Fn(Vector<T, D>) -> Vector<T, D>, cell: T) -> T {
+fn flatness<T: Real, const D: usize>(normal: impl Fn(Vector<T, D>) -> Vector<T, D>, cell: T, doubt: T) -> T {
     let mut sum = Vector::ZERO;
     for axis in 0..D {
         for half in [-T::HALF, T::HALF] {
@@ -102,8 +112,7 @@ fn flatness<T: Real, const D: usize>(normal: impl Fn(Vector<T, D>) -> Vector<T, 
         }
     }
     let mean = sum.norm() / T::of(2.0 * D as f64);
-    // Beyond this, one face is as flat as another.
-    T::ONE / (T::ONE - mean * mean).max(T::of(1e-3))
+    T::ONE / (T::ONE - mean * mean).max(doubt)
 }
 
 #[cfg(test)]
@@ -173,8 +182,8 @@ mod tests {
     #[test]
     fn a_face_is_flatter_than_an_edge() {
         let (down, left) = (Vector([0.0, -1.0]), Vector([-1.0, 0.0]));
-        let edge = flatness(|arm: Vector<f64, 2>| if arm[0] + arm[1] < 0.0 { left } else { down }, 1.0);
+        let edge = flatness(|arm: Vector<f64, 2>| if arm[0] + arm[1] < 0.0 { left } else { down }, 1.0, 1e-3);
         assert!((edge - 2.0).abs() < 1e-12, "{edge}");
-        assert_eq!(flatness(|_: Vector<f64, 2>| down, 1.0), 1000.0);
+        assert_eq!(flatness(|_: Vector<f64, 2>| down, 1.0, 1e-3), 1000.0);
     }
 }

@@ -74,11 +74,6 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
             let start: V = members.load(Column::<D>::START + i);
             place[i] = seen.offset[i] + seen.sign[i] * start;
         }
-        for i in 0..D {
-            for j in 0..D {
-                place[i] -= inverse[i][j] * arm[j];
-            }
-        }
 
         let mut by_volume = [V::ZERO; 4 * MOST_PLACED];
         for i in 0..D {

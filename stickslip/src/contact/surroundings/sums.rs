@@ -17,7 +17,7 @@ pub enum Wanted {
 ///
 /// ```text
 /// row 0         sum V grad S [m^2], sum V S [m^3]       with the gradient at the node
-/// then          sum V S of place, centre and inverse of F, one number after the other
+/// then          sum V S of undeformed place, position and inverse of F, one number after the other
 /// then          sum V S of the stress
 /// row MASS      sum m grad S [kg/m], sum m S [kg]       likewise
 /// row FORCE     force of the stress on the node [N]
@@ -85,7 +85,7 @@ impl<T: Real, const D: usize> Sums<T, D> {
         stress
     }
 
-    /// The place weighted by volume.
+    /// The place by the means over volume, seen from the first node of the block.
     pub fn place(&self) -> Place<T, D> {
         let share = T::ONE / self.volume();
         let vector = |first: usize| Vector::from_fn(|i| self.number(first + i) * share);
@@ -93,6 +93,8 @@ impl<T: Real, const D: usize> Sums<T, D> {
             true => self.number(2 * D + i * D + j) * share,
             false => T::ZERO,
         });
-        Place { place: vector(0), inverse, center: vector(D) }
+        let (mean, center) = (vector(0), vector(D));
+        let place = Vector::from_fn(|i| (0..D).fold(mean[i], |x, j| x - inverse.0[i][j] * center[j]));
+        Place { place, inverse, center }
     }
 }

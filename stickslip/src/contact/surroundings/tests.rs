@@ -31,11 +31,12 @@ fn body<const D: usize>() -> Body<f64, D> {
             half_width: 0.2 + 0.05 * random(3 * i),
             deformation,
             stress,
+            plastic_strain: 0.0,
             number: i as u32,
         }
     };
     // Where they were at first, and where they are now.
-    let mut particles = Particles::from_fn(300, particle);
+    let mut particles = Particles::from_fn(300, false, particle);
     for i in 0..300 {
         particles.set(i, &Particle { position: place(i, 3), ..particle(i) });
     }
@@ -91,7 +92,7 @@ fn plainly<const D: usize, B: Basis<f64>>(
             // SAFETY of `at`: nobody else uses the particles.
             let start = seen(Vector::from_fn(at));
             let mut placed = Vec::new();
-            placed.extend((0..D).map(|i| start[i] - (0..D).map(|j| inverse.0[i][j] * arm[j]).sum::<f64>()));
+            placed.extend(start.0);
             placed.extend(arm.0);
             placed.extend((0..D * D).map(|k| inverse.0[k / D][k % D]));
             for (k, number) in placed.into_iter().enumerate() {

@@ -74,6 +74,7 @@ pub fn group<
 
     let mut deformation = Matrix::ZERO;
     let mut stress = Symmetric::ZERO;
+    let mut plastic_strain = V::ZERO;
     let mut jacobian = V::ZERO;
     let mut carried = Vector::ZERO;
     let pushes = matches!(scatter, Some(Share::Force | Share::Everything));
@@ -84,6 +85,9 @@ pub fn group<
         stress = members.stress::<V>();
     }
     if strain {
+        if members.flow() {
+            plastic_strain = members.load(Column::<D>::PLASTIC_STRAIN);
+        }
         let scale = V::splat(dt) * constants.per_cell;
         let flow = if verbs.one_flow() { &visit.window.carry } else { &visit.window.flow };
         let (gradient, mean) = group.flow(flow);
@@ -92,12 +96,14 @@ pub fn group<
         deformation = increment * deformation;
         jacobian = deformation.det();
         sound &= jacobian.at_least(V::splat(T::TINY)) & finite(&[jacobian]);
-        let motion = Motion { deformation, jacobian, increment, stress };
+        let motion = Motion { deformation, jacobian, increment, stress, plastic_strain };
         if D == 2 && visit.body.thickness == Thickness::Free {
             let motion = free_thickness(visit.body, motion)?;
-            (deformation, jacobian, stress) = (motion.deformation, motion.jacobian, motion.stress);
+            (deformation, jacobian) = (motion.deformation, motion.jacobian);
+            (stress, plastic_strain) = (motion.stress, motion.plastic_strain);
         } else {
-            stress = constants.material.stress(&motion);
+            let response = constants.material.response(&motion);
+            (stress, plastic_strain) = (response.stress, response.plastic_strain);
         }
         sound &= finite(&stress.0);
     } else if displace || pushes {
@@ -151,6 +157,10 @@ pub fn group<
         members.store_deformation(&deformation);
         members.store_stress(&stress);
         members.give_back::<V>(Column::<D>::DEFORMATION..Column::<D>::START);
+        if members.flow() {
+            members.store(Column::<D>::PLASTIC_STRAIN, plastic_strain);
+            members.give_back::<V>(Column::<D>::PLASTIC_STRAIN..Column::<D>::PLASTIC_STRAIN + 1);
+        }
     }
     if let Some(share) = scatter {
         let mut load = Load { momentum: None, stress: None };

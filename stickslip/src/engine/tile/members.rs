@@ -88,7 +88,7 @@ impl Runs {
 }
 
 /// Columns of a particle in space.
-const MOST_COLUMNS: usize = Column::<3>::COUNT;
+const MOST_COLUMNS: usize = Column::<3>::PLASTIC_STRAIN + 1;
 
 impl<'a, T: Real, const D: usize, const WHOLE: bool> Members<'a, T, D, WHOLE> {
     /// Particles that lie side by side.
@@ -116,6 +116,12 @@ impl<'a, T: Real, const D: usize, const WHOLE: bool> Members<'a, T, D, WHOLE> {
             stride: Copies::<T>::STRIDE,
             runs: Some(&copies.runs),
         }
+    }
+
+    /// Whether they have plastic strain.
+    #[inline(always)]
+    pub fn flow(&self) -> bool {
+        self.columns.flow()
     }
 
     /// How many.
@@ -234,11 +240,17 @@ impl<T: Real> Copies<T> {
                 self.take_run::<V, D>(columns, run, 0..Column::<D>::DEFORMATION);
                 if deformed {
                     self.take_run::<V, D>(columns, run, Column::<D>::DEFORMATION..Column::<D>::START);
+                    if columns.flow() {
+                        let column = Column::<D>::PLASTIC_STRAIN;
+                        self.take_run::<V, D>(columns, run, column..column + 1);
+                    }
                 }
             }
         }
         if !V::MASKED && self.runs.count > 1 && index.len() < V::COUNT {
-            for copy in &mut self.columns[..columns_read::<D>(deformed)] {
+            let more = (deformed && columns.flow()).then_some(Column::<D>::PLASTIC_STRAIN);
+            for column in (0..columns_read::<D>(deformed)).chain(more) {
+                let copy = &mut self.columns[column];
                 // SAFETY: there is room for a register from any lane on.
                 unsafe { V::splat(copy[0].0[0]).store(copy.as_mut_ptr().cast::<T>().add(index.len())) };
             }

@@ -92,6 +92,11 @@ impl Points {
         self.fields.get(name).copied().ok_or_else(|| missing(&format!("field `{name}`")).at(&self.path))
     }
 
+    /// Whether it holds an array.
+    pub(in crate::observe) fn has(&self, name: &str) -> bool {
+        self.arrays.contains_key(name)
+    }
+
     /// An array with one number for each point.
     pub(in crate::observe) fn numbers<T: Scalar>(&self, name: &str) -> Result<Vec<T>, ReadError> {
         Ok(self.array::<T, 1>(name)?.into_flattened())
