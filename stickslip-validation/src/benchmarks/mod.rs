@@ -5,6 +5,7 @@ mod b11_cylinder;
 mod b12_sphere_impact;
 mod b13_disk;
 mod b13_sphere;
+mod b14_partial_slip;
 mod b1_incline;
 mod b29_stack;
 mod b2_backspin;
@@ -56,6 +57,7 @@ pub static BENCHMARKS: &[Benchmark] = &[
     b12_sphere_impact::BENCHMARK,
     b13_sphere::BENCHMARK,
     b13_disk::BENCHMARK,
+    b14_partial_slip::BENCHMARK,
     b29_stack::BENCHMARK,
 ];
 
