@@ -78,7 +78,7 @@ const END: f64 = 120.0;
 fn exact() -> (f64, f64) {
     let slope = HALF_ANGLE.tan();
     let width = |delta: f64| slope / (1.0 + delta.cos() - slope * delta.sin());
-    // What the lip holds beyond what the die displaced grows with delta, until the lip's face is as steep as the wedge's.
+    // From a lip's face that is as steep as the wedge's on, what the lip holds beyond what the die displaced grows with delta.
     let (mut low, mut high) = (0.0, FRAC_PI_2 - HALF_ANGLE);
     while (width(high) - slope) * width(high) * high.sin() < slope {
         high += 0.01;

@@ -1,6 +1,7 @@
 //! Numbers that do not fit each other: the grid, the domain, time, materials, motion out of the plane.
 
 use super::table::short;
+use crate::material::Material;
 use crate::scene::{Dimension, Domain, Expression, Face, Motion, NamedMaterial, Problem, Scene};
 use crate::tensor::Matrix;
 
@@ -51,6 +52,18 @@ fn check_material(key: &str, material: &NamedMaterial, dimension: Dimension) -> 
     let modulus = material.law.wave_modulus(dimension.thickness(), &Matrix::IDENTITY, 1.0);
     let elastic = material.law.elastic();
     let (k, g) = (elastic.bulk_modulus, elastic.shear_modulus);
+    if let Material::VonMises(law) = &material.law {
+        require_positive(&format!("{key}.von_mises.yield_stress"), law.yield_stress, "Pa")?;
+        if !(law.hardening_modulus >= 0.0 && law.hardening_modulus.is_finite()) {
+            let key = format!("{key}.von_mises.hardening_modulus");
+            return Err(problem(
+                &key,
+                format!("{} Pa", law.hardening_modulus),
+                "a finite number, at least 0",
+            ));
+        }
+        require_positive(&format!("{key}.von_mises.shear_modulus"), g, "Pa")?;
+    }
     let speed = (modulus / material.density).sqrt();
     if k > 0.0 && g >= 0.0 && speed > 0.0 && speed.is_finite() {
         return Ok(());

@@ -38,7 +38,8 @@ struct Trial<T> {
 /// `motion` has the thickness of the start of the step, which its increment leaves alone. The first trial is Hooke's,
 /// `a = 1 - (1 - 2G/M) tr(dF - I)`, the next are Newton's with M and the secant's; once two trials enclose the answer, none leaves
 /// the bracket and every third one halves it, so the search ends for every law whose sigma_zz grows from compression to tension as the
-/// thickness does. What is left of sigma_zz, round-off of M, is set to zero.
+/// thickness does. What is left of sigma_zz is round-off of M; it stays in the stress, so that the next step of a
+/// law in rate form makes up for it.
 pub(super) fn with_free_thickness<T: Real>(
     law: &dyn Law<T>,
     motion: &Motion<T>,
@@ -56,7 +57,7 @@ pub(super) fn with_free_thickness<T: Real>(
         (None, None, None);
     for count in 1..=MOST_TRIALS {
         let trial = stretched(motion, stretch);
-        let mut response = law.response(&trial);
+        let response = law.response(&trial);
         let now = Trial { stretch, stress: response.stress.0[2] };
         if !now.stress.is_finite() {
             return None;
@@ -67,7 +68,6 @@ pub(super) fn with_free_thickness<T: Real>(
             _ => false,
         };
         if now.stress.abs() <= round_off * stiffness || enclosed {
-            response.stress.0[2] = T::ZERO;
             return Some((trial, response));
         }
         let newton = stretch * (one - now.stress / stiffness);
@@ -113,7 +113,8 @@ pub(super) fn plate_modulus<T: Number>(waves: T, shear: T) -> T {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::material::{Hypoelastic, Isotropic, NeoHookean};
+    use crate::material::tests::motion_of;
+    use crate::material::{Hypoelastic, Isotropic, NeoHookean, VonMises};
     use crate::tensor::{Matrix, Symmetric};
 
     const ELASTIC: Isotropic<f64> = Isotropic { bulk_modulus: 6.0, shear_modulus: 3.0 };
@@ -124,13 +125,7 @@ mod tests {
 
     fn in_plane(a: f64, b: f64, c: f64, d: f64) -> Motion<f64> {
         let f = Matrix([[a, b, 0.0], [c, d, 0.0], [0.0, 0.0, 1.0]]);
-        Motion {
-            deformation: f,
-            jacobian: f.det(),
-            increment: f,
-            stress: Symmetric::ZERO,
-            plastic_strain: 0.0,
-        }
+        motion_of(f)
     }
 
     #[test]
@@ -159,7 +154,7 @@ mod tests {
                         with_free_thickness(&*law, &in_plane(a, shear, 0.0, 1.0)).expect("a stable law");
                     let exact = law.stress(&moved).0[2];
                     let scale = law.wave_modulus(&moved.deformation, moved.jacobian) / moved.jacobian;
-                    assert!(exact.abs() < 1e-12 * scale && stress.0[2] == 0.0, "{a} {shear}: {exact:e}");
+                    assert!(exact.abs() < 1e-12 * scale && stress.0[2] == exact, "{a} {shear}: {exact:e}");
                     assert!((moved.jacobian / moved.deformation.det() - 1.0).abs() < 1e-12);
                 }
             }
@@ -221,6 +216,33 @@ mod tests {
             };
             assert!(with_free_thickness(&law, &motion).is_some(), "{a}");
         }
+    }
+
+    /// A strip drawn by a tenth in many steps thins as flow has it: it keeps its volume, though round-off is a part of the yield stress.
+    #[test]
+    fn single_precision_flows_at_constant_volume() {
+        let law = VonMises {
+            elastic: Hypoelastic { elastic: ELASTIC },
+            yield_stress: ELASTIC.young_modulus() / 500.0,
+            hardening_modulus: 0.0,
+        };
+        let law = law.map(|x| x as f32);
+        let increment = Matrix([[1.0 + 1e-5, 0.0, 0.0], [0.0, 1.0 - 0.5e-5, 0.0], [0.0, 0.0, 1.0]]);
+        let mut now = Motion {
+            deformation: Matrix::IDENTITY,
+            jacobian: 1.0_f32,
+            increment,
+            stress: Symmetric::ZERO,
+            plastic_strain: 0.0,
+        };
+        for _ in 0..10_000 {
+            let deformation = increment * now.deformation;
+            let next = Motion { deformation, jacobian: deformation.det(), increment, ..now };
+            let (moved, response) = with_free_thickness(&law, &next).expect("a stable law");
+            now = Motion { stress: response.stress, plastic_strain: response.plastic_strain, ..moved };
+        }
+        assert!((now.jacobian - 1.0).abs() < 3e-3, "{}", now.jacobian);
+        assert!((now.plastic_strain - 0.098).abs() < 2e-3, "{}", now.plastic_strain);
     }
 
     #[test]

@@ -69,7 +69,11 @@ impl VonMises<f64> {
             return bad(None, "G = 0".to_string(), "G above 0: a fluid has nothing that yields");
         }
         let Some(yield_stress) = yield_stress else {
-            return bad(None, "no yield_stress".to_string(), "yield_stress, a positive number");
+            return bad(
+                None,
+                "no yield_stress".to_string(),
+                "yield_stress, a positive number, like \"40 MPa\"",
+            );
         };
         if !(yield_stress.is_finite() && yield_stress > 0.0) {
             return bad(Some(YIELD_STRESS), format!("{yield_stress} Pa"), "a positive number");

@@ -134,6 +134,8 @@ fn a_pressed_bar_obeys_hooke_with_e_and_nu() {
         assert!((young / YOUNG - 1.0).abs() < tolerance, "{law}: E {young}");
         assert!((in_plane / POISSON - 1.0).abs() < tolerance, "{law}: nu {in_plane}");
         assert!((out / POISSON - 1.0).abs() < tolerance, "{law}: nu {out}");
-        assert!((0..snapshot.body.len()).all(|p| snapshot.stress[p][2] == 0.0), "{law}");
+        // Round-off of the modulus.
+        let most = (0..snapshot.body.len()).map(|p| snapshot.stress[p][2].abs()).fold(0.0, f64::max);
+        assert!(most < 1e-13 * YOUNG, "{law}: {most:e}");
     }
 }

@@ -75,6 +75,16 @@ fn values_out_of_range() {
             ),
             (
                 "neo_hookean = ",
+                "von_mises = ",
+                "10:1: materials.rubber.von_mises: found no yield_stress; allowed: yield_stress, a positive number, like \"40 MPa\"",
+            ),
+            (
+                "neo_hookean = { ",
+                "von_mises = { yield_stress = \"1 MPa\", hardening_modulus = \"-1 MPa\", ",
+                "10:41: materials.rubber.von_mises.hardening_modulus: found \"-1 MPa\" (-1000000 Pa); allowed: at least 0, for softening would follow the grid",
+            ),
+            (
+                "neo_hookean = ",
                 "#",
                 "8:12: materials.rubber: found no law; allowed: a law (neo_hookean, hypoelastic, von_mises), like neo_hookean = { bulk_modulus = \"6 MPa\", shear_modulus = \"3 MPa\" }",
             ),

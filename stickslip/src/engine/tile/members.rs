@@ -17,9 +17,13 @@ pub fn fetch<T: Real, const D: usize>(columns: &Columns<T, D>, particle: usize, 
         // SAFETY: the particle exists.
         prefetch(unsafe { columns.at(column, particle) });
     }
+    if columns.flow() && verbs.strain {
+        // SAFETY: as above.
+        prefetch(unsafe { columns.at(Column::<D>::PLASTIC_STRAIN, particle) });
+    }
 }
 
-/// The columns that a pass reads, from the first on, with or without deformation and stress.
+/// The columns that a pass reads, from the first on, with or without deformation and stress; that of plastic strain stands apart.
 #[inline(always)]
 fn columns_read<const D: usize>(deformed: bool) -> usize {
     if deformed { Column::<D>::START } else { Column::<D>::DEFORMATION }
