@@ -24,7 +24,7 @@ pub struct Arguments {
     #[arg(long = "law", value_name = "LAW", value_parser = law_words())]
     laws: Vec<Law>,
 
-    /// Every resolution and every variant, which takes long; without this, about three minutes on two cores.
+    /// Every resolution and every variant, which takes long; without this, about four minutes on two cores.
     #[arg(long)]
     all: bool,
 
