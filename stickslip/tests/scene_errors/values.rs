@@ -81,7 +81,7 @@ fn values_out_of_range() {
             (
                 "neo_hookean = { ",
                 "von_mises = { yield_stress = \"1 MPa\", hardening_modulus = \"-1 MPa\", ",
-                "10:41: materials.rubber.von_mises.hardening_modulus: found \"-1 MPa\" (-1000000 Pa); allowed: at least 0, for softening would follow the grid",
+                "10:59: materials.rubber.von_mises.hardening_modulus: found \"-1 MPa\" (-1000000 Pa); allowed: at least 0, for softening would follow the grid",
             ),
             (
                 "neo_hookean = ",
