@@ -47,7 +47,7 @@ ahead of the centre: the change of angular momentum over the impulse of both wal
         RELEASE,
         Reason {
             laws: &["surface", "gap", "separation"],
-            text: "The walls do push ahead of the centre, by 0.0021 to 0.0026 R at R/8, R/16 and R/32: the moment of their forces says so, too. Stress does not lag: with a quarter of the step it is 0.0022 R at R/8. The moment goes with the square of the spin \
+            text: "The walls do push ahead of the centre, by 0.003 R at R/8, R/16 and R/32: the moment of their forces says so, too. Stress does not lag: with a quarter of the step it is 0.0022 R at R/8. The moment goes with the square of the spin \
 (half the spin 0.0009 R, twice 0.008 R) and is the same for a fifth of the squeeze. It is in the bulk, not in the contact: particles in rings (0.0026 R), the hypoelastic law (0.0035 R) and the other stress updates (0.002 R) have it as well, and walls that turn about \
 a resting disk drag it along. As the squeeze goes round, particles get velocities within their cells that the grid does not see, and their deformation gradients leave what their places say: after a turn by 2 to 3 % in the middle of the disk, at R/16 as at R/8. What the spin \
 loses is found there, as strain energy and as such motion. A free disk loses 5 % of its angular momentum in that time at R/8 and 1 % at R/16. The number of particles does not decide: with 4, 16 and 36 a cell it is 0.0026, 0.0022 and 0.0021 R at R/8, with 9 it is 0.0010 R.",

@@ -351,7 +351,7 @@ impl<T: Laned, const D: usize> Near<'_, T, D> {
             volume: sums.volume(),
             modulus,
             force,
-            place: sums.place().seen_from(arm),
+            place: sums.place(owner.particles.flow()).seen_from(arm),
         };
         Side { body, index, surface, volume_gradient: sums.volume_gradient() }
     }

@@ -75,6 +75,14 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
             place[i] = seen.offset[i] + seen.sign[i] * start;
         }
 
+        if !self.near.bodies[self.body].particles.flow() {
+            for i in 0..D {
+                for j in 0..D {
+                    place[i] -= inverse[i][j] * arm[j];
+                }
+            }
+        }
+
         let mut by_volume = [V::ZERO; 4 * MOST_PLACED];
         for i in 0..D {
             by_volume[i] = place[i] * room;

@@ -17,12 +17,12 @@ pub enum Wanted {
 ///
 /// ```text
 /// row 0         sum V grad S [m^2], sum V S [m^3]       with the gradient at the node
-/// then          sum V S of undeformed place, position and inverse of F, one number after the other
+/// then          sum V S of place, centre and inverse of F, one number after the other
 /// then          sum V S of the stress
 /// row MASS      sum m grad S [kg/m], sum m S [kg]       likewise
 /// row FORCE     force of the stress on the node [N]
 /// ```
-/// Places are seen from the first node of the block. Where only places are wanted, all from the stress on is zero.
+/// Places are those of the first node of the block; of a body that flows, of the particles. Where only places are wanted, all from the stress on is zero.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(32))]
 pub struct Sums<T, const D: usize>(pub(super) [[T; 4]; ROWS]);
@@ -85,16 +85,19 @@ impl<T: Real, const D: usize> Sums<T, D> {
         stress
     }
 
-    /// The place by the means over volume, seen from the first node of the block.
-    pub fn place(&self) -> Place<T, D> {
+    /// The place weighted by volume, of a body that flows plastically or not.
+    pub fn place(&self, flow: bool) -> Place<T, D> {
         let share = T::ONE / self.volume();
         let vector = |first: usize| Vector::from_fn(|i| self.number(first + i) * share);
         let inverse = Matrix::from_fn(|i, j| match i < D && j < D {
             true => self.number(2 * D + i * D + j) * share,
             false => T::ZERO,
         });
-        let (mean, center) = (vector(0), vector(D));
-        let place = Vector::from_fn(|i| (0..D).fold(mean[i], |x, j| x - inverse.0[i][j] * center[j]));
+        let (mut place, center) = (vector(0), vector(D));
+        if flow {
+            // So far the mean of the places of the particles themselves.
+            place = Vector::from_fn(|i| (0..D).fold(place[i], |x, j| x - inverse.0[i][j] * center[j]));
+        }
         Place { place, inverse, center }
     }
 }

@@ -92,7 +92,7 @@ fn plainly<const D: usize, B: Basis<f64>>(
             // SAFETY of `at`: nobody else uses the particles.
             let start = seen(Vector::from_fn(at));
             let mut placed = Vec::new();
-            placed.extend(start.0);
+            placed.extend((0..D).map(|i| start[i] - (0..D).map(|j| inverse.0[i][j] * arm[j]).sum::<f64>()));
             placed.extend(arm.0);
             placed.extend((0..D * D).map(|k| inverse.0[k / D][k % D]));
             for (k, number) in placed.into_iter().enumerate() {
