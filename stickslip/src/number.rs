@@ -8,7 +8,7 @@ use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssi
 
 /// What laws compute with: a real number, or several side by side.
 ///
-/// Every operation rounds as IEEE 754 says, and nothing is contracted, so that one number and each of several have the same bits.
+/// Every operation rounds as IEEE 754 says, so that one number and each of several have the same bits, but for [`Number::times_plus`].
 pub trait Number:
     Copy
     + Debug
@@ -27,6 +27,8 @@ pub trait Number:
 {
     /// 0.
     const ZERO: Self;
+    /// -0, the sum of nothing: adding to it changes no bit, so that a sum that begins with it takes one addition less.
+    const NOTHING: Self;
     /// 1.
     const ONE: Self;
     /// 1/2.
@@ -47,6 +49,12 @@ pub trait Number:
     fn min(self, other: Self) -> Self;
     /// The larger of two numbers.
     fn max(self, other: Self) -> Self;
+    /// self * factor + other. Single numbers round the product and the sum; several side by side round once where the processor has an
+    /// instruction for that ([`crate::lanes::Processor::fuses`]).
+    #[inline(always)]
+    fn times_plus(self, factor: Self, other: Self) -> Self {
+        self * factor + other
+    }
 }
 
 /// A floating-point number: `f32` or `f64`.
@@ -63,6 +71,8 @@ pub trait Real: Number + Default + PartialOrd + Sum {
     fn floor(self) -> i32;
     /// Neither infinite nor not a number.
     fn is_finite(self) -> bool;
+    /// self * factor + other, rounded once.
+    fn fused(self, factor: Self, other: Self) -> Self;
     /// One over the cube root of a positive, normal number, to within 4 %.
     fn inverse_cube_root_guess(self) -> Self;
 }
@@ -71,6 +81,7 @@ macro_rules! real {
     ($t:ty, $cbrt:path, $ln:path, $guess:expr) => {
         impl Number for $t {
             const ZERO: Self = 0.0;
+            const NOTHING: Self = -0.0;
             const ONE: Self = 1.0;
             const HALF: Self = 0.5;
             const EPSILON: Self = <$t>::EPSILON;
@@ -119,6 +130,10 @@ macro_rules! real {
             #[inline(always)]
             fn is_finite(self) -> bool {
                 self.is_finite()
+            }
+            #[inline(always)]
+            fn fused(self, factor: Self, other: Self) -> Self {
+                self.mul_add(factor, other)
             }
             #[inline(always)]
             fn inverse_cube_root_guess(self) -> Self {

@@ -38,9 +38,9 @@ impl<T: Number, const D: usize> Vector<T, D> {
     /// a . b
     #[inline(always)]
     pub fn dot(self, other: Self) -> T {
-        let mut sum = T::ZERO;
+        let mut sum = T::NOTHING;
         for i in 0..D {
-            sum += self.0[i] * other.0[i];
+            sum = self.0[i].times_plus(other.0[i], sum);
         }
         sum
     }
@@ -178,8 +178,8 @@ impl<T: Number> Matrix<T> {
     #[inline(always)]
     pub fn det(&self) -> T {
         let [a, b, c] = self.0;
-        a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0])
-            + a[2] * (b[0] * c[1] - b[1] * c[0])
+        let minor = |i: usize, j: usize| b[i].times_plus(c[j], -(b[j] * c[i]));
+        a[0].times_plus(minor(1, 2), a[1].times_plus(minor(2, 0), a[2] * minor(0, 1)))
     }
 
     /// Inverse; entries are not finite where the determinant is zero.
@@ -221,7 +221,7 @@ impl<T: Number> Matrix<T> {
         const PAIRS: [[usize; 2]; 6] = [[0, 0], [1, 1], [2, 2], [0, 1], [1, 2], [0, 2]];
         Symmetric(array(T::ZERO, |k| {
             let [i, j] = PAIRS[k];
-            m[i][0] * m[j][0] + m[i][1] * m[j][1] + m[i][2] * m[j][2]
+            m[i][0].times_plus(m[j][0], m[i][1].times_plus(m[j][1], m[i][2] * m[j][2]))
         }))
     }
 }
@@ -247,7 +247,8 @@ impl<T: Number> Mul for Matrix<T> {
     #[inline(always)]
     fn mul(self, other: Self) -> Self {
         Matrix::from_fn(|i, j| {
-            self.0[i][0] * other.0[0][j] + self.0[i][1] * other.0[1][j] + self.0[i][2] * other.0[2][j]
+            let [a, b, c] = self.0[i];
+            a.times_plus(other.0[0][j], b.times_plus(other.0[1][j], c * other.0[2][j]))
         })
     }
 }

@@ -1,8 +1,9 @@
 //! Several numbers side by side in a register, on whatever the processor has.
 //!
 //! This is the only room that knows processors. Loops over particles are written once over [`Lanes`]; [`Processor::run`] compiles them for each
-//! [`Machine`] and takes the best one at run time. Every operation rounds like that of a single number and multiplications
-//! and additions are never contracted, so that results have the same bits on every machine.
+//! [`Machine`] and takes the best one at run time. Every operation rounds like that of a single number, and where the source says so
+//! ([`Number::times_plus`]) a product and a sum are rounded once. All processors that can do so give the same bits: ARM, and x86-64 since
+//! 2013. Those that cannot round twice, and differ by round-off.
 
 mod pack;
 mod pair;
@@ -175,12 +176,13 @@ pub trait Lanes: Number {
         let mut r = self.inverse_cube_root_guess();
         // 4 % -> 2e-4 -> 3e-11
         for _ in 0..2 {
-            let h = Self::ONE - self * (r * r * r);
-            r += r * (h * (third + h * ninths));
+            let h = (-self).times_plus(r * r * r, Self::ONE);
+            r = r.times_plus(h * h.times_plus(ninths, third), r);
         }
         let square = r * r;
         let y = self * square;
-        y - (y * y * y - self) * (square * third)
+        let excess = (y * y).times_plus(y, -self);
+        (-excess).times_plus(square * third, y)
     }
 }
 
@@ -248,7 +250,7 @@ pub trait Work {
 pub enum Processor {
     /// Nothing that the build does not assume anyway.
     Any,
-    /// AVX2.
+    /// AVX2 with fused multiplication and addition.
     Avx2,
     /// AVX-512 with its short vectors.
     Avx512,
@@ -262,11 +264,16 @@ impl Processor {
             if x86::has_avx512() {
                 return Processor::Avx512;
             }
-            if std::arch::is_x86_feature_detected!("avx2") {
+            if x86::has_avx2() {
                 return Processor::Avx2;
             }
         }
         Processor::Any
+    }
+
+    /// Whether a product and a sum are rounded once, see [`Number::times_plus`].
+    pub fn fuses(self) -> bool {
+        self != Processor::Any || pack::FUSES
     }
 
     /// All that this processor can run, the best last.

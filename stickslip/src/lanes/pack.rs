@@ -5,6 +5,9 @@ use crate::number::{Number, Real};
 use crate::tensor::array;
 use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
+/// Whether every processor that this build is for multiplies and adds with one rounding.
+pub const FUSES: bool = cfg!(any(target_feature = "fma", target_arch = "aarch64"));
+
 /// `N` numbers in an array.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pack<T, const N: usize>(pub [T; N]);
@@ -53,6 +56,7 @@ impl<T: Real, const N: usize> Neg for Pack<T, N> {
 
 impl<T: Real, const N: usize> Number for Pack<T, N> {
     const ZERO: Self = Pack([T::ZERO; N]);
+    const NOTHING: Self = Pack([T::NOTHING; N]);
     const ONE: Self = Pack([T::ONE; N]);
     const HALF: Self = Pack([T::HALF; N]);
     const EPSILON: Self = Pack([T::EPSILON; N]);
@@ -83,6 +87,14 @@ impl<T: Real, const N: usize> Number for Pack<T, N> {
     #[inline(always)]
     fn max(self, other: Self) -> Self {
         self.with(other, T::max)
+    }
+    #[inline(always)]
+    fn times_plus(self, factor: Self, other: Self) -> Self {
+        if FUSES {
+            Pack(array(T::ZERO, |i| self.0[i].fused(factor.0[i], other.0[i])))
+        } else {
+            self * factor + other
+        }
     }
 }
 

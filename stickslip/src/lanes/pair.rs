@@ -40,6 +40,7 @@ impl<V: Lanes> Neg for Pair<V> {
 
 impl<V: Lanes> Number for Pair<V> {
     const ZERO: Self = Pair(V::ZERO, V::ZERO);
+    const NOTHING: Self = Pair(V::NOTHING, V::NOTHING);
     const ONE: Self = Pair(V::ONE, V::ONE);
     const HALF: Self = Pair(V::HALF, V::HALF);
     const EPSILON: Self = Pair(V::EPSILON, V::EPSILON);
@@ -70,6 +71,10 @@ impl<V: Lanes> Number for Pair<V> {
     #[inline(always)]
     fn max(self, other: Self) -> Self {
         Pair(self.0.max(other.0), self.1.max(other.1))
+    }
+    #[inline(always)]
+    fn times_plus(self, factor: Self, other: Self) -> Self {
+        Pair(self.0.times_plus(factor.0, other.0), self.1.times_plus(factor.1, other.1))
     }
 }
 

@@ -18,6 +18,12 @@ pub fn has_avx512() -> bool {
         && std::arch::is_x86_feature_detected!("avx512vl")
         && std::arch::is_x86_feature_detected!("avx512dq")
         && std::arch::is_x86_feature_detected!("avx512bw")
+        && has_avx2()
+}
+
+/// Whether the processor has all that [`avx2`] uses.
+pub fn has_avx2() -> bool {
+    std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma")
 }
 
 /// AVX-512.
@@ -49,7 +55,7 @@ impl Machine<f32> for Avx2 {
 ///
 /// # Safety
 /// The processor must have it, see [`has_avx512`].
-#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw")]
+#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,fma")]
 pub unsafe fn avx512<T, W: Work<Real = T>>(work: W) -> W::Output
 where
     Avx512: Machine<T>,
@@ -60,8 +66,8 @@ where
 /// Does work with AVX2.
 ///
 /// # Safety
-/// The processor must have it.
-#[target_feature(enable = "avx2")]
+/// The processor must have it, and FMA.
+#[target_feature(enable = "avx2,fma")]
 pub unsafe fn avx2<T, W: Work<Real = T>>(work: W) -> W::Output
 where
     Avx2: Machine<T>,
@@ -93,7 +99,7 @@ macro_rules! operators {
 macro_rules! lanes {
     ($name:ident: $register:ty as [$t:ty; $count:literal];
      $set:ident $load:ident $store:ident; $add:ident $sub:ident $mul:ident $div:ident;
-     $sqrt:ident $min:ident $max:ident;
+     $sqrt:ident $min:ident $max:ident $times_plus:ident;
      |$a:ident, $b:ident| $at_least:expr; $($part:item)*) => {
         #[doc = concat!(stringify!($count), " numbers in a register.")]
         #[derive(Clone, Copy, Debug)]
@@ -125,6 +131,7 @@ macro_rules! lanes {
         // SAFETY of all below: values of this type exist only where the processor has the instructions.
         impl Number for $name {
             const ZERO: Self = Self::constant(0.0);
+            const NOTHING: Self = Self::constant(-0.0);
             const ONE: Self = Self::constant(1.0);
             const HALF: Self = Self::constant(0.5);
             const EPSILON: Self = Self::constant(<$t>::EPSILON);
@@ -157,6 +164,10 @@ macro_rules! lanes {
             fn max(self, other: Self) -> Self {
                 unsafe { $name($max(self.0, other.0)) }
             }
+            #[inline(always)]
+            fn times_plus(self, factor: Self, other: Self) -> Self {
+                unsafe { $name($times_plus(self.0, factor.0, other.0)) }
+            }
         }
 
         impl Lanes for $name {
@@ -186,7 +197,7 @@ macro_rules! lanes {
 
 lanes! { F64x8: __m512d as [f64; 8];
     _mm512_set1_pd _mm512_loadu_pd _mm512_storeu_pd;
-    _mm512_add_pd _mm512_sub_pd _mm512_mul_pd _mm512_div_pd; _mm512_sqrt_pd _mm512_min_pd _mm512_max_pd;
+    _mm512_add_pd _mm512_sub_pd _mm512_mul_pd _mm512_div_pd; _mm512_sqrt_pd _mm512_min_pd _mm512_max_pd _mm512_fmadd_pd;
     |a, b| u32::from(_mm512_cmp_pd_mask::<_CMP_GE_OQ>(a, b));
     const MASKED: bool = true;
     #[inline(always)]
@@ -265,7 +276,7 @@ lanes! { F64x8: __m512d as [f64; 8];
 }
 lanes! { F64x4: __m256d as [f64; 4];
     _mm256_set1_pd _mm256_loadu_pd _mm256_storeu_pd;
-    _mm256_add_pd _mm256_sub_pd _mm256_mul_pd _mm256_div_pd; _mm256_sqrt_pd _mm256_min_pd _mm256_max_pd;
+    _mm256_add_pd _mm256_sub_pd _mm256_mul_pd _mm256_div_pd; _mm256_sqrt_pd _mm256_min_pd _mm256_max_pd _mm256_fmadd_pd;
     |a, b| _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_GE_OQ>(a, b)) as u32;
     #[inline(always)]
     fn inverse_cube_root_guess(self) -> Self {
@@ -355,7 +366,7 @@ lanes! { F64x4: __m256d as [f64; 4];
 }
 lanes! { F32x8: __m256 as [f32; 8];
     _mm256_set1_ps _mm256_loadu_ps _mm256_storeu_ps;
-    _mm256_add_ps _mm256_sub_ps _mm256_mul_ps _mm256_div_ps; _mm256_sqrt_ps _mm256_min_ps _mm256_max_ps;
+    _mm256_add_ps _mm256_sub_ps _mm256_mul_ps _mm256_div_ps; _mm256_sqrt_ps _mm256_min_ps _mm256_max_ps _mm256_fmadd_ps;
     |a, b| _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_GE_OQ>(a, b)) as u32;
     #[inline(always)]
     fn inverse_cube_root_guess(self) -> Self {
@@ -467,7 +478,7 @@ lanes! { F32x8: __m256 as [f32; 8];
 }
 lanes! { F32x4: __m128 as [f32; 4];
     _mm_set1_ps _mm_loadu_ps _mm_storeu_ps;
-    _mm_add_ps _mm_sub_ps _mm_mul_ps _mm_div_ps; _mm_sqrt_ps _mm_min_ps _mm_max_ps;
+    _mm_add_ps _mm_sub_ps _mm_mul_ps _mm_div_ps; _mm_sqrt_ps _mm_min_ps _mm_max_ps _mm_fmadd_ps;
     |a, b| _mm_movemask_ps(_mm_cmpge_ps(a, b)) as u32;
     #[inline(always)]
     fn inverse_cube_root_guess(self) -> Self {

@@ -161,22 +161,27 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
     /// sum S_i of a value at the nodes.
     #[inline(always)]
     pub fn interpolate(&self, nodes: &[Vector<V::Real, D>; WINDOW_NODES]) -> Vector<V, D> {
-        let mut sum = Vector::ZERO;
+        let [x, y, z] = [&self.shapes[0], &self.shapes[1], &self.shapes[D - 1]];
+        let mut sum = [V::NOTHING; D];
         for i in 0..B::WIDTH {
-            let mut plane = Vector::<V, D>::ZERO;
+            let mut plane = [V::NOTHING; D];
             for j in 0..B::WIDTH {
-                let mut row = Vector::<V, D>::ZERO;
+                let mut row = [V::NOTHING; D];
                 for k in 0..Self::DEPTH {
                     for c in 0..D {
                         let value: V = self.start.value(nodes, Self::offset(i, j, k), c);
-                        row[c] = if D == 2 { value } else { row[c] + self.shapes[D - 1].weight[k] * value };
+                        row[c] = if D == 2 { value } else { z.weight[k].times_plus(value, row[c]) };
                     }
                 }
-                plane += row * self.shapes[1].weight[j];
+                for c in 0..D {
+                    plane[c] = y.weight[j].times_plus(row[c], plane[c]);
+                }
             }
-            sum += plane * self.shapes[0].weight[i];
+            for c in 0..D {
+                sum[c] = x.weight[i].times_plus(plane[c], sum[c]);
+            }
         }
-        sum
+        Vector(sum)
     }
 
     /// h L = sum v_i (x) h grad S_i, embedded in space, and sum S_i v_i of the same velocities [m/s].
@@ -184,37 +189,42 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
     pub fn flow(&self, nodes: &[Vector<V::Real, D>; WINDOW_NODES]) -> (Matrix<V>, Vector<V, D>) {
         let [x, y, z] = [&self.shapes[0], &self.shapes[1], &self.shapes[D - 1]];
         let mut l = Matrix::<V>::ZERO;
-        let mut sum = Vector::<V, D>::ZERO;
+        for c in 0..D {
+            for axis in 0..D {
+                l.0[c][axis] = V::NOTHING;
+            }
+        }
+        let mut sum = Vector([V::NOTHING; D]);
         for i in 0..B::WIDTH {
             // Sums over a plane of nodes: of values, and of slopes along y and z.
-            let mut plane = [[V::ZERO; D]; 3];
+            let mut plane = [[V::NOTHING; D]; 3];
             for j in 0..B::WIDTH {
-                let (mut row, mut sloped) = ([V::ZERO; D], [V::ZERO; D]);
+                let (mut row, mut sloped) = ([V::NOTHING; D], [V::NOTHING; D]);
                 for k in 0..Self::DEPTH {
                     for c in 0..D {
                         let value: V = self.start.value(nodes, Self::offset(i, j, k), c);
                         if D == 2 {
                             row[c] = value;
                         } else {
-                            row[c] += z.weight[k] * value;
-                            sloped[c] += z.slope(k) * value;
+                            row[c] = z.weight[k].times_plus(value, row[c]);
+                            sloped[c] = z.slope(k).times_plus(value, sloped[c]);
                         }
                     }
                 }
                 for c in 0..D {
-                    plane[0][c] += y.weight[j] * row[c];
-                    plane[1][c] += y.slope(j) * row[c];
+                    plane[0][c] = y.weight[j].times_plus(row[c], plane[0][c]);
+                    plane[1][c] = y.slope(j).times_plus(row[c], plane[1][c]);
                     if D == 3 {
-                        plane[2][c] += y.weight[j] * sloped[c];
+                        plane[2][c] = y.weight[j].times_plus(sloped[c], plane[2][c]);
                     }
                 }
             }
             for c in 0..D {
-                sum[c] += x.weight[i] * plane[0][c];
-                l.0[c][0] += x.slope(i) * plane[0][c];
-                l.0[c][1] += x.weight[i] * plane[1][c];
+                sum[c] = x.weight[i].times_plus(plane[0][c], sum[c]);
+                l.0[c][0] = x.slope(i).times_plus(plane[0][c], l.0[c][0]);
+                l.0[c][1] = x.weight[i].times_plus(plane[1][c], l.0[c][1]);
                 if D == 3 {
-                    l.0[c][2] += x.weight[i] * plane[2][c];
+                    l.0[c][2] = x.weight[i].times_plus(plane[2][c], l.0[c][2]);
                 }
             }
         }
@@ -289,11 +299,11 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
                 weights[j * Self::DEPTH + k] = (self.shapes[0].weight[i] * self.across(j, k)).numbers();
             }
         }
-        let mut sums = [M::Wide::ZERO; MAX_WIDTH * MAX_WIDTH];
+        let mut sums = [M::Wide::NOTHING; MAX_WIDTH * MAX_WIDTH];
         for pair in 0..self.pairs() {
             let row = load.get::<M>(pair);
             for n in 0..B::WIDTH * Self::DEPTH {
-                sums[n] += row * factors::<M, _>(&weights[n], pair);
+                sums[n] = row.times_plus(factors::<M, _>(&weights[n], pair), sums[n]);
             }
         }
         sums
@@ -327,24 +337,24 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
                 }
             }
         }
-        let mut above = [M::Wide::ZERO; MAX_WIDTH * MAX_WIDTH];
+        let mut above = [M::Wide::NOTHING; MAX_WIDTH * MAX_WIDTH];
         if i + 1 < B::WIDTH {
             for pair in 0..self.pairs() {
                 let row = load[0].get::<M>(pair);
                 for n in 0..B::WIDTH * Self::DEPTH {
-                    above[n] += row * factors::<M, _>(&along_x[n], pair);
+                    above[n] = row.times_plus(factors::<M, _>(&along_x[n], pair), above[n]);
                 }
             }
         }
-        let mut right = [M::Wide::ZERO; MAX_WIDTH * (MAX_WIDTH - 1)];
-        let mut back = [M::Wide::ZERO; MAX_WIDTH * (MAX_WIDTH - 1)];
+        let mut right = [M::Wide::NOTHING; MAX_WIDTH * (MAX_WIDTH - 1)];
+        let mut back = [M::Wide::NOTHING; MAX_WIDTH * (MAX_WIDTH - 1)];
         for pair in 0..self.pairs() {
             let (row_y, row_z) = (load[1].get::<M>(pair), load[2].get::<M>(pair));
             for n in 0..(B::WIDTH - 1) * Self::DEPTH {
-                right[n] += row_y * factors::<M, _>(&along_y[n], pair);
+                right[n] = row_y.times_plus(factors::<M, _>(&along_y[n], pair), right[n]);
             }
             for n in 0..B::WIDTH * (Self::DEPTH - 1) {
-                back[n] += row_z * factors::<M, _>(&along_z[n], pair);
+                back[n] = row_z.times_plus(factors::<M, _>(&along_z[n], pair), back[n]);
             }
         }
         let mut forces = [M::Wide::ZERO; MAX_WIDTH * MAX_WIDTH];
@@ -410,7 +420,7 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
                 }
                 if stress.is_some() {
                     for axis in 0..D {
-                        force -= rows[axis] * factors::<M, _>(&slopes[n][axis], p / 2);
+                        force = (-rows[axis]).times_plus(factors::<M, _>(&slopes[n][axis], p / 2), force);
                     }
                 }
                 add::<M, _>(&mut window.sums[self.start.of(p) + Self::offset(i, j, k)], given, force);
