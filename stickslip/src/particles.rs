@@ -31,7 +31,7 @@ impl<const D: usize> Column<D> {
     pub const VELOCITY: usize = D;
     /// Mass.
     pub const MASS: usize = 2 * D;
-    /// Undeformed volume.
+    /// Volume.
     pub const VOLUME: usize = 2 * D + 1;
     /// Half the side of the undeformed box.
     pub const HALF_WIDTH: usize = 2 * D + 2;

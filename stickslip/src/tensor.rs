@@ -186,11 +186,11 @@ impl<T: Number> Matrix<T> {
     #[inline(always)]
     pub fn inverse(&self) -> Self {
         let m = &self.0;
-        let det = self.det();
+        let per_det = T::ONE / self.det();
         Matrix::from_fn(|i, j| {
             let (a, b) = ((j + 1) % 3, (j + 2) % 3);
             let (c, d) = ((i + 1) % 3, (i + 2) % 3);
-            (m[a][c] * m[b][d] - m[a][d] * m[b][c]) / det
+            m[a][c].times_plus(m[b][d], -(m[a][d] * m[b][c])) * per_det
         })
     }
 

@@ -18,7 +18,7 @@ pub struct Particle<T, const D: usize> {
     pub velocity: Vector<T, D>,
     /// Mass [kg].
     pub mass: T,
-    /// Undeformed volume [m^3]; in the plane per metre of undeformed thickness.
+    /// Volume, J times the undeformed one [m^3]; in the plane per metre of undeformed thickness.
     pub volume: T,
     /// Half the side of its undeformed box [m].
     pub half_width: T,
@@ -33,11 +33,9 @@ pub struct Particle<T, const D: usize> {
 }
 
 impl<T: Real, const D: usize> Particle<T, D> {
-    /// The room that it takes on the grid: its volume now, in the plane its area [m^D].
+    /// The room that it takes on the grid: its volume, in the plane its area [m^D].
     pub fn room(&self) -> T {
-        let f = &self.deformation.0;
-        let stretch = if D == 2 { f[0][0] * f[1][1] - f[0][1] * f[1][0] } else { self.deformation.det() };
-        self.volume * stretch
+        if D == 2 { self.volume / self.deformation.0[2][2] } else { self.volume }
     }
 }
 

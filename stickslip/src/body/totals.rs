@@ -149,8 +149,9 @@ impl<T: Laned, const D: usize> Work for Sum<'_, T, D> {
                 for lane in 0..count {
                     // A particle that turned inside out has stopped the run and has no energy.
                     if jacobian[lane] > 0.0 {
-                        strain[lane] += volume[lane] * energy[lane];
-                        plastic[lane] += volume[lane] * dissipation[lane];
+                        let undeformed = volume[lane] / jacobian[lane];
+                        strain[lane] += undeformed * energy[lane];
+                        plastic[lane] += undeformed * dissipation[lane];
                     }
                 }
             }
@@ -168,7 +169,7 @@ impl<T: Laned, const D: usize> Work for Sum<'_, T, D> {
     }
 }
 
-/// Strain energy and dissipation per undeformed volume [J/m^3], J [-] and undeformed volume [m^3].
+/// Strain energy and dissipation per undeformed volume [J/m^3], J [-] and volume [m^3].
 ///
 /// # Safety
 /// The particles must exist, and nobody may write to them meanwhile.

@@ -153,7 +153,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
             position: self.column(&rows, |particle| particle.position.space()),
             velocity: self.column(&rows, |particle| particle.velocity.space()),
             mass: self.column(&rows, |particle| particle.mass.f64()),
-            volume: self.column(&rows, |particle| (particle.volume * particle.deformation.det()).f64()),
+            volume: self.column(&rows, |particle| particle.volume.f64()),
             stress: self.column(&rows, |particle| particle.stress.0.map(Real::f64)),
             deformation: self.column(&rows, |particle| {
                 let f = &particle.deformation.0;

@@ -24,7 +24,7 @@ pub enum Path {
 pub struct Verbs {
     /// v_p = (1 - a) (v_p + sum S_i (v_i - v_i^0)) + a sum S_i v_i,   a: PIC share
     pub accept: bool,
-    /// F = (I + L dt) F,  sigma = law(F)
+    /// F = (I + L dt) F,  V = V_0 det F,  sigma = law(F)
     pub strain: bool,
     /// x += v dt
     pub displace: bool,
@@ -246,6 +246,7 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
             };
             let (motion, response) = self.body.respond(motion).ok_or(FaultKind::NoThickness)?;
             particle.deformation = motion.deformation;
+            particle.volume = particle.mass / self.body.density * motion.jacobian;
             (particle.stress, particle.plastic_strain) = (response.stress, response.plastic_strain);
             particle.stress.is_finite().then_some(()).ok_or(FaultKind::NotFinite)?;
         }
@@ -273,8 +274,7 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
             Some(Share::Force) | None => {}
         }
         if matches!(self.pass.verbs.scatter, Some(Share::Force | Share::Everything)) {
-            let stress = particle.stress * (particle.volume * particle.deformation.det());
-            stencil.scatter_force(window, block, &stress);
+            stencil.scatter_force(window, block, &(particle.stress * particle.volume));
         }
     }
 }

@@ -57,8 +57,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
         }
         let jacobian = f.det();
         // The room on the grid, in the plane an area.
-        let room =
-            if D == 2 { volume * (f.0[0][0] * f.0[1][1] - f.0[0][1] * f.0[1][0]) } else { volume * jacobian };
+        let room = if D == 2 { volume / f.0[2][2] } else { volume };
         let per_jacobian = V::ONE / jacobian;
         let mut inverse = [[V::ZERO; D]; D];
         for i in 0..D {
@@ -114,7 +113,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
             }
         }
         if self.sought == Wanted::Everything {
-            self.stress_and_mass::<M, V>(seen, members, (&shapes, base, nodes), [room, volume * jacobian]);
+            self.stress_and_mass::<M, V>(seen, members, (&shapes, base, nodes), [room, volume]);
         }
     }
 

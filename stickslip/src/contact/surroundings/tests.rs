@@ -81,8 +81,7 @@ fn plainly<const D: usize, B: Basis<f64>>(
                 continue;
             };
             let (weight, gradient) = stencil.at(offset);
-            let force =
-                flip(-particle.stress.times(gradient)) * (particle.volume * particle.deformation.det());
+            let force = flip(-particle.stress.times(gradient)) * particle.volume;
             let gradient = flip(-gradient);
             let share = particle.room() * weight;
             let inverse = particle.deformation.inverse();

@@ -75,10 +75,10 @@ pub fn group<
     let mut deformation = Matrix::ZERO;
     let mut stress = Symmetric::ZERO;
     let mut plastic_strain = V::ZERO;
-    let mut jacobian = V::ZERO;
+    let [mut jacobian, mut volume] = [V::ZERO; 2];
     let mut carried = Vector::ZERO;
     let pushes = matches!(scatter, Some(Share::Force | Share::Everything));
-    if strain || displace || pushes {
+    if strain || displace {
         deformation = members.deformation::<V>();
     }
     if strain || pushes {
@@ -106,8 +106,14 @@ pub fn group<
             (stress, plastic_strain) = (response.stress, response.plastic_strain);
         }
         sound &= finite(&stress.0);
-    } else if displace || pushes {
-        jacobian = deformation.det();
+        volume = members.load::<V>(Column::<D>::MASS) * constants.per_density * jacobian;
+    } else {
+        if displace {
+            jacobian = deformation.det();
+        }
+        if pushes {
+            volume = members.load::<V>(Column::<D>::VOLUME);
+        }
     }
 
     let mut inside = u32::MAX;
@@ -157,6 +163,8 @@ pub fn group<
         members.store_deformation(&deformation);
         members.store_stress(&stress);
         members.give_back::<V>(Column::<D>::DEFORMATION..Column::<D>::START);
+        members.store(Column::<D>::VOLUME, volume);
+        members.give_back::<V>(Column::<D>::VOLUME..Column::<D>::VOLUME + 1);
         if members.flow() {
             members.store(Column::<D>::PLASTIC_STRAIN, plastic_strain);
             members.give_back::<V>(Column::<D>::PLASTIC_STRAIN..Column::<D>::PLASTIC_STRAIN + 1);
@@ -169,8 +177,7 @@ pub fn group<
             load.momentum = Some((velocity * mass, if share == Share::Momentum { V::ZERO } else { mass }));
         }
         if pushes {
-            let volume = members.load::<V>(Column::<D>::VOLUME);
-            load.stress = Some(stress * (volume * jacobian * constants.per_cell));
+            load.stress = Some(stress * (volume * constants.per_cell));
         }
         group.scatter::<M>(visit.window, &load);
     }

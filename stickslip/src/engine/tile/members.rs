@@ -13,26 +13,44 @@ pub const AHEAD: usize = 32;
 /// Fetches what a pass needs of a particle and those beside it.
 #[inline(always)]
 pub fn fetch<T: Real, const D: usize>(columns: &Columns<T, D>, particle: usize, verbs: &Verbs) {
-    for column in 0..columns_read::<D>(reads_deformation(verbs)) {
-        // SAFETY: the particle exists.
-        prefetch(unsafe { columns.at(column, particle) });
-    }
-    if columns.flow() && verbs.strain {
-        // SAFETY: as above.
-        prefetch(unsafe { columns.at(Column::<D>::PLASTIC_STRAIN, particle) });
+    for range in Reads::of(verbs, columns.flow()).columns::<D>() {
+        for column in range {
+            // SAFETY: the particle exists.
+            prefetch(unsafe { columns.at(column, particle) });
+        }
     }
 }
 
-/// The columns that a pass reads, from the first on, with or without deformation and stress; that of plastic strain stands apart.
-#[inline(always)]
-fn columns_read<const D: usize>(deformed: bool) -> usize {
-    if deformed { Column::<D>::START } else { Column::<D>::DEFORMATION }
+/// What a pass reads of particles besides the columns that every pass reads.
+#[derive(Clone, Copy)]
+struct Reads {
+    deformation: bool,
+    stress: bool,
+    plastic_strain: bool,
 }
 
-/// Whether a pass reads deformation and stress.
-#[inline(always)]
-fn reads_deformation(verbs: &Verbs) -> bool {
-    verbs.strain || verbs.displace || verbs.scatter.is_some_and(|share| share != Share::Momentum)
+impl Reads {
+    /// Of a body's particles, which may `flow` or not.
+    #[inline(always)]
+    fn of(verbs: &Verbs, flow: bool) -> Self {
+        Reads {
+            deformation: verbs.strain || verbs.displace,
+            stress: verbs.strain || verbs.scatter.is_some_and(|share| share != Share::Momentum),
+            plastic_strain: flow && verbs.strain,
+        }
+    }
+
+    /// All columns that are read.
+    #[inline(always)]
+    fn columns<const D: usize>(self) -> [Range<usize>; 4] {
+        let only = |read: bool, columns: Range<usize>| if read { columns } else { 0..0 };
+        [
+            0..Column::<D>::DEFORMATION,
+            only(self.deformation, Column::<D>::DEFORMATION..Column::<D>::STRESS),
+            only(self.stress, Column::<D>::STRESS..Column::<D>::START),
+            only(self.plastic_strain, Column::<D>::PLASTIC_STRAIN..Column::<D>::PLASTIC_STRAIN + 1),
+        ]
+    }
 }
 
 /// Up to as many particles as there are lanes, as columns: the body's own where they lie side by side, else copies.
@@ -112,7 +130,7 @@ impl<'a, T: Real, const D: usize, const WHOLE: bool> Members<'a, T, D, WHOLE> {
         copies: &'a mut Copies<T>,
     ) -> Self {
         // SAFETY: the tile's particles are this pass' alone.
-        unsafe { copies.take::<V, D>(columns, index, reads_deformation(verbs)) };
+        unsafe { copies.take::<V, D>(columns, index, Reads::of(verbs, columns.flow())) };
         Members {
             columns,
             count: index.len(),
@@ -234,7 +252,7 @@ impl<T: Real> Copies<T> {
         &mut self,
         columns: &Columns<T, D>,
         index: &[u32],
-        deformed: bool,
+        reads: Reads,
     ) {
         self.runs.find(index);
         for i in 0..self.runs.count {
@@ -242,18 +260,20 @@ impl<T: Real> Copies<T> {
             // SAFETY: the caller's.
             unsafe {
                 self.take_run::<V, D>(columns, run, 0..Column::<D>::DEFORMATION);
-                if deformed {
-                    self.take_run::<V, D>(columns, run, Column::<D>::DEFORMATION..Column::<D>::START);
-                    if columns.flow() {
-                        let column = Column::<D>::PLASTIC_STRAIN;
-                        self.take_run::<V, D>(columns, run, column..column + 1);
-                    }
+                if reads.deformation {
+                    self.take_run::<V, D>(columns, run, Column::<D>::DEFORMATION..Column::<D>::STRESS);
+                }
+                if reads.stress {
+                    self.take_run::<V, D>(columns, run, Column::<D>::STRESS..Column::<D>::START);
+                }
+                if reads.plastic_strain {
+                    let column = Column::<D>::PLASTIC_STRAIN;
+                    self.take_run::<V, D>(columns, run, column..column + 1);
                 }
             }
         }
         if !V::MASKED && self.runs.count > 1 && index.len() < V::COUNT {
-            let more = (deformed && columns.flow()).then_some(Column::<D>::PLASTIC_STRAIN);
-            for column in (0..columns_read::<D>(deformed)).chain(more) {
+            for column in reads.columns::<D>().into_iter().flatten() {
                 let copy = &mut self.columns[column];
                 // SAFETY: there is room for a register from any lane on.
                 unsafe { V::splat(copy[0].0[0]).store(copy.as_mut_ptr().cast::<T>().add(index.len())) };
