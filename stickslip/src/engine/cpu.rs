@@ -8,7 +8,7 @@ use super::pass::{Found, Pass, Path, Verbs, Visit};
 use super::tile::SeveralAtATime;
 use crate::basis::Basis;
 use crate::grid::{Disjoint, Window};
-use crate::lanes::Laned;
+use crate::lanes::{Any, Laned};
 use crate::particles::{Columns, Room};
 use rayon::prelude::*;
 use std::marker::PhantomData;
@@ -69,9 +69,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 match path {
                     Path::Lanes(processor) => T::run(processor, SeveralAtATime(&mut visit)),
                     Path::Reference => {
-                        visit.open();
+                        visit.open::<Any>();
                         visit.one_by_one();
-                        visit.close();
+                        visit.close::<Any>();
                     }
                 }
             }

@@ -3,7 +3,7 @@
 use crate::basis::Basis;
 use crate::body::{Body, Particle};
 use crate::grid::{Disjoint, Lattice, Node, SIDE, Sought, Tile, Window, addressable};
-use crate::lanes::Processor;
+use crate::lanes::{Machine, Processor};
 use crate::material::Motion;
 use crate::particles::Columns;
 use crate::tensor::{Matrix, Real, Vector};
@@ -153,10 +153,10 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
     /// # Safety
     /// Nobody may write to the tile's nodes meanwhile.
     #[inline(always)]
-    pub unsafe fn open(&mut self) {
+    pub unsafe fn open<M: Machine<T>>(&mut self) {
         if self.pass.gathers() {
             // SAFETY: the caller's.
-            unsafe { self.window.load(self.nodes, self.tile, Self::REACHED, self.pass.sought()) };
+            unsafe { self.window.load::<M>(self.nodes, self.tile, Self::REACHED, self.pass.sought()) };
         }
         if self.pass.verbs.scatter.is_some() {
             self.window.clear();
@@ -171,10 +171,10 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
     /// # Safety
     /// Nobody else may use the tile's nodes meanwhile.
     #[inline(always)]
-    pub unsafe fn close(&mut self) {
+    pub unsafe fn close<M: Machine<T>>(&mut self) {
         if self.pass.verbs.scatter.is_some() {
             // SAFETY: the caller's.
-            unsafe { self.window.add_to(self.nodes, self.tile, Self::REACHED) };
+            unsafe { self.window.add_to::<M>(self.nodes, self.tile, Self::REACHED) };
         }
     }
 

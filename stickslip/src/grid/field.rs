@@ -2,23 +2,24 @@
 
 use super::{Cover, Nodes, SIDE, Tile, next_of, nodes_per_block};
 use crate::basis::MAX_WIDTH;
-use crate::lanes::prefetch;
+use crate::lanes::{Lanes, MOST_LANES, Machine, prefetch};
 use crate::pages::ask_for_large;
 use crate::tensor::{Real, Vector};
 use rayon::prelude::*;
 use std::marker::PhantomData;
 
-/// One body's share of one grid node.
+/// One body's share of one grid node. What particles give comes first, so that [`Window::add_to`] adds it at once.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct Node<T, const D: usize> {
     /// Mass [kg].
     pub mass: T,
-    /// Velocity as interpolated from the particles, before contact and forces [m/s].
-    pub start: Vector<T, D>,
     /// Velocity now [m/s]; momentum [kg m/s] while particles are being scattered.
     pub velocity: Vector<T, D>,
     /// Force of the body's own stress [N].
     pub force: Vector<T, D>,
+    /// Velocity as interpolated from the particles, before contact and forces [m/s].
+    pub start: Vector<T, D>,
     /// Velocity as integrated, which moves the particles [m/s].
     pub carry: Vector<T, D>,
 }
@@ -27,11 +28,30 @@ impl<T: Real, const D: usize> Node<T, D> {
     /// A node that nothing reaches.
     pub const EMPTY: Self = Node {
         mass: T::ZERO,
-        start: Vector::ZERO,
         velocity: Vector::ZERO,
         force: Vector::ZERO,
+        start: Vector::ZERO,
         carry: Vector::ZERO,
     };
+
+    /// Where a node's first eight numbers are in [`Sums`]: mass, velocity and force, and then what gets nothing.
+    const GIVEN: [usize; MOST_LANES] =
+        if D == 2 { [6, 0, 2, 1, 3, 4, 5, 7] } else { [6, 0, 2, 4, 1, 3, 5, 7] };
+
+    /// Takes what particles gave.
+    ///
+    /// # Safety
+    /// The node must be there, and nobody else may use it meanwhile.
+    #[inline(always)]
+    unsafe fn take<M: Machine<T>>(node: *mut Self, sums: &Sums<T>) {
+        const { assert!(size_of::<Self>() >= MOST_LANES * size_of::<T>()) };
+        let first = node.cast::<T>();
+        // SAFETY: the sums are eight numbers, and a node begins with nine or more.
+        unsafe {
+            let sums = M::Wide::load(sums.as_ptr().cast());
+            (M::Wide::load(first) + sums.permuted(Self::GIVEN)).store(first);
+        }
+    }
 }
 
 /// Blocks that a thread takes at a time.
@@ -108,15 +128,18 @@ pub struct Sought<T> {
 /// What a node is given: momentum [kg m/s] and force [N] along each axis, mass [kg] and nothing in the last place.
 pub type Sums<T> = [[T; 2]; 4];
 
+/// What a node tells: a velocity, and nothing in the places beyond.
+pub type Told<T> = [T; 4];
+
 /// A tile's part of the field in one place: nodes `block * 4` to `block * 4 + 5` along each axis, the last fastest.
 #[derive(Clone, Debug)]
 pub struct Window<T, const D: usize> {
     /// v - (1 - a) v0 [m/s].
-    pub change: [Vector<T, D>; WINDOW_NODES],
+    pub change: [Told<T>; WINDOW_NODES],
     /// The velocities that strain particles [m/s].
-    pub flow: [Vector<T, D>; WINDOW_NODES],
+    pub flow: [Told<T>; WINDOW_NODES],
     /// The velocities that move particles [m/s].
-    pub carry: [Vector<T, D>; WINDOW_NODES],
+    pub carry: [Told<T>; WINDOW_NODES],
     /// What was scattered so far.
     pub sums: [Sums<T>; WINDOW_NODES],
 }
@@ -124,33 +147,79 @@ pub struct Window<T, const D: usize> {
 impl<T: Real, const D: usize> Default for Window<T, D> {
     fn default() -> Self {
         Window {
-            change: [Vector::ZERO; WINDOW_NODES],
-            flow: [Vector::ZERO; WINDOW_NODES],
-            carry: [Vector::ZERO; WINDOW_NODES],
+            change: [[T::ZERO; 4]; WINDOW_NODES],
+            flow: [[T::ZERO; 4]; WINDOW_NODES],
+            carry: [[T::ZERO; 4]; WINDOW_NODES],
             sums: [[[T::ZERO; 2]; 4]; WINDOW_NODES],
         }
     }
 }
 
-/// Calls `f(node of the window, node of the field, how many in a row)` for the `side`^D first nodes of a tile's window.
-#[inline(always)]
-fn each_run<const D: usize>(tile: &Tile<D>, side: usize, mut f: impl FnMut(usize, usize, usize)) {
-    const S: usize = SIDE as usize;
-    let rows = if D == 2 { 1 } else { side };
-    for x in 0..side {
-        for y in 0..rows {
-            // `f` is called in one place, else the compiler may leave it uninlined, and its instructions are not the machine's.
-            for half in 0..2 {
-                let (place, corner, local) = match D {
-                    2 => (x * WINDOW, x / S * 2, x % S * S),
-                    _ => ((x * WINDOW + y) * WINDOW, x / S * 4 + y / S * 2, (x % S * S + y % S) * S),
-                };
-                let count = if half == 0 { S.min(side) } else { side.saturating_sub(S) };
-                let node = tile.slots[corner + half] as usize * nodes_per_block(D) + local;
-                f(place + half * S, node, count);
-            }
-        }
+/// Nodes that lie side by side in the window and in the field.
+struct Run {
+    /// The first one's place in the window.
+    place: usize,
+    /// Its place in the field.
+    node: usize,
+    /// How many.
+    count: usize,
+}
+
+/// The `side`^D first nodes of a tile's window. An iterator, for loops over it are compiled where they stand.
+struct Runs<'a, const D: usize> {
+    tile: &'a Tile<D>,
+    side: usize,
+    /// Along the first two axes, and which half of the row.
+    next: [usize; 3],
+}
+
+impl<'a, const D: usize> Runs<'a, D> {
+    #[inline(always)]
+    fn new(tile: &'a Tile<D>, side: usize) -> Self {
+        Runs { tile, side, next: [0; 3] }
     }
+}
+
+impl<const D: usize> Iterator for Runs<'_, D> {
+    type Item = Run;
+
+    #[inline(always)]
+    fn next(&mut self) -> Option<Run> {
+        const S: usize = SIDE as usize;
+        let [x, y, half] = self.next;
+        if x == self.side {
+            return None;
+        }
+        let rows = if D == 2 { 1 } else { self.side };
+        self.next = match (half, y + 1 == rows) {
+            (0, _) => [x, y, 1],
+            (_, false) => [x, y + 1, 0],
+            _ => [x + 1, 0, 0],
+        };
+        let (place, corner, local) = match D {
+            2 => (x * WINDOW, x / S * 2, x % S * S),
+            _ => ((x * WINDOW + y) * WINDOW, x / S * 4 + y / S * 2, (x % S * S + y % S) * S),
+        };
+        Some(Run {
+            place: place + half * S,
+            node: self.tile.slots[corner + half] as usize * nodes_per_block(D) + local,
+            count: if half == 0 { S } else { self.side - S },
+        })
+    }
+}
+
+/// A vector in the first places of four lanes.
+#[inline(always)]
+fn told<V: Lanes, const D: usize>(vector: &Vector<V::Real, D>) -> V {
+    // SAFETY: it has `D` components.
+    unsafe { V::load_first(vector.0.as_ptr(), D) }
+}
+
+#[inline(always)]
+fn tell<V: Lanes>(place: &mut Told<V::Real>, vector: V) {
+    const { assert!(V::COUNT == 4) };
+    // SAFETY: there is room for four numbers.
+    unsafe { vector.store(place.as_mut_ptr()) }
 }
 
 impl<T: Real, const D: usize> Window<T, D> {
@@ -165,29 +234,31 @@ impl<T: Real, const D: usize> Window<T, D> {
     /// # Safety
     /// No other thread may write to the tile's slots meanwhile.
     #[inline(always)]
-    pub unsafe fn load(
+    pub unsafe fn load<M: Machine<T>>(
         &mut self,
         field: &Disjoint<Node<T, D>>,
         tile: &Tile<D>,
         side: usize,
         sought: Sought<T>,
     ) {
-        each_run(tile, side, |place, first, count| {
+        for Run { place, node, count } in Runs::new(tile, side) {
             for k in 0..count {
                 // SAFETY: the caller keeps writers away from the tile's slots.
-                let node = unsafe { &*field.get(first + k) };
+                let node = unsafe { &*field.get(node + k) };
                 let place = place + k;
+                let carry: M::Quad = told(&node.carry);
                 if let Some(pic) = sought.change {
-                    self.change[place] = node.carry - node.start * (T::ONE - pic);
+                    let start: M::Quad = told(&node.start);
+                    tell(&mut self.change[place], carry - start * M::Quad::splat(T::ONE - pic));
                 }
                 if sought.flow {
-                    self.flow[place] = node.velocity;
+                    tell::<M::Quad>(&mut self.flow[place], told(&node.velocity));
                 }
                 if sought.carry {
-                    self.carry[place] = node.carry;
+                    tell(&mut self.carry[place], carry);
                 }
             }
-        });
+        }
     }
 
     /// Adds to the field what was scattered into the `side`^D first nodes.
@@ -195,19 +266,13 @@ impl<T: Real, const D: usize> Window<T, D> {
     /// # Safety
     /// No other thread may touch the tile's slots meanwhile.
     #[inline(always)]
-    pub unsafe fn add_to(&self, field: &Disjoint<Node<T, D>>, tile: &Tile<D>, side: usize) {
-        each_run(tile, side, |place, first, count| {
+    pub unsafe fn add_to<M: Machine<T>>(&self, field: &Disjoint<Node<T, D>>, tile: &Tile<D>, side: usize) {
+        for Run { place, node, count } in Runs::new(tile, side) {
             for k in 0..count {
                 // SAFETY: the caller keeps other threads away from the tile's slots.
-                let node = unsafe { field.get(first + k) };
-                let sums = &self.sums[place + k];
-                node.mass += sums[3][0];
-                for (i, &[momentum, force]) in sums.iter().enumerate().take(D) {
-                    node.velocity[i] += momentum;
-                    node.force[i] += force;
-                }
+                unsafe { Node::take::<M>(field.get(node + k), &self.sums[place + k]) };
             }
-        });
+        }
     }
 }
 
@@ -215,13 +280,13 @@ impl<T: Real, const D: usize> Disjoint<'_, Node<T, D>> {
     /// Fetches the `side`^D first nodes of a tile's window into the cache.
     #[inline(always)]
     pub fn fetch(&self, tile: &Tile<D>, side: usize) {
-        each_run(tile, side, |_, first, count| {
-            let (mut line, end) = (self.place(first).cast::<u8>(), self.place(first + count).cast::<u8>());
+        for Run { node, count, .. } in Runs::new(tile, side) {
+            let (mut line, end) = (self.place(node).cast::<u8>(), self.place(node + count).cast::<u8>());
             while line < end {
                 prefetch(line);
                 line = line.wrapping_add(64);
             }
-        });
+        }
     }
 }
 

@@ -130,6 +130,13 @@ pub trait Lanes: Number {
         })
     }
 
+    /// In lane `i` the number of lane `order[i]`.
+    #[inline(always)]
+    fn permuted(self, order: [usize; MOST_LANES]) -> Self {
+        let numbers = self.numbers();
+        Self::from_fn(|lane| numbers.0[order[lane]])
+    }
+
     /// The first `count` lanes, and zero beyond.
     #[inline(always)]
     fn first(self, count: usize) -> Self {

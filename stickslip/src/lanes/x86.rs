@@ -230,6 +230,12 @@ lanes! { F64x8: __m512d as [f64; 8];
         }
     }
     #[inline(always)]
+    fn permuted(self, order: [usize; MOST_LANES]) -> Self {
+        let [a, b, c, d, e, f, g, h] = order.map(|lane| lane as i64);
+        // SAFETY: values of this type exist only where the processor has the instructions.
+        unsafe { F64x8(_mm512_permutexvar_pd(_mm512_setr_epi64(a, b, c, d, e, f, g, h), self.0)) }
+    }
+    #[inline(always)]
     unsafe fn load_first(first: *const f64, count: usize) -> Self {
         // SAFETY: lanes beyond the mask are not read.
         unsafe { F64x8(_mm512_maskz_loadu_pd(mask(count), first)) }
@@ -433,6 +439,12 @@ lanes! { F32x8: __m256 as [f32; 8];
         }
     }
     #[inline(always)]
+    fn permuted(self, order: [usize; MOST_LANES]) -> Self {
+        let [a, b, c, d, e, f, g, h] = order.map(|lane| lane as i32);
+        // SAFETY: values of this type exist only where the processor has the instructions.
+        unsafe { F32x8(_mm256_permutevar8x32_ps(self.0, _mm256_setr_epi32(a, b, c, d, e, f, g, h))) }
+    }
+    #[inline(always)]
     fn alternate([a, b]: [f32; 2]) -> Self {
         // SAFETY: values of this type exist only where the processor has the instructions.
         unsafe { F32x8(_mm256_setr_ps(a, b, a, b, a, b, a, b)) }
@@ -491,6 +503,11 @@ lanes! { F32x4: __m128 as [f32; 4];
             let guess = _mm_sub_epi32(_mm_set1_epi32(CUBE_ROOT_F32 as i32), third);
             F32x4(_mm_castsi128_ps(guess))
         }
+    }
+    #[inline(always)]
+    unsafe fn load_first(first: *const f32, count: usize) -> Self {
+        // SAFETY: lanes beyond the mask are not read; only machines with AVX2 use this type.
+        unsafe { F32x4(_mm_maskload_ps(first, _mm_loadu_si128(MASKS_32.as_ptr().add(8 - count).cast()))) }
     }
     #[inline(always)]
     unsafe fn gather(first: *const f32, index: &[usize; MOST_LANES]) -> Self {

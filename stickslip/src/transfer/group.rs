@@ -7,7 +7,7 @@
 #![allow(clippy::needless_range_loop)]
 
 use crate::basis::{Basis, MAX_WIDTH, Shape};
-use crate::grid::{Sums, WINDOW, WINDOW_NODES, Window};
+use crate::grid::{Sums, Told, WINDOW, WINDOW_NODES, Window};
 use crate::lanes::{Lanes, MOST_LANES, Machine, Numbers};
 use crate::tensor::{Matrix, Number, Real, Symmetric, Vector};
 use std::marker::PhantomData;
@@ -18,12 +18,7 @@ pub trait Start: Copy {
     fn of(&self, lane: usize) -> usize;
 
     /// A component of the value at the node that comes `offset` after the base node.
-    fn value<V: Lanes, const D: usize>(
-        &self,
-        nodes: &[Vector<V::Real, D>; WINDOW_NODES],
-        offset: usize,
-        component: usize,
-    ) -> V;
+    fn value<V: Lanes>(&self, nodes: &[Told<V::Real>; WINDOW_NODES], offset: usize, component: usize) -> V;
 
     /// The place of all, if they share one.
     fn shared(&self) -> Option<usize>;
@@ -64,12 +59,7 @@ impl Start for Shared {
     }
 
     #[inline(always)]
-    fn value<V: Lanes, const D: usize>(
-        &self,
-        nodes: &[Vector<V::Real, D>; WINDOW_NODES],
-        offset: usize,
-        component: usize,
-    ) -> V {
+    fn value<V: Lanes>(&self, nodes: &[Told<V::Real>; WINDOW_NODES], offset: usize, component: usize) -> V {
         V::splat(nodes[self.0 + offset][component])
     }
 
@@ -86,15 +76,11 @@ impl Start for Own {
     }
 
     #[inline(always)]
-    fn value<V: Lanes, const D: usize>(
-        &self,
-        nodes: &[Vector<V::Real, D>; WINDOW_NODES],
-        offset: usize,
-        component: usize,
-    ) -> V {
+    fn value<V: Lanes>(&self, nodes: &[Told<V::Real>; WINDOW_NODES], offset: usize, component: usize) -> V {
         let mut index = [0; MOST_LANES];
         for lane in 0..V::COUNT {
-            index[lane] = (self.0[lane] + offset) * D + component;
+            index[lane] =
+                (self.0[lane] + offset) * size_of::<Told<V::Real>>() / size_of::<V::Real>() + component;
         }
         // SAFETY: an offset is at most a particle's reach, and starts are before the last one.
         unsafe { V::gather(nodes.as_ptr().cast(), &index) }
@@ -160,7 +146,7 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
 
     /// sum S_i of a value at the nodes.
     #[inline(always)]
-    pub fn interpolate(&self, nodes: &[Vector<V::Real, D>; WINDOW_NODES]) -> Vector<V, D> {
+    pub fn interpolate(&self, nodes: &[Told<V::Real>; WINDOW_NODES]) -> Vector<V, D> {
         let [x, y, z] = [&self.shapes[0], &self.shapes[1], &self.shapes[D - 1]];
         let mut sum = [V::NOTHING; D];
         for i in 0..B::WIDTH {
@@ -186,7 +172,7 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
 
     /// h L = sum v_i (x) h grad S_i, embedded in space, and sum S_i v_i of the same velocities [m/s].
     #[inline(always)]
-    pub fn flow(&self, nodes: &[Vector<V::Real, D>; WINDOW_NODES]) -> (Matrix<V>, Vector<V, D>) {
+    pub fn flow(&self, nodes: &[Told<V::Real>; WINDOW_NODES]) -> (Matrix<V>, Vector<V, D>) {
         let [x, y, z] = [&self.shapes[0], &self.shapes[1], &self.shapes[D - 1]];
         let mut l = Matrix::<V>::ZERO;
         for c in 0..D {

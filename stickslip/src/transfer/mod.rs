@@ -9,7 +9,7 @@ pub use group::{Group, Load, Own, Shared, Start};
 
 use crate::basis::{Axis, Basis};
 use crate::body::Particle;
-use crate::grid::{Lattice, SIDE, WINDOW, WINDOW_NODES, Window};
+use crate::grid::{Lattice, SIDE, Told, WINDOW, WINDOW_NODES, Window};
 use crate::tensor::{Matrix, Real, Symmetric, Vector};
 use std::marker::PhantomData;
 
@@ -110,14 +110,18 @@ impl<T: Real, const D: usize, B: Basis<T>> Stencil<T, D, B> {
     }
 
     /// sum S_i of a value at the window's nodes.
-    pub fn interpolate(&self, nodes: &[Vector<T, D>; WINDOW_NODES], block: [i32; D]) -> Vector<T, D> {
+    pub fn interpolate(&self, nodes: &[Told<T>; WINDOW_NODES], block: [i32; D]) -> Vector<T, D> {
         let mut sum = Vector::ZERO;
-        self.each(block, |place, weight, _| sum += nodes[place] * weight);
+        self.each(block, |place, weight, _| {
+            for i in 0..D {
+                sum[i] += nodes[place][i] * weight;
+            }
+        });
         sum
     }
 
     /// L = sum v_i (x) grad S_i, embedded in space [1/s].
-    pub fn velocity_gradient(&self, nodes: &[Vector<T, D>; WINDOW_NODES], block: [i32; D]) -> Matrix<T> {
+    pub fn velocity_gradient(&self, nodes: &[Told<T>; WINDOW_NODES], block: [i32; D]) -> Matrix<T> {
         let mut l = Matrix::ZERO;
         self.each(block, |place, _, gradient| {
             let velocity = nodes[place];

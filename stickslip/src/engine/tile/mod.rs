@@ -27,7 +27,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Work for SeveralAtATime<'_, '_, T, D
     fn run<M: Machine<T>>(self) {
         let visit = self.0;
         // SAFETY: the caller of this work keeps others away from the tile's nodes.
-        unsafe { visit.open() };
+        unsafe { visit.open::<M>() };
         if D == 3 {
             visit.groups::<M, M::Wide>();
         } else if visit.sparse() {
@@ -37,7 +37,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Work for SeveralAtATime<'_, '_, T, D
             visit.groups::<M, M::Quad>();
         }
         // SAFETY: as above.
-        unsafe { visit.close() };
+        unsafe { visit.close::<M>() };
     }
 }
 
