@@ -130,6 +130,13 @@ pub trait Lanes: Number {
         })
     }
 
+    /// In all of four lanes that stand together the `n`-th of them.
+    #[inline(always)]
+    fn every_fourth(self, n: usize) -> Self {
+        let numbers = self.numbers();
+        Self::from_fn(|lane| numbers.0[lane / 4 * 4 + n])
+    }
+
     /// In lane `i` the number of lane `order[i]`.
     #[inline(always)]
     fn permuted(self, order: [usize; MOST_LANES]) -> Self {
@@ -219,6 +226,9 @@ pub trait Machine<T>: Copy + 'static {
     type Wide: Lanes<Real = T>;
     /// Four.
     type Quad: Lanes<Real = T>;
+
+    /// The sums of the first four lanes and the last four.
+    fn halves(wide: Self::Wide) -> Self::Quad;
 }
 
 /// Every processor: arrays, which the compiler turns into whatever the build's target has (SSE2, NEON).
@@ -228,6 +238,11 @@ pub struct Any;
 impl<T: Real> Machine<T> for Any {
     type Wide = Pair<Pack<T, 4>>;
     type Quad = Pack<T, 4>;
+
+    #[inline(always)]
+    fn halves(Pair(lower, upper): Self::Wide) -> Self::Quad {
+        lower + upper
+    }
 }
 
 /// Fetches the line of memory at a place into the cache, where the processor can be told to.

@@ -6,7 +6,7 @@ use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssi
 
 /// The lanes of one register and then those of another.
 #[derive(Clone, Copy, Debug)]
-pub struct Pair<V>(V, V);
+pub struct Pair<V>(pub V, pub V);
 
 macro_rules! lanewise {
     ($op:ident, $f:ident, $assign:ident, $g:ident) => {
@@ -152,6 +152,12 @@ impl<V: Lanes> Lanes for Pair<V> {
     #[inline(always)]
     fn first(self, count: usize) -> Self {
         Pair(self.0.first(count.min(V::COUNT)), self.1.first(count.saturating_sub(V::COUNT)))
+    }
+
+    #[inline(always)]
+    fn every_fourth(self, n: usize) -> Self {
+        const { assert!(V::COUNT.is_multiple_of(4)) };
+        Pair(self.0.every_fourth(n), self.1.every_fourth(n))
     }
 
     #[inline(always)]

@@ -37,18 +37,39 @@ pub struct Avx2;
 impl Machine<f64> for Avx512 {
     type Wide = F64x8;
     type Quad = F64x4;
+
+    #[inline(always)]
+    fn halves(wide: F64x8) -> F64x4 {
+        // SAFETY: values of this type exist only where the processor has the instructions.
+        unsafe { F64x4(_mm256_add_pd(low(wide.0), high(wide.0))) }
+    }
 }
 impl Machine<f32> for Avx512 {
     type Wide = F32x8;
     type Quad = F32x4;
+
+    #[inline(always)]
+    fn halves(wide: F32x8) -> F32x4 {
+        sum_of_halves(wide)
+    }
 }
 impl Machine<f64> for Avx2 {
     type Wide = Pair<F64x4>;
     type Quad = F64x4;
+
+    #[inline(always)]
+    fn halves(Pair(lower, upper): Pair<F64x4>) -> F64x4 {
+        lower + upper
+    }
 }
 impl Machine<f32> for Avx2 {
     type Wide = F32x8;
     type Quad = F32x4;
+
+    #[inline(always)]
+    fn halves(wide: F32x8) -> F32x4 {
+        sum_of_halves(wide)
+    }
 }
 
 /// Does work with AVX-512.
@@ -230,6 +251,18 @@ lanes! { F64x8: __m512d as [f64; 8];
         }
     }
     #[inline(always)]
+    fn every_fourth(self, n: usize) -> Self {
+        // SAFETY: values of this type exist only where the processor has the instructions.
+        unsafe {
+            match n {
+                0 => F64x8(_mm512_permutex_pd::<0x00>(self.0)),
+                1 => F64x8(_mm512_permutex_pd::<0x55>(self.0)),
+                2 => F64x8(_mm512_permutex_pd::<0xaa>(self.0)),
+                _ => F64x8(_mm512_permutex_pd::<0xff>(self.0)),
+            }
+        }
+    }
+    #[inline(always)]
     fn permuted(self, order: [usize; MOST_LANES]) -> Self {
         let [a, b, c, d, e, f, g, h] = order.map(|lane| lane as i64);
         // SAFETY: values of this type exist only where the processor has the instructions.
@@ -342,6 +375,18 @@ lanes! { F64x4: __m256d as [f64; 4];
         }
     }
     #[inline(always)]
+    fn every_fourth(self, n: usize) -> Self {
+        // SAFETY: values of this type exist only where the processor has the instructions.
+        unsafe {
+            match n {
+                0 => F64x4(_mm256_permute4x64_pd::<0x00>(self.0)),
+                1 => F64x4(_mm256_permute4x64_pd::<0x55>(self.0)),
+                2 => F64x4(_mm256_permute4x64_pd::<0xaa>(self.0)),
+                _ => F64x4(_mm256_permute4x64_pd::<0xff>(self.0)),
+            }
+        }
+    }
+    #[inline(always)]
     fn alternate([a, b]: [f64; 2]) -> Self {
         // SAFETY: values of this type exist only where the processor has the instructions.
         unsafe { F64x4(_mm256_setr_pd(a, b, a, b)) }
@@ -439,6 +484,18 @@ lanes! { F32x8: __m256 as [f32; 8];
         }
     }
     #[inline(always)]
+    fn every_fourth(self, n: usize) -> Self {
+        // SAFETY: values of this type exist only where the processor has the instructions.
+        unsafe {
+            match n {
+                0 => F32x8(_mm256_permute_ps::<0x00>(self.0)),
+                1 => F32x8(_mm256_permute_ps::<0x55>(self.0)),
+                2 => F32x8(_mm256_permute_ps::<0xaa>(self.0)),
+                _ => F32x8(_mm256_permute_ps::<0xff>(self.0)),
+            }
+        }
+    }
+    #[inline(always)]
     fn permuted(self, order: [usize; MOST_LANES]) -> Self {
         let [a, b, c, d, e, f, g, h] = order.map(|lane| lane as i32);
         // SAFETY: values of this type exist only where the processor has the instructions.
@@ -516,6 +573,12 @@ lanes! { F32x4: __m128 as [f32; 4];
         // SAFETY: values of this type exist only where the processor has the instructions.
         unsafe { F32x4(_mm_setr_ps(at(0), at(1), at(2), at(3))) }
     }
+}
+
+#[inline(always)]
+fn sum_of_halves(wide: F32x8) -> F32x4 {
+    // SAFETY: values of this type exist only where the processor has the instructions.
+    unsafe { F32x4(_mm_add_ps(_mm256_castps256_ps128(wide.0), _mm256_extractf128_ps::<1>(wide.0))) }
 }
 
 #[inline(always)]

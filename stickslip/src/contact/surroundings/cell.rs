@@ -63,7 +63,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
         for i in 0..D {
             for j in 0..D {
                 let (a, b, c, d) = ((j + 1) % 3, (j + 2) % 3, (i + 1) % 3, (i + 2) % 3);
-                let minor = f.0[a][c] * f.0[b][d] - f.0[a][d] * f.0[b][c];
+                let minor = f.0[a][c].times_plus(f.0[b][d], -(f.0[a][d] * f.0[b][c]));
                 inverse[i][j] = minor * per_jacobian * (seen.sign[i] * seen.sign[j]);
             }
         }
@@ -77,34 +77,35 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
         if !self.near.bodies[self.body].particles.flow() {
             for i in 0..D {
                 for j in 0..D {
-                    place[i] -= inverse[i][j] * arm[j];
+                    place[i] = (-inverse[i][j]).times_plus(arm[j], place[i]);
                 }
             }
         }
 
-        let mut by_volume = [V::ZERO; 4 * MOST_PLACED];
+        let mut numbers = [V::ZERO; 4 * MOST_PLACED];
         for i in 0..D {
-            by_volume[i] = place[i] * room;
-            by_volume[D + i] = arm[i] * room;
+            numbers[i] = place[i];
+            numbers[D + i] = arm[i];
             for j in 0..D {
-                by_volume[2 * D + i * D + j] = inverse[i][j] * room;
+                numbers[2 * D + i * D + j] = inverse[i][j];
             }
         }
         let mut rows = [Rows::<T>::EMPTY; MOST_PLACED];
         for row in 0..placed_rows(D) {
             let k = 4 * row;
-            rows[row].fill([by_volume[k], by_volume[k + 1], by_volume[k + 2], by_volume[k + 3]]);
+            rows[row].fill([numbers[k], numbers[k + 1], numbers[k + 2], numbers[k + 3]]);
         }
-        let volumes = room.numbers();
+        let rooms = room.first(members.count);
         let mut left = nodes;
         while let Some(node) = next_of(&mut left) {
-            let shares = self.shares(&shapes, base, node);
-            let mut added = [M::Quad::ZERO; FIRST + MOST_PLACED];
-            for p in 0..members.count.min(MOST_LANES) {
-                added[0] += shares.get::<M>(p) * M::Quad::splat(volumes.0[p]);
-                let weight = M::Quad::splat(shares.0[p][3]);
+            let shares = self.shares(&shapes, base, node, rooms);
+            let mut added = [M::Wide::NOTHING; FIRST + MOST_PLACED];
+            for pair in 0..members.pairs() {
+                let share = shares.pair::<M>(pair);
+                added[0] += share;
+                let weight = share.every_fourth(3);
                 for row in 0..placed_rows(D) {
-                    added[FIRST + row] += rows[row].get::<M>(p) * weight;
+                    added[FIRST + row] = rows[row].pair::<M>(pair).times_plus(weight, added[FIRST + row]);
                 }
             }
             let sums = self.sums_at(node);
@@ -148,36 +149,46 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
             }
             force[j].fill(column);
         }
-        let mass = members.load::<V>(Column::<D>::MASS).numbers();
+        let mass: V = members.load(Column::<D>::MASS);
+        let mut masses = Rows::<T>::EMPTY;
+        masses.fill([mass; 4]);
+        let here = V::ONE.first(members.count);
         while let Some(node) = next_of(&mut nodes) {
-            let shares = self.shares(shapes, base, node);
-            let mut added = [M::Quad::ZERO; MOST_STRESS];
-            let (mut masses, mut pushed) = (M::Quad::ZERO, M::Quad::ZERO);
-            for p in 0..members.count.min(MOST_LANES) {
-                let weight = M::Quad::splat(shares.0[p][3]);
+            let shares = self.shares(shapes, base, node, here);
+            let mut added = [M::Wide::NOTHING; MOST_STRESS];
+            let [mut weighed, mut pushed] = [M::Wide::NOTHING; 2];
+            for pair in 0..members.pairs() {
+                let share = shares.pair::<M>(pair);
+                let weight = share.every_fourth(3);
                 for row in 0..stress_rows(D) {
-                    added[row] += rows[row].get::<M>(p) * weight;
+                    added[row] = rows[row].pair::<M>(pair).times_plus(weight, added[row]);
                 }
-                masses += shares.get::<M>(p) * M::Quad::splat(mass.0[p]);
+                weighed = masses.pair::<M>(pair).times_plus(share, weighed);
                 for j in 0..D {
-                    pushed += force[j].get::<M>(p) * M::Quad::splat(shares.0[p][j]);
+                    pushed = force[j].pair::<M>(pair).times_plus(share.every_fourth(j), pushed);
                 }
             }
             let sums = self.sums_at(node);
             for row in 0..stress_rows(D) {
                 add::<M, T>(&mut sums.0[FIRST + placed_rows(D) + row], added[row]);
             }
-            add::<M, T>(&mut sums.0[MASS], masses);
+            add::<M, T>(&mut sums.0[MASS], weighed);
             add::<M, T>(&mut sums.0[FORCE], pushed);
         }
     }
 
-    /// grad S and S of each particle at a node of the block.
+    /// grad S and S of each particle at a node of the block, times a number of each.
     #[inline(always)]
-    fn shares<V: Lanes<Real = T>>(&self, shapes: &[Shape<V>; D], base: [i32; D], node: usize) -> Rows<T> {
+    fn shares<V: Lanes<Real = T>>(
+        &self,
+        shapes: &[Shape<V>; D],
+        base: [i32; D],
+        node: usize,
+        times: V,
+    ) -> Rows<T> {
         let steps = node_at([0; D], node);
         let offset: [usize; D] = array(0, |i| (self.along(i, steps[i]) - base[i]) as usize);
-        let [x, dx] = [shapes[0].weight[offset[0]], shapes[0].slope(offset[0])];
+        let [x, dx] = [shapes[0].weight[offset[0]] * times, shapes[0].slope(offset[0]) * times];
         let [y, dy] = [shapes[1].weight[offset[1]], shapes[1].slope(offset[1])];
         let mut shares = Rows::<T>::EMPTY;
         if D == 2 {
@@ -203,10 +214,10 @@ const MOST_PLACED: usize = placed_rows(3);
 const MOST_STRESS: usize = stress_rows(3);
 
 #[inline(always)]
-fn add<M: Machine<T>, T: Real>(row: &mut [T; 4], added: M::Quad) {
+fn add<M: Machine<T>, T: Real>(row: &mut [T; 4], added: M::Wide) {
     let row = row.as_mut_ptr();
     // SAFETY: a row has four numbers, borrowed for writing.
-    unsafe { (M::Quad::load(row) + added).store(row) }
+    unsafe { (M::Quad::load(row) + M::halves(added)).store(row) }
 }
 
 /// How a block's particles are seen, in every lane.
@@ -312,6 +323,12 @@ impl<'a, T: Real, const D: usize> Members<'a, T, D> {
         Members { first, stride, count: index.len(), source: PhantomData }
     }
 
+    /// Pairs of them; the last one of the last may be none.
+    #[inline(always)]
+    fn pairs(&self) -> usize {
+        self.count.min(MOST_LANES).div_ceil(2)
+    }
+
     /// Their numbers in a column.
     #[inline(always)]
     fn load<V: Lanes<Real = T>>(&self, column: usize) -> V {
@@ -336,9 +353,10 @@ impl<T: Real> Rows<T> {
         V::store_rows(columns, &mut self.0);
     }
 
+    /// The numbers of two particles.
     #[inline(always)]
-    fn get<M: Machine<T>>(&self, particle: usize) -> M::Quad {
-        // SAFETY: a row is four numbers.
-        unsafe { M::Quad::load(self.0[particle].as_ptr()) }
+    fn pair<M: Machine<T>>(&self, pair: usize) -> M::Wide {
+        // SAFETY: two rows are eight numbers.
+        unsafe { M::Wide::load(self.0[2 * pair..2 * pair + 2].as_ptr().cast()) }
     }
 }
