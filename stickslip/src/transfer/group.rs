@@ -241,6 +241,10 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
             pairs.stress = Some([x, y, z]);
         }
         match self.start.shared() {
+            // A number that the compiler knows, so that loops over pairs go.
+            Some(start) if n == V::COUNT => {
+                Group { count: V::COUNT, ..*self }.scatter_together::<M>(window, start, &pairs);
+            }
             Some(start) => self.scatter_together::<M>(window, start, &pairs),
             None => self.scatter_singly::<M>(window, &pairs),
         }
