@@ -45,11 +45,11 @@ impl Machine<f64> for Avx512 {
     }
 }
 impl Machine<f32> for Avx512 {
-    type Wide = F32x8;
+    type Wide = F32x8<true>;
     type Quad = F32x4;
 
     #[inline(always)]
-    fn halves(wide: F32x8) -> F32x4 {
+    fn halves(wide: F32x8<true>) -> F32x4 {
         sum_of_halves(wide)
     }
 }
@@ -63,11 +63,11 @@ impl Machine<f64> for Avx2 {
     }
 }
 impl Machine<f32> for Avx2 {
-    type Wide = F32x8;
+    type Wide = F32x8<false>;
     type Quad = F32x4;
 
     #[inline(always)]
-    fn halves(wide: F32x8) -> F32x4 {
+    fn halves(wide: F32x8<false>) -> F32x4 {
         sum_of_halves(wide)
     }
 }
@@ -96,52 +96,48 @@ where
     work.run::<Avx2>()
 }
 
-macro_rules! operators {
-    ($name:ident, $($op:ident $f:ident $assign:ident $g:ident $intrinsic:ident;)*) => {
-        $(
-            impl $op for $name {
-                type Output = Self;
-                #[inline(always)]
-                fn $f(self, other: Self) -> Self {
-                    // SAFETY: values of this type exist only where the processor has the instruction.
-                    unsafe { $name($intrinsic(self.0, other.0)) }
-                }
+macro_rules! operator {
+    ($name:ident $(<const $flag:ident>)?, $op:ident $f:ident $assign:ident $g:ident $intrinsic:ident) => {
+        impl $(<const $flag: bool>)? $op for $name $(<$flag>)? {
+            type Output = Self;
+            #[inline(always)]
+            fn $f(self, other: Self) -> Self {
+                // SAFETY: values of this type exist only where the processor has the instruction.
+                unsafe { Self($intrinsic(self.0, other.0)) }
             }
-            impl $assign for $name {
-                #[inline(always)]
-                fn $g(&mut self, other: Self) {
-                    *self = self.$f(other);
-                }
+        }
+        impl $(<const $flag: bool>)? $assign for $name $(<$flag>)? {
+            #[inline(always)]
+            fn $g(&mut self, other: Self) {
+                *self = self.$f(other);
             }
-        )*
+        }
     };
 }
 
 macro_rules! lanes {
-    ($name:ident: $register:ty as [$t:ty; $count:literal];
+    ($name:ident $(<const $flag:ident>)?: $register:ty as [$t:ty; $count:literal];
      $set:ident $load:ident $store:ident; $add:ident $sub:ident $mul:ident $div:ident;
      $sqrt:ident $min:ident $max:ident $times_plus:ident;
      |$a:ident, $b:ident| $at_least:expr; $($part:item)*) => {
         #[doc = concat!(stringify!($count), " numbers in a register.")]
         #[derive(Clone, Copy, Debug)]
         #[repr(transparent)]
-        pub struct $name($register);
+        pub struct $name $(<const $flag: bool>)? ($register);
 
-        operators! { $name,
-            Add add AddAssign add_assign $add;
-            Sub sub SubAssign sub_assign $sub;
-            Mul mul MulAssign mul_assign $mul;
-            Div div DivAssign div_assign $div;
-        }
+        operator! { $name $(<const $flag>)?, Add add AddAssign add_assign $add }
+        operator! { $name $(<const $flag>)?, Sub sub SubAssign sub_assign $sub }
+        operator! { $name $(<const $flag>)?, Mul mul MulAssign mul_assign $mul }
+        operator! { $name $(<const $flag>)?, Div div DivAssign div_assign $div }
 
-        impl $name {
+        impl $(<const $flag: bool>)? $name $(<$flag>)? {
             const fn constant(x: $t) -> Self {
                 // SAFETY: a register is as large as an array of its lanes, and any bits are numbers.
-                $name(unsafe { std::mem::transmute::<[$t; $count], $register>([x; $count]) })
+                Self(unsafe { std::mem::transmute::<[$t; $count], $register>([x; $count]) })
             }
         }
 
-        impl Neg for $name {
+        impl $(<const $flag: bool>)? Neg for $name $(<$flag>)? {
             type Output = Self;
             #[inline(always)]
             fn neg(self) -> Self {
@@ -150,7 +146,7 @@ macro_rules! lanes {
         }
 
         // SAFETY of all below: values of this type exist only where the processor has the instructions.
-        impl Number for $name {
+        impl $(<const $flag: bool>)? Number for $name $(<$flag>)? {
             const ZERO: Self = Self::constant(0.0);
             const NOTHING: Self = Self::constant(-0.0);
             const ONE: Self = Self::constant(1.0);
@@ -162,7 +158,7 @@ macro_rules! lanes {
             }
             #[inline(always)]
             fn sqrt(self) -> Self {
-                unsafe { $name($sqrt(self.0)) }
+                unsafe { Self($sqrt(self.0)) }
             }
             #[inline(always)]
             fn cbrt(self) -> Self {
@@ -179,28 +175,28 @@ macro_rules! lanes {
             }
             #[inline(always)]
             fn min(self, other: Self) -> Self {
-                unsafe { $name($min(self.0, other.0)) }
+                unsafe { Self($min(self.0, other.0)) }
             }
             #[inline(always)]
             fn max(self, other: Self) -> Self {
-                unsafe { $name($max(self.0, other.0)) }
+                unsafe { Self($max(self.0, other.0)) }
             }
             #[inline(always)]
             fn times_plus(self, factor: Self, other: Self) -> Self {
-                unsafe { $name($times_plus(self.0, factor.0, other.0)) }
+                unsafe { Self($times_plus(self.0, factor.0, other.0)) }
             }
         }
 
-        impl Lanes for $name {
+        impl $(<const $flag: bool>)? Lanes for $name $(<$flag>)? {
             type Real = $t;
             const COUNT: usize = $count;
             #[inline(always)]
             fn splat(x: $t) -> Self {
-                unsafe { $name($set(x)) }
+                unsafe { Self($set(x)) }
             }
             #[inline(always)]
             unsafe fn load(first: *const $t) -> Self {
-                unsafe { $name($load(first)) }
+                unsafe { Self($load(first)) }
             }
             #[inline(always)]
             unsafe fn store(self, first: *mut $t) {
@@ -415,7 +411,7 @@ lanes! { F64x4: __m256d as [f64; 4];
         unsafe { turn_pd([a.0, b.0, c.0, d.0], rows.as_mut_ptr().cast()) }
     }
 }
-lanes! { F32x8: __m256 as [f32; 8];
+lanes! { F32x8<const VL>: __m256 as [f32; 8];
     _mm256_set1_ps _mm256_loadu_ps _mm256_storeu_ps;
     _mm256_add_ps _mm256_sub_ps _mm256_mul_ps _mm256_div_ps; _mm256_sqrt_ps _mm256_min_ps _mm256_max_ps _mm256_fmadd_ps;
     |a, b| _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_GE_OQ>(a, b)) as u32;
@@ -428,7 +424,7 @@ lanes! { F32x8: __m256 as [f32; 8];
             let odd = _mm256_srli_epi64::<33>(_mm256_mul_epu32(_mm256_srli_epi64::<32>(bits), third));
             let third = _mm256_or_si256(even, _mm256_slli_epi64::<32>(odd));
             let guess = _mm256_sub_epi32(_mm256_set1_epi32(CUBE_ROOT_F32 as i32), third);
-            F32x8(_mm256_castsi256_ps(guess))
+            Self(_mm256_castsi256_ps(guess))
         }
     }
     #[inline(always)]
@@ -436,34 +432,49 @@ lanes! { F32x8: __m256 as [f32; 8];
         // SAFETY: the caller's.
         let at = |lane: usize| unsafe { *first.add(index[lane]) };
         // SAFETY: values of this type exist only where the processor has the instructions.
-        unsafe { F32x8(_mm256_setr_ps(at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7))) }
+        unsafe { Self(_mm256_setr_ps(at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7))) }
     }
+    const MASKED: bool = VL;
     #[inline(always)]
     unsafe fn load_part(first: *const f32, count: usize, rest: f32) -> Self {
         // SAFETY: lanes beyond the mask are not read.
         unsafe {
+            if VL {
+                return Self(_mm256_mask_loadu_ps(_mm256_set1_ps(rest), mask(count), first));
+            }
             let mask = mask_32(count);
             let numbers = _mm256_maskload_ps(first, mask);
-            F32x8(_mm256_blendv_ps(_mm256_set1_ps(rest), numbers, _mm256_castsi256_ps(mask)))
+            Self(_mm256_blendv_ps(_mm256_set1_ps(rest), numbers, _mm256_castsi256_ps(mask)))
         }
     }
     #[inline(always)]
     unsafe fn load_first(first: *const f32, count: usize) -> Self {
         // SAFETY: lanes beyond the mask are not read.
-        unsafe { F32x8(_mm256_maskload_ps(first, mask_32(count))) }
+        unsafe {
+            if VL {
+                return Self(_mm256_maskz_loadu_ps(mask(count), first));
+            }
+            Self(_mm256_maskload_ps(first, mask_32(count)))
+        }
     }
     #[inline(always)]
     fn first(self, count: usize) -> Self {
         // SAFETY: values of this type exist only where the processor has the instructions.
         unsafe {
+            if VL {
+                return Self(_mm256_maskz_mov_ps(mask(count), self.0));
+            }
             let mask = mask_32(count);
-            F32x8(_mm256_and_ps(self.0, _mm256_castsi256_ps(mask)))
+            Self(_mm256_and_ps(self.0, _mm256_castsi256_ps(mask)))
         }
     }
     #[inline(always)]
     unsafe fn store_part(self, mut first: *mut f32, count: usize) {
         // SAFETY: the caller's. Masked stores of AVX take ten times as long as these on some processors.
         unsafe {
+            if VL {
+                return _mm256_mask_storeu_ps(first, mask(count), self.0);
+            }
             if count == 8 {
                 return self.store(first);
             }
@@ -488,10 +499,10 @@ lanes! { F32x8: __m256 as [f32; 8];
         // SAFETY: values of this type exist only where the processor has the instructions.
         unsafe {
             match n {
-                0 => F32x8(_mm256_permute_ps::<0x00>(self.0)),
-                1 => F32x8(_mm256_permute_ps::<0x55>(self.0)),
-                2 => F32x8(_mm256_permute_ps::<0xaa>(self.0)),
-                _ => F32x8(_mm256_permute_ps::<0xff>(self.0)),
+                0 => Self(_mm256_permute_ps::<0x00>(self.0)),
+                1 => Self(_mm256_permute_ps::<0x55>(self.0)),
+                2 => Self(_mm256_permute_ps::<0xaa>(self.0)),
+                _ => Self(_mm256_permute_ps::<0xff>(self.0)),
             }
         }
     }
@@ -499,12 +510,12 @@ lanes! { F32x8: __m256 as [f32; 8];
     fn permuted(self, order: [usize; MOST_LANES]) -> Self {
         let [a, b, c, d, e, f, g, h] = order.map(|lane| lane as i32);
         // SAFETY: values of this type exist only where the processor has the instructions.
-        unsafe { F32x8(_mm256_permutevar8x32_ps(self.0, _mm256_setr_epi32(a, b, c, d, e, f, g, h))) }
+        unsafe { Self(_mm256_permutevar8x32_ps(self.0, _mm256_setr_epi32(a, b, c, d, e, f, g, h))) }
     }
     #[inline(always)]
     fn alternate([a, b]: [f32; 2]) -> Self {
         // SAFETY: values of this type exist only where the processor has the instructions.
-        unsafe { F32x8(_mm256_setr_ps(a, b, a, b, a, b, a, b)) }
+        unsafe { Self(_mm256_setr_ps(a, b, a, b, a, b, a, b)) }
     }
     #[inline(always)]
     fn fold(self, other: Self) -> Self {
@@ -512,7 +523,7 @@ lanes! { F32x8: __m256 as [f32; 8];
         unsafe {
             let even = _mm256_shuffle_ps::<0b10_00_10_00>(self.0, other.0);
             let odd = _mm256_shuffle_ps::<0b11_01_11_01>(self.0, other.0);
-            F32x8(_mm256_permute_ps::<0b11_01_10_00>(_mm256_add_ps(even, odd)))
+            Self(_mm256_permute_ps::<0b11_01_10_00>(_mm256_add_ps(even, odd)))
         }
     }
     #[inline(always)]
@@ -576,7 +587,7 @@ lanes! { F32x4: __m128 as [f32; 4];
 }
 
 #[inline(always)]
-fn sum_of_halves(wide: F32x8) -> F32x4 {
+fn sum_of_halves<const VL: bool>(wide: F32x8<VL>) -> F32x4 {
     // SAFETY: values of this type exist only where the processor has the instructions.
     unsafe { F32x4(_mm_add_ps(_mm256_castps256_ps128(wide.0), _mm256_extractf128_ps::<1>(wide.0))) }
 }
