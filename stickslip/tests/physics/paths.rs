@@ -1,7 +1,7 @@
 //! Particles taken several at a time do what particles taken one by one do.
 //!
-//! Set-up: a soft ball and a block that fly into each other and a rigid floor before a symmetry face, with friction, gravity, and a share of
-//! PIC; in the plane and in space, both precisions, both bases, all stress updates, on the reference path and on every path that
+//! Set-up: a soft ball and a stone that fly into each other and a rigid floor before a symmetry face, with friction, gravity, and a share of
+//! PIC; both round, for next to an edge round-off decides which way a surface looks; in the plane and in space, both precisions, both bases, all stress updates, on the reference path and on every path that
 //! this processor has.
 //!
 //! Expected: after 60 steps (15 with linear functions) positions agree within 1e-10 of the bodies' size and velocities within 1e-9 of their speed in double precision,
@@ -35,9 +35,9 @@ fn scene(dimension: &str, precision: &str, basis: &str, update: &str) -> String 
         shape.ball = {{ center = {}, radius = 0.3 }}
         velocity = {}
         [[bodies]]
-        name = "block"
+        name = "stone"
         material = "rock"
-        shape.box = {{ min = {}, max = {} }}
+        shape.ball = {{ center = {}, radius = 0.19 }}
         velocity = {}
         [[contact]]
         friction = 0.3
@@ -50,9 +50,8 @@ fn scene(dimension: &str, precision: &str, basis: &str, update: &str) -> String 
         v("0.5", "0.1", "0"),
         v("0.52", "0.3", "0.1"),
         v("1", "-1", "0.3"),
-        v("0", "0", "-0.2"),
-        v("0.2", "0.4", "0.2"),
-        v("1", "-1", "0.1"),
+        v("0.2", "0.68", "0.1"),
+        v("1.5", "-2", "0.1"),
     )
 }
 
@@ -114,7 +113,7 @@ fn in_the_plane_with_one_particle_a_cell() {
     }
 }
 
-/// The block yields: its particles have a column more.
+/// The stone yields: its particles have a column more.
 #[test]
 fn metal() {
     let spaces = [("plane-strain", 2), ("plane-strain", 1), ("plane-stress", 2), ("3d", 2)];

@@ -92,7 +92,7 @@ fn a_belt_without_end_drags_as_a_long_one() {
     assert_alike("belt", scene, [long, endless], 0.3);
 }
 
-/// A punch that rises and turns about a point a metre below its face.
+/// A punch that rises and turns about a point a metre below its face. It meets a round body: next to an edge, round-off decides which way a surface looks.
 #[test]
 fn a_face_that_rises_and_turns_does_what_that_of_a_block_does() {
     let scene = |punch: &str| {
@@ -102,9 +102,9 @@ fn a_face_that_rises_and_turns_does_what_that_of_a_block_does() {
             time = {{ end = 1, max_step = "0.5 ms" }}
             {RUBBER}
             [[bodies]]
-            name = "block"
+            name = "disk"
             material = "rubber"
-            shape.box = {{ min = [-0.5, 0.05], max = [0.5, 0.55] }}
+            shape.ball = {{ center = [0.1, 0.45], radius = 0.4 }}
             [[bodies]]
             name = "punch"
             material = "rubber"
