@@ -103,6 +103,13 @@ struct Mover {
     particle: u32,
 }
 
+impl Mover {
+    /// Their order as one number, which is compared without branches.
+    fn rank(&self) -> u128 {
+        u128::from(self.block) << 64 | u128::from(self.cell) << 32 | u128::from(self.particle)
+    }
+}
+
 /// Stands in the order for a particle that has left.
 const GONE: u32 = u32::MAX;
 
@@ -166,7 +173,7 @@ impl Holding {
     fn settle<const D: usize>(&mut self) -> Blocks {
         let n = nodes_per_block(D);
         // No two are equal, so their order does not depend on who sorts them.
-        self.movers.par_sort_unstable();
+        self.movers.par_sort_unstable_by_key(Mover::rank);
         self.plan(n);
         let mut corners = [0; MOST_NODES];
         for (cell, corners) in corners.iter_mut().enumerate().take(n) {
