@@ -4,7 +4,6 @@ use crate::body::Particle;
 use crate::pages::ask_for_large;
 use crate::tensor::{Matrix, Real, Symmetric, Vector};
 use rayon::prelude::*;
-use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Entries of F that a motion in `D` dimensions leaves free, by row and column; the others are zero.
 pub const fn deformation_entries(dimension: usize) -> &'static [[usize; 2]] {
@@ -50,12 +49,16 @@ impl<const D: usize> Column<D> {
 /// Particles of one body.
 #[derive(Clone, Debug, Default)]
 pub struct Particles<T, const D: usize> {
-    /// One column after the other, [`Particles::stride`] apart.
+    /// How many.
+    len: usize,
+    /// One column after the other, [`Particles::stride`] apart, and room for one more, where particles are sorted.
     columns: Vec<T>,
     /// Room for a column: an odd number of cache lines, else all columns would fall into the same places of a cache.
     stride: usize,
-    /// Each particle's number in its body.
+    /// Each particle's number in its body, and room for as many.
     numbers: Vec<u32>,
+    /// Whether the room is before the columns and numbers, or behind them.
+    later: bool,
     /// Whether there is a column of plastic strain.
     flow: bool,
 }
@@ -68,9 +71,10 @@ impl<T: Real, const D: usize> Particles<T, D> {
     pub fn from_fn(count: usize, flow: bool, f: impl Fn(usize) -> Particle<T, D>) -> Self {
         let lines = (count * size_of::<T>()).div_ceil(LINE) | 1;
         let stride = lines * LINE / size_of::<T>();
-        let columns = vec![T::ZERO; stride * (Column::<D>::COUNT + usize::from(flow))];
+        let columns = vec![T::ZERO; stride * (Column::<D>::COUNT + usize::from(flow) + 1)];
         ask_for_large(columns.as_ptr(), columns.len());
-        let mut particles = Particles { columns, stride, numbers: vec![0; count], flow };
+        let numbers = vec![0; 2 * count];
+        let mut particles = Particles { len: count, columns, stride, numbers, later: false, flow };
         for i in 0..count {
             let particle = f(i);
             particles.set(i, &particle);
@@ -83,7 +87,7 @@ impl<T: Real, const D: usize> Particles<T, D> {
 
     /// How many.
     pub fn len(&self) -> usize {
-        self.numbers.len()
+        self.len
     }
 
     /// Whether they have plastic strain.
@@ -93,12 +97,22 @@ impl<T: Real, const D: usize> Particles<T, D> {
 
     /// None at all.
     pub fn is_empty(&self) -> bool {
-        self.numbers.is_empty()
+        self.len == 0
     }
 
     /// Each particle's number in its body, in the order of memory.
     pub fn numbers(&self) -> &[u32] {
-        &self.numbers
+        &self.numbers[self.first_number()..][..self.len]
+    }
+
+    fn first_number(&self) -> usize {
+        if self.later { self.len } else { 0 }
+    }
+
+    /// Where the first column begins.
+    #[inline(always)]
+    fn first(&self) -> usize {
+        if self.later { self.stride } else { 0 }
     }
 
     /// Particle `i`.
@@ -106,20 +120,21 @@ impl<T: Real, const D: usize> Particles<T, D> {
     pub fn get(&self, i: usize) -> Particle<T, D> {
         assert!(i < self.len(), "a particle of the body");
         // SAFETY: in range, and borrowed for reading.
-        Particle { number: self.numbers[i], ..unsafe { self.view().get(i) } }
+        Particle { number: self.numbers()[i], ..unsafe { self.view().get(i) } }
     }
 
     /// Position [m] and half the side of the undeformed box [m] of particle `i`.
     #[inline]
     pub fn place(&self, i: usize) -> (Vector<T, D>, T) {
-        let at = |column: usize| self.columns[column * self.stride + i];
+        let at = |column: usize| self.columns[self.first() + column * self.stride + i];
         (Vector::from_fn(|k| at(Column::<D>::POSITION + k)), at(Column::<D>::HALF_WIDTH))
     }
 
     /// Writes particle `i`.
     pub fn set(&mut self, i: usize, particle: &Particle<T, D>) {
         assert!(i < self.len(), "a particle of the body");
-        self.numbers[i] = particle.number;
+        let first = self.first_number();
+        self.numbers[first + i] = particle.number;
         // SAFETY: in range, and borrowed for writing.
         unsafe { self.open().set(i, particle) };
     }
@@ -132,44 +147,50 @@ impl<T: Real, const D: usize> Particles<T, D> {
     /// The columns, to be read only.
     #[inline(always)]
     pub fn view(&self) -> Columns<T, D> {
-        Columns { start: self.columns.as_ptr().cast_mut(), stride: self.stride, flow: self.flow }
+        Columns {
+            start: self.columns[self.first()..].as_ptr().cast_mut(),
+            stride: self.stride,
+            flow: self.flow,
+        }
     }
 
     /// Opens the columns to many threads.
     pub fn open(&mut self) -> Columns<T, D> {
-        Columns { start: self.columns.as_mut_ptr(), stride: self.stride, flow: self.flow }
+        let first = self.first();
+        Columns { start: self.columns[first..].as_mut_ptr(), stride: self.stride, flow: self.flow }
     }
 
-    /// Puts the particles into the order of a permutation: first the one whose index comes first. `room` is for threads to work in.
-    pub fn permute(&mut self, order: &[u32], room: &[Mutex<Room<T>>]) {
-        assert_eq!(order.len(), self.len(), "a permutation names every particle");
-        let (len, stride) = (self.len(), self.stride.max(1));
-        {
-            let numbers = &mut lock(room).numbers;
-            numbers.clear();
-            numbers.extend(order.iter().map(|&i| self.numbers[i as usize]));
-            self.numbers.copy_from_slice(numbers);
+    /// Puts the particles into the order of a permutation: first the one whose index comes first. Every column moves into the room beside it.
+    pub fn permute(&mut self, order: &[u32]) {
+        assert_eq!(order.len(), self.len, "a permutation names every particle");
+        let count = self.columns.len() / self.stride.max(1) - 1;
+        for column in 0..count {
+            let column = if self.later { column } else { count - 1 - column };
+            let [lower, upper] = self.columns[column * self.stride..][..2 * self.stride]
+                .get_disjoint_mut([0..self.stride, self.stride..2 * self.stride])
+                .expect("two columns side by side");
+            if self.later { sort(lower, upper, order) } else { sort(upper, lower, order) }
         }
-        self.columns.par_chunks_mut(stride).for_each(|column| {
-            let sorted = &mut lock(room).column;
-            sorted.clear();
-            sorted.extend(order.iter().map(|&i| column[i as usize]));
-            column[..len].copy_from_slice(sorted);
-        });
+        let (lower, upper) = self.numbers.split_at_mut(self.len);
+        if self.later {
+            sort(lower, upper, order)
+        } else {
+            sort(upper, lower, order)
+        }
+        self.later = !self.later;
     }
 }
 
-/// Where a thread sorts a column of particles.
-#[derive(Debug, Default)]
-pub struct Room<T> {
-    column: Vec<T>,
-    numbers: Vec<u32>,
-}
+/// Particles that a thread takes at a time.
+const PART: usize = 1 << 13;
 
-/// The room of this thread.
-fn lock<T>(room: &[Mutex<Room<T>>]) -> MutexGuard<'_, Room<T>> {
-    let thread = rayon::current_thread_index().unwrap_or(0);
-    room[thread].lock().unwrap_or_else(PoisonError::into_inner)
+/// Fills `sorted` with `column` in the order of a permutation.
+fn sort<X: Copy + Send + Sync>(sorted: &mut [X], column: &[X], order: &[u32]) {
+    sorted.par_chunks_mut(PART).zip(order.par_chunks(PART)).for_each(|(sorted, order)| {
+        for (sorted, &i) in sorted.iter_mut().zip(order) {
+            *sorted = column[i as usize];
+        }
+    });
 }
 
 /// The columns of a body's particles, open to many threads that keep to particles of their own. Good until the particles are used in

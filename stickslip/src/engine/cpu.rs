@@ -9,7 +9,7 @@ use super::tile::SeveralAtATime;
 use crate::basis::Basis;
 use crate::grid::{Disjoint, Window};
 use crate::lanes::{Any, Laned};
-use crate::particles::{Columns, Room};
+use crate::particles::Columns;
 use rayon::prelude::*;
 use std::marker::PhantomData;
 use std::ops::Range;
@@ -20,13 +20,11 @@ pub struct Workshop<T, const D: usize> {
     /// A window for each thread.
     windows: Vec<Mutex<Box<Window<T, D>>>>,
     columns: Vec<Columns<T, D>>,
-    /// Room to sort particles in for each thread.
-    pub rooms: Vec<Mutex<Room<T>>>,
 }
 
 impl<T, const D: usize> Default for Workshop<T, D> {
     fn default() -> Self {
-        Workshop { windows: Vec::new(), columns: Vec::new(), rooms: Vec::new() }
+        Workshop { windows: Vec::new(), columns: Vec::new() }
     }
 }
 

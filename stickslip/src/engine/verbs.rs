@@ -11,7 +11,6 @@ use crate::scene::{ContactLaw, StressUpdate};
 use crate::tensor::{Matrix, Vector};
 use crate::transfer::Share;
 use rayon::prelude::*;
-use std::sync::Mutex;
 use std::time::Instant;
 
 /// The uses of contact in a step.
@@ -49,12 +48,10 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
 
     /// Sorts particles in memory into the order in which tiles visit them, where they are no longer nearly so.
     fn tidy(&mut self) {
-        let (cover, rooms) = (&self.cover, &mut self.workshop.rooms);
-        rooms.resize_with(rooms.len().max(rayon::current_num_threads()), Mutex::default);
-        let rooms = &*rooms;
+        let cover = &self.cover;
         (self.bodies.par_iter_mut().with_min_len(16).enumerate())
             .filter(|(i, _)| cover.untidy(*i))
-            .for_each(|(i, body)| body.particles.permute(cover.order_of(i), rooms));
+            .for_each(|(i, body)| body.particles.permute(cover.order_of(i)));
         for i in 0..self.bodies.len() {
             if self.cover.untidy(i) {
                 self.cover.tidied(i);
