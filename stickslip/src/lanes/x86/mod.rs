@@ -1,0 +1,191 @@
+//! Lanes of x86-64 processors: which there are, and what their types have in common.
+
+use super::{Machine, Work};
+use std::arch::x86_64::*;
+
+/// A third of 2^33, rounded up: the upper bits of a product with it are a third, for every number of 32 bits.
+const THIRD: i64 = 0xaaaa_aaab;
+
+/// Whether the processor has all of AVX-512 that [`avx512`] uses.
+pub fn has_avx512() -> bool {
+    std::arch::is_x86_feature_detected!("avx512f")
+        && std::arch::is_x86_feature_detected!("avx512vl")
+        && std::arch::is_x86_feature_detected!("avx512dq")
+        && std::arch::is_x86_feature_detected!("avx512bw")
+        && has_avx2()
+}
+
+/// Whether the processor has all that [`avx2`] uses.
+pub fn has_avx2() -> bool {
+    std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma")
+}
+
+/// AVX-512.
+#[derive(Clone, Copy)]
+pub struct Avx512;
+
+/// AVX2.
+#[derive(Clone, Copy)]
+pub struct Avx2;
+
+/// Does work with AVX-512.
+///
+/// # Safety
+/// The processor must have it, see [`has_avx512`].
+#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,fma")]
+pub unsafe fn avx512<T, W: Work<Real = T>>(work: W) -> W::Output
+where
+    Avx512: Machine<T>,
+{
+    work.run::<Avx512>()
+}
+
+/// Does work with AVX2.
+///
+/// # Safety
+/// The processor must have it, and FMA.
+#[target_feature(enable = "avx2,fma")]
+pub unsafe fn avx2<T, W: Work<Real = T>>(work: W) -> W::Output
+where
+    Avx2: Machine<T>,
+{
+    work.run::<Avx2>()
+}
+
+macro_rules! operator {
+    ($name:ident $(<const $flag:ident>)?, $op:ident $f:ident $assign:ident $g:ident $intrinsic:ident) => {
+        impl $(<const $flag: bool>)? $op for $name $(<$flag>)? {
+            type Output = Self;
+            #[inline(always)]
+            fn $f(self, other: Self) -> Self {
+                // SAFETY: values of this type exist only where the processor has the instruction.
+                unsafe { Self($intrinsic(self.0, other.0)) }
+            }
+        }
+        impl $(<const $flag: bool>)? $assign for $name $(<$flag>)? {
+            #[inline(always)]
+            fn $g(&mut self, other: Self) {
+                *self = self.$f(other);
+            }
+        }
+    };
+}
+
+macro_rules! lanes {
+    ($name:ident $(<const $flag:ident>)?: $register:ty as [$t:ty; $count:literal];
+     $set:ident $load:ident $store:ident; $add:ident $sub:ident $mul:ident $div:ident;
+     $sqrt:ident $min:ident $max:ident $times_plus:ident;
+     |$a:ident, $b:ident| $at_least:expr; $($part:item)*) => {
+        #[doc = concat!(stringify!($count), " numbers in a register.")]
+        #[derive(Clone, Copy, Debug)]
+        #[repr(transparent)]
+        pub struct $name $(<const $flag: bool>)? ($register);
+
+        operator! { $name $(<const $flag>)?, Add add AddAssign add_assign $add }
+        operator! { $name $(<const $flag>)?, Sub sub SubAssign sub_assign $sub }
+        operator! { $name $(<const $flag>)?, Mul mul MulAssign mul_assign $mul }
+        operator! { $name $(<const $flag>)?, Div div DivAssign div_assign $div }
+
+        impl $(<const $flag: bool>)? $name $(<$flag>)? {
+            const fn constant(x: $t) -> Self {
+                // SAFETY: a register is as large as an array of its lanes, and any bits are numbers.
+                Self(unsafe { std::mem::transmute::<[$t; $count], $register>([x; $count]) })
+            }
+        }
+
+        impl $(<const $flag: bool>)? Neg for $name $(<$flag>)? {
+            type Output = Self;
+            #[inline(always)]
+            fn neg(self) -> Self {
+                Self::constant(-0.0) - self
+            }
+        }
+
+        // SAFETY of all below: values of this type exist only where the processor has the instructions.
+        impl $(<const $flag: bool>)? Number for $name $(<$flag>)? {
+            const ZERO: Self = Self::constant(0.0);
+            const NOTHING: Self = Self::constant(-0.0);
+            const ONE: Self = Self::constant(1.0);
+            const HALF: Self = Self::constant(0.5);
+            const EPSILON: Self = Self::constant(<$t>::EPSILON);
+            #[inline(always)]
+            fn of(value: f64) -> Self {
+                Self::splat(value as $t)
+            }
+            #[inline(always)]
+            fn sqrt(self) -> Self {
+                unsafe { Self($sqrt(self.0)) }
+            }
+            #[inline(always)]
+            fn cbrt(self) -> Self {
+                self.cube_root()
+            }
+            #[inline(always)]
+            fn ln(self) -> Self {
+                let numbers = self.numbers();
+                Self::from_fn(|lane| Number::ln(numbers.0[lane]))
+            }
+            #[inline(always)]
+            fn abs(self) -> Self {
+                self.max(-self)
+            }
+            #[inline(always)]
+            fn min(self, other: Self) -> Self {
+                unsafe { Self($min(self.0, other.0)) }
+            }
+            #[inline(always)]
+            fn max(self, other: Self) -> Self {
+                unsafe { Self($max(self.0, other.0)) }
+            }
+            #[inline(always)]
+            fn times_plus(self, factor: Self, other: Self) -> Self {
+                unsafe { Self($times_plus(self.0, factor.0, other.0)) }
+            }
+        }
+
+        impl $(<const $flag: bool>)? Lanes for $name $(<$flag>)? {
+            type Real = $t;
+            const COUNT: usize = $count;
+            #[inline(always)]
+            fn splat(x: $t) -> Self {
+                unsafe { Self($set(x)) }
+            }
+            #[inline(always)]
+            unsafe fn load(first: *const $t) -> Self {
+                unsafe { Self($load(first)) }
+            }
+            #[inline(always)]
+            unsafe fn store(self, first: *mut $t) {
+                unsafe { $store(first, self.0) }
+            }
+            #[inline(always)]
+            fn at_least(self, other: Self) -> u32 {
+                let ($a, $b) = (self.0, other.0);
+                unsafe { $at_least }
+            }
+            $($part)*
+        }
+    };
+}
+
+mod double;
+mod single;
+
+/// Writes the columns of a 4 x 4 matrix as its rows.
+#[inline(always)]
+unsafe fn turn_pd([a, b, c, d]: [__m256d; 4], rows: *mut f64) {
+    // SAFETY: the caller has AVX2 and room for sixteen numbers.
+    unsafe {
+        let [ab, cd] = [_mm256_unpacklo_pd(a, b), _mm256_unpacklo_pd(c, d)];
+        let [ab_odd, cd_odd] = [_mm256_unpackhi_pd(a, b), _mm256_unpackhi_pd(c, d)];
+        _mm256_storeu_pd(rows, _mm256_permute2f128_pd::<0x20>(ab, cd));
+        _mm256_storeu_pd(rows.add(4), _mm256_permute2f128_pd::<0x20>(ab_odd, cd_odd));
+        _mm256_storeu_pd(rows.add(8), _mm256_permute2f128_pd::<0x31>(ab, cd));
+        _mm256_storeu_pd(rows.add(12), _mm256_permute2f128_pd::<0x31>(ab_odd, cd_odd));
+    }
+}
+
+#[inline(always)]
+fn mask(count: usize) -> u8 {
+    ((1_u32 << count) - 1) as u8
+}
