@@ -195,7 +195,8 @@ unsafe fn stored<V: Lanes, const D: usize>(
         V::load_first(columns.at(Column::<D>::VOLUME, first), count)
     };
     let energy = material.strain_energy(&f, &stress);
-    [energy, material.dissipation(plastic_strain), f.det(), volume].map(each)
+    // No `map`, see `tensor::array`.
+    [each(energy), each(material.dissipation(plastic_strain)), each(f.det()), each(volume)]
 }
 
 /// Inertia tensor [kg m^2] and angular momentum [kg m^2/s] of some particles of a body about a point that moves.
