@@ -47,7 +47,7 @@ impl<const D: usize> Column<D> {
 }
 
 /// Particles of one body.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Particles<T, const D: usize> {
     /// How many.
     len: usize,
@@ -163,20 +163,12 @@ impl<T: Real, const D: usize> Particles<T, D> {
     /// Puts the particles into the order of a permutation: first the one whose index comes first. Every column moves into the room beside it.
     pub fn permute(&mut self, order: &[u32]) {
         assert_eq!(order.len(), self.len, "a permutation names every particle");
-        let count = self.columns.len() / self.stride.max(1) - 1;
+        let count = Column::<D>::COUNT + usize::from(self.flow);
         for column in 0..count {
             let column = if self.later { column } else { count - 1 - column };
-            let [lower, upper] = self.columns[column * self.stride..][..2 * self.stride]
-                .get_disjoint_mut([0..self.stride, self.stride..2 * self.stride])
-                .expect("two columns side by side");
-            if self.later { sort(lower, upper, order) } else { sort(upper, lower, order) }
+            move_over(&mut self.columns[column * self.stride..][..2 * self.stride], self.later, order);
         }
-        let (lower, upper) = self.numbers.split_at_mut(self.len);
-        if self.later {
-            sort(lower, upper, order)
-        } else {
-            sort(upper, lower, order)
-        }
+        move_over(&mut self.numbers, self.later, order);
         self.later = !self.later;
     }
 }
@@ -184,11 +176,13 @@ impl<T: Real, const D: usize> Particles<T, D> {
 /// Particles that a thread takes at a time.
 const PART: usize = 1 << 13;
 
-/// Fills `sorted` with `column` in the order of a permutation.
-fn sort<X: Copy + Send + Sync>(sorted: &mut [X], column: &[X], order: &[u32]) {
-    sorted.par_chunks_mut(PART).zip(order.par_chunks(PART)).for_each(|(sorted, order)| {
-        for (sorted, &i) in sorted.iter_mut().zip(order) {
-            *sorted = column[i as usize];
+/// Moves one half of a slice over the other in the order of a permutation: the later half or the earlier one.
+fn move_over<X: Copy + Send + Sync>(halves: &mut [X], later: bool, order: &[u32]) {
+    let (lower, upper) = halves.split_at_mut(halves.len() / 2);
+    let (to, from) = if later { (lower, &*upper) } else { (upper, &*lower) };
+    to.par_chunks_mut(PART).zip(order.par_chunks(PART)).for_each(|(to, order)| {
+        for (to, &i) in to.iter_mut().zip(order) {
+            *to = from[i as usize];
         }
     });
 }
@@ -283,5 +277,44 @@ impl<T: Real, const D: usize> Columns<T, D> {
         if self.flow {
             put(Column::<D>::PLASTIC_STRAIN, particle.plastic_strain);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Orders by steps that share no factor with the count, one after the other.
+    fn sorted_again_and_again<const D: usize>(count: usize, flow: bool) {
+        let number = |i: usize, k: usize| (31 * i + k) as f64;
+        let particle = |i: usize| Particle {
+            position: Vector::from_fn(|k| number(i, k)),
+            velocity: Vector::from_fn(|k| number(i, 3 + k)),
+            mass: number(i, 6),
+            volume: number(i, 7),
+            half_width: number(i, 8),
+            deformation: Matrix::IDENTITY * number(i, 9),
+            stress: Symmetric::isotropic(number(i, 10)),
+            plastic_strain: if flow { number(i, 11) } else { 0.0 },
+            number: i as u32,
+        };
+        let mut particles = Particles::<f64, D>::from_fn(count, flow, particle);
+        let mut expected: Vec<u32> = (0..count as u32).collect();
+        for step in [1, 7, 11, 13] {
+            let order: Vec<u32> = (0..count).map(|i| (i * step % count) as u32).collect();
+            particles.permute(&order);
+            expected = order.iter().map(|&i| expected[i as usize]).collect();
+            assert_eq!(particles.numbers(), expected);
+            for (found, &i) in particles.iter().zip(&expected) {
+                assert_eq!(found, particle(i as usize));
+            }
+        }
+    }
+
+    #[test]
+    fn particles_are_sorted_whole() {
+        sorted_again_and_again::<2>(3 * PART + 5, false);
+        sorted_again_and_again::<3>(100, true);
+        sorted_again_and_again::<3>(0, false);
     }
 }

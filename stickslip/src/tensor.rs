@@ -23,6 +23,7 @@ pub(crate) fn array<X: Copy, const N: usize>(fill: X, mut f: impl FnMut(usize) -
 
 /// A vector of `D` components.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(transparent)]
 pub struct Vector<T, const D: usize>(pub [T; D]);
 
 impl<T: Number, const D: usize> Vector<T, D> {

@@ -115,6 +115,8 @@ struct Sum<'a, T, const D: usize> {
     part: Range<usize>,
     /// The law, but for rigid bodies.
     material: Option<&'a Material<T>>,
+    /// Mass per undeformed volume [kg/m^3].
+    density: f64,
 }
 
 impl<T: Laned, const D: usize> Work for Sum<'_, T, D> {
@@ -144,12 +146,12 @@ impl<T: Laned, const D: usize> Work for Sum<'_, T, D> {
             }
             if let Some(material) = &material {
                 // SAFETY: as above.
-                let [energy, dissipation, jacobian, volume] =
+                let [energy, dissipation, jacobian] =
                     unsafe { stored::<M::Wide, D>(&self.columns, material, first, count) };
                 for lane in 0..count {
                     // A particle that turned inside out has stopped the run and has no energy.
                     if jacobian[lane] > 0.0 {
-                        let undeformed = volume[lane] / jacobian[lane];
+                        let undeformed = some.mass[lane] / self.density;
                         strain[lane] += undeformed * energy[lane];
                         plastic[lane] += undeformed * dissipation[lane];
                     }
@@ -169,7 +171,7 @@ impl<T: Laned, const D: usize> Work for Sum<'_, T, D> {
     }
 }
 
-/// Strain energy and dissipation per undeformed volume [J/m^3], J [-] and volume [m^3].
+/// Strain energy and dissipation per undeformed volume [J/m^3], and J [-].
 ///
 /// # Safety
 /// The particles must exist, and nobody may write to them meanwhile.
@@ -179,10 +181,10 @@ unsafe fn stored<V: Lanes, const D: usize>(
     material: &Material<V>,
     first: usize,
     count: usize,
-) -> [Each; 4] {
+) -> [Each; 3] {
     let (mut f, mut stress, mut plastic_strain) = (Matrix::ZERO, Symmetric::ZERO, V::ZERO);
     // SAFETY: the caller's.
-    let volume = unsafe {
+    unsafe {
         for (k, &[row, column]) in deformation_entries(D).iter().enumerate() {
             f.0[row][column] = V::load_first(columns.at(Column::<D>::DEFORMATION + k, first), count);
         }
@@ -192,11 +194,10 @@ unsafe fn stored<V: Lanes, const D: usize>(
         if columns.flow() {
             plastic_strain = V::load_first(columns.at(Column::<D>::PLASTIC_STRAIN, first), count);
         }
-        V::load_first(columns.at(Column::<D>::VOLUME, first), count)
-    };
+    }
     let energy = material.strain_energy(&f, &stress);
     // No `map`, see `tensor::array`.
-    [each(energy), each(material.dissipation(plastic_strain)), each(f.det()), each(volume)]
+    [each(energy), each(material.dissipation(plastic_strain)), each(f.det())]
 }
 
 /// Inertia tensor [kg m^2] and angular momentum [kg m^2/s] of some particles of a body about a point that moves.
@@ -241,7 +242,8 @@ impl<T: Laned, const D: usize> Body<T, D> {
     pub fn totals(&self) -> Totals {
         let sum = |part| {
             let material = (!self.rigid).then_some(&self.material);
-            T::run(Processor::best(), Sum { columns: self.particles.view(), part, material })
+            let density = self.density.f64();
+            T::run(Processor::best(), Sum { columns: self.particles.view(), part, material, density })
         };
         self.by_parts(sum).iter().fold(Totals::default(), Totals::plus)
     }

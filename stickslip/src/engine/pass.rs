@@ -233,7 +233,8 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
             if !jacobian.is_finite() {
                 return Err(FaultKind::NotFinite);
             }
-            particle.deformation = deformation;
+            let undeformed = particle.mass / self.body.density;
+            (particle.deformation, particle.volume) = (deformation, undeformed * jacobian);
             if jacobian <= T::ZERO {
                 return Err(FaultKind::Inverted);
             }
@@ -245,8 +246,7 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
                 plastic_strain: particle.plastic_strain,
             };
             let (motion, response) = self.body.respond(motion).ok_or(FaultKind::NoThickness)?;
-            particle.deformation = motion.deformation;
-            particle.volume = particle.mass / self.body.density * motion.jacobian;
+            (particle.deformation, particle.volume) = (motion.deformation, undeformed * motion.jacobian);
             (particle.stress, particle.plastic_strain) = (response.stress, response.plastic_strain);
             particle.stress.is_finite().then_some(()).ok_or(FaultKind::NotFinite)?;
         }

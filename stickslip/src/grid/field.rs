@@ -34,7 +34,7 @@ impl<T: Real, const D: usize> Node<T, D> {
         carry: Vector::ZERO,
     };
 
-    /// Where a node's first eight numbers are in [`Sums`]: mass, velocity and force, and then what gets nothing.
+    /// Where a node's first eight numbers are in [`Sums`]: mass, velocity and force, and then zeros: in the plane the third axis has nothing to give.
     const GIVEN: [usize; MOST_LANES] =
         if D == 2 { [6, 0, 2, 1, 3, 4, 5, 7] } else { [6, 0, 2, 4, 1, 3, 5, 7] };
 
@@ -44,9 +44,9 @@ impl<T: Real, const D: usize> Node<T, D> {
     /// The node must be there, and nobody else may use it meanwhile.
     #[inline(always)]
     unsafe fn take<M: Machine<T>>(node: *mut Self, sums: &Sums<T>) {
-        const { assert!(size_of::<Self>() >= MOST_LANES * size_of::<T>()) };
+        const { assert!(size_of::<Self>() == (1 + 4 * D) * size_of::<T>()) };
         let first = node.cast::<T>();
-        // SAFETY: the sums are eight numbers, and a node begins with nine or more.
+        // SAFETY: the sums are eight numbers, and a node has nine or more.
         unsafe {
             let sums = M::Wide::load(sums.as_ptr().cast());
             (M::Wide::load(first) + sums.permuted(Self::GIVEN)).store(first);
@@ -129,7 +129,10 @@ pub struct Sought<T> {
 pub type Sums<T> = [[T; 2]; 4];
 
 /// What a node tells: a velocity, and nothing in the places beyond.
-pub type Told<T> = [T; 4];
+pub type Told<T> = [T; TOLD];
+
+/// Numbers of that.
+pub const TOLD: usize = 4;
 
 /// A tile's part of the field in one place: nodes `block * 4` to `block * 4 + 5` along each axis, the last fastest.
 #[derive(Clone, Debug)]
@@ -244,7 +247,7 @@ impl<T: Real, const D: usize> Window<T, D> {
         for Run { place, node, count } in Runs::new(tile, side) {
             for k in 0..count {
                 // SAFETY: the caller keeps writers away from the tile's slots.
-                let node = unsafe { &*field.get(node + k) };
+                let node = unsafe { field.read(node + k) };
                 let place = place + k;
                 let carry: M::Quad = told(&node.carry);
                 if let Some(pic) = sought.change {
@@ -310,6 +313,17 @@ impl<'a, X> Disjoint<'a, X> {
     #[inline(always)]
     fn place(&self, i: usize) -> *const X {
         self.start.wrapping_add(i)
+    }
+
+    /// Entry `i`, to be read only.
+    ///
+    /// # Safety
+    /// Nobody may write to entry `i` while the reference is alive.
+    #[inline(always)]
+    pub unsafe fn read(&self, i: usize) -> &X {
+        assert!(i < self.len, "an index of the slice");
+        // SAFETY: in bounds, and the caller keeps writers away.
+        unsafe { &*self.start.add(i) }
     }
 
     /// Entry `i`.

@@ -96,7 +96,7 @@ struct NextTile {
 const TILES: usize = 32;
 
 /// A particle and its new home, ordered by home.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug)]
 struct Mover {
     block: u64,
     cell: u32,
@@ -311,7 +311,7 @@ mod tests {
     /// What the lists say, found by sorting all particles.
     fn sorted(bases: &[[i32; 2]]) -> (Vec<u32>, Vec<u64>, Vec<u32>) {
         let mut all: Vec<Mover> = bases.iter().enumerate().map(|(i, &base)| mover(base, i as u32)).collect();
-        all.sort_unstable();
+        all.sort_unstable_by_key(Mover::rank);
         let mut homes: Vec<u64> = all.iter().map(|mover| mover.block).collect();
         homes.dedup();
         let cell = |home: u64, cell: usize| {

@@ -8,7 +8,7 @@ mod field;
 mod holding;
 
 pub use cover::{Blocks, Cover, Meeting, Tile};
-pub use field::{Disjoint, Field, Node, Sought, Sums, Told, WINDOW, WINDOW_NODES, Window};
+pub use field::{Disjoint, Field, Node, Sought, Sums, TOLD, Told, WINDOW, WINDOW_NODES, Window};
 pub use holding::{MOST_CELLS, addressable};
 
 use crate::tensor::{Real, Vector};

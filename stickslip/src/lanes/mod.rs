@@ -2,8 +2,8 @@
 //!
 //! This is the only room that knows processors. Loops over particles are written once over [`Lanes`]; [`Processor::run`] compiles them for each
 //! [`Machine`] and takes the best one at run time. Every operation rounds like that of a single number, and where the source says so
-//! ([`Number::times_plus`]) a product and a sum are rounded once. All processors that can do so give the same bits: ARM, and x86-64 since
-//! 2013. Those that cannot round twice, and differ by round-off.
+//! ([`Number::times_plus`]) a product and a sum are rounded together, once. All processors that can do so give the same bits: x86-64 with AVX2 and FMA, and
+//! 64-bit ARM. Those that cannot round twice, and differ by round-off.
 
 mod pack;
 mod pair;

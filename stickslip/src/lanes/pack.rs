@@ -10,6 +10,7 @@ pub const FUSES: bool = cfg!(any(target_feature = "fma", target_arch = "aarch64"
 
 /// `N` numbers in an array.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(transparent)]
 pub struct Pack<T, const N: usize>(pub [T; N]);
 
 impl<T: Real, const N: usize> Pack<T, N> {

@@ -40,6 +40,12 @@ impl<T: Laned> Work for Everything<'_, T> {
     }
 }
 
+/// Places among the results: the cube root, which differs where a product and a sum are rounded once, what every machine rounds alike, and what rounding once
+/// finds in a product.
+const ROOT: usize = 0;
+const EXACT: std::ops::Range<usize> = 1..10;
+const LOST: usize = 10;
+
 /// In the order of the samples, one list a result.
 fn unfolded<T: Laned>(found: &[T], samples: usize) -> Vec<Vec<T>> {
     let mut results = vec![Vec::new(); 11];
@@ -59,12 +65,12 @@ fn agree<T: Laned>() {
     let first = unfolded(&T::run(Processor::Any, Everything(&x)), x.len());
     for processor in Processor::available() {
         let found = unfolded(&T::run(processor, Everything(&x)), x.len());
-        assert!(found[1..10] == first[1..10], "{processor:?} differs from the portable lanes");
+        assert!(found[EXACT] == first[EXACT], "{processor:?} differs from the portable lanes");
         for (i, &x) in x.iter().enumerate() {
-            let off = (found[0][i] / x.cbrt() - T::ONE).abs();
+            let off = (found[ROOT][i] / x.cbrt() - T::ONE).abs();
             assert!(off <= T::of(2.0) * T::EPSILON, "{processor:?}: cube root of {x:?} off by {off:?}");
             let lost = if processor.fuses() { x.fused(x, -(x * x)) } else { T::ZERO };
-            assert_eq!(found[10][i], lost, "{processor:?}: {x:?}");
+            assert_eq!(found[LOST][i], lost, "{processor:?}: {x:?}");
         }
     }
     for (i, &x) in x.iter().enumerate() {
@@ -100,6 +106,21 @@ impl<T: Laned> Work for Parts<T> {
     fn run<M: Machine<T>>(self) {
         parts_of::<M::Wide>();
         parts_of::<M::Quad>();
+        fourths_of::<M::Wide>();
+        fourths_of::<M::Quad>();
+        let wide = M::Wide::from_fn(|lane| T::of(lane as f64));
+        assert_eq!(M::halves(wide).numbers().0[..4], [4.0, 6.0, 8.0, 10.0].map(T::of));
+        let order = [6, 0, 2, 4, 1, 3, 5, 7];
+        assert_eq!(wide.permuted(order).numbers().0, order.map(|lane| T::of(lane as f64)));
+    }
+}
+
+#[inline(always)]
+fn fourths_of<V: Lanes>() {
+    let lanes = V::from_fn(|lane| V::Real::of(lane as f64));
+    for n in 0..4 {
+        let found = lanes.every_fourth(n).numbers();
+        assert!((0..V::COUNT).all(|lane| found.0[lane] == V::Real::of((lane / 4 * 4 + n) as f64)), "{n}");
     }
 }
 

@@ -7,7 +7,7 @@
 #![allow(clippy::needless_range_loop)]
 
 use crate::basis::{Basis, MAX_WIDTH, Shape};
-use crate::grid::{Sums, Told, WINDOW, WINDOW_NODES, Window};
+use crate::grid::{Sums, TOLD, Told, WINDOW, WINDOW_NODES, Window};
 use crate::lanes::{Lanes, MOST_LANES, Machine, Numbers};
 use crate::tensor::{Matrix, Number, Real, Symmetric, Vector};
 use std::marker::PhantomData;
@@ -79,8 +79,7 @@ impl Start for Own {
     fn value<V: Lanes>(&self, nodes: &[Told<V::Real>; WINDOW_NODES], offset: usize, component: usize) -> V {
         let mut index = [0; MOST_LANES];
         for lane in 0..V::COUNT {
-            index[lane] =
-                (self.0[lane] + offset) * size_of::<Told<V::Real>>() / size_of::<V::Real>() + component;
+            index[lane] = (self.0[lane] + offset) * TOLD + component;
         }
         // SAFETY: an offset is at most a particle's reach, and starts are before the last one.
         unsafe { V::gather(nodes.as_ptr().cast(), &index) }
@@ -241,7 +240,7 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
             pairs.stress = Some([x, y, z]);
         }
         match self.start.shared() {
-            // A number that the compiler knows, so that loops over pairs go.
+            // A number that the compiler knows, so that loops over pairs are unrolled.
             Some(start) if n == V::COUNT => {
                 Group { count: V::COUNT, ..*self }.scatter_together::<M>(window, start, &pairs);
             }
@@ -404,7 +403,7 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
                 }
             }
             for (n, [i, j, k]) in Self::nodes() {
-                let (mut given, mut force) = (M::Wide::ZERO, M::Wide::ZERO);
+                let (mut given, mut force) = (M::Wide::ZERO, M::Wide::NOTHING);
                 if momentum.is_some() {
                     given = rows[3] * factors::<M, _>(&weights[n], p / 2);
                 }
@@ -425,10 +424,9 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
         (0..count).map(|n| (n, [n / (B::WIDTH * Self::DEPTH), n / Self::DEPTH % B::WIDTH, n % Self::DEPTH]))
     }
 
-    /// Pairs of particles; the last one of the last may be none.
     #[inline(always)]
     fn pairs(&self) -> usize {
-        self.count.min(MOST_LANES).div_ceil(2)
+        pairs(self.count)
     }
 
     /// Product of the weights across the first axis.
@@ -437,6 +435,12 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
         let weight = self.shapes[1].weight[j];
         if D == 2 { weight } else { weight * self.shapes[D - 1].weight[k] }
     }
+}
+
+/// Pairs of a group of so many particles; the last one of the last may be none.
+#[inline(always)]
+pub fn pairs(count: usize) -> usize {
+    count.min(MOST_LANES).div_ceil(2)
 }
 
 /// What a group scatters, by pairs of particles.

@@ -5,7 +5,7 @@
 
 mod group;
 
-pub use group::{Group, Load, Own, Shared, Start};
+pub use group::{Group, Load, Own, Shared, Start, pairs};
 
 use crate::basis::{Axis, Basis};
 use crate::body::Particle;

@@ -53,7 +53,11 @@ fn a_particle_that_inverts() {
     assert!(determinant <= 0.0, "{determinant}");
     let snapshot = simulation.snapshot();
     let p = (0..snapshot.body.len()).find(|&p| snapshot.body[p] == 1 && snapshot.number[p] == number);
-    assert_eq!(snapshot.position[p.expect("the particle exists")], position);
+    let p = p.expect("the particle exists");
+    assert_eq!(snapshot.position[p], position);
+    // What is drawn of it takes no room.
+    let undeformed = snapshot.mass[p] / 1000.0;
+    assert!((snapshot.volume[p] / undeformed - determinant).abs() < 1e-12, "{}", snapshot.volume[p]);
 }
 
 #[test]

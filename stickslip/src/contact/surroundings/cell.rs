@@ -7,6 +7,7 @@ use crate::grid::{Nodes, next_of, node_at};
 use crate::lanes::{Laned, Lanes, MOST_LANES, Machine, Numbers, in_lanes, prefetch};
 use crate::particles::{Column, Columns, deformation_entries, stress_entries};
 use crate::tensor::{Matrix, Number, Real, Symmetric, Vector, array};
+use crate::transfer::pairs;
 use std::marker::PhantomData;
 use std::ops::Range;
 
@@ -82,25 +83,25 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
             }
         }
 
-        let mut numbers = [V::ZERO; 4 * MOST_PLACED];
+        let mut placed = [V::ZERO; 4 * MOST_PLACED];
         for i in 0..D {
-            numbers[i] = place[i];
-            numbers[D + i] = arm[i];
+            placed[i] = place[i];
+            placed[D + i] = arm[i];
             for j in 0..D {
-                numbers[2 * D + i * D + j] = inverse[i][j];
+                placed[2 * D + i * D + j] = inverse[i][j];
             }
         }
         let mut rows = [Rows::<T>::EMPTY; MOST_PLACED];
         for row in 0..placed_rows(D) {
             let k = 4 * row;
-            rows[row].fill([numbers[k], numbers[k + 1], numbers[k + 2], numbers[k + 3]]);
+            rows[row].fill([placed[k], placed[k + 1], placed[k + 2], placed[k + 3]]);
         }
         let rooms = room.first(members.count);
         let mut left = nodes;
         while let Some(node) = next_of(&mut left) {
             let shares = self.shares(&shapes, base, node, rooms);
             let mut added = [M::Wide::NOTHING; FIRST + MOST_PLACED];
-            for pair in 0..members.pairs() {
+            for pair in 0..pairs(members.count) {
                 let share = shares.pair::<M>(pair);
                 added[0] += share;
                 let weight = share.every_fourth(3);
@@ -157,7 +158,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
             let shares = self.shares(shapes, base, node, here);
             let mut added = [M::Wide::NOTHING; MOST_STRESS];
             let [mut weighed, mut pushed] = [M::Wide::NOTHING; 2];
-            for pair in 0..members.pairs() {
+            for pair in 0..pairs(members.count) {
                 let share = shares.pair::<M>(pair);
                 let weight = share.every_fourth(3);
                 for row in 0..stress_rows(D) {
@@ -184,11 +185,11 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
         shapes: &[Shape<V>; D],
         base: [i32; D],
         node: usize,
-        times: V,
+        factor: V,
     ) -> Rows<T> {
         let steps = node_at([0; D], node);
         let offset: [usize; D] = array(0, |i| (self.along(i, steps[i]) - base[i]) as usize);
-        let [x, dx] = [shapes[0].weight[offset[0]] * times, shapes[0].slope(offset[0]) * times];
+        let [x, dx] = [shapes[0].weight[offset[0]] * factor, shapes[0].slope(offset[0]) * factor];
         let [y, dy] = [shapes[1].weight[offset[1]], shapes[1].slope(offset[1])];
         let mut shares = Rows::<T>::EMPTY;
         if D == 2 {
@@ -321,12 +322,6 @@ impl<'a, T: Real, const D: usize> Members<'a, T, D> {
             (copies.0.as_ptr().cast(), size_of::<Numbers<T>>() / size_of::<T>())
         };
         Members { first, stride, count: index.len(), source: PhantomData }
-    }
-
-    /// Pairs of them; the last one of the last may be none.
-    #[inline(always)]
-    fn pairs(&self) -> usize {
-        self.count.min(MOST_LANES).div_ceil(2)
     }
 
     /// Their numbers in a column.

@@ -7,7 +7,7 @@ use std::arch::x86_64::*;
 use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
 /// The last `n` of the first half and what follows is a mask of `n` lanes.
-static MASKS: [i64; 8] = [-1, -1, -1, -1, 0, 0, 0, 0];
+static LANES: [i64; 8] = [-1, -1, -1, -1, 0, 0, 0, 0];
 
 impl Machine<f64> for Avx512 {
     type Wide = F64x8;
@@ -152,7 +152,7 @@ lanes! { F64x4: __m256d as [f64; 4];
     unsafe fn load_part(first: *const f64, count: usize, rest: f64) -> Self {
         // SAFETY: lanes beyond the mask are not read.
         unsafe {
-            let mask = some_mask(count);
+            let mask = lanes_mask(count);
             let numbers = _mm256_maskload_pd(first, mask);
             F64x4(_mm256_blendv_pd(_mm256_set1_pd(rest), numbers, _mm256_castsi256_pd(mask)))
         }
@@ -160,13 +160,13 @@ lanes! { F64x4: __m256d as [f64; 4];
     #[inline(always)]
     unsafe fn load_first(first: *const f64, count: usize) -> Self {
         // SAFETY: lanes beyond the mask are not read.
-        unsafe { F64x4(_mm256_maskload_pd(first, some_mask(count))) }
+        unsafe { F64x4(_mm256_maskload_pd(first, lanes_mask(count))) }
     }
     #[inline(always)]
     fn first(self, count: usize) -> Self {
         // SAFETY: values of this type exist only where the processor has the instructions.
         unsafe {
-            let mask = some_mask(count);
+            let mask = lanes_mask(count);
             F64x4(_mm256_and_pd(self.0, _mm256_castsi256_pd(mask)))
         }
     }
@@ -244,7 +244,7 @@ unsafe fn high(x: __m512d) -> __m256d {
 
 /// All bits of the first `count` of four lanes.
 #[inline(always)]
-unsafe fn some_mask(count: usize) -> __m256i {
+unsafe fn lanes_mask(count: usize) -> __m256i {
     // SAFETY: the caller has AVX2, and at most four lanes.
-    unsafe { _mm256_loadu_si256(MASKS.as_ptr().add(4 - count).cast()) }
+    unsafe { _mm256_loadu_si256(LANES.as_ptr().add(4 - count).cast()) }
 }

@@ -7,7 +7,7 @@ use std::arch::x86_64::*;
 use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
 /// The last `n` of the first half and what follows is a mask of `n` lanes.
-static MASKS: [i32; 16] = [-1, -1, -1, -1, -1, -1, -1, -1, 0, 0, 0, 0, 0, 0, 0, 0];
+static LANES: [i32; 16] = [-1, -1, -1, -1, -1, -1, -1, -1, 0, 0, 0, 0, 0, 0, 0, 0];
 
 impl Machine<f32> for Avx512 {
     type Wide = F32x8<true>;
@@ -28,8 +28,7 @@ impl Machine<f32> for Avx2 {
     }
 }
 
-// VL: whether the processor masks lanes, as AVX-512 with its short vectors does.
-lanes! { F32x8<const VL>: __m256 as [f32; 8];
+lanes! { F32x8<const MASKS>: __m256 as [f32; 8];
     _mm256_set1_ps _mm256_loadu_ps _mm256_storeu_ps;
     _mm256_add_ps _mm256_sub_ps _mm256_mul_ps _mm256_div_ps; _mm256_sqrt_ps _mm256_min_ps _mm256_max_ps _mm256_fmadd_ps;
     |a, b| _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_GE_OQ>(a, b)) as u32;
@@ -52,15 +51,15 @@ lanes! { F32x8<const VL>: __m256 as [f32; 8];
         // SAFETY: values of this type exist only where the processor has the instructions.
         unsafe { Self(_mm256_setr_ps(at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7))) }
     }
-    const MASKED: bool = VL;
+    const MASKED: bool = MASKS;
     #[inline(always)]
     unsafe fn load_part(first: *const f32, count: usize, rest: f32) -> Self {
         // SAFETY: lanes beyond the mask are not read.
         unsafe {
-            if VL {
+            if MASKS {
                 return Self(_mm256_mask_loadu_ps(_mm256_set1_ps(rest), mask(count), first));
             }
-            let mask = some_mask(count);
+            let mask = lanes_mask(count);
             let numbers = _mm256_maskload_ps(first, mask);
             Self(_mm256_blendv_ps(_mm256_set1_ps(rest), numbers, _mm256_castsi256_ps(mask)))
         }
@@ -69,20 +68,20 @@ lanes! { F32x8<const VL>: __m256 as [f32; 8];
     unsafe fn load_first(first: *const f32, count: usize) -> Self {
         // SAFETY: lanes beyond the mask are not read.
         unsafe {
-            if VL {
+            if MASKS {
                 return Self(_mm256_maskz_loadu_ps(mask(count), first));
             }
-            Self(_mm256_maskload_ps(first, some_mask(count)))
+            Self(_mm256_maskload_ps(first, lanes_mask(count)))
         }
     }
     #[inline(always)]
     fn first(self, count: usize) -> Self {
         // SAFETY: values of this type exist only where the processor has the instructions.
         unsafe {
-            if VL {
+            if MASKS {
                 return Self(_mm256_maskz_mov_ps(mask(count), self.0));
             }
-            let mask = some_mask(count);
+            let mask = lanes_mask(count);
             Self(_mm256_and_ps(self.0, _mm256_castsi256_ps(mask)))
         }
     }
@@ -90,7 +89,7 @@ lanes! { F32x8<const VL>: __m256 as [f32; 8];
     unsafe fn store_part(self, mut first: *mut f32, count: usize) {
         // SAFETY: the caller's. Masked stores of AVX take ten times as long as these on some processors.
         unsafe {
-            if VL {
+            if MASKS {
                 return _mm256_mask_storeu_ps(first, mask(count), self.0);
             }
             if count == 8 {
@@ -194,7 +193,7 @@ lanes! { F32x4: __m128 as [f32; 4];
     #[inline(always)]
     unsafe fn load_first(first: *const f32, count: usize) -> Self {
         // SAFETY: lanes beyond the mask are not read; only machines with AVX2 use this type.
-        unsafe { F32x4(_mm_maskload_ps(first, _mm_loadu_si128(MASKS.as_ptr().add(8 - count).cast()))) }
+        unsafe { F32x4(_mm_maskload_ps(first, _mm256_castsi256_si128(lanes_mask(count)))) }
     }
     #[inline(always)]
     unsafe fn gather(first: *const f32, index: &[usize; MOST_LANES]) -> Self {
@@ -206,14 +205,14 @@ lanes! { F32x4: __m128 as [f32; 4];
 }
 
 #[inline(always)]
-fn sum_of_halves<const VL: bool>(wide: F32x8<VL>) -> F32x4 {
+fn sum_of_halves<const MASKS: bool>(wide: F32x8<MASKS>) -> F32x4 {
     // SAFETY: values of this type exist only where the processor has the instructions.
     unsafe { F32x4(_mm_add_ps(_mm256_castps256_ps128(wide.0), _mm256_extractf128_ps::<1>(wide.0))) }
 }
 
 /// All bits of the first `count` of eight lanes.
 #[inline(always)]
-unsafe fn some_mask(count: usize) -> __m256i {
+unsafe fn lanes_mask(count: usize) -> __m256i {
     // SAFETY: the caller has AVX2, and at most eight lanes.
-    unsafe { _mm256_loadu_si256(MASKS.as_ptr().add(8 - count).cast()) }
+    unsafe { _mm256_loadu_si256(LANES.as_ptr().add(8 - count).cast()) }
 }
