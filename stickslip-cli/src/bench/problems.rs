@@ -89,8 +89,9 @@ pub const BLOCKS_IN_CONTACT: &str = "two blocks";
 /// P2 with the same particles, and nothing between the blocks.
 pub const BLOCKS_APART: &str = "without contact";
 
-/// Cells of empty space round problem P4: its domain is 100 times larger than P1's, (32 + 2 * 207)^3 against (32 + 2 * 32)^3 cells.
-const WIDE_MARGIN: usize = 207;
+/// Cells of empty space round problem P4: its domain is 100 times larger than P1's, (32 + 2 * 208)^3 against (32 + 2 * 32)^3 cells. Whole blocks of four,
+/// so that they cut the cube as those of P1 do.
+const WIDE_MARGIN: usize = 208;
 
 /// Particles of a ball, about.
 const BALL: usize = 2145;
