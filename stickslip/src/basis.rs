@@ -46,6 +46,13 @@ pub trait Basis<T: Real>: Copy + Send + Sync + 'static {
     /// Nodes that a particle reaches along an axis.
     const WIDTH: usize;
 
+    /// What a particle's own box adds to its spread over the nodes, over the square of its half-width [-]:
+    ///
+    /// ```text
+    /// mean over x_p of sum_i S_i (x_i - x_p)^2 = 1/6 + BOX_SPREAD l^2          [cells^2]
+    /// ```
+    const BOX_SPREAD: f64;
+
     /// Where the reach of a particle at `x` with half-width `half` begins: its base node is the next one below [cells].
     fn reach<N: Number>(x: N, half: N) -> N;
 
@@ -66,6 +73,7 @@ pub struct Linear;
 
 impl<T: Real> Basis<T> for Linear {
     const WIDTH: usize = 2;
+    const BOX_SPREAD: f64 = 0.0;
 
     #[inline(always)]
     fn reach<N: Number>(x: N, _half: N) -> N {
@@ -93,6 +101,7 @@ pub struct Gimp;
 
 impl<T: Real> Basis<T> for Gimp {
     const WIDTH: usize = 3;
+    const BOX_SPREAD: f64 = 1.0 / 3.0;
 
     #[inline(always)]
     fn reach<N: Number>(x: N, half: N) -> N {
@@ -141,6 +150,25 @@ mod tests {
     #[test]
     fn gimp_reproduces_linear_fields() {
         reproduces_linear_fields::<Gimp>();
+    }
+
+    fn spreads_over_the_nodes<B: Basis<f64>>() {
+        for half in [0.25, 0.5, 0.1667] {
+            let n = 10_000;
+            let spread = |x: f64| {
+                let axis = B::axis(x, half);
+                let arm = |k: usize| f64::from(axis.base) + k as f64 - x;
+                (0..MAX_WIDTH).map(|k| axis.shape.weight[k] * arm(k).powi(2)).sum::<f64>()
+            };
+            let mean = (0..n).map(|i| spread((f64::from(i) + 0.5) / f64::from(n))).sum::<f64>() / f64::from(n);
+            assert!((mean - (1.0 / 6.0 + B::BOX_SPREAD * half * half)).abs() < 1e-7, "{mean}");
+        }
+    }
+
+    #[test]
+    fn both_spread_as_stated() {
+        spreads_over_the_nodes::<Linear>();
+        spreads_over_the_nodes::<Gimp>();
     }
 
     #[test]

@@ -19,6 +19,11 @@ pub const fn stress_entries(dimension: usize) -> usize {
     if dimension == 2 { 4 } else { 6 }
 }
 
+/// Components that the angular velocity of a motion in `D` dimensions has: about the third axis, or about all.
+pub const fn spin_entries(dimension: usize) -> usize {
+    if dimension == 2 { 1 } else { 3 }
+}
+
 /// Which column holds what.
 #[derive(Clone, Copy, Debug)]
 pub struct Column<const D: usize>;
@@ -28,14 +33,16 @@ impl<const D: usize> Column<D> {
     pub const POSITION: usize = 0;
     /// First component of the velocity.
     pub const VELOCITY: usize = D;
+    /// First of [`spin_entries`].
+    pub const SPIN: usize = 2 * D;
     /// Mass.
-    pub const MASS: usize = 2 * D;
+    pub const MASS: usize = Self::SPIN + spin_entries(D);
     /// Volume.
-    pub const VOLUME: usize = 2 * D + 1;
+    pub const VOLUME: usize = Self::MASS + 1;
     /// Half the side of the undeformed box.
-    pub const HALF_WIDTH: usize = 2 * D + 2;
+    pub const HALF_WIDTH: usize = Self::MASS + 2;
     /// First of [`deformation_entries`].
-    pub const DEFORMATION: usize = 2 * D + 3;
+    pub const DEFORMATION: usize = Self::MASS + 3;
     /// First of [`stress_entries`].
     pub const STRESS: usize = Self::DEFORMATION + deformation_entries(D).len();
     /// First component of the position before anything moved, which no step writes to.
@@ -241,9 +248,14 @@ impl<T: Real, const D: usize> Columns<T, D> {
         for (k, entry) in stress.0.iter_mut().enumerate().take(stress_entries(D)) {
             *entry = at(Column::<D>::STRESS + k);
         }
+        let mut spin = Vector::ZERO;
+        for k in 0..spin_entries(D) {
+            spin[3 - spin_entries(D) + k] = at(Column::<D>::SPIN + k);
+        }
         Particle {
             position: Vector::from_fn(|k| at(Column::<D>::POSITION + k)),
             velocity: Vector::from_fn(|k| at(Column::<D>::VELOCITY + k)),
+            spin,
             mass: at(Column::<D>::MASS),
             volume: at(Column::<D>::VOLUME),
             half_width: at(Column::<D>::HALF_WIDTH),
@@ -264,6 +276,9 @@ impl<T: Real, const D: usize> Columns<T, D> {
         for k in 0..D {
             put(Column::<D>::POSITION + k, particle.position[k]);
             put(Column::<D>::VELOCITY + k, particle.velocity[k]);
+        }
+        for k in 0..spin_entries(D) {
+            put(Column::<D>::SPIN + k, particle.spin[3 - spin_entries(D) + k]);
         }
         put(Column::<D>::MASS, particle.mass);
         put(Column::<D>::VOLUME, particle.volume);
@@ -290,12 +305,13 @@ mod tests {
         let particle = |i: usize| Particle {
             position: Vector::from_fn(|k| number(i, k)),
             velocity: Vector::from_fn(|k| number(i, 3 + k)),
-            mass: number(i, 6),
-            volume: number(i, 7),
-            half_width: number(i, 8),
-            deformation: Matrix::IDENTITY * number(i, 9),
-            stress: Symmetric::isotropic(number(i, 10)),
-            plastic_strain: if flow { number(i, 11) } else { 0.0 },
+            spin: Vector::from_fn(|k| if D == 3 || k == 2 { number(i, 6 + k) } else { 0.0 }),
+            mass: number(i, 9),
+            volume: number(i, 10),
+            half_width: number(i, 11),
+            deformation: Matrix::IDENTITY * number(i, 12),
+            stress: Symmetric::isotropic(number(i, 13)),
+            plastic_strain: if flow { number(i, 14) } else { 0.0 },
             number: i as u32,
         };
         let mut particles = Particles::<f64, D>::from_fn(count, flow, particle);

@@ -7,7 +7,7 @@ pub use totals::Totals;
 use crate::geometry::Whole;
 use crate::material::{Material, Motion, Response, Thickness};
 use crate::particles::Particles;
-use crate::tensor::{Matrix, Real, Symmetric, Vector};
+use crate::tensor::{Matrix, Number, Real, Symmetric, Vector};
 
 /// A material point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,6 +16,8 @@ pub struct Particle<T, const D: usize> {
     pub position: Vector<T, D>,
     /// Velocity [m/s].
     pub velocity: Vector<T, D>,
+    /// Angular velocity, see [`crate::transfer::Turning`]; in the plane about the third axis [rad/s].
+    pub spin: Vector<T, 3>,
     /// Mass [kg].
     pub mass: T,
     /// Volume, J times the undeformed one [m^3]; in the plane per metre of undeformed thickness.
@@ -39,6 +41,28 @@ impl<T: Real, const D: usize> Particle<T, D> {
     }
 }
 
+/// Square of the radius of gyration of a particle about each axis, a constant of it.
+///
+/// ```text
+/// k^2 = cell + share l^2          l: half the side of the undeformed box
+/// ```
+/// See [`crate::transfer::Turning`] for its source.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gyration<T> {
+    /// Of all particles alike [m^2].
+    pub cell: T,
+    /// What the particle's own box adds [-].
+    pub share: T,
+}
+
+impl<N: Number> Gyration<N> {
+    /// k^2 of a particle with this half-width [m^2].
+    #[inline(always)]
+    pub fn squared(&self, half_width: N) -> N {
+        self.share.times_plus(half_width * half_width, self.cell)
+    }
+}
+
 /// Particles that share a material and move as one body.
 #[derive(Clone, Debug)]
 pub struct Body<T, const D: usize> {
@@ -56,6 +80,8 @@ pub struct Body<T, const D: usize> {
     pub whole: Whole,
     /// Which thickness its particles take.
     pub thickness: Thickness,
+    /// What its particles' own rotation weighs.
+    pub gyration: Gyration<T>,
 }
 
 impl<T: Real, const D: usize> Body<T, D> {

@@ -1,9 +1,9 @@
 //! Sums over the particles of a body, several at a time.
 
-use super::Body;
+use super::{Body, Gyration};
 use crate::lanes::{Laned, Lanes, MOST_LANES, Machine, Processor, Work};
 use crate::material::Material;
-use crate::particles::{Column, Columns, deformation_entries, stress_entries};
+use crate::particles::{Column, Columns, deformation_entries, spin_entries, stress_entries};
 use crate::tensor::{Matrix, Real, Symmetric, cross};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -17,9 +17,9 @@ pub struct Totals {
     pub first_moment: [f64; 3],
     /// sum m v [kg m/s]
     pub momentum: [f64; 3],
-    /// sum m x cross v, about the origin [kg m^2/s]
+    /// sum m (x cross v + k^2 w), about the origin; k: radius of gyration, w: angular velocity of a particle [kg m^2/s]
     pub angular_momentum: [f64; 3],
-    /// sum m v^2 / 2 [J]
+    /// sum m (v^2 + k^2 w^2) / 2 [J]
     pub kinetic: f64,
     /// sum V W [J]
     pub strain: f64,
@@ -49,11 +49,14 @@ impl Totals {
 /// A number in each lane: of each particle of a handful, or the sum over those that stood there.
 type Each = [f64; MOST_LANES];
 
-/// Mass, position and velocity of a few particles that lie side by side in memory; zero in the lanes beyond.
+/// Mass and motion of a few particles that lie side by side in memory; zero in the lanes beyond.
 struct Handful {
     mass: Each,
     position: [Each; 3],
     velocity: [Each; 3],
+    spin: [Each; 3],
+    /// Moment of inertia of the particle itself, m k^2 [kg m^2].
+    inertia: Each,
 }
 
 impl Handful {
@@ -62,13 +65,15 @@ impl Handful {
     #[inline(always)]
     unsafe fn new<V: Lanes, const D: usize>(
         columns: &Columns<V::Real, D>,
-        first: usize,
-        count: usize,
+        gyration: &Gyration<f64>,
+        (first, count): (usize, usize),
     ) -> Self {
         let mut handful = Handful {
             mass: [0.0; MOST_LANES],
             position: [[0.0; MOST_LANES]; 3],
             velocity: [[0.0; MOST_LANES]; 3],
+            spin: [[0.0; MOST_LANES]; 3],
+            inertia: [0.0; MOST_LANES],
         };
         // SAFETY: the caller's.
         unsafe {
@@ -79,16 +84,25 @@ impl Handful {
                 handful.velocity[i] =
                     each(V::load_first(columns.at(Column::<D>::VELOCITY + i, first), count));
             }
+            for k in 0..spin_entries(D) {
+                handful.spin[3 - spin_entries(D) + k] =
+                    each(V::load_first(columns.at(Column::<D>::SPIN + k, first), count));
+            }
+            let half_width = each(V::load_first(columns.at(Column::<D>::HALF_WIDTH, first), count));
+            for lane in 0..MOST_LANES {
+                handful.inertia[lane] = handful.mass[lane] * gyration.squared(half_width[lane]);
+            }
         }
         handful
     }
 
-    /// m x cross v, about a point that moves.
+    /// m (x cross v + k^2 w), about a point that moves.
     #[inline(always)]
     fn angular_momentum(&self, lane: usize, center: [f64; 3], mean: [f64; 3]) -> [f64; 3] {
         let [r, v] = [(&self.position, center), (&self.velocity, mean)]
             .map(|(x, of)| [x[0][lane] - of[0], x[1][lane] - of[1], x[2][lane] - of[2]]);
-        cross(r, v).map(|l| self.mass[lane] * l)
+        let orbital = cross(r, v);
+        [0, 1, 2].map(|i| self.mass[lane] * orbital[i] + self.inertia[lane] * self.spin[i][lane])
     }
 }
 
@@ -113,6 +127,7 @@ fn handfuls<V: Lanes>(part: &Range<usize>) -> impl Iterator<Item = (usize, usize
 struct Sum<'a, T, const D: usize> {
     columns: Columns<T, D>,
     part: Range<usize>,
+    gyration: Gyration<f64>,
     /// The law, but for rigid bodies.
     material: Option<&'a Material<T>>,
     /// Mass per undeformed volume [kg/m^3].
@@ -131,7 +146,7 @@ impl<T: Laned, const D: usize> Work for Sum<'_, T, D> {
         let material = self.material.map(|material| material.map(M::Wide::splat));
         for (first, count) in handfuls::<M::Wide>(&self.part) {
             // SAFETY: the particles are the body's, which is borrowed for reading.
-            let some = unsafe { Handful::new::<M::Wide, D>(&self.columns, first, count) };
+            let some = unsafe { Handful::new::<M::Wide, D>(&self.columns, &self.gyration, (first, count)) };
             for lane in 0..MOST_LANES {
                 let m = some.mass[lane];
                 mass[lane] += m;
@@ -141,7 +156,8 @@ impl<T: Laned, const D: usize> Work for Sum<'_, T, D> {
                     first_moment[i][lane] += m * some.position[i][lane];
                     momentum[i][lane] += m * v;
                     angular_momentum[i][lane] += l[i];
-                    kinetic[lane] += 0.5 * m * v * v;
+                    let w = some.spin[i][lane];
+                    kinetic[lane] += 0.5 * (m * v * v + some.inertia[lane] * w * w);
                 }
             }
             if let Some(material) = &material {
@@ -204,6 +220,7 @@ unsafe fn stored<V: Lanes, const D: usize>(
 struct Turning<T, const D: usize> {
     columns: Columns<T, D>,
     part: Range<usize>,
+    gyration: Gyration<f64>,
     center: [f64; 3],
     mean: [f64; 3],
 }
@@ -219,12 +236,17 @@ impl<T: Laned, const D: usize> Work for Turning<T, D> {
         let mut angular = [[0.0; MOST_LANES]; 3];
         for (first, count) in handfuls::<M::Wide>(&self.part) {
             // SAFETY: the particles are the body's, which is borrowed for reading.
-            let some = unsafe { Handful::new::<M::Wide, D>(&self.columns, first, count) };
+            let some = unsafe { Handful::new::<M::Wide, D>(&self.columns, &self.gyration, (first, count)) };
             for lane in 0..MOST_LANES {
                 let (m, l) = (some.mass[lane], some.angular_momentum(lane, self.center, self.mean));
                 let [x, y, z] = [0, 1, 2].map(|i| some.position[i][lane] - self.center[i]);
+                // Moments of the particle itself: half of its k^2 along each axis.
+                let own = 0.5 * some.inertia[lane];
                 for (sum, product) in moments.iter_mut().zip([x * x, y * y, z * z, x * y, y * z, x * z]) {
                     sum[lane] += m * product;
+                }
+                for sum in &mut moments[..3] {
+                    sum[lane] += own;
                 }
                 for (sum, l) in angular.iter_mut().zip(l) {
                     sum[lane] += l;
@@ -243,7 +265,8 @@ impl<T: Laned, const D: usize> Body<T, D> {
         let sum = |part| {
             let material = (!self.rigid).then_some(&self.material);
             let density = self.density.f64();
-            T::run(Processor::best(), Sum { columns: self.particles.view(), part, material, density })
+            let (columns, gyration) = (self.particles.view(), self.gyration());
+            T::run(Processor::best(), Sum { columns, part, gyration, material, density })
         };
         self.by_parts(sum).iter().fold(Totals::default(), Totals::plus)
     }
@@ -252,8 +275,10 @@ impl<T: Laned, const D: usize> Body<T, D> {
     pub fn spin(&self, totals: &Totals) -> [f64; 3] {
         let center = totals.first_moment.map(|x| x / totals.mass);
         let mean = totals.momentum.map(|p| p / totals.mass);
-        let turning =
-            |part| T::run(Processor::best(), Turning { columns: self.particles.view(), part, center, mean });
+        let turning = |part| {
+            let (columns, gyration) = (self.particles.view(), self.gyration());
+            T::run(Processor::best(), Turning { columns, part, gyration, center, mean })
+        };
         let (mut inertia, mut angular) = (Matrix::<f64>::ZERO, [0.0; 3]);
         for (some_inertia, some_angular) in self.by_parts(turning) {
             inertia = inertia + some_inertia;
@@ -264,6 +289,10 @@ impl<T: Laned, const D: usize> Body<T, D> {
         }
         let inverse = inertia.inverse();
         std::array::from_fn(|i| (0..3).map(|j| inverse.0[i][j] * angular[j]).sum())
+    }
+
+    fn gyration(&self) -> Gyration<f64> {
+        Gyration { cell: self.gyration.cell.f64(), share: self.gyration.share.f64() }
     }
 
     /// What comes of each part of the particles, in their order.

@@ -103,6 +103,7 @@ mod tests {
                 courant: 0.4,
                 max_step: None,
                 stress_update: StressUpdate::First,
+                transfer: Transfer::Rflip,
                 pic_share: 0.0,
             },
             gravity: [0.0; 3],

@@ -17,6 +17,7 @@ use crate::lanes::{Laned, Processor};
 use crate::particles::Particles;
 use crate::scene::{self, BasisKind, Dimension, Face, Motion, Precision, Problem, Scene};
 use crate::tensor::{Matrix, Real, Symmetric, Vector, cross};
+use crate::transfer::turning;
 use std::marker::PhantomData;
 use std::sync::Mutex;
 
@@ -79,18 +80,25 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 Filling { sites: Vec::new() }
             });
             let motion = prescribed(body, center);
+            let velocity = |x| match (&body.motion, &motion) {
+                (Motion::Free { velocity, spin }, _) => about(center, *velocity, *spin, x),
+                (_, Some(motion)) => motion.velocity_at(x),
+                _ => [0.0; 3],
+            };
+            let turning = match (&body.motion, &motion) {
+                (Motion::Free { spin, .. }, _) => *spin,
+                (_, Some(motion)) => motion.spin(),
+                _ => [0.0; 3],
+            };
             bodies.push(Body {
                 name: body.name.clone(),
                 material: scene.materials[body.material].law.cast(),
                 density: T::of(scene.materials[body.material].density),
-                particles: particles(scene, body, &filling, |x| match (&body.motion, &motion) {
-                    (Motion::Free { velocity, spin }, _) => about(center, *velocity, *spin, x),
-                    (_, Some(motion)) => motion.velocity_at(x),
-                    _ => [0.0; 3],
-                }),
+                particles: particles(scene, body, &filling, (velocity, turning)),
                 rigid: motion.is_some(),
                 whole: Whole::new(&body.shape, mirrors::<D>(scene), D),
                 thickness: scene.dimension.thickness(),
+                gyration: turning::gyration::<T, B>(scene.discretization.cell),
             });
             rigid.push(motion);
         }
@@ -102,6 +110,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             lattice: Lattice::new(Vector::of(origin), T::of(scene.discretization.cell)),
             domain: scene.domain.as_ref().map(|domain| [domain.min, domain.max].map(Vector::of)),
             gravity: Vector::of(scene.gravity),
+            transfer: scene.time.transfer,
             pic_share: T::of(scene.time.pic_share),
             rules: Rules::new(scene),
             boundary: Boundary::new(walls::<D>(scene)),
@@ -133,6 +142,11 @@ fn prescribed(body: &scene::Body, center: [f64; 3]) -> Option<RigidMotion> {
     }
 }
 
+/// The part of an angular velocity that a motion in `D` dimensions has.
+pub(super) fn spin<T: Real, const D: usize>([x, y, z]: [f64; 3]) -> Vector<T, 3> {
+    Vector::of(if D == 2 { [0.0, 0.0, z] } else { [x, y, z] })
+}
+
 /// v + w x (x - c) [m/s]
 fn about(center: [f64; 3], velocity: [f64; 3], spin: [f64; 3], x: [f64; 3]) -> [f64; 3] {
     let turn = cross(spin, std::array::from_fn(|i| x[i] - center[i]));
@@ -143,7 +157,7 @@ fn particles<T: Real, const D: usize>(
     scene: &Scene,
     body: &scene::Body,
     filling: &Filling,
-    velocity: impl Fn([f64; 3]) -> [f64; 3],
+    (velocity, turning): (impl Fn([f64; 3]) -> [f64; 3], [f64; 3]),
 ) -> Particles<T, D> {
     let density = scene.materials[body.material].density;
     let particle = |number: usize| {
@@ -151,6 +165,7 @@ fn particles<T: Real, const D: usize>(
         Particle {
             position: Vector::of(site.position),
             velocity: Vector::of(velocity(site.position)),
+            spin: spin::<T, D>(turning),
             mass: T::of(site.volume * density),
             volume: T::of(site.volume),
             half_width: T::of(site.half_width),

@@ -22,7 +22,7 @@ use crate::contact::{Impulses, Rules, Survey, Tally};
 use crate::door::StepError;
 use crate::grid::{Cover, Field, Lattice};
 use crate::lanes::Laned;
-use crate::scene::{StressUpdate, Time};
+use crate::scene::{StressUpdate, Time, Transfer};
 use crate::tensor::Vector;
 use crate::transfer::Share;
 use cpu::Workshop;
@@ -43,6 +43,7 @@ pub struct Engine<T, const D: usize, B> {
     /// Lower and upper corner of the domain [m].
     domain: Option<[Vector<T, D>; 2]>,
     gravity: Vector<T, D>,
+    transfer: Transfer,
     pic_share: T,
     rules: Rules<T>,
     boundary: Boundary,
@@ -73,9 +74,9 @@ pub struct Engine<T, const D: usize, B> {
 impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// One step of `dt`. Numbers are equations of Bardenhagen et al. (2001).
     ///
-    /// Contact is applied to the interpolated and to the integrated velocities. The strain comes from the first
-    /// ([`StressUpdate::First`]), from the second ([`StressUpdate::Last`]), or from the particles' new velocities scattered
-    /// once more ([`StressUpdate::ModifiedLast`]).
+    /// Contact is applied to the interpolated and to the integrated velocities. Particles are strained and moved by the same velocities:
+    /// the first ([`StressUpdate::First`]), the second ([`StressUpdate::Last`]), or the particles' new velocities scattered once more
+    /// ([`StressUpdate::ModifiedLast`]).
     fn advance(&mut self, dt: T) -> Result<(), StepError> {
         let when = self.clock.stress_update;
         self.cover(); //                                blocks under each body's particles
@@ -89,27 +90,28 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.first_contact(dt); //                      v~ from interpolated velocities     (5)-(13), (20)-(22)
         if when == StressUpdate::First {
             self.strain_and_scatter(dt)?; //            F = (I + L dt) F, sigma = law(F), f
+            self.keep(); //                             v~ moves the particles, too
         }
         self.accelerate(dt); //                         v += dt (f / m + g)                 (3)
         self.contact(dt); //                            v~ from integrated velocities
         match when {
             StressUpdate::First => {
                 self.friction_work(dt);
-                self.carry();
-                self.accept_and_displace(dt) //         particles: v += dv, x += v dt
+                self.take_back(); //                    v~ from interpolated velocities
+                self.accept_and_displace(dt) //         particles: v += dv, x += v~ dt
             }
             StressUpdate::Last => {
                 self.friction_work(dt);
-                self.carry();
-                self.accept_strain_and_displace(dt) //  particles: v += dv, F, sigma, x += v dt
+                self.keep();
+                self.accept_strain_and_displace(dt) //  particles: v += dv, F, sigma, x += v~ dt
             }
             StressUpdate::ModifiedLast => {
-                self.carry_and_make_room();
-                self.accept_and_scatter()?; //          particles: v += dv; p
+                self.keep_and_make_room();
+                self.accept_and_scatter(dt)?; //        particles: v += dv; p
                 self.modified_velocities(); //          v = p / m
                 self.friction_work(dt);
                 self.contact_unrecorded(dt); //         v~
-                self.strain_and_displace(dt) //         particles: F, sigma, x += v dt
+                self.strain_and_displace(dt) //         particles: F, sigma, x += v~ dt
             }
         }
     }

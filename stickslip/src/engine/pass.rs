@@ -7,7 +7,8 @@ use crate::lanes::{Machine, Processor};
 use crate::material::Motion;
 use crate::particles::Columns;
 use crate::tensor::{Matrix, Real, Vector};
-use crate::transfer::{Share, Stencil};
+use crate::scene::Transfer;
+use crate::transfer::{Share, Stencil, turning};
 use std::marker::PhantomData;
 
 /// Who does the work on particles.
@@ -22,7 +23,7 @@ pub enum Path {
 /// What a pass does to each particle, in this order.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Verbs {
-    /// v_p = (1 - a) (v_p + sum S_i (v_i - v_i^0)) + a sum S_i v_i,   a: PIC share
+    /// v_p = (1 - a) (v_p + sum S_i (v_i - v_i^0)) + a sum S_i v_i,   a: PIC share; the spin likewise, see [`turning`]
     pub accept: bool,
     /// F = (I + L dt) F,  V = V_0 det F,  sigma = law(F)
     pub strain: bool,
@@ -32,21 +33,15 @@ pub struct Verbs {
     pub scatter: Option<Share>,
 }
 
-impl Verbs {
-    /// Whether the velocities that strain particles are those that move them, as when all is done to them at the end of a step.
-    #[inline(always)]
-    pub fn one_flow(&self) -> bool {
-        self.accept && self.strain && self.displace
-    }
-}
-
 /// A pass.
 #[derive(Clone, Copy, Debug)]
 pub struct Pass<T, const D: usize> {
     /// What it does.
     pub verbs: Verbs,
-    /// Step [s].
+    /// How far the step takes the particles, 0 where it has not begun to [s].
     pub dt: T,
+    /// What particles take.
+    pub transfer: Transfer,
     /// PIC share.
     pub pic: T,
     /// Where the nodes are.
@@ -59,8 +54,7 @@ impl<T: Real, const D: usize> Pass<T, D> {
     /// What it takes from the nodes.
     pub fn sought(&self) -> Sought<T> {
         let Verbs { accept, strain, displace, .. } = self.verbs;
-        let flow = strain && !self.verbs.one_flow();
-        Sought { change: accept.then_some(self.pic), flow, carry: displace }
+        Sought { change: accept.then_some(self.pic), flow: strain || displace }
     }
 
     /// Whether it takes anything from the nodes.
@@ -218,16 +212,21 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
     }
 
     fn change(&self, particle: &mut Particle<T, D>, stencil: &Stencil<T, D, B>) -> Result<(), FaultKind> {
-        let Pass { verbs, dt, pic, ref lattice, domain } = *self.pass;
+        let Pass { verbs, dt, transfer, pic, ref lattice, domain } = *self.pass;
         let block = self.tile.block;
         if verbs.accept {
             let change = stencil.interpolate(&self.window.change, block);
             particle.velocity = particle.velocity * (T::ONE - pic) + change;
-            particle.velocity.is_finite().then_some(()).ok_or(FaultKind::NotFinite)?;
+            if transfer == Transfer::Rflip {
+                let moment = stencil.moment(&self.window.change, block);
+                let square = self.body.gyration.squared(particle.half_width);
+                particle.spin = particle.spin * (T::ONE - pic) + moment * (T::ONE / square);
+            }
+            let sound = particle.velocity.is_finite() && particle.spin.is_finite();
+            sound.then_some(()).ok_or(FaultKind::NotFinite)?;
         }
         if verbs.strain {
-            let flow = if verbs.one_flow() { &self.window.carry } else { &self.window.flow };
-            let increment = Matrix::IDENTITY + stencil.velocity_gradient(flow, block) * dt;
+            let increment = Matrix::IDENTITY + stencil.velocity_gradient(&self.window.flow, block) * dt;
             let deformation = increment * particle.deformation;
             let jacobian = deformation.det();
             if !jacobian.is_finite() {
@@ -251,7 +250,7 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
             particle.stress.is_finite().then_some(()).ok_or(FaultKind::NotFinite)?;
         }
         if verbs.displace {
-            let position = particle.position + stencil.interpolate(&self.window.carry, block) * dt;
+            let position = particle.position + stencil.interpolate(&self.window.flow, block) * dt;
             if !position.is_finite() {
                 return Err(FaultKind::NotFinite);
             }
@@ -265,12 +264,14 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
 
     fn scatter(&mut self, particle: &Particle<T, D>, stencil: &Stencil<T, D, B>) {
         let (window, block) = (&mut *self.window, self.tile.block);
-        let momentum = particle.velocity * particle.mass;
+        let gradient = turning::gradient::<T, D>(&particle.spin, T::HALF * self.pass.dt);
         match self.pass.verbs.scatter {
             Some(Share::Mass | Share::Everything) => {
-                stencil.scatter_momentum(window, block, (particle.mass, momentum));
+                stencil.scatter_momentum(window, block, (particle.mass, particle, &gradient));
             }
-            Some(Share::Momentum) => stencil.scatter_momentum(window, block, (T::ZERO, momentum)),
+            Some(Share::Momentum) => {
+                stencil.scatter_momentum(window, block, (T::ZERO, particle, &gradient));
+            }
             Some(Share::Force) | None => {}
         }
         if matches!(self.pass.verbs.scatter, Some(Share::Force | Share::Everything)) {

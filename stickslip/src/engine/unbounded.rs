@@ -4,6 +4,7 @@
 //! deformable bodies hold, does what the whole body would. It grows when they reach blocks beyond it; memory follows them, not the domain.
 
 use super::Engine;
+use super::build::spin;
 use super::rigid::{Pose, RigidMotion};
 use crate::basis::Basis;
 use crate::body::Particle;
@@ -177,6 +178,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let particle = |i: usize| Particle {
             position: Vector::of(sites[i]),
             velocity: Vector::of(motion.velocity_at(pose.now(sites[i]))),
+            spin: spin::<T, D>(motion.spin()),
             mass: volume * body.density,
             volume,
             half_width: T::of(0.5 * lattice.spacing),

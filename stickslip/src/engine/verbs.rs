@@ -1,6 +1,7 @@
 //! The verbs of the step: what each does to a node or a particle.
 
 use super::Engine;
+use super::build::spin;
 use super::pass::{Fault, FaultKind, Found, Pass, Path, Verbs, escaped, signal};
 use crate::basis::Basis;
 use crate::contact::{Change, Near, Record, Solve, Span, Step, Use};
@@ -66,9 +67,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     }
 
     /// v_p = (1 - a) (v_p + sum S_i (v_i - v_i^0)) + a sum S_i v_i,   a: PIC share
-    pub(super) fn accept_and_scatter(&mut self) -> Result<(), StepError> {
+    pub(super) fn accept_and_scatter(&mut self, dt: T) -> Result<(), StepError> {
         let verbs = Verbs { accept: true, scatter: Some(Share::Momentum), ..Verbs::default() };
-        self.run_pass("accept", verbs, T::ZERO)
+        self.run_pass("accept", verbs, dt)
     }
 
     /// F = (I + L dt) F,  sigma = law(F), and the force of the new stress.
@@ -95,7 +96,14 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     fn run_pass(&mut self, name: &'static str, verbs: Verbs, dt: T) -> Result<(), StepError> {
         let start = Instant::now();
         let mut found =
-            self.pass(&Pass { verbs, dt, pic: self.pic_share, lattice: self.lattice, domain: self.domain });
+            self.pass(&Pass {
+                verbs,
+                dt,
+                transfer: self.transfer,
+                pic: self.pic_share,
+                lattice: self.lattice,
+                domain: self.domain,
+            });
         if verbs.displace {
             found = found.and(self.move_rigid_bodies(dt));
             self.signal = Some(found.signal.f64());
@@ -118,16 +126,21 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.watch.lap("velocities", start);
     }
 
-    /// Lets the nodes' velocities carry the particles.
-    pub(super) fn carry(&mut self) {
-        self.field.each_present(|node| node.carry = node.velocity);
+    /// Keeps the nodes' velocities.
+    pub(super) fn keep(&mut self) {
+        self.field.each_present(|node| node.integrated = node.velocity);
     }
 
-    /// Lets the nodes' velocities carry the particles and makes room for momentum.
-    pub(super) fn carry_and_make_room(&mut self) {
+    /// Takes back the velocities that were kept, and keeps those of now.
+    pub(super) fn take_back(&mut self) {
+        self.field.each_present(|node| std::mem::swap(&mut node.integrated, &mut node.velocity));
+    }
+
+    /// Keeps the nodes' velocities and makes room for momentum.
+    pub(super) fn keep_and_make_room(&mut self) {
         let start = Instant::now();
         self.field.each_present(|node| {
-            node.carry = node.velocity;
+            node.integrated = node.velocity;
             node.velocity = Vector::ZERO;
         });
         self.watch.lap("velocities", start);
@@ -279,6 +292,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                     Some(FaultKind::NotFinite)
                 } else {
                     particle.velocity = Vector::of(motion.velocity_at(position));
+                    particle.spin = spin::<T, D>(motion.spin());
                     particle.position = moved;
                     particle.deformation = turn * particle.deformation;
                     escaped::<T, D, B>(&particle, &self.lattice, domain).then_some(FaultKind::Escaped)

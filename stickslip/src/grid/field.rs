@@ -20,8 +20,8 @@ pub struct Node<T, const D: usize> {
     pub force: Vector<T, D>,
     /// Velocity as interpolated from the particles, before contact and forces [m/s].
     pub start: Vector<T, D>,
-    /// Velocity as integrated, which moves the particles [m/s].
-    pub carry: Vector<T, D>,
+    /// Velocity as integrated with all forces and contact, whose change the particles take [m/s].
+    pub integrated: Vector<T, D>,
 }
 
 impl<T: Real, const D: usize> Node<T, D> {
@@ -31,7 +31,7 @@ impl<T: Real, const D: usize> Node<T, D> {
         velocity: Vector::ZERO,
         force: Vector::ZERO,
         start: Vector::ZERO,
-        carry: Vector::ZERO,
+        integrated: Vector::ZERO,
     };
 
     /// Where a node's first eight numbers are in [`Sums`]: mass, velocity and force, and then zeros: in the plane the third axis has nothing to give.
@@ -119,10 +119,8 @@ pub const WINDOW_NODES: usize = WINDOW * WINDOW * WINDOW;
 pub struct Sought<T> {
     /// v - (1 - a) v0, from which particles take their velocities; `a` is the PIC share.
     pub change: Option<T>,
-    /// The velocities that strain particles.
+    /// The velocities that move and strain particles.
     pub flow: bool,
-    /// The velocities that move particles.
-    pub carry: bool,
 }
 
 /// What a node is given: momentum [kg m/s] and force [N] along each axis, mass [kg] and nothing in the last place.
@@ -139,10 +137,8 @@ pub const TOLD: usize = 4;
 pub struct Window<T, const D: usize> {
     /// v - (1 - a) v0 [m/s].
     pub change: [Told<T>; WINDOW_NODES],
-    /// The velocities that strain particles [m/s].
+    /// The velocities that move and strain particles [m/s].
     pub flow: [Told<T>; WINDOW_NODES],
-    /// The velocities that move particles [m/s].
-    pub carry: [Told<T>; WINDOW_NODES],
     /// What was scattered so far.
     pub sums: [Sums<T>; WINDOW_NODES],
 }
@@ -152,7 +148,6 @@ impl<T: Real, const D: usize> Default for Window<T, D> {
         Window {
             change: [[T::ZERO; 4]; WINDOW_NODES],
             flow: [[T::ZERO; 4]; WINDOW_NODES],
-            carry: [[T::ZERO; 4]; WINDOW_NODES],
             sums: [[[T::ZERO; 2]; 4]; WINDOW_NODES],
         }
     }
@@ -249,16 +244,13 @@ impl<T: Real, const D: usize> Window<T, D> {
                 // SAFETY: the caller keeps writers away from the tile's slots.
                 let node = unsafe { field.read(node + k) };
                 let place = place + k;
-                let carry: M::Quad = told(&node.carry);
                 if let Some(pic) = sought.change {
+                    let integrated: M::Quad = told(&node.integrated);
                     let start: M::Quad = told(&node.start);
-                    tell(&mut self.change[place], carry - start * M::Quad::splat(T::ONE - pic));
+                    tell(&mut self.change[place], integrated - start * M::Quad::splat(T::ONE - pic));
                 }
                 if sought.flow {
                     tell::<M::Quad>(&mut self.flow[place], told(&node.velocity));
-                }
-                if sought.carry {
-                    tell(&mut self.carry[place], carry);
                 }
             }
         }

@@ -194,6 +194,8 @@ pub struct Time {
     pub max_step: Option<f64>,
     /// When in the step the stress is updated.
     pub stress_update: StressUpdate,
+    /// What particles take from the grid and give to it.
+    pub transfer: Transfer,
     /// Share of the grid's velocity itself (PIC) in the particles' new velocity; the rest takes the grid's change of velocity (FLIP). 0 to 1.
     pub pic_share: f64,
 }
@@ -208,6 +210,16 @@ pub enum StressUpdate {
     Last,
     /// From the particles' new velocities, interpolated once more at the end of the step (MUSL).
     ModifiedLast,
+}
+
+/// What velocities particles take from the grid and give to it, see [`crate::transfer`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Transfer {
+    /// FLIP of particles that also carry the rotation of the material around them.
+    Rflip,
+    /// FLIP: particles take the grid's change of velocity (Brackbill and Ruppel 1986).
+    Flip,
 }
 
 /// A material with its name and density.

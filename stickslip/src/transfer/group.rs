@@ -9,6 +9,7 @@
 use crate::basis::{Basis, MAX_WIDTH, Shape};
 use crate::grid::{Sums, TOLD, Told, WINDOW, WINDOW_NODES, Window};
 use crate::lanes::{Lanes, MOST_LANES, Machine, Numbers};
+use super::turning::moment;
 use crate::tensor::{Matrix, Number, Real, Symmetric, Vector};
 use std::marker::PhantomData;
 
@@ -95,6 +96,8 @@ impl Start for Own {
 #[derive(Clone, Copy, Debug)]
 pub struct Group<V, const D: usize, B, S> {
     shapes: [Shape<V>; D],
+    /// Places after the base nodes [cells].
+    r: Vector<V, D>,
     start: S,
     /// How many particles; lanes beyond have their place.
     count: usize,
@@ -104,10 +107,21 @@ pub struct Group<V, const D: usize, B, S> {
 /// What a group scatters.
 #[derive(Clone, Copy, Debug)]
 pub struct Load<V, const D: usize> {
-    /// Momentum [kg m/s] and mass [kg].
-    pub momentum: Option<(Vector<V, D>, V)>,
+    /// Momentum and mass.
+    pub momentum: Option<Momentum<V, D>>,
     /// V sigma/h, tension positive [N].
     pub stress: Option<Symmetric<V>>,
+}
+
+/// Momentum that a group scatters, see [`super::turning`].
+#[derive(Clone, Copy, Debug)]
+pub struct Momentum<V, const D: usize> {
+    /// m v [kg m/s]
+    pub own: Vector<V, D>,
+    /// m h G: change of the momentum by a cell along each axis, embedded in space [kg m/s].
+    pub per_cell: Matrix<V>,
+    /// Mass that nodes are given [kg].
+    pub mass: V,
 }
 
 /// Nodes of a window that come before the last reach of a particle.
@@ -131,7 +145,7 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
         for i in 1..D {
             shapes[i] = B::shape(r[i], half);
         }
-        Group { shapes, start, count, basis: PhantomData }
+        Group { shapes, r, start, count, basis: PhantomData }
     }
 
     /// Place of a node in the window, after that of the base node.
@@ -172,19 +186,49 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
     /// h L = sum v_i (x) h grad S_i, embedded in space, and sum S_i v_i of the same velocities [m/s].
     #[inline(always)]
     pub fn flow(&self, nodes: &[Told<V::Real>; WINDOW_NODES]) -> (Matrix<V>, Vector<V, D>) {
+        let mut slopes = [[V::ZERO; MAX_WIDTH]; D];
+        for axis in 0..D {
+            for i in 0..B::WIDTH {
+                slopes[axis][i] = self.shapes[axis].slope(i);
+            }
+        }
+        self.sums(nodes, &slopes)
+    }
+
+    /// sum S_i (x_i - x_p) x v_i over h, see [`super::turning`], and sum S_i v_i [m/s].
+    #[inline(always)]
+    pub fn moment(&self, nodes: &[Told<V::Real>; WINDOW_NODES]) -> (Vector<V, 3>, Vector<V, D>) {
+        let mut arms = [[V::ZERO; MAX_WIDTH]; D];
+        for axis in 0..D {
+            for i in 0..B::WIDTH {
+                arms[axis][i] = self.shapes[axis].weight[i] * (V::of(i as f64) - self.r[axis]);
+            }
+        }
+        let (moments, mean) = self.sums(nodes, &arms);
+        (moment::<V, D>(&moments), mean)
+    }
+
+    /// Sums of v_i, by components, with the shape function's factor along each axis in turn replaced by another one, and with none.
+    #[inline(always)]
+    fn sums(
+        &self,
+        nodes: &[Told<V::Real>; WINDOW_NODES],
+        others: &[[V; MAX_WIDTH]; D],
+    ) -> (Matrix<V>, Vector<V, D>) {
         let [x, y, z] = [&self.shapes[0], &self.shapes[1], &self.shapes[D - 1]];
-        let mut l = Matrix::<V>::ZERO;
+        let [other_x, other_y, other_z] = [&others[0], &others[1], &others[D - 1]];
+        let mut sums = Matrix::<V>::ZERO;
         for c in 0..D {
             for axis in 0..D {
-                l.0[c][axis] = V::NOTHING;
+                sums.0[c][axis] = V::NOTHING;
             }
         }
         let mut sum = Vector([V::NOTHING; D]);
         for i in 0..B::WIDTH {
-            // Sums over a plane of nodes: of values, and of slopes along y and z.
+            // Sums over a plane of nodes: of values, and with the other factors along y and z.
             let mut plane = [[V::NOTHING; D]; 3];
             for j in 0..B::WIDTH {
-                let (mut row, mut sloped) = ([V::NOTHING; D], [V::NOTHING; D]);
+                let (mut row, mut other) = ([V::NOTHING; D], [V::NOTHING; D]);
                 for k in 0..Self::DEPTH {
                     for c in 0..D {
                         let value: V = self.start.value(nodes, Self::offset(i, j, k), c);
@@ -192,43 +236,56 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
                             row[c] = value;
                         } else {
                             row[c] = z.weight[k].times_plus(value, row[c]);
-                            sloped[c] = z.slope(k).times_plus(value, sloped[c]);
+                            other[c] = other_z[k].times_plus(value, other[c]);
                         }
                     }
                 }
                 for c in 0..D {
                     plane[0][c] = y.weight[j].times_plus(row[c], plane[0][c]);
-                    plane[1][c] = y.slope(j).times_plus(row[c], plane[1][c]);
+                    plane[1][c] = other_y[j].times_plus(row[c], plane[1][c]);
                     if D == 3 {
-                        plane[2][c] = y.weight[j].times_plus(sloped[c], plane[2][c]);
+                        plane[2][c] = y.weight[j].times_plus(other[c], plane[2][c]);
                     }
                 }
             }
             for c in 0..D {
                 sum[c] = x.weight[i].times_plus(plane[0][c], sum[c]);
-                l.0[c][0] = x.slope(i).times_plus(plane[0][c], l.0[c][0]);
-                l.0[c][1] = x.weight[i].times_plus(plane[1][c], l.0[c][1]);
+                sums.0[c][0] = other_x[i].times_plus(plane[0][c], sums.0[c][0]);
+                sums.0[c][1] = x.weight[i].times_plus(plane[1][c], sums.0[c][1]);
                 if D == 3 {
-                    l.0[c][2] = x.weight[i].times_plus(plane[2][c], l.0[c][2]);
+                    sums.0[c][2] = x.weight[i].times_plus(plane[2][c], sums.0[c][2]);
                 }
             }
         }
-        (l, sum)
+        (sums, sum)
     }
 
     /// Adds what the particles scatter to the window, two particles at a time.
     ///
     /// ```text
-    /// m_i += S_i m,   p_i += S_i m v,   f_i += -V sigma grad S_i          Sulsky, Chen and Schreyer (1994)
+    /// m_i += S_i m,   p_i += S_i m (v + G (x_i - x_p)),   f_i += -V sigma grad S_i
     /// ```
     #[inline(always)]
     pub fn scatter<M: Machine<V::Real>>(&self, window: &mut Window<V::Real, D>, load: &Load<V, D>) {
         let n = self.count;
         // No closures, see `Group::new`.
         let mut pairs = PairLoad { momentum: None, stress: None };
-        if let Some((momentum, mass)) = load.momentum {
-            let z = if D == 2 { V::ZERO } else { momentum[D - 1].first(n) };
-            pairs.momentum = Some(Rows::new([momentum[0].first(n), momentum[1].first(n), z, mass.first(n)]));
+        if let Some(Momentum { own, per_cell: Matrix(m), mass }) = load.momentum {
+            // At the base node.
+            let mut first = own;
+            for c in 0..D {
+                for axis in 0..D {
+                    first[c] = (-m[c][axis]).times_plus(self.r[axis], first[c]);
+                }
+            }
+            pairs.momentum = Some(MomentumRows {
+                first: Rows::of::<V, D>([first[0], first[1], first[D - 1], mass], n),
+                steps: [
+                    Rows::of::<V, D>([m[0][0], m[1][0], m[2][0], V::ZERO], n),
+                    Rows::of::<V, D>([m[0][1], m[1][1], m[2][1], V::ZERO], n),
+                    if D == 2 { Rows::ZERO } else { Rows::of::<V, D>([m[0][2], m[1][2], m[2][2], V::ZERO], n) },
+                ],
+            });
         }
         if let Some(stress) = load.stress {
             let [xx, yy, zz, xy, yz, xz] = stress.0;
@@ -280,7 +337,7 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
     fn momenta<M: Machine<V::Real>>(
         &self,
         i: usize,
-        load: &Rows<V::Real>,
+        load: &MomentumRows<V::Real>,
     ) -> [M::Wide; MAX_WIDTH * MAX_WIDTH] {
         let mut weights = [Numbers::ZERO; MAX_WIDTH * MAX_WIDTH];
         for j in 0..B::WIDTH {
@@ -290,9 +347,23 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
         }
         let mut sums = [M::Wide::NOTHING; MAX_WIDTH * MAX_WIDTH];
         for pair in 0..self.pairs() {
-            let row = load.get::<M>(pair);
-            for n in 0..B::WIDTH * Self::DEPTH {
-                sums[n] = row.times_plus(factors::<M, _>(&weights[n], pair), sums[n]);
+            let along_x = load.steps[0].get::<M>(pair);
+            let along_y = load.steps[1].get::<M>(pair);
+            let along_z = load.steps[2].get::<M>(pair);
+            // From node to node.
+            let mut line = along_x.times_plus(M::Wide::of(i as f64), load.first.get::<M>(pair));
+            for j in 0..B::WIDTH {
+                let mut row = line;
+                for k in 0..Self::DEPTH {
+                    let n = j * Self::DEPTH + k;
+                    sums[n] = row.times_plus(factors::<M, _>(&weights[n], pair), sums[n]);
+                    if k + 1 < Self::DEPTH {
+                        row += along_z;
+                    }
+                }
+                if j + 1 < B::WIDTH {
+                    line += along_y;
+                }
             }
         }
         sums
@@ -393,9 +464,12 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
             }
         }
         for p in 0..self.count.min(MOST_LANES) {
-            let mut rows = [M::Wide::ZERO; 4];
-            if let Some(momentum) = momentum {
-                rows[3] = momentum.one::<M>(p);
+            let (mut rows, mut momenta) = ([M::Wide::ZERO; 3], [M::Wide::ZERO; 4]);
+            if let Some(MomentumRows { first, steps }) = momentum {
+                momenta[0] = first.one::<M>(p);
+                for axis in 0..D {
+                    momenta[axis + 1] = steps[axis].one::<M>(p);
+                }
             }
             if let Some(stress) = stress {
                 for axis in 0..D {
@@ -405,7 +479,11 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
             for (n, [i, j, k]) in Self::nodes() {
                 let (mut given, mut force) = (M::Wide::ZERO, M::Wide::NOTHING);
                 if momentum.is_some() {
-                    given = rows[3] * factors::<M, _>(&weights[n], p / 2);
+                    let mut row = momenta[0];
+                    for (axis, steps) in [i, j, k].into_iter().enumerate().take(D) {
+                        row = momenta[axis + 1].times_plus(M::Wide::of(steps as f64), row);
+                    }
+                    given = row * factors::<M, _>(&weights[n], p / 2);
                 }
                 if stress.is_some() {
                     for axis in 0..D {
@@ -446,9 +524,15 @@ pub fn pairs(count: usize) -> usize {
 /// What a group scatters, by pairs of particles.
 struct PairLoad<T> {
     /// Momentum and mass.
-    momentum: Option<Rows<T>>,
+    momentum: Option<MomentumRows<T>>,
     /// Columns of V sigma/h.
     stress: Option<[Rows<T>; 3]>,
+}
+
+/// Momentum and mass at the base node, and by how much they change to the next node along each axis.
+struct MomentumRows<T> {
+    first: Rows<T>,
+    steps: [Rows<T>; 3],
 }
 
 /// Four numbers of each particle of a group: of two particles the first, then the second and so on.
@@ -457,11 +541,20 @@ struct PairLoad<T> {
 struct Rows<T>([[[T; 2]; 4]; MOST_LANES / 2]);
 
 impl<T: Real> Rows<T> {
+    const ZERO: Self = Rows([[[T::ZERO; 2]; 4]; MOST_LANES / 2]);
+
     #[inline(always)]
     fn new<V: Lanes<Real = T>>(columns: [V; 4]) -> Self {
-        let mut rows = Rows([[[T::ZERO; 2]; 4]; MOST_LANES / 2]);
+        let mut rows = Self::ZERO;
         V::store_pairs(columns, &mut rows.0);
         rows
+    }
+
+    /// Those of the first `n` particles, and zeros; in the plane the third number is zero.
+    #[inline(always)]
+    fn of<V: Lanes<Real = T>, const D: usize>([x, y, z, rest]: [V; 4], n: usize) -> Self {
+        let z = if D == 2 { V::ZERO } else { z.first(n) };
+        Self::new([x.first(n), y.first(n), z, rest.first(n)])
     }
 
     #[inline(always)]

@@ -229,6 +229,7 @@ pub fn scene() -> Scene {
             courant: 0.5,
             max_step: None,
             stress_update: StressUpdate::Last,
+            transfer: Transfer::Flip,
             pic_share: 0.0,
         },
         gravity: [0.0, -GRAVITY, 0.0],

@@ -1,7 +1,7 @@
 use super::sums::{FIRST, FORCE, MASS, placed_rows};
 use super::*;
 use crate::basis::{Gimp, Linear};
-use crate::body::{Body, Particle};
+use crate::body::{Body, Gyration, Particle};
 use crate::boundary::{Boundary, reflect};
 use crate::contact::{Rules, rules};
 use crate::geometry::{Shape, Whole};
@@ -26,6 +26,7 @@ fn body<const D: usize>() -> Body<f64, D> {
         Particle {
             position: place(i, 11),
             velocity: Vector::ZERO,
+            spin: Vector::ZERO,
             mass: 1.0 + random(i),
             volume: 0.5 + random(2 * i + 1),
             half_width: 0.2 + 0.05 * random(3 * i),
@@ -50,6 +51,7 @@ fn body<const D: usize>() -> Body<f64, D> {
         rigid: false,
         whole: Whole::new(&Shape::Ball { center: [0.0; 3], radius: 1.0 }, Vec::new(), D),
         thickness: Thickness::Moved,
+        gyration: Gyration { cell: 0.0, share: 0.0 },
     }
 }
 

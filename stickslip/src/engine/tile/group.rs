@@ -3,12 +3,14 @@
 use super::members::Members;
 use super::thickness::free_thickness;
 use crate::basis::Basis;
+use crate::body::Gyration;
 use crate::engine::pass::{Pass, Verbs, Visit};
 use crate::lanes::{Laned, Lanes, Machine};
 use crate::material::{Material, Motion, Thickness};
 use crate::particles::Column;
 use crate::tensor::{Matrix, Real, Symmetric, Vector};
-use crate::transfer::{Group, Load, Share, Start};
+use crate::scene::Transfer;
+use crate::transfer::{Group, Load, Momentum, Share, Start, turning};
 
 /// What all particles of a tile have in common.
 pub struct Constants<V, const D: usize> {
@@ -18,8 +20,12 @@ pub struct Constants<V, const D: usize> {
     pub per_density: V,
     /// Position of the node at zero [m].
     pub origin: Vector<V, D>,
-    /// Inverse of a cell's side [1/m].
+    /// Side of a cell [m].
+    pub cell: V,
+    /// Inverse of it [1/m].
     pub per_cell: V,
+    /// What the particles weigh against turning.
+    pub gyration: Gyration<V>,
     /// Lower and upper corner of the domain [m].
     pub domain: Option<[Vector<V, D>; 2]>,
 }
@@ -54,21 +60,36 @@ pub fn group<
     members: &Members<'_, T, D, WHOLE>,
     (base, start): (Vector<V, D>, S),
 ) -> Option<u32> {
-    let Pass { verbs, dt, pic, .. } = *visit.pass;
+    let Pass { verbs, dt, transfer, pic, .. } = *visit.pass;
     let Verbs { accept, strain, displace, scatter } = verbs;
     let position = members.vector::<V>(Column::<D>::POSITION);
-    let half = members.load::<V>(Column::<D>::HALF_WIDTH) * constants.per_cell;
+    let half_width = members.load::<V>(Column::<D>::HALF_WIDTH);
+    let half = half_width * constants.per_cell;
     let group =
         Group::<V, D, B, S>::new(constants.in_cells(&position) - base, half, start, members.count::<V>());
     let mut sound = u32::MAX;
 
     let mut velocity = Vector::ZERO;
-    if accept || displace || scatter.is_some_and(|share| share != Share::Force) {
+    let mut spin = Vector::ZERO;
+    let gives_momentum = scatter.is_some_and(|share| share != Share::Force);
+    if accept || displace || gives_momentum {
         velocity = members.vector::<V>(Column::<D>::VELOCITY);
     }
+    if accept || gives_momentum {
+        spin = members.spin::<V>();
+    }
     if accept {
-        let change = group.interpolate(&visit.window.change);
-        velocity = velocity * V::splat(T::ONE - pic) + change;
+        let kept = V::splat(T::ONE - pic);
+        let change = if transfer == Transfer::Rflip {
+            let (moment, change) = group.moment(&visit.window.change);
+            let per_square = constants.cell / constants.gyration.squared(half_width);
+            spin = spin * kept + moment * per_square;
+            sound &= finite(&spin.0);
+            change
+        } else {
+            group.interpolate(&visit.window.change)
+        };
+        velocity = velocity * kept + change;
         sound &= finite(&velocity.0);
     }
 
@@ -89,8 +110,7 @@ pub fn group<
             plastic_strain = members.load(Column::<D>::PLASTIC_STRAIN);
         }
         let scale = V::splat(dt) * constants.per_cell;
-        let flow = if verbs.one_flow() { &visit.window.carry } else { &visit.window.flow };
-        let (gradient, mean) = group.flow(flow);
+        let (gradient, mean) = group.flow(&visit.window.flow);
         carried = mean;
         let increment = Matrix::IDENTITY + gradient * scale;
         deformation = increment * deformation;
@@ -118,8 +138,8 @@ pub fn group<
 
     let mut inside = u32::MAX;
     if displace {
-        if !verbs.one_flow() {
-            carried = group.interpolate(&visit.window.carry);
+        if !strain {
+            carried = group.interpolate(&visit.window.flow);
         }
         let moved = position + carried * V::splat(dt);
         sound &= finite(&moved.0);
@@ -157,6 +177,7 @@ pub fn group<
     }
     if accept {
         members.store_vector(Column::<D>::VELOCITY, &velocity);
+        members.store_spin(&spin);
         members.give_back::<V>(Column::<D>::VELOCITY..Column::<D>::MASS);
     }
     if strain {
@@ -172,9 +193,13 @@ pub fn group<
     }
     if let Some(share) = scatter {
         let mut load = Load { momentum: None, stress: None };
-        if share != Share::Force {
+        if gives_momentum {
             let mass = members.load::<V>(Column::<D>::MASS);
-            load.momentum = Some((velocity * mass, if share == Share::Momentum { V::ZERO } else { mass }));
+            load.momentum = Some(Momentum {
+                own: velocity * mass,
+                per_cell: turning::gradient::<V, D>(&spin, V::splat(T::HALF * dt)) * (mass * constants.cell),
+                mass: if share == Share::Momentum { V::ZERO } else { mass },
+            });
         }
         if pushes {
             load.stress = Some(stress * (volume * constants.per_cell));

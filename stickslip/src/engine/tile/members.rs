@@ -2,7 +2,7 @@
 
 use crate::engine::pass::Verbs;
 use crate::lanes::{Lanes, MOST_LANES, Numbers, prefetch};
-use crate::particles::{Column, Columns, deformation_entries, stress_entries};
+use crate::particles::{Column, Columns, deformation_entries, spin_entries, stress_entries};
 use crate::tensor::{Matrix, Real, Symmetric, Vector};
 use crate::transfer::Share;
 use std::ops::Range;
@@ -200,6 +200,23 @@ impl<'a, T: Real, const D: usize, const WHOLE: bool> Members<'a, T, D, WHOLE> {
     pub fn store_vector<V: Lanes<Real = T>>(&self, column: usize, vector: &Vector<V, D>) {
         for i in 0..D {
             self.store(column + i, vector[i]);
+        }
+    }
+
+    /// Angular velocity, in the plane about the third axis.
+    #[inline(always)]
+    pub fn spin<V: Lanes<Real = T>>(&self) -> Vector<V, 3> {
+        let mut spin = Vector::ZERO;
+        for k in 0..spin_entries(D) {
+            spin[3 - spin_entries(D) + k] = self.load(Column::<D>::SPIN + k);
+        }
+        spin
+    }
+
+    #[inline(always)]
+    pub fn store_spin<V: Lanes<Real = T>>(&self, spin: &Vector<V, 3>) {
+        for k in 0..spin_entries(D) {
+            self.store(Column::<D>::SPIN + k, spin[3 - spin_entries(D) + k]);
         }
     }
 

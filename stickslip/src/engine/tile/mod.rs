@@ -9,6 +9,7 @@ mod thickness;
 
 use super::pass::Visit;
 use crate::basis::Basis;
+use crate::body::Gyration;
 use crate::grid::{WINDOW, node_at};
 use crate::lanes::{Laned, Lanes, MOST_LANES, Machine, Work};
 use crate::tensor::Vector;
@@ -56,7 +57,12 @@ impl<T: Laned, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
             material: self.body.material.map(V::splat),
             per_density: V::splat(T::ONE / self.body.density),
             origin: splat(&self.pass.lattice.origin),
+            cell: V::splat(self.pass.lattice.cell),
             per_cell: V::splat(self.pass.lattice.per_cell),
+            gyration: Gyration {
+                cell: V::splat(self.body.gyration.cell),
+                share: V::splat(self.body.gyration.share),
+            },
             domain: self.pass.domain.map(|[min, max]| [splat(&min), splat(&max)]),
         }
     }

@@ -5,7 +5,7 @@ use super::quantity::{Duration, Quantity, Ratio};
 use super::read::table;
 use super::text::{Choice, Word};
 use crate::scene::error::Fault;
-use crate::scene::{self, StressUpdate};
+use crate::scene::{self, StressUpdate, Transfer};
 
 table! {
     /// Duration and time step.
@@ -20,6 +20,9 @@ table! {
         /// When in the step the stress is updated.
         #[schemars(extend("default" = "modified-last"))]
         stress_update: Option<Word<StressUpdate>>,
+        /// What velocities particles take from the grid and give to it.
+        #[schemars(extend("default" = "rflip"))]
+        transfer: Option<Word<Transfer>>,
         /// Share of the grid's velocity itself (PIC) in the particles' new velocity, 0 to 1; the rest is FLIP.
         #[schemars(extend("default" = 0))]
         pic_share: Option<Quantity<Ratio>>,
@@ -34,6 +37,13 @@ impl Choice for StressUpdate {
     ];
 }
 
+impl Choice for Transfer {
+    const WORDS: &'static [(&'static str, Self, &'static str)] = &[
+        ("rflip", Transfer::Rflip, "Changes of velocity, and of the particles' rotation: bodies keep their spin."),
+        ("flip", Transfer::Flip, "Changes of velocity alone (FLIP), as most codes have it: bodies lose spin at their rims."),
+    ];
+}
+
 impl Time {
     /// Duration and time step in SI units.
     pub fn resolve(&self, context: &Context) -> Result<scene::Time, Fault> {
@@ -44,11 +54,13 @@ impl Time {
             share.checked(context, "a number from 0 to 1", |value| (0.0..=1.0).contains(&value))
         });
         let update = self.stress_update.as_ref();
+        let transfer = self.transfer.as_ref();
         Ok(scene::Time {
             end: self.end.positive(context)?,
             courant: courant?,
             max_step: self.max_step.as_ref().map(|step| step.positive(context)).transpose()?,
             stress_update: update.map_or(Ok(StressUpdate::ModifiedLast), |word| word.value(context))?,
+            transfer: transfer.map_or(Ok(Transfer::Rflip), |word| word.value(context))?,
             pic_share: pic_share?,
         })
     }
