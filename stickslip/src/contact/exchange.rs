@@ -32,7 +32,8 @@ pub fn common_normal<T: Real, const D: usize>(
 }
 
 /// Each body by its own normal and its own decision, `touching(surface, approach [m/s], n)`, as the paper prints it,
-/// eqs. (5), (8)-(13).
+/// eqs. (5), (8)-(13). Against a rigid body it is the rigid one's normal: that surface is where it is said to be, and stairs of a lattice
+/// would grip on a flat wall.
 pub fn own_normals<T: Real, const D: usize>(
     pair: &Pair<T, D>,
     velocities: [Vector<T, D>; 2],
@@ -47,7 +48,9 @@ pub fn own_normals<T: Real, const D: usize>(
     let center = velocities[1] * (a.inverse_mass / share) + velocities[0] * (b.inverse_mass / share);
     let mut change = Change::NONE;
     for (i, surface) in pair.surfaces.into_iter().enumerate() {
-        let Some(n) = surface.normal else { continue };
+        let other = pair.surfaces[1 - i];
+        let of_wall = if other.inverse_mass > T::ZERO { None } else { other.normal.map(|n| -n) };
+        let Some(n) = of_wall.or(surface.normal) else { continue };
         let dv = velocities[i] - center;
         let approach = dv.dot(n);
         if !touching(surface, approach, n) {
@@ -128,6 +131,18 @@ mod tests {
                 assert!(difference < 1e-14, "friction {friction}: {own:?} {common:?}");
             }
         }
+    }
+
+    /// A flat frictionless wall only pushes, whatever the other's stairs say.
+    #[test]
+    fn against_a_wall_the_walls_normal_counts() {
+        let rule = rule(ContactLaw::Kinematic, Normal::Own, 0.0);
+        let free = surface(2.0, [0.6, -0.8]);
+        let wall = Surface { inverse_mass: 0.0, ..surface(1.0, [0.0, 1.0]) };
+        let pair =
+            Pair { rule: &rule, surfaces: [&free, &wall], normal: None, gap: 0.0, area: 0.0, step: step(100.0) };
+        let [on_free, on_wall] = pair.change([Vector([3.0, -8.0]), Vector::ZERO]).impulse;
+        assert_eq!((on_free, on_wall), (Vector([0.0, 16.0]), Vector([0.0, -16.0])));
     }
 
     #[test]

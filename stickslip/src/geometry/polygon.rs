@@ -21,6 +21,9 @@ pub(super) fn contains(points: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
     inside
 }
 
+/// Points this near an edge, over its length, are on it: their way to the edge is round-off.
+const ON_BORDER: f64 = 1e-9;
+
 /// Distance to the border [m], negative inside, and its gradient.
 pub(super) fn distance(points: &[[f64; 2]], [x, y]: [f64; 2]) -> (f64, [f64; 2]) {
     let (mut nearest, mut arm, mut along_edge) = (f64::INFINITY, [0.0; 2], [0.0; 2]);
@@ -39,11 +42,12 @@ pub(super) fn distance(points: &[[f64; 2]], [x, y]: [f64; 2]) -> (f64, [f64; 2])
         }
     }
     let sign = if contains(points, [x, y]) { -1.0 } else { 1.0 };
-    let gradient = if nearest > 0.0 {
+    let edge = along_edge[0].hypot(along_edge[1]);
+    let gradient = if nearest > ON_BORDER * edge {
         arm.map(|a| sign * a / nearest)
     } else {
-        // On the border: the edge's normal, out of a polygon that goes round anticlockwise.
-        let turn = if signed_area(points) < 0.0 { -1.0 } else { 1.0 } / along_edge[0].hypot(along_edge[1]);
+        // The edge's normal, out of a polygon that goes round anticlockwise.
+        let turn = if signed_area(points) < 0.0 { -1.0 } else { 1.0 } / edge;
         [along_edge[1] * turn, -along_edge[0] * turn]
     };
     (sign * nearest, gradient)
@@ -75,6 +79,21 @@ mod tests {
         assert!((distance(&L, [2.0, 2.0]).0 - 1.0).abs() < 1e-15);
         assert!((distance(&L, [0.5, 2.0]).0 + 0.5).abs() < 1e-15);
         assert!((distance(&L, [4.0, 2.0]).0 - 2f64.sqrt()).abs() < 1e-15);
+    }
+
+    /// However an edge runs, and on whichever side of it round-off puts a point, its normal there is the edge's.
+    #[test]
+    fn on_an_edge_the_normal_is_the_edges() {
+        for i in 1..200 {
+            let angle = 0.0317 * f64::from(i);
+            let turned = L.map(|[x, y]| [x * angle.cos() - y * angle.sin(), x * angle.sin() + y * angle.cos()]);
+            let along = f64::from(i) / 200.0;
+            let point = [0, 1].map(|k| turned[0][k] + along * (turned[1][k] - turned[0][k]));
+            let (length, gradient) = distance(&turned, point);
+            assert!(length.abs() < 1e-15);
+            let off = [gradient[0] - angle.sin(), gradient[1] + angle.cos()];
+            assert!(off[0].hypot(off[1]) < 1e-12, "{angle}: {gradient:?}");
+        }
     }
 
     #[test]
