@@ -8,7 +8,7 @@ use crate::scenery::turned_box;
 use crate::trial::Trial;
 
 pub const BENCHMARK: Benchmark = Benchmark {
-    name: "flat wall",
+    name: "wall",
     title: "Block on a rigid wall without friction, by own normals",
     source: "A wall without friction pushes along its normal",
     picture: "

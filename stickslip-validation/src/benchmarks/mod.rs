@@ -10,6 +10,7 @@ mod b1_incline;
 mod b20_spinning_disk;
 mod b21_cantilever;
 mod b21_large_deflection;
+mod b24_taylor_bar;
 mod b29_stack;
 mod b2_backspin;
 mod b30_hanging_bar;
@@ -21,6 +22,7 @@ mod b5_equal_bars;
 mod b7_impedance_mismatch;
 mod b9_two_disks;
 mod blunted_wedge;
+mod coming_to_roll;
 mod corners;
 mod die;
 mod flat_wall;
@@ -34,10 +36,12 @@ mod m5_patch;
 mod m6_friction_ratio;
 mod maw_curve;
 mod meeting;
+mod punch;
 mod reasons;
 mod rigid_half_space;
 mod rolling_sphere;
 mod spinning_ring;
+mod spinning_to_a_stop;
 mod turning_disk;
 
 use crate::benchmark::Benchmark;
@@ -79,6 +83,10 @@ pub static BENCHMARKS: &[Benchmark] = &[
     groove::BENCHMARK,
     flat_wall::BENCHMARK,
     b33_slow_sliding::BENCHMARK,
+    coming_to_roll::BENCHMARK,
+    spinning_to_a_stop::BENCHMARK,
+    punch::BENCHMARK,
+    b24_taylor_bar::BENCHMARK,
 ];
 
 #[cfg(test)]
