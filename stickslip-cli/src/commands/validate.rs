@@ -28,7 +28,7 @@ pub struct Arguments {
     #[arg(long = "scheme", value_name = "SCHEME", value_parser = scheme_words())]
     schemes: Vec<&'static Scheme>,
 
-    /// Every resolution and every variant, which takes long; without this, about four minutes on two cores.
+    /// Every resolution and every variant, which takes long; without this, about four and a half minutes on two cores.
     #[arg(long)]
     all: bool,
 

@@ -17,8 +17,8 @@ pub const BENCHMARK: Benchmark = Benchmark {
         |_____|
       ___________   rigid, mu = 0.3
 ",
-    set_up: "In space; a cylinder of R = E = rho = 1, R high, nu = 0.3, fitted, stands on a rigid floor under a gravity of 0.002, mu = 0.3, and spins about its axis with 0.01 at first.",
-    exact: "w' = -(4/3) mu g/R, so it stops at t = 3 w0 R/(4 mu g) = 12.5. The load comes at once and the rod bounces on it; d(w + (4/3) mu v/R)/dt is that whatever it weighs meanwhile. Measured are the slope of that from 1 to 10 over the exact one, and the largest spin that is left from 16 to 20 over the first.",
+    set_up: "In space; a cylinder of R = E = rho = 1, R high, nu = 0.3, fitted, stands on a rigid floor under a gravity of 0.002, mu = 0.3, and spins about its axis with 0.024 at first.",
+    exact: "w' = -(4/3) mu g/R, so it stops at t = 3 w0 R/(4 mu g) = 30. The load comes at once and the rod bounces on it; d(w + (4/3) mu v/R)/dt is that whatever it weighs meanwhile. Measured are the slope of that from 2 to 25 over the exact one, and the largest spin that is left from 34 to 40 over the first: once the rod stands it swings in twist, with 1/(30 w_t) = 0.03 of the first spin, w_t = (pi/2) sqrt(G/rho)/R.",
     laws: Laws::Bulk,
     measure: "R/h",
     resolutions: &[Resolution::quick(4.0), Resolution::full(8.0)],
@@ -31,20 +31,8 @@ pub const BENCHMARK: Benchmark = Benchmark {
         )
         .at(4.0),
         Target::new(TORQUE, 1.0, Allowed::Within(0.05), "pressure is even but for the rim").at(8.0),
-        Target::new(
-            STOPS,
-            0.0,
-            Allowed::Within(0.02),
-            "friction holds what it has stopped; some twist swings",
-        )
-        .at(4.0),
-        Target::new(
-            STOPS,
-            0.0,
-            Allowed::Within(0.02),
-            "friction holds what it has stopped; some twist swings",
-        )
-        .at(8.0),
+        Target::new(STOPS, 0.0, Allowed::Within(0.05), STANDS).at(4.0),
+        Target::new(STOPS, 0.0, Allowed::Within(0.05), STANDS).at(8.0),
     ],
     reasons: &[],
     run,
@@ -52,7 +40,8 @@ pub const BENCHMARK: Benchmark = Benchmark {
 
 const TORQUE: &str = "deceleration";
 const STOPS: &str = "spin left";
-const SPIN: f64 = 0.01;
+const STANDS: &str = "friction holds what it has stopped; twist swings on with 0.03";
+const SPIN: f64 = 0.024;
 const FRICTION: f64 = 0.3;
 const G: f64 = 0.002;
 
@@ -78,7 +67,7 @@ shape.half_space = {{ point = [0, 0, 0], normal = [0, 0, 1] }}
 rigid = {{}}
 {}"#,
             case.space("3d", 1.0 / case.cells),
-            case.time(20.0),
+            case.time(40.0),
             case.contact(FRICTION)
         ),
     )?;
@@ -86,10 +75,10 @@ rigid = {{}}
     let arm = 4.0 / 3.0 * FRICTION;
     while trial.advance()? {
         let rod = trial.bodies().swap_remove(0);
-        if (1.0..10.0).contains(&trial.time()) {
+        if (2.0..25.0).contains(&trial.time()) {
             spins.push((trial.time(), rod.spin[2] + arm * rod.velocity[2]));
         }
-        if trial.time() > 16.0 {
+        if trial.time() > 34.0 {
             left = left.max(rod.spin[2].abs());
         }
     }
