@@ -52,7 +52,7 @@ pub enum Laws {
     Contact,
     /// Only the law that joins bodies for good.
     Glued,
-    /// None: the step itself is asked, so its schemes vary, and bodies that touch do so by the law of scenes that name none.
+    /// None: the step itself is asked, so its schemes vary; bodies that touch do so by the law of scenes that name none.
     Bulk,
 }
 

@@ -53,19 +53,18 @@ pub fn schemes() -> &'static [Scheme] {
     &SCHEMES
 }
 
-fn combinations(keys: &'static [Key]) -> Vec<Scheme> {
-    let none = vec![Vec::new()];
-    let all: Vec<Vec<&(&str, &str)>> = keys.iter().fold(none, |begun, key| {
-        let continued =
-            |begun: Vec<_>| key.words.iter().map(move |word| begun.iter().copied().chain([word]).collect());
-        begun.into_iter().flat_map(continued).collect()
-    });
-    let scheme = |(number, choice): (usize, Vec<&(&'static str, &'static str)>)| {
-        let chosen: Vec<_> = choice.iter().map(|(word, _)| *word).collect();
-        let meanings: Vec<_> = choice.iter().map(|(_, meaning)| *meaning).collect();
+fn combinations(keys: &[Key]) -> Vec<Scheme> {
+    let mut choices: Vec<Vec<(&'static str, &'static str)>> = vec![Vec::new()];
+    for key in keys {
+        let with =
+            |begun: &Vec<_>| key.words.iter().map(|&word| [&begun[..], &[word]].concat()).collect::<Vec<_>>();
+        choices = choices.iter().flat_map(with).collect();
+    }
+    let scheme = |(number, choice): (usize, Vec<_>)| {
+        let (chosen, meanings): (Vec<_>, Vec<_>) = choice.into_iter().unzip();
         Scheme { word: chosen.join("-"), meaning: meanings.join("; "), default: number == 0, chosen }
     };
-    all.into_iter().enumerate().map(scheme).collect()
+    choices.into_iter().enumerate().map(scheme).collect()
 }
 
 impl Scheme {

@@ -13,7 +13,8 @@ use stickslip_validation::{BENCHMARKS, Benchmark, Law, Scheme, Suite, Tier, laws
 
 /// Run problems with known answers by every contact law or scheme of the step, and say how close each comes.
 ///
-/// Exit code 1 where the law or the scheme of scenes that name none, or glue, misses a target that it is not known to miss; nothing is asked of the others.
+/// Exit code 1 where the law or the scheme of scenes that name none, or glue, misses a target that it is not known to
+/// miss; nothing is asked of the others.
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// Benchmarks to run; all without this.
@@ -24,7 +25,8 @@ pub struct Arguments {
     #[arg(long = "law", value_name = "LAW", value_parser = law_words())]
     laws: Vec<Law>,
 
-    /// Scheme to run benchmarks of the step itself by: a basis and a stress update; may be repeated; without this and `--law` the default one, with `--all` all.
+    /// Scheme to run benchmarks of the step itself by, a basis and a stress update; may be repeated; without this and
+    /// `--law` the default one, with `--all` all.
     #[arg(long = "scheme", value_name = "SCHEME", value_parser = scheme_words())]
     schemes: Vec<&'static Scheme>,
 

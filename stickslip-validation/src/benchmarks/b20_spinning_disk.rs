@@ -17,9 +17,13 @@ pub const BENCHMARK: Benchmark = Benchmark {
        |    o--R-|   in the plane
         \\ _-->_ /
 ",
-    set_up: "A disk of R = E = rho = 1, nu = 0.3, neo-Hookean, spinning without any deformation at first with a rim speed of a tenth of the wave speed sqrt(E/rho), in plane strain and in plane stress, for three turns, in the full tier for ten.",
-    exact: "At the centre sigma = (3 + nu)/8 rho w^2 R^2 in plane stress, (3 - 2 nu)/(8 (1 - nu)) rho w^2 R^2 in plane strain, both ways; at a distance r the mean of the two is less by (1 + nu)/4 rho w^2 r^2, with nu/(1 - nu) for nu in plane strain. The disk rings about \
-that. Measured over the exact, with the spin of the moment: the mean of the in-plane stresses within R/4 of the centre, in the last turn; and angular momentum at the end over the start.",
+    set_up: "A disk of R = E = rho = 1, nu = 0.3, neo-Hookean, spinning without any deformation at first with a rim \
+speed of a tenth of the wave speed sqrt(E/rho), in plane strain and in plane stress, for three turns, in the full \
+tier for ten.",
+    exact: "At the centre sigma = (3 + nu)/8 rho w^2 R^2 in plane stress, (3 - 2 nu)/(8 (1 - nu)) rho w^2 R^2 in \
+plane strain, both ways; at a distance r the mean of the two is less by (1 + nu)/4 rho w^2 r^2, with nu/(1 - nu) for \
+nu in plane strain. The disk rings about that. Measured over the exact, with the spin of the moment: the mean of the \
+in-plane stresses within R/4 of the centre, in the last turn; and angular momentum at the end over the start.",
     laws: Laws::Bulk,
     measure: "R/h",
     resolutions: &[Resolution::quick(8.0), Resolution::full(16.0)],

@@ -16,9 +16,11 @@ pub const BENCHMARK: Benchmark = Benchmark {
       //|_______________________|  8 H x H      gravity, at once
       //|
 ",
-    set_up: "Plane strain; a beam 8 H x H of E = rho = 1, nu = 0.3 from a fixed face. A gravity that bends its tip down by 0.04 H at rest comes at once, so that it swings about that. One and a half periods.",
-    exact: "w_b = 1.87510^2 sqrt(E' I/(rho H L^4)), E' = E/(1 - nu^2). Shear by itself gives w_s = (pi/2L) sqrt(5 G/(6 rho)), rotary inertia takes 4.648 (H^2/12)/L^2: 1/w^2 = (1 + 4.648 H^2/(12 L^2))/w_b^2 + 1/w_s^2, which is 1.4 % below w_b. Measured is the \
-frequency of the centre's height, by least squares, over that.",
+    set_up: "Plane strain; a beam 8 H x H of E = rho = 1, nu = 0.3 from a fixed face. A gravity that bends its tip \
+down by 0.04 H at rest comes at once, so that it swings about that. One and a half periods.",
+    exact: "w_b = 1.87510^2 sqrt(E' I/(rho H L^4)), E' = E/(1 - nu^2). Shear by itself gives w_s = (pi/2L) sqrt(5 \
+G/(6 rho)), rotary inertia takes 4.648 (H^2/12)/L^2: 1/w^2 = (1 + 4.648 H^2/(12 L^2))/w_b^2 + 1/w_s^2, which is 1.4 \
+% below w_b. Measured is the frequency of the centre's height, by least squares, over that.",
     laws: Laws::Bulk,
     measure: "H/h",
     resolutions: &[Resolution::quick(4.0), Resolution::quick(8.0)],

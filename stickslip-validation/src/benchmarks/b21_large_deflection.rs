@@ -17,10 +17,15 @@ pub const BENCHMARK: Benchmark = Benchmark {
        | |       turns up:           `` .   \\
        |_|                               `.__\\
 ",
-    set_up: "Plane strain; a beam 8 H x H of E = rho = 1, nu = 0.3, glued to a rigid clamp, hangs down under a gravity of rho g H L^3/(E' I) = 3. The clamp turns up by 90 degrees smoothly within a period of its first frequency, 383 H/c, so that the beam comes \
-to stand out and bends; then it rests for a period more, in which heights are averaged over what is left of the swing. At H/4 also in place, from a fixed face, with the load at once and pic_share = 1, which has damped the swing after 400 H/c.",
-    exact: "E' I theta' = M, M' = w (L - s) x', M(L) = 0, with x' and y' from theta, the stretch N/(E' H) and the shear Q/(5/6 G H) (both some 1 %): solved here by shooting. The tip of a beam without stretch and shear would sink by 0.30 L. Measured is how far the centre of mass is below the clamp's \
-centre line, and how far out it is, over the exact.",
+    set_up: "Plane strain; a beam 8 H x H of E = rho = 1, nu = 0.3, glued to a rigid clamp, hangs down under a \
+gravity of rho g H L^3/(E' I) = 3. The clamp turns up by 90 degrees smoothly within a period of its first frequency, \
+383 H/c, so that the beam comes to stand out and bends; then it rests for a period more, in which heights are \
+averaged over what is left of the swing. At H/4 also in place, from a fixed face, with the load at once and \
+pic_share = 1, which has damped the swing after 400 H/c.",
+    exact: "E' I theta' = M, M' = w (L - s) x', M(L) = 0, with x' and y' from theta, the stretch N/(E' H) and the \
+shear Q/(5/6 G H) (both some 1 %): solved here by shooting. The tip of a beam without stretch and shear would sink \
+by 0.30 L. Measured is how far the centre of mass is below the clamp's centre line, and how far out it is, over the \
+exact.",
     laws: Laws::Bulk,
     measure: "H/h",
     resolutions: &[Resolution::quick(4.0), Resolution::quick(8.0)],
@@ -175,7 +180,8 @@ fn shoot(moment: f64, gravity: f64) -> (f64, [f64; 2]) {
 
 #[test]
 fn a_small_load_bends_as_a_straight_beam() {
-    // Mean of w s^2 (6 L^2 - 4 L s + s^2)/(24 E' I) is w L^4/(20 E' I), and of shear w s (L - s/2)/(k G H) w L^2/(3 k G H).
+    // Mean of w s^2 (6 L^2 - 4 L s + s^2)/(24 E' I) is w L^4/(20 E' I), and of shear w s (L - s/2)/(k G H) w L^2/(3 k
+    // G H).
     let (w, plane) = (1e-8, 1.0 / (1.0 - POISSON * POISSON));
     let bending = w * LENGTH.powi(4) / (20.0 * plane / 12.0);
     let shear = w * LENGTH.powi(2) / (3.0 * 5.0 / 6.0 * 0.5 / (1.0 + POISSON));

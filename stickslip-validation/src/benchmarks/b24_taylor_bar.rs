@@ -8,7 +8,8 @@ use crate::trial::Trial;
 pub const BENCHMARK: Benchmark = Benchmark {
     name: "B24",
     title: "Taylor bar",
-    source: "Wilkins and Guinan (1973); the set-up of many codes, among them Kamoulakos (1990) and Zhu and Cescotto (1995)",
+    source: "Wilkins and Guinan (1973); the set-up of many codes, among them Kamoulakos (1990) and Zhu and Cescotto \
+(1995)",
     picture: "
        |wall
        |_________________
@@ -17,8 +18,11 @@ pub const BENCHMARK: Benchmark = Benchmark {
        |_________________|
        |
 ",
-    set_up: "In space; a quarter, between mirrors, of a copper rod of 32.4 mm and radius 3.2 mm: E = 117 GPa, nu = 0.35, 8930 kg/m^3, von Mises with yield stress 400 MPa and hardening modulus 100 MPa. The wall is without friction: a mirror. 80 us.",
-    exact: "Published final lengths are 21.4 to 21.5 mm, foot radii 7.0 to 7.2 mm. Measured are the farthest particle from the wall and, within half of R0 of the wall, from the axis, each with half of its size.",
+    set_up: "In space; a quarter, between mirrors, of a copper rod of 32.4 mm and radius 3.2 mm: E = 117 GPa, nu = \
+0.35, 8930 kg/m^3, von Mises with yield stress 400 MPa and hardening modulus 100 MPa. The wall is without friction: \
+a mirror. 80 us.",
+    exact: "Published final lengths are 21.4 to 21.5 mm, foot radii 7.0 to 7.2 mm. Measured are the farthest \
+particle from the wall and, within half of R0 of the wall, from the axis, each with half of its size.",
     laws: Laws::Bulk,
     measure: "R0/h",
     resolutions: &[Resolution::quick(4.0), Resolution::full(8.0)],

@@ -17,10 +17,13 @@ pub const BENCHMARK: Benchmark = Benchmark {
         |      |
         |______|
 ",
-    set_up: "Plane strain; a gel bar (E = 50 kPa, nu = 0.3, 1000 kg/m^3, neo-Hookean) hangs from a fixed face, undeformed at first, so that it swings up and down for good. 18 periods of 4L/c = 54 ms, about a second; in the full \
+    set_up: "Plane strain; a gel bar (E = 50 kPa, nu = 0.3, 1000 kg/m^3, neo-Hookean) hangs from a fixed face, \
+undeformed at first, so that it swings up and down for good. 18 periods of 4L/c = 54 ms, about a second; in the full \
 tier 1000 periods at L/25 and 100 on finer cells. c is that of long waves in a plate, sqrt(E'/rho), E' = E/(1 - nu^2).",
-    exact: "At a distance s below the face the bar sinks by (rho g/E') (L s - s^2/2), so its centre of mass by rho g L^2/(3 E') = 0.595 mm, in the mean over time. The face keeps the bar as wide as it is: over some 0.3 widths it stretches by E'/M = 0.82 \
-of that, which takes 2 % of the way. Measured are the mean way of the centre over the last third of the run over that, and over the mean of the first third; and the energy that came or went.",
+    exact: "At a distance s below the face the bar sinks by (rho g/E') (L s - s^2/2), so its centre of mass by rho g \
+L^2/(3 E') = 0.595 mm, in the mean over time. The face keeps the bar as wide as it is: over some 0.3 widths it \
+stretches by E'/M = 0.82 of that, which takes 2 % of the way. Measured are the mean way of the centre over the last \
+third of the run over that, and over the mean of the first third; and the energy that came or went.",
     laws: Laws::Bulk,
     measure: "L/h",
     resolutions: &[Resolution::quick(25.0), Resolution::quick(50.0), Resolution::full(100.0)],

@@ -16,10 +16,15 @@ pub const BENCHMARK: Benchmark = Benchmark {
      //|______________________|// ->  to 1.01, to 1.2, to 2 of its length
           10 cm x 1 cm
 ",
-    set_up: "Plane strain; a strip of rubber (E = 1 MPa, nu = 0.3, 1000 kg/m^3, neo-Hookean) between two rigid grips, of which one stands and the other moves away: by 1 % at one speed within 0.1 s (33 transits), to be held from then on; and smoothly \
-by 20 % within 0.1 s, to be held for 0.05 s, and on to twice the length within 0.15 s more, to be held again.",
-    exact: "Held at 1 % it pulls with E' eps A = 109.9 N/m. Pulled on, with the force of F = diag(a, b, 1) where b is such that sigma_yy = 0: sigma_xx(a, b) b A, found here by bisection of the engine's law. The grips keep the strip as wide as it is, over \
-some 0.3 widths at each end, which makes it stiffer by 1 %. Measured are mean forces of the strip on the moving grip over the exact ones: early in holding it at 1 %, at the end (0.4 s, in the full tier 2 s) and, while it is held, at 1.2 and at 2 of its length.",
+    set_up: "Plane strain; a strip of rubber (E = 1 MPa, nu = 0.3, 1000 kg/m^3, neo-Hookean) between two rigid \
+grips, of which one stands and the other moves away: by 1 % at one speed within 0.1 s (33 transits), to be held from \
+then on; and smoothly by 20 % within 0.1 s, to be held for 0.05 s, and on to twice the length within 0.15 s more, to \
+be held again.",
+    exact: "Held at 1 % it pulls with E' eps A = 109.9 N/m. Pulled on, with the force of F = diag(a, b, 1) where b \
+is such that sigma_yy = 0: sigma_xx(a, b) b A, found here by bisection of the engine's law. The grips keep the strip \
+as wide as it is, over some 0.3 widths at each end, which makes it stiffer by 1 %. Measured are mean forces of the \
+strip on the moving grip over the exact ones: early in holding it at 1 %, at the end (0.4 s, in the full tier 2 s) \
+and, while it is held, at 1.2 and at 2 of its length.",
     laws: Laws::Bulk,
     measure: "L/h",
     resolutions: &[Resolution::quick(50.0), Resolution::full(100.0)],

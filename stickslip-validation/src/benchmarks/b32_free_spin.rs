@@ -16,9 +16,13 @@ pub const BENCHMARK: Benchmark = Benchmark {
        |    o--R-|   disk and ball  |       o        |  block of 2 R x R
         \\ _-->_ /                   |________________|
 ",
-    set_up: "Disk, block (plane strain) and ball of E = rho = 1, nu = 0.3, neo-Hookean, with nothing around them, set spinning without any deformation. Rim speed 1/37 of the wave speed sqrt(E/rho); at R/5 the disk also spins at a \
-tenth of that. The disk has R/4, R/5 and R/8 cells, the ball R/4, once on the lattice and once fitted; the block is 16 x 8 cells. Two turns, the slow disk and the balls one; in the full tier ten and five.",
-    exact: "Angular momentum, and kinetic and strain energy together, stay what they are. The body grows by the pull of its spin, by some 1/37^2 of its size, so its strain energy is 0.00015 of the kinetic one when it rests, and four times that when it rings. Measured at the end over the start.",
+    set_up: "Disk, block (plane strain) and ball of E = rho = 1, nu = 0.3, neo-Hookean, with nothing around them, \
+set spinning without any deformation. Rim speed 1/37 of the wave speed sqrt(E/rho); at R/5 the disk also spins at a \
+tenth of that. The disk has R/4, R/5 and R/8 cells, the ball R/4, once on the lattice and once fitted; the block is \
+16 x 8 cells. Two turns, the slow disk and the balls one; in the full tier ten and five.",
+    exact: "Angular momentum, and kinetic and strain energy together, stay what they are. The body grows by the pull \
+of its spin, by some 1/37^2 of its size, so its strain energy is 0.00015 of the kinetic one when it rests, and four \
+times that when it rings. Measured at the end over the start.",
     laws: Laws::Bulk,
     measure: "R/h",
     resolutions: &[Resolution::quick(4.0), Resolution::quick(5.0), Resolution::quick(8.0)],

@@ -18,9 +18,12 @@ pub const BENCHMARK: Benchmark = Benchmark {
       ____________________
       ////////////////////  rigid floor, creeping ->
 ",
-    set_up: "Plane strain; a block 2 H x H of E = rho = 1, nu = 0.3 under a rigid lid that is glued on and comes down by 0.01 H, smoothly within 20 H/c. Then a rigid floor sets off, within 10 H/c, and goes on with 1e-4, 1e-3 or 1e-2 of \
-the wave speed c = sqrt(E/rho); mu = 0.3. The block gives by 0.009 H before it slides; when the floor has gone three times that and 10 H/c have passed, forces are measured for 60 H/c.",
-    exact: "The block slides everywhere, so the mean force along the floor over that across it is mu, and no smaller where sliding is slower. Measured over mu.",
+    set_up: "Plane strain; a block 2 H x H of E = rho = 1, nu = 0.3 under a rigid lid that is glued on and comes \
+down by 0.01 H, smoothly within 20 H/c. Then a rigid floor sets off, within 10 H/c, and goes on with 1e-4, 1e-3 or \
+1e-2 of the wave speed c = sqrt(E/rho); mu = 0.3. The block gives by 0.009 H before it slides; when the floor has \
+gone three times that and 10 H/c have passed, forces are measured for 60 H/c.",
+    exact: "The block slides everywhere, so the mean force along the floor over that across it is mu, and no smaller \
+where sliding is slower. Measured over mu.",
     laws: Laws::Bulk,
     measure: "H/h",
     resolutions: &[Resolution::quick(8.0), Resolution::full(16.0)],
@@ -38,8 +41,11 @@ the wave speed c = sqrt(E/rho); mu = 0.3. The block gives by 0.009 H before it s
     ],
     reasons: &[Reason {
         laws: &["gimp-modified-last"],
-        text: "The block shakes, more where the floor is faster, and nothing damps it: friction between a rigid and an elastic body feeds short waves (Martins, Guimaraes and Faria 1995; Adams 1995). Nodes \
-let go for moments, and the mean falls short: 0.975 at 1e-3 c and 0.873 at 1e-2 c at H/8, 0.949 and 0.848 at H/16. It is no fault of the law of friction: with pic_share = 0.05 it is 0.998 and 0.999 at H/8, with stress_update = \"last\", which damps a little, 0.995 and 0.980.",
+        text: "The block shakes, more where the floor is faster, and nothing damps it: friction between a rigid and \
+an elastic body feeds short waves (Martins, Guimaraes and Faria 1995; Adams 1995). Nodes let go for moments, and the \
+mean falls short: 0.975 at 1e-3 c and 0.873 at 1e-2 c at H/8, 0.949 and 0.848 at H/16. It is no fault of the law of \
+friction: with pic_share = 0.05 it is 0.998 and 0.999 at H/8, with stress_update = \"last\", which damps a little, \
+0.995 and 0.980.",
     }],
     run,
 };

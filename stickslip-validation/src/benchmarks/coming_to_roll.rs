@@ -17,8 +17,12 @@ pub const BENCHMARK: Benchmark = Benchmark {
          \\____/             \\____/
         ________            ________   rigid, mu = 0.3
 ",
-    set_up: "Plane strain; a disk of R = E = rho = 1, nu = 0.45, fitted, under a gravity of 0.002 (contact half-width 0.08 R) on a rigid floor with mu = 0.3, once with v0 = 0.06 and no spin, once with the spin 0.06 and no velocity; for 120 R/c.",
-    exact: "Friction acts until the disk rolls: from v0/(3 mu g) = 33 R/c on at (2/3) v0, and from w0 R/(3 mu g) on at w0 R/3; then it goes on rolling. Measured are the mean speed over the last half of the run over that, and the spin times R over it.",
+    set_up: "Plane strain; a disk of R = E = rho = 1, nu = 0.45, fitted, under a gravity of 0.002 (contact \
+half-width 0.08 R) on a rigid floor with mu = 0.3, once with v0 = 0.06 and no spin, once with the spin 0.06 and no \
+velocity; for 120 R/c.",
+    exact: "Friction acts until the disk rolls: from v0/(3 mu g) = 33 R/c on at (2/3) v0, and from w0 R/(3 mu g) on \
+at w0 R/3; then it goes on rolling. Measured are the mean speed over the last half of the run over that, and the \
+spin times R over it.",
     laws: Laws::Bulk,
     measure: "R/h",
     resolutions: &[Resolution::quick(8.0), Resolution::full(16.0)],

@@ -16,9 +16,11 @@ pub const BENCHMARK: Benchmark = Benchmark {
             |______|  v down
         __________________  rigid, without friction
 ",
-    set_up: "Plane strain; a block of 12 x 6 cells (nu = 0.3) hits a rigid wall, face to face, at v/c = 0.005 and u/c = 0.05 along it, without friction, with normal = \"own\" and each law that knows it. Once along the grid, once \
+    set_up: "Plane strain; a block of 12 x 6 cells (nu = 0.3) hits a rigid wall, face to face, at v/c = 0.005 and \
+u/c = 0.05 along it, without friction, with normal = \"own\" and each law that knows it. Once along the grid, once \
 turned through it by 30 degrees.",
-    exact: "No impulse along the wall. Measured is the block's change of momentum along the wall over that across it, the farther of the two.",
+    exact: "No impulse along the wall. Measured is the block's change of momentum along the wall over that across \
+it, the farther of the two.",
     laws: Laws::Bulk,
     measure: "block length/h",
     resolutions: &[Resolution::quick(12.0), Resolution::full(24.0)],
@@ -43,7 +45,8 @@ fn run(case: &Case) -> Result<Outcome, Failure> {
     Ok(outcome)
 }
 
-/// Impulse along the wall over impulse across it; the wall is turned through the grid by so many degrees. Units of block length = rho = E = 1.
+/// Impulse along the wall over impulse across it; the wall is turned through the grid by so many degrees. Units of
+/// block length = rho = E = 1.
 fn strike(case: &Case, law: &str, degrees: f64, outcome: &mut Outcome) -> Result<f64, Failure> {
     let h = 1.0 / case.cells;
     let turn = degrees.to_radians();

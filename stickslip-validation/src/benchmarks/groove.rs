@@ -18,9 +18,11 @@ pub const BENCHMARK: Benchmark = Benchmark {
              \\   /    rigid: two boxes, turned by 45 degrees,
               \\ /     or two polygons with the same corners
 ",
-    set_up: "Plane strain; a disk of R = E = rho = 1, nu = 0.3, spinning with a rim speed of 1/37 of the wave speed, lies in a rigid groove of two walls at 45 degrees, without friction, for one turn. In space the same with a \
-cylinder one cell long between two mirrors and walls that are turned boxes or prisms, for a quarter turn.",
-    exact: "Walls that are the same push the same, so that the disk turns the same; and as they push through its centre, it goes on turning. Measured at the end over the first spin.",
+    set_up: "Plane strain; a disk of R = E = rho = 1, nu = 0.3, spinning with a rim speed of 1/37 of the wave speed, \
+lies in a rigid groove of two walls at 45 degrees, without friction, for one turn. In space the same with a cylinder \
+one cell long between two mirrors and walls that are turned boxes or prisms, for a quarter turn.",
+    exact: "Walls that are the same push the same, so that the disk turns the same; and as they push through its \
+centre, it goes on turning. Measured at the end over the first spin.",
     laws: Laws::Bulk,
     measure: "R/h",
     resolutions: &[Resolution::quick(6.0), Resolution::full(12.0)],
@@ -68,7 +70,8 @@ fn turn(case: &Case, name: &str, outcome: &mut Outcome) -> Result<f64, Failure> 
             "shape.rotated = {{ shape.box = {{ min = {lower:?}, max = {upper:?} }}, center = [0, 0], angle = {angle} }}"
         ),
         _ => format!(
-            "shape.rotated = {{ shape.box = {{ min = [{}, {}, 0], max = [{}, {}, {h}] }}, center = [0, 0, 0], axis = [0, 0, 1], angle = {angle} }}",
+            "shape.rotated = {{ shape.box = {{ min = [{}, {}, 0], max = [{}, {}, {h}] }}, center = [0, 0, 0], \
+axis = [0, 0, 1], angle = {angle} }}",
             lower[0], lower[1], upper[0], upper[1]
         ),
     };
@@ -80,7 +83,8 @@ fn turn(case: &Case, name: &str, outcome: &mut Outcome) -> Result<f64, Failure> 
                 "domain = {{ min = [-3, -3, 0], max = [3, 5, {h}], z_min = \"symmetry\", z_max = \"symmetry\" }}\n"
             ),
             format!(
-                "shape.cylinder = {{ start = [0, {SQRT_2}, 0], end = [0, {SQRT_2}, {h}], radius = 1 }}\nspin = [0, 0, {RATE}]"
+                "shape.cylinder = {{ start = [0, {SQRT_2}, 0], end = [0, {SQRT_2}, {h}], radius = 1 }}\n\
+spin = [0, 0, {RATE}]"
             ),
             0.25,
         )

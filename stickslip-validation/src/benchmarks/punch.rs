@@ -9,7 +9,8 @@ use crate::trial::Trial;
 pub const BENCHMARK: Benchmark = Benchmark {
     name: "punch",
     title: "Punched block near incompressibility",
-    source: "Linear elasticity by finite elements with reduced integration of the volume's change (Hughes 1980), here in the benchmark",
+    source: "Linear elasticity by finite elements with reduced integration of the volume's change (Hughes 1980), \
+here in the benchmark",
     picture: "
              |  1  |  rigid, without friction, down by 0.01
         _____|_____|_____
@@ -18,8 +19,11 @@ pub const BENCHMARK: Benchmark = Benchmark {
        |_________________|
        ///////////////////  fixed
 ",
-    set_up: "Plane strain; half of a block 2 x 1 of E = rho = 1, neo-Hookean, on a fixed face and beside its mirror, punched by a rigid flat punch half as wide, without friction, by 0.01 smoothly within 12 transit times sqrt(rho/E); nu = 0.3, 0.49 and 0.4999.",
-    exact: "The force by 32 x 32 and 64 x 64 linear elements on the half, extrapolated to none, small strain. Measured is the mean force over the 8 transit times after, over that.",
+    set_up: "Plane strain; half of a block 2 x 1 of E = rho = 1, neo-Hookean, on a fixed face and beside its mirror, \
+punched by a rigid flat punch half as wide, without friction, by 0.01 smoothly within 12 transit times sqrt(rho/E); \
+nu = 0.3, 0.49 and 0.4999.",
+    exact: "The force by 32 x 32 and 64 x 64 linear elements on the half, extrapolated to none, small strain. \
+Measured is the mean force over the 8 transit times after, over that.",
     laws: Laws::Bulk,
     measure: "height/h",
     resolutions: &[Resolution::quick(8.0), Resolution::full(16.0), Resolution::full(32.0)],
@@ -41,7 +45,9 @@ pub const BENCHMARK: Benchmark = Benchmark {
     ],
     reasons: &[Reason {
         laws: &["gimp-modified-last"],
-        text: "Each particle keeps its own volume, which is more than a cell's nodes can do: the block locks, and the coarser the worse. The force is 1.12 of the exact one at nu = 0.49 and 5.4 at nu = 0.4999 with height/8, 1.05 and 2.1 with height/16.",
+        text: "Each particle keeps its own volume, which is more than a cell's nodes can do: the block locks, and \
+the coarser the worse. The force is 1.12 of the exact one at nu = 0.49 and 5.4 at nu = 0.4999 with height/8, 1.05 \
+and 2.1 with height/16.",
     }],
     run,
 };
@@ -102,7 +108,8 @@ rigid.velocity = [0, "-{DEPTH} / {DOWN} * (1 - cos(2 * pi * min(t / {DOWN}, 1)))
     Ok(force.value())
 }
 
-/// Force of the half punch over its depth, by n x n linear elements on the half block: twice the strain energy at a depth of one.
+/// Force of the half punch over its depth, by n x n linear elements on the half block: twice the strain energy at a
+/// depth of one.
 fn stiffness(poisson: f64, n: usize) -> f64 {
     let element = element_stiffness(poisson);
     let (dofs, band) = (2 * (n + 1) * (n + 1), 2 * n + 6);

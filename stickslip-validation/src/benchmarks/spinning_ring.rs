@@ -18,8 +18,12 @@ pub const BENCHMARK: Benchmark = Benchmark {
         \\ `---'   /
           `-----'
 ",
-    set_up: "Plane strain; a ring from 0.9 to 1.1 R of E = rho = 1, nu = 0.3, neo-Hookean, spinning without any deformation at first with 1/20 of the wave speed at R, for a turn (20 of its breathing periods), in the full tier for ten.",
-    exact: "The integral of the hoop stress over the thickness is that of rho w^2 r^2, whatever the law. The ring breathes about that. Measured over that are means over the last half turn, with radius and spin of the moment; and angular momentum at the end over the start.",
+    set_up: "Plane strain; a ring from 0.9 to 1.1 R of E = rho = 1, nu = 0.3, neo-Hookean, spinning without any \
+deformation at first with 1/20 of the wave speed at R, for a turn (20 of its breathing periods), in the full tier \
+for ten.",
+    exact: "The integral of the hoop stress over the thickness is that of rho w^2 r^2, whatever the law. The ring \
+breathes about that. Measured over that are means over the last half turn, with radius and spin of the moment; and \
+angular momentum at the end over the start.",
     laws: Laws::Bulk,
     measure: "R/h",
     resolutions: &[Resolution::quick(20.0), Resolution::full(40.0)],

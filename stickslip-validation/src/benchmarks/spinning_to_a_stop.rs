@@ -17,8 +17,12 @@ pub const BENCHMARK: Benchmark = Benchmark {
         |_____|
       ___________   rigid, mu = 0.3
 ",
-    set_up: "In space; a cylinder of R = E = rho = 1, R high, nu = 0.3, fitted, stands on a rigid floor under a gravity of 0.002, mu = 0.3, and spins about its axis with 0.024 at first.",
-    exact: "w' = -(4/3) mu g/R, so it stops at t = 3 w0 R/(4 mu g) = 30. The load comes at once and the rod bounces on it; d(w + (4/3) mu v/R)/dt is that whatever it weighs meanwhile. Measured are the slope of that from 2 to 25 over the exact one, and the largest spin that is left from 34 to 40 over the first: once the rod stands it swings in twist, with 1/(30 w_t) = 0.03 of the first spin, w_t = (pi/2) sqrt(G/rho)/R.",
+    set_up: "In space; a cylinder of R = E = rho = 1, R high, nu = 0.3, fitted, stands on a rigid floor under a \
+gravity of 0.002, mu = 0.3, and spins about its axis with 0.024 at first.",
+    exact: "w' = -(4/3) mu g/R, so it stops at t = 3 w0 R/(4 mu g) = 30. The load comes at once and the rod bounces \
+on it; d(w + (4/3) mu v/R)/dt is that whatever it weighs meanwhile. Measured are the slope of that from 2 to 25 over \
+the exact one, and the largest spin that is left from 34 to 40 over the first: once the rod stands it swings in \
+twist, with 1/(30 w_t) = 0.03 of the first spin, w_t = (pi/2) sqrt(G/rho)/R.",
     laws: Laws::Bulk,
     measure: "R/h",
     resolutions: &[Resolution::quick(4.0), Resolution::full(8.0)],
