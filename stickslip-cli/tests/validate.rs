@@ -13,7 +13,7 @@ fn a_page_says_what_each_law_reaches_and_the_scenes_can_be_run() {
     assert!(said.contains("M4 First contact") && said.contains("seen/index.html"), "{said}");
     let html = fs::read_to_string(workplace.path("seen/index.html")).unwrap();
     for part in [
-        "<title>Contact laws against known answers</title>",
+        "<title>Contact laws and schemes against known answers</title>",
         "<section id=\"m4-first-contact\">",
         "surface *",
         "traction",
@@ -28,9 +28,28 @@ fn a_page_says_what_each_law_reaches_and_the_scenes_can_be_run() {
 }
 
 #[test]
+fn a_benchmark_of_the_step_runs_by_the_schemes_that_are_named() {
+    let workplace = Workplace::new();
+    let schemes = ["--scheme", "linear-last", "--scheme", "gimp-last"];
+    let said = workplace.succeed(&[&["validate", "wall", "--out", "seen"][..], &schemes].concat());
+    assert!(said.contains("gimp-last ") && said.contains("linear-last "), "{said}");
+    let html = fs::read_to_string(workplace.path("seen/index.html")).unwrap();
+    assert!(html.contains("Scheme by benchmark") && !html.contains("Law by benchmark"), "{html}");
+    let scene =
+        fs::read_to_string(workplace.path("seen/scenes/wall/linear-last/12/gap_aligned.toml")).unwrap();
+    for key in ["basis = \"linear\"", "stress_update = \"last\""] {
+        assert!(scene.contains(key), "{key} is missing in {scene}");
+    }
+}
+
+#[test]
 fn names_that_are_none_are_answered_with_those_that_are() {
     let workplace = Workplace::new();
-    for (arguments, names) in [(["validate", "B99"], "B5"), (["validate", "--law=soft"], "traction")] {
+    for (arguments, names) in [
+        (["validate", "B99"], "B5"),
+        (["validate", "--law=soft"], "traction"),
+        (["validate", "--scheme=soft"], "gimp-modified-last"),
+    ] {
         let ran = workplace.run(&arguments);
         assert_eq!(ran.code, Some(2), "{}", ran.stderr);
         assert!(ran.stderr.contains(names), "{}", ran.stderr);

@@ -2,6 +2,7 @@
 
 use crate::failure::Failure;
 use crate::outcome::Outcome;
+use crate::scheme::Scheme;
 use stickslip::scene::ContactLaw;
 
 /// A problem with a known answer.
@@ -33,10 +34,10 @@ pub struct Benchmark {
     pub run: fn(&Case) -> Result<Outcome, Failure>,
 }
 
-/// Why some laws miss a benchmark's targets.
+/// Why some laws or schemes miss a benchmark's targets.
 #[derive(Clone, Copy, Debug)]
 pub struct Reason {
-    /// The laws' words.
+    /// The words of the laws or schemes.
     pub laws: &'static [&'static str],
     /// What keeps them from it.
     pub text: &'static str,
@@ -51,6 +52,8 @@ pub enum Laws {
     Contact,
     /// Only the law that joins bodies for good.
     Glued,
+    /// None: the step itself is asked, so its schemes vary; bodies that touch do so by the law of scenes that name none.
+    Bulk,
 }
 
 /// Cells on the benchmark's length.
@@ -84,7 +87,7 @@ pub struct Target {
     pub at: Option<f64>,
     /// Why that much and no less.
     pub why: &'static str,
-    /// Resolutions at which the law of scenes that name none is known to miss it; at others a miss is a fault of the program.
+    /// Resolutions at which the law or scheme of scenes that name none is known to miss it; at others a miss is a fault of the program.
     pub missed_at: &'static [f64],
 }
 
@@ -101,11 +104,13 @@ pub enum Allowed {
     Between(f64, f64),
 }
 
-/// One law at one resolution.
+/// One law by one scheme at one resolution.
 #[derive(Clone, Copy, Debug)]
 pub struct Case {
-    /// The law's word in scene files.
+    /// The law's word in scene files; that of scenes which name none where schemes vary.
     pub law: &'static str,
+    /// The scheme of the step; that of scenes which name none where laws vary.
+    pub scheme: &'static Scheme,
     /// Cells on the benchmark's length.
     pub cells: f64,
     /// How much is run.
@@ -118,9 +123,9 @@ impl Benchmark {
         self.resolutions.iter().filter(move |resolution| resolution.tier <= tier)
     }
 
-    /// Why a law misses targets, if that is known.
-    pub fn reasons(&self, law: &str) -> impl Iterator<Item = &'static str> {
-        self.reasons.iter().filter(move |reason| reason.laws.contains(&law)).map(|reason| reason.text)
+    /// Why a law or a scheme misses targets, if that is known.
+    pub fn reasons(&self, word: &str) -> impl Iterator<Item = &'static str> {
+        self.reasons.iter().filter(move |reason| reason.laws.contains(&word)).map(|reason| reason.text)
     }
 }
 
@@ -131,6 +136,7 @@ impl Laws {
             Laws::All => true,
             Laws::Contact => !matches!(law, ContactLaw::None | ContactLaw::Glued),
             Laws::Glued => law == ContactLaw::Glued,
+            Laws::Bulk => false,
         }
     }
 }
@@ -158,7 +164,7 @@ impl Target {
         Target { at: Some(cells), ..self }
     }
 
-    /// The same target, known to be missed by the law of scenes that name none at these resolutions.
+    /// The same target, known to be missed by the law or scheme of scenes that name none at these resolutions.
     pub const fn missed_at(self, cells: &'static [f64]) -> Self {
         Target { missed_at: cells, ..self }
     }
@@ -189,6 +195,16 @@ impl Case {
     /// The scene's `[[contact]]` between all bodies.
     pub fn contact(&self, friction: f64) -> String {
         format!("[[contact]]\nlaw = \"{}\"\nfriction = {friction}\n", self.law)
+    }
+
+    /// The scene's `[space]`: its dimension, the side of a cell [m] and the scheme's keys; further keys may follow.
+    pub fn space(&self, dimension: &str, cell: f64) -> String {
+        format!("[space]\ndimension = \"{dimension}\"\ncell = {cell}\n{}", self.scheme.keys("space"))
+    }
+
+    /// The scene's `[time]`: its end [s] and the scheme's keys; further keys may follow.
+    pub fn time(&self, end: f64) -> String {
+        format!("[time]\nend = {end}\n{}", self.scheme.keys("time"))
     }
 }
 

@@ -1,7 +1,7 @@
-//! Problems with known answers, and how close each contact law comes to them.
+//! Problems with known answers, and how close each contact law and each scheme of the step comes to them.
 //!
-//! The laws come from the engine's list, the problems from [`BENCHMARKS`]: one file each, which reads like a report. To add a
-//! benchmark, write its file and seat it there. Everything here drives the engine as any user can: scenes are text, and
+//! The laws come from the engine's list, the schemes from [`KEYS`], the problems from [`BENCHMARKS`]: one file each, which reads
+//! like a report. To add a benchmark, write its file and seat it there. Everything here drives the engine as any user can: scenes are text, and
 //! simulations are stepped and looked at through [`stickslip::door`].
 
 // What a benchmark is: its report, its targets, its resolutions.
@@ -28,12 +28,16 @@ mod scenery;
 // The benchmarks, one file each.
 mod benchmarks;
 
-// All chosen laws through all chosen benchmarks, side by side on the machine's cores.
+// Schemes of the step: what a scene's keys choose, in every combination.
+mod scheme;
+
+// All chosen laws and schemes through all chosen benchmarks, side by side on the machine's cores.
 mod suite;
 
 pub use benchmark::{Allowed, Benchmark, Case, Laws, Reason, Resolution, Target, Tier};
 pub use benchmarks::BENCHMARKS;
 pub use failure::Failure;
 pub use outcome::{Measurement, Outcome};
-pub use suite::{Entry, Finished, Law, Report, Run, Suite, Verdict, laws};
+pub use scheme::{KEYS, Key, Scheme, schemes};
+pub use suite::{Entry, Finished, Law, Report, Run, Suite, Verdict, Way, laws};
 pub use trial::{Record, Trial};

@@ -1,8 +1,9 @@
-//! All chosen laws through all chosen benchmarks, side by side on the machine's cores.
+//! All chosen laws and schemes through all chosen benchmarks, side by side on the machine's cores.
 
-use crate::benchmark::{Benchmark, Case, Resolution, Target, Tier};
+use crate::benchmark::{Benchmark, Case, Laws, Resolution, Target, Tier};
 use crate::failure::Failure;
 use crate::outcome::Outcome;
+use crate::scheme::{Scheme, schemes};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc;
@@ -21,13 +22,24 @@ pub struct Law {
     pub law: ContactLaw,
 }
 
+/// What a benchmark is put to: a contact law, or a scheme of the step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Way {
+    /// A contact law, by the scheme of scenes that name none.
+    Law(Law),
+    /// A scheme, with the contact law of scenes that name none.
+    Scheme(&'static Scheme),
+}
+
 /// What to run.
 #[derive(Clone, Debug)]
 pub struct Suite {
     /// The benchmarks.
     pub benchmarks: Vec<&'static Benchmark>,
-    /// The laws.
+    /// The laws for benchmarks of contact.
     pub laws: Vec<Law>,
+    /// The schemes for benchmarks of the step itself, [`Laws::Bulk`].
+    pub schemes: Vec<&'static Scheme>,
     /// How much.
     pub tier: Tier,
     /// Runs at a time; each has one thread.
@@ -39,22 +51,22 @@ pub struct Suite {
 pub struct Report {
     /// How much was run.
     pub tier: Tier,
-    /// A benchmark and a law each, benchmark by benchmark.
+    /// A benchmark and a law or scheme each, benchmark by benchmark.
     pub entries: Vec<Entry>,
 }
 
-/// One law in one benchmark.
+/// One law or scheme in one benchmark.
 #[derive(Debug)]
 pub struct Entry {
     /// The benchmark.
     pub benchmark: &'static Benchmark,
-    /// The law.
-    pub law: Law,
+    /// The law or scheme.
+    pub way: Way,
     /// Those that have ended, from coarse to fine.
     pub runs: Vec<Run>,
 }
 
-/// One law in one benchmark at one resolution.
+/// One law or scheme in one benchmark at one resolution.
 #[derive(Debug)]
 pub struct Run {
     /// The resolution.
@@ -66,7 +78,7 @@ pub struct Run {
 /// A case that just ended.
 #[derive(Debug)]
 pub struct Finished<'a> {
-    /// Benchmark and law.
+    /// Benchmark, and law or scheme.
     pub entry: &'a Entry,
     /// Resolution and result.
     pub run: &'a Run,
@@ -76,7 +88,7 @@ pub struct Finished<'a> {
     pub all: usize,
 }
 
-/// How a law did by a target.
+/// How a law or scheme did by a target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
     /// Reached.
@@ -102,12 +114,12 @@ impl Suite {
         let mut report = Report { tier: self.tier, entries: Vec::new() };
         let mut jobs: Vec<Job> = Vec::new();
         for &benchmark in &self.benchmarks {
-            for &law in self.laws.iter().filter(|law| benchmark.laws.contains(law.law)) {
+            for way in self.ways(benchmark) {
                 for (rank, &resolution) in benchmark.due(self.tier).enumerate() {
-                    let case = Case { law: law.word, cells: resolution.cells, tier: self.tier };
+                    let case = way.case(resolution, self.tier);
                     jobs.push(Job { entry: report.entries.len(), rank, benchmark, resolution, case });
                 }
-                report.entries.push(Entry { benchmark, law, runs: Vec::new() });
+                report.entries.push(Entry { benchmark, way, runs: Vec::new() });
             }
         }
         jobs.sort_by_key(|job| job.rank);
@@ -122,6 +134,54 @@ impl Suite {
             progress(&Finished { entry, run: &entry.runs[place], done, all: jobs.len() }, &report);
         });
         report
+    }
+
+    /// The chosen laws or schemes that a benchmark can be put to.
+    fn ways(&self, benchmark: &Benchmark) -> Vec<Way> {
+        if benchmark.laws == Laws::Bulk {
+            return self.schemes.iter().copied().map(Way::Scheme).collect();
+        }
+        let fit = |law: &&Law| benchmark.laws.contains(law.law);
+        self.laws.iter().filter(fit).copied().map(Way::Law).collect()
+    }
+}
+
+impl Way {
+    /// Its word on the command line.
+    pub fn word(&self) -> &'static str {
+        match self {
+            Way::Law(law) => law.word,
+            Way::Scheme(scheme) => &scheme.word,
+        }
+    }
+
+    /// What it does, in a sentence.
+    pub fn meaning(&self) -> &'static str {
+        match self {
+            Way::Law(law) => law.meaning,
+            Way::Scheme(scheme) => &scheme.meaning,
+        }
+    }
+
+    /// Whether scenes get it that name none.
+    pub fn is_default(&self) -> bool {
+        match self {
+            Way::Law(law) => law.default,
+            Way::Scheme(scheme) => scheme.default,
+        }
+    }
+
+    /// Whether targets are asked of it, and not only figures to compare.
+    fn is_held(&self) -> bool {
+        self.is_default() || matches!(self, Way::Law(Law { law: ContactLaw::Glued, .. }))
+    }
+
+    fn case(&self, resolution: Resolution, tier: Tier) -> Case {
+        let cells = resolution.cells;
+        match self {
+            Way::Law(law) => Case { law: law.word, scheme: &schemes()[0], cells, tier },
+            Way::Scheme(scheme) => Case { law: laws()[0].word, scheme, cells, tier },
+        }
     }
 }
 
@@ -169,7 +229,7 @@ impl Entry {
         }
     }
 
-    /// How the law did by a target.
+    /// How the law or scheme did by a target.
     pub fn verdict(&self, target: &Target) -> Verdict {
         let Some(run) = self.judged(target) else { return Verdict::Open };
         match &run.result {
@@ -180,10 +240,10 @@ impl Entry {
         }
     }
 
-    /// The targets that the law has come to miss: those that it misses though it is the one that scenes get which name none, or glue, and is not known to
-    /// miss them there. Nothing is asked of other laws, which are there to be compared.
+    /// The targets that the law or scheme has come to miss: those that it misses though it is the one that scenes get which name
+    /// none, or glue, and is not known to miss them there. Nothing is asked of others, which are there to be compared.
     pub fn broken(&self) -> impl Iterator<Item = &'static Target> {
-        let held = self.law.default || self.law.law == ContactLaw::Glued;
+        let held = self.way.is_held();
         let known = |target: &Target| {
             self.judged(target)
                 .is_some_and(|run| run.result.is_ok() && target.missed_at.contains(&run.resolution.cells))
@@ -192,7 +252,7 @@ impl Entry {
         targets.filter(move |target| self.verdict(target) == Verdict::Missed && !known(target))
     }
 
-    /// How the law did by all targets: missed if one is, open if all are.
+    /// How the law or scheme did by all targets: missed if one is, open if all are.
     pub fn overall(&self) -> Verdict {
         let verdicts: Vec<_> = self.benchmark.targets.iter().map(|target| self.verdict(target)).collect();
         match () {
@@ -274,7 +334,13 @@ mod tests {
     #[test]
     fn order_and_verdicts_come_from_the_finest_runs_however_many_threads() {
         for threads in [1, 3] {
-            let suite = Suite { benchmarks: vec![&TEST], laws: laws(), tier: Tier::Quick, threads };
+            let suite = Suite {
+                benchmarks: vec![&TEST],
+                laws: laws(),
+                schemes: Vec::new(),
+                tier: Tier::Quick,
+                threads,
+            };
             let mut seen = 0;
             let mut least = 0.0;
             let report = suite.run(&mut |finished, report| {
@@ -291,7 +357,7 @@ mod tests {
                 assert_eq!(cells, [5.0, 10.0, 20.0]);
                 let [error, late] = TARGETS else { panic!("two targets") };
                 assert_eq!(entry.verdict(late), Verdict::Open);
-                let fails = ["traction", "gap"].contains(&entry.law.word);
+                let fails = ["traction", "gap"].contains(&entry.way.word());
                 assert_eq!(entry.verdict(error), if fails { Verdict::Missed } else { Verdict::Reached });
                 assert_eq!(entry.overall(), entry.verdict(error));
                 assert_eq!(entry.order(error).map(|p| (p * 1e9).round() / 1e9), (!fails).then_some(2.0));
@@ -303,11 +369,36 @@ mod tests {
     fn the_default_law_may_miss_what_it_is_known_to_miss_and_others_anything() {
         let demanding: &'static Benchmark =
             Box::leak(Box::new(Benchmark { targets: TOO_MUCH, name: "demanding", ..BENCHMARK }));
-        let suite = Suite { benchmarks: vec![demanding], laws: laws(), tier: Tier::Quick, threads: 2 };
+        let suite = Suite {
+            benchmarks: vec![demanding],
+            laws: laws(),
+            schemes: Vec::new(),
+            tier: Tier::Quick,
+            threads: 2,
+        };
         for entry in &suite.run(&mut |_, _| {}).entries {
             let broken: Vec<_> =
                 entry.broken().map(|target| TOO_MUCH.iter().position(|of| of == target).unwrap()).collect();
-            assert_eq!(broken, if entry.law.default { &[0, 2, 3][..] } else { &[] }, "{:?}", entry.law);
+            assert_eq!(broken, if entry.way.is_default() { &[0, 2, 3][..] } else { &[] }, "{:?}", entry.way);
+        }
+    }
+
+    #[test]
+    fn bulk_benchmarks_run_by_every_scheme_and_only_the_default_one_is_held() {
+        let bulk: &'static Benchmark =
+            Box::leak(Box::new(Benchmark { laws: Laws::Bulk, targets: TOO_MUCH, ..BENCHMARK }));
+        let suite = Suite {
+            benchmarks: vec![bulk, &TEST],
+            laws: Vec::new(),
+            schemes: schemes().iter().collect(),
+            tier: Tier::Quick,
+            threads: 1,
+        };
+        let entries = suite.run(&mut |_, _| {}).entries;
+        let words: Vec<_> = entries.iter().map(|entry| entry.way.word()).collect();
+        assert_eq!(words, schemes().iter().map(|scheme| &*scheme.word).collect::<Vec<_>>());
+        for entry in &entries {
+            assert_eq!(entry.broken().count() > 0, entry.way.is_default(), "{:?}", entry.way);
         }
     }
 

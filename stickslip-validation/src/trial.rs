@@ -14,9 +14,9 @@ pub struct Record {
     pub energy_gain: f64,
     /// Energy gained, or if negative lost, until the end, over the same [-].
     pub energy_drift: f64,
-    /// Largest change of momentum over the sum of the bodies' momenta [-]; `None` where something outside acts.
+    /// Largest change of momentum over the sum of the bodies' sqrt(2 mass * kinetic energy) [-]; `None` where something outside acts.
     pub momentum_drift: Option<f64>,
-    /// Largest change of angular momentum over the sum of the bodies' momenta times the distance of the farthest
+    /// Largest change of angular momentum over the same sum times the distance of the farthest
     /// particle from the origin [-]; `None` where something outside acts.
     pub angular_drift: Option<f64>,
     /// Deepest overlap of particles of two bodies [cells].
@@ -173,7 +173,9 @@ impl Trial {
         if !self.isolated {
             return;
         }
-        let momenta: f64 = self.simulation.bodies().iter().map(|body| body.mass * norm(body.velocity)).sum();
+        // A body that only spins has no momentum, but parts with momenta.
+        let momenta: f64 =
+            self.simulation.bodies().iter().map(|body| (2.0 * body.mass * body.kinetic).sqrt()).sum();
         if momenta > 0.0 {
             let change = |a: [f64; 3], b: [f64; 3]| norm(std::array::from_fn(|i| a[i] - b[i])) / momenta;
             let linear = change(now.momentum, first.momentum);
@@ -221,6 +223,12 @@ impl Trial {
     /// Energy and momentum at the start.
     pub fn first_ledger(&self) -> &Ledger {
         &self.first
+    }
+
+    /// Energy gained, or if negative lost, until the last look at it, over the largest that moved or was stored [-]; after the last
+    /// step that of the whole run.
+    pub fn energy_drift(&self) -> f64 {
+        self.record.energy_drift
     }
 
     /// The particles now.

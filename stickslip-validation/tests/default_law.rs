@@ -1,4 +1,4 @@
-//! The law that scenes get which name none, and glue, held to the targets that they reach.
+//! The law and the scheme that scenes get which name none, and glue, held to the targets that they reach.
 //!
 //! # Source
 //! The benchmarks themselves: each states its source, its target and why it is that.
@@ -7,16 +7,22 @@
 //! At the quick tier's resolutions every target is reached but those that its benchmark states as known to be missed there, and every
 //! quantity that a target is stated for is measured.
 
-use stickslip_validation::{BENCHMARKS, Suite, Tier, laws};
+use stickslip_validation::{BENCHMARKS, Suite, Tier, laws, schemes};
 
 #[test]
-fn the_default_law_and_glue_reach_what_they_are_known_to_reach() {
+fn the_default_law_and_scheme_and_glue_reach_what_they_are_known_to_reach() {
     let held = laws().into_iter().filter(|law| law.default || law.word == "glued").collect();
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    let suite = Suite { benchmarks: BENCHMARKS.iter().collect(), laws: held, tier: Tier::Quick, threads };
+    let suite = Suite {
+        benchmarks: BENCHMARKS.iter().collect(),
+        laws: held,
+        schemes: schemes().iter().filter(|scheme| scheme.default).collect(),
+        tier: Tier::Quick,
+        threads,
+    };
     let mut wrong = Vec::new();
     for entry in &suite.run(&mut |_, _| {}).entries {
-        let (name, law) = (entry.benchmark.name, entry.law.word);
+        let (name, law) = (entry.benchmark.name, entry.way.word());
         for run in &entry.runs {
             if let Err(failure) = &run.result {
                 wrong.push(format!("{name} by {law} at {}: {failure}", run.resolution.cells));

@@ -1,4 +1,4 @@
-//! `stickslip validate`: the contact laws against problems with known answers.
+//! `stickslip validate`: the contact laws and the schemes of the step against problems with known answers.
 
 use super::say;
 use crate::failure::Failure;
@@ -9,22 +9,28 @@ use miette::miette;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
-use stickslip_validation::{BENCHMARKS, Benchmark, Law, Suite, Tier, laws};
+use stickslip_validation::{BENCHMARKS, Benchmark, Law, Scheme, Suite, Tier, laws, schemes};
 
-/// Run problems with known answers by every contact law, and say how close each law comes.
+/// Run problems with known answers by every contact law or scheme of the step, and say how close each comes.
 ///
-/// Exit code 1 where the law of scenes that name none, or glue, misses a target that it is not known to miss; nothing is asked of the other laws.
+/// Exit code 1 where the law or the scheme of scenes that name none, or glue, misses a target that it is not known to
+/// miss; nothing is asked of the others.
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// Benchmarks to run; all without this.
     #[arg(value_name = "NAME", value_parser = benchmark_names(), ignore_case = true)]
     names: Vec<&'static Benchmark>,
 
-    /// Contact law to run; may be repeated; all without this.
+    /// Contact law to run; may be repeated; all without this and `--scheme`.
     #[arg(long = "law", value_name = "LAW", value_parser = law_words())]
     laws: Vec<Law>,
 
-    /// Every resolution and every variant, which takes long; without this, about four minutes on two cores.
+    /// Scheme to run benchmarks of the step itself by, a basis and a stress update; may be repeated; without this and
+    /// `--law` the default one, with `--all` all.
+    #[arg(long = "scheme", value_name = "SCHEME", value_parser = scheme_words())]
+    schemes: Vec<&'static Scheme>,
+
+    /// Every resolution and every variant, which takes long; without this, about four and a half minutes on two cores.
     #[arg(long)]
     all: bool,
 
@@ -51,18 +57,48 @@ fn law_words() -> impl TypedValueParser<Value = Law> {
         .map(|word| laws().into_iter().find(|law| law.word == word).expect("the word is one of them"))
 }
 
+fn scheme_words() -> impl TypedValueParser<Value = &'static Scheme> {
+    let words = schemes().iter().map(|scheme| PossibleValue::new(&*scheme.word).help(&*scheme.meaning));
+    PossibleValuesParser::new(words)
+        .map(|word| schemes().iter().find(|scheme| scheme.word == word).expect("the word is one of them"))
+}
+
 fn unwritable(folder: &Path, error: &std::io::Error) -> Failure {
     Failure::Input(miette!("cannot write to {}: {error}", folder.display()))
 }
 
 impl Arguments {
+    /// Those that are named; without a name all, and none where only schemes are named.
+    fn chosen_laws(&self) -> Vec<Law> {
+        match (&self.laws[..], self.only(&self.schemes)) {
+            ([], true) => Vec::new(),
+            ([], false) => laws(),
+            (named, _) => named.to_vec(),
+        }
+    }
+
+    /// Those that are named; without a name the default one, with `--all` all, and none where only laws are named.
+    fn chosen_schemes(&self) -> Vec<&'static Scheme> {
+        match (&self.schemes[..], self.only(&self.laws)) {
+            ([], true) => Vec::new(),
+            ([], false) => schemes().iter().filter(|scheme| self.all || scheme.default).collect(),
+            (named, _) => named.to_vec(),
+        }
+    }
+
+    /// Whether these are all that the command line names: without names of benchmarks, the others stay out.
+    fn only<T>(&self, named: &[T]) -> bool {
+        self.names.is_empty() && !named.is_empty()
+    }
+
     pub fn execute(self) -> Result<(), Failure> {
         let chosen = |benchmark: &&'static Benchmark| {
             self.names.is_empty() || self.names.iter().any(|named| named.name == benchmark.name)
         };
         let suite = Suite {
             benchmarks: BENCHMARKS.iter().filter(chosen).collect(),
-            laws: if self.laws.is_empty() { laws() } else { self.laws.clone() },
+            laws: self.chosen_laws(),
+            schemes: self.chosen_schemes(),
             tier: if self.all { Tier::Full } else { Tier::Quick },
             threads: match self.threads {
                 Some(threads) => threads.into(),

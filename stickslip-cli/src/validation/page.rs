@@ -1,10 +1,11 @@
-//! The results of validation as a page: law by benchmark, then each benchmark with its report.
+//! The results of validation as a page: law or scheme by benchmark, then each benchmark with its report.
 
 use super::text::short;
 use crate::page::{Cell, Column, Making, Page, Section, Table, Verdict, address};
 use std::time::Duration;
 use stickslip_validation::{
-    Benchmark, Entry, Law, Measurement, Record, Report, Resolution, Run, Target, Tier, Verdict as Judgement,
+    Benchmark, Entry, Laws, Measurement, Record, Report, Resolution, Run, Target, Tier, Verdict as Judgement,
+    Way,
 };
 
 /// The page; it took so long.
@@ -13,13 +14,14 @@ pub fn page(report: &Report, took: Duration) -> Page {
         Tier::Quick => "the quick tier: coarse resolutions and few variants",
         Tier::Full => "the full tier: every resolution and variant",
     };
-    let mut page = Page::new("Contact laws against known answers", Making::now(took))
-        .lead("Each contact law of the engine runs problems with known answers, all with one setting: nothing is tuned to a problem.")
+    let mut page = Page::new("Contact laws and schemes against known answers", Making::now(took))
+        .lead("Each contact law and each scheme of the step runs problems with known answers, all with one setting: nothing is tuned to a problem.")
         .lead(format!(
-            "This is {tier}. A law is judged at the finest resolution that was run, or at the one that a target names; targets at other resolutions stay open."
-        ))
-        .section(overview(report))
-        .section(words(&laws(report)));
+            "This is {tier}. A law or scheme is judged at the finest resolution that was run, or at the one that a target names; targets at other resolutions stay open."
+        ));
+    for shelf in Shelf::all(report) {
+        page = page.section(shelf.overview(report)).section(shelf.words());
+    }
     for benchmark in benchmarks(report) {
         page = page.section(section(benchmark, report));
     }
@@ -40,14 +42,75 @@ fn benchmarks(report: &Report) -> Vec<&'static Benchmark> {
     benchmarks
 }
 
-fn laws(report: &Report) -> Vec<Law> {
-    let mut laws: Vec<Law> = Vec::new();
-    for entry in &report.entries {
-        if !laws.contains(&entry.law) {
-            laws.push(entry.law);
+/// Ways to run benchmarks that stand side by side.
+struct Shelf {
+    /// What one of them is.
+    kind: &'static str,
+    ways: Vec<Way>,
+}
+
+impl Shelf {
+    /// The laws and the schemes that were chosen, as far as there are any.
+    fn all(report: &Report) -> Vec<Shelf> {
+        let mut laws = Shelf { kind: "law", ways: Vec::new() };
+        let mut schemes = Shelf { kind: "scheme", ways: Vec::new() };
+        for entry in &report.entries {
+            let shelf = if matches!(entry.way, Way::Law(_)) { &mut laws } else { &mut schemes };
+            if !shelf.ways.contains(&entry.way) {
+                shelf.ways.push(entry.way);
+            }
         }
+        [laws, schemes].into_iter().filter(|shelf| !shelf.ways.is_empty()).collect()
     }
-    laws
+
+    /// How many targets each law or scheme reaches in each benchmark.
+    fn overview(&self, report: &Report) -> Section {
+        let kind = self.kind;
+        let caption = format!("Targets reached of targets judged. * what a scene gets that names no {kind}.");
+        let counts = self.by_benchmark(caption, report, |entry| entry.map_or(Cell::Empty, reached));
+        let heading = if kind == "law" { "Law by benchmark" } else { "Scheme by benchmark" };
+        Section::new(heading).table(counts).table(self.times(report))
+    }
+
+    /// How long each law or scheme took for each benchmark.
+    fn times(&self, report: &Report) -> Table {
+        let caption = "Time taken [s], all resolutions together; one thread a run.".to_owned();
+        self.by_benchmark(caption, report, |entry| {
+            let outcomes =
+                entry.iter().flat_map(|entry| &entry.runs).filter_map(|run| run.result.as_ref().ok());
+            let times: Vec<f64> = outcomes.map(|outcome| outcome.record.wall_time).collect();
+            if times.is_empty() { Cell::Empty } else { Cell::number(times.iter().sum(), 1) }
+        })
+    }
+
+    /// A row for each benchmark that was put to one of these, with a cell for each.
+    fn by_benchmark(&self, caption: String, report: &Report, cell: impl Fn(Option<&Entry>) -> Cell) -> Table {
+        let mut columns = vec![Column::text("benchmark")];
+        columns.extend(self.ways.iter().map(|way| Column::number(word(way))));
+        let mut table = Table::new(caption, columns);
+        for benchmark in benchmarks(report) {
+            let entry = |way: &Way| entries(benchmark, report).find(|entry| entry.way == *way);
+            if self.ways.iter().all(|way| entry(way).is_none()) {
+                continue;
+            }
+            let mut row = vec![Cell::text(title(benchmark))];
+            row.extend(self.ways.iter().map(|way| cell(entry(way))));
+            table = table.row(row);
+        }
+        table
+    }
+
+    /// What each law or scheme does.
+    fn words(&self) -> Section {
+        let (heading, does) = match self.kind {
+            "law" => ("The laws", "bodies push on each other"),
+            _ => ("The schemes", "what moves between particles and grid, and when"),
+        };
+        let columns = vec![Column::text(self.kind), Column::text(does)];
+        let row = |table: Table, way: &Way| table.row(vec![Cell::text(word(way)), Cell::text(way.meaning())]);
+        Section::new(heading)
+            .table(self.ways.iter().fold(Table::new("As scene files name them.", columns), row))
+    }
 }
 
 fn entries<'a>(benchmark: &'a Benchmark, report: &'a Report) -> impl Iterator<Item = &'a Entry> {
@@ -58,9 +121,14 @@ fn title(benchmark: &Benchmark) -> String {
     format!("{} {}", benchmark.name, benchmark.title)
 }
 
-/// A law's word, with a star where it is what scenes get that name none.
-fn word(law: &Law) -> String {
-    if law.default { format!("{} *", law.word) } else { law.word.to_owned() }
+/// The word of a law or scheme, with a star where it is what scenes get that name none.
+fn word(way: &Way) -> String {
+    if way.is_default() { format!("{} *", way.word()) } else { way.word().to_owned() }
+}
+
+/// What a benchmark is put to.
+fn kind(benchmark: &Benchmark) -> &'static str {
+    if benchmark.laws == Laws::Bulk { "scheme" } else { "law" }
 }
 
 fn colour(judgement: Judgement) -> Verdict {
@@ -71,43 +139,6 @@ fn colour(judgement: Judgement) -> Verdict {
     }
 }
 
-/// How many targets each law reaches in each benchmark.
-fn overview(report: &Report) -> Section {
-    let laws = laws(report);
-    let mut columns = vec![Column::text("benchmark")];
-    columns.extend(laws.iter().map(|law| Column::number(word(law))));
-    let mut table =
-        Table::new("Targets reached of targets judged. * what a scene gets that names no law.", columns);
-    for benchmark in benchmarks(report) {
-        let mut row = vec![Cell::text(title(benchmark))];
-        for law in &laws {
-            row.push(entries(benchmark, report).find(|entry| entry.law == *law).map_or(Cell::Empty, reached));
-        }
-        table = table.row(row);
-    }
-    Section::new("Law by benchmark").table(table).table(times(report))
-}
-
-/// How long each law took for each benchmark.
-fn times(report: &Report) -> Table {
-    let laws = laws(report);
-    let mut columns = vec![Column::text("benchmark")];
-    columns.extend(laws.iter().map(|law| Column::number(word(law))));
-    let mut table = Table::new("Time taken [s], all resolutions together; one thread a run.", columns);
-    for benchmark in benchmarks(report) {
-        let mut row = vec![Cell::text(title(benchmark))];
-        for law in &laws {
-            let entry = entries(benchmark, report).find(|entry| entry.law == *law);
-            let outcomes =
-                entry.iter().flat_map(|entry| &entry.runs).filter_map(|run| run.result.as_ref().ok());
-            let times: Vec<f64> = outcomes.map(|outcome| outcome.record.wall_time).collect();
-            row.push(if times.is_empty() { Cell::Empty } else { Cell::number(times.iter().sum(), 1) });
-        }
-        table = table.row(row);
-    }
-    table
-}
-
 fn reached(entry: &Entry) -> Cell {
     let verdicts: Vec<_> = entry.benchmark.targets.iter().map(|target| entry.verdict(target)).collect();
     let count = |wanted| verdicts.iter().filter(|verdict| **verdict == wanted).count();
@@ -115,12 +146,6 @@ fn reached(entry: &Entry) -> Cell {
     let text =
         if reached + missed == 0 { "open".to_owned() } else { format!("{reached} of {}", reached + missed) };
     Cell::Judged(text, colour(entry.overall()), address(&title(entry.benchmark)))
-}
-
-fn words(laws: &[Law]) -> Section {
-    let columns = vec![Column::text("law"), Column::text("bodies push on each other")];
-    let row = |table: Table, law: &Law| table.row(vec![Cell::text(word(law)), Cell::text(law.meaning)]);
-    Section::new("The laws").table(laws.iter().fold(Table::new("As scene files name them.", columns), row))
 }
 
 fn section(benchmark: &'static Benchmark, report: &Report) -> Section {
@@ -133,35 +158,38 @@ fn section(benchmark: &'static Benchmark, report: &Report) -> Section {
         for run in &entry.runs {
             if let Err(failure) = &run.result {
                 let Resolution { cells, .. } = run.resolution;
-                section = section
-                    .warning(format!("{} at {} = {cells}: {failure}", entry.law.word, benchmark.measure));
+                section = section.warning(format!(
+                    "{} at {} = {cells}: {failure}",
+                    entry.way.word(),
+                    benchmark.measure
+                ));
             }
         }
     }
     section = section.table(results(benchmark, report));
     for entry in entries(benchmark, report).filter(|entry| entry.overall() == Judgement::Missed) {
-        for reason in benchmark.reasons(entry.law.word) {
-            section = section.text(format!("What {} misses: {reason}", entry.law.word));
+        for reason in benchmark.reasons(entry.way.word()) {
+            section = section.text(format!("What {} misses: {reason}", entry.way.word()));
         }
     }
     section.table(targets(benchmark)).table(records(benchmark, report))
 }
 
-/// What each law measured at each resolution, against the targets.
+/// What each law or scheme measured at each resolution, against the targets.
 fn results(benchmark: &'static Benchmark, report: &Report) -> Table {
-    let mut columns = vec![Column::text("law"), Column::text("quantity")];
+    let mut columns = vec![Column::text(kind(benchmark)), Column::text("quantity")];
     let heading = |r: &Resolution| Column::number(format!("{} = {}", benchmark.measure, r.cells));
     columns.extend(benchmark.due(report.tier).map(heading));
     columns.extend([Column::number("order"), Column::text("target"), Column::text("verdict")]);
     let caption = format!(
-        "Measured by each law; the observed order of convergence is that of the two finest resolutions. {} counts cells.",
+        "Measured by each; the observed order of convergence is that of the two finest resolutions. {} counts cells.",
         benchmark.measure
     );
     let mut table = Table::new(caption, columns);
     for entry in entries(benchmark, report) {
         for (i, target) in benchmark.targets.iter().enumerate() {
-            let law = if i == 0 { Cell::text(word(&entry.law)) } else { Cell::Empty };
-            let mut row = vec![law, Cell::text(target.metric)];
+            let way = if i == 0 { Cell::text(word(&entry.way)) } else { Cell::Empty };
+            let mut row = vec![way, Cell::text(target.metric)];
             for resolution in benchmark.due(report.tier) {
                 let run = entry.runs.iter().find(|run| run.resolution == *resolution);
                 row.push(run.map_or(Cell::text("not run yet"), |run| value(run, target)));
@@ -221,16 +249,16 @@ fn records(benchmark: &'static Benchmark, report: &Report) -> Table {
         "particle-steps",
         "time taken [s]",
     ];
-    let mut columns = vec![Column::text("law")];
+    let mut columns = vec![Column::text(kind(benchmark))];
     columns.extend(numbers.map(Column::number));
     let caption = "The worst of all runs at a resolution: energy over the largest that moved or was stored, momentum over the sum of the \
-bodies' momenta, where nothing outside acts; the overlap of round particles of two bodies; one thread a run.";
+bodies' sqrt(2 mass * kinetic energy), where nothing outside acts; the overlap of round particles of two bodies; one thread a run.";
     let mut table = Table::new(caption, columns);
     for entry in entries(benchmark, report) {
         for run in &entry.runs {
             if let Ok(outcome) = &run.result {
                 let mut row =
-                    vec![Cell::text(word(&entry.law)), Cell::Number(run.resolution.cells.to_string())];
+                    vec![Cell::text(word(&entry.way)), Cell::Number(run.resolution.cells.to_string())];
                 row.extend(record(&outcome.record));
                 table = table.row(row);
             }

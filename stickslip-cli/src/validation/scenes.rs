@@ -5,13 +5,14 @@ use std::io;
 use std::path::Path;
 use stickslip_validation::{Entry, Run};
 
-/// Writes every scene of a run to `folder/BENCHMARK/LAW/CELLS/NAME.toml`.
+/// Writes every scene of a run to `folder/BENCHMARK/LAW_OR_SCHEME/CELLS/NAME.toml`.
 ///
 /// # Errors
 /// The folder cannot be written.
 pub fn write_scenes(entry: &Entry, run: &Run, folder: &Path) -> io::Result<()> {
     let Ok(outcome) = &run.result else { return Ok(()) };
-    let place = folder.join(entry.benchmark.name).join(entry.law.word).join(run.resolution.cells.to_string());
+    let place =
+        folder.join(entry.benchmark.name).join(entry.way.word()).join(run.resolution.cells.to_string());
     fs::create_dir_all(&place)?;
     outcome.scenes.iter().try_for_each(|(name, text)| fs::write(place.join(format!("{name}.toml")), text))
 }

@@ -1,7 +1,7 @@
 //! The results of validation as text.
 
 use std::fmt::Write;
-use stickslip_validation::{Entry, Finished, Report, Target, Verdict};
+use stickslip_validation::{Entry, Finished, Report, Target, Verdict, Way, schemes};
 
 /// One case that ended, on one line.
 pub fn line(finished: &Finished) -> String {
@@ -13,17 +13,22 @@ pub fn line(finished: &Finished) -> String {
     let (benchmark, cells) = (entry.benchmark, run.resolution.cells);
     format!(
         "[{done}/{all}] {} {}, {} = {cells}: {outcome}",
-        benchmark.name, entry.law.word, benchmark.measure
+        benchmark.name,
+        entry.way.word(),
+        benchmark.measure
     )
 }
 
-/// What the default law and glue miss and are not known to miss; `None` if there is nothing.
+/// What the default law, the default scheme and glue miss and are not known to miss; `None` if there is nothing.
 pub fn broken(report: &Report) -> Option<String> {
     let lines: Vec<String> = (report.entries.iter())
         .flat_map(|entry| entry.broken().map(move |target| (entry, target)))
         .map(|(entry, target)| {
-            let (name, law, cells) =
-                (entry.benchmark.name, entry.law.word, entry.judged(target).map(|run| run.resolution.cells));
+            let (name, law, cells) = (
+                entry.benchmark.name,
+                entry.way.word(),
+                entry.judged(target).map(|run| run.resolution.cells),
+            );
             let cells =
                 cells.map_or(String::new(), |cells| format!(", {} = {cells}", entry.benchmark.measure));
             format!("{name} by {law}{cells}: {}, asked {target}", target.metric)
@@ -40,7 +45,7 @@ pub fn short(value: f64) -> String {
     }
 }
 
-/// A table for each benchmark: a line for each law and quantity.
+/// A table for each benchmark: a line for each law or scheme and quantity.
 pub fn table(report: &Report) -> String {
     let mut text = String::new();
     let mut heading = "";
@@ -58,18 +63,28 @@ fn write_heading(entry: &Entry, text: &mut String) {
     let benchmark = entry.benchmark;
     let cells: String = entry.runs.iter().map(|run| format!("{:>11}", run.resolution.cells)).collect();
     let title = format!("{} {} ({})", benchmark.name, benchmark.title, benchmark.measure);
-    let _ = writeln!(text, "\n{title:<52}{cells}  {:>5}  target", "order");
+    let width = 42 + column(entry);
+    let _ = writeln!(text, "\n{title:<width$}{cells}  {:>5}  target", "order");
+}
+
+/// Width of the column of laws or schemes.
+fn column(entry: &Entry) -> usize {
+    match entry.way {
+        Way::Law(_) => 10,
+        Way::Scheme(_) => schemes().iter().map(|scheme| scheme.word.len()).fold(10, usize::max),
+    }
 }
 
 fn write_entry(entry: &Entry, text: &mut String) {
+    let width = column(entry);
     let targets = entry.benchmark.targets.iter().filter(|target| !repeated(entry, target));
     for (i, target) in targets.enumerate() {
-        let law = if i == 0 { entry.law.word } else { "" };
+        let law = if i == 0 { entry.way.word() } else { "" };
         let order = entry.order(target).map_or(String::new(), |order| format!("{order:.1}"));
         let values: String = values(entry, target).map(|value| format!("{value:>11}")).collect();
         let verdict = match entry.verdict(target) {
             Verdict::Reached => "reached",
-            Verdict::Missed if entry.law.default && entry.broken().all(|broken| broken != target) => {
+            Verdict::Missed if entry.way.is_default() && entry.broken().all(|broken| broken != target) => {
                 "missed, as known"
             }
             Verdict::Missed => "missed",
@@ -77,9 +92,9 @@ fn write_entry(entry: &Entry, text: &mut String) {
         };
         let _ = writeln!(
             text,
-            "  {law:<10} {:<39}{values}  {order:>5}  {:<14} {verdict}",
+            "  {law:<width$} {:<39}{values}  {order:>5}  {:<18} {verdict}",
             target.metric,
-            target.to_string()
+            target.at.map_or(target.to_string(), |cells| format!("{target} at {cells}"))
         );
     }
     for run in &entry.runs {
@@ -89,7 +104,7 @@ fn write_entry(entry: &Entry, text: &mut String) {
                 let drift = |drift: Option<f64>| drift.map_or("-".to_owned(), |drift| format!("{drift:.0e}"));
                 let _ = writeln!(
                     text,
-                    "  {:<10} at {}: energy {:+.1e}, most gained {:.0e}; momentum {}, angular {}; deepest {:.2} h; {:.1} s",
+                    "  {:<width$} at {}: energy {:+.1e}, most gained {:.0e}; momentum {}, angular {}; deepest {:.2} h; {:.1} s",
                     "",
                     run.resolution.cells,
                     record.energy_drift,
@@ -101,7 +116,7 @@ fn write_entry(entry: &Entry, text: &mut String) {
                 );
             }
             Err(failure) => {
-                let _ = writeln!(text, "  {:<10} at {}: {failure}", "", run.resolution.cells);
+                let _ = writeln!(text, "  {:<width$} at {}: {failure}", "", run.resolution.cells);
             }
         }
     }
@@ -134,7 +149,8 @@ mod tests {
         for law in laws() {
             let mut outcome = Outcome::default();
             benchmark.targets.iter().for_each(|target| outcome.measure(target.metric, 1.0));
-            let entry = Entry { benchmark, law, runs: vec![Run { resolution, result: Ok(outcome) }] };
+            let entry =
+                Entry { benchmark, way: Way::Law(law), runs: vec![Run { resolution, result: Ok(outcome) }] };
             let said = broken(&Report { tier: Tier::Quick, entries: vec![entry] });
             let expected = format!("M4 by {}, {} = {}: ", law.word, benchmark.measure, resolution.cells);
             let held = law.default || law.word == "glued";
