@@ -32,6 +32,14 @@ pub static KEYS: &[Key] = &[
             ("first", "stress from the velocities at the start of the step"),
         ],
     },
+    Key {
+        table: "time",
+        name: "transfer",
+        words: &[
+            ("rflip", "particles take changes of velocity and of their rotation"),
+            ("flip", "particles take changes of velocity alone"),
+        ],
+    },
 ];
 
 /// A word for each key.

@@ -160,7 +160,8 @@ mod tests {
                 let arm = |k: usize| f64::from(axis.base) + k as f64 - x;
                 (0..MAX_WIDTH).map(|k| axis.shape.weight[k] * arm(k).powi(2)).sum::<f64>()
             };
-            let mean = (0..n).map(|i| spread((f64::from(i) + 0.5) / f64::from(n))).sum::<f64>() / f64::from(n);
+            let mean =
+                (0..n).map(|i| spread((f64::from(i) + 0.5) / f64::from(n))).sum::<f64>() / f64::from(n);
             assert!((mean - (1.0 / 6.0 + B::BOX_SPREAD * half * half)).abs() < 1e-7, "{mean}");
         }
     }

@@ -109,6 +109,12 @@ impl Rule {
     /// The two that everything is run with, the paper's first.
     pub const BOTH: [Rule; 2] = [Rule::Traction, Rule::Surface];
 
+    /// What chooses it in the paper's scenes. The paper has FLIP; Stickslip's own law goes with its own transfer.
+    pub fn settings(self) -> [(&'static str, &'static str); 2] {
+        let transfer = if self == Rule::Surface { "rflip" } else { "flip" };
+        [("contact", self.word()), ("time.transfer", transfer)]
+    }
+
     /// Its word in scenes.
     pub fn word(self) -> &'static str {
         match self {

@@ -21,8 +21,7 @@ pub fn case(scene: PaperScene, rule: Rule, cells: usize, more: &[(&str, &str)]) 
         ("outputs.samples", "step"),
     ];
     // Glued disks have no rule between them; that at the frame stays as it is.
-    let rule = [("contact", rule.word())];
-    Case::new(scene, &label, &[&settings[..], &rule, more].concat())
+    Case::new(scene, &label, &[&settings[..], &rule.settings(), more].concat())
 }
 
 /// A chain of disks after its run.

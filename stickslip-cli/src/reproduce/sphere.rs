@@ -40,9 +40,8 @@ impl Sphere {
     pub fn case(&self) -> Case {
         let cells = self.cells.to_string();
         let label = format!("{}-R{cells}", self.rule.word());
-        let settings =
-            [("contact", self.rule.word()), ("cells_per_radius", &cells), ("outputs.particles", "0.5 s")];
-        Case::new(self.scene, &label, &settings)
+        let finely = [("cells_per_radius", cells.as_str()), ("outputs.particles", "0.5 s")];
+        Case::new(self.scene, &label, &[self.rule.settings(), finely].concat())
     }
 
     fn name(&self) -> String {

@@ -139,8 +139,14 @@ mod tests {
         let rule = rule(ContactLaw::Kinematic, Normal::Own, 0.0);
         let free = surface(2.0, [0.6, -0.8]);
         let wall = Surface { inverse_mass: 0.0, ..surface(1.0, [0.0, 1.0]) };
-        let pair =
-            Pair { rule: &rule, surfaces: [&free, &wall], normal: None, gap: 0.0, area: 0.0, step: step(100.0) };
+        let pair = Pair {
+            rule: &rule,
+            surfaces: [&free, &wall],
+            normal: None,
+            gap: 0.0,
+            area: 0.0,
+            step: step(100.0),
+        };
         let [on_free, on_wall] = pair.change([Vector([3.0, -8.0]), Vector::ZERO]).impulse;
         assert_eq!((on_free, on_wall), (Vector([0.0, 16.0]), Vector([0.0, -16.0])));
     }

@@ -15,7 +15,7 @@ use crate::geometry::{Filling, Mirror, Site, Whole, fill};
 use crate::grid::{Cover, Field, Lattice};
 use crate::lanes::{Laned, Processor};
 use crate::particles::Particles;
-use crate::scene::{self, BasisKind, Dimension, Face, Motion, Precision, Problem, Scene};
+use crate::scene::{self, BasisKind, Dimension, Face, Motion, Precision, Problem, Scene, Transfer};
 use crate::tensor::{Matrix, Real, Symmetric, Vector, cross};
 use crate::transfer::turning;
 use std::marker::PhantomData;
@@ -86,7 +86,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 _ => [0.0; 3],
             };
             let turning = match (&body.motion, &motion) {
-                (Motion::Free { spin, .. }, _) => *spin,
+                (Motion::Free { spin, .. }, _) if scene.time.transfer == Transfer::Rflip => *spin,
                 (_, Some(motion)) => motion.spin(),
                 _ => [0.0; 3],
             };

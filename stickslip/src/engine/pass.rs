@@ -6,8 +6,8 @@ use crate::grid::{Disjoint, Lattice, Node, SIDE, Sought, Tile, Window, addressab
 use crate::lanes::{Machine, Processor};
 use crate::material::Motion;
 use crate::particles::Columns;
-use crate::tensor::{Matrix, Real, Vector};
 use crate::scene::Transfer;
+use crate::tensor::{Matrix, Real, Vector};
 use crate::transfer::{Share, Stencil, turning};
 use std::marker::PhantomData;
 

@@ -95,15 +95,14 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
 
     fn run_pass(&mut self, name: &'static str, verbs: Verbs, dt: T) -> Result<(), StepError> {
         let start = Instant::now();
-        let mut found =
-            self.pass(&Pass {
-                verbs,
-                dt,
-                transfer: self.transfer,
-                pic: self.pic_share,
-                lattice: self.lattice,
-                domain: self.domain,
-            });
+        let mut found = self.pass(&Pass {
+            verbs,
+            dt,
+            transfer: self.transfer,
+            pic: self.pic_share,
+            lattice: self.lattice,
+            domain: self.domain,
+        });
         if verbs.displace {
             found = found.and(self.move_rigid_bodies(dt));
             self.signal = Some(found.signal.f64());

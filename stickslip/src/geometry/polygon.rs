@@ -86,7 +86,8 @@ mod tests {
     fn on_an_edge_the_normal_is_the_edges() {
         for i in 1..200 {
             let angle = 0.0317 * f64::from(i);
-            let turned = L.map(|[x, y]| [x * angle.cos() - y * angle.sin(), x * angle.sin() + y * angle.cos()]);
+            let turned =
+                L.map(|[x, y]| [x * angle.cos() - y * angle.sin(), x * angle.sin() + y * angle.cos()]);
             let along = f64::from(i) / 200.0;
             let point = [0, 1].map(|k| turned[0][k] + along * (turned[1][k] - turned[0][k]));
             let (length, gradient) = distance(&turned, point);

@@ -6,10 +6,10 @@
 // Sums over nodes and components read better by their indices.
 #![allow(clippy::needless_range_loop)]
 
+use super::turning::moment;
 use crate::basis::{Basis, MAX_WIDTH, Shape};
 use crate::grid::{Sums, TOLD, Told, WINDOW, WINDOW_NODES, Window};
 use crate::lanes::{Lanes, MOST_LANES, Machine, Numbers};
-use super::turning::moment;
 use crate::tensor::{Matrix, Number, Real, Symmetric, Vector};
 use std::marker::PhantomData;
 
@@ -283,7 +283,11 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
                 steps: [
                     Rows::of::<V, D>([m[0][0], m[1][0], m[2][0], V::ZERO], n),
                     Rows::of::<V, D>([m[0][1], m[1][1], m[2][1], V::ZERO], n),
-                    if D == 2 { Rows::ZERO } else { Rows::of::<V, D>([m[0][2], m[1][2], m[2][2], V::ZERO], n) },
+                    if D == 2 {
+                        Rows::ZERO
+                    } else {
+                        Rows::of::<V, D>([m[0][2], m[1][2], m[2][2], V::ZERO], n)
+                    },
                 ],
             });
         }

@@ -8,8 +8,8 @@ use crate::engine::pass::{Pass, Verbs, Visit};
 use crate::lanes::{Laned, Lanes, Machine};
 use crate::material::{Material, Motion, Thickness};
 use crate::particles::Column;
-use crate::tensor::{Matrix, Real, Symmetric, Vector};
 use crate::scene::Transfer;
+use crate::tensor::{Matrix, Real, Symmetric, Vector};
 use crate::transfer::{Group, Load, Momentum, Share, Start, turning};
 
 /// What all particles of a tile have in common.

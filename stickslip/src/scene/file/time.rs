@@ -39,8 +39,16 @@ impl Choice for StressUpdate {
 
 impl Choice for Transfer {
     const WORDS: &'static [(&'static str, Self, &'static str)] = &[
-        ("rflip", Transfer::Rflip, "Changes of velocity, and of the particles' rotation: bodies keep their spin."),
-        ("flip", Transfer::Flip, "Changes of velocity alone (FLIP), as most codes have it: bodies lose spin at their rims."),
+        (
+            "rflip",
+            Transfer::Rflip,
+            "Changes of velocity, and of the particles' rotation: bodies keep their spin.",
+        ),
+        (
+            "flip",
+            Transfer::Flip,
+            "Changes of velocity alone (FLIP), as most codes have it: bodies lose spin at their rims.",
+        ),
     ];
 }
 
