@@ -45,7 +45,7 @@ pub static KEYS: &[Key] = &[
 /// A word for each key.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Scheme {
-    /// The words, joined: `gimp-modified-last`.
+    /// The words, joined: `gimp-modified-last-rflip`.
     pub word: String,
     /// What they mean.
     pub meaning: String,

@@ -40,7 +40,7 @@ where sliding is slower. Measured over mu.",
         Target::new(METRICS[2], 1.0, Allowed::Within(0.2), BOUND).at(16.0),
     ],
     reasons: &[Reason {
-        laws: &["gimp-modified-last"],
+        laws: &["gimp-modified-last-rflip"],
         text: "The block shakes, more where the floor is faster, and nothing damps it: friction between a rigid and \
 an elastic body feeds short waves (Martins, Guimaraes and Faria 1995; Adams 1995). Nodes let go for moments, and the \
 mean falls short: 0.975 at 1e-3 c and 0.873 at 1e-2 c at H/8, 0.949 and 0.848 at H/16. It is no fault of the law of \

@@ -44,7 +44,7 @@ Measured is the mean force over the 8 transit times after, over that.",
         Target::new(FORCES[2], 1.0, Allowed::AtMost(1.5), BOUND).at(32.0),
     ],
     reasons: &[Reason {
-        laws: &["gimp-modified-last"],
+        laws: &["gimp-modified-last-rflip"],
         text: "Each particle keeps its own volume, which is more than a cell's nodes can do: the block locks, and \
 the coarser the worse. The force is 1.12 of the exact one at nu = 0.49 and 5.4 at nu = 0.4999 with height/8, 1.05 \
 and 2.1 with height/16.",
