@@ -3,6 +3,7 @@
 //! [`problems`] finds mistakes that no run should start with; [`report`] says what the run will be: bodies, particles,
 //! memory, steps, time, and whether its contacts are resolved by the grid.
 
+mod accuracy;
 mod bodies;
 mod contact;
 mod flat;
@@ -16,7 +17,8 @@ mod shapes;
 mod table;
 mod touch;
 
-pub use contact::{ContactEstimate, Errors, Verdict};
+pub use accuracy::Errors;
+pub use contact::{ContactEstimate, Verdict};
 pub use hertz::{Hertz, Patch};
 pub use report::{BodyReport, Machine, MaterialReport, Report, report};
 
