@@ -5,12 +5,13 @@ use super::bodies::Extent;
 use super::flat::Flat;
 use super::hertz::{Hertz, Patch};
 use super::neighbours::pairs_within;
+use super::rules::{is_rigid, named_pairs};
 use super::touch::{SAME, Touch};
 use crate::geometry::Lattice;
-use crate::scene::{Body, ContactLaw, ContactRule, Motion, Scene};
+use crate::scene::{Body, ContactLaw, Motion, Scene};
 use crate::tensor::Vector;
 use serde::Serialize;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 /// The contact of a ball, a cylinder or a flat face with another body, as the start of the scene lets expect it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -108,19 +109,9 @@ fn within_a_cell(scene: &Scene, extents: &[Extent], [a, b]: [usize; 2]) -> bool 
         .any(|point| away(a, point) + away(b, point) <= cell)
 }
 
-/// Pairs of bodies, not of materials, that contact rules name.
-fn named_pairs(scene: &Scene) -> BTreeSet<[usize; 2]> {
-    let number: BTreeMap<_, _> = scene.bodies.iter().enumerate().map(|(i, body)| (&body.name, i)).collect();
-    let pair = |rule: &ContactRule| {
-        let [a, b] = rule.between.each_ref().map(|name| number.get(name.as_ref()?).copied());
-        Some([a?.min(b?), a?.max(b?)]).filter(|[a, b]| a != b)
-    };
-    scene.contact.iter().filter_map(pair).collect()
-}
-
 /// Whether contact of a pair can press it together: not both rigid, and neither glued nor left alone.
 fn pushes(scene: &Scene, [a, b]: [usize; 2]) -> bool {
-    let rigid = [a, b].iter().all(|&i| matches!(scene.bodies[i].motion, Motion::Rigid { .. }));
+    let rigid = is_rigid(scene, a) && is_rigid(scene, b);
     !rigid && !matches!(scene.contact_between(a, b).law, ContactLaw::None | ContactLaw::Glued)
 }
 
@@ -202,7 +193,7 @@ mod tests {
     use crate::check::bodies::measure;
     use crate::check::tests::{at_rest, free, incline, scene};
     use crate::geometry::Shape;
-    use crate::scene::{Dimension, Expression};
+    use crate::scene::{ContactRule, Dimension, Expression};
     use std::f64::consts::PI;
 
     fn estimates_of(scene: &Scene) -> Vec<ContactEstimate> {

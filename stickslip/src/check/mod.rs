@@ -8,19 +8,28 @@ mod bodies;
 mod contact;
 mod flat;
 mod hertz;
+mod locking;
 mod measurements;
+mod memory;
 mod neighbours;
 mod overlap;
+mod penetration;
 mod report;
+mod rigid_pairs;
+mod rules;
 mod settings;
 mod shapes;
 mod table;
+mod thickness;
 mod touch;
+mod warning;
 
 pub use accuracy::Errors;
 pub use contact::{ContactEstimate, Verdict};
 pub use hertz::{Hertz, Patch};
 pub use report::{BodyReport, Machine, MaterialReport, Report, report};
+pub use rules::RuleReport;
+pub use warning::Warning;
 
 use crate::geometry::Lattice;
 use crate::scene::{Body, Problem, Scene};
