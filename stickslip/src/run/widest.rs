@@ -68,12 +68,15 @@ impl WidestContacts {
         self
     }
 
-    /// What they bear of the force between all bodies: "bearing 80 % of the contact force".
+    /// What they bear of the force between all bodies: "bearing 80 % of the contact force". Of short blows the largest.
     pub(super) fn borne(&self) -> String {
         let share: f64 = self.0.iter().map(|contact| contact.share).sum();
-        match 100.0 * share {
-            percent if percent < 1.0 => "bearing less than 1 % of the contact force".to_string(),
-            percent => format!("bearing {percent:.0} % of the contact force"),
+        let weight = self.0.iter().map(|contact| contact.weight).fold(0.0, f64::max);
+        match [share, weight].map(|part| 100.0 * part) {
+            [share, weight] if share < GRAZING * 100.0 => {
+                format!("bearing {share:.1} % of the contact force, at one time {weight:.0} % of the largest")
+            }
+            [share, _] => format!("bearing {share:.0} % of the contact force"),
         }
     }
 
@@ -202,7 +205,10 @@ mod tests {
             scene.bodies.push(scene.bodies[0].clone());
             scene
         };
-        assert_eq!(WidestContacts::new(&scene(), &patches).bearing().0.len(), 2);
+        let mut both = WidestContacts::new(&scene(), &patches).bearing();
+        assert_eq!(both.0.len(), 2);
+        both.0.retain(|contact| contact.cells < 1.0);
+        assert_eq!(both.borne(), "bearing 1.0 % of the contact force, at one time 100 % of the largest");
         patches[1].force = 0.1;
         assert_eq!(WidestContacts::new(&scene(), &patches).bearing().0.len(), 1);
     }
