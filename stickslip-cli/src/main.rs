@@ -6,6 +6,7 @@ mod commands;
 mod darkroom;
 mod drawing;
 mod failure;
+mod free_memory;
 mod illustration;
 mod page;
 mod picture;

@@ -121,3 +121,17 @@ fn new_does_not_overwrite() {
     assert!(ran.stderr.contains("scene.toml is there already"), "{}", ran.stderr);
     assert_eq!(fs::read_to_string(workplace.path("scene.toml")).unwrap(), "mine");
 }
+
+#[test]
+fn a_rule_that_never_holds_is_told_of_by_check_and_before_a_run() {
+    let workplace = Workplace::new();
+    let scene = new_scene() + "\n[[contact]]\nbetween = [\"disk\", \"bar\"]\nfriction = 0.9\n";
+    workplace.write("scene.toml", &scene);
+    let line = scene.lines().count() - 2;
+    let warning = format!("warning: scene.toml:{line}:1: contact[1]: never holds: contact[0]");
+    let report = workplace.succeed(&["check", "scene.toml"]);
+    assert!(report.contains(&warning), "{report}");
+    let ran = workplace.run(&["run", "scene.toml", "--set", "time.end=1 ms", "--set", "cells_per_radius=4"]);
+    assert_eq!(ran.code, Some(0), "{}", ran.stderr);
+    assert!(ran.stderr.contains(&warning), "{}", ran.stderr);
+}

@@ -137,6 +137,11 @@ pub struct Patch {
     /// Half of its shorter side: of a circle the radius, of an ellipse the shorter half-axis, of a strip 1.1 of its half-width, of a
     /// ring the radius of a circle with its area; in the plane half of its length [m].
     pub half_width: f64,
+    /// Impulses between the two since the start, the sum of their magnitudes over nodes and steps [N s].
+    pub impulse: f64,
+    /// Largest mean of the force between the two from one look at the contacts to the next, see
+    /// [`Simulation::take_contacts`]; a mean over less than the longest such time counts as one over that time [N].
+    pub force: f64,
 }
 
 /// Particles of all bodies as columns of equal length.

@@ -74,11 +74,27 @@ pub struct Particles<T, const D: usize> {
 const LINE: usize = 64;
 
 impl<T: Real, const D: usize> Particles<T, D> {
+    /// Entries from a column to the next, of so many particles.
+    const fn stride_of(count: usize) -> usize {
+        let lines = (count * size_of::<T>()).div_ceil(LINE) | 1;
+        lines * LINE / size_of::<T>()
+    }
+
+    /// Columns that bodies have, with room for one more.
+    const fn columns_of(flow: bool) -> usize {
+        Column::<D>::COUNT + flow as usize + 1
+    }
+
+    /// Memory that so many particles take, of a body that may `flow` plastically or not: all columns and numbers, and
+    /// the room in which they are sorted [bytes].
+    pub const fn bytes_of(count: usize, flow: bool) -> usize {
+        Self::stride_of(count) * Self::columns_of(flow) * size_of::<T>() + 2 * count * size_of::<u32>()
+    }
+
     /// The particles `f(0)` to `f(count - 1)`, before anything moves, of a body that may `flow` plastically or not.
     pub fn from_fn(count: usize, flow: bool, f: impl Fn(usize) -> Particle<T, D>) -> Self {
-        let lines = (count * size_of::<T>()).div_ceil(LINE) | 1;
-        let stride = lines * LINE / size_of::<T>();
-        let columns = vec![T::ZERO; stride * (Column::<D>::COUNT + usize::from(flow) + 1)];
+        let stride = Self::stride_of(count);
+        let columns = vec![T::ZERO; stride * Self::columns_of(flow)];
         ask_for_large(columns.as_ptr(), columns.len());
         let numbers = vec![0; 2 * count];
         let mut particles = Particles { len: count, columns, stride, numbers, later: false, flow };
@@ -325,6 +341,30 @@ mod tests {
                 assert_eq!(found, particle(i as usize));
             }
         }
+    }
+
+    /// In space 27 numbers and room for one more; each particle's number twice.
+    #[test]
+    fn the_bytes_of_particles_are_those_that_they_hold() {
+        let held = |count: usize, flow: bool| {
+            let particles = Particles::<f64, 3>::from_fn(count, flow, |_| Particle {
+                position: Vector::ZERO,
+                velocity: Vector::ZERO,
+                mass: 0.0,
+                volume: 0.0,
+                half_width: 0.0,
+                deformation: Matrix::IDENTITY,
+                stress: Symmetric::ZERO,
+                plastic_strain: 0.0,
+                number: 0,
+            });
+            size_of_val(&particles.columns[..]) + size_of_val(&particles.numbers[..])
+        };
+        for (count, flow) in [(0, false), (1, true), (1000, false), (100_000, true)] {
+            assert_eq!(Particles::<f64, 3>::bytes_of(count, flow), held(count, flow), "{count} {flow}");
+        }
+        let each = Particles::<f64, 3>::bytes_of(1_000_000, false) as f64 / 1e6;
+        assert!((each / (28.0 * 8.0 + 2.0 * 4.0) - 1.0).abs() < 1e-3, "{each}");
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! `stickslip check SCENE`: what a run would be, without running it.
 
-use super::{assignment, load, say};
+use super::{assignment, load, report, say};
 use crate::failure::Failure;
 use clap::Args;
 use std::path::PathBuf;
@@ -19,8 +19,6 @@ pub struct Arguments {
 impl Arguments {
     pub fn execute(self) -> Result<(), Failure> {
         let loaded = load(&self.scene, &self.parameters).map_err(Failure::input)?;
-        let report = stickslip::check::report(&loaded.scene)
-            .map_err(|problem| Failure::input(loaded.source.locate(problem)))?;
-        say(&report.to_string())
+        say(&report(&loaded)?.to_string())
     }
 }

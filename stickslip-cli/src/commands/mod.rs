@@ -14,12 +14,14 @@ mod sweep;
 mod validate;
 
 use crate::failure::Failure;
+use crate::free_memory::free_memory;
 use clap::Parser;
 use miette::miette;
 use std::io::Write;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use stickslip::check::Report;
 use stickslip::observe::Results;
 use stickslip::scene::{Loaded, SceneError};
 
@@ -72,6 +74,13 @@ fn assignment(text: &str) -> Result<(String, String), String> {
 /// The scene of a file with the user's parameters.
 fn load(path: &Path, parameters: &[(String, String)]) -> Result<Loaded, SceneError> {
     stickslip::scene::load(path, parameters)
+}
+
+/// What a run of a scene would be on this machine, with what is doubtful shown where it stands in the file.
+fn report(loaded: &Loaded) -> Result<Report, Failure> {
+    let report = stickslip::check::report(&loaded.scene);
+    let report = report.map_err(|problem| Failure::input(loaded.source.locate(problem)))?;
+    Ok(report.in_memory(free_memory()).placed(&loaded.source))
 }
 
 /// The results in a folder.

@@ -1,6 +1,6 @@
 //! `stickslip run SCENE`: from a scene file to numbers, a chart and a picture.
 
-use super::{assignment, load, say, stop_on_interrupt};
+use super::{assignment, load, report, say, stop_on_interrupt};
 use crate::failure::Failure;
 use crate::illustration::illustrate;
 use crate::progress::Display;
@@ -49,6 +49,9 @@ impl Arguments {
         let loaded = load(&self.scene, &self.parameters).map_err(Failure::input)?;
         let scene = &loaded.scene;
         let threads = use_threads(self.threads)?;
+        for warning in report(&loaded)?.warnings {
+            eprintln!("warning: {warning}");
+        }
         let mut simulation = stickslip::engine::build(scene)
             .map_err(|problem| Failure::input(loaded.source.locate(problem)))?;
         let out = self.out.clone().unwrap_or_else(|| default_folder(&self.scene, "results"));

@@ -1,5 +1,6 @@
 //! Which job is done when, and by how many threads.
 
+use crate::free_memory::free_memory;
 use std::sync::{Condvar, Mutex, MutexGuard};
 
 /// What a job needs.
@@ -105,15 +106,6 @@ impl State {
         self.running += 1;
         Some((need, share))
     }
-}
-
-/// Memory that the machine has free [bytes]; infinite where it does not say.
-fn free_memory() -> f64 {
-    let memory = sysinfo::MemoryRefreshKind::nothing().with_ram();
-    let system = sysinfo::System::new_with_specifics(sysinfo::RefreshKind::nothing().with_memory(memory));
-    let free = system.available_memory();
-    let free = system.cgroup_limits().map_or(free, |limits| free.min(limits.free_memory));
-    if free > 0 { free as f64 } else { f64::INFINITY }
 }
 
 #[cfg(test)]

@@ -26,12 +26,15 @@ pub(super) struct Extent {
     pub bounds: Bounds,
     /// Holds all particles' centres [m].
     pub centers: Bounds,
+    /// Centre of mass, of a body without bounds the point about which it turns [m].
+    pub center: [f64; 3],
 }
 
 impl Extent {
     /// Of a rigid body without bounds.
-    const UNBOUNDED: Extent =
-        Extent { particles: 0, mass: 0.0, bounds: Bounds::EVERYTHING, centers: Bounds::EVERYTHING };
+    fn unbounded(center: [f64; 3]) -> Extent {
+        Extent { particles: 0, mass: 0.0, bounds: Bounds::EVERYTHING, centers: Bounds::EVERYTHING, center }
+    }
 }
 
 /// Each body's extent, in the order of the scene.
@@ -45,7 +48,9 @@ fn measure_body(scene: &Scene, i: usize) -> Result<Extent, Problem> {
     let body = &scene.bodies[i];
     let lattice = lattice(scene, body);
     // Only rigid bodies may be without bounds; those have particles where others come near.
-    let Some(bounds) = body.shape.bounds(lattice.dimension) else { return Ok(Extent::UNBOUNDED) };
+    let Some(bounds) = body.shape.bounds(lattice.dimension) else {
+        return Ok(Extent::unbounded(body.shape.anchor(lattice.dimension)));
+    };
     let sites = lattice.sites(&bounds);
     if sites > MOST_SITES {
         return Err(Problem {
@@ -71,13 +76,17 @@ fn measure_body(scene: &Scene, i: usize) -> Result<Extent, Problem> {
             help: Some("put the corner space.domain.min near the bodies: the grid starts there".into()),
         });
     }
-    let mut extent = Extent { particles: 0, mass: 0.0, bounds: Bounds::EMPTY, centers: Bounds::EMPTY };
+    let mut extent =
+        Extent { particles: 0, mass: 0.0, bounds: Bounds::EMPTY, centers: Bounds::EMPTY, center: [0.0; 3] };
+    let (mut moment, mut whole) = ([0.0; 3], 0.0);
     let density = scene.materials[body.material].density;
     let all =
         geometry::sites(&body.shape, &lattice, body.particles).expect("other shapes are refused before");
     for Site { position, volume, half_width } in all {
         extent.particles += 1;
         extent.mass += volume * density;
+        whole += volume;
+        moment = std::array::from_fn(|k| moment[k] + volume * position[k]);
         extent.centers = extent.centers.united(&Bounds { min: position, max: position });
         let reach = |sign: f64| {
             std::array::from_fn(|k| position[k] + if k < lattice.dimension { sign * half_width } else { 0.0 })
@@ -87,6 +96,7 @@ fn measure_body(scene: &Scene, i: usize) -> Result<Extent, Problem> {
     if extent.particles == 0 {
         return Err(no_particles(scene, i, &bounds));
     }
+    extent.center = moment.map(|x| x / whole);
     Ok(extent)
 }
 

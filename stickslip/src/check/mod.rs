@@ -3,22 +3,33 @@
 //! [`problems`] finds mistakes that no run should start with; [`report`] says what the run will be: bodies, particles,
 //! memory, steps, time, and whether its contacts are resolved by the grid.
 
+mod accuracy;
 mod bodies;
 mod contact;
 mod flat;
 mod hertz;
+mod locking;
 mod measurements;
+mod memory;
 mod neighbours;
 mod overlap;
+mod penetration;
 mod report;
+mod rigid_pairs;
+mod rules;
 mod settings;
 mod shapes;
 mod table;
+mod thickness;
 mod touch;
+mod warning;
 
-pub use contact::{ContactEstimate, Errors, Verdict};
+pub use accuracy::Errors;
+pub use contact::{ContactEstimate, Verdict};
 pub use hertz::{Hertz, Patch};
 pub use report::{BodyReport, Machine, MaterialReport, Report, report};
+pub use rules::RuleReport;
+pub use warning::Warning;
 
 use crate::geometry::Lattice;
 use crate::scene::{Body, Problem, Scene};

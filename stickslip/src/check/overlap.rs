@@ -3,8 +3,11 @@
 use super::bodies::Extent;
 use super::lattice;
 use super::neighbours::pairs_within;
-use crate::geometry::Lattice;
-use crate::scene::{Problem, Scene};
+use super::penetration::deepest;
+use super::rules::is_rigid;
+use super::warning::Warning;
+use crate::geometry::{Bounds, Lattice};
+use crate::scene::{Body, ContactLaw, Problem, Scene};
 use rayon::prelude::*;
 
 /// A particle this share of the spacing inside a body is inside beyond round-off; touching bodies stay allowed.
@@ -21,6 +24,53 @@ pub(super) fn check(scene: &Scene, extents: &[Extent]) -> Result<(), Problem> {
         Some(problem) => Err(problem),
         None => Ok(()),
     }
+}
+
+/// Bodies that overlap by less than this touch [cells].
+const TOUCH: f64 = 1e-6;
+
+/// So do those whose coordinates are given in seven digits, as those of many meshes are: a share of the coordinates.
+const SEVEN_DIGITS: f64 = 2e-7;
+
+/// Bodies that overlap by less than their particles see, from the distances to their exact surfaces; those of a pair
+/// that is glued or left alone may.
+pub(super) fn warning(scene: &Scene) -> Option<Warning> {
+    let (cell, axes) = (scene.discretization.cell, scene.dimension.axes());
+    let inside = scene.domain.as_ref().map_or(Bounds::EVERYTHING, |domain| {
+        let upper = |k: usize| if k < axes { [domain.min[k], domain.max[k]] } else { [0.0; 2] };
+        Bounds { min: std::array::from_fn(|k| upper(k)[0]), max: std::array::from_fn(|k| upper(k)[1]) }
+    });
+    let bounds = |body: &Body| body.shape.bounds(axes).unwrap_or(Bounds::EVERYTHING).intersected(&inside);
+    let boxes: Vec<_> = scene.bodies.iter().map(bounds).collect();
+    let overlap = |&[a, b]: &[usize; 2]| {
+        let law = scene.contact_between(a, b).law;
+        if matches!(law, ContactLaw::None | ContactLaw::Glued) || is_rigid(scene, a) && is_rigid(scene, b) {
+            return None;
+        }
+        let room = boxes[a].intersected(&boxes[b]);
+        let [of_a, of_b] = [a, b].map(|body| move |x| scene.bodies[body].shape.level(x, axes));
+        let shared = deepest([&of_a, &of_b], &room, cell, axes)?;
+        let far = room.min.iter().chain(&room.max).fold(0.0_f64, |far, x| far.max(x.abs()));
+        (shared.depth > TOUCH * cell + SEVEN_DIGITS * far).then_some(([a, b], shared))
+    };
+    let found: Vec<_> = pairs_within(&boxes, 0.0).par_iter().filter_map(overlap).collect();
+    let ([a, b], deep) = *found.iter().max_by(|x, y| x.1.depth.total_cmp(&y.1.depth))?;
+    let [first, second] = [a, b].map(|body| format!("`{}`", scene.bodies[body].name));
+    let place: Vec<_> = deep.place[..axes].iter().map(|x| format!("{x:.4}")).collect();
+    let others = match found.len() - 1 {
+        0 => String::new(),
+        more => format!(", and {more} more pair{} by less", if more == 1 { "" } else { "s" }),
+    };
+    Some(Warning::about(
+        format!("bodies[{b}].shape"),
+        format!(
+            "{second} overlaps {first} by {:.3e} m ({:.2e} cells) near ({}) m{others}: they start pressed together, \
+             with energy that nothing put in; move one of them, or cut one shape out of the other with a difference",
+            deep.depth,
+            deep.depth / cell,
+            place.join(", ")
+        ),
+    ))
 }
 
 /// The problem with a pair of bodies, if they share sites.
@@ -117,6 +167,43 @@ mod tests {
             let problem = overlap([0.28, 0.26], per_side).expect_err("0.02 m");
             assert!(problem.found.contains("in 6 particles near (0.2750, 0.0250) m"), "{problem}");
         }
+    }
+
+    fn warned(dimension: Dimension, bodies: Vec<Body>) -> Option<String> {
+        let scene = scene(dimension, 0.1, bodies);
+        assert_eq!(check(&scene, &measure(&scene).expect("filled")), Ok(()));
+        warning(&scene).map(|warning| warning.to_string())
+    }
+
+    /// Too little for particles to see, down to a hundred-thousandth of a cell.
+    #[test]
+    fn an_overlap_that_no_particle_sees_is_told_of_with_its_depth() {
+        for (depth, cells) in [(4e-3, "4.00e-2"), (1e-4, "1.00e-3"), (1e-6, "1.00e-5")] {
+            let pair = disks(1, 1.0).into_iter().chain([free(
+                "other",
+                0,
+                Shape::Ball { center: [0.6 * (1.0 - depth), 0.8 * (1.0 - depth), 0.0], radius: 0.5 },
+            )]);
+            let text = warned(Dimension::PlaneStrain, pair.collect()).expect("overlap");
+            let start = format!(
+                "bodies[1].shape: `other` overlaps `disk 0` by {depth:.3e} m ({cells} cells) near (0."
+            );
+            assert!(text.starts_with(&start), "{text}");
+        }
+        let mut three = disks(2, 1.0 - 1e-3);
+        three.truncate(3);
+        let text = warned(Dimension::PlaneStrain, three).expect("overlap");
+        assert!(text.contains(", and 1 more pair by less"), "{text}");
+    }
+
+    #[test]
+    fn what_touches_is_not_told_of() {
+        assert_eq!(warned(Dimension::PlaneStrain, disks(8, 1.0)), None);
+        let cube = |x: f64| free("cube", 0, Shape::Box { min: [x, 0.0, 0.0], max: [x + 0.3, 0.3, 0.3] });
+        assert_eq!(warned(Dimension::Space, vec![cube(0.0), cube(0.3), cube(0.6)]), None);
+        // What seven digits hold of coordinates of 1000 m.
+        let at = |x: f64| free("far", 0, Shape::Box { min: [x, 0.0, 0.0], max: [x + 0.3, 0.3, 0.3] });
+        assert_eq!(warned(Dimension::Space, vec![at(1000.0), at(1000.3 - 5e-5)]), None);
     }
 
     #[test]

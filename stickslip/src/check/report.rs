@@ -2,19 +2,14 @@
 
 use super::bodies::{Extent, smallest_extent};
 use super::contact::{ContactEstimate, Estimates, Verdict, estimates, starting_velocity};
+use super::rules::{RuleReport, is_rigid};
 use super::table::short;
-use super::{examine, lattice, per_side};
+use super::warning::{Warning, and_more};
+use super::{examine, lattice, locking, memory, overlap, per_side, rigid_pairs, rules, thickness};
 use crate::geometry::Bounds;
-use crate::scene::{Body, Dimension, Motion, Precision, Problem, Scene};
+use crate::scene::{Body, Dimension, Motion, Problem, Scene, Source};
 use crate::tensor::{Matrix, Vector};
 use serde::Serialize;
-
-/// What a particle in `f64` and space takes: 196 for itself, the rest for its place in the order [bytes].
-const PARTICLE_BYTES: f64 = 220.0;
-/// What a grid node in `f64` and space takes: mass, three velocities, force [bytes].
-const NODE_BYTES: f64 = 104.0;
-/// Nodes per cell that particles fill: blocks are covered whole, with those that a body's rim reaches.
-const NODES_PER_CELL: f64 = 4.0;
 
 /// How fast the machine is that will run the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -48,7 +43,7 @@ pub struct Report {
     pub bodies: Vec<BodyReport>,
     /// The materials, in the order of the scene.
     pub materials: Vec<MaterialReport>,
-    /// Particles in all bodies.
+    /// Particles in all bodies, with those that bodies without bounds will have.
     pub particles: usize,
     /// Memory of particles and grid, estimated [bytes].
     pub memory: f64,
@@ -62,12 +57,14 @@ pub struct Report {
     pub machine: Machine,
     /// Expected wall time [s].
     pub wall_time: f64,
+    /// Which contact rules hold, and between which bodies.
+    pub rules: Vec<RuleReport>,
     /// Whether contacts are resolved, the narrowest first.
     pub contacts: Vec<ContactEstimate>,
     /// Names of pairs that are near each other, or in a contact rule, and whose shapes tell no estimate.
     pub contacts_unknown: Vec<[String; 2]>,
     /// What is doubtful but allowed.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Warning>,
 }
 
 /// A body as it will start.
@@ -79,7 +76,7 @@ pub struct BodyReport {
     pub material: String,
     /// It moves as prescribed.
     pub rigid: bool,
-    /// Number of particles.
+    /// Number of particles; of a rigid body without bounds an estimate, of those around bodies that deform.
     pub particles: usize,
     /// Mass of the particles [kg], in the plane per metre of depth.
     pub mass: f64,
@@ -104,7 +101,10 @@ pub struct MaterialReport {
 /// As [`super::problems`].
 pub fn report(scene: &Scene) -> Result<Report, Problem> {
     let extents = examine(scene)?;
-    let particles = extents.iter().map(|extent| extent.particles).sum();
+    let near_others = |body| memory::particles_near_others(scene, &extents, body);
+    let counts: Vec<_> =
+        (extents.iter().enumerate()).map(|(body, extent)| extent.particles + near_others(body)).collect();
+    let boxes: Vec<_> = extents.iter().map(|extent| extent.bounds).collect();
     let time_step = time_step(scene, &extents);
     let Estimates { found: contacts, unknown: contacts_unknown } = estimates(scene, &extents);
     let report = Report {
@@ -115,19 +115,20 @@ pub fn report(scene: &Scene) -> Result<Report, Problem> {
         bodies: scene
             .bodies
             .iter()
-            .zip(&extents)
-            .map(|(body, extent)| of_body(scene, body, extent))
+            .zip(extents.iter().zip(&counts))
+            .map(|(body, (extent, &particles))| BodyReport { particles, ..of_body(scene, body, extent) })
             .collect(),
         materials: of_materials(scene),
-        particles,
-        memory: memory(scene, &extents),
+        particles: counts.iter().sum(),
+        memory: memory::estimate(scene, &counts),
         end: scene.time.end,
         time_step,
         // A last step that is only round-off is none.
         steps: (scene.time.end / time_step * (1.0 - 1e-12)).ceil() as u64,
         machine: Machine::default(),
         wall_time: 0.0,
-        warnings: thin_bodies(scene).into_iter().chain(narrow_contacts(&contacts)).collect(),
+        rules: rules::holding(scene, &boxes),
+        warnings: warnings(scene, &extents, &contacts),
         contacts,
         contacts_unknown,
     };
@@ -140,6 +141,31 @@ impl Report {
         let rate = machine.particle_steps_per_second * machine.cores as f64;
         Report { machine, wall_time: self.particles as f64 * self.steps as f64 / rate, ..self }
     }
+
+    /// The same where so much memory is available [bytes]: with a warning if the run does not fit.
+    pub fn in_memory(mut self, available: f64) -> Self {
+        let axes = self.dimension.axes();
+        self.warnings.extend(memory::warning(self.memory, available, self.cell, axes));
+        self
+    }
+
+    /// The same with the places of warnings in the file that the scene came from.
+    pub fn placed(mut self, source: &Source) -> Self {
+        self.warnings = self.warnings.into_iter().map(|warning| warning.placed(source)).collect();
+        self
+    }
+}
+
+/// What is doubtful with a scene: first what it says, then what the grid makes of it.
+fn warnings(scene: &Scene, extents: &[Extent], contacts: &[ContactEstimate]) -> Vec<Warning> {
+    (rules::idle(scene))
+        .chain(overlap::warning(scene))
+        .chain(rigid_pairs::warning(scene, extents))
+        .chain(locking::warning(scene))
+        .chain(thin_rigid_bodies(scene))
+        .chain(thickness::warning(scene))
+        .chain(narrow_contacts(contacts))
+        .collect()
 }
 
 /// Particles along each side of a cell, in the bodies with the fewest and with the most.
@@ -201,53 +227,39 @@ fn time_step(scene: &Scene, extents: &[Extent]) -> f64 {
     if step.is_finite() { step } else { scene.time.end }
 }
 
-fn memory(scene: &Scene, extents: &[Extent]) -> f64 {
-    let of_body = |(body, extent): (&Body, &Extent)| {
-        let per_cell = per_side(scene, body).powi(scene.dimension.axes() as i32);
-        extent.particles as f64 * (PARTICLE_BYTES + NODE_BYTES * NODES_PER_CELL / per_cell)
-    };
-    let doubles: f64 = scene.bodies.iter().zip(extents).map(of_body).sum();
-    match scene.precision {
-        Precision::Single => 0.5 * doubles,
-        Precision::Double => doubles,
-    }
-}
-
-/// Fewer than two particles through a body cannot bend or bulge.
-fn thin_bodies(scene: &Scene) -> Option<String> {
+/// Particles of a rigid body two deep fill what contact asks of it; bodies that deform need more, see [`thickness`].
+fn thin_rigid_bodies(scene: &Scene) -> Option<Warning> {
     let needed = |body: &Body| 2.0 * lattice(scene, body).spacing * (1.0 - 1e-9);
-    let thickness = |body: &Body| smallest_extent(&body.shape, scene.dimension.axes());
-    let mut thin = scene.bodies.iter().filter(|body| thickness(body) < needed(body));
+    let thickness = |body: usize| smallest_extent(&scene.bodies[body].shape, scene.dimension.axes());
+    let is_thin = |&body: &usize| is_rigid(scene, body) && thickness(body) < needed(&scene.bodies[body]);
+    let mut thin = (0..scene.bodies.len()).filter(is_thin);
     let first = thin.next()?;
-    let others = match thin.count() {
-        0 => String::new(),
-        more => format!(" and {more} more"),
-    };
-    let cell = 0.5 * thickness(first) * per_side(scene, first);
-    Some(format!(
-        "thinner than two particles: `{}` ({} m){others}; cells of at most {} m give it two",
-        first.name,
-        short(thickness(first)),
-        short(cell)
+    let body = &scene.bodies[first];
+    let named = and_more(&format!("`{}` ({} m)", body.name, short(thickness(first))), thin.count());
+    let cell = short(0.5 * thickness(first) * per_side(scene, body));
+    Some(Warning::about(
+        format!("bodies[{first}].shape"),
+        format!("thinner than two particles: {named}; cells of at most {cell} m give it two"),
     ))
 }
 
-fn narrow_contacts(contacts: &[ContactEstimate]) -> Option<String> {
+fn narrow_contacts(contacts: &[ContactEstimate]) -> Option<Warning> {
     let narrow = contacts.iter().filter(|contact| contact.verdict == Verdict::NotResolved).count();
     let narrowest = contacts.first().filter(|_| narrow > 0)?;
-    Some(format!(
+    let text = format!(
         "not resolved: {narrow} of {} contacts; in the narrowest {}; it needs cells of {} m to be marginal, {} m to be resolved",
         contacts.len(),
         narrowest.off,
         short(narrowest.patch.radius),
         short(0.25 * narrowest.patch.radius)
-    ))
+    );
+    Some(Warning::about("", text))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::check::tests::{free, incline, scene};
+    use crate::check::tests::{at_rest, free, incline, scene};
     use crate::geometry::Shape;
 
     #[test]
@@ -261,7 +273,11 @@ mod tests {
         let half_sphere = 2.0 / 3.0 * std::f64::consts::PI * 1.6f64.powi(3) * 1000.0;
         assert!((report.bodies[0].mass / half_sphere - 1.0).abs() < 0.02);
         assert_eq!(report.warnings.len(), 1);
-        assert!(report.warnings[0].starts_with("not resolved: 1 of 1 contacts;"), "{:?}", report.warnings);
+        assert!(
+            report.warnings[0].text.starts_with("not resolved: 1 of 1 contacts;"),
+            "{:?}",
+            report.warnings
+        );
     }
 
     #[test]
@@ -286,6 +302,24 @@ mod tests {
     }
 
     #[test]
+    fn a_run_larger_than_the_machine_is_a_warning() {
+        let report = || report(&incline(4.0)).expect("no problem");
+        let needed = report().memory;
+        assert_eq!(report().in_memory(1.01 * needed), report());
+        let warnings = report().in_memory(0.5 * needed).warnings;
+        let last = warnings.last().expect("too large").to_string();
+        assert!(last.contains("and this machine has ") && last.contains("would fit"), "{last}");
+    }
+
+    /// At least what the particles hold: 28 columns of 8 bytes, and numbers.
+    #[test]
+    fn the_memory_is_at_least_that_of_the_particles() {
+        let report = report(&incline(4.0)).expect("no problem");
+        assert!(report.memory > report.particles as f64 * (28.0 * 8.0 + 4.0 * 4.0), "{}", report.memory);
+        assert!(report.memory < report.particles as f64 * 400.0, "{}", report.memory);
+    }
+
+    #[test]
     fn motion_at_the_start_shortens_the_step_and_a_limit_caps_it() {
         let mut scene = incline(4.0);
         scene.bodies[0].motion = Motion::Free { velocity: [60.0, 0.0, 80.0], spin: [0.0; 3] };
@@ -296,17 +330,17 @@ mod tests {
     }
 
     #[test]
-    fn a_thin_sheet_is_a_warning_even_when_turned() {
+    fn a_thin_rigid_sheet_is_a_warning_even_when_turned() {
         let sheet = |thickness| {
             let shape = Box::new(Shape::Box { min: [0.0; 3], max: [1.0, 1.0, thickness] });
-            free("sheet", 0, Shape::Rotated { shape, center: [0.0; 3], axis: [1.0, 0.0, 0.0], angle: 0.5 })
+            at_rest("sheet", Shape::Rotated { shape, center: [0.0; 3], axis: [1.0, 0.0, 0.0], angle: 0.5 })
         };
         let of = |thickness| {
             let scene = scene(Dimension::Space, 0.1, vec![sheet(thickness)]);
             report(&scene).expect("no problem").warnings
         };
         assert!(of(0.1).is_empty());
-        assert!(of(0.08)[0].contains("`sheet` (0.08 m);"));
+        assert!(of(0.08)[0].text.contains("`sheet` (0.08 m);"));
     }
 
     #[test]

@@ -2,11 +2,15 @@
 
 use super::contact::{ContactEstimate, Verdict};
 use super::report::{BodyReport, Report};
+use super::rules::RuleReport;
+use crate::scene::ContactLaw;
 use std::fmt::{Display, Formatter, Result};
 
 /// Rows that each list of the report takes on the screen.
 const BODIES: usize = 10;
 const CONTACTS: usize = 5;
+/// Pairs of bodies, or rules, that are shown with their law.
+const PAIRS: usize = 10;
 /// Pairs without an estimate that are named.
 const UNKNOWN: usize = 3;
 
@@ -41,6 +45,7 @@ impl Display for Report {
             "wall time    {} (at {rate} million particle-steps/s a core, {cores} core{plural})",
             duration(self.wall_time)
         )?;
+        self.write_rules(f)?;
         self.write_contacts(f)?;
         self.write_unknown(f)?;
         for warning in &self.warnings {
@@ -65,7 +70,7 @@ impl Report {
             let size: Vec<_> = size[..self.dimension.axes()].iter().map(|&s| short(s)).collect();
             let (particles, mass, size) = match body.size.iter().all(|side| side.is_finite()) {
                 true => (particles.to_string(), short(*mass), size.join(" x ")),
-                false => ("near others".to_string(), "-".to_string(), "unbounded".to_string()),
+                false => (format!("~{particles}"), "-".to_string(), "unbounded, near others".to_string()),
             };
             let rigid = if body.rigid { ", rigid" } else { "" };
             writeln!(f, "{name:width$}  {of:material$}  {particles:>11}  {mass:>11}  {size}{rigid}")?;
@@ -73,6 +78,36 @@ impl Report {
         match self.bodies.len().saturating_sub(BODIES) {
             0 => writeln!(f),
             more => writeln!(f, "... and {more} more\n"),
+        }
+    }
+
+    /// A line for each pair, or for each rule where there are too many.
+    fn write_rules(&self, f: &mut Formatter<'_>) -> Result {
+        if self.rules.is_empty() {
+            return Ok(());
+        }
+        let count: usize = self.rules.iter().map(|rule| rule.pairs.len()).sum();
+        let named = |pair: &[String; 2]| pair.join(" and ");
+        let mut rows: Vec<(String, &RuleReport)> = Vec::new();
+        for rule in &self.rules {
+            if count <= PAIRS {
+                rows.extend(rule.pairs.iter().map(|pair| (named(pair), rule)));
+            } else {
+                let first = named(&rule.pairs[0]);
+                let others = rule.pairs.len() - 1;
+                rows.push((if others == 0 { first } else { format!("{first}, {others} more pairs") }, rule));
+            }
+        }
+        let shown = || rows.iter().take(PAIRS);
+        let width = column(shown().map(|(pairs, _)| pairs), "pair");
+        writeln!(f, "\n{:width$}  {:<10}  friction", "pair", "law")?;
+        for (pairs, rule) in shown() {
+            let law = ContactLaw::words().find(|word| word.1 == rule.law).map_or("", |word| word.0);
+            writeln!(f, "{pairs:width$}  {law:<10}  {}", rule.friction())?;
+        }
+        match rows.len().saturating_sub(PAIRS) {
+            0 => Ok(()),
+            more => writeln!(f, "... and {more} more rules"),
         }
     }
 
@@ -147,7 +182,7 @@ pub(super) fn short(value: f64) -> String {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').into() } else { text }
 }
 
-fn bytes(value: f64) -> String {
+pub(super) fn bytes(value: f64) -> String {
     match value {
         v if v >= 1e9 => format!("{:.1} GB", v / 1e9),
         v if v >= 1e6 => format!("{:.0} MB", v / 1e6),
@@ -171,7 +206,7 @@ mod tests {
     use crate::check::tests::{at_rest, free, incline, scene};
     use crate::check::{Machine, report};
     use crate::geometry::Shape;
-    use crate::scene::Dimension;
+    use crate::scene::{ContactRule, Dimension};
 
     #[test]
     fn the_incline_reads_like_this() {
@@ -210,6 +245,35 @@ mod tests {
         assert!(text(1).contains("\nno estimate for 1 contact, pillar 0 on floor: "), "{}", text(1));
         let four = "\nno estimate for 4 contacts, pillar 0 on floor, pillar 1 on floor, pillar 2 on floor and 1 more: ";
         assert!(text(4).contains(four), "{}", text(4));
+    }
+
+    /// Each pair by itself where there are few, by rules where there are many.
+    #[test]
+    fn every_pair_has_its_law_and_friction() {
+        let said = |disks: usize| {
+            let disk = |i: usize| {
+                free(&format!("disk {i}"), 0, Shape::Ball { center: [i as f64, 0.0, 0.0], radius: 0.5 })
+            };
+            let mut scene = scene(Dimension::PlaneStrain, 0.05, (0..disks).map(disk).collect());
+            let between = [Some("disk 0".to_string()), Some("disk 1".to_string())];
+            scene.contact = vec![ContactRule {
+                between,
+                friction: 0.3,
+                kinetic_friction: 0.3,
+                friction_given: true,
+                ..Default::default()
+            }];
+            report(&scene).expect("no problem").to_string()
+        };
+        let few = said(3);
+        for row in [
+            "\ndisk 0 and disk 1  surface     0.3, by contact[0]\n",
+            "\ndisk 0 and disk 2  surface     0, as no rule names the pair: the default rule holds\n",
+        ] {
+            assert!(few.contains(row), "{row}{few}");
+        }
+        let many = said(20);
+        assert!(many.contains("\ndisk 1 and disk 2, 17 more pairs  surface     0, as no rule"), "{many}");
     }
 
     #[test]

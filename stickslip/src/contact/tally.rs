@@ -57,6 +57,8 @@ pub struct Tally {
     /// Those that are part of a use.
     present: Vec<usize>,
     since: f64,
+    /// Longest time between two looks [s].
+    longest: f64,
     /// What was taken last.
     taken: Vec<ContactState>,
     uses: u64,
@@ -79,6 +81,10 @@ struct Touched {
     sum: Sum,
     /// Largest area over which they touched since the start, images in mirrors included, if they pushed.
     largest: Option<Patch>,
+    /// Magnitudes of impulses before the last look [N s].
+    impulse: f64,
+    /// Largest mean force between two looks before the last one [N].
+    force: f64,
 }
 
 /// Mixes the numbers of two bodies: nobody chooses them to collide.
@@ -179,7 +185,8 @@ impl Tally {
             self.work += impulse.work.f64();
         }
         for &place in &self.present {
-            let Touched { bodies: [body_a, body_b], sum: Sum { last, .. }, largest } = &mut self.pairs[place];
+            let Touched { bodies: [body_a, body_b], sum: Sum { last, .. }, largest, .. } =
+                &mut self.pairs[place];
             let images = f64::from(1_u32 << last.mirrors.count_ones());
             let wider = largest.is_none_or(|patch| last.spread.area * images > patch.area);
             if last.nodes > 0 && wider {
@@ -190,7 +197,8 @@ impl Tally {
                 });
                 let area = whole.area;
                 let half_width = if D == 2 { 0.5 * area } else { whole.half_width(lattice.cell.f64()) };
-                *largest = Some(Patch { body_a: *body_a, body_b: *body_b, area, half_width });
+                let (body_a, body_b) = (*body_a, *body_b);
+                *largest = Some(Patch { body_a, body_b, area, half_width, impulse: 0.0, force: 0.0 });
             }
         }
     }
@@ -206,7 +214,7 @@ impl Tally {
     fn place(&mut self, bodies: [usize; 2]) -> usize {
         let Tally { pairs, places, .. } = self;
         *places.entry(bodies).or_insert_with(|| {
-            pairs.push(Touched { bodies, sum: Sum::default(), largest: None });
+            pairs.push(Touched { bodies, sum: Sum::default(), largest: None, impulse: 0.0, force: 0.0 });
             pairs.len() - 1
         })
     }
@@ -226,8 +234,13 @@ impl Tally {
         } else {
             self.taken.clear();
         }
+        // The run's last look may come a step after the one before: no mean of that is a force.
+        self.longest = self.longest.max(now - self.since);
         self.since = now;
-        self.pairs.iter_mut().for_each(|pair| pair.sum = Sum::default());
+        for pair in &mut self.pairs {
+            [pair.impulse, pair.force] = pair.borne(self.longest);
+            pair.sum = Sum::default();
+        }
         self.taken.clone()
     }
 
@@ -256,9 +269,23 @@ impl Tally {
         })
     }
 
-    /// The largest area over which each pair touched since the start, ordered by pair.
-    pub fn patches(&self) -> Vec<Patch> {
-        self.ordered(|pair| pair.largest)
+    /// The largest area over which each pair touched since the start, ordered by pair, and what the pair bore by `now`
+    /// [s].
+    pub fn patches(&self, now: f64) -> Vec<Patch> {
+        let longest = self.longest.max(now - self.since);
+        self.ordered(|pair| {
+            let [impulse, force] = pair.borne(longest);
+            pair.largest.map(|patch| Patch { impulse, force, ..patch })
+        })
+    }
+}
+
+impl Touched {
+    /// Magnitudes of impulses since the start [N s], and the largest mean force between two looks that are at most the
+    /// `longest` time apart [N, s].
+    fn borne(&self, longest: f64) -> [f64; 2] {
+        let mean = if longest > 0.0 { self.sum.magnitude / longest } else { 0.0 };
+        [self.impulse + self.sum.magnitude, self.force.max(mean)]
     }
 }
 
@@ -297,7 +324,27 @@ mod tests {
         tally.add([].iter(), (&lattice, &Boundary::default()), 0.3);
         let found = &tally.take(0.4)[0];
         assert!((found.area - 0.25).abs() < 1e-15 && (found.gap + 0.1).abs() < 1e-15, "{found:?}");
-        assert_eq!(tally.patches()[0].area, 1.0);
+        assert_eq!(tally.patches(0.4)[0].area, 1.0);
+    }
+
+    /// Two looks of 1 s with one and three nodes' impulses of 1 N s each, and one of a hundredth of that with one more.
+    #[test]
+    fn a_pair_has_borne_all_its_impulses_and_its_largest_mean_force() {
+        let (mut tally, lattice) = (Tally::default(), Lattice::new(Vector::ZERO, 0.5));
+        let surroundings = (&lattice, &Boundary::default());
+        let nodes: Vec<_> = (0..3).map(|i| pushing([i, 0])).collect();
+        tally.add(nodes[..1].iter(), surroundings, 1.0);
+        let one = tally.patches(1.0)[0];
+        assert_eq!((one.impulse, one.force), (1.0, 1.0));
+        tally.take(1.0);
+        tally.add(nodes.iter(), surroundings, 1.0);
+        tally.take(2.0);
+        tally.add(nodes[..1].iter(), surroundings, 0.01);
+        for _ in 0..2 {
+            let found = tally.patches(2.01)[0];
+            assert_eq!((found.impulse, found.force), (5.0, 3.0));
+            tally.take(2.01);
+        }
     }
 
     /// On the mirror half a node's surface is the image's, and the patch is twice what is before the mirror.
@@ -307,10 +354,10 @@ mod tests {
         let mirror = Wall { axis: 0, node: 3, inward: 1, face: Face::Symmetry };
         let boundary = Boundary::new(vec![mirror]);
         tally.add([pushing([3, 0]), pushing([4, 0])].iter(), (&lattice, &boundary), 1.0);
-        assert_eq!((tally.take(1.0)[0].area, tally.patches()[0].area), (0.75, 1.5));
+        assert_eq!((tally.take(1.0)[0].area, tally.patches(1.0)[0].area), (0.75, 1.5));
         let (mut aside, far) = (Tally::default(), pushing([4, 0]));
         aside.add([far].iter(), (&lattice, &boundary), 1.0);
-        assert_eq!(aside.patches()[0].area, 0.5);
+        assert_eq!(aside.patches(1.0)[0].area, 0.5);
     }
 
     /// A strip of 41 nodes by 4, or its half with a mirror across its length.
@@ -322,7 +369,7 @@ mod tests {
             let nodes: Vec<_> = (0..4).flat_map(row).collect();
             let mut tally = Tally::default();
             tally.add(nodes.iter(), (&lattice, boundary), 1.0);
-            tally.patches()[0]
+            tally.patches(1.0)[0]
         };
         let mirror = Wall { axis: 0, node: 3, inward: 1, face: Face::Symmetry };
         let [whole, half] = [patch(-17, &Boundary::default()), patch(3, &Boundary::new(vec![mirror]))];

@@ -180,7 +180,7 @@ fn particles<T: Real, const D: usize>(
 }
 
 /// The domain's faces that are mirrors.
-fn mirrors<const D: usize>(scene: &Scene) -> Vec<Mirror> {
+pub(super) fn mirrors<const D: usize>(scene: &Scene) -> Vec<Mirror> {
     let Some(domain) = &scene.domain else { return Vec::new() };
     let faces = (0..D).flat_map(|axis| [0, 1].map(|side| (axis, side)));
     (faces.filter(|&(axis, side)| domain.faces[axis][side] == Face::Symmetry))

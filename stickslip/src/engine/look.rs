@@ -133,7 +133,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
     }
 
     fn patches(&self) -> Vec<Patch> {
-        self.tally.patches()
+        self.tally.patches(self.time)
     }
 
     fn snapshot(&self) -> ParticleSnapshot {

@@ -13,6 +13,8 @@ mod watch;
 
 pub use build::{build, build_on};
 pub use pass::Path;
+pub(crate) use rigid::{Pose, RigidMotion};
+pub(crate) use unbounded::particles_around;
 
 use crate::basis::Basis;
 use crate::body::{Body, Totals};
@@ -26,7 +28,6 @@ use crate::scene::{StressUpdate, Time, Transfer};
 use crate::tensor::Vector;
 use crate::transfer::Share;
 use cpu::Workshop;
-use rigid::RigidMotion;
 use std::marker::PhantomData;
 use std::sync::{Arc, Mutex};
 use unbounded::Unbounded;

@@ -91,6 +91,12 @@ pub struct Pose {
 }
 
 impl Pose {
+    /// A direction in the body as it is now.
+    pub fn turned(&self, direction: [f64; 3]) -> [f64; 3] {
+        let turn = &self.orientation.0;
+        std::array::from_fn(|i| (0..3).map(|j| turn[i][j] * direction[j]).sum())
+    }
+
     /// Where a point of the body is now that was at `place` at the start [m].
     pub fn now(&self, place: [f64; 3]) -> [f64; 3] {
         let turn = &self.orientation.0;

@@ -4,14 +4,16 @@
 //! deformable bodies hold, does what the whole body would. It grows when they reach blocks beyond it; memory follows them, not the domain.
 
 use super::Engine;
-use super::build::spin;
+use super::build::{mirrors, spin};
 use super::rigid::{Pose, RigidMotion};
 use crate::basis::Basis;
 use crate::body::Particle;
+use crate::check;
 use crate::geometry::{Bounds, Lattice, Mirror, Shape};
 use crate::grid::{Blocks, SIDE, addressable, locate};
 use crate::lanes::Laned;
 use crate::particles::Particles;
+use crate::scene::{Expression, Scene};
 use crate::tensor::{Matrix, Symmetric, Vector};
 
 /// Where a rigid body without bounds has particles.
@@ -121,6 +123,50 @@ fn grown<const D: usize>(blocks: &[[i32; D]]) -> Vec<[i32; D]> {
     all.sort_unstable();
     all.dedup();
     all
+}
+
+/// How many particles a rigid body without bounds has in its pose at the start around bodies that fill these boxes.
+pub(crate) fn particles_around(scene: &Scene, body: usize, boxes: &[Bounds]) -> usize {
+    match scene.dimension.axes() {
+        2 => count::<2>(scene, body, boxes),
+        _ => count::<3>(scene, body, boxes),
+    }
+}
+
+/// Nodes beyond a box that its particles reach [cells].
+const REACH: f64 = 1.5;
+
+fn count<const D: usize>(scene: &Scene, body: usize, boxes: &[Bounds]) -> usize {
+    let cell = scene.discretization.cell;
+    let shape = scene.bodies[body].shape.clone();
+    let sites = check::lattice(scene, &scene.bodies[body]);
+    let still = || [0.0; 3].map(Expression::Constant);
+    let pose = RigidMotion::new(shape.anchor(D), still(), still()).pose();
+    let mirrors = mirrors::<D>(scene);
+    let mut layer =
+        Unbounded::<D> { body, shape, sites, cell, mirrors, served: Vec::new(), pose: Some(pose) };
+    let mut served = Vec::new();
+    for bounds in boxes {
+        let block = |k: usize, x: f64| ((x - sites.origin[k]) / (cell * f64::from(SIDE))).floor() as i32;
+        let first: [i32; D] = std::array::from_fn(|k| block(k, bounds.min[k] - REACH * cell));
+        let last: [i32; D] = std::array::from_fn(|k| block(k, bounds.max[k] + REACH * cell));
+        let count: [i64; D] = std::array::from_fn(|k| i64::from(last[k] - first[k]) + 1);
+        for number in 0..count.iter().product() {
+            let mut rest = number;
+            let block = std::array::from_fn(|k| {
+                let along = rest % count[k];
+                rest /= count[k];
+                first[k] + along as i32
+            });
+            if layer.meets(block, &pose) {
+                served.push(block);
+            }
+        }
+    }
+    served.sort_unstable();
+    served.dedup();
+    layer.served = served;
+    layer.fill(&pose).len()
 }
 
 impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {

@@ -6,7 +6,8 @@ use crate::door::{Patch, Simulation};
 use crate::scene::Scene;
 use std::collections::BTreeSet;
 
-/// Looks at the widest contact of each pair as often as tables are written, and tells of each pair once.
+/// Looks at the widest contact of each pair as often as tables are written, and tells once of each pair that bears a
+/// part of the force.
 pub(super) struct Lookout {
     next: f64,
     /// Patches when it looked last.
@@ -35,18 +36,23 @@ impl Lookout {
         let patches = simulation.patches();
         let new = self.grown_up(&patches);
         self.before = patches;
-        let mut found = WidestContacts::new(scene, &new);
-        found.0.retain(|contact| contact.verdict == Verdict::NotResolved);
+        // Weighed against all that the bodies bear.
+        let mut found = WidestContacts::new(scene, &self.before).bearing();
+        let name = |body: usize| scene.bodies[body].name.as_str();
+        let new_names: BTreeSet<_> = new.iter().map(|patch| [patch.body_a, patch.body_b].map(name)).collect();
+        found.0.retain(|contact| {
+            contact.verdict == Verdict::NotResolved
+                && new_names.contains(&contact.bodies.each_ref().map(String::as_str))
+        });
         // Others may widen yet.
         let pair = |patch: &Patch| [patch.body_a, patch.body_b];
-        let name = |body: usize| &scene.bodies[body].name;
-        let narrow =
-            |patch: &&Patch| found.0.iter().any(|contact| contact.bodies.each_ref() == pair(patch).map(name));
-        self.told.extend(new.iter().filter(narrow).map(pair));
+        let told: BTreeSet<_> =
+            found.0.iter().map(|contact| contact.bodies.each_ref().map(String::as_str)).collect();
+        self.told.extend(new.iter().map(pair).filter(|pair| told.contains(&pair.map(name))));
         let narrowest = found.0.first()?;
         self.lines += 1;
         let last = if self.lines == MOST_LINES { "; no more of this until the summary" } else { "" };
-        Some(format!("contact not resolved: {}; {}{last}", found.named(), narrowest.off))
+        Some(format!("contact not resolved: {}, {}; {}{last}", found.named(), found.borne(), narrowest.off))
     }
 
     /// Those that have not been told of, and no longer grow.
@@ -69,8 +75,14 @@ mod tests {
     use super::*;
 
     fn patches(areas: &[f64]) -> Vec<Patch> {
-        let patch =
-            |(i, &area): (usize, &f64)| Patch { body_a: i, body_b: i + 1, area, half_width: 0.5 * area };
+        let patch = |(i, &area): (usize, &f64)| Patch {
+            body_a: i,
+            body_b: i + 1,
+            area,
+            half_width: 0.5 * area,
+            impulse: 1.0,
+            force: 1.0,
+        };
         areas.iter().enumerate().map(patch).collect()
     }
 

@@ -18,6 +18,11 @@ pub struct WidestContact {
     pub verdict: Verdict,
     /// By how much its results may be off.
     pub off: Errors,
+    /// What it bore of all contacts: its part of the force over the whole time [-].
+    pub share: f64,
+    /// What it bore of what the pair that bore most did: by its force over the whole time, or by its largest force,
+    /// whichever says more [-].
+    pub weight: f64,
 }
 
 /// The contacts of a run, narrowest first.
@@ -27,8 +32,15 @@ pub struct WidestContacts(pub Vec<WidestContact>);
 /// Contacts that the summary names.
 const NAMED: usize = 3;
 
+/// Contacts that bear less than this of what the one bears that bears most only graze.
+const GRAZING: f64 = 0.05;
+
 impl WidestContacts {
     pub(super) fn new(scene: &Scene, patches: &[Patch]) -> Self {
+        let largest = |of: fn(&Patch) -> f64| patches.iter().map(of).fold(0.0, f64::max);
+        let most = [largest(|patch| patch.impulse), largest(|patch| patch.force)];
+        let all: f64 = patches.iter().map(|patch| patch.impulse).sum();
+        let part = |of: f64, whole: f64| if whole > 0.0 { of / whole } else { 1.0 };
         let mut contacts: Vec<_> = (patches.iter())
             .filter(|patch| patch.area > 0.0)
             .map(|patch| {
@@ -41,11 +53,31 @@ impl WidestContacts {
                     cells,
                     verdict: Verdict::of(cells),
                     off: Errors::of(cells),
+                    share: part(patch.impulse, all),
+                    weight: part(patch.impulse, most[0]).max(part(patch.force, most[1])),
                 }
             })
             .collect();
         contacts.sort_by(|a, b| a.cells.total_cmp(&b.cells));
         WidestContacts(contacts)
+    }
+
+    /// Those that a verdict is worth: all but the grazing ones.
+    pub(super) fn bearing(mut self) -> Self {
+        self.0.retain(|contact| contact.weight >= GRAZING);
+        self
+    }
+
+    /// What they bear of the force between all bodies: "bearing 80 % of the contact force". Of short blows the largest.
+    pub(super) fn borne(&self) -> String {
+        let share: f64 = self.0.iter().map(|contact| contact.share).sum();
+        let weight = self.0.iter().map(|contact| contact.weight).fold(0.0, f64::max);
+        match [share, weight].map(|part| 100.0 * part) {
+            [share, weight] if share < GRAZING * 100.0 => {
+                format!("bearing {share:.1} % of the contact force, at one time {weight:.0} % of the largest")
+            }
+            [share, _] => format!("bearing {share:.0} % of the contact force"),
+        }
     }
 
     /// The narrowest with their cells, and how many there are more.
@@ -64,15 +96,25 @@ impl WidestContacts {
 impl Display for WidestContacts {
     fn fmt(&self, f: &mut Formatter) -> fmt::Result {
         let coarse = self.0.iter().filter(|contact| contact.verdict != Verdict::Resolved).cloned();
-        let coarse = WidestContacts(coarse.collect());
-        let Some(narrowest) = coarse.0.first() else { return Ok(()) };
-        writeln!(
+        let (bearing, grazing): (Vec<_>, Vec<_>) = coarse.partition(|contact| contact.weight >= GRAZING);
+        let bearing = WidestContacts(bearing);
+        let Some(narrowest) = bearing.0.first() else { return Ok(()) };
+        let (verdict, named, borne) = (narrowest.verdict, bearing.named(), bearing.borne());
+        write!(
             f,
-            "  contact    {}: touched over a half-width of at most {}; {}",
-            narrowest.verdict,
-            coarse.named(),
+            "  contact    {verdict}: touched over a half-width of at most {named}, {borne}; {}",
             narrowest.off
-        )
+        )?;
+        match grazing.len() {
+            0 => writeln!(f),
+            count => writeln!(
+                f,
+                "; not named: {count} that only graze{}, bearing less than {:.0} % of what the one bears \
+                 that bears most",
+                if count == 1 { "s" } else { "" },
+                100.0 * GRAZING
+            ),
+        }
     }
 }
 
@@ -80,8 +122,9 @@ impl Display for WidestContacts {
 mod tests {
     use super::*;
 
-    fn widest(half_widths: &[f64]) -> WidestContacts {
-        let bodies: String = (0..=half_widths.len())
+    /// Contacts with these half-widths on cells of 0.1 m, and what each bears.
+    fn widest(contacts: &[(f64, f64)]) -> WidestContacts {
+        let bodies: String = (0..=contacts.len())
             .map(|i| {
                 format!(
                     "[[bodies]]\nname = 'b{i}'\nmaterial = 'clay'\nshape.ball = {{ center = [{}, 0], radius = 1 }}\n",
@@ -94,19 +137,25 @@ mod tests {
              materials.clay = {{ density = 1, neo_hookean = {{ young_modulus = 1, poisson_ratio = 0 }} }}\n{bodies}"
         );
         let scene = crate::scene::parse("widest.toml", &text, &[]).expect("a scene").scene;
-        let patch = |(i, &half_width): (usize, &f64)| Patch {
+        let patch = |(i, &(half_width, impulse)): (usize, &(f64, f64))| Patch {
             body_a: i,
             body_b: i + 1,
             area: 2.0 * half_width,
             half_width,
+            impulse,
+            force: impulse,
         };
-        let patches: Vec<_> = half_widths.iter().enumerate().map(patch).collect();
+        let patches: Vec<_> = contacts.iter().enumerate().map(patch).collect();
         WidestContacts::new(&scene, &patches)
+    }
+
+    fn equal(half_widths: &[f64]) -> WidestContacts {
+        widest(&half_widths.iter().map(|&half_width| (half_width, 1.0)).collect::<Vec<_>>())
     }
 
     #[test]
     fn the_half_width_in_cells_gives_the_verdict() {
-        let found = widest(&[0.5, 0.25, 0.05]);
+        let found = equal(&[0.5, 0.25, 0.05]);
         let cells: Vec<_> = found.0.iter().map(|contact| contact.cells).collect();
         assert!((0..3).all(|i| (cells[i] - [0.5, 2.5, 5.0][i]).abs() < 1e-12), "{cells:?}");
         let verdicts: Vec<_> = found.0.iter().map(|contact| contact.verdict).collect();
@@ -115,11 +164,52 @@ mod tests {
 
     #[test]
     fn only_contacts_that_the_grid_does_not_resolve_are_named() {
-        assert_eq!(widest(&[1.0]).to_string(), "");
-        let text = widest(&[1.0, 0.05, 0.15, 0.1, 0.2, 0.25]).to_string();
+        assert_eq!(equal(&[1.0]).to_string(), "");
+        let text = equal(&[1.0, 0.05, 0.15, 0.1, 0.2, 0.25]).to_string();
         assert!(
-            text.contains("b1 and b2 0.50 cells, b3 and b4 1.00 cells, b2 and b3 1.50 cells and 2 more"),
+            text.contains(
+                "b1 and b2 0.50 cells, b3 and b4 1.00 cells, b2 and b3 1.50 cells and 2 more, \
+                 bearing 83 % of the contact force"
+            ),
             "{text}"
         );
+    }
+
+    /// A wide contact that bears 100, one of half a cell that bears 25, and two narrower ones that graze.
+    #[test]
+    fn contacts_that_only_graze_are_counted_and_not_named() {
+        let text = widest(&[(0.5, 100.0), (0.01, 0.1), (0.05, 25.0), (0.02, 4.9)]).to_string();
+        assert!(text.contains(
+            "not resolved: touched over a half-width of at most b2 and b3 0.50 cells, bearing 19 %"
+        ));
+        assert!(text.contains("; not named: 2 that only graze, bearing less than 5 % of"), "{text}");
+        assert_eq!(widest(&[(0.5, 100.0), (0.01, 0.1)]).to_string(), "");
+    }
+
+    /// It bore little over the whole time, but much at once.
+    #[test]
+    fn a_blow_at_the_end_counts_by_its_largest_force() {
+        let mut patches = [(0, 0.5, 100.0, 10.0), (1, 0.05, 1.0, 30.0)]
+            .map(|(body_a, half_width, impulse, force)| Patch {
+                body_a,
+                body_b: body_a + 1,
+                area: 2.0 * half_width,
+                half_width,
+                impulse,
+                force,
+            })
+            .to_vec();
+        let scene = || {
+            let text = include_str!("../../tests/scenes/rolling.toml");
+            let mut scene = crate::scene::parse("rolling.toml", text, &[]).expect("a scene").scene;
+            scene.bodies.push(scene.bodies[0].clone());
+            scene
+        };
+        let mut both = WidestContacts::new(&scene(), &patches).bearing();
+        assert_eq!(both.0.len(), 2);
+        both.0.retain(|contact| contact.cells < 1.0);
+        assert_eq!(both.borne(), "bearing 1.0 % of the contact force, at one time 100 % of the largest");
+        patches[1].force = 0.1;
+        assert_eq!(WidestContacts::new(&scene(), &patches).bearing().0.len(), 1);
     }
 }

@@ -281,6 +281,9 @@ pub struct ContactRule {
     /// cannot be infinite.
     #[serde(serialize_with = "infinity_as_text")]
     pub friction: f64,
+    /// Whether the file says what the friction is; without, it is 0.
+    #[serde(skip)]
+    pub friction_given: bool,
     /// Coefficient of friction of surfaces that slip fast, at most [`ContactRule::friction`].
     #[serde(serialize_with = "infinity_as_text")]
     pub kinetic_friction: f64,
@@ -363,17 +366,21 @@ pub struct Reference {
 impl Scene {
     /// The rule for two bodies, given by index: the first in the file that matches, else the default rule.
     pub fn contact_between(&self, a: usize, b: usize) -> ContactRule {
+        self.contact_rule_between(a, b).map(|rule| self.contact[rule].clone()).unwrap_or_default()
+    }
+
+    /// Number of the rule for two bodies: the first in the file that matches; `None` where the default rule holds.
+    pub fn contact_rule_between(&self, a: usize, b: usize) -> Option<usize> {
         let matches = |filter: &Option<String>, body: usize| {
             filter.as_ref().is_none_or(|name| {
                 let body = &self.bodies[body];
                 *name == body.name || *name == self.materials[body.material].name
             })
         };
-        let rule = self.contact.iter().find(|rule| {
+        self.contact.iter().position(|rule| {
             let [first, second] = &rule.between;
             (matches(first, a) && matches(second, b)) || (matches(first, b) && matches(second, a))
-        });
-        rule.cloned().unwrap_or_default()
+        })
     }
 }
 
@@ -389,6 +396,7 @@ impl Default for ContactRule {
             between: [None, None],
             law: ContactLaw::Surface,
             friction: 0.0,
+            friction_given: false,
             kinetic_friction: 0.0,
             friction_decay_speed: 0.0,
             cohesion: 0.0,

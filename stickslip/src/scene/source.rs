@@ -80,6 +80,13 @@ impl Source {
         self.show(problem.into())
     }
 
+    /// File, line and column of a key, or of the nearest key around it that exists: `scene.toml:49:1`.
+    pub fn place(&self, key: &str) -> String {
+        let (document, start, _) = self.within(&self.span_of(key));
+        let [line, column] = document.line_and_column(start);
+        format!("{}:{line}:{column}", document.name)
+    }
+
     /// Name of the file.
     pub fn name(&self) -> &str {
         &self.documents[0].name
@@ -111,23 +118,26 @@ impl Source {
     /// The error for a fault.
     pub(super) fn show(&self, fault: Fault) -> SceneError {
         let span = fault.span.unwrap_or_else(|| self.span_of(&fault.problem.key));
-        let document = self.document(span.start);
-        let text = &document.text;
-        let boundary = |at: usize| {
-            let at = at.saturating_sub(document.start).min(text.len());
-            (0..=at).rfind(|at| text.is_char_boundary(*at)).unwrap_or(0)
-        };
-        let (start, end) = (boundary(span.start), boundary(span.end.max(span.start)));
-        let before = &text[..start];
-        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+        let (document, start, end) = self.within(&span);
+        let [line, column] = document.line_and_column(start);
         SceneError::Mistake(Box::new(Mistake {
             problem: *fault.problem,
             file: document.name.clone(),
-            line: before.matches('\n').count() + 1,
-            column: before[line_start..].chars().count() + 1,
+            line,
+            column,
             span: start..end,
-            text: text.clone(),
+            text: document.text.clone(),
         }))
+    }
+
+    /// The document that holds a span, and where in its text the span begins and ends.
+    fn within(&self, span: &Range<usize>) -> (&Document, usize, usize) {
+        let document = self.document(span.start);
+        let boundary = |at: usize| {
+            let at = at.saturating_sub(document.start).min(document.text.len());
+            (0..=at).rfind(|at| document.text.is_char_boundary(*at)).unwrap_or(0)
+        };
+        (document, boundary(span.start), boundary(span.end.max(span.start)))
     }
 
     fn end(&self) -> usize {
@@ -150,6 +160,15 @@ impl Source {
         } else {
             node.name_span.clone()
         }
+    }
+}
+
+impl Document {
+    /// Line and column of a place in the text, each from 1.
+    fn line_and_column(&self, at: usize) -> [usize; 2] {
+        let before = &self.text[..at];
+        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+        [before.matches('\n').count() + 1, before[line_start..].chars().count() + 1]
     }
 }
 

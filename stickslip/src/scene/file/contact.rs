@@ -153,6 +153,7 @@ impl Contact {
             between,
             law,
             friction,
+            friction_given: self.friction.is_some(),
             kinetic_friction,
             friction_decay_speed: not_negative(&self.friction_decay_speed, context)?,
             cohesion: bond(&self.cohesion, normal, context)?,

@@ -1,0 +1,313 @@
+//! Which contact rule holds between which bodies, and rules that never do.
+
+use super::neighbours::pairs_within;
+use super::warning::Warning;
+use crate::geometry::Bounds;
+use crate::scene::{ContactLaw, ContactRule, Motion, Scene};
+use serde::Serialize;
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+
+/// Scenes of so few bodies show all their pairs; others those that are near each other at the start or that a rule
+/// names.
+const FEW: usize = 5;
+
+/// A contact rule with pairs for which it holds.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RuleReport {
+    /// Its number in the scene's list, from 0; `None` is the default rule, which holds for pairs that no rule names.
+    pub rule: Option<usize>,
+    /// The contact law.
+    pub law: ContactLaw,
+    /// Coefficient of friction of surfaces that do not slip.
+    pub friction: f64,
+    /// Coefficient of friction of surfaces that slip fast.
+    pub kinetic_friction: f64,
+    /// Whether the rule says what its friction is; without, it is 0.
+    pub friction_given: bool,
+    /// Names of two bodies each, in the order of the scene.
+    pub pairs: Vec<[String; 2]>,
+}
+
+impl RuleReport {
+    /// Whether friction acts at all: bodies that are glued or left alone have none.
+    pub fn rubs(&self) -> bool {
+        !matches!(self.law, ContactLaw::None | ContactLaw::Glued)
+    }
+
+    /// The coefficient, and why it is zero where nobody said so.
+    pub fn friction(&self) -> String {
+        let [rest, slip] = [self.friction, self.kinetic_friction].map(|x| x.to_string());
+        match self.rule {
+            _ if !self.rubs() => "-".into(),
+            None => "0, as no rule names the pair: the default rule holds".into(),
+            Some(rule) if !self.friction_given => format!("0, as contact[{rule}] gives none"),
+            Some(rule) if rest == slip => format!("{rest}, by contact[{rule}]"),
+            Some(rule) => format!("{rest}, slipping {slip}, by contact[{rule}]"),
+        }
+    }
+}
+
+/// The rules that hold between bodies of a scene, in its order, the default rule last.
+pub(super) fn holding(scene: &Scene, boxes: &[Bounds]) -> Vec<RuleReport> {
+    let count = scene.bodies.len();
+    let pairs: BTreeSet<[usize; 2]> = if count <= FEW {
+        (0..count).flat_map(|a| (a + 1..count).map(move |b| [a, b])).collect()
+    } else {
+        pairs_within(boxes, scene.discretization.cell).into_iter().chain(named_pairs(scene)).collect()
+    };
+    let mut reports: BTreeMap<usize, RuleReport> = BTreeMap::new();
+    for [a, b] in pairs.into_iter().filter(|pair| !pair.iter().all(|&body| is_rigid(scene, body))) {
+        let rule = scene.contact_rule_between(a, b);
+        let report = reports.entry(rule.unwrap_or(usize::MAX)).or_insert_with(|| {
+            let ContactRule { law, friction, kinetic_friction, friction_given, .. } =
+                rule.map_or_else(ContactRule::default, |rule| scene.contact[rule].clone());
+            RuleReport { rule, law, friction, kinetic_friction, friction_given, pairs: Vec::new() }
+        });
+        report.pairs.push([a, b].map(|body| scene.bodies[body].name.clone()));
+    }
+    reports.into_values().collect()
+}
+
+/// Pairs of bodies, not of materials, that contact rules name.
+pub(super) fn named_pairs(scene: &Scene) -> BTreeSet<[usize; 2]> {
+    let number: BTreeMap<_, _> = scene.bodies.iter().enumerate().map(|(i, body)| (&body.name, i)).collect();
+    let pair = |rule: &ContactRule| {
+        let [a, b] = rule.between.each_ref().map(|name| number.get(name.as_ref()?).copied());
+        Some([a?.min(b?), a?.max(b?)]).filter(|[a, b]| a != b)
+    };
+    scene.contact.iter().filter_map(pair).collect()
+}
+
+pub(super) fn is_rigid(scene: &Scene, body: usize) -> bool {
+    matches!(scene.bodies[body].motion, Motion::Rigid { .. })
+}
+
+/// Bodies that no rule tells from each other.
+struct Kind {
+    /// Numbers of their names in [`Rules::numbers`], of the body and of the material, and that of "any".
+    names: [Option<usize>; 3],
+    deforming: usize,
+    rigid: usize,
+}
+
+/// Rules by the names that they mention.
+struct Rules<'a> {
+    scene: &'a Scene,
+    kinds: Vec<Kind>,
+    /// Numbers of the names that rules mention; "any" is 0.
+    numbers: HashMap<&'a str, usize>,
+    /// The first rule that mentions two names.
+    first: HashMap<[usize; 2], usize>,
+}
+
+/// Stands for every body.
+const ANY: usize = 0;
+
+impl<'a> Rules<'a> {
+    fn new(scene: &'a Scene) -> Self {
+        let mut rules = Rules { scene, kinds: Vec::new(), numbers: HashMap::new(), first: HashMap::new() };
+        for name in scene.contact.iter().flat_map(|rule| rule.between.iter().flatten()) {
+            let next = rules.numbers.len() + 1;
+            rules.numbers.entry(name).or_insert(next);
+        }
+        for rule in 0..scene.contact.len() {
+            let [a, b] = rules.sides(rule);
+            rules.first.entry([a, b]).or_insert(rule);
+            rules.first.entry([b, a]).or_insert(rule);
+        }
+        let mut places = HashMap::new();
+        for (i, body) in scene.bodies.iter().enumerate() {
+            let number = |name: &String| rules.numbers.get(name.as_str()).copied();
+            let names = [number(&body.name), number(&scene.materials[body.material].name), Some(ANY)];
+            let place = *places.entry(names).or_insert_with(|| {
+                rules.kinds.push(Kind { names, deforming: 0, rigid: 0 });
+                rules.kinds.len() - 1
+            });
+            let kind = &mut rules.kinds[place];
+            *(if is_rigid(scene, i) { &mut kind.rigid } else { &mut kind.deforming }) += 1;
+        }
+        rules
+    }
+
+    /// Numbers of the two names of a rule.
+    fn sides(&self, rule: usize) -> [usize; 2] {
+        let between = &self.scene.contact[rule].between;
+        between.each_ref().map(|name| name.as_ref().map_or(ANY, |name| self.numbers[name.as_str()]))
+    }
+
+    /// The kinds that a name means.
+    fn of(&self, name: usize) -> impl Iterator<Item = usize> {
+        (0..self.kinds.len()).filter(move |&kind| self.kinds[kind].names.contains(&Some(name)))
+    }
+
+    /// The first rule for two kinds.
+    fn between(&self, a: usize, b: usize) -> Option<usize> {
+        let [a, b] = [a, b].map(|kind| self.kinds[kind].names.into_iter().flatten());
+        let pairs = a.flat_map(|x| b.clone().map(move |y| [x, y]));
+        pairs.filter_map(|pair| self.first.get(&pair)).min().copied()
+    }
+
+    /// Why a rule never holds, if it does not.
+    fn idle(&self, rule: usize) -> Option<String> {
+        let [first, second] = self.sides(rule);
+        let (mut before, mut all_rigid) = (BTreeSet::new(), false);
+        for a in self.of(first) {
+            for b in self.of(second) {
+                let [p, q] = [a, b].map(|kind| &self.kinds[kind]);
+                let (bodies, rigid) = (p.deforming + p.rigid, p.deforming + q.deforming == 0);
+                if a == b && bodies < 2 {
+                    continue;
+                }
+                match self.between(a, b) {
+                    _ if rigid => all_rigid = true,
+                    Some(holds) if holds < rule => drop(before.insert(holds)),
+                    _ => return None,
+                }
+            }
+        }
+        let pair = |rule: usize| {
+            let between = self.scene.contact[rule].between.each_ref();
+            between.map(|name| format!("\"{}\"", name.as_deref().unwrap_or("any"))).join(", ")
+        };
+        if !before.is_empty() {
+            let named: Vec<_> = before.iter().map(|&i| format!("contact[{i}] ([{}])", pair(i))).collect();
+            let comes = if named.len() == 1 { "comes" } else { "come" };
+            return Some(format!(
+                "never holds: {} {comes} before it for every pair that [{}] matches, and the first rule that matches \
+                 holds; put the special rule first",
+                named.join(", "),
+                pair(rule)
+            ));
+        }
+        if all_rigid {
+            return Some(format!(
+                "never acts: [{}] matches rigid bodies only, and rigid bodies do not push on each other",
+                pair(rule)
+            ));
+        }
+        let names = self.scene.contact[rule].between.iter().flatten();
+        let without = names.filter(|name| self.of(self.numbers[name.as_str()]).next().is_none());
+        let without: BTreeSet<_> = without.map(|name| format!("no body is of `{name}`")).collect();
+        let why = match without.len() {
+            0 => "it names one body twice, and a body is in no contact with itself".to_string(),
+            _ => without.into_iter().collect::<Vec<_>>().join(", "),
+        };
+        Some(format!("never holds: [{}] matches no pair of bodies: {why}", pair(rule)))
+    }
+}
+
+/// Rules that hold for no pair of bodies, and why.
+pub(super) fn idle(scene: &Scene) -> impl Iterator<Item = Warning> {
+    let rules = Rules::new(scene);
+    (0..scene.contact.len())
+        .filter_map(move |rule| Some(Warning::about(format!("contact[{rule}]"), rules.idle(rule)?)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn scene(bodies: &str, contact: &str) -> Scene {
+        let text = format!(
+            "space = {{ dimension = 'plane-strain', cell = 0.1 }}\ntime.end = 1\n\
+             materials.clay = {{ density = 1, neo_hookean = {{ young_modulus = 1, poisson_ratio = 0 }} }}\n\
+             materials.iron = {{ density = 1, neo_hookean = {{ young_modulus = 9, poisson_ratio = 0 }} }}\n\
+             bodies = [{bodies}]\ncontact = [{contact}]\n"
+        );
+        crate::scene::parse("rules.toml", &text, &[]).expect("a scene").scene
+    }
+
+    fn ball(name: &str, material: &str, x: f64) -> String {
+        format!(
+            "{{ name = '{name}', material = '{material}', shape.ball = {{ center = [{x}, 0], radius = 1 }} }},"
+        )
+    }
+
+    fn three() -> String {
+        ball("a", "clay", 0.0) + &ball("b", "iron", 4.0) + &ball("c", "iron", 8.0)
+    }
+
+    fn warnings(bodies: &str, contact: &str) -> Vec<String> {
+        idle(&scene(bodies, contact)).map(|warning| warning.to_string()).collect()
+    }
+
+    #[test]
+    fn a_rule_behind_one_that_matches_all_its_pairs_is_named_with_it() {
+        let shadowed = "{ friction = 0.1 }, { between = ['a', 'iron'], friction = 0.5 }";
+        let found = warnings(&three(), shadowed);
+        assert_eq!(found.len(), 1, "{found:?}");
+        assert!(
+            found[0].starts_with("contact[1]: never holds: contact[0] ([\"any\", \"any\"]) comes before it"),
+            "{found:?}"
+        );
+        // By two rules together.
+        let both = "{ between = ['a', 'b'] }, { between = ['c', 'a'] }, { between = ['clay', 'iron'] }";
+        let found = warnings(&three(), both);
+        assert!(
+            found[0].contains("contact[0] ([\"a\", \"b\"]), contact[1] ([\"c\", \"a\"]) come "),
+            "{found:?}"
+        );
+        // One pair is left to it.
+        let part = "{ between = ['a', 'b'] }, { between = ['clay', 'iron'] }, { friction = 0.1 }";
+        assert_eq!(warnings(&three(), part), [""; 0]);
+    }
+
+    #[test]
+    fn a_rule_whose_names_match_no_pair_says_why() {
+        let found = warnings(&three(), "{ between = ['clay', 'clay'] }, { between = ['a', 'a'] }");
+        assert_eq!(found.len(), 2, "{found:?}");
+        assert!(found.iter().all(|text| text.contains("it names one body twice")), "{found:?}");
+        let found = warnings(&ball("a", "clay", 0.0), "{ between = ['a', 'iron'] }");
+        assert!(found[0].ends_with("matches no pair of bodies: no body is of `iron`"), "{found:?}");
+        assert_eq!(warnings(&three(), "{ between = ['iron', 'iron'] }"), [""; 0]);
+    }
+
+    #[test]
+    fn a_rule_for_rigid_bodies_never_acts() {
+        let rigid = |name: &str, x: f64| ball(name, "iron", x).replace("} },", "}, rigid = {} },");
+        let bodies = ball("a", "clay", 0.0) + &rigid("b", 4.0) + &rigid("c", 8.0);
+        let found = warnings(&bodies, "{ between = ['b', 'c'] }, { between = ['clay', 'iron'] }");
+        assert_eq!(found.len(), 1, "{found:?}");
+        assert!(
+            found[0].starts_with("contact[0]: never acts: [\"b\", \"c\"] matches rigid bodies"),
+            "{found:?}"
+        );
+    }
+
+    #[test]
+    fn every_pair_is_shown_with_its_rule_and_why_it_has_no_friction() {
+        let rules = "{ between = ['a', 'b'], friction = 0.3 }, { between = ['a', 'c'], law = 'gap' }, \
+                     { between = ['b', 'b'] }";
+        let scene = scene(&three(), rules);
+        let boxes = vec![Bounds::EVERYTHING; 3];
+        let found = holding(&scene, &boxes);
+        let said: Vec<_> =
+            found.iter().map(|report| (report.pairs[0].join(" "), report.friction())).collect();
+        let expected = [
+            ("a b", "0.3, by contact[0]"),
+            ("a c", "0, as contact[1] gives none"),
+            ("b c", "0, as no rule names the pair: the default rule holds"),
+        ];
+        assert_eq!(said, expected.map(|(pair, text)| (pair.to_string(), text.to_string())));
+        assert_eq!(found[1].law, ContactLaw::Gap);
+    }
+
+    /// By the naive loop: the rule of every pair, as the scene has it.
+    #[test]
+    fn idle_rules_are_those_that_no_pair_has() {
+        let names = ["a", "b", "c", "clay", "iron", "any"];
+        let rule = |i: usize| format!("{{ between = ['{}', '{}'] }},", names[i % 6], names[i / 6 % 6]);
+        for seed in 0..200_usize {
+            let numbers: Vec<_> = (0..4).map(|k| (seed * 7919 + k * 104_729) / (k + 1) % 36).collect();
+            let scene = scene(&three(), &numbers.iter().map(|&i| rule(i)).collect::<String>());
+            let held: BTreeSet<_> = [[0, 1], [0, 2], [1, 2]]
+                .into_iter()
+                .filter_map(|[a, b]| scene.contact_rule_between(a, b))
+                .map(|rule| format!("contact[{rule}]"))
+                .collect();
+            let all: BTreeSet<_> = (0..4).map(|rule| format!("contact[{rule}]")).collect();
+            let found: BTreeSet<_> = idle(&scene).map(|warning| warning.key).collect();
+            assert_eq!(found, &all - &held, "{numbers:?}");
+        }
+    }
+}

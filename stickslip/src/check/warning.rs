@@ -1,0 +1,42 @@
+//! What is doubtful with a scene but allowed.
+
+use crate::scene::Source;
+use serde::Serialize;
+use std::fmt::{Display, Formatter, Result};
+
+/// Something doubtful that a run may start with.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Warning {
+    /// Path of the key that it is about, such as `contact[1]`; empty where there is none.
+    pub key: String,
+    /// File, line and column of that key, once [`super::Report::placed`] has found them.
+    pub place: Option<String>,
+    /// What is doubtful, by how much, and what to try.
+    pub text: String,
+}
+
+impl Warning {
+    /// A warning about a key.
+    pub fn about(key: impl Into<String>, text: impl Into<String>) -> Self {
+        Warning { key: key.into(), place: None, text: text.into() }
+    }
+
+    /// The same with the place of its key in the file.
+    pub fn placed(self, source: &Source) -> Self {
+        let place = (!self.key.is_empty()).then(|| source.place(&self.key));
+        Warning { place, ..self }
+    }
+}
+
+impl Display for Warning {
+    fn fmt(&self, f: &mut Formatter<'_>) -> Result {
+        let named = [self.place.as_deref().unwrap_or(""), &self.key];
+        named.iter().filter(|part| !part.is_empty()).try_for_each(|part| write!(f, "{part}: "))?;
+        f.write_str(&self.text)
+    }
+}
+
+/// `first`, and how many there are beside it: "`a` and 3 more".
+pub(super) fn and_more(first: &str, others: usize) -> String {
+    if others == 0 { first.to_string() } else { format!("{first} and {others} more") }
+}

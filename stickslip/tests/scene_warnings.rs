@@ -1,0 +1,101 @@
+//! What is doubtful with a scene but allowed: each case is told of with its place, and the scenes of the repository are
+//! told of nothing but contacts that the grid does not resolve.
+
+use std::path::Path;
+use stickslip::check::report;
+use stickslip::scene;
+
+const DOUBTFUL: &str = r#"
+gravity = [0, "-9.81 m/s^2"]
+space = { dimension = "plane-strain", cell = "1 cm" }
+time.end = "1 s"
+materials.rubber = { density = 1000, neo_hookean = { shear_modulus = "1 MPa", poisson_ratio = 0.499 } }
+materials.steel = { density = 8000, neo_hookean = { young_modulus = "200 GPa", poisson_ratio = 0.3 } }
+
+[[bodies]]
+name = "strip"
+material = "rubber"
+shape.box = { min = [0, 0], max = ["30 cm", "2 cm"] }
+
+[[bodies]]
+name = "roller"
+material = "rubber"
+shape.ball = { center = ["10 cm", "11.99 cm"], radius = "10 cm" }
+
+[[bodies]]
+name = "ram"
+material = "steel"
+shape.box = { min = ["40 cm", 0], max = ["50 cm", "10 cm"] }
+rigid = { velocity = ["20 cm/s", 0] }
+
+[[bodies]]
+name = "anvil"
+material = "steel"
+shape.box = { min = ["60 cm", 0], max = ["70 cm", "10 cm"] }
+rigid = {}
+
+[[contact]]
+between = ["rubber", "any"]
+friction = 0.5
+
+[[contact]]
+between = ["roller", "strip"]
+friction = 0.1
+
+[[contact]]
+between = ["ram", "anvil"]
+friction = 0.1
+"#;
+
+#[test]
+fn each_doubt_is_told_of_where_it_stands_in_the_file() {
+    let loaded = scene::parse("a.toml", DOUBTFUL, &[]).expect("a scene");
+    let report = report(&loaded.scene).expect("no problem").placed(&loaded.source);
+    let found: Vec<_> = report.warnings.iter().map(ToString::to_string).collect();
+    let line = |text: &str, nth: usize| {
+        1 + DOUBTFUL.match_indices(text).nth(nth).map_or(0, |(at, _)| DOUBTFUL[..at].matches('\n').count())
+    };
+    for (line, expected) in [
+        (
+            line("[[contact]]", 1),
+            "contact[1]: never holds: contact[0] ([\"rubber\", \"any\"]) comes before it",
+        ),
+        (line("[[contact]]", 2), "contact[2]: never acts: [\"ram\", \"anvil\"] matches rigid bodies only"),
+        (
+            line("shape.ball", 0),
+            "bodies[1].shape: `roller` overlaps `strip` by 1.000e-4 m (1.00e-2 cells) near (0.1000, 0.0",
+        ),
+        (line("rigid", 1), "bodies[3].rigid: the rigid bodies `ram` and `anvil` overlap from t = 5.0"),
+        (
+            line("materials.rubber", 0),
+            "materials.rubber: nearly incompressible: `rubber` has a Poisson's ratio of 0.499000",
+        ),
+        (line("shape.box", 0), "bodies[0].shape: thinner than 3 cells: `strip` (0.02 m thick, 2.0 cells)"),
+    ] {
+        let start = format!("a.toml:{line}:");
+        let told = found.iter().any(|text| text.starts_with(&start) && text.contains(expected));
+        assert!(told, "no `{start} ... {expected}` in\n{}", found.join("\n"));
+    }
+}
+
+#[test]
+fn the_scenes_of_the_repository_are_told_of_nothing_but_resolution() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes");
+    let mut seen = 0;
+    for part in ["", "paper", "shapes"] {
+        for file in std::fs::read_dir(folder.join(part)).expect("the folder of scenes") {
+            let path = file.expect("a file").path();
+            if path.extension().is_none_or(|end| end != "toml") {
+                continue;
+            }
+            let loaded = scene::load(&path, &[]).unwrap_or_else(|error| panic!("{error}"));
+            let report =
+                report(&loaded.scene).unwrap_or_else(|problem| panic!("{}: {problem}", path.display()));
+            let others: Vec<_> =
+                report.warnings.iter().filter(|warning| !warning.text.starts_with("not resolved")).collect();
+            assert!(others.is_empty(), "{}: {others:?}", path.display());
+            seen += 1;
+        }
+    }
+    assert!(seen >= 10, "{seen}");
+}
