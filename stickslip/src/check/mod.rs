@@ -104,6 +104,7 @@ mod tests {
                 max_step: None,
                 stress_update: StressUpdate::First,
                 pic_share: 0.0,
+                energy_drift: 0.1,
             },
             gravity: [0.0; 3],
             materials: vec![neo_hookean("soft", 1.0), neo_hookean("stiff", 10.0)],
