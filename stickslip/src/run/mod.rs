@@ -89,6 +89,7 @@ impl March<'_> {
         let mut last_step = 0.0;
         let mut reports = self.clock.reports();
         let mut lookout = Lookout::new(self.simulation.time());
+        let mut notes = self.verdict.look(self.scene, self.simulation);
         let status = loop {
             let remaining = end - self.simulation.time();
             if remaining <= ROUNDING * last_step {
@@ -99,14 +100,14 @@ impl March<'_> {
             }
             last_step = self.step(longest_step(remaining, last_step, self.simulation))?;
             self.recorder.record_due(self.simulation)?;
-            let contact = lookout.look(self.scene, self.simulation);
-            let mut notes = self.verdict.look(self.scene, self.simulation);
-            notes.extend(contact);
+            notes.extend(lookout.look(self.scene, self.simulation));
+            notes.extend(self.verdict.look(self.scene, self.simulation));
             if reports.due() || !notes.is_empty() {
+                let notes = std::mem::take(&mut notes);
                 progress(&Progress { notes, ..self.clock.progress(self.simulation, end) });
             }
         };
-        let notes = self.verdict.conclude(self.scene, self.simulation);
+        notes.extend(self.verdict.conclude(self.scene, self.simulation));
         self.recorder.record_present(self.simulation)?;
         self.recorder.conclude()?;
         progress(&Progress { notes, ..self.clock.progress(self.simulation, end) });

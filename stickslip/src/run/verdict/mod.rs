@@ -135,7 +135,8 @@ impl Verdict {
 
     /// What is new at the end of the run.
     pub(super) fn conclude(&mut self, scene: &Scene, simulation: &dyn Simulation) -> Vec<String> {
-        self.look_now(scene, simulation)
+        let looked = self.next_step == simulation.steps() + STEPS;
+        if looked { Vec::new() } else { self.look_now(scene, simulation) }
     }
 
     fn look_now(&mut self, scene: &Scene, simulation: &dyn Simulation) -> Vec<String> {

@@ -37,10 +37,11 @@ const BOUND: f64 = 0.02;
 /// Energy of the turning over that of all motion about the centre of mass and of strain: below, a body does not turn,
 /// it rings.
 const TURNS: f64 = 0.01;
-/// The same over the energy of the motion on the whole: below, the turning is round-off.
-const ROUNDING: f64 = 1e-6;
+/// The same over the energy of the motion on the whole: below, the turning is round-off, or a push that is no more than
+/// [`PUSHED`].
+const ROUNDING: f64 = 1e-4;
 /// Change of the velocity that gravity does not explain, over the speed of the particles: something else pushed.
-const PUSHED: f64 = 1e-3;
+const PUSHED: f64 = 1e-4;
 /// Cells to a face that does something: nearer, a body may feel it.
 const NEAR: f64 = 2.0;
 
@@ -111,8 +112,11 @@ impl Alone {
         let now = own(state);
         let (before, after) = (norm(self.angular_momentum), norm(now));
         let change = norm(minus(now, self.angular_momentum)) / before.max(after);
-        // L^2 / 2 I = L w / 2 with the present inertia.
-        let turning = 0.5 * norm(state.spin) * before.max(after).powi(2) / after;
+        // L^2 / 2 I, with I = m r^2 over the particles watched, which is right in the plane and large enough in space.
+        let particles = &look.particles[self.body];
+        let squares = particles.iter().map(|particle| norm(minus(particle.position, state.position)).powi(2));
+        let inertia = state.mass * squares.sum::<f64>() / particles.len() as f64;
+        let turning = 0.5 * before.max(after).powi(2) / inertia;
         let whole = 0.5 * state.mass * norm(state.velocity).powi(2);
         let turns = turning >= TURNS * (state.kinetic - whole + state.strain) && turning >= ROUNDING * whole;
         if !turns || change.is_nan() || change <= BOUND {
