@@ -12,6 +12,8 @@ pub enum Failure {
     Input(Report),
     /// The input is sound, yet the run or its outputs went wrong.
     Run(Report),
+    /// The run ended, and so many of its warnings count as a failure.
+    Doubtful(usize),
     /// The user stopped it; everything written is valid.
     Interrupted,
 }
@@ -30,11 +32,12 @@ impl Failure {
         Failure::Run(Report::new(error))
     }
 
-    /// 2 for input, 1 for a run, 130 for Ctrl-C.
+    /// 2 for input, 1 for a run, 3 for results that are doubtful, 130 for Ctrl-C.
     pub fn exit_code(&self) -> ExitCode {
         ExitCode::from(match self {
             Failure::Input(_) => 2,
             Failure::Run(_) => 1,
+            Failure::Doubtful(_) => 3,
             Failure::Interrupted => Self::INTERRUPTED,
         })
     }
@@ -43,6 +46,7 @@ impl Failure {
     pub fn print(&self) {
         match self {
             Failure::Interrupted => eprintln!("interrupted; everything written is valid"),
+            Failure::Doubtful(_) => eprintln!("error: {self}"),
             Failure::Input(report) | Failure::Run(report) => {
                 let mut text = String::new();
                 let drawn = std::io::stderr().is_terminal()
@@ -60,6 +64,10 @@ impl std::fmt::Display for Failure {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
         match self {
             Failure::Interrupted => f.write_str("interrupted"),
+            Failure::Doubtful(1) => f.write_str("the results are doubtful: 1 warning, with --strict"),
+            Failure::Doubtful(count) => {
+                write!(f, "the results are doubtful: {count} warnings, with --strict")
+            }
             Failure::Input(report) | Failure::Run(report) => report.fmt(f),
         }
     }

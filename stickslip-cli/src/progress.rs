@@ -29,7 +29,7 @@ impl Display {
 
     /// Shows the present state.
     pub fn show(&self, progress: &Progress) {
-        if let Some(note) = &progress.note {
+        for note in &progress.notes {
             let line = format!("t = {:.4e} s: warning: {note}", progress.time);
             self.bar.as_ref().map_or_else(|| eprintln!("{line}"), |bar| bar.println(&line));
         }
@@ -143,7 +143,7 @@ mod tests {
             particles: 1000,
             particle_steps_per_second: 2.5e6,
             eta: 200.0,
-            note: None,
+            notes: Vec::new(),
         };
         let expected = "t = 0.5000 of 2 s, step 321, 2.5 M particle-steps/s, 3 min 20 s left";
         assert_eq!(line(&progress), expected);

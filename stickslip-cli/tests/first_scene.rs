@@ -133,3 +133,31 @@ fn ctrl_c_ends_a_run_cleanly() {
     workplace.succeed(&["render", "scene.results"]);
     workplace.succeed(&["plot", "scene.results"]);
 }
+
+#[test]
+fn doubtful_results_are_told_and_with_strict_are_an_error() {
+    let workplace = Workplace::new();
+    workplace.write("scene.toml", &new_scene());
+    // No run keeps its energy as exactly as that.
+    let short = ["--set", "time.end=50 ms", "--set", "time.energy_drift=1e-9", "--set", "cells_per_radius=2"];
+    let run = |flags: &[&str]| workplace.run(&[&["run", "scene.toml"][..], &short, flags].concat());
+    let lax = run(&[]);
+    assert_eq!(lax.code, Some(0), "{}", lax.stderr);
+    assert!(lax.stderr.contains("warning: energy "), "{}", lax.stderr);
+    assert!(lax.stdout.contains("  warning    from t = "), "{}", lax.stdout);
+    let strict = run(&["--strict"]);
+    assert_eq!(strict.code, Some(3), "{}", strict.stderr);
+    assert!(strict.stderr.contains("error: the results are doubtful: "), "{}", strict.stderr);
+    let record = fs::read(workplace.path("scene.results").join("run.json")).unwrap();
+    let record: serde_json::Value = serde_json::from_slice(&record).unwrap();
+    assert_eq!(record["status"], "finished");
+    let warnings = record["warnings"].as_array().unwrap();
+    let energy = warnings.iter().find(|warning| warning["kind"] == "energy").unwrap();
+    assert!(energy["worst"].as_f64().unwrap().abs() > 1e-9 && energy["time"].as_f64().unwrap() <= 0.05);
+    assert!(energy["count"].as_u64().unwrap() > 0 && energy["body"].is_null());
+    assert!(energy["message"].is_string() && energy["advice"].is_string(), "{energy}");
+
+    let sound = ["--set", "time.end=50 ms", "--set", "cells_per_radius=4", "--strict"];
+    let sound = workplace.run(&[&["run", "scene.toml"][..], &sound].concat());
+    assert_eq!(sound.code, Some(0), "{} {}", sound.stdout, sound.stderr);
+}

@@ -44,6 +44,14 @@ pub trait Simulation: Send {
             });
         }
     }
+    /// Where each particle of a body was before anything moved, by their numbers; empty where nobody knows [m].
+    fn starts(&self, _body: usize) -> Vec<[f64; 3]> {
+        Vec::new()
+    }
+    /// The particles of a body whose numbers are `wanted`, in no order that means anything; none without starts.
+    fn trace(&self, _body: usize, _wanted: &(dyn Fn(u32) -> bool + Sync)) -> Vec<TracedParticle> {
+        Vec::new()
+    }
     /// The nodes of the last step's grid that carry mass.
     fn grid_snapshot(&self) -> GridSnapshot;
     /// Wall time spent so far in each verb of the step [s].
@@ -61,6 +69,8 @@ pub struct BodyState {
     pub velocity: [f64; 3],
     /// Angular velocity: the inverse of the inertia tensor times the angular momentum, both about the centre of mass [rad/s].
     pub spin: [f64; 3],
+    /// Angular momentum about the origin; zero for a rigid body without bounds [kg m^2/s].
+    pub angular_momentum: [f64; 3],
     /// Kinetic energy [J].
     pub kinetic: f64,
     /// Strain energy [J].
@@ -182,6 +192,21 @@ pub struct ParticleView {
     pub velocity: [f64; 3],
     /// Cauchy stress xx, yy, zz, xy, yz, xz, tension positive [Pa].
     pub stress: [f64; 6],
+}
+
+/// A particle now, as [`Simulation::trace`] gives it, with what it did since the start.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TracedParticle {
+    /// Number of the particle in its body, from the filling; it never changes.
+    pub number: u32,
+    /// Half the side of its undeformed box [m].
+    pub half_width: f64,
+    /// Position [m].
+    pub position: [f64; 3],
+    /// Velocity [m/s].
+    pub velocity: [f64; 3],
+    /// Deformation gradient, row by row [-].
+    pub deformation: [[f64; 3]; 3],
 }
 
 /// Grid nodes with mass as columns of equal length; a node that two bodies share stands there twice.

@@ -29,6 +29,10 @@ pub struct Arguments {
     /// Threads; as many as there are processors without this.
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
+
+    /// Exit with code 3 if the summary warns that results are doubtful.
+    #[arg(long)]
+    strict: bool,
 }
 
 /// Where the results go if the user does not say.
@@ -72,7 +76,11 @@ impl Arguments {
         say(&format!("{}\n{summary}{}", scene.title, measured(&out, scene)?))?;
         let drawn = illustrate(&out)?;
         say(&format!("results in {}/: {drawn}", out.display()))?;
-        if summary.status == Status::Interrupted { Err(Failure::Interrupted) } else { Ok(()) }
+        match summary.warnings.len() {
+            _ if summary.status == Status::Interrupted => Err(Failure::Interrupted),
+            warnings @ 1.. if self.strict => Err(Failure::Doubtful(warnings)),
+            _ => Ok(()),
+        }
     }
 }
 

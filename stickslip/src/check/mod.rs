@@ -116,6 +116,7 @@ mod tests {
                 stress_update: StressUpdate::First,
                 transfer: Transfer::Rflip,
                 pic_share: 0.0,
+                energy_drift: 0.1,
             },
             gravity: [0.0; 3],
             materials: vec![neo_hookean("soft", 1.0), neo_hookean("stiff", 10.0)],

@@ -6,11 +6,12 @@ use crate::body::{Body, Particle, Totals};
 use crate::contact::Span;
 use crate::door::{
     BodyState, ContactState, GridSnapshot, Ledger, ParticleSnapshot, ParticleView, Patch, Simulation,
-    StepError,
+    StepError, TracedParticle,
 };
 use crate::grid::{node_at, nodes_per_block};
 use crate::lanes::Laned;
-use crate::tensor::Real;
+use crate::particles::Column;
+use crate::tensor::{Real, Vector};
 use rayon::prelude::*;
 use std::sync::{Arc, PoisonError};
 
@@ -77,6 +78,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
                         position: motion.center,
                         velocity: motion.velocity(),
                         spin: motion.spin(),
+                        angular_momentum: [0.0; 3],
                         kinetic: 0.0,
                         strain: 0.0,
                     };
@@ -87,6 +89,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
                     position: totals.first_moment.map(|x| x / totals.mass),
                     velocity: totals.momentum.map(|p| p / totals.mass),
                     spin: body.spin(totals),
+                    angular_momentum: totals.angular_momentum,
                     kinetic: totals.kinetic,
                     strain: totals.strain,
                 }
@@ -176,6 +179,34 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
                 stress: particle.stress.0.map(Real::f64),
             });
         }
+    }
+
+    fn starts(&self, body: usize) -> Vec<[f64; 3]> {
+        let particles = &self.bodies[body].particles;
+        let columns = particles.view();
+        let mut starts = vec![[0.0; 3]; particles.len()];
+        for (i, &number) in particles.numbers().iter().enumerate() {
+            // SAFETY: the particle is the body's, which is borrowed for reading.
+            let at = |k: usize| unsafe { *columns.at(Column::<D>::START + k, i) };
+            starts[number as usize] = Vector::<T, D>::from_fn(at).space();
+        }
+        starts
+    }
+
+    fn trace(&self, body: usize, wanted: &(dyn Fn(u32) -> bool + Sync)) -> Vec<TracedParticle> {
+        let particles = &self.bodies[body].particles;
+        let traced = |i: usize| {
+            let particle = particles.get(i);
+            TracedParticle {
+                number: particle.number,
+                half_width: particle.half_width.f64(),
+                position: particle.position.space(),
+                velocity: particle.velocity.space(),
+                deformation: particle.deformation.0.map(|row| row.map(Real::f64)),
+            }
+        };
+        let numbers = particles.numbers().par_iter().enumerate();
+        numbers.filter(|&(_, &number)| wanted(number)).map(|(i, _)| traced(i)).collect()
     }
 
     fn grid_snapshot(&self) -> GridSnapshot {

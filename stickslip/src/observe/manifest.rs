@@ -28,6 +28,9 @@ pub struct Manifest {
     pub bodies: Vec<String>,
     /// How far the run has come.
     pub performance: Performance,
+    /// What is wrong with its results, in the order in which it was found.
+    #[serde(default)]
+    pub warnings: Vec<Warning>,
     /// Known answers, to be held against `bodies.csv`.
     pub references: Vec<ReferenceCurve>,
     /// The scene as run, in SI units, parameters resolved; numbers that are infinite stand as `null`.
@@ -46,6 +49,27 @@ pub enum Status {
     Interrupted,
     /// It could not go on.
     Failed,
+}
+
+/// Something that makes the results of a run doubtful, at its worst.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Warning {
+    /// What kind of thing.
+    pub kind: String,
+    /// What is wrong, by how much, and what is allowed.
+    pub message: String,
+    /// What to try.
+    pub advice: String,
+    /// Name of the body, if it is one.
+    pub body: Option<String>,
+    /// Where it is worst, if it has a place [m].
+    pub position: Option<[f64; 3]>,
+    /// When it was found first [s].
+    pub time: f64,
+    /// Looks that found it.
+    pub count: usize,
+    /// The measure that the message gives.
+    pub worst: f64,
 }
 
 /// How far a run has come, and how fast.
@@ -108,6 +132,7 @@ impl Manifest {
             cell: scene.discretization.cell,
             bodies: scene.bodies.iter().map(|body| body.name.clone()).collect(),
             performance,
+            warnings: Vec::new(),
             references: reference_curves(scene),
             scene: serde_json::to_value(scene).expect("a scene is plain data whose keys are text"),
         }

@@ -19,8 +19,8 @@ pub struct Progress {
     pub particle_steps_per_second: f64,
     /// Wall time left at the present pace [s]; infinite while there is no pace yet.
     pub eta: f64,
-    /// What the user should know now and need not ask for: a contact that turned out not to be resolved.
-    pub note: Option<String>,
+    /// What the user should know now and need not ask for: contact that is not resolved, results that are doubtful.
+    pub notes: Vec<String>,
 }
 
 impl Progress {
@@ -62,7 +62,7 @@ impl Clock {
             particles: simulation.particles(),
             particle_steps_per_second: self.rate(simulation, wall),
             eta: if done > 0.0 { wall * (end - time) / done } else { f64::INFINITY },
-            note: None,
+            notes: Vec::new(),
         }
     }
 

@@ -4,6 +4,7 @@ mod clock;
 mod error;
 mod lookout;
 mod summary;
+mod verdict;
 mod widest;
 
 pub use clock::Progress;
@@ -19,6 +20,8 @@ use lookout::Lookout;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use summary::Energies;
+use verdict::Verdict;
 
 /// How a scene is run.
 #[derive(Clone, Debug)]
@@ -51,17 +54,20 @@ pub fn run(
     manifest.write(&folder)?;
     let start = simulation.ledger();
 
+    let mut verdict = Verdict::new(scene, simulation);
     let outcome = Recorder::new(scene, &folder).map_err(RunError::from).and_then(|recorder| {
-        March { scene, simulation, recorder, options, clock: &clock }.to(scene.time.end, progress)
+        let verdict = &mut verdict;
+        March { scene, simulation, recorder, verdict, options, clock: &clock }.to(scene.time.end, progress)
     });
 
     manifest.performance = clock.performance(simulation);
     manifest.status = *outcome.as_ref().unwrap_or(&Status::Failed);
+    manifest.warnings = verdict.warnings().to_vec();
     manifest.error = outcome.as_ref().err().map(RunError::to_string);
     let saved = manifest.write(&folder);
     outcome?;
     saved?;
-    Ok(Summary::new(scene, simulation, start, manifest))
+    Ok(Summary::new(scene, simulation, Energies { start, scale: verdict.energy_scale() }, manifest))
 }
 
 /// A run under way.
@@ -69,6 +75,7 @@ struct March<'a> {
     scene: &'a Scene,
     simulation: &'a mut dyn Simulation,
     recorder: Recorder,
+    verdict: &'a mut Verdict,
     options: &'a RunOptions,
     clock: &'a Clock,
 }
@@ -82,6 +89,7 @@ impl March<'_> {
         let mut last_step = 0.0;
         let mut reports = self.clock.reports();
         let mut lookout = Lookout::new(self.simulation.time());
+        let mut notes = self.verdict.look(self.scene, self.simulation);
         let status = loop {
             let remaining = end - self.simulation.time();
             if remaining <= ROUNDING * last_step {
@@ -92,14 +100,17 @@ impl March<'_> {
             }
             last_step = self.step(longest_step(remaining, last_step, self.simulation))?;
             self.recorder.record_due(self.simulation)?;
-            let note = lookout.look(self.scene, self.simulation);
-            if reports.due() || note.is_some() {
-                progress(&Progress { note, ..self.clock.progress(self.simulation, end) });
+            notes.extend(lookout.look(self.scene, self.simulation));
+            notes.extend(self.verdict.look(self.scene, self.simulation));
+            if reports.due() || !notes.is_empty() {
+                let notes = std::mem::take(&mut notes);
+                progress(&Progress { notes, ..self.clock.progress(self.simulation, end) });
             }
         };
+        notes.extend(self.verdict.conclude(self.scene, self.simulation));
         self.recorder.record_present(self.simulation)?;
         self.recorder.conclude()?;
-        progress(&self.clock.progress(self.simulation, end));
+        progress(&Progress { notes, ..self.clock.progress(self.simulation, end) });
         Ok(status)
     }
 

@@ -1,8 +1,9 @@
 //! What a run came to, on one screen.
 
 use super::WidestContacts;
+use super::verdict::line;
 use crate::door::{Ledger, Simulation};
-use crate::observe::{BodyRow, Manifest, Performance, Status};
+use crate::observe::{BodyRow, Manifest, Performance, Status, Warning};
 use crate::scene::Scene;
 use std::fmt::{self, Display, Formatter};
 
@@ -17,10 +18,22 @@ pub struct Summary {
     pub start: Ledger,
     /// Energy and momentum at the end.
     pub end: Ledger,
+    /// Largest energy that moved or was stored at a time, turned to heat or was set free by falling [J].
+    pub energy_scale: f64,
     /// How wide the bodies touched, and whether the grid resolved it.
     pub contacts: WidestContacts,
+    /// What is wrong with the results.
+    pub warnings: Vec<Warning>,
     /// How the run compares with each known answer of the scene.
     pub references: Vec<ReferenceResult>,
+}
+
+/// What drifts are held against.
+pub(super) struct Energies {
+    /// The ledger at the start.
+    pub start: Ledger,
+    /// See [`Summary::energy_scale`].
+    pub scale: f64,
 }
 
 /// One quantity of one body against its known answer, at the time that the run reached.
@@ -45,8 +58,16 @@ impl ReferenceResult {
     }
 }
 
+/// Warnings of a kind that the summary names.
+const NAMED: usize = 3;
+
 impl Summary {
-    pub(super) fn new(scene: &Scene, simulation: &dyn Simulation, start: Ledger, manifest: Manifest) -> Self {
+    pub(super) fn new(
+        scene: &Scene,
+        simulation: &dyn Simulation,
+        energies: Energies,
+        manifest: Manifest,
+    ) -> Self {
         let (time, bodies) = (simulation.time(), simulation.bodies());
         let references = scene.references.iter().filter_map(|reference| {
             let body = scene.bodies.iter().position(|body| body.name == reference.body)?;
@@ -60,9 +81,19 @@ impl Summary {
             })
         });
         let references = references.collect();
-        let Manifest { status, performance, .. } = manifest;
+        let Manifest { status, performance, warnings, .. } = manifest;
         let contacts = WidestContacts::new(scene, &simulation.patches());
-        Summary { status, performance, start, end: simulation.ledger(), contacts, references }
+        let Energies { start, scale: energy_scale } = energies;
+        Summary {
+            status,
+            performance,
+            start,
+            energy_scale,
+            end: simulation.ledger(),
+            contacts,
+            warnings,
+            references,
+        }
     }
 
     /// Change of the total energy, which is zero in an exact solution [J].
@@ -70,14 +101,9 @@ impl Summary {
         self.end.total - self.start.total
     }
 
-    /// [`Summary::energy_drift`] over the largest energy that the run started with, ended with or turned into heat, not counting
-    /// the potential energy, whose zero is arbitrary, but counting its change [-].
+    /// [`Summary::energy_drift`] over [`Summary::energy_scale`] [-].
     pub fn relative_energy_drift(&self) -> f64 {
-        let moving = |ledger: &Ledger| ledger.kinetic + ledger.strain;
-        let heat = self.end.friction + self.end.adhesion + self.end.plastic + self.end.damping;
-        let fallen = (self.end.potential - self.start.potential).abs();
-        let scale = moving(&self.start).max(moving(&self.end)).max(heat).max(fallen);
-        if scale > 0.0 { self.energy_drift() / scale } else { 0.0 }
+        if self.energy_scale > 0.0 { self.energy_drift() / self.energy_scale } else { 0.0 }
     }
 }
 
@@ -118,6 +144,7 @@ impl Display for Summary {
             )?;
         }
         write!(f, "{}", self.contacts)?;
+        self.write_warnings(f)?;
         self.references.iter().try_for_each(|reference| write!(f, "{reference}"))
     }
 }
@@ -134,6 +161,26 @@ impl Summary {
             .map(|timing| format!("{} {:.0} %", timing.verb, 100.0 * timing.seconds / total))
             .collect();
         writeln!(f, "  step       {}", shares.join(", "))
+    }
+
+    /// The first few of each kind.
+    fn write_warnings(&self, f: &mut Formatter) -> fmt::Result {
+        let mut kinds: Vec<&str> = Vec::new();
+        for warning in &self.warnings {
+            if !kinds.contains(&warning.kind.as_str()) {
+                kinds.push(&warning.kind);
+            }
+        }
+        for kind in kinds {
+            let of_kind: Vec<_> = self.warnings.iter().filter(|warning| warning.kind == kind).collect();
+            for warning in of_kind.iter().take(NAMED) {
+                writeln!(f, "  warning    from t = {:.4e} s: {}", warning.time, line(warning))?;
+            }
+            if of_kind.len() > NAMED {
+                writeln!(f, "  warning    {kind}: {} more, in run.json", of_kind.len() - NAMED)?;
+            }
+        }
+        Ok(())
     }
 }
 

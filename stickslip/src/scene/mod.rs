@@ -198,6 +198,8 @@ pub struct Time {
     pub transfer: Transfer,
     /// Share of the grid's velocity itself (PIC) in the particles' new velocity; the rest takes the grid's change of velocity (FLIP). 0 to 1.
     pub pic_share: f64,
+    /// Drift of the energy that a run may have before its verdict names it, over the energy that moved [-].
+    pub energy_drift: f64,
 }
 
 /// When in the step strain and stress are computed (Bardenhagen 2002; Nairn 2003).

@@ -117,6 +117,7 @@ impl Simulation for Ballistic {
             position: [vx * self.time, self.height(), 0.0],
             velocity: self.velocity(),
             spin: [0.0, 0.0, -1.0],
+            angular_momentum: [0.0; 3],
             kinetic: 0.5 * particles as f64 * (vx * vx + vy * vy),
             strain: 0.0,
         };
@@ -231,6 +232,7 @@ pub fn scene() -> Scene {
             stress_update: StressUpdate::Last,
             transfer: Transfer::Flip,
             pic_share: 0.0,
+            energy_drift: 0.1,
         },
         gravity: [0.0, -GRAVITY, 0.0],
         materials: vec![NamedMaterial { name: "rubber".into(), density: 1000.0, law }],

@@ -26,6 +26,10 @@ table! {
         /// Share of the grid's velocity itself (PIC) in the particles' new velocity, 0 to 1; the rest is FLIP.
         #[schemars(extend("default" = 0))]
         pic_share: Option<Quantity<Ratio>>,
+        /// Drift of the total energy beyond which a run warns, over the largest energy that moved, was stored or turned
+        /// to heat; above 0.
+        #[schemars(extend("default" = 0.1))]
+        energy_drift: Option<Quantity<Ratio>>,
     }
 }
 
@@ -61,6 +65,10 @@ impl Time {
         let pic_share = self.pic_share.as_ref().map_or(Ok(0.0), |share| {
             share.checked(context, "a number from 0 to 1", |value| (0.0..=1.0).contains(&value))
         });
+        let energy_drift = self
+            .energy_drift
+            .as_ref()
+            .map_or(Ok(0.1), |drift| drift.checked(context, "a number above 0", |value| value > 0.0));
         let update = self.stress_update.as_ref();
         let transfer = self.transfer.as_ref();
         Ok(scene::Time {
@@ -70,6 +78,7 @@ impl Time {
             stress_update: update.map_or(Ok(StressUpdate::ModifiedLast), |word| word.value(context))?,
             transfer: transfer.map_or(Ok(Transfer::Rflip), |word| word.value(context))?,
             pic_share: pic_share?,
+            energy_drift: energy_drift?,
         })
     }
 }

@@ -1,0 +1,51 @@
+//! Stressed particles that cross cells with linear functions, whose slopes jump there.
+
+use super::{Check, Finding, Look};
+use crate::scene::BasisKind;
+
+/// Counts the particles that have left their first cell while their body is under stress.
+pub(super) struct Crossing;
+
+/// Share of the particles that may cross.
+const CROSSED: f64 = 0.1;
+/// Stress over the stiffness against waves, below which jumps of the forces harm nobody.
+const STRESSED: f64 = 1e-3;
+
+impl Check for Crossing {
+    fn kind(&self) -> &'static str {
+        "cell-crossing"
+    }
+
+    fn advice(&self) -> &'static str {
+        "forces jump at each crossing: take space.basis = \"gimp\""
+    }
+
+    fn look(&mut self, look: &Look) -> Vec<Finding> {
+        match look.scene.discretization.basis {
+            BasisKind::Linear => look.free().filter_map(|body| crossing(look, body)).collect(),
+            BasisKind::Gimp => Vec::new(),
+        }
+    }
+}
+
+fn crossing(look: &Look, body: usize) -> Option<Finding> {
+    let origin = look.scene.domain.as_ref().map_or([0.0; 3], |domain| domain.min);
+    let size = look.scene.discretization.cell;
+    let cell = |x: [f64; 3]| [0, 1, 2].map(|i| ((x[i] - origin[i]) / size).floor() as i64);
+    let (start, now) = (&look.neighbours[body].start, &look.particles[body]);
+    let crossed = now.iter().zip(start).filter(|(now, start)| cell(now.position) != cell(**start)).count();
+    let crossed = crossed as f64 / now.len() as f64;
+    // W = sigma^2 / 2 M per volume
+    let state = &look.bodies[body];
+    let density = look.scene.materials[look.scene.bodies[body].material].density;
+    let stress = (2.0 * state.strain * density / (state.mass * look.wave_modulus(body))).sqrt();
+    if crossed.is_nan() || crossed <= CROSSED || stress.is_nan() || stress <= STRESSED {
+        return None;
+    }
+    let name = &look.scene.bodies[body].name;
+    let message = format!(
+        "{:.0} % of `{name}` crossed cells with linear functions under a stress of {stress:.1e} of its stiffness",
+        100.0 * crossed
+    );
+    Some(Finding { body: Some(body), position: None, worst: stress, message })
+}

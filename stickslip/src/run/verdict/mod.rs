@@ -1,0 +1,229 @@
+//! During and after a run: what makes its results doubtful. One file a check, and the list of them.
+
+mod crossing;
+mod energy;
+mod neighbours;
+mod precision;
+mod speed;
+mod spin;
+mod strain;
+mod tearing;
+
+use crate::door::{BodyState, Ledger, Simulation, TracedParticle};
+use crate::observe::Warning;
+use crate::scene::{Motion, Scene};
+use energy::Balance;
+use neighbours::Neighbours;
+
+/// Every check of a run.
+fn checks() -> Vec<Box<dyn Check>> {
+    vec![
+        Box::new(energy::Energy),
+        Box::new(spin::Spin::default()),
+        Box::new(strain::Strain::default()),
+        Box::new(tearing::Tearing::default()),
+        Box::new(crossing::Crossing),
+        Box::new(speed::Speed),
+        Box::new(precision::Precision::default()),
+    ]
+}
+
+/// A check of a run.
+trait Check {
+    /// Its name in `run.json`.
+    fn kind(&self) -> &'static str;
+
+    /// What to try.
+    fn advice(&self) -> &'static str;
+
+    /// What is wrong now.
+    fn look(&mut self, look: &Look) -> Vec<Finding>;
+}
+
+/// What a check sees.
+struct Look<'a> {
+    scene: &'a Scene,
+    simulation: &'a dyn Simulation,
+    /// Energy and momentum now.
+    ledger: &'a Ledger,
+    /// Energy since the start.
+    balance: &'a Balance,
+    /// The bodies now.
+    bodies: &'a [BodyState],
+    /// Neighbours at the start, body by body; none in rigid bodies.
+    neighbours: &'a [Neighbours],
+    /// Their particles now, in the order of [`Neighbours::start`].
+    particles: &'a [Vec<TracedParticle>],
+}
+
+impl Look<'_> {
+    /// Bodies that deform.
+    fn free(&self) -> impl Iterator<Item = usize> {
+        let free = |&i: &usize| matches!(self.scene.bodies[i].motion, Motion::Free { .. });
+        (0..self.bodies.len()).filter(free)
+    }
+
+    /// Speed of the fastest wave in an undeformed body [m/s].
+    fn wave_speed(&self, body: usize) -> f64 {
+        let material = &self.scene.materials[self.scene.bodies[body].material];
+        (self.wave_modulus(body) / material.density).sqrt()
+    }
+
+    /// Stiffness against the fastest wave in an undeformed body [Pa].
+    fn wave_modulus(&self, body: usize) -> f64 {
+        let material = &self.scene.materials[self.scene.bodies[body].material];
+        material.law.wave_modulus(self.scene.dimension.thickness(), &crate::tensor::Matrix::IDENTITY, 1.0)
+    }
+}
+
+/// Something wrong at one time.
+struct Finding {
+    /// The body, if it is one.
+    body: Option<usize>,
+    /// Where, if it has a place [m].
+    position: Option<[f64; 3]>,
+    /// By how much.
+    worst: f64,
+    /// What.
+    message: String,
+}
+
+/// Looks at a run now and then, and remembers what was wrong.
+pub(super) struct Verdict {
+    checks: Vec<Box<dyn Check>>,
+    balance: Balance,
+    neighbours: Vec<Neighbours>,
+    interval: f64,
+    next_time: f64,
+    next_step: u64,
+    warnings: Vec<Warning>,
+    lines: usize,
+}
+
+/// Looks in a run, at most.
+const LOOKS: f64 = 200.0;
+/// Steps between two looks, at least: what a look costs is then nothing beside them.
+const STEPS: u64 = 100;
+/// Lines in a run: beyond, the summary tells.
+const MOST_LINES: usize = 6;
+
+impl Verdict {
+    /// The verdict on a run that begins.
+    pub(super) fn new(scene: &Scene, simulation: &dyn Simulation) -> Self {
+        Verdict {
+            checks: checks(),
+            balance: Balance::default(),
+            neighbours: neighbours::of_bodies(scene, simulation),
+            interval: scene.outputs.tables.max(scene.time.end / LOOKS),
+            next_time: simulation.time(),
+            next_step: simulation.steps(),
+            warnings: Vec::new(),
+            lines: 0,
+        }
+    }
+
+    /// What is new, if it is time to look.
+    pub(super) fn look(&mut self, scene: &Scene, simulation: &dyn Simulation) -> Vec<String> {
+        if simulation.time() < self.next_time || simulation.steps() < self.next_step {
+            return Vec::new();
+        }
+        // At the times of tables, which sum up all particles anyway.
+        self.next_time = ((simulation.time() / self.interval + EARLY).floor() + 1.0 - EARLY) * self.interval;
+        self.next_step = simulation.steps() + STEPS;
+        self.look_now(scene, simulation)
+    }
+
+    /// What is new at the end of the run.
+    pub(super) fn conclude(&mut self, scene: &Scene, simulation: &dyn Simulation) -> Vec<String> {
+        let looked = self.next_step == simulation.steps() + STEPS;
+        if looked { Vec::new() } else { self.look_now(scene, simulation) }
+    }
+
+    fn look_now(&mut self, scene: &Scene, simulation: &dyn Simulation) -> Vec<String> {
+        let (ledger, bodies) = (simulation.ledger(), simulation.bodies());
+        self.balance.update(&ledger);
+        let particles: Vec<_> = (self.neighbours.iter().enumerate())
+            .map(|(body, neighbours)| neighbours.particles(simulation, body))
+            .collect();
+        let look = Look {
+            scene,
+            simulation,
+            ledger: &ledger,
+            balance: &self.balance,
+            bodies: &bodies,
+            neighbours: &self.neighbours,
+            particles: &particles,
+        };
+        let mut lines = Vec::new();
+        for check in &mut self.checks {
+            let found = check.look(&look);
+            let new = found.into_iter().filter_map(|finding| {
+                let body = finding.body.map(|body| scene.bodies[body].name.clone());
+                let known = self.warnings.iter_mut().find(|w| w.kind == check.kind() && w.body == body);
+                if let Some(known) = known {
+                    known.count += 1;
+                    if finding.worst.abs() > known.worst.abs() {
+                        known.message = finding.message;
+                        known.position = finding.position;
+                        known.worst = finding.worst;
+                    }
+                    return None;
+                }
+                self.warnings.push(Warning {
+                    kind: check.kind().to_owned(),
+                    message: finding.message,
+                    advice: check.advice().to_owned(),
+                    body,
+                    position: finding.position,
+                    time: simulation.time(),
+                    count: 1,
+                    worst: finding.worst,
+                });
+                self.warnings.last().map(line)
+            });
+            lines.extend(new);
+        }
+        lines.truncate(MOST_LINES - self.lines);
+        self.lines += lines.len();
+        if self.lines == MOST_LINES
+            && let Some(line) = lines.last_mut()
+        {
+            *line += "; no more of this until the summary";
+        }
+        lines
+    }
+
+    /// The largest energy that drifts are held against [J].
+    pub(super) fn energy_scale(&self) -> f64 {
+        self.balance.scale
+    }
+
+    /// What was wrong, in the order in which it was found.
+    pub(super) fn warnings(&self) -> &[Warning] {
+        &self.warnings
+    }
+}
+
+/// Part of the interval by which a look may come early, as tables may.
+const EARLY: f64 = 1e-6;
+
+/// A warning as it is printed.
+pub(super) fn line(warning: &Warning) -> String {
+    format!("{}; {}", warning.message, warning.advice)
+}
+
+#[inline]
+fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    std::array::from_fn(|i| a[i] - b[i])
+}
+
+#[inline]
+fn norm(a: [f64; 3]) -> f64 {
+    a.iter().map(|x| x * x).sum::<f64>().sqrt()
+}
+
+/// `(0.1503, -2, 0)`: enough to find it in a picture.
+fn place(position: [f64; 3]) -> String {
+    let short = |x: f64| format!("{x:.3e}").parse().unwrap_or(x).to_string();
+    format!("({}) m", position.map(short).join(", "))
+}

@@ -1,0 +1,132 @@
+//! Particles that were neighbours before anything moved: some of each body, chosen once.
+
+use crate::door::{Simulation, TracedParticle};
+use crate::scene::{Motion, Scene};
+use std::collections::{HashMap, HashSet};
+
+/// Neighbours of a body at its start.
+#[derive(Default)]
+pub(super) struct Neighbours {
+    /// Where the chosen particles were [m].
+    pub start: Vec<[f64; 3]>,
+    /// Pairs of them, by their place in `start`.
+    pub pairs: Vec<[u32; 2]>,
+    /// Place in `start` of each particle of the body, by its number.
+    place: Vec<u32>,
+}
+
+/// Particles in all bodies whose neighbours are chosen; in a body at least [`FEWEST`] of them.
+const MOST: usize = 1000;
+const FEWEST: usize = 24;
+/// Neighbours are so near, in distances of particles: on a lattice, those across edges and faces of a particle's box.
+const NEAR: f64 = 1.5;
+/// Not chosen.
+const NONE: u32 = u32::MAX;
+
+/// Neighbours in each body; none in a rigid one.
+pub(super) fn of_bodies(scene: &Scene, simulation: &dyn Simulation) -> Vec<Neighbours> {
+    let all = simulation.particles();
+    (scene.bodies.iter().enumerate())
+        .map(|(i, body)| match body.motion {
+            Motion::Free { .. } => Neighbours::new(simulation, i, all),
+            Motion::Rigid { .. } => Neighbours::default(),
+        })
+        .collect()
+}
+
+impl Neighbours {
+    fn new(simulation: &dyn Simulation, body: usize, all: usize) -> Self {
+        let start = simulation.starts(body);
+        let chosen = chosen(start.len(), (MOST * start.len() / all.max(1)).max(FEWEST));
+        let mut seeds = vec![false; start.len()];
+        chosen.iter().for_each(|&number| seeds[number as usize] = true);
+        let traced = simulation.trace(body, &|number| seeds[number as usize]);
+        let widest = traced.iter().map(|particle| particle.half_width).fold(0.0, f64::max);
+        if widest == 0.0 {
+            return Neighbours::default();
+        }
+
+        // All particles by cells as wide as the farthest neighbour, as far as a chosen one is near.
+        let side = 2.0 * NEAR * widest;
+        let cell = |x: [f64; 3]| x.map(|x| (x / side).floor() as i64);
+        let around = |[i, j, k]: [i64; 3]| {
+            let near = move |d: i64| [i + d % 3 - 1, j + d / 3 % 3 - 1, k + d / 9 - 1];
+            (0..27).map(near)
+        };
+        let near: HashSet<[i64; 3]> = chosen.iter().flat_map(|&n| around(cell(start[n as usize]))).collect();
+        let mut cells: HashMap<[i64; 3], Vec<u32>> = HashMap::new();
+        for (number, &x) in start.iter().enumerate() {
+            if near.contains(&cell(x)) {
+                cells.entry(cell(x)).or_default().push(number as u32);
+            }
+        }
+
+        let mut half_width = vec![0.0; start.len()];
+        traced.iter().for_each(|particle| half_width[particle.number as usize] = particle.half_width);
+        let mut neighbours = Neighbours { place: vec![NONE; start.len()], ..Neighbours::default() };
+        for &a in &chosen {
+            let reach = 2.0 * NEAR * half_width[a as usize];
+            for &b in around(cell(start[a as usize])).filter_map(|cell| cells.get(&cell)).flatten() {
+                let distance = super::norm(super::minus(start[a as usize], start[b as usize]));
+                let twice = seeds[b as usize] && b <= a;
+                if !twice && distance > 0.0 && distance <= reach {
+                    let pair = [a, b].map(|number| neighbours.choose(number, &start));
+                    neighbours.pairs.push(pair);
+                }
+            }
+        }
+        neighbours
+    }
+
+    /// Place in `start` of a particle that is chosen now or was before.
+    fn choose(&mut self, number: u32, start: &[[f64; 3]]) -> u32 {
+        let place = &mut self.place[number as usize];
+        if *place == NONE {
+            *place = self.start.len() as u32;
+            self.start.push(start[number as usize]);
+        }
+        *place
+    }
+
+    /// The chosen particles now, in the order of `start`.
+    pub(super) fn particles(&self, simulation: &dyn Simulation, body: usize) -> Vec<TracedParticle> {
+        if self.start.is_empty() {
+            return Vec::new();
+        }
+        let place = |number: u32| self.place[number as usize];
+        let traced = simulation.trace(body, &|number| place(number) != NONE);
+        let mut particles = traced.clone();
+        for particle in traced {
+            particles[place(particle.number) as usize] = particle;
+        }
+        particles
+    }
+}
+
+/// So many of the numbers below `count`, ascending: one in each equal part, anywhere in it, so that no row of a lattice
+/// is preferred.
+fn chosen(count: usize, wanted: usize) -> Vec<u32> {
+    if wanted >= count {
+        return (0..count as u32).collect();
+    }
+    let first = |part: usize| part * count / wanted;
+    (0..wanted)
+        .map(|part| {
+            let scattered = (part as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 32;
+            (first(part) + scattered as usize % (first(part + 1) - first(part))) as u32
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_chosen_all_over_the_body_once() {
+        assert_eq!(chosen(3, 5), [0, 1, 2]);
+        let some = chosen(1000, 300);
+        assert_eq!(some.len(), 300);
+        assert!(some.windows(2).all(|two| two[0] < two[1] && two[1] - two[0] < 8));
+    }
+}

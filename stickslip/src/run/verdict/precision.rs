@@ -1,0 +1,69 @@
+//! Steps that are lost in the rounding of positions.
+
+use super::{Check, Finding, Look, norm};
+use crate::scene;
+
+/// Adds up the way of bodies whose steps are about as short as the spacing of numbers where they are.
+#[derive(Default)]
+pub(super) struct Precision {
+    /// Way that may be lost, body by body [m].
+    doubtful: Vec<f64>,
+    time: f64,
+}
+
+/// Spacings of numbers in a step: below, rounding takes or adds more than a tenth of each.
+const SPACINGS: f64 = 5.0;
+/// Way that may be lost, in cells.
+const BOUND: f64 = 0.1;
+
+impl Check for Precision {
+    fn kind(&self) -> &'static str {
+        "precision"
+    }
+
+    fn advice(&self) -> &'static str {
+        "take space.precision = \"double\", or bring the bodies nearer to the origin"
+    }
+
+    fn look(&mut self, look: &Look) -> Vec<Finding> {
+        let epsilon = match look.scene.precision {
+            scene::Precision::Single => f64::from(f32::EPSILON),
+            scene::Precision::Double => f64::EPSILON,
+        };
+        let begun = !self.doubtful.is_empty();
+        self.doubtful.resize(look.bodies.len(), 0.0);
+        let time = look.simulation.time();
+        // The way since the last look; at the start, that of the whole run.
+        let since = if begun { time - self.time } else { look.scene.time.end - time };
+        self.time = time;
+        let step = look.simulation.stable_step();
+        let mut findings = Vec::new();
+        for body in look.free() {
+            let state = &look.bodies[body];
+            let speed = norm(state.velocity);
+            let farthest = look.particles[body].iter().flat_map(|particle| particle.position);
+            let spacing = epsilon * farthest.map(f64::abs).fold(0.0, f64::max);
+            let way = if speed * step < SPACINGS * spacing { speed * since } else { 0.0 };
+            let doubtful = self.doubtful[body] + way;
+            if begun {
+                self.doubtful[body] = doubtful;
+            }
+            let cells = doubtful / look.scene.discretization.cell;
+            if cells > BOUND {
+                let name = &look.scene.bodies[body].name;
+                let message = format!(
+                    "`{name}` moves by {:.2e} m a step where numbers are {spacing:.2e} m apart: \
+                     rounding takes or adds a part of its way, or all",
+                    speed * step
+                );
+                findings.push(Finding {
+                    body: Some(body),
+                    position: Some(state.position),
+                    worst: cells,
+                    message,
+                });
+            }
+        }
+        findings
+    }
+}

@@ -1,0 +1,166 @@
+//! Angular momentum lost or gained where no torque acts.
+
+use super::{Check, Finding, Look, minus, norm};
+use crate::door::BodyState;
+use crate::scene::{Face, Motion, Scene};
+use crate::tensor::cross;
+use std::collections::BTreeSet;
+
+/// Holds angular momentum against its start: of each body that nothing but gravity has touched, about its own centre of
+/// mass, and of all bodies where nothing from outside acts.
+#[derive(Default)]
+pub(super) struct Spin {
+    alone: Vec<Alone>,
+    together: Option<Together>,
+    begun: bool,
+}
+
+/// A body that nothing has touched yet.
+struct Alone {
+    body: usize,
+    /// At the start.
+    velocity: [f64; 3],
+    angular_momentum: [f64; 3],
+    time: f64,
+}
+
+/// Bodies that only act on each other.
+struct Together {
+    angular_momentum: [f64; 3],
+    /// Sum of the bodies' own angular momenta and of the moments of their momenta about the centre of all, each counted
+    /// positive, at most so far [kg m^2/s].
+    scale: f64,
+}
+
+/// Change that is allowed [-].
+const BOUND: f64 = 0.02;
+/// Energy of the turning over that of all motion about the centre of mass and of strain: below, a body does not turn,
+/// it rings.
+const TURNS: f64 = 0.01;
+/// The same over the energy of the motion on the whole: below, the turning is round-off, or a push that is no more than
+/// [`PUSHED`].
+const ROUNDING: f64 = 1e-4;
+/// Change of the velocity that gravity does not explain, over the speed of the particles: something else pushed.
+const PUSHED: f64 = 1e-4;
+/// Cells to a face that does something: nearer, a body may feel it.
+const NEAR: f64 = 2.0;
+
+impl Check for Spin {
+    fn kind(&self) -> &'static str {
+        "angular-momentum"
+    }
+
+    fn advice(&self) -> &'static str {
+        "try smaller cells; compare with another stress_update"
+    }
+
+    fn look(&mut self, look: &Look) -> Vec<Finding> {
+        if !self.begun {
+            self.begin(look);
+            return Vec::new();
+        }
+        let touched: BTreeSet<usize> =
+            look.simulation.patches().iter().flat_map(|patch| [patch.body_a, patch.body_b]).collect();
+        self.alone.retain(|alone| !touched.contains(&alone.body) && alone.unpushed(look));
+        let mut findings: Vec<_> = self.alone.iter().filter_map(|alone| alone.look(look)).collect();
+        findings.extend(self.together.as_mut().and_then(|together| together.look(look)));
+        findings
+    }
+}
+
+impl Spin {
+    fn begin(&mut self, look: &Look) {
+        self.begun = true;
+        let time = look.simulation.time();
+        let alone = |body: usize| {
+            let state = &look.bodies[body];
+            Alone { body, velocity: state.velocity, angular_momentum: own(state), time }
+        };
+        self.alone = look.free().map(alone).collect();
+        if look.bodies.len() > 1 && isolated(look.scene) {
+            self.together = Some(Together { angular_momentum: look.ledger.angular_momentum, scale: 0.0 });
+        }
+    }
+}
+
+/// Nothing outside the bodies acts on them.
+fn isolated(scene: &Scene) -> bool {
+    let faces = scene.domain.iter().flat_map(|domain| domain.faces).flatten();
+    scene.gravity == [0.0; 3]
+        && scene.bodies.iter().all(|body| matches!(body.motion, Motion::Free { .. }))
+        && faces.into_iter().all(|face| face == Face::Open)
+}
+
+/// Angular momentum about the body's own centre of mass [kg m^2/s].
+fn own(state: &BodyState) -> [f64; 3] {
+    minus(state.angular_momentum, cross(state.position, state.velocity.map(|v| state.mass * v)))
+}
+
+impl Alone {
+    fn unpushed(&self, look: &Look) -> bool {
+        let state = &look.bodies[self.body];
+        let fallen = look.simulation.time() - self.time;
+        let push: [f64; 3] =
+            std::array::from_fn(|i| state.velocity[i] - self.velocity[i] - look.scene.gravity[i] * fallen);
+        let speed = (2.0 * state.kinetic / state.mass).sqrt();
+        norm(push) <= PUSHED * speed
+            && !look.particles[self.body].iter().any(|particle| near_face(look.scene, particle.position))
+    }
+
+    fn look(&self, look: &Look) -> Option<Finding> {
+        let state = &look.bodies[self.body];
+        let now = own(state);
+        let (before, after) = (norm(self.angular_momentum), norm(now));
+        let change = norm(minus(now, self.angular_momentum)) / before.max(after);
+        // L^2 / 2 I, with I = m r^2 over the particles watched, which is right in the plane and large enough in space.
+        let particles = &look.particles[self.body];
+        let squares = particles.iter().map(|particle| norm(minus(particle.position, state.position)).powi(2));
+        let inertia = state.mass * squares.sum::<f64>() / particles.len() as f64;
+        let turning = 0.5 * before.max(after).powi(2) / inertia;
+        let whole = 0.5 * state.mass * norm(state.velocity).powi(2);
+        let turns = turning >= TURNS * (state.kinetic - whole + state.strain) && turning >= ROUNDING * whole;
+        if !turns || change.is_nan() || change <= BOUND {
+            return None;
+        }
+        let name = &look.scene.bodies[self.body].name;
+        let message = format!(
+            "angular momentum of `{name}` is off by {:.1} % though no torque acts on it",
+            100.0 * change
+        );
+        Some(Finding { body: Some(self.body), position: Some(state.position), worst: change, message })
+    }
+}
+
+impl Together {
+    fn look(&mut self, look: &Look) -> Option<Finding> {
+        let mass: f64 = look.bodies.iter().map(|state| state.mass).sum();
+        let mean = |of: fn(&BodyState) -> [f64; 3]| {
+            [0, 1, 2].map(|i| look.bodies.iter().map(|state| state.mass * of(state)[i]).sum::<f64>() / mass)
+        };
+        let (center, velocity) = (mean(|state| state.position), mean(|state| state.velocity));
+        let size = |state: &BodyState| {
+            let relative = minus(state.velocity, velocity).map(|v| state.mass * v);
+            norm(own(state)) + norm(cross(minus(state.position, center), relative))
+        };
+        self.scale = self.scale.max(look.bodies.iter().map(size).sum());
+        let change = norm(minus(look.ledger.angular_momentum, self.angular_momentum)) / self.scale;
+        if change.is_nan() || change <= BOUND {
+            return None;
+        }
+        let message = format!(
+            "angular momentum of all bodies is off by {:.1} % of the bodies' own though nothing outside acts",
+            100.0 * change
+        );
+        Some(Finding { body: None, position: None, worst: change, message })
+    }
+}
+
+fn near_face(scene: &Scene, x: [f64; 3]) -> bool {
+    let Some(domain) = &scene.domain else { return false };
+    let reach = NEAR * scene.discretization.cell;
+    (0..scene.dimension.axes()).any(|axis| {
+        let [lower, upper] = domain.faces[axis];
+        (lower != Face::Open && x[axis] < domain.min[axis] + reach)
+            || (upper != Face::Open && x[axis] > domain.max[axis] - reach)
+    })
+}

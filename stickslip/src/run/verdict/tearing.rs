@@ -1,0 +1,99 @@
+//! Numerical fracture: particles that parted beyond the reach of their functions.
+
+use super::{Check, Finding, Look, minus, place};
+use crate::door::TracedParticle;
+use crate::scene::BasisKind;
+
+/// Looks for neighbours that no longer share a node of the grid.
+#[derive(Default)]
+pub(super) struct Tearing {
+    /// Where each body tore first [m].
+    first: Vec<Option<[f64; 3]>>,
+}
+
+/// Pairs whose gap is looked into, the widest first.
+const LOOKED_INTO: usize = 16;
+
+impl Check for Tearing {
+    fn kind(&self) -> &'static str {
+        "tearing"
+    }
+
+    fn advice(&self) -> &'static str {
+        "no law tears it, the grid lost it: try more particles_per_side, the gimp basis, smaller cells, a smaller load"
+    }
+
+    fn look(&mut self, look: &Look) -> Vec<Finding> {
+        self.first.resize(look.bodies.len(), None);
+        let of_body = |body: usize| {
+            let tear = tear(look, body)?;
+            let position = *self.first[body].get_or_insert(tear.position);
+            let name = &look.scene.bodies[body].name;
+            let message = format!(
+                "`{name}` tears, first at {}: {:.2} % of the neighbours watched are up to {:.2} times as far apart \
+                 as the grid joins them",
+                place(position),
+                100.0 * tear.share,
+                tear.excess
+            );
+            Some(Finding { body: Some(body), position: Some(position), worst: tear.share, message })
+        };
+        look.free().filter_map(of_body).collect()
+    }
+}
+
+/// What is torn of a body.
+struct Tear {
+    /// Share of the neighbours that parted.
+    share: f64,
+    /// Distance of those that are farthest apart over the reach of their functions.
+    excess: f64,
+    /// The middle between them [m].
+    position: [f64; 3],
+}
+
+/// Neighbours at the start that are so far apart along an axis that no node need reach both, with nothing between them.
+fn tear(look: &Look, body: usize) -> Option<Tear> {
+    let now = &look.particles[body];
+    let pairs = &look.neighbours[body].pairs;
+    let parted = |&[a, b]: &[u32; 2]| {
+        let (a, b) = (&now[a as usize], &now[b as usize]);
+        let excess = distance(a.position, b.position) / reach(look, a, b);
+        (excess > 1.0).then(|| (excess, middle(a.position, b.position)))
+    };
+    let mut parted: Vec<(f64, [f64; 3])> = pairs.iter().filter_map(parted).collect();
+    if parted.is_empty() {
+        return None;
+    }
+    let count = parted.len();
+    parted.sort_by(|a, b| b.0.total_cmp(&a.0));
+    parted.truncate(LOOKED_INTO);
+    // Neighbours that slid apart by plastic flow have others between them.
+    let mut empty = vec![true; parted.len()];
+    let half = 0.5 * look.scene.discretization.cell;
+    look.simulation.visit(body, &mut |particle| {
+        for (empty, (_, middle)) in empty.iter_mut().zip(&parted) {
+            *empty &= distance(particle.position, *middle) > half;
+        }
+    });
+    let (excess, position) = parted.into_iter().zip(empty).find(|(_, empty)| *empty)?.0;
+    Some(Tear { share: count as f64 / pairs.len() as f64, excess, position })
+}
+
+/// Distance along an axis up to which two particles share a node wherever they lie [m].
+fn reach(look: &Look, a: &TracedParticle, b: &TracedParticle) -> f64 {
+    let cell = look.scene.discretization.cell;
+    match look.scene.discretization.basis {
+        BasisKind::Linear => cell,
+        BasisKind::Gimp => cell + a.half_width + b.half_width,
+    }
+}
+
+/// Largest distance along an axis [m].
+fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
+    minus(a, b).into_iter().map(f64::abs).fold(0.0, f64::max)
+}
+
+fn middle(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    std::array::from_fn(|i| 0.5 * (a[i] + b[i]))
+}

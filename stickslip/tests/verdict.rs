@@ -1,0 +1,318 @@
+//! A run that is wrong says so, and one that is sound does not.
+//!
+//! A puppet moves as it is told, so that each thing that can be wrong is wrong alone, whatever the engine can do.
+
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use stickslip::door::*;
+use stickslip::observe::{Results, Warning};
+use stickslip::run::{self, RunOptions};
+use stickslip::scene::{self, Scene};
+
+/// A block of 10 by 4 cells of 10 cm with four particles in each, about the origin.
+const SCENE: &str = r#"
+    space = { dimension = "plane-strain", cell = 0.1, basis = "gimp" }
+    time = { end = 1 }
+    materials.gel = { density = 1000, neo_hookean = { bulk_modulus = 2e4, shear_modulus = 1e4 } }
+    [[bodies]]
+    name = "block"
+    material = "gel"
+    shape.box = { min = [-0.5, -0.2], max = [0.5, 0.2] }
+"#;
+const DENSITY: f64 = 1000.0;
+const SPACING: f64 = 0.05;
+const STEP: f64 = 1.0 / 1024.0;
+
+/// Where a particle is that was at a point, its velocity and its deformation gradient.
+type Motion = fn([f64; 2], f64) -> ([f64; 2], [f64; 2], [[f64; 2]; 2]);
+
+/// A body that moves as it is told.
+struct Puppet {
+    motion: Motion,
+    /// Total and strain energy at a time [J].
+    energy: fn(f64) -> [f64; 2],
+    time: f64,
+    steps: u64,
+}
+
+const REST: [[f64; 2]; 2] = [[1.0, 0.0], [0.0, 1.0]];
+
+impl Puppet {
+    fn new(motion: Motion) -> Self {
+        Puppet { motion, energy: |_| [0.0, 0.0], time: 0.0, steps: 0 }
+    }
+
+    fn now(&self) -> impl Iterator<Item = TracedParticle> {
+        self.starts(0).into_iter().zip(0..).map(|([x, y, _], number)| {
+            let (position, velocity, f) = (self.motion)([x, y], self.time);
+            TracedParticle {
+                number,
+                half_width: 0.5 * SPACING,
+                position: [position[0], position[1], 0.0],
+                velocity: [velocity[0], velocity[1], 0.0],
+                deformation: [[f[0][0], f[0][1], 0.0], [f[1][0], f[1][1], 0.0], [0.0, 0.0, 1.0]],
+            }
+        })
+    }
+}
+
+impl Simulation for Puppet {
+    fn time(&self) -> f64 {
+        self.time
+    }
+
+    fn steps(&self) -> u64 {
+        self.steps
+    }
+
+    fn particles(&self) -> usize {
+        20 * 8
+    }
+
+    fn stable_step(&self) -> f64 {
+        STEP
+    }
+
+    fn step(&mut self, longest: f64) -> Result<(), StepError> {
+        self.time += longest.min(STEP);
+        self.steps += 1;
+        Ok(())
+    }
+
+    fn bodies(&self) -> Vec<BodyState> {
+        let particle = DENSITY * SPACING * SPACING;
+        let mean = |of: fn(&TracedParticle) -> [f64; 3]| {
+            let sum = self.now().fold([0.0; 3], |sum, p| [0, 1, 2].map(|i| sum[i] + of(&p)[i]));
+            sum.map(|x| x / self.particles() as f64)
+        };
+        let moment = |p: TracedParticle| p.position[0] * p.velocity[1] - p.position[1] * p.velocity[0];
+        let angular: f64 = self.now().map(moment).sum();
+        let squares = self.now().flat_map(|p| p.velocity).map(|v| v * v).sum::<f64>();
+        vec![BodyState {
+            mass: particle * self.particles() as f64,
+            position: mean(|p| p.position),
+            velocity: mean(|p| p.velocity),
+            spin: [0.0; 3],
+            angular_momentum: [0.0, 0.0, particle * angular],
+            kinetic: 0.5 * particle * squares,
+            strain: (self.energy)(self.time)[1],
+        }]
+    }
+
+    fn ledger(&self) -> Ledger {
+        let [total, strain] = (self.energy)(self.time);
+        Ledger { kinetic: self.bodies()[0].kinetic, strain, total, ..Ledger::default() }
+    }
+
+    fn take_contacts(&mut self) -> Vec<ContactState> {
+        Vec::new()
+    }
+
+    fn contacts(&self) -> Vec<ContactState> {
+        Vec::new()
+    }
+
+    fn patches(&self) -> Vec<Patch> {
+        Vec::new()
+    }
+
+    fn snapshot(&self) -> ParticleSnapshot {
+        let mut snapshot = ParticleSnapshot { dimension: 2, ..ParticleSnapshot::default() };
+        for particle in self.now() {
+            snapshot.body.push(0);
+            snapshot.number.push(particle.number);
+            snapshot.position.push(particle.position);
+            snapshot.velocity.push(particle.velocity);
+            snapshot.mass.push(DENSITY * SPACING * SPACING);
+            snapshot.volume.push(SPACING * SPACING);
+            snapshot.stress.push([0.0; 6]);
+            snapshot.deformation.push(std::array::from_fn(|i| particle.deformation[i / 3][i % 3]));
+        }
+        snapshot
+    }
+
+    fn starts(&self, _body: usize) -> Vec<[f64; 3]> {
+        let along = |i: usize, count: usize| SPACING * (i as f64 + 0.5 - 0.5 * count as f64);
+        (0..self.particles()).map(|i| [along(i % 20, 20), along(i / 20, 8), 0.0]).collect()
+    }
+
+    fn trace(&self, _body: usize, wanted: &(dyn Fn(u32) -> bool + Sync)) -> Vec<TracedParticle> {
+        self.now().filter(|particle| wanted(particle.number)).collect()
+    }
+
+    fn grid_snapshot(&self) -> GridSnapshot {
+        GridSnapshot::default()
+    }
+
+    fn timings(&self) -> Vec<(&'static str, f64)> {
+        Vec::new()
+    }
+}
+
+/// What a run of this scene notes while it runs, and what its record says in the end.
+fn judge(text: &str, simulation: &mut dyn Simulation) -> (Vec<String>, Vec<Warning>) {
+    let scene: Scene = scene::parse("puppet.toml", text, &[]).unwrap().scene;
+    let out = tempfile::tempdir().unwrap();
+    let stop = Arc::new(AtomicBool::new(false));
+    let options = RunOptions { out: out.path().join("results"), stop, threads: 1 };
+    let mut notes = Vec::new();
+    let mut progress = |progress: &run::Progress| notes.extend(progress.notes.clone());
+    let summary = run::run(&scene, simulation, &options, &mut progress).unwrap();
+    let recorded = Results::open(&options.out).unwrap().manifest().warnings.clone();
+    assert_eq!(summary.warnings, recorded);
+    let text = summary.to_string();
+    assert_eq!(text.matches("  warning    ").count(), recorded.len(), "{text}");
+    (notes, recorded)
+}
+
+/// Kinds of what is wrong.
+fn kinds(text: &str, mut puppet: Puppet) -> Vec<String> {
+    judge(text, &mut puppet).1.into_iter().map(|warning| warning.kind).collect()
+}
+
+/// Turning at 1 rad/s, and flying.
+fn turning([x, y]: [f64; 2], t: f64) -> ([f64; 2], [f64; 2], [[f64; 2]; 2]) {
+    let (sin, cos) = t.sin_cos();
+    let turned = [cos * x - sin * y, sin * x + cos * y];
+    ([turned[0] + 2.0 * t, turned[1]], [2.0 - turned[1], turned[0]], [[cos, -sin], [sin, cos]])
+}
+
+#[test]
+fn a_body_that_turns_flies_and_stretches_is_sound() {
+    assert!(kinds(SCENE, Puppet::new(turning)).is_empty());
+    let stretching: Motion = |[x, y], t| {
+        let stretch = 1.0 + 0.5 * t;
+        ([stretch * x, y], [0.5 * x, 0.0], [[stretch, 0.0], [0.0, 1.0]])
+    };
+    assert!(kinds(SCENE, Puppet::new(stretching)).is_empty());
+}
+
+#[test]
+fn energy_from_nowhere_is_found_at_its_time_and_at_its_worst() {
+    let mut puppet = Puppet { energy: |t| [t * t, 1.0], ..Puppet::new(|x, _| (x, [0.0; 2], REST)) };
+    let (notes, warnings) = judge(SCENE, &mut puppet);
+    let [warning] = &warnings[..] else { panic!("{warnings:?}") };
+    assert_eq!((warning.kind.as_str(), &warning.body), ("energy", &None));
+    assert!((warning.worst - 1.0).abs() < 1e-12, "{warning:?}");
+    assert!(warning.time > 0.1_f64.sqrt() && warning.time < 0.1_f64.sqrt() + 101.0 * STEP, "{warning:?}");
+    assert!(warning.count > 2 && warning.message.contains("+100.0 %"), "{warning:?}");
+    assert_eq!(notes.len(), 1);
+    assert!(notes[0].starts_with("energy comes from nowhere") && notes[0].ends_with(&warning.advice));
+}
+
+#[test]
+fn the_scene_sets_how_far_energy_may_drift() {
+    let puppet = || Puppet { energy: |t| [-0.3 * t, 1.0], ..Puppet::new(|x, _| (x, [0.0; 2], REST)) };
+    assert_eq!(kinds(SCENE, puppet()), ["energy"]);
+    assert!(kinds(&SCENE.replace("end = 1", "end = 1, energy_drift = 0.4"), puppet()).is_empty());
+    // PIC was asked for, and takes energy.
+    assert!(kinds(&SCENE.replace("end = 1", "end = 1, pic_share = 0.1"), puppet()).is_empty());
+}
+
+#[test]
+fn spin_that_goes_where_nothing_touches_is_found() {
+    let slowing: Motion = |x, t| {
+        let (position, velocity, f) = turning(x, t);
+        (position, [2.0 + (1.0 - 0.1 * t) * (velocity[0] - 2.0), (1.0 - 0.1 * t) * velocity[1]], f)
+    };
+    let warnings = judge(SCENE, &mut Puppet::new(slowing)).1;
+    let [warning] = &warnings[..] else { panic!("{warnings:?}") };
+    assert_eq!((warning.kind.as_str(), warning.body.as_deref()), ("angular-momentum", Some("block")));
+    assert!((warning.worst - 0.1).abs() < 1e-3, "{warning:?}");
+    // A push that gravity does not explain is somebody's touch.
+    let pushed: Motion = |x, t| {
+        let (position, velocity, f) = turning(x, t);
+        (position, [2.0 + t + (1.0 - 0.1 * t) * (velocity[0] - 2.0), (1.0 - 0.1 * t) * velocity[1]], f)
+    };
+    assert!(kinds(SCENE, Puppet::new(pushed)).is_empty());
+}
+
+#[test]
+fn positions_that_leave_their_strain_behind_are_found() {
+    let drifting: Motion = |[x, y], t| {
+        let stretch = 1.0 + 0.01 * t;
+        ([stretch * x, y], [0.0; 2], [[1.0 + 0.006 * t, 0.0], [0.0, 1.0]])
+    };
+    let warnings = judge(SCENE, &mut Puppet::new(drifting)).1;
+    let [warning] = &warnings[..] else { panic!("{warnings:?}") };
+    assert_eq!((warning.kind.as_str(), warning.body.as_deref()), ("strain", Some("block")));
+    assert!(warning.position.is_some() && warning.worst > 0.5, "{warning:?}");
+}
+
+#[test]
+fn noise_of_single_particles_is_no_stretch() {
+    let noisy: Motion = |[x, y], t| {
+        let scattered = |k: f64| 3e-5 * (1e4 * (x * k).sin() + 1e4 * (y * (k + 1.0)).cos()).sin() * t;
+        ([x + scattered(3.0), y + scattered(5.0)], [0.0; 2], REST)
+    };
+    assert!(kinds(SCENE, Puppet::new(noisy)).is_empty());
+}
+
+#[test]
+fn a_body_that_tears_is_found_where_it_does() {
+    // The right half leaves; 0.15 m is the reach of gimp.
+    let torn: Motion = |[x, y], t| ([x + if x > 0.1 { 0.3 * t } else { 0.0 }, y], [0.0; 2], REST);
+    let warnings = judge(SCENE, &mut Puppet::new(torn)).1;
+    let tearing = warnings.iter().find(|warning| warning.kind == "tearing").expect("it tears");
+    assert!(tearing.time > 0.3 && tearing.time < 0.6, "{tearing:?}");
+    let place = tearing.position.unwrap();
+    assert!((place[0] - 0.165).abs() < 0.02, "{tearing:?}");
+    // Halves that slide along each other have others between them.
+    let sliding: Motion = |[x, y], t| ([x + if y > 0.0 { 0.4 * t } else { 0.0 }, y], [0.0; 2], REST);
+    assert!(!kinds(SCENE, Puppet::new(sliding)).contains(&"tearing".to_owned()));
+}
+
+#[test]
+fn linear_functions_are_named_where_stress_crosses_cells() {
+    let flying: Motion = |[x, y], t| ([x + 0.2 * t, y], [0.2, 0.0], REST);
+    let linear = SCENE.replace("gimp", "linear");
+    // 2 W / M V = 1e-5 with M = 33.3 kPa and V = 0.4 m^2
+    let stressed = || Puppet { energy: |_| [0.0, 0.067], ..Puppet::new(flying) };
+    assert_eq!(kinds(&linear, stressed()), ["cell-crossing"]);
+    assert!(kinds(SCENE, stressed()).is_empty());
+    assert!(kinds(&linear, Puppet::new(flying)).is_empty());
+}
+
+#[test]
+fn a_part_that_moves_as_fast_as_waves_is_found() {
+    // Waves: sqrt(33.3 kPa / 1000 kg/m^3) = 5.8 m/s
+    let struck: Motion = |x, _| (x, [if x[0] > 0.4 { 4.0 } else { 0.0 }, 0.0], REST);
+    assert_eq!(kinds(SCENE, Puppet::new(struck)), ["speed"]);
+    let whole: Motion = |[x, y], t| ([x + 40.0 * t, y], [40.0, 0.0], REST);
+    assert!(kinds(SCENE, Puppet::new(whole)).is_empty());
+}
+
+#[test]
+fn steps_below_the_spacing_of_numbers_are_found() {
+    // At 1e4 m, single precision has numbers every 1.2 mm; the body moves by 0.5 mm a step.
+    let far: Motion = |[x, y], t| ([1e4 + x + 0.5 * t, y], [0.5, 0.0], REST);
+    let single = SCENE.replace("basis", "precision = \"single\", basis");
+    let kind = |text: &str, motion| kinds(text, Puppet::new(motion));
+    assert!(kind(&single, far).contains(&"precision".to_owned()));
+    assert!(!kind(SCENE, far).contains(&"precision".to_owned()));
+    let near: Motion = |[x, y], t| ([x + 0.5 * t, y], [0.5, 0.0], REST);
+    assert!(kind(&single, near).is_empty());
+}
+
+#[test]
+fn two_disks_that_collide_and_ring_are_sound() {
+    let text = r#"
+        space = { dimension = "plane-strain", cell = "2 cm", basis = "gimp" }
+        time = { end = "0.1 s" }
+        materials.gel = { density = 1000, neo_hookean = { young_modulus = "1 MPa", poisson_ratio = 0.3 } }
+        [[bodies]]
+        name = "left"
+        material = "gel"
+        shape.ball = { center = [0, 0], radius = "10 cm" }
+        velocity = ["0.3 m/s", 0]
+        [[bodies]]
+        name = "right"
+        material = "gel"
+        shape.ball = { center = ["20.5 cm", "2 cm"], radius = "10 cm" }
+        velocity = ["-0.3 m/s", 0]
+    "#;
+    let scene = scene::parse("disks.toml", text, &[]).unwrap().scene;
+    let mut simulation = stickslip::engine::build(&scene).unwrap();
+    let warnings = judge(text, &mut *simulation).1;
+    assert!(warnings.is_empty(), "{warnings:?}");
+}
