@@ -30,14 +30,14 @@ fn a_page_says_what_each_law_reaches_and_the_scenes_can_be_run() {
 #[test]
 fn a_benchmark_of_the_step_runs_by_the_schemes_that_are_named() {
     let workplace = Workplace::new();
-    let schemes = ["--scheme", "linear-last", "--scheme", "gimp-last"];
+    let schemes = ["--scheme", "linear-first", "--scheme", "gimp-last"];
     let said = workplace.succeed(&[&["validate", "wall", "--out", "seen"][..], &schemes].concat());
-    assert!(said.contains("gimp-last ") && said.contains("linear-last "), "{said}");
+    assert!(said.contains("gimp-last ") && said.contains("linear-first "), "{said}");
     let html = fs::read_to_string(workplace.path("seen/index.html")).unwrap();
     assert!(html.contains("Scheme by benchmark") && !html.contains("Law by benchmark"), "{html}");
     let scene =
-        fs::read_to_string(workplace.path("seen/scenes/wall/linear-last/12/gap_aligned.toml")).unwrap();
-    for key in ["basis = \"linear\"", "stress_update = \"last\""] {
+        fs::read_to_string(workplace.path("seen/scenes/wall/linear-first/12/gap_aligned.toml")).unwrap();
+    for key in ["basis = \"linear\"", "stress_update = \"first\""] {
         assert!(scene.contains(key), "{key} is missing in {scene}");
     }
 }
