@@ -52,9 +52,9 @@ pub struct Pass<T, const D: usize> {
 
 impl<T: Real, const D: usize> Pass<T, D> {
     /// What it takes from the nodes.
-    pub fn sought(&self) -> Sought<T> {
+    pub fn sought(&self) -> Sought {
         let Verbs { accept, strain, displace, .. } = self.verbs;
-        Sought { change: accept.then_some(self.pic), flow: strain || displace }
+        Sought { change: accept, integrated: accept && self.pic > T::ZERO, flow: strain || displace }
     }
 
     /// Whether it takes anything from the nodes.
@@ -215,18 +215,27 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
         let Pass { verbs, dt, transfer, pic, ref lattice, domain } = *self.pass;
         let block = self.tile.block;
         if verbs.accept {
-            let change = stencil.interpolate(&self.window.change, block);
-            particle.velocity = particle.velocity * (T::ONE - pic) + change;
+            let kept = T::ONE - pic;
+            particle.velocity += stencil.interpolate(&self.window.change, block);
             if transfer == Transfer::Rflip {
                 let moment = stencil.moment(&self.window.change, block);
-                let square = self.body.gyration.squared(particle.half_width);
-                particle.spin = particle.spin * (T::ONE - pic) + moment * (T::ONE / square);
+                particle.spin += moment * (T::ONE / self.body.gyration.squared(particle.half_width));
+            }
+            if pic > T::ZERO {
+                let mean = stencil.interpolate(&self.window.integrated, block);
+                particle.velocity = particle.velocity * kept + mean * pic;
+                let gradient = stencil.velocity_gradient(&self.window.integrated, block);
+                particle.spin = turning::toward(particle.spin, &gradient, pic);
             }
             let sound = particle.velocity.is_finite() && particle.spin.is_finite();
             sound.then_some(()).ok_or(FaultKind::NotFinite)?;
         }
         if verbs.strain {
-            let increment = Matrix::IDENTITY + stencil.velocity_gradient(&self.window.flow, block) * dt;
+            let gradient = stencil.velocity_gradient(&self.window.flow, block);
+            if transfer == Transfer::Rflip {
+                particle.spin = turning::settled::<T, D>(particle.spin, &gradient, dt);
+            }
+            let increment = Matrix::IDENTITY + gradient * dt;
             let deformation = increment * particle.deformation;
             let jacobian = deformation.det();
             if !jacobian.is_finite() {

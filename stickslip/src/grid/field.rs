@@ -115,10 +115,12 @@ pub const WINDOW: usize = SIDE as usize + MAX_WIDTH - 1;
 pub const WINDOW_NODES: usize = WINDOW * WINDOW * WINDOW;
 
 /// What a gather takes from the nodes, see [`Window::load`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sought<T> {
-    /// v - (1 - a) v0, from which particles take their velocities; `a` is the PIC share.
-    pub change: Option<T>,
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Sought {
+    /// The change of the velocities in the step, which FLIP takes.
+    pub change: bool,
+    /// The integrated velocities themselves, of which PIC takes a share.
+    pub integrated: bool,
     /// The velocities that move and strain particles.
     pub flow: bool,
 }
@@ -135,8 +137,10 @@ pub const TOLD: usize = 4;
 /// A tile's part of the field in one place: nodes `block * 4` to `block * 4 + 5` along each axis, the last fastest.
 #[derive(Clone, Debug)]
 pub struct Window<T, const D: usize> {
-    /// v - (1 - a) v0 [m/s].
+    /// Change of the velocities in the step [m/s].
     pub change: [Told<T>; WINDOW_NODES],
+    /// The integrated velocities [m/s].
+    pub integrated: [Told<T>; WINDOW_NODES],
     /// The velocities that move and strain particles [m/s].
     pub flow: [Told<T>; WINDOW_NODES],
     /// What was scattered so far.
@@ -147,6 +151,7 @@ impl<T: Real, const D: usize> Default for Window<T, D> {
     fn default() -> Self {
         Window {
             change: [[T::ZERO; 4]; WINDOW_NODES],
+            integrated: [[T::ZERO; 4]; WINDOW_NODES],
             flow: [[T::ZERO; 4]; WINDOW_NODES],
             sums: [[[T::ZERO; 2]; 4]; WINDOW_NODES],
         }
@@ -237,17 +242,20 @@ impl<T: Real, const D: usize> Window<T, D> {
         field: &Disjoint<Node<T, D>>,
         tile: &Tile<D>,
         side: usize,
-        sought: Sought<T>,
+        sought: Sought,
     ) {
         for Run { place, node, count } in Runs::new(tile, side) {
             for k in 0..count {
                 // SAFETY: the caller keeps writers away from the tile's slots.
                 let node = unsafe { field.read(node + k) };
                 let place = place + k;
-                if let Some(pic) = sought.change {
+                if sought.change {
                     let integrated: M::Quad = told(&node.integrated);
                     let start: M::Quad = told(&node.start);
-                    tell(&mut self.change[place], integrated - start * M::Quad::splat(T::ONE - pic));
+                    tell(&mut self.change[place], integrated - start);
+                }
+                if sought.integrated {
+                    tell::<M::Quad>(&mut self.integrated[place], told(&node.integrated));
                 }
                 if sought.flow {
                     tell::<M::Quad>(&mut self.flow[place], told(&node.velocity));

@@ -71,25 +71,28 @@ pub fn group<
 
     let mut velocity = Vector::ZERO;
     let mut spin = Vector::ZERO;
+    let rotates = transfer == Transfer::Rflip;
     let gives_momentum = scatter.is_some_and(|share| share != Share::Force);
     if accept || displace || gives_momentum {
         velocity = members.vector::<V>(Column::<D>::VELOCITY);
     }
-    if accept || gives_momentum {
+    if accept || gives_momentum || (strain && rotates) {
         spin = members.spin::<V>();
     }
     if accept {
-        let kept = V::splat(T::ONE - pic);
-        let change = if transfer == Transfer::Rflip {
+        if rotates {
             let (moment, change) = group.moment(&visit.window.change);
-            let per_square = constants.cell / constants.gyration.squared(half_width);
-            spin = spin * kept + moment * per_square;
-            sound &= finite(&spin.0);
-            change
+            velocity += change;
+            spin += moment * (constants.cell / constants.gyration.squared(half_width));
         } else {
-            group.interpolate(&visit.window.change)
-        };
-        velocity = velocity * kept + change;
+            velocity += group.interpolate(&visit.window.change);
+        }
+        if pic > T::ZERO {
+            let (gradient, mean) = group.flow(&visit.window.integrated);
+            velocity = velocity * V::splat(T::ONE - pic) + mean * V::splat(pic);
+            spin = turning::toward(spin, &(gradient * constants.per_cell), V::splat(pic));
+        }
+        sound &= finite(&spin.0);
         sound &= finite(&velocity.0);
     }
 
@@ -112,6 +115,10 @@ pub fn group<
         let scale = V::splat(dt) * constants.per_cell;
         let (gradient, mean) = group.flow(&visit.window.flow);
         carried = mean;
+        if rotates {
+            spin = turning::settled::<V, D>(spin, &(gradient * constants.per_cell), V::splat(dt));
+            sound &= finite(&spin.0);
+        }
         let increment = Matrix::IDENTITY + gradient * scale;
         deformation = increment * deformation;
         jacobian = deformation.det();
@@ -177,8 +184,11 @@ pub fn group<
     }
     if accept {
         members.store_vector(Column::<D>::VELOCITY, &velocity);
+        members.give_back::<V>(Column::<D>::VELOCITY..Column::<D>::SPIN);
+    }
+    if accept || (strain && rotates) {
         members.store_spin(&spin);
-        members.give_back::<V>(Column::<D>::VELOCITY..Column::<D>::MASS);
+        members.give_back::<V>(Column::<D>::SPIN..Column::<D>::MASS);
     }
     if strain {
         members.store_deformation(&deformation);
