@@ -103,7 +103,7 @@ pub(super) struct Verdict {
 /// Looks in a run, at most.
 const LOOKS: f64 = 200.0;
 /// Steps between two looks, at least: what a look costs is then nothing beside them.
-const STEPS: u64 = 50;
+const STEPS: u64 = 200;
 /// Lines in a run: beyond, the summary tells.
 const MOST_LINES: usize = 6;
 
@@ -212,10 +212,12 @@ pub(super) fn line(warning: &Warning) -> String {
     format!("{}; {}", warning.message, warning.advice)
 }
 
+#[inline]
 fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     std::array::from_fn(|i| a[i] - b[i])
 }
 
+#[inline]
 fn norm(a: [f64; 3]) -> f64 {
     a.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
