@@ -224,8 +224,10 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
             if pic > T::ZERO {
                 let mean = stencil.interpolate(&self.window.integrated, block);
                 particle.velocity = particle.velocity * kept + mean * pic;
-                let gradient = stencil.velocity_gradient(&self.window.integrated, block);
-                particle.spin = turning::toward(particle.spin, &gradient, pic);
+                if transfer == Transfer::Rflip {
+                    let gradient = stencil.velocity_gradient(&self.window.integrated, block);
+                    particle.spin = turning::toward(particle.spin, &gradient, pic);
+                }
             }
             let sound = particle.velocity.is_finite() && particle.spin.is_finite();
             sound.then_some(()).ok_or(FaultKind::NotFinite)?;

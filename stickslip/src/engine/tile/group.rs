@@ -90,7 +90,9 @@ pub fn group<
         if pic > T::ZERO {
             let (gradient, mean) = group.flow(&visit.window.integrated);
             velocity = velocity * V::splat(T::ONE - pic) + mean * V::splat(pic);
-            spin = turning::toward(spin, &(gradient * constants.per_cell), V::splat(pic));
+            if rotates {
+                spin = turning::toward(spin, &(gradient * constants.per_cell), V::splat(pic));
+            }
         }
         sound &= finite(&spin.0);
         sound &= finite(&velocity.0);

@@ -103,7 +103,7 @@ pub(super) struct Verdict {
 /// Looks in a run, at most.
 const LOOKS: f64 = 200.0;
 /// Steps between two looks, at least: what a look costs is then nothing beside them.
-const STEPS: u64 = 100;
+const STEPS: u64 = 200;
 /// Lines in a run: beyond, the summary tells.
 const MOST_LINES: usize = 6;
 

@@ -16,7 +16,7 @@ pub(super) struct Neighbours {
 }
 
 /// Particles in all bodies whose neighbours are chosen; in a body at least [`FEWEST`] of them.
-const MOST: usize = 1000;
+const MOST: usize = 500;
 const FEWEST: usize = 24;
 /// Neighbours are so near, in distances of particles: on a lattice, those across edges and faces of a particle's box.
 const NEAR: f64 = 1.5;
