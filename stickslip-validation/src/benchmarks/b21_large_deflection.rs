@@ -1,6 +1,6 @@
 //! B21-large: a beam that bends far under its own weight.
 
-use crate::benchmark::{Allowed, Benchmark, Case, Laws, Resolution, Target};
+use crate::benchmark::{Allowed, Benchmark, Case, Laws, Reason, Resolution, Target};
 use crate::failure::Failure;
 use crate::measuring::TimeMean;
 use crate::outcome::Outcome;
@@ -28,24 +28,40 @@ by 0.30 L. Measured is how far the centre of mass is below the clamp's centre li
 exact.",
     laws: Laws::Bulk,
     measure: "H/h",
-    resolutions: &[Resolution::quick(4.0), Resolution::quick(8.0)],
+    resolutions: &[Resolution::quick(4.0), Resolution::full(8.0)],
     targets: &[
-        Target::new(DROP, 1.0, Allowed::Within(0.04), "four cells on the height").at(4.0),
+        Target::new(DROP, 1.0, Allowed::Within(0.04), "four cells on the height").at(4.0).missed_at(&[4.0]),
+        Target::new(DROP, 1.0, Allowed::Within(0.25), BOUND).at(4.0),
         Target::new(
             DROP,
             1.0,
             Allowed::Within(0.02),
             "eight cells; fibres strain by 8 %, which the law's curve softens by 1 %",
         )
-        .at(8.0),
+        .at(8.0)
+        .missed_at(&[8.0]),
+        Target::new(DROP, 1.0, Allowed::Within(0.23), BOUND).at(8.0),
         Target::new(PLACED, 1.0, Allowed::Within(0.03), "four cells on the height").at(4.0),
-        Target::new(REACH, 1.0, Allowed::Within(0.02), "it bends in where it bends down").at(4.0),
-        Target::new(REACH, 1.0, Allowed::Within(0.01), "it bends in where it bends down").at(8.0),
+        Target::new(REACH, 1.0, Allowed::Within(0.02), "it bends in where it bends down")
+            .at(4.0)
+            .missed_at(&[4.0]),
+        Target::new(REACH, 1.0, Allowed::Within(0.04), BOUND).at(4.0),
+        Target::new(REACH, 1.0, Allowed::Within(0.01), "it bends in where it bends down")
+            .at(8.0)
+            .missed_at(&[8.0]),
+        Target::new(REACH, 1.0, Allowed::Within(0.03), BOUND).at(8.0),
     ],
-    reasons: &[],
+    reasons: &[Reason {
+        laws: &["gimp-modified-last-rflip"],
+        text: "The boxes of uniform GIMP do not turn with the particles. Where a body has turned through the grid, the gradients that \
+strain particles and the velocities that part them differ in the second order, and with two particles a side that adds \
+up: the beam \
+that a clamp turns up hangs 17 % too low at H/4 and 15 % at H/8, with three a side 1 %, and in place it is right.",
+    }],
     run,
 };
 
+const BOUND: &str = "what is missed, and half as much again";
 const DROP: &str = "drop of the centre";
 const PLACED: &str = "drop of the centre, in place";
 const REACH: &str = "reach of the centre";
@@ -55,6 +71,8 @@ const POISSON: f64 = 0.3;
 const LOAD: f64 = 3.0;
 /// 2 pi over the first frequency of B21 [H/c].
 const PERIOD: f64 = 383.0;
+/// How long the clamp turns: so slowly that the beam hardly swings after it.
+const TURN: f64 = 3.0 * PERIOD;
 
 fn run(case: &Case) -> Result<Outcome, Failure> {
     let gravity = LOAD / (1.0 - POISSON * POISSON) / 12.0 / LENGTH.powi(3);
@@ -90,17 +108,17 @@ shape.box = {{ min = [-0.5, -{LENGTH}], max = [0.5, 0] }}
 name = "clamp"
 material = "rubber"
 shape.box = {{ min = [-0.5, 0], max = [0.5, {thick}] }}
-rigid.spin = "pi / 2 / {PERIOD} * (1 - cos(2 * pi * min(t / {PERIOD}, 1)))"
+rigid.spin = "pi / 2 / {TURN} * (1 - cos(2 * pi * min(t / {TURN}, 1)))"
 [[contact]]
 law = "glued"
 "#,
             case.space("plane-strain", h),
-            case.time(2.0 * PERIOD)
+            case.time(TURN + PERIOD)
         ),
     )?;
     let (mut drop, mut reach) = (TimeMean::default(), TimeMean::default());
     while trial.advance()? {
-        if trial.time() > PERIOD {
+        if trial.time() > TURN {
             // The root went round the clamp's centre, half of its thickness away.
             let [x, y, _] = trial.bodies()[0].position;
             drop.add(0.5 * thick - y, trial.step_length());
@@ -129,7 +147,8 @@ material = "rubber"
 shape.box = {{ min = [0, -0.5], max = [{LENGTH}, 0.5] }}
 "#,
             case.space("plane-strain", 1.0 / case.cells),
-            case.time(2.0 * PERIOD)
+            // PIC of velocities alone damps it.
+            case.time(2.0 * PERIOD).replace("rflip", "flip")
         ),
     )?;
     let mut drop = TimeMean::default();

@@ -34,7 +34,9 @@ spin times R over it.",
             1.0,
             Allowed::Within(0.03),
             "the speed is half of the other disk's, what is lost the same",
-        ),
+        )
+        .missed_at(&[8.0]),
+        Target::new(SPEEDS[1], 1.0, Allowed::Within(0.057), "what is missed, and half as much again").at(8.0),
         Target::new(
             SPINS[1],
             1.0,

@@ -1,6 +1,6 @@
 //! Flat wall: own normals know that a rigid wall is flat.
 
-use crate::benchmark::{Allowed, Benchmark, Case, Laws, Resolution, Target};
+use crate::benchmark::{Allowed, Benchmark, Case, Laws, Reason, Resolution, Target};
 use crate::failure::Failure;
 use crate::measuring::farthest;
 use crate::outcome::Outcome;
@@ -25,22 +25,31 @@ it, the farther of the two.",
     measure: "block length/h",
     resolutions: &[Resolution::quick(12.0), Resolution::full(24.0)],
     targets: &[
-        Target::new("drag over push, kinematic", 0.0, Allowed::Within(0.001), FLAT),
-        Target::new("drag over push, traction", 0.0, Allowed::Within(0.001), FLAT),
-        Target::new("drag over push, gap", 0.0, Allowed::Within(0.001), FLAT),
+        Target::new("drag over push, kinematic", 0.0, Allowed::Within(0.001), FLAT).missed_at(&[12.0, 24.0]),
+        Target::new("drag over push, kinematic", 0.0, Allowed::Within(0.011), BOUND).at(12.0),
+        Target::new("drag over push, traction", 0.0, Allowed::Within(0.001), FLAT).missed_at(&[12.0, 24.0]),
+        Target::new("drag over push, traction", 0.0, Allowed::Within(0.026), BOUND).at(12.0),
+        Target::new("drag over push, gap", 0.0, Allowed::Within(0.001), FLAT).missed_at(&[12.0, 24.0]),
+        Target::new("drag over push, gap", 0.0, Allowed::Within(0.026), BOUND).at(12.0),
     ],
-    reasons: &[],
+    reasons: &[Reason {
+        laws: &["gimp-modified-last-rflip"],
+        text: "With the lattice's stairs for a normal it was a quarter to more than all of the push; where the rest comes from is \
+not known.",
+    }],
     run,
 };
 
+const METRICS: [&str; 3] = ["drag over push, kinematic", "drag over push, traction", "drag over push, gap"];
+const BOUND: &str = "what is missed, and half as much again";
 const FLAT: &str = "the wall's own normal is exact: only round-off is left";
 
 fn run(case: &Case) -> Result<Outcome, Failure> {
     let mut outcome = Outcome::default();
-    for (target, law) in BENCHMARK.targets.iter().zip(["kinematic", "traction", "gap"]) {
+    for (i, law) in ["kinematic", "traction", "gap"].into_iter().enumerate() {
         let aligned = strike(case, law, 0.0, &mut outcome)?;
         let turned = strike(case, law, 30.0, &mut outcome)?;
-        outcome.measure(target.metric, farthest(&[aligned, turned]));
+        outcome.measure(METRICS[i], farthest(&[aligned, turned]));
     }
     Ok(outcome)
 }

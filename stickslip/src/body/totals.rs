@@ -89,8 +89,9 @@ impl Handful {
                     each(V::load_first(columns.at(Column::<D>::SPIN + k, first), count));
             }
             let half_width = each(V::load_first(columns.at(Column::<D>::HALF_WIDTH, first), count));
-            for lane in 0..MOST_LANES {
-                handful.inertia[lane] = handful.mass[lane] * gyration.squared(half_width[lane]);
+            let of_each = handful.mass.iter().zip(&half_width);
+            for (inertia, (mass, &half_width)) in handful.inertia.iter_mut().zip(of_each) {
+                *inertia = mass * gyration.squared(half_width);
             }
         }
         handful

@@ -344,6 +344,11 @@ impl<T: Laned, const D: usize> Near<'_, T, D> {
                 ((-sums.mass_gradient()).direction(), sums.stress(), sums.force() * (mass / sums.mass()))
             }
         };
+        let place = sums.place(owner.particles.flow()).seen_from(arm);
+        // A rigid surface is where it is said to be; its lattice has stairs.
+        let exact =
+            (owner.rigid && normal.is_some()).then(|| place.offset(Vector::ZERO, &owner.whole).normal);
+        let normal = exact.filter(|n| *n != Vector::ZERO).or(normal);
         let surface = Surface {
             inverse_mass: if owner.rigid { T::ZERO } else { T::ONE / mass },
             normal,
@@ -351,7 +356,7 @@ impl<T: Laned, const D: usize> Near<'_, T, D> {
             volume: sums.volume(),
             modulus,
             force,
-            place: sums.place(owner.particles.flow()).seen_from(arm),
+            place,
         };
         Side { body, index, surface, volume_gradient: sums.volume_gradient() }
     }

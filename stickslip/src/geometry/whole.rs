@@ -26,8 +26,8 @@ pub struct Whole {
 impl Whole {
     /// A shape before mirrors.
     ///
-    /// Faces on a mirror are left out of half-spaces, boxes, cylinders, polygons and meshes, also where these are combined; of turned
-    /// shapes only out of half-spaces and meshes.
+    /// Faces on a mirror are left out of half-spaces, boxes, cylinders, polygons and meshes, also where these are combined; of shapes
+    /// that are turned about another axis than the mirror's only out of half-spaces and meshes.
     pub fn new(shape: &Shape, mirrors: Vec<Mirror>, dimension: usize) -> Self {
         let shape = mirrors.iter().fold(shape.clone(), |shape, mirror| continued(shape, mirror, dimension));
         Whole { shape, mirrors, dimension }
@@ -80,6 +80,17 @@ fn continued(shape: Shape, mirror: &Mirror, dimension: usize) -> Shape {
         Shape::Union(shapes) => Shape::Union(all(shapes)),
         Shape::Intersection(shapes) => Shape::Intersection(all(shapes)),
         Shape::Difference(shapes) => Shape::Difference(all(shapes)),
+        // Turned about the mirror's own axis it ends where it ended.
+        Shape::Rotated { shape, center, axis: about, angle }
+            if dimension == 3 && (0..3).all(|k| k == axis || about[k] == 0.0) =>
+        {
+            Shape::Rotated {
+                shape: Box::new(continued(*shape, mirror, dimension)),
+                center,
+                axis: about,
+                angle,
+            }
+        }
         Shape::Rotated { shape, center, axis, angle } => match *shape {
             Shape::HalfSpace { point, normal } => {
                 let rotation = Rotation::new(center, axis, angle, dimension);

@@ -98,9 +98,9 @@ impl<T: Real, const D: usize, B: Basis<T>> Stencil<T, D, B> {
         self.each(block, |place, offset| {
             let (weight, arm) = (self.at(offset).0, self.arm(offset));
             let node = &mut window.sums[place];
-            for i in 0..D {
+            for (i, sums) in node.iter_mut().enumerate().take(D) {
                 let beside = (0..D).fold(T::ZERO, |sum, j| sum + gradient.0[i][j] * arm[j]);
-                node[i][0] += particle.mass * (particle.velocity[i] + beside) * weight;
+                sums[0] += particle.mass * (particle.velocity[i] + beside) * weight;
             }
             node[3][0] += mass * weight;
         });
@@ -125,10 +125,7 @@ impl<T: Real, const D: usize, B: Basis<T>> Stencil<T, D, B> {
     pub fn interpolate(&self, nodes: &[Told<T>; WINDOW_NODES], block: [i32; D]) -> Vector<T, D> {
         let mut sum = Vector::ZERO;
         self.each(block, |place, offset| {
-            let weight = self.at(offset).0;
-            for i in 0..D {
-                sum[i] += nodes[place][i] * weight;
-            }
+            sum += Vector::from_fn(|i| nodes[place][i]) * self.at(offset).0;
         });
         sum
     }
