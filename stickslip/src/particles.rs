@@ -343,13 +343,14 @@ mod tests {
         }
     }
 
-    /// In space 27 numbers and room for one more; each particle's number twice.
+    /// In space 30 numbers and room for one more; each particle's number twice.
     #[test]
     fn the_bytes_of_particles_are_those_that_they_hold() {
         let held = |count: usize, flow: bool| {
             let particles = Particles::<f64, 3>::from_fn(count, flow, |_| Particle {
                 position: Vector::ZERO,
                 velocity: Vector::ZERO,
+                spin: Vector::ZERO,
                 mass: 0.0,
                 volume: 0.0,
                 half_width: 0.0,
@@ -364,7 +365,7 @@ mod tests {
             assert_eq!(Particles::<f64, 3>::bytes_of(count, flow), held(count, flow), "{count} {flow}");
         }
         let each = Particles::<f64, 3>::bytes_of(1_000_000, false) as f64 / 1e6;
-        assert!((each / (28.0 * 8.0 + 2.0 * 4.0) - 1.0).abs() < 1e-3, "{each}");
+        assert!((each / (31.0 * 8.0 + 2.0 * 4.0) - 1.0).abs() < 1e-3, "{each}");
     }
 
     #[test]

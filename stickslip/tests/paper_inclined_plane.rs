@@ -77,7 +77,7 @@ fn the_papers_rule_does_not_roll_on_the_coarsest_cells() {
     let roll = Roll::down(NO_SLIP, &paper);
     assert!(roll.distance.abs() < 0.02 && roll.speed.abs() < 0.02, "{roll:?}");
     let shallow = [("space.domain.min", "[-4, 0, -0.8]"), ("bodies[1].shape.box.min", "[-3.2, 0, -0.8]")];
-    let riding = Roll::down(NO_SLIP, &[paper, shallow].concat());
+    let riding = Roll::down(NO_SLIP, &[&paper[..], &shallow].concat());
     assert!(riding.distance < 0.6 && riding.rolling < 0.7, "{riding:?}");
 }
 

@@ -135,9 +135,9 @@ impl<T: Real, const D: usize, B: Basis<T>> Stencil<T, D, B> {
         let mut moments = Matrix::ZERO;
         self.each(block, |place, offset| {
             let (weight, arm) = (self.at(offset).0, self.arm(offset));
-            for i in 0..D {
+            for (row, value) in moments.0.iter_mut().zip(nodes[place]).take(D) {
                 for j in 0..D {
-                    moments.0[i][j] += weight * arm[j] * nodes[place][i];
+                    row[j] += weight * arm[j] * value;
                 }
             }
         });
