@@ -30,14 +30,14 @@ fn a_page_says_what_each_law_reaches_and_the_scenes_can_be_run() {
 #[test]
 fn a_benchmark_of_the_step_runs_by_the_schemes_that_are_named() {
     let workplace = Workplace::new();
-    let schemes = ["--scheme", "linear-first", "--scheme", "gimp-last"];
+    let schemes = ["--scheme", "linear-first-flip", "--scheme", "gimp-last-rflip"];
     let said = workplace.succeed(&[&["validate", "wall", "--out", "seen"][..], &schemes].concat());
-    assert!(said.contains("gimp-last ") && said.contains("linear-first "), "{said}");
+    assert!(said.contains("gimp-last-rflip ") && said.contains("linear-first-flip "), "{said}");
     let html = fs::read_to_string(workplace.path("seen/index.html")).unwrap();
     assert!(html.contains("Scheme by benchmark") && !html.contains("Law by benchmark"), "{html}");
     let scene =
-        fs::read_to_string(workplace.path("seen/scenes/wall/linear-first/12/gap_aligned.toml")).unwrap();
-    for key in ["basis = \"linear\"", "stress_update = \"first\""] {
+        fs::read_to_string(workplace.path("seen/scenes/wall/linear-first-flip/12/gap_aligned.toml")).unwrap();
+    for key in ["basis = \"linear\"", "stress_update = \"first\"", "transfer = \"flip\""] {
         assert!(scene.contains(key), "{key} is missing in {scene}");
     }
 }
@@ -48,7 +48,7 @@ fn names_that_are_none_are_answered_with_those_that_are() {
     for (arguments, names) in [
         (["validate", "B99"], "B5"),
         (["validate", "--law=soft"], "traction"),
-        (["validate", "--scheme=soft"], "gimp-modified-last"),
+        (["validate", "--scheme=soft"], "gimp-modified-last-rflip"),
     ] {
         let ran = workplace.run(&arguments);
         assert_eq!(ran.code, Some(2), "{}", ran.stderr);
