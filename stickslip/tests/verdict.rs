@@ -205,8 +205,6 @@ fn the_scene_sets_how_far_energy_may_drift() {
     let puppet = || Puppet { energy: |t| [-0.3 * t, 1.0], ..Puppet::new(|x, _| (x, [0.0; 2], REST)) };
     assert_eq!(kinds(SCENE, puppet()), ["energy"]);
     assert!(kinds(&SCENE.replace("end = 1", "end = 1, energy_drift = 0.4"), puppet()).is_empty());
-    // PIC was asked for, and takes energy.
-    assert!(kinds(&SCENE.replace("end = 1", "end = 1, pic_share = 0.1"), puppet()).is_empty());
 }
 
 #[test]

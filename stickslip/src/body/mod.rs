@@ -85,6 +85,14 @@ pub struct Body<T, const D: usize> {
 }
 
 impl<T: Real, const D: usize> Body<T, D> {
+    /// Kinetic energy of a particle, m (v^2 + k^2 w^2)/2 [J].
+    #[inline]
+    pub fn kinetic(&self, particle: &Particle<T, D>) -> T {
+        let Particle { velocity, spin, half_width, .. } = *particle;
+        let turning = self.gyration.squared(half_width) * spin.dot(spin);
+        T::HALF * particle.mass * (velocity.dot(velocity) + turning)
+    }
+
     /// A particle's motion with the thickness that it takes, and its law's response; `None` if no thickness is free of stress.
     #[inline]
     pub fn respond(&self, motion: Motion<T>) -> Option<(Motion<T>, Response<T>)> {

@@ -29,9 +29,9 @@ pub struct Surface<T, const D: usize> {
 pub enum Use {
     /// As what forces and later contact change: interpolated velocities that strain nothing.
     Start,
-    /// To strain the particles.
+    /// To strain the particles, and to move them with that.
     Strain,
-    /// To move them: velocities with all forces of the step.
+    /// To be taken by the particles as change of their velocities: with all forces of the step.
     Motion,
 }
 

@@ -40,6 +40,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.workshop.columns.extend(self.bodies.iter_mut().map(|body| body.particles.open()));
         let nodes = Disjoint::new(&mut self.field.nodes);
         let left = Disjoint::new(&mut self.left);
+        let damped = Disjoint::new(&mut self.damped);
         let (cover, bodies, workshop, path) = (&self.cover, &self.bodies, &self.workshop, self.path);
         // Fed with the fastest signal of the tiles before it in its list, which spares it the roots of slower ones. Lists do not depend on threads.
         let visit = |index: u32, window: &mut Window<T, D>, signal: T| -> Found<T> {
@@ -58,6 +59,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 window,
                 next: cover.tiles.get(index as usize + 1),
                 left: 0,
+                damped: 0.0,
                 found: Found { signal, ..Found::NOTHING },
                 basis: PhantomData::<B>,
             };
@@ -74,7 +76,10 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 }
             }
             // SAFETY: every tile has a place of its own.
-            unsafe { *left.get(index as usize) |= visit.left };
+            unsafe {
+                *left.get(index as usize) |= visit.left;
+                *damped.get(index as usize) = visit.damped;
+            }
             visit.found
         };
         let several = |tiles: &mut dyn Iterator<Item = u32>| -> Found<T> {

@@ -102,6 +102,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
             friction: self.tally.friction,
             external_work: self.tally.work,
             adhesion: self.tally.adhesion,
+            damping: self.damping,
             scaled_impulses: self.tally.scaled,
             unsettled_nodes: self.tally.unsettled,
             ..Ledger::default()

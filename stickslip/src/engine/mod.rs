@@ -62,6 +62,10 @@ pub struct Engine<T, const D: usize, B> {
     signal: Option<f64>,
     /// Cells of each tile that particles have left.
     left: Vec<u64>,
+    /// What the last pass took from the kinetic energy of each tile's particles [J].
+    damped: Vec<f64>,
+    /// What damping took since the start [J].
+    damping: f64,
     /// What the particles of each body add up to since the last step, once somebody has asked.
     totals: Mutex<Option<Arc<[Totals]>>>,
     path: Path,

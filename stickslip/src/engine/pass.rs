@@ -132,6 +132,8 @@ pub struct Visit<'a, T, const D: usize, B> {
     pub next: Option<&'a Tile<D>>,
     /// Which cells have particles that left them, from the lowest bit on.
     pub left: u64,
+    /// What it took from the particles' kinetic energy beyond the work of forces [J].
+    pub damped: f64,
     /// What it found.
     pub found: Found<T>,
     /// Shape functions.
@@ -211,7 +213,7 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
         }
     }
 
-    fn change(&self, particle: &mut Particle<T, D>, stencil: &Stencil<T, D, B>) -> Result<(), FaultKind> {
+    fn change(&mut self, particle: &mut Particle<T, D>, stencil: &Stencil<T, D, B>) -> Result<(), FaultKind> {
         let Pass { verbs, dt, transfer, pic, ref lattice, domain } = *self.pass;
         let block = self.tile.block;
         if verbs.accept {
@@ -221,6 +223,7 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
                 let moment = stencil.moment(&self.window.change, block);
                 particle.spin += moment * (T::ONE / self.body.gyration.squared(particle.half_width));
             }
+            let before = self.body.kinetic(particle);
             if pic > T::ZERO {
                 let mean = stencil.interpolate(&self.window.integrated, block);
                 particle.velocity = particle.velocity * kept + mean * pic;
@@ -229,13 +232,16 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
                     particle.spin = turning::toward(particle.spin, &gradient, pic);
                 }
             }
+            self.damped += (before - self.body.kinetic(particle)).f64();
             let sound = particle.velocity.is_finite() && particle.spin.is_finite();
             sound.then_some(()).ok_or(FaultKind::NotFinite)?;
         }
         if verbs.strain {
             let gradient = stencil.velocity_gradient(&self.window.flow, block);
             if transfer == Transfer::Rflip {
+                let before = self.body.kinetic(particle);
                 particle.spin = turning::settled::<T, D>(particle.spin, &gradient, dt);
+                self.damped += (before - self.body.kinetic(particle)).f64();
             }
             let increment = Matrix::IDENTITY + gradient * dt;
             let deformation = increment * particle.deformation;

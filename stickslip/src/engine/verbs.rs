@@ -21,7 +21,7 @@ enum Contact {
     Interpolated,
     /// Of the integrated velocities.
     Integrated,
-    /// Of velocities that nobody asks about.
+    /// Of the velocities that strain and move particles, where they are scattered anew.
     Unrecorded,
 }
 
@@ -43,6 +43,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         }
         self.left.clear();
         self.left.resize(self.cover.tiles.len(), 0);
+        self.damped.clear();
+        self.damped.resize(self.cover.tiles.len(), 0.0);
         self.field.clear(&self.cover);
         self.watch.lap("cover", start);
     }
@@ -66,7 +68,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.run_pass("scatter", verbs, T::ZERO).expect("a scatter changes no particle");
     }
 
-    /// v_p = (1 - a) (v_p + sum S_i (v_i - v_i^0)) + a sum S_i v_i,   a: PIC share
+    /// v_p = (1 - a) (v_p + sum S_i (v_i - v_i^0)) + a sum S_i v_i,   a: PIC share; the particle's rotation likewise
     pub(super) fn accept_and_scatter(&mut self, dt: T) -> Result<(), StepError> {
         let verbs = Verbs { accept: true, scatter: Some(Share::Momentum), ..Verbs::default() };
         self.run_pass("accept", verbs, dt)
@@ -103,6 +105,10 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             lattice: self.lattice,
             domain: self.domain,
         });
+        if verbs.accept || verbs.strain {
+            // Tile after tile, whoever took them.
+            self.damping += self.damped.iter().sum::<f64>();
+        }
         if verbs.displace {
             found = found.and(self.move_rigid_bodies(dt));
             self.signal = Some(found.signal.f64());
@@ -240,7 +246,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         }
     }
 
-    /// Contact on velocities that only strain the particles: it enters no sum of forces and works.
+    /// Contact on the velocities that strain and move the particles: it enters no sum of forces and works, for no particle takes it as a
+    /// change of its velocity.
     pub(super) fn contact_unrecorded(&mut self, dt: T) {
         self.exchange(dt, Contact::Unrecorded);
     }

@@ -25,7 +25,6 @@
 //! W + (dt/2) W^2,    W = w x                                                                                    (c)
 //! ```
 //! without which a body spins up by 1e-4 of its angular momentum in a turn at five cells a radius.
-
 //!
 //! Changes alone let the noise of angular velocities grow from turn to turn, for a particle's own moment of inertia among the nodes
 //! changes with its place while k does not. So with each radian that it turns, a particle takes a part of the rotation around it:
@@ -33,7 +32,7 @@
 //! ```text
 //! w_p += NOISE |w_p| dt (curl v / 2 - w_p)                                                                      (d)
 //! ```
-//! which takes next to nothing from a body that only vibrates.
+//! which takes next to nothing from a body that only vibrates. The ledger's damping counts what it takes.
 
 use crate::basis::Basis;
 use crate::body::Gyration;

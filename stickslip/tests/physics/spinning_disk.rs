@@ -138,3 +138,32 @@ fn a_slab_in_space() {
         check(&format!("space, {name}"), &scene);
     }
 }
+
+/// What a share of PIC takes is booked: the total stays while a disk that vibrates and turns comes to rest, by both transfers.
+#[test]
+fn the_books_close_with_pic() {
+    for transfer in ["rflip", "flip"] {
+        let scene = format!(
+            r#"
+            space = {{ dimension = "plane-strain", cell = 0.2 }}
+            time = {{ end = 1, transfer = "{transfer}", pic_share = 0.02 }}
+            materials.rubber = {}
+            [[bodies]]
+            name = "disk"
+            material = "rubber"
+            shape.ball = {{ center = [0, 0], radius = {RADIUS} }}
+            spin = {}
+            "#,
+            law("neo_hookean"),
+            5.0 * spin()
+        );
+        let mut simulation = start(&scene);
+        let before = simulation.ledger();
+        run_to(&mut *simulation, 2.0 * PI / spin(), |_| {});
+        let after = simulation.ledger();
+        let [taken, drift] = [after.damping, after.total - before.total].map(|x| x / before.kinetic);
+        println!("{transfer}: PIC took {taken:.4}, drift {drift:.1e}");
+        assert!(taken > 0.02, "{transfer}: {taken}");
+        assert!(drift.abs() < 0.1 * taken, "{transfer}: {drift} of {taken}");
+    }
+}

@@ -8,7 +8,7 @@
 //! u = v_1 - v_2,   u_n <= max(gap, 0)/dt,   J_n >= 0,   |J_t| <= mu J_n,   J_t against the slip
 //! ```
 //! Bodies may close a gap within a step, and never pull, unless they adhere ([`crate::contact::Friction`]). The impulse for the
-//! velocities that only strain is not part of the sum: bodies that press on each other strain with a common normal velocity,
+//! velocities that strain and move particles is not part of the sum: bodies that press on each other strain with a common normal velocity,
 //! whether they are being compressed or released.
 
 use super::Law;

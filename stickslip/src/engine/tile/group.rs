@@ -71,6 +71,9 @@ pub fn group<
 
     let mut velocity = Vector::ZERO;
     let mut spin = Vector::ZERO;
+    let gyration = constants.gyration.squared(half_width);
+    // What is taken from twice the kinetic energy over the mass.
+    let mut damped = V::ZERO;
     let rotates = transfer == Transfer::Rflip;
     let gives_momentum = scatter.is_some_and(|share| share != Share::Force);
     if accept || displace || gives_momentum {
@@ -83,16 +86,18 @@ pub fn group<
         if rotates {
             let (moment, change) = group.moment(&visit.window.change);
             velocity += change;
-            spin += moment * (constants.cell / constants.gyration.squared(half_width));
+            spin += moment * (constants.cell / gyration);
         } else {
             velocity += group.interpolate(&visit.window.change);
         }
         if pic > T::ZERO {
+            let before = kinetic(&velocity, &spin, gyration);
             let (gradient, mean) = group.flow(&visit.window.integrated);
             velocity = velocity * V::splat(T::ONE - pic) + mean * V::splat(pic);
             if rotates {
                 spin = turning::toward(spin, &(gradient * constants.per_cell), V::splat(pic));
             }
+            damped = before - kinetic(&velocity, &spin, gyration);
         }
         sound &= finite(&spin.0);
         sound &= finite(&velocity.0);
@@ -118,7 +123,9 @@ pub fn group<
         let (gradient, mean) = group.flow(&visit.window.flow);
         carried = mean;
         if rotates {
+            let before = kinetic(&Vector::<V, D>::ZERO, &spin, gyration);
             spin = turning::settled::<V, D>(spin, &(gradient * constants.per_cell), V::splat(dt));
+            damped += before - kinetic(&Vector::<V, D>::ZERO, &spin, gyration);
             sound &= finite(&spin.0);
         }
         let increment = Matrix::IDENTITY + gradient * scale;
@@ -188,6 +195,12 @@ pub fn group<
         members.store_vector(Column::<D>::VELOCITY, &velocity);
         members.give_back::<V>(Column::<D>::VELOCITY..Column::<D>::SPIN);
     }
+    if (accept && pic > T::ZERO) || (strain && rotates) {
+        let energies = (damped * members.load::<V>(Column::<D>::MASS)).numbers();
+        for &energy in &energies.0[..members.count::<V>().min(V::COUNT)] {
+            visit.damped += 0.5 * energy.f64();
+        }
+    }
     if accept || (strain && rotates) {
         members.store_spin(&spin);
         members.give_back::<V>(Column::<D>::SPIN..Column::<D>::MASS);
@@ -219,6 +232,12 @@ pub fn group<
         group.scatter::<M>(visit.window, &load);
     }
     Some(inside)
+}
+
+/// v^2 + k^2 w^2, with the square of the radius of gyration.
+#[inline(always)]
+fn kinetic<V: Lanes, const D: usize>(velocity: &Vector<V, D>, spin: &Vector<V, 3>, gyration: V) -> V {
+    gyration.times_plus(spin.dot(*spin), velocity.dot(*velocity))
 }
 
 /// Whether the bits of all lanes are set.
