@@ -83,7 +83,7 @@ E* = 7.64 MPa 1.555 m and 1.565 m. Static contact radius: R/6.",
         Reason {
             laws: &["surface"],
             text: "A soft sphere does not roll as a rigid one: the spin is the elastic sphere's. Friction that drives it lets it creep, by Kalker's linear theory by Q/(G a^2 C11) = 0.021 of its speed (Q/P = 2/7, a = R/6, C11 = 4.3, G = 5.5 MPa for both bodies), \
-more where part of the patch slips, while its surface, shorter by 0.02 under Hertz's pressure, turns it faster. R/8 gives 0.977.",
+more where part of the patch slips, while its surface, shorter by 0.02 under Hertz's pressure, turns it faster. R/8 gives 0.960.",
         },
     ],
     run,

@@ -25,9 +25,7 @@ with E* = 7.64 MPa 0.974 m.",
     measure: "R/h",
     resolutions: &[Resolution::quick(4.0), Resolution::full(8.0)],
     targets: &[
-        Target::new("x", 1.0, Allowed::Within(0.05), "cells of R/4 do not resolve a contact of R/6")
-            .at(4.0)
-            .missed_at(&[4.0]),
+        Target::new("x", 1.0, Allowed::Within(0.05), "cells of R/4 do not resolve a contact of R/6").at(4.0),
         Target::new("x", 1.0, Allowed::Within(0.01), FINE).at(8.0),
         Target::new("v", 1.0, Allowed::Within(0.02), FINE).at(8.0),
         Target::new(
