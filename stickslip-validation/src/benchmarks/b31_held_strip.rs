@@ -44,8 +44,8 @@ and, while it is held, at 1.2 and at 2 of its length.",
     ],
     reasons: &[Reason {
         laws: &["gimp-modified-last-rflip"],
-        text: "Stretched to its double, the boxes of uniform GIMP, which do not stretch, leave gaps: the strip tears. The run \
-says so.",
+        text: "Stretched to its double, the boxes of uniform GIMP, which do not stretch, leave gaps: the strip tears, \
+and its force is 0.0 of the exact one. The run says so.",
     }],
     run,
 };

@@ -42,7 +42,8 @@ centre, it goes on turning. Measured at the end over the first spin.",
     reasons: &[Reason {
         laws: &["gimp-modified-last-rflip"],
         text: "The disk rests on less than half a cell of each wall, so one node bears it, which stands beside the place where \
-the disk touches, always on the same side: it brakes.",
+the disk touches, always on the same side: it brakes. Of \
+the spin 0.04 is left with R/6.",
     }],
     run,
 };
