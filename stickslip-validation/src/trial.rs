@@ -5,7 +5,7 @@ use crate::penetration::penetration;
 use std::time::Instant;
 use stickslip::door::{BodyState, ContactState, GridSnapshot, Ledger, ParticleSnapshot, Simulation};
 use stickslip::scene::{Face, Motion, Scene};
-use stickslip::{engine, scene};
+use stickslip::{step, scene};
 
 /// What every run records besides what its benchmark measures.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -91,7 +91,7 @@ impl Trial {
     pub fn start(name: impl Into<String>, text: impl Into<String>) -> Result<Self, Failure> {
         let (name, text) = (name.into(), text.into());
         let scene = scene::parse(&name, &text, &[])?.scene;
-        let mut simulation = engine::build(&scene)?;
+        let mut simulation = step::build(&scene)?;
         simulation.take_contacts();
         let isolated = scene.gravity == [0.0; 3]
             && scene.bodies.iter().all(|body| matches!(body.motion, Motion::Free { .. }))

@@ -46,7 +46,7 @@ const WORLD: &str = r#"
 fn allocations(bodies: &str, basis: &str, threads: usize, [warm_up, steps]: [usize; 2]) -> u64 {
     let text = format!("{}bodies = [{bodies}]", WORLD.replace("BASIS", basis));
     let scene = stickslip::scene::parse("allocations.toml", &text, &[]).expect("a scene").scene;
-    let mut simulation = stickslip::engine::build(&scene).expect("a sound scene");
+    let mut simulation = stickslip::step::build(&scene).expect("a sound scene");
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
     // Inside the pool: work that is handed in from outside waits in a list of the pool's.
     pool.install(|| {

@@ -20,7 +20,7 @@ use std::sync::atomic::AtomicBool;
 use stickslip::observe::{ArrivalRow, ProbeRow, Results};
 use stickslip::run::RunOptions;
 use stickslip::scene::Scene;
-use stickslip::{engine, run, scene};
+use stickslip::{step, run, scene};
 
 const CELLS: f64 = 80.0;
 const SPEED: f64 = 0.002;
@@ -87,7 +87,7 @@ fn bar() -> String {
 }
 
 fn run_to(out: &Path, scene: &Scene) -> Results {
-    let mut simulation = engine::build(scene).unwrap();
+    let mut simulation = step::build(scene).unwrap();
     let options = RunOptions { out: out.to_path_buf(), stop: Arc::new(AtomicBool::new(false)), threads: 1 };
     run::run(scene, &mut *simulation, &options, &mut |_| {}).unwrap();
     Results::open(out).unwrap()
@@ -172,7 +172,7 @@ fn a_step_wave_arrives_and_runs_at_the_speed_of_the_bar() {
 #[test]
 fn visiting_shows_the_particles_of_the_snapshot() {
     let scene = scene::parse("bar.toml", &bar(), &[]).unwrap().scene;
-    let mut simulation = engine::build(&scene).unwrap();
+    let mut simulation = step::build(&scene).unwrap();
     for _ in 0..10 {
         simulation.step(f64::INFINITY).unwrap();
     }

@@ -310,7 +310,7 @@ fn two_disks_that_collide_and_ring_are_sound() {
         velocity = ["-0.3 m/s", 0]
     "#;
     let scene = scene::parse("disks.toml", text, &[]).unwrap().scene;
-    let mut simulation = stickslip::engine::build(&scene).unwrap();
+    let mut simulation = stickslip::step::build(&scene).unwrap();
     let warnings = judge(text, &mut *simulation).1;
     assert!(warnings.is_empty(), "{warnings:?}");
 }

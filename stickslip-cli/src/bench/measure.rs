@@ -134,7 +134,7 @@ fn take(order: &Order) -> Result<Sample, Failure> {
     let start = Instant::now();
     let loaded =
         stickslip::scene::parse("benchmark", &order.scene, &order.overrides).map_err(Failure::input)?;
-    let mut simulation = stickslip::engine::build(&loaded.scene)
+    let mut simulation = stickslip::step::build(&loaded.scene)
         .map_err(|problem| Failure::input(loaded.source.locate(problem)))?;
     let mut sample =
         Sample { bodies: loaded.scene.bodies.len(), particles: simulation.particles(), ..Sample::default() };

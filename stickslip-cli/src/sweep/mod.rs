@@ -81,7 +81,7 @@ impl Crew {
             Err(error) => return failed(error.to_string()),
         };
         let outcome = pool.install(|| {
-            let mut simulation = stickslip::engine::build(&loaded.scene)
+            let mut simulation = stickslip::step::build(&loaded.scene)
                 .map_err(|problem| loaded.source.locate(problem).to_string())?;
             let options =
                 RunOptions { out: out.to_path_buf(), stop: Arc::clone(&self.stop), threads: self.threads };

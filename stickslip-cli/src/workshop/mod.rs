@@ -100,7 +100,7 @@ impl Workshop {
         let outcome = pool.map_err(|error| error.to_string()).and_then(|pool| {
             pool.install(|| {
                 let scene = &job.loaded.scene;
-                let built = stickslip::engine::build(scene);
+                let built = stickslip::step::build(scene);
                 let mut simulation =
                     built.map_err(|problem| job.loaded.source.locate(problem).to_string())?;
                 let show = &mut |progress: &stickslip::run::Progress| lane.show(progress);

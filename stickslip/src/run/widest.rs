@@ -200,7 +200,7 @@ mod tests {
             })
             .to_vec();
         let scene = || {
-            let text = include_str!("../../tests/scenes/rolling.toml");
+            let text = include_str!("../../../stickslip-scene/tests/scenes/rolling.toml");
             let mut scene = crate::scene::parse("rolling.toml", text, &[]).expect("a scene").scene;
             scene.bodies.push(scene.bodies[0].clone());
             scene

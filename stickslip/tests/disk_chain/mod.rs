@@ -2,7 +2,7 @@
 
 use std::path::Path;
 use stickslip::door::{ParticleSnapshot, Simulation};
-use stickslip::engine;
+use stickslip::step;
 use stickslip::scene::{self, Scene};
 
 /// What happened to the disks.
@@ -78,7 +78,7 @@ impl Chain {
     }
 
     fn of(scene: &Scene, (transits, enough): Until) -> Chain {
-        let mut simulation = engine::build(scene).unwrap_or_else(|error| panic!("{error:?}"));
+        let mut simulation = step::build(scene).unwrap_or_else(|error| panic!("{error:?}"));
         let setting = Setting::of(scene, &*simulation);
         let end = transits * setting.transit;
         let disks = setting.disks.len();

@@ -1,7 +1,7 @@
 //! The paper's scenes with a sphere, run to their end and held against the rigid solution that they state.
 
 use std::path::Path;
-use stickslip::engine;
+use stickslip::step;
 use stickslip::scene::{self, Scene};
 
 /// What a sphere did in a scene.
@@ -38,7 +38,7 @@ impl Roll {
     }
 
     fn of(scene: &Scene) -> Roll {
-        let mut simulation = engine::build(scene).unwrap_or_else(|error| panic!("{error:?}"));
+        let mut simulation = step::build(scene).unwrap_or_else(|error| panic!("{error:?}"));
         let sphere = scene.bodies.iter().position(|body| body.name == "sphere").unwrap();
         let end = scene.time.end;
         let energy = simulation.ledger().total;

@@ -22,7 +22,7 @@ use std::f64::consts::PI;
 use std::path::Path;
 use stickslip::polariscope::{StressMap, Window, stress_maps};
 use stickslip::scene::Scene;
-use stickslip::{engine, scene};
+use stickslip::{step, scene};
 
 use crate::trial::run_to;
 
@@ -52,7 +52,7 @@ fn pressed(cells: usize, particles: &str) -> Errors {
     let scene = brazilian(cells, particles);
     let number = |name: &str| scene.parameters[name].number().unwrap_or_else(|| panic!("{name} is a number"));
     let (radius, transit) = (number("radius"), number("transit"));
-    let mut simulation = engine::build(&scene).unwrap_or_else(|problem| panic!("{problem:?}"));
+    let mut simulation = step::build(&scene).unwrap_or_else(|problem| panic!("{problem:?}"));
     run_to(&mut *simulation, 35.0 * transit, |_| {});
     simulation.take_contacts();
     let mut sums: Vec<[f64; 6]> = Vec::new();

@@ -10,7 +10,7 @@
 
 use crate::trial::{STRESS_UPDATES, largest_difference, start_on, take_steps};
 use stickslip::door::ParticleSnapshot;
-use stickslip::engine::Path;
+use stickslip::step::Path;
 use stickslip::lanes::Processor;
 
 fn scene(dimension: &str, precision: &str, basis: &str, update: &str) -> String {

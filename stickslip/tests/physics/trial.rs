@@ -1,8 +1,8 @@
 //! Scenes written in the tests, and how they are run.
 
 use stickslip::door::{ParticleSnapshot, Simulation};
-use stickslip::engine::Path;
-use stickslip::{engine, scene};
+use stickslip::step::Path;
+use stickslip::{step, scene};
 
 /// Every stress update by its word in scene files.
 pub const STRESS_UPDATES: [&str; 3] = ["first", "last", "modified-last"];
@@ -20,13 +20,13 @@ pub fn start(text: &str) -> Box<dyn Simulation> {
 pub fn start_in(folder: &std::path::Path, text: &str) -> Box<dyn Simulation> {
     let name = folder.join("trial.toml").display().to_string();
     let loaded = scene::parse(&name, text, &[]).unwrap_or_else(|error| panic!("{error:?}\n{text}"));
-    engine::build(&loaded.scene).unwrap_or_else(|problem| panic!("{problem:?}\n{text}"))
+    step::build(&loaded.scene).unwrap_or_else(|problem| panic!("{problem:?}\n{text}"))
 }
 
 /// The simulation of a scene on a path.
 pub fn start_on(text: &str, path: Path) -> Box<dyn Simulation> {
     let loaded = scene::parse("trial.toml", text, &[]).unwrap_or_else(|error| panic!("{error:?}\n{text}"));
-    engine::build_on(&loaded.scene, path).unwrap_or_else(|problem| panic!("{problem:?}\n{text}"))
+    step::build_on(&loaded.scene, path).unwrap_or_else(|problem| panic!("{problem:?}\n{text}"))
 }
 
 /// Takes `count` steps of the stable length.

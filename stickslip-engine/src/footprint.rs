@@ -1,0 +1,93 @@
+//! What a scene costs in memory.
+
+use crate::check::{Footprint, lattice};
+use crate::geometry::Bounds;
+use crate::grid::Node;
+use crate::particles::Particles;
+use crate::scene::{Motion, Precision, Scene};
+use crate::step::particles_around;
+use crate::tensor::Real;
+
+/// Each particle's place in the order of blocks and cells, of which there are two: one while the next is made [bytes].
+const ORDER_BYTES: usize = 2 * size_of::<u32>();
+/// Nodes per cell that particles fill: blocks are covered whole, with those that a body's rim reaches.
+const NODES_PER_CELL: f64 = 4.0;
+
+/// What this engine takes.
+#[derive(Clone, Copy, Debug)]
+pub struct OfEngine;
+
+impl Footprint for OfEngine {
+    fn particles_around(&self, scene: &Scene, body: usize, boxes: &[Bounds]) -> usize {
+        particles_around(scene, body, boxes)
+    }
+
+    fn memory(&self, scene: &Scene, particles: &[usize]) -> f64 {
+        match (scene.dimension.axes(), scene.precision) {
+            (2, Precision::Double) => memory::<f64, 2>(scene, particles),
+            (2, Precision::Single) => memory::<f32, 2>(scene, particles),
+            (_, Precision::Double) => memory::<f64, 3>(scene, particles),
+            (_, Precision::Single) => memory::<f32, 3>(scene, particles),
+        }
+    }
+}
+
+fn memory<T: Real, const D: usize>(scene: &Scene, particles: &[usize]) -> f64 {
+    let node = size_of::<Node<T, D>>() as f64;
+    let of_body = |(body, &count): (&crate::scene::Body, &usize)| {
+        let flow =
+            matches!(body.motion, Motion::Free { .. }) && scene.materials[body.material].law.flows();
+        let per_cell = (scene.discretization.cell / lattice(scene, body).spacing).powi(D as i32);
+        let themselves = Particles::<T, D>::bytes_of(count, flow) + ORDER_BYTES * count;
+        themselves as f64 + node * NODES_PER_CELL * count as f64 / per_cell
+    };
+    scene.bodies.iter().zip(particles).map(of_body).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::check::report;
+
+    /// A block with its lower face at a height above a floor without bounds; surfaces between nodes, as they are once
+    /// bodies have moved.
+    fn scene(block: &str, height: f64) -> Scene {
+        let text = format!(
+            "title = \"block\"\nspace.dimension = \"3d\"\nspace.cell = \"0.1 m\"\ntime.end = \"1 s\"\n\
+             [[material]]\nname = \"rubber\"\ndensity = \"1000 kg/m^3\"\n\
+             neo_hookean = {{ bulk_modulus = \"2 MPa\", shear_modulus = \"1 MPa\" }}\n\
+             [[body]]\nname = \"block\"\nmaterial = \"rubber\"\n{block}\
+             shape.box = {{ min = [-0.03, -0.03, {height}], max = [1.97, 1.97, {top}] }}\n\
+             [[body]]\nname = \"floor\"\nmaterial = \"rubber\"\nrigid = true\n\
+             shape.half_space = {{ point = [0.0, 0.0, -0.03], normal = [0.0, 0.0, 1.0] }}\n",
+            top = height + 1.0
+        );
+        crate::scene::parse("block.toml", &text, &[]).unwrap_or_else(|e| panic!("{e:?}")).scene
+    }
+
+    fn of_floor(scene: &Scene) -> usize {
+        report(scene, &OfEngine).expect("no problem").bodies[1].particles
+    }
+
+    /// What the engine fills around a block at rest, within a fifth; as many where the block is above the floor yet.
+    #[test]
+    fn a_floor_without_bounds_counts_with_what_the_run_will_have() {
+        let resting = scene("", -0.03);
+        let mut simulation = crate::step::build(&resting).expect("no problem");
+        simulation.step(1e-6).expect("a step");
+        let particles = simulation.particles() - 8 * 20 * 20 * 10;
+        let found = of_floor(&resting);
+        assert!((found as f64 / particles as f64 - 1.0).abs() < 0.2, "{found} of {particles}");
+        let above = of_floor(&scene("", 2.97));
+        assert!((above as f64 / found as f64 - 1.0).abs() < 0.2, "{above} {found}");
+        assert_eq!(of_floor(&scene("rigid = true\n", 2.97)), 0);
+    }
+
+    /// At least what the particles hold: 30 columns of 8 bytes, and numbers.
+    #[test]
+    fn the_memory_is_at_least_that_of_the_particles() {
+        let report = report(&scene("", 2.97), &OfEngine).expect("no problem");
+        let each = report.memory / report.particles as f64;
+        assert!((30.0 * 8.0 + 4.0 * 4.0..400.0).contains(&each), "{each}");
+    }
+}

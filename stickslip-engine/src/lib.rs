@@ -1,0 +1,44 @@
+//! The engine of Stickslip: many deformable bodies in frictional contact, by the material point method.
+//!
+//! It reads no files and writes none. The rooms below are in reading order: each uses only rooms above it.
+
+pub use stickslip_scene::{check, geometry, material, number, rigid, scene, tensor};
+
+// Several numbers in a register, on whatever the processor has.
+pub mod lanes;
+
+// Shape functions: linear, GIMP.
+pub mod basis;
+
+// Particles, and what they add up to.
+pub mod body;
+
+// Large pages of memory.
+pub mod pages;
+
+// A body's particles as columns in memory.
+pub mod particles;
+
+// The sparse field: blocks of nodes under each body's particles.
+pub mod grid;
+
+// Particles -> field, field -> particles.
+pub mod transfer;
+
+// Mirrors and fixed faces of the domain.
+pub mod boundary;
+
+// The stable time step.
+pub mod clock;
+
+// A running simulation with dimension and precision erased.
+pub mod door;
+
+// What bodies do to each other at the nodes they share.
+pub mod contact;
+
+// The step and its verbs.
+pub mod step;
+
+// What a scene costs in memory.
+pub mod footprint;

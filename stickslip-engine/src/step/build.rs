@@ -1,0 +1,210 @@
+//! From a scene to a simulation.
+
+use super::cpu::Workshop;
+use super::unbounded::Unbounded;
+use super::watch::Watch;
+use super::{Engine, Path};
+use crate::basis::{Basis, Gimp, Linear};
+use crate::body::{Body, Particle};
+use crate::boundary::{Boundary, Wall};
+use crate::check;
+use crate::contact::{Rules, Survey, Tally};
+use crate::door::Simulation;
+use crate::geometry::{Filling, Mirror, Site, Whole, fill};
+use crate::grid::{Cover, Field, Lattice};
+use crate::lanes::{Laned, Processor};
+use crate::particles::Particles;
+use crate::rigid::RigidMotion;
+use crate::scene::{self, BasisKind, Dimension, Face, Motion, Precision, Problem, Scene, Transfer};
+use crate::tensor::{Matrix, Real, Symmetric, Vector, cross};
+use crate::transfer::turning;
+use std::marker::PhantomData;
+use std::sync::Mutex;
+
+/// The simulation of a scene.
+///
+/// # Errors
+/// What [`check::problems`] finds.
+pub fn build(scene: &Scene) -> Result<Box<dyn Simulation>, Problem> {
+    build_on(scene, Path::Lanes(Processor::best()))
+}
+
+/// The simulation of a scene, with its particles taken one at a time or several.
+///
+/// # Errors
+/// What [`check::problems`] finds.
+pub fn build_on(scene: &Scene, path: Path) -> Result<Box<dyn Simulation>, Problem> {
+    match (scene.dimension, scene.precision) {
+        (Dimension::PlaneStrain | Dimension::PlaneStress, Precision::Double) => {
+            with_basis::<f64, 2>(scene, path)
+        }
+        (Dimension::PlaneStrain | Dimension::PlaneStress, Precision::Single) => {
+            with_basis::<f32, 2>(scene, path)
+        }
+        (Dimension::Space, Precision::Double) => with_basis::<f64, 3>(scene, path),
+        (Dimension::Space, Precision::Single) => with_basis::<f32, 3>(scene, path),
+    }
+}
+
+fn with_basis<T: Laned, const D: usize>(scene: &Scene, path: Path) -> Result<Box<dyn Simulation>, Problem> {
+    Ok(match scene.discretization.basis {
+        BasisKind::Linear => Box::new(Engine::<T, D, Linear>::new(scene, path)?),
+        BasisKind::Gimp => Box::new(Engine::<T, D, Gimp>::new(scene, path)?),
+    })
+}
+
+impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
+    /// The simulation of a scene of this dimension and precision.
+    ///
+    /// # Errors
+    /// What [`check::problems`] finds.
+    pub fn new(scene: &Scene, path: Path) -> Result<Self, Problem> {
+        check::problems(scene)?;
+        let mut bodies = Vec::new();
+        let mut rigid = Vec::new();
+        let mut unbounded = Vec::new();
+        for body in &scene.bodies {
+            let sites = check::lattice(scene, body);
+            let filled = fill(&body.shape, &sites, body.particles);
+            let center = filled.as_ref().map_or(body.shape.anchor(sites.dimension), Filling::center);
+            let filling = filled.unwrap_or_else(|| {
+                unbounded.push(Unbounded {
+                    body: bodies.len(),
+                    shape: body.shape.clone(),
+                    sites,
+                    cell: scene.discretization.cell,
+                    mirrors: mirrors::<D>(scene),
+                    served: Vec::new(),
+                    pose: None,
+                });
+                Filling { sites: Vec::new() }
+            });
+            let motion = prescribed(body, center);
+            let velocity = |x| match (&body.motion, &motion) {
+                (Motion::Free { velocity, spin }, _) => about(center, *velocity, *spin, x),
+                (_, Some(motion)) => motion.velocity_at(x),
+                _ => [0.0; 3],
+            };
+            // By FLIP particles carry no rotation; those of rigid bodies give the nodes their exact velocity whatever the transfer.
+            let turning = match (&body.motion, &motion) {
+                (Motion::Free { spin, .. }, _) if scene.time.transfer == Transfer::Rflip => *spin,
+                (_, Some(motion)) => motion.spin(),
+                _ => [0.0; 3],
+            };
+            bodies.push(Body {
+                name: body.name.clone(),
+                material: scene.materials[body.material].law.cast(),
+                density: T::of(scene.materials[body.material].density),
+                particles: particles(scene, body, &filling, (velocity, turning)),
+                rigid: motion.is_some(),
+                whole: Whole::new(&body.shape, mirrors::<D>(scene), D),
+                thickness: scene.dimension.thickness(),
+                gyration: turning::gyration::<T, B>(scene.discretization.cell),
+            });
+            rigid.push(motion);
+        }
+        let origin = scene.domain.as_ref().map_or([0.0; 3], |domain| domain.min);
+        Ok(Engine {
+            bodies,
+            rigid,
+            unbounded,
+            lattice: Lattice::new(Vector::of(origin), T::of(scene.discretization.cell)),
+            domain: scene.domain.as_ref().map(|domain| [domain.min, domain.max].map(Vector::of)),
+            gravity: Vector::of(scene.gravity),
+            transfer: scene.time.transfer,
+            pic_share: T::of(scene.time.pic_share),
+            rules: Rules::new(scene),
+            boundary: Boundary::new(walls::<D>(scene)),
+            clock: scene.time.clone(),
+            cover: Cover::default(),
+            field: Field { nodes: Vec::new(), present: Vec::new() },
+            meeting: Survey::default(),
+            groups: Vec::new(),
+            impulses: Default::default(),
+            tally: Tally::default(),
+            signal: None,
+            left: Vec::new(),
+            damped: Vec::new(),
+            damping: 0.0,
+            totals: Mutex::new(None),
+            path,
+            workshop: Workshop::default(),
+            time: 0.0,
+            steps: 0,
+            watch: Watch::default(),
+            basis: PhantomData,
+        })
+    }
+}
+
+/// The prescribed motion of a rigid body.
+fn prescribed(body: &scene::Body, center: [f64; 3]) -> Option<RigidMotion> {
+    match &body.motion {
+        Motion::Free { .. } => None,
+        Motion::Rigid { velocity, spin } => Some(RigidMotion::new(center, velocity.clone(), spin.clone())),
+    }
+}
+
+/// The part of an angular velocity that a motion in `D` dimensions has.
+pub(super) fn spin<T: Real, const D: usize>([x, y, z]: [f64; 3]) -> Vector<T, 3> {
+    Vector::of(if D == 2 { [0.0, 0.0, z] } else { [x, y, z] })
+}
+
+/// v + w x (x - c) [m/s]
+fn about(center: [f64; 3], velocity: [f64; 3], spin: [f64; 3], x: [f64; 3]) -> [f64; 3] {
+    let turn = cross(spin, std::array::from_fn(|i| x[i] - center[i]));
+    std::array::from_fn(|i| velocity[i] + turn[i])
+}
+
+fn particles<T: Real, const D: usize>(
+    scene: &Scene,
+    body: &scene::Body,
+    filling: &Filling,
+    (velocity, turning): (impl Fn([f64; 3]) -> [f64; 3], [f64; 3]),
+) -> Particles<T, D> {
+    let density = scene.materials[body.material].density;
+    let particle = |number: usize| {
+        let site: &Site = &filling.sites[number];
+        Particle {
+            position: Vector::of(site.position),
+            velocity: Vector::of(velocity(site.position)),
+            spin: spin::<T, D>(turning),
+            mass: T::of(site.volume * density),
+            volume: T::of(site.volume),
+            half_width: T::of(site.half_width),
+            deformation: Matrix::IDENTITY,
+            stress: Symmetric::ZERO,
+            plastic_strain: T::ZERO,
+            number: number as u32,
+        }
+    };
+    let flow = matches!(body.motion, Motion::Free { .. }) && scene.materials[body.material].law.flows();
+    Particles::from_fn(filling.sites.len(), flow, particle)
+}
+
+/// The domain's faces that are mirrors.
+pub(super) fn mirrors<const D: usize>(scene: &Scene) -> Vec<Mirror> {
+    let Some(domain) = &scene.domain else { return Vec::new() };
+    let faces = (0..D).flat_map(|axis| [0, 1].map(|side| (axis, side)));
+    (faces.filter(|&(axis, side)| domain.faces[axis][side] == Face::Symmetry))
+        .map(|(axis, side)| match side {
+            0 => Mirror { axis, position: domain.min[axis], inward: 1.0 },
+            _ => Mirror { axis, position: domain.max[axis], inward: -1.0 },
+        })
+        .collect()
+}
+
+/// The domain's faces that do something.
+fn walls<const D: usize>(scene: &Scene) -> Vec<Wall> {
+    let Some(domain) = &scene.domain else { return Vec::new() };
+    let mut walls = Vec::new();
+    for axis in 0..D {
+        let upper = ((domain.max[axis] - domain.min[axis]) / scene.discretization.cell).round() as i32;
+        for (face, node, inward) in [(domain.faces[axis][0], 0, 1), (domain.faces[axis][1], upper, -1)] {
+            if face != Face::Open {
+                walls.push(Wall { axis, node, inward, face });
+            }
+        }
+    }
+    walls
+}

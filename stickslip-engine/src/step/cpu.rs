@@ -1,0 +1,100 @@
+//! Passes over tiles on threads, with the same bits for any number of them.
+//!
+//! Small bodies scatter each on one thread, tile after tile. Tiles of one colour of large bodies scatter side by side, colours one after the
+//! other, and a tile's particles in their own order: no sum depends on which thread comes first.
+
+use super::Engine;
+use super::pass::{Found, Pass, Path, Verbs, Visit};
+use super::tile::SeveralAtATime;
+use crate::basis::Basis;
+use crate::grid::{Disjoint, Window};
+use crate::lanes::Laned;
+use crate::particles::Columns;
+use rayon::prelude::*;
+use std::marker::PhantomData;
+use std::ops::Range;
+use std::sync::{Mutex, PoisonError};
+
+/// What threads work with, kept from pass to pass.
+pub struct Workshop<T, const D: usize> {
+    /// A window for each thread.
+    windows: Vec<Mutex<Box<Window<T, D>>>>,
+    columns: Vec<Columns<T, D>>,
+}
+
+impl<T, const D: usize> Default for Workshop<T, D> {
+    fn default() -> Self {
+        Workshop { windows: Vec::new(), columns: Vec::new() }
+    }
+}
+
+/// Tiles that a thread takes at a time.
+const TILES: usize = 2;
+
+impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
+    /// Takes every particle through a pass; those of rigid bodies only scatter.
+    pub(super) fn pass(&mut self, pass: &Pass<T, D>) -> Found<T> {
+        let threads = rayon::current_num_threads();
+        self.workshop.windows.resize_with(threads.max(self.workshop.windows.len()), Mutex::default);
+        self.workshop.columns.clear();
+        self.workshop.columns.extend(self.bodies.iter_mut().map(|body| body.particles.open()));
+        let nodes = Disjoint::new(&mut self.field.nodes);
+        let left = Disjoint::new(&mut self.left);
+        let damped = Disjoint::new(&mut self.damped);
+        let (cover, bodies, workshop, path) = (&self.cover, &self.bodies, &self.workshop, self.path);
+        // Fed with the fastest signal of the tiles before it in its list, which spares it the roots of slower ones. Lists do not depend on threads.
+        let visit = |index: u32, window: &mut Window<T, D>, signal: T| -> Found<T> {
+            let tile = &cover.tiles[index as usize];
+            let body = &bodies[tile.body];
+            let for_rigid = Verbs { scatter: pass.verbs.scatter, ..Verbs::default() };
+            let pass = &Pass { verbs: if body.rigid { for_rigid } else { pass.verbs }, ..*pass };
+            let mut visit = Visit {
+                pass,
+                tile,
+                body,
+                columns: workshop.columns[tile.body],
+                order: cover.order_of(tile.body),
+                cells: cover.cells_of(tile),
+                nodes: &nodes,
+                window,
+                next: cover.tiles.get(index as usize + 1),
+                left: 0,
+                damped: 0.0,
+                found: Found { signal, ..Found::NOTHING },
+                basis: PhantomData::<B>,
+            };
+            // SAFETY: every particle belongs to one tile, and every tile to one call. Nobody writes to the field in a pass without
+            // scatter, and only this tile to its slots in one with: portions and tiles of one colour share none.
+            unsafe {
+                match path {
+                    Path::Lanes(processor) => T::run(processor, SeveralAtATime(&mut visit)),
+                    Path::Reference => visit.take_one_by_one(),
+                }
+            }
+            // SAFETY: every tile has a place of its own.
+            unsafe {
+                *left.get(index as usize) |= visit.left;
+                *damped.get(index as usize) = visit.damped;
+            }
+            visit.found
+        };
+        let several = |tiles: &mut dyn Iterator<Item = u32>| -> Found<T> {
+            let thread = rayon::current_thread_index().unwrap_or(0);
+            let mut window = workshop.windows[thread].lock().unwrap_or_else(PoisonError::into_inner);
+            tiles.fold(Found::NOTHING, |found, tile| found.and(visit(tile, &mut window, found.signal)))
+        };
+        if pass.verbs.scatter.is_none() {
+            let all = 0..cover.tiles.len() as u32;
+            let chunks = (0..cover.tiles.len().div_ceil(TILES)).into_par_iter();
+            let chunk = |i: usize| several(&mut all.clone().skip(i * TILES).take(TILES));
+            return chunks.map(chunk).reduce(|| Found::NOTHING, Found::and);
+        }
+        let portion = |tiles: &Range<usize>| several(&mut tiles.clone().map(|tile| tile as u32));
+        let found = cover.portions.par_iter().map(portion).reduce(|| Found::NOTHING, Found::and);
+        let color = |color: &Vec<u32>| {
+            let chunks = color.par_chunks(TILES);
+            chunks.map(|tiles| several(&mut tiles.iter().copied())).reduce(|| Found::NOTHING, Found::and)
+        };
+        cover.colors.iter().map(color).fold(found, Found::and)
+    }
+}

@@ -1,0 +1,266 @@
+//! What a pass does to a group of particles.
+
+use super::members::Members;
+use super::thickness::free_thickness;
+use crate::basis::Basis;
+use crate::body::Gyration;
+use crate::step::pass::{Pass, Verbs, Visit};
+use crate::lanes::{Laned, Lanes, Machine};
+use crate::material::{Material, Motion, Thickness};
+use crate::particles::Column;
+use crate::scene::Transfer;
+use crate::tensor::{Matrix, Real, Symmetric, Vector};
+use crate::transfer::{Group, Load, Momentum, Share, Start, turning};
+
+/// What all particles of a tile have in common.
+pub struct Constants<V, const D: usize> {
+    /// Its law.
+    pub material: Material<V>,
+    /// 1/rho_0 [m^3/kg]
+    pub per_density: V,
+    /// Position of the node at zero [m].
+    pub origin: Vector<V, D>,
+    /// Side of a cell [m].
+    pub cell: V,
+    /// Inverse of it [1/m].
+    pub per_cell: V,
+    /// What the particles weigh against turning.
+    pub gyration: Gyration<V>,
+    /// Lower and upper corner of the domain [m].
+    pub domain: Option<[Vector<V, D>; 2]>,
+}
+
+impl<V: Lanes, const D: usize> Constants<V, D> {
+    #[inline(always)]
+    fn in_cells(&self, position: &Vector<V, D>) -> Vector<V, D> {
+        (*position - self.origin) * self.per_cell
+    }
+}
+
+#[inline(always)]
+pub fn splat<V: Lanes, const D: usize>(vector: &Vector<V::Real, D>) -> Vector<V, D> {
+    Vector::from_fn(|i| V::splat(vector[i]))
+}
+
+/// Takes a group through a pass and says which particles did not leave their cells; nothing is done if any has a fault.
+///
+/// Particles have base nodes and places of these in the window.
+#[inline(always)]
+pub fn group<
+    T: Laned,
+    V: Lanes<Real = T>,
+    M: Machine<T>,
+    const D: usize,
+    B: Basis<T>,
+    S: Start,
+    const WHOLE: bool,
+>(
+    visit: &mut Visit<'_, T, D, B>,
+    constants: &Constants<V, D>,
+    members: &Members<'_, T, D, WHOLE>,
+    (base, start): (Vector<V, D>, S),
+) -> Option<u32> {
+    let Pass { verbs, dt, transfer, pic, .. } = *visit.pass;
+    let Verbs { accept, strain, displace, scatter } = verbs;
+    let position = members.vector::<V>(Column::<D>::POSITION);
+    let half_width = members.load::<V>(Column::<D>::HALF_WIDTH);
+    let half = half_width * constants.per_cell;
+    let group =
+        Group::<V, D, B, S>::new(constants.in_cells(&position) - base, half, start, members.count::<V>());
+    let mut sound = u32::MAX;
+
+    let mut velocity = Vector::ZERO;
+    let mut spin = Vector::ZERO;
+    let gyration = constants.gyration.squared(half_width);
+    // What is taken from twice the kinetic energy over the mass.
+    let mut damped = V::ZERO;
+    let rotates = transfer == Transfer::Rflip;
+    let gives_momentum = scatter.is_some_and(|share| share != Share::Force);
+    if accept || displace || gives_momentum {
+        velocity = members.vector::<V>(Column::<D>::VELOCITY);
+    }
+    if accept || gives_momentum || (strain && rotates) {
+        spin = members.spin::<V>();
+    }
+    if accept {
+        if rotates {
+            let (moment, change) = group.moment(&visit.window.change);
+            velocity += change;
+            spin += moment * (constants.cell / gyration);
+        } else {
+            velocity += group.interpolate(&visit.window.change);
+        }
+        if pic > T::ZERO {
+            let before = kinetic(&velocity, &spin, gyration);
+            let (gradient, mean) = group.flow(&visit.window.integrated);
+            velocity = velocity * V::splat(T::ONE - pic) + mean * V::splat(pic);
+            if rotates {
+                spin = turning::toward(spin, &(gradient * constants.per_cell), V::splat(pic));
+            }
+            damped = before - kinetic(&velocity, &spin, gyration);
+        }
+        sound &= finite(&spin.0);
+        sound &= finite(&velocity.0);
+    }
+
+    let mut deformation = Matrix::ZERO;
+    let mut stress = Symmetric::ZERO;
+    let mut plastic_strain = V::ZERO;
+    let [mut jacobian, mut volume] = [V::ZERO; 2];
+    let mut carried = Vector::ZERO;
+    let pushes = matches!(scatter, Some(Share::Force | Share::Everything));
+    if strain || displace {
+        deformation = members.deformation::<V>();
+    }
+    if strain || pushes {
+        stress = members.stress::<V>();
+    }
+    if strain {
+        if members.flow() {
+            plastic_strain = members.load(Column::<D>::PLASTIC_STRAIN);
+        }
+        let scale = V::splat(dt) * constants.per_cell;
+        let (gradient, mean) = group.flow(&visit.window.flow);
+        carried = mean;
+        if rotates {
+            let before = kinetic(&Vector::<V, D>::ZERO, &spin, gyration);
+            spin = turning::settled::<V, D>(spin, &(gradient * constants.per_cell), V::splat(dt));
+            damped += before - kinetic(&Vector::<V, D>::ZERO, &spin, gyration);
+            sound &= finite(&spin.0);
+        }
+        let increment = Matrix::IDENTITY + gradient * scale;
+        deformation = increment * deformation;
+        jacobian = deformation.det();
+        sound &= jacobian.at_least(V::splat(T::TINY)) & finite(&[jacobian]);
+        let motion = Motion { deformation, jacobian, increment, stress, plastic_strain };
+        if D == 2 && visit.body.thickness == Thickness::Free {
+            let motion = free_thickness(visit.body, motion)?;
+            (deformation, jacobian) = (motion.deformation, motion.jacobian);
+            (stress, plastic_strain) = (motion.stress, motion.plastic_strain);
+        } else {
+            let response = constants.material.response(&motion);
+            (stress, plastic_strain) = (response.stress, response.plastic_strain);
+        }
+        sound &= finite(&stress.0);
+        volume = members.load::<V>(Column::<D>::MASS) * constants.per_density * jacobian;
+    } else {
+        if displace {
+            jacobian = deformation.det();
+        }
+        if pushes {
+            volume = members.load::<V>(Column::<D>::VOLUME);
+        }
+    }
+
+    let mut inside = u32::MAX;
+    if displace {
+        if !strain {
+            carried = group.interpolate(&visit.window.flow);
+        }
+        let moved = position + carried * V::splat(dt);
+        sound &= finite(&moved.0);
+        let cells = constants.in_cells(&moved);
+        for i in 0..D {
+            let reach = B::reach(cells[i], half);
+            inside &= reach.at_least(base[i]) & !reach.at_least(base[i] + V::ONE);
+            if let Some([min, max]) = &constants.domain {
+                sound &= moved[i].at_least(min[i]) & max[i].at_least(moved[i]);
+            }
+        }
+        if !every::<V>(inside) {
+            let far = V::splat(T::of(f64::from(crate::grid::MOST_CELLS - 1)));
+            for i in 0..D {
+                let reach = B::reach(cells[i], half);
+                sound &= reach.at_least(-far) & far.at_least(reach);
+            }
+        }
+        if !every::<V>(sound) {
+            return None;
+        }
+        members.store_vector(Column::<D>::POSITION, &moved);
+        members.give_back::<V>(Column::<D>::POSITION..Column::<D>::VELOCITY);
+        let modulus = constants.material.wave_modulus(visit.body.thickness, &deformation, jacobian);
+        let [wave, speed] = [modulus * constants.per_density, velocity.dot(velocity)];
+        if !every::<V>(no_faster(wave, speed, V::splat(visit.found.signal))) {
+            let signals = (wave.sqrt() + speed.sqrt()).numbers();
+            for &signal in &signals.0[..V::COUNT] {
+                visit.found.signal = visit.found.signal.max(signal);
+            }
+        }
+    }
+    if !every::<V>(sound) {
+        return None;
+    }
+    if accept {
+        members.store_vector(Column::<D>::VELOCITY, &velocity);
+        members.give_back::<V>(Column::<D>::VELOCITY..Column::<D>::SPIN);
+    }
+    if (accept && pic > T::ZERO) || (strain && rotates) {
+        let energies = (damped * members.load::<V>(Column::<D>::MASS)).numbers();
+        for &energy in &energies.0[..members.count::<V>().min(V::COUNT)] {
+            visit.damped += 0.5 * energy.f64();
+        }
+    }
+    if accept || (strain && rotates) {
+        members.store_spin(&spin);
+        members.give_back::<V>(Column::<D>::SPIN..Column::<D>::MASS);
+    }
+    if strain {
+        members.store_deformation(&deformation);
+        members.store_stress(&stress);
+        members.give_back::<V>(Column::<D>::DEFORMATION..Column::<D>::START);
+        members.store(Column::<D>::VOLUME, volume);
+        members.give_back::<V>(Column::<D>::VOLUME..Column::<D>::VOLUME + 1);
+        if members.flow() {
+            members.store(Column::<D>::PLASTIC_STRAIN, plastic_strain);
+            members.give_back::<V>(Column::<D>::PLASTIC_STRAIN..Column::<D>::PLASTIC_STRAIN + 1);
+        }
+    }
+    if let Some(share) = scatter {
+        let mut load = Load { momentum: None, stress: None };
+        if gives_momentum {
+            let mass = members.load::<V>(Column::<D>::MASS);
+            load.momentum = Some(Momentum {
+                own: velocity * mass,
+                per_cell: turning::gradient::<V, D>(&spin, V::splat(T::HALF * dt)) * (mass * constants.cell),
+                mass: if share == Share::Momentum { V::ZERO } else { mass },
+            });
+        }
+        if pushes {
+            load.stress = Some(stress * (volume * constants.per_cell));
+        }
+        group.scatter::<M>(visit.window, &load);
+    }
+    Some(inside)
+}
+
+/// v^2 + k^2 w^2, with the square of the radius of gyration.
+#[inline(always)]
+fn kinetic<V: Lanes, const D: usize>(velocity: &Vector<V, D>, spin: &Vector<V, 3>, gyration: V) -> V {
+    gyration.times_plus(spin.dot(*spin), velocity.dot(*velocity))
+}
+
+/// Whether the bits of all lanes are set.
+#[inline(always)]
+pub fn every<V: Lanes>(bits: u32) -> bool {
+    let all = (1 << V::COUNT) - 1;
+    bits & all == all
+}
+
+/// Lanes in which every number is finite; their sum must be, too.
+#[inline(always)]
+fn finite<V: Lanes>(numbers: &[V]) -> u32 {
+    let mut sum = V::ZERO;
+    for &x in numbers {
+        sum += x;
+    }
+    V::splat(V::Real::LARGEST).at_least(sum.abs())
+}
+
+/// Lanes in which sqrt(a) + sqrt(b) <= most, told without a root:  2 sqrt(a b) <= most^2 - a - b.
+#[inline(always)]
+fn no_faster<V: Lanes>(a: V, b: V, most: V) -> u32 {
+    let rest = most * most - a - b;
+    let product = a * b;
+    rest.at_least(V::ZERO) & (rest * rest).at_least((product + product) + (product + product))
+}

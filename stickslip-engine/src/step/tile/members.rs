@@ -1,0 +1,319 @@
+//! The particles of a group in memory: side by side, or copied so that they are.
+
+use crate::step::pass::Verbs;
+use crate::lanes::{Lanes, MOST_LANES, Numbers, prefetch};
+use crate::particles::{Column, Columns, deformation_entries, spin_entries, stress_entries};
+use crate::tensor::{Matrix, Real, Symmetric, Vector};
+use crate::transfer::Share;
+use std::ops::Range;
+
+/// How many particles ahead of the present ones numbers are fetched into the cache: columns are too many for a processor to do so by itself.
+pub const AHEAD: usize = 32;
+
+/// Fetches what a pass needs of a particle and those beside it.
+#[inline(always)]
+pub fn fetch<T: Real, const D: usize>(columns: &Columns<T, D>, particle: usize, verbs: &Verbs) {
+    for range in Reads::of(verbs, columns.flow()).columns::<D>() {
+        for column in range {
+            // SAFETY: the particle exists.
+            prefetch(unsafe { columns.at(column, particle) });
+        }
+    }
+}
+
+/// What a pass reads of particles besides the columns that every pass reads.
+#[derive(Clone, Copy)]
+struct Reads {
+    deformation: bool,
+    stress: bool,
+    plastic_strain: bool,
+}
+
+impl Reads {
+    /// Of a body's particles, which may `flow` or not.
+    #[inline(always)]
+    fn of(verbs: &Verbs, flow: bool) -> Self {
+        Reads {
+            deformation: verbs.strain || verbs.displace,
+            stress: verbs.strain || verbs.scatter.is_some_and(|share| share != Share::Momentum),
+            plastic_strain: flow && verbs.strain,
+        }
+    }
+
+    /// All columns that are read.
+    #[inline(always)]
+    fn columns<const D: usize>(self) -> [Range<usize>; 4] {
+        let only = |read: bool, columns: Range<usize>| if read { columns } else { 0..0 };
+        [
+            0..Column::<D>::DEFORMATION,
+            only(self.deformation, Column::<D>::DEFORMATION..Column::<D>::STRESS),
+            only(self.stress, Column::<D>::STRESS..Column::<D>::START),
+            only(self.plastic_strain, Column::<D>::PLASTIC_STRAIN..Column::<D>::PLASTIC_STRAIN + 1),
+        ]
+    }
+}
+
+/// Up to as many particles as there are lanes, as columns: the body's own where they lie side by side, else copies.
+///
+/// `WHOLE` ones are read and written whole registers at a time: those that fill the lanes, and on processors that do not mask lanes
+/// all of them, from copies. The others are a type of their own, for masks cost those that need none.
+pub struct Members<'a, T, const D: usize, const WHOLE: bool> {
+    columns: &'a Columns<T, D>,
+    /// How many.
+    count: usize,
+    first: *mut T,
+    stride: usize,
+    /// Whence they were copied, if they were.
+    runs: Option<&'a Runs>,
+}
+
+/// Columns of particles that do not lie side by side or, without masks, do not fill the lanes, with room for a register from any lane on.
+pub struct Copies<T> {
+    columns: [[Numbers<T>; 2]; MOST_COLUMNS],
+    runs: Runs,
+}
+
+/// Particles of a group that lie side by side in memory.
+#[derive(Clone, Copy)]
+struct Run {
+    /// Lane of the first.
+    lane: usize,
+    /// Its index.
+    first: usize,
+    count: usize,
+}
+
+/// All particles of a group.
+struct Runs {
+    runs: [Run; MOST_LANES],
+    count: usize,
+}
+
+impl Runs {
+    const NONE: Self = Runs { runs: [Run { lane: 0, first: 0, count: 0 }; MOST_LANES], count: 0 };
+
+    /// The runs of a group's indices, one after the other.
+    #[inline(always)]
+    fn find(&mut self, index: &[u32]) {
+        self.count = 0;
+        for (lane, &i) in index.iter().enumerate().take(MOST_LANES) {
+            let first = i as usize;
+            match self.runs[..self.count].last_mut() {
+                Some(run) if run.first + run.count == first => run.count += 1,
+                _ => {
+                    self.runs[self.count] = Run { lane, first, count: 1 };
+                    self.count += 1;
+                }
+            }
+        }
+    }
+}
+
+/// Columns of a particle in space.
+const MOST_COLUMNS: usize = Column::<3>::PLASTIC_STRAIN + 1;
+
+impl<'a, T: Real, const D: usize, const WHOLE: bool> Members<'a, T, D, WHOLE> {
+    /// Particles that lie side by side.
+    #[inline(always)]
+    pub fn in_a_row(columns: &'a Columns<T, D>, index: &[u32]) -> Self {
+        // SAFETY: the particle exists.
+        let first = unsafe { columns.at(0, index[0] as usize) };
+        Members { columns, count: index.len(), first, stride: columns.stride(), runs: None }
+    }
+
+    /// Particles anywhere.
+    #[inline(always)]
+    pub fn copied<V: Lanes<Real = T>>(
+        columns: &'a Columns<T, D>,
+        index: &[u32],
+        verbs: &Verbs,
+        copies: &'a mut Copies<T>,
+    ) -> Self {
+        // SAFETY: the tile's particles are this pass' alone.
+        unsafe { copies.take::<V, D>(columns, index, Reads::of(verbs, columns.flow())) };
+        Members {
+            columns,
+            count: index.len(),
+            first: copies.columns.as_mut_ptr().cast(),
+            stride: Copies::<T>::STRIDE,
+            runs: Some(&copies.runs),
+        }
+    }
+
+    /// Whether they have plastic strain.
+    #[inline(always)]
+    pub fn flow(&self) -> bool {
+        self.columns.flow()
+    }
+
+    /// How many.
+    #[inline(always)]
+    pub fn count<V: Lanes<Real = T>>(&self) -> usize {
+        if WHOLE && V::MASKED { V::COUNT } else { self.count }
+    }
+
+    /// A column; lanes beyond repeat the first particle.
+    #[inline(always)]
+    pub fn load<V: Lanes<Real = T>>(&self, column: usize) -> V {
+        // SAFETY: the tile's particles are this pass' alone.
+        unsafe {
+            let first = self.first.add(column * self.stride);
+            if WHOLE { V::load(first) } else { V::load_part(first, self.count, *first) }
+        }
+    }
+
+    #[inline(always)]
+    pub fn store<V: Lanes<Real = T>>(&self, column: usize, numbers: V) {
+        // SAFETY: as above.
+        unsafe {
+            let first = self.first.add(column * self.stride);
+            if WHOLE { numbers.store(first) } else { numbers.store_part(first, self.count) }
+        }
+    }
+
+    /// Writes what was stored in copies of some columns to the particles.
+    #[inline(always)]
+    pub fn give_back<V: Lanes<Real = T>>(&self, columns: Range<usize>) {
+        let Some(Runs { runs, count }) = self.runs else { return };
+        for run in &runs[..*count] {
+            for column in columns.clone() {
+                // SAFETY: the tile's particles are this pass' alone, and copies have room for a register from any lane on.
+                unsafe {
+                    let copy = V::load(self.first.add(column * self.stride + run.lane));
+                    copy.store_part(self.columns.at(column, run.first), run.count);
+                }
+            }
+        }
+    }
+
+    #[inline(always)]
+    pub fn vector<V: Lanes<Real = T>>(&self, column: usize) -> Vector<V, D> {
+        // No closure: the compiler may leave one of this size uninlined, and then its instructions are calls.
+        let mut vector = Vector::ZERO;
+        for i in 0..D {
+            vector[i] = self.load(column + i);
+        }
+        vector
+    }
+
+    #[inline(always)]
+    pub fn store_vector<V: Lanes<Real = T>>(&self, column: usize, vector: &Vector<V, D>) {
+        for i in 0..D {
+            self.store(column + i, vector[i]);
+        }
+    }
+
+    /// Angular velocity, in the plane about the third axis.
+    #[inline(always)]
+    pub fn spin<V: Lanes<Real = T>>(&self) -> Vector<V, 3> {
+        let mut spin = Vector::ZERO;
+        for k in 0..spin_entries(D) {
+            spin[3 - spin_entries(D) + k] = self.load(Column::<D>::SPIN + k);
+        }
+        spin
+    }
+
+    #[inline(always)]
+    pub fn store_spin<V: Lanes<Real = T>>(&self, spin: &Vector<V, 3>) {
+        for k in 0..spin_entries(D) {
+            self.store(Column::<D>::SPIN + k, spin[3 - spin_entries(D) + k]);
+        }
+    }
+
+    #[inline(always)]
+    pub fn deformation<V: Lanes<Real = T>>(&self) -> Matrix<V> {
+        let mut f = Matrix::ZERO;
+        for (k, &[row, column]) in deformation_entries(D).iter().enumerate() {
+            f.0[row][column] = self.load(Column::<D>::DEFORMATION + k);
+        }
+        f
+    }
+
+    #[inline(always)]
+    pub fn store_deformation<V: Lanes<Real = T>>(&self, f: &Matrix<V>) {
+        for (k, &[row, column]) in deformation_entries(D).iter().enumerate() {
+            self.store(Column::<D>::DEFORMATION + k, f.0[row][column]);
+        }
+    }
+
+    #[inline(always)]
+    pub fn stress<V: Lanes<Real = T>>(&self) -> Symmetric<V> {
+        let mut stress = Symmetric::ZERO;
+        for k in 0..stress_entries(D) {
+            stress.0[k] = self.load(Column::<D>::STRESS + k);
+        }
+        stress
+    }
+
+    #[inline(always)]
+    pub fn store_stress<V: Lanes<Real = T>>(&self, stress: &Symmetric<V>) {
+        for k in 0..stress_entries(D) {
+            self.store(Column::<D>::STRESS + k, stress.0[k]);
+        }
+    }
+}
+
+impl<T: Real> Copies<T> {
+    /// Nothing yet.
+    pub const EMPTY: Self = Copies { columns: [[Numbers::ZERO; 2]; MOST_COLUMNS], runs: Runs::NONE };
+
+    /// Entries from a column to the next.
+    const STRIDE: usize = size_of::<[Numbers<T>; 2]>() / size_of::<T>();
+
+    /// What a pass reads; lanes beyond repeat the first particle, but where masks see to that.
+    ///
+    /// # Safety
+    /// The particles must exist, and nobody may write to them meanwhile.
+    #[inline(always)]
+    unsafe fn take<V: Lanes<Real = T>, const D: usize>(
+        &mut self,
+        columns: &Columns<T, D>,
+        index: &[u32],
+        reads: Reads,
+    ) {
+        self.runs.find(index);
+        for i in 0..self.runs.count {
+            let run = self.runs.runs[i];
+            // SAFETY: the caller's.
+            unsafe {
+                self.take_run::<V, D>(columns, run, 0..Column::<D>::DEFORMATION);
+                if reads.deformation {
+                    self.take_run::<V, D>(columns, run, Column::<D>::DEFORMATION..Column::<D>::STRESS);
+                }
+                if reads.stress {
+                    self.take_run::<V, D>(columns, run, Column::<D>::STRESS..Column::<D>::START);
+                }
+                if reads.plastic_strain {
+                    let column = Column::<D>::PLASTIC_STRAIN;
+                    self.take_run::<V, D>(columns, run, column..column + 1);
+                }
+            }
+        }
+        if !V::MASKED && self.runs.count > 1 && index.len() < V::COUNT {
+            for column in reads.columns::<D>().into_iter().flatten() {
+                let copy = &mut self.columns[column];
+                // SAFETY: there is room for a register from any lane on.
+                unsafe { V::splat(copy[0].0[0]).store(copy.as_mut_ptr().cast::<T>().add(index.len())) };
+            }
+        }
+    }
+
+    /// Columns whose number the compiler knows, so that it needs no loop.
+    #[inline(always)]
+    unsafe fn take_run<V: Lanes<Real = T>, const D: usize>(
+        &mut self,
+        columns: &Columns<T, D>,
+        run: Run,
+        which: Range<usize>,
+    ) {
+        // SAFETY: the caller's, and there is room for a register from any lane on.
+        unsafe {
+            let mut there = columns.at(which.start, run.first);
+            let mut place = self.columns.as_mut_ptr().cast::<T>().add(which.start * Self::STRIDE + run.lane);
+            for _ in which {
+                V::load_part(there, run.count, *there).store(place);
+                (there, place) = (there.wrapping_add(columns.stride()), place.wrapping_add(Self::STRIDE));
+            }
+        }
+    }
+}

@@ -1,0 +1,210 @@
+//! A pass over the particles of a tile, several at a time.
+//!
+//! Particles of one cell are taken as many at a time as the processor has lanes, and where cells of the plane have too few, those of a tile: straight from memory where they lie side by side there
+//! and fill the lanes or the processor masks them, else by copies. A group with a fault is left to the reference path, which says what is wrong with whom.
+
+mod group;
+mod members;
+mod thickness;
+
+use super::pass::Visit;
+use crate::basis::Basis;
+use crate::body::Gyration;
+use crate::grid::{WINDOW, node_at};
+use crate::lanes::{Laned, Lanes, MOST_LANES, Machine, Work};
+use crate::tensor::Vector;
+use crate::transfer::{Own, Shared, Start};
+use group::{Constants, every, group, splat};
+use members::{AHEAD, Copies, Members, fetch};
+
+/// A tile's particles, several at a time.
+pub struct SeveralAtATime<'a, 'b, T, const D: usize, B>(pub &'a mut Visit<'b, T, D, B>);
+
+impl<T: Laned, const D: usize, B: Basis<T>> Work for SeveralAtATime<'_, '_, T, D, B> {
+    type Real = T;
+    type Output = ();
+
+    #[inline(always)]
+    fn run<M: Machine<T>>(self) {
+        let visit = self.0;
+        // SAFETY: the caller of this work keeps others away from the tile's nodes.
+        unsafe { visit.open::<M>() };
+        if D == 3 {
+            visit.groups::<M, M::Wide>();
+        } else if visit.sparse() {
+            visit.groups_across_cells::<M, M::Quad>();
+        } else {
+            // In the plane a cell holds four particles as a rule.
+            visit.groups::<M, M::Quad>();
+        }
+        // SAFETY: as above.
+        unsafe { visit.close::<M>() };
+    }
+
+    /// One particle at a time on x86-64: without AVX2 several bring little, and would double what is compiled.
+    #[cfg(all(target_arch = "x86_64", not(portable_lanes)))]
+    fn run_anywhere(self) {
+        // SAFETY: the caller of this work keeps others away from the tile's nodes and particles.
+        unsafe { self.0.take_one_by_one() };
+    }
+}
+
+impl<T: Laned, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
+    /// Whether cells have too few particles to fill the lanes.
+    #[inline(always)]
+    fn sparse(&self) -> bool {
+        let particles = self.cells[self.cells.len() - 1] - self.cells[0];
+        let occupied = self.cells.windows(2).filter(|ends| ends[0] < ends[1]).count();
+        (particles as usize) < 2 * occupied
+    }
+
+    #[inline(always)]
+    fn constants<V: Lanes<Real = T>>(&self) -> Constants<V, D> {
+        Constants {
+            material: self.body.material.map(V::splat),
+            per_density: V::splat(T::ONE / self.body.density),
+            origin: splat(&self.pass.lattice.origin),
+            cell: V::splat(self.pass.lattice.cell),
+            per_cell: V::splat(self.pass.lattice.per_cell),
+            gyration: Gyration {
+                cell: V::splat(self.body.gyration.cell),
+                share: V::splat(self.body.gyration.share),
+            },
+            domain: self.pass.domain.map(|[min, max]| [splat(&min), splat(&max)]),
+        }
+    }
+
+    /// Cell by cell: particles of one cell share their nodes.
+    #[inline(always)]
+    fn groups<M: Machine<T>, V: Lanes<Real = T>>(&mut self) {
+        let visit = self;
+        let constants = visit.constants::<V>();
+        let (columns, order, cells) = (visit.columns, visit.order, visit.cells);
+        let mut copies = Copies::EMPTY;
+        for (cell, ends) in cells.windows(2).enumerate() {
+            let (mut first, end) = (ends[0] as usize, ends[1] as usize);
+            while first < end {
+                let index = &order[first..end.min(first + V::COUNT)];
+                let later =
+                    &order[(first + AHEAD).min(order.len())..order.len().min(first + AHEAD + V::COUNT)];
+                if let [one, .., other] = *later {
+                    fetch(&columns, one as usize, &visit.pass.verbs);
+                    if other.abs_diff(one) >= V::COUNT as u32 {
+                        fetch(&columns, other as usize, &visit.pass.verbs);
+                    }
+                }
+                // Indices within a cell ascend.
+                let in_a_row = index[index.len() - 1] as usize - index[0] as usize == index.len() - 1;
+                let place = Place::new(visit.tile.block, cell);
+                let base = Vector::from_fn(|i| V::splat(T::of(f64::from(place.base[i]))));
+                let start = Shared::new::<D>(place.start);
+                match visit.group::<M, V, _>(&constants, (index, in_a_row), (base, start), &mut copies) {
+                    Some(inside) => visit.left |= u64::from(!every::<V>(inside)) << cell,
+                    None => {
+                        for &index in index {
+                            // SAFETY: the tile's particles are this call's alone.
+                            unsafe { visit.one(index, cell) };
+                        }
+                    }
+                }
+                first += index.len();
+            }
+        }
+    }
+
+    /// One group, its particles side by side in memory or not.
+    #[inline(always)]
+    fn group<M: Machine<T>, V: Lanes<Real = T>, S: Start>(
+        &mut self,
+        constants: &Constants<V, D>,
+        (index, in_a_row): (&[u32], bool),
+        place: (Vector<V, D>, S),
+        copies: &mut Copies<T>,
+    ) -> Option<u32> {
+        let (columns, verbs) = (self.columns, self.pass.verbs);
+        let in_full = in_a_row && index.len() == V::COUNT;
+        if V::MASKED && !in_full {
+            let members = match in_a_row {
+                true => Members::in_a_row(&columns, index),
+                false => Members::copied::<V>(&columns, index, &verbs, copies),
+            };
+            group::<T, V, M, D, B, S, false>(self, constants, &members, place)
+        } else {
+            let members = match in_full {
+                true => Members::in_a_row(&columns, index),
+                false => Members::copied::<V>(&columns, index, &verbs, copies),
+            };
+            group::<T, V, M, D, B, S, true>(self, constants, &members, place)
+        }
+    }
+
+    /// In the order of cells, as many particles at a time as there are lanes.
+    #[inline(always)]
+    fn groups_across_cells<M: Machine<T>, V: Lanes<Real = T>>(&mut self) {
+        let visit = self;
+        let constants = visit.constants::<V>();
+        let (columns, order, cells) = (visit.columns, visit.order, visit.cells);
+        let mut copies = Copies::EMPTY;
+        let (mut first, end) = (cells[0] as usize, cells[cells.len() - 1] as usize);
+        let mut cell = 0;
+        while first < end {
+            let index = &order[first..end.min(first + V::COUNT)];
+            if let Some(&later) = order.get(first + AHEAD) {
+                fetch(&columns, later as usize, &visit.pass.verbs);
+            }
+            let mut homes = [0; MOST_LANES];
+            let (mut starts, mut bases) = ([0; MOST_LANES], [[T::ZERO; MOST_LANES]; D]);
+            let mut in_a_row = true;
+            for lane in 0..V::COUNT {
+                // Lanes beyond repeat the first.
+                if lane < index.len() {
+                    in_a_row &= index[lane] as usize == index[0] as usize + lane;
+                    while cells[cell + 1] as usize <= first + lane {
+                        cell += 1;
+                    }
+                    homes[lane] = cell;
+                } else {
+                    homes[lane] = homes[0];
+                }
+                let place = Place::new(visit.tile.block, homes[lane]);
+                starts[lane] = place.start;
+                for (bases, base) in bases.iter_mut().zip(place.base) {
+                    bases[lane] = T::of(f64::from(base));
+                }
+            }
+            // SAFETY: as many numbers as any machine has lanes.
+            let base = Vector::from_fn(|i| unsafe { V::load(bases[i].as_ptr()) });
+            let start = Own::new::<D>(starts);
+            match visit.group::<M, V, _>(&constants, (index, in_a_row), (base, start), &mut copies) {
+                Some(inside) => {
+                    for (lane, &home) in homes.iter().enumerate().take(index.len()) {
+                        visit.left |= u64::from(inside >> lane & 1 == 0) << home;
+                    }
+                }
+                None => {
+                    for (&index, &home) in index.iter().zip(&homes) {
+                        // SAFETY: the tile's particles are this call's alone.
+                        unsafe { visit.one(index, home) };
+                    }
+                }
+            }
+            first += index.len();
+        }
+    }
+}
+
+/// A cell.
+struct Place<const D: usize> {
+    /// Its base node.
+    base: [i32; D],
+    /// That node's place in the window.
+    start: usize,
+}
+
+impl<const D: usize> Place<D> {
+    #[inline(always)]
+    fn new(block: [i32; D], cell: usize) -> Self {
+        let start = node_at([0; D], cell).iter().fold(0, |place, &n| place * WINDOW + n as usize);
+        Place { base: node_at(block, cell), start }
+    }
+}

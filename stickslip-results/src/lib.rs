@@ -1,0 +1,15 @@
+//! Results of Stickslip: what a run writes, and reading it back.
+//!
+//! The rooms below are in reading order: each uses only rooms above it.
+
+use stickslip_engine::door;
+use stickslip_scene::{scene, tensor};
+
+// RGB images: PNG files and animations.
+pub mod image;
+
+// A virtual polariscope: fringes of the stress in a snapshot.
+pub mod polariscope;
+
+// One file a kind of output; results read back.
+pub mod observe;

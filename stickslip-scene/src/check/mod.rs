@@ -1,0 +1,179 @@
+//! What is wrong or doubtful with a scene before it runs.
+//!
+//! [`problems`] finds mistakes that no run should start with; [`report`] says what the run will be: bodies, particles,
+//! memory, steps, time, and whether its contacts are resolved by the grid.
+
+mod accuracy;
+mod bodies;
+mod contact;
+mod flat;
+mod hertz;
+mod locking;
+mod measurements;
+mod memory;
+mod neighbours;
+mod overlap;
+mod penetration;
+mod report;
+mod rigid_pairs;
+mod rules;
+mod settings;
+mod shapes;
+mod table;
+mod thickness;
+mod touch;
+mod warning;
+
+pub use accuracy::Errors;
+pub use contact::{ContactEstimate, Verdict};
+pub use hertz::{Hertz, Patch};
+pub use memory::Footprint;
+pub use report::{BodyReport, Machine, MaterialReport, Report, report};
+pub use rules::RuleReport;
+pub use warning::Warning;
+
+use crate::geometry::Lattice;
+use crate::scene::{Body, Problem, Scene};
+
+/// Finds what is wrong with a scene and takes its geometry to see.
+///
+/// # Errors
+/// The first of: settings that allow no step, a material that is not stable, a domain whose walls miss the grid, motion out
+/// of the plane, a shape that is not one or holds no particle, a body that deforms and is unbounded, a body outside the domain, two bodies in one place.
+pub fn problems(scene: &Scene) -> Result<(), Problem> {
+    examine(scene).map(|_| ())
+}
+
+/// Finds what is wrong, and returns each body's filling in numbers.
+fn examine(scene: &Scene) -> Result<Vec<bodies::Extent>, Problem> {
+    settings::check(scene)?;
+    shapes::check(scene)?;
+    measurements::check(scene)?;
+    let extents = bodies::measure(scene)?;
+    bodies::check_domain(scene, &extents)?;
+    overlap::check(scene, &extents)?;
+    Ok(extents)
+}
+
+/// The particle sites of a body: every cell of the scene's grid divided into equal parts.
+pub fn lattice(scene: &Scene, body: &Body) -> Lattice {
+    Lattice {
+        origin: scene.domain.as_ref().map_or([0.0; 3], |domain| domain.min),
+        spacing: scene.discretization.cell / per_side(scene, body),
+        dimension: scene.dimension.axes(),
+    }
+}
+
+/// Particles of a body along each side of a cell.
+fn per_side(scene: &Scene, body: &Body) -> f64 {
+    body.particles_per_side.unwrap_or(scene.discretization.particles_per_side) as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Arrangement, Bounds, Shape};
+    use crate::material::{Isotropic, Material, NeoHookean};
+    use crate::scene::*;
+
+    /// An engine that takes 300 bytes a particle.
+    struct Lean;
+
+    impl Footprint for Lean {
+        fn particles_around(&self, _scene: &Scene, _body: usize, _boxes: &[Bounds]) -> usize {
+            0
+        }
+        fn memory(&self, _scene: &Scene, particles: &[usize]) -> f64 {
+            300.0 * particles.iter().sum::<usize>() as f64
+        }
+    }
+
+    /// What the run will be with that engine.
+    pub fn report(scene: &Scene) -> Result<Report, Problem> {
+        crate::check::report(scene, &Lean)
+    }
+
+    pub fn neo_hookean(name: &str, factor: f64) -> NamedMaterial {
+        let elastic = Isotropic { bulk_modulus: 6e6 * factor, shear_modulus: 3e6 * factor };
+        let law = Material::NeoHookean(NeoHookean { elastic });
+        NamedMaterial { name: name.into(), density: 1000.0 * factor, law }
+    }
+
+    pub fn free(name: &str, material: usize, shape: Shape) -> Body {
+        let motion = Motion::Free { velocity: [0.0; 3], spin: [0.0; 3] };
+        Body {
+            name: name.into(),
+            material,
+            shape,
+            particles: Arrangement::Lattice,
+            particles_per_side: None,
+            motion,
+        }
+    }
+
+    /// A rigid body that does not move.
+    pub fn at_rest(name: &str, shape: Shape) -> Body {
+        let still = || [0.0; 3].map(Expression::Constant);
+        Body { motion: Motion::Rigid { velocity: still(), spin: still() }, ..free(name, 1, shape) }
+    }
+
+    /// Bodies of two materials, the second ten times stiffer and denser, in unbounded space without gravity.
+    pub fn scene(dimension: Dimension, cell: f64, bodies: Vec<Body>) -> Scene {
+        Scene {
+            title: "test".into(),
+            about: String::new(),
+            parameters: Default::default(),
+            dimension,
+            precision: Precision::Double,
+            discretization: Discretization { cell, particles_per_side: 2, basis: BasisKind::Gimp },
+            domain: None,
+            time: Time {
+                end: 2.0,
+                courant: 0.4,
+                max_step: None,
+                stress_update: StressUpdate::First,
+                transfer: Transfer::Rflip,
+                pic_share: 0.0,
+                energy_drift: 0.1,
+            },
+            gravity: [0.0; 3],
+            materials: vec![neo_hookean("soft", 1.0), neo_hookean("stiff", 10.0)],
+            bodies,
+            contact: vec![],
+            outputs: Outputs {
+                tables: 0.1,
+                particles: None,
+                particles_at: Vec::new(),
+                grid: None,
+                fringes: None,
+                measurements: Measurements::default(),
+            },
+            references: vec![],
+        }
+    }
+
+    /// The paper's half sphere (R = 1.6 m, symmetry plane y = 0) at rest on a slope of 45 degrees.
+    pub fn incline(cells_per_radius: f64) -> Scene {
+        let (radius, cell) = (1.6, 1.6 / cells_per_radius);
+        let ball = Shape::Ball { center: [2.4, 0.0, radius], radius };
+        let half = Shape::HalfSpace { point: [0.0; 3], normal: [0.0, -1.0, 0.0] };
+        let plane = Shape::Box { min: [0.0, 0.0, -1.6], max: [20.8, 3.2, 0.0] };
+        let bodies = vec![free("sphere", 0, Shape::Intersection(vec![ball, half])), free("plane", 1, plane)];
+        let mut scene = scene(Dimension::Space, cell, bodies);
+        let slope = std::f64::consts::FRAC_PI_4;
+        scene.gravity = [10.0 * slope.sin(), 0.0, -10.0 * slope.cos()];
+        scene.domain = Some(Domain {
+            min: [0.0, 0.0, -1.6],
+            max: [20.8, 3.2, 4.8],
+            faces: [[Face::Open; 2], [Face::Symmetry, Face::Open], [Face::Fixed, Face::Open]],
+        });
+        scene
+    }
+
+    #[test]
+    fn the_papers_incline_has_no_problem_at_any_resolution() {
+        for cells_per_radius in [2.0, 4.0, 8.0, 12.0] {
+            assert_eq!(problems(&incline(cells_per_radius)), Ok(()));
+        }
+    }
+}

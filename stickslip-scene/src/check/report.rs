@@ -1,0 +1,350 @@
+//! What a run will be, before it runs.
+
+use super::bodies::{Extent, smallest_extent};
+use super::contact::{ContactEstimate, Estimates, Verdict, estimates, starting_velocity};
+use super::memory::Footprint;
+use super::rules::{RuleReport, is_rigid};
+use super::table::short;
+use super::warning::{Warning, and_more};
+use super::{examine, lattice, locking, memory, overlap, per_side, rigid_pairs, rules, thickness};
+use crate::geometry::Bounds;
+use crate::scene::{Body, Dimension, Motion, Problem, Scene, Source};
+use crate::tensor::{Matrix, Vector};
+use serde::Serialize;
+
+/// How fast the machine is that will run the scene.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Machine {
+    /// Particles times steps that one core does in a second [1/s].
+    pub particle_steps_per_second: f64,
+    /// Cores in use.
+    pub cores: usize,
+}
+
+impl Default for Machine {
+    /// All cores of this machine, each at a million particle-steps per second, about what GIMP in space does.
+    fn default() -> Self {
+        let cores = std::thread::available_parallelism().map_or(1, usize::from);
+        Machine { particle_steps_per_second: 1e6, cores }
+    }
+}
+
+/// What a run will be, before it runs. Shown as a table of one screen.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Report {
+    /// The scene's title.
+    pub title: String,
+    /// Plane or space.
+    pub dimension: Dimension,
+    /// Side of a grid cell [m].
+    pub cell: f64,
+    /// Particles along each side of a cell, in the bodies with the fewest and with the most.
+    pub particles_per_side: [usize; 2],
+    /// The bodies, in the order of the scene.
+    pub bodies: Vec<BodyReport>,
+    /// The materials, in the order of the scene.
+    pub materials: Vec<MaterialReport>,
+    /// Particles in all bodies, with those that bodies without bounds will have.
+    pub particles: usize,
+    /// Memory of particles and grid, estimated [bytes].
+    pub memory: f64,
+    /// Simulated time at the end [s].
+    pub end: f64,
+    /// Time step at the start [s].
+    pub time_step: f64,
+    /// Steps of that length to the end.
+    pub steps: u64,
+    /// The machine that the expected time is for.
+    pub machine: Machine,
+    /// Expected wall time [s].
+    pub wall_time: f64,
+    /// Which contact rules hold, and between which bodies.
+    pub rules: Vec<RuleReport>,
+    /// Whether contacts are resolved, the narrowest first.
+    pub contacts: Vec<ContactEstimate>,
+    /// Names of pairs that are near each other, or in a contact rule, and whose shapes tell no estimate.
+    pub contacts_unknown: Vec<[String; 2]>,
+    /// What is doubtful but allowed.
+    pub warnings: Vec<Warning>,
+}
+
+/// A body as it will start.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct BodyReport {
+    /// Its name.
+    pub name: String,
+    /// Name of its material.
+    pub material: String,
+    /// It moves as prescribed.
+    pub rigid: bool,
+    /// Number of particles; of a rigid body without bounds an estimate, of those around bodies that deform.
+    pub particles: usize,
+    /// Mass of the particles [kg], in the plane per metre of depth.
+    pub mass: f64,
+    /// Sides of the box round the particles, infinite without bounds [m].
+    pub size: [f64; 3],
+}
+
+/// A material and its waves at rest.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct MaterialReport {
+    /// Its name.
+    pub name: String,
+    /// sqrt((K + 4G/3) / rho), in plane stress sqrt(E / (rho (1 - nu^2))) [m/s]
+    pub longitudinal_speed: f64,
+    /// sqrt(G / rho) [m/s]
+    pub shear_speed: f64,
+}
+
+/// Finds what is wrong with a scene, else says what the run will be on this machine; see [`Report::on`] for another.
+///
+/// # Errors
+/// As [`super::problems`].
+pub fn report(scene: &Scene, footprint: &dyn Footprint) -> Result<Report, Problem> {
+    let extents = examine(scene)?;
+    let near_others = |body| memory::particles_near_others(footprint, (scene, &extents), body);
+    let counts: Vec<_> =
+        (extents.iter().enumerate()).map(|(body, extent)| extent.particles + near_others(body)).collect();
+    let boxes: Vec<_> = extents.iter().map(|extent| extent.bounds).collect();
+    let time_step = time_step(scene, &extents);
+    let Estimates { found: contacts, unknown: contacts_unknown } = estimates(scene, &extents);
+    let report = Report {
+        title: scene.title.clone(),
+        dimension: scene.dimension,
+        cell: scene.discretization.cell,
+        particles_per_side: fewest_and_most(scene),
+        bodies: scene
+            .bodies
+            .iter()
+            .zip(extents.iter().zip(&counts))
+            .map(|(body, (extent, &particles))| BodyReport { particles, ..of_body(scene, body, extent) })
+            .collect(),
+        materials: of_materials(scene),
+        particles: counts.iter().sum(),
+        memory: footprint.memory(scene, &counts),
+        end: scene.time.end,
+        time_step,
+        // A last step that is only round-off is none.
+        steps: (scene.time.end / time_step * (1.0 - 1e-12)).ceil() as u64,
+        machine: Machine::default(),
+        wall_time: 0.0,
+        rules: rules::holding(scene, &boxes),
+        warnings: warnings(scene, &extents, &contacts),
+        contacts,
+        contacts_unknown,
+    };
+    Ok(report.on(Machine::default()))
+}
+
+impl Report {
+    /// The same run on another machine.
+    pub fn on(self, machine: Machine) -> Self {
+        let rate = machine.particle_steps_per_second * machine.cores as f64;
+        Report { machine, wall_time: self.particles as f64 * self.steps as f64 / rate, ..self }
+    }
+
+    /// The same where so much memory is available [bytes]: with a warning if the run does not fit.
+    pub fn in_memory(mut self, available: f64) -> Self {
+        let axes = self.dimension.axes();
+        self.warnings.extend(memory::warning(self.memory, available, self.cell, axes));
+        self
+    }
+
+    /// The same with the places of warnings in the file that the scene came from.
+    pub fn placed(mut self, source: &Source) -> Self {
+        self.warnings = self.warnings.into_iter().map(|warning| warning.placed(source)).collect();
+        self
+    }
+}
+
+/// What is doubtful with a scene: first what it says, then what the grid makes of it.
+fn warnings(scene: &Scene, extents: &[Extent], contacts: &[ContactEstimate]) -> Vec<Warning> {
+    (rules::idle(scene))
+        .chain(overlap::warning(scene))
+        .chain(rigid_pairs::warning(scene, extents))
+        .chain(locking::warning(scene))
+        .chain(thin_rigid_bodies(scene))
+        .chain(thickness::warning(scene))
+        .chain(narrow_contacts(contacts))
+        .collect()
+}
+
+/// Particles along each side of a cell, in the bodies with the fewest and with the most.
+fn fewest_and_most(scene: &Scene) -> [usize; 2] {
+    let usual = scene.discretization.particles_per_side;
+    let of = || scene.bodies.iter().map(|body| body.particles_per_side.unwrap_or(usual));
+    [of().min().unwrap_or(usual), of().max().unwrap_or(usual)]
+}
+
+fn of_body(scene: &Scene, body: &Body, extent: &Extent) -> BodyReport {
+    BodyReport {
+        name: body.name.clone(),
+        material: scene.materials[body.material].name.clone(),
+        rigid: matches!(body.motion, Motion::Rigid { .. }),
+        particles: extent.particles,
+        mass: extent.mass,
+        size: extent.bounds.size(),
+    }
+}
+
+fn of_materials(scene: &Scene) -> Vec<MaterialReport> {
+    let speeds = (0..scene.materials.len()).map(|i| MaterialReport {
+        name: scene.materials[i].name.clone(),
+        longitudinal_speed: longitudinal_speed(scene, i),
+        shear_speed: (scene.materials[i].law.elastic().shear_modulus / scene.materials[i].density).sqrt(),
+    });
+    speeds.collect()
+}
+
+fn longitudinal_speed(scene: &Scene, material: usize) -> f64 {
+    let material = &scene.materials[material];
+    let modulus = material.law.wave_modulus(scene.dimension.thickness(), &Matrix::IDENTITY, 1.0);
+    (modulus / material.density).sqrt()
+}
+
+/// Half the diagonal of a body's box; of one without bounds, of the box around all that have some [m].
+fn half_diagonal(extent: &Extent, extents: &[Extent]) -> f64 {
+    let finite = extents.iter().map(|extent| extent.bounds).filter(Bounds::is_finite);
+    let bounds = match extent.bounds.is_finite() {
+        true => extent.bounds,
+        false => finite.fold(Bounds::EMPTY, |all, bounds| all.united(&bounds)),
+    };
+    0.5 * Vector(bounds.size()).norm()
+}
+
+/// courant h / max(c + |v|) at the start, at most the longest step that the scene allows [s].
+fn time_step(scene: &Scene, extents: &[Extent]) -> f64 {
+    let signal = |(body, extent): (&Body, &Extent)| {
+        let (wave, spin) = match &body.motion {
+            Motion::Free { spin, .. } => (longitudinal_speed(scene, body.material), *spin),
+            Motion::Rigid { spin, .. } => (0.0, spin.each_ref().map(|s| s.at(0.0))),
+        };
+        let reach = half_diagonal(extent, extents);
+        wave + Vector(starting_velocity(body)).norm() + Vector(spin).norm() * reach
+    };
+    let fastest = scene.bodies.iter().zip(extents).map(signal).fold(0.0, f64::max);
+    let step = scene.time.courant * scene.discretization.cell / fastest;
+    let step = step.min(scene.time.max_step.unwrap_or(f64::INFINITY));
+    if step.is_finite() { step } else { scene.time.end }
+}
+
+/// Particles of a rigid body two deep fill what contact asks of it; bodies that deform need more, see [`thickness`].
+fn thin_rigid_bodies(scene: &Scene) -> Option<Warning> {
+    let needed = |body: &Body| 2.0 * lattice(scene, body).spacing * (1.0 - 1e-9);
+    let thickness = |body: usize| smallest_extent(&scene.bodies[body].shape, scene.dimension.axes());
+    let is_thin = |&body: &usize| is_rigid(scene, body) && thickness(body) < needed(&scene.bodies[body]);
+    let mut thin = (0..scene.bodies.len()).filter(is_thin);
+    let first = thin.next()?;
+    let body = &scene.bodies[first];
+    let named = and_more(&format!("`{}` ({} m)", body.name, short(thickness(first))), thin.count());
+    let cell = short(0.5 * thickness(first) * per_side(scene, body));
+    Some(Warning::about(
+        format!("bodies[{first}].shape"),
+        format!("thinner than two particles: {named}; cells of at most {cell} m give it two"),
+    ))
+}
+
+fn narrow_contacts(contacts: &[ContactEstimate]) -> Option<Warning> {
+    let narrow = contacts.iter().filter(|contact| contact.verdict == Verdict::NotResolved).count();
+    let narrowest = contacts.first().filter(|_| narrow > 0)?;
+    let text = format!(
+        "not resolved: {narrow} of {} contacts; in the narrowest {}; it needs cells of {} m to be marginal, {} m to be resolved",
+        contacts.len(),
+        narrowest.off,
+        short(narrowest.patch.radius),
+        short(0.25 * narrowest.patch.radius)
+    );
+    Some(Warning::about("", text))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::check::tests::{at_rest, free, incline, report, scene};
+    use crate::geometry::Shape;
+
+    #[test]
+    fn the_papers_incline_is_reported_with_its_waves_and_steps() {
+        let report = report(&incline(4.0)).expect("no problem");
+        assert_eq!(report.particles, report.bodies[0].particles + 104 * 16 * 8);
+        // "Same wave speeds, longitudinal 100 m/s": sqrt((K + 4G/3)/rho) = sqrt(1e7/1e3).
+        assert!(report.materials.iter().all(|m| (m.longitudinal_speed - 100.0).abs() < 1e-9));
+        assert!((report.time_step - 0.4 * 0.4 / 100.0).abs() < 1e-12);
+        assert_eq!(report.steps, 1250);
+        let half_sphere = 2.0 / 3.0 * std::f64::consts::PI * 1.6f64.powi(3) * 1000.0;
+        assert!((report.bodies[0].mass / half_sphere - 1.0).abs() < 0.02);
+        assert_eq!(report.warnings.len(), 1);
+        assert!(
+            report.warnings[0].text.starts_with("not resolved: 1 of 1 contacts;"),
+            "{:?}",
+            report.warnings
+        );
+    }
+
+    #[test]
+    fn the_expected_time_is_that_of_the_machine() {
+        let machine = Machine { particle_steps_per_second: 1e6, cores: 4 };
+        let report = report(&incline(4.0)).expect("no problem").on(machine);
+        let exact = report.particles as f64 * report.steps as f64 / 4e6;
+        assert!((report.wall_time / exact - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_body_may_have_finer_particles_than_the_scene() {
+        let cube = |x: f64| free("cube", 0, Shape::Box { min: [x, 0.0, 0.0], max: [x + 0.3, 0.3, 0.3] });
+        let fine = Body { particles_per_side: Some(3), ..cube(0.3) };
+        let report = report(&scene(Dimension::Space, 0.1, vec![cube(0.0), fine])).unwrap();
+        assert_eq!(report.bodies.iter().map(|body| body.particles).collect::<Vec<_>>(), [216, 729]);
+        assert!(
+            report.to_string().contains("\nspace, cells of 0.1 m, 8 to 27 particles a cell\n"),
+            "{report}"
+        );
+        assert!((report.bodies[1].mass / report.bodies[0].mass - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_run_larger_than_the_machine_is_a_warning() {
+        let report = || report(&incline(4.0)).expect("no problem");
+        let needed = report().memory;
+        assert_eq!(report().in_memory(1.01 * needed), report());
+        let warnings = report().in_memory(0.5 * needed).warnings;
+        let last = warnings.last().expect("too large").to_string();
+        assert!(last.contains("and this machine has ") && last.contains("would fit"), "{last}");
+    }
+
+    #[test]
+    fn motion_at_the_start_shortens_the_step_and_a_limit_caps_it() {
+        let mut scene = incline(4.0);
+        scene.bodies[0].motion = Motion::Free { velocity: [60.0, 0.0, 80.0], spin: [0.0; 3] };
+        assert!((report(&scene).expect("no problem").time_step - 0.4 * 0.4 / 200.0).abs() < 1e-12);
+        scene.time.max_step = Some(1e-4);
+        let report = report(&scene).expect("no problem");
+        assert_eq!((report.time_step, report.steps), (1e-4, 20_000));
+    }
+
+    #[test]
+    fn a_thin_rigid_sheet_is_a_warning_even_when_turned() {
+        let sheet = |thickness| {
+            let shape = Box::new(Shape::Box { min: [0.0; 3], max: [1.0, 1.0, thickness] });
+            at_rest("sheet", Shape::Rotated { shape, center: [0.0; 3], axis: [1.0, 0.0, 0.0], angle: 0.5 })
+        };
+        let of = |thickness| {
+            let scene = scene(Dimension::Space, 0.1, vec![sheet(thickness)]);
+            report(&scene).expect("no problem").warnings
+        };
+        assert!(of(0.1).is_empty());
+        assert!(of(0.08)[0].text.contains("`sheet` (0.08 m);"));
+    }
+
+    #[test]
+    fn a_report_of_thousands_of_bodies_takes_no_time() {
+        let disk = |i: usize| {
+            let center = [(i % 64) as f64, (i / 64) as f64, 0.0];
+            free(&format!("disk {i}"), 0, Shape::Ball { center, radius: 0.5 })
+        };
+        let mut scene = scene(Dimension::PlaneStrain, 0.1, (0..4096).map(disk).collect());
+        scene.gravity = [0.0, -10.0, 0.0];
+        let report = report(&scene).expect("no problem");
+        assert_eq!((report.bodies.len(), report.contacts.len()), (4096, 64 * 63));
+    }
+}

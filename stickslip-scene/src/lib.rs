@@ -1,0 +1,24 @@
+//! Scenes of Stickslip: what a user asks for, and what is wrong or doubtful with it before it runs.
+//!
+//! The rooms below are in reading order: each uses only rooms above it.
+
+// One number, or several side by side: what laws compute with.
+pub mod number;
+
+// Vector<T, D>, Matrix<T>, Symmetric<T>
+pub mod tensor;
+
+// Shapes: inside(x), bounds; filling them with particles.
+pub mod geometry;
+
+// One file a law: equation, code, tests.
+pub mod material;
+
+// What the user asks for; scene file -> Scene, with errors that point at line and key.
+pub mod scene;
+
+// Prescribed motion of rigid bodies.
+pub mod rigid;
+
+// What is wrong or doubtful with a scene, before it runs.
+pub mod check;
