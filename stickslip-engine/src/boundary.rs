@@ -6,8 +6,8 @@
 use crate::grid::{Cover, Disjoint, Field, Node, SIDE, node_at, nodes_per_block};
 use crate::scene::Face;
 use crate::tensor::{Real, Vector};
+use crate::threads::each_range;
 use crate::transfer::Share;
-use rayon::prelude::*;
 
 /// A face of the domain that does something.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -155,9 +155,11 @@ fn each_image<T: Real, const D: usize>(
     f: impl Fn(&mut Node<T, D>, &mut Node<T, D>) + Sync,
 ) {
     let nodes = Disjoint::new(&mut field.nodes);
-    mirrored.par_iter().with_min_len(NODES).for_each(|&(behind, before)| {
-        // SAFETY: no node lies behind a mirror and before it, and each has one image.
-        let (image, node) = unsafe { (nodes.get(behind), nodes.get(before)) };
-        f(image, node);
+    each_range(mirrored.len(), NODES, &|range| {
+        for &(behind, before) in &mirrored[range] {
+            // SAFETY: no node lies behind a mirror and before it, and each has one image.
+            let (image, node) = unsafe { (nodes.get(behind), nodes.get(before)) };
+            f(image, node);
+        }
     });
 }

@@ -2,7 +2,11 @@
 
 use crate::body::{Body, Particle};
 use crate::tensor::Real;
-use rayon::prelude::*;
+use crate::threads::by_parts;
+use std::ops::Range;
+
+/// Particles that a thread takes at a time.
+const PARTICLES: usize = 4096;
 
 /// Fastest signal over all particles: wave speed plus particle speed [m/s].
 ///
@@ -17,10 +21,10 @@ pub fn fastest_signal<T: Real, const D: usize>(bodies: &[Body<T, D>]) -> f64 {
             let modulus = body.wave_modulus(&particle.deformation, particle.deformation.det());
             ((modulus / body.density).sqrt() + speed).f64()
         };
-        (0..body.particles.len())
-            .into_par_iter()
-            .map(|i| signal(body.particles.get(i)))
-            .reduce(|| 0.0, f64::max)
+        let fastest = |range: Range<usize>| range.map(|i| signal(body.particles.get(i))).fold(0.0, f64::max);
+        by_parts(body.particles.len(), PARTICLES, fastest).into_iter().fold(0.0, f64::max)
     };
-    bodies.par_iter().map(of_body).reduce(|| 0.0, f64::max)
+    by_parts(bodies.len(), 1, |range| range.map(|i| of_body(&bodies[i])).fold(0.0, f64::max))
+        .into_iter()
+        .fold(0.0, f64::max)
 }

@@ -35,8 +35,7 @@ impl Footprint for OfEngine {
 fn memory<T: Real, const D: usize>(scene: &Scene, particles: &[usize]) -> f64 {
     let node = size_of::<Node<T, D>>() as f64;
     let of_body = |(body, &count): (&crate::scene::Body, &usize)| {
-        let flow =
-            matches!(body.motion, Motion::Free { .. }) && scene.materials[body.material].law.flows();
+        let flow = matches!(body.motion, Motion::Free { .. }) && scene.materials[body.material].law.flows();
         let per_cell = (scene.discretization.cell / lattice(scene, body).spacing).powi(D as i32);
         let themselves = Particles::<T, D>::bytes_of(count, flow) + ORDER_BYTES * count;
         themselves as f64 + node * NODES_PER_CELL * count as f64 / per_cell

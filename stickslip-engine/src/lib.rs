@@ -7,6 +7,9 @@ pub use stickslip_scene::{check, geometry, material, number, rigid, scene, tenso
 // Several numbers in a register, on whatever the processor has.
 pub mod lanes;
 
+// Loops over threads.
+pub mod threads;
+
 // Shape functions: linear, GIMP.
 pub mod basis;
 

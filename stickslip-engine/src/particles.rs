@@ -1,9 +1,10 @@
 //! Particles of one body as columns, so that a processor can take several at a time; seen from outside, they are rows.
 
 use crate::body::Particle;
+use crate::grid::Disjoint;
 use crate::pages::ask_for_large;
 use crate::tensor::{Matrix, Real, Symmetric, Vector};
-use rayon::prelude::*;
+use crate::threads::each_range;
 
 /// Entries of F that a motion in `D` dimensions leaves free, by row and column; the others are zero.
 pub const fn deformation_entries(dimension: usize) -> &'static [[usize; 2]] {
@@ -203,8 +204,11 @@ const PART: usize = 1 << 13;
 fn move_over<X: Copy + Send + Sync>(halves: &mut [X], later: bool, order: &[u32]) {
     let (lower, upper) = halves.split_at_mut(halves.len() / 2);
     let (to, from) = if later { (lower, &*upper) } else { (upper, &*lower) };
-    to.par_chunks_mut(PART).zip(order.par_chunks(PART)).for_each(|(to, order)| {
-        for (to, &i) in to.iter_mut().zip(order) {
+    let to = Disjoint::new(&mut to[..order.len()]);
+    each_range(order.len(), PART, &|range| {
+        // SAFETY: every place lies in one range.
+        let to = unsafe { to.part(range.start, range.len()) };
+        for (to, &i) in to.iter_mut().zip(&order[range]) {
             *to = from[i as usize];
         }
     });

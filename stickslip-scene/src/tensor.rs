@@ -156,6 +156,12 @@ pub fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Matrix<T>(pub [[T; 3]; 3]);
 
+impl<T: Number> Default for Matrix<T> {
+    fn default() -> Self {
+        Self::ZERO
+    }
+}
+
 impl<T: Number> Matrix<T> {
     /// All entries zero.
     pub const ZERO: Self = Matrix([[T::ZERO; 3]; 3]);

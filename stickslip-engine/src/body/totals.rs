@@ -5,7 +5,7 @@ use crate::lanes::{Laned, Lanes, MOST_LANES, Machine, Processor, Work};
 use crate::material::Material;
 use crate::particles::{Column, Columns, deformation_entries, spin_entries, stress_entries};
 use crate::tensor::{Matrix, Real, Symmetric, cross};
-use rayon::prelude::*;
+use crate::threads::by_parts;
 use std::ops::Range;
 
 /// Sums over the particles of one body, in `f64` and SI units whatever the precision.
@@ -297,9 +297,7 @@ impl<T: Laned, const D: usize> Body<T, D> {
     }
 
     /// What comes of each part of the particles, in their order.
-    fn by_parts<R: Send>(&self, f: impl Fn(Range<usize>) -> R + Sync) -> Vec<R> {
-        let count = self.particles.len();
-        let parts = (0..count.div_ceil(PART)).into_par_iter();
-        parts.map(|part| f(part * PART..count.min((part + 1) * PART))).collect()
+    fn by_parts<R: Default + Clone + Send>(&self, f: impl Fn(Range<usize>) -> R + Sync) -> Vec<R> {
+        by_parts(self.particles.len(), PART, f)
     }
 }

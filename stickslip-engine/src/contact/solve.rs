@@ -4,7 +4,7 @@ use super::law::law;
 use super::{Change, Encounter, Part, Rules, Site, Span, Step, Survey, Use};
 use crate::grid::{Disjoint, Node};
 use crate::tensor::{Real, Vector};
-use rayon::prelude::*;
+use crate::threads::each;
 
 /// What contact did between two bodies at a node in one use.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -142,7 +142,8 @@ impl<T: Real, const D: usize> Solve<'_, T, D> {
             list.impulses.clear();
             (list.reduced, list.unsettled) = (0, 0);
         }
-        parts.par_iter().zip(used).enumerate().with_min_len(4).for_each(|(i, (part, list))| {
+        each(used, 4, |i, list| {
+            let part = &parts[i];
             let given = self.given.map_or(&[][..], |given| given.of(i));
             list.impulses.clear();
             (list.reduced, list.unsettled) = (0, 0);

@@ -10,7 +10,7 @@ use crate::grid::{Cover, Field, Lattice, Meeting, Node, Nodes, SIDE, next_of, no
 use crate::lanes::{Laned, Processor};
 use crate::scene::{ContactLaw, Face};
 use crate::tensor::{Matrix, Real, Symmetric, Vector};
-use rayon::prelude::*;
+use crate::threads::each;
 use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 
@@ -201,8 +201,9 @@ impl<T: Laned, const D: usize> Near<'_, T, D> {
         *count = self.cover.meetings.len().div_ceil(BLOCKS);
         parts.resize_with(parts.len().max(*count), Part::default);
         desks.resize_with(desks.len().max(rayon::current_num_threads()), Mutex::default);
-        let chunks = self.cover.meetings.par_chunks(BLOCKS).zip(&mut parts[..*count]);
-        chunks.for_each(|(meetings, part)| {
+        let all = &self.cover.meetings;
+        each(&mut parts[..*count], 1, |number, part| {
+            let meetings = &all[number * BLOCKS..all.len().min((number + 1) * BLOCKS)];
             let thread = rayon::current_thread_index().unwrap_or(0);
             let mut desk = desks[thread].lock().unwrap_or_else(PoisonError::into_inner);
             part.sites.clear();

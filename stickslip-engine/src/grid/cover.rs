@@ -5,8 +5,9 @@
 
 use super::holding::{Holding, block_of, corner_block, key};
 use super::{locate, nodes_per_block};
-use rayon::prelude::*;
+use crate::threads::each;
 use std::ops::Range;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Particles of one body that share a home block.
 #[derive(Clone, Copy, Debug)]
@@ -85,20 +86,24 @@ impl<const D: usize> Cover<D> {
     ) -> Blocks {
         self.holdings.resize_with(bodies, Holding::default);
         let first_tile = &self.first_tile;
-        let changed = (self.holdings.par_iter_mut().with_min_len(16))
-            .enumerate()
-            .map(|(body, holding)| match left {
+        let changed = AtomicBool::new(false);
+        each(&mut self.holdings, 16, |body, holding| {
+            let blocks = match left {
                 Some(left) => {
                     let left = &left[first_tile[body]..first_tile[body + 1]];
                     holding.update(left, |particle| base(body, particle))
                 }
                 None => holding.start((count(body), reach), |particle| base(body, particle)),
-            })
-            .reduce(|| Blocks::Same, Blocks::max);
-        if changed == Blocks::New {
+            };
+            if blocks == Blocks::New {
+                changed.store(true, Ordering::Relaxed);
+            }
+        });
+        if changed.into_inner() {
             self.rebuild();
+            return Blocks::New;
         }
-        changed
+        Blocks::Same
     }
 
     /// Covers a body anew: all its particles are others than before. Counts as [`Cover::update`] does.

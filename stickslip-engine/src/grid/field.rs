@@ -5,7 +5,7 @@ use crate::basis::MAX_WIDTH;
 use crate::lanes::{Lanes, MOST_LANES, Machine, prefetch};
 use crate::pages::ask_for_large;
 use crate::tensor::{Real, Vector};
-use rayon::prelude::*;
+use crate::threads::{each, each_range};
 use std::marker::PhantomData;
 
 /// One body's share of one grid node. What particles give comes first, so that [`Window::add_to`] adds it at once.
@@ -76,7 +76,7 @@ impl<T: Real, const D: usize> Field<T, D> {
             ask_for_large(self.nodes.as_ptr(), self.nodes.capacity());
         }
         self.nodes.truncate(count);
-        self.nodes.par_iter_mut().with_min_len(4096).for_each(|node| *node = Node::EMPTY);
+        each(&mut self.nodes, 4096, |_, node| *node = Node::EMPTY);
         self.nodes.resize(count, Node::EMPTY);
     }
 
@@ -84,8 +84,10 @@ impl<T: Real, const D: usize> Field<T, D> {
     pub fn find_present(&mut self, f: impl Fn(&mut Node<T, D>) + Sync) {
         let n = nodes_per_block(D);
         self.present.resize(self.nodes.len() / n, 0);
-        let blocks = self.nodes.par_chunks_exact_mut(n).zip(&mut self.present).with_min_len(BLOCKS);
-        blocks.for_each(|(nodes, present)| {
+        let nodes = Disjoint::new(&mut self.nodes);
+        each(&mut self.present, BLOCKS, |block, present| {
+            // SAFETY: every block has nodes of its own.
+            let nodes = unsafe { nodes.part(block * n, n) };
             *present = 0;
             for (local, node) in nodes.iter_mut().enumerate() {
                 if node.mass > T::ZERO {
@@ -98,11 +100,16 @@ impl<T: Real, const D: usize> Field<T, D> {
 
     /// Does something to each node that has mass.
     pub fn each_present(&mut self, f: impl Fn(&mut Node<T, D>) + Sync) {
-        let blocks = self.nodes.par_chunks_exact_mut(nodes_per_block(D)).zip(&self.present);
-        blocks.with_min_len(BLOCKS).for_each(|(nodes, &present)| {
-            let mut places = present;
-            while let Some(local) = next_of(&mut places) {
-                f(&mut nodes[local]);
+        let n = nodes_per_block(D);
+        let (nodes, present) = (Disjoint::new(&mut self.nodes), &self.present);
+        each_range(present.len(), BLOCKS, &|blocks| {
+            for block in blocks {
+                // SAFETY: every block has nodes of its own.
+                let nodes = unsafe { nodes.part(block * n, n) };
+                let mut places = present[block];
+                while let Some(local) = next_of(&mut places) {
+                    f(&mut nodes[local]);
+                }
             }
         });
     }
@@ -324,6 +331,18 @@ impl<'a, X> Disjoint<'a, X> {
         assert!(i < self.len, "an index of the slice");
         // SAFETY: in bounds, and the caller keeps writers away.
         unsafe { &*self.start.add(i) }
+    }
+
+    /// So many entries from `first` on.
+    ///
+    /// # Safety
+    /// No other reference to any of them may be alive.
+    #[allow(clippy::mut_from_ref)]
+    #[inline(always)]
+    pub unsafe fn part(&self, first: usize, count: usize) -> &mut [X] {
+        assert!(first <= self.len && count <= self.len - first, "a part of the slice");
+        // SAFETY: in bounds, and the caller holds the only reference.
+        unsafe { std::slice::from_raw_parts_mut(self.start.add(first), count) }
     }
 
     /// Entry `i`.

@@ -1,7 +1,8 @@
 //! The blocks of one body: its particles by tile and cell, kept up to date as they move.
 
 use super::{Blocks, Disjoint, MOST_NODES, SIDE, locate, node_at, nodes_per_block};
-use rayon::prelude::*;
+use crate::threads::each;
+use rayon::prelude::ParallelSliceMut;
 use std::ops::Range;
 
 /// Blocks further than this from the origin have no key.
@@ -140,9 +141,9 @@ impl Holding {
         let count = left.len().div_ceil(TILES);
         self.leaving.resize_with(count.max(self.leaving.len()), Vec::new);
         let (cells, homes, order) = (&self.cells, &self.homes, Disjoint::new(&mut self.order));
-        let parts =
-            left.par_chunks(TILES).zip(self.gone.par_chunks_mut(TILES)).zip(&mut self.leaving[..count]);
-        parts.enumerate().for_each(|(part, ((left, gone), leaving))| {
+        let gone = Disjoint::new(&mut self.gone);
+        each(&mut self.leaving[..count], 1, |part, leaving| {
+            let left = &left[part * TILES..left.len().min((part + 1) * TILES)];
             leaving.clear();
             for (i, &left) in left.iter().enumerate().filter(|(_, left)| **left != 0) {
                 let tile = part * TILES + i;
@@ -153,7 +154,8 @@ impl Holding {
                         let new = mover(base(*particle as usize), *particle);
                         if (new.block, new.cell as usize) != (homes[tile], cell) {
                             leaving.push(new);
-                            gone[i] += 1;
+                            // SAFETY: as above.
+                            unsafe { *gone.get(tile) += 1 };
                             *particle = GONE;
                         }
                     }
@@ -183,9 +185,11 @@ impl Holding {
         let (old_order, old_cells, movers, gone) = (&self.order, &self.cells, &self.movers, &self.gone);
         let old_reached = &self.reached;
         let places = Disjoint::new(order);
-        let filled =
-            tiles.par_iter().zip(cells.par_chunks_exact_mut(n)).zip(&mut *reached).with_min_len(TILES);
-        filled.for_each(|((tile, cells), reached)| {
+        let (tiles, places_of_cells) = (&*tiles, Disjoint::new(&mut cells[..]));
+        each(&mut reached[..tiles.len()], TILES, |number, reached| {
+            let tile = &tiles[number];
+            // SAFETY: every tile has cells of its own.
+            let cells = unsafe { places_of_cells.part(number * n, n) };
             let mut place = tile.start;
             let mut put = |particle: u32| {
                 // SAFETY: every place belongs to one tile.

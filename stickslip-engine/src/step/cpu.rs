@@ -10,7 +10,7 @@ use crate::basis::Basis;
 use crate::grid::{Disjoint, Window};
 use crate::lanes::Laned;
 use crate::particles::Columns;
-use rayon::prelude::*;
+use crate::threads::each_range;
 use std::marker::PhantomData;
 use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
@@ -83,18 +83,24 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             let mut window = workshop.windows[thread].lock().unwrap_or_else(PoisonError::into_inner);
             tiles.fold(Found::NOTHING, |found, tile| found.and(visit(tile, &mut window, found.signal)))
         };
-        if pass.verbs.scatter.is_none() {
-            let all = 0..cover.tiles.len() as u32;
-            let chunks = (0..cover.tiles.len().div_ceil(TILES)).into_par_iter();
-            let chunk = |i: usize| several(&mut all.clone().skip(i * TILES).take(TILES));
-            return chunks.map(chunk).reduce(|| Found::NOTHING, Found::and);
-        }
-        let portion = |tiles: &Range<usize>| several(&mut tiles.clone().map(|tile| tile as u32));
-        let found = cover.portions.par_iter().map(portion).reduce(|| Found::NOTHING, Found::and);
-        let color = |color: &Vec<u32>| {
-            let chunks = color.par_chunks(TILES);
-            chunks.map(|tiles| several(&mut tiles.iter().copied())).reduce(|| Found::NOTHING, Found::and)
+        let all = Mutex::new(Found::NOTHING);
+        let several = |tiles: &mut dyn Iterator<Item = u32>| {
+            let found = several(tiles);
+            let mut all = all.lock().unwrap_or_else(PoisonError::into_inner);
+            // The first fault and the fastest signal, whoever comes first.
+            *all = all.and(found);
         };
-        cover.colors.iter().map(color).fold(found, Found::and)
+        let tiles = |range: Range<usize>| range.map(|tile| tile as u32);
+        if pass.verbs.scatter.is_none() {
+            each_range(cover.tiles.len(), TILES, &|range| several(&mut tiles(range)));
+        } else {
+            each_range(cover.portions.len(), 1, &|portions| {
+                cover.portions[portions].iter().for_each(|portion| several(&mut tiles(portion.clone())));
+            });
+            for color in &cover.colors {
+                each_range(color.len(), TILES, &|range| several(&mut color[range].iter().copied()));
+            }
+        }
+        all.into_inner().unwrap_or_else(PoisonError::into_inner)
     }
 }

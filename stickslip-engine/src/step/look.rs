@@ -12,7 +12,9 @@ use crate::grid::{node_at, nodes_per_block};
 use crate::lanes::Laned;
 use crate::particles::Column;
 use crate::tensor::{Real, Vector};
+use crate::threads::by_parts;
 use rayon::prelude::*;
+use std::ops::Range;
 use std::sync::{Arc, PoisonError};
 
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
@@ -27,8 +29,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// What the particles of each body add up to, summed once a step for whoever asks.
     fn totals(&self) -> Arc<[Totals]> {
         let mut known = self.totals.lock().unwrap_or_else(PoisonError::into_inner);
-        let sum = || self.bodies.par_iter().map(Body::totals).collect();
-        known.get_or_insert_with(sum).clone()
+        let sum = |range: Range<usize>| Body::totals(&self.bodies[range.start]);
+        known.get_or_insert_with(|| by_parts(self.bodies.len(), 1, sum).into()).clone()
     }
 
     /// Something of each particle, given by body and place in memory.
@@ -206,7 +208,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
                 deformation: particle.deformation.0.map(|row| row.map(Real::f64)),
             }
         };
-        let numbers = particles.numbers().par_iter().enumerate();
+        let numbers = particles.numbers().iter().enumerate();
         numbers.filter(|&(_, &number)| wanted(number)).map(|(i, _)| traced(i)).collect()
     }
 

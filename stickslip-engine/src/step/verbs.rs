@@ -10,8 +10,8 @@ use crate::grid::{Blocks, Disjoint, node_at, nodes_per_block};
 use crate::lanes::{Laned, Processor};
 use crate::scene::{ContactLaw, StressUpdate};
 use crate::tensor::{Matrix, Vector};
+use crate::threads::each;
 use crate::transfer::Share;
-use rayon::prelude::*;
 use std::time::Instant;
 
 /// The uses of contact in a step.
@@ -52,9 +52,11 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// Sorts particles in memory into the order in which tiles visit them, where they are no longer nearly so.
     fn tidy(&mut self) {
         let cover = &self.cover;
-        (self.bodies.par_iter_mut().with_min_len(16).enumerate())
-            .filter(|(i, _)| cover.untidy(*i))
-            .for_each(|(i, body)| body.particles.permute(cover.order_of(i)));
+        each(&mut self.bodies, 16, |i, body| {
+            if cover.untidy(i) {
+                body.particles.permute(cover.order_of(i));
+            }
+        });
         for i in 0..self.bodies.len() {
             if self.cover.untidy(i) {
                 self.cover.tidied(i);

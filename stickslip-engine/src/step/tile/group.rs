@@ -4,11 +4,11 @@ use super::members::Members;
 use super::thickness::free_thickness;
 use crate::basis::Basis;
 use crate::body::Gyration;
-use crate::step::pass::{Pass, Verbs, Visit};
 use crate::lanes::{Laned, Lanes, Machine};
 use crate::material::{Material, Motion, Thickness};
 use crate::particles::Column;
 use crate::scene::Transfer;
+use crate::step::pass::{Pass, Verbs, Visit};
 use crate::tensor::{Matrix, Real, Symmetric, Vector};
 use crate::transfer::{Group, Load, Momentum, Share, Start, turning};
 

@@ -1,8 +1,8 @@
 //! The particles of a group in memory: side by side, or copied so that they are.
 
-use crate::step::pass::Verbs;
 use crate::lanes::{Lanes, MOST_LANES, Numbers, prefetch};
 use crate::particles::{Column, Columns, deformation_entries, spin_entries, stress_entries};
+use crate::step::pass::Verbs;
 use crate::tensor::{Matrix, Real, Symmetric, Vector};
 use crate::transfer::Share;
 use std::ops::Range;
