@@ -14,11 +14,14 @@ pub trait Simulation: Send {
     fn particles(&self) -> usize;
     /// The step that [`Simulation::step`] would take now if nothing cut it short [s].
     fn stable_step(&self) -> f64;
-    /// Takes one step, at most `longest` long [s].
+    /// Takes one step, at most `longest` long, and returns its length [s].
     ///
     /// # Errors
     /// The step's failure, with the simulation left as it was when it went wrong, so that it can still be looked at.
-    fn step(&mut self, longest: f64) -> Result<(), StepError>;
+    fn step(&mut self, longest: f64) -> Result<f64, StepError>;
+    /// Drops all that can be made anew from the state between two steps: grid, lists, room to work in. The next step
+    /// makes it anew, with the same bits as without.
+    fn rebuild_workspace(&mut self) {}
     /// Each body's mass, motion and energy now, in the order of the scene.
     fn bodies(&self) -> Vec<BodyState>;
     /// The energy and momentum ledger now.

@@ -43,5 +43,8 @@ pub mod contact;
 // The step and its verbs.
 pub mod step;
 
+// Steps to a time: the one loop.
+pub mod march;
+
 // What a scene costs in memory.
 pub mod footprint;

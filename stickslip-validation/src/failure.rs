@@ -1,6 +1,6 @@
 //! What went wrong with a run.
 
-use stickslip::door::StepError;
+use stickslip::march::MarchError;
 use stickslip::scene::{Problem, SceneError};
 
 /// Why a case gave no numbers.
@@ -12,15 +12,9 @@ pub enum Failure {
     /// The benchmark's scene cannot be simulated.
     #[error("{0}")]
     Build(#[from] Problem),
-    /// A step went wrong.
+    /// A step went wrong, or none brings the time forward.
     #[error("{0}")]
-    Step(#[from] StepError),
-    /// The time step fell to nothing.
-    #[error("the time step fell to nothing at t = {time:.4e} s")]
-    Stuck {
-        /// When [s].
-        time: f64,
-    },
+    Step(#[from] MarchError),
     /// What was to be measured did not happen.
     #[error("not to be measured: {0}")]
     Absent(&'static str),

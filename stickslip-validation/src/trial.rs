@@ -4,6 +4,7 @@ use crate::failure::Failure;
 use crate::penetration::penetration;
 use std::time::Instant;
 use stickslip::door::{BodyState, ContactState, GridSnapshot, Ledger, ParticleSnapshot, Simulation};
+use stickslip::march::March;
 use stickslip::scene::{Face, Motion, Scene};
 use stickslip::{scene, step};
 
@@ -64,6 +65,7 @@ pub struct Trial {
     scene: Scene,
     simulation: Box<dyn Simulation>,
     contacts: Vec<ContactState>,
+    way: March,
     step: f64,
     begin: Instant,
     first: Ledger,
@@ -80,8 +82,6 @@ pub struct Trial {
 const BALANCES: f64 = 200.0;
 /// Looks for overlaps in a run.
 const OVERLAPS: f64 = 40.0;
-/// Remainder of a run, as a part of the last step, that is rounding and not time to be simulated.
-const ROUNDING: f64 = 1e-6;
 
 impl Trial {
     /// The simulation of a scene that runs until its own end.
@@ -97,11 +97,13 @@ impl Trial {
             && scene.bodies.iter().all(|body| matches!(body.motion, Motion::Free { .. }))
             && scene.domain.iter().flat_map(|domain| domain.faces).flatten().all(|face| face == Face::Open);
         let first = simulation.ledger();
+        let end = scene.time.end;
         let mut trial = Trial {
             name,
             text,
             scene,
             contacts: Vec::new(),
+            way: March::to(end),
             step: 0.0,
             begin: Instant::now(),
             first,
@@ -122,30 +124,17 @@ impl Trial {
     /// The step's failure.
     pub fn advance(&mut self) -> Result<bool, Failure> {
         let now = self.simulation.time();
-        let remaining = self.scene.time.end - now;
-        if remaining <= ROUNDING * self.step {
+        let Some(step) = self.way.step(&mut *self.simulation)? else {
             self.look(true);
             return Ok(false);
-        }
-        self.simulation.step(self.longest(remaining))?;
-        self.step = self.simulation.time() - now;
-        if self.step <= 0.0 {
-            return Err(Failure::Stuck { time: now });
-        }
+        };
+        self.step = step;
         self.contacts = self.simulation.take_contacts();
         if self.record.first_contact.is_none() && self.contacts.iter().any(|contact| contact.normal > 0.0) {
             self.record.first_contact = Some(now);
         }
         self.look(false);
         Ok(true)
-    }
-
-    /// Longest next step: a last step of nearly no length would divide forces by nearly nothing.
-    fn longest(&self, remaining: f64) -> f64 {
-        if remaining > 4.0 * self.step && self.step > 0.0 {
-            return remaining;
-        }
-        remaining / (remaining / self.simulation.stable_step()).ceil()
     }
 
     /// Notes energy, momentum and overlap where they are due or at a border of the run.

@@ -4,7 +4,7 @@
 //! ([`stickslip_scene`]), the engine ([`stickslip_engine`]) and results ([`stickslip_results`]).
 
 pub use stickslip_engine::{
-    basis, body, boundary, clock, contact, door, grid, lanes, pages, particles, step, transfer,
+    basis, body, boundary, clock, contact, door, grid, lanes, march, pages, particles, step, transfer,
 };
 pub use stickslip_results::{image, observe, polariscope};
 pub use stickslip_scene::{geometry, material, number, rigid, scene, tensor};

@@ -51,7 +51,7 @@ fn allocations(bodies: &str, basis: &str, threads: usize, [warm_up, steps]: [usi
     // Inside the pool: work that is handed in from outside waits in a list of the pool's.
     pool.install(|| {
         let mut take =
-            |steps: usize| (0..steps).for_each(|_| simulation.step(f64::INFINITY).expect("a step"));
+            |steps: usize| (0..steps).for_each(|_| _ = simulation.step(f64::INFINITY).expect("a step"));
         take(warm_up);
         let before = ALLOCATIONS.load(Ordering::Relaxed);
         take(steps);

@@ -12,6 +12,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use stickslip::door::{ParticleSnapshot, Simulation, StepError};
 use stickslip::image::Image;
+use stickslip::march::MarchError;
 use stickslip::observe::{FolderError, Results, Status};
 use stickslip::run::{RunError, RunOptions, Summary, run};
 use stickslip::scene::{Field, Fringes, Light, Overlay, Polariscope, Sensitivity};
@@ -155,7 +156,13 @@ fn a_failing_step_leaves_the_state_in_which_it_failed() {
     let out = tempfile::tempdir().unwrap();
     let mut simulation = Ballistic::new(0.03).failing_at(7);
     let error = run_to(out.path(), &mut simulation).unwrap_err();
-    assert!(matches!(error, RunError::Step { error: StepError::Inverted { .. }, unsaved: None }), "{error}");
+    assert!(
+        matches!(
+            error,
+            RunError::Step { error: MarchError::Step(StepError::Inverted { .. }), unsaved: None }
+        ),
+        "{error}"
+    );
     assert!(miette::Diagnostic::help(&error).unwrap().to_string().contains("try"), "{error}");
 
     let (results, snapshots) = read_all(out.path());
@@ -182,7 +189,7 @@ fn a_step_that_fails_right_after_a_frame_takes_its_place() {
 fn time_that_stands_still_is_an_error() {
     let out = tempfile::tempdir().unwrap();
     let error = run_to(out.path(), &mut Ballistic::new(0.0)).unwrap_err();
-    assert!(matches!(error, RunError::Stuck { .. }), "{error}");
+    assert!(matches!(error, RunError::Step { error: MarchError::Stuck { .. }, .. }), "{error}");
     assert_eq!(Results::open(out.path()).unwrap().manifest().status, Status::Failed);
 }
 

@@ -1,6 +1,7 @@
 //! Which rule holds for a pair of bodies, looked up without a table of all pairs.
 
 use super::Friction;
+use super::law::{Span, law};
 use crate::scene::{ContactLaw, ContactRule, Normal, Scene};
 use crate::tensor::Real;
 use std::collections::HashMap;
@@ -93,6 +94,13 @@ impl<T: Real> Rules<T> {
     /// Whether a law holds for any pair that there may be.
     pub fn uses(&self, law: ContactLaw) -> bool {
         self.rules.iter().any(|rule| rule.law == law)
+    }
+
+    /// Whether any law judges the interpolated velocities by themselves, as the paper's do.
+    pub fn judge_interpolated(&self) -> bool {
+        let judges =
+            |rule: &Rule<T>| rule.law != ContactLaw::None && law::<T, 3>(rule.law).span() == Span::EachUse;
+        self.rules.iter().any(judges)
     }
 
     /// A rule by its number.

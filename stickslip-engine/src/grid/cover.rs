@@ -207,11 +207,6 @@ impl<const D: usize> Cover<D> {
         self.first_tile[body]..self.first_tile[body + 1]
     }
 
-    /// Whether so many particles of a body have moved to other cells that sorting them in memory pays.
-    pub fn untidy(&self, body: usize) -> bool {
-        self.holdings[body].untidy()
-    }
-
     /// Takes note that a body's particles have been brought into their order in memory.
     pub fn tidied(&mut self, body: usize) {
         self.holdings[body].tidied();

@@ -34,6 +34,44 @@ impl<T: Real, const D: usize> Node<T, D> {
         integrated: Vector::ZERO,
     };
 
+    /// v = p / m, which is what the step begins with.
+    #[inline]
+    pub fn begin(&mut self) {
+        self.divide_by_mass();
+        self.start = self.velocity;
+    }
+
+    /// v = p / m
+    #[inline]
+    pub fn divide_by_mass(&mut self) {
+        self.velocity = self.velocity / self.mass;
+    }
+
+    /// v += dt (f / m + g)
+    #[inline]
+    pub fn accelerate(&mut self, gravity: Vector<T, D>, dt: T) {
+        self.velocity += (self.force / self.mass + gravity) * dt;
+    }
+
+    /// Keeps the velocity as the integrated one.
+    #[inline]
+    pub fn keep(&mut self) {
+        self.integrated = self.velocity;
+    }
+
+    /// Keeps the velocity as the integrated one, and makes room for momentum.
+    #[inline]
+    pub fn keep_and_clear(&mut self) {
+        self.keep();
+        self.velocity = Vector::ZERO;
+    }
+
+    /// Takes the velocity that was kept, and keeps the one of now.
+    #[inline]
+    pub fn exchange(&mut self) {
+        std::mem::swap(&mut self.integrated, &mut self.velocity);
+    }
+
     /// Where a node's first eight numbers are in [`Sums`]: mass, velocity and force, and then zeros: in the plane the third axis has nothing to give.
     const GIVEN: [usize; MOST_LANES] =
         if D == 2 { [6, 0, 2, 1, 3, 4, 5, 7] } else { [6, 0, 2, 4, 1, 3, 5, 7] };

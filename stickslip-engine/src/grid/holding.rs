@@ -59,10 +59,6 @@ pub(super) struct Holding {
     pub blocks: Vec<u64>,
     /// Nodes that a particle reaches beyond its base node, along each axis.
     reach: i32,
-    /// Particles that changed their cell since they were last sorted in memory.
-    moved: usize,
-    /// That number summed over steps: what disorder in memory has cost.
-    disorder: usize,
     /// Particles on the move, by their new homes.
     movers: Vec<Mover>,
     /// The same as threads find them.
@@ -124,8 +120,6 @@ impl Holding {
         *self = Holding { reach, ..Holding::default() };
         self.movers.extend((0..count).map(|particle| mover(base(particle), particle as u32)));
         self.settle::<D>();
-        self.moved = count;
-        self.disorder = count;
         Blocks::New
     }
 
@@ -166,8 +160,6 @@ impl Holding {
         for leaving in &self.leaving[..count] {
             self.movers.extend_from_slice(leaving);
         }
-        self.moved += self.movers.len();
-        self.disorder += self.moved;
         if self.movers.is_empty() { Blocks::Same } else { self.settle::<D>() }
     }
 
@@ -273,15 +265,8 @@ impl Holding {
         cells[tiles.len() * n] = start as u32;
     }
 
-    /// Whether disorder in memory has cost about as much as sorting does: a step costs that much more with a seventh to a fourth of the particles
-    /// in other cells than they were sorted by.
-    pub fn untidy(&self) -> bool {
-        4 * self.disorder > self.order.len()
-    }
-
     /// Takes note that the particles in memory are in their order.
     pub fn tidied(&mut self) {
-        (self.moved, self.disorder) = (0, 0);
         for (place, particle) in self.order.iter_mut().enumerate() {
             *particle = place as u32;
         }

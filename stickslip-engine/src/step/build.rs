@@ -1,6 +1,6 @@
 //! From a scene to a simulation.
 
-use super::cpu::Workshop;
+use super::state::{Disorder, Settings, State, Workspace};
 use super::unbounded::Unbounded;
 use super::watch::Watch;
 use super::{Engine, Path};
@@ -8,10 +8,10 @@ use crate::basis::{Basis, Gimp, Linear};
 use crate::body::{Body, Particle};
 use crate::boundary::{Boundary, Wall};
 use crate::check;
-use crate::contact::{Rules, Survey, Tally};
+use crate::contact::{Rules, Tally};
 use crate::door::Simulation;
 use crate::geometry::{Filling, Mirror, Site, Whole, fill};
-use crate::grid::{Cover, Field, Lattice};
+use crate::grid::Lattice;
 use crate::lanes::{Laned, Processor};
 use crate::particles::Particles;
 use crate::rigid::RigidMotion;
@@ -19,7 +19,6 @@ use crate::scene::{self, BasisKind, Dimension, Face, Motion, Precision, Problem,
 use crate::tensor::{Matrix, Real, Symmetric, Vector, cross};
 use crate::transfer::turning;
 use std::marker::PhantomData;
-use std::sync::Mutex;
 
 /// The simulation of a scene.
 ///
@@ -104,33 +103,30 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             rigid.push(motion);
         }
         let origin = scene.domain.as_ref().map_or([0.0; 3], |domain| domain.min);
+        let disorder = bodies.iter().map(|body: &Body<T, D>| Disorder::any(body.particles.len())).collect();
         Ok(Engine {
-            bodies,
-            rigid,
-            unbounded,
-            lattice: Lattice::new(Vector::of(origin), T::of(scene.discretization.cell)),
-            domain: scene.domain.as_ref().map(|domain| [domain.min, domain.max].map(Vector::of)),
-            gravity: Vector::of(scene.gravity),
-            transfer: scene.time.transfer,
-            pic_share: T::of(scene.time.pic_share),
-            rules: Rules::new(scene),
-            boundary: Boundary::new(walls::<D>(scene)),
-            clock: scene.time.clone(),
-            cover: Cover::default(),
-            field: Field { nodes: Vec::new(), present: Vec::new() },
-            meeting: Survey::default(),
-            groups: Vec::new(),
-            impulses: Default::default(),
-            tally: Tally::default(),
-            signal: None,
-            left: Vec::new(),
-            damped: Vec::new(),
-            damping: 0.0,
-            totals: Mutex::new(None),
-            path,
-            workshop: Workshop::default(),
-            time: 0.0,
-            steps: 0,
+            settings: Settings {
+                lattice: Lattice::new(Vector::of(origin), T::of(scene.discretization.cell)),
+                domain: scene.domain.as_ref().map(|domain| [domain.min, domain.max].map(Vector::of)),
+                gravity: Vector::of(scene.gravity),
+                transfer: scene.time.transfer,
+                pic_share: T::of(scene.time.pic_share),
+                rules: Rules::new(scene),
+                time: scene.time.clone(),
+                path,
+            },
+            state: State {
+                bodies,
+                disorder,
+                rigid,
+                unbounded,
+                tally: Tally::default(),
+                damping: 0.0,
+                signal: None,
+                time: 0.0,
+                steps: 0,
+            },
+            workspace: Workspace::new(Boundary::new(walls::<D>(scene))),
             watch: Watch::default(),
             basis: PhantomData,
         })

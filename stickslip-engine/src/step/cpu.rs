@@ -16,15 +16,15 @@ use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 
 /// What threads work with, kept from pass to pass.
-pub struct Workshop<T, const D: usize> {
+pub struct Threads<T, const D: usize> {
     /// A window for each thread.
     windows: Vec<Mutex<Box<Window<T, D>>>>,
     columns: Vec<Columns<T, D>>,
 }
 
-impl<T, const D: usize> Default for Workshop<T, D> {
+impl<T, const D: usize> Default for Threads<T, D> {
     fn default() -> Self {
-        Workshop { windows: Vec::new(), columns: Vec::new() }
+        Threads { windows: Vec::new(), columns: Vec::new() }
     }
 }
 
@@ -35,13 +35,18 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// Takes every particle through a pass; those of rigid bodies only scatter.
     pub(super) fn pass(&mut self, pass: &Pass<T, D>) -> Found<T> {
         let threads = rayon::current_num_threads();
-        self.workshop.windows.resize_with(threads.max(self.workshop.windows.len()), Mutex::default);
-        self.workshop.columns.clear();
-        self.workshop.columns.extend(self.bodies.iter_mut().map(|body| body.particles.open()));
-        let nodes = Disjoint::new(&mut self.field.nodes);
-        let left = Disjoint::new(&mut self.left);
-        let damped = Disjoint::new(&mut self.damped);
-        let (cover, bodies, workshop, path) = (&self.cover, &self.bodies, &self.workshop, self.path);
+        self.workspace
+            .threads
+            .windows
+            .resize_with(threads.max(self.workspace.threads.windows.len()), Mutex::default);
+        self.workspace.threads.columns.clear();
+        self.workspace.threads.columns.extend(self.state.bodies.iter_mut().map(|body| body.particles.open()));
+        let nodes = Disjoint::new(&mut self.workspace.field.nodes);
+        let left = Disjoint::new(&mut self.workspace.left);
+        let damped = Disjoint::new(&mut self.workspace.damped);
+        let moved = Disjoint::new(&mut self.workspace.moved);
+        let (cover, bodies, room, path) =
+            (&self.workspace.cover, &self.state.bodies, &self.workspace.threads, self.settings.path);
         // Fed with the fastest signal of the tiles before it in its list, which spares it the roots of slower ones. Lists do not depend on threads.
         let visit = |index: u32, window: &mut Window<T, D>, signal: T| -> Found<T> {
             let tile = &cover.tiles[index as usize];
@@ -52,13 +57,14 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 pass,
                 tile,
                 body,
-                columns: workshop.columns[tile.body],
+                columns: room.columns[tile.body],
                 order: cover.order_of(tile.body),
                 cells: cover.cells_of(tile),
                 nodes: &nodes,
                 window,
                 next: cover.tiles.get(index as usize + 1),
                 left: 0,
+                moved: 0,
                 damped: 0.0,
                 found: Found { signal, ..Found::NOTHING },
                 basis: PhantomData::<B>,
@@ -74,13 +80,14 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             // SAFETY: every tile has a place of its own.
             unsafe {
                 *left.get(index as usize) |= visit.left;
+                *moved.get(index as usize) += visit.moved;
                 *damped.get(index as usize) = visit.damped;
             }
             visit.found
         };
         let several = |tiles: &mut dyn Iterator<Item = u32>| -> Found<T> {
             let thread = rayon::current_thread_index().unwrap_or(0);
-            let mut window = workshop.windows[thread].lock().unwrap_or_else(PoisonError::into_inner);
+            let mut window = room.windows[thread].lock().unwrap_or_else(PoisonError::into_inner);
             tiles.fold(Found::NOTHING, |found, tile| found.and(visit(tile, &mut window, found.signal)))
         };
         let all = Mutex::new(Found::NOTHING);

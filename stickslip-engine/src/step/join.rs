@@ -14,19 +14,19 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// ```
     /// A particle takes what changes at a node after interpolation, v - v^0. With v^0 of the part alone it would be drawn toward the
     /// velocity of the whole in each step, which damps; as one body the parts' particles would not be.
-    pub(super) fn join(&mut self) {
-        if !self.rules.uses(ContactLaw::Glued) {
+    pub(super) fn join_glued_bodies(&mut self) {
+        if !self.settings.rules.uses(ContactLaw::Glued) {
             return;
         }
-        let groups = &mut self.groups;
-        for part in self.meeting.parts() {
+        let groups = &mut self.workspace.groups;
+        for part in self.workspace.meeting.parts() {
             for site in &part.sites {
                 groups.clear();
                 groups.extend(site.sides.clone());
                 for encounter in &part.encounters[site.encounters.clone()] {
                     let bodies = encounter.sides.map(|side| part.sides[side].body);
-                    let glued = self.rules.rule(encounter.rule).law == ContactLaw::Glued;
-                    if glued && bodies.iter().all(|&body| self.rigid[body].is_none()) {
+                    let glued = self.settings.rules.rule(encounter.rule).law == ContactLaw::Glued;
+                    if glued && bodies.iter().all(|&body| self.state.rigid[body].is_none()) {
                         let [a, b] = encounter.sides.map(|side| groups[side - site.sides.start]);
                         groups.iter_mut().filter(|group| **group == b).for_each(|group| *group = a);
                     }
@@ -39,13 +39,13 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                     }
                     let (mut mass, mut velocity, mut start) = (T::ZERO, Vector::ZERO, Vector::ZERO);
                     for (_, side) in members() {
-                        let node = &self.field.nodes[part.sides[side].index];
+                        let node = &self.workspace.field.nodes[part.sides[side].index];
                         mass += node.mass;
                         velocity += node.velocity * node.mass;
                         start += node.start * node.mass;
                     }
                     for (_, side) in members() {
-                        let node = &mut self.field.nodes[part.sides[side].index];
+                        let node = &mut self.workspace.field.nodes[part.sides[side].index];
                         (node.velocity, node.start) = (velocity / mass, start / mass);
                     }
                 }

@@ -1,8 +1,10 @@
 //! The engine behind its door.
 
 use super::Engine;
+use super::state::Workspace;
 use crate::basis::Basis;
 use crate::body::{Body, Particle, Totals};
+use crate::boundary::Boundary;
 use crate::contact::Span;
 use crate::door::{
     BodyState, ContactState, GridSnapshot, Ledger, ParticleSnapshot, ParticleView, Patch, Simulation,
@@ -28,51 +30,57 @@ fn add(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
 impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// What the particles of each body add up to, summed once a step for whoever asks.
     fn totals(&self) -> Arc<[Totals]> {
-        let mut known = self.totals.lock().unwrap_or_else(PoisonError::into_inner);
-        let sum = |range: Range<usize>| Body::totals(&self.bodies[range.start]);
-        known.get_or_insert_with(|| by_parts(self.bodies.len(), 1, sum).into()).clone()
+        let mut known = self.workspace.totals.lock().unwrap_or_else(PoisonError::into_inner);
+        let sum = |range: Range<usize>| Body::totals(&self.state.bodies[range.start]);
+        known.get_or_insert_with(|| by_parts(self.state.bodies.len(), 1, sum).into()).clone()
     }
 
     /// Something of each particle, given by body and place in memory.
     fn column<X: Send>(&self, places: &[[u32; 2]], of: impl Fn(&Particle<T, D>) -> X + Sync) -> Vec<X> {
-        let at = |&[body, place]: &[u32; 2]| self.bodies[body as usize].particles.get(place as usize);
+        let at = |&[body, place]: &[u32; 2]| self.state.bodies[body as usize].particles.get(place as usize);
         places.par_iter().map(|place| of(&at(place))).collect()
     }
 }
 
 impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
     fn time(&self) -> f64 {
-        self.time
+        self.state.time
     }
 
     fn steps(&self) -> u64 {
-        self.steps
+        self.state.steps
     }
 
     fn particles(&self) -> usize {
-        self.bodies.iter().map(|body| body.particles.len()).sum()
+        self.state.bodies.iter().map(|body| body.particles.len()).sum()
     }
 
     fn stable_step(&self) -> f64 {
         self.stable()
     }
 
-    fn step(&mut self, longest: f64) -> Result<(), StepError> {
-        *self.totals.get_mut().unwrap_or_else(PoisonError::into_inner) = None;
+    fn step(&mut self, longest: f64) -> Result<f64, StepError> {
+        *self.workspace.totals.get_mut().unwrap_or_else(PoisonError::into_inner) = None;
         let dt = self.stable().min(longest);
-        for motion in self.rigid.iter_mut().flatten() {
-            motion.set_time(self.time + 0.5 * dt);
+        for motion in self.state.rigid.iter_mut().flatten() {
+            motion.set_time(self.state.time + 0.5 * dt);
         }
         // One of the pool's threads takes the whole step: handing it every loop from outside would cost more than many a loop.
         rayon::scope(|_| self.advance(T::of(dt)))?;
-        self.time += dt;
-        self.steps += 1;
-        Ok(())
+        self.count_disorder();
+        self.state.time += dt;
+        self.state.steps += 1;
+        Ok(dt)
+    }
+
+    fn rebuild_workspace(&mut self) {
+        let walls = std::mem::take(&mut self.workspace.boundary.walls);
+        self.workspace = Workspace::new(Boundary::new(walls));
     }
 
     fn bodies(&self) -> Vec<BodyState> {
         let all = self.totals();
-        (self.bodies.iter().enumerate())
+        (self.state.bodies.iter().enumerate())
             .map(|(i, body)| {
                 if let Some(motion) = self.without_bounds(i) {
                     return BodyState {
@@ -101,17 +109,17 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
 
     fn ledger(&self) -> Ledger {
         let mut ledger = Ledger {
-            friction: self.tally.friction,
-            external_work: self.tally.work,
-            adhesion: self.tally.adhesion,
-            damping: self.damping,
-            scaled_impulses: self.tally.scaled,
-            unsettled_nodes: self.tally.unsettled,
+            friction: self.state.tally.friction,
+            external_work: self.state.tally.work,
+            adhesion: self.state.tally.adhesion,
+            damping: self.state.damping,
+            scaled_impulses: self.state.tally.scaled,
+            unsettled_nodes: self.state.tally.unsettled,
             ..Ledger::default()
         };
-        let gravity = self.gravity.space();
+        let gravity = self.settings.gravity.space();
         let all = self.totals();
-        for (_, totals) in self.bodies.iter().zip(&*all).filter(|(body, _)| !body.rigid) {
+        for (_, totals) in self.state.bodies.iter().zip(&*all).filter(|(body, _)| !body.rigid) {
             ledger.kinetic += totals.kinetic;
             ledger.strain += totals.strain;
             ledger.plastic += totals.plastic;
@@ -131,21 +139,21 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
     }
 
     fn take_contacts(&mut self) -> Vec<ContactState> {
-        self.tally.take(self.time)
+        self.state.tally.take(self.state.time)
     }
 
     fn contacts(&self) -> Vec<ContactState> {
-        self.tally.look(self.time)
+        self.state.tally.look(self.state.time)
     }
 
     fn patches(&self) -> Vec<Patch> {
-        self.tally.patches(self.time)
+        self.state.tally.patches(self.state.time)
     }
 
     fn snapshot(&self) -> ParticleSnapshot {
         // By body, then by number: where each particle stands.
         let mut rows = Vec::with_capacity(self.particles());
-        for (i, body) in self.bodies.iter().enumerate() {
+        for (i, body) in self.state.bodies.iter().enumerate() {
             let first = rows.len();
             rows.resize(first + body.particles.len(), [i as u32, 0]);
             for (place, &number) in body.particles.numbers().iter().enumerate() {
@@ -165,7 +173,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
                 let f = &particle.deformation.0;
                 std::array::from_fn(|k| f[k / 3][k % 3].f64())
             }),
-            plastic_strain: match self.bodies.iter().any(|body| body.particles.flow()) {
+            plastic_strain: match self.state.bodies.iter().any(|body| body.particles.flow()) {
                 true => self.column(&rows, |particle| particle.plastic_strain.f64()),
                 false => Vec::new(),
             },
@@ -173,7 +181,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
     }
 
     fn visit(&self, body: usize, look: &mut dyn FnMut(&ParticleView)) {
-        for particle in self.bodies[body].particles.iter() {
+        for particle in self.state.bodies[body].particles.iter() {
             look(&ParticleView {
                 number: particle.number,
                 mass: particle.mass.f64(),
@@ -185,7 +193,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
     }
 
     fn starts(&self, body: usize) -> Vec<[f64; 3]> {
-        let particles = &self.bodies[body].particles;
+        let particles = &self.state.bodies[body].particles;
         let columns = particles.view();
         let mut starts = vec![[0.0; 3]; particles.len()];
         for (i, &number) in particles.numbers().iter().enumerate() {
@@ -197,7 +205,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
     }
 
     fn trace(&self, body: usize, wanted: &(dyn Fn(u32) -> bool + Sync)) -> Vec<TracedParticle> {
-        let particles = &self.bodies[body].particles;
+        let particles = &self.state.bodies[body].particles;
         let traced = |i: usize| {
             let particle = particles.get(i);
             TracedParticle {
@@ -214,9 +222,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
 
     fn grid_snapshot(&self) -> GridSnapshot {
         let mut snapshot =
-            GridSnapshot { dimension: D, cell: self.lattice.cell.f64(), ..GridSnapshot::default() };
-        let mut impulse = vec![[0.0; 3]; self.field.nodes.len()];
-        let [first, second, _] = &self.impulses;
+            GridSnapshot { dimension: D, cell: self.settings.lattice.cell.f64(), ..GridSnapshot::default() };
+        let mut impulse = vec![[0.0; 3]; self.workspace.field.nodes.len()];
+        let [first, second, _] = &self.workspace.impulses;
         let first = first.iter().filter(|impulse| impulse.span == Span::EachUse);
         for contact in first.chain(second.iter()) {
             for (node, on_body) in contact.nodes.into_iter().zip(contact.change.impulse) {
@@ -224,13 +232,13 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
             }
         }
         let n = nodes_per_block(D);
-        for (slot, &(body, block)) in self.cover.slots.iter().enumerate() {
+        for (slot, &(body, block)) in self.workspace.cover.slots.iter().enumerate() {
             for local in 0..n {
-                let node = &self.field.nodes[slot * n + local];
+                let node = &self.workspace.field.nodes[slot * n + local];
                 let place = node_at(block, local);
-                if node.mass > T::ZERO && !self.boundary.mirrors(place) {
+                if node.mass > T::ZERO && !self.workspace.boundary.mirrors(place) {
                     snapshot.body.push(body);
-                    snapshot.position.push(self.lattice.position(place).space());
+                    snapshot.position.push(self.settings.lattice.position(place).space());
                     snapshot.mass.push(node.mass.f64());
                     snapshot.velocity.push(node.velocity.space());
                     snapshot.force.push(node.force.space());

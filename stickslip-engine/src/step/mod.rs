@@ -1,10 +1,11 @@
-//! The step: explicit MPM with contact, a list of verbs.
+//! The step: explicit MPM with contact, as a list of verbs for each way to update the stress.
 
 mod build;
 mod cpu;
 mod join;
 mod look;
 mod pass;
+mod state;
 mod tile;
 mod unbounded;
 mod verbs;
@@ -15,115 +16,104 @@ pub use pass::Path;
 pub(crate) use unbounded::particles_around;
 
 use crate::basis::Basis;
-use crate::body::{Body, Totals};
-use crate::boundary::Boundary;
 use crate::clock::fastest_signal;
-use crate::contact::{Impulses, Rules, Survey, Tally};
 use crate::door::StepError;
-use crate::grid::{Cover, Field, Lattice};
 use crate::lanes::Laned;
-use crate::rigid::RigidMotion;
-use crate::scene::{StressUpdate, Time, Transfer};
-use crate::tensor::Vector;
+use crate::scene::StressUpdate;
 use crate::transfer::Share;
-use cpu::Workshop;
+use state::{Settings, State, Workspace};
 use std::marker::PhantomData;
-use std::sync::{Arc, Mutex};
-use unbounded::Unbounded;
 use watch::Watch;
 
 /// A simulation in `D` dimensions and precision `T`, with shape functions `B`.
 pub struct Engine<T, const D: usize, B> {
-    bodies: Vec<Body<T, D>>,
-    /// Prescribed motion of rigid bodies.
-    rigid: Vec<Option<RigidMotion>>,
-    /// Rigid bodies without bounds.
-    unbounded: Vec<Unbounded<D>>,
-    lattice: Lattice<T, D>,
-    /// Lower and upper corner of the domain [m].
-    domain: Option<[Vector<T, D>; 2]>,
-    gravity: Vector<T, D>,
-    transfer: Transfer,
-    pic_share: T,
-    rules: Rules<T>,
-    boundary: Boundary,
-    clock: Time,
-    cover: Cover<D>,
-    field: Field<T, D>,
-    /// Where bodies meet in this step.
-    meeting: Survey<T, D>,
-    /// Which bodies glue joins at a node.
-    groups: Vec<usize>,
-    /// What contact did in the last step, use by use.
-    impulses: [Impulses<T, D>; 3],
-    tally: Tally,
-    /// Fastest signal now [m/s]; unknown before the first step.
-    signal: Option<f64>,
-    /// Cells of each tile that particles have left.
-    left: Vec<u64>,
-    /// What the last pass took from the kinetic energy of each tile's particles [J].
-    damped: Vec<f64>,
-    /// What damping took since the start [J].
-    damping: f64,
-    /// What the particles of each body add up to since the last step, once somebody has asked.
-    totals: Mutex<Option<Arc<[Totals]>>>,
-    path: Path,
-    workshop: Workshop<T, D>,
-    time: f64,
-    steps: u64,
+    settings: Settings<T, D>,
+    state: State<T, D>,
+    workspace: Workspace<T, D>,
     watch: Watch,
     basis: PhantomData<B>,
 }
 
+/// The recipes. Numbers are equations of Bardenhagen et al. (2001). P2G: particles to grid, G2P: grid to particles.
+///
+/// All have contact on the interpolated and on the integrated velocities, and strain and move particles by the same
+/// velocities; they differ in which velocities these are. The paper's contact laws act in both places; the law `surface`
+/// acts on the integrated velocities and, to strain bodies that touch, on those that strain.
 impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
-    /// One step of `dt`. Numbers are equations of Bardenhagen et al. (2001).
-    ///
-    /// Contact is applied to the interpolated and to the integrated velocities. Particles are strained and moved by the same velocities:
-    /// the first ([`StressUpdate::First`]), the second ([`StressUpdate::Last`]), or the particles' new velocities scattered once more
-    /// ([`StressUpdate::ModifiedLast`]).
+    /// One step of `dt`.
     fn advance(&mut self, dt: T) -> Result<(), StepError> {
-        let when = self.clock.stress_update;
-        self.cover(); //                                blocks under each body's particles
-        self.scatter(match when {
-            StressUpdate::First => Share::Mass, //      m, p
-            _ => Share::Everything,             //                  m, p, f = -sum V sigma grad S
-        });
-        self.interpolated_velocities(); //              v = p / m                           (4)
-        self.survey(dt); //                             surfaces, normals and gaps where bodies meet
-        self.join(); //                                 glued bodies interpolate as one
-        self.first_contact(dt); //                      v~ from interpolated velocities     (5)-(13), (20)-(22)
-        if when == StressUpdate::First {
-            self.strain_and_scatter(dt)?; //            F = (I + L dt) F, sigma = law(F), f
-            self.keep(); //                             v~ moves the particles, too
+        match self.settings.time.stress_update {
+            StressUpdate::First => self.update_stress_first(dt),
+            StressUpdate::Last => self.update_stress_last(dt),
+            StressUpdate::ModifiedLast => self.modified_update_stress_last(dt),
         }
-        self.accelerate(dt); //                         v += dt (f / m + g)                 (3)
-        self.contact(dt); //                            v~ from integrated velocities
-        match when {
-            StressUpdate::First => {
-                self.friction_work(dt);
-                self.take_back(); //                    v~ from interpolated velocities
-                self.accept_and_displace(dt) //         particles: v += dv, x += v~ dt
-            }
-            StressUpdate::Last => {
-                self.friction_work(dt);
-                self.keep();
-                self.accept_strain_and_displace(dt) //  particles: v += dv, F, sigma, x += v~ dt
-            }
-            StressUpdate::ModifiedLast => {
-                self.keep_and_make_room();
-                self.accept_and_scatter(dt)?; //        particles: v += dv; p
-                self.modified_velocities(); //          v = p / m
-                self.friction_work(dt);
-                self.contact_unrecorded(dt); //         v~
-                self.strain_and_displace(dt) //         particles: F, sigma, x += v~ dt
-            }
-        }
+    }
+
+    /// Update stress first (USF): the interpolated velocities strain and move particles.
+    fn update_stress_first(&mut self, dt: T) -> Result<(), StepError> {
+        self.find_active_blocks(); //                 cell lists; blocks of nodes under each body's particles
+        self.particles_to_grid(Share::Mass); //       P2G: m, p
+        self.interpolated_velocities(); //            v = p / m                                     (4)
+        self.prescribed_velocities(); //              of rigid bodies and walls
+        self.detect_contact(dt); //                   surfaces, normals and gaps where bodies meet
+        self.join_glued_bodies(); //                  one v for bodies that glue joins
+        self.contact_on_interpolated(dt); //          v~                             (5)-(13), (20)-(22)
+        self.update_stress(dt)?; //                   G2P: F = (I + L dt) F, sigma = law(F); P2G: f
+        self.keep_velocities(); //                    v~ moves the particles, too
+        self.update_velocities(dt); //                v += dt (f / m + g)                           (3)
+        self.prescribed_velocities();
+        self.contact_on_integrated(dt); //            v~
+        self.book_contact(dt); //                     impulses, work of friction
+        self.exchange_velocities(); //                v~ of before, to move by
+        self.update_velocities_and_positions(dt)?; // G2P: v_p += dv, x += v~ dt
+        self.move_rigid_bodies(dt)
+    }
+
+    /// Update stress last (USL): the integrated velocities strain and move particles.
+    fn update_stress_last(&mut self, dt: T) -> Result<(), StepError> {
+        self.find_active_blocks(); //                 cell lists; blocks of nodes under each body's particles
+        self.particles_to_grid(Share::Everything); // P2G: m, p, f = -sum V sigma grad S
+        self.interpolated_velocities(); //            v = p / m                                     (4)
+        self.prescribed_velocities(); //              of rigid bodies and walls
+        self.detect_contact(dt); //                   surfaces, normals and gaps where bodies meet
+        self.join_glued_bodies(); //                  one v for bodies that glue joins
+        self.contact_on_interpolated(dt); //          v~, by the paper's laws        (5)-(13), (20)-(22)
+        self.update_velocities(dt); //                v += dt (f / m + g)                           (3)
+        self.prescribed_velocities();
+        self.contact_on_integrated(dt); //            v~
+        self.book_contact(dt); //                     impulses, work of friction
+        self.keep_velocities();
+        self.update_particles(dt)?; //                G2P: v_p += dv, F, sigma, x += v~ dt
+        self.move_rigid_bodies(dt)
+    }
+
+    /// Modified update stress last (MUSL), the default: the particles' new velocities, interpolated once more, strain
+    /// and move particles.
+    fn modified_update_stress_last(&mut self, dt: T) -> Result<(), StepError> {
+        self.find_active_blocks(); //                 cell lists; blocks of nodes under each body's particles
+        self.particles_to_grid(Share::Everything); // P2G: m, p, f = -sum V sigma grad S
+        self.interpolated_velocities(); //            v = p / m                                     (4)
+        self.prescribed_velocities(); //              of rigid bodies and walls
+        self.detect_contact(dt); //                   surfaces, normals and gaps where bodies meet
+        self.join_glued_bodies(); //                  one v for bodies that glue joins
+        self.contact_on_interpolated(dt); //          v~, by the paper's laws        (5)-(13), (20)-(22)
+        self.update_velocities(dt); //                v += dt (f / m + g)                           (3)
+        self.prescribed_velocities();
+        self.contact_on_integrated(dt); //            v~
+        self.keep_velocities_and_clear_momentum();
+        self.update_particle_velocities(dt)?; //      G2P: v_p += dv; P2G: p
+        self.interpolated_again(); //                 v = p / m
+        self.prescribed_velocities();
+        self.book_contact(dt); //                     impulses, work of friction
+        self.contact_on_straining(dt); //             v~, booked nowhere: no particle takes it as a change
+        self.update_stress_and_positions(dt)?; //     G2P: F = (I + L dt) F, sigma = law(F), x += v~ dt
+        self.move_rigid_bodies(dt)
     }
 
     /// Longest stable step now [s].
     fn stable(&self) -> f64 {
-        let signal = self.signal.unwrap_or_else(|| fastest_signal(&self.bodies));
-        let step = self.clock.courant * self.lattice.cell.f64() / signal;
-        self.clock.max_step.map_or(step, |longest| step.min(longest))
+        let signal = self.state.signal.unwrap_or_else(|| fastest_signal(&self.state.bodies));
+        let step = self.settings.time.courant * self.settings.lattice.cell.f64() / signal;
+        self.settings.time.max_step.map_or(step, |longest| step.min(longest))
     }
 }

@@ -132,6 +132,8 @@ pub struct Visit<'a, T, const D: usize, B> {
     pub next: Option<&'a Tile<D>>,
     /// Which cells have particles that left them, from the lowest bit on.
     pub left: u64,
+    /// How many did.
+    pub moved: u32,
     /// What it took from the particles' kinetic energy beyond the work of forces [J].
     pub damped: f64,
     /// What it found.
@@ -221,6 +223,7 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
         if self.pass.verbs.displace {
             let moved = Stencil::<T, D, B>::new(&self.pass.lattice, &particle).base() != stencil.base();
             self.left |= u64::from(moved) << cell;
+            self.moved += u32::from(moved);
             let signal = signal(self.body, &particle);
             self.found.signal = self.found.signal.max(signal);
         }

@@ -5,6 +5,7 @@
 
 use super::Engine;
 use super::build::{mirrors, spin};
+use super::state::Disorder;
 use crate::basis::Basis;
 use crate::body::Particle;
 use crate::check;
@@ -172,22 +173,27 @@ fn count<const D: usize>(scene: &Scene, body: usize, boxes: &[Bounds]) -> usize 
 impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// Motion of a body, if it is rigid and without bounds.
     pub(super) fn without_bounds(&self, body: usize) -> Option<&RigidMotion> {
-        let unbounded = self.unbounded.iter().any(|unbounded| unbounded.body == body);
-        self.rigid[body].as_ref().filter(|_| unbounded)
+        let unbounded = self.state.unbounded.iter().any(|unbounded| unbounded.body == body);
+        self.state.rigid[body].as_ref().filter(|_| unbounded)
     }
 
     /// Gives rigid bodies without bounds particles around the blocks that deformable bodies have come to hold.
     pub(super) fn spread(&mut self, blocks: Blocks) -> Blocks {
         let mut changed = Blocks::Same;
-        for i in 0..self.unbounded.len() {
-            let unbounded = &self.unbounded[i];
+        for i in 0..self.state.unbounded.len() {
+            let unbounded = &self.state.unbounded[i];
             let motion =
-                self.rigid[unbounded.body].as_ref().expect("only rigid bodies may be without bounds");
+                self.state.rigid[unbounded.body].as_ref().expect("only rigid bodies may be without bounds");
             let pose = motion.pose();
             if blocks == Blocks::Same && unbounded.pose == Some(pose) {
                 continue;
             }
-            let held = self.cover.slots.iter().filter(|(body, _)| !self.bodies[*body as usize].rigid);
+            let held = self
+                .workspace
+                .cover
+                .slots
+                .iter()
+                .filter(|(body, _)| !self.state.bodies[*body as usize].rigid);
             let near = held.map(|(_, block)| *block).filter(|&block| unbounded.meets(block, &pose));
             let drifted = unbounded.drifted(&pose);
             if !drifted && near.clone().all(|block| unbounded.served.binary_search(&block).is_ok()) {
@@ -204,7 +210,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             served.sort_unstable();
             served.dedup();
             let particles = {
-                let unbounded = &mut self.unbounded[i];
+                let unbounded = &mut self.state.unbounded[i];
                 (unbounded.served, unbounded.pose) = (served, Some(pose));
                 unbounded.fill(&pose)
             };
@@ -216,11 +222,11 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
 
     /// Gives a body without bounds these particles, by their sites at the start.
     fn refill(&mut self, i: usize, sites: &[[f64; 3]]) {
-        let Unbounded { body, sites: lattice, .. } = &self.unbounded[i];
+        let Unbounded { body, sites: lattice, .. } = &self.state.unbounded[i];
         let (number, volume) = (*body, T::of(lattice.volume()));
-        let motion = self.rigid[number].as_ref().expect("only rigid bodies may be without bounds");
+        let motion = self.state.rigid[number].as_ref().expect("only rigid bodies may be without bounds");
         let pose = motion.pose();
-        let body = &mut self.bodies[number];
+        let body = &mut self.state.bodies[number];
         let particle = |i: usize| Particle {
             position: Vector::of(sites[i]),
             velocity: Vector::of(motion.velocity_at(pose.now(sites[i]))),
@@ -239,8 +245,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             particles.set(i, &Particle { position: Vector::of(pose.now(site)), ..particle(i) });
         }
         body.particles = particles;
-        let (particles, grid) = (&body.particles, &self.lattice);
-        self.cover.replace((number, particles.len(), B::WIDTH as i32 - 1), |particle| {
+        self.state.disorder[number] = Disorder::any(body.particles.len());
+        let (particles, grid) = (&body.particles, &self.settings.lattice);
+        self.workspace.cover.replace((number, particles.len(), B::WIDTH as i32 - 1), |particle| {
             let (position, half_width) = particles.place(particle);
             let x = grid.cells(position);
             std::array::from_fn(|i| B::reach(x[i], half_width * grid.per_cell).floor())

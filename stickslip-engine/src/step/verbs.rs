@@ -3,15 +3,16 @@
 use super::Engine;
 use super::build::spin;
 use super::pass::{Fault, FaultKind, Found, Pass, Path, Verbs, escaped, signal};
+use super::state::{Disorder, Workspace};
 use crate::basis::Basis;
 use crate::contact::{Change, Near, Record, Solve, Span, Step, Use};
 use crate::door::StepError;
-use crate::grid::{Blocks, Disjoint, node_at, nodes_per_block};
+use crate::grid::{Blocks, Disjoint, Node, node_at, nodes_per_block};
 use crate::lanes::{Laned, Processor};
 use crate::scene::{ContactLaw, StressUpdate};
 use crate::tensor::{Matrix, Vector};
 use crate::threads::each;
-use crate::transfer::Share;
+use crate::transfer::{Share, Stencil};
 use std::time::Instant;
 
 /// The uses of contact in a step.
@@ -21,193 +22,257 @@ enum Contact {
     Interpolated,
     /// Of the integrated velocities.
     Integrated,
-    /// Of the velocities that strain and move particles, where they are scattered anew.
-    Unrecorded,
+    /// Of the velocities that strain and move particles, where they are interpolated anew.
+    Straining,
 }
 
 impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
-    pub(super) fn cover(&mut self) {
+    /// Brings the cell lists of the particles up to date, and with them the blocks of nodes that bodies have.
+    pub(super) fn find_active_blocks(&mut self) {
         let start = Instant::now();
-        let (bodies, lattice) = (&self.bodies, &self.lattice);
-        let left = (self.steps > 0).then_some(&self.left[..]);
+        let (bodies, lattice) = (&self.state.bodies, &self.settings.lattice);
+        let left = self.workspace.listed.then_some(&self.workspace.left[..]);
         let count = |body: usize| bodies[body].particles.len();
-        let blocks = self.cover.update((bodies.len(), count, B::WIDTH as i32 - 1), left, |body, particle| {
+        let reach = B::WIDTH as i32 - 1;
+        let blocks = self.workspace.cover.update((bodies.len(), count, reach), left, |body, particle| {
             let (position, half_width) = bodies[body].particles.place(particle);
             let x = lattice.cells(position);
             std::array::from_fn(|i| B::reach(x[i], half_width * lattice.per_cell).floor())
         });
         let blocks = blocks.max(self.spread(blocks));
-        self.tidy();
+        self.sort_particles();
+        let Workspace { cover, field, boundary, left, moved, damped, listed, .. } = &mut self.workspace;
         if blocks == Blocks::New {
-            self.boundary.cover(&self.cover);
+            boundary.cover(cover);
         }
-        self.left.clear();
-        self.left.resize(self.cover.tiles.len(), 0);
-        self.damped.clear();
-        self.damped.resize(self.cover.tiles.len(), 0.0);
-        self.field.clear(&self.cover);
-        self.watch.lap("cover", start);
+        let tiles = cover.tiles.len();
+        left.clear();
+        left.resize(tiles, 0);
+        moved.clear();
+        moved.resize(tiles, 0);
+        damped.clear();
+        damped.resize(tiles, 0.0);
+        *listed = true;
+        field.clear(cover);
+        self.watch.lap("blocks", start);
     }
 
-    /// Sorts particles in memory into the order in which tiles visit them, where they are no longer nearly so.
-    fn tidy(&mut self) {
-        let cover = &self.cover;
-        each(&mut self.bodies, 16, |i, body| {
-            if cover.untidy(i) {
+    /// Sorts particles in memory into the order in which tiles visit them, where disorder has cost as much as that does.
+    fn sort_particles(&mut self) {
+        let (cover, disorder) = (&self.workspace.cover, &self.state.disorder);
+        let costly = |body: usize, count: usize| disorder[body].is_costly(count);
+        each(&mut self.state.bodies, 16, |i, body| {
+            if costly(i, body.particles.len()) {
                 body.particles.permute(cover.order_of(i));
             }
         });
-        for i in 0..self.bodies.len() {
-            if self.cover.untidy(i) {
-                self.cover.tidied(i);
+        for (i, disorder) in self.state.disorder.iter_mut().enumerate() {
+            if disorder.is_costly(self.state.bodies[i].particles.len()) {
+                *disorder = Disorder::default();
+                self.workspace.cover.tidied(i);
             }
         }
     }
 
-    /// The particles' share in the nodes.
-    pub(super) fn scatter(&mut self, share: Share) {
+    /// Counts the particles that changed their cells in the step.
+    pub(super) fn count_disorder(&mut self) {
+        for (body, disorder) in self.state.disorder.iter_mut().enumerate() {
+            let moved = &self.workspace.moved[self.workspace.cover.tiles_held(body)];
+            disorder.add(moved.iter().map(|&moved| moved as usize).sum());
+        }
+    }
+
+    /// P2G: the particles' share in the nodes.
+    pub(super) fn particles_to_grid(&mut self, share: Share) {
         let verbs = Verbs { scatter: Some(share), ..Verbs::default() };
         self.run_pass("scatter", verbs, T::ZERO).expect("a scatter changes no particle");
     }
 
+    /// G2P and P2G of momentum:
+    ///
+    /// ```text
     /// v_p = (1 - a) (v_p + sum S_i (v_i - v_i^0)) + a sum S_i v_i,   a: PIC share; the particle's rotation likewise
-    pub(super) fn accept_and_scatter(&mut self, dt: T) -> Result<(), StepError> {
+    /// ```
+    pub(super) fn update_particle_velocities(&mut self, dt: T) -> Result<(), StepError> {
         let verbs = Verbs { accept: true, scatter: Some(Share::Momentum), ..Verbs::default() };
         self.run_pass("accept", verbs, dt)
     }
 
-    /// F = (I + L dt) F,  sigma = law(F), and the force of the new stress.
-    pub(super) fn strain_and_scatter(&mut self, dt: T) -> Result<(), StepError> {
+    /// G2P of velocity gradients, and P2G of forces:  F = (I + L dt) F,  sigma = law(F),  f = -sum V sigma grad S
+    pub(super) fn update_stress(&mut self, dt: T) -> Result<(), StepError> {
         let verbs = Verbs { strain: true, scatter: Some(Share::Force), ..Verbs::default() };
         self.run_pass("strain", verbs, dt)
     }
 
-    /// v += dv,  x += v dt
-    pub(super) fn accept_and_displace(&mut self, dt: T) -> Result<(), StepError> {
+    /// G2P:  v_p += dv,  x += v dt
+    pub(super) fn update_velocities_and_positions(&mut self, dt: T) -> Result<(), StepError> {
         self.run_pass("displace", Verbs { accept: true, displace: true, ..Verbs::default() }, dt)
     }
 
-    /// v += dv,  F = (I + L dt) F,  sigma = law(F),  x += v dt
-    pub(super) fn accept_strain_and_displace(&mut self, dt: T) -> Result<(), StepError> {
+    /// G2P:  v_p += dv,  F = (I + L dt) F,  sigma = law(F),  x += v dt
+    pub(super) fn update_particles(&mut self, dt: T) -> Result<(), StepError> {
         self.run_pass("strain", Verbs { accept: true, strain: true, displace: true, scatter: None }, dt)
     }
 
-    /// F = (I + L dt) F,  sigma = law(F),  x += v dt
-    pub(super) fn strain_and_displace(&mut self, dt: T) -> Result<(), StepError> {
+    /// G2P:  F = (I + L dt) F,  sigma = law(F),  x += v dt
+    pub(super) fn update_stress_and_positions(&mut self, dt: T) -> Result<(), StepError> {
         self.run_pass("strain", Verbs { strain: true, displace: true, ..Verbs::default() }, dt)
     }
 
     fn run_pass(&mut self, name: &'static str, verbs: Verbs, dt: T) -> Result<(), StepError> {
         let start = Instant::now();
-        let mut found = self.pass(&Pass {
+        let found = self.pass(&Pass {
             verbs,
             dt,
-            transfer: self.transfer,
-            pic: self.pic_share,
-            lattice: self.lattice,
-            domain: self.domain,
+            transfer: self.settings.transfer,
+            pic: self.settings.pic_share,
+            lattice: self.settings.lattice,
+            domain: self.settings.domain,
         });
         if verbs.accept || verbs.strain {
             // Tile after tile, whoever took them.
-            self.damping += self.damped.iter().sum::<f64>();
+            self.state.damping += self.workspace.damped.iter().sum::<f64>();
         }
         if verbs.displace {
-            found = found.and(self.move_rigid_bodies(dt));
-            self.signal = Some(found.signal.f64());
+            self.state.signal = Some(found.signal.f64());
         }
         if let Some(share) = verbs.scatter {
-            self.boundary.fold(&mut self.field, share);
+            self.workspace.boundary.fold(&mut self.workspace.field, share);
         }
         self.watch.lap(name, start);
         found.fault.map_or(Ok(()), |fault| Err(self.error(&fault)))
     }
 
-    /// v = p / m
+    /// v = p / m, and v^0 = v, of nodes that have mass.
     pub(super) fn interpolated_velocities(&mut self) {
         let start = Instant::now();
-        self.field.find_present(|node| {
-            node.velocity = node.velocity / node.mass;
-            node.start = node.velocity;
-        });
-        self.hold();
-        self.watch.lap("velocities", start);
-    }
-
-    /// Keeps the nodes' velocities.
-    pub(super) fn keep(&mut self) {
-        self.field.each_present(|node| node.integrated = node.velocity);
-    }
-
-    /// Takes back the velocities that were kept, and keeps those of now.
-    pub(super) fn take_back(&mut self) {
-        self.field.each_present(|node| std::mem::swap(&mut node.integrated, &mut node.velocity));
-    }
-
-    /// Keeps the nodes' velocities and makes room for momentum.
-    pub(super) fn keep_and_make_room(&mut self) {
-        let start = Instant::now();
-        self.field.each_present(|node| {
-            node.integrated = node.velocity;
-            node.velocity = Vector::ZERO;
-        });
+        self.workspace.field.find_present(Node::begin);
         self.watch.lap("velocities", start);
     }
 
     /// v = p / m of the particles' new velocities.
-    pub(super) fn modified_velocities(&mut self) {
+    pub(super) fn interpolated_again(&mut self) {
+        self.at_nodes("velocities", Node::divide_by_mass);
+    }
+
+    /// v += dt (f / m + g)
+    pub(super) fn update_velocities(&mut self, dt: T) {
+        let gravity = self.settings.gravity;
+        self.at_nodes("velocities", |node| node.accelerate(gravity, dt));
+    }
+
+    /// Keeps the nodes' velocities beside those that change.
+    pub(super) fn keep_velocities(&mut self) {
+        self.at_nodes("velocities", Node::keep);
+    }
+
+    /// Keeps the nodes' velocities and makes room for momentum.
+    pub(super) fn keep_velocities_and_clear_momentum(&mut self) {
+        self.at_nodes("velocities", Node::keep_and_clear);
+    }
+
+    /// Takes the velocities that were kept, and keeps those of now.
+    pub(super) fn exchange_velocities(&mut self) {
+        self.at_nodes("velocities", Node::exchange);
+    }
+
+    /// Does something to each node that has mass.
+    fn at_nodes(&mut self, name: &'static str, f: impl Fn(&mut Node<T, D>) + Sync) {
         let start = Instant::now();
-        self.field.each_present(|node| node.velocity = node.velocity / node.mass);
-        self.hold();
-        self.watch.lap("velocities", start);
+        self.workspace.field.each_present(f);
+        self.watch.lap(name, start);
     }
 
     /// Prescribed velocities of rigid bodies and walls.
-    fn hold(&mut self) {
+    pub(super) fn prescribed_velocities(&mut self) {
+        let start = Instant::now();
         let n = nodes_per_block(D);
-        for (body, motion) in self.rigid.iter().enumerate() {
+        let Workspace { cover, field, boundary, .. } = &mut self.workspace;
+        for (body, motion) in self.state.rigid.iter().enumerate() {
             let Some(motion) = motion else { continue };
-            for slot in self.cover.slots_held(body) {
-                let (_, block) = self.cover.slots[slot];
+            for slot in cover.slots_held(body) {
+                let (_, block) = cover.slots[slot];
                 for local in 0..n {
-                    let position = self.lattice.position(node_at(block, local)).space();
-                    self.field.nodes[slot * n + local].velocity = Vector::of(motion.velocity_at(position));
+                    let position = self.settings.lattice.position(node_at(block, local)).space();
+                    field.nodes[slot * n + local].velocity = Vector::of(motion.velocity_at(position));
                 }
             }
         }
-        self.boundary.hold(&mut self.field);
+        boundary.hold(field);
+        self.watch.lap("velocities", start);
     }
 
-    pub(super) fn survey(&mut self, dt: T) {
+    /// Where bodies meet: surfaces, normals and gaps at the nodes that they share.
+    pub(super) fn detect_contact(&mut self, dt: T) {
         let start = Instant::now();
         let near = Near {
-            cover: &self.cover,
-            bodies: &self.bodies,
-            field: &self.field,
-            lattice: self.lattice,
-            boundary: &self.boundary,
-            rules: &self.rules,
-            ahead: (self.clock.stress_update != StressUpdate::First).then_some(dt),
-            processor: match self.path {
+            cover: &self.workspace.cover,
+            bodies: &self.state.bodies,
+            field: &self.workspace.field,
+            lattice: self.settings.lattice,
+            boundary: &self.workspace.boundary,
+            rules: &self.settings.rules,
+            ahead: (self.settings.time.stress_update != StressUpdate::First).then_some(dt),
+            processor: match self.settings.path {
                 Path::Lanes(processor) => processor,
                 Path::Reference => Processor::Any,
             },
         };
-        near.survey::<B>(&mut self.meeting);
+        near.survey::<B>(&mut self.workspace.meeting);
         self.watch.lap("survey", start);
     }
 
-    /// Contact on the interpolated velocities, which strain the particles if the stress is updated first.
-    pub(super) fn first_contact(&mut self, dt: T) {
-        self.exchange(dt, Contact::Interpolated);
-        let impulses = self.impulses[0].iter().filter(|impulse| impulse.span == Span::EachUse);
-        // How long surfaces touch is counted once a step.
-        self.tally.add(impulses, (&self.lattice, &self.boundary), 0.0);
+    /// Contact on the interpolated velocities, by the laws that judge these by themselves; they also strain the particles
+    /// where the stress is updated first.
+    pub(super) fn contact_on_interpolated(&mut self, dt: T) {
+        let strains = self.settings.time.stress_update == StressUpdate::First;
+        if strains || self.settings.rules.judge_interpolated() {
+            self.apply_contact(dt, Contact::Interpolated);
+        }
     }
 
     /// Contact on the integrated velocities, after what it gave to the interpolated ones.
-    pub(super) fn contact(&mut self, dt: T) {
-        self.exchange(dt, Contact::Integrated);
-        self.tally.add(self.impulses[1].iter(), (&self.lattice, &self.boundary), dt.f64());
+    pub(super) fn contact_on_integrated(&mut self, dt: T) {
+        self.apply_contact(dt, Contact::Integrated);
+    }
+
+    /// Contact on the velocities that strain and move the particles: it enters no sum of forces and works, for no
+    /// particle takes it as a change of its velocity.
+    pub(super) fn contact_on_straining(&mut self, dt: T) {
+        self.apply_contact(dt, Contact::Straining);
+    }
+
+    fn apply_contact(&mut self, duration: T, contact: Contact) {
+        let start = Instant::now();
+        let Workspace { impulses: [first, second, third], meeting, field, boundary, .. } =
+            &mut self.workspace;
+        let (purpose, record, given, listed) = match contact {
+            Contact::Interpolated => {
+                let strains = self.settings.time.stress_update == StressUpdate::First;
+                (if strains { Use::Strain } else { Use::Start }, Record::Kept, None, first)
+            }
+            Contact::Integrated => (Use::Motion, Record::Kept, Some(&*first), second),
+            Contact::Straining => (Use::Strain, Record::Dropped, None, third),
+        };
+        let step = Step { duration, cell: self.settings.lattice.cell, purpose };
+        let nodes = Disjoint::new(&mut field.nodes);
+        Solve { survey: meeting, rules: &self.settings.rules, nodes, step, given }.impulses(record, listed);
+        self.state.tally.scaled += listed.reduced();
+        self.state.tally.unsettled += listed.unsettled();
+        boundary.hold(field);
+        self.watch.lap("contact", start);
+    }
+
+    /// Books what contact did: impulses by pair of bodies, and the work of friction.
+    pub(super) fn book_contact(&mut self, dt: T) {
+        let start = Instant::now();
+        let Workspace { impulses: [first, second, _], boundary, .. } = &self.workspace;
+        let place = (&self.settings.lattice, boundary);
+        // How long surfaces touch is counted once a step.
+        self.state.tally.add(first.iter().filter(|impulse| impulse.span == Span::EachUse), place, 0.0);
+        self.state.tally.add(second.iter(), place, dt.f64());
+        self.book_friction(dt);
+        self.watch.lap("contact", start);
     }
 
     /// Books the work of friction in this step, what its impulses took from the particles' kinetic energy, and likewise that of bonds that give way.
@@ -218,14 +283,14 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// This is exact for FLIP, where particles take changes at nodes: sum_p m_p v_p . sum_i S_i dv_i = sum_i m_i dv_i . v_i, with v_i
     /// interpolated from the v_p. The velocity of a node with next to no mass is mostly what forces do to it within the step, and says little of
     /// how particles move. Where the step does not interpolate a second time, u^1 = u^0.
-    pub(super) fn friction_work(&mut self, dt: T) {
-        let interpolated_twice = self.clock.stress_update == StressUpdate::ModifiedLast;
-        let (nodes, rules) = (&self.field.nodes, &self.rules);
+    fn book_friction(&mut self, dt: T) {
+        let interpolated_twice = self.settings.time.stress_update == StressUpdate::ModifiedLast;
+        let (nodes, rules) = (&self.workspace.field.nodes, &self.settings.rules);
         let seen = |node: usize| {
             let node = &nodes[node];
             if interpolated_twice { (node.start + node.velocity) * T::HALF } else { node.start }
         };
-        let [first, second, _] = &self.impulses;
+        let [first, second, _] = &self.workspace.impulses;
         let first = first.iter().filter(|impulse| impulse.span == Span::EachUse);
         for impulse in first.chain(second.iter()) {
             let [a, b] = impulse.bodies;
@@ -240,60 +305,32 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             }
             let [v, w] = impulse.nodes.map(seen);
             if rubs {
-                self.tally.rub(impulse.bodies, -tangential.dot(v - w).f64());
+                self.state.tally.rub(impulse.bodies, -tangential.dot(v - w).f64());
             }
             if pulls {
-                self.tally.adhesion -= (on_a - tangential).dot(v - w).f64();
+                self.state.tally.adhesion -= (on_a - tangential).dot(v - w).f64();
             }
         }
     }
 
-    /// Contact on the velocities that strain and move the particles: it enters no sum of forces and works, for no particle takes it as a
-    /// change of its velocity.
-    pub(super) fn contact_unrecorded(&mut self, dt: T) {
-        self.exchange(dt, Contact::Unrecorded);
-    }
-
-    fn exchange(&mut self, duration: T, contact: Contact) {
-        let start = Instant::now();
-        let [first, second, third] = &mut self.impulses;
-        let (purpose, record, given, listed) = match contact {
-            Contact::Interpolated => {
-                let strains = self.clock.stress_update == StressUpdate::First;
-                (if strains { Use::Strain } else { Use::Start }, Record::Kept, None, first)
-            }
-            Contact::Integrated => (Use::Motion, Record::Kept, Some(&*first), second),
-            Contact::Unrecorded => (Use::Strain, Record::Dropped, None, third),
-        };
-        let step = Step { duration, cell: self.lattice.cell, purpose };
-        let nodes = Disjoint::new(&mut self.field.nodes);
-        Solve { survey: &self.meeting, rules: &self.rules, nodes, step, given }.impulses(record, listed);
-        self.tally.scaled += listed.reduced();
-        self.tally.unsettled += listed.unsettled();
-        self.boundary.hold(&mut self.field);
-        self.watch.lap("contact", start);
-    }
-
-    pub(super) fn accelerate(&mut self, dt: T) {
-        let start = Instant::now();
-        let gravity = self.gravity;
-        self.field.each_present(|node| node.velocity += (node.force / node.mass + gravity) * dt);
-        self.hold();
-        self.watch.lap("accelerate", start);
-    }
-
     /// Moves rigid bodies as prescribed.
-    fn move_rigid_bodies(&mut self, dt: T) -> Found<T> {
-        let mut found = Found::NOTHING;
-        for (i, (body, motion)) in self.bodies.iter_mut().zip(&mut self.rigid).enumerate() {
+    pub(super) fn move_rigid_bodies(&mut self, dt: T) -> Result<(), StepError> {
+        let start = Instant::now();
+        let mut found = Found { signal: T::of(self.state.signal.unwrap_or(0.0)), ..Found::NOTHING };
+        for (i, (body, motion)) in self.state.bodies.iter_mut().zip(&mut self.state.rigid).enumerate() {
             let Some(motion) = motion else { continue };
             let dt = dt.f64();
             let rotation = motion.rotation(dt);
             // One without bounds is everywhere: its particles stand for what the others are near.
-            let domain = self.domain.filter(|_| !self.unbounded.iter().any(|unbounded| unbounded.body == i));
+            let domain = self
+                .settings
+                .domain
+                .filter(|_| !self.state.unbounded.iter().any(|unbounded| unbounded.body == i));
             let turn = Matrix::from_fn(|i, j| T::of(rotation.0[i][j]));
+            let mut moved_on = 0;
             for p in 0..body.particles.len() {
                 let mut particle = body.particles.get(p);
+                let home = Stencil::<T, D, B>::new(&self.settings.lattice, &particle).base();
                 let position = particle.position.space();
                 let moved = Vector::of(motion.moved(position, &rotation, dt));
                 let kind = if !moved.is_finite() {
@@ -303,23 +340,32 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                     particle.spin = spin::<T, D>(motion.spin());
                     particle.position = moved;
                     particle.deformation = turn * particle.deformation;
-                    escaped::<T, D, B>(&particle, &self.lattice, domain).then_some(FaultKind::Escaped)
+                    escaped::<T, D, B>(&particle, &self.settings.lattice, domain)
+                        .then_some(FaultKind::Escaped)
                 };
                 body.particles.set(p, &particle);
+                moved_on +=
+                    u32::from(Stencil::<T, D, B>::new(&self.settings.lattice, &particle).base() != home);
                 let fault = kind.map(|kind| Fault { body: i, particle: p, kind });
                 found = found.and(Found { fault, signal: signal(body, &particle) });
             }
             motion.advance(&rotation, dt);
-            self.left[self.cover.tiles_held(i)].fill(u64::MAX);
+            let tiles = self.workspace.cover.tiles_held(i);
+            self.workspace.left[tiles.clone()].fill(u64::MAX);
+            if let [first, ..] = &mut self.workspace.moved[tiles] {
+                *first = moved_on;
+            }
         }
-        found
+        self.state.signal = Some(found.signal.f64());
+        self.watch.lap("rigid", start);
+        found.fault.map_or(Ok(()), |fault| Err(self.error(&fault)))
     }
 
     fn error(&self, fault: &Fault) -> StepError {
-        let body = &self.bodies[fault.body];
+        let body = &self.state.bodies[fault.body];
         let particle = body.particles.get(fault.particle);
         let (name, number, position, time) =
-            (body.name.clone(), particle.number, particle.position.space(), self.time);
+            (body.name.clone(), particle.number, particle.position.space(), self.state.time);
         match fault.kind {
             FaultKind::Inverted => StepError::Inverted {
                 body: name,

@@ -1,6 +1,6 @@
 //! What can end a run before its time.
 
-use crate::door::StepError;
+use crate::march::MarchError;
 use crate::observe::{FolderError, OutputError};
 use miette::Diagnostic;
 
@@ -18,21 +18,9 @@ pub enum RunError {
     Step {
         /// What went wrong.
         #[source]
-        error: StepError,
+        error: MarchError,
         /// Why the last record could not be written, if so.
         unsaved: Option<OutputError>,
-    },
-
-    /// The steps became so short that time stands still.
-    #[error("time stands still at t = {time:.6e} s: the stable step is {step:.3e} s")]
-    #[diagnostic(help(
-        "a particle is far too fast or far too compressed; look at the last frame, try a smaller time.courant"
-    ))]
-    Stuck {
-        /// Simulated time [s].
-        time: f64,
-        /// The step that the simulation would take [s].
-        step: f64,
     },
 
     /// An output could not be written.

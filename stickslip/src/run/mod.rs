@@ -13,6 +13,7 @@ pub use summary::{ReferenceResult, Summary};
 pub use widest::{WidestContact, WidestContacts};
 
 use crate::door::Simulation;
+use crate::march::March;
 use crate::observe::{Manifest, OutputFolder, Recorder, Status};
 use crate::scene::Scene;
 use clock::Clock;
@@ -57,7 +58,7 @@ pub fn run(
     let mut verdict = Verdict::new(scene, simulation);
     let outcome = Recorder::new(scene, &folder).map_err(RunError::from).and_then(|recorder| {
         let verdict = &mut verdict;
-        March { scene, simulation, recorder, verdict, options, clock: &clock }.to(scene.time.end, progress)
+        Watched { scene, simulation, recorder, verdict, options, clock: &clock }.to(scene.time.end, progress)
     });
 
     manifest.performance = clock.performance(simulation);
@@ -71,7 +72,7 @@ pub fn run(
 }
 
 /// A run under way.
-struct March<'a> {
+struct Watched<'a> {
     scene: &'a Scene,
     simulation: &'a mut dyn Simulation,
     recorder: Recorder,
@@ -80,25 +81,21 @@ struct March<'a> {
     clock: &'a Clock,
 }
 
-/// Remainder of the run, as a part of the last step, that is rounding and not time to be simulated.
-const ROUNDING: f64 = 1e-6;
-
-impl March<'_> {
+impl Watched<'_> {
     fn to(mut self, end: f64, progress: &mut dyn FnMut(&Progress)) -> Result<Status, RunError> {
         self.recorder.record_present(self.simulation)?;
-        let mut last_step = 0.0;
+        let mut way = March::to(end);
         let mut reports = self.clock.reports();
         let mut lookout = Lookout::new(self.simulation.time());
         let mut notes = self.verdict.look(self.scene, self.simulation);
         let status = loop {
-            let remaining = end - self.simulation.time();
-            if remaining <= ROUNDING * last_step {
+            if way.is_done(self.simulation) {
                 break Status::Finished;
             }
             if self.options.stop.load(Ordering::Relaxed) {
                 break Status::Interrupted;
             }
-            last_step = self.step(longest_step(remaining, last_step, self.simulation))?;
+            self.step(&mut way)?;
             self.recorder.record_due(self.simulation)?;
             notes.extend(lookout.look(self.scene, self.simulation));
             notes.extend(self.verdict.look(self.scene, self.simulation));
@@ -114,34 +111,12 @@ impl March<'_> {
         Ok(status)
     }
 
-    /// Takes a step and returns its length [s].
-    fn step(&mut self, longest: f64) -> Result<f64, RunError> {
-        let before = self.simulation.time();
-        if let Err(error) = self.simulation.step(longest) {
+    /// Takes a step and returns its length, if the end is not reached [s].
+    fn step(&mut self, way: &mut March) -> Result<Option<f64>, RunError> {
+        way.step(self.simulation).map_err(|error| {
             let recorder = &mut self.recorder;
             let recorded = recorder.record_failure(self.simulation).and_then(|()| recorder.conclude());
-            let unsaved = recorded.err();
-            return Err(RunError::Step { error, unsaved });
-        }
-        let time = self.simulation.time();
-        if time > before {
-            return Ok(time - before);
-        }
-        self.recorder.record_failure(self.simulation)?;
-        self.recorder.conclude()?;
-        Err(RunError::Stuck { time, step: self.simulation.stable_step() })
+            RunError::Step { error, unsaved: recorded.err() }
+        })
     }
-}
-
-/// Longest next step such that the run ends exactly at its end [s].
-///
-/// Where the remainder is more than one and less than two steps, it is shared equally: a last step of nearly no length would
-/// divide forces by nearly nothing.
-fn longest_step(remaining: f64, last_step: f64, simulation: &dyn Simulation) -> f64 {
-    // Asking for the stable step may cost a look at all particles: only near the end.
-    if remaining > 4.0 * last_step && last_step > 0.0 {
-        return remaining;
-    }
-    let stable = simulation.stable_step();
-    if remaining > stable && remaining < 2.0 * stable { 0.5 * remaining } else { remaining }
 }

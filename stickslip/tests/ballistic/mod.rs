@@ -87,7 +87,7 @@ impl Simulation for Ballistic {
         self.step
     }
 
-    fn step(&mut self, longest: f64) -> Result<(), StepError> {
+    fn step(&mut self, longest: f64) -> Result<f64, StepError> {
         if let Some((number, trap)) = &mut self.trap
             && *number == self.steps
         {
@@ -107,7 +107,7 @@ impl Simulation for Ballistic {
         self.time += self.last_step;
         self.steps += 1;
         self.steps_in_contact += 1;
-        Ok(())
+        Ok(self.last_step)
     }
 
     fn bodies(&self) -> Vec<BodyState> {

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 use stickslip::door::{ParticleSnapshot, Simulation};
+use stickslip::march::March;
 use stickslip::scene::{self, Scene};
 use stickslip::step;
 
@@ -92,10 +93,10 @@ impl Chain {
         let (mut impulse, mut pushed) = ([0.0; 2], 0.0_f64);
         let (mut stresses, mut speeds) = (First::new(disks), First::new(disks));
         simulation.take_contacts();
-        while simulation.time() < end * (1.0 - 1e-12) && !enough(&chain) {
-            let start = simulation.time();
-            simulation.step(end - start).unwrap_or_else(|error| panic!("{error}"));
-            let dt = simulation.time() - start;
+        let mut way = March::to(end);
+        while !enough(&chain)
+            && let Some(dt) = way.step(&mut *simulation).unwrap_or_else(|error| panic!("{error}"))
+        {
             for contact in simulation.take_contacts() {
                 let pair = [contact.body_a, contact.body_b].map(|body| setting.names[body].clone());
                 if contact.normal >= setting.load && chain.loaded.iter().all(|(other, _)| *other != pair) {

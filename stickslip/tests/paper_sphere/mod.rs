@@ -1,6 +1,7 @@
 //! The paper's scenes with a sphere, run to their end and held against the rigid solution that they state.
 
 use std::path::Path;
+use stickslip::march::March;
 use stickslip::scene::{self, Scene};
 use stickslip::step;
 
@@ -22,9 +23,6 @@ pub struct Roll {
 /// Part of the run in which the sphere settles on the plane: its height counts from here on.
 const SETTLING: f64 = 0.2;
 
-/// Remainder of the run that is rounding and not time to be simulated [s].
-const ROUNDING: f64 = 1e-12;
-
 impl Roll {
     /// Runs a scene of the paper with these overrides, written as `stickslip run --set` takes them.
     pub fn down(name: &str, overrides: &[(&str, &str)]) -> Roll {
@@ -43,11 +41,9 @@ impl Roll {
         let end = scene.time.end;
         let energy = simulation.ledger().total;
         let (mut height, mut duration) = (0.0, 0.0);
-        while end - simulation.time() > ROUNDING {
-            let start = simulation.time();
-            simulation.step(end - start).unwrap_or_else(|error| panic!("{error}"));
-            if start > SETTLING * end {
-                let dt = simulation.time() - start;
+        let mut way = March::to(end);
+        while let Some(dt) = way.step(&mut *simulation).unwrap_or_else(|error| panic!("{error}")) {
+            if simulation.time() - dt > SETTLING * end {
                 height += simulation.bodies()[sphere].position[2] * dt;
                 duration += dt;
             }

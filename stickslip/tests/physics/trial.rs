@@ -1,6 +1,8 @@
 //! Scenes written in the tests, and how they are run.
 
+use std::ops::ControlFlow;
 use stickslip::door::{ParticleSnapshot, Simulation};
+use stickslip::march::march;
 use stickslip::step::Path;
 use stickslip::{scene, step};
 
@@ -38,13 +40,11 @@ pub fn take_steps(simulation: &mut dyn Simulation, count: usize) {
 
 /// Steps to a time, and looks at the simulation after each step.
 pub fn run_to(simulation: &mut dyn Simulation, end: f64, mut look: impl FnMut(&mut dyn Simulation)) {
-    while simulation.time() < end * (1.0 - 1e-12) {
-        let remaining = end - simulation.time();
-        // The remainder in equal steps: a last step of nearly no length would divide forces by nearly nothing.
-        let share = remaining / (remaining / simulation.stable_step()).ceil();
-        simulation.step(share).expect("the trial is sound");
+    let seen = march(simulation, end, |simulation, _| {
         look(simulation);
-    }
+        ControlFlow::Continue(())
+    });
+    seen.expect("the trial is sound");
 }
 
 /// Mean of a quantity over the particles that a filter takes.

@@ -99,7 +99,10 @@ impl<T: Laned, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
                 let base = Vector::from_fn(|i| V::splat(T::of(f64::from(place.base[i]))));
                 let start = Shared::new::<D>(place.start);
                 match visit.group::<M, V, _>(&constants, (index, in_a_row), (base, start), &mut copies) {
-                    Some(inside) => visit.left |= u64::from(!every::<V>(inside)) << cell,
+                    Some(inside) => {
+                        visit.left |= u64::from(!every::<V>(inside)) << cell;
+                        visit.moved += outside(inside, index.len());
+                    }
                     None => {
                         for &index in index {
                             // SAFETY: the tile's particles are this call's alone.
@@ -177,6 +180,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
             let start = Own::new::<D>(starts);
             match visit.group::<M, V, _>(&constants, (index, in_a_row), (base, start), &mut copies) {
                 Some(inside) => {
+                    visit.moved += outside(inside, index.len());
                     for (lane, &home) in homes.iter().enumerate().take(index.len()) {
                         visit.left |= u64::from(inside >> lane & 1 == 0) << home;
                     }
@@ -191,6 +195,12 @@ impl<T: Laned, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
             first += index.len();
         }
     }
+}
+
+/// How many of the first lanes have no bit set.
+#[inline(always)]
+fn outside(inside: u32, lanes: usize) -> u32 {
+    (!inside & ((1 << lanes) - 1)).count_ones()
 }
 
 /// A cell.

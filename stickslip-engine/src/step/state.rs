@@ -1,0 +1,125 @@
+//! What a simulation is between two steps, and what can be made anew from that.
+
+use super::cpu::Threads;
+use super::unbounded::Unbounded;
+use crate::body::{Body, Totals};
+use crate::boundary::Boundary;
+use crate::contact::{Impulses, Rules, Survey, Tally};
+use crate::grid::{Cover, Field, Lattice};
+use crate::rigid::RigidMotion;
+use crate::scene::{Time, Transfer};
+use crate::tensor::Vector;
+use std::sync::{Arc, Mutex};
+
+use super::pass::Path;
+
+/// What the scene says, the same in every step.
+pub struct Settings<T, const D: usize> {
+    pub lattice: Lattice<T, D>,
+    /// Lower and upper corner of the domain [m].
+    pub domain: Option<[Vector<T, D>; 2]>,
+    pub gravity: Vector<T, D>,
+    pub transfer: Transfer,
+    pub pic_share: T,
+    pub rules: Rules<T>,
+    pub time: Time,
+    pub path: Path,
+}
+
+/// All that a copied, stored or resumed simulation needs: the same state takes the same steps, bit for bit.
+pub struct State<T, const D: usize> {
+    /// Bodies with their particles, in the order in which these lie in memory: sums follow that order.
+    pub bodies: Vec<Body<T, D>>,
+    /// How far each body's order in memory is from that of tiles and cells.
+    pub disorder: Vec<Disorder>,
+    /// Prescribed motion of rigid bodies, with their poses.
+    pub rigid: Vec<Option<RigidMotion>>,
+    /// Rigid bodies without bounds, with the blocks around which they have particles.
+    pub unbounded: Vec<Unbounded<D>>,
+    /// What contact did, pair by pair, and works since the start.
+    pub tally: Tally,
+    /// What damping took since the start [J].
+    pub damping: f64,
+    /// Fastest signal now [m/s]; unknown before the first step.
+    pub signal: Option<f64>,
+    /// Simulated time [s].
+    pub time: f64,
+    /// Steps taken.
+    pub steps: u64,
+}
+
+/// Lists, grids and room to work in, all of which follow from the state: dropping them changes no step.
+pub struct Workspace<T, const D: usize> {
+    /// Cell lists of the particles, and the active blocks.
+    pub cover: Cover<D>,
+    /// Whether the cell lists are those of the state but for the particles that `left`.
+    pub listed: bool,
+    /// Nodes of all bodies' active blocks.
+    pub field: Field<T, D>,
+    /// Nodes that walls govern.
+    pub boundary: Boundary,
+    /// Where bodies meet in this step.
+    pub meeting: Survey<T, D>,
+    /// Which bodies glue joins at a node.
+    pub groups: Vec<usize>,
+    /// What contact did in the last step, use by use.
+    pub impulses: [Impulses<T, D>; 3],
+    /// Cells of each tile that particles have left.
+    pub left: Vec<u64>,
+    /// How many particles left cells of each tile.
+    pub moved: Vec<u32>,
+    /// What the last pass took from the kinetic energy of each tile's particles [J].
+    pub damped: Vec<f64>,
+    /// What the particles of each body add up to since the last step, once somebody has asked.
+    pub totals: Mutex<Option<Arc<[Totals]>>>,
+    /// What threads work with.
+    pub threads: Threads<T, D>,
+}
+
+impl<T, const D: usize> Workspace<T, D> {
+    /// An empty one, for a domain with these faces.
+    pub fn new(boundary: Boundary) -> Self {
+        Workspace {
+            cover: Cover::default(),
+            listed: false,
+            field: Field { nodes: Vec::new(), present: Vec::new() },
+            boundary,
+            meeting: Survey::default(),
+            groups: Vec::new(),
+            impulses: Default::default(),
+            left: Vec::new(),
+            moved: Vec::new(),
+            damped: Vec::new(),
+            totals: Mutex::new(None),
+            threads: Threads::default(),
+        }
+    }
+}
+
+/// How far the order of a body's particles in memory is from that in which tiles visit them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Disorder {
+    /// Particles that changed their cell since they were last sorted.
+    moved: usize,
+    /// That number summed over steps: what disorder in memory has cost.
+    cost: usize,
+}
+
+impl Disorder {
+    /// Particles in any order.
+    pub fn any(count: usize) -> Self {
+        Disorder { moved: count, cost: count }
+    }
+
+    /// Takes note of a step in which so many particles changed their cells.
+    pub fn add(&mut self, moved: usize) {
+        self.moved += moved;
+        self.cost += self.moved;
+    }
+
+    /// Whether disorder has cost about as much as sorting does: a step costs that much more with a seventh to a fourth
+    /// of the particles in other cells than they were sorted by.
+    pub fn is_costly(self, count: usize) -> bool {
+        4 * self.cost > count
+    }
+}
