@@ -73,10 +73,11 @@ impl Simulation for Puppet {
         STEP
     }
 
-    fn step(&mut self, longest: f64) -> Result<(), StepError> {
-        self.time += longest.min(STEP);
+    fn step(&mut self, longest: f64) -> Result<f64, StepError> {
+        let step = longest.min(STEP);
+        self.time += step;
         self.steps += 1;
-        Ok(())
+        Ok(step)
     }
 
     fn bodies(&self) -> Vec<BodyState> {
