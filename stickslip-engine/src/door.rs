@@ -3,9 +3,10 @@
 //! Everything that crosses this door is `f64`, SI and three-dimensional; plane scenes have zeros in the third component.
 
 use serde::Serialize;
+use std::collections::HashMap;
 
-/// A simulation that can be stepped and looked at.
-pub trait Simulation: Send {
+/// A simulation as it is now: observers, checks and pictures look at this. Asking changes nothing.
+pub trait View {
     /// Simulated time [s].
     fn time(&self) -> f64;
     /// Steps taken.
@@ -14,22 +15,13 @@ pub trait Simulation: Send {
     fn particles(&self) -> usize;
     /// The step that [`Simulation::step`] would take now if nothing cut it short [s].
     fn stable_step(&self) -> f64;
-    /// Takes one step, at most `longest` long, and returns its length [s].
-    ///
-    /// # Errors
-    /// The step's failure, with the simulation left as it was when it went wrong, so that it can still be looked at.
-    fn step(&mut self, longest: f64) -> Result<f64, StepError>;
-    /// Drops all that can be made anew from the state between two steps: grid, lists, room to work in. The next step
-    /// makes it anew, with the same bits as without.
-    fn rebuild_workspace(&mut self) {}
     /// Each body's mass, motion and energy now, in the order of the scene.
     fn bodies(&self) -> Vec<BodyState>;
     /// The energy and momentum ledger now.
     fn ledger(&self) -> Ledger;
-    /// What contact did since the last call, per pair of bodies that touched, ordered by pair.
-    fn take_contacts(&mut self) -> Vec<ContactState>;
-    /// What [`Simulation::take_contacts`] would give now, without beginning a new mean; what it gave last, if that was just now.
-    fn contacts(&self) -> Vec<ContactState>;
+    /// What contact did since the start, per pair of bodies that ever pushed each other, ordered by pair; a
+    /// [`ContactCursor`] makes means of it.
+    fn contact_sums(&self) -> Vec<ContactSum>;
     /// The widest contact of each pair of bodies since the start, ordered by pair.
     fn patches(&self) -> Vec<Patch>;
     /// All particles now, ordered by body and then by the particle's number in its body.
@@ -59,6 +51,18 @@ pub trait Simulation: Send {
     fn grid_snapshot(&self) -> GridSnapshot;
     /// Wall time spent so far in each verb of the step [s].
     fn timings(&self) -> Vec<(&'static str, f64)>;
+}
+
+/// A simulation that can be stepped.
+pub trait Simulation: View + Send {
+    /// Takes one step, at most `longest` long, and returns its length [s].
+    ///
+    /// # Errors
+    /// The step's failure, with the simulation left as it was when it went wrong, so that it can still be looked at.
+    fn step(&mut self, longest: f64) -> Result<f64, StepError>;
+    /// Drops all that can be made anew from the state between two steps: grid, lists, room to work in. The next step
+    /// makes it anew, with the same bits as without.
+    fn rebuild_workspace(&mut self) {}
 }
 
 /// One body at one time.
@@ -111,7 +115,84 @@ pub struct Ledger {
     pub unsettled_nodes: u64,
 }
 
-/// Contact between two bodies, averaged over the time since the last look.
+/// What contact did to two bodies since the start. Sums over time and nodes: differences are what it did in between.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ContactSum {
+    /// Indices of the bodies, the smaller first.
+    pub bodies: [usize; 2],
+    /// Impulse of the first on the second [N s].
+    pub impulse: [f64; 3],
+    /// Impulses along each node's normal, positive when the bodies push each other apart [N s].
+    pub normal: f64,
+    /// Impulse across the nodes' normals [N s].
+    pub tangential: [f64; 3],
+    /// Magnitudes of the nodes' impulses [N s].
+    pub magnitude: f64,
+    /// The same times their places [N s m].
+    pub moment: [f64; 3],
+    /// Area times duration [m^2 s], in the plane length per depth.
+    pub area: f64,
+    /// Distance between the surfaces times area and duration, negative where they overlap [m^3 s].
+    pub gap: f64,
+    /// How far the surfaces slipped on each other, the mean over their area [m].
+    pub slip: f64,
+    /// Work of friction [J].
+    pub friction: f64,
+    /// Grid nodes in contact in the last step in which the pair touched.
+    pub nodes: usize,
+}
+
+/// A reader's place in time among the contacts. Each reader has its own, and none disturbs another.
+#[derive(Clone, Debug, Default)]
+pub struct ContactCursor {
+    since: f64,
+    /// Sums at that time, by pair.
+    before: HashMap<[usize; 2], ContactSum>,
+}
+
+impl ContactCursor {
+    /// Contacts between the last reading, or the start, and now, ordered by pair; none if no time has passed.
+    pub fn read(&mut self, view: &dyn View) -> Vec<ContactState> {
+        let (time, mut found) = (view.time(), Vec::new());
+        let elapsed = time - self.since;
+        if elapsed <= 0.0 {
+            return found;
+        }
+        for now in view.contact_sums() {
+            let before = self.before.insert(now.bodies, now).unwrap_or_default();
+            found.extend(now.mean(&before, elapsed));
+        }
+        self.since = time;
+        found
+    }
+}
+
+impl ContactSum {
+    /// The mean over the time since other sums of the pair; none if the bodies did not push each other.
+    fn mean(&self, before: &ContactSum, elapsed: f64) -> Option<ContactState> {
+        let since = |of: fn(&ContactSum) -> [f64; 3]| {
+            let [now, before] = [of(self), of(before)];
+            [0, 1, 2].map(|i| now[i] - before[i])
+        };
+        let magnitude = self.magnitude - before.magnitude;
+        let [area, gap] = [self.area - before.area, self.gap - before.gap];
+        (magnitude > 0.0).then(|| ContactState {
+            body_a: self.bodies[0],
+            body_b: self.bodies[1],
+            force: since(|sum| sum.impulse).map(|j| j / elapsed),
+            normal: (self.normal - before.normal) / elapsed,
+            tangential: since(|sum| sum.tangential).iter().map(|j| j * j).sum::<f64>().sqrt() / elapsed,
+            nodes: self.nodes,
+            position: since(|sum| sum.moment).map(|x| x / magnitude),
+            area: area / elapsed,
+            gap: if area > 0.0 { gap / area } else { 0.0 },
+            slip: self.slip - before.slip,
+            friction: self.friction - before.friction,
+        })
+    }
+}
+
+/// Contact between two bodies, averaged over the time between two readings, see [`ContactCursor`].
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ContactState {
     /// Index of the first body; smaller than `body_b`.
@@ -152,9 +233,6 @@ pub struct Patch {
     pub half_width: f64,
     /// Impulses between the two since the start, the sum of their magnitudes over nodes and steps [N s].
     pub impulse: f64,
-    /// Largest mean of the force between the two from one look at the contacts to the next, see
-    /// [`Simulation::take_contacts`]; a mean over less than the longest such time counts as one over that time [N].
-    pub force: f64,
 }
 
 /// Particles of all bodies as columns of equal length.

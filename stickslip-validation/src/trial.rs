@@ -3,7 +3,9 @@
 use crate::failure::Failure;
 use crate::penetration::penetration;
 use std::time::Instant;
-use stickslip::door::{BodyState, ContactState, GridSnapshot, Ledger, ParticleSnapshot, Simulation};
+use stickslip::door::{
+    BodyState, ContactCursor, ContactState, GridSnapshot, Ledger, ParticleSnapshot, Simulation,
+};
 use stickslip::march::March;
 use stickslip::scene::{Face, Motion, Scene};
 use stickslip::{scene, step};
@@ -64,6 +66,7 @@ pub struct Trial {
     text: String,
     scene: Scene,
     simulation: Box<dyn Simulation>,
+    cursor: ContactCursor,
     contacts: Vec<ContactState>,
     way: March,
     step: f64,
@@ -91,8 +94,7 @@ impl Trial {
     pub fn start(name: impl Into<String>, text: impl Into<String>) -> Result<Self, Failure> {
         let (name, text) = (name.into(), text.into());
         let scene = scene::parse(&name, &text, &[])?.scene;
-        let mut simulation = step::build(&scene)?;
-        simulation.take_contacts();
+        let simulation = step::build(&scene)?;
         let isolated = scene.gravity == [0.0; 3]
             && scene.bodies.iter().all(|body| matches!(body.motion, Motion::Free { .. }))
             && scene.domain.iter().flat_map(|domain| domain.faces).flatten().all(|face| face == Face::Open);
@@ -102,6 +104,7 @@ impl Trial {
             name,
             text,
             scene,
+            cursor: ContactCursor::default(),
             contacts: Vec::new(),
             way: March::to(end),
             step: 0.0,
@@ -129,7 +132,7 @@ impl Trial {
             return Ok(false);
         };
         self.step = step;
-        self.contacts = self.simulation.take_contacts();
+        self.contacts = self.cursor.read(&*self.simulation);
         if self.record.first_contact.is_none() && self.contacts.iter().any(|contact| contact.normal > 0.0) {
             self.record.first_contact = Some(now);
         }

@@ -10,7 +10,7 @@ use std::path::Path;
 use std::process::Command;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use stickslip::door::{ParticleSnapshot, Simulation, StepError};
+use stickslip::door::{ParticleSnapshot, StepError, View};
 use stickslip::image::Image;
 use stickslip::march::MarchError;
 use stickslip::observe::{FolderError, Results, Status};
@@ -75,8 +75,9 @@ fn a_run_records_its_start_every_interval_and_its_exact_end() {
     let contacts = results.contacts_table().unwrap();
     assert_eq!(contacts.len(), 10, "no step, no contact: none at the start");
     assert_eq!((contacts[0].body_a.as_str(), contacts[0].body_b.as_str()), ("sphere", "plane"));
-    let looks: usize = contacts.iter().map(|row| row.nodes).sum();
-    assert_eq!(looks as u64, simulation.steps(), "each step's contact is in one row");
+    let friction: f64 = contacts.iter().map(|row| row.friction).sum();
+    assert_eq!(friction, 0.75 * simulation.steps() as f64, "each step's contact is in one row");
+    assert!(contacts.iter().all(|row| (row.fy - 2.0).abs() < 1e-12 && (row.x - 0.5).abs() < 1e-12));
 }
 
 #[test]

@@ -56,7 +56,7 @@ impl Puppet {
     }
 }
 
-impl Simulation for Puppet {
+impl View for Puppet {
     fn time(&self) -> f64 {
         self.time
     }
@@ -71,13 +71,6 @@ impl Simulation for Puppet {
 
     fn stable_step(&self) -> f64 {
         STEP
-    }
-
-    fn step(&mut self, longest: f64) -> Result<f64, StepError> {
-        let step = longest.min(STEP);
-        self.time += step;
-        self.steps += 1;
-        Ok(step)
     }
 
     fn bodies(&self) -> Vec<BodyState> {
@@ -105,11 +98,7 @@ impl Simulation for Puppet {
         Ledger { kinetic: self.bodies()[0].kinetic, strain, total, ..Ledger::default() }
     }
 
-    fn take_contacts(&mut self) -> Vec<ContactState> {
-        Vec::new()
-    }
-
-    fn contacts(&self) -> Vec<ContactState> {
+    fn contact_sums(&self) -> Vec<ContactSum> {
         Vec::new()
     }
 
@@ -147,6 +136,15 @@ impl Simulation for Puppet {
 
     fn timings(&self) -> Vec<(&'static str, f64)> {
         Vec::new()
+    }
+}
+
+impl Simulation for Puppet {
+    fn step(&mut self, longest: f64) -> Result<f64, StepError> {
+        let step = longest.min(STEP);
+        self.time += step;
+        self.steps += 1;
+        Ok(step)
     }
 }
 

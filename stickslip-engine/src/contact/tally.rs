@@ -3,7 +3,7 @@
 use super::Impulse;
 use super::spread::Spread;
 use crate::boundary::Boundary;
-use crate::door::{ContactState, Patch};
+use crate::door::{ContactSum, Patch};
 use crate::grid::Lattice;
 use crate::tensor::Real;
 use std::collections::HashMap;
@@ -18,7 +18,7 @@ struct Sum {
     /// Magnitudes of the nodes' impulses, and with their places [N s, N s m].
     magnitude: f64,
     moment: [f64; 3],
-    /// Work of friction since the last look [J].
+    /// Work of friction [J].
     friction: f64,
     /// Way of slip, the mean over the area of each use [m].
     slip: f64,
@@ -47,7 +47,7 @@ struct Touching {
 /// Surfaces closer than this are part of the area over which bodies touch, pushing in this step or not: single nodes push by turns [cells].
 const CLOSE: f64 = 0.01;
 
-/// Impulses by pair since the last look, and works since the start.
+/// Impulses and works of contact since the start, by pair.
 #[derive(Clone, Debug, Default)]
 pub struct Tally {
     /// Pairs that ever touched, in the order in which they first did.
@@ -56,11 +56,6 @@ pub struct Tally {
     places: HashMap<[usize; 2], usize, BuildHasherDefault<Mixer>>,
     /// Those that are part of a use.
     present: Vec<usize>,
-    since: f64,
-    /// Longest time between two looks [s].
-    longest: f64,
-    /// What was taken last.
-    taken: Vec<ContactState>,
     uses: u64,
     /// Work that friction took from the bodies [J].
     pub friction: f64,
@@ -81,10 +76,6 @@ struct Touched {
     sum: Sum,
     /// Largest area over which they touched since the start, images in mirrors included, if they pushed.
     largest: Option<Patch>,
-    /// Magnitudes of impulses before the last look [N s].
-    impulse: f64,
-    /// Largest mean force between two looks before the last one [N].
-    force: f64,
 }
 
 /// Mixes the numbers of two bodies: nobody chooses them to collide.
@@ -198,7 +189,7 @@ impl Tally {
                 let area = whole.area;
                 let half_width = if D == 2 { 0.5 * area } else { whole.half_width(lattice.cell.f64()) };
                 let (body_a, body_b) = (*body_a, *body_b);
-                *largest = Some(Patch { body_a, body_b, area, half_width, impulse: 0.0, force: 0.0 });
+                *largest = Some(Patch { body_a, body_b, area, half_width, impulse: 0.0 });
             }
         }
     }
@@ -214,7 +205,7 @@ impl Tally {
     fn place(&mut self, bodies: [usize; 2]) -> usize {
         let Tally { pairs, places, .. } = self;
         *places.entry(bodies).or_insert_with(|| {
-            pairs.push(Touched { bodies, sum: Sum::default(), largest: None, impulse: 0.0, force: 0.0 });
+            pairs.push(Touched { bodies, sum: Sum::default(), largest: None });
             pairs.len() - 1
         })
     }
@@ -227,65 +218,29 @@ impl Tally {
         all.into_iter().map(|(_, x)| x).collect()
     }
 
-    /// The mean forces between the last call and time `now` [s], ordered by pair.
-    pub fn take(&mut self, now: f64) -> Vec<ContactState> {
-        if now > self.since {
-            self.taken = self.means(now);
-        } else {
-            self.taken.clear();
-        }
-        // The run's last look may come a step after the one before: no mean of that is a force.
-        self.longest = self.longest.max(now - self.since);
-        self.since = now;
-        for pair in &mut self.pairs {
-            [pair.impulse, pair.force] = pair.borne(self.longest);
-            pair.sum = Sum::default();
-        }
-        self.taken.clone()
-    }
-
-    /// What [`Tally::take`] would give, or gave at this very time.
-    pub fn look(&self, now: f64) -> Vec<ContactState> {
-        if now > self.since { self.means(now) } else { self.taken.clone() }
-    }
-
-    fn means(&self, now: f64) -> Vec<ContactState> {
-        let elapsed = now - self.since;
-        self.ordered(|Touched { bodies: [body_a, body_b], sum, .. }| {
+    /// What contact did since the start, of pairs that pushed each other, ordered by pair.
+    pub fn sums(&self) -> Vec<ContactSum> {
+        self.ordered(|Touched { bodies, sum, .. }| {
             let [area, gap] = sum.touched();
-            (sum.magnitude > 0.0).then(|| ContactState {
-                body_a: *body_a,
-                body_b: *body_b,
-                force: sum.impulse.map(|j| j / elapsed),
-                normal: sum.normal / elapsed,
-                tangential: sum.tangential.iter().map(|j| j * j).sum::<f64>().sqrt() / elapsed,
-                nodes: sum.last.nodes,
-                position: sum.moment.map(|x| x / sum.magnitude),
-                area: area / elapsed,
-                gap: if area > 0.0 { gap / area } else { 0.0 },
+            (sum.magnitude > 0.0).then(|| ContactSum {
+                bodies: *bodies,
+                impulse: sum.impulse,
+                normal: sum.normal,
+                tangential: sum.tangential,
+                magnitude: sum.magnitude,
+                moment: sum.moment,
+                area,
+                gap,
                 slip: sum.slipped(),
                 friction: sum.friction,
+                nodes: sum.last.nodes,
             })
         })
     }
 
-    /// The largest area over which each pair touched since the start, ordered by pair, and what the pair bore by `now`
-    /// [s].
-    pub fn patches(&self, now: f64) -> Vec<Patch> {
-        let longest = self.longest.max(now - self.since);
-        self.ordered(|pair| {
-            let [impulse, force] = pair.borne(longest);
-            pair.largest.map(|patch| Patch { impulse, force, ..patch })
-        })
-    }
-}
-
-impl Touched {
-    /// Magnitudes of impulses since the start [N s], and the largest mean force between two looks that are at most the
-    /// `longest` time apart [N, s].
-    fn borne(&self, longest: f64) -> [f64; 2] {
-        let mean = if longest > 0.0 { self.sum.magnitude / longest } else { 0.0 };
-        [self.impulse + self.sum.magnitude, self.force.max(mean)]
+    /// The largest area over which each pair touched since the start, ordered by pair, and what the pair bore.
+    pub fn patches(&self) -> Vec<Patch> {
+        self.ordered(|pair| pair.largest.map(|patch| Patch { impulse: pair.sum.magnitude, ..patch }))
     }
 }
 
@@ -322,29 +277,9 @@ mod tests {
         tally.add(nodes.iter(), (&lattice, &Boundary::default()), 0.0);
         tally.add(nodes.iter(), (&lattice, &Boundary::default()), 0.1);
         tally.add([].iter(), (&lattice, &Boundary::default()), 0.3);
-        let found = &tally.take(0.4)[0];
-        assert!((found.area - 0.25).abs() < 1e-15 && (found.gap + 0.1).abs() < 1e-15, "{found:?}");
-        assert_eq!(tally.patches(0.4)[0].area, 1.0);
-    }
-
-    /// Two looks of 1 s with one and three nodes' impulses of 1 N s each, and one of a hundredth of that with one more.
-    #[test]
-    fn a_pair_has_borne_all_its_impulses_and_its_largest_mean_force() {
-        let (mut tally, lattice) = (Tally::default(), Lattice::new(Vector::ZERO, 0.5));
-        let surroundings = (&lattice, &Boundary::default());
-        let nodes: Vec<_> = (0..3).map(|i| pushing([i, 0])).collect();
-        tally.add(nodes[..1].iter(), surroundings, 1.0);
-        let one = tally.patches(1.0)[0];
-        assert_eq!((one.impulse, one.force), (1.0, 1.0));
-        tally.take(1.0);
-        tally.add(nodes.iter(), surroundings, 1.0);
-        tally.take(2.0);
-        tally.add(nodes[..1].iter(), surroundings, 0.01);
-        for _ in 0..2 {
-            let found = tally.patches(2.01)[0];
-            assert_eq!((found.impulse, found.force), (5.0, 3.0));
-            tally.take(2.01);
-        }
+        let found = &tally.sums()[0];
+        assert!((found.area - 0.1).abs() < 1e-15 && (found.gap + 0.01).abs() < 1e-15, "{found:?}");
+        assert_eq!(tally.patches()[0].area, 1.0);
     }
 
     /// On the mirror half a node's surface is the image's, and the patch is twice what is before the mirror.
@@ -354,10 +289,10 @@ mod tests {
         let mirror = Wall { axis: 0, node: 3, inward: 1, face: Face::Symmetry };
         let boundary = Boundary::new(vec![mirror]);
         tally.add([pushing([3, 0]), pushing([4, 0])].iter(), (&lattice, &boundary), 1.0);
-        assert_eq!((tally.take(1.0)[0].area, tally.patches(1.0)[0].area), (0.75, 1.5));
+        assert_eq!((tally.sums()[0].area, tally.patches()[0].area), (0.75, 1.5));
         let (mut aside, far) = (Tally::default(), pushing([4, 0]));
         aside.add([far].iter(), (&lattice, &boundary), 1.0);
-        assert_eq!(aside.patches(1.0)[0].area, 0.5);
+        assert_eq!(aside.patches()[0].area, 0.5);
     }
 
     /// A strip of 41 nodes by 4, or its half with a mirror across its length.
@@ -369,7 +304,7 @@ mod tests {
             let nodes: Vec<_> = (0..4).flat_map(row).collect();
             let mut tally = Tally::default();
             tally.add(nodes.iter(), (&lattice, boundary), 1.0);
-            tally.patches(1.0)[0]
+            tally.patches()[0]
         };
         let mirror = Wall { axis: 0, node: 3, inward: 1, face: Face::Symmetry };
         let [whole, half] = [patch(-17, &Boundary::default()), patch(3, &Boundary::new(vec![mirror]))];

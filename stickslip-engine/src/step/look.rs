@@ -7,8 +7,8 @@ use crate::body::{Body, Particle, Totals};
 use crate::boundary::Boundary;
 use crate::contact::Span;
 use crate::door::{
-    BodyState, ContactState, GridSnapshot, Ledger, ParticleSnapshot, ParticleView, Patch, Simulation,
-    StepError, TracedParticle,
+    BodyState, ContactSum, GridSnapshot, Ledger, ParticleSnapshot, ParticleView, Patch, Simulation,
+    StepError, TracedParticle, View,
 };
 use crate::grid::{node_at, nodes_per_block};
 use crate::lanes::Laned;
@@ -42,7 +42,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     }
 }
 
-impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
+impl<T: Laned, const D: usize, B: Basis<T>> View for Engine<T, D, B> {
     fn time(&self) -> f64 {
         self.state.time
     }
@@ -57,25 +57,6 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
 
     fn stable_step(&self) -> f64 {
         self.stable()
-    }
-
-    fn step(&mut self, longest: f64) -> Result<f64, StepError> {
-        *self.workspace.totals.get_mut().unwrap_or_else(PoisonError::into_inner) = None;
-        let dt = self.stable().min(longest);
-        for motion in self.state.rigid.iter_mut().flatten() {
-            motion.set_time(self.state.time + 0.5 * dt);
-        }
-        // One of the pool's threads takes the whole step: handing it every loop from outside would cost more than many a loop.
-        rayon::scope(|_| self.advance(T::of(dt)))?;
-        self.count_disorder();
-        self.state.time += dt;
-        self.state.steps += 1;
-        Ok(dt)
-    }
-
-    fn rebuild_workspace(&mut self) {
-        let walls = std::mem::take(&mut self.workspace.boundary.walls);
-        self.workspace = Workspace::new(Boundary::new(walls));
     }
 
     fn bodies(&self) -> Vec<BodyState> {
@@ -138,16 +119,12 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
         ledger
     }
 
-    fn take_contacts(&mut self) -> Vec<ContactState> {
-        self.state.tally.take(self.state.time)
-    }
-
-    fn contacts(&self) -> Vec<ContactState> {
-        self.state.tally.look(self.state.time)
+    fn contact_sums(&self) -> Vec<ContactSum> {
+        self.state.tally.sums()
     }
 
     fn patches(&self) -> Vec<Patch> {
-        self.state.tally.patches(self.state.time)
+        self.state.tally.patches()
     }
 
     fn snapshot(&self) -> ParticleSnapshot {
@@ -251,5 +228,26 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
 
     fn timings(&self) -> Vec<(&'static str, f64)> {
         self.watch.seconds()
+    }
+}
+
+impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
+    fn step(&mut self, longest: f64) -> Result<f64, StepError> {
+        *self.workspace.totals.get_mut().unwrap_or_else(PoisonError::into_inner) = None;
+        let dt = self.stable().min(longest);
+        for motion in self.state.rigid.iter_mut().flatten() {
+            motion.set_time(self.state.time + 0.5 * dt);
+        }
+        // One of the pool's threads takes the whole step: handing it every loop from outside would cost more than many a loop.
+        rayon::scope(|_| self.advance(T::of(dt)))?;
+        self.count_disorder();
+        self.state.time += dt;
+        self.state.steps += 1;
+        Ok(dt)
+    }
+
+    fn rebuild_workspace(&mut self) {
+        let walls = std::mem::take(&mut self.workspace.boundary.walls);
+        self.workspace = Workspace::new(Boundary::new(walls));
     }
 }

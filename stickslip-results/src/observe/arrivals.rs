@@ -7,7 +7,7 @@ use super::probes::points;
 use super::schedule::Schedule;
 use super::table::{Row, Table};
 use super::{ARRIVALS, Observer};
-use crate::door::Simulation;
+use crate::door::View;
 use crate::scene::{Anchor, Arrival, Observable, Reading, Scene};
 use serde::{Deserialize, Serialize};
 
@@ -124,11 +124,11 @@ impl Observer for Arrivals {
         }
     }
 
-    fn observe(&mut self, simulation: &mut dyn Simulation) -> Result<(), OutputError> {
-        let lookout = self.lookout.get_or_insert_with(|| Lookout::new(&self.scene, simulation));
-        let rows = lookout.arrived(simulation);
+    fn observe(&mut self, view: &dyn View) -> Result<(), OutputError> {
+        let lookout = self.lookout.get_or_insert_with(|| Lookout::new(&self.scene, view));
+        let rows = lookout.arrived(view);
         self.table.append(rows)?;
-        self.schedule.recorded(simulation.time());
+        self.schedule.recorded(view.time());
         Ok(())
     }
 
@@ -138,7 +138,7 @@ impl Observer for Arrivals {
 }
 
 impl Lookout {
-    fn new(scene: &Scene, simulation: &dyn Simulation) -> Self {
+    fn new(scene: &Scene, view: &dyn View) -> Self {
         let wanted = &scene.outputs.measurements;
         let mut points: Vec<Point> = points(scene, wanted.probes.iter()).collect();
         let mut watches = Vec::new();
@@ -157,7 +157,7 @@ impl Lookout {
                     Reading::Mean => ("mean", Source::Mean(body)),
                 };
                 if arrival.reading == Reading::Center {
-                    let at = simulation.bodies()[body].position;
+                    let at = view.bodies()[body].position;
                     points.push(Point { at, body: Some(body), fixed_in: Anchor::Material });
                 }
                 watches.push(Watch::new(arrival, (reading, name), source));
@@ -167,18 +167,18 @@ impl Lookout {
     }
 
     /// What arrived since the last look, in the order of time; it is watched no longer.
-    fn arrived(&mut self, simulation: &dyn Simulation) -> Vec<ArrivalRow> {
-        let samples = self.points.sample(simulation);
+    fn arrived(&mut self, view: &dyn View) -> Vec<ArrivalRow> {
+        let samples = self.points.sample(view);
         let mut rows = Vec::new();
         self.watches.retain_mut(|watch| {
             let seen = match watch.source {
                 Source::Point(point) => samples[point]
                     .map(|sample| (watch.value(&sample.velocity, &sample.stress), sample.position)),
-                Source::Any(body) => furthest(simulation, body, watch),
-                Source::Mean(body) => mean(simulation, body, watch),
+                Source::Any(body) => furthest(view, body, watch),
+                Source::Mean(body) => mean(view, body, watch),
             };
             let Some((value, [x, y, z])) = seen else { return true };
-            let passed = watch.crossing.at(simulation.time(), value);
+            let passed = watch.crossing.at(view.time(), value);
             rows.extend(passed.map(|time| ArrivalRow { time, x, y, z, ..watch.row.clone() }));
             passed.is_none()
         });
@@ -206,10 +206,10 @@ impl Watch {
 }
 
 /// The value furthest to the threshold's side in a body, and where it is.
-fn furthest(simulation: &dyn Simulation, body: usize, watch: &Watch) -> Option<(f64, [f64; 3])> {
+fn furthest(view: &dyn View, body: usize, watch: &Watch) -> Option<(f64, [f64; 3])> {
     let mut furthest: Option<(f64, [f64; 3])> = None;
     let side = watch.crossing.threshold.signum();
-    simulation.visit(body, &mut |particle| {
+    view.visit(body, &mut |particle| {
         let value = watch.value(&particle.velocity, &particle.stress);
         if furthest.is_none_or(|(most, _)| side * value > side * most) {
             furthest = Some((value, particle.position));
@@ -219,9 +219,9 @@ fn furthest(simulation: &dyn Simulation, body: usize, watch: &Watch) -> Option<(
 }
 
 /// The mean of the values over the mass of a body, and its centre of mass.
-fn mean(simulation: &dyn Simulation, body: usize, watch: &Watch) -> Option<(f64, [f64; 3])> {
+fn mean(view: &dyn View, body: usize, watch: &Watch) -> Option<(f64, [f64; 3])> {
     let (mut mass, mut sum, mut moment) = (0.0, 0.0, [0.0; 3]);
-    simulation.visit(body, &mut |particle| {
+    view.visit(body, &mut |particle| {
         mass += particle.mass;
         sum += particle.mass * watch.value(&particle.velocity, &particle.stress);
         moment = std::array::from_fn(|k| moment[k] + particle.mass * particle.position[k]);

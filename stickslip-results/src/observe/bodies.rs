@@ -5,7 +5,7 @@ use super::folder::OutputFolder;
 use super::schedule::Schedule;
 use super::table::{Row, Table};
 use super::{BODIES, Observer};
-use crate::door::{BodyState, Simulation};
+use crate::door::{BodyState, View};
 use crate::scene::Scene;
 use serde::{Deserialize, Serialize};
 
@@ -99,9 +99,9 @@ impl Observer for Bodies {
         self.schedule.next()
     }
 
-    fn observe(&mut self, simulation: &mut dyn Simulation) -> Result<(), OutputError> {
-        let time = simulation.time();
-        let states = simulation.bodies();
+    fn observe(&mut self, view: &dyn View) -> Result<(), OutputError> {
+        let time = view.time();
+        let states = view.bodies();
         let rows = self.names.iter().zip(&states).map(|(name, state)| BodyRow::new(time, name, state));
         self.table.append(rows)?;
         self.schedule.recorded(time);

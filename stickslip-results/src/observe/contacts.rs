@@ -5,7 +5,7 @@ use super::folder::OutputFolder;
 use super::schedule::Schedule;
 use super::table::{Row, Table};
 use super::{CONTACTS, Observer};
-use crate::door::Simulation;
+use crate::door::{ContactCursor, View};
 use crate::scene::Scene;
 use serde::{Deserialize, Serialize};
 
@@ -54,9 +54,10 @@ impl Row for ContactRow {
     }
 }
 
-/// Writes `contacts.csv`. It alone calls [`Simulation::take_contacts`], so that each row's average starts at the row before.
+/// Writes `contacts.csv`; each row is the mean since the row before.
 pub(super) struct Contacts {
     names: Vec<String>,
+    cursor: ContactCursor,
     schedule: Schedule,
     table: Table<ContactRow>,
 }
@@ -65,6 +66,7 @@ impl Contacts {
     pub(super) fn create(scene: &Scene, folder: &OutputFolder) -> Result<Self, OutputError> {
         Ok(Contacts {
             names: scene.bodies.iter().map(|body| body.name.clone()).collect(),
+            cursor: ContactCursor::default(),
             schedule: Schedule::every(scene.outputs.tables),
             table: Table::create(folder.join(CONTACTS), scene.outputs.measurements.unit())?,
         })
@@ -76,9 +78,9 @@ impl Observer for Contacts {
         self.schedule.next()
     }
 
-    fn observe(&mut self, simulation: &mut dyn Simulation) -> Result<(), OutputError> {
-        let time = simulation.time();
-        let contacts = simulation.take_contacts();
+    fn observe(&mut self, view: &dyn View) -> Result<(), OutputError> {
+        let time = view.time();
+        let contacts = self.cursor.read(view);
         self.table.append(contacts.into_iter().map(|contact| {
             let ([fx, fy, fz], [x, y, z]) = (contact.force, contact.position);
             ContactRow {

@@ -5,7 +5,7 @@ use super::folder::OutputFolder;
 use super::schedule::Schedule;
 use super::table::{Row, Table};
 use super::{ENERGY, Observer};
-use crate::door::{Ledger, Simulation};
+use crate::door::{Ledger, View};
 use crate::scene::Scene;
 use serde::{Deserialize, Serialize};
 
@@ -109,9 +109,9 @@ impl Observer for Energy {
         self.schedule.next()
     }
 
-    fn observe(&mut self, simulation: &mut dyn Simulation) -> Result<(), OutputError> {
-        let time = simulation.time();
-        self.table.append([EnergyRow::new(time, &simulation.ledger())])?;
+    fn observe(&mut self, view: &dyn View) -> Result<(), OutputError> {
+        let time = view.time();
+        self.table.append([EnergyRow::new(time, &view.ledger())])?;
         self.schedule.recorded(time);
         Ok(())
     }

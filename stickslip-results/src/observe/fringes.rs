@@ -6,7 +6,7 @@ use super::particles::PARTICLE_BYTES;
 use super::table::{Row, Table};
 use super::writer::Writer;
 use super::{FRINGES, FRINGES_ANIMATION, FRINGES_TABLE, Observer};
-use crate::door::{ContactState, ParticleSnapshot, Simulation};
+use crate::door::{ContactCursor, ContactState, ParticleSnapshot, View};
 use crate::image::{Image, write_animation};
 use crate::polariscope::{Bench, Film, Link, Push, Stage, Window, bounds, draw_links, links};
 use crate::scene::{self, Overlay, Scene};
@@ -46,6 +46,7 @@ pub(super) struct Fringes {
     overlay: Overlay,
     /// Whether there was a first look.
     looked: bool,
+    contacts: ContactCursor,
     darkroom: Writer<Darkroom>,
 }
 
@@ -57,7 +58,7 @@ struct Darkroom {
     table: Table<FringeRow>,
     frames: Vec<PathBuf>,
     /// From the first look on.
-    view: Option<View>,
+    view: Option<Photograph>,
     /// Largest force between two bodies so far [N].
     largest: f64,
     /// Processors that the run leaves free, if any; else pictures share those of the run.
@@ -65,7 +66,7 @@ struct Darkroom {
 }
 
 /// The bench, and what has fallen on the film since the shutter opened.
-struct View {
+struct Photograph {
     bench: Bench,
     film: Film,
     times: Vec<f64>,
@@ -152,6 +153,7 @@ impl Fringes {
             shutter: Shutter::new(camera),
             overlay: camera.overlay,
             looked: false,
+            contacts: ContactCursor::default(),
             darkroom: Writer::start(darkroom).map_err(OutputError::at(&path))?,
         })
     }
@@ -164,24 +166,24 @@ fn idle_processors() -> Option<ThreadPool> {
     if idle == 0 {
         return None;
     }
-    // Without threads of their own, pictures are made by those of the simulation.
+    // Without threads of their own, pictures are made by those of the view.
     ThreadPoolBuilder::new().num_threads(idle).thread_name(|i| format!("pictures {i}")).build().ok()
 }
 
 impl Darkroom {
-    fn view(&self, particles: &ParticleSnapshot) -> View {
+    fn view(&self, particles: &ParticleSnapshot) -> Photograph {
         let shown = self.camera.view.or_else(|| bounds(particles, &self.specimens));
         // Bodies without particles leave nothing to frame.
         let window = Window::around(shown.unwrap_or([[0.0; 2], [1.0; 2]]), self.camera.width);
         let bench = Bench::new(&self.camera.polariscope, Stage { window, specimens: self.specimens.clone() });
-        View { film: bench.film(), bench, times: Vec::new(), links: Vec::new() }
+        Photograph { film: bench.film(), bench, times: Vec::new(), links: Vec::new() }
     }
 
     /// Looks at particles, and lets their light fall on the film if it is time.
     fn look(&mut self, particles: &ParticleSnapshot, exposure: Option<Exposure>) -> Result<(), OutputError> {
         let mut view = self.view.take().unwrap_or_else(|| self.view(particles));
         if let Some(Exposure { time, pushes, .. }) = &exposure {
-            let View { bench, film, .. } = &mut view;
+            let Photograph { bench, film, .. } = &mut view;
             match &self.hands {
                 Some(hands) => hands.install(|| bench.expose(particles, film)),
                 None => bench.expose(particles, film),
@@ -234,19 +236,19 @@ impl Observer for Fringes {
         if self.looked { self.shutter.next() } else { f64::NEG_INFINITY }
     }
 
-    fn observe(&mut self, simulation: &mut dyn Simulation) -> Result<(), OutputError> {
-        let (time, due) = (simulation.time(), simulation.time() >= self.shutter.next());
+    fn observe(&mut self, view: &dyn View) -> Result<(), OutputError> {
+        let (time, due) = (view.time(), view.time() >= self.shutter.next());
         if !due && self.looked {
             return Ok(());
         }
         self.darkroom.make_room()?;
-        let particles = simulation.snapshot();
+        let particles = view.snapshot();
         let pushes = (due && self.overlay == Overlay::ForceChains).then(|| {
             let push = |contact: ContactState| Push {
                 bodies: [contact.body_a, contact.body_b],
                 force: contact.normal,
             };
-            simulation.contacts().into_iter().map(push).collect()
+            self.contacts.read(view).into_iter().map(push).collect()
         });
         let exposure = due.then(|| Exposure { time, pushes, last: self.shutter.pass(time) });
         let bytes = PARTICLE_BYTES * particles.mass.len();

@@ -5,7 +5,7 @@ use super::folder::OutputFolder;
 use super::schedule::Schedule;
 use super::table::{Row, Table};
 use super::{FRONT_SPEEDS, FRONTS, Observer};
-use crate::door::{ParticleView, Simulation};
+use crate::door::{ParticleView, View};
 use crate::scene::{Front, Scene};
 use serde::{Deserialize, Serialize};
 
@@ -107,11 +107,10 @@ impl Observer for Fronts {
         self.schedule.next()
     }
 
-    fn observe(&mut self, simulation: &mut dyn Simulation) -> Result<(), OutputError> {
-        let rows: Vec<FrontRow> =
-            self.tracks.iter_mut().filter_map(|track| track.follow(simulation)).collect();
+    fn observe(&mut self, view: &dyn View) -> Result<(), OutputError> {
+        let rows: Vec<FrontRow> = self.tracks.iter_mut().filter_map(|track| track.follow(view)).collect();
         self.table.append(rows)?;
-        self.schedule.recorded(simulation.time());
+        self.schedule.recorded(view.time());
         Ok(())
     }
 
@@ -125,10 +124,10 @@ impl Observer for Fronts {
 
 impl Track {
     /// Where the front is now, if anywhere.
-    fn follow(&mut self, simulation: &dyn Simulation) -> Option<FrontRow> {
+    fn follow(&mut self, view: &dyn View) -> Option<FrontRow> {
         let mut first: Option<(f64, [f64; 3])> = None;
         for &body in &self.bodies {
-            simulation.visit(body, &mut |particle| {
+            view.visit(body, &mut |particle| {
                 let way = way(&self.front, particle);
                 first = match (way, first) {
                     (Some(way), None) => Some((way, particle.position)),
@@ -138,7 +137,7 @@ impl Track {
             });
         }
         let (distance, [x, y, z]) = first?;
-        let time = simulation.time();
+        let time = view.time();
         let before = self.furthest.last().map_or(f64::NEG_INFINITY, |[_, distance]| *distance);
         self.furthest.push([time, distance.max(before)]);
         Some(FrontRow { time, front: self.front.name.clone(), distance, x, y, z })

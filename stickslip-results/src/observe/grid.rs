@@ -6,7 +6,7 @@ use super::frames::Frames;
 use super::schedule::Schedule;
 use super::vtu::{NUMBER, VECTOR, Vtu};
 use super::{GRID, Observer};
-use crate::door::{GridSnapshot, Simulation};
+use crate::door::{GridSnapshot, View};
 
 /// Bytes of a node in a snapshot: 13 numbers and a whole one.
 const NODE_BYTES: usize = 13 * size_of::<f64>() + size_of::<u32>();
@@ -28,10 +28,10 @@ impl Observer for Grid {
         self.schedule.next()
     }
 
-    fn observe(&mut self, simulation: &mut dyn Simulation) -> Result<(), OutputError> {
-        let time = simulation.time();
+    fn observe(&mut self, view: &dyn View) -> Result<(), OutputError> {
+        let time = view.time();
         self.frames.make_room()?;
-        let snapshot = simulation.grid_snapshot();
+        let snapshot = view.grid_snapshot();
         let bytes = NODE_BYTES * snapshot.mass.len();
         self.frames.push(time, bytes, move || encode_grid(&snapshot, time));
         self.schedule.recorded(time);

@@ -47,7 +47,7 @@ pub use recorder::Recorder;
 pub use results::Results;
 pub use vtu::Vtu;
 
-use crate::door::Simulation;
+use crate::door::View;
 
 const BODIES: &str = "bodies.csv";
 const ENERGY: &str = "energy.csv";
@@ -71,7 +71,7 @@ pub trait Observer {
     ///
     /// # Errors
     /// The disk is full or refuses, now or at an earlier record; what was written before stays readable.
-    fn observe(&mut self, simulation: &mut dyn Simulation) -> Result<(), OutputError>;
+    fn observe(&mut self, view: &dyn View) -> Result<(), OutputError>;
 
     /// Writes what only the whole of the records tells: called once, after the last.
     ///

@@ -6,7 +6,7 @@ use super::frames::Frames;
 use super::schedule::Schedule;
 use super::vtu::{NUMBER, Points, SYMMETRIC, TENSOR, VECTOR, Vtu};
 use super::{Observer, PARTICLES};
-use crate::door::{ParticleSnapshot, Simulation};
+use crate::door::{ParticleSnapshot, View};
 use crate::scene::Scene;
 use crate::tensor::Symmetric;
 use std::path::Path;
@@ -36,10 +36,10 @@ impl Observer for Particles {
         self.schedule.next()
     }
 
-    fn observe(&mut self, simulation: &mut dyn Simulation) -> Result<(), OutputError> {
-        let time = simulation.time();
+    fn observe(&mut self, view: &dyn View) -> Result<(), OutputError> {
+        let time = view.time();
         self.frames.make_room()?;
-        let snapshot = simulation.snapshot();
+        let snapshot = view.snapshot();
         let bytes = PARTICLE_BYTES * snapshot.mass.len();
         self.frames.push(time, bytes, move || encode_particles(&snapshot, time));
         self.schedule.recorded(time);

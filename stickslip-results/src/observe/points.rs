@@ -1,6 +1,6 @@
 //! Points at which the material is sampled, by a smooth mean over the particles around.
 
-use crate::door::{ParticleView, Simulation};
+use crate::door::{ParticleView, View};
 use crate::scene::{Anchor, Motion, Scene};
 
 /// Motion and stress of the material at a point.
@@ -72,7 +72,7 @@ impl Points {
     }
 
     /// The material at each point now; `None` where no particle is around. The first call binds the points of the material.
-    pub(super) fn sample(&mut self, simulation: &dyn Simulation) -> Vec<Option<Sample>> {
+    pub(super) fn sample(&mut self, view: &dyn View) -> Vec<Option<Sample>> {
         let mut sums = vec![Sum::default(); self.points.len()];
         let mut found: Vec<Vec<(u32, f64)>> = vec![Vec::new(); self.points.len()];
         for &body in &self.bodies {
@@ -81,7 +81,7 @@ impl Points {
             if here.is_empty() {
                 continue;
             }
-            simulation.visit(body, &mut |particle| {
+            view.visit(body, &mut |particle| {
                 for &i in &here {
                     let weight = self.weight(i, particle);
                     if weight > 0.0 {

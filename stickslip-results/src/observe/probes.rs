@@ -6,7 +6,7 @@ use super::points::{Point, Points, Sample};
 use super::schedule::Schedule;
 use super::table::{Row, Table};
 use super::{Observer, PROBES};
-use crate::door::Simulation;
+use crate::door::View;
 use crate::scene::{Observable, Probe, Scene};
 use serde::{Deserialize, Serialize};
 
@@ -128,9 +128,9 @@ impl Observer for Probes {
         self.schedule.next()
     }
 
-    fn observe(&mut self, simulation: &mut dyn Simulation) -> Result<(), OutputError> {
-        let time = simulation.time();
-        let samples = self.points.sample(simulation);
+    fn observe(&mut self, view: &dyn View) -> Result<(), OutputError> {
+        let time = view.time();
+        let samples = self.points.sample(view);
         let rows = self.names.iter().zip(&samples);
         self.table.append(
             rows.filter_map(|(name, sample)| sample.as_ref().map(|sample| ProbeRow::new(time, name, sample))),

@@ -12,7 +12,7 @@ use super::fronts::Fronts;
 use super::grid::Grid;
 use super::particles::Particles;
 use super::probes::Probes;
-use crate::door::Simulation;
+use crate::door::View;
 use crate::scene::Scene;
 
 /// The observers that a scene asks for.
@@ -64,18 +64,18 @@ impl Recorder {
     ///
     /// # Errors
     /// A file cannot be written.
-    pub fn record_due(&mut self, simulation: &mut dyn Simulation) -> Result<(), OutputError> {
-        let time = simulation.time();
-        self.record_where(simulation, |seat| time >= seat.observer.next())
+    pub fn record_due(&mut self, view: &dyn View) -> Result<(), OutputError> {
+        let time = view.time();
+        self.record_where(view, |seat| time >= seat.observer.next())
     }
 
     /// Records the present state in every output that does not have it yet: at the start and the end of a run.
     ///
     /// # Errors
     /// A file cannot be written.
-    pub fn record_present(&mut self, simulation: &mut dyn Simulation) -> Result<(), OutputError> {
-        let time = simulation.time();
-        self.record_where(simulation, |seat| seat.last != Some(time))
+    pub fn record_present(&mut self, view: &dyn View) -> Result<(), OutputError> {
+        let time = view.time();
+        self.record_where(view, |seat| seat.last != Some(time))
     }
 
     /// Records the state in which a step failed. If the time did not advance, tables keep the row that they have and snapshots
@@ -83,9 +83,9 @@ impl Recorder {
     ///
     /// # Errors
     /// A file cannot be written.
-    pub fn record_failure(&mut self, simulation: &mut dyn Simulation) -> Result<(), OutputError> {
-        let time = simulation.time();
-        self.record_where(simulation, |seat| seat.last != Some(time) || seat.observer.replaces())
+    pub fn record_failure(&mut self, view: &dyn View) -> Result<(), OutputError> {
+        let time = view.time();
+        self.record_where(view, |seat| seat.last != Some(time) || seat.observer.replaces())
     }
 
     /// Lets every output write what only the whole run tells: to be called once, after the last record.
@@ -96,15 +96,11 @@ impl Recorder {
         self.seats.iter_mut().try_for_each(|seat| seat.observer.conclude())
     }
 
-    fn record_where(
-        &mut self,
-        simulation: &mut dyn Simulation,
-        chosen: impl Fn(&Seat) -> bool,
-    ) -> Result<(), OutputError> {
+    fn record_where(&mut self, view: &dyn View, chosen: impl Fn(&Seat) -> bool) -> Result<(), OutputError> {
         for seat in &mut self.seats {
             if chosen(seat) {
-                seat.observer.observe(simulation)?;
-                seat.last = Some(simulation.time());
+                seat.observer.observe(view)?;
+                seat.last = Some(view.time());
             }
         }
         Ok(())

@@ -1,6 +1,6 @@
 //! Wall time of a run: how fast it goes and how long it will take.
 
-use crate::door::Simulation;
+use crate::door::View;
 use crate::observe::{Performance, Timing};
 use std::time::{Duration, Instant};
 
@@ -42,47 +42,42 @@ pub(super) struct Clock {
 }
 
 impl Clock {
-    pub(super) fn start(simulation: &dyn Simulation, threads: usize) -> Self {
-        Clock {
-            start: Instant::now(),
-            threads,
-            first_time: simulation.time(),
-            first_step: simulation.steps(),
-        }
+    pub(super) fn start(view: &dyn View, threads: usize) -> Self {
+        Clock { start: Instant::now(), threads, first_time: view.time(), first_step: view.steps() }
     }
 
-    pub(super) fn progress(&self, simulation: &dyn Simulation, end: f64) -> Progress {
+    pub(super) fn progress(&self, view: &dyn View, end: f64) -> Progress {
         let wall = self.start.elapsed().as_secs_f64();
-        let time = simulation.time();
+        let time = view.time();
         let done = time - self.first_time;
         Progress {
             time,
             end,
-            steps: simulation.steps(),
-            particles: simulation.particles(),
-            particle_steps_per_second: self.rate(simulation, wall),
+            steps: view.steps(),
+            particles: view.particles(),
+            particle_steps_per_second: self.rate(view, wall),
             eta: if done > 0.0 { wall * (end - time) / done } else { f64::INFINITY },
             notes: Vec::new(),
         }
     }
 
-    pub(super) fn performance(&self, simulation: &dyn Simulation) -> Performance {
+    pub(super) fn performance(&self, view: &dyn View) -> Performance {
         let wall_time = self.start.elapsed().as_secs_f64();
         let timing = |(verb, seconds): (&str, f64)| Timing { verb: verb.to_string(), seconds };
         Performance {
             threads: self.threads,
-            particles: simulation.particles(),
-            time: simulation.time(),
-            steps: simulation.steps(),
+            particles: view.particles(),
+            time: view.time(),
+            steps: view.steps(),
             wall_time,
-            particle_steps_per_second: self.rate(simulation, wall_time),
-            timings: simulation.timings().into_iter().map(timing).collect(),
+            particle_steps_per_second: self.rate(view, wall_time),
+            timings: view.timings().into_iter().map(timing).collect(),
         }
     }
 
-    fn rate(&self, simulation: &dyn Simulation, wall: f64) -> f64 {
-        let steps = simulation.steps() - self.first_step;
-        if steps > 0 && wall > 0.0 { steps as f64 * simulation.particles() as f64 / wall } else { 0.0 }
+    fn rate(&self, view: &dyn View, wall: f64) -> f64 {
+        let steps = view.steps() - self.first_step;
+        if steps > 0 && wall > 0.0 { steps as f64 * view.particles() as f64 / wall } else { 0.0 }
     }
 
     pub(super) fn reports(&self) -> Reports {

@@ -1,8 +1,8 @@
 //! During a run: contacts that have become as wide as they will be, and are not resolved by the grid.
 
-use super::widest::WidestContacts;
+use super::widest::{LargestForces, WidestContacts};
 use crate::check::Verdict;
-use crate::door::{Patch, Simulation};
+use crate::door::{Patch, View};
 use crate::scene::Scene;
 use std::collections::BTreeSet;
 
@@ -14,6 +14,7 @@ pub(super) struct Lookout {
     before: Vec<Patch>,
     told: BTreeSet<[usize; 2]>,
     lines: usize,
+    forces: LargestForces,
 }
 
 /// A contact that has grown by less since the last look has ceased to grow.
@@ -24,20 +25,30 @@ const MOST_LINES: usize = 5;
 
 impl Lookout {
     pub(super) fn new(start: f64) -> Self {
-        Lookout { next: start, before: Vec::new(), told: BTreeSet::new(), lines: 0 }
+        Lookout {
+            next: start,
+            before: Vec::new(),
+            told: BTreeSet::new(),
+            lines: 0,
+            forces: LargestForces::default(),
+        }
     }
 
     /// What is new, if it is time to look.
-    pub(super) fn look(&mut self, scene: &Scene, simulation: &dyn Simulation) -> Option<String> {
-        if simulation.time() < self.next || self.lines == MOST_LINES {
+    pub(super) fn look(&mut self, scene: &Scene, view: &dyn View) -> Option<String> {
+        if view.time() < self.next {
             return None;
         }
-        self.next = simulation.time() + scene.outputs.tables;
-        let patches = simulation.patches();
+        self.next = view.time() + scene.outputs.tables;
+        let touched = self.forces.look(view);
+        let patches: Vec<Patch> = touched.iter().map(|touched| touched.patch).collect();
         let new = self.grown_up(&patches);
         self.before = patches;
+        if self.lines == MOST_LINES {
+            return None;
+        }
         // Weighed against all that the bodies bear.
-        let mut found = WidestContacts::new(scene, &self.before).bearing();
+        let mut found = WidestContacts::new(scene, &touched).bearing();
         let name = |body: usize| scene.bodies[body].name.as_str();
         let new_names: BTreeSet<_> = new.iter().map(|patch| [patch.body_a, patch.body_b].map(name)).collect();
         found.0.retain(|contact| {
@@ -53,6 +64,11 @@ impl Lookout {
         self.lines += 1;
         let last = if self.lines == MOST_LINES { "; no more of this until the summary" } else { "" };
         Some(format!("contact not resolved: {}, {}; {}{last}", found.named(), found.borne(), narrowest.off))
+    }
+
+    /// The widest contacts of the whole run, after its last step.
+    pub(super) fn widest(&mut self, scene: &Scene, view: &dyn View) -> WidestContacts {
+        WidestContacts::new(scene, &self.forces.look(view))
     }
 
     /// Those that have not been told of, and no longer grow.
@@ -81,7 +97,6 @@ mod tests {
             area,
             half_width: 0.5 * area,
             impulse: 1.0,
-            force: 1.0,
         };
         areas.iter().enumerate().map(patch).collect()
     }

@@ -56,9 +56,11 @@ pub fn run(
     let start = simulation.ledger();
 
     let mut verdict = Verdict::new(scene, simulation);
+    let mut lookout = Lookout::new(simulation.time());
     let outcome = Recorder::new(scene, &folder).map_err(RunError::from).and_then(|recorder| {
-        let verdict = &mut verdict;
-        Watched { scene, simulation, recorder, verdict, options, clock: &clock }.to(scene.time.end, progress)
+        let (verdict, lookout) = (&mut verdict, &mut lookout);
+        let watched = Watched { scene, simulation, recorder, verdict, lookout, options, clock: &clock };
+        watched.to(scene.time.end, progress)
     });
 
     manifest.performance = clock.performance(simulation);
@@ -68,7 +70,9 @@ pub fn run(
     let saved = manifest.write(&folder);
     outcome?;
     saved?;
-    Ok(Summary::new(scene, simulation, Energies { start, scale: verdict.energy_scale() }, manifest))
+    let contacts = lookout.widest(scene, simulation);
+    let energies = Energies { start, scale: verdict.energy_scale() };
+    Ok(Summary::new(scene, simulation, energies, (manifest, contacts)))
 }
 
 /// A run under way.
@@ -77,6 +81,7 @@ struct Watched<'a> {
     simulation: &'a mut dyn Simulation,
     recorder: Recorder,
     verdict: &'a mut Verdict,
+    lookout: &'a mut Lookout,
     options: &'a RunOptions,
     clock: &'a Clock,
 }
@@ -86,7 +91,6 @@ impl Watched<'_> {
         self.recorder.record_present(self.simulation)?;
         let mut way = March::to(end);
         let mut reports = self.clock.reports();
-        let mut lookout = Lookout::new(self.simulation.time());
         let mut notes = self.verdict.look(self.scene, self.simulation);
         let status = loop {
             if way.is_done(self.simulation) {
@@ -97,7 +101,7 @@ impl Watched<'_> {
             }
             self.step(&mut way)?;
             self.recorder.record_due(self.simulation)?;
-            notes.extend(lookout.look(self.scene, self.simulation));
+            notes.extend(self.lookout.look(self.scene, self.simulation));
             notes.extend(self.verdict.look(self.scene, self.simulation));
             if reports.due() || !notes.is_empty() {
                 let notes = std::mem::take(&mut notes);

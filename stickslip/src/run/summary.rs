@@ -2,7 +2,7 @@
 
 use super::WidestContacts;
 use super::verdict::line;
-use crate::door::{Ledger, Simulation};
+use crate::door::{Ledger, View};
 use crate::observe::{BodyRow, Manifest, Performance, Status, Warning};
 use crate::scene::Scene;
 use std::fmt::{self, Display, Formatter};
@@ -64,9 +64,9 @@ const NAMED: usize = 3;
 impl Summary {
     pub(super) fn new(
         scene: &Scene,
-        simulation: &dyn Simulation,
+        simulation: &dyn View,
         energies: Energies,
-        manifest: Manifest,
+        (manifest, contacts): (Manifest, WidestContacts),
     ) -> Self {
         let (time, bodies) = (simulation.time(), simulation.bodies());
         let references = scene.references.iter().filter_map(|reference| {
@@ -82,7 +82,6 @@ impl Summary {
         });
         let references = references.collect();
         let Manifest { status, performance, warnings, .. } = manifest;
-        let contacts = WidestContacts::new(scene, &simulation.patches());
         let Energies { start, scale: energy_scale } = energies;
         Summary {
             status,

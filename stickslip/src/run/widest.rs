@@ -1,8 +1,9 @@
 //! During and after a run: which contacts the grid resolved, from how wide the bodies touched.
 
 use crate::check::{Errors, Verdict};
-use crate::door::Patch;
+use crate::door::{Patch, View};
 use crate::scene::Scene;
+use std::collections::HashMap;
 use std::fmt::{self, Display, Formatter};
 
 /// How wide two bodies touched at most.
@@ -25,6 +26,51 @@ pub struct WidestContact {
     pub weight: f64,
 }
 
+/// A pair of bodies that touched.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Touched {
+    /// Their widest contact, and the impulses between them.
+    pub patch: Patch,
+    /// Largest mean of the force from one look to the next [N].
+    pub force: f64,
+}
+
+/// The largest force between each pair of bodies, as seen by looks at a run.
+///
+/// A mean over less than the longest time between two looks counts as one over that time: the run's last look may come a
+/// step after the one before, and no mean of that is a force.
+#[derive(Clone, Debug, Default)]
+pub(super) struct LargestForces {
+    /// Time of the last look [s].
+    time: f64,
+    /// Longest time between two looks [s].
+    longest: f64,
+    /// Impulses until the last look [N s], and largest force [N], by pair.
+    pairs: HashMap<[usize; 2], [f64; 2]>,
+}
+
+impl LargestForces {
+    /// Takes note of what pairs bore since the last look.
+    pub(super) fn look(&mut self, view: &dyn View) -> Vec<Touched> {
+        self.see(&view.patches(), view.time())
+    }
+
+    fn see(&mut self, patches: &[Patch], time: f64) -> Vec<Touched> {
+        self.longest = self.longest.max(time - self.time);
+        self.time = time;
+        let mut touched = Vec::with_capacity(patches.len());
+        for &patch in patches {
+            let [before, force] = self.pairs.entry([patch.body_a, patch.body_b]).or_default();
+            if self.longest > 0.0 {
+                *force = force.max((patch.impulse - *before) / self.longest);
+            }
+            *before = patch.impulse;
+            touched.push(Touched { patch, force: *force });
+        }
+        touched
+    }
+}
+
 /// The contacts of a run, narrowest first.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct WidestContacts(pub Vec<WidestContact>);
@@ -36,14 +82,14 @@ const NAMED: usize = 3;
 const GRAZING: f64 = 0.05;
 
 impl WidestContacts {
-    pub(super) fn new(scene: &Scene, patches: &[Patch]) -> Self {
-        let largest = |of: fn(&Patch) -> f64| patches.iter().map(of).fold(0.0, f64::max);
-        let most = [largest(|patch| patch.impulse), largest(|patch| patch.force)];
-        let all: f64 = patches.iter().map(|patch| patch.impulse).sum();
+    pub(super) fn new(scene: &Scene, touched: &[Touched]) -> Self {
+        let largest = |of: fn(&Touched) -> f64| touched.iter().map(of).fold(0.0, f64::max);
+        let most = [largest(|touched| touched.patch.impulse), largest(|touched| touched.force)];
+        let all: f64 = touched.iter().map(|touched| touched.patch.impulse).sum();
         let part = |of: f64, whole: f64| if whole > 0.0 { of / whole } else { 1.0 };
-        let mut contacts: Vec<_> = (patches.iter())
-            .filter(|patch| patch.area > 0.0)
-            .map(|patch| {
+        let mut contacts: Vec<_> = (touched.iter())
+            .filter(|touched| touched.patch.area > 0.0)
+            .map(|Touched { patch, force }| {
                 let half_width = patch.half_width;
                 let cells = half_width / scene.discretization.cell;
                 let bodies = [patch.body_a, patch.body_b].map(|body| scene.bodies[body].name.clone());
@@ -54,7 +100,7 @@ impl WidestContacts {
                     verdict: Verdict::of(cells),
                     off: Errors::of(cells),
                     share: part(patch.impulse, all),
-                    weight: part(patch.impulse, most[0]).max(part(patch.force, most[1])),
+                    weight: part(patch.impulse, most[0]).max(part(*force, most[1])),
                 }
             })
             .collect();
@@ -137,16 +183,16 @@ mod tests {
              materials.clay = {{ density = 1, neo_hookean = {{ young_modulus = 1, poisson_ratio = 0 }} }}\n{bodies}"
         );
         let scene = crate::scene::parse("widest.toml", &text, &[]).expect("a scene").scene;
-        let patch = |(i, &(half_width, impulse)): (usize, &(f64, f64))| Patch {
-            body_a: i,
-            body_b: i + 1,
-            area: 2.0 * half_width,
-            half_width,
-            impulse,
+        let touched = |(i, &(half_width, impulse)): (usize, &(f64, f64))| Touched {
+            patch: patch(i, half_width, impulse),
             force: impulse,
         };
-        let patches: Vec<_> = contacts.iter().enumerate().map(patch).collect();
-        WidestContacts::new(&scene, &patches)
+        let touched: Vec<_> = contacts.iter().enumerate().map(touched).collect();
+        WidestContacts::new(&scene, &touched)
+    }
+
+    fn patch(body_a: usize, half_width: f64, impulse: f64) -> Patch {
+        Patch { body_a, body_b: body_a + 1, area: 2.0 * half_width, half_width, impulse }
     }
 
     fn equal(half_widths: &[f64]) -> WidestContacts {
@@ -190,12 +236,8 @@ mod tests {
     #[test]
     fn a_blow_at_the_end_counts_by_its_largest_force() {
         let mut patches = [(0, 0.5, 100.0, 10.0), (1, 0.05, 1.0, 30.0)]
-            .map(|(body_a, half_width, impulse, force)| Patch {
-                body_a,
-                body_b: body_a + 1,
-                area: 2.0 * half_width,
-                half_width,
-                impulse,
+            .map(|(body_a, half_width, impulse, force)| Touched {
+                patch: patch(body_a, half_width, impulse),
                 force,
             })
             .to_vec();
@@ -211,5 +253,15 @@ mod tests {
         assert_eq!(both.borne(), "bearing 1.0 % of the contact force, at one time 100 % of the largest");
         patches[1].force = 0.1;
         assert_eq!(WidestContacts::new(&scene(), &patches).bearing().0.len(), 1);
+    }
+
+    /// Two looks of 1 s with impulses of 1 and 3 N s, and one of a hundredth of that with one more.
+    #[test]
+    fn a_pair_has_borne_its_largest_mean_force() {
+        let mut forces = LargestForces::default();
+        let mut see = |impulse: f64, time: f64| forces.see(&[patch(0, 1.0, impulse)], time)[0].force;
+        assert_eq!(see(1.0, 1.0), 1.0);
+        assert_eq!(see(4.0, 2.0), 3.0);
+        assert_eq!([see(5.0, 2.01), see(5.0, 2.01)], [3.0; 2]);
     }
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 use stickslip::door::{
-    BodyState, ContactState, GridSnapshot, Ledger, ParticleSnapshot, Patch, Simulation, StepError,
+    BodyState, ContactSum, GridSnapshot, Ledger, ParticleSnapshot, Patch, Simulation, StepError, View,
 };
 use stickslip::geometry::{Arrangement, Shape};
 use stickslip::material::SHELF;
@@ -16,7 +16,6 @@ pub struct Ballistic {
     step: f64,
     last_step: f64,
     particles: [usize; 2],
-    steps_in_contact: usize,
     fails_at: Option<u64>,
     inverted: bool,
     trap: Option<(u64, Box<dyn FnMut() + Send>)>,
@@ -31,7 +30,6 @@ impl Ballistic {
             step,
             last_step: 0.0,
             particles: [4, 3],
-            steps_in_contact: 0,
             fails_at: None,
             inverted: false,
             trap: None,
@@ -70,7 +68,7 @@ impl Ballistic {
     }
 }
 
-impl Simulation for Ballistic {
+impl View for Ballistic {
     fn time(&self) -> f64 {
         self.time
     }
@@ -85,29 +83,6 @@ impl Simulation for Ballistic {
 
     fn stable_step(&self) -> f64 {
         self.step
-    }
-
-    fn step(&mut self, longest: f64) -> Result<f64, StepError> {
-        if let Some((number, trap)) = &mut self.trap
-            && *number == self.steps
-        {
-            trap();
-        }
-        if self.fails_at == Some(self.steps) {
-            self.inverted = true;
-            return Err(StepError::Inverted {
-                body: "sphere".into(),
-                number: 0,
-                position: [0.0; 3],
-                time: self.time,
-                determinant: -1.0,
-            });
-        }
-        self.last_step = self.step.min(longest);
-        self.time += self.last_step;
-        self.steps += 1;
-        self.steps_in_contact += 1;
-        Ok(self.last_step)
     }
 
     fn bodies(&self) -> Vec<BodyState> {
@@ -138,29 +113,23 @@ impl Simulation for Ballistic {
         }
     }
 
-    fn take_contacts(&mut self) -> Vec<ContactState> {
-        let contacts = self.contacts();
-        self.steps_in_contact = 0;
-        contacts
-    }
-
-    fn contacts(&self) -> Vec<ContactState> {
-        match self.steps_in_contact {
-            0 => Vec::new(),
-            nodes => vec![ContactState {
-                body_a: 0,
-                body_b: 1,
-                force: [1.0, 2.0, 2.0],
-                normal: 3.0,
-                tangential: 0.0,
-                nodes,
-                position: [0.5, 0.0, 0.25],
-                area: 0.125,
-                gap: -0.01,
-                slip: 0.02,
-                friction: 0.75,
-            }],
-        }
+    /// A constant force, and 0.75 J of friction in each step.
+    fn contact_sums(&self) -> Vec<ContactSum> {
+        let (time, steps) = (self.time, self.steps as f64);
+        let sum = ContactSum {
+            bodies: [0, 1],
+            impulse: [1.0, 2.0, 2.0].map(|force| force * time),
+            normal: 3.0 * time,
+            tangential: [0.0; 3],
+            magnitude: 3.0 * time,
+            moment: [0.5, 0.0, 0.25].map(|x| 3.0 * time * x),
+            area: 0.125 * time,
+            gap: -0.01 * 0.125 * time,
+            slip: 0.02 * steps,
+            friction: 0.75 * steps,
+            nodes: 4,
+        };
+        if self.steps > 0 { vec![sum] } else { Vec::new() }
     }
 
     fn patches(&self) -> Vec<Patch> {
@@ -202,6 +171,30 @@ impl Simulation for Ballistic {
 
     fn timings(&self) -> Vec<(&'static str, f64)> {
         vec![("fly", 0.75e-6 * self.steps as f64), ("land", 0.25e-6 * self.steps as f64)]
+    }
+}
+
+impl Simulation for Ballistic {
+    fn step(&mut self, longest: f64) -> Result<f64, StepError> {
+        if let Some((number, trap)) = &mut self.trap
+            && *number == self.steps
+        {
+            trap();
+        }
+        if self.fails_at == Some(self.steps) {
+            self.inverted = true;
+            return Err(StepError::Inverted {
+                body: "sphere".into(),
+                number: 0,
+                position: [0.0; 3],
+                time: self.time,
+                determinant: -1.0,
+            });
+        }
+        self.last_step = self.step.min(longest);
+        self.time += self.last_step;
+        self.steps += 1;
+        Ok(self.last_step)
     }
 }
 

@@ -1,7 +1,7 @@
 //! The paper's scenes with disks, run for some transits of a longitudinal wave through a disk.
 
 use std::path::Path;
-use stickslip::door::{ParticleSnapshot, Simulation};
+use stickslip::door::{ContactCursor, ParticleSnapshot, Simulation};
 use stickslip::march::March;
 use stickslip::scene::{self, Scene};
 use stickslip::step;
@@ -92,12 +92,12 @@ impl Chain {
         };
         let (mut impulse, mut pushed) = ([0.0; 2], 0.0_f64);
         let (mut stresses, mut speeds) = (First::new(disks), First::new(disks));
-        simulation.take_contacts();
+        let mut cursor = ContactCursor::default();
         let mut way = March::to(end);
         while !enough(&chain)
             && let Some(dt) = way.step(&mut *simulation).unwrap_or_else(|error| panic!("{error}"))
         {
-            for contact in simulation.take_contacts() {
+            for contact in cursor.read(&*simulation) {
                 let pair = [contact.body_a, contact.body_b].map(|body| setting.names[body].clone());
                 if contact.normal >= setting.load && chain.loaded.iter().all(|(other, _)| *other != pair) {
                     chain.loaded.push((pair, simulation.time() / setting.transit));

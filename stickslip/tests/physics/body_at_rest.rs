@@ -8,6 +8,7 @@
 //! table is the one that the body took.
 
 use crate::trial::{distance, run_to, start};
+use stickslip::door::ContactCursor;
 
 fn scene(floor: &str) -> String {
     format!(
@@ -41,10 +42,11 @@ fn contact_carries_the_weight() {
         let weight = simulation.bodies()[1].mass * 10.0;
         let (mut impulse, mut last, mut worst) = ([0.0; 3], 0.0, 0.0_f64);
         let end = 2.0;
+        let mut cursor = ContactCursor::default();
         run_to(&mut *simulation, end, |s| {
             let dt = s.time() - last;
             last = s.time();
-            for contact in s.take_contacts() {
+            for contact in cursor.read(s) {
                 (0..3).for_each(|i| impulse[i] += contact.force[i] * dt);
             }
             let block = &s.bodies()[1];

@@ -20,6 +20,7 @@
 
 use std::f64::consts::PI;
 use std::path::Path;
+use stickslip::door::ContactCursor;
 use stickslip::polariscope::{StressMap, Window, stress_maps};
 use stickslip::scene::Scene;
 use stickslip::{scene, step};
@@ -54,12 +55,13 @@ fn pressed(cells: usize, particles: &str) -> Errors {
     let (radius, transit) = (number("radius"), number("transit"));
     let mut simulation = step::build(&scene).unwrap_or_else(|problem| panic!("{problem:?}"));
     run_to(&mut *simulation, 35.0 * transit, |_| {});
-    simulation.take_contacts();
+    let mut cursor = ContactCursor::default();
+    cursor.read(&*simulation);
     let mut sums: Vec<[f64; 6]> = Vec::new();
     let (mut load, mut looks, mut before) = (0.0, 0.0, simulation.time());
     run_to(&mut *simulation, 40.0 * transit, |s| {
         // Both platens press, so half of the sum of their pushes.
-        let pushes: f64 = s.take_contacts().iter().map(|contact| contact.force[1].abs()).sum();
+        let pushes: f64 = cursor.read(s).iter().map(|contact| contact.force[1].abs()).sum();
         load += 0.5 * pushes * (s.time() - before);
         before = s.time();
         if s.steps() % 8 == 0 {

@@ -15,6 +15,7 @@
 //! 1 %: nodes that meet collide inelastically, and the loss shrinks with the cell (`surface`: 3.6 % at half, 1.3 % at a quarter).
 
 use crate::trial::{distance, run_to, start, take_steps};
+use stickslip::door::ContactCursor;
 
 const RULES: [(&str, &str); 6] = [
     ("surface", "common"),
@@ -52,6 +53,7 @@ fn collide(scene: &str, end: f64) -> Collision {
         restitution: 0.0,
         first_contact: f64::INFINITY,
     };
+    let mut cursor = ContactCursor::default();
     run_to(&mut *simulation, end, |s| {
         let now = s.ledger();
         seen.momentum = seen.momentum.max(distance(now.momentum, before.momentum) / momentum);
@@ -59,7 +61,7 @@ fn collide(scene: &str, end: f64) -> Collision {
         seen.angular = seen.angular.max(angular / (momentum * 0.2));
         seen.rest = (now.kinetic + now.strain + now.friction) / before.kinetic - 1.0;
         seen.gain = seen.gain.max(seen.rest);
-        if !s.take_contacts().is_empty() {
+        if !cursor.read(s).is_empty() {
             seen.first_contact = seen.first_contact.min(s.time());
         }
     });

@@ -11,6 +11,7 @@
 //! stresses within 3 % (1.3 %); the disks' mean interval within 5 % at only 20 cells a disk (1.4 %; with the gap law, 25 % off at 40 cells).
 
 use crate::trial::{RUBBER, mean_where, run_to, start};
+use stickslip::door::ContactCursor;
 
 /// A block on a floor, both turned by 30 degrees through the grid under gravity along it.
 fn slope(friction: f64, per_side: usize) -> String {
@@ -43,10 +44,11 @@ fn a_block_slides_through_the_grid() {
     for (friction, per_side) in [(0.0, 1), (0.0, 2), (0.2, 2), (0.2, 3)] {
         let mut simulation = start(&slope(friction, per_side));
         let (mut from, mut last, mut normal, mut tangential) = (None, 0.0, 0.0, 0.0);
+        let mut cursor = ContactCursor::default();
         run_to(&mut *simulation, 0.8, |s| {
             let dt = s.time() - last;
             last = s.time();
-            for contact in s.take_contacts() {
+            for contact in cursor.read(s) {
                 normal += contact.normal * dt;
                 tangential += contact.tangential * dt;
             }
@@ -97,7 +99,7 @@ fn contact_starts_when_surfaces_touch() {
                     law = "surface"
                     "#
                 ));
-                while simulation.take_contacts().is_empty() {
+                while ContactCursor::default().read(&*simulation).is_empty() {
                     assert!(simulation.time() < 10.0, "{first}, gap {gap}: they meet");
                     simulation.step(step).expect("the trial is sound");
                 }

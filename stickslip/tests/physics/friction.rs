@@ -13,6 +13,7 @@
 //! 0.2 s the floor comes to rest. Expected: no way in the second half of the run, to 1e-4 of what gravity alone would do (measured 3e-5 at most).
 
 use crate::trial::{RUBBER, run_to, start};
+use stickslip::door::ContactCursor;
 
 const ANGLE: f64 = 30.0;
 const G: f64 = 10.0;
@@ -63,10 +64,11 @@ fn slide(scene: &str, body: usize, end: f64) -> Slide {
     let mut simulation = start(scene);
     let (mut points, mut last) = (Vec::new(), 0.0);
     let (mut normal, mut tangential) = (0.0, 0.0);
+    let mut cursor = ContactCursor::default();
     run_to(&mut *simulation, end, |s| {
         let dt = s.time() - last;
         last = s.time();
-        let contacts = s.take_contacts();
+        let contacts = cursor.read(s);
         if s.time() > 0.5 * end {
             points.push((s.time(), s.bodies()[body].velocity[0]));
             for contact in contacts.iter().filter(|contact| contact.body_b == body) {

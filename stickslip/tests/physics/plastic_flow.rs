@@ -10,6 +10,7 @@
 //! 0.3 h.
 
 use crate::trial::{mean_where, run_to, start};
+use stickslip::door::ContactCursor;
 
 const YIELD: f64 = 0.005;
 const HARDENING: f64 = 0.05;
@@ -44,9 +45,10 @@ fn press(dimension: &str, cell: f64, constraint: f64) {
         v("0", &format!("\"-{DOWN} / {ramp} * (1 - cos(2 * pi * min(t / {ramp}, 1)))\"")),
     ));
     run_to(&mut *simulation, ramp, |_| {});
-    simulation.take_contacts();
+    let mut cursor = ContactCursor::default();
+    cursor.read(&*simulation);
     run_to(&mut *simulation, end, |_| {});
-    let contacts = simulation.take_contacts();
+    let contacts = cursor.read(&*simulation);
     let height = 1.0 - DOWN;
     // Elastic part of the height, over the pressure.
     let shorter = if constraint > 1.0 { 1.0 - 0.15 } else { 1.0 };

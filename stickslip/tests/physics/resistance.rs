@@ -12,6 +12,7 @@
 //! `surface`. Sheared at its lower face it also shears, turns and shakes, hence the tolerances of some per cent.
 
 use crate::trial::{RUBBER, run_to, start};
+use stickslip::door::ContactCursor;
 
 struct Block<'a> {
     gravity: f64,
@@ -162,7 +163,7 @@ fn contact_says_where_how_wide_and_how_far() {
     let block = Block { gravity: -10.0, speed: 2.0, contact: "friction = 0.2" };
     let mut simulation = start(&scene(&block));
     run_to(&mut *simulation, 0.3, |_| {});
-    let contacts = simulation.take_contacts();
+    let contacts = ContactCursor::default().read(&*simulation);
     let [contact] = contacts.as_slice() else { panic!("one pair touches: {contacts:?}") };
     let moved = simulation.bodies()[1].position[0] - 0.5;
     println!("{contact:?}, moved {moved}");

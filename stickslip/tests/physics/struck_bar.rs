@@ -17,6 +17,7 @@
 //! The other laws are measured beside it: the traction rule glues departing bars while ringing makes their traction compressive (restitution 0.79).
 
 use crate::trial::{mean_where, run_to, start};
+use stickslip::door::ContactCursor;
 
 const CELLS: usize = 80;
 const SPEED: f64 = 0.002;
@@ -66,12 +67,13 @@ fn impact(scene: &str, moves: bool) -> Impact {
     let before = simulation.ledger();
     let mut seen =
         Impact { stress: 0.0, arrival: None, release: 0.0, velocities: [0.0; 2], momentum: 0.0, gain: 0.0 };
-    simulation.take_contacts();
+    let mut cursor = ContactCursor::default();
+    cursor.read(&*simulation);
     run_to(&mut *simulation, 3.0, |s| {
         let t = s.time();
         // A tenth of the force that the theory has.
         let force = 0.1 * SPEED * 4.0 * h * if moves { 0.5 } else { 1.0 };
-        if s.take_contacts().iter().any(|contact| contact.force[0] > force) {
+        if cursor.read(s).iter().any(|contact| contact.force[0] > force) {
             seen.release = t;
         }
         let now = s.ledger();

@@ -9,7 +9,7 @@
 
 use crate::trial::{STRESS_UPDATES, start, take_steps};
 use rayon::ThreadPoolBuilder;
-use stickslip::door::Simulation;
+use stickslip::door::{ContactCursor, Simulation};
 
 /// Everything that can be seen of the run, in Rust's shortest text that gives the bits back.
 fn outcome(scene: &str, threads: usize, take: impl Fn(&mut dyn Simulation) + Sync) -> String {
@@ -17,7 +17,7 @@ fn outcome(scene: &str, threads: usize, take: impl Fn(&mut dyn Simulation) + Syn
     pool.install(|| {
         let mut simulation = start(scene);
         take(&mut *simulation);
-        let contacts = simulation.take_contacts();
+        let contacts = ContactCursor::default().read(&*simulation);
         assert!(contacts.len() >= 3, "every pair touches: {contacts:?}");
         let ledger = simulation.ledger();
         assert!(ledger.friction > 0.0, "the bodies slide");

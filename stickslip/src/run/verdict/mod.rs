@@ -9,7 +9,7 @@ mod spin;
 mod strain;
 mod tearing;
 
-use crate::door::{BodyState, Ledger, Simulation, TracedParticle};
+use crate::door::{BodyState, Ledger, TracedParticle, View};
 use crate::observe::Warning;
 use crate::scene::{Motion, Scene};
 use energy::Balance;
@@ -43,7 +43,7 @@ trait Check {
 /// What a check sees.
 struct Look<'a> {
     scene: &'a Scene,
-    simulation: &'a dyn Simulation,
+    simulation: &'a dyn View,
     /// Energy and momentum now.
     ledger: &'a Ledger,
     /// Energy since the start.
@@ -109,7 +109,7 @@ const MOST_LINES: usize = 6;
 
 impl Verdict {
     /// The verdict on a run that begins.
-    pub(super) fn new(scene: &Scene, simulation: &dyn Simulation) -> Self {
+    pub(super) fn new(scene: &Scene, simulation: &dyn View) -> Self {
         Verdict {
             checks: checks(),
             balance: Balance::default(),
@@ -123,7 +123,7 @@ impl Verdict {
     }
 
     /// What is new, if it is time to look.
-    pub(super) fn look(&mut self, scene: &Scene, simulation: &dyn Simulation) -> Vec<String> {
+    pub(super) fn look(&mut self, scene: &Scene, simulation: &dyn View) -> Vec<String> {
         if simulation.time() < self.next_time || simulation.steps() < self.next_step {
             return Vec::new();
         }
@@ -134,12 +134,12 @@ impl Verdict {
     }
 
     /// What is new at the end of the run.
-    pub(super) fn conclude(&mut self, scene: &Scene, simulation: &dyn Simulation) -> Vec<String> {
+    pub(super) fn conclude(&mut self, scene: &Scene, simulation: &dyn View) -> Vec<String> {
         let looked = self.next_step == simulation.steps() + STEPS;
         if looked { Vec::new() } else { self.look_now(scene, simulation) }
     }
 
-    fn look_now(&mut self, scene: &Scene, simulation: &dyn Simulation) -> Vec<String> {
+    fn look_now(&mut self, scene: &Scene, simulation: &dyn View) -> Vec<String> {
         let (ledger, bodies) = (simulation.ledger(), simulation.bodies());
         self.balance.update(&ledger);
         let particles: Vec<_> = (self.neighbours.iter().enumerate())

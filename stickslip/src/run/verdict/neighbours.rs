@@ -1,6 +1,6 @@
 //! Particles that were neighbours before anything moved: some of each body, chosen once.
 
-use crate::door::{Simulation, TracedParticle};
+use crate::door::{TracedParticle, View};
 use crate::scene::{Motion, Scene};
 use std::collections::{HashMap, HashSet};
 
@@ -24,23 +24,23 @@ const NEAR: f64 = 1.5;
 const NONE: u32 = u32::MAX;
 
 /// Neighbours in each body; none in a rigid one.
-pub(super) fn of_bodies(scene: &Scene, simulation: &dyn Simulation) -> Vec<Neighbours> {
-    let all = simulation.particles();
+pub(super) fn of_bodies(scene: &Scene, view: &dyn View) -> Vec<Neighbours> {
+    let all = view.particles();
     (scene.bodies.iter().enumerate())
         .map(|(i, body)| match body.motion {
-            Motion::Free { .. } => Neighbours::new(simulation, i, all),
+            Motion::Free { .. } => Neighbours::new(view, i, all),
             Motion::Rigid { .. } => Neighbours::default(),
         })
         .collect()
 }
 
 impl Neighbours {
-    fn new(simulation: &dyn Simulation, body: usize, all: usize) -> Self {
-        let start = simulation.starts(body);
+    fn new(view: &dyn View, body: usize, all: usize) -> Self {
+        let start = view.starts(body);
         let chosen = chosen(start.len(), (MOST * start.len() / all.max(1)).max(FEWEST));
         let mut seeds = vec![false; start.len()];
         chosen.iter().for_each(|&number| seeds[number as usize] = true);
-        let traced = simulation.trace(body, &|number| seeds[number as usize]);
+        let traced = view.trace(body, &|number| seeds[number as usize]);
         let widest = traced.iter().map(|particle| particle.half_width).fold(0.0, f64::max);
         if widest == 0.0 {
             return Neighbours::default();
@@ -89,12 +89,12 @@ impl Neighbours {
     }
 
     /// The chosen particles now, in the order of `start`.
-    pub(super) fn particles(&self, simulation: &dyn Simulation, body: usize) -> Vec<TracedParticle> {
+    pub(super) fn particles(&self, view: &dyn View, body: usize) -> Vec<TracedParticle> {
         if self.start.is_empty() {
             return Vec::new();
         }
         let place = |number: u32| self.place[number as usize];
-        let traced = simulation.trace(body, &|number| place(number) != NONE);
+        let traced = view.trace(body, &|number| place(number) != NONE);
         let mut particles = traced.clone();
         for particle in traced {
             particles[place(particle.number) as usize] = particle;
