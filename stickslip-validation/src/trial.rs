@@ -5,7 +5,7 @@ use crate::penetration::penetration;
 use std::time::Instant;
 use stickslip::door::{BodyState, ContactState, GridSnapshot, Ledger, ParticleSnapshot, Simulation};
 use stickslip::scene::{Face, Motion, Scene};
-use stickslip::{step, scene};
+use stickslip::{scene, step};
 
 /// What every run records besides what its benchmark measures.
 #[derive(Clone, Debug, Default, PartialEq)]

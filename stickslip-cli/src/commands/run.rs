@@ -56,8 +56,8 @@ impl Arguments {
         for warning in report(&loaded)?.warnings {
             eprintln!("warning: {warning}");
         }
-        let mut simulation = stickslip::step::build(scene)
-            .map_err(|problem| Failure::input(loaded.source.locate(problem)))?;
+        let mut simulation =
+            stickslip::step::build(scene).map_err(|problem| Failure::input(loaded.source.locate(problem)))?;
         let out = self.out.clone().unwrap_or_else(|| default_folder(&self.scene, "results"));
         let options = RunOptions { out: out.clone(), stop: stop_on_interrupt()?, threads };
         let display = Display::new(scene.time.end, std::io::stderr().is_terminal());

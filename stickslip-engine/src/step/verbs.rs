@@ -305,7 +305,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 };
                 body.particles.set(p, &particle);
                 let fault = kind.map(|kind| Fault { body: i, particle: p, kind });
-                found = found.and(Found { fault, signal: signal(body, &particle) });
+                // SAFETY: the particles are borrowed here alone.
+                let history = unsafe { body.particles.view().history_of(p) };
+                found = found.and(Found { fault, signal: signal(body, &particle, &history) });
             }
             motion.advance(&rotation, dt);
             self.left[self.cover.tiles_held(i)].fill(u64::MAX);
