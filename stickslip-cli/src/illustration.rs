@@ -53,12 +53,14 @@ impl<'a> Album<'a> {
     /// Opens the snapshots of a run.
     ///
     /// # Errors
-    /// There are none, or the scene has no plane of symmetry where the user wants a mirror.
+    /// There are none, no law remembers what colour is to stand for, or the scene has no plane of symmetry where the user wants
+    /// a mirror.
     pub fn open(results: &'a Results, choice: PictureChoice) -> Result<Self, Failure> {
         let first = snapshots(results)?.first().expect("there is at least one");
         let setting = Setting::of_json(&results.manifest().scene);
         let mirror = mirror(&setting, &choice)?;
         let first = results.particles(first).map_err(Failure::input)?;
+        choice.quantity.is_in(&first).map_err(|what| Failure::Input(miette!("--color: {what}")))?;
         let quarters = picture::quarters(&first, &setting);
         Ok(Album { results, setting, quarters, mirror, choice, bounds: None })
     }
@@ -83,7 +85,7 @@ impl<'a> Album<'a> {
     }
 
     fn scale(&self, particles: &ParticleSnapshot) -> Scale {
-        let quantity = self.choice.quantity;
+        let quantity = &self.choice.quantity;
         match self.choice.range {
             Some(range) => quantity.scale_between(range),
             None => {
@@ -99,7 +101,7 @@ impl Pictures for Album<'_> {
     fn picture(&self, frame: &Frame) -> Result<Image, Failure> {
         let particles = self.results.particles(frame).map_err(Failure::input)?;
         let look = Look {
-            quantity: self.choice.quantity,
+            quantity: self.choice.quantity.clone(),
             scale: self.scale(&particles),
             view: self.choice.view,
             mirror: self.mirror,

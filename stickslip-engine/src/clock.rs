@@ -1,6 +1,6 @@
 //! The stable time step.
 
-use crate::body::{Body, Particle};
+use crate::body::Body;
 use crate::tensor::Real;
 use crate::threads::by_parts;
 use std::ops::Range;
@@ -16,13 +16,17 @@ const PARTICLES: usize = 4096;
 /// A step dt = courant h / max(c + |v|) lets no signal cross more than that fraction of a cell (Courant, Friedrichs and Lewy 1928).
 pub fn fastest_signal<T: Real, const D: usize>(bodies: &[Body<T, D>]) -> f64 {
     let of_body = |body: &Body<T, D>| {
-        let signal = |particle: Particle<T, D>| {
+        let signal = |i: usize| {
+            let particle = body.particles.get(i);
             let speed = particle.velocity.norm();
-            let modulus = body.wave_modulus(&particle.deformation, particle.deformation.det());
+            // SAFETY: the particles are borrowed for reading.
+            let history = unsafe { body.particles.view().history_of(i) };
+            let modulus = body.wave_modulus(&particle, &history);
             ((modulus / body.density).sqrt() + speed).f64()
         };
-        let fastest = |range: Range<usize>| range.map(|i| signal(body.particles.get(i))).fold(0.0, f64::max);
-        by_parts(body.particles.len(), PARTICLES, fastest).into_iter().fold(0.0, f64::max)
+        by_parts(body.particles.len(), PARTICLES, |range: Range<usize>| range.map(signal).fold(0.0, f64::max))
+            .into_iter()
+            .fold(0.0, f64::max)
     };
     by_parts(bodies.len(), 1, |range| range.map(|i| of_body(&bodies[i])).fold(0.0, f64::max))
         .into_iter()

@@ -2,6 +2,7 @@
 //!
 //! Everything that crosses this door is `f64`, SI and three-dimensional; plane scenes have zeros in the third component.
 
+use crate::column::Kind;
 use serde::Serialize;
 use std::collections::HashMap;
 
@@ -256,8 +257,44 @@ pub struct ParticleSnapshot {
     pub stress: Vec<[f64; 6]>,
     /// Deformation gradient, row by row [-].
     pub deformation: Vec<[f64; 9]>,
-    /// Equivalent plastic strain [-]; empty where no body's law flows.
-    pub plastic_strain: Vec<f64>,
+    /// What the laws of the bodies remember; of the particles of other bodies zero.
+    pub history: Vec<SnapshotColumn>,
+}
+
+/// A column of history in a snapshot: what a law calls it, and a value for every particle of all bodies.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SnapshotColumn {
+    /// Its name.
+    pub name: String,
+    /// SI unit; empty for a number without one.
+    pub unit: String,
+    /// What each particle has.
+    pub kind: Kind,
+    /// The components in space of one particle after the other.
+    pub values: Vec<f64>,
+}
+
+impl SnapshotColumn {
+    /// One number for a particle: a number itself, the length of a vector, and of a tensor the root of the sum of its squared
+    /// entries (Frobenius).
+    pub fn magnitude(&self, particle: usize) -> f64 {
+        let count = self.kind.components();
+        let values = &self.values[particle * count..][..count];
+        let of_squares = |values: &[f64]| values.iter().map(|x| x * x).sum::<f64>();
+        match self.kind {
+            Kind::Number => values[0],
+            // The entries beside the diagonal stand for two each.
+            Kind::Symmetric => (of_squares(values) + of_squares(&values[3..])).sqrt(),
+            Kind::Vector | Kind::Rotation | Kind::Tensor => of_squares(values).sqrt(),
+        }
+    }
+}
+
+impl ParticleSnapshot {
+    /// The history of this name; `None` where no body's law has it.
+    pub fn remembered(&self, name: &str) -> Option<&SnapshotColumn> {
+        self.history.iter().find(|column| column.name == name)
+    }
 }
 
 /// A particle now, as [`Simulation::visit`] shows it.

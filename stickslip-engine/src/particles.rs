@@ -1,10 +1,58 @@
 //! Particles of one body as columns, so that a processor can take several at a time; seen from outside, they are rows.
 
 use crate::body::Particle;
+use crate::column::{ColumnDescription, Kind};
 use crate::grid::Disjoint;
+use crate::material::{History, Keep, Recall, history_entries};
 use crate::pages::ask_for_large;
 use crate::tensor::{Matrix, Real, Symmetric, Vector};
 use crate::threads::each_range;
+
+/// The columns that the particles of every body have, in the order of memory; behind them lies the history of the body's law.
+///
+/// The volume is J times the undeformed one; the half-width is half the side of the undeformed box; the start is the position before
+/// anything moved, which no step writes to.
+pub const EVERY: [ColumnDescription; 9] = [
+    described("position", "m", Kind::Vector),
+    described("velocity", "m/s", Kind::Vector),
+    described("spin", "rad/s", Kind::Rotation),
+    described("mass", "kg", Kind::Number),
+    described("volume", "m^3", Kind::Number),
+    described("half_width", "m", Kind::Number),
+    described("deformation", "", Kind::Tensor),
+    described("stress", "Pa", Kind::Symmetric),
+    described("start", "m", Kind::Vector),
+];
+
+const fn described(name: &'static str, unit: &'static str, kind: Kind) -> ColumnDescription {
+    ColumnDescription { name, unit, kind }
+}
+
+/// Place of the first entry of a column of [`EVERY`], or, of a name that it does not have, of the history.
+pub const fn first_of(name: &str, dimension: usize) -> usize {
+    let (mut i, mut sum) = (0, 0);
+    while i < EVERY.len() && !same(EVERY[i].name, name) {
+        sum += EVERY[i].kind.entries(dimension);
+        i += 1;
+    }
+    sum
+}
+
+const fn same(a: &str, b: &str) -> bool {
+    let (a, b) = (a.as_bytes(), b.as_bytes());
+    let mut i = 0;
+    while i < a.len() && i < b.len() && a[i] == b[i] {
+        i += 1;
+    }
+    i == a.len() && i == b.len()
+}
+
+/// A place that must be known.
+const fn known(name: &str, dimension: usize) -> usize {
+    let first = first_of(name, dimension);
+    assert!(first < first_of("", dimension), "a column of every particle");
+    first
+}
 
 /// Entries of F that a motion in `D` dimensions leaves free, by row and column; the others are zero.
 pub const fn deformation_entries(dimension: usize) -> &'static [[usize; 2]] {
@@ -17,41 +65,41 @@ pub const fn deformation_entries(dimension: usize) -> &'static [[usize; 2]] {
 
 /// Entries of the stress that a motion in `D` dimensions leaves free: xx, yy, zz, xy, then yz, xz.
 pub const fn stress_entries(dimension: usize) -> usize {
-    if dimension == 2 { 4 } else { 6 }
+    Kind::Symmetric.entries(dimension)
 }
 
 /// Components that the angular velocity of a motion in `D` dimensions has: about the third axis, or about all.
 pub const fn spin_entries(dimension: usize) -> usize {
-    if dimension == 2 { 1 } else { 3 }
+    Kind::Rotation.entries(dimension)
 }
 
-/// Which column holds what.
+/// Where the entries of the columns of [`EVERY`] begin.
 #[derive(Clone, Copy, Debug)]
 pub struct Column<const D: usize>;
 
 impl<const D: usize> Column<D> {
     /// First component of the position.
-    pub const POSITION: usize = 0;
+    pub const POSITION: usize = known("position", D);
     /// First component of the velocity.
-    pub const VELOCITY: usize = D;
+    pub const VELOCITY: usize = known("velocity", D);
     /// First of [`spin_entries`].
-    pub const SPIN: usize = 2 * D;
+    pub const SPIN: usize = known("spin", D);
     /// Mass.
-    pub const MASS: usize = Self::SPIN + spin_entries(D);
+    pub const MASS: usize = known("mass", D);
     /// Volume.
-    pub const VOLUME: usize = Self::MASS + 1;
+    pub const VOLUME: usize = known("volume", D);
     /// Half the side of the undeformed box.
-    pub const HALF_WIDTH: usize = Self::MASS + 2;
+    pub const HALF_WIDTH: usize = known("half_width", D);
     /// First of [`deformation_entries`].
-    pub const DEFORMATION: usize = Self::MASS + 3;
+    pub const DEFORMATION: usize = known("deformation", D);
     /// First of [`stress_entries`].
-    pub const STRESS: usize = Self::DEFORMATION + deformation_entries(D).len();
-    /// First component of the position before anything moved, which no step writes to.
-    pub const START: usize = Self::STRESS + stress_entries(D);
-    /// Number of columns that all bodies have.
-    pub const COUNT: usize = Self::START + D;
-    /// Equivalent plastic strain, of bodies that flow.
-    pub const PLASTIC_STRAIN: usize = Self::COUNT;
+    pub const STRESS: usize = known("stress", D);
+    /// First component of the start.
+    pub const START: usize = known("start", D);
+    /// Number of entries that all bodies have.
+    pub const COUNT: usize = first_of("", D);
+    /// First entry of the history of the body's law.
+    pub const HISTORY: usize = Self::COUNT;
 }
 
 /// Particles of one body.
@@ -67,8 +115,8 @@ pub struct Particles<T, const D: usize> {
     numbers: Vec<u32>,
     /// Whether the room is before the columns and numbers, or behind them.
     later: bool,
-    /// Whether there is a column of plastic strain.
-    flow: bool,
+    /// What the body's law remembers.
+    history: &'static [History],
 }
 
 /// Bytes in a cache line.
@@ -81,29 +129,36 @@ impl<T: Real, const D: usize> Particles<T, D> {
         lines * LINE / size_of::<T>()
     }
 
-    /// Columns that bodies have, with room for one more.
-    const fn columns_of(flow: bool) -> usize {
-        Column::<D>::COUNT + flow as usize + 1
+    /// Columns of a body whose law remembers this, an entry each, with room for one more.
+    const fn columns_of(history: &[History]) -> usize {
+        Column::<D>::HISTORY + history_entries(history, D) + 1
     }
 
-    /// Memory that so many particles take, of a body that may `flow` plastically or not: all columns and numbers, and
-    /// the room in which they are sorted [bytes].
-    pub const fn bytes_of(count: usize, flow: bool) -> usize {
-        Self::stride_of(count) * Self::columns_of(flow) * size_of::<T>() + 2 * count * size_of::<u32>()
+    /// Memory that so many particles take, of a body whose law remembers this: all columns and numbers, and the room in
+    /// which they are sorted [bytes].
+    pub const fn bytes_of(count: usize, history: &[History]) -> usize {
+        Self::stride_of(count) * Self::columns_of(history) * size_of::<T>() + 2 * count * size_of::<u32>()
     }
 
-    /// The particles `f(0)` to `f(count - 1)`, before anything moves, of a body that may `flow` plastically or not.
-    pub fn from_fn(count: usize, flow: bool, f: impl Fn(usize) -> Particle<T, D>) -> Self {
+    /// The particles `f(0)` to `f(count - 1)`, before anything moves, of a body whose law remembers this.
+    pub fn from_fn(count: usize, history: &'static [History], f: impl Fn(usize) -> Particle<T, D>) -> Self {
         let stride = Self::stride_of(count);
-        let columns = vec![T::ZERO; stride * Self::columns_of(flow)];
+        let columns = vec![T::ZERO; stride * Self::columns_of(history)];
         ask_for_large(columns.as_ptr(), columns.len());
         let numbers = vec![0; 2 * count];
-        let mut particles = Particles { len: count, columns, stride, numbers, later: false, flow };
+        let mut particles = Particles { len: count, columns, stride, numbers, later: false, history };
         for i in 0..count {
             let particle = f(i);
             particles.set(i, &particle);
             for k in 0..D {
                 particles.columns[(Column::<D>::START + k) * stride + i] = particle.position[k];
+            }
+        }
+        let mut column = Column::<D>::HISTORY;
+        for remembered in history {
+            for entry in 0..remembered.column.kind.entries(D) {
+                particles.columns[column * stride..][..count].fill(T::of(remembered.start_of(D, entry)));
+                column += 1;
             }
         }
         particles
@@ -114,9 +169,19 @@ impl<T: Real, const D: usize> Particles<T, D> {
         self.len
     }
 
-    /// Whether they have plastic strain.
-    pub fn flow(&self) -> bool {
-        self.flow
+    /// What their law remembers.
+    pub fn history(&self) -> &'static [History] {
+        self.history
+    }
+
+    /// All columns by the place of their first entry: those that every body has, and the history.
+    pub fn described(&self) -> impl Iterator<Item = (usize, ColumnDescription)> {
+        let history = self.history.iter().map(|history| history.column);
+        EVERY.into_iter().chain(history).scan(0, |first, column| {
+            let this = *first;
+            *first += column.kind.entries(D);
+            Some((this, column))
+        })
     }
 
     /// None at all.
@@ -174,20 +239,24 @@ impl<T: Real, const D: usize> Particles<T, D> {
         Columns {
             start: self.columns[self.first()..].as_ptr().cast_mut(),
             stride: self.stride,
-            flow: self.flow,
+            history: history_entries(self.history, D),
         }
     }
 
     /// Opens the columns to many threads.
     pub fn open(&mut self) -> Columns<T, D> {
         let first = self.first();
-        Columns { start: self.columns[first..].as_mut_ptr(), stride: self.stride, flow: self.flow }
+        Columns {
+            start: self.columns[first..].as_mut_ptr(),
+            stride: self.stride,
+            history: history_entries(self.history, D),
+        }
     }
 
     /// Puts the particles into the order of a permutation: first the one whose index comes first. Every column moves into the room beside it.
     pub fn permute(&mut self, order: &[u32]) {
         assert_eq!(order.len(), self.len, "a permutation names every particle");
-        let count = Column::<D>::COUNT + usize::from(self.flow);
+        let count = Column::<D>::HISTORY + history_entries(self.history, D);
         for column in 0..count {
             let column = if self.later { column } else { count - 1 - column };
             move_over(&mut self.columns[column * self.stride..][..2 * self.stride], self.later, order);
@@ -220,7 +289,8 @@ fn move_over<X: Copy + Send + Sync>(halves: &mut [X], later: bool, order: &[u32]
 pub struct Columns<T, const D: usize> {
     start: *mut T,
     stride: usize,
-    flow: bool,
+    /// Entries of the history.
+    history: usize,
 }
 
 // SAFETY: entries are only reached through unsafe functions, whose callers keep threads apart.
@@ -235,10 +305,10 @@ impl<T: Real, const D: usize> Columns<T, D> {
         self.stride
     }
 
-    /// Whether there is a column of plastic strain.
+    /// Entries of the history.
     #[inline(always)]
-    pub fn flow(&self) -> bool {
-        self.flow
+    pub fn history(&self) -> usize {
+        self.history
     }
 
     /// The entry of particle `i` in a column.
@@ -247,7 +317,7 @@ impl<T: Real, const D: usize> Columns<T, D> {
     /// The column and the particle must exist, and nobody may use the entry but by this pointer.
     #[inline(always)]
     pub unsafe fn at(&self, column: usize, i: usize) -> *mut T {
-        debug_assert!(column < Column::<D>::COUNT + usize::from(self.flow) && i < self.stride, "an entry");
+        debug_assert!(column < Column::<D>::HISTORY + self.history && i < self.stride, "an entry");
         // SAFETY: the caller's.
         unsafe { self.start.add(column * self.stride + i) }
     }
@@ -281,7 +351,6 @@ impl<T: Real, const D: usize> Columns<T, D> {
             half_width: at(Column::<D>::HALF_WIDTH),
             deformation,
             stress,
-            plastic_strain: if self.flow { at(Column::<D>::PLASTIC_STRAIN) } else { T::ZERO },
             number: 0,
         }
     }
@@ -309,9 +378,45 @@ impl<T: Real, const D: usize> Columns<T, D> {
         for (k, &x) in particle.stress.0.iter().enumerate().take(stress_entries(D)) {
             put(Column::<D>::STRESS + k, x);
         }
-        if self.flow {
-            put(Column::<D>::PLASTIC_STRAIN, particle.plastic_strain);
+    }
+}
+
+/// The history of one particle in its columns; nobody else may use the particle meanwhile. Rigid bodies keep none, and recall zeros.
+#[derive(Clone, Copy, Debug)]
+pub struct HistoryOf<T, const D: usize> {
+    columns: Columns<T, D>,
+    particle: usize,
+}
+
+impl<T: Real, const D: usize> Columns<T, D> {
+    /// The history of particle `i`.
+    ///
+    /// # Safety
+    /// The particle must exist, nobody may write to its history while what is returned is used for reading, nor use it
+    /// while that is used for writing.
+    #[inline(always)]
+    pub unsafe fn history_of(self, i: usize) -> HistoryOf<T, D> {
+        HistoryOf { columns: self, particle: i }
+    }
+}
+
+impl<T: Real, const D: usize> Recall<T> for HistoryOf<T, D> {
+    const DIMENSION: usize = D;
+    #[inline(always)]
+    fn recall(&self, entry: usize) -> T {
+        if entry >= self.columns.history {
+            return T::ZERO;
         }
+        // SAFETY: that of `Columns::history_of`.
+        unsafe { *self.columns.at(Column::<D>::HISTORY + entry, self.particle) }
+    }
+}
+
+impl<T: Real, const D: usize> Keep<T> for HistoryOf<T, D> {
+    #[inline(always)]
+    fn keep(&mut self, entry: usize, value: T) {
+        // SAFETY: as above.
+        unsafe { *self.columns.at(Column::<D>::HISTORY + entry, self.particle) = value }
     }
 }
 
@@ -319,8 +424,15 @@ impl<T: Real, const D: usize> Columns<T, D> {
 mod tests {
     use super::*;
 
+    /// As many tensors as a Prony series of two terms has.
+    const HISTORY: &[History] = &[
+        History::new("strain", "", Kind::Symmetric),
+        History { start: 2.0, ..History::new("other_strain", "", Kind::Symmetric) },
+        History::new("energy", "J/m^3", Kind::Number),
+    ];
+
     /// Orders by steps that share no factor with the count, one after the other.
-    fn sorted_again_and_again<const D: usize>(count: usize, flow: bool) {
+    fn sorted_again_and_again<const D: usize>(count: usize, history: &'static [History]) {
         let number = |i: usize, k: usize| (31 * i + k) as f64;
         let particle = |i: usize| Particle {
             position: Vector::from_fn(|k| number(i, k)),
@@ -331,10 +443,15 @@ mod tests {
             half_width: number(i, 11),
             deformation: Matrix::IDENTITY * number(i, 12),
             stress: Symmetric::isotropic(number(i, 13)),
-            plastic_strain: if flow { number(i, 14) } else { 0.0 },
             number: i as u32,
         };
-        let mut particles = Particles::<f64, D>::from_fn(count, flow, particle);
+        let mut particles = Particles::<f64, D>::from_fn(count, history, particle);
+        let entries = history_entries(history, D);
+        for i in 0..count {
+            // SAFETY: the particle exists and is nobody else's.
+            let mut memory = unsafe { particles.open().history_of(i) };
+            (0..entries).for_each(|entry| memory.keep(entry, number(i, 14 + entry)));
+        }
         let mut expected: Vec<u32> = (0..count as u32).collect();
         for step in [1, 7, 11, 13] {
             let order: Vec<u32> = (0..count).map(|i| (i * step % count) as u32).collect();
@@ -344,14 +461,19 @@ mod tests {
             for (found, &i) in particles.iter().zip(&expected) {
                 assert_eq!(found, particle(i as usize));
             }
+            for (place, &i) in expected.iter().enumerate() {
+                // SAFETY: as above.
+                let memory = unsafe { particles.view().history_of(place) };
+                assert!((0..entries).all(|entry| memory.recall(entry) == number(i as usize, 14 + entry)));
+            }
         }
     }
 
     /// In space 30 numbers and room for one more; each particle's number twice.
     #[test]
     fn the_bytes_of_particles_are_those_that_they_hold() {
-        let held = |count: usize, flow: bool| {
-            let particles = Particles::<f64, 3>::from_fn(count, flow, |_| Particle {
+        let held = |count: usize, history: &'static [History]| {
+            let particles = Particles::<f64, 3>::from_fn(count, history, |_| Particle {
                 position: Vector::ZERO,
                 velocity: Vector::ZERO,
                 spin: Vector::ZERO,
@@ -360,22 +482,59 @@ mod tests {
                 half_width: 0.0,
                 deformation: Matrix::IDENTITY,
                 stress: Symmetric::ZERO,
-                plastic_strain: 0.0,
                 number: 0,
             });
             size_of_val(&particles.columns[..]) + size_of_val(&particles.numbers[..])
         };
-        for (count, flow) in [(0, false), (1, true), (1000, false), (100_000, true)] {
-            assert_eq!(Particles::<f64, 3>::bytes_of(count, flow), held(count, flow), "{count} {flow}");
+        for (count, history) in [(0, &[][..]), (1, HISTORY), (1000, &[]), (100_000, HISTORY)] {
+            assert_eq!(Particles::<f64, 3>::bytes_of(count, history), held(count, history), "{count}");
         }
-        let each = Particles::<f64, 3>::bytes_of(1_000_000, false) as f64 / 1e6;
+        let each = Particles::<f64, 3>::bytes_of(1_000_000, &[]) as f64 / 1e6;
         assert!((each / (31.0 * 8.0 + 2.0 * 4.0) - 1.0).abs() < 1e-3, "{each}");
     }
 
     #[test]
     fn particles_are_sorted_whole() {
-        sorted_again_and_again::<2>(3 * PART + 5, false);
-        sorted_again_and_again::<3>(100, true);
-        sorted_again_and_again::<3>(0, false);
+        sorted_again_and_again::<2>(3 * PART + 5, &[]);
+        sorted_again_and_again::<2>(100, HISTORY);
+        sorted_again_and_again::<3>(100, HISTORY);
+        sorted_again_and_again::<3>(0, &[]);
+    }
+
+    #[test]
+    fn columns_lie_one_behind_the_other() {
+        let at = [Column::<3>::POSITION, Column::<3>::VELOCITY, Column::<3>::SPIN, Column::<3>::MASS];
+        assert_eq!(at, [0, 3, 6, 9]);
+        let at =
+            [Column::<3>::VOLUME, Column::<3>::HALF_WIDTH, Column::<3>::DEFORMATION, Column::<3>::STRESS];
+        assert_eq!(at, [10, 11, 12, 21]);
+        assert_eq!([Column::<3>::START, Column::<3>::HISTORY], [27, 30]);
+        assert_eq!(
+            [Column::<2>::SPIN, Column::<2>::MASS, Column::<2>::STRESS, Column::<2>::HISTORY],
+            [4, 5, 13, 19]
+        );
+        for (k, &[row, column]) in deformation_entries(2).iter().enumerate() {
+            assert_eq!(Kind::Tensor.place(2, k), 3 * row + column);
+        }
+    }
+
+    #[test]
+    fn history_begins_as_its_law_says() {
+        let particle = |_| Particle {
+            position: Vector::ZERO,
+            velocity: Vector::ZERO,
+            spin: Vector::ZERO,
+            mass: 0.0,
+            volume: 0.0,
+            half_width: 0.0,
+            deformation: Matrix::IDENTITY,
+            stress: Symmetric::ZERO,
+            number: 0,
+        };
+        let particles = Particles::<f64, 2>::from_fn(3, HISTORY, particle);
+        // SAFETY: the particle exists and is nobody else's.
+        let memory = unsafe { particles.view().history_of(2) };
+        let found: Vec<f64> = (0..9).map(|entry| memory.recall(entry)).collect();
+        assert_eq!(found, [0.0, 0.0, 0.0, 0.0, 2.0, 2.0, 2.0, 0.0, 0.0]);
     }
 }

@@ -11,6 +11,9 @@ pub mod tensor;
 // Shapes: inside(x), bounds; filling them with particles.
 pub mod geometry;
 
+// What a column of particles holds: name, unit, components.
+pub mod column;
+
 // One file a law: equation, code, tests.
 pub mod material;
 

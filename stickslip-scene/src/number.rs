@@ -43,6 +43,8 @@ pub trait Number:
     fn cbrt(self) -> Self;
     /// Natural logarithm.
     fn ln(self) -> Self;
+    /// e to this power.
+    fn exp(self) -> Self;
     /// Magnitude.
     fn abs(self) -> Self;
     /// The smaller of two numbers.
@@ -78,7 +80,7 @@ pub trait Real: Number + Default + PartialOrd + Sum {
 }
 
 macro_rules! real {
-    ($t:ty, $cbrt:path, $ln:path, $guess:expr) => {
+    ($t:ty, $cbrt:path, $ln:path, $exp:path, $guess:expr) => {
         impl Number for $t {
             const ZERO: Self = 0.0;
             const NOTHING: Self = -0.0;
@@ -100,6 +102,10 @@ macro_rules! real {
             #[inline(always)]
             fn ln(self) -> Self {
                 $ln(self)
+            }
+            #[inline(always)]
+            fn exp(self) -> Self {
+                $exp(self)
             }
             #[inline(always)]
             fn abs(self) -> Self {
@@ -143,8 +149,8 @@ macro_rules! real {
     };
 }
 // Dividing the bits by three divides the exponent by three; the constants make up for its bias and spread the error evenly.
-real!(f32, libm::cbrtf, libm::logf, |bits: u32| CUBE_ROOT_F32.wrapping_sub(bits / 3));
-real!(f64, libm::cbrt, libm::log, |bits: u64| CUBE_ROOT_F64.wrapping_sub((bits >> 32) / 3) << 32);
+real!(f32, libm::cbrtf, libm::logf, libm::expf, |bits: u32| CUBE_ROOT_F32.wrapping_sub(bits / 3));
+real!(f64, libm::cbrt, libm::log, libm::exp, |bits: u64| CUBE_ROOT_F64.wrapping_sub((bits >> 32) / 3) << 32);
 
 /// Bits from which to take a third of those of an `f32`, see [`Real::inverse_cube_root_guess`].
 pub const CUBE_ROOT_F32: u32 = 1_419_917_306;

@@ -6,7 +6,7 @@ use crate::darkroom::Darkroom;
 use crate::drawing::{DrawError, save};
 use crate::failure::Failure;
 use crate::illustration::{Album, PictureChoice, Pictures, snapshots};
-use crate::picture::{Quantity, View};
+use crate::picture::{Quantity, QuantityParser, View};
 use clap::Args;
 use miette::miette;
 use std::fs::File;
@@ -42,7 +42,7 @@ pub struct Arguments {
     rate: Option<f64>,
 
     /// What colour stands for.
-    #[arg(long, value_enum, default_value = "body")]
+    #[arg(long, value_parser = QuantityParser, default_value = "body")]
     color: Quantity,
 
     /// Values at the ends of the colours, in SI units: LOW,HIGH.
@@ -149,7 +149,7 @@ impl Arguments {
             return Ok(Box::new(darkroom));
         }
         let choice = PictureChoice {
-            quantity: self.color,
+            quantity: self.color.clone(),
             range: self.range,
             view: self.view,
             mirror: self.mirror.clone(),

@@ -35,7 +35,7 @@ pub type Quarters = HashMap<(u32, u32), bool>;
 /// The particles of a snapshot, coloured.
 pub fn grains(
     particles: &ParticleSnapshot,
-    quantity: Quantity,
+    quantity: &Quantity,
     scale: &Scale,
     quarters: &Quarters,
 ) -> Vec<Grain> {

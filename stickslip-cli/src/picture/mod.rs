@@ -14,7 +14,7 @@ mod surface;
 
 pub use camera::View;
 pub use grains::{Quarters, quarters};
-pub use quantity::Quantity;
+pub use quantity::{Quantity, QuantityParser};
 pub use setting::{Mirror, Setting};
 
 use crate::drawing::{Canvas, DrawError, Rgb, SAMPLES, Scale, body_color};
@@ -49,7 +49,7 @@ pub type Bounds = [[f64; 3]; 2];
 /// What the colours mean.
 enum Legend {
     /// Values between two ends.
-    Bar { scale: Scale, title: &'static str, unit: &'static str },
+    Bar { scale: Scale, title: String, unit: String },
     /// One colour a body.
     Names(Vec<(String, Rgb)>),
 }
@@ -77,7 +77,7 @@ pub fn draw(
     if particles.body.is_empty() {
         return Err(DrawError::Empty("the snapshot has no particles".to_owned()));
     }
-    let mut grains = grains::grains(particles, look.quantity, &look.scale, quarters);
+    let mut grains = grains::grains(particles, &look.quantity, &look.scale, quarters);
     if let Some(mirror) = look.mirror {
         grains = grains::mirrored(grains, mirror);
     }
@@ -156,7 +156,7 @@ fn widened(mut bounds: Bounds, mirror: Mirror) -> Bounds {
 
 fn legend(particles: &ParticleSnapshot, setting: &Setting, look: &Look) -> Legend {
     if look.quantity != Quantity::Body {
-        let (title, unit) = look.quantity.label();
+        let (title, unit) = look.quantity.label(particles);
         return Legend::Bar { scale: look.scale, title, unit };
     }
     let count = particles.body.iter().max().map_or(0, |last| *last as usize + 1);
@@ -244,8 +244,8 @@ mod tests {
         let count = particles.body.len();
         let values: Vec<f64> = (0..count).map(|i| quantity.value(particles, i)).collect();
         Look {
-            quantity,
             scale: quantity.scale(&values),
+            quantity,
             view: View::Auto,
             mirror: None,
             size: None,
@@ -283,7 +283,7 @@ mod tests {
             let setting = setting(gravity, center);
             let quarters = quarters(&particles, &setting);
             for quantity in [Quantity::Body, Quantity::Velocity, Quantity::Pressure] {
-                let look = look(quantity, &particles);
+                let look = look(quantity.clone(), &particles);
                 let canvas = draw(&particles, &setting, &quarters, (0.5, &look)).unwrap();
                 let share = inked_share(&canvas);
                 assert!(share > 0.15 && share < 0.95, "{dimension} {quantity:?} {share}");

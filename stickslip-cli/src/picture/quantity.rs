@@ -2,11 +2,13 @@
 
 use super::Rgb;
 use crate::drawing::Scale;
-use clap::ValueEnum;
+use clap::builder::{EnumValueParser, PossibleValue, TypedValueParser};
+use clap::{Arg, Command, ValueEnum};
+use std::ffi::OsStr;
 use stickslip::door::ParticleSnapshot;
 
 /// What the colour of a particle stands for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Debug, PartialEq, Eq, ValueEnum)]
 #[value(rename_all = "snake_case")]
 pub enum Quantity {
     /// The body it belongs to; round bodies get quarters, so that turning shows
@@ -37,8 +39,44 @@ pub enum Quantity {
     Xz,
     /// Volume over undeformed volume
     Jacobian,
-    /// Equivalent plastic strain
-    PlasticStrain,
+    /// What a material's law remembers, by the name of its column: a number itself, of a tensor the root of the sum of its squared entries
+    #[value(skip)]
+    History(String),
+}
+
+/// Reads a [`Quantity`]: a word that stands for one, or else the name of a law's history.
+#[derive(Clone, Debug)]
+pub struct QuantityParser;
+
+impl TypedValueParser for QuantityParser {
+    type Value = Quantity;
+
+    fn parse_ref(
+        &self,
+        command: &Command,
+        argument: Option<&Arg>,
+        value: &OsStr,
+    ) -> Result<Quantity, clap::Error> {
+        let known = EnumValueParser::<Quantity>::new().parse_ref(command, argument, value);
+        match value.to_str() {
+            Some(name) if known.is_err() && is_name(name) => Ok(Quantity::History(name.to_owned())),
+            _ => known,
+        }
+    }
+
+    fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
+        let history = PossibleValue::new("NAME").help(
+            "What a material's law remembers, such as plastic_strain: a number itself, of a tensor the root of the sum of its \
+             squared entries",
+        );
+        let words = Quantity::value_variants().iter().filter_map(ValueEnum::to_possible_value);
+        Some(Box::new(words.chain([history])))
+    }
+}
+
+/// Whether a column could be called so.
+fn is_name(text: &str) -> bool {
+    !text.is_empty() && text.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_')
 }
 
 /// Where the colours of a quantity come from.
@@ -52,7 +90,7 @@ enum Kind {
 
 impl Quantity {
     /// The value at a particle in SI units; 0 for [`Quantity::Body`], which has no value.
-    pub fn value(self, particles: &ParticleSnapshot, i: usize) -> f64 {
+    pub fn value(&self, particles: &ParticleSnapshot, i: usize) -> f64 {
         let v = &particles.velocity[i];
         let s = &particles.stress[i];
         match self {
@@ -70,14 +108,13 @@ impl Quantity {
             Quantity::Yz => s[4],
             Quantity::Xz => s[5],
             Quantity::Jacobian => determinant(&particles.deformation[i]),
-            // Where nothing flows there is none.
-            Quantity::PlasticStrain => particles.plastic_strain.get(i).copied().unwrap_or(0.0),
+            Quantity::History(name) => particles.remembered(name).map_or(0.0, |column| column.magnitude(i)),
         }
     }
 
     /// Words and unit for the colour bar; no unit for a ratio.
-    pub fn label(self) -> (&'static str, &'static str) {
-        match self {
+    pub fn label(&self, particles: &ParticleSnapshot) -> (String, String) {
+        let (words, unit) = match self {
             Quantity::Body => ("body", ""),
             Quantity::Velocity => ("speed", "m/s"),
             Quantity::Vx => ("velocity x", "m/s"),
@@ -92,19 +129,36 @@ impl Quantity {
             Quantity::Yz => ("stress yz", "Pa"),
             Quantity::Xz => ("stress xz", "Pa"),
             Quantity::Jacobian => ("volume ratio J", ""),
-            Quantity::PlasticStrain => ("plastic strain", ""),
+            Quantity::History(name) => {
+                let unit = particles.remembered(name).map_or("", |column| &column.unit);
+                return (name.replace('_', " "), unit.to_owned());
+            }
+        };
+        (words.to_owned(), unit.to_owned())
+    }
+
+    /// Whether a snapshot has it; if not, what there is instead.
+    pub fn is_in(&self, particles: &ParticleSnapshot) -> Result<(), String> {
+        let Quantity::History(name) = self else { return Ok(()) };
+        if particles.remembered(name).is_some() {
+            return Ok(());
         }
+        let words = Quantity::value_variants().iter().filter_map(ValueEnum::to_possible_value);
+        let words: Vec<String> = words.map(|word| word.get_name().to_owned()).collect();
+        let history = particles.history.iter().map(|column| column.name.clone());
+        let all: Vec<String> = words.into_iter().chain(history).collect();
+        Err(format!("found `{name}`, which no law of the scene remembers; allowed: {}", all.join(", ")))
     }
 
     /// Colours that suit these values. The outermost thousandth of the values at either end do not stretch the scale.
-    pub fn scale(self, values: &[f64]) -> Scale {
+    pub fn scale(&self, values: &[f64]) -> Scale {
         let mut sorted: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
         sorted.sort_by(f64::total_cmp);
         let at = |share: f64| {
             sorted.get((share * sorted.len().saturating_sub(1) as f64) as usize).copied().unwrap_or(0.0)
         };
         let (low, high) = (at(0.001), at(0.999));
-        match self.kind() {
+        match self.kind(low) {
             Kind::Magnitude => Scale { range: [0.0, if high > 0.0 { high } else { 1.0 }], diverging: false },
             Kind::Around(middle) => {
                 let half = (high - middle).abs().max((low - middle).abs());
@@ -115,15 +169,15 @@ impl Quantity {
     }
 
     /// Colours between two ends that the user chose.
-    pub fn scale_between(self, range: [f64; 2]) -> Scale {
-        Scale { range, diverging: self.kind() != Kind::Magnitude }
+    pub fn scale_between(&self, range: [f64; 2]) -> Scale {
+        Scale { range, diverging: self.kind(range[0]) != Kind::Magnitude }
     }
 
-    fn kind(self) -> Kind {
+    /// Where the colours come from if values go down to this.
+    fn kind(&self, low: f64) -> Kind {
         match self {
-            Quantity::Body | Quantity::Velocity | Quantity::VonMises | Quantity::PlasticStrain => {
-                Kind::Magnitude
-            }
+            Quantity::Body | Quantity::Velocity | Quantity::VonMises => Kind::Magnitude,
+            Quantity::History(_) if low >= 0.0 => Kind::Magnitude,
             Quantity::Jacobian => Kind::Around(1.0),
             _ => Kind::Around(0.0),
         }
@@ -144,17 +198,47 @@ pub fn determinant(f: &[f64; 9]) -> f64 {
 }
 
 /// The colour of every particle for a quantity with values.
-pub fn colors(quantity: Quantity, scale: &Scale, particles: &ParticleSnapshot) -> Vec<Rgb> {
+pub fn colors(quantity: &Quantity, scale: &Scale, particles: &ParticleSnapshot) -> Vec<Rgb> {
     (0..particles.body.len()).map(|i| scale.color(quantity.value(particles, i))).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use stickslip::column::Kind as Components;
+    use stickslip::door::SnapshotColumn;
 
     #[test]
     fn von_mises_of_uniaxial_stress_is_the_stress() {
         assert!((von_mises(&[-4.0, 0.0, 0.0, 0.0, 0.0, 0.0]) - 4.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn history_is_shown_by_its_name_and_a_tensor_by_its_norm() {
+        let column =
+            |name: &str, kind, values| SnapshotColumn { name: name.into(), unit: "Pa".into(), kind, values };
+        let history = vec![
+            column("heat", Components::Number, vec![3.0, -1.0]),
+            column(
+                "back_stress",
+                Components::Symmetric,
+                [[3.0, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0, 2.0, 0.0]].concat(),
+            ),
+        ];
+        let particles = ParticleSnapshot {
+            velocity: vec![[0.0; 3]; 2],
+            stress: vec![[0.0; 6]; 2],
+            history,
+            ..Default::default()
+        };
+        let [heat, back_stress, none] =
+            ["heat", "back_stress", "none"].map(|name| Quantity::History(name.into()));
+        assert_eq!([heat.value(&particles, 1), back_stress.value(&particles, 0)], [-1.0, 3.0]);
+        assert!((back_stress.value(&particles, 1) - 8.0_f64.sqrt()).abs() < 1e-15);
+        assert_eq!(back_stress.label(&particles), ("back stress".into(), "Pa".into()));
+        assert!(heat.is_in(&particles).is_ok());
+        let error = none.is_in(&particles).unwrap_err();
+        assert!(error.contains("`none`") && error.ends_with("jacobian, heat, back_stress"), "{error}");
     }
 
     #[test]

@@ -5,7 +5,7 @@ mod totals;
 pub use totals::Totals;
 
 use crate::geometry::Whole;
-use crate::material::{Material, Motion, Response, Thickness};
+use crate::material::{Keep, Material, Motion, Recall, Thickness};
 use crate::particles::Particles;
 use crate::tensor::{Matrix, Number, Real, Symmetric, Vector};
 
@@ -28,8 +28,6 @@ pub struct Particle<T, const D: usize> {
     pub deformation: Matrix<T>,
     /// Cauchy stress, tension positive [Pa].
     pub stress: Symmetric<T>,
-    /// Equivalent plastic strain, zero where nothing flows [-].
-    pub plastic_strain: T,
     /// Its number in its body, from the filling.
     pub number: u32,
 }
@@ -93,15 +91,26 @@ impl<T: Real, const D: usize> Body<T, D> {
         T::HALF * particle.mass * (velocity.dot(velocity) + turning)
     }
 
-    /// A particle's motion with the thickness that it takes, and its law's response; `None` if no thickness is free of stress.
+    /// A particle's motion with the thickness that it takes, and the stress after it; `None` if no thickness is free of stress.
     #[inline]
-    pub fn respond(&self, motion: Motion<T>) -> Option<(Motion<T>, Response<T>)> {
-        self.material.respond(self.thickness, motion)
+    pub fn respond(
+        &self,
+        motion: Motion<T>,
+        history: &mut impl Keep<T>,
+    ) -> Option<(Motion<T>, Symmetric<T>)> {
+        self.material.respond_with(self.thickness, motion, history)
     }
 
-    /// Stiffness against the fastest wave in a state of deformation, times J [Pa].
+    /// Stiffness against the fastest wave in the present state of a particle, times J [Pa].
     #[inline]
-    pub fn wave_modulus(&self, deformation: &Matrix<T>, jacobian: T) -> T {
-        self.material.wave_modulus(self.thickness, deformation, jacobian)
+    pub fn wave_modulus(&self, particle: &Particle<T, D>, history: &impl Recall<T>) -> T {
+        let f = &particle.deformation;
+        self.material.wave_modulus(self.thickness, (f, f.det()), history)
+    }
+
+    /// Whether surfaces may be found by its particles' deformation: of one that deforms its law says so.
+    #[inline]
+    pub fn trusts_deformation(&self) -> bool {
+        self.rigid || self.material.trusts_deformation()
     }
 }

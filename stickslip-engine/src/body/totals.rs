@@ -2,7 +2,7 @@
 
 use super::{Body, Gyration};
 use crate::lanes::{Laned, Lanes, MOST_LANES, Machine, Processor, Work};
-use crate::material::Material;
+use crate::material::{Material, Recall};
 use crate::particles::{Column, Columns, deformation_entries, spin_entries, stress_entries};
 use crate::tensor::{Matrix, Real, Symmetric, cross};
 use crate::threads::by_parts;
@@ -23,7 +23,7 @@ pub struct Totals {
     pub kinetic: f64,
     /// sum V W [J]
     pub strain: f64,
-    /// sum V W_p [J]
+    /// sum V D, what the material dissipated: by plastic flow, viscosity or damage [J]
     pub plastic: f64,
 }
 
@@ -199,7 +199,7 @@ unsafe fn stored<V: Lanes, const D: usize>(
     first: usize,
     count: usize,
 ) -> [Each; 3] {
-    let (mut f, mut stress, mut plastic_strain) = (Matrix::ZERO, Symmetric::ZERO, V::ZERO);
+    let (mut f, mut stress) = (Matrix::ZERO, Symmetric::ZERO);
     // SAFETY: the caller's.
     unsafe {
         for (k, &[row, column]) in deformation_entries(D).iter().enumerate() {
@@ -208,13 +208,25 @@ unsafe fn stored<V: Lanes, const D: usize>(
         for k in 0..stress_entries(D) {
             stress.0[k] = V::load_first(columns.at(Column::<D>::STRESS + k, first), count);
         }
-        if columns.flow() {
-            plastic_strain = V::load_first(columns.at(Column::<D>::PLASTIC_STRAIN, first), count);
-        }
     }
-    let energy = material.strain_energy(&f, &stress);
-    // No `map`, see `tensor::array`.
-    [each(energy), each(material.dissipation(plastic_strain)), each(f.det())]
+    let [energy, dissipation] = material.energies(&f, &stress, &HistoryOfSome { columns, first, count });
+    [each(energy), each(dissipation), each(f.det())]
+}
+
+/// The history of particles that lie side by side; zero in the lanes beyond.
+struct HistoryOfSome<'a, T, const D: usize> {
+    columns: &'a Columns<T, D>,
+    first: usize,
+    count: usize,
+}
+
+impl<V: Lanes, const D: usize> Recall<V> for HistoryOfSome<'_, V::Real, D> {
+    const DIMENSION: usize = D;
+    #[inline(always)]
+    fn recall(&self, entry: usize) -> V {
+        // SAFETY: the particles are the body's, which is borrowed for reading.
+        unsafe { V::load_first(self.columns.at(Column::<D>::HISTORY + entry, self.first), self.count) }
+    }
 }
 
 /// Inertia tensor [kg m^2] and angular momentum [kg m^2/s] of some particles of a body about a point that moves.

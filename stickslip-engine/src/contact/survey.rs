@@ -9,7 +9,7 @@ use crate::boundary::Boundary;
 use crate::grid::{Cover, Field, Lattice, Meeting, Node, Nodes, SIDE, next_of, node_at, nodes_per_block};
 use crate::lanes::{Laned, Processor};
 use crate::scene::{ContactLaw, Face};
-use crate::tensor::{Matrix, Real, Symmetric, Vector};
+use crate::tensor::{Real, Symmetric, Vector};
 use crate::threads::each;
 use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
@@ -227,7 +227,10 @@ impl<T: Laned, const D: usize> Near<'_, T, D> {
         next.clear();
         moduli.clear();
         moduli.extend(
-            slots.iter().map(|&slot| self.bodies[body(slot)].wave_modulus(&Matrix::IDENTITY, T::ONE)),
+            slots
+                .iter()
+                .map(|&slot| &self.bodies[body(slot)])
+                .map(|body| body.material.wave_modulus_at_rest(body.thickness)),
         );
         let by_place = |&[_, _, rule]: &[usize; 3]| law::<T, D>(self.rules.rule(rule).law).by_place();
         let places = self.ahead.is_some() && pairs.iter().all(by_place);
@@ -345,7 +348,7 @@ impl<T: Laned, const D: usize> Near<'_, T, D> {
                 ((-sums.mass_gradient()).direction(), sums.stress(), sums.force() * (mass / sums.mass()))
             }
         };
-        let place = sums.place(owner.particles.flow()).seen_from(arm);
+        let place = sums.place(!owner.trusts_deformation()).seen_from(arm);
         // A rigid surface is where it is said to be; its lattice has stairs.
         let exact =
             (owner.rigid && normal.is_some()).then(|| place.offset(Vector::ZERO, &owner.whole).normal);

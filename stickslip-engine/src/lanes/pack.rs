@@ -78,6 +78,10 @@ impl<T: Real, const N: usize> Number for Pack<T, N> {
         self.map(T::ln)
     }
     #[inline(always)]
+    fn exp(self) -> Self {
+        self.map(T::exp)
+    }
+    #[inline(always)]
     fn abs(self) -> Self {
         self.map(T::abs)
     }

@@ -61,6 +61,10 @@ impl<V: Lanes> Number for Pair<V> {
         Pair(self.0.ln(), self.1.ln())
     }
     #[inline(always)]
+    fn exp(self) -> Self {
+        Pair(self.0.exp(), self.1.exp())
+    }
+    #[inline(always)]
     fn abs(self) -> Self {
         Pair(self.0.abs(), self.1.abs())
     }

@@ -13,9 +13,12 @@ use crate::door::Simulation;
 use crate::geometry::{Filling, Mirror, Site, Whole, fill};
 use crate::grid::Lattice;
 use crate::lanes::{Laned, Processor};
+use crate::material::{BadConstants, History, Material};
 use crate::particles::Particles;
 use crate::rigid::RigidMotion;
-use crate::scene::{self, BasisKind, Dimension, Face, Motion, Precision, Problem, Scene, Transfer};
+use crate::scene::{
+    self, BasisKind, Dimension, Face, Motion, NamedMaterial, Precision, Problem, Scene, Transfer,
+};
 use crate::tensor::{Matrix, Real, Symmetric, Vector, cross};
 use crate::transfer::turning;
 use std::marker::PhantomData;
@@ -92,7 +95,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             };
             bodies.push(Body {
                 name: body.name.clone(),
-                material: scene.materials[body.material].law.cast(),
+                material: material(scene, body)?,
                 density: T::of(scene.materials[body.material].density),
                 particles: particles(scene, body, &filling, (velocity, turning)),
                 rigid: motion.is_some(),
@@ -133,6 +136,18 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     }
 }
 
+/// The law of a body, for the scene's cells and in the precision of the engine.
+fn material<T: Real>(scene: &Scene, body: &scene::Body) -> Result<Material<T>, Problem> {
+    let NamedMaterial { name, law, .. } = &scene.materials[body.material];
+    let at = |bad: BadConstants| Problem {
+        key: format!("materials.{name}.{}", law.name()),
+        found: bad.found,
+        allowed: bad.allowed,
+        help: None,
+    };
+    law.on_grid(scene.discretization.cell).map(|law| law.cast()).map_err(at)
+}
+
 /// The prescribed motion of a rigid body.
 fn prescribed(body: &scene::Body, center: [f64; 3]) -> Option<RigidMotion> {
     match &body.motion {
@@ -170,12 +185,18 @@ fn particles<T: Real, const D: usize>(
             half_width: T::of(site.half_width),
             deformation: Matrix::IDENTITY,
             stress: Symmetric::ZERO,
-            plastic_strain: T::ZERO,
             number: number as u32,
         }
     };
-    let flow = matches!(body.motion, Motion::Free { .. }) && scene.materials[body.material].law.flows();
-    Particles::from_fn(filling.sites.len(), flow, particle)
+    Particles::from_fn(filling.sites.len(), history(scene, body), particle)
+}
+
+/// What the particles of a body remember: rigid ones nothing.
+pub fn history(scene: &Scene, body: &scene::Body) -> &'static [History] {
+    match body.motion {
+        Motion::Free { .. } => scene.materials[body.material].law.history(),
+        Motion::Rigid { .. } => &[],
+    }
 }
 
 /// The domain's faces that are mirrors.

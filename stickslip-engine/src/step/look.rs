@@ -3,16 +3,17 @@
 use super::Engine;
 use super::state::Workspace;
 use crate::basis::Basis;
-use crate::body::{Body, Particle, Totals};
+use crate::body::{Body, Totals};
 use crate::boundary::Boundary;
+use crate::column::{ColumnDescription, Kind};
 use crate::contact::Span;
 use crate::door::{
     BodyState, ContactSum, GridSnapshot, Ledger, ParticleSnapshot, ParticleView, Patch, Simulation,
-    StepError, TracedParticle, View,
+    SnapshotColumn, StepError, TracedParticle, View,
 };
 use crate::grid::{node_at, nodes_per_block};
 use crate::lanes::Laned;
-use crate::particles::Column;
+use crate::particles::{Column, Columns};
 use crate::tensor::{Real, Vector};
 use crate::threads::by_parts;
 use rayon::prelude::*;
@@ -35,10 +36,61 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         known.get_or_insert_with(|| by_parts(self.state.bodies.len(), 1, sum).into()).clone()
     }
 
-    /// Something of each particle, given by body and place in memory.
-    fn column<X: Send>(&self, places: &[[u32; 2]], of: impl Fn(&Particle<T, D>) -> X + Sync) -> Vec<X> {
-        let at = |&[body, place]: &[u32; 2]| self.state.bodies[body as usize].particles.get(place as usize);
-        places.par_iter().map(|place| of(&at(place))).collect()
+    /// Where the columns of this name begin in each body, if it has them.
+    fn places_of(&self, name: &str, kind: Kind) -> Vec<Option<(usize, Columns<T, D>)>> {
+        let of_body = |body: &Body<T, D>| {
+            let mut columns = body.particles.described();
+            let found = columns.find(|(_, column)| column.name == name && column.kind == kind);
+            found.map(|(first, _)| (first, body.particles.view()))
+        };
+        self.state.bodies.iter().map(of_body).collect()
+    }
+
+    /// A column of all particles, given by body and place in memory: the components in space, and zeros where a body has no such column.
+    fn column<const N: usize>(&self, rows: &[[u32; 2]], (name, kind): (&str, Kind)) -> Vec<[f64; N]> {
+        let places = self.places_of(name, kind);
+        let of_row = |&[body, place]: &[u32; 2]| {
+            let mut values = [0.0; N];
+            if let Some((first, columns)) = &places[body as usize] {
+                for entry in 0..kind.entries(D) {
+                    // SAFETY: the particle is the body's, which is borrowed for reading.
+                    let value = unsafe { *columns.at(first + entry, place as usize) };
+                    values[kind.place(D, entry)] = value.f64();
+                }
+            }
+            values
+        };
+        rows.par_iter().map(of_row).collect()
+    }
+
+    /// A column of one component.
+    fn numbers(&self, rows: &[[u32; 2]], name: &str) -> Vec<f64> {
+        self.column::<1>(rows, (name, Kind::Number)).into_flattened()
+    }
+
+    /// What the laws of the bodies remember: what two laws call alike is one column.
+    fn remembered(&self, rows: &[[u32; 2]]) -> Vec<SnapshotColumn> {
+        let mut declared: Vec<ColumnDescription> = Vec::new();
+        for history in self.state.bodies.iter().flat_map(|body| body.particles.history()) {
+            if !declared
+                .iter()
+                .any(|known| (known.name, known.kind) == (history.column.name, history.column.kind))
+            {
+                declared.push(history.column);
+            }
+        }
+        let column = |ColumnDescription { name, unit, kind }| SnapshotColumn {
+            name: String::from(name),
+            unit: String::from(unit),
+            kind,
+            values: match kind {
+                Kind::Number => self.numbers(rows, name),
+                Kind::Vector | Kind::Rotation => self.column::<3>(rows, (name, kind)).into_flattened(),
+                Kind::Symmetric => self.column::<6>(rows, (name, kind)).into_flattened(),
+                Kind::Tensor => self.column::<9>(rows, (name, kind)).into_flattened(),
+            },
+        };
+        declared.into_iter().map(column).collect()
     }
 }
 
@@ -140,20 +192,14 @@ impl<T: Laned, const D: usize, B: Basis<T>> View for Engine<T, D, B> {
         ParticleSnapshot {
             dimension: D,
             body: rows.par_iter().map(|&[body, _]| body).collect(),
-            number: self.column(&rows, |particle| particle.number),
-            position: self.column(&rows, |particle| particle.position.space()),
-            velocity: self.column(&rows, |particle| particle.velocity.space()),
-            mass: self.column(&rows, |particle| particle.mass.f64()),
-            volume: self.column(&rows, |particle| particle.volume.f64()),
-            stress: self.column(&rows, |particle| particle.stress.0.map(Real::f64)),
-            deformation: self.column(&rows, |particle| {
-                let f = &particle.deformation.0;
-                std::array::from_fn(|k| f[k / 3][k % 3].f64())
-            }),
-            plastic_strain: match self.state.bodies.iter().any(|body| body.particles.flow()) {
-                true => self.column(&rows, |particle| particle.plastic_strain.f64()),
-                false => Vec::new(),
-            },
+            number: (self.state.bodies.iter()).flat_map(|body| 0..body.particles.len() as u32).collect(),
+            position: self.column(&rows, ("position", Kind::Vector)),
+            velocity: self.column(&rows, ("velocity", Kind::Vector)),
+            mass: self.numbers(&rows, "mass"),
+            volume: self.numbers(&rows, "volume"),
+            stress: self.column(&rows, ("stress", Kind::Symmetric)),
+            deformation: self.column(&rows, ("deformation", Kind::Tensor)),
+            history: self.remembered(&rows),
         }
     }
 

@@ -11,6 +11,7 @@ mod unbounded;
 mod verbs;
 mod watch;
 
+pub(crate) use build::history;
 pub use build::{build, build_on};
 pub use pass::Path;
 pub(crate) use unbounded::particles_around;

@@ -4,7 +4,7 @@ use crate::basis::Basis;
 use crate::body::{Body, Particle};
 use crate::grid::{Disjoint, Lattice, Node, SIDE, Sought, Tile, Window, addressable};
 use crate::lanes::{Any, Machine, Processor};
-use crate::material::Motion;
+use crate::material::{Motion, Recall};
 use crate::particles::Columns;
 use crate::scene::Transfer;
 use crate::tensor::{Matrix, Real, Vector};
@@ -210,7 +210,7 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
         // SAFETY: the caller's.
         let mut particle = unsafe { self.columns.get(index as usize) };
         let stencil = Stencil::<T, D, B>::new(&self.pass.lattice, &particle);
-        let outcome = self.change(&mut particle, &stencil);
+        let outcome = self.change((&mut particle, index as usize), &stencil);
         // SAFETY: the caller's.
         unsafe { self.columns.set(index as usize, &particle) };
         match outcome {
@@ -224,12 +224,18 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
             let moved = Stencil::<T, D, B>::new(&self.pass.lattice, &particle).base() != stencil.base();
             self.left |= u64::from(moved) << cell;
             self.moved += u32::from(moved);
-            let signal = signal(self.body, &particle);
+            // SAFETY: the caller's.
+            let history = unsafe { self.columns.history_of(index as usize) };
+            let signal = signal(self.body, &particle, &history);
             self.found.signal = self.found.signal.max(signal);
         }
     }
 
-    fn change(&mut self, particle: &mut Particle<T, D>, stencil: &Stencil<T, D, B>) -> Result<(), FaultKind> {
+    fn change(
+        &mut self,
+        (particle, index): (&mut Particle<T, D>, usize),
+        stencil: &Stencil<T, D, B>,
+    ) -> Result<(), FaultKind> {
         let Pass { verbs, dt, transfer, pic, ref lattice, domain } = *self.pass;
         let block = self.tile.block;
         if verbs.accept {
@@ -270,16 +276,12 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
             if jacobian <= T::ZERO {
                 return Err(FaultKind::Inverted);
             }
-            let motion = Motion {
-                deformation,
-                jacobian,
-                increment,
-                stress: particle.stress,
-                plastic_strain: particle.plastic_strain,
-            };
-            let (motion, response) = self.body.respond(motion).ok_or(FaultKind::NoThickness)?;
+            let motion = Motion { deformation, jacobian, increment, stress: particle.stress, dt };
+            // SAFETY: the caller of this pass keeps others away from the tile's particles.
+            let mut history = unsafe { self.columns.history_of(index) };
+            let (motion, stress) = self.body.respond(motion, &mut history).ok_or(FaultKind::NoThickness)?;
             (particle.deformation, particle.volume) = (motion.deformation, undeformed * motion.jacobian);
-            (particle.stress, particle.plastic_strain) = (response.stress, response.plastic_strain);
+            particle.stress = stress;
             particle.stress.is_finite().then_some(()).ok_or(FaultKind::NotFinite)?;
         }
         if verbs.displace {
@@ -314,9 +316,12 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
 }
 
 /// Wave speed plus particle speed [m/s], see [`crate::clock`].
-pub fn signal<T: Real, const D: usize>(body: &Body<T, D>, particle: &Particle<T, D>) -> T {
-    let f = &particle.deformation;
-    (body.wave_modulus(f, f.det()) / body.density).sqrt() + particle.velocity.norm()
+pub fn signal<T: Real, const D: usize>(
+    body: &Body<T, D>,
+    particle: &Particle<T, D>,
+    history: &impl Recall<T>,
+) -> T {
+    (body.wave_modulus(particle, history) / body.density).sqrt() + particle.velocity.norm()
 }
 
 /// Whether a particle is outside the domain, or so far away that its cell has no number.

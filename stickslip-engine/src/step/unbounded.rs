@@ -236,11 +236,10 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             half_width: T::of(0.5 * lattice.spacing),
             deformation: Matrix::from_fn(|i, j| T::of(pose.orientation.0[i][j])),
             stress: Symmetric::ZERO,
-            plastic_strain: T::ZERO,
             number: i as u32,
         };
         // They start where they would have been at the start, and are moved from there.
-        let mut particles = Particles::from_fn(sites.len(), false, particle);
+        let mut particles = Particles::from_fn(sites.len(), &[], particle);
         for (i, &site) in sites.iter().enumerate() {
             particles.set(i, &Particle { position: Vector::of(pose.now(site)), ..particle(i) });
         }

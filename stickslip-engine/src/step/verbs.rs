@@ -347,7 +347,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 moved_on +=
                     u32::from(Stencil::<T, D, B>::new(&self.settings.lattice, &particle).base() != home);
                 let fault = kind.map(|kind| Fault { body: i, particle: p, kind });
-                found = found.and(Found { fault, signal: signal(body, &particle) });
+                // SAFETY: the particles are borrowed here alone.
+                let history = unsafe { body.particles.view().history_of(p) };
+                found = found.and(Found { fault, signal: signal(body, &particle, &history) });
             }
             motion.advance(&rotation, dt);
             let tiles = self.workspace.cover.tiles_held(i);

@@ -6,16 +6,31 @@ use super::frames::Frames;
 use super::schedule::Schedule;
 use super::vtu::{NUMBER, Points, SYMMETRIC, TENSOR, VECTOR, Vtu};
 use super::{Observer, PARTICLES};
-use crate::door::{ParticleSnapshot, View};
+use crate::door::{ParticleSnapshot, SnapshotColumn, View};
 use crate::scene::Scene;
 use crate::tensor::Symmetric;
 use std::path::Path;
 
-/// Most bytes of a particle in a snapshot: 24 numbers and two whole ones.
-pub(super) const PARTICLE_BYTES: usize = 24 * size_of::<f64>() + 2 * size_of::<u32>();
+/// Bytes of a particle in a snapshot but for its history: 23 numbers and two whole ones.
+pub(super) const PARTICLE_BYTES: usize = 23 * size_of::<f64>() + 2 * size_of::<u32>();
 
-/// The array that only scenes with a law that flows have.
-const PLASTIC_STRAIN: &str = "plastic_strain";
+/// Arrays of every file; the others are history.
+const OF_ALL: [&str; 14] = [
+    "points",
+    "connectivity",
+    "offsets",
+    "types",
+    "velocity",
+    "stress",
+    "pressure",
+    "von_mises",
+    "deformation",
+    "body",
+    "number",
+    "mass",
+    "volume",
+    "dimension",
+];
 
 /// Writes `particles.pvd` and `particles/`.
 pub(super) struct Particles {
@@ -40,7 +55,8 @@ impl Observer for Particles {
         let time = view.time();
         self.frames.make_room()?;
         let snapshot = view.snapshot();
-        let bytes = PARTICLE_BYTES * snapshot.mass.len();
+        let history: usize = snapshot.history.iter().map(|column| size_of_val(&column.values[..])).sum();
+        let bytes = PARTICLE_BYTES * snapshot.mass.len() + history;
         self.frames.push(time, bytes, move || encode_particles(&snapshot, time));
         self.schedule.recorded(time);
         Ok(())
@@ -85,8 +101,8 @@ pub fn encode_particles(snapshot: &ParticleSnapshot, time: f64) -> Vtu {
     file.point_data("number", NUMBER, &snapshot.number);
     file.point_data("mass", NUMBER, &snapshot.mass);
     file.point_data("volume", NUMBER, &snapshot.volume);
-    if !snapshot.plastic_strain.is_empty() {
-        file.point_data(PLASTIC_STRAIN, NUMBER, &snapshot.plastic_strain);
+    for SnapshotColumn { name, unit, kind, values } in &snapshot.history {
+        file.described((name, unit), *kind, values);
     }
     file
 }
@@ -107,16 +123,19 @@ pub fn read_particles(path: &Path) -> Result<ParticleSnapshot, ReadError> {
         volume: file.numbers("volume")?,
         stress: file.array("stress")?,
         deformation: file.array("deformation")?,
-        plastic_strain: match file.has(PLASTIC_STRAIN) {
-            true => file.numbers(PLASTIC_STRAIN)?,
-            false => Vec::new(),
-        },
+        history: (file.names().filter(|name| !OF_ALL.contains(name)))
+            .map(|name| {
+                let (unit, kind, values) = file.described(name)?;
+                Ok(SnapshotColumn { name: name.to_string(), unit, kind, values })
+            })
+            .collect::<Result<_, ReadError>>()?,
     })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::column::Kind;
     use std::fs;
 
     /// Enough particles for several blocks of every array, with values that use all their bits.
@@ -133,8 +152,17 @@ mod tests {
             volume: columns(3).collect(),
             stress: columns(4).map(|x| [x, 2.0 * x, 3.0 * x, -x, 0.5 * x, 0.0]).collect(),
             deformation: columns(5).map(|x| [x, 1.0, 2.0, 3.0, x, 5.0, 6.0, 7.0, x]).collect(),
-            // A file has it or not.
-            plastic_strain: columns(6).filter(|_| particles % 2 == 1).collect(),
+            // A file has some or none.
+            history: [("damage", "", Kind::Number), ("back_stress", "Pa", Kind::Symmetric)]
+                .iter()
+                .filter(|_| particles % 2 == 1)
+                .map(|&(name, unit, kind)| SnapshotColumn {
+                    name: name.into(),
+                    unit: unit.into(),
+                    kind,
+                    values: (0..particles * kind.components()).map(|i| value(6, i)).collect(),
+                })
+                .collect(),
         }
     }
 

@@ -9,7 +9,7 @@ use super::warning::{Warning, and_more};
 use super::{examine, lattice, locking, memory, overlap, per_side, rigid_pairs, rules, thickness};
 use crate::geometry::Bounds;
 use crate::scene::{Body, Dimension, Motion, Problem, Scene, Source};
-use crate::tensor::{Matrix, Vector};
+use crate::tensor::Vector;
 use serde::Serialize;
 
 /// How fast the machine is that will run the scene.
@@ -198,7 +198,7 @@ fn of_materials(scene: &Scene) -> Vec<MaterialReport> {
 
 fn longitudinal_speed(scene: &Scene, material: usize) -> f64 {
     let material = &scene.materials[material];
-    let modulus = material.law.wave_modulus(scene.dimension.thickness(), &Matrix::IDENTITY, 1.0);
+    let modulus = material.law.wave_modulus_at_rest(scene.dimension.thickness());
     (modulus / material.density).sqrt()
 }
 

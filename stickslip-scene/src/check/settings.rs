@@ -1,9 +1,7 @@
 //! Numbers that do not fit each other: the grid, the domain, time, materials, motion out of the plane.
 
 use super::table::short;
-use crate::material::Material;
 use crate::scene::{Dimension, Domain, Expression, Face, Motion, NamedMaterial, Problem, Scene};
-use crate::tensor::Matrix;
 
 /// Walls may miss the nodes of the grid by this share of a cell.
 const WALL_TOLERANCE: f64 = 1e-6;
@@ -27,7 +25,7 @@ pub(super) fn check(scene: &Scene) -> Result<(), Problem> {
         return Err(problem("bodies", "no body".into(), "at least one body"));
     }
     for material in &scene.materials {
-        check_material(&format!("materials.{}", material.name), material, scene.dimension)?;
+        check_material(&format!("materials.{}", material.name), material, scene)?;
     }
     if let Some(domain) = &scene.domain {
         check_domain(domain, scene.discretization.cell, scene.dimension.axes())?;
@@ -46,27 +44,22 @@ fn require_positive(key: &str, value: f64, unit: &str) -> Result<(), Problem> {
     Err(problem(key, format!("{value} {unit}").trim_end().into(), "a finite number above 0"))
 }
 
-/// A material is stable if waves in it have a real speed: positive density, K > 0 and G >= 0; a thin plate needs G > 0.
-fn check_material(key: &str, material: &NamedMaterial, dimension: Dimension) -> Result<(), Problem> {
+/// A material is stable if waves in it have a real speed: positive density, K > 0 and G >= 0; a thin plate needs G > 0. Its constants are
+/// within the bounds that its law declares, and its law has an answer for the scene's cells.
+fn check_material(key: &str, material: &NamedMaterial, scene: &Scene) -> Result<(), Problem> {
     require_positive(&format!("{key}.density"), material.density, "kg/m^3")?;
-    let modulus = material.law.wave_modulus(dimension.thickness(), &Matrix::IDENTITY, 1.0);
+    let dimension = scene.dimension;
+    let modulus = material.law.wave_modulus_at_rest(dimension.thickness());
     let elastic = material.law.elastic();
     let (k, g) = (elastic.bulk_modulus, elastic.shear_modulus);
-    if let Material::VonMises(law) = &material.law {
-        require_positive(&format!("{key}.von_mises.yield_stress"), law.yield_stress, "Pa")?;
-        if !(law.hardening_modulus >= 0.0 && law.hardening_modulus.is_finite()) {
-            let key = format!("{key}.von_mises.hardening_modulus");
-            return Err(problem(
-                &key,
-                format!("{} Pa", law.hardening_modulus),
-                "a finite number, at least 0",
-            ));
-        }
-        require_positive(&format!("{key}.von_mises.shear_modulus"), g, "Pa")?;
-    }
     let speed = (modulus / material.density).sqrt();
     if k > 0.0 && g >= 0.0 && speed > 0.0 && speed.is_finite() {
-        return Ok(());
+        let sound = material.law.check().and_then(|()| material.law.on_grid(scene.discretization.cell));
+        return sound.map(|_| ()).map_err(|bad| {
+            let law = format!("{key}.{}", material.law.name());
+            let key = bad.key.map_or(law.clone(), |constant| format!("{law}.{constant}"));
+            problem(&key, bad.found, &bad.allowed)
+        });
     }
     let found = format!("`{}` has K = {k:.4e} Pa, G = {g:.4e} Pa, wave speed {speed:.4e} m/s", material.name);
     Err(problem(

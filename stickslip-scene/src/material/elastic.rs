@@ -1,25 +1,36 @@
 //! Isotropic linear elasticity: any two of its constants give the others.
 
-use super::{BadConstants, Constant, PRESSURE};
+use super::declaration::{
+    Absent, BadConstants, Bounds, Constant, Form, Given, NOT_NEGATIVE, POSITIVE, PRESSURE, Quantity, RATIO,
+    Unit,
+};
 use serde::Serialize;
-use std::collections::BTreeMap;
 
 /// The constants that isotropic laws accept, two of them at a time.
 pub(super) const CONSTANTS: [Constant; 5] = [
-    Constant { name: "bulk_modulus", summary: "Bulk modulus K.", dimension: PRESSURE },
-    Constant { name: "shear_modulus", summary: "Shear modulus G.", dimension: PRESSURE },
-    Constant { name: "young_modulus", summary: "Young's modulus E.", dimension: PRESSURE },
-    Constant {
-        name: "poisson_ratio",
-        summary: "Poisson's ratio nu, above -1 and below 0.5.",
-        dimension: [0, 0, 0],
-    },
-    Constant {
-        name: "p_wave_modulus",
-        summary: "Modulus of a longitudinal wave M = K + 4G/3.",
-        dimension: PRESSURE,
-    },
+    modulus("bulk_modulus", "Bulk modulus K.", (PRESSURE, POSITIVE)),
+    modulus("shear_modulus", "Shear modulus G.", (PRESSURE, NOT_NEGATIVE)),
+    modulus("young_modulus", "Young's modulus E.", (PRESSURE, POSITIVE)),
+    modulus("poisson_ratio", "Poisson's ratio nu, above -1 and below 0.5.", (RATIO, STABLE)),
+    modulus("p_wave_modulus", "Modulus of a longitudinal wave M = K + 4G/3.", (PRESSURE, POSITIVE)),
 ];
+
+const STABLE: Bounds = Bounds::between(-1.0, 0.5).because(", else the material is not stable");
+
+const fn modulus(name: &'static str, summary: &'static str, (unit, bounds): (Unit, Bounds)) -> Constant {
+    Constant { name, summary, form: Form::Number(Quantity { name, unit, bounds }), absent: Absent::Judged }
+}
+
+/// The elastic constants and further ones of a law.
+pub(super) const fn and<const MORE: usize, const ALL: usize>(more: [Constant; MORE]) -> [Constant; ALL] {
+    let mut all = [CONSTANTS[0]; ALL];
+    let mut i = 0;
+    while i < ALL {
+        all[i] = if i < CONSTANTS.len() { CONSTANTS[i] } else { more[i - CONSTANTS.len()] };
+        i += 1;
+    }
+    all
+}
 
 /// Isotropic elastic moduli.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -43,28 +54,11 @@ impl Isotropic<f64> {
     ///
     /// # Errors
     /// Fewer or more than two constants, and values with K <= 0 or G < 0 (not stable).
-    pub fn from_constants(values: &BTreeMap<String, f64>) -> Result<Self, BadConstants> {
-        let get = |name: &str| values.get(name).copied();
-        let names: Vec<&str> = values.keys().map(String::as_str).collect();
-        let bad = |key: Option<&str>, found: String, allowed: &str| {
-            Err(BadConstants { key: key.map(str::to_string), found, allowed: allowed.to_string() })
-        };
-        for (name, &value) in values {
-            if name != "poisson_ratio"
-                && !(value.is_finite() && (value > 0.0 || name == "shear_modulus" && value == 0.0))
-            {
-                return bad(Some(name), format!("{value} Pa"), "a positive number");
-            }
-        }
-        if let Some(nu) = get("poisson_ratio")
-            && !(nu > -1.0 && nu < 0.5)
-        {
-            return bad(
-                Some("poisson_ratio"),
-                format!("{nu}"),
-                "above -1 and below 0.5, else the material is not stable",
-            );
-        }
+    pub fn build(given: &Given) -> Result<Self, BadConstants> {
+        let get = |name: &str| given.get(name);
+        let mut names: Vec<&str> =
+            CONSTANTS.iter().map(|constant| constant.name).filter(|name| get(name).is_some()).collect();
+        names.sort_unstable();
         let (k, g) = match (
             get("bulk_modulus"),
             get("shear_modulus"),
@@ -86,18 +80,21 @@ impl Isotropic<f64> {
             _ => {
                 let found =
                     if names.is_empty() { "no elastic constant".to_string() } else { names.join(", ") };
-                return bad(
-                    None,
-                    found,
-                    "two of bulk_modulus, shear_modulus, young_modulus, poisson_ratio, p_wave_modulus (not E with M)",
-                );
+                let all = CONSTANTS.map(|constant| constant.name).join(", ");
+                return Err(BadConstants::together(found, format!("two of {all} (not E with M)")));
             }
         };
         if !(k > 0.0 && k.is_finite() && g >= 0.0 && g.is_finite()) {
             let found = format!("{} give K = {k:.6e} Pa, G = {g:.6e} Pa", names.join(" and "));
-            return bad(None, found, "K above 0 and G at least 0, else the material is not stable");
+            let allowed = "K above 0 and G at least 0, else the material is not stable";
+            return Err(BadConstants::together(found, allowed));
         }
         Ok(Isotropic { bulk_modulus: k, shear_modulus: g })
+    }
+
+    /// The moduli by the names under which [`Isotropic::build`] takes them.
+    pub fn given(&self) -> Given {
+        [("bulk_modulus", self.bulk_modulus), ("shear_modulus", self.shear_modulus)].into()
     }
 
     /// M = K + 4G/3 [Pa]
@@ -134,8 +131,7 @@ mod tests {
         ];
         for (i, a) in all.iter().enumerate() {
             for b in &all[i + 1..] {
-                let values = [*a, *b].map(|(name, value)| (name.to_string(), value)).into();
-                match Isotropic::from_constants(&values) {
+                match Isotropic::build(&[*a, *b].into()) {
                     Ok(found) => {
                         assert!((found.bulk_modulus / 6e6 - 1.0).abs() < 1e-12, "{} {}", a.0, b.0);
                         assert!((found.shear_modulus / 3e6 - 1.0).abs() < 1e-12, "{} {}", a.0, b.0);
@@ -154,8 +150,7 @@ mod tests {
             (("bulk_modulus", 1.0), ("young_modulus", 10.0)),
             (("shear_modulus", 1.0), ("p_wave_modulus", 1.0)),
         ] {
-            let values = [a, b].map(|(name, value)| (name.to_string(), value)).into();
-            assert!(Isotropic::from_constants(&values).is_err(), "{a:?} {b:?}");
+            assert!(Isotropic::build(&[a, b].into()).is_err(), "{a:?} {b:?}");
         }
     }
 }

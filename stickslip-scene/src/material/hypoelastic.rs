@@ -8,7 +8,8 @@
 //!
 //! A step that is a pure rotation gives D = 0 exactly, and Q is that rotation.
 
-use super::{Isotropic, Law, Motion};
+use super::declaration::{BadConstants, Constant, Declared, Given};
+use super::{History, Isotropic, Law, Motion, Response, elastic};
 use crate::tensor::{Matrix, Number, Symmetric};
 use serde::Serialize;
 
@@ -20,9 +21,35 @@ pub struct Hypoelastic<T> {
     pub elastic: Isotropic<T>,
 }
 
-impl<T: Number> Law<T> for Hypoelastic<T> {
+impl Declared for Hypoelastic<f64> {
+    const SUMMARY: &'static str = "Linear elasticity in rate form with an objective stress rate, for small strains and large rotations.";
+    const CONSTANTS: &'static [Constant] = &elastic::CONSTANTS;
+
+    fn build(given: &Given) -> Result<Self, BadConstants> {
+        Ok(Hypoelastic { elastic: Isotropic::build(given)? })
+    }
+
+    fn given(&self) -> Given {
+        self.elastic.given()
+    }
+
+    fn elastic(&self) -> Isotropic<f64> {
+        self.elastic
+    }
+}
+
+impl<T: Copy> Hypoelastic<T> {
+    /// The same constants in other numbers.
     #[inline(always)]
-    fn stress(&self, motion: &Motion<T>) -> Symmetric<T> {
+    pub fn map<U>(&self, f: impl Fn(T) -> U) -> Hypoelastic<U> {
+        Hypoelastic { elastic: self.elastic.map(f) }
+    }
+}
+
+impl<T: Number> Hypoelastic<T> {
+    /// Cauchy stress at the end of the step [Pa].
+    #[inline(always)]
+    pub fn stress(&self, motion: &Motion<T>) -> Symmetric<T> {
         let Isotropic { bulk_modulus: k, shear_modulus: g } = self.elastic;
         let identity = Matrix::IDENTITY;
         let two = T::of(2.0);
@@ -33,9 +60,23 @@ impl<T: Number> Law<T> for Hypoelastic<T> {
         let lame = k - T::of(2.0 / 3.0) * g;
         motion.stress.rotated(&rotation) + Symmetric::isotropic(lame * strain.trace()) + strain * (two * g)
     }
+}
+
+impl<T: Number> Law<T> for Hypoelastic<T> {
+    type History = [T; 0];
 
     #[inline(always)]
-    fn strain_energy(&self, deformation: &Matrix<T>, stress: &Symmetric<T>) -> T {
+    fn history(&self) -> &'static [History] {
+        &[]
+    }
+
+    #[inline(always)]
+    fn respond(&self, motion: &Motion<T>, _history: &[T; 0]) -> Response<T, [T; 0]> {
+        Response { stress: self.stress(motion), history: [] }
+    }
+
+    #[inline(always)]
+    fn strain_energy(&self, deformation: &Matrix<T>, stress: &Symmetric<T>, _history: &[T; 0]) -> T {
         let Isotropic { bulk_modulus: k, shear_modulus: g } = self.elastic;
         let mean = stress.trace() / T::of(3.0);
         let deviator = stress.deviator();
@@ -45,13 +86,13 @@ impl<T: Number> Law<T> for Hypoelastic<T> {
     }
 
     #[inline(always)]
-    fn wave_modulus(&self, _deformation: &Matrix<T>, jacobian: T) -> T {
+    fn wave_modulus(&self, _deformation: &Matrix<T>, jacobian: T, _history: &[T; 0]) -> T {
         let Isotropic { bulk_modulus: k, shear_modulus: g } = self.elastic;
         (k + T::of(4.0 / 3.0) * g) * jacobian
     }
 
     #[inline(always)]
-    fn shear_modulus(&self, _deformation: &Matrix<T>, jacobian: T) -> T {
+    fn shear_modulus(&self, _deformation: &Matrix<T>, jacobian: T, _history: &[T; 0]) -> T {
         self.elastic.shear_modulus * jacobian
     }
 }
@@ -102,7 +143,7 @@ mod tests {
                 work += next.det() * ((stress + after) * 0.5).double_dot(&strain);
                 (stress, f) = (after, next);
             }
-            let energy = LAW.strain_energy(&f, &stress);
+            let energy = LAW.strain_energy(&f, &stress, &[]);
             assert!((work / energy - 1.0).abs() < 1e-3, "{work} {energy}");
         }
     }

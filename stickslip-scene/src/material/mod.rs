@@ -1,25 +1,82 @@
-//! Constitutive laws: pure functions from local motion to Cauchy stress, one file each, and the shelf that lists them.
+//! Constitutive laws: pure functions from local motion to Cauchy stress, one file each, and the list of them.
 //!
-//! To add a law: write its file (constants, [`Law`], tests) and put it on the shelf below. Scene files, the schema and the
-//! engine find it there.
+//! To add a law: write its file (what it declares, [`Law`], tests) and put its line on the list below. Scene files, schema, checks,
+//! the engine, snapshots and pictures find it there, with its constants and its history.
 
+mod declaration;
 mod elastic;
-mod hypoelastic;
-mod neo_hookean;
+mod history;
 mod plane_stress;
-mod von_mises;
 
+pub use declaration::{
+    Absent, BadConstants, Bounds, Constant, Declared, Description, End, Form, Given, Quantity, Unit,
+};
 pub use elastic::Isotropic;
-pub use hypoelastic::Hypoelastic;
-pub use neo_hookean::NeoHookean;
+pub use history::{AtRest, Entries, History, Keep, MOST_HISTORY, Recall, history_entries};
 pub use plane_stress::Thickness;
-pub use von_mises::VonMises;
 
 use crate::tensor::{Matrix, Number, Real, Symmetric};
 use serde::Serialize;
-use std::collections::BTreeMap;
 
-/// What a law is told of a particle.
+/// The list of laws, each by its file and its type, becomes the modules, [`Material`], [`SHELF`] and `of_law!`, which does one thing with
+/// whichever law a material has.
+macro_rules! laws {
+    ($d:tt $($file:ident $law:ident;)*) => {
+        $(mod $file; pub use $file::$law;)*
+
+        /// A law with its constants.
+        #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+        #[serde(rename_all = "snake_case")]
+        pub enum Material<T> {
+            $(#[doc = concat!("See [`", stringify!($law), "`].")] $law($law<T>),)*
+        }
+
+        /// Every law that a scene file can name.
+        pub const SHELF: &[Description] = &[$(Description {
+            name: stringify!($file),
+            summary: <$law<f64> as Declared>::SUMMARY,
+            constants: <$law<f64> as Declared>::CONSTANTS,
+            build: |given| Ok(Material::$law(Declared::build(given)?)),
+        }),*];
+
+        macro_rules! of_law {
+            ($d material:expr, $d law:ident => $d does:expr) => {
+                match $d material { $(Material::$law($d law) => $d does,)* }
+            };
+        }
+
+        impl Material<f64> {
+            /// Key of its law in scene files.
+            pub fn name(&self) -> &'static str {
+                match self { $(Material::$law(_) => stringify!($file),)* }
+            }
+
+            /// The material for cells of this side [m].
+            ///
+            /// # Errors
+            /// Cells for which its law has no answer.
+            pub fn on_grid(self, cell: f64) -> Result<Self, BadConstants> {
+                Ok(match self { $(Material::$law(law) => Material::$law(law.on_grid(cell)?),)* })
+            }
+        }
+
+        impl<T: Number> Material<T> {
+            /// The same material with its constants in other numbers.
+            #[inline(always)]
+            pub fn map<U: Number>(&self, f: impl Fn(T) -> U) -> Material<U> {
+                match self { $(Material::$law(law) => Material::$law(law.map(f)),)* }
+            }
+        }
+    };
+}
+
+laws! { $
+    neo_hookean NeoHookean;
+    hypoelastic Hypoelastic;
+    von_mises VonMises;
+}
+
+/// What a law is told of a particle's step.
 #[derive(Clone, Copy, Debug)]
 pub struct Motion<T> {
     /// Deformation gradient F at the end of the step [-].
@@ -30,130 +87,52 @@ pub struct Motion<T> {
     pub increment: Matrix<T>,
     /// Cauchy stress at the start of the step, tension positive [Pa].
     pub stress: Symmetric<T>,
-    /// Equivalent plastic strain at the start of the step, sqrt(2/3 D_p : D_p) over time; zero for laws that do not flow [-].
-    pub plastic_strain: T,
+    /// How long the step takes [s].
+    pub dt: T,
 }
 
 /// What a law answers.
 #[derive(Clone, Copy, Debug)]
-pub struct Response<T> {
+pub struct Response<T, H> {
     /// Cauchy stress at the end of the step, tension positive [Pa].
     pub stress: Symmetric<T>,
-    /// Equivalent plastic strain at the end of the step [-].
-    pub plastic_strain: T,
+    /// History at the end of the step.
+    pub history: H,
 }
 
 /// A constitutive law in three dimensions.
 ///
 /// A law is written once over [`Number`], with no branch on the motion: the engine calls it for several particles at a time.
-pub trait Law<T: Number>: Send + Sync {
-    /// Cauchy stress at the end of the step, tension positive [Pa].
-    fn stress(&self, motion: &Motion<T>) -> Symmetric<T>;
+pub trait Law<T: Number>: Copy + Send + Sync {
+    /// What it remembers of a particle: `[T; N]`, the components in space of all columns of [`Law::history`], one after the other.
+    type History: Entries<T>;
 
-    /// Stress and plastic strain at the end of the step; a law that does not flow leaves the latter alone.
-    #[inline(always)]
-    fn response(&self, motion: &Motion<T>) -> Response<T> {
-        Response { stress: self.stress(motion), plastic_strain: motion.plastic_strain }
-    }
+    /// The columns that it remembers.
+    fn history(&self) -> &'static [History];
 
-    /// What plastic flow up to this strain dissipated per undeformed volume [J/m^3].
+    /// Stress and history at the end of the step, from those at its start, its strain and its duration.
+    fn respond(&self, motion: &Motion<T>, history: &Self::History) -> Response<T, Self::History>;
+
+    /// Strain energy per undeformed volume in a state of deformation, Cauchy stress and history [J/m^3].
+    fn strain_energy(&self, deformation: &Matrix<T>, stress: &Symmetric<T>, history: &Self::History) -> T;
+
+    /// What the material dissipated so far per undeformed volume [J/m^3].
     #[inline(always)]
-    fn dissipation(&self, _plastic_strain: T) -> T {
+    fn dissipation(&self, _history: &Self::History) -> T {
         T::ZERO
     }
 
-    /// Strain energy per undeformed volume in a state of deformation and Cauchy stress [J/m^3].
-    fn strain_energy(&self, deformation: &Matrix<T>, stress: &Symmetric<T>) -> T;
-
     /// Stiffness against a longitudinal wave in the present state, times J [Pa]: over the undeformed density it is the squared wave speed.
-    fn wave_modulus(&self, deformation: &Matrix<T>, jacobian: T) -> T;
+    fn wave_modulus(&self, deformation: &Matrix<T>, jacobian: T, history: &Self::History) -> T;
 
     /// Stiffness against a shear wave in the present state, times J [Pa]; plane stress needs it for its waves.
-    fn shear_modulus(&self, deformation: &Matrix<T>, jacobian: T) -> T;
-}
+    fn shear_modulus(&self, deformation: &Matrix<T>, jacobian: T, history: &Self::History) -> T;
 
-/// The shelf: every law with its constants.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Material<T> {
-    /// See [`NeoHookean`].
-    NeoHookean(NeoHookean<T>),
-    /// See [`Hypoelastic`].
-    Hypoelastic(Hypoelastic<T>),
-    /// See [`VonMises`].
-    VonMises(VonMises<T>),
-}
-
-/// A law as scene files name it.
-pub struct Description {
-    /// Key in a scene file.
-    pub name: &'static str,
-    /// One sentence for the schema.
-    pub summary: &'static str,
-    /// Its constants.
-    pub constants: &'static [Constant],
-    build: Build,
-}
-
-type Build = fn(&BTreeMap<String, f64>) -> Result<Material<f64>, BadConstants>;
-
-/// A constant of a law as scene files name it.
-#[derive(Clone, Copy)]
-pub struct Constant {
-    /// Key in a scene file.
-    pub name: &'static str,
-    /// One sentence for the schema.
-    pub summary: &'static str,
-    /// Powers of kilogram, metre and second.
-    pub dimension: [i8; 3],
-}
-
-/// Powers of kilogram, metre and second of a pressure or a modulus.
-const PRESSURE: [i8; 3] = [1, -1, -2];
-
-/// Constants from which no stable material can be made.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{found}; {allowed}")]
-pub struct BadConstants {
-    /// The constant at fault, if it is one alone.
-    pub key: Option<String>,
-    /// What was found.
-    pub found: String,
-    /// What is allowed.
-    pub allowed: String,
-}
-
-/// Every law that a scene file can name.
-pub const SHELF: &[Description] = &[
-    Description {
-        name: "neo_hookean",
-        summary: "Compressible neo-Hookean elasticity for large strains (Simo and Hughes 1998).",
-        constants: &elastic::CONSTANTS,
-        build: |values| Ok(Material::NeoHookean(NeoHookean { elastic: Isotropic::from_constants(values)? })),
-    },
-    Description {
-        name: "hypoelastic",
-        summary: "Linear elasticity in rate form with an objective stress rate, for small strains and large rotations.",
-        constants: &elastic::CONSTANTS,
-        build: |values| {
-            Ok(Material::Hypoelastic(Hypoelastic { elastic: Isotropic::from_constants(values)? }))
-        },
-    },
-    Description {
-        name: "von_mises",
-        summary: "Plastic flow at a yield stress that may harden, elastic below it as the hypoelastic law, for metals and clay.",
-        constants: von_mises::CONSTANTS,
-        build: |values| Ok(Material::VonMises(VonMises::from_constants(values)?)),
-    },
-];
-
-impl Description {
-    /// The material with these constants in SI units.
-    ///
-    /// # Errors
-    /// Constants that are missing, too many, or of no stable material.
-    pub fn build(&self, values: &BTreeMap<String, f64>) -> Result<Material<f64>, BadConstants> {
-        (self.build)(values)
+    /// Whether stress resists every error of F, so that it stays small and surfaces may be found by F. Where it does not, as in plastic flow,
+    /// contact finds surfaces by means of positions, and stretch is judged less strictly.
+    #[inline(always)]
+    fn trusts_deformation(&self) -> bool {
+        true
     }
 }
 
@@ -163,99 +142,110 @@ impl Material<f64> {
         self.map(T::of)
     }
 
-    /// Elastic moduli at small strain.
+    /// Elastic moduli at small strain, of a sudden strain where they depend on time.
     pub fn elastic(&self) -> Isotropic<f64> {
-        match self {
-            Material::NeoHookean(law) => law.elastic,
-            Material::Hypoelastic(law) => law.elastic,
-            Material::VonMises(law) => law.elastic.elastic,
-        }
+        of_law!(self, law => Declared::elastic(law))
+    }
+
+    /// Its constants, as [`Description::build`] takes them.
+    pub fn given(&self) -> Given {
+        of_law!(self, law => Declared::given(law))
+    }
+
+    /// Whether its constants are within the bounds that its law declares.
+    ///
+    /// # Errors
+    /// A constant that is not, or several that do not fit.
+    pub fn check(&self) -> Result<(), BadConstants> {
+        let law = SHELF.iter().find(|law| law.name == self.name()).expect("the shelf has every law");
+        law.build(&self.given()).map(|_| ())
     }
 }
 
 impl<T: Number> Material<T> {
-    /// The same material with its constants in other numbers.
+    /// The columns that a particle of it has beside those that all have.
     #[inline(always)]
-    pub fn map<U: Number>(&self, f: impl Fn(T) -> U) -> Material<U> {
-        match self {
-            Material::NeoHookean(law) => Material::NeoHookean(NeoHookean { elastic: law.elastic.map(f) }),
-            Material::Hypoelastic(law) => Material::Hypoelastic(Hypoelastic { elastic: law.elastic.map(f) }),
-            Material::VonMises(law) => Material::VonMises(law.map(f)),
-        }
+    pub fn history(&self) -> &'static [History] {
+        of_law!(self, law => law.history())
     }
 
-    /// The law behind the name; ask once per body, not once per particle.
-    pub fn law(&self) -> &dyn Law<T> {
-        match self {
-            Material::NeoHookean(law) => law,
-            Material::Hypoelastic(law) => law,
-            Material::VonMises(law) => law,
-        }
+    /// [`Law::trusts_deformation`]
+    #[inline(always)]
+    pub fn trusts_deformation(&self) -> bool {
+        of_law!(self, law => law.trusts_deformation())
     }
 
-    /// Whether plastic strain is a part of a particle's state.
+    /// [`Law::respond`] with a history where it is kept, where the compiler can see it.
     #[inline(always)]
-    pub fn flows(&self) -> bool {
-        matches!(self, Material::VonMises(_))
+    pub fn respond(&self, motion: &Motion<T>, history: &mut impl Keep<T>) -> Symmetric<T> {
+        of_law!(self, law => {
+            let response = law.respond(motion, &history::recalled(law.history(), history));
+            history::kept(law.history(), &response.history, history);
+            response.stress
+        })
     }
 
-    /// [`Law::response`] where the compiler can see it.
+    /// [`Law::strain_energy`] and [`Law::dissipation`] where the compiler can see them.
     #[inline(always)]
-    pub fn response(&self, motion: &Motion<T>) -> Response<T> {
-        match self {
-            Material::NeoHookean(law) => law.response(motion),
-            Material::Hypoelastic(law) => law.response(motion),
-            Material::VonMises(law) => law.response(motion),
-        }
-    }
-
-    /// [`Law::strain_energy`] where the compiler can see it.
-    #[inline(always)]
-    pub fn strain_energy(&self, deformation: &Matrix<T>, stress: &Symmetric<T>) -> T {
-        match self {
-            Material::NeoHookean(law) => law.strain_energy(deformation, stress),
-            Material::Hypoelastic(law) => law.strain_energy(deformation, stress),
-            Material::VonMises(law) => law.strain_energy(deformation, stress),
-        }
-    }
-
-    /// [`Law::dissipation`] where the compiler can see it.
-    #[inline(always)]
-    pub fn dissipation(&self, plastic_strain: T) -> T {
-        match self {
-            Material::NeoHookean(law) => law.dissipation(plastic_strain),
-            Material::Hypoelastic(law) => law.dissipation(plastic_strain),
-            Material::VonMises(law) => law.dissipation(plastic_strain),
-        }
+    pub fn energies(
+        &self,
+        deformation: &Matrix<T>,
+        stress: &Symmetric<T>,
+        history: &impl Recall<T>,
+    ) -> [T; 2] {
+        of_law!(self, law => {
+            let history = history::recalled(law.history(), history);
+            [law.strain_energy(deformation, stress, &history), law.dissipation(&history)]
+        })
     }
 
     /// Stiffness against the fastest wave in the present state, times J [Pa]: [`Law::wave_modulus`], in plane stress that of a plate.
     #[inline(always)]
-    pub fn wave_modulus(&self, thickness: Thickness, deformation: &Matrix<T>, jacobian: T) -> T {
-        match self {
-            Material::NeoHookean(law) => fastest(law, thickness, deformation, jacobian),
-            Material::Hypoelastic(law) => fastest(law, thickness, deformation, jacobian),
-            Material::VonMises(law) => fastest(law, thickness, deformation, jacobian),
-        }
+    pub fn wave_modulus(
+        &self,
+        thickness: Thickness,
+        (deformation, jacobian): (&Matrix<T>, T),
+        history: &impl Recall<T>,
+    ) -> T {
+        of_law!(self, law => {
+            let history = history::recalled(law.history(), history);
+            let waves = law.wave_modulus(deformation, jacobian, &history);
+            match thickness {
+                Thickness::Moved => waves,
+                Thickness::Free => {
+                    plane_stress::plate_modulus(waves, law.shear_modulus(deformation, jacobian, &history))
+                }
+            }
+        })
+    }
+
+    /// Stiffness against the fastest wave before anything moves [Pa].
+    pub fn wave_modulus_at_rest(&self, thickness: Thickness) -> T {
+        self.wave_modulus(thickness, (&Matrix::IDENTITY, T::ONE), &AtRest(self.history()))
     }
 }
 
 impl<T: Real> Material<T> {
-    /// The motion with the thickness that the particle takes, and the response to it; `None` if no thickness is free of stress.
-    pub fn respond(&self, thickness: Thickness, motion: Motion<T>) -> Option<(Motion<T>, Response<T>)> {
+    /// The motion with the thickness that the particle takes, and the stress after it; `None` if no thickness is free of stress, and then its
+    /// history stays as it was.
+    pub fn respond_with(
+        &self,
+        thickness: Thickness,
+        motion: Motion<T>,
+        history: &mut impl Keep<T>,
+    ) -> Option<(Motion<T>, Symmetric<T>)> {
         match thickness {
-            Thickness::Moved => Some((motion, self.response(&motion))),
-            Thickness::Free => plane_stress::with_free_thickness(self.law(), &motion),
+            Thickness::Moved => {
+                let stress = self.respond(&motion, history);
+                Some((motion, stress))
+            }
+            Thickness::Free => of_law!(self, law => {
+                let before = history::recalled(law.history(), history);
+                let (motion, response) = plane_stress::with_free_thickness(law, &motion, &before)?;
+                history::kept(law.history(), &response.history, history);
+                Some((motion, response.stress))
+            }),
         }
-    }
-}
-
-#[inline(always)]
-fn fastest<T: Number>(law: &impl Law<T>, thickness: Thickness, deformation: &Matrix<T>, jacobian: T) -> T {
-    let waves = law.wave_modulus(deformation, jacobian);
-    match thickness {
-        Thickness::Moved => waves,
-        Thickness::Free => plane_stress::plate_modulus(waves, law.shear_modulus(deformation, jacobian)),
     }
 }
 
@@ -274,13 +264,31 @@ mod tests {
 
     /// The motion that leads to `f` in one step from rest.
     pub fn motion_of(f: Matrix<f64>) -> Motion<f64> {
-        Motion {
-            deformation: f,
-            jacobian: f.det(),
-            increment: f,
-            stress: Symmetric::ZERO,
-            plastic_strain: 0.0,
+        Motion { deformation: f, jacobian: f.det(), increment: f, stress: Symmetric::ZERO, dt: 1.0 }
+    }
+
+    /// The state and history after a motion from rest in equal steps of a duration, and the work of the stress per undeformed volume.
+    pub fn follow<L: Law<f64>>(
+        law: &L,
+        (steps, duration): (usize, f64),
+        at: impl Fn(f64) -> Matrix<f64>,
+    ) -> (Motion<f64>, L::History, f64) {
+        let mut now = Motion { dt: duration / steps as f64, ..motion_of(Matrix::IDENTITY) };
+        let (mut history, mut work) = (L::History::ZERO, 0.0);
+        for i in 1..=steps {
+            let deformation = at(i as f64 / steps as f64);
+            let increment = deformation * now.deformation.inverse();
+            let jacobian = deformation.det();
+            let motion = Motion { deformation, jacobian, increment, ..now };
+            let response = law.respond(&motion, &history);
+            // Half a step's Jacobian and stress, and the strain at its middle.
+            let middle = (increment - Matrix::IDENTITY) * (increment + Matrix::IDENTITY).inverse() * 2.0;
+            let mean = (response.stress * jacobian + now.stress * now.jacobian) * 0.5;
+            work += mean.double_dot(&middle.symmetric_part());
+            now = Motion { stress: response.stress, ..motion };
+            history = response.history;
         }
+        (now, history, work)
     }
 
     /// sigma = (K - 2G/3) tr(e) I + 2 G e

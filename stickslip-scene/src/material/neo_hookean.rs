@@ -5,7 +5,8 @@
 //! sigma = K/2 (J - 1/J) I + G J^(-5/3) dev(F F^T)
 //! ```
 
-use super::{Isotropic, Law, Motion};
+use super::declaration::{BadConstants, Constant, Declared, Given};
+use super::{History, Isotropic, Law, Motion, Response, elastic};
 use crate::tensor::{Matrix, Number, Symmetric};
 use serde::Serialize;
 
@@ -17,9 +18,36 @@ pub struct NeoHookean<T> {
     pub elastic: Isotropic<T>,
 }
 
-impl<T: Number> Law<T> for NeoHookean<T> {
+impl Declared for NeoHookean<f64> {
+    const SUMMARY: &'static str =
+        "Compressible neo-Hookean elasticity for large strains (Simo and Hughes 1998).";
+    const CONSTANTS: &'static [Constant] = &elastic::CONSTANTS;
+
+    fn build(given: &Given) -> Result<Self, BadConstants> {
+        Ok(NeoHookean { elastic: Isotropic::build(given)? })
+    }
+
+    fn given(&self) -> Given {
+        self.elastic.given()
+    }
+
+    fn elastic(&self) -> Isotropic<f64> {
+        self.elastic
+    }
+}
+
+impl<T: Copy> NeoHookean<T> {
+    /// The same constants in other numbers.
     #[inline(always)]
-    fn stress(&self, motion: &Motion<T>) -> Symmetric<T> {
+    pub fn map<U>(&self, f: impl Fn(T) -> U) -> NeoHookean<U> {
+        NeoHookean { elastic: self.elastic.map(f) }
+    }
+}
+
+impl<T: Number> NeoHookean<T> {
+    /// Cauchy stress at the end of the step [Pa].
+    #[inline(always)]
+    pub fn stress(&self, motion: &Motion<T>) -> Symmetric<T> {
         let Isotropic { bulk_modulus: k, shear_modulus: g } = self.elastic;
         let j = motion.jacobian;
         let b = motion.deformation.times_transpose();
@@ -29,9 +57,23 @@ impl<T: Number> Law<T> for NeoHookean<T> {
         let pressure = T::HALF * k * (j - inverse);
         b.deviator() * (g * inverse * (root * inverse)) + Symmetric::isotropic(pressure)
     }
+}
+
+impl<T: Number> Law<T> for NeoHookean<T> {
+    type History = [T; 0];
 
     #[inline(always)]
-    fn strain_energy(&self, deformation: &Matrix<T>, _stress: &Symmetric<T>) -> T {
+    fn history(&self) -> &'static [History] {
+        &[]
+    }
+
+    #[inline(always)]
+    fn respond(&self, motion: &Motion<T>, _history: &[T; 0]) -> Response<T, [T; 0]> {
+        Response { stress: self.stress(motion), history: [] }
+    }
+
+    #[inline(always)]
+    fn strain_energy(&self, deformation: &Matrix<T>, _stress: &Symmetric<T>, _history: &[T; 0]) -> T {
         let Isotropic { bulk_modulus: k, shear_modulus: g } = self.elastic;
         let j = deformation.det();
         let root = j.cbrt();
@@ -41,14 +83,14 @@ impl<T: Number> Law<T> for NeoHookean<T> {
     }
 
     #[inline(always)]
-    fn wave_modulus(&self, deformation: &Matrix<T>, jacobian: T) -> T {
+    fn wave_modulus(&self, deformation: &Matrix<T>, jacobian: T, history: &[T; 0]) -> T {
         let k = self.elastic.bulk_modulus;
         let j = jacobian;
-        T::HALF * k * (j * j + T::ONE) + T::of(4.0 / 3.0) * self.shear_modulus(deformation, jacobian)
+        T::HALF * k * (j * j + T::ONE) + T::of(4.0 / 3.0) * self.shear_modulus(deformation, jacobian, history)
     }
 
     #[inline(always)]
-    fn shear_modulus(&self, deformation: &Matrix<T>, jacobian: T) -> T {
+    fn shear_modulus(&self, deformation: &Matrix<T>, jacobian: T, _history: &[T; 0]) -> T {
         let root = jacobian.cbrt();
         let b = deformation.times_transpose();
         self.elastic.shear_modulus * (b.0[0].max(b.0[1]).max(b.0[2]) * (root * (T::ONE / jacobian)))
@@ -83,7 +125,7 @@ mod tests {
                 let l = h * (1.0 / n as f64) * f.inverse();
                 work += f.det() * LAW.stress(&motion_of(f)).double_dot(&l.symmetric_part());
             }
-            let energy = LAW.strain_energy(&(Matrix::IDENTITY + h), &Symmetric::ZERO);
+            let energy = LAW.strain_energy(&(Matrix::IDENTITY + h), &Symmetric::ZERO, &[]);
             assert!((work - energy).abs() < 1e-6 * energy, "{work} {energy}");
         }
     }

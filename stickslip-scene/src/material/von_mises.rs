@@ -11,11 +11,11 @@
 //! The yield stress bounds the Kirchhoff stress J sigma, so that what flow dissipates depends on a alone; J is one but for the elastic
 //! volume strain. Flow keeps the volume.
 
-use super::elastic::CONSTANTS as ELASTIC;
-use super::{BadConstants, Constant, Hypoelastic, Isotropic, Law, Motion, PRESSURE, Response};
+use super::declaration::{BadConstants, Constant, Declared, Given, NOT_NEGATIVE, POSITIVE, PRESSURE};
+use super::{History, Hypoelastic, Isotropic, Law, Motion, Response, elastic};
+use crate::column::Kind;
 use crate::tensor::{Matrix, Number, Symmetric};
 use serde::Serialize;
-use std::collections::BTreeMap;
 
 /// Elastoplasticity of von Mises.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -33,56 +33,43 @@ pub struct VonMises<T> {
 const YIELD_STRESS: &str = "yield_stress";
 const HARDENING_MODULUS: &str = "hardening_modulus";
 
-/// The constants that scene files give.
-pub(super) const CONSTANTS: &[Constant] = &[
-    ELASTIC[0],
-    ELASTIC[1],
-    ELASTIC[2],
-    ELASTIC[3],
-    ELASTIC[4],
-    Constant {
-        name: YIELD_STRESS,
-        summary: "Yield stress in uniaxial tension before any flow, Y_0.",
-        dimension: PRESSURE,
-    },
-    Constant {
-        name: HARDENING_MODULUS,
-        summary: "Growth of the yield stress by equivalent plastic strain, H; none without it.",
-        dimension: PRESSURE,
-    },
-];
+/// What a particle remembers.
+const HISTORY: [History; 1] = [History::new("plastic_strain", "", Kind::Number)];
 
-impl VonMises<f64> {
-    /// From two elastic constants, the yield stress and, if it hardens, the hardening modulus, in SI units.
-    ///
-    /// # Errors
-    /// What [`Isotropic::from_constants`] refuses, no shear stiffness, no yield stress, one that is not positive, and softening.
-    pub fn from_constants(values: &BTreeMap<String, f64>) -> Result<Self, BadConstants> {
-        let bad = |key: Option<&str>, found: String, allowed: &str| {
-            Err(BadConstants { key: key.map(str::to_string), found, allowed: allowed.to_string() })
-        };
-        let mut elastic = values.clone();
-        let yield_stress = elastic.remove(YIELD_STRESS);
-        let hardening_modulus = elastic.remove(HARDENING_MODULUS).unwrap_or(0.0);
-        let elastic = Isotropic::from_constants(&elastic)?;
+impl Declared for VonMises<f64> {
+    const SUMMARY: &'static str = "Plastic flow at a yield stress that may harden, elastic below it as the hypoelastic law, \
+                                   for metals and clay.";
+    const CONSTANTS: &'static [Constant] = &elastic::and::<2, 7>([
+        Constant::required(
+            YIELD_STRESS,
+            "Yield stress in uniaxial tension before any flow, Y_0.",
+            (PRESSURE, POSITIVE),
+            "\"40 MPa\"",
+        ),
+        Constant::optional(
+            HARDENING_MODULUS,
+            "Growth of the yield stress by equivalent plastic strain, H; none without it.",
+            (PRESSURE, NOT_NEGATIVE.because(", for softening would follow the grid")),
+            0.0,
+        ),
+    ]);
+
+    fn build(given: &Given) -> Result<Self, BadConstants> {
+        let elastic = Isotropic::build(given)?;
         if elastic.shear_modulus == 0.0 {
-            return bad(None, "G = 0".to_string(), "G above 0: a fluid has nothing that yields");
+            return Err(BadConstants::together("G = 0", "G above 0: a fluid has nothing that yields"));
         }
-        let Some(yield_stress) = yield_stress else {
-            return bad(
-                None,
-                "no yield_stress".to_string(),
-                "yield_stress, a positive number, like \"40 MPa\"",
-            );
-        };
-        if !(yield_stress.is_finite() && yield_stress > 0.0) {
-            return bad(Some(YIELD_STRESS), format!("{yield_stress} Pa"), "a positive number");
-        }
-        if !(hardening_modulus.is_finite() && hardening_modulus >= 0.0) {
-            let allowed = "at least 0, for softening would follow the grid";
-            return bad(Some(HARDENING_MODULUS), format!("{hardening_modulus} Pa"), allowed);
-        }
+        let (yield_stress, hardening_modulus) = (given.number(YIELD_STRESS), given.number(HARDENING_MODULUS));
         Ok(VonMises { elastic: Hypoelastic { elastic }, yield_stress, hardening_modulus })
+    }
+
+    fn given(&self) -> Given {
+        let elastic = self.elastic.given();
+        elastic.with(YIELD_STRESS, self.yield_stress).with(HARDENING_MODULUS, self.hardening_modulus)
+    }
+
+    fn elastic(&self) -> Isotropic<f64> {
+        self.elastic.elastic
     }
 }
 
@@ -99,50 +86,60 @@ impl<T: Copy> VonMises<T> {
 }
 
 impl<T: Number> Law<T> for VonMises<T> {
+    /// Equivalent plastic strain, sqrt(2/3 D_p : D_p) over time.
+    type History = [T; 1];
+
     #[inline(always)]
-    fn stress(&self, motion: &Motion<T>) -> Symmetric<T> {
-        self.response(motion).stress
+    fn history(&self) -> &'static [History] {
+        &HISTORY
+    }
+
+    /// Plastic flow resists no error of F.
+    #[inline(always)]
+    fn trusts_deformation(&self) -> bool {
+        false
     }
 
     #[inline(always)]
-    fn response(&self, motion: &Motion<T>) -> Response<T> {
+    fn respond(&self, motion: &Motion<T>, &[plastic_strain]: &[T; 1]) -> Response<T, [T; 1]> {
         let three_g = T::of(3.0) * self.elastic.elastic.shear_modulus;
         let trial = self.elastic.stress(motion);
         let deviator = trial.deviator();
         let q = (T::of(1.5) * deviator.double_dot(&deviator)).sqrt();
-        let allowed = self.yield_stress + self.hardening_modulus * motion.plastic_strain;
+        let allowed = self.yield_stress + self.hardening_modulus * plastic_strain;
         let excess = (motion.jacobian * q - allowed).max(T::ZERO);
         let flow = excess / (three_g * motion.jacobian + self.hardening_modulus);
         // Without excess nothing is divided: a stress without deviator stays as it is.
         let share = three_g * flow / q.max(T::EPSILON * self.yield_stress);
-        Response { stress: trial - deviator * share, plastic_strain: motion.plastic_strain + flow }
+        Response { stress: trial - deviator * share, history: [plastic_strain + flow] }
     }
 
     #[inline(always)]
-    fn strain_energy(&self, deformation: &Matrix<T>, stress: &Symmetric<T>) -> T {
-        self.elastic.strain_energy(deformation, stress)
+    fn strain_energy(&self, deformation: &Matrix<T>, stress: &Symmetric<T>, _history: &[T; 1]) -> T {
+        self.elastic.strain_energy(deformation, stress, &[])
     }
 
     #[inline(always)]
-    fn dissipation(&self, plastic_strain: T) -> T {
+    fn dissipation(&self, &[plastic_strain]: &[T; 1]) -> T {
         (self.yield_stress + T::HALF * self.hardening_modulus * plastic_strain) * plastic_strain
     }
 
     #[inline(always)]
-    fn wave_modulus(&self, deformation: &Matrix<T>, jacobian: T) -> T {
-        self.elastic.wave_modulus(deformation, jacobian)
+    fn wave_modulus(&self, deformation: &Matrix<T>, jacobian: T, _history: &[T; 1]) -> T {
+        self.elastic.wave_modulus(deformation, jacobian, &[])
     }
 
     #[inline(always)]
-    fn shear_modulus(&self, deformation: &Matrix<T>, jacobian: T) -> T {
-        self.elastic.shear_modulus(deformation, jacobian)
+    fn shear_modulus(&self, deformation: &Matrix<T>, jacobian: T, _history: &[T; 1]) -> T {
+        self.elastic.shear_modulus(deformation, jacobian, &[])
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::material::tests::{motion_of, rotation, sample_gradients};
+    use crate::material::SHELF;
+    use crate::material::tests::{follow, motion_of, rotation, sample_gradients};
 
     const LAW: VonMises<f64> = VonMises {
         elastic: Hypoelastic { elastic: Isotropic { bulk_modulus: 600.0, shear_modulus: 300.0 } },
@@ -155,42 +152,24 @@ mod tests {
         (1.5 * s.double_dot(&s)).sqrt()
     }
 
-    /// The state after a motion from rest in equal steps, and the work of the stress per undeformed volume.
-    fn follow(law: &VonMises<f64>, steps: usize, at: impl Fn(f64) -> Matrix<f64>) -> (Motion<f64>, f64) {
-        let (mut now, mut work) = (motion_of(Matrix::IDENTITY), 0.0);
-        for i in 1..=steps {
-            let deformation = at(i as f64 / steps as f64);
-            let increment = deformation * now.deformation.inverse();
-            let jacobian = deformation.det();
-            let motion = Motion { deformation, jacobian, increment, ..now };
-            let Response { stress, plastic_strain } = law.response(&motion);
-            // Half a step's Jacobian and stress, and the strain at its middle.
-            let middle = (increment - Matrix::IDENTITY) * (increment + Matrix::IDENTITY).inverse() * 2.0;
-            let mean = (stress * jacobian + now.stress * now.jacobian) * 0.5;
-            work += mean.double_dot(&middle.symmetric_part());
-            now = Motion { stress, plastic_strain, ..motion };
-        }
-        (now, work)
-    }
-
     #[test]
     fn below_yield_it_is_the_elastic_law() {
         for h in sample_gradients() {
             let motion = motion_of(Matrix::IDENTITY + h * 1e-3);
-            let response = LAW.response(&motion);
+            let response = LAW.respond(&motion, &[0.0]);
             assert_eq!(response.stress, LAW.elastic.stress(&motion));
-            assert_eq!(response.plastic_strain, 0.0);
+            assert_eq!(response.history, [0.0]);
         }
-        let rest = LAW.response(&motion_of(Matrix::IDENTITY));
-        assert_eq!((rest.stress, rest.plastic_strain), (Symmetric::ZERO, 0.0));
+        let rest = LAW.respond(&motion_of(Matrix::IDENTITY), &[0.0]);
+        assert_eq!((rest.stress, rest.history), (Symmetric::ZERO, [0.0]));
     }
 
     #[test]
     fn beyond_yield_the_stress_stays_on_the_surface() {
         for h in sample_gradients() {
-            let (end, _) = follow(&LAW, 50, |t| Matrix::IDENTITY + h * t);
-            let allowed = LAW.yield_stress + LAW.hardening_modulus * end.plastic_strain;
-            assert!(end.plastic_strain > 0.01, "{}", end.plastic_strain);
+            let (end, [plastic_strain], _) = follow(&LAW, (50, 1.0), |t| Matrix::IDENTITY + h * t);
+            let allowed = LAW.yield_stress + LAW.hardening_modulus * plastic_strain;
+            assert!(plastic_strain > 0.01, "{plastic_strain}");
             assert!((end.jacobian * equivalent(&end.stress) / allowed - 1.0).abs() < 1e-12);
         }
     }
@@ -221,10 +200,10 @@ mod tests {
             let (length, width) = ((e * t).exp(), width(t));
             Matrix([[length, 0.0, 0.0], [0.0, width, 0.0], [0.0, 0.0, width]])
         };
-        let (end, _) = follow(&LAW, 2000, bar);
+        let (end, [plastic_strain], _) = follow(&LAW, (2000, 1.0), bar);
         assert!((end.stress.0[0] / exact - 1.0).abs() < 2e-3, "{} {exact}", end.stress.0[0]);
         assert!(end.stress.0[1].abs() < 2e-3 * exact, "{:?}", end.stress);
-        assert!((end.plastic_strain - (e - exact / young)).abs() < 1e-4);
+        assert!((plastic_strain - (e - exact / young)).abs() < 1e-4);
     }
 
     /// With little change of volume, for the rate form's energy of that is exact only where it is small.
@@ -235,9 +214,9 @@ mod tests {
                 let f = Matrix::IDENTITY + h * t;
                 f * ((1.0 + 1e-3 * t) / f.det().cbrt())
             };
-            let (end, work) = follow(&LAW, 4000, motion);
-            let stored = LAW.strain_energy(&end.deformation, &end.stress);
-            let dissipated = LAW.dissipation(end.plastic_strain);
+            let (end, history, work) = follow(&LAW, (4000, 1.0), motion);
+            let stored = LAW.strain_energy(&end.deformation, &end.stress, &history);
+            let dissipated = LAW.dissipation(&history);
             assert!(dissipated > 0.9 * work, "{dissipated} of {work}");
             assert!(((stored + dissipated) / work - 1.0).abs() < 1e-3, "{stored} + {dissipated}, {work}");
         }
@@ -245,23 +224,24 @@ mod tests {
 
     #[test]
     fn a_step_of_rotation_only_rotates_the_stress() {
-        let (before, _) = follow(&LAW, 50, |t| Matrix::IDENTITY + sample_gradients()[2] * t);
+        let (before, history, _) = follow(&LAW, (50, 1.0), |t| Matrix::IDENTITY + sample_gradients()[2] * t);
         let q = rotation();
         let motion = Motion { deformation: q * before.deformation, increment: q, ..before };
-        let after = LAW.response(&motion);
+        let after = LAW.respond(&motion, &history);
         for (s, e) in after.stress.0.iter().zip(before.stress.rotated(&q).0) {
             assert!((s - e).abs() < 1e-12, "{s} {e}");
         }
-        assert!((after.plastic_strain - before.plastic_strain).abs() < 1e-12);
+        assert!((after.history[0] - history[0]).abs() < 1e-12);
     }
 
     #[test]
     fn constants_that_make_no_material_are_refused() {
+        let law = SHELF.iter().find(|law| law.name == "von_mises").expect("a law of the shelf");
+        let elastic = || Given::from([("bulk_modulus", 6.0), ("shear_modulus", 3.0)]);
         let with = |more: &[(&str, f64)]| {
-            let values = [("bulk_modulus", 6.0), ("shear_modulus", 3.0)].iter().chain(more);
-            VonMises::from_constants(&values.map(|&(name, value)| (name.to_string(), value)).collect())
+            law.build(&more.iter().fold(elastic(), |given, &(name, value)| given.with(name, value)))
         };
-        assert_eq!(with(&[("yield_stress", 1.0)]).unwrap().hardening_modulus, 0.0);
+        assert_eq!(with(&[("yield_stress", 1.0)]).unwrap().given().get("hardening_modulus"), Some(0.0));
         for (constants, key) in [
             (&[][..], None),
             (&[("yield_stress", 0.0)], Some("yield_stress")),

@@ -56,7 +56,7 @@ fn values_out_of_range() {
             (
                 "\"3 MPa\"",
                 "\"-3 MPa\"",
-                "10:57: materials.rubber.neo_hookean.shear_modulus: found \"-3 MPa\" (-3000000 Pa); allowed: a positive number",
+                "10:57: materials.rubber.neo_hookean.shear_modulus: found \"-3 MPa\" (-3000000 Pa); allowed: at least 0",
             ),
             (
                 ", shear_modulus = \"3 MPa\"",

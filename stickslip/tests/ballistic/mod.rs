@@ -1,6 +1,5 @@
 //! Two bodies whose particles fly freely through gravity: a simulation in which every number is known.
 
-use std::collections::BTreeMap;
 use stickslip::door::{
     BodyState, ContactSum, GridSnapshot, Ledger, ParticleSnapshot, Patch, Simulation, StepError, View,
 };
@@ -200,8 +199,7 @@ impl Simulation for Ballistic {
 
 /// The scene that [`Ballistic`] is the simulation of: one second, tables every 0.1 s, particles every 0.25 s, grid every 0.5 s.
 pub fn scene() -> Scene {
-    let moduli = [("bulk_modulus".to_string(), 6e6), ("shear_modulus".to_string(), 3e6)];
-    let law = SHELF[0].build(&BTreeMap::from(moduli)).unwrap();
+    let law = SHELF[0].build(&[("bulk_modulus", 6e6), ("shear_modulus", 3e6)].into()).unwrap();
     let body = |name: &str| Body {
         name: name.into(),
         material: 0,

@@ -96,7 +96,7 @@ const AGREEING: f64 = 1e-3;
 /// How far the normal of a body's face may be off, as the square of an angle in radians: it is as good as the deformation that carries
 /// it, which is known to two degrees, and to ten where plastic flow resists no error of it: of a material that may flow, whether it has or not.
 fn doubt<T: Real, const D: usize>(body: &Body<T, D>) -> T {
-    T::of(if body.particles.flow() { 0.03 } else { 1e-3 })
+    T::of(if body.trusts_deformation() { 1e-3 } else { 0.03 })
 }
 
 /// How flat a surface is around a point: large on a face, 2 at a right-angled edge.

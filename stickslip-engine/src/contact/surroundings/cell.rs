@@ -75,7 +75,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
             place[i] = seen.offset[i] + seen.sign[i] * start;
         }
 
-        if !self.near.bodies[self.body].particles.flow() {
+        if self.near.bodies[self.body].trusts_deformation() {
             for i in 0..D {
                 for j in 0..D {
                     place[i] = (-inverse[i][j]).times_plus(arm[j], place[i]);

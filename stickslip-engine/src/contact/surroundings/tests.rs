@@ -32,12 +32,11 @@ fn body<const D: usize>() -> Body<f64, D> {
             half_width: 0.2 + 0.05 * random(3 * i),
             deformation,
             stress,
-            plastic_strain: 0.0,
             number: i as u32,
         }
     };
     // Where they were at first, and where they are now.
-    let mut particles = Particles::from_fn(300, false, particle);
+    let mut particles = Particles::from_fn(300, &[], particle);
     for i in 0..300 {
         particles.set(i, &Particle { position: place(i, 3), ..particle(i) });
     }

@@ -126,6 +126,11 @@ macro_rules! lanes {
                 Self::from_fn(|lane| Number::ln(numbers.0[lane]))
             }
             #[inline(always)]
+            fn exp(self) -> Self {
+                let numbers = self.numbers();
+                Self::from_fn(|lane| Number::exp(numbers.0[lane]))
+            }
+            #[inline(always)]
             fn abs(self) -> Self {
                 self.max(-self)
             }

@@ -1,6 +1,6 @@
 //! What a pass does to a group of particles.
 
-use super::members::Members;
+use super::members::{HistoryOfGroup, Members};
 use super::thickness::free_thickness;
 use crate::basis::Basis;
 use crate::body::Gyration;
@@ -105,7 +105,7 @@ pub fn group<
 
     let mut deformation = Matrix::ZERO;
     let mut stress = Symmetric::ZERO;
-    let mut plastic_strain = V::ZERO;
+    let mut history = HistoryOfGroup::new(members);
     let [mut jacobian, mut volume] = [V::ZERO; 2];
     let mut carried = Vector::ZERO;
     let pushes = matches!(scatter, Some(Share::Force | Share::Everything));
@@ -116,9 +116,6 @@ pub fn group<
         stress = members.stress::<V>();
     }
     if strain {
-        if members.flow() {
-            plastic_strain = members.load(Column::<D>::PLASTIC_STRAIN);
-        }
         let scale = V::splat(dt) * constants.per_cell;
         let (gradient, mean) = group.flow(&visit.window.flow);
         carried = mean;
@@ -132,15 +129,14 @@ pub fn group<
         deformation = increment * deformation;
         jacobian = deformation.det();
         sound &= jacobian.at_least(V::splat(T::TINY)) & finite(&[jacobian]);
-        let motion = Motion { deformation, jacobian, increment, stress, plastic_strain };
+        let motion = Motion { deformation, jacobian, increment, stress, dt: V::splat(dt) };
         if D == 2 && visit.body.thickness == Thickness::Free {
-            let motion = free_thickness(visit.body, motion)?;
-            (deformation, jacobian) = (motion.deformation, motion.jacobian);
-            (stress, plastic_strain) = (motion.stress, motion.plastic_strain);
+            let motion = free_thickness(visit.body, (motion, dt), &mut history)?;
+            (deformation, jacobian, stress) = (motion.deformation, motion.jacobian, motion.stress);
         } else {
-            let response = constants.material.response(&motion);
-            (stress, plastic_strain) = (response.stress, response.plastic_strain);
+            stress = constants.material.respond(&motion, &mut history);
         }
+        history.changed = true;
         sound &= finite(&stress.0);
         volume = members.load::<V>(Column::<D>::MASS) * constants.per_density * jacobian;
     } else {
@@ -179,7 +175,8 @@ pub fn group<
         }
         members.store_vector(Column::<D>::POSITION, &moved);
         members.give_back::<V>(Column::<D>::POSITION..Column::<D>::VELOCITY);
-        let modulus = constants.material.wave_modulus(visit.body.thickness, &deformation, jacobian);
+        let modulus =
+            constants.material.wave_modulus(visit.body.thickness, (&deformation, jacobian), &history);
         let [wave, speed] = [modulus * constants.per_density, velocity.dot(velocity)];
         if !every::<V>(no_faster(wave, speed, V::splat(visit.found.signal))) {
             let signals = (wave.sqrt() + speed.sqrt()).numbers();
@@ -211,10 +208,7 @@ pub fn group<
         members.give_back::<V>(Column::<D>::DEFORMATION..Column::<D>::START);
         members.store(Column::<D>::VOLUME, volume);
         members.give_back::<V>(Column::<D>::VOLUME..Column::<D>::VOLUME + 1);
-        if members.flow() {
-            members.store(Column::<D>::PLASTIC_STRAIN, plastic_strain);
-            members.give_back::<V>(Column::<D>::PLASTIC_STRAIN..Column::<D>::PLASTIC_STRAIN + 1);
-        }
+        history.store::<V>();
     }
     if let Some(share) = scatter {
         let mut load = Load { momentum: None, stress: None };

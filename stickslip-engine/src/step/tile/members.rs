@@ -1,10 +1,12 @@
 //! The particles of a group in memory: side by side, or copied so that they are.
 
 use crate::lanes::{Lanes, MOST_LANES, Numbers, prefetch};
+use crate::material::{Keep, MOST_HISTORY, Recall};
 use crate::particles::{Column, Columns, deformation_entries, spin_entries, stress_entries};
 use crate::step::pass::Verbs;
 use crate::tensor::{Matrix, Real, Symmetric, Vector};
 use crate::transfer::Share;
+use std::mem::MaybeUninit;
 use std::ops::Range;
 
 /// How many particles ahead of the present ones numbers are fetched into the cache: columns are too many for a processor to do so by itself.
@@ -13,7 +15,7 @@ pub const AHEAD: usize = 32;
 /// Fetches what a pass needs of a particle and those beside it.
 #[inline(always)]
 pub fn fetch<T: Real, const D: usize>(columns: &Columns<T, D>, particle: usize, verbs: &Verbs) {
-    for range in Reads::of(verbs, columns.flow()).columns::<D>() {
+    for range in Reads::of(verbs, columns.history()).columns::<D>() {
         for column in range {
             // SAFETY: the particle exists.
             prefetch(unsafe { columns.at(column, particle) });
@@ -26,17 +28,18 @@ pub fn fetch<T: Real, const D: usize>(columns: &Columns<T, D>, particle: usize, 
 struct Reads {
     deformation: bool,
     stress: bool,
-    plastic_strain: bool,
+    /// Entries of the history.
+    history: usize,
 }
 
 impl Reads {
-    /// Of a body's particles, which may `flow` or not.
+    /// Of particles whose history has so many entries.
     #[inline(always)]
-    fn of(verbs: &Verbs, flow: bool) -> Self {
+    fn of(verbs: &Verbs, history: usize) -> Self {
         Reads {
             deformation: verbs.strain || verbs.displace,
             stress: verbs.strain || verbs.scatter.is_some_and(|share| share != Share::Momentum),
-            plastic_strain: flow && verbs.strain,
+            history: if verbs.strain || verbs.displace { history } else { 0 },
         }
     }
 
@@ -48,7 +51,7 @@ impl Reads {
             0..Column::<D>::DEFORMATION,
             only(self.deformation, Column::<D>::DEFORMATION..Column::<D>::STRESS),
             only(self.stress, Column::<D>::STRESS..Column::<D>::START),
-            only(self.plastic_strain, Column::<D>::PLASTIC_STRAIN..Column::<D>::PLASTIC_STRAIN + 1),
+            Column::<D>::HISTORY..Column::<D>::HISTORY + self.history,
         ]
     }
 }
@@ -69,7 +72,7 @@ pub struct Members<'a, T, const D: usize, const WHOLE: bool> {
 
 /// Columns of particles that do not lie side by side or, without masks, do not fill the lanes, with room for a register from any lane on.
 pub struct Copies<T> {
-    columns: [[Numbers<T>; 2]; MOST_COLUMNS],
+    columns: [[MaybeUninit<Numbers<T>>; 2]; MOST_COLUMNS],
     runs: Runs,
 }
 
@@ -110,7 +113,7 @@ impl Runs {
 }
 
 /// Columns of a particle in space.
-const MOST_COLUMNS: usize = Column::<3>::PLASTIC_STRAIN + 1;
+const MOST_COLUMNS: usize = Column::<3>::HISTORY + MOST_HISTORY;
 
 impl<'a, T: Real, const D: usize, const WHOLE: bool> Members<'a, T, D, WHOLE> {
     /// Particles that lie side by side.
@@ -130,7 +133,7 @@ impl<'a, T: Real, const D: usize, const WHOLE: bool> Members<'a, T, D, WHOLE> {
         copies: &'a mut Copies<T>,
     ) -> Self {
         // SAFETY: the tile's particles are this pass' alone.
-        unsafe { copies.take::<V, D>(columns, index, Reads::of(verbs, columns.flow())) };
+        unsafe { copies.take::<V, D>(columns, index, Reads::of(verbs, columns.history())) };
         Members {
             columns,
             count: index.len(),
@@ -140,10 +143,10 @@ impl<'a, T: Real, const D: usize, const WHOLE: bool> Members<'a, T, D, WHOLE> {
         }
     }
 
-    /// Whether they have plastic strain.
+    /// Entries of their history.
     #[inline(always)]
-    pub fn flow(&self) -> bool {
-        self.columns.flow()
+    pub fn history(&self) -> usize {
+        self.columns.history()
     }
 
     /// How many.
@@ -253,9 +256,77 @@ impl<'a, T: Real, const D: usize, const WHOLE: bool> Members<'a, T, D, WHOLE> {
     }
 }
 
+/// The history of a group: what its particles remember, and what they will once the pass is known to be sound.
+pub struct HistoryOfGroup<'a, 'b, T, const D: usize, const WHOLE: bool> {
+    members: &'a Members<'b, T, D, WHOLE>,
+    /// An entry after the other, as the registers were stored; only those that were kept.
+    after: [MaybeUninit<Numbers<T>>; MOST_HISTORY],
+    /// Whether it was kept.
+    pub changed: bool,
+}
+
+impl<'a, 'b, T: Real, const D: usize, const WHOLE: bool> HistoryOfGroup<'a, 'b, T, D, WHOLE> {
+    /// As the particles remember it.
+    #[inline(always)]
+    pub fn new(members: &'a Members<'b, T, D, WHOLE>) -> Self {
+        HistoryOfGroup { members, after: [const { MaybeUninit::uninit() }; MOST_HISTORY], changed: false }
+    }
+
+    /// How many entries.
+    #[inline(always)]
+    pub fn entries(&self) -> usize {
+        self.members.history()
+    }
+
+    /// Where the lanes of an entry lie that was kept.
+    #[inline(always)]
+    pub fn lanes(&mut self, entry: usize) -> *mut T {
+        self.after[entry].as_mut_ptr().cast()
+    }
+
+    /// The same to be read.
+    #[inline(always)]
+    pub fn kept(&self, entry: usize) -> *const T {
+        self.after[entry].as_ptr().cast()
+    }
+
+    /// Writes what was kept to the particles.
+    #[inline(always)]
+    pub fn store<V: Lanes<Real = T>>(&mut self) {
+        let first = Column::<D>::HISTORY;
+        for entry in 0..self.entries() {
+            // SAFETY: it was kept.
+            let numbers = unsafe { V::load(self.lanes(entry)) };
+            self.members.store(first + entry, numbers);
+        }
+        self.members.give_back::<V>(first..first + self.entries());
+    }
+}
+
+impl<V: Lanes, const D: usize, const WHOLE: bool> Recall<V> for HistoryOfGroup<'_, '_, V::Real, D, WHOLE> {
+    const DIMENSION: usize = D;
+    #[inline(always)]
+    fn recall(&self, entry: usize) -> V {
+        match self.changed {
+            // SAFETY: it was kept.
+            true => unsafe { V::load(self.kept(entry)) },
+            false => self.members.load(Column::<D>::HISTORY + entry),
+        }
+    }
+}
+
+impl<V: Lanes, const D: usize, const WHOLE: bool> Keep<V> for HistoryOfGroup<'_, '_, V::Real, D, WHOLE> {
+    #[inline(always)]
+    fn keep(&mut self, entry: usize, value: V) {
+        // SAFETY: there is room for any machine's lanes.
+        unsafe { value.store(self.lanes(entry)) };
+    }
+}
+
 impl<T: Real> Copies<T> {
     /// Nothing yet.
-    pub const EMPTY: Self = Copies { columns: [[Numbers::ZERO; 2]; MOST_COLUMNS], runs: Runs::NONE };
+    pub const EMPTY: Self =
+        Copies { columns: [const { [MaybeUninit::uninit(); 2] }; MOST_COLUMNS], runs: Runs::NONE };
 
     /// Entries from a column to the next.
     const STRIDE: usize = size_of::<[Numbers<T>; 2]>() / size_of::<T>();
@@ -283,17 +354,18 @@ impl<T: Real> Copies<T> {
                 if reads.stress {
                     self.take_run::<V, D>(columns, run, Column::<D>::STRESS..Column::<D>::START);
                 }
-                if reads.plastic_strain {
-                    let column = Column::<D>::PLASTIC_STRAIN;
-                    self.take_run::<V, D>(columns, run, column..column + 1);
+                if reads.history > 0 {
+                    let first = Column::<D>::HISTORY;
+                    self.take_run::<V, D>(columns, run, first..first + reads.history);
                 }
             }
         }
         if !V::MASKED && self.runs.count > 1 && index.len() < V::COUNT {
             for column in reads.columns::<D>().into_iter().flatten() {
                 let copy = &mut self.columns[column];
-                // SAFETY: there is room for a register from any lane on.
-                unsafe { V::splat(copy[0].0[0]).store(copy.as_mut_ptr().cast::<T>().add(index.len())) };
+                let copy = copy.as_mut_ptr().cast::<T>();
+                // SAFETY: the first was copied, and there is room for a register from any lane on.
+                unsafe { V::splat(*copy).store(copy.add(index.len())) };
             }
         }
     }

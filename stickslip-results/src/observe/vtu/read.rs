@@ -1,6 +1,7 @@
 //! Reading back files of points that a run wrote; it is no reader for the `.vtu` files of other programs.
 
 use super::{BLOCK, Scalar};
+use crate::column::Kind;
 use crate::observe::file::{ReadError, ReadProblem};
 use crate::observe::xml::attribute;
 use quick_xml::Reader;
@@ -19,6 +20,8 @@ pub(in crate::observe) struct Points {
     count: usize,
     fields: BTreeMap<String, f64>,
     arrays: BTreeMap<String, Place>,
+    /// Names of the arrays in the order of the file.
+    names: Vec<String>,
 }
 
 /// Where an array lies in the appended data, and what it is made of.
@@ -26,6 +29,7 @@ struct Place {
     kind: String,
     components: usize,
     offset: usize,
+    unit: String,
 }
 
 impl Points {
@@ -39,6 +43,7 @@ impl Points {
             count: 0,
             fields: BTreeMap::new(),
             arrays: BTreeMap::new(),
+            names: Vec::new(),
         };
         points.read_header(&bytes).map_err(|problem| problem.at(path))?;
         points.bytes = bytes;
@@ -78,8 +83,11 @@ impl Points {
                         kind: attribute(&tag, "type")?,
                         components: attribute(&tag, "NumberOfComponents")?,
                         offset: attribute(&tag, "offset")?,
+                        unit: attribute(&tag, "Unit").unwrap_or_default(),
                     };
-                    self.arrays.insert(attribute(&tag, "Name")?, place);
+                    let name: String = attribute(&tag, "Name")?;
+                    self.names.push(name.clone());
+                    self.arrays.insert(name, place);
                 }
                 Event::Eof => return Ok(()),
                 _ => {}
@@ -92,9 +100,23 @@ impl Points {
         self.fields.get(name).copied().ok_or_else(|| missing(&format!("field `{name}`")).at(&self.path))
     }
 
-    /// Whether it holds an array.
-    pub(in crate::observe) fn has(&self, name: &str) -> bool {
-        self.arrays.contains_key(name)
+    /// Names of its arrays, in their order.
+    pub(in crate::observe) fn names(&self) -> impl Iterator<Item = &str> {
+        self.names.iter().map(String::as_str)
+    }
+
+    /// An array as it describes itself: its unit, what each point has, and the values of one point after the other.
+    pub(in crate::observe) fn described(&self, name: &str) -> Result<(String, Kind, Vec<f64>), ReadError> {
+        let none = || missing(&format!("array `{name}`")).at(&self.path);
+        let Place { unit, components, .. } = self.arrays.get(name).ok_or_else(none)?;
+        let (kind, values) = match components {
+            1 => (Kind::Number, self.numbers(name)?),
+            3 => (Kind::Vector, self.array::<f64, 3>(name)?.into_flattened()),
+            6 => (Kind::Symmetric, self.array::<f64, 6>(name)?.into_flattened()),
+            9 => (Kind::Tensor, self.array::<f64, 9>(name)?.into_flattened()),
+            _ => return Err(none()),
+        };
+        Ok((unit.clone(), kind, values))
     }
 
     /// An array with one number for each point.

@@ -1,7 +1,9 @@
 //! Writing points and their data.
 
 use super::{BLOCK, Scalar};
+use crate::column::Kind;
 use crate::observe::file::{OutputError, replace};
+use std::borrow::Cow;
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -18,7 +20,9 @@ pub struct Vtu {
 }
 
 struct Array {
-    name: &'static str,
+    name: Cow<'static, str>,
+    /// Unit; empty where none is said.
+    unit: String,
     kind: &'static str,
     components: &'static [&'static str],
     /// As it stands in the file: sizes of blocks, then blocks.
@@ -27,7 +31,20 @@ struct Array {
 
 impl Array {
     fn new<T: Scalar>(name: &'static str, components: &'static [&'static str], values: &[T]) -> Self {
-        Array { name, kind: T::NAME, components, bytes: compress(values) }
+        Array { name: name.into(), unit: String::new(), kind: T::NAME, components, bytes: compress(values) }
+    }
+}
+
+/// An array before it has its own name.
+const ANY: &str = "array";
+
+/// Names of the components of what each point has.
+fn components(kind: Kind) -> &'static [&'static str] {
+    match kind {
+        Kind::Number => NUMBER,
+        Kind::Vector | Kind::Rotation => VECTOR,
+        Kind::Symmetric => SYMMETRIC,
+        Kind::Tensor => TENSOR,
     }
 }
 
@@ -69,6 +86,18 @@ impl Vtu {
     ) {
         assert_eq!(values.len(), self.points * components.len(), "`{name}` has a value for each point");
         self.point_data.push(Array::new(name, components, values));
+    }
+
+    /// Adds an array that is described: its name, its unit and what each point has.
+    pub(in crate::observe) fn described<T: Scalar>(
+        &mut self,
+        (name, unit): (&str, &str),
+        kind: Kind,
+        values: &[T],
+    ) {
+        self.point_data(ANY, components(kind), values);
+        let array = self.point_data.last_mut().expect("it was just added");
+        (array.name, array.unit) = (Cow::Owned(name.to_string()), unit.to_string());
     }
 
     /// Writes the file; it appears under its name once complete.
@@ -118,10 +147,13 @@ impl Vtu {
 
 impl Array {
     fn declare(&self, offset: usize, xml: &mut String) {
-        let Array { name, kind, components, .. } = self;
+        let Array { name, unit, kind, components, .. } = self;
         let count = components.len();
         let mut line = || -> std::fmt::Result {
             write!(xml, "<DataArray type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{count}\"")?;
+            if !unit.is_empty() {
+                write!(xml, " Unit=\"{unit}\"")?;
+            }
             if count > 1 {
                 for (i, component) in components.iter().enumerate() {
                     write!(xml, " ComponentName{i}=\"{component}\"")?;

@@ -3,7 +3,7 @@
 use super::Context;
 use super::quantity::{Density, Quantity, evaluate};
 use super::read::{Read, check_keys, field, unknown_key};
-use crate::material::{Description, SHELF};
+use crate::material::{Constant, Description, Form, Given, Quantity as Wanted, SHELF};
 use crate::scene::error::Fault;
 use crate::scene::parameters::Variation;
 use crate::scene::source::{Node, Value};
@@ -11,7 +11,6 @@ use crate::scene::units::Powers;
 use crate::scene::{NamedMaterial, Problem};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use std::borrow::Cow;
-use std::collections::BTreeMap;
 
 /// The materials by name.
 pub struct Materials(Vec<Node>);
@@ -60,24 +59,71 @@ fn material(node: &Node, context: &Context) -> Result<NamedMaterial, Fault> {
 }
 
 /// The constants of a law in SI units.
-fn constants(table: &Node, law: &Description, context: &Context) -> Result<BTreeMap<String, f64>, Fault> {
+fn constants(table: &Node, law: &Description, context: &Context) -> Result<Given, Fault> {
     let names: Vec<&str> = law.constants.iter().map(|constant| constant.name).collect();
     let Value::Table(children) = &table.value else {
         return Err(table.fault(format!("a table {{ ... }} with the keys {}", names.join(", "))));
     };
-    let mut values = BTreeMap::new();
+    let mut given = Given::default();
     for child in children {
         let constant = law.constants.iter().find(|constant| constant.name == child.name);
         let constant = constant.ok_or_else(|| unknown_key(child, &names))?;
-        let powers = Powers::from(constant.dimension);
-        let allowed = match powers == Powers::NONE {
-            true => powers.name(),
-            false => format!("{}, like \"{}\"", powers.name(), powers.example()),
+        let values = match constant.form {
+            Form::Number(wanted) => vec![number(child, &wanted, context)?],
+            Form::Pairs(wanted, _) => pairs(child, (constant, &wanted), context)?,
         };
-        let value = evaluate(child, powers, &allowed, (context, Variation::Constant))?.at(0.0);
-        values.insert(child.name.clone(), value);
+        given.put(child.name.clone(), values);
+    }
+    Ok(given)
+}
+
+fn number(node: &Node, wanted: &Wanted, context: &Context) -> Result<f64, Fault> {
+    let powers = Powers::from(wanted.unit.powers);
+    let allowed = match powers == Powers::NONE {
+        true => powers.name(),
+        false => format!("{}, like \"{}\"", powers.name(), powers.example()),
+    };
+    Ok(evaluate(node, powers, &allowed, (context, Variation::Constant))?.at(0.0))
+}
+
+/// The numbers of a list of pairs, one after the other.
+fn pairs(
+    node: &Node,
+    (constant, wanted): (&Constant, &[Wanted; 2]),
+    context: &Context,
+) -> Result<Vec<f64>, Fault> {
+    let [first, second] = wanted;
+    let allowed = || format!("a list of pairs [{}, {}]: {}", first.name, second.name, constant.summary);
+    let Value::List(rows) = &node.value else { return Err(node.fault(allowed())) };
+    let mut values = Vec::new();
+    for row in rows {
+        let Value::List(pair) = &row.value else { return Err(row.fault(allowed())) };
+        let [a, b] = &pair[..] else { return Err(row.fault(allowed())) };
+        values.extend([number(a, first, context)?, number(b, second, context)?]);
     }
     Ok(values)
+}
+
+/// What the schema says of a constant.
+fn schema_of(constant: &Constant) -> Schema {
+    let mut schema = match &constant.form {
+        Form::Number(wanted) => {
+            let example = Powers::from(wanted.unit.powers).example();
+            json_schema!({ "type": ["number", "string"], "examples": [example] })
+        }
+        Form::Pairs(pair, most) => {
+            let example = pair.map(|wanted| Powers::from(wanted.unit.powers).example());
+            json_schema!({
+                "type": "array",
+                "minItems": 1,
+                "maxItems": most,
+                "items": { "type": "array", "minItems": 2, "maxItems": 2, "items": { "type": ["number", "string"] } },
+                "examples": [[example]],
+            })
+        }
+    };
+    schema.insert("description".into(), constant.summary.into());
+    schema
 }
 
 impl Read for Materials {
@@ -107,15 +153,7 @@ impl JsonSchema for Materials {
             let constants: serde_json::Map<_, _> = law
                 .constants
                 .iter()
-                .map(|constant| {
-                    let powers = Powers::from(constant.dimension);
-                    let schema = json_schema!({
-                        "description": constant.summary,
-                        "type": ["number", "string"],
-                        "examples": [powers.example()],
-                    });
-                    (constant.name.to_string(), schema.into())
-                })
+                .map(|constant| (constant.name.to_string(), schema_of(constant).into()))
                 .collect();
             let table = json_schema!({
                 "description": law.summary,

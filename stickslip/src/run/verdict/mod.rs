@@ -72,7 +72,7 @@ impl Look<'_> {
     /// Stiffness against the fastest wave in an undeformed body [Pa].
     fn wave_modulus(&self, body: usize) -> f64 {
         let material = &self.scene.materials[self.scene.bodies[body].material];
-        material.law.wave_modulus(self.scene.dimension.thickness(), &crate::tensor::Matrix::IDENTITY, 1.0)
+        material.law.wave_modulus_at_rest(self.scene.dimension.thickness())
     }
 }
 

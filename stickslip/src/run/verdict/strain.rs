@@ -103,8 +103,8 @@ impl Stretch {
         self.largest = self.largest.max((squares / pairs.len().max(1) as f64).sqrt());
         let (off, worst) = shared(&sums)?;
         let share = off / self.largest.max(LEAST_STRETCH);
-        let flows = look.scene.materials[look.scene.bodies[body].material].law.flows();
-        let bound = if flows { BOUND_OF_FLOW } else { BOUND };
+        let trusted = look.scene.materials[look.scene.bodies[body].material].law.trusts_deformation();
+        let bound = if trusted { BOUND } else { BOUND_OF_FLOW };
         if share.is_nan() || share <= bound {
             return None;
         }
