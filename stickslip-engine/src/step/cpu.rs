@@ -74,7 +74,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             unsafe {
                 match path {
                     Path::Lanes(processor) => T::run(processor, SeveralAtATime(&mut visit)),
-                    Path::Reference => visit.take_one_by_one(),
+                    Path::OneLane => visit.take_one_by_one(),
+                    #[cfg(test)]
+                    Path::Naive => visit.take_naively(),
                 }
             }
             // SAFETY: every tile has a place of its own.

@@ -4,6 +4,8 @@ mod build;
 mod cpu;
 mod join;
 mod look;
+#[cfg(test)]
+mod naive;
 mod pass;
 mod state;
 mod tile;

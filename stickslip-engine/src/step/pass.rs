@@ -3,12 +3,12 @@
 use crate::basis::Basis;
 use crate::body::{Body, Particle};
 use crate::grid::{Disjoint, Lattice, Node, SIDE, Sought, Tile, Window, addressable};
-use crate::lanes::{Any, Machine, Processor};
-use crate::material::{Motion, Recall};
+use crate::lanes::{Machine, Processor};
+use crate::material::Recall;
 use crate::particles::Columns;
 use crate::scene::Transfer;
-use crate::tensor::{Matrix, Real, Vector};
-use crate::transfer::{Share, Stencil, turning};
+use crate::tensor::{Real, Vector};
+use crate::transfer::Share;
 use std::marker::PhantomData;
 
 /// Who does the work on particles.
@@ -16,14 +16,18 @@ use std::marker::PhantomData;
 pub enum Path {
     /// Several particles at a time, by the best that the processor has.
     Lanes(Processor),
-    /// One particle at a time: what the other must agree with, but for round-off.
-    Reference,
+    /// One particle at a time, by the same code: what finds out what is wrong with whom, and serves processors that hold
+    /// no numbers side by side.
+    OneLane,
+    /// One particle and one node after the other, by code of its own.
+    #[cfg(test)]
+    Naive,
 }
 
 /// What a pass does to each particle, in this order.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Verbs {
-    /// v_p = (1 - a) (v_p + sum S_i (v_i - v_i^0)) + a sum S_i v_i,   a: PIC share; the spin likewise, see [`turning`]
+    /// v_p = (1 - a) (v_p + sum S_i (v_i - v_i^0)) + a sum S_i v_i,   a: PIC share; the spin likewise, see [`crate::transfer::turning`]
     pub accept: bool,
     /// F = (I + L dt) F,  V = V_0 det F,  sigma = law(F)
     pub strain: bool,
@@ -75,7 +79,7 @@ pub struct Fault {
 }
 
 /// What can be wrong with a particle.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FaultKind {
     /// Its deformation gradient has no positive determinant.
     Inverted,
@@ -175,144 +179,6 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
             unsafe { self.window.add_to::<M>(self.nodes, self.tile, Self::REACHED) };
         }
     }
-
-    /// Takes the tile's particles one by one through the pass.
-    ///
-    /// # Safety
-    /// Nobody else may use the tile's nodes and particles meanwhile.
-    pub unsafe fn take_one_by_one(&mut self) {
-        // SAFETY: the caller's.
-        unsafe {
-            self.open::<Any>();
-            self.one_by_one();
-            self.close::<Any>();
-        }
-    }
-
-    /// Changes the tile's particles one by one.
-    ///
-    /// # Safety
-    /// Nobody else may use the tile's particles meanwhile.
-    unsafe fn one_by_one(&mut self) {
-        for (cell, ends) in self.cells.windows(2).enumerate() {
-            for place in ends[0]..ends[1] {
-                // SAFETY: the caller's.
-                unsafe { self.one(self.order[place as usize], cell) };
-            }
-        }
-    }
-
-    /// Takes one particle, whose home is a cell.
-    ///
-    /// # Safety
-    /// Nobody else may use the particle meanwhile.
-    pub unsafe fn one(&mut self, index: u32, cell: usize) {
-        // SAFETY: the caller's.
-        let mut particle = unsafe { self.columns.get(index as usize) };
-        let stencil = Stencil::<T, D, B>::new(&self.pass.lattice, &particle);
-        let outcome = self.change((&mut particle, index as usize), &stencil);
-        // SAFETY: the caller's.
-        unsafe { self.columns.set(index as usize, &particle) };
-        match outcome {
-            Ok(()) => self.scatter(&particle, &stencil),
-            Err(kind) => {
-                let fault = Fault { body: self.tile.body, particle: index as usize, kind };
-                self.found = self.found.and(Found { fault: Some(fault), signal: T::ZERO });
-            }
-        }
-        if self.pass.verbs.displace {
-            let moved = Stencil::<T, D, B>::new(&self.pass.lattice, &particle).base() != stencil.base();
-            self.left |= u64::from(moved) << cell;
-            self.moved += u32::from(moved);
-            // SAFETY: the caller's.
-            let history = unsafe { self.columns.history_of(index as usize) };
-            let signal = signal(self.body, &particle, &history);
-            self.found.signal = self.found.signal.max(signal);
-        }
-    }
-
-    fn change(
-        &mut self,
-        (particle, index): (&mut Particle<T, D>, usize),
-        stencil: &Stencil<T, D, B>,
-    ) -> Result<(), FaultKind> {
-        let Pass { verbs, dt, transfer, pic, ref lattice, domain } = *self.pass;
-        let block = self.tile.block;
-        if verbs.accept {
-            let kept = T::ONE - pic;
-            particle.velocity += stencil.interpolate(&self.window.change, block);
-            if transfer == Transfer::Rflip {
-                let moment = stencil.moment(&self.window.change, block);
-                particle.spin += moment * (T::ONE / self.body.gyration.squared(particle.half_width));
-            }
-            let before = self.body.kinetic(particle);
-            if pic > T::ZERO {
-                let mean = stencil.interpolate(&self.window.integrated, block);
-                particle.velocity = particle.velocity * kept + mean * pic;
-                if transfer == Transfer::Rflip {
-                    let gradient = stencil.velocity_gradient(&self.window.integrated, block);
-                    particle.spin = turning::toward(particle.spin, &gradient, pic);
-                }
-            }
-            self.damped += (before - self.body.kinetic(particle)).f64();
-            let sound = particle.velocity.is_finite() && particle.spin.is_finite();
-            sound.then_some(()).ok_or(FaultKind::NotFinite)?;
-        }
-        if verbs.strain {
-            let gradient = stencil.velocity_gradient(&self.window.flow, block);
-            if transfer == Transfer::Rflip {
-                let before = self.body.kinetic(particle);
-                particle.spin = turning::settled::<T, D>(particle.spin, &gradient, dt);
-                self.damped += (before - self.body.kinetic(particle)).f64();
-            }
-            let increment = Matrix::IDENTITY + gradient * dt;
-            let deformation = increment * particle.deformation;
-            let jacobian = deformation.det();
-            if !jacobian.is_finite() {
-                return Err(FaultKind::NotFinite);
-            }
-            let undeformed = particle.mass / self.body.density;
-            (particle.deformation, particle.volume) = (deformation, undeformed * jacobian);
-            if jacobian <= T::ZERO {
-                return Err(FaultKind::Inverted);
-            }
-            let motion = Motion { deformation, jacobian, increment, stress: particle.stress, dt };
-            // SAFETY: the caller of this pass keeps others away from the tile's particles.
-            let mut history = unsafe { self.columns.history_of(index) };
-            let (motion, stress) = self.body.respond(motion, &mut history).ok_or(FaultKind::NoThickness)?;
-            (particle.deformation, particle.volume) = (motion.deformation, undeformed * motion.jacobian);
-            particle.stress = stress;
-            particle.stress.is_finite().then_some(()).ok_or(FaultKind::NotFinite)?;
-        }
-        if verbs.displace {
-            let position = particle.position + stencil.interpolate(&self.window.flow, block) * dt;
-            if !position.is_finite() {
-                return Err(FaultKind::NotFinite);
-            }
-            particle.position = position;
-            if escaped::<T, D, B>(particle, lattice, domain) {
-                return Err(FaultKind::Escaped);
-            }
-        }
-        Ok(())
-    }
-
-    fn scatter(&mut self, particle: &Particle<T, D>, stencil: &Stencil<T, D, B>) {
-        let (window, block) = (&mut *self.window, self.tile.block);
-        let gradient = turning::gradient::<T, D>(&particle.spin, T::HALF * self.pass.dt);
-        match self.pass.verbs.scatter {
-            Some(Share::Mass | Share::Everything) => {
-                stencil.scatter_momentum(window, block, (particle.mass, particle, &gradient));
-            }
-            Some(Share::Momentum) => {
-                stencil.scatter_momentum(window, block, (T::ZERO, particle, &gradient));
-            }
-            Some(Share::Force) | None => {}
-        }
-        if matches!(self.pass.verbs.scatter, Some(Share::Force | Share::Everything)) {
-            stencil.scatter_force(window, block, &(particle.stress * particle.volume));
-        }
-    }
 }
 
 /// Wave speed plus particle speed [m/s], see [`crate::clock`].
@@ -324,6 +190,15 @@ pub fn signal<T: Real, const D: usize>(
     (body.wave_modulus(particle, history) / body.density).sqrt() + particle.velocity.norm()
 }
 
+/// Base node of a particle: the first that it reaches along each axis.
+pub fn home<T: Real, const D: usize, B: Basis<T>>(
+    lattice: &Lattice<T, D>,
+    (position, half_width): (Vector<T, D>, T),
+) -> [i32; D] {
+    let x = lattice.cells(position);
+    std::array::from_fn(|i| B::reach(x[i], half_width * lattice.per_cell).floor())
+}
+
 /// Whether a particle is outside the domain, or so far away that its cell has no number.
 pub fn escaped<T: Real, const D: usize, B: Basis<T>>(
     particle: &Particle<T, D>,
@@ -333,5 +208,5 @@ pub fn escaped<T: Real, const D: usize, B: Basis<T>>(
     let outside = domain.is_some_and(|[min, max]| {
         (0..D).any(|i| particle.position[i] < min[i] || particle.position[i] > max[i])
     });
-    outside || !addressable(Stencil::<T, D, B>::new(lattice, particle).base())
+    outside || !addressable(home::<T, D, B>(lattice, (particle.position, particle.half_width)))
 }

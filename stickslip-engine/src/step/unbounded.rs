@@ -5,6 +5,7 @@
 
 use super::Engine;
 use super::build::{mirrors, spin};
+use super::pass::home;
 use super::state::Disorder;
 use crate::basis::Basis;
 use crate::body::Particle;
@@ -247,9 +248,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.state.disorder[number] = Disorder::any(body.particles.len());
         let (particles, grid) = (&body.particles, &self.settings.lattice);
         self.workspace.cover.replace((number, particles.len(), B::WIDTH as i32 - 1), |particle| {
-            let (position, half_width) = particles.place(particle);
-            let x = grid.cells(position);
-            std::array::from_fn(|i| B::reach(x[i], half_width * grid.per_cell).floor())
+            home::<T, D, B>(grid, particles.place(particle))
         });
     }
 }

@@ -2,7 +2,7 @@
 
 use super::Engine;
 use super::build::spin;
-use super::pass::{Fault, FaultKind, Found, Pass, Path, Verbs, escaped, signal};
+use super::pass::{Fault, FaultKind, Found, Pass, Path, Verbs, escaped, home, signal};
 use super::state::{Disorder, Workspace};
 use crate::basis::Basis;
 use crate::contact::{Change, Near, Record, Solve, Span, Step, Use};
@@ -12,7 +12,7 @@ use crate::lanes::{Laned, Processor};
 use crate::scene::{ContactLaw, StressUpdate};
 use crate::tensor::{Matrix, Vector};
 use crate::threads::each;
-use crate::transfer::{Share, Stencil};
+use crate::transfer::Share;
 use std::time::Instant;
 
 /// The uses of contact in a step.
@@ -35,9 +35,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let count = |body: usize| bodies[body].particles.len();
         let reach = B::WIDTH as i32 - 1;
         let blocks = self.workspace.cover.update((bodies.len(), count, reach), left, |body, particle| {
-            let (position, half_width) = bodies[body].particles.place(particle);
-            let x = lattice.cells(position);
-            std::array::from_fn(|i| B::reach(x[i], half_width * lattice.per_cell).floor())
+            home::<T, D, B>(lattice, bodies[body].particles.place(particle))
         });
         let blocks = blocks.max(self.spread(blocks));
         self.sort_particles();
@@ -215,7 +213,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             ahead: (self.settings.time.stress_update != StressUpdate::First).then_some(dt),
             processor: match self.settings.path {
                 Path::Lanes(processor) => processor,
-                Path::Reference => Processor::Any,
+                _ => Processor::Any,
             },
         };
         near.survey::<B>(&mut self.workspace.meeting);
@@ -330,7 +328,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             let mut moved_on = 0;
             for p in 0..body.particles.len() {
                 let mut particle = body.particles.get(p);
-                let home = Stencil::<T, D, B>::new(&self.settings.lattice, &particle).base();
+                let before =
+                    home::<T, D, B>(&self.settings.lattice, (particle.position, particle.half_width));
                 let position = particle.position.space();
                 let moved = Vector::of(motion.moved(position, &rotation, dt));
                 let kind = if !moved.is_finite() {
@@ -344,8 +343,10 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                         .then_some(FaultKind::Escaped)
                 };
                 body.particles.set(p, &particle);
-                moved_on +=
-                    u32::from(Stencil::<T, D, B>::new(&self.settings.lattice, &particle).base() != home);
+                moved_on += u32::from(
+                    home::<T, D, B>(&self.settings.lattice, (particle.position, particle.half_width))
+                        != before,
+                );
                 let fault = kind.map(|kind| Fault { body: i, particle: p, kind });
                 // SAFETY: the particles are borrowed here alone.
                 let history = unsafe { body.particles.view().history_of(p) };

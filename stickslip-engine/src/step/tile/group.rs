@@ -8,7 +8,7 @@ use crate::lanes::{Laned, Lanes, Machine};
 use crate::material::{Material, Motion, Thickness};
 use crate::particles::Column;
 use crate::scene::Transfer;
-use crate::step::pass::{Pass, Verbs, Visit};
+use crate::step::pass::{FaultKind, Pass, Verbs, Visit};
 use crate::tensor::{Matrix, Real, Symmetric, Vector};
 use crate::transfer::{Group, Load, Momentum, Share, Start, turning};
 
@@ -42,9 +42,14 @@ pub fn splat<V: Lanes, const D: usize>(vector: &Vector<V::Real, D>) -> Vector<V,
     Vector::from_fn(|i| V::splat(vector[i]))
 }
 
-/// Takes a group through a pass and says which particles did not leave their cells; nothing is done if any has a fault.
+/// Takes a group through a pass and says which particles did not leave their cells.
 ///
-/// Particles have base nodes and places of these in the window.
+/// This is all that is ever done to a particle, written once for any number of lanes. Particles have base nodes and places
+/// of these in the window.
+///
+/// # Errors
+/// A particle has a fault. Of several particles nothing is changed, and which fault it is does not say. A single one keeps
+/// what was found out of it, to be looked at, and the first fault is told.
 #[inline(always)]
 pub fn group<
     T: Laned,
@@ -59,7 +64,7 @@ pub fn group<
     constants: &Constants<V, D>,
     members: &Members<'_, T, D, WHOLE>,
     (base, start): (Vector<V, D>, S),
-) -> Option<u32> {
+) -> Result<u32, FaultKind> {
     let Pass { verbs, dt, transfer, pic, .. } = *visit.pass;
     let Verbs { accept, strain, displace, scatter } = verbs;
     let position = members.vector::<V>(Column::<D>::POSITION);
@@ -67,7 +72,7 @@ pub fn group<
     let half = half_width * constants.per_cell;
     let group =
         Group::<V, D, B, S>::new(constants.in_cells(&position) - base, half, start, members.count::<V>());
-    let mut sound = u32::MAX;
+    let mut sound = Sound::EVERYTHING;
 
     let mut velocity = Vector::ZERO;
     let mut spin = Vector::ZERO;
@@ -99,8 +104,7 @@ pub fn group<
             }
             damped = before - kinetic(&velocity, &spin, gyration);
         }
-        sound &= finite(&spin.0);
-        sound &= finite(&velocity.0);
+        sound.require(finite(&spin.0) & finite(&velocity.0), FaultKind::NotFinite);
     }
 
     let mut deformation = Matrix::ZERO;
@@ -123,21 +127,30 @@ pub fn group<
             let before = kinetic(&Vector::<V, D>::ZERO, &spin, gyration);
             spin = turning::settled::<V, D>(spin, &(gradient * constants.per_cell), V::splat(dt));
             damped += before - kinetic(&Vector::<V, D>::ZERO, &spin, gyration);
-            sound &= finite(&spin.0);
+            sound.require(finite(&spin.0), FaultKind::NotFinite);
         }
         let increment = Matrix::IDENTITY + gradient * scale;
         deformation = increment * deformation;
         jacobian = deformation.det();
-        sound &= jacobian.at_least(V::splat(T::TINY)) & finite(&[jacobian]);
+        sound.require(finite(&[jacobian]), FaultKind::NotFinite);
+        sound.require(jacobian.at_least(V::splat(T::TINY)), FaultKind::Inverted);
+        volume = members.load::<V>(Column::<D>::MASS) * constants.per_density * jacobian;
+        if V::COUNT == 1
+            && let Some(kind) = sound.fault::<V>()
+        {
+            members.store_picture((&deformation, volume), kind);
+            return Err(kind);
+        }
         let motion = Motion { deformation, jacobian, increment, stress, dt: V::splat(dt) };
         if D == 2 && visit.body.thickness == Thickness::Free {
-            let motion = free_thickness(visit.body, (motion, dt), &mut history)?;
+            let found = free_thickness(visit.body, (motion, dt), &mut history);
+            let motion = found.ok_or(FaultKind::NoThickness)?;
             (deformation, jacobian, stress) = (motion.deformation, motion.jacobian, motion.stress);
         } else {
             stress = constants.material.respond(&motion, &mut history);
         }
         history.changed = true;
-        sound &= finite(&stress.0);
+        sound.require(finite(&stress.0), FaultKind::NotFinite);
         volume = members.load::<V>(Column::<D>::MASS) * constants.per_density * jacobian;
     } else {
         if displace {
@@ -154,24 +167,27 @@ pub fn group<
             carried = group.interpolate(&visit.window.flow);
         }
         let moved = position + carried * V::splat(dt);
-        sound &= finite(&moved.0);
+        sound.require(finite(&moved.0), FaultKind::NotFinite);
         let cells = constants.in_cells(&moved);
         for i in 0..D {
             let reach = B::reach(cells[i], half);
             inside &= reach.at_least(base[i]) & !reach.at_least(base[i] + V::ONE);
             if let Some([min, max]) = &constants.domain {
-                sound &= moved[i].at_least(min[i]) & max[i].at_least(moved[i]);
+                sound.require(moved[i].at_least(min[i]) & max[i].at_least(moved[i]), FaultKind::Escaped);
             }
         }
         if !every::<V>(inside) {
             let far = V::splat(T::of(f64::from(crate::grid::MOST_CELLS - 1)));
             for i in 0..D {
                 let reach = B::reach(cells[i], half);
-                sound &= reach.at_least(-far) & far.at_least(reach);
+                sound.require(reach.at_least(-far) & far.at_least(reach), FaultKind::Escaped);
             }
         }
-        if !every::<V>(sound) {
-            return None;
+        if let Some(kind) = sound.fault::<V>() {
+            if V::COUNT == 1 && kind == FaultKind::Escaped {
+                members.store_vector(Column::<D>::POSITION, &moved);
+            }
+            return Err(kind);
         }
         members.store_vector(Column::<D>::POSITION, &moved);
         members.give_back::<V>(Column::<D>::POSITION..Column::<D>::VELOCITY);
@@ -185,8 +201,8 @@ pub fn group<
             }
         }
     }
-    if !every::<V>(sound) {
-        return None;
+    if let Some(kind) = sound.fault::<V>() {
+        return Err(kind);
     }
     if accept {
         members.store_vector(Column::<D>::VELOCITY, &velocity);
@@ -225,7 +241,36 @@ pub fn group<
         }
         group.scatter::<M>(visit.window, &load);
     }
-    Some(inside)
+    Ok(inside)
+}
+
+/// Which particles of a group have no fault.
+struct Sound {
+    lanes: u32,
+    /// The first fault of the first lane.
+    first: Option<FaultKind>,
+}
+
+impl Sound {
+    const EVERYTHING: Self = Sound { lanes: u32::MAX, first: None };
+
+    /// Demands a bit of every lane.
+    #[inline(always)]
+    fn require(&mut self, lanes: u32, kind: FaultKind) {
+        self.lanes &= lanes;
+        if self.first.is_none() && lanes & 1 == 0 {
+            self.first = Some(kind);
+        }
+    }
+
+    /// The first fault of a single lane; of several lanes any fault, if there is one.
+    #[inline(always)]
+    fn fault<V: Lanes>(&self) -> Option<FaultKind> {
+        if every::<V>(self.lanes) {
+            return None;
+        }
+        Some(if V::COUNT == 1 { self.first.unwrap_or(FaultKind::NotFinite) } else { FaultKind::NotFinite })
+    }
 }
 
 /// v^2 + k^2 w^2, with the square of the radius of gyration.

@@ -3,7 +3,7 @@
 use crate::lanes::{Lanes, MOST_LANES, Numbers, prefetch};
 use crate::material::{Keep, MOST_HISTORY, Recall};
 use crate::particles::{Column, Columns, deformation_entries, spin_entries, stress_entries};
-use crate::step::pass::Verbs;
+use crate::step::pass::{FaultKind, Verbs};
 use crate::tensor::{Matrix, Real, Symmetric, Vector};
 use crate::transfer::Share;
 use std::mem::MaybeUninit;
@@ -252,6 +252,17 @@ impl<'a, T: Real, const D: usize, const WHOLE: bool> Members<'a, T, D, WHOLE> {
     pub fn store_stress<V: Lanes<Real = T>>(&self, stress: &Symmetric<V>) {
         for k in 0..stress_entries(D) {
             self.store(Column::<D>::STRESS + k, stress.0[k]);
+        }
+    }
+}
+
+impl<T: Real, const D: usize, const WHOLE: bool> Members<'_, T, D, WHOLE> {
+    /// Keeps of a particle with a fault what a picture of it shows: F and volume, if these are numbers.
+    #[inline(always)]
+    pub fn store_picture<V: Lanes<Real = T>>(&self, (deformation, volume): (&Matrix<V>, V), kind: FaultKind) {
+        if kind == FaultKind::Inverted {
+            self.store_deformation(deformation);
+            self.store(Column::<D>::VOLUME, volume);
         }
     }
 }

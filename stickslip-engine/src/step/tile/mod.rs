@@ -1,17 +1,17 @@
 //! A pass over the particles of a tile, several at a time.
 //!
 //! Particles of one cell are taken as many at a time as the processor has lanes, and where cells of the plane have too few, those of a tile: straight from memory where they lie side by side there
-//! and fill the lanes or the processor masks them, else by copies. A group with a fault is left to the reference path, which says what is wrong with whom.
+//! and fill the lanes or the processor masks them, else by copies. A group with a fault is taken again, one particle at a time, to find out what is wrong with whom.
 
 mod group;
 mod members;
 mod thickness;
 
-use super::pass::Visit;
+use super::pass::{Fault, FaultKind, Found, Visit};
 use crate::basis::Basis;
 use crate::body::Gyration;
 use crate::grid::{WINDOW, node_at};
-use crate::lanes::{Laned, Lanes, MOST_LANES, Machine, Work};
+use crate::lanes::{Any, Laned, Lanes, MOST_LANES, Machine, Pack, Work};
 use crate::tensor::Vector;
 use crate::transfer::{Own, Shared, Start};
 use group::{Constants, every, group, splat};
@@ -50,6 +50,42 @@ impl<T: Laned, const D: usize, B: Basis<T>> Work for SeveralAtATime<'_, '_, T, D
 }
 
 impl<T: Laned, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
+    /// Takes the tile's particles one by one through the pass.
+    ///
+    /// # Safety
+    /// Nobody else may use the tile's nodes and particles meanwhile.
+    pub unsafe fn take_one_by_one(&mut self) {
+        // SAFETY: the caller's.
+        unsafe { self.open::<Any>() };
+        let (order, cells) = (self.order, self.cells);
+        for (cell, ends) in cells.windows(2).enumerate() {
+            order[ends[0] as usize..ends[1] as usize].iter().for_each(|&index| self.one(index, cell));
+        }
+        // SAFETY: the caller's.
+        unsafe { self.close::<Any>() };
+    }
+
+    /// Takes one particle whose home is a cell, in a group of one lane, and finds out what is wrong with it.
+    #[inline(never)]
+    fn one(&mut self, index: u32, cell: usize) {
+        let (columns, indices) = (self.columns, [index]);
+        let place = Place::new(self.tile.block, cell);
+        let base = Vector::from_fn(|i| Pack([T::of(f64::from(place.base[i]))]));
+        let start = Shared::new::<D>(place.start);
+        let members = Members::in_a_row(&columns, &indices);
+        let constants = self.constants::<Pack<T, 1>>();
+        match group::<T, Pack<T, 1>, Any, D, B, _, true>(self, &constants, &members, (base, start)) {
+            Ok(inside) => {
+                self.left |= u64::from(inside & 1 == 0) << cell;
+                self.moved += outside(inside, 1);
+            }
+            Err(kind) => {
+                let fault = Fault { body: self.tile.body, particle: index as usize, kind };
+                self.found = self.found.and(Found { fault: Some(fault), signal: T::ZERO });
+            }
+        }
+    }
+
     /// Whether cells have too few particles to fill the lanes.
     #[inline(always)]
     fn sparse(&self) -> bool {
@@ -99,16 +135,11 @@ impl<T: Laned, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
                 let base = Vector::from_fn(|i| V::splat(T::of(f64::from(place.base[i]))));
                 let start = Shared::new::<D>(place.start);
                 match visit.group::<M, V, _>(&constants, (index, in_a_row), (base, start), &mut copies) {
-                    Some(inside) => {
+                    Ok(inside) => {
                         visit.left |= u64::from(!every::<V>(inside)) << cell;
                         visit.moved += outside(inside, index.len());
                     }
-                    None => {
-                        for &index in index {
-                            // SAFETY: the tile's particles are this call's alone.
-                            unsafe { visit.one(index, cell) };
-                        }
-                    }
+                    Err(_) => index.iter().for_each(|&index| visit.one(index, cell)),
                 }
                 first += index.len();
             }
@@ -123,7 +154,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
         (index, in_a_row): (&[u32], bool),
         place: (Vector<V, D>, S),
         copies: &mut Copies<T>,
-    ) -> Option<u32> {
+    ) -> Result<u32, FaultKind> {
         let (columns, verbs) = (self.columns, self.pass.verbs);
         let in_full = in_a_row && index.len() == V::COUNT;
         if V::MASKED && !in_full {
@@ -179,18 +210,13 @@ impl<T: Laned, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
             let base = Vector::from_fn(|i| unsafe { V::load(bases[i].as_ptr()) });
             let start = Own::new::<D>(starts);
             match visit.group::<M, V, _>(&constants, (index, in_a_row), (base, start), &mut copies) {
-                Some(inside) => {
+                Ok(inside) => {
                     visit.moved += outside(inside, index.len());
                     for (lane, &home) in homes.iter().enumerate().take(index.len()) {
                         visit.left |= u64::from(inside >> lane & 1 == 0) << home;
                     }
                 }
-                None => {
-                    for (&index, &home) in index.iter().zip(&homes) {
-                        // SAFETY: the tile's particles are this call's alone.
-                        unsafe { visit.one(index, home) };
-                    }
-                }
+                Err(_) => index.iter().zip(&homes).for_each(|(&index, &home)| visit.one(index, home)),
             }
             first += index.len();
         }
