@@ -25,8 +25,8 @@ pub struct PictureChoice {
     pub range: Option<[f64; 2]>,
     /// Where the camera stands.
     pub view: View,
-    /// `x`, `y`, `z` or `none`. Without it, pictures of bodies are mirrored where the scene has just one plane of symmetry;
-    /// pictures of values are not, as the cut shows the inside.
+    /// `x`, `y`, `z` or `none`. Without it, pictures of bodies are mirrored where the scene has just one plane of
+    /// symmetry; pictures of values are not, as the cut shows the inside.
     pub mirror: Option<String>,
     /// Width and height in pixels.
     pub size: Option<[usize; 2]>,

@@ -8,7 +8,8 @@ use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssi
 
 /// What laws compute with: a real number, or several side by side.
 ///
-/// Every operation rounds as IEEE 754 says, so that one number and each of several have the same bits, but for [`Number::times_plus`].
+/// Every operation rounds as IEEE 754 says, so that one number and each of several have the same bits,
+/// but for [`Number::times_plus`].
 pub trait Number:
     Copy
     + Debug
@@ -51,8 +52,8 @@ pub trait Number:
     fn min(self, other: Self) -> Self;
     /// The larger of two numbers.
     fn max(self, other: Self) -> Self;
-    /// self * factor + other. Single numbers round the product and the sum; several side by side round once where the processor has an
-    /// instruction for that ([`crate::lanes::Processor::fuses`]).
+    /// self * factor + other. Single numbers round the product and the sum; several side by side round once where the
+    /// processor has an instruction for that ([`crate::lanes::Processor::fuses`]).
     #[inline(always)]
     fn times_plus(self, factor: Self, other: Self) -> Self {
         self * factor + other

@@ -1,7 +1,7 @@
 //! Particles to field, field to particles: the sums over the nodes that particles reach.
 //!
-//! [`Stencil`] takes one particle at a time and reads like the equations; [`Group`] takes several particles of a tile at once. The
-//! second must give what the first gives, but for round-off.
+//! [`Stencil`] takes one particle at a time and reads like the equations; [`Group`] takes several particles of a tile
+//! at once. The second must give what the first gives, but for round-off.
 
 mod group;
 pub mod turning;
@@ -130,7 +130,8 @@ impl<T: Real, const D: usize, B: Basis<T>> Stencil<T, D, B> {
         sum
     }
 
-    /// sum S_i (x_i - x_p) x v_i of a value at the window's nodes, see [`turning`]; in the plane about the third axis [m^2/s].
+    /// sum S_i (x_i - x_p) x v_i of a value at the window's nodes, see [`turning`];
+    /// in the plane about the third axis [m^2/s].
     pub fn moment(&self, nodes: &[Told<T>; WINDOW_NODES], block: [i32; D]) -> Vector<T, 3> {
         let mut moments = Matrix::ZERO;
         self.each(block, |place, offset| {
