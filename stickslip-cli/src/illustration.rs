@@ -53,8 +53,8 @@ impl<'a> Album<'a> {
     /// Opens the snapshots of a run.
     ///
     /// # Errors
-    /// There are none, no law remembers what colour is to stand for, or the scene has no plane of symmetry where the user wants
-    /// a mirror.
+    /// There are none, no law remembers what colour is to stand for, or the scene has no plane of symmetry where the
+    /// user wants a mirror.
     pub fn open(results: &'a Results, choice: PictureChoice) -> Result<Self, Failure> {
         let first = snapshots(results)?.first().expect("there is at least one");
         let setting = Setting::of_json(&results.manifest().scene);

@@ -149,7 +149,8 @@ macro_rules! real {
         }
     };
 }
-// Dividing the bits by three divides the exponent by three; the constants make up for its bias and spread the error evenly.
+// Dividing the bits by three divides the exponent by three; the constants make up for its bias and spread the error
+// evenly.
 real!(f32, libm::cbrtf, libm::logf, libm::expf, |bits: u32| CUBE_ROOT_F32.wrapping_sub(bits / 3));
 real!(f64, libm::cbrt, libm::log, libm::exp, |bits: u64| CUBE_ROOT_F64.wrapping_sub((bits >> 32) / 3) << 32);
 

@@ -73,7 +73,8 @@ impl Points {
         Points { points: points.collect(), bodies, radius: RADIUS * scene.discretization.cell }
     }
 
-    /// The material at each point now; `None` where no particle is around. The first call binds the points of the material.
+    /// The material at each point now; `None` where no particle is around.
+    /// The first call binds the points of the material.
     pub(super) fn sample(&mut self, view: &dyn View) -> Vec<Option<Sample>> {
         let mut sums = vec![Sum::default(); self.points.len()];
         let mut found: Vec<Vec<(u32, f64)>> = vec![Vec::new(); self.points.len()];
