@@ -196,8 +196,8 @@ fn few_fringes(snapshots: &[ParticleSnapshot], stage: &Stage) -> Sensitivity {
     Sensitivity::StressPerFringe(if high > 0.0 { high / FRINGES } else { 1.0 })
 }
 
-/// The sensitivity that the constants of an experiment give in a scene of so many dimensions: those of `--stress-optic-coefficient`
-/// [1/Pa] and `--thickness` [m].
+/// The sensitivity that the constants of an experiment give in a scene of so many dimensions: those of
+/// `--stress-optic-coefficient` [1/Pa] and `--thickness` [m].
 ///
 /// # Errors
 /// A plane scene needs a thickness, one in space has its own.

@@ -82,7 +82,8 @@ impl From<DrawError> for Failure {
     }
 }
 
-/// An error as it is drawn over the lines at fault: its place and its remedy are drawn too, so the headline leaves them out.
+/// An error as it is drawn over the lines at fault: its place and its remedy are drawn too,
+/// so the headline leaves them out.
 #[derive(Debug, thiserror::Error)]
 #[error("{headline}")]
 struct Drawn<'a> {

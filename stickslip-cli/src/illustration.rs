@@ -25,8 +25,8 @@ pub struct PictureChoice {
     pub range: Option<[f64; 2]>,
     /// Where the camera stands.
     pub view: View,
-    /// `x`, `y`, `z` or `none`. Without it, pictures of bodies are mirrored where the scene has just one plane of symmetry;
-    /// pictures of values are not, as the cut shows the inside.
+    /// `x`, `y`, `z` or `none`. Without it, pictures of bodies are mirrored where the scene has just one plane of
+    /// symmetry; pictures of values are not, as the cut shows the inside.
     pub mirror: Option<String>,
     /// Width and height in pixels.
     pub size: Option<[usize; 2]>,
@@ -53,8 +53,8 @@ impl<'a> Album<'a> {
     /// Opens the snapshots of a run.
     ///
     /// # Errors
-    /// There are none, no law remembers what colour is to stand for, or the scene has no plane of symmetry where the user wants
-    /// a mirror.
+    /// There are none, no law remembers what colour is to stand for, or the scene has no plane of symmetry where the
+    /// user wants a mirror.
     pub fn open(results: &'a Results, choice: PictureChoice) -> Result<Self, Failure> {
         let first = snapshots(results)?.first().expect("there is at least one");
         let setting = Setting::of_json(&results.manifest().scene);

@@ -1,5 +1,5 @@
-//! What README and book say is true: their commands run, their scenes are scenes, their links lead somewhere, and every key,
-//! word, column and equation number of the code stands there.
+//! What README and book say is true: their commands run, their scenes are scenes, their links lead somewhere, and every
+//! key, word, column and equation number of the code stands there.
 
 mod stickslip;
 
@@ -64,7 +64,8 @@ case "$1" in
 esac
 "#;
 
-/// Every command of a document runs, one after the other as a reader would type them, in a folder with the repository's scenes.
+/// Every command of a document runs, one after the other as a reader would type them,
+/// in a folder with the repository's scenes.
 #[cfg(unix)]
 #[test]
 fn commands_run() {

@@ -1,6 +1,7 @@
 //! The report of `stickslip reproduce`, opened in a real browser.
 //!
-//! Needs Chromium with its driver and a Python with the package `selenium` (`STICKSLIP_PYTHON`, else `python3`); `./check` installs them.
+//! Needs Chromium with its driver and a Python with the package `selenium` (`STICKSLIP_PYTHON`,
+//! else `python3`); `./check` installs them.
 
 mod stickslip;
 
@@ -29,7 +30,8 @@ fn look_at(page: &Path) -> Option<Value> {
     Some(serde_json::from_slice(&output.stdout).unwrap())
 }
 
-/// A page that a reader can read: figures seen, images decoded, tables filled, links that lead somewhere, and no word to the network.
+/// A page that a reader can read: figures seen, images decoded, tables filled, links that lead somewhere,
+/// and no word to the network.
 fn assert_readable(found: &Value) {
     for (figure, images) in found["figures"].as_object().unwrap() {
         let images = images.as_array().unwrap();

@@ -110,8 +110,8 @@ impl<T: Real> Basis<T> for Gimp {
 
     #[inline(always)]
     fn shape<N: Number>(r: N, half: N) -> Shape<N> {
-        // Without a branch: `near` stops at 2l, where S_0 goes on as a straight line. No sum cancels, so that a node that a particle
-        // hardly reaches gets hardly any mass, but not less than none.
+        // Without a branch: `near` stops at 2l, where S_0 goes on as a straight line. No sum cancels, so that a node
+        // that a particle hardly reaches gets hardly any mass, but not less than none.
         let width = half + half;
         let per_width = N::ONE / width;
         let before = (N::ONE + half) - r;

@@ -13,7 +13,8 @@ const PARTICLES: usize = 4096;
 /// ```text
 /// c + |v|,   c^2 = M J / rho_0          M: P-wave modulus in the present state, in plane stress a plate's
 /// ```
-/// A step dt = courant h / max(c + |v|) lets no signal cross more than that fraction of a cell (Courant, Friedrichs and Lewy 1928).
+/// A step dt = courant h / max(c + |v|) lets no signal cross more than that fraction of a cell (Courant,
+/// Friedrichs and Lewy 1928).
 pub fn fastest_signal<T: Real, const D: usize>(bodies: &[Body<T, D>]) -> f64 {
     let of_body = |body: &Body<T, D>| {
         let signal = |i: usize| {

@@ -74,8 +74,8 @@ impl March {
 
     /// Longest next step [s].
     ///
-    /// Where more than one and less than two steps remain, they are shared equally: a last step of nearly no length would
-    /// divide forces by nearly nothing.
+    /// Where more than one and less than two steps remain, they are shared equally: a last step of nearly no length
+    /// would divide forces by nearly nothing.
     fn longest(&self, remaining: f64, simulation: &dyn Simulation) -> f64 {
         // Asking for the stable step may cost a look at all particles: only near the end.
         if remaining > 4.0 * self.last && self.last > 0.0 {

@@ -1,6 +1,7 @@
 //! Large pages of memory: what streams through much memory spends less time on finding out where it is.
 
-/// Asks the system to keep a range of memory that nobody has used yet in large pages, where it can; what is smaller than a few of them is left alone.
+/// Asks the system to keep a range of memory that nobody has used yet in large pages, where it can; what is smaller
+/// than a few of them is left alone.
 pub fn ask_for_large<T>(first: *const T, count: usize) {
     /// Bytes of a large page of most processors.
     const LARGE: usize = 2 << 20;
@@ -12,8 +13,8 @@ pub fn ask_for_large<T>(first: *const T, count: usize) {
     {
         let start = first.addr().next_multiple_of(LARGE);
         let end = (first.addr() + bytes) / LARGE * LARGE;
-        // SAFETY: the range is the caller's, and the call changes nothing that a program can see but its speed. Where the system does not do
-        // as it is asked nothing is lost.
+        // SAFETY: the range is the caller's, and the call changes nothing that a program can see but its speed. Where
+        // the system does not do as it is asked nothing is lost.
         unsafe { libc::madvise(start as *mut libc::c_void, end - start, libc::MADV_HUGEPAGE) };
     }
     #[cfg(not(target_os = "linux"))]

@@ -65,8 +65,8 @@ impl Image {
 
 /// Writes images as one animated PNG (APNG) that plays for ever, `rate` images a second.
 ///
-/// A program that does not know animations shows the first image. Images are asked for one by one, so that a long film need not
-/// fit into memory.
+/// A program that does not know animations shows the first image. Images are asked for one by one, so that a long film
+/// need not fit into memory.
 ///
 /// # Errors
 /// There are no images, one cannot be had or has another size than the first, or the writer refuses.

@@ -8,7 +8,8 @@ use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssi
 
 /// What laws compute with: a real number, or several side by side.
 ///
-/// Every operation rounds as IEEE 754 says, so that one number and each of several have the same bits, but for [`Number::times_plus`].
+/// Every operation rounds as IEEE 754 says, so that one number and each of several have the same bits,
+/// but for [`Number::times_plus`].
 pub trait Number:
     Copy
     + Debug
@@ -51,8 +52,8 @@ pub trait Number:
     fn min(self, other: Self) -> Self;
     /// The larger of two numbers.
     fn max(self, other: Self) -> Self;
-    /// self * factor + other. Single numbers round the product and the sum; several side by side round once where the processor has an
-    /// instruction for that ([`crate::lanes::Processor::fuses`]).
+    /// self * factor + other. Single numbers round the product and the sum; several side by side round once where the
+    /// processor has an instruction for that ([`crate::lanes::Processor::fuses`]).
     #[inline(always)]
     fn times_plus(self, factor: Self, other: Self) -> Self {
         self * factor + other
@@ -148,7 +149,8 @@ macro_rules! real {
         }
     };
 }
-// Dividing the bits by three divides the exponent by three; the constants make up for its bias and spread the error evenly.
+// Dividing the bits by three divides the exponent by three; the constants make up for its bias and spread the error
+// evenly.
 real!(f32, libm::cbrtf, libm::logf, libm::expf, |bits: u32| CUBE_ROOT_F32.wrapping_sub(bits / 3));
 real!(f64, libm::cbrt, libm::log, libm::exp, |bits: u64| CUBE_ROOT_F64.wrapping_sub((bits >> 32) / 3) << 32);
 

@@ -1,7 +1,8 @@
 //! Numbers, vectors and matrices of any precision and dimension.
 //!
-//! Transfer between particles and grid works in the dimension of the scene, `Vector<T, D>`; laws live in three dimensions,
-//! `Matrix<T>` and `Symmetric<T>`, whatever the scene: a plane scene embeds its motion with [`Vector::space`].
+//! Transfer between particles and grid works in the dimension of the scene, `Vector<T, D>`; laws live in three
+//! dimensions, `Matrix<T>` and `Symmetric<T>`, whatever the scene: a plane scene embeds its motion with
+//! [`Vector::space`].
 
 pub use crate::number::{Number, Real};
 use std::iter::Sum;
@@ -9,7 +10,8 @@ use std::ops::{Add, AddAssign, Div, Index, IndexMut, Mul, Neg, Sub, SubAssign};
 
 /// The array whose entry `i` is `f(i)`.
 ///
-/// The loop is written out: the standard library's is a call, across which a register of several numbers would go through memory.
+/// The loop is written out: the standard library's is a call, across which a register of several numbers would go
+/// through memory.
 #[inline(always)]
 pub fn array<X: Copy, const N: usize>(fill: X, mut f: impl FnMut(usize) -> X) -> [X; N] {
     let mut entries = [fill; N];

@@ -1,8 +1,8 @@
 //! A step takes no memory from the system: what it needs it has kept from the steps before.
 //!
-//! Lists that follow the particles, such as who is in which cell, may still grow a last time while particles wander, and so may what one of
-//! several threads keeps when it is handed more than ever before: a handful of times in all, not once a step. One thread with particles
-//! that do not wander allocates nothing at all.
+//! Lists that follow the particles, such as who is in which cell, may still grow a last time while particles wander,
+//! and so may what one of several threads keeps when it is handed more than ever before: a handful of times in all, not
+//! once a step. One thread with particles that do not wander allocates nothing at all.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicU64, Ordering};

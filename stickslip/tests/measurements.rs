@@ -1,18 +1,19 @@
 //! Probes, arrivals and fronts tell what a step wave in a bar does.
 //!
-//! Source: elementary theory of bars. A rigid striker pushes the end of a bar at rest with the constant velocity v; nu = 0, so
-//! that the bar is one-dimensional:
+//! Source: elementary theory of bars. A rigid striker pushes the end of a bar at rest with the constant velocity v;
+//! nu = 0, so that the bar is one-dimensional:
 //!
 //! ```text
 //! v_x = v and sigma_xx = -rho c v behind the front at x = c t, zero before it;   c = sqrt(E/rho)
 //! mean velocity of the bar v c t / L
 //! ```
 //!
-//! Set-up: the plane, L of 80 cells, 4 cells high, v/c = 0.002; units of L = rho = c = 1. Thresholds are half of the step.
+//! Set-up: the plane, L of 80 cells, 4 cells high, v/c = 0.002; units of L = rho = c = 1.
+//! Thresholds are half of the step.
 //!
-//! Expected: arrivals at x/c within three cells, as lumped mass on a grid disperses the step to a ramp some cells wide; the
-//! speed between two arrivals, and of the front by fit, within 2 % of c; the mean velocity v/2 at t = L/2c within three cells;
-//! the probe that rides with the material moves with it, the other stays.
+//! Expected: arrivals at x/c within three cells, as lumped mass on a grid disperses the step to a ramp some cells wide;
+//! the speed between two arrivals, and of the front by fit, within 2 % of c; the mean velocity v/2 at t = L/2c within
+//! three cells; the probe that rides with the material moves with it, the other stays.
 
 use std::path::Path;
 use std::sync::Arc;

@@ -1,6 +1,7 @@
 //! What a run writes: complete, exact, readable by ParaView's reader, and valid whatever ends the run.
 //!
-//! The simulation here is exact and tiny: two bodies of a few particles fly through gravity, so that every number is known.
+//! The simulation here is exact and tiny: two bodies of a few particles fly through gravity,
+//! so that every number is known.
 
 mod ballistic;
 
@@ -302,7 +303,8 @@ fn paraview_reads_the_snapshots() {
     assert_eq!(grid[2]["fields"]["cell"], last.cell);
 }
 
-/// Pressure and von Mises stress follow from the stress in `ballistic`, -3 on the diagonal and a shear of 1: 3 and sqrt(3).
+/// Pressure and von Mises stress follow from the stress in `ballistic`, -3 on the diagonal and a shear of 1:
+/// 3 and sqrt(3).
 fn assert_same_particles(found: &serde_json::Value, time: f64, expected: &ParticleSnapshot) {
     let points: Vec<usize> = (0..expected.mass.len()).collect();
     assert!(found["cells"] == serde_json::json!(points), "each point is a cell");

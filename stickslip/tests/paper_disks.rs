@@ -1,7 +1,7 @@
 //! The paper's disks (Bardenhagen et al. 2001, section 3.3), run from their scene files.
 //!
-//! Arrival, where nothing else is said: sigma_1 - sigma_2 at the centre of a disk above 0.3 rho c_L V, in transits D/c_L, as in the
-//! sharp-contact reference.
+//! Arrival, where nothing else is said: sigma_1 - sigma_2 at the centre of a disk above 0.3 rho c_L V, in transits
+//! D/c_L, as in the sharp-contact reference.
 //!
 //! Every claim has a quick form on coarse grids, which always runs, and a slow one at the paper's 80 cells.
 //! `cargo test --release -p stickslip --test paper_disks -- --nocapture --include-ignored` prints what was measured.
@@ -16,8 +16,8 @@ const FLIP: (&str, &str) = ("time.transfer", "flip");
 const COARSE: (&str, &str) = ("cells_per_diameter", "20");
 const PAPER: (&str, &str) = ("cells_per_diameter", "80");
 
-/// Momentum of the disks is what the striker and the frame gave, within round-off, for every scene and choice; their energy is
-/// the striker's work within 5 % after two transits on a coarse grid.
+/// Momentum of the disks is what the striker and the frame gave, within round-off, for every scene and choice; their
+/// energy is the striker's work within 5 % after two transits on a coarse grid.
 #[test]
 fn every_choice_of_the_scenes_runs_and_keeps_the_balance() {
     let experiment = [COARSE, ("dimension", "plane-stress"), ("nu", "0.32"), ("speed", "2.07e-3 * c_L")];
@@ -32,11 +32,11 @@ fn every_choice_of_the_scenes_runs_and_keeps_the_balance() {
     }
 }
 
-/// The paper: frictionless contacts slow the waves most, sliding ones less, glued ones least. From the third disk on the order holds,
-/// and the last disk moves at least `ratio` times later where contacts slide than where they are glued. A disk has the wave when its centre
-/// of mass moves at 0.05 V: in the glued zig-zag the wave passes a disk's centre with little difference of stress.
-/// Measured at 20 cells: 4.41, 5.91 and 8.24 transits at the last disk, 1.339 times later; at 80 cells
-/// 5.10, 7.22 and 9.79, 1.415 times later.
+/// The paper: frictionless contacts slow the waves most, sliding ones less, glued ones least. From the third disk on
+/// the order holds, and the last disk moves at least `ratio` times later where contacts slide than where they are
+/// glued. A disk has the wave when its centre of mass moves at 0.05 V: in the glued zig-zag the wave passes a disk's
+/// centre with little difference of stress. Measured at 20 cells: 4.41, 5.91 and 8.24 transits at the last disk, 1.339
+/// times later; at 80 cells 5.10, 7.22 and 9.79, 1.415 times later.
 fn friction_orders_arrivals(cells: (&str, &str), ratio: f64) {
     let chain = |scene: &str, choice: &[(&str, &str)]| {
         Chain::until_start(scene, &[&[cells, ("contact", "traction"), FLIP], choice].concat(), 16.0)
@@ -63,8 +63,8 @@ fn friction_orders_arrivals_at_the_papers_resolution() {
     friction_orders_arrivals(PAPER, 1.3);
 }
 
-/// The paper: sliding disks load the wall that they lean on before the next disk; glued ones pass the load from contact to contact. At the
-/// third disk of the zig-zag, by the paper's rule; a push of 0.2 rho c_L V R counts.
+/// The paper: sliding disks load the wall that they lean on before the next disk; glued ones pass the load from contact
+/// to contact. At the third disk of the zig-zag, by the paper's rule; a push of 0.2 rho c_L V R counts.
 fn friction_decides_the_path_of_the_load(cells: (&str, &str)) {
     let load = |scene: &str, transits: f64| {
         let chain = Chain::run(scene, &[cells, ("contact", "traction"), FLIP], transits);
@@ -90,9 +90,9 @@ fn friction_decides_the_path_of_the_load_at_the_papers_resolution() {
     friction_decides_the_path_of_the_load(PAPER);
 }
 
-/// The paper: with the longitudinal speed held, raising Poisson's ratio from 0.22 to 0.48 slows the fringes by more than a factor of two;
-/// asked here: 2.2. Speed: one disk over the mean interval between centres, from the second disk on. Measured: 2.42 at 80 cells, 2.31 at
-/// 40; at 20 the threshold passes too late in slow waves, 1.92.
+/// The paper: with the longitudinal speed held, raising Poisson's ratio from 0.22 to 0.48 slows the fringes by more
+/// than a factor of two; asked here: 2.2. Speed: one disk over the mean interval between centres, from the second disk
+/// on. Measured: 2.42 at 80 cells, 2.31 at 40; at 20 the threshold passes too late in slow waves, 1.92.
 fn poissons_ratio_slows_fringes(cells: (&str, &str), ratio: f64) {
     let interval = |nu: &str, transits: f64| {
         Chain::until_arrival("collinear", &[cells, ("contact", "traction"), FLIP, ("nu", nu)], transits)
@@ -114,8 +114,8 @@ fn poissons_ratio_slows_fringes_at_the_papers_resolution() {
     poissons_ratio_slows_fringes(PAPER, 2.2);
 }
 
-/// At 3 us (3.06 transits) the energy of the disks is the striker's work by the paper's rule, and less rather than more; the kinematic
-/// rule gains. Measured at 80 cells: -0.45 % and +1.74 %; at 20 cells: -1.9 % and +1.5 %.
+/// At 3 us (3.06 transits) the energy of the disks is the striker's work by the paper's rule, and less rather than
+/// more; the kinematic rule gains. Measured at 80 cells: -0.45 % and +1.74 %; at 20 cells: -1.9 % and +1.5 %.
 fn the_papers_rule_balances_energy(cells: (&str, &str), tolerance: f64) {
     let energy = |contact: &str| Chain::run("collinear", &[cells, ("contact", contact), FLIP], 3.0623).energy;
     let [traction, kinematic] = ["traction", "kinematic"].map(energy);
@@ -134,16 +134,18 @@ fn the_papers_rule_balances_energy_at_its_resolution() {
     the_papers_rule_balances_energy(PAPER, 0.005);
 }
 
-/// The plane scene on the nodes of the plate's grid: contact that starts in a node depends on the last digit of where nodes lie.
+/// The plane scene on the nodes of the plate's grid: contact that starts in a node depends on the last digit of where
+/// nodes lie.
 const NODES: [(&str, &str); 2] = [
     ("space.domain.min", "[\"-8 * cell\", \"-8 * cell\"]"),
     ("space.domain.max", "[\"width + 8 * cell\", \"height + 8 * cell\"]"),
 ];
 
 /// A 3D plate and plane stress, with the same cells and rule: arrivals within 2 % of each other.
-/// Plane stress is the limit of thin plates. In a plate of half-thickness b the front disperses, omega = c k (1 - (nu/(1 - nu))^2 (k b)^2/6), which
-/// smears it over (x (nu/(1 - nu))^2 b^2/2)^(1/3): at the second disk 0.06 D for the experiment's thickness D/8, and
-/// cells of D/64 show it. Hence the plate is D/16 thick there; the coarse grid smears as much by itself.
+/// Plane stress is the limit of thin plates. In a plate of half-thickness b the front disperses, omega = c k
+/// (1 - (nu/(1 - nu))^2 (k b)^2/6), which smears it over (x (nu/(1 - nu))^2 b^2/2)^(1/3): at the second disk 0.06 D for
+/// the experiment's thickness D/8, and cells of D/64 show it. Hence the plate is D/16 thick there;
+/// the coarse grid smears as much by itself.
 fn plate_and_plane_stress_agree(contact: &str, cells: &str, thickness: &str, disks: usize) {
     let choice = [("cells_per_diameter", cells), ("contact", contact)];
     let plane = [&choice[..], &NODES, &[("dimension", "plane-stress")]].concat();

@@ -12,13 +12,15 @@
 //!   ---------+-----------     +---- x, distance down the slope
 //!   /////////////////////
 //! ```
-//! `scenes/paper/inclined_plane_no_slip.toml` and `inclined_plane_slip.toml`: R = 1.6 m, halved by a symmetry plane; neo-Hookean with
-//! K = 6 MPa, G = 3 MPa, 1000 kg/m^3, on a plane ten times as stiff and dense; cells of R/2 to R/12 with 8 particles, GIMP; 2 s.
+//! `scenes/paper/inclined_plane_no_slip.toml` and `inclined_plane_slip.toml`: R = 1.6 m, halved by a symmetry plane;
+//! neo-Hookean with K = 6 MPa, G = 3 MPa, 1000 kg/m^3, on a plane ten times as stiff and dense;
+//! cells of R/2 to R/12 with 8 particles, GIMP; 2 s.
 //!
 //! # Expected
-//! Ratios to the rigid solution, x = (25 sqrt 2 / 14) t^2 (23) without slip and x = (5/2)(sqrt 3 - 2/7) t^2 (24) with slip; from the default
-//! also the height at which Hertz lets the centre stand, R - (9 F^2 / (16 R E*^2))^(1/3) with E* = 7.64 MPa: 1.555 m and 1.565 m.
-//! The paper's rule holds the sphere 0.6 cells above the plane and is slower, as the paper finds, the more so the larger the cells.
+//! Ratios to the rigid solution, x = (25 sqrt 2 / 14) t^2 (23) without slip and x = (5/2)(sqrt 3 - 2/7) t^2 (24) with
+//! slip; from the default also the height at which Hertz lets the centre stand, R - (9 F^2 / (16 R E*^2))^(1/3) with
+//! E* = 7.64 MPa: 1.555 m and 1.565 m. The paper's rule holds the sphere 0.6 cells above the plane and is slower, as
+//! the paper finds, the more so the larger the cells.
 //!
 //! # Tolerance
 //! | cells | contact  | no slip: x, v  | expected        | slip: x, v     | expected  |
@@ -30,11 +32,12 @@
 //! | R/4   | default  | 0.950, 0.926   | x within 7 %    | 1.004          |           |
 //! | R/8   | default  | 0.993, 0.987   | x within 3 %    | 1.001, 0.991   | x within 3 % |
 //!
-//! The older, kinematic rule gives 0.860, 0.950 at R/4 and 0.965, 1.010 at R/8 without slip, and 0.937, 0.980 at R/8 with it. Over the
-//! kinetic energy at the end, energy comes from nowhere by 3.4 % with the older rule at R/4, 1.1 % with the paper's; the default loses 1.0 % there.
+//! The older, kinematic rule gives 0.860, 0.950 at R/4 and 0.965, 1.010 at R/8 without slip, and 0.937, 0.980 at R/8
+//! with it. Over the kinetic energy at the end, energy comes from nowhere by 3.4 % with the older rule at R/4, 1.1 %
+//! with the paper's; the default loses 1.0 % there.
 //!
-//! Room is left for where nodes lie under the sphere: shifted along the slope by quarters of a cell, the law gap at R/4 without slip gives
-//! 0.952 to 0.958, shifted across it 0.930 to 0.952. Runs repeat bit for bit.
+//! Room is left for where nodes lie under the sphere: shifted along the slope by quarters of a cell, the law gap at R/4
+//! without slip gives 0.952 to 0.958, shifted across it 0.930 to 0.952. Runs repeat bit for bit.
 
 mod paper_sphere;
 
@@ -69,8 +72,8 @@ fn the_default_slips_on_coarse_cells() {
     assert!((-0.01..0.002).contains(&roll.gain), "{roll:?}");
 }
 
-/// "A flat spot" keeps the sphere where it is (figure 5). It does where the plane's surface lies amid a cell, as in the scene; on nodes, with a
-/// plane of one cell, the sphere rides half a cell above it and slides half the way.
+/// "A flat spot" keeps the sphere where it is (figure 5). It does where the plane's surface lies amid a cell, as in the
+/// scene; on nodes, with a plane of one cell, the sphere rides half a cell above it and slides half the way.
 #[test]
 fn the_papers_rule_does_not_roll_on_the_coarsest_cells() {
     let paper = [("cells_per_radius", "2"), ("contact", "traction"), FLIP];

@@ -1,15 +1,18 @@
-//! What a step has to move and to compute at least, whatever the program: what results are held against the machine's limits with.
+//! What a step has to move and to compute at least, whatever the program:
+//! what results are held against the machine's limits with.
 //!
-//! Numbers of a particle that each pass over all particles reads and writes, in space (x, v: 3; m, V: 1; F: 9; sigma: 6):
+//! Numbers of a particle that each pass over all particles reads and writes, in space
+//! (x, v: 3; m, V: 1; F: 9; sigma: 6):
 //!
 //! ```text
-//! last            scatter x v m V sigma | gather, strain, displace: x v m F -> x v V F sigma               14 + 16 + 22
-//! first           scatter x v m | strain x m F -> V F sigma | force x V sigma | x v -> x v                  7 + 29 + 10 + 12
-//! modified-last   scatter x v m V sigma | x v -> v | scatter x v m | strain x m F -> V F sigma | x -> x     14 + 9 + 7 + 29 + 6
+//! last           P2G x v m V sigma | G2P, stress, advection: x v m F -> x v V F sigma           14 + 16 + 22
+//! first          P2G x v m | stress x m F -> V F sigma | P2G x V sigma | x v -> x v             7 + 29 + 10 + 12
+//! modified-last  P2G x v m V sigma | x v -> v | P2G x v m | stress x m F -> V F sigma | x -> x  14 + 9 + 7 + 29 + 6
 //! ```
-//! A node's 26 numbers (mass, momentum and force written and read, two velocities written and read) are shared by the cell's particles.
-//! A multiply-add is counted for each product with a sum: 37 for each node that a particle reaches (weights 3, gradient 6, mass 1,
-//! momentum 3, force 9, velocity and its change 6, velocity gradient 9) and 150 for the particle itself (F, its determinant, the law).
+//! A node's 26 numbers (mass, momentum and force written and read, two velocities written and read) are shared by the
+//! cell's particles. A multiply-add is counted for each product with a sum: 37 for each node that a particle reaches
+//! (weights 3, gradient 6, mass 1, momentum 3, force 9, velocity and its change 6, velocity gradient 9) and 150 for the
+//! particle itself (F, its determinant, the law).
 
 use super::problems::Scheme;
 

@@ -1,7 +1,7 @@
 //! How many multiply-adds a core does in a second, in the widest vectors that it has.
 //!
-//! Twelve independent chains of fused multiply-adds in registers: more than any core's units times the latency of one, so that
-//! nothing waits and nothing is loaded.
+//! Twelve independent chains of fused multiply-adds in registers: more than any core's units times the latency of one,
+//! so that nothing waits and nothing is loaded.
 
 use serde::{Deserialize, Serialize};
 use std::hint::black_box;

@@ -41,7 +41,8 @@ pub struct Case {
 }
 
 impl Case {
-    /// Whether the two differ in one thing whose cost is asked for: blocks with and without contact, a cube in a wide domain, threads.
+    /// Whether the two differ in one thing whose cost is asked for: blocks with and without contact,
+    /// a cube in a wide domain, threads.
     pub fn is_compared_with(&self, other: &Case) -> bool {
         let same = |of: fn(&Case) -> &str| of(self) == of(other);
         let alike = match self.problem {
@@ -89,8 +90,8 @@ pub const BLOCKS_IN_CONTACT: &str = "two blocks";
 /// P2 with the same particles, and nothing between the blocks.
 pub const BLOCKS_APART: &str = "without contact";
 
-/// Cells of empty space round problem P4: its domain is 100 times larger than P1's, (32 + 2 * 208)^3 against (32 + 2 * 32)^3 cells. Whole blocks of four,
-/// so that they cut the cube as those of P1 do.
+/// Cells of empty space round problem P4: its domain is 100 times larger than P1's, (32 + 2 * 208)^3 against
+/// (32 + 2 * 32)^3 cells. Whole blocks of four, so that they cut the cube as those of P1 do.
 const WIDE_MARGIN: usize = 208;
 
 /// Particles of a ball, about.

@@ -68,7 +68,8 @@ pub struct Measured {
     pub of_multiply_add: f64,
     /// Most memory of the process over its particles [bytes].
     pub memory: Option<f64>,
-    /// Part of the time in which each thread had a core: less than all where the machine did other things too, and the rate is too low.
+    /// Part of the time in which each thread had a core: less than all where the machine did other things too,
+    /// and the rate is too low.
     pub at_work: Option<f64>,
     /// Time in each verb of the step for each particle and step, on all threads together [ns].
     pub verbs: Vec<Verb>,

@@ -53,7 +53,8 @@ pub struct Arguments {
     #[arg(long, default_value = "auto", allow_hyphen_values = true)]
     view: View,
 
-    /// Draw the other half across a plane of symmetry; without this, pictures of bodies do where the scene has just one.
+    /// Draw the other half across a plane of symmetry; without this, pictures of bodies do where the scene has just
+    /// one.
     #[arg(long, value_parser = ["x", "y", "z", "none"])]
     mirror: Option<String>,
 
@@ -61,8 +62,8 @@ pub struct Arguments {
     #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = size)]
     size: Option<[usize; 2]>,
 
-    /// The picture or the animation, .png, or the folder for `--all`; DIR/picture.png, DIR/animation.png or DIR/pictures without
-    /// this, and fringes in the place of picture.
+    /// The picture or the animation, .png, or the folder for `--all`; DIR/picture.png, DIR/animation.png or
+    /// DIR/pictures without this, and fringes in the place of picture.
     #[arg(long)]
     out: Option<PathBuf>,
 

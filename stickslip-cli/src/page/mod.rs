@@ -1,6 +1,7 @@
 //! Reports: one HTML file that holds everything it shows and asks no network for anything.
 //!
-//! A [`Page`] is a title, sections with [`Figure`]s and [`Table`]s, and how it was made; [`Page::write`] turns it into HTML.
+//! A [`Page`] is a title, sections with [`Figure`]s and [`Table`]s, and how it was made;
+//! [`Page::write`] turns it into HTML.
 
 mod figure;
 mod html;

@@ -129,7 +129,8 @@ fn vertical(setting: &Setting) -> Point {
     (-Vector(setting.gravity)).direction().unwrap_or(unit(2))
 }
 
-/// The horizontal direction in which the viewer stands: across the axis that is a mirror, else against y (against z if y is up).
+/// The horizontal direction in which the viewer stands: across the axis that is a mirror,
+/// else against y (against z if y is up).
 fn front(setting: &Setting, up: Point) -> Point {
     let across = |axis: usize| (unit(axis) - up * up[axis]).direction();
     let mirror = setting.only_mirror().and_then(|mirror| across(mirror.axis));

@@ -1,4 +1,5 @@
-//! What stands around the bodies in a picture: title, time, colour bar, names, axes, a scale and the directions of space.
+//! What stands around the bodies in a picture: title, time, colour bar, names, axes,
+//! a scale and the directions of space.
 
 use super::camera::{Camera, unit};
 use super::plane::Window;

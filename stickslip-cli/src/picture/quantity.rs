@@ -39,7 +39,8 @@ pub enum Quantity {
     Xz,
     /// Volume over undeformed volume
     Jacobian,
-    /// What a material's law remembers, by the name of its column: a number itself, of a tensor the root of the sum of its squared entries
+    /// What a material's law remembers, by the name of its column: a number itself,
+    /// of a tensor the root of the sum of its squared entries
     #[value(skip)]
     History(String),
 }

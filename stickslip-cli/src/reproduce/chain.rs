@@ -7,8 +7,8 @@ use stickslip::observe::{ArrivalRow, ContactRow, EnergyRow, Frame, Results};
 use stickslip::polariscope::{self, Bench, Stage, Window};
 use stickslip::scene::Fringes;
 
-/// The paper's disks: touching at the start, one particle a cell; surfaces that follow the disks and one normal for each pair, unless
-/// `more` says otherwise.
+/// The paper's disks: touching at the start, one particle a cell; surfaces that follow the disks and one normal for
+/// each pair, unless `more` says otherwise.
 pub fn case(scene: PaperScene, rule: Rule, cells: usize, more: &[(&str, &str)]) -> Case {
     let (label, cells) = (format!("{}-n{cells}", rule.word()), cells.to_string());
     let settings = [
@@ -70,7 +70,8 @@ impl<'a> Chain<'a> {
         Ok(self.disks().iter().map(arrival).collect())
     }
 
-    /// When the centre of mass of each disk, counted from the striker, first moved with a part of the striker's speed, in transits.
+    /// When the centre of mass of each disk, counted from the striker,
+    /// first moved with a part of the striker's speed, in transits.
     ///
     /// # Errors
     /// The table cannot be read.
@@ -87,8 +88,8 @@ impl<'a> Chain<'a> {
         Ok(self.disks().iter().map(first).collect())
     }
 
-    /// When two bodies, named in any order, first pressed on each other with a part of the striker's first force, rho c_L V times a disk's
-    /// radius, in transits.
+    /// When two bodies, named in any order, first pressed on each other with a part of the striker's first force, rho
+    /// c_L V times a disk's radius, in transits.
     ///
     /// # Errors
     /// The table cannot be read.
@@ -113,8 +114,8 @@ impl<'a> Chain<'a> {
         self.results.body_names().iter().filter(|name| name.starts_with("disk")).collect()
     }
 
-    /// Speed of the fringes from the second disk's centre to the last one's over that of longitudinal waves [-]; `None` if they have
-    /// not come to all.
+    /// Speed of the fringes from the second disk's centre to the last one's over that of longitudinal waves [-]; `None`
+    /// if they have not come to all.
     ///
     /// # Errors
     /// The table cannot be read.
@@ -141,7 +142,8 @@ impl<'a> Chain<'a> {
         Ok(track.collect())
     }
 
-    /// Energy from nowhere over the striker's work until then, at each row of the table: time in transits, and the share.
+    /// Energy from nowhere over the striker's work until then, at each row of the table: time in transits,
+    /// and the share.
     ///
     /// # Errors
     /// The table cannot be read.

@@ -12,8 +12,9 @@ use crate::page::{Cell, Column, Figure, Image, Section, Table};
 /// The study.
 pub struct Convergence;
 
-/// Transits until the stress difference at the disks' centres is 0.3 rho c_L V, at V/c_L = 2.07e-3: two body-fitted finite-element codes
-/// with sharp contact, which agree within 1.5 % and are converged within 1 %; plane strain, nu = 0.2143.
+/// Transits until the stress difference at the disks' centres is 0.3 rho c_L V, at V/c_L = 2.07e-3: two body-fitted
+/// finite-element codes with sharp contact, which agree within 1.5 % and are converged within 1 %;
+/// plane strain, nu = 0.2143.
 const SHARP: [f64; DISKS] = [0.82, 2.81, 4.99, 7.11];
 const DISKS: usize = 4;
 /// The striker as fast as in the experiment, measured by the speed of waves.

@@ -1,7 +1,8 @@
-//! The paper from one command: every application of Bardenhagen et al. (2001) run, measured and put side by side with what it says.
+//! The paper from one command: every application of Bardenhagen et al. (2001) run,
+//! measured and put side by side with what it says.
 //!
-//! A [`Study`] is an application: the cases that it needs, and the section of the report that it makes of their results. To add one,
-//! write its file and seat it in [`STUDIES`].
+//! A [`Study`] is an application: the cases that it needs, and the section of the report that it makes of their
+//! results. To add one, write its file and seat it in [`STUDIES`].
 
 mod accounts;
 mod backspin;

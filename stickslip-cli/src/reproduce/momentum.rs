@@ -1,9 +1,11 @@
-//! The balance of momentum of a run: what the disks or the sphere have, against what everything else and gravity gave them.
+//! The balance of momentum of a run: what the disks or the sphere have,
+//! against what everything else and gravity gave them.
 
 use crate::failure::Failure;
 use stickslip::observe::{BodyRow, ContactRow, EnergyRow, Results};
 
-/// Momentum from nowhere until a time [s], over all impulses [-]; M is the mass of the disks or the sphere, p their momentum:
+/// Momentum from nowhere until a time [s], over all impulses [-]; M is the mass of the disks or the sphere,
+/// p their momentum:
 ///
 /// ```text
 /// |p(t) - p(0) - M g t - sum of impulses of the other bodies| / (M |g| t + sum of |impulses of another body|)

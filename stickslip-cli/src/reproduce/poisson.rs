@@ -12,7 +12,8 @@ use crate::page::{Cell, Column, Figure, Image, Section, Table, Verdict};
 /// The study.
 pub struct Poisson;
 
-/// Fringes at the first of [`ratios`] over those at the last are to be at least this much faster; the paper: more than two.
+/// Fringes at the first of [`ratios`] over those at the last are to be at least this much faster; the paper:
+/// more than two.
 const SLOWER: f64 = 2.2;
 
 impl Study for Poisson {

@@ -52,8 +52,8 @@ pub fn values(loaded: &Loaded, member: &Member, varied: &[String]) -> Vec<String
 }
 
 impl Crew {
-    /// Runs scenes side by side, each in its folder, and tells `listen` what happens, on this thread. Runs that have not begun when
-    /// the user stops are not begun.
+    /// Runs scenes side by side, each in its folder, and tells `listen` what happens, on this thread. Runs that have
+    /// not begun when the user stops are not begun.
     pub fn run(&self, scenes: &[(Member, Loaded)], listen: impl FnOnce(&Receiver<News>)) {
         let next = AtomicUsize::new(0);
         let (sender, receiver) = channel();
@@ -134,7 +134,8 @@ fn row(summary: &Summary, loaded: &Loaded, results: &Results) -> Row {
     Row { status: status.to_owned(), figures, ..Row::default() }
 }
 
-/// When bodies first pushed on each other, to a row of the table, and the largest push of a pair. Without contact there is neither.
+/// When bodies first pushed on each other, to a row of the table, and the largest push of a pair.
+/// Without contact there is neither.
 fn contact(rows: &[ContactRow]) -> Vec<(String, f64)> {
     let Some(first) = rows.iter().find(|row| row.normal > 0.0) else { return Vec::new() };
     let largest = rows.iter().map(|row| row.normal).fold(0.0, f64::max);

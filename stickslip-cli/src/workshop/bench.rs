@@ -61,7 +61,8 @@ impl Bench {
         done.into_inner().expect("no thread panics with the list")
     }
 
-    /// The longest job for which there is memory, with its share of threads; waits until there is one. `None` when all are taken.
+    /// The longest job for which there is memory, with its share of threads; waits until there is one.
+    /// `None` when all are taken.
     fn take(&self) -> Option<(Need, usize)> {
         let mut state = self.lock();
         loop {
@@ -90,8 +91,8 @@ impl Bench {
 }
 
 impl State {
-    /// A job takes as many of all `threads` as its part of the work that waits, at least one. A job too large for the memory runs
-    /// alone: the estimate may be wrong, and nothing else would ever run it.
+    /// A job takes as many of all `threads` as its part of the work that waits, at least one. A job too large for the
+    /// memory runs alone: the estimate may be wrong, and nothing else would ever run it.
     fn take(&mut self, threads: usize) -> Option<(Need, usize)> {
         if self.threads == 0 {
             return None;

@@ -14,8 +14,8 @@ struct Image<T, const D: usize> {
 }
 
 impl<T: Real, const D: usize> Near<'_, T, D> {
-    /// Calls `f(arm, particle, mirror)` for every particle of a body whose box reaches into the cells around a node: `arm` from the node
-    /// to it [m], `mirror` turns its vectors into those that the node sees.
+    /// Calls `f(arm, particle, mirror)` for every particle of a body whose box reaches into the cells around a node:
+    /// `arm` from the node to it [m], `mirror` turns its vectors into those that the node sees.
     pub fn around(
         &self,
         body: usize,

@@ -1,4 +1,5 @@
-//! Eq. (10) of Bardenhagen et al. (2001), whatever decides about contact: with one normal for the pair, and with each body's own.
+//! Eq. (10) of Bardenhagen et al. (2001), whatever decides about contact: with one normal for the pair,
+//! and with each body's own.
 
 use super::{Change, Load, Pair, Surface};
 use crate::tensor::{Real, Vector};
@@ -8,8 +9,8 @@ use crate::tensor::{Real, Vector};
 /// ```text
 /// J_n = -m* u . n,   J_t = -m* min(|u_t|, mu max(u . n, 0)) u_t/|u_t|,   u = v_1 - v_2,  m* = m_1 m_2/(m_1 + m_2)
 /// ```
-/// which is eq. (10) for n_2 = -n_1, with Coulomb's bound; [`crate::contact::Friction`] has the others. While compressed bodies depart, the normal impulse gives back strain energy by
-/// pulling, and a pull bears no friction.
+/// which is eq. (10) for n_2 = -n_1, with Coulomb's bound; [`crate::contact::Friction`] has the others. While
+/// compressed bodies depart, the normal impulse gives back strain energy by pulling, and a pull bears no friction.
 pub fn common_normal<T: Real, const D: usize>(
     pair: &Pair<T, D>,
     [v, w]: [Vector<T, D>; 2],
@@ -32,8 +33,8 @@ pub fn common_normal<T: Real, const D: usize>(
 }
 
 /// Each body by its own normal and its own decision, `touching(surface, approach [m/s], n)`, as the paper prints it,
-/// eqs. (5), (8)-(13). Against a rigid body it is the rigid one's normal: that surface is where it is said to be, and stairs of a lattice
-/// would grip on a flat wall.
+/// eqs. (5), (8)-(13). Against a rigid body it is the rigid one's normal: that surface is where it is said to be, and
+/// stairs of a lattice would grip on a flat wall.
 pub fn own_normals<T: Real, const D: usize>(
     pair: &Pair<T, D>,
     velocities: [Vector<T, D>; 2],
@@ -83,9 +84,9 @@ mod tests {
     use super::*;
     use crate::scene::{ContactLaw, Normal};
 
-    /// m = 1, 3; v = (4, -8), 0: v_cm = (1, -2), dv_1 = (3, -6), dv_2 = (-1, 2); n_1 = (0, -1), so dv_n1 = 6, dv_t1 = 3.
-    /// mu = 1/4: v~_1 = v_1 - 6 (n_1 + t_1/4) = (4 - 1.5, -8 + 6), eq. (10); n_2 at atan(3/4) from -n_1, so dv_n2 = 1,
-    /// dv_t2 = 2, v~_2 = -(n_2 + t_2/4).
+    /// m = 1, 3; v = (4, -8), 0: v_cm = (1, -2), dv_1 = (3, -6), dv_2 = (-1, 2); n_1 = (0, -1), so dv_n1 = 6,
+    /// dv_t1 = 3. mu = 1/4: v~_1 = v_1 - 6 (n_1 + t_1/4) = (4 - 1.5, -8 + 6), eq. (10); n_2 at atan(3/4) from -n_1, so
+    /// dv_n2 = 1, dv_t2 = 2, v~_2 = -(n_2 + t_2/4).
     #[test]
     fn own_normals_give_the_papers_equation_10() {
         let rule = rule(ContactLaw::Kinematic, Normal::Own, 0.25);

@@ -6,12 +6,12 @@
 //! slip:     J_t   = mu(s) J_n + c A dt + eta A dt s'   towards rest, s' = s - J_t / m*
 //! pull:     J_n  >= - a A dt                           while the gap is below 1 % of a cell
 //! ```
-//! s, s': speed of slip before and after [m/s]; m*: reduced mass [kg]; J_n: push [N s]; A: contact area of the node [m^2].
-//! Coulomb's law is mu_s = mu_k and nothing else. Static and kinetic coefficients with an exponential between them are those of
-//! Oden and Martins (1985), Comput. Methods Appl. Mech. Eng. 52, 527-634.
+//! s, s': speed of slip before and after [m/s]; m*: reduced mass [kg]; J_n: push [N s]; A: contact area of the node
+//! [m^2]. Coulomb's law is mu_s = mu_k and nothing else. Static and kinetic coefficients with an exponential between
+//! them are those of Oden and Martins (1985), Comput. Methods Appl. Mech. Eng. 52, 527-634.
 //!
-//! The tangential history of sticking nodes is the deformation of the bodies themselves: a node sticks until its load exceeds the
-//! bound, so partial slip (Cattaneo 1938, Mindlin 1949) needs no spring of its own.
+//! The tangential history of sticking nodes is the deformation of the bodies themselves: a node sticks until its load
+//! exceeds the bound, so partial slip (Cattaneo 1938, Mindlin 1949) needs no spring of its own.
 
 use super::Pair;
 use crate::scene::ContactRule;
@@ -75,14 +75,15 @@ impl<T: Real> Friction<T> {
         if !self.at_rest.is_finite() || momentum <= self.at_rest * load.push + cohesion {
             return T::ONE;
         }
-        // What opposes the slip over what would stop it; not one minus what is left of it, which is round-off where the push is small.
+        // What opposes the slip over what would stop it; not one minus what is left of it,
+        // which is round-off where the push is small.
         let viscous = self.viscosity * load.exposure;
         let opposed = self.coefficient(slip) * load.push + cohesion + viscous * slip;
         (opposed / (slip * (load.mass + viscous))).min(T::ONE)
     }
 
-    /// The normal impulse that the surfaces bear where `wanted` keeps them together, and how they are loaded by it; `None` where they
-    /// part. Positive pushes [N s]. Surfaces that touch and resist slip without a push bear none.
+    /// The normal impulse that the surfaces bear where `wanted` keeps them together, and how they are loaded by it;
+    /// `None` where they part. Positive pushes [N s]. Surfaces that touch and resist slip without a push bear none.
     pub fn borne<const D: usize>(&self, wanted: T, pair: &Pair<T, D>) -> Option<(T, Load<T>)> {
         let load = pair.load(wanted.max(T::ZERO));
         let touch = pair.gap <= T::of(BOND);

@@ -94,7 +94,8 @@ impl<T: Real, const D: usize> Pair<'_, T, D> {
     pub fn change(&self, velocities: [Vector<T, D>; 2]) -> Change<T, D> {
         let law = law(self.rule.law);
         let change = law.change(self, velocities);
-        // Over a whole step an impulse mostly takes back what forces did to a node of little mass: that strains nothing.
+        // Over a whole step an impulse mostly takes back what forces did to a node of little mass:
+        // that strains nothing.
         let strains = law.span() == Span::EachUse || self.step.purpose == Use::Strain;
         if strains { self.scaled(change) } else { change }
     }
@@ -111,14 +112,16 @@ impl<T: Real, const D: usize> Pair<'_, T, D> {
         Load { mass: self.reduced_mass(), push, exposure: self.area * self.step.duration }
     }
 
-    /// Equal and opposite impulses: `normal` along the common normal `n` and `tangential` across it, on the first body [N s].
+    /// Equal and opposite impulses: `normal` along the common normal `n` and `tangential` across it,
+    /// on the first body [N s].
     pub fn exchange(&self, normal: T, tangential: Vector<T, D>, n: Vector<T, D>) -> Change<T, D> {
         let impulse = n * normal + tangential;
         Change { impulse: [impulse, -impulse], normal, tangential, scale: T::ONE }
     }
 
-    /// The change reduced so that no cell strains by more than the rule allows, eqs. (20)-(22). Deformable bodies that are glued
-    /// are one body, whose cells strain as they do: there is nothing to reduce, and a part with little mass must follow.
+    /// The change reduced so that no cell strains by more than the rule allows, eqs. (20)-(22). Deformable bodies that
+    /// are glued are one body, whose cells strain as they do: there is nothing to reduce,
+    /// and a part with little mass must follow.
     fn scaled(&self, change: Change<T, D>) -> Change<T, D> {
         let largest = (change.impulse.iter().zip(self.surfaces))
             .flat_map(|(impulse, surface)| (*impulse * surface.inverse_mass).0)
@@ -167,7 +170,8 @@ pub(super) mod tests {
         Rule { law, normal, friction: Friction::coulomb(friction), max_strain: 0.5 }
     }
 
-    /// The lighter body's velocity changes by 6 m/s; eqs. (20)-(22) allow the limit along an axis, and both bodies get less.
+    /// The lighter body's velocity changes by 6 m/s; eqs. (20)-(22) allow the limit along an axis,
+    /// and both bodies get less.
     #[test]
     fn scaling_limits_the_change_and_keeps_the_momentum() {
         let surfaces = [surface(1.0, [0.0, -1.0]), surface(3.0, [0.0, 1.0])];

@@ -9,10 +9,10 @@ use crate::tensor::{Matrix, Real, Vector};
 /// X(q) = <X + F^-1 (q - x)>             <y> = sum_p w_p y_p / sum_p w_p,   w_p = V_p S_i(x_p)
 ///      = <X> + <F^-1> (q - <x>)         of a body that flows plastically
 /// ```
-/// with X_p where particle p was at the start. Exact for motions with one deformation gradient, rigid ones among them. Plastic flow
-/// resists no error of a particle's own F, and carrying each particle by that before taking the mean would let the errors in: where such
-/// material is, positions alone say. The idea of carrying the undeformed place is the reference map's (Kamrin, Rycroft and Nave 2012,
-/// J. Mech. Phys. Solids 60, 1952).
+/// with X_p where particle p was at the start. Exact for motions with one deformation gradient, rigid ones among them.
+/// Plastic flow resists no error of a particle's own F, and carrying each particle by that before taking the mean would
+/// let the errors in: where such material is, positions alone say. The idea of carrying the undeformed place is the
+/// reference map's (Kamrin, Rycroft and Nave 2012, J. Mech. Phys. Solids 60, 1952).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Place<T, const D: usize> {
     /// X at the node [m].

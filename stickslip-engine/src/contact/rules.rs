@@ -30,7 +30,8 @@ impl<T: Real> From<&ContactRule> for Rule<T> {
     }
 }
 
-/// The scene's rules, found by the names of a pair's bodies and materials. Space and time follow the rules, never pairs of bodies.
+/// The scene's rules, found by the names of a pair's bodies and materials. Space and time follow the rules,
+/// never pairs of bodies.
 #[derive(Clone, Debug, Default)]
 pub struct Rules<T> {
     /// The scene's rules in their order, and the rule for all other pairs.

@@ -32,8 +32,8 @@ pub struct Impulse<T, const D: usize> {
 }
 
 impl<T: Real, const D: usize> Impulse<T, D> {
-    /// Leaves this share of it. What the rule's largest strain left of it, and the gap and the area, stay as they were; the slip follows from
-    /// the velocities.
+    /// Leaves this share of it. What the rule's largest strain left of it, and the gap and the area, stay as they were;
+    /// the slip follows from the velocities.
     fn reduce(&mut self, share: T) {
         let Change { impulse, normal, tangential, scale } = self.change;
         self.change = Change {
@@ -47,8 +47,9 @@ impl<T: Real, const D: usize> Impulse<T, D> {
     }
 }
 
-/// Sweeps over the pairs of a node until no velocity changes by more than this fraction of the largest change that contact makes, or than
-/// round-off of the velocities themselves: bodies that fly fast and hardly touch would never come to rest otherwise.
+/// Sweeps over the pairs of a node until no velocity changes by more than this fraction of the largest change that
+/// contact makes, or than round-off of the velocities themselves: bodies that fly fast and hardly touch would never
+/// come to rest otherwise.
 const TOLERANCE: f64 = 1e-14;
 /// Round-off of a velocity after a sweep, in units of its last place.
 const ROUND_OFF: f64 = 4.0;
@@ -132,8 +133,8 @@ impl<T: Real, const D: usize> Solve<'_, T, D> {
     /// Changes the velocities by the impulses of all encounters, which are listed in their order.
     ///
     /// Where more than two bodies meet, each pair's impulse is solved in turn with the others held until none changes
-    /// (block Gauss-Seidel), so that every pair obeys its own law and momentum is conserved pair by pair. A law that judges
-    /// the whole step sees the velocities without what it gave before.
+    /// (block Gauss-Seidel), so that every pair obeys its own law and momentum is conserved pair by pair. A law that
+    /// judges the whole step sees the velocities without what it gave before.
     pub fn impulses(&self, record: Record, listed: &mut Impulses<T, D>) {
         let parts = self.survey.parts();
         listed.parts.resize_with(parts.len().max(listed.parts.len()), List::default);
@@ -257,14 +258,15 @@ impl<T: Real, const D: usize> Solve<'_, T, D> {
 /// E(s) - E(0) = s b + s^2 c/2,   b = sum_a J_a . v_a(0),   c = sum_a J_a . dv_a,   b + c = sum_a J_a . v_a(1)
 /// E(s) <= E(0):   s <= -2 b/c
 /// ```
-/// with the impulses J_a on body a, and its velocities v_a(s) = v_a(0) + s dv_a. Pairs that all obey their laws at once never gain:
-/// then J . v(1) <= 0. Those that still change each other may. The share is 1 where the gain begins, and shrinks from there as the gain grows.
+/// with the impulses J_a on body a, and its velocities v_a(s) = v_a(0) + s dv_a. Pairs that all obey their laws at once
+/// never gain: then J . v(1) <= 0. Those that still change each other may. The share is 1 where the gain begins, and
+/// shrinks from there as the gain grows.
 ///
-/// A rigid body has dv = 0: its term s J . v is what it does not do as work on the others, so work of prescribed motion is no gain, and what is held
-/// against E(0) is the energy as seen from a wall that moves. Its impulses, and those of glue, are reduced as all others: they were found for
-/// velocities that the others made, only all of them together are known to take energy at some share, and one share leaves each pair its direction
-/// and its momentum, and friction within Coulomb's bound. What it leaves of an approach to a wall, or between glued bodies, is the next
-/// step's.
+/// A rigid body has dv = 0: its term s J . v is what it does not do as work on the others, so work of prescribed motion
+/// is no gain, and what is held against E(0) is the energy as seen from a wall that moves. Its impulses, and those of
+/// glue, are reduced as all others: they were found for velocities that the others made, only all of them together are
+/// known to take energy at some share, and one share leaves each pair its direction and its momentum, and friction
+/// within Coulomb's bound. What it leaves of an approach to a wall, or between glued bodies, is the next step's.
 fn harmless<T: Real, const D: usize>(
     encounters: &[Encounter<T, D>],
     impulses: &[Impulse<T, D>],
@@ -438,7 +440,8 @@ mod tests {
         }
     }
 
-    /// Three bodies that stick as soon as they approach: stopping one pair sets off the next, for ever. A proptest of 20,000 nodes found them.
+    /// Three bodies that stick as soon as they approach: stopping one pair sets off the next, for ever.
+    /// A proptest of 20,000 nodes found them.
     fn circling() -> State {
         vec![
             (0.00182, [0.644, 0.0986, -0.405], [0.661, -0.575, -0.721]),
@@ -472,8 +475,9 @@ mod tests {
         }
     }
 
-    /// An impulse between two bodies that collide with 1 m/s each, and leave with e, gives energy where e > 1: its largest harmless share
-    /// is that of e = 1, which is all of it where the gain begins. A wall that drives a body at rest, e = 1, gives work and no gain.
+    /// An impulse between two bodies that collide with 1 m/s each, and leave with e, gives energy where e > 1: its
+    /// largest harmless share is that of e = 1, which is all of it where the gain begins. A wall that drives a body at
+    /// rest, e = 1, gives work and no gain.
     #[test]
     fn the_harmless_share_is_continuous_and_work_of_walls_is_no_gain() {
         let facing = Facing { normal: None, gap: 0.0 };
@@ -526,7 +530,8 @@ mod tests {
             }
         }
 
-        /// Each pair has its own law, friction and, with regression, a direction that has nothing to do with the others'; some do not touch.
+        /// Each pair has its own law, friction and, with regression, a direction that has nothing to do with the
+        /// others'; some do not touch.
         #[test]
         fn laws_that_meet_at_a_node_keep_momentum_and_gain_no_energy(state in states(), pairs in mixtures()) {
             let node = at_node_of(&state, |[a, b]| pairs[b * (b - 1) / 2 + a]);

@@ -1,11 +1,14 @@
 //! How wide a contact is across its shorter side, from where its nodes lie.
 //!
 //! ```text
-//! b = min(sqrt(A/pi), max(A / (2 pi s_1), sqrt(3) s_2)),   s_i^2 = variance of the area along its i-th longest direction - h^2/4
+//! b = min(sqrt(A/pi), max(A / (2 pi s_1), sqrt(3) s_2))
+//! s_i^2 = variance of the area along its i-th longest direction - h^2/4
 //! ```
-//! A round patch has the radius of a circle with its area A [m^2], an ellipse its shorter half-axis, s_1 being half of the longer one, and a strip 1.1 of
-//! its half-width, with s_1 that of its length. Of several patches apart, as below feet in a row, s_1 says little, and s_2 of a strip is b / sqrt(3). Shares of
-//! nodes lie up to a cell off the surface: that is the h^2/4. A ring reads as what is wider, a circle of its area: the moments of a ring do not tell how narrow it is.
+//! A round patch has the radius of a circle with its area A [m^2], an ellipse its shorter half-axis, s_1 being half of
+//! the longer one, and a strip 1.1 of its half-width, with s_1 that of its length. Of several patches apart, as below
+//! feet in a row, s_1 says little, and s_2 of a strip is b / sqrt(3). Shares of nodes lie up to a cell off the surface:
+//! that is the h^2/4. A ring reads as what is wider, a circle of its area:
+//! the moments of a ring do not tell how narrow it is.
 
 use std::f64::consts::PI;
 

@@ -155,14 +155,15 @@ impl<T, const D: usize> Default for Desk<T, D> {
 /// Blocks of a part.
 const BLOCKS: usize = 8;
 
-/// Mass below this fraction of a full cell's does not make a node shared: that of a particle which reaches into the node's
-/// surroundings by round-off of a cell. More would leave parts of a glued body that stick out by less to themselves.
+/// Mass below this fraction of a full cell's does not make a node shared: that of a particle which reaches into the
+/// node's surroundings by round-off of a cell. More would leave parts of a glued body that stick out by less to
+/// themselves.
 fn trace<T: Real>() -> T {
     T::EPSILON * T::EPSILON
 }
 
-/// The same for a rigid body, which acts in full wherever it is: a larger one, so that round-off of its position does not decide where. It is
-/// that of a particle that reaches into the node's surroundings by this fraction of a cell.
+/// The same for a rigid body, which acts in full wherever it is: a larger one, so that round-off of its position does
+/// not decide where. It is that of a particle that reaches into the node's surroundings by this fraction of a cell.
 fn rigid_trace<T: Real>() -> T {
     T::EPSILON.sqrt()
 }
@@ -289,8 +290,8 @@ impl<T: Laned, const D: usize> Near<'_, T, D> {
         walls.fold(0, |nodes, governed| nodes | governed)
     }
 
-    /// Lists the bodies of a block that may touch at free nodes, by their places in `slots`, with the numbers of their rules; returns the nodes
-    /// that they share. Nodes that a body reaches by a trace only are struck off `present`.
+    /// Lists the bodies of a block that may touch at free nodes, by their places in `slots`, with the numbers of their
+    /// rules; returns the nodes that they share. Nodes that a body reaches by a trace only are struck off `present`.
     fn pairs(
         &self,
         slots: &[u32],
@@ -367,8 +368,9 @@ impl<T: Laned, const D: usize> Near<'_, T, D> {
 
     /// Surfaces further apart at a node cannot touch in this step [cells].
     ///
-    /// Twice the largest way that the bodies could go against each other with the velocities and forces that they have, and a tenth of a cell
-    /// for what they get in the step from elsewhere; a cell where forces are not known yet: nothing moves by that in a step.
+    /// Twice the largest way that the bodies could go against each other with the velocities and forces that they have,
+    /// and a tenth of a cell for what they get in the step from elsewhere; a cell where forces are not known yet:
+    /// nothing moves by that in a step.
     fn reach(&self, sides: &[Side<T, D>]) -> T {
         let Some(dt) = self.ahead else { return T::ONE };
         let node = |side: &Side<T, D>| &self.field.nodes[side.index];
@@ -385,14 +387,16 @@ impl<T: Laned, const D: usize> Near<'_, T, D> {
     }
 }
 
-/// Normal along the difference of the volume gradients, and the gap from the room that the bodies leave around the node [cells].
+/// Normal along the difference of the volume gradients, and the gap from the room that the bodies leave around the node
+/// [cells].
 ///
 /// ```text
 /// gap / h = 1 - sum_a V_a / h^D,   V_a = sum_p V_p S_i(x_p)
 /// ```
-/// Where material fills space without a gap, the volumes interpolated to a node are a whole cell; a thin gap through the node
-/// takes its width times h^(D-1) from that. Overlap is negative. Needs no normal, and stairs of the particles' lattice
-/// average out. All bodies that touch either of the two count. A surface of radius R seems h^2/(6R) further away than its nearest point.
+/// Where material fills space without a gap, the volumes interpolated to a node are a whole cell; a thin gap through
+/// the node takes its width times h^(D-1) from that. Overlap is negative. Needs no normal, and stairs of the particles'
+/// lattice average out. All bodies that touch either of the two count.
+/// A surface of radius R seems h^2/(6R) further away than its nearest point.
 pub fn room<T: Real, const D: usize>(look: &Look<T, D>) -> Facing<T, D> {
     let Look { near, sides, pair, .. } = look;
     let touches = |a: &Side<T, D>, b: &Side<T, D>| {
@@ -411,8 +415,8 @@ pub fn room<T: Real, const D: usize>(look: &Look<T, D>) -> Facing<T, D> {
 /// ```text
 /// integral of S_i n dA over a body's surface = integral of grad S_i dV = -sum_p V_p grad S_i(x_p)
 /// ```
-/// by the divergence theorem, so the volume gradient along the normal is the surface that the node sees; the pair shares the smaller
-/// of the two. Summed over nodes it is the whole area, as the functions S_i sum to one.
+/// by the divergence theorem, so the volume gradient along the normal is the surface that the node sees; the pair
+/// shares the smaller of the two. Summed over nodes it is the whole area, as the functions S_i sum to one.
 fn area<T: Real, const D: usize>(look: &Look<T, D>, facing: &Facing<T, D>) -> T {
     let Some(normal) = facing.normal else { return T::ZERO };
     let [a, b] = look.pair.map(|side| look.sides[side].volume_gradient.dot(normal));

@@ -44,7 +44,8 @@ struct Touching {
     slip: f64,
 }
 
-/// Surfaces closer than this are part of the area over which bodies touch, pushing in this step or not: single nodes push by turns [cells].
+/// Surfaces closer than this are part of the area over which bodies touch, pushing in this step or not:
+/// single nodes push by turns [cells].
 const CLOSE: f64 = 0.01;
 
 /// Impulses and works of contact since the start, by pair.
@@ -268,8 +269,8 @@ mod tests {
         }
     }
 
-    /// Two nodes of 0.5 m touch for a quarter of the time: mean force and mean area have the pressure of that quarter. The first use of a
-    /// step counts for no time.
+    /// Two nodes of 0.5 m touch for a quarter of the time: mean force and mean area have the pressure of that quarter.
+    /// The first use of a step counts for no time.
     #[test]
     fn area_and_gap_are_means_over_time() {
         let (mut tally, lattice) = (Tally::default(), Lattice::new(Vector::ZERO, 0.5));

@@ -1,7 +1,8 @@
 //! Which blocks a body's particles reach, and where bodies meet.
 //!
-//! A particle's *home* is the cell of its base node. Particles that share a home block form a tile; a tile writes to its own
-//! block and to the next one along each axis, as far as its particles reach, since no basis reaches more than three nodes.
+//! A particle's *home* is the cell of its base node. Particles that share a home block form a tile; a tile writes to
+//! its own block and to the next one along each axis, as far as its particles reach,
+//! since no basis reaches more than three nodes.
 
 use super::holding::{Holding, block_of, corner_block, key};
 use super::{locate, nodes_per_block};
@@ -18,7 +19,8 @@ pub struct Tile<const D: usize> {
     pub block: [i32; D],
     /// Its number among the body's tiles.
     pub number: usize,
-    /// Field slots of the blocks at `block` + {0, 1}^D, the last axis fastest; that of the home where particles do not reach so far.
+    /// Field slots of the blocks at `block` + {0, 1}^D, the last axis fastest;
+    /// that of the home where particles do not reach so far.
     pub slots: [u32; 8],
 }
 
@@ -73,11 +75,12 @@ pub enum Blocks {
 }
 
 impl<const D: usize> Cover<D> {
-    /// Covers so many bodies of so many particles each, which reach so many nodes beyond their base nodes, and says whether their blocks are others than before; `base(body, particle)` is a particle's
-    /// base node, which must be [`addressable`].
+    /// Covers so many bodies of so many particles each, which reach so many nodes beyond their base nodes, and says
+    /// whether their blocks are others than before; `base(body, particle)` is a particle's base node,
+    /// which must be [`addressable`].
     ///
-    /// `left` says which cells of each tile particles have left since the last time, from the lowest bit on; without it all particles
-    /// are looked at.
+    /// `left` says which cells of each tile particles have left since the last time, from the lowest bit on; without it
+    /// all particles are looked at.
     pub fn update(
         &mut self,
         (bodies, count, reach): (usize, impl Fn(usize) -> usize + Sync, i32),
@@ -224,8 +227,8 @@ impl<const D: usize> Cover<D> {
         Some((self.first_slot[body] + place) * nodes_per_block(D) + local)
     }
 
-    /// A body's particles whose home is a block: indices of all its particles, and places there where those of each cell begin, and where
-    /// the last ends.
+    /// A body's particles whose home is a block: indices of all its particles, and places there where those of each
+    /// cell begin, and where the last ends.
     #[inline]
     pub fn tile_at(&self, body: usize, block: [i32; D]) -> Option<(&[u32], &[u32])> {
         let holding = &self.holdings[body];

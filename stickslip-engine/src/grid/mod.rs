@@ -1,7 +1,7 @@
 //! The sparse grid: blocks of nodes that exist only under a body's particles.
 //!
-//! Space is cut into cells, nodes are their corners, and a block is 4^D nodes. Each body owns the blocks that its particles
-//! reach, so memory and time follow the particles, never bodies x grid nor the size of the domain.
+//! Space is cut into cells, nodes are their corners, and a block is 4^D nodes. Each body owns the blocks that its
+//! particles reach, so memory and time follow the particles, never bodies x grid nor the size of the domain.
 
 mod cover;
 mod field;

@@ -1,9 +1,10 @@
 //! Several numbers side by side in a register, on whatever the processor has.
 //!
-//! This is the only room that knows processors. Loops over particles are written once over [`Lanes`]; [`Processor::run`] compiles them for each
-//! [`Machine`] and takes the best one at run time. Every operation rounds like that of a single number, and where the source says so
-//! ([`Number::times_plus`]) a product and a sum are rounded together, once. All processors that can do so give the same bits: x86-64 with AVX2 and FMA, and
-//! 64-bit ARM. Those that cannot round twice, and differ by round-off.
+//! This is the only room that knows processors. Loops over particles are written once over [`Lanes`];
+//! [`Processor::run`] compiles them for each [`Machine`] and takes the best one at run time. Every operation rounds
+//! like that of a single number, and where the source says so ([`Number::times_plus`]) a product and a sum are rounded
+//! together, once. All processors that can do so give the same bits: x86-64 with AVX2 and FMA, and 64-bit ARM. Those
+//! that cannot round twice, and differ by round-off.
 
 mod pack;
 mod pair;
@@ -163,7 +164,8 @@ pub trait Lanes: Number {
         }
     }
 
-    /// Writes the lanes of four registers by pairs: first the lanes 0 and 1 of all four, then the lanes 2 and 3, and so on.
+    /// Writes the lanes of four registers by pairs: first the lanes 0 and 1 of all four, then the lanes 2 and 3,
+    /// and so on.
     #[inline(always)]
     fn store_pairs(columns: [Self; 4], pairs: &mut [[[Self::Real; 2]; 4]; MOST_LANES / 2]) {
         let columns =
@@ -182,8 +184,8 @@ pub trait Lanes: Number {
         Self::from_fn(|lane| numbers.0[lane].inverse_cube_root_guess())
     }
 
-    /// Cube root without a division: r = x^(-1/3) by r <- r (1 + h/3 + 2 h^2/9), h = 1 - x r^3, which triples the digits each time,
-    /// and then one step of Newton's for x r^2.
+    /// Cube root without a division: r = x^(-1/3) by r <- r (1 + h/3 + 2 h^2/9), h = 1 - x r^3, which triples the
+    /// digits each time, and then one step of Newton's for x r^2.
     #[inline(always)]
     fn cube_root(self) -> Self {
         let (third, ninths) = (Self::of(1.0 / 3.0), Self::of(2.0 / 9.0));

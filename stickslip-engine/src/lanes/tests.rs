@@ -40,8 +40,8 @@ impl<T: Laned> Work for Everything<'_, T> {
     }
 }
 
-/// Places among the results: the cube root, which differs where a product and a sum are rounded once, what every machine rounds alike, and what rounding once
-/// finds in a product.
+/// Places among the results: the cube root, which differs where a product and a sum are rounded once, what every
+/// machine rounds alike, and what rounding once finds in a product.
 const ROOT: usize = 0;
 const EXACT: std::ops::Range<usize> = 1..10;
 const LOST: usize = 10;

@@ -87,7 +87,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 (_, Some(motion)) => motion.velocity_at(x),
                 _ => [0.0; 3],
             };
-            // By FLIP particles carry no rotation; those of rigid bodies give the nodes their exact velocity whatever the transfer.
+            // By FLIP particles carry no rotation; those of rigid bodies give the nodes their exact velocity whatever
+            // the transfer.
             let turning = match (&body.motion, &motion) {
                 (Motion::Free { spin, .. }, _) if scene.time.transfer == Transfer::Rflip => *spin,
                 (_, Some(motion)) => motion.spin(),

@@ -1,7 +1,7 @@
 //! Passes over tiles on threads, with the same bits for any number of them.
 //!
-//! Small bodies scatter each on one thread, tile after tile. Tiles of one colour of large bodies scatter side by side, colours one after the
-//! other, and a tile's particles in their own order: no sum depends on which thread comes first.
+//! Small bodies scatter each on one thread, tile after tile. Tiles of one colour of large bodies scatter side by side,
+//! colours one after the other, and a tile's particles in their own order: no sum depends on which thread comes first.
 
 use super::Engine;
 use super::pass::{Found, Pass, Path, Verbs, Visit};
@@ -47,7 +47,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let moved = Disjoint::new(&mut self.workspace.moved);
         let (cover, bodies, room, path) =
             (&self.workspace.cover, &self.state.bodies, &self.workspace.threads, self.settings.path);
-        // Fed with the fastest signal of the tiles before it in its list, which spares it the roots of slower ones. Lists do not depend on threads.
+        // Fed with the fastest signal of the tiles before it in its list, which spares it the roots of slower ones.
+        // Lists do not depend on threads.
         let visit = |index: u32, window: &mut Window<T, D>, signal: T| -> Found<T> {
             let tile = &cover.tiles[index as usize];
             let body = &bodies[tile.body];
@@ -69,8 +70,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 found: Found { signal, ..Found::NOTHING },
                 basis: PhantomData::<B>,
             };
-            // SAFETY: every particle belongs to one tile, and every tile to one call. Nobody writes to the field in a pass without
-            // scatter, and only this tile to its slots in one with: portions and tiles of one colour share none.
+            // SAFETY: every particle belongs to one tile, and every tile to one call. Nobody writes to the field in a
+            // pass without scatter, and only this tile to its slots in one with:
+            // portions and tiles of one colour share none.
             unsafe {
                 match path {
                     Path::Lanes(processor) => T::run(processor, SeveralAtATime(&mut visit)),

@@ -12,8 +12,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// ```text
     /// v_a = v_a^0 = sum_b p_b / sum_b m_b   over the bodies b that glue joins with a at the node
     /// ```
-    /// A particle takes what changes at a node after interpolation, v - v^0. With v^0 of the part alone it would be drawn toward the
-    /// velocity of the whole in each step, which damps; as one body the parts' particles would not be.
+    /// A particle takes what changes at a node after interpolation, v - v^0. With v^0 of the part alone it would be
+    /// drawn toward the velocity of the whole in each step, which damps; as one body the parts' particles would not be.
     pub(super) fn join_glued_bodies(&mut self) {
         if !self.settings.rules.uses(ContactLaw::Glued) {
             return;

@@ -40,8 +40,8 @@ pub struct Engine<T, const D: usize, B> {
 /// The recipes. Numbers are equations of Bardenhagen et al. (2001). P2G: particles to grid, G2P: grid to particles.
 ///
 /// All have contact on the interpolated and on the integrated velocities, and strain and move particles by the same
-/// velocities; they differ in which velocities these are. The paper's contact laws act in both places; the law `surface`
-/// acts on the integrated velocities and, to strain bodies that touch, on those that strain.
+/// velocities; they differ in which velocities these are. The paper's contact laws act in both places; the law
+/// `surface` acts on the integrated velocities and, to strain bodies that touch, on those that strain.
 impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// One step of `dt`.
     fn advance(&mut self, dt: T) -> Result<(), StepError> {

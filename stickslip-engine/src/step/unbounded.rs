@@ -1,7 +1,8 @@
 //! Rigid bodies without bounds, such as a half-space: they have particles only where other bodies are near.
 //!
-//! Contact asks a body's particles where its surface is, no further than shape functions reach. So a layer below the surface, around the blocks that
-//! deformable bodies hold, does what the whole body would. It grows when they reach blocks beyond it; memory follows them, not the domain.
+//! Contact asks a body's particles where its surface is, no further than shape functions reach. So a layer below the
+//! surface, around the blocks that deformable bodies hold, does what the whole body would. It grows when they reach
+//! blocks beyond it; memory follows them, not the domain.
 
 use super::Engine;
 use super::build::{mirrors, spin};
@@ -37,7 +38,8 @@ pub(super) struct Unbounded<const D: usize> {
     pub pose: Option<Pose>,
 }
 
-/// Depth of the layer of particles: nodes one and a half cells deep see all that they would see of the whole body [cells].
+/// Depth of the layer of particles: nodes one and a half cells deep see all that they would see of the whole body
+/// [cells].
 const DEPTH: f64 = 3.0;
 /// Particles reach this far beyond the blocks that are served: shape functions reach 1.5 at most [cells].
 const MARGIN: f64 = 2.0;

@@ -55,7 +55,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.watch.lap("blocks", start);
     }
 
-    /// Sorts particles in memory into the order in which tiles visit them, where disorder has cost as much as that does.
+    /// Sorts particles in memory into the order in which tiles visit them,
+    /// where disorder has cost as much as that does.
     fn sort_particles(&mut self) {
         let (cover, disorder) = (&self.workspace.cover, &self.state.disorder);
         let costly = |body: usize, count: usize| disorder[body].is_costly(count);
@@ -220,8 +221,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.watch.lap("survey", start);
     }
 
-    /// Contact on the interpolated velocities, by the laws that judge these by themselves; they also strain the particles
-    /// where the stress is updated first.
+    /// Contact on the interpolated velocities, by the laws that judge these by themselves; they also strain the
+    /// particles where the stress is updated first.
     pub(super) fn contact_on_interpolated(&mut self, dt: T) {
         let strains = self.settings.time.stress_update == StressUpdate::First;
         if strains || self.settings.rules.judge_interpolated() {
@@ -273,14 +274,16 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.watch.lap("contact", start);
     }
 
-    /// Books the work of friction in this step, what its impulses took from the particles' kinetic energy, and likewise that of bonds that give way.
+    /// Books the work of friction in this step, what its impulses took from the particles' kinetic energy,
+    /// and likewise that of bonds that give way.
     ///
     /// ```text
     /// W = -sum J . (u^0 + u^1)/2,   u = v_a - v_b of the particles' velocities, interpolated before and after the step
     /// ```
-    /// This is exact for FLIP, where particles take changes at nodes: sum_p m_p v_p . sum_i S_i dv_i = sum_i m_i dv_i . v_i, with v_i
-    /// interpolated from the v_p. The velocity of a node with next to no mass is mostly what forces do to it within the step, and says little of
-    /// how particles move. Where the step does not interpolate a second time, u^1 = u^0.
+    /// This is exact for FLIP, where particles take changes at nodes: sum_p m_p v_p . sum_i S_i dv_i = sum_i m_i dv_i .
+    /// v_i, with v_i interpolated from the v_p. The velocity of a node with next to no mass is mostly what forces do to
+    /// it within the step, and says little of how particles move. Where the step does not interpolate a second time,
+    /// u^1 = u^0.
     fn book_friction(&mut self, dt: T) {
         let interpolated_twice = self.settings.time.stress_update == StressUpdate::ModifiedLast;
         let (nodes, rules) = (&self.workspace.field.nodes, &self.settings.rules);

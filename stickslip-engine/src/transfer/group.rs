@@ -1,7 +1,8 @@
 //! Transfer for several particles at once: of one cell, which share their nodes, or of several cells of a tile.
 //!
-//! A gather has a particle in each lane and hands every node's values to all of them. A scatter has the components of momentum or force
-//! of two particles in the lanes and adds up one pair after the other, in the order in which they come.
+//! A gather has a particle in each lane and hands every node's values to all of them. A scatter has the components of
+//! momentum or force of two particles in the lanes and adds up one pair after the other,
+//! in the order in which they come.
 
 // Sums over nodes and components read better by their indices.
 #![allow(clippy::needless_range_loop)]
@@ -136,8 +137,8 @@ const fn last_start(dimension: usize) -> usize {
 }
 
 impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
-    /// Particles at `r` from their base nodes with half-widths `half` [cells], `count` of them; `start` has the base nodes' places in the
-    /// window.
+    /// Particles at `r` from their base nodes with half-widths `half` [cells], `count` of them; `start` has the base
+    /// nodes' places in the window.
     #[inline(always)]
     pub fn new(r: Vector<V, D>, half: V, start: S, count: usize) -> Self {
         // No closure: the compiler may leave one of this size uninlined, and then its instructions are calls.
@@ -208,7 +209,8 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
         (moment::<V, D>(&moments), mean)
     }
 
-    /// Sums of v_i, by components, with the shape function's factor along each axis in turn replaced by another one, and with none.
+    /// Sums of v_i, by components, with the shape function's factor along each axis in turn replaced by another one,
+    /// and with none.
     #[inline(always)]
     fn sums(
         &self,
@@ -373,8 +375,8 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
         sums
     }
 
-    /// Forces that the nodes of a plane across the first axis get, and what passes to the next plane, given what passed to this one:
-    /// sums over particles stand between two neighbours, one of which gets what the other one gives.
+    /// Forces that the nodes of a plane across the first axis get, and what passes to the next plane, given what passed
+    /// to this one: sums over particles stand between two neighbours, one of which gets what the other one gives.
     #[inline(always)]
     fn forces<M: Machine<V::Real>>(
         &self,

@@ -73,7 +73,8 @@ impl ReadProblem {
     }
 }
 
-/// Writes a file under another name (`.part` appended) and renames it when complete: a reader sees the old file or the new one.
+/// Writes a file under another name (`.part` appended) and renames it when complete:
+/// a reader sees the old file or the new one.
 ///
 /// # Errors
 /// The disk is full or refuses; then the old file is untouched and nothing half-written is left.

@@ -61,8 +61,8 @@ pub enum FolderError {
 impl OutputFolder {
     /// Makes the folder, or clears it of the results of an earlier run.
     ///
-    /// A folder counts as one of ours if it is empty or holds a [`Manifest`]. Only files that a run writes are removed: notes,
-    /// plots and pictures beside them stay.
+    /// A folder counts as one of ours if it is empty or holds a [`Manifest`]. Only files that a run writes are removed:
+    /// notes, plots and pictures beside them stay.
     ///
     /// # Errors
     /// The folder holds files but no manifest, or it cannot be made or written.

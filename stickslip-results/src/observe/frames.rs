@@ -19,7 +19,8 @@ pub struct Frame {
     pub path: PathBuf,
 }
 
-/// A growing series of snapshots, written by a thread of its own. The `.pvd` file lists those that are complete, at any time.
+/// A growing series of snapshots, written by a thread of its own. The `.pvd` file lists those that are complete,
+/// at any time.
 pub(super) struct Frames {
     writer: Writer<Series>,
 }
@@ -42,7 +43,8 @@ impl Frames {
         self.writer.make_room()
     }
 
-    /// Hands over a snapshot at a time [s] that takes so many bytes; a second one at the time of the last takes its place.
+    /// Hands over a snapshot at a time [s] that takes so many bytes; a second one at the time of the last takes its
+    /// place.
     pub(super) fn push(&mut self, time: f64, bytes: usize, encode: impl FnOnce() -> Vtu + Send + 'static) {
         self.writer.hand_over(bytes, move |series| series.push(time, &encode()));
     }

@@ -1,4 +1,5 @@
-//! `fringes/` and `fringes.png`: photoelastic fringes as a camera behind a polariscope sees them, frame by frame and as an animation.
+//! `fringes/` and `fringes.png`: photoelastic fringes as a camera behind a polariscope sees them,
+//! frame by frame and as an animation.
 
 use super::file::{OutputError, replace};
 use super::folder::OutputFolder;
@@ -93,7 +94,8 @@ struct Shutter {
     sample: usize,
 }
 
-/// Part of the interval by which an instant may come early, so that the rounding of summed steps does not delay it by a whole step.
+/// Part of the interval by which an instant may come early, so that the rounding of summed steps does not delay it by a
+/// whole step.
 const EARLY: f64 = 1e-6;
 
 impl Shutter {

@@ -168,8 +168,8 @@ fn way(front: &Front, particle: &ParticleView) -> Option<f64> {
     front.within.is_none_or(|within| across <= within).then_some(along)
 }
 
-/// Slope of the straight line that is closest to points in the sense of least squares, and its standard error; `None` of fewer
-/// than three points and of points one above the other.
+/// Slope of the straight line that is closest to points in the sense of least squares, and its standard error; `None`
+/// of fewer than three points and of points one above the other.
 fn slope(points: &[[f64; 2]]) -> Option<(f64, f64)> {
     let n = points.len() as f64;
     let mean = |axis: usize| points.iter().map(|point| point[axis]).sum::<f64>() / n;

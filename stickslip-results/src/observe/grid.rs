@@ -49,8 +49,8 @@ impl Observer for Grid {
 
 /// The nodes of the last step's grid at a time [s] as a file for ParaView, ready to be written.
 ///
-/// Node by node and body by body: `mass` [kg], `velocity` [m/s], internal `force` [N], `contact_impulse` [N s] and the index of the
-/// `body`; the side of a `cell` [m] holds for the whole file.
+/// Node by node and body by body: `mass` [kg], `velocity` [m/s], internal `force` [N], `contact_impulse` [N s] and the
+/// index of the `body`; the side of a `cell` [m] holds for the whole file.
 pub fn encode_grid(snapshot: &GridSnapshot, time: f64) -> Vtu {
     let body: Vec<i32> = snapshot.body.iter().map(|&body| body as i32).collect();
     let mut file = Vtu::new(time, &snapshot.position);

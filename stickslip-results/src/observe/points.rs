@@ -28,12 +28,13 @@ pub(super) struct Point {
 /// Points that are sampled together. Each looks at the particles within two cells:
 ///
 /// ```text
-/// q = sum_p m_p w(r_p) q_p / sum_p m_p w(r_p),   w(r) = (1 - r/R)^4 (1 + 4 r/R),   R = 2 cells     (Wendland's C2 function)
+/// q = sum_p m_p w(r_p) q_p / sum_p m_p w(r_p),   w(r) = (1 - r/R)^4 (1 + 4 r/R),   R = 2 cells  (Wendland's C2)
 /// ```
 ///
-/// with r the distance from the point. The mean is smooth in space and time and never beyond the values of the particles; it
-/// smears a sharp front over about a cell, and within a cell of a surface it leans to the inside. A point of space takes the
-/// particles that are there now; a point of the material takes those of the first sample, with their weights, for ever.
+/// with r the distance from the point. The mean is smooth in space and time and never beyond the values of the
+/// particles; it smears a sharp front over about a cell, and within a cell of a surface it leans to the inside. A point
+/// of space takes the particles that are there now; a point of the material takes those of the first sample,
+/// with their weights, for ever.
 pub(super) struct Points {
     points: Vec<(Point, Hold)>,
     /// Indices of the bodies that are not rigid.
@@ -46,7 +47,8 @@ pub(super) struct Points {
 enum Hold {
     /// Those around it now.
     Around,
-    /// These: number and weight, in the order of the numbers. The point lies at their mean position and this beside it [m].
+    /// These: number and weight, in the order of the numbers. The point lies at their mean position and this beside it
+    /// [m].
     These { weights: Vec<(u32, f64)>, beside: [f64; 3] },
 }
 
@@ -71,7 +73,8 @@ impl Points {
         Points { points: points.collect(), bodies, radius: RADIUS * scene.discretization.cell }
     }
 
-    /// The material at each point now; `None` where no particle is around. The first call binds the points of the material.
+    /// The material at each point now; `None` where no particle is around.
+    /// The first call binds the points of the material.
     pub(super) fn sample(&mut self, view: &dyn View) -> Vec<Option<Sample>> {
         let mut sums = vec![Sum::default(); self.points.len()];
         let mut found: Vec<Vec<(u32, f64)>> = vec![Vec::new(); self.points.len()];

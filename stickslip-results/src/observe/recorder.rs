@@ -78,8 +78,8 @@ impl Recorder {
         self.record_where(view, |seat| seat.last != Some(time))
     }
 
-    /// Records the state in which a step failed. If the time did not advance, tables keep the row that they have and snapshots
-    /// are replaced: what went wrong is to be seen.
+    /// Records the state in which a step failed. If the time did not advance, tables keep the row that they have and
+    /// snapshots are replaced: what went wrong is to be seen.
     ///
     /// # Errors
     /// A file cannot be written.

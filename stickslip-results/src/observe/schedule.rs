@@ -2,9 +2,9 @@
 
 /// Whole multiples of an interval of simulated time, and single times besides.
 ///
-/// The run does not shorten steps for outputs: a record is made after the first step that reaches a multiple, and carries the time
-/// at which it was made. Multiples that a step jumps over are skipped. An interval of zero asks for every step, an infinite one for
-/// none but the first.
+/// The run does not shorten steps for outputs: a record is made after the first step that reaches a multiple, and
+/// carries the time at which it was made. Multiples that a step jumps over are skipped. An interval of zero asks for
+/// every step, an infinite one for none but the first.
 #[derive(Clone, Debug)]
 pub(super) struct Schedule {
     interval: f64,
@@ -13,7 +13,8 @@ pub(super) struct Schedule {
     single: Vec<f64>,
 }
 
-/// Part of the interval by which a record may come early, so that the rounding of summed steps does not delay it by a whole step.
+/// Part of the interval by which a record may come early, so that the rounding of summed steps does not delay it by a
+/// whole step.
 const EARLY: f64 = 1e-6;
 
 impl Schedule {

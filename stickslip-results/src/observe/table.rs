@@ -18,7 +18,8 @@ pub(super) trait Row: Serialize + Default {
 /// Column of the time in the scene's own unit, after those of the row.
 pub(super) const TIME_UNITS: &str = "time_units";
 
-/// A growing table whose columns are the fields of a row and, if the scene has a unit of time, the time in it. A thread of its own writes it.
+/// A growing table whose columns are the fields of a row and, if the scene has a unit of time, the time in it.
+/// A thread of its own writes it.
 pub(super) struct Table<R> {
     writer: Writer<Sheet>,
     /// Length of the scene's unit of time [s].
@@ -98,7 +99,8 @@ fn encode<R: Serialize>(rows: impl IntoIterator<Item = R>, header: bool) -> Vec<
 /// All whole rows of a table.
 ///
 /// # Errors
-/// The file is missing or is not a table of such rows. A last line that is cut short is ignored: a run may be writing it.
+/// The file is missing or is not a table of such rows. A last line that is cut short is ignored:
+/// a run may be writing it.
 pub(super) fn read_rows<R: DeserializeOwned>(path: &Path) -> Result<Vec<R>, ReadError> {
     let rows = || -> Result<Vec<R>, ReadProblem> {
         let bytes = fs::read(path)?;

@@ -5,8 +5,8 @@ use std::io;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread::{Builder, JoinHandle};
 
-/// Bytes that may wait: what is handed over next is made once less than this is waiting, so that neither many small records nor two
-/// large ones pile up in memory.
+/// Bytes that may wait: what is handed over next is made once less than this is waiting, so that neither many small
+/// records nor two large ones pile up in memory.
 const ROOM: usize = 64 << 20;
 
 /// Writes what it is handed, in that order, on a thread of its own that owns the files `F`.

@@ -25,8 +25,8 @@ pub struct Link {
     pub force: f64,
 }
 
-/// Distances between particles up to which bodies can meet: they press on each other with a small gap, from the start or through
-/// the grid, and the surfaces of lattices have steps.
+/// Distances between particles up to which bodies can meet: they press on each other with a small gap, from the start
+/// or through the grid, and the surfaces of lattices have steps.
 const REACH: f64 = 4.0;
 /// Width of the line of the largest force, over the width of the image.
 const WIDEST: f64 = 0.009;
@@ -36,8 +36,8 @@ const LEAST: f64 = 0.01;
 const COLOR: [f64; 3] = [235.0, 70.0, 30.0];
 const OPACITY: f64 = 0.85;
 
-/// The links of some bodies: from the centre of each to where it presses on another. Bodies that are not among `specimens`, such as
-/// walls, have no links of their own.
+/// The links of some bodies: from the centre of each to where it presses on another. Bodies that are not among
+/// `specimens`, such as walls, have no links of their own.
 pub fn links(particles: &ParticleSnapshot, pushes: &[Push], specimens: &[usize]) -> Vec<Link> {
     let clouds = clouds(particles, REACH);
     let find = |body: usize| clouds.iter().find(|cloud| cloud.body == body);
@@ -52,7 +52,8 @@ pub fn links(particles: &ParticleSnapshot, pushes: &[Push], specimens: &[usize])
     links
 }
 
-/// Mean of the places half-way between points of two bodies that are within reach, weighted by nearness; `None` if they are apart.
+/// Mean of the places half-way between points of two bodies that are within reach, weighted by nearness;
+/// `None` if they are apart.
 fn meeting_place(a: &Cloud, b: &Cloud) -> Option<[f64; 2]> {
     let (few, many) = if a.points().len() < b.points().len() { (a, b) } else { (b, a) };
     let reach = many.reach;

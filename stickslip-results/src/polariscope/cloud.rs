@@ -1,5 +1,5 @@
-//! One body as light sees it: points of the plane, each with its area, the stress along the ray through it, and the way through
-//! the body.
+//! One body as light sees it: points of the plane, each with its area, the stress along the ray through it, and the way
+//! through the body.
 
 use crate::door::ParticleSnapshot;
 use std::collections::BTreeMap;

@@ -3,8 +3,8 @@
 /// Visible wavelengths [nm].
 pub const VISIBLE: std::ops::RangeInclusive<u32> = 380..=780;
 
-/// The CIE 1931 colour matching functions x, y, z at a wavelength [nm], within about 1 %: multi-lobe fit of Wyman, Sloan and
-/// Shirley (2013), Journal of Computer Graphics Techniques 2(2), eq. (4).
+/// The CIE 1931 colour matching functions x, y, z at a wavelength [nm], within about 1 %: multi-lobe fit of Wyman,
+/// Sloan and Shirley (2013), Journal of Computer Graphics Techniques 2(2), eq. (4).
 pub fn color_matching(wavelength: f64) -> [f64; 3] {
     let lobe = |height: f64, center: f64, [below, above]: [f64; 2]| {
         let width = if wavelength < center { below } else { above };
@@ -70,8 +70,8 @@ impl Screen {
     }
 }
 
-/// Each visible nanometre's share of linear red, green and blue in light of equal power at all wavelengths, adapted so that the
-/// sum is the screen's white.
+/// Each visible nanometre's share of linear red, green and blue in light of equal power at all wavelengths, adapted so
+/// that the sum is the screen's white.
 pub fn white_light() -> Vec<(f64, [f64; 3])> {
     /// X, Y, Z of the screen's white.
     const D65: [f64; 3] = [0.9505, 1.0, 1.089];

@@ -1,8 +1,8 @@
 //! A virtual polariscope: photoelastic fringes of the stress in a snapshot.
 //!
-//! Light runs along the third axis through birefringent bodies between two polarisers. [`stress_maps`] interpolates the stress between
-//! particles on the pixels of a [`Window`], [`Optics`] turns it into fringe orders and light, and [`Film`] sums up light while a
-//! shutter is open; [`Bench`] holds them together:
+//! Light runs along the third axis through birefringent bodies between two polarisers. [`stress_maps`] interpolates the
+//! stress between particles on the pixels of a [`Window`], [`Optics`] turns it into fringe orders and light, and
+//! [`Film`] sums up light while a shutter is open; [`Bench`] holds them together:
 //!
 //! ```
 //! # use stickslip::{door::ParticleSnapshot, image::Image, scene::Polariscope};

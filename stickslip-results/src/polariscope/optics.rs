@@ -4,13 +4,15 @@
 //! N = t (sigma_1 - sigma_2) / f_sigma,   f_sigma = wavelength / C           fringe order
 //! circular, dark field   I = sin^2(pi N)                                    Frocht (1941), Photoelasticity I
 //! circular, light field  I = cos^2(pi N)
-//! plane, dark field      I = sin^2(2 (theta - alpha)) sin^2(pi N)           theta: principal direction, alpha: polariser
-//! plane, light field     I = 1 - sin^2(2 (theta - alpha)) sin^2(pi N)
+//! plane, dark field      I = sin^2(2 (theta - alpha)) sin^2(pi N)
+//! plane, light field     I = 1 - sin^2(2 (theta - alpha)) sin^2(pi N)       theta: principal direction
+//!                                                                           alpha: polariser
 //! ```
 //!
-//! Bardenhagen et al. (2001) draw cos((sigma_1 - sigma_2) / s) = cos(2 pi N), so s = f_sigma / (2 pi t). Of white light each
-//! wavelength has its own order, N(lambda) = N lambda_0 / lambda: the stress-optic coefficient is taken to be the same for all. In
-//! space the stress is averaged along the ray, which is exact where the principal directions do not turn along it.
+//! Bardenhagen et al. (2001) draw cos((sigma_1 - sigma_2) / s) = cos(2 pi N), so s = f_sigma / (2 pi t). Of white light
+//! each wavelength has its own order, N(lambda) = N lambda_0 / lambda: the stress-optic coefficient is taken to be the
+//! same for all. In space the stress is averaged along the ray, which is exact where the principal directions do not
+//! turn along it.
 
 use super::color::{spectral_color, white_light};
 use super::stress_map::Ray;

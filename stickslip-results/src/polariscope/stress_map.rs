@@ -1,14 +1,14 @@
 //! Stress on the pixels of an image, interpolated between the particles of one body.
 //!
-//! Moving least squares (Lancaster and Salkauskas 1981): around each pixel a plane a + b.(x - x_pixel) is fitted to the stress of
-//! the particles within a reach R of two distances between particles, with weights
+//! Moving least squares (Lancaster and Salkauskas 1981): around each pixel a plane a + b.(x - x_pixel) is fitted to the
+//! stress of the particles within a reach R of two distances between particles, with weights
 //!
 //! ```text
 //! w = A (1 - r^2/R^2)^3          A: the particle's area
 //! ```
 //!
-//! so stress that varies linearly is met exactly, up to the body's surface. Only the body's own particles count: stress does not
-//! smear across contacts. How much of the body covers a pixel is
+//! so stress that varies linearly is met exactly, up to the body's surface. Only the body's own particles count: stress
+//! does not smear across contacts. How much of the body covers a pixel is
 //!
 //! ```text
 //! c = sum w / (pi R^2 / 4)       1 inside, 1/2 on a straight surface
@@ -46,8 +46,8 @@ pub struct StressMap {
 /// Reach of the kernel in distances between particles: a dozen of them, so that the steps of a lattice smooth out.
 pub const REACH: f64 = 2.0;
 
-/// Part of the points' mean square distance (in reaches) added to that of every fit: a single row of particles has no slope
-/// across itself.
+/// Part of the points' mean square distance (in reaches) added to that of every fit: a single row of particles has no
+/// slope across itself.
 const RIDGE: f64 = 1e-3;
 
 impl Ray {

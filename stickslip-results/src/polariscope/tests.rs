@@ -46,8 +46,8 @@ fn in_disk([x, y]: [f64; 2]) -> bool {
     x.hypot(y) < 1.0
 }
 
-/// Disk of radius 1 pressed at its top and bottom (Timoshenko and Goodier, Theory of Elasticity, section 41), such that the order
-/// at the centre is `order`:
+/// Disk of radius 1 pressed at its top and bottom (Timoshenko and Goodier, Theory of Elasticity, section 41), such that
+/// the order at the centre is `order`:
 ///
 /// ```text
 /// xx = -k ((R - y) x^2 / r1^4 + (R + y) x^2 / r2^4 - 1/D),   k = 2 P / (pi t)
@@ -82,8 +82,8 @@ fn order_at(map: &StressMap, window: &Window, x: [f64; 2]) -> f64 {
 }
 
 /// benchmarks of the Brazilian disk at 80 cells across, one particle a cell: on the load axis
-/// `8 P D / (pi t (D^2 - 4 y^2))`, on the cross axis `(8 P / (pi D t)) (1 - 4 x^2/D^2) / (1 + 4 x^2/D^2)^2`. The tolerance is the
-/// curvature of the field over the reach of the kernel, which grows towards the loads.
+/// `8 P D / (pi t (D^2 - 4 y^2))`, on the cross axis `(8 P / (pi D t)) (1 - 4 x^2/D^2) / (1 + 4 x^2/D^2)^2`. The
+/// tolerance is the curvature of the field over the reach of the kernel, which grows towards the loads.
 #[test]
 fn a_disk_under_two_forces_has_the_textbooks_orders() {
     let particles = lattice(2.0 / 80.0, in_disk, brazilian(6.0));
@@ -166,8 +166,8 @@ fn a_plane_polariscope_darkens_where_stress_lies_along_the_polariser() {
     }
 }
 
-/// The isochromatic colours of textbooks: black, grey, white, yellow, red, the tint of passage at a retardation of about 560 nm,
-/// blue, green, yellow, red.
+/// The isochromatic colours of textbooks: black, grey, white, yellow, red, the tint of passage at a retardation of
+/// about 560 nm, blue, green, yellow, red.
 #[test]
 fn white_light_gives_the_textbooks_colors() {
     let optics = Optics::new(&polariscope(Light::White));
@@ -219,7 +219,8 @@ fn fringes_finer_than_pixels_are_grey() {
     assert!(row.iter().all(|rgb| (rgb[0] - 0.5).abs() < 0.1), "{row:?}");
 }
 
-/// A plate of two units of thickness with stress that varies through it has the order of the mean; a hole beside it stays open.
+/// A plate of two units of thickness with stress that varies through it has the order of the mean;
+/// a hole beside it stays open.
 #[test]
 fn light_sums_stress_through_a_plate() {
     let sheet = lattice(0.1, |[x, y]| x.abs() < 0.5 && y.abs() < 0.5, |_| [0.0; 3]);
@@ -272,7 +273,8 @@ fn force_chains_meet_where_bodies_touch() {
     assert_eq!(image.color(90, 60), [0; 3]);
 }
 
-/// The disk under two forces and the sequence of colours, to be looked at: in the folder that STICKSLIP_TEST_PICTURES names.
+/// The disk under two forces and the sequence of colours, to be looked at:
+/// in the folder that STICKSLIP_TEST_PICTURES names.
 #[test]
 fn every_light_and_field_has_a_picture() {
     let folder = tempfile::tempdir().unwrap();

@@ -24,7 +24,8 @@ pub struct ContactEstimate {
     pub load: f64,
     /// Speed at which they approach at the start [m/s].
     pub approach: f64,
-    /// The wider one of Hertz's patches under the load and at the impact; of a flat face its own half-width, without a depth.
+    /// The wider one of Hertz's patches under the load and at the impact; of a flat face its own half-width,
+    /// without a depth.
     pub patch: Patch,
     /// Radius of the patch, in the plane its half-width, over the cell size [-].
     pub cells: f64,
@@ -67,9 +68,10 @@ pub(super) struct Estimates {
 
 /// Estimates for all pairs within a cell of each other or named by a contact rule.
 ///
-/// Only balls, cylinders that lie all along, and faces of boxes that lie flat touch in a patch that the start tells; to a ball the other body may be a
-/// ball, to a cylinder a cylinder, hollow or full, and it counts as flat where it is something else. The load is the weight of the upper body alone, without what rests on it. Pairs that nothing
-/// presses together at the start are left out, as are rigid or glued pairs.
+/// Only balls, cylinders that lie all along, and faces of boxes that lie flat touch in a patch that the start tells; to
+/// a ball the other body may be a ball, to a cylinder a cylinder, hollow or full, and it counts as flat where it is
+/// something else. The load is the weight of the upper body alone, without what rests on it. Pairs that nothing presses
+/// together at the start are left out, as are rigid or glued pairs.
 pub(super) fn estimates(scene: &Scene, extents: &[Extent]) -> Estimates {
     let named = named_pairs(scene);
     let boxes: Vec<_> = extents.iter().map(|extent| extent.bounds).collect();
@@ -95,11 +97,11 @@ pub(super) fn estimates(scene: &Scene, extents: &[Extent]) -> Estimates {
     Estimates { found, unknown }
 }
 
-/// Whether two shapes are less than a cell apart: surely if they touch, and not if they are further apart than that, but for combined ones,
-/// whose distances are lower bounds.
+/// Whether two shapes are less than a cell apart: surely if they touch, and not if they are further apart than that,
+/// but for combined ones, whose distances are lower bounds.
 ///
-/// From a point the two are as far away as they are apart, or more. Around a point where they touch, one on a lattice of half a cell
-/// is within a quarter of a cell along each axis.
+/// From a point the two are as far away as they are apart, or more. Around a point where they touch, one on a lattice
+/// of half a cell is within a quarter of a cell along each axis.
 fn within_a_cell(scene: &Scene, extents: &[Extent], [a, b]: [usize; 2]) -> bool {
     let (cell, dimension) = (scene.discretization.cell, scene.dimension.axes());
     let around = |i: usize| extents[i].bounds.grown(0.5 * cell);
@@ -267,7 +269,8 @@ mod tests {
         assert!((contact.patch.radius / half_width - 1.0).abs() < 1e-9);
     }
 
-    /// A roller 2 m long presses a half-space as a disk does per metre; one askew touches with its rim, and is not estimated.
+    /// A roller 2 m long presses a half-space as a disk does per metre; one askew touches with its rim,
+    /// and is not estimated.
     #[test]
     fn a_cylinder_on_its_side_presses_as_a_disk_does() {
         let on_floor = |end: [f64; 3]| {

@@ -24,7 +24,8 @@ struct Face {
 }
 
 impl Flat {
-    /// The face of the first body that lies nearest to the second; `None` if none lies flat before it. Boxes have faces, turned or not.
+    /// The face of the first body that lies nearest to the second; `None` if none lies flat before it.
+    /// Boxes have faces, turned or not.
     pub(super) fn of(scene: &Scene, pair: [usize; 2]) -> Option<Flat> {
         let [first, second] = pair.map(|i| &scene.bodies[i].shape);
         let dimension = scene.dimension.axes();

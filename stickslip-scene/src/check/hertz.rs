@@ -55,7 +55,8 @@ impl Hertz {
         Patch { radius, depth: radius * radius / self.radius }
     }
 
-    /// At the largest compression after an approach at `speed` [m/s]; `mass` = m1 m2 / (m1 + m2) [kg], in the plane [kg/m].
+    /// At the largest compression after an approach at `speed` [m/s]; `mass` = m1 m2 / (m1 + m2) [kg],
+    /// in the plane [kg/m].
     ///
     /// ```text
     /// space:  d = (15 m v^2 / (16 E* sqrt(R*)))^(2/5)

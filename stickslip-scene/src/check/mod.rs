@@ -38,8 +38,9 @@ use crate::scene::{Body, Problem, Scene};
 /// Finds what is wrong with a scene and takes its geometry to see.
 ///
 /// # Errors
-/// The first of: settings that allow no step, a material that is not stable, a domain whose walls miss the grid, motion out
-/// of the plane, a shape that is not one or holds no particle, a body that deforms and is unbounded, a body outside the domain, two bodies in one place.
+/// The first of: settings that allow no step, a material that is not stable, a domain whose walls miss the grid, motion
+/// out of the plane, a shape that is not one or holds no particle, a body that deforms and is unbounded, a body outside
+/// the domain, two bodies in one place.
 pub fn problems(scene: &Scene) -> Result<(), Problem> {
     examine(scene).map(|_| ())
 }

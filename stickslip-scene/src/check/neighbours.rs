@@ -6,8 +6,8 @@ use rstar::{AABB, RTree};
 
 /// Pairs `[i, j]`, i < j, of boxes at most `margin` [m] apart along every axis, in order.
 ///
-/// By an R-tree: n log n in the number of boxes, however they lie and however their sizes differ. Those that are endless are near to all
-/// others, and not to each other.
+/// By an R-tree: n log n in the number of boxes, however they lie and however their sizes differ. Those that are
+/// endless are near to all others, and not to each other.
 pub(super) fn pairs_within(boxes: &[Bounds], margin: f64) -> Vec<[usize; 2]> {
     let (finite, endless): (Vec<usize>, Vec<usize>) = (0..boxes.len()).partition(|&i| boxes[i].is_finite());
     let leaf =

@@ -15,8 +15,8 @@ const ROUND_OFF: f64 = 1e-6;
 
 /// Refuses particle sites that lie inside two bodies.
 ///
-/// Bodies that overlap by more than a lattice resolves share sites of it. If each has its own, the coarser one may see what lies between the
-/// sites of the finer one.
+/// Bodies that overlap by more than a lattice resolves share sites of it. If each has its own, the coarser one may see
+/// what lies between the sites of the finer one.
 pub(super) fn check(scene: &Scene, extents: &[Extent]) -> Result<(), Problem> {
     let boxes: Vec<_> = extents.iter().map(|extent| extent.bounds).collect();
     let pairs = pairs_within(&boxes, 0.0);
@@ -148,8 +148,8 @@ mod tests {
         assert!(overlap(Dimension::PlaneStrain, vec![turned(0.0), turned(0.9)]).is_err());
     }
 
-    /// Sites of one a side at 0.05, 0.15, ... miss an overlap that those of five see, and sites of three at 0.25 and 0.283 one that those of two
-    /// see, at 0.275.
+    /// Sites of one a side at 0.05, 0.15, ... miss an overlap that those of five see, and sites of three at 0.25 and
+    /// 0.283 one that those of two see, at 0.275.
     #[test]
     fn either_of_two_lattices_tells_an_overlap() {
         let overlap = |[end, start]: [f64; 2], per_side: [usize; 2]| {

@@ -44,8 +44,8 @@ fn require_positive(key: &str, value: f64, unit: &str) -> Result<(), Problem> {
     Err(problem(key, format!("{value} {unit}").trim_end().into(), "a finite number above 0"))
 }
 
-/// A material is stable if waves in it have a real speed: positive density, K > 0 and G >= 0; a thin plate needs G > 0. Its constants are
-/// within the bounds that its law declares, and its law has an answer for the scene's cells.
+/// A material is stable if waves in it have a real speed: positive density, K > 0 and G >= 0; a thin plate needs G > 0.
+/// Its constants are within the bounds that its law declares, and its law has an answer for the scene's cells.
 fn check_material(key: &str, material: &NamedMaterial, scene: &Scene) -> Result<(), Problem> {
     require_positive(&format!("{key}.density"), material.density, "kg/m^3")?;
     let dimension = scene.dimension;

@@ -72,8 +72,8 @@ impl Bounds {
 impl Shape {
     /// A box that holds the shape; `None` where the shape may reach to infinity.
     ///
-    /// Exact for all simple shapes; for a turned shape the box of its turned box. A half-space bounds what it is cut with
-    /// only where it lies across an axis; empty where nothing can be inside.
+    /// Exact for all simple shapes; for a turned shape the box of its turned box. A half-space bounds what it is cut
+    /// with only where it lies across an axis; empty where nothing can be inside.
     pub fn bounds(&self, dimension: usize) -> Option<Bounds> {
         let mut bounds = self.reach(dimension);
         if bounds.is_empty() {
@@ -87,8 +87,8 @@ impl Shape {
 
     /// A point that belongs to the shape, bounded or not: about it a rigid body without bounds turns [m].
     ///
-    /// Of a half-space its point, of a ball its centre, of another shape with bounds the middle of its box; of shapes combined that of the
-    /// first.
+    /// Of a half-space its point, of a ball its centre, of another shape with bounds the middle of its box; of shapes
+    /// combined that of the first.
     pub fn anchor(&self, dimension: usize) -> [f64; 3] {
         match self {
             Shape::HalfSpace { point, .. } => *point,

@@ -66,8 +66,8 @@ impl Shape {
 
     /// Signed distance from a point to the shape's surface and its gradient.
     ///
-    /// Exact for simple and turned shapes; of shapes combined, the sign is exact and the magnitude is at most the true one:
-    /// `min` over a union, `max` over an intersection. In the plane, a cylinder or a mesh is infinitely far away.
+    /// Exact for simple and turned shapes; of shapes combined, the sign is exact and the magnitude is at most the true
+    /// one: `min` over a union, `max` over an intersection. In the plane, a cylinder or a mesh is infinitely far away.
     pub fn level(&self, point: [f64; 3], dimension: usize) -> Level {
         match self {
             Shape::Ball { center, radius } => {

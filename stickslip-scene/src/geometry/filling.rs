@@ -10,7 +10,8 @@ const ROUND_OFF: f64 = 1e-7;
 
 /// A regular lattice of particle sites: the centres of cubes (in the plane, squares) that tile space from `origin`.
 ///
-/// With the spacing a whole fraction of a grid cell and the origin on a node, every cell holds the same number of sites.
+/// With the spacing a whole fraction of a grid cell and the origin on a node,
+/// every cell holds the same number of sites.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lattice {
     /// A corner of a cube [m].
@@ -132,9 +133,9 @@ impl Lattice {
 
 /// The particles of a shape; `None` for a shape without bounds, and for one that cannot be fitted.
 ///
-/// On the lattice every site inside is a particle. Each stands for a cube of the lattice, so the volume of all particles
-/// differs from the shape's by the stairs along its surface, and agrees with it exactly for a box on the lattice. A site
-/// on the border but for round-off counts as [`Shape::contains`] says of a point exactly on it.
+/// On the lattice every site inside is a particle. Each stands for a cube of the lattice, so the volume of all
+/// particles differs from the shape's by the stairs along its surface, and agrees with it exactly for a box on the
+/// lattice. A site on the border but for round-off counts as [`Shape::contains`] says of a point exactly on it.
 ///
 /// Fitted particles are at most the lattice's spacing apart, and their volumes add up to the shape's.
 pub fn fill(shape: &Shape, lattice: &Lattice, arrangement: Arrangement) -> Option<Filling> {

@@ -138,8 +138,8 @@ fn halved(solid: Solid, point: [f64; 3], inward: Vector<f64, 3>) -> Option<Solid
     }
 }
 
-/// A right-handed frame with its third vector along `axis`; along the axes of space where that is, so that a cylinder along z has
-/// the rings of a disk in the plane.
+/// A right-handed frame with its third vector along `axis`; along the axes of space where that is, so that a cylinder
+/// along z has the rings of a disk in the plane.
 fn upright(axis: [f64; 3]) -> [[f64; 3]; 3] {
     let least =
         (0..3).rev().min_by(|&i, &j| axis[i].abs().total_cmp(&axis[j].abs())).expect("three components");

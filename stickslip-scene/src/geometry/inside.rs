@@ -32,7 +32,8 @@ impl Probe {
 }
 
 impl Shape {
-    /// Whether a point [m] is inside; faces are half-open, balls open. In the plane, a cylinder or a mesh holds no point.
+    /// Whether a point [m] is inside; faces are half-open, balls open. In the plane,
+    /// a cylinder or a mesh holds no point.
     pub fn contains(&self, point: [f64; 3], dimension: usize) -> bool {
         self.holds(Probe::new(point, 0.0, dimension))
     }

@@ -17,13 +17,15 @@ pub(super) struct Sector {
 /// Sectors that tile a disk, or the half of it with angles from 0 to pi.
 ///
 /// ```text
-/// n = ceil(R/s) rings of width w = R/n,   ring k: area A = pi (r_out^2 - r_in^2) in an even number m of sectors, none above w^2
+/// n = ceil(R/s) rings of width w = R/n
+/// ring k: area A = pi (r_out^2 - r_in^2) in an even number m of sectors, none above w^2
 /// particle at the sector's centroid: r = 2/3 (r_out^3 - r_in^3)/(r_out^2 - r_in^2) sin(pi/m)/(pi/m)
 /// ```
-/// The areas add up to pi R^2 exactly, and the moment of inertia lacks what the sectors have about their centroids, some (w/R)^2/3. Volumes
-/// at their centroids balance a uniform stress best: particles at the radius of gyration, which would make the moment exact, leave the
-/// stress at the centre 3 to 5 % off, however fine the rings. An even number, the first half a sector from angle 0, makes the disk its own
-/// mirror image and lets a line of angle 0 cut it between particles.
+/// The areas add up to pi R^2 exactly, and the moment of inertia lacks what the sectors have about their centroids,
+/// some (w/R)^2/3. Volumes at their centroids balance a uniform stress best: particles at the radius of gyration, which
+/// would make the moment exact, leave the stress at the centre 3 to 5 % off, however fine the rings. An even number,
+/// the first half a sector from angle 0, makes the disk its own mirror image and lets a line of angle 0 cut it between
+/// particles.
 pub(super) fn sectors(disk: f64, spacing: f64, half: bool) -> impl Iterator<Item = Sector> {
     let rings = parts(disk, spacing);
     let edge = move |k: usize| disk * k as f64 / rings as f64;

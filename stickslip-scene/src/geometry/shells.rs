@@ -1,4 +1,5 @@
-//! A ball in shells, each in rings of latitude, each divided into pieces of one volume: particles that follow a round surface.
+//! A ball in shells, each in rings of latitude, each divided into pieces of one volume:
+//! particles that follow a round surface.
 
 use super::filling::parts;
 use std::f64::consts::PI;
@@ -15,12 +16,14 @@ pub(super) struct Piece {
 /// Pieces that tile a ball, or its northern half.
 ///
 /// ```text
-/// n = ceil(R/s) shells of width w = R/n,   shell k: V = 4/3 pi (r_out^3 - r_in^3),   r^2 = (3/5)(r_out^5 - r_in^5)/(r_out^3 - r_in^3)
-/// an even number near pi r_mid/w of bands of latitude between cosines c_1 and c_2:   V (c_1 - c_2)/2,   c^2 = (c_1^2 + c_1 c_2 + c_2^2)/3
+/// n = ceil(R/s) shells of width w = R/n
+/// shell k:   V = 4/3 pi (r_out^3 - r_in^3),   r^2 = (3/5)(r_out^5 - r_in^5)/(r_out^3 - r_in^3)
+/// an even number near pi r_mid/w of bands of latitude between cosines c_1 and c_2:
+///            V (c_1 - c_2)/2,   c^2 = (c_1^2 + c_1 c_2 + c_2^2)/3
 /// each in an even number of pieces, at least 4, none above w^3
 /// ```
-/// The volumes add up to 4/3 pi R^3 and the moments of inertia to those of the ball, both exactly. The equator lies between
-/// particles, so half a ball is half of them.
+/// The volumes add up to 4/3 pi R^3 and the moments of inertia to those of the ball, both exactly. The equator lies
+/// between particles, so half a ball is half of them.
 pub(super) fn pieces(ball: f64, spacing: f64, half: bool) -> impl Iterator<Item = Piece> {
     let shells = parts(ball, spacing);
     let edge = move |k: usize| ball * k as f64 / shells as f64;

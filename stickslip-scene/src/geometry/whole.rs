@@ -26,8 +26,8 @@ pub struct Whole {
 impl Whole {
     /// A shape before mirrors.
     ///
-    /// Faces on a mirror are left out of half-spaces, boxes, cylinders, polygons and meshes, also where these are combined; of shapes
-    /// that are turned about another axis than the mirror's only out of half-spaces and meshes.
+    /// Faces on a mirror are left out of half-spaces, boxes, cylinders, polygons and meshes, also where these are
+    /// combined; of shapes that are turned about another axis than the mirror's only out of half-spaces and meshes.
     pub fn new(shape: &Shape, mirrors: Vec<Mirror>, dimension: usize) -> Self {
         let shape = mirrors.iter().fold(shape.clone(), |shape, mirror| continued(shape, mirror, dimension));
         Whole { shape, mirrors, dimension }
@@ -192,7 +192,8 @@ mod tests {
         }
     }
 
-    /// A cylinder upon the mirror, either way round, is twice as long; between two mirrors it is endless; across the mirror it stays.
+    /// A cylinder upon the mirror, either way round, is twice as long; between two mirrors it is endless;
+    /// across the mirror it stays.
     #[test]
     fn a_cylinder_goes_on_behind_the_mirror_that_it_stands_on() {
         let [foot, top] = [[1.0, 0.0, 2.0], [1.0, 0.1, 2.0]];

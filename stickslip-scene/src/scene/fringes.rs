@@ -2,7 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-/// A camera that looks through a polariscope along the third axis while a scene runs. Times are in seconds of simulated time.
+/// A camera that looks through a polariscope along the third axis while a scene runs.
+/// Times are in seconds of simulated time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Fringes {
     /// When the shutter opens for the first frame [s].
@@ -44,8 +45,8 @@ pub struct Polariscope {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Sensitivity {
-    /// Principal stress difference, averaged along the light's way through the body, for one fringe: f_sigma / t, or 2 pi s
-    /// with the s of Bardenhagen et al. (2001) [Pa].
+    /// Principal stress difference, averaged along the light's way through the body, for one fringe: f_sigma / t, or 2
+    /// pi s with the s of Bardenhagen et al. (2001) [Pa].
     StressPerFringe(f64),
     /// The same, integrated along the way, for one fringe: f_sigma = wavelength / stress-optic coefficient [Pa m].
     StressThicknessPerFringe(f64),

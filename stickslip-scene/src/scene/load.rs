@@ -30,8 +30,9 @@ pub fn load(path: &Path, overrides: &[(String, String)]) -> Result<Loaded, Scene
 
 /// Reads a scene from its text; `name` stands for the file in messages.
 ///
-/// Each override is a name and a value. A name without dots is a parameter: `("cells_per_radius", "4")`, `("contact", "gap")`,
-/// `("angle", "pi / 6")`; a path with dots is any key: `("time.end", "1 s")`, `("bodies[0].velocity", "[1, 0, 0]")`.
+/// Each override is a name and a value. A name without dots is a parameter: `("cells_per_radius", "4")`,
+/// `("contact", "gap")`, `("angle", "pi / 6")`; a path with dots is any key: `("time.end", "1 s")`,
+/// `("bodies[0].velocity", "[1, 0, 0]")`.
 ///
 /// # Errors
 /// The first mistake, with file, line, column, key, what was found, what is allowed and a suggestion.

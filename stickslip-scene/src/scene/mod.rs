@@ -1,7 +1,7 @@
 //! What the user asks for: a [`Scene`], in SI units, with every parameter resolved.
 //!
-//! A scene is plain data. It says nothing about precision of its storage, threads or blocks; the engine is built from it.
-//! Vectors have three components; a plane scene uses the first two and takes the third as zero.
+//! A scene is plain data. It says nothing about precision of its storage, threads or blocks; the engine is built from
+//! it. Vectors have three components; a plane scene uses the first two and takes the third as zero.
 
 mod error;
 mod expression;
@@ -91,7 +91,8 @@ impl Parameter {
 pub enum Dimension {
     /// Plane strain: two dimensions, no strain out of the plane; masses and forces are per metre of depth.
     PlaneStrain,
-    /// Plane stress: two dimensions, no stress out of the plane; masses and forces are per metre of undeformed thickness.
+    /// Plane stress: two dimensions, no stress out of the plane; masses and forces are per metre of undeformed
+    /// thickness.
     PlaneStress,
     /// Three dimensions.
     Space,
@@ -196,7 +197,8 @@ pub struct Time {
     pub stress_update: StressUpdate,
     /// What particles take from the grid and give to it.
     pub transfer: Transfer,
-    /// Share of the grid's velocity itself (PIC) in the particles' new velocity; the rest takes the grid's change of velocity (FLIP). 0 to 1.
+    /// Share of the grid's velocity itself (PIC) in the particles' new velocity;
+    /// the rest takes the grid's change of velocity (FLIP). 0 to 1.
     pub pic_share: f64,
     /// Drift of the energy that a run may have before its verdict names it, over the energy that moved [-].
     pub energy_drift: f64,
@@ -279,8 +281,8 @@ pub struct ContactRule {
     pub between: [Option<String>; 2],
     /// The contact law.
     pub law: ContactLaw,
-    /// Coefficient of friction of surfaces that do not slip; infinity sticks, 0 is frictionless. Written as `"inf"` where numbers
-    /// cannot be infinite.
+    /// Coefficient of friction of surfaces that do not slip; infinity sticks, 0 is frictionless. Written as `"inf"`
+    /// where numbers cannot be infinite.
     #[serde(serialize_with = "infinity_as_text")]
     pub friction: f64,
     /// Whether the file says what the friction is; without, it is 0.
@@ -313,13 +315,17 @@ pub enum ContactLaw {
     Kinematic,
     /// When the normal traction between them is compressive (Bardenhagen et al. 2001).
     Traction,
-    /// When they approach or the normal traction is compressive, once their surfaces touch: the bodies fill the room around the node.
+    /// When they approach or the normal traction is compressive, once their surfaces touch:
+    /// the bodies fill the room around the node.
     Gap,
-    /// When their undeformed shapes, carried along by the deformation, touch: a push that sums over the step, never a pull.
+    /// When their undeformed shapes, carried along by the deformation, touch: a push that sums over the step,
+    /// never a pull.
     Surface,
-    /// When they approach or the normal traction is compressive, once their extrapolated positions are close (Nairn 2013).
+    /// When they approach or the normal traction is compressive, once their extrapolated positions are close (Nairn
+    /// 2013).
     Separation,
-    /// When they approach, once the particles that logistic regression tells apart touch (Nairn, Hammerquist and Smith 2020).
+    /// When they approach, once the particles that logistic regression tells apart touch (Nairn,
+    /// Hammerquist and Smith 2020).
     Regression,
     /// Always and in every direction: one velocity for both.
     Glued,

@@ -14,7 +14,8 @@ pub(super) struct Place {
 
 /// Puts `value` in place of the parameter `name`, or of the key if `name` is a path with dots.
 ///
-/// A value that is TOML (a number, a list, text in quotes) is taken as such, anything else as text: `gap`, `2 mm`, `pi / 6`.
+/// A value that is TOML (a number, a list, text in quotes) is taken as such, anything else as text: `gap`,
+/// `2 mm`, `pi / 6`.
 ///
 /// # Errors
 /// A parameter that does not exist; a path through a value that is no table or list.

@@ -78,7 +78,8 @@ impl<'s> Parameters<'s> {
     /// What a number or a formula says.
     ///
     /// # Errors
-    /// A value that is no number and no formula, and whatever is wrong with the formula; `allowed` says what would be right.
+    /// A value that is no number and no formula, and whatever is wrong with the formula;
+    /// `allowed` says what would be right.
     pub fn formula(&self, node: &Node, variation: Variation, allowed: &str) -> Result<Formula, Fault> {
         match &node.value {
             Value::Number(number) => {

@@ -4,7 +4,8 @@
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{key}: {found}; allowed: {allowed}")]
 pub struct Problem {
-    /// Path of the key in the scene file: `bodies[1].shape.ball.radius`. The loader turns it into file, line and column.
+    /// Path of the key in the scene file: `bodies[1].shape.ball.radius`. The loader turns it into file,
+    /// line and column.
     pub key: String,
     /// What was found.
     pub found: String,

@@ -37,12 +37,13 @@ pub struct RunOptions {
 
 /// Runs a scene from the present state of its simulation to the end time, and writes what the scene asks for.
 ///
-/// Nothing is written before the folder is found usable. `progress` is called about ten times a second of wall time, when there is
-/// something to note, and at the end.
+/// Nothing is written before the folder is found usable. `progress` is called about ten times a second of wall time,
+/// when there is something to note, and at the end.
 ///
 /// # Errors
-/// The folder cannot be used, a step fails, or an output cannot be written. In the last two cases the record of the run says so, and
-/// everything written so far can be read; of a failing step the state in which it failed is the last record.
+/// The folder cannot be used, a step fails, or an output cannot be written. In the last two cases the record of the run
+/// says so, and everything written so far can be read; of a failing step the state in which it failed is the last
+/// record.
 pub fn run(
     scene: &Scene,
     simulation: &mut dyn Simulation,

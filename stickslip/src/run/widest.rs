@@ -37,8 +37,8 @@ pub(super) struct Touched {
 
 /// The largest force between each pair of bodies, as seen by looks at a run.
 ///
-/// A mean over less than the longest time between two looks counts as one over that time: the run's last look may come a
-/// step after the one before, and no mean of that is a force.
+/// A mean over less than the longest time between two looks counts as one over that time: the run's last look may come
+/// a step after the one before, and no mean of that is a force.
 #[derive(Clone, Debug, Default)]
 pub(super) struct LargestForces {
     /// Time of the last look [s].

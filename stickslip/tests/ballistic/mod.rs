@@ -197,7 +197,8 @@ impl Simulation for Ballistic {
     }
 }
 
-/// The scene that [`Ballistic`] is the simulation of: one second, tables every 0.1 s, particles every 0.25 s, grid every 0.5 s.
+/// The scene that [`Ballistic`] is the simulation of: one second, tables every 0.1 s, particles every 0.25 s,
+/// grid every 0.5 s.
 pub fn scene() -> Scene {
     let law = SHELF[0].build(&[("bulk_modulus", 6e6), ("shear_modulus", 3e6)].into()).unwrap();
     let body = |name: &str| Body {

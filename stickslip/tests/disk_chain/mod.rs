@@ -13,7 +13,8 @@ pub struct Chain {
     pub momentum: f64,
     /// Energy of the disks less the striker's work, over that work [-].
     pub energy: f64,
-    /// When the stress difference at the centre of each disk, from the striker on, first is above 0.3 rho c_L V [transits].
+    /// When the stress difference at the centre of each disk, from the striker on,
+    /// first is above 0.3 rho c_L V [transits].
     pub arrivals: Vec<Option<f64>>,
     /// When each disk's centre of mass first is faster than 0.05 V [transits].
     pub starts: Vec<Option<f64>>,

@@ -1,11 +1,11 @@
 //! A body at rest presses with its weight, and what contacts push is what bodies gain.
 //!
-//! Source: Newton's second and third law. Set-up: a soft block falls from no height on a rigid floor; the same with a soft floor that is
-//! fixed below. It shakes up and down, as nothing damps it.
+//! Source: Newton's second and third law. Set-up: a soft block falls from no height on a rigid floor; the same with a
+//! soft floor that is fixed below. It shakes up and down, as nothing damps it.
 //!
-//! Expected: the contact force averaged over the run is the weight within 2 % (a mean over whole shakes would be exact); the momentum
-//! of the block is the sum of contact force times time and its weight times time, to 1e-10 of weight times time: each impulse of the
-//! table is the one that the body took.
+//! Expected: the contact force averaged over the run is the weight within 2 % (a mean over whole shakes would be
+//! exact); the momentum of the block is the sum of contact force times time and its weight times time, to 1e-10 of
+//! weight times time: each impulse of the table is the one that the body took.
 
 use crate::trial::{distance, run_to, start};
 use stickslip::door::ContactCursor;

@@ -1,22 +1,25 @@
 //! A disk pressed between two platens shows the fringes of the Brazilian test: `scenes/brazilian_disk.toml`.
 //!
-//! Source: Frocht (1948), Photoelasticity, volume 2; two point loads P per thickness at (0, +-R), with r1, r2 the distances from them:
+//! Source: Frocht (1948), Photoelasticity, volume 2; two point loads P per thickness at (0, +-R), with r1,
+//! r2 the distances from them:
 //!
 //! ```text
 //! sigma_xx = -(2P/pi) (x^2 (R - y)/r1^4 + x^2 (R + y)/r2^4 - 1/(2R))
 //! sigma_yy = -(2P/pi) ((R - y)^3/r1^4 + (R + y)^3/r2^4 - 1/(2R))
 //! sigma_xy =  (2P/pi) (x (R - y)^2/r1^4 - x (R + y)^2/r2^4)
-//! centre: sigma_1 - sigma_2 = 8P/(pi D);   load axis 8PD/(pi (D^2 - 4y^2));   cross axis (8P/(pi D)) (1 - 4x^2/D^2)/(1 + 4x^2/D^2)^2
+//! sigma_1 - sigma_2 at the centre 8P/(pi D), on the load axis 8PD/(pi (D^2 - 4y^2)),
+//!     on the cross axis (8P/(pi D)) (1 - 4x^2/D^2)/(1 + 4x^2/D^2)^2
 //! ```
-//! Two flat rigid platens without friction come together by 0.4 % of D in 30 transits and rest for 10, while a PIC share takes the
-//! ringing. P is what the contact reports, as a mean over the last 5 transits, as the stress is. What is compared is what a picture
-//! shows: the fringe order of the polariscope's map of the stress, pixel by pixel. The patch is Hertz's, of half-width 0.05 R: at the centre an
-//! arc of that half-angle differs from a point load by cos(0.05), 0.1 %; nearer to the load than 0.35 R the patch and the grid's own
-//! width of contact (a cell or two) count, so the load axis is compared up to |y| = 0.65 R.
+//! Two flat rigid platens without friction come together by 0.4 % of D in 30 transits and rest for 10, while a PIC
+//! share takes the ringing. P is what the contact reports, as a mean over the last 5 transits, as the stress is. What
+//! is compared is what a picture shows: the fringe order of the polariscope's map of the stress, pixel by pixel. The
+//! patch is Hertz's, of half-width 0.05 R: at the centre an arc of that half-angle differs from a point load by
+//! cos(0.05), 0.1 %; nearer to the load than 0.35 R the patch and the grid's own width of contact (a cell or two)
+//! count, so the load axis is compared up to |y| = 0.65 R.
 //!
-//! Expected: 2 % at the centre and 3 % along both axes at 80 cells a diameter; 2 % at 40 and 5 % at 20, everywhere that is compared.
-//! Measured at the centre, along the load axis and across: 1.2, 1.2 and 1.2 % at 80 cells, 1.6, 1.6 and 1.6 % at 40; on the lattice at 40
-//! 0.6, 0.7 and 1.1 %.
+//! Expected: 2 % at the centre and 3 % along both axes at 80 cells a diameter; 2 % at 40 and 5 % at 20, everywhere that
+//! is compared. Measured at the centre, along the load axis and across: 1.2, 1.2 and 1.2 % at 80 cells, 1.6, 1.6 and
+//! 1.6 % at 40; on the lattice at 40 0.6, 0.7 and 1.1 %.
 
 use std::f64::consts::PI;
 use std::path::Path;

@@ -1,18 +1,20 @@
 //! Two free bodies collide obliquely: momentum stays, and contact gains no energy.
 //!
-//! Source: conservation laws; set-up of Sulsky, Chen and Schreyer (1994), section 5.2: elastic disks of radius 0.2 in the unit square
-//! at (.2, .2) and (.8, .8), v = +-(.1, .1), rho = 1000, E = 1000, nu = .3, plane strain, 20 x 20 cells. They touch at t = 1.58579.
-//! The oblique cases give the second disk an offset, so that the bodies slide and turn.
+//! Source: conservation laws; set-up of Sulsky, Chen and Schreyer (1994), section 5.2: elastic disks of radius 0.2 in
+//! the unit square at (.2, .2) and (.8, .8), v = +-(.1, .1), rho = 1000, E = 1000, nu = .3, plane strain, 20 x 20
+//! cells. They touch at t = 1.58579. The oblique cases give the second disk an offset,
+//! so that the bodies slide and turn.
 //!
-//! Expected: with one common normal, momentum constant to 1e-10 of one disk's (round-off); angular momentum within 2 % of one disk's
-//! momentum times its radius without friction, and 6 % with it: the grid keeps it, but lumped mass gives an impulse at a node back to particles
-//! that lie about 0.3 cells inside, so friction should lose some mu 0.3 h of each
-//! disk's arm, an estimate (measured 0.9 % and 4.5 %). With the
-//! traction rule and GIMP, energy (kinetic + strain + dissipated by friction) never above 1.001 of the start, with own and with common
-//! normals, with and without friction; the same for the laws `surface` and `gap`. Rebound no faster than approach (the kinematic
-//! rule gains a quarter of the energy, as the paper says). `surface` touches within 0.1 cells of travel of the exact time
-//! (measured 0.06), `gap` within half a cell (0.37). How much energy is left is printed only: `surface` loses 10 % head on, `gap` 7 %, where the benchmark asks
-//! 1 %: nodes that meet collide inelastically, and the loss shrinks with the cell (`surface`: 3.6 % at half, 1.3 % at a quarter).
+//! Expected: with one common normal, momentum constant to 1e-10 of one disk's (round-off); angular momentum within 2 %
+//! of one disk's momentum times its radius without friction, and 6 % with it: the grid keeps it, but lumped mass gives
+//! an impulse at a node back to particles that lie about 0.3 cells inside, so friction should lose some mu 0.3 h of
+//! each disk's arm, an estimate (measured 0.9 % and 4.5 %). With the
+//! traction rule and GIMP, energy (kinetic + strain + dissipated by friction) never above 1.001 of the start, with own
+//! and with common normals, with and without friction; the same for the laws `surface` and `gap`. Rebound no faster
+//! than approach (the kinematic rule gains a quarter of the energy, as the paper says). `surface` touches within 0.1
+//! cells of travel of the exact time (measured 0.06), `gap` within half a cell (0.37). How much energy is left is
+//! printed only: `surface` loses 10 % head on, `gap` 7 %, where the benchmark asks 1 %: nodes that meet collide
+//! inelastically, and the loss shrinks with the cell (`surface`: 3.6 % at half, 1.3 % at a quarter).
 
 use crate::trial::{distance, run_to, start, take_steps};
 use stickslip::door::ContactCursor;
@@ -168,8 +170,8 @@ fn oblique_balls() {
     }
 }
 
-/// Every law counts the impulses that it reduces, so that no cell strains by more than `max_strain`; `surface` does so for the velocities
-/// that strain, whose impulses stand in no table.
+/// Every law counts the impulses that it reduces, so that no cell strains by more than `max_strain`; `surface` does so
+/// for the velocities that strain, whose impulses stand in no table.
 #[test]
 fn reduced_impulses_are_counted() {
     for rule in RULES {

@@ -1,10 +1,10 @@
 //! Empty space costs nothing.
 //!
-//! Source: the engine's promise that blocks exist only under particles. Set-up: two disks collide in a domain that just holds
-//! them, and in one a thousand times as wide (a million times the area) with the same lower corner.
+//! Source: the engine's promise that blocks exist only under particles. Set-up: two disks collide in a domain that just
+//! holds them, and in one a thousand times as wide (a million times the area) with the same lower corner.
 //!
-//! Expected: the same bits, and the same nodes; no tolerance. Moving the lower corner as well changes where the grid counts from and with
-//! it round-off, so only the number of nodes must stay and positions agree to 1e-9 of the disks.
+//! Expected: the same bits, and the same nodes; no tolerance. Moving the lower corner as well changes where the grid
+//! counts from and with it round-off, so only the number of nodes must stay and positions agree to 1e-9 of the disks.
 
 use crate::trial::{largest_difference, start, take_steps};
 use stickslip::door::{ContactCursor, GridSnapshot, ParticleSnapshot};

@@ -1,14 +1,19 @@
-//! Contact that knows where the surface is: the law `surface` on blocks through the grid, first contact, waves, and disks in a row.
+//! Contact that knows where the surface is: the law `surface` on blocks through the grid, first contact, waves,
+//! and disks in a row.
 //!
 //! Sources and set-ups:
-//! - block on an incline turned by 30 degrees through the grid, on a rigid floor: a = g (sin - mu cos), friction over normal impulse mu;
+//! - block on an incline turned by 30 degrees through the grid, on a rigid floor: a = g (sin - mu cos),
+//!   friction over normal impulse mu;
 //! - bars and balls with a gap g at speed v, one to three particles a cell and direction: contact starts at g/v;
-//! - bars of unlike impedance Z = rho c, struck at v: stress -Z1 Z2 v/(Z1 + Z2) on both sides (elementary theory of impact of bars);
-//! - four elastic disks in a row, pushed at V/c_L = 2.07e-3 by a rigid wall: sigma_1 - sigma_2 = 0.3 V reaches the centres at intervals of
-//!   2.097 transits, by two finite-element codes with sharp contact (plane strain, nu = 0.2143, units of D = rho = c_L = 1).
+//! - bars of unlike impedance Z = rho c, struck at v: stress -Z1 Z2 v/(Z1 + Z2) on both sides (elementary theory of
+//!   impact of bars);
+//! - four elastic disks in a row, pushed at V/c_L = 2.07e-3 by a rigid wall: sigma_1 - sigma_2 = 0.3 V reaches the
+//!   centres at intervals of 2.097 transits, by two finite-element codes with sharp contact (plane strain,
+//!   nu = 0.2143, units of D = rho = c_L = 1).
 //!
-//! Expected: acceleration within 1 % and friction ratio within 1 % (measured 0.1 % and 0.02 %); first contact within 0.05 cells (0.004);
-//! stresses within 3 % (1.3 %); the disks' mean interval within 5 % at only 20 cells a disk (1.4 %; with the gap law, 25 % off at 40 cells).
+//! Expected: acceleration within 1 % and friction ratio within 1 % (measured 0.1 % and 0.02 %); first contact within
+//! 0.05 cells (0.004); stresses within 3 % (1.3 %); the disks' mean interval within 5 % at only 20 cells a disk (1.4 %;
+//! with the gap law, 25 % off at 40 cells).
 
 use crate::trial::{RUBBER, mean_where, run_to, start};
 use stickslip::door::ContactCursor;

@@ -1,8 +1,9 @@
 //! A step that goes wrong says which particle of which body, where and when, and leaves what it saw.
 //!
-//! Set-ups: a block that spins with linear functions and the stress updated last; a block that flies out of the domain; rigid blocks whose prescribed
-//! motion leaves the domain or is no number. Expected: the failure of that
-//! kind with the body's name; a place inside or at the edge of the body; the time of the step before; the simulation can still be looked at.
+//! Set-ups: a block that spins with linear functions and the stress updated last; a block that flies out of the domain;
+//! rigid blocks whose prescribed motion leaves the domain or is no number. Expected: the failure of that
+//! kind with the body's name; a place inside or at the edge of the body; the time of the step before;
+//! the simulation can still be looked at.
 
 use crate::trial::start;
 use stickslip::door::StepError;

@@ -1,12 +1,13 @@
 //! A free body keeps its mass, its momentum and its angular momentum.
 //!
-//! Source: Sulsky, Chen and Schreyer (1994): weights sum to one, so mass and momentum pass between particles and grid without
-//! loss. A spinning, flying block is let loose unstressed: it stretches under its own spin and rings.
+//! Source: Sulsky, Chen and Schreyer (1994): weights sum to one, so mass and momentum pass between particles and grid
+//! without loss. A spinning, flying block is let loose unstressed: it stretches under its own spin and rings.
 //!
-//! Expected: all constant. Mass and momentum to 1e-12 of their size, round-off of some hundred steps. Angular momentum is only
-//! kept approximately: sum_p m_p S_i(x_p) x_p is m_i x_i in a full cell but not at the surface of a body (lumped mass), so
-//! the grid gives back change of momentum with a slightly different arm. 10 % bounds what was measured at 4 to 10 cells a side over a
-//! third of a turn: 4 to 8 %. `spinning_disk` shows that it falls with the cell and hardly depends on the step.
+//! Expected: all constant. Mass and momentum to 1e-12 of their size, round-off of some hundred steps. Angular momentum
+//! is only kept approximately: sum_p m_p S_i(x_p) x_p is m_i x_i in a full cell but not at the surface of a body
+//! (lumped mass), so the grid gives back change of momentum with a slightly different arm. 10 % bounds what was
+//! measured at 4 to 10 cells a side over a third of a turn: 4 to 8 %. `spinning_disk` shows that it falls with the cell
+//! and hardly depends on the step.
 
 use crate::trial::{STRESS_UPDATES, distance, norm, run_to, start};
 use stickslip::door::Simulation;

@@ -1,16 +1,18 @@
 //! Coulomb friction: a block on an incline, and a rule for every pair.
 //!
-//! Source: mechanics. Benchmark "block on an incline": at rest for tan(angle) < mu, else a = g (sin(angle) - mu cos(angle)). Gravity is
-//! inclined, the geometry lies along the grid.
+//! Source: mechanics. Benchmark "block on an incline": at rest for tan(angle) < mu, else a = g (sin(angle) - mu
+//! cos(angle)). Gravity is inclined, the geometry lies along the grid.
 //!
-//! Set-up: the plane; a soft block 1 m long and 0.5 m high on a rigid floor, 10 cells a metre, the law `surface`. The load comes at once, so
-//! the block shakes while it settles.
+//! Set-up: the plane; a soft block 1 m long and 0.5 m high on a rigid floor, 10 cells a metre, the law `surface`. The
+//! load comes at once, so the block shakes while it settles.
 //!
-//! Expected: without friction the acceleration within 0.1 %, by least squares over the second half of the run. With friction the tangential
-//! over the normal impulse within 1 % of mu up to 0.4 (measured 0.1 %), and the effective coefficient within 5 %. Near tan(angle) = 0.577 the shaking
-//! is as fast as the slip, so that the block sticks now and then: at mu = 0.5 the ratio is 3 % low, the same with half the cell and with a quarter of the step.
-//! Sticking: the exact answer is rest, if the load comes slowly; loaded at once, an undamped elastic block creeps. So block and floor first fall together, and within
-//! 0.2 s the floor comes to rest. Expected: no way in the second half of the run, to 1e-4 of what gravity alone would do (measured 3e-5 at most).
+//! Expected: without friction the acceleration within 0.1 %, by least squares over the second half of the run. With
+//! friction the tangential over the normal impulse within 1 % of mu up to 0.4 (measured 0.1 %), and the effective
+//! coefficient within 5 %. Near tan(angle) = 0.577 the shaking is as fast as the slip, so that the block sticks now and
+//! then: at mu = 0.5 the ratio is 3 % low, the same with half the cell and with a quarter of the step. Sticking: the
+//! exact answer is rest, if the load comes slowly; loaded at once, an undamped elastic block creeps. So block and floor
+//! first fall together, and within 0.2 s the floor comes to rest. Expected: no way in the second half of the run, to
+//! 1e-4 of what gravity alone would do (measured 3e-5 at most).
 
 use crate::trial::{RUBBER, run_to, start};
 use stickslip::door::ContactCursor;
@@ -131,8 +133,9 @@ fn a_block_rests_on_an_incline() {
     }
 }
 
-/// Two equal disks that meet head on do not slip, by symmetry, so friction takes nothing; nor may it, as nothing rubs, gain anything. Nodes at the rim of
-/// the contact, with next to no mass, do slip; booked with their velocities the work was 0.7 % of the energy of the disks.
+/// Two equal disks that meet head on do not slip, by symmetry, so friction takes nothing; nor may it, as nothing rubs,
+/// gain anything. Nodes at the rim of the contact, with next to no mass, do slip; booked with their velocities the work
+/// was 0.7 % of the energy of the disks.
 #[test]
 fn friction_takes_no_energy_where_nothing_slips() {
     let mut simulation = start(
@@ -169,7 +172,8 @@ fn friction_takes_no_energy_where_nothing_slips() {
     assert!(after.total <= before.total, "{after:?}");
 }
 
-/// Blocks thrown along a floor slow down by the friction of their own pair: by names of bodies, by names of materials, by default.
+/// Blocks thrown along a floor slow down by the friction of their own pair: by names of bodies,
+/// by names of materials, by default.
 #[test]
 fn every_pair_has_its_own_friction() {
     let bodies = [

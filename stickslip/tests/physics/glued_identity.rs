@@ -1,13 +1,13 @@
 //! Bodies glued together equal one body.
 //!
-//! Source: identity. With one velocity for all bodies at every shared node, the grid sums the same particles as it does for
-//! one body, in another order.
+//! Source: identity. With one velocity for all bodies at every shared node, the grid sums the same particles as it does
+//! for one body, in another order.
 //!
-//! Set-up: a block of soft rubber, spinning and flying, as one body; the same block cut along grid lines in two and in three that
-//! meet at a node, glued. All stress updates, in the plane and in space.
+//! Set-up: a block of soft rubber, spinning and flying, as one body; the same block cut along grid lines in two and in
+//! three that meet at a node, glued. All stress updates, in the plane and in space.
 //!
-//! Expected: positions and velocities of all particles equal to round-off of the steps taken: 1e-9 of the block's size and of its speed
-//! (measured about 1e-13; the largest seen stands in the printed line).
+//! Expected: positions and velocities of all particles equal to round-off of the steps taken: 1e-9 of the block's size
+//! and of its speed (measured about 1e-13; the largest seen stands in the printed line).
 
 use crate::trial::{STRESS_UPDATES, largest_difference, start, take_steps};
 use stickslip::door::ParticleSnapshot;

@@ -1,4 +1,5 @@
-//! What the engine owes to mechanics: one file a claim, each headed by its source, set-up, expected value and tolerance.
+//! What the engine owes to mechanics: one file a claim, each headed by its source, set-up,
+//! expected value and tolerance.
 //!
 //! `cargo test --release -p stickslip --test physics -- --nocapture` prints what was measured.
 

@@ -1,11 +1,11 @@
 //! A thousand bodies simply work.
 //!
-//! Set-up: 1,000 small disks in a close packing (12 particles each and more), every one a body of its own, thrown together so that they
-//! touch their neighbours; 50 steps. The same with 4,000.
+//! Set-up: 1,000 small disks in a close packing (12 particles each and more), every one a body of its own, thrown
+//! together so that they touch their neighbours; 50 steps. The same with 4,000.
 //!
-//! Expected: momentum constant to 1e-10 of what one half of the disks carries; contacts only between neighbours, at most twelve a disk, its first and second ring.
-//! The time for four times the bodies is printed, and near four times as long: nothing is quadratic. It is not asserted, because a test
-//! cannot know what else the machine does.
+//! Expected: momentum constant to 1e-10 of what one half of the disks carries; contacts only between neighbours, at
+//! most twelve a disk, its first and second ring. The time for four times the bodies is printed, and near four times as
+//! long: nothing is quadratic. It is not asserted, because a test cannot know what else the machine does.
 
 use crate::trial::{distance, start, take_steps};
 use std::fmt::Write;

@@ -1,10 +1,12 @@
 //! A body from a mesh does what the same body does whose shape is known in closed form.
 //!
-//! Source: identity. Set-ups: a block set down on a slope and sliding, both from STL files, against the same two boxes; a ball that rolls down a slab
-//! from an OBJ file, scaled, moved and turned, against the same slab; a ball of 5120 triangles, filled.
+//! Source: identity. Set-ups: a block set down on a slope and sliding, both from STL files, against the same two boxes;
+//! a ball that rolls down a slab from an OBJ file, scaled, moved and turned, against the same slab;
+//! a ball of 5120 triangles, filled.
 //!
-//! Expected: corners have few binary digits, so files say exactly what scenes say, and the motion is the same but for round-off: 1e-9 of the way.
-//! The filled ball has the volume of its polyhedron, 0.4 % below the ball's, within the stairs of its lattice: 1 %.
+//! Expected: corners have few binary digits, so files say exactly what scenes say, and the motion is the same but for
+//! round-off: 1e-9 of the way. The filled ball has the volume of its polyhedron, 0.4 % below the ball's,
+//! within the stairs of its lattice: 1 %.
 
 use crate::trial::{RUBBER, distance, run_to, start_in};
 use std::fs;

@@ -1,11 +1,12 @@
 //! Half a model with a symmetry face equals the whole.
 //!
-//! Source: identity. Set-up: a disk (a ball) that lies with its centre in the face falls on a soft slab, with friction, so that the contact
-//! reaches across the face; the whole model has grid nodes in the plane of symmetry. In the plane one face, in space two.
+//! Source: identity. Set-up: a disk (a ball) that lies with its centre in the face falls on a soft slab, with friction,
+//! so that the contact reaches across the face; the whole model has grid nodes in the plane of symmetry.
+//! In the plane one face, in space two.
 //!
-//! Expected: particles of the half as those of the whole, to round-off of the steps taken: 1e-9 of the ball's size and speed (the order of
-//! sums differs). With the stress updated last 1e5 times as much, which bounds what was measured (4e-7 m): presumably since that update takes
-//! the velocity of nearly massless nodes as it is.
+//! Expected: particles of the half as those of the whole, to round-off of the steps taken: 1e-9 of the ball's size and
+//! speed (the order of sums differs). With the stress updated last 1e5 times as much, which bounds what was measured
+//! (4e-7 m): presumably since that update takes the velocity of nearly massless nodes as it is.
 
 use crate::trial::{STRESS_UPDATES, largest_difference, start, take_steps};
 use stickslip::door::{ContactCursor, ParticleSnapshot};
@@ -61,7 +62,8 @@ fn scene(dimension: &str, update: &str, half: bool) -> String {
     )
 }
 
-/// Positions and velocities of the particles that start in the half (the quarter), in the order of their places at the start.
+/// Positions and velocities of the particles that start in the half (the quarter),
+/// in the order of their places at the start.
 fn arranged(snapshot: &ParticleSnapshot, first: &ParticleSnapshot) -> (Vec<[f64; 3]>, Vec<[f64; 3]>) {
     let inside = |x: &[f64; 3]| x[0] > 0.0 && (first.dimension == 2 || x[2] > 0.0);
     let mut order: Vec<usize> = (0..first.body.len()).filter(|&p| inside(&first.position[p])).collect();

@@ -1,7 +1,7 @@
 //! Plane stress: waves at the speeds of thin bars and plates, and Hooke's law of a pressed bar.
 //!
-//! Source: elementary theory (Kolsky 1963, Stress Waves in Solids, chapter 3). A wave along a thin bar is faster the more its sides
-//! are held:
+//! Source: elementary theory (Kolsky 1963, Stress Waves in Solids, chapter 3). A wave along a thin bar is faster the
+//! more its sides are held:
 //!
 //! ```text
 //! bar, sides and faces free:   c = sqrt(E/rho)
@@ -9,16 +9,17 @@
 //! held all around:             c = sqrt(M/rho),   M = E (1 - nu)/((1 + nu)(1 - 2 nu))
 //! ```
 //!
-//! Set-up: 120 cells along x, nu = 0.3, both laws; the left end follows a glued rigid piston, which moves by a smooth pulse of 30 cells
-//! length. The speed is the distance of two sections over the time between the centres of the pulse there. The bar is 3 cells high;
-//! the plate has mirrors at its sides. Plane strain with mirrors is the control: it must give the speed held all around.
+//! Set-up: 120 cells along x, nu = 0.3, both laws; the left end follows a glued rigid piston, which moves by a smooth
+//! pulse of 30 cells length. The speed is the distance of two sections over the time between the centres of the pulse
+//! there. The bar is 3 cells high; the plate has mirrors at its sides. Plane strain with mirrors is the control: it
+//! must give the speed held all around.
 //!
-//! Expected: speeds within 0.5 %: a pulse of 30 cells is dispersed by the grid by (2 pi/30)^2/24 = 0.2 %, by the bar's height by
-//! nu^2 (2 pi 3/30)^2/24 = 0.15 %. Measured: 0.15 % for the bar, 0.03 % else. Energy of the pulse equals the piston's work within 1 %;
-//! measured 0.3 %.
+//! Expected: speeds within 0.5 %: a pulse of 30 cells is dispersed by the grid by (2 pi/30)^2/24 = 0.2 %, by the bar's
+//! height by nu^2 (2 pi 3/30)^2/24 = 0.15 %. Measured: 0.15 % for the bar, 0.03 % else. Energy of the pulse equals the
+//! piston's work within 1 %; measured 0.3 %.
 //!
-//! A bar pressed slowly between a mirror and a rigid plate: stress over strain is E, cross strain over strain is -nu in the plane and
-//! out of it, each within 0.2 % of itself: the bar keeps ringing by so much.
+//! A bar pressed slowly between a mirror and a rigid plate: stress over strain is E, cross strain over strain is -nu in
+//! the plane and out of it, each within 0.2 % of itself: the bar keeps ringing by so much.
 
 use crate::trial::{mean_where, run_to, start};
 

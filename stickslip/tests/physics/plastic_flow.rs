@@ -1,13 +1,14 @@
 //! A block of metal that yields.
 //!
-//! Set-up: a unit block, E = rho = 1, nu = 0.3, yield stress Y = 0.005 and hardening H = 0.05, before symmetry faces; a rigid plate without friction comes down on it
-//! by 5 %, slowly, and rests. In space its sides are free, in plane strain the block cannot widen along the third axis, in plane stress it is a
-//! thin plate. (Without hardening the block would be free to yield in bands.)
+//! Set-up: a unit block, E = rho = 1, nu = 0.3, yield stress Y = 0.005 and hardening H = 0.05, before symmetry faces; a
+//! rigid plate without friction comes down on it by 5 %, slowly, and rests. In space its sides are free, in plane
+//! strain the block cannot widen along the third axis, in plane stress it is a thin plate. (Without hardening the block
+//! would be free to yield in bands.)
 //!
-//! Expected: the yield stress of von Mises in each state, and volume but for the elastic part: with e the elastic part of the height, the plastic strain a = c (ln(1/0.95) - e), the force
-//! c (Y + H a)/0.95, c = 1, in plane strain 2/sqrt(3) (Hill 1950). Force within h/2 (2.5 % at the
-//! cells of the plane), the mean of the particles' strains within 2 %; the plate's work is stored or dissipated, but for
-//! 0.3 h.
+//! Expected: the yield stress of von Mises in each state, and volume but for the elastic part: with e the elastic part
+//! of the height, the plastic strain a = c (ln(1/0.95) - e), the force c (Y + H a)/0.95, c = 1, in plane strain
+//! 2/sqrt(3) (Hill 1950). Force within h/2 (2.5 % at the cells of the plane), the mean of the particles' strains within
+//! 2 %; the plate's work is stored or dissipated, but for 0.3 h.
 
 use crate::trial::{mean_where, run_to, start};
 use stickslip::door::ContactCursor;

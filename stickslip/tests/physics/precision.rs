@@ -2,8 +2,9 @@
 //!
 //! Set-up: an oblique collision of two disks with friction (and of balls), once in `f32` and once in `f64`.
 //!
-//! Expected: positions within 1e-4 of the bodies' size and velocities within 1e-3 of their speed: about 300 steps, each rounding at
-//! 6e-8 the positions counted in cells, and a stiff law that turns errors of strain into forces. Momentum of the pair to 1e-4 of one body's.
+//! Expected: positions within 1e-4 of the bodies' size and velocities within 1e-3 of their speed: about 300 steps, each
+//! rounding at 6e-8 the positions counted in cells, and a stiff law that turns errors of strain into forces. Momentum
+//! of the pair to 1e-4 of one body's.
 
 use crate::trial::{distance, largest_difference, run_to, start};
 

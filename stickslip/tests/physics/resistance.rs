@@ -1,4 +1,5 @@
-//! Resistance of surfaces beside Coulomb's: static and kinetic friction, viscosity, cohesion, adhesion; and what contact says of itself.
+//! Resistance of surfaces beside Coulomb's: static and kinetic friction, viscosity, cohesion, adhesion;
+//! and what contact says of itself.
 //!
 //! Source: mechanics of a rigid block of mass m on a floor over the area A, weight m g, in the plane per depth.
 //!
@@ -8,8 +9,9 @@
 //! cohesion:           a = -c A / m without any weight
 //! adhesion:           hangs for a A > m g, falls for a A < m g
 //! ```
-//! Set-up: a block 1 m long and 0.5 m high on a rigid floor, 10 cells a metre; light and stiff enough to move as one, surfaces by the law
-//! `surface`. Sheared at its lower face it also shears, turns and shakes, hence the tolerances of some per cent.
+//! Set-up: a block 1 m long and 0.5 m high on a rigid floor, 10 cells a metre; light and stiff enough to move as one,
+//! surfaces by the law `surface`. Sheared at its lower face it also shears, turns and shakes,
+//! hence the tolerances of some per cent.
 
 use crate::trial::{RUBBER, run_to, start};
 use stickslip::door::ContactCursor;
@@ -117,8 +119,9 @@ fn adhesion_holds_what_its_strength_bears() {
     assert!((weak - 3.0).abs() < 0.15, "{weak}");
 }
 
-/// A block that adheres to the floor is thrown off it or along it. Nothing drives it: kinetic and strain energy never rise above the start's. Bonds that give way
-/// are in the ledger, whose total ends no higher: they take about their strength times the way over which they act, a hundredth of a cell and a step's way.
+/// A block that adheres to the floor is thrown off it or along it. Nothing drives it: kinetic and strain energy never
+/// rise above the start's. Bonds that give way are in the ledger, whose total ends no higher: they take about their
+/// strength times the way over which they act, a hundredth of a cell and a step's way.
 #[test]
 fn bonds_create_no_energy() {
     for (velocity, cohesion, adhesion) in [
@@ -181,8 +184,9 @@ fn contact_says_where_how_wide_and_how_far() {
     assert!(patches.len() == 1 && patches[0].area >= contact.area, "{patches:?}");
 }
 
-/// A cylinder 3 m long drops on its side: the strip in which it touches is 3 m long, and its half-width the shorter one, not the radius of a circle with
-/// its area. What an ellipse is for a strip makes it 1.1 of the half; the ends and the layers of nodes are worth some percent.
+/// A cylinder 3 m long drops on its side: the strip in which it touches is 3 m long, and its half-width the shorter
+/// one, not the radius of a circle with its area. What an ellipse is for a strip makes it 1.1 of the half; the ends and
+/// the layers of nodes are worth some percent.
 #[test]
 fn a_cylinder_on_its_side_touches_in_a_strip() {
     let text = format!(

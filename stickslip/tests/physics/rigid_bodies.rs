@@ -1,13 +1,15 @@
 //! Rigid bodies with prescribed motion do the work that the others gain.
 //!
-//! Source: energy theorem. Set-ups: a rigid punch, set in motion over some milliseconds, pushes a free soft block without friction; a
-//! rigid belt runs under a soft block that lies on it, with friction; a rigid cylinder turns in place.
+//! Source: energy theorem. Set-ups: a rigid punch, set in motion over some milliseconds, pushes a free soft block
+//! without friction; a rigid belt runs under a soft block that lies on it, with friction;
+//! a rigid cylinder turns in place.
 //!
-//! Expected: work of the prescribed motion = kinetic + strain energy + dissipated by friction, within 3 % for the punch and 5 % for the belt:
-//! contact on the grid is slightly inelastic. The impulse in the table is the block's momentum to 1e-10. The belt drags with mu times
-//! the normal impulse, m (g t + vy) of a block that shakes on it, within 1 %. Rigid bodies move by the integral of their velocity to the second order of the step: 1e-6 m
-//! for the punch, whose speed has a kink. A turn of w dt a step by (I - W dt/2)^-1 (I + W dt/2) lags by (w dt)^2/12 of the angle: 1.33e-4
-//! of a radian in all for the cylinder, whose steps of 0.02 s only its own rim limits; 1 % above that is allowed.
+//! Expected: work of the prescribed motion = kinetic + strain energy + dissipated by friction, within 3 % for the punch
+//! and 5 % for the belt: contact on the grid is slightly inelastic. The impulse in the table is the block's momentum to
+//! 1e-10. The belt drags with mu times the normal impulse, m (g t + vy) of a block that shakes on it, within 1 %. Rigid
+//! bodies move by the integral of their velocity to the second order of the step: 1e-6 m for the punch, whose speed has
+//! a kink. A turn of w dt a step by (I - W dt/2)^-1 (I + W dt/2) lags by (w dt)^2/12 of the angle: 1.33e-4 of a radian
+//! in all for the cylinder, whose steps of 0.02 s only its own rim limits; 1 % above that is allowed.
 
 use crate::trial::{RUBBER, largest_difference, run_to, start};
 use stickslip::door::ContactCursor;
@@ -127,8 +129,8 @@ fn a_cylinder_turns_about_its_centre() {
     assert!(off < 1.01 * lag, "{off:e} m, the scheme's own lag is {lag:e}");
 }
 
-/// Floors as wide as the block, one a hair further left or right than the other: 1e-12 of a cell more or less of it reaches the nodes beside the
-/// block, where a rigid body acts in full or not at all.
+/// Floors as wide as the block, one a hair further left or right than the other: 1e-12 of a cell more or less of it
+/// reaches the nodes beside the block, where a rigid body acts in full or not at all.
 #[test]
 fn a_hair_of_a_rigid_body_at_a_node_does_nothing() {
     let run = |drift: f64| {

@@ -5,13 +5,14 @@
 //! ```text
 //! sigma_r = sigma_theta = (3 - 2 nu)/(8 (1 - nu)) rho w^2 R^2     at the centre
 //! ```
-//! Set-up: radius of 10 cells, w R / c_L of 0.1, so strains below 1 %; two turns. The disk is let loose unstressed and rings about
-//! the exact state; the mean under a Hann window over the run takes the ringing out.
+//! Set-up: radius of 10 cells, w R / c_L of 0.1, so strains below 1 %; two turns. The disk is let loose unstressed and
+//! rings about the exact state; the mean under a Hann window over the run takes the ringing out.
 //!
-//! Expected: the mean of the two in-plane stresses around the centre within 3 %, for both laws, in the plane and for a slab between
-//! two symmetry faces in space. A rate law that did not turn its stress with the body would be wrong by its whole size after a quarter
-//! turn. Besides: no shear, and angular momentum, which is constant in theory, within 3e-4 in two turns (1.4e-4 in the plane, 1.9e-4 in
-//! space) and 1.5e-4 in one, with 8 cells a radius (9e-5) and with 16 (6e-5); FLIP alone loses 1.2 % a turn with 10.
+//! Expected: the mean of the two in-plane stresses around the centre within 3 %, for both laws, in the plane and for a
+//! slab between two symmetry faces in space. A rate law that did not turn its stress with the body would be wrong by
+//! its whole size after a quarter turn. Besides: no shear, and angular momentum, which is constant in theory, within
+//! 3e-4 in two turns (1.4e-4 in the plane, 1.9e-4 in space) and 1.5e-4 in one, with 8 cells a radius (9e-5) and with 16
+//! (6e-5); FLIP alone loses 1.2 % a turn with 10.
 
 use crate::trial::{distance, mean_where, norm, run_to, start};
 use std::f64::consts::PI;
@@ -140,7 +141,8 @@ fn a_slab_in_space() {
     }
 }
 
-/// What a share of PIC takes is booked: the total stays while a disk that vibrates and turns comes to rest, by both transfers.
+/// What a share of PIC takes is booked: the total stays while a disk that vibrates and turns comes to rest,
+/// by both transfers.
 #[test]
 fn the_books_close_with_pic() {
     for transfer in ["rflip", "flip"] {

@@ -1,7 +1,7 @@
 //! A struck bar obeys the one-dimensional wave equation.
 //!
-//! Source: elementary theory of impact of bars; benchmarks of contact laws use it as equal bars in impact. Two bars of length L and
-//! nu = 0; the first flies at v against the second at rest, faces touching at the start:
+//! Source: elementary theory of impact of bars; benchmarks of contact laws use it as equal bars in impact. Two bars of
+//! length L and nu = 0; the first flies at v against the second at rest, faces touching at the start:
 //!
 //! ```text
 //! stress behind the fronts -rho c v/2,   c = sqrt(E/rho);   front at the far end at L/c;   contact for 2 L/c;
@@ -11,10 +11,11 @@
 //!
 //! Set-up: the plane, free sides (nu = 0 needs no support), L of 80 cells, 4 cells high, v/c = 0.002.
 //!
-//! Expected: stress within 3 % (the mean over the middle of the loaded half; FLIP rings behind a sharp front); front within 3 %, as lumped
-//! mass on a grid disperses it to a late ramp some cells wide; momentum of two free bars to 1e-10. With the laws `surface` and `gap` contact ends within
-//! four cells of travel, restitution is at least 0.95, and energy is never gained. Measured: `surface` 1.1 cells and 0.975, `gap` 2.3 and 0.975.
-//! The other laws are measured beside it: the traction rule glues departing bars while ringing makes their traction compressive (restitution 0.79).
+//! Expected: stress within 3 % (the mean over the middle of the loaded half; FLIP rings behind a sharp front); front
+//! within 3 %, as lumped mass on a grid disperses it to a late ramp some cells wide; momentum of two free bars to
+//! 1e-10. With the laws `surface` and `gap` contact ends within four cells of travel, restitution is at least 0.95, and
+//! energy is never gained. Measured: `surface` 1.1 cells and 0.975, `gap` 2.3 and 0.975. The other laws are measured
+//! beside it: the traction rule glues departing bars while ringing makes their traction compressive (restitution 0.79).
 
 use crate::trial::{mean_where, run_to, start};
 use stickslip::door::ContactCursor;

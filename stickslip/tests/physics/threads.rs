@@ -1,11 +1,11 @@
 //! Results depend neither on the number of threads nor on what is kept from step to step, bit for bit.
 //!
-//! Set-up: soft bodies that fall on each other and on a rigid floor with friction, cut by a symmetry face, a third body glued on; in the
-//! plane and in space, for all stress updates and both bases; 200 steps on one, two and five threads, and on one with
-//! grid, lists and room to work in dropped every 23 steps.
+//! Set-up: soft bodies that fall on each other and on a rigid floor with friction, cut by a symmetry face, a third body
+//! glued on; in the plane and in space, for all stress updates and both bases; 200 steps on one, two and five threads,
+//! and on one with grid, lists and room to work in dropped every 23 steps.
 //!
-//! Expected: the same bits everywhere: particles, grid, contact forces, energies. No tolerance: sums are taken in an order that does
-//! not depend on who takes them, and follow from the state alone.
+//! Expected: the same bits everywhere: particles, grid, contact forces, energies. No tolerance: sums are taken in an
+//! order that does not depend on who takes them, and follow from the state alone.
 
 use crate::trial::{STRESS_UPDATES, start, take_steps};
 use rayon::ThreadPoolBuilder;

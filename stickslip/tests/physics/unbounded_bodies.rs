@@ -1,16 +1,19 @@
 //! Rigid bodies without bounds do what bounded ones with the same face do.
 //!
-//! Source: contact sees a body no further than shape functions reach. Set-ups: a disk or a ball that slides and rolls far along a floor; a block on a
-//! belt without end; a punch that rises and turns. The face of the block stands where that of the half-space stands, and so do the particles at it.
+//! Source: contact sees a body no further than shape functions reach. Set-ups: a disk or a ball that slides and rolls
+//! far along a floor; a block on a belt without end; a punch that rises and turns. The face of the block stands where
+//! that of the half-space stands, and so do the particles at it.
 //!
-//! Expected: the same motion but for round-off, 1e-9 of the way and of the speed; particles of the half-space follow the bodies on it, not the
-//! domain. Steps have one length: the fastest particle limits it, and a wide block that turns has faster ones. That a rigid floor is the limit of a
-//! stiff one is the benchmark `rigid`; with this, so is a rigid half-space.
+//! Expected: the same motion but for round-off, 1e-9 of the way and of the speed; particles of the half-space follow
+//! the bodies on it, not the domain. Steps have one length: the fastest particle limits it, and a wide block that turns
+//! has faster ones. That a rigid floor is the limit of a stiff one is the benchmark `rigid`; with this,
+//! so is a rigid half-space.
 
 use crate::trial::{RUBBER, distance, run_to, start};
 use stickslip::door::Simulation;
 
-/// Asserts that the first body moves alike against both shapes: position and velocity over the run, relative to its way and its largest speed.
+/// Asserts that the first body moves alike against both shapes: position and velocity over the run,
+/// relative to its way and its largest speed.
 fn assert_alike(what: &str, of: impl Fn(&str) -> Box<dyn Simulation>, shapes: [&str; 2], end: f64) {
     let paths = shapes.map(|shape| {
         let mut path = Vec::new();
@@ -92,7 +95,8 @@ fn a_belt_without_end_drags_as_a_long_one() {
     assert_alike("belt", scene, [long, endless], 0.3);
 }
 
-/// A punch that rises and turns about a point a metre below its face. It meets a round body: next to an edge, round-off decides which way a surface looks.
+/// A punch that rises and turns about a point a metre below its face. It meets a round body: next to an edge, round-off
+/// decides which way a surface looks.
 #[test]
 fn a_face_that_rises_and_turns_does_what_that_of_a_block_does() {
     let scene = |punch: &str| {

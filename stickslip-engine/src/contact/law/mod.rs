@@ -37,8 +37,8 @@ pub trait Law<T: Real, const D: usize>: Sync {
         Some(room(look))
     }
 
-    /// Whether of what the bodies are like at a node the law looks at their places, volumes and forces alone, not at their stresses and own
-    /// normals.
+    /// Whether of what the bodies are like at a node the law looks at their places, volumes and forces alone, not at
+    /// their stresses and own normals.
     fn by_place(&self) -> bool {
         false
     }

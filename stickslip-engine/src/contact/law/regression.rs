@@ -5,9 +5,10 @@
 //! c_p = -1 in the first body, 1 in the second;   n = phi / |phi|
 //! gap = min_b ((x_p - x_i) . n - r_p) - max_a ((x_p - x_i) . n + r_p),   r_p = l_p |F_p^T n|
 //! ```
-//! Nairn, Hammerquist and Smith (2020), Comput. Methods Appl. Mech. Eng. 362, 112859. The two groups of particles are told apart by a
-//! plane; the particles nearest to it, with the radius of the ellipsoid in their deformed box, are the surfaces. Bodies push while
-//! they approach without a gap. The plane is found by damped Gauss-Newton steps from the difference of the volume gradients.
+//! Nairn, Hammerquist and Smith (2020), Comput. Methods Appl. Mech. Eng. 362, 112859. The two groups of particles are
+//! told apart by a plane; the particles nearest to it, with the radius of the ellipsoid in their deformed box, are the
+//! surfaces. Bodies push while they approach without a gap. The plane is found by damped Gauss-Newton steps from the
+//! difference of the volume gradients.
 
 use super::Law;
 use crate::contact::{Change, Facing, Look, Pair, common_normal};
@@ -16,7 +17,8 @@ use crate::tensor::{Matrix, Real, Vector};
 /// Contact by logistic regression.
 pub struct Regression;
 
-/// Weight of the plane's slope against one misplaced particle: with particles that a plane can part, it keeps the slope finite.
+/// Weight of the plane's slope against one misplaced particle: with particles that a plane can part,
+/// it keeps the slope finite.
 const PENALTY: f64 = 1e-4;
 /// Steps of Gauss and Newton at most.
 const STEPS: usize = 25;

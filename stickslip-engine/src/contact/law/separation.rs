@@ -5,9 +5,10 @@
 //! e_a   = h (1 - 2 (|(x_a - x_i) . n| / (1.25 h))^0.58)               distance of the node inside the body's edge
 //! gap   = -(e_a + e_b)                                                 touching below zero
 //! ```
-//! Nairn (2013), Comput. Model. Eng. Sci. 92, 271, extrapolates the positions; the power law that turns them into edges is that of
-//! Nairn, Hammerquist and Smith (2020), Comput. Methods Appl. Mech. Eng. 362, 112859, for particles that fill their domains.
-//! Extrapolated positions see a body through its mass around the node, so the gap is known to a fraction of a cell.
+//! Nairn (2013), Comput. Model. Eng. Sci. 92, 271, extrapolates the positions; the power law that turns them into edges
+//! is that of Nairn, Hammerquist and Smith (2020), Comput. Methods Appl. Mech. Eng. 362, 112859, for particles that
+//! fill their domains. Extrapolated positions see a body through its mass around the node,
+//! so the gap is known to a fraction of a cell.
 
 use super::Law;
 use super::traction::joint;
@@ -22,7 +23,8 @@ const REACH: f64 = 1.25;
 /// Power of the extrapolated position that gives the edge.
 const POWER: f64 = 0.58;
 
-/// Distance from the node to the edge of a body whose centre is `center` away along the normal, positive inside [cells].
+/// Distance from the node to the edge of a body whose centre is `center` away along the normal,
+/// positive inside [cells].
 fn edge<T: Real>(center: T) -> T {
     T::of(1.0 - 2.0 * libm::pow((center.abs().f64() / REACH).min(1.0), POWER))
 }
@@ -51,7 +53,8 @@ impl<T: Real, const D: usize> Law<T, D> for Separation {
 mod tests {
     use super::*;
 
-    /// Material behind a plane at distance `surface` from a node, weighted by the tent function: where its centre seems.
+    /// Material behind a plane at distance `surface` from a node, weighted by the tent function:
+    /// where its centre seems.
     fn center(surface: f64) -> f64 {
         let n = 100_000;
         let (mut volume, mut moment) = (0.0, 0.0);

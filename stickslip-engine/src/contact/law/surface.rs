@@ -1,15 +1,16 @@
 //! Contact of exact surfaces: bodies touch where their undeformed shapes, carried along by the deformation, touch.
 //!
-//! Our own. Each body knows where the material around a node was before it deformed ([`crate::contact::Place`]), hence the distance
-//! and the normal of its surface there. The pair takes one normal from both, the flatter and surer one deciding, and one gap, where the
-//! smaller share of the node lies. Contact is one unilateral impulse a step, with Coulomb's bound on the whole of it (Moreau 1988):
+//! Our own. Each body knows where the material around a node was before it deformed ([`crate::contact::Place`]), hence
+//! the distance and the normal of its surface there. The pair takes one normal from both, the flatter and surer one
+//! deciding, and one gap, where the smaller share of the node lies. Contact is one unilateral impulse a step, with
+//! Coulomb's bound on the whole of it (Moreau 1988):
 //!
 //! ```text
 //! u = v_1 - v_2,   u_n <= max(gap, 0)/dt,   J_n >= 0,   |J_t| <= mu J_n,   J_t against the slip
 //! ```
-//! Bodies may close a gap within a step, and never pull, unless they adhere ([`crate::contact::Friction`]). The impulse for the
-//! velocities that strain and move particles is not part of the sum: bodies that press on each other strain with a common normal velocity,
-//! whether they are being compressed or released.
+//! Bodies may close a gap within a step, and never pull, unless they adhere ([`crate::contact::Friction`]). The impulse
+//! for the velocities that strain and move particles is not part of the sum: bodies that press on each other strain
+//! with a common normal velocity, whether they are being compressed or released.
 
 use super::Law;
 use crate::body::Body;
@@ -93,8 +94,9 @@ impl<T: Real, const D: usize> Law<T, D> for Surface {
 /// Angle between two normals that are the same for all that contact does [rad].
 const AGREEING: f64 = 1e-3;
 
-/// How far the normal of a body's face may be off, as the square of an angle in radians: it is as good as the deformation that carries
-/// it, which is known to two degrees, and to ten where plastic flow resists no error of it: of a material that may flow, whether it has or not.
+/// How far the normal of a body's face may be off, as the square of an angle in radians: it is as good as the
+/// deformation that carries it, which is known to two degrees, and to ten where plastic flow resists no error of it: of
+/// a material that may flow, whether it has or not.
 fn doubt<T: Real, const D: usize>(body: &Body<T, D>) -> T {
     T::of(if body.trusts_deformation() { 1e-3 } else { 0.03 })
 }
@@ -154,8 +156,8 @@ mod tests {
         assert_eq!(impulse(-0.5, Use::Motion, 0.0, [0.0, 0.4]), [0.0, 0.0]);
     }
 
-    /// A bond stops surfaces that part, up to its strength, within a hundredth of a cell; it does not draw them together, and what it cannot hold it does
-    /// not strain.
+    /// A bond stops surfaces that part, up to its strength, within a hundredth of a cell; it does not draw them
+    /// together, and what it cannot hold it does not strain.
     #[test]
     fn a_bond_holds_what_it_bears_and_draws_nothing() {
         let bonded = |gap, purpose, speed| bonded(0.3, gap, purpose, 0.0, [0.0, speed])[1];
@@ -171,7 +173,8 @@ mod tests {
         assert_eq!(impulse(0.0, Use::Motion, 0.0, [-2.0, -1.0]), [0.75 * 0.5, 0.75]);
     }
 
-    /// The stress pushes the first body against the second: they strain together even while they part, and stick if they can.
+    /// The stress pushes the first body against the second: they strain together even while they part,
+    /// and stick if they can.
     #[test]
     fn bodies_that_press_strain_with_one_normal_velocity() {
         assert_eq!(impulse(0.0, Use::Strain, -1.0, [0.25, 0.5]), [-0.75 * 0.25, -0.75 * 0.5]);

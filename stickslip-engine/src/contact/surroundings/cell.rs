@@ -285,7 +285,8 @@ fn fetch<T: Real, const D: usize>(columns: &Columns<T, D>, particles: [u32; 2], 
     }
 }
 
-/// Particles of a cell, one in each lane, the first in the lanes beyond: as columns, the body's own where they lie side by side, else copies.
+/// Particles of a cell, one in each lane, the first in the lanes beyond: as columns,
+/// the body's own where they lie side by side, else copies.
 struct Members<'a, T, const D: usize> {
     first: *const T,
     stride: usize,

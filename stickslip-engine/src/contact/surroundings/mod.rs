@@ -1,7 +1,7 @@
 //! What a body's particles say at the nodes of a block where it meets others.
 //!
-//! Every particle near such nodes is visited once and added to all that it reaches, those of a cell side by side. Behind a mirror its image
-//! is added.
+//! Every particle near such nodes is visited once and added to all that it reaches, those of a cell side by side.
+//! Behind a mirror its image is added.
 
 // Sums over nodes and components read better by their indices.
 #![allow(clippy::needless_range_loop)]
@@ -48,7 +48,8 @@ pub fn behind<const D: usize>(wall: &Wall, block: [i32; D], depth: i32) -> Nodes
 pub type Mirrors<'a, const D: usize> = [Option<&'a Wall>; D];
 
 impl<T: Laned, const D: usize> Near<'_, T, D> {
-    /// Adds a body's particles to the wanted nodes of a block: the sums of the n-th of them are `sums[n]`. `handfuls` is room to work in.
+    /// Adds a body's particles to the wanted nodes of a block: the sums of the n-th of them are `sums[n]`.
+    /// `handfuls` is room to work in.
     pub fn sum_around<B: Basis<T>>(
         &self,
         (body, block): (usize, [i32; D]),
@@ -128,7 +129,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
     #[inline(always)]
     fn sum<M: Machine<T>, V: Lanes<Real = T>>(mut self) {
         let reach = B::WIDTH as i32 - 1;
-        // The lowest cell, where it is and not as it is seen, and the nodes that each cell from there on reaches along each axis.
+        // The lowest cell, where it is and not as it is seen, and the nodes that each cell from there on reaches along
+        // each axis.
         let mut lowest = [0; D];
         let mut reached = [[Nodes::MAX; SPAN]; 3];
         for i in 0..D {
@@ -145,7 +147,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
             array([0; 2], |i| [lowest[i], lowest[i] + SIDE + reach - 1].map(|cell| cell.div_euclid(SIDE)));
         let mut home: [i32; D] = array(0, |i| ends[i][0]);
         loop {
-            // Of the home block, the cells that count, as steps from the lowest; in the plane the third axis has one step.
+            // Of the home block, the cells that count, as steps from the lowest;
+            // in the plane the third axis has one step.
             let mut steps = [[0, 1]; 3];
             let mut nodes = self.wanted;
             for i in 0..D {

@@ -22,7 +22,8 @@ pub enum Wanted {
 /// row MASS      sum m grad S [kg/m], sum m S [kg]       likewise
 /// row FORCE     force of the stress on the node [N]
 /// ```
-/// Places are those of the first node of the block; of a body that flows, of the particles. Where only places are wanted, all from the stress on is zero.
+/// Places are those of the first node of the block; of a body that flows, of the particles. Where only places are
+/// wanted, all from the stress on is zero.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(32))]
 pub struct Sums<T, const D: usize>(pub(super) [[T; 4]; ROWS]);

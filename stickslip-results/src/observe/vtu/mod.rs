@@ -3,7 +3,8 @@
 //! Layout of the data of one array, all little-endian (VTK file formats, "Appended data" and "Compression"):
 //!
 //! ```text
-//! u64 blocks, u64 bytes of a full block, u64 bytes of a partial last block (0: none), u64 compressed bytes of each block, the blocks
+//! u64 blocks, u64 bytes of a full block, u64 bytes of a partial last block (0: none),
+//! u64 compressed bytes of each block, the blocks
 //! ```
 //! Blocks are independent; one that does not shrink stands in it as a single run of literals.
 //! Numbers keep all their bits: reading a file gives exactly what was written.

@@ -155,7 +155,8 @@ impl Points {
     }
 }
 
-/// The packed blocks of an array of `total` bytes with the size of each when unpacked; `None` if they are not all there.
+/// The packed blocks of an array of `total` bytes with the size of each when unpacked;
+/// `None` if they are not all there.
 fn split(bytes: &[u8], total: usize) -> Option<Vec<(&[u8], usize)>> {
     let word = |i: usize| {
         let bytes = bytes.get(8 * i..8 * i + 8)?;

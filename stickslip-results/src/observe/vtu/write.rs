@@ -188,8 +188,8 @@ const SAMPLES: usize = 4;
 /// A block is worth compressing if its samples shrink below this share.
 const WORTH: f64 = 0.9;
 
-/// A block in the format of LZ4: compressed, or as it is where that would take time and save next to nothing, as for most numbers
-/// that use all their bits.
+/// A block in the format of LZ4: compressed, or as it is where that would take time and save next to nothing, as for
+/// most numbers that use all their bits.
 fn block(bytes: &[u8]) -> Vec<u8> {
     let samples = || bytes.chunks(SAMPLE).step_by(bytes.len().div_ceil(SAMPLE * SAMPLES).max(1));
     let before: usize = samples().map(<[u8]>::len).sum();

@@ -1,7 +1,8 @@
 //! Closed surfaces of triangles: how far away they are, and what is inside.
 //!
-//! The sign of the distance comes from the angle-weighted normal of the nearest face, edge or corner (Baerentzen and Aanaes 2005, IEEE Trans. Vis.
-//! Comput. Graph. 11, 243-253); what is inside, from how often a line of sight leaves the surface more than it enters it.
+//! The sign of the distance comes from the angle-weighted normal of the nearest face, edge or corner (Baerentzen and
+//! Aanaes 2005, IEEE Trans. Vis. Comput. Graph. 11, 243-253); what is inside, from how often a line of sight leaves the
+//! surface more than it enters it.
 
 mod fault;
 mod tree;
@@ -51,10 +52,12 @@ const NEAR: f64 = 1e-7;
 const ON_MIRROR: f64 = 1e-6;
 
 impl Mesh {
-    /// The mesh of triangles, each given by its corners [m]. Corners in exactly one place are one corner; a triangle with two of them is left out.
+    /// The mesh of triangles, each given by its corners [m]. Corners in exactly one place are one corner;
+    /// a triangle with two of them is left out.
     ///
     /// # Errors
-    /// No triangle; triangles without area; edges that have not one triangle on either side, facing the same way; triangles that face inward.
+    /// No triangle; triangles without area; edges that have not one triangle on either side,
+    /// facing the same way; triangles that face inward.
     pub fn new(name: &str, triangles: impl IntoIterator<Item = [[f64; 3]; 3]>) -> Result<Self, MeshFault> {
         let (corners, triangles) = welded(triangles);
         if triangles.is_empty() {
@@ -131,8 +134,8 @@ impl Mesh {
         let mut left = 0;
         self.0.tree.along_x(point, |number| {
             let triangle = &self.0.triangles[number];
-            // Which side of each edge's image in the plane of y and z the point is on. Edges are walked one way by both of their triangles, so
-            // that no ray slips through between the two or meets both.
+            // Which side of each edge's image in the plane of y and z the point is on. Edges are walked one way by both
+            // of their triangles, so that no ray slips through between the two or meets both.
             let side = edges(&triangle.corners).map(|[from, to]| {
                 let [low, high] = if from < to { [from, to] } else { [to, from] };
                 let [a, b] = [low, high].map(|corner| self.0.corners[corner as usize]);
@@ -192,7 +195,8 @@ impl Mesh {
         self.moved(|corner| rotation.forward(corner)).expect("a turn leaves a closed surface closed")
     }
 
-    /// The mesh with its image behind a mirror on which some of its triangles lie: those are no surface. `None` where none does.
+    /// The mesh with its image behind a mirror on which some of its triangles lie: those are no surface.
+    /// `None` where none does.
     pub(super) fn continued(&self, mirror: &Mirror) -> Option<Mesh> {
         let near = ON_MIRROR * Vector(self.0.bounds.size()).norm();
         let on = |x: [f64; 3]| (x[mirror.axis] - mirror.position).abs() <= near;

@@ -55,7 +55,8 @@ impl Tree {
         tree
     }
 
-    /// Visits triangles that may be nearer to a point than all before: `distance` gives the squared distance of a triangle, or infinity.
+    /// Visits triangles that may be nearer to a point than all before:
+    /// `distance` gives the squared distance of a triangle, or infinity.
     pub fn nearest(&self, point: [f64; 3], mut distance: impl FnMut(usize) -> f64) {
         let mut nearest = f64::INFINITY;
         let mut waiting = [(0_u32, 0.0); WAITING];

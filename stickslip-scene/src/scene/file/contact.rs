@@ -34,8 +34,9 @@ table! {
         /// Viscous shear traction over speed of slip, beside friction.
         #[schemars(extend("default" = 0))]
         viscosity: Option<Quantity<SurfaceViscosity>>,
-        /// Where the direction of contact comes from; by default "own" for the laws kinematic and traction, as the paper has it,
-        /// "common" for the others; surface, separation and regression find one direction for the pair and take no "own".
+        /// Where the direction of contact comes from; by default "own" for the laws kinematic and traction, as the
+        /// paper has it, "common" for the others; surface, separation and regression find one direction for the pair
+        /// and take no "own".
         normal: Option<Word<Normal>>,
         /// Largest strain of a cell by contact in one step, the paper's gamma, above 0 and up to 1.
         #[schemars(extend("default" = 0.5))]

@@ -10,8 +10,8 @@ use crate::scene::{self, Body, Dimension, Field, Light, Motion, Overlay, Polaris
 use std::f64::consts::PI;
 
 table! {
-    /// A camera behind a virtual polariscope, which looks along the third axis. Either `stress_optic_coefficient` (in the
-    /// plane with `thickness`) or `stress_parameter` says how much stress makes a fringe.
+    /// A camera behind a virtual polariscope, which looks along the third axis. Either `stress_optic_coefficient` (in
+    /// the plane with `thickness`) or `stress_parameter` says how much stress makes a fringe.
     Fringes {
         /// When the shutter opens for the first frame [s].
         #[schemars(extend("default" = 0))]
@@ -29,7 +29,8 @@ table! {
         thickness: Option<Quantity<Length>>,
         /// The paper's parameter s: a circular polariscope shows cos((sigma_1 - sigma_2) / s) [Pa].
         stress_parameter: Option<Quantity<Pressure>>,
-        /// Wavelength of the light, and the one that the coefficient or the parameter holds for [m]; by default 546.1 nm.
+        /// Wavelength of the light, and the one that the coefficient or the parameter holds for [m];
+        /// by default 546.1 nm.
         wavelength: Option<Quantity<Length>>,
         /// What unloaded bodies look like.
         #[schemars(extend("default" = "dark"))]

@@ -63,7 +63,8 @@ table! {
         within: Option<Quantity<Length>>,
         /// Names of the bodies in which it runs; by default all but rigid ones.
         bodies: Option<Vec<Text>>,
-        /// Start and end of the way over which its speed is fitted [m]; by default from 10 % to 90 % of the way that it went.
+        /// Start and end of the way over which its speed is fitted [m];
+        /// by default from 10 % to 90 % of the way that it went.
         fit: Option<Way>,
     }
 }

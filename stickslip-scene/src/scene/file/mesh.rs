@@ -79,7 +79,8 @@ fn file_name(path: &Path) -> String {
     path.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
-/// The triangles of an STL file. A binary one says how many it has, and its length agrees; its header may begin as a text does.
+/// The triangles of an STL file. A binary one says how many it has, and its length agrees;
+/// its header may begin as a text does.
 fn stl(bytes: &[u8]) -> Result<Triangles, Unread> {
     let garbled = |reason: std::io::Error| Unread::Garbled(format!("no STL: {reason}"));
     let mut bytes = bytes.to_vec();

@@ -39,14 +39,15 @@ pub struct Context<'a> {
 }
 
 table! {
-    /// A Stickslip scene. Numbers are SI or text with a unit ("6 MPa") or a formula ("radius / 8"); {name} puts a parameter
-    /// into text.
+    /// A Stickslip scene. Numbers are SI or text with a unit ("6 MPa") or a formula ("radius / 8"); {name} puts a
+    /// parameter into text.
     File {
         /// One line for plots, pictures and summaries; by default the name of the file.
         title: Option<Text>,
         /// What the scene shows, and the numbers it must give.
         about: Option<Text>,
-        /// Acceleration of every body, such as [0, 0, "-9.81 m/s^2"]; by default none. It stands above the first [table].
+        /// Acceleration of every body, such as [0, 0, "-9.81 m/s^2"]; by default none.
+        /// It stands above the first [table].
         gravity: Option<Vector<Acceleration>>,
         /// Named numbers, formulas and words for the rest of the file; `--set name=value` replaces one.
         parameters: Option<ParameterTable>,
@@ -58,8 +59,8 @@ table! {
         materials: material::Materials,
         /// The bodies: [[bodies]].
         bodies: Vec<body::Body>,
-        /// Rules for how bodies touch: [[contact]]. The first that matches a pair holds; a pair that none matches has the
-        /// surface law without friction.
+        /// Rules for how bodies touch: [[contact]]. The first that matches a pair holds; a pair that none matches has
+        /// the surface law without friction.
         contact: Option<Vec<contact::Contact>>,
         /// What is written, and how often.
         outputs: Option<outputs::Outputs>,

@@ -30,7 +30,8 @@ table! {
         fringes: Option<Fringes>,
         /// What non-dimensional time counts in, such as "diameter / c_L" [s]; tables then have a column `time_units`.
         time_unit: Option<Quantity<Duration>>,
-        /// Interval between samples of probes, arrivals and fronts [s], or "step" for every step; by default 1/1000 of the run.
+        /// Interval between samples of probes, arrivals and fronts [s], or "step" for every step;
+        /// by default 1/1000 of the run.
         samples: Option<Sampling>,
         /// Points at which velocity and stress are recorded: [[outputs.probes]].
         probes: Option<Vec<Probe>>,

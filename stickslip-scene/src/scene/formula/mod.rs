@@ -3,8 +3,8 @@
 //! Dimensions are checked by these rules:
 //! - a number with a unit has that unit's dimension; sums, comparisons and functions demand that dimensions agree;
 //! - a plain number in a formula is a pure number: `2 * radius` is a length; alone, or in a sum, it is in SI units;
-//! - a parameter that is a plain number is in whatever SI unit fits where it is used (`g = 9.81`), so products with it fit
-//!   anywhere;
+//! - a parameter that is a plain number is in whatever SI unit fits where it is used (`g = 9.81`), so products with it
+//!   fit anywhere;
 //! - `t` is a time, but a formula in which no unit is written at all (`"3 * t + 5 * t^2"`) is in SI units.
 
 mod call;

@@ -1,7 +1,7 @@
 //! From the text of a formula to instructions, by operator precedence (Pratt 1973), checking dimensions on the way.
 //!
-//! From weakest to strongest: comparisons, `+ -`, `* /`, signs, `^` (from the right: `2^3^2` = 512, `-2^2` = -4), a number
-//! with its unit.
+//! From weakest to strongest: comparisons, `+ -`, `* /`, signs, `^` (from the right: `2^3^2` = 512, `-2^2` = -4), a
+//! number with its unit.
 
 use super::token::{self, Token};
 use super::{Formula, FormulaError, Kind, Meaning, Misread, Names, Quantity, reserved};
