@@ -59,7 +59,8 @@ fn slope(friction: f64) -> Result<Scene, Box<dyn Error>> {
     Ok(scene)
 }
 
-/// Velocity down the slope of the disk's highest particle [m/s]. A snapshot is columns of equal length, an entry a particle.
+/// Velocity down the slope of the disk's highest particle [m/s]. A snapshot is columns of equal length, an entry a
+/// particle.
 fn speed_of_top(simulation: &dyn Simulation) -> f64 {
     let particles = simulation.snapshot();
     let disk = (0..particles.body.len()).filter(|&i| particles.body[i] == 0);

@@ -20,7 +20,7 @@ use std::sync::atomic::AtomicBool;
 use stickslip::observe::{ArrivalRow, ProbeRow, Results};
 use stickslip::run::RunOptions;
 use stickslip::scene::Scene;
-use stickslip::{step, run, scene};
+use stickslip::{run, scene, step};
 
 const CELLS: f64 = 80.0;
 const SPEED: f64 = 0.002;

@@ -26,10 +26,11 @@ pub struct ContactRow {
     pub fy: f64,
     /// Mean force of the first on the second body, third component [N].
     pub fz: f64,
-    /// Mean of the sum over nodes of the force along each node's normal, positive when the bodies push each other apart [N].
+    /// Mean of the sum over nodes of the force along each node's normal, positive when the bodies push each other apart
+    /// [N].
     pub normal: f64,
-    /// Magnitude of the mean of the sum over nodes of the force across each node's normal: forces that oppose each other, at two
-    /// nodes or at two times, cancel [N].
+    /// Magnitude of the mean of the sum over nodes of the force across each node's normal: forces that oppose each
+    /// other, at two nodes or at two times, cancel [N].
     pub tangential: f64,
     /// Grid nodes that passed a force in the last step in which the surfaces touched.
     pub nodes: usize,
@@ -55,7 +56,8 @@ impl Row for ContactRow {
     }
 }
 
-/// Writes `contacts.csv`. It alone calls [`Simulation::take_contacts`], so that each row's average starts at the row before.
+/// Writes `contacts.csv`. It alone calls [`Simulation::take_contacts`], so that each row's average starts at the row
+/// before.
 pub(super) struct Contacts {
     names: Vec<String>,
     schedule: Schedule,

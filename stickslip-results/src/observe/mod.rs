@@ -1,11 +1,11 @@
 //! Everything that a run writes, and reading it back.
 //!
-//! One file for each kind of output; to add one, write its file and seat it in [`Recorder::new`]. An [`Observer`] of another crate
-//! is added with [`Recorder::add`]. Outputs look at the simulation between steps and never change how it steps: a record is made
-//! after the first step that reaches a multiple of the output's interval and carries the true time; the start and the end are
-//! always recorded. Whatever ends a run (its end time, the user, a failing step, a full disk), every file that is there can be
-//! read: tables hold whole rows only, and snapshots, their `.pvd` list and `run.json` are written under another name and renamed
-//! when complete.
+//! One file for each kind of output; to add one, write its file and seat it in [`Recorder::new`]. An [`Observer`] of
+//! another crate is added with [`Recorder::add`]. Outputs look at the simulation between steps and never change how it
+//! steps: a record is made after the first step that reaches a multiple of the output's interval and carries the true
+//! time; the start and the end are always recorded. Whatever ends a run (its end time, the user, a failing step, a full
+//! disk), every file that is there can be read: tables hold whole rows only, and snapshots, their `.pvd` list and
+//! `run.json` are written under another name and renamed when complete.
 
 mod arrivals;
 mod bodies;
@@ -83,7 +83,8 @@ pub trait Observer {
         Ok(())
     }
 
-    /// Whether a second record at the same time takes the place of the first, as for snapshots; tables would repeat a row.
+    /// Whether a second record at the same time takes the place of the first, as for snapshots; tables would repeat a
+    /// row.
     fn replaces(&self) -> bool {
         false
     }

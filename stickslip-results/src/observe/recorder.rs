@@ -83,8 +83,8 @@ impl<'a> Recorder<'a> {
         self.record_where(simulation, |seat| seat.last != Some(time))
     }
 
-    /// Records the state in which a step failed. If the time did not advance, tables keep the row that they have and snapshots
-    /// are replaced: what went wrong is to be seen.
+    /// Records the state in which a step failed. If the time did not advance, tables keep the row that they have and
+    /// snapshots are replaced: what went wrong is to be seen.
     ///
     /// # Errors
     /// A file cannot be written.

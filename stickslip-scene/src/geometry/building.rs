@@ -28,7 +28,8 @@ impl Shape {
         Shape::HalfSpace { point, normal }
     }
 
-    /// The shape turned by `angle` [rad], right-handed, about an axis through `center` [m]; in the plane the axis is (0, 0, 1).
+    /// The shape turned by `angle` [rad], right-handed, about an axis through `center` [m]; in the plane the axis is
+    /// (0, 0, 1).
     pub fn rotated(self, center: [f64; 3], axis: [f64; 3], angle: f64) -> Self {
         Shape::Rotated { shape: Box::new(self), center, axis, angle }
     }

@@ -1,7 +1,8 @@
-//! Scenes in code: a constructor asks for what has no default, and all else begins as in a scene file that does not name it.
+//! Scenes in code: a constructor asks for what has no default, and all else begins as in a scene file that does not
+//! name it.
 //!
-//! The defaults of scene files stand here, in [`ContactRule`] and in the enums' `Default`, and nowhere else: scene files and their
-//! schema take them from here.
+//! The defaults of scene files stand here, in [`ContactRule`] and in the enums' `Default`, and nowhere else: scene
+//! files and their schema take them from here.
 
 use super::{
     BasisKind, Body, ContactLaw, ContactRule, Dimension, Discretization, Domain, Expression, Face,
@@ -152,12 +153,14 @@ impl Body {
         Body { particles: Arrangement::Fitted, ..self }
     }
 
-    /// The same body, deformable, with this velocity of its centre of mass [m/s] and this angular velocity about it [rad/s].
+    /// The same body, deformable, with this velocity of its centre of mass [m/s] and this angular velocity about it
+    /// [rad/s].
     pub fn moving(self, velocity: [f64; 3], spin: [f64; 3]) -> Self {
         Body { motion: Motion::Free { velocity, spin }, ..self }
     }
 
-    /// The same body, rigid, moved at this velocity [m/s] and turned at this angular velocity [rad/s] whatever pushes it.
+    /// The same body, rigid, moved at this velocity [m/s] and turned at this angular velocity [rad/s] whatever pushes
+    /// it.
     pub fn rigid(self, velocity: [f64; 3], spin: [f64; 3]) -> Self {
         let [velocity, spin] = [velocity, spin].map(|vector| vector.map(Expression::Constant));
         Body { motion: Motion::Rigid { velocity, spin }, ..self }

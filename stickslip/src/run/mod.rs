@@ -44,12 +44,13 @@ impl RunOptions {
 
 /// Runs a scene from the present state of its simulation to the end time, and writes what the scene asks for.
 ///
-/// Nothing is written before the folder is found usable. `progress` is called about ten times a second of wall time, when there is
-/// something to note, and at the end.
+/// Nothing is written before the folder is found usable. `progress` is called about ten times a second of wall time,
+/// when there is something to note, and at the end.
 ///
 /// # Errors
-/// The folder cannot be used, a step fails, or an output cannot be written. In the last two cases the record of the run says so, and
-/// everything written so far can be read; of a failing step the state in which it failed is the last record.
+/// The folder cannot be used, a step fails, or an output cannot be written. In the last two cases the record of the run
+/// says so, and everything written so far can be read; of a failing step the state in which it failed is the last
+/// record.
 pub fn run(
     scene: &Scene,
     simulation: &mut dyn Simulation,
@@ -59,8 +60,8 @@ pub fn run(
     run_with(scene, simulation, options, &mut [], progress)
 }
 
-/// [`run`], with further observers beside those that the scene asks for: each is asked after the first step that reaches its
-/// [`Observer::next`], and at the start and the end.
+/// [`run`], with further observers beside those that the scene asks for: each is asked after the first step that
+/// reaches its [`Observer::next`], and at the start and the end.
 ///
 /// # Errors
 /// As [`run`]; an observer's own error ends the run too.
@@ -159,8 +160,8 @@ impl March<'_> {
 
 /// Longest next step such that the run ends exactly at its end [s].
 ///
-/// Where the remainder is more than one and less than two steps, it is shared equally: a last step of nearly no length would
-/// divide forces by nearly nothing.
+/// Where the remainder is more than one and less than two steps, it is shared equally: a last step of nearly no length
+/// would divide forces by nearly nothing.
 fn longest_step(remaining: f64, last_step: f64, simulation: &dyn Simulation) -> f64 {
     // Asking for the stable step may cost a look at all particles: only near the end.
     if remaining > 4.0 * last_step && last_step > 0.0 {

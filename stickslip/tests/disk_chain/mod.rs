@@ -2,8 +2,8 @@
 
 use std::path::Path;
 use stickslip::door::{ParticleSnapshot, Simulation};
-use stickslip::step;
 use stickslip::scene::{self, Scene};
+use stickslip::step;
 
 /// What happened to the disks.
 #[derive(Debug)]

@@ -1,8 +1,8 @@
 //! The paper's scenes with a sphere, run to their end and held against the rigid solution that they state.
 
 use std::path::Path;
-use stickslip::step;
 use stickslip::scene::{self, Scene};
+use stickslip::step;
 
 /// What a sphere did in a scene.
 #[derive(Debug)]

@@ -22,7 +22,7 @@ use std::f64::consts::PI;
 use std::path::Path;
 use stickslip::polariscope::{StressMap, Window, stress_maps};
 use stickslip::scene::Scene;
-use stickslip::{step, scene};
+use stickslip::{scene, step};
 
 use crate::trial::run_to;
 

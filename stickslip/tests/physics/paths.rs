@@ -10,8 +10,8 @@
 
 use crate::trial::{STRESS_UPDATES, largest_difference, start_on, take_steps};
 use stickslip::door::ParticleSnapshot;
-use stickslip::step::Path;
 use stickslip::lanes::Processor;
+use stickslip::step::Path;
 
 fn scene(dimension: &str, precision: &str, basis: &str, update: &str) -> String {
     let space = dimension == "3d";

@@ -2,7 +2,7 @@
 
 use stickslip::door::{ParticleSnapshot, Simulation};
 use stickslip::step::Path;
-use stickslip::{step, scene};
+use stickslip::{scene, step};
 
 /// Every stress update by its word in scene files.
 pub const STRESS_UPDATES: [&str; 3] = ["first", "last", "modified-last"];
