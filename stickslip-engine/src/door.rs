@@ -202,13 +202,14 @@ pub struct ContactState {
     pub body_b: usize,
     /// Mean force of `a` on `b` [N].
     pub force: [f64; 3],
-    /// Sum over nodes of the force along each node's normal, positive when the bodies push each other apart [N].
+    /// Mean of the sum over nodes of the force along each node's normal, positive when the bodies push each other apart [N].
     pub normal: f64,
-    /// Magnitude of the sum over nodes of the forces across each node's normal [N].
+    /// Magnitude of the mean of the sum over nodes of the force across each node's normal: forces that oppose each other, at two
+    /// nodes or at two times, cancel [N].
     pub tangential: f64,
-    /// Grid nodes in contact in the last step in which the pair touched.
+    /// Grid nodes that passed a force in the last step in which the surfaces touched.
     pub nodes: usize,
-    /// Centre of the forces over nodes and time [m].
+    /// Centre of the forces over nodes and time, each by its magnitude [m].
     pub position: [f64; 3],
     /// Area over which the bodies touched, its mean over the time as the force's [m^2], in the plane length per depth [m].
     pub area: f64,
@@ -216,7 +217,7 @@ pub struct ContactState {
     pub gap: f64,
     /// How far the surfaces slipped on each other, the mean over their area [m].
     pub slip: f64,
-    /// Work of friction [J].
+    /// Work of friction, cohesion and viscosity [J].
     pub friction: f64,
 }
 

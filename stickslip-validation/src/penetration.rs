@@ -3,13 +3,14 @@
 use std::collections::HashMap;
 use stickslip::door::ParticleSnapshot;
 
-/// Largest overlap of two particles of different bodies, each taken as round and as wide as the root of its volume [m]; zero or more.
+/// Largest overlap of two particles of different bodies, each taken as round and as wide as the root of its volume [m];
+/// zero or more.
 ///
 /// ```text
 /// max over p in a, q in b != a:  (V_p^(1/D) + V_q^(1/D)) / 2 - |x_p - x_q|
 /// ```
-/// Exact where the particles of two surfaces face each other; less than the truth, by up to a fifth of the spacing in the plane, where they
-/// sit gap on peak.
+/// Exact where the particles of two surfaces face each other; less than the truth, by up to a fifth of the spacing in
+/// the plane, where they sit gap on peak.
 pub fn penetration(snapshot: &ParticleSnapshot) -> f64 {
     let width = |p: usize| snapshot.volume[p].powf(1.0 / snapshot.dimension as f64);
     let widest = (0..snapshot.body.len()).map(width).fold(0.0, f64::max);

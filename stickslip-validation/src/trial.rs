@@ -17,7 +17,8 @@ pub struct Record {
     pub energy_gain: f64,
     /// Energy gained, or if negative lost, until the end, over the same [-].
     pub energy_drift: f64,
-    /// Largest change of momentum over the sum of the bodies' sqrt(2 mass * kinetic energy) [-]; `None` where something outside acts.
+    /// Largest change of momentum over the sum of the bodies' sqrt(2 mass * kinetic energy) [-]; `None` where something
+    /// outside acts.
     pub momentum_drift: Option<f64>,
     /// Largest change of angular momentum over the same sum times the distance of the farthest
     /// particle from the origin [-]; `None` where something outside acts.
@@ -217,8 +218,8 @@ impl Trial {
         &self.first
     }
 
-    /// Energy gained, or if negative lost, until the last look at it, over the largest that moved or was stored [-]; after the last
-    /// step that of the whole run.
+    /// Energy gained, or if negative lost, until the last look at it, over the largest that moved or was stored [-];
+    /// after the last step that of the whole run.
     pub fn energy_drift(&self) -> f64 {
         self.record.energy_drift
     }

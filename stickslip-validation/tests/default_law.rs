@@ -4,8 +4,8 @@
 //! The benchmarks themselves: each states its source, its target and why it is that.
 //!
 //! # Expected
-//! At the quick tier's resolutions every target is reached but those that its benchmark states as known to be missed there, and every
-//! quantity that a target is stated for is measured.
+//! At the quick tier's resolutions every target is reached but those that its benchmark states as known to be missed
+//! there, and every quantity that a target is stated for is measured.
 
 use stickslip_validation::{BENCHMARKS, Suite, Tier, laws, schemes};
 

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 /// Contact of one pair of bodies, averaged from the row before to this one; the columns of `contacts.csv`.
 ///
-/// Pairs that did not touch in that time have no row.
+/// Pairs that exerted no force on each other in that time have no row.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ContactRow {
     /// Simulated time at which the average ends [s].
@@ -26,13 +26,15 @@ pub struct ContactRow {
     pub fy: f64,
     /// Mean force of the first on the second body, third component [N].
     pub fz: f64,
-    /// Sum over nodes of the force along each node's normal, positive when the bodies push each other apart [N].
+    /// Mean of the sum over nodes of the force along each node's normal, positive when the bodies push each other apart
+    /// [N].
     pub normal: f64,
-    /// Sum over nodes of the magnitude of the force across each node's normal [N].
+    /// Magnitude of the mean of the sum over nodes of the force across each node's normal: forces that oppose each
+    /// other, at two nodes or at two times, cancel [N].
     pub tangential: f64,
-    /// Grid nodes in contact in the last step in which the pair touched.
+    /// Grid nodes that passed a force in the last step in which the surfaces touched.
     pub nodes: usize,
-    /// Centre of the forces over nodes and time, first component [m].
+    /// Centre of the forces over nodes and time, each by its magnitude; first component [m].
     pub x: f64,
     /// Centre of the forces, second component [m].
     pub y: f64,
@@ -44,7 +46,7 @@ pub struct ContactRow {
     pub gap: f64,
     /// How far the surfaces slipped on each other since the row before, the mean over their area [m].
     pub slip: f64,
-    /// Work of friction since the row before [J].
+    /// Work of friction, cohesion and viscosity since the row before [J].
     pub friction: f64,
 }
 

@@ -1,11 +1,11 @@
 //! Everything that a run writes, and reading it back.
 //!
-//! One file for each kind of output; to add one, write its file and seat it in [`Recorder::new`]. Outputs look at the
-//! simulation between steps and never change how it steps: a record is made after the first step that reaches a
-//! multiple of the output's interval and carries the true time; the start and the end are always recorded. Whatever
-//! ends a run (its end time, the user, a failing step, a full disk), every file that is there can be read: tables hold
-//! whole rows only, and snapshots, their `.pvd` list and `run.json` are written under another name and renamed when
-//! complete.
+//! One file for each kind of output; to add one, write its file and seat it in [`Recorder::new`]. An [`Observer`] of
+//! another crate is added with [`Recorder::add`]. Outputs look at the simulation between steps and never change how it
+//! steps: a record is made after the first step that reaches a multiple of the output's interval and carries the true
+//! time; the start and the end are always recorded. Whatever ends a run (its end time, the user, a failing step, a full
+//! disk), every file that is there can be read: tables hold whole rows only, and snapshots, their `.pvd` list and
+//! `run.json` are written under another name and renamed when complete.
 
 mod arrivals;
 mod bodies;
@@ -63,12 +63,13 @@ const FRINGES: &str = "fringes";
 const FRINGES_TABLE: &str = "fringes.csv";
 const FRINGES_ANIMATION: &str = "fringes.png";
 
-/// One kind of output.
+/// One kind of output, or whatever else wants to look at a run.
 pub trait Observer {
-    /// The time from which its next record is due [s].
+    /// The time from which its next record is due [s]; 0 asks for every step.
     fn next(&self) -> f64;
 
     /// Records the present state. What takes long is handed over, to be written while the run goes on.
+    /// Contacts are read by a [`crate::door::ContactCursor`] of the observer's own.
     ///
     /// # Errors
     /// The disk is full or refuses, now or at an earlier record; what was written before stays readable.
@@ -82,9 +83,27 @@ pub trait Observer {
         Ok(())
     }
 
-    /// Whether a second record at the same time takes the place of the first, as for snapshots;
-    /// tables would repeat a row.
+    /// Whether a second record at the same time takes the place of the first, as for snapshots; tables would repeat a
+    /// row.
     fn replaces(&self) -> bool {
         false
+    }
+}
+
+impl<O: Observer + ?Sized> Observer for &mut O {
+    fn next(&self) -> f64 {
+        (**self).next()
+    }
+
+    fn observe(&mut self, view: &dyn View) -> Result<(), OutputError> {
+        (**self).observe(view)
+    }
+
+    fn conclude(&mut self) -> Result<(), OutputError> {
+        (**self).conclude()
+    }
+
+    fn replaces(&self) -> bool {
+        (**self).replaces()
     }
 }

@@ -15,24 +15,24 @@ use super::probes::Probes;
 use crate::door::View;
 use crate::scene::Scene;
 
-/// The observers that a scene asks for.
-pub struct Recorder {
-    seats: Vec<Seat>,
+/// The observers that a scene asks for, and those that are added.
+pub struct Recorder<'a> {
+    seats: Vec<Seat<'a>>,
 }
 
-struct Seat {
-    observer: Box<dyn Observer>,
+struct Seat<'a> {
+    observer: Box<dyn Observer + 'a>,
     /// Time of its last record [s].
     last: Option<f64>,
 }
 
-impl Recorder {
+impl<'a> Recorder<'a> {
     /// Makes the files of every output that the scene asks for.
     ///
     /// # Errors
     /// A file cannot be made.
     pub fn new(scene: &Scene, folder: &OutputFolder) -> Result<Self, OutputError> {
-        let mut observers: Vec<Box<dyn Observer>> = vec![
+        let mut observers: Vec<Box<dyn Observer + 'a>> = vec![
             Box::new(Bodies::create(scene, folder)?),
             Box::new(Energy::create(scene, folder)?),
             Box::new(Contacts::create(scene, folder)?),
@@ -58,6 +58,11 @@ impl Recorder {
         }
         let seats = observers.into_iter().map(|observer| Seat { observer, last: None }).collect();
         Ok(Recorder { seats })
+    }
+
+    /// Adds an observer, to be asked after those of the scene.
+    pub fn add(&mut self, observer: impl Observer + 'a) {
+        self.seats.push(Seat { observer: Box::new(observer), last: None });
     }
 
     /// Records what is due: to be called after each step.

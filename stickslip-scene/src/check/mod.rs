@@ -73,7 +73,7 @@ fn per_side(scene: &Scene, body: &Body) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::{Arrangement, Bounds, Shape};
+    use crate::geometry::{Bounds, Shape};
     use crate::material::{Isotropic, Material, NeoHookean};
     use crate::scene::*;
 
@@ -101,56 +101,23 @@ mod tests {
     }
 
     pub fn free(name: &str, material: usize, shape: Shape) -> Body {
-        let motion = Motion::Free { velocity: [0.0; 3], spin: [0.0; 3] };
-        Body {
-            name: name.into(),
-            material,
-            shape,
-            particles: Arrangement::Lattice,
-            particles_per_side: None,
-            motion,
-        }
+        Body::new(name, material, shape)
     }
 
     /// A rigid body that does not move.
     pub fn at_rest(name: &str, shape: Shape) -> Body {
-        let still = || [0.0; 3].map(Expression::Constant);
-        Body { motion: Motion::Rigid { velocity: still(), spin: still() }, ..free(name, 1, shape) }
+        Body::new(name, 1, shape).rigid([0.0; 3], [0.0; 3])
     }
 
     /// Bodies of two materials, the second ten times stiffer and denser, in unbounded space without gravity.
     pub fn scene(dimension: Dimension, cell: f64, bodies: Vec<Body>) -> Scene {
-        Scene {
-            title: "test".into(),
-            about: String::new(),
-            parameters: Default::default(),
-            dimension,
-            precision: Precision::Double,
-            discretization: Discretization { cell, particles_per_side: 2, basis: BasisKind::Gimp },
-            domain: None,
-            time: Time {
-                end: 2.0,
-                courant: 0.4,
-                max_step: None,
-                stress_update: StressUpdate::First,
-                transfer: Transfer::Rflip,
-                pic_share: 0.0,
-                energy_drift: 0.1,
-            },
-            gravity: [0.0; 3],
-            materials: vec![neo_hookean("soft", 1.0), neo_hookean("stiff", 10.0)],
-            bodies,
-            contact: vec![],
-            outputs: Outputs {
-                tables: 0.1,
-                particles: None,
-                particles_at: Vec::new(),
-                grid: None,
-                fringes: None,
-                measurements: Measurements::default(),
-            },
-            references: vec![],
-        }
+        let mut scene = Scene::new(dimension, cell, 2.0);
+        scene.time.stress_update = StressUpdate::First;
+        scene.outputs.tables = 0.1;
+        scene.outputs.particles = None;
+        scene.materials = vec![neo_hookean("soft", 1.0), neo_hookean("stiff", 10.0)];
+        scene.bodies = bodies;
+        scene
     }
 
     /// The paper's half sphere (R = 1.6 m, symmetry plane y = 0) at rest on a slope of 45 degrees.

@@ -4,6 +4,7 @@
 //! rectangle. Sine and cosine come from `libm`, so that every build fills a turned shape with the same particles.
 
 mod bounds;
+mod building;
 mod distance;
 mod filling;
 mod fitted;

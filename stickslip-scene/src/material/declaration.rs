@@ -279,15 +279,15 @@ impl Given {
     }
 }
 
-impl<const N: usize> From<[(&str, f64); N]> for Given {
-    fn from(numbers: [(&str, f64); N]) -> Self {
-        Given(numbers.into_iter().map(|(name, value)| (name.to_string(), vec![value])).collect())
+impl<S: Into<String>> FromIterator<(S, f64)> for Given {
+    fn from_iter<I: IntoIterator<Item = (S, f64)>>(numbers: I) -> Self {
+        Given(numbers.into_iter().map(|(name, value)| (name.into(), vec![value])).collect())
     }
 }
 
-impl<const N: usize> From<[(String, f64); N]> for Given {
-    fn from(numbers: [(String, f64); N]) -> Self {
-        Given(numbers.into_iter().map(|(name, value)| (name, vec![value])).collect())
+impl<S: Into<String>, const N: usize> From<[(S, f64); N]> for Given {
+    fn from(numbers: [(S, f64); N]) -> Self {
+        numbers.into_iter().collect()
     }
 }
 

@@ -3,6 +3,7 @@
 //! A scene is plain data. It says nothing about precision of its storage, threads or blocks; the engine is built from
 //! it. Vectors have three components; a plane scene uses the first two and takes the third as zero.
 
+mod building;
 mod error;
 mod expression;
 mod file;
@@ -131,12 +132,13 @@ impl Dimension {
 }
 
 /// Number format of the particles and the grid.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Precision {
     /// `f32`.
     Single,
     /// `f64`.
+    #[default]
     Double,
 }
 
@@ -152,12 +154,13 @@ pub struct Discretization {
 }
 
 /// Shape functions between particles and grid.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum BasisKind {
     /// Tent functions of the particle's centre.
     Linear,
     /// Tent functions averaged over the particle's undeformed box (uniform GIMP; Bardenhagen and Kober 2004).
+    #[default]
     Gimp,
 }
 
@@ -173,10 +176,11 @@ pub struct Domain {
 }
 
 /// What a face of the domain does. Faces other than `Open` lie on grid nodes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Face {
     /// Nothing; material that reaches it stops the run.
+    #[default]
     Open,
     /// A mirror: no velocity through it, none of its resistance along it.
     Symmetry,
@@ -205,7 +209,7 @@ pub struct Time {
 }
 
 /// When in the step strain and stress are computed (Bardenhagen 2002; Nairn 2003).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum StressUpdate {
     /// From the velocities interpolated at the start of the step (USF).
@@ -213,14 +217,16 @@ pub enum StressUpdate {
     /// From the integrated velocities at the end of the step (USL).
     Last,
     /// From the particles' new velocities, interpolated once more at the end of the step (MUSL).
+    #[default]
     ModifiedLast,
 }
 
 /// What velocities particles take from the grid and give to it, see [`crate::transfer`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Transfer {
     /// FLIP of particles that also carry the rotation of the material around them.
+    #[default]
     Rflip,
     /// FLIP: particles take the grid's change of velocity (Brackbill and Ruppel 1986).
     Flip,
@@ -395,23 +401,4 @@ impl Scene {
 /// JSON has no infinity; scene files write it `"inf"`.
 fn infinity_as_text<S: serde::Serializer>(value: &f64, serializer: S) -> Result<S::Ok, S::Error> {
     if value.is_infinite() { serializer.serialize_str("inf") } else { serializer.serialize_f64(*value) }
-}
-
-impl Default for ContactRule {
-    /// The law of exact surfaces without friction for every pair.
-    fn default() -> Self {
-        ContactRule {
-            between: [None, None],
-            law: ContactLaw::Surface,
-            friction: 0.0,
-            friction_given: false,
-            kinetic_friction: 0.0,
-            friction_decay_speed: 0.0,
-            cohesion: 0.0,
-            adhesion: 0.0,
-            viscosity: 0.0,
-            normal: Normal::Common,
-            max_strain: 0.5,
-        }
-    }
 }

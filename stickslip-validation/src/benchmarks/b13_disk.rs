@@ -9,17 +9,21 @@ use crate::trial::Trial;
 pub const BENCHMARK: Benchmark = Benchmark {
     name: "B13-plane",
     title: "Oblique impact of a disk",
-    source: "Rigid-body impact with Coulomb friction for gross slip; Maw, Barber and Fawcett (1976) for the reversal, here in the plane",
+    source: "Rigid-body impact with Coulomb friction for gross slip; Maw, Barber and Fawcett (1976) for the \
+reversal, here in the plane",
     picture: "
              ___
             /   \\   u0 ->, v down
             \\___/
         ________________  rigid floor
 ",
-    set_up: "Plane strain; a disk of radius R, E = rho = 1, nu = 0.3, touching the floor, not spinning, v/c = 0.02, mu = 0.3, u0 = 2, 7 and 12 mu v.",
-    exact: "The contact point's tangential velocity u = v_x + omega R. Where it slips throughout, with the disk's chi = 3/2 (tangential and normal compliance of a line contact are equal) above u0 = (4 chi - 1) mu v = 5 mu v, \
-friction takes mu (1 + e) v, e = 1, from v_x, and 2 L/R times as much from omega R, with L the height of the centre above the floor, where friction acts: the mean over friction's impulse in the run, 0.96 R. \
-So u changes by -2 mu (1 + 2 L/R) v. At 2 mu v the elastic tangential spring throws it back: u1 < 0. Velocities over v.",
+    set_up: "Plane strain; a disk of radius R, E = rho = 1, nu = 0.3, touching the floor, not spinning, v/c = 0.02, \
+mu = 0.3, u0 = 2, 7 and 12 mu v.",
+    exact: "The contact point's tangential velocity u = v_x + omega R. Where it slips throughout, with the disk's \
+chi = 3/2 (tangential and normal compliance of a line contact are equal) above u0 = (4 chi - 1) mu v = 5 mu v, \
+friction takes mu (1 + e) v, e = 1, from v_x, and 2 L/R times as much from omega R, with L the height of the centre \
+above the floor, where friction acts: the mean over friction's impulse in the run, 0.96 R. So u changes by -2 mu (1 \
++ 2 L/R) v. At 2 mu v the elastic tangential spring throws it back: u1 < 0. Velocities over v.",
     laws: Laws::Contact,
     measure: "R/h",
     resolutions: &[Resolution::quick(10.0), Resolution::quick(20.0), Resolution::full(40.0)],
@@ -50,7 +54,8 @@ So u changes by -2 mu (1 + 2 L/R) v. At 2 mu v the elastic tangential spring thr
         RELEASE,
         Reason {
             laws: &["surface", "gap"],
-            text: "The patch is two cells wide at R/10. The disk skips over it from node to node, which leaves it shaking (e = 0.97) and makes the floor push a tenth of a cell ahead of its centre, which turns it.",
+            text: "The patch is two cells wide at R/10. The disk skips over it from node to node, which leaves it \
+shaking (e = 0.97) and makes the floor push a tenth of a cell ahead of its centre, which turns it.",
         },
     ],
     run,
@@ -70,8 +75,8 @@ fn run(case: &Case) -> Result<Outcome, Failure> {
     Ok(outcome)
 }
 
-/// The contact point's tangential velocity after the impact for one before it, both over the normal speed, and the mean height of the centre over the
-/// impulse of friction.
+/// The contact point's tangential velocity after the impact for one before it, both over the normal speed, and the mean
+/// height of the centre over the impulse of friction.
 fn strike(case: &Case, before: f64, outcome: &mut Outcome) -> Result<(f64, f64), Failure> {
     let h = 1.0 / case.cells;
     let mut trial = Trial::start(

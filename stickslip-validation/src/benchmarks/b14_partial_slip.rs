@@ -21,11 +21,17 @@ pub const BENCHMARK: Benchmark = Benchmark {
         |                    |
         ======================   rigid platen, glued: up, then <-, then ->
 ",
-    set_up: "Plane strain; two equal bodies, E = rho = 1, nu = 0.3, mu = 0.3, 10 b wide and 5 b high, with round faces of R = 20 b. Their platens close in by 0.065 b each, which makes the contact's half-width about b; then they move apart \
-along x by 0.047 b, which makes the tangential load Q about 0.6 mu P; then back by 0.043 b, which makes it about nothing. Each way takes 200 b/c, smoothly, and rests for 50 b/c more, over which forces at nodes are averaged.",
-    exact: "Like bodies: the loads do not couple. Under Q the middle |x| < c sticks, c = b sqrt(1 - Q/(mu P)), and q is mu times the pressure p less an ellipse of half-width c, so <x^2>_q/<x^2>_p - 1 = (c/b)^2: 0 if all of it slid, 1 if nothing did. After \
-unloading from Q to Q', q - 2 q' is left with c'/b = sqrt(1 - (Q - Q')/(2 mu P)): sum of q x^2 over mu sum of p x^2 is (1 - (c/b)^4) - 2 (1 - (c'/b)^4), about -0.2 at Q' = 0, where it would be 0 if the contact had no memory. Loads and b = 2 sqrt(<x^2>_p) are those measured. \
-The edge of stick is where q reaches 0.9 mu p between two nodes, by the exact q at 0.99 c.",
+    set_up: "Plane strain; two equal bodies, E = rho = 1, nu = 0.3, mu = 0.3, 10 b wide and 5 b high, with round \
+faces of R = 20 b. Their platens close in by 0.065 b each, which makes the contact's half-width about b; then they \
+move apart along x by 0.047 b, which makes the tangential load Q about 0.6 mu P; then back by 0.043 b, which makes \
+it about nothing. Each way takes 200 b/c, smoothly, and rests for 50 b/c more, over which forces at nodes are \
+averaged.",
+    exact: "Like bodies: the loads do not couple. Under Q the middle |x| < c sticks, c = b sqrt(1 - Q/(mu P)), and \
+q is mu times the pressure p less an ellipse of half-width c, so <x^2>_q/<x^2>_p - 1 = (c/b)^2: 0 if all of it \
+slid, 1 if nothing did. After unloading from Q to Q', q - 2 q' is left with c'/b = sqrt(1 - (Q - Q')/(2 mu P)): sum \
+of q x^2 over mu sum of p x^2 is (1 - (c/b)^4) - 2 (1 - (c'/b)^4), about -0.2 at Q' = 0, where it would be 0 if the \
+contact had no memory. Loads and b = 2 sqrt(<x^2>_p) are those measured. The edge of stick is where q reaches 0.9 \
+mu p between two nodes, by the exact q at 0.99 c.",
     laws: Laws::Contact,
     measure: "b/h",
     resolutions: &[Resolution::quick(2.0), Resolution::full(4.0), Resolution::full(8.0)],
@@ -56,8 +62,11 @@ The edge of stick is where q reaches 0.9 mu p between two nodes, by the exact q 
         PLANE_OF_PARTICLES,
         Reason {
             laws: &["gap", "separation", "regression", "traction", "kinematic"],
-            text: "It is the pressure that is wrong, not the memory. At b/h = 4 it spreads over 1.6 (gap, separation), 1.7 (regression) and 2.2 times Hertz' half-width (traction, kinematic), and is about twice as large at the rim as in the middle: that of a flat punch, below which shear goes \
-with pressure, so that little slips before all of it does and little is left after unloading. Nodes that stick keep their shear at rest, where it does not change by more than 1.4 % on the finest cells.",
+            text: "It is the pressure that is wrong, not the memory. At b/h = 4 it spreads over 1.6 (gap, \
+separation), 1.7 (regression) and 2.2 times Hertz' half-width (traction, kinematic), and is about twice as large at \
+the rim as in the middle: that of a flat punch, below which shear goes with pressure, so that little slips before \
+all of it does and little is left after unloading. Nodes that stick keep their shear at rest, where it does not \
+change by more than 1.4 % on the finest cells.",
         },
     ],
     run,
@@ -147,7 +156,8 @@ impl Traction {
         self.second(1) / (FRICTION * self.second(0))
     }
 
-    /// Half-width at which q first reaches nearly mu p, from the middle outward; the outermost node where it never does [cells].
+    /// Half-width at which q first reaches nearly mu p, from the middle outward; the outermost node where it never does
+    /// [cells].
     fn edge(&self) -> f64 {
         let at = |x: i64| self.0.get(&x).copied().unwrap_or_default();
         let (mut inner, mut x) = (0.0, 0);
@@ -216,7 +226,8 @@ materials.elastic = {{ density = 1, neo_hookean = {{ young_modulus = 1, poisson_
 mod tests {
     use super::*;
 
-    /// The exact traction at b/h = 200, under Q = 0.6 mu P and after it, has the moments, shares and edge that the report states.
+    /// The exact traction at b/h = 200, under Q = 0.6 mu P and after it, has the moments, shares and edge that the
+    /// report states.
     #[test]
     fn measures_of_the_exact_traction_are_exact() {
         let ellipse = |x: i64, half: f64| (half * half - (x * x) as f64).max(0.0).sqrt();

@@ -17,10 +17,12 @@ pub const BENCHMARK: Benchmark = Benchmark {
             |_|
         ____|_|____  rigid floor
 ",
-    set_up: "Plane strain; ten square blocks of side 1, E = rho = 1, nu = 0.3, on each other at the start, mu = 0.3; the load comes at once: 10 rho g/E = 0.005; 1000 transits of the \
-stack (quick: 25).",
-    exact: "No sinking, no creep, a mean stress of the base of 10 rho g. Sinking is the overlap of two blocks' faces, each face the mean of its row of particles and their \
-half-height as strained; the worst interface, averaged over the last fifth of the run; creep its change from the fifth before. Stress is that of the lowest row in these two fifths.",
+    set_up: "Plane strain; ten square blocks of side 1, E = rho = 1, nu = 0.3, on each other at the start, mu = \
+0.3; the load comes at once: 10 rho g/E = 0.005; 1000 transits of the stack (quick: 25).",
+    exact: "No sinking, no creep, a mean stress of the base of 10 rho g. Sinking is the overlap of two blocks' \
+faces, each face the mean of its row of particles and their half-height as strained; the worst interface, averaged \
+over the last fifth of the run; creep its change from the fifth before. Stress is that of the lowest row in these \
+two fifths.",
     laws: Laws::Contact,
     measure: "block/h",
     resolutions: &[Resolution::quick(4.0), Resolution::full(8.0)],
@@ -63,7 +65,8 @@ fn run(case: &Case) -> Result<Outcome, Failure> {
     let end = transits * f64::from(BLOCKS);
     let block = |i: u32| {
         format!(
-            "[[bodies]]\nname = \"block_{i}\"\nmaterial = \"elastic\"\nshape.box = {{ min = [0, {i}], max = [1, {}] }}\n",
+            "[[bodies]]\nname = \"block_{i}\"\nmaterial = \"elastic\"\nshape.box = {{ min = [0, {i}], max = [1, {}] \
+}}\n",
             i + 1
         )
     };

@@ -15,10 +15,12 @@ pub const BENCHMARK: Benchmark = Benchmark {
              |   first, L      ||   second, L     |   at rest
              +-----------------++-----------------+
 ",
-    set_up: "Plane strain with Poisson's ratio 0, so that the bars stay straight; units of L = rho = E = 1, c = sqrt(E/rho). Bars four \
-cells high, neo-Hookean, faces touching on grid nodes at the start; v/c = 0.002 and 0.02; without friction, 3 L/c.",
-    exact: "Stress -rho c v/2 behind the fronts; at L/c kinetic and strain energy are equal; contact lasts 2 L/c; then the first bar rests, the second \
-moves at v, and no energy is lost. Contact counts as long as its force is a tenth of the exact one.",
+    set_up: "Plane strain with Poisson's ratio 0, so that the bars stay straight; units of L = rho = E = 1, c = \
+sqrt(E/rho). Bars four cells high, neo-Hookean, faces touching on grid nodes at the start; v/c = 0.002 and 0.02; \
+without friction, 3 L/c.",
+    exact: "Stress -rho c v/2 behind the fronts; at L/c kinetic and strain energy are equal; contact lasts 2 L/c; \
+then the first bar rests, the second moves at v, and no energy is lost. Contact counts as long as its force is a \
+tenth of the exact one.",
     laws: Laws::Contact,
     measure: "L/h",
     resolutions: &[Resolution::quick(25.0), Resolution::quick(50.0), Resolution::full(100.0)],
@@ -55,7 +57,8 @@ moves at v, and no energy is lost. Contact counts as long as its force is a tent
         RELEASE,
         Reason {
             laws: &["traction"],
-            text: "Two nodes deep the bodies are held together as one while they press; what the grid does not resolve there is lost, and the second bar gets less.",
+            text: "Two nodes deep the bodies are held together as one while they press; what the grid does not \
+resolve there is lost, and the second bar gets less.",
         },
     ],
     run,

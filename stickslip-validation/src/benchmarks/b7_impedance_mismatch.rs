@@ -16,10 +16,13 @@ pub const BENCHMARK: Benchmark = Benchmark {
              |  Z = rho c   ||  Z2 = rho2 c2           |   at rest
              +--------------++-------------------------+
 ",
-    set_up: "Plane strain, nu = 0; bars 1 and 2 long and four cells high, v = 0.01, faces touching on grid nodes at the start; first bar E = rho = 1; second bar (E, rho) = (10, 10), \
-(1, 4), (16, 1).",
-    exact: "sigma = -Z1 Z2 v/(Z1 + Z2) in both bars behind the fronts. Measured before waves come back from the free ends, when the front in the second bar has gone 0.8 to 1.8: the second bar's stress from two cells behind the interface to half \
-of the front's way, as behind the front the grid rings over ten cells and more (a bar cut in two and glued rings alike); and the difference of the bars' stresses in the four cells on either side of the interface; both over the exact stress, the worst of the three pairs.",
+    set_up: "Plane strain, nu = 0; bars 1 and 2 long and four cells high, v = 0.01, faces touching on grid nodes at \
+the start; first bar E = rho = 1; second bar (E, rho) = (10, 10), (1, 4), (16, 1).",
+    exact: "sigma = -Z1 Z2 v/(Z1 + Z2) in both bars behind the fronts. Measured before waves come back from the \
+free ends, when the front in the second bar has gone 0.8 to 1.8: the second bar's stress from two cells behind the \
+interface to half of the front's way, as behind the front the grid rings over ten cells and more (a bar cut in two \
+and glued rings alike); and the difference of the bars' stresses in the four cells on either side of the interface; \
+both over the exact stress, the worst of the three pairs.",
     laws: Laws::Contact,
     measure: "L/h",
     resolutions: &[Resolution::quick(25.0), Resolution::quick(50.0), Resolution::full(100.0)],

@@ -10,7 +10,8 @@ use std::f64::consts::{FRAC_PI_2, PI};
 pub const BENCHMARK: Benchmark = Benchmark {
     name: "wedge",
     title: "Wedge blunted by a flat die",
-    source: "Slip lines of the rigid-plastic body: Hill, Lee and Tupper (1947), Proc. R. Soc. Lond. A 188, 273; Hill (1950), The Mathematical Theory of Plasticity, chapter VIII",
+    source: "Slip lines of the rigid-plastic body: Hill, Lee and Tupper (1947), Proc. R. Soc. Lond. A 188, 273; \
+Hill (1950), The Mathematical Theory of Plasticity, chapter VIII",
     picture: "
              ==================   rigid die, without friction, down by t
               ____c____|
@@ -20,11 +21,15 @@ pub const BENCHMARK: Benchmark = Benchmark {
       /___________:___________\\
       /////////////////////////   rigid floor, glued
 ",
-    set_up: "Plane strain; the wedge is L high and has a half-angle of 60 degrees, von Mises without hardening, Y = E/500, nu = 0.3, GIMP, half of it before a mirror. The die comes down by t = 0.15 L within 100 L/c, smoothly, and \
+    set_up: "Plane strain; the wedge is L high and has a half-angle of 60 degrees, von Mises without hardening, Y = \
+E/500, nu = 0.3, GIMP, half of it before a mirror. The die comes down by t = 0.15 L within 100 L/c, smoothly, and \
 rests for 20 more.",
-    exact: "Below the die a triangle, beside it a fan of the angle pi/2 - delta, then a triangle under the lip, whose face is as long as the contact's half-width c. It ends on the old face, c (1 + cos delta) = (t + c sin delta) \
-tan 60, and holds what the die displaced, t^2 tan 60 = (c - t tan 60) c sin delta: c = 2.7155 t, delta = 40.4 degrees. Pressure 2k (1 + pi/2 - delta) = 3.730 k, k = Y/sqrt(3). Force is measured as its impulse over that of the exact force, over the \
-second half of the way, and at the end of the rest; width at the end, by the particles that are less than half a cell below the die.",
+    exact: "Below the die a triangle, beside it a fan of the angle pi/2 - delta, then a triangle under the lip, \
+whose face is as long as the contact's half-width c. It ends on the old face, c (1 + cos delta) = (t + c sin delta) \
+tan 60, and holds what the die displaced, t^2 tan 60 = (c - t tan 60) c sin delta: c = 2.7155 t, delta = 40.4 \
+degrees. Pressure 2k (1 + pi/2 - delta) = 3.730 k, k = Y/sqrt(3). Force is measured as its impulse over that of the \
+exact force, over the second half of the way, and at the end of the rest; width at the end, by the particles that \
+are less than half a cell below the die.",
     laws: Laws::Contact,
     measure: "L/h",
     resolutions: &[Resolution::quick(32.0), Resolution::full(64.0)],
@@ -53,7 +58,8 @@ second half of the way, and at the end of the rest; width at the end, by the par
         AT_A_DISTANCE,
         Reason {
             laws: &["gap", "separation"],
-            text: "The faces beside the contact run towards the die at 40 degrees, where these laws know a surface to half a cell.",
+            text: "The faces beside the contact run towards the die at 40 degrees, where these laws know a surface \
+to half a cell.",
         },
     ],
     run,
@@ -78,7 +84,8 @@ const END: f64 = 120.0;
 fn exact() -> (f64, f64) {
     let slope = HALF_ANGLE.tan();
     let width = |delta: f64| slope / (1.0 + delta.cos() - slope * delta.sin());
-    // From a lip's face that is as steep as the wedge's on, what the lip holds beyond what the die displaced grows with delta.
+    // From a lip's face that is as steep as the wedge's on, what the lip holds beyond what the die displaced grows with
+    // delta.
     let (mut low, mut high) = (0.0, FRAC_PI_2 - HALF_ANGLE);
     while (width(high) - slope) * width(high) * high.sin() < slope {
         high += 0.01;

@@ -21,12 +21,16 @@ pub const BENCHMARK: Benchmark = Benchmark {
              |________________________|
              /////// glued slab ///////
 ",
-    set_up: "Plane strain; a block 1 m x 0.5 m on a bed 3 m x 0.3 m, both of soft rubber (E = 1 MPa, nu = 0.3, 1000 kg/m^3), the bed glued on \
-a rigid slab. They touch at the start. Gravity presses with 10 m/s^2 and pushes sideways with 6 m/s^2; mu = 0.3; 0.6 s. Once along the grid, once turned through it by 20 degrees.",
-    exact: "a = 6 - 0.3 * 10 = 3 m/s^2. The load comes at once, so the block bounces on its bed, by 0.1 m/s, and weighs on it now more, now less: its acceleration at any time is 6 - 0.3 N/m with the push N of \
-the bed, and a straight line through its speed is off by as much as the bounce has changed from one end to the other, some 2 %. By Newton's law across the bed N/m = 10 + dv_away/dt, so d(v_along + mu v_away)/dt = 6 - 0.3 * 10 at any \
-time, however it bounces, and only if friction is mu N and points back. Its least-squares slope over the second half of the run is measured, over the exact one. A block that nothing carries would have it too, so its sinking is \
-measured beside it: the mean way toward the bed in that half.",
+    set_up: "Plane strain; a block 1 m x 0.5 m on a bed 3 m x 0.3 m, both of soft rubber (E = 1 MPa, nu = 0.3, 1000 \
+kg/m^3), the bed glued on a rigid slab. They touch at the start. Gravity presses with 10 m/s^2 and pushes sideways \
+with 6 m/s^2; mu = 0.3; 0.6 s. Once along the grid, once turned through it by 20 degrees.",
+    exact: "a = 6 - 0.3 * 10 = 3 m/s^2. The load comes at once, so the block bounces on its bed, by 0.1 m/s, and \
+weighs on it now more, now less: its acceleration at any time is 6 - 0.3 N/m with the push N of the bed, and a \
+straight line through its speed is off by as much as the bounce has changed from one end to the other, some 2 %. By \
+Newton's law across the bed N/m = 10 + dv_away/dt, so d(v_along + mu v_away)/dt = 6 - 0.3 * 10 at any time, however \
+it bounces, and only if friction is mu N and points back. Its least-squares slope over the second half of the run \
+is measured, over the exact one. A block that nothing carries would have it too, so its sinking is measured beside \
+it: the mean way toward the bed in that half.",
     laws: Laws::Contact,
     measure: "block length/h",
     resolutions: &[Resolution::quick(10.0), Resolution::full(20.0)],
@@ -62,7 +66,8 @@ fn run(case: &Case) -> Result<Outcome, Failure> {
     Ok(outcome)
 }
 
-/// The block's acceleration along the bed, which is turned through the grid by `turn` [m/s^2], and how deep it sinks [cells].
+/// The block's acceleration along the bed, which is turned through the grid by `turn` [m/s^2], and how deep it sinks
+/// [cells].
 fn push(case: &Case, turn: f64, outcome: &mut Outcome) -> Result<(f64, f64), Failure> {
     let h = 1.0 / case.cells;
     let (sin, cos) = turn.sin_cos();

@@ -20,10 +20,14 @@ pub const BENCHMARK: Benchmark = Benchmark {
           |  | rubber |  |
           |__|________|__|  rigid, without friction
 ",
-    set_up: "Plane strain; a unit square, E = rho = 1, nu = 0.3, neo-Hookean, GIMP, between a rigid floor, two rigid walls and a rigid piston that comes down by 0.5 within 20 L/c, smoothly, and rests for 10 more, in which \
-forces and gaps are averaged; all contacts by the law, without friction. Once along the grid, once turned through it by 20 degrees. (The same block with free sides would buckle: at half its height its sides are beyond Biot's limit.)",
-    exact: "F = diag(1, 1/2, 1) everywhere, sigma = K/2 (J - 1/J) I + G J^(-5/3) dev(F F^T) with J = 1/2: the piston's force is -sigma_yy times 1, a wall's -sigma_xx times 1/2. Faces stay closed. Measured is what is farthest off: of piston and floor, \
-of the two walls, of the mean gaps of all four.",
+    set_up: "Plane strain; a unit square, E = rho = 1, nu = 0.3, neo-Hookean, GIMP, between a rigid floor, two \
+rigid walls and a rigid piston that comes down by 0.5 within 20 L/c, smoothly, and rests for 10 more, in which \
+forces and gaps are averaged; all contacts by the law, without friction. Once along the grid, once turned through \
+it by 20 degrees. (The same block with free sides would buckle: at half its height its sides are beyond Biot's \
+limit.)",
+    exact: "F = diag(1, 1/2, 1) everywhere, sigma = K/2 (J - 1/J) I + G J^(-5/3) dev(F F^T) with J = 1/2: the \
+piston's force is -sigma_yy times 1, a wall's -sigma_xx times 1/2. Faces stay closed. Measured is what is farthest \
+off: of piston and floor, of the two walls, of the mean gaps of all four.",
     laws: Laws::Contact,
     measure: "L/h",
     resolutions: &[Resolution::quick(8.0), Resolution::quick(16.0), Resolution::full(32.0)],
@@ -44,8 +48,10 @@ of the two walls, of the mean gaps of all four.",
         RELEASE,
         Reason {
             laws: &["surface"],
-            text: "A row of particles that is pressed to half a cell no longer lies as the grid does, and the functions of a box, which GIMP keeps, are not those of the box as it is now: \
-of first order in the cell. With linear functions particles that cross cells lose the stress itself (forces 5 to 20 % too low, finer cells worse), whatever the law of contact.",
+            text: "A row of particles that is pressed to half a cell no longer lies as the grid does, and the \
+functions of a box, which GIMP keeps, are not those of the box as it is now: of first order in the cell. With \
+linear functions particles that cross cells lose the stress itself (forces 5 to 20 % too low, finer cells worse), \
+whatever the law of contact.",
         },
     ],
     run,

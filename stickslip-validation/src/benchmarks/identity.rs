@@ -16,9 +16,11 @@ pub const BENCHMARK: Benchmark = Benchmark {
             |  whole  |    =     |   / glued
             |_________|          |__/______|
 ",
-    set_up: "Plane strain; a block of soft rubber 0.8 m x 0.6 m (E = 0.1 MPa, nu = 0.3), flying at (2, -1) m/s onto a rigid floor 0.1 m below that glues it; once whole, and cut along the \
-grid, at 30 and at 70 degrees to it; in the full tier also in space, 0.4 m thick, along a plane oblique to all axes. 0.3 s.",
-    exact: "The same motion of every particle. Measured are the largest differences of position over 1 m and of velocity over 3 m/s.",
+    set_up: "Plane strain; a block of soft rubber 0.8 m x 0.6 m (E = 0.1 MPa, nu = 0.3), flying at (2, -1) m/s onto \
+a rigid floor 0.1 m below that glues it; once whole, and cut along the grid, at 30 and at 70 degrees to it; in the \
+full tier also in space, 0.4 m thick, along a plane oblique to all axes. 0.3 s.",
+    exact: "The same motion of every particle. Measured are the largest differences of position over 1 m and of \
+velocity over 3 m/s.",
     laws: Laws::Glued,
     measure: "1 m/h",
     resolutions: &[Resolution::quick(10.0), Resolution::full(20.0)],
@@ -75,7 +77,8 @@ struct Particle {
     velocity: [f64; 3],
 }
 
-/// The block's particles at the end in the order of their places at the start; cut through its centre across a normal, or whole.
+/// The block's particles at the end in the order of their places at the start; cut through its centre across a normal,
+/// or whole.
 fn drop(
     case: &Case,
     dimension: &str,

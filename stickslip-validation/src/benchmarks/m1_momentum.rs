@@ -16,9 +16,11 @@ pub const BENCHMARK: Benchmark = Benchmark {
            ->  \\ | /  <-    meet at one node
                 \\|/
 ",
-    set_up: "Plane strain and space; a ball of radius R cut into 2, 3, 4 or 5 pieces through an axis near a node, densities from 1 to 10, E = 1, nu = 0.3, which fly at the node from all \
-sides at drawn velocities of about 0.02; mu = 0.3 and infinite; 25 steps. Eight draws of each (quick: one).",
-    exact: "The impulses of contact on the bodies of a node add up to nothing. Measured is the largest sum at any node in any step, over the sum of the bodies' momenta there before contact.",
+    set_up: "Plane strain and space; a ball of radius R cut into 2, 3, 4 or 5 pieces through an axis near a node, \
+densities from 1 to 10, E = 1, nu = 0.3, which fly at the node from all sides at drawn velocities of about 0.02; mu \
+= 0.3 and infinite; 25 steps. Eight draws of each (quick: one).",
+    exact: "The impulses of contact on the bodies of a node add up to nothing. Measured is the largest sum at any \
+node in any step, over the sum of the bodies' momenta there before contact.",
     laws: Laws::All,
     measure: "R/h",
     resolutions: &[Resolution::quick(3.0), Resolution::full(6.0)],

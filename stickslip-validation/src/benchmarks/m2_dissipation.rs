@@ -16,8 +16,10 @@ pub const BENCHMARK: Benchmark = Benchmark {
            ->  \\ | /  <-    meet at one node
                 \\|/
 ",
-    set_up: "The scenes of M1. Judged is the first step, in which no stress acts yet, so that what contact does to a node is all that happens to it.",
-    exact: "The kinetic energy of a node's bodies is not larger than before contact. Measured is the largest gain at any node over the energy there before.",
+    set_up: "The scenes of M1. Judged is the first step, in which no stress acts yet, so that what contact does to \
+a node is all that happens to it.",
+    exact: "The kinetic energy of a node's bodies is not larger than before contact. Measured is the largest gain \
+at any node over the energy there before.",
     laws: Laws::All,
     measure: "R/h",
     resolutions: &[Resolution::quick(3.0), Resolution::full(6.0)],

@@ -16,10 +16,12 @@ pub const BENCHMARK: Benchmark = Benchmark {
              |  first  |<-- g --> | second  |
              +---------+          +---------+
 ",
-    set_up: "Plane strain, Poisson's ratio 0; two bars of 8 x 4 cells filled from the lattice, with faces on it, and two of 8.37 x 3.81 cells with fitted particles and faces anywhere; a gap of 2 cells and so every smaller gap on \
-the way; v/c = 0.02. The whole drifts against the grid so that the surfaces meet on a node and a quarter, a half and three quarters of a cell behind it. 1 to 4 \
-particles a cell and direction.",
-    exact: "Contact begins at g/v. Measured is (g/v - t) v/h, in cells: positive is too early; the worst of the four meeting places.",
+    set_up: "Plane strain, Poisson's ratio 0; two bars of 8 x 4 cells filled from the lattice, with faces on it, \
+and two of 8.37 x 3.81 cells with fitted particles and faces anywhere; a gap of 2 cells and so every smaller gap on \
+the way; v/c = 0.02. The whole drifts against the grid so that the surfaces meet on a node and a quarter, a half \
+and three quarters of a cell behind it. 1 to 4 particles a cell and direction.",
+    exact: "Contact begins at g/v. Measured is (g/v - t) v/h, in cells: positive is too early; the worst of the \
+four meeting places.",
     laws: Laws::Contact,
     measure: "bar length/h",
     resolutions: &[Resolution::quick(8.0)],
@@ -41,7 +43,8 @@ const LATTICE: [&str; 4] =
     ["cells too early, 1 particle a side", "2 particles a side", "3 particles a side", "4 particles a side"];
 const FITTED: [&str; 4] =
     ["fitted, 1 particle a side", "fitted, 2 particles", "fitted, 3 particles", "fitted, 4 particles"];
-const WHY: &str = "a twentieth of a cell is small against elastic approach at any resolution; published laws: 1 to 2 cells, gap tests 0.3";
+const WHY: &str = "a twentieth of a cell is small against elastic approach at any resolution; published laws: 1 to \
+2 cells, gap tests 0.3";
 const GAP: f64 = 2.0;
 const SPEED: f64 = 0.02;
 

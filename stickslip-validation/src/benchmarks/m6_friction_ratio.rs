@@ -17,9 +17,11 @@ pub const BENCHMARK: Benchmark = Benchmark {
          ________________
         |________________|
 ",
-    set_up: "Plane strain; a block of 12 x 6 cells hits a block of 32 x 8 cells of the same material (nu = 0.3), face to face, at v/c = 0.005 and \
-slides along it at u/c = 0.05, fast enough to slide everywhere and throughout; mu = 0.3. Once along the grid, once turned through it by 30 degrees.",
-    exact: "The upper block's change of momentum along the face over that across it is mu. Measured is their ratio over mu.",
+    set_up: "Plane strain; a block of 12 x 6 cells hits a block of 32 x 8 cells of the same material (nu = 0.3), \
+face to face, at v/c = 0.005 and slides along it at u/c = 0.05, fast enough to slide everywhere and throughout; mu \
+= 0.3. Once along the grid, once turned through it by 30 degrees.",
+    exact: "The upper block's change of momentum along the face over that across it is mu. Measured is their ratio \
+over mu.",
     laws: Laws::Contact,
     measure: "block length/h",
     resolutions: &[Resolution::quick(12.0), Resolution::full(24.0)],
@@ -48,7 +50,8 @@ fn run(case: &Case) -> Result<Outcome, Failure> {
     Ok(outcome)
 }
 
-/// Impulse along the face over impulse across it; the face is turned through the grid by `turn` [rad]. Units of block length = rho = E = 1.
+/// Impulse along the face over impulse across it; the face is turned through the grid by `turn` [rad]. Units of block
+/// length = rho = E = 1.
 fn strike(case: &Case, turn: f64, outcome: &mut Outcome) -> Result<f64, Failure> {
     let h = 1.0 / case.cells;
     let (sin, cos) = turn.sin_cos();

@@ -19,15 +19,16 @@ const STEPS: f64 = 8000.0;
 impl Impact {
     /// Tangential velocity of the contact point after the impact for one before it, both over the normal speed.
     ///
-    /// Hertz's contact with partial slip is that of a row of independent springs at `x` which a parabola `x^2/R` dents by `d`
-    /// (Jaeger 1995; Lyashenko and Popov 2015, Sci. Rep. 5, 8479, get the curve of Maw et al. with it):
+    /// Hertz's contact with partial slip is that of a row of independent springs at `x` which a parabola `x^2/R` dents
+    /// by `d` (Jaeger 1995; Lyashenko and Popov 2015, Sci. Rep. 5, 8479, get the curve of Maw et al. with it):
     ///
     /// ```text
-    /// dF_n = E* w dx,  w = d - x^2/R >= 0;   dF_t = G* s dx,  ds/dt = u until G* |s| = mu E* w;   G*/E* = 2(1 - nu)/(2 - nu)
-    /// m d''= -F_n,   m v' = -F_t,   (2/5) m R^2 omega' = F_t (R - d),   u = v - omega (R - d)
+    /// dF_n = E* w dx,  w = d - x^2/R >= 0;   dF_t = G* s dx,  ds/dt = u until G* |s| = mu E* w;   G*/E* = 2(1 - nu)/(2
+    /// - nu) m d''= -F_n,   m v' = -F_t,   (2/5) m R^2 omega' = F_t (R - d),   u = v - omega (R - d)
     /// ```
-    /// Exact for the half-space where normal and tangential compliance do not couple. The contact lies `R - d` below the centre: with a dent
-    /// of nothing `(2/7) m u' = -F_t`, which is Maw's curve. What comes out is `v - omega R`, the sphere being round again. Units of R = E* = m = 1.
+    /// Exact for the half-space where normal and tangential compliance do not couple. The contact lies `R - d` below
+    /// the centre: with a dent of nothing `(2/7) m u' = -F_t`, which is Maw's curve. What comes out is `v - omega R`,
+    /// the sphere being round again. Units of R = E* = m = 1.
     pub fn after(&self, before: f64) -> f64 {
         let Impact { poisson_ratio: nu, friction, dent: deepest } = *self;
         let stiffness = 2.0 * (1.0 - nu) / (2.0 - nu);
@@ -89,8 +90,8 @@ mod tests {
         assert!((smooth.after(0.6) - 0.6).abs() < 1e-12);
     }
 
-    /// Gross slip pulls with mu F_n at R - d, whose mean over the impulse of Hertz's impact, int d F_n dt/int F_n dt, is found here by quadrature
-    /// over the dent: dt = dd/sqrt(1 - d^2.5), F_n = d^1.5.
+    /// Gross slip pulls with mu F_n at R - d, whose mean over the impulse of Hertz's impact, int d F_n dt/int F_n dt,
+    /// is found here by quadrature over the dent: dt = dd/sqrt(1 - d^2.5), F_n = d^1.5.
     #[test]
     fn a_dent_shortens_the_arm_of_friction() {
         let impact = Impact { poisson_ratio: 0.4, friction: 0.3, dent: 0.04 };

@@ -27,8 +27,8 @@ impl Side {
     }
 }
 
-/// Cuts a ball into so many pieces that meet at one node, lets them fly at it from all sides, and shows every node with two or
-/// more pieces after every step. Once sticking and once slipping, in the plane and in space, a few times each
+/// Cuts a ball into so many pieces that meet at one node, lets them fly at it from all sides, and shows every node with
+/// two or more pieces after every step. Once sticking and once slipping, in the plane and in space, a few times each
 /// (quick: once).
 pub fn meet(
     case: &Case,
@@ -74,7 +74,8 @@ fn fly(
     Ok(())
 }
 
-/// Pieces of a ball of radius 1 around a point near a node. Cuts go through one axis, which in space leans; densities, from 1 to 10, cuts and velocities are drawn.
+/// Pieces of a ball of radius 1 around a point near a node. Cuts go through one axis, which in space leans; densities,
+/// from 1 to 10, cuts and velocities are drawn.
 fn scene(case: &Case, (dimension, bodies): (&str, usize), friction: f64, random: &mut Random) -> String {
     let h = 1.0 / case.cells;
     let center: [f64; 3] = std::array::from_fn(|_| 0.5 * h * random.next());
@@ -91,7 +92,8 @@ fn scene(case: &Case, (dimension, bodies): (&str, usize), friction: f64, random:
     let jitter = if bodies == 2 { 0.0 } else { 0.2 * share };
     let cuts: Vec<f64> = (0..bodies).map(|i| turn + share * i as f64 + jitter * random.next()).collect();
     let mut text = format!(
-        "title = \"Bodies that meet at a node\"\nspace = {{ dimension = \"{dimension}\", cell = {h} }}\ntime = {{ end = 100, stress_update = \"last\" }}\n"
+        "title = \"Bodies that meet at a node\"\nspace = {{ dimension = \"{dimension}\", cell = {h} }}\ntime = {{ \
+end = 100, stress_update = \"last\" }}\n"
     );
     for i in 0..bodies {
         let (from, to) = (cuts[i], if i + 1 < bodies { cuts[i + 1] } else { cuts[0] + 2.0 * PI });

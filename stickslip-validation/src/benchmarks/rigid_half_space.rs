@@ -16,10 +16,11 @@ pub const BENCHMARK: Benchmark = Benchmark {
         ________________
         |_______________|   rigid, or a thousand times stiffer and denser
 ",
-    set_up: "Plane strain; a disk of radius R, E = rho = 1, nu = 0.3, half a cell of 4 particles above a floor 4 R wide and R/2 thick; v/c = 0.05, without friction, until the disk flies off. The floor \
-is rigid, or deformable with E = rho = 1000 and free.",
-    exact: "Both give the same motion and force, but for the floor's recoil (0.2 %) and compliance (0.1 %). Measured are the differences of restitution and of the \
-largest force over a tenth of R/c, relative.",
+    set_up: "Plane strain; a disk of radius R, E = rho = 1, nu = 0.3, half a cell of 4 particles above a floor 4 R \
+wide and R/2 thick; v/c = 0.05, without friction, until the disk flies off. The floor is rigid, or deformable with \
+E = rho = 1000 and free.",
+    exact: "Both give the same motion and force, but for the floor's recoil (0.2 %) and compliance (0.1 %). \
+Measured are the differences of restitution and of the largest force over a tenth of R/c, relative.",
     laws: Laws::Contact,
     measure: "R/h",
     resolutions: &[Resolution::quick(8.0), Resolution::full(16.0)],

@@ -14,7 +14,8 @@ pub struct Roll {
     pub distance: f64,
     /// Speed at the end over that of the rigid sphere.
     pub speed: f64,
-    /// Acceleration by least squares over the second half of the run over that of the rigid sphere at the end; infinite where that is zero.
+    /// Acceleration by least squares over the second half of the run over that of the rigid sphere at the end; infinite
+    /// where that is zero.
     pub acceleration: f64,
     /// Way in the second half of the run over that of the rigid sphere.
     pub mean_speed: f64,

@@ -14,7 +14,7 @@ pub use widest::{WidestContact, WidestContacts};
 
 use crate::door::Simulation;
 use crate::march::March;
-use crate::observe::{Manifest, OutputFolder, Recorder, Status};
+use crate::observe::{Manifest, Observer, OutputFolder, Recorder, Status};
 use crate::scene::Scene;
 use clock::Clock;
 use lookout::Lookout;
@@ -35,6 +35,14 @@ pub struct RunOptions {
     pub threads: usize,
 }
 
+impl RunOptions {
+    /// A run that nobody stops, on all processors.
+    pub fn new(out: impl Into<PathBuf>) -> Self {
+        let threads = std::thread::available_parallelism().map_or(1, usize::from);
+        RunOptions { out: out.into(), stop: Arc::default(), threads }
+    }
+}
+
 /// Runs a scene from the present state of its simulation to the end time, and writes what the scene asks for.
 ///
 /// Nothing is written before the folder is found usable. `progress` is called about ten times a second of wall time,
@@ -50,6 +58,21 @@ pub fn run(
     options: &RunOptions,
     progress: &mut dyn FnMut(&Progress),
 ) -> Result<Summary, RunError> {
+    run_with(scene, simulation, options, &mut [], progress)
+}
+
+/// [`run`], with further observers beside those that the scene asks for: each is asked after the first step that
+/// reaches its [`Observer::next`], and at the start and the end.
+///
+/// # Errors
+/// As [`run`]; an observer's own error ends the run too.
+pub fn run_with(
+    scene: &Scene,
+    simulation: &mut dyn Simulation,
+    options: &RunOptions,
+    observers: &mut [&mut dyn Observer],
+    progress: &mut dyn FnMut(&Progress),
+) -> Result<Summary, RunError> {
     let folder = OutputFolder::prepare(&options.out)?;
     let clock = Clock::start(simulation, options.threads);
     let mut manifest = Manifest::new(scene, clock.performance(simulation));
@@ -58,7 +81,8 @@ pub fn run(
 
     let mut verdict = Verdict::new(scene, simulation);
     let mut lookout = Lookout::new(simulation.time());
-    let outcome = Recorder::new(scene, &folder).map_err(RunError::from).and_then(|recorder| {
+    let outcome = Recorder::new(scene, &folder).map_err(RunError::from).and_then(|mut recorder| {
+        observers.iter_mut().for_each(|observer| recorder.add(&mut **observer));
         let (verdict, lookout) = (&mut verdict, &mut lookout);
         let watched = Watched { scene, simulation, recorder, verdict, lookout, options, clock: &clock };
         watched.to(scene.time.end, progress)
@@ -80,7 +104,7 @@ pub fn run(
 struct Watched<'a> {
     scene: &'a Scene,
     simulation: &'a mut dyn Simulation,
-    recorder: Recorder,
+    recorder: Recorder<'a>,
     verdict: &'a mut Verdict,
     lookout: &'a mut Lookout,
     options: &'a RunOptions,

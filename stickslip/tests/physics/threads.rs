@@ -124,14 +124,13 @@ fn in_the_plane() {
     assert!(metal.contains("von_mises"));
     compare("metal", &metal, 200);
     let plane = scene("plane-strain", "gimp", "modified-last");
-    let floor = "shape.box = { min = [0, -0.5], max = [4, 4] }";
     let unbounded = plane
         .replace(
-            "shape.box = { min = [0, -0.5], max = [3, 0] }",
+            "shape.box = { min = [0, -0.2], max = [3, 0] }",
             "shape.half_space = { point = [0, 0], normal = [0, 1] }",
         )
         .replace("rigid = {}", "rigid.velocity = [0, 0.5]");
-    assert!(unbounded.contains("half_space") && unbounded.contains("rigid.velocity"), "{floor}");
+    assert!(unbounded.contains("half_space") && unbounded.contains("rigid.velocity"));
     compare("a floor without bounds that rises", &unbounded, 200);
     // Linear functions with the stress updated last do not live long, whatever the threads.
     compare("linear, modified-last", &scene("plane-strain", "linear", "modified-last"), 200);

@@ -20,7 +20,7 @@ table! {
         /// Where it is at the start: shape.ball = { center = [0, 0, 1], radius = 1 }.
         shape: Shape,
         /// How its particles are laid out.
-        #[schemars(extend("default" = "lattice"))]
+        #[schemars(extend("default" = Arrangement::default()))]
         particles: Option<Word<Arrangement>>,
         /// Particles along each side of a cell, 1 to 8; by default as many as space has.
         particles_per_side: Option<Count>,
@@ -74,19 +74,16 @@ pub fn resolve(
             return Err(body.name.refused(&name, "a name that no other body has"));
         }
         let material = body.material.name_of(context, "the name of a material", &names)?;
-        resolved.push(scene::Body {
-            name,
-            material: names.iter().position(|name| *name == material).expect("name_of found it in names"),
-            shape: body.shape.resolve(context)?,
-            particles: body
-                .particles
-                .as_ref()
-                .map_or(Ok(Arrangement::Lattice), |word| word.value(context))?,
-            particles_per_side: (body.particles_per_side.as_ref())
-                .map(|n| n.value(context, 1..=8))
-                .transpose()?,
-            motion: body.motion(context)?,
-        });
+        let material = names.iter().position(|name| *name == material).expect("name_of found it in names");
+        let mut whole = scene::Body::new(&name, material, body.shape.resolve(context)?);
+        if let Some(word) = &body.particles {
+            whole.particles = word.value(context)?;
+        }
+        if let Some(count) = &body.particles_per_side {
+            whole.particles_per_side = Some(count.value(context, 1..=8)?);
+        }
+        whole.motion = body.motion(context)?;
+        resolved.push(whole);
     }
     Ok(resolved)
 }

@@ -15,7 +15,7 @@ table! {
         /// The pair it holds for: two names of bodies or materials; "any", the default for both, matches every body.
         between: Option<Pair>,
         /// When the bodies push on each other.
-        #[schemars(extend("default" = "surface"))]
+        #[schemars(extend("default" = ContactRule::default().law))]
         law: Option<Word<ContactLaw>>,
         /// Coefficient of friction; inf sticks, 0 is frictionless.
         #[schemars(extend("default" = 0))]
@@ -39,7 +39,7 @@ table! {
         /// and take no "own".
         normal: Option<Word<Normal>>,
         /// Largest strain of a cell by contact in one step, the paper's gamma, above 0 and up to 1.
-        #[schemars(extend("default" = 0.5))]
+        #[schemars(extend("default" = ContactRule::default().max_strain))]
         max_strain: Option<Quantity<Ratio>>,
     }
 }
@@ -110,7 +110,8 @@ pub fn resolve(
 
 impl Contact {
     fn resolve(&self, names: &[&str], context: &Context) -> Result<ContactRule, Fault> {
-        let default = ContactRule::default();
+        let law = self.law.as_ref().map_or(Ok(ContactRule::default().law), |word| word.value(context))?;
+        let default = ContactRule::new(law);
         let mut between = default.between;
         if let Some(Pair(pair)) = &self.between {
             for (side, text) in between.iter_mut().zip(pair) {
@@ -118,16 +119,6 @@ impl Contact {
                 *side = (name != "any").then_some(name);
             }
         }
-        let law = self.law.as_ref().map_or(Ok(default.law), |word| word.value(context))?;
-        let usual = match law {
-            ContactLaw::Kinematic | ContactLaw::Traction => Normal::Own,
-            ContactLaw::None
-            | ContactLaw::Separation
-            | ContactLaw::Regression
-            | ContactLaw::Gap
-            | ContactLaw::Surface
-            | ContactLaw::Glued => Normal::Common,
-        };
         let friction = self.friction.as_ref().map_or(Ok(default.friction), |friction| {
             let value = friction.extended(context)?;
             let allowed = "a number from 0 on, or inf";
@@ -136,15 +127,16 @@ impl Contact {
         let max_strain = self.max_strain.as_ref().map_or(Ok(default.max_strain), |strain| {
             strain.checked(context, "a number above 0 and up to 1", |value| value > 0.0 && value <= 1.0)
         })?;
-        let normal = self.normal.as_ref().map_or(Ok(usual), |word| match (law, word.value(context)?) {
-            (ContactLaw::Surface | ContactLaw::Separation | ContactLaw::Regression, Normal::Own) => {
-                let name = ContactLaw::words().find(|word| word.1 == law).map_or("", |word| word.0);
-                let allowed =
-                    format!("\"common\" with law = {name:?}, which finds one direction for the pair");
-                Err(word.refused(context, allowed))
-            }
-            (_, normal) => Ok(normal),
-        })?;
+        let normal =
+            self.normal.as_ref().map_or(Ok(default.normal), |word| match (law, word.value(context)?) {
+                (ContactLaw::Surface | ContactLaw::Separation | ContactLaw::Regression, Normal::Own) => {
+                    let name = ContactLaw::words().find(|word| word.1 == law).map_or("", |word| word.0);
+                    let allowed =
+                        format!("\"common\" with law = {name:?}, which finds one direction for the pair");
+                    Err(word.refused(context, allowed))
+                }
+                (_, normal) => Ok(normal),
+            })?;
         let kinetic_friction = self.kinetic_friction.as_ref().map_or(Ok(friction), |kinetic| {
             let value = kinetic.extended(context)?;
             let allowed = format!("a number from 0 to the rule's friction, {friction}");

@@ -122,17 +122,12 @@ impl Choice for Observable {
     ];
 }
 
-/// Samples in a run where the scene does not say.
-const SAMPLES: f64 = 1000.0;
-
 /// What is measured in a run of length `end` [s].
 pub fn resolve(
-    outputs: Option<&Outputs>,
+    outputs: &Outputs,
     (bodies, end): (&[Body], f64),
     context: &Context,
 ) -> Result<scene::Measurements, Fault> {
-    let default = scene::Measurements { samples: end / SAMPLES, ..Default::default() };
-    let Some(outputs) = outputs else { return Ok(default) };
     let free = bodies.iter().filter(|body| matches!(body.motion, Motion::Free { .. }));
     let bodies: Vec<&str> = free.map(|body| body.name.as_str()).collect();
     let mut probes: Vec<scene::Probe> = Vec::new();
@@ -153,7 +148,7 @@ pub fn resolve(
     }
     let time_unit = outputs.time_unit.as_ref().map(|unit| time_unit(unit, context)).transpose()?;
     let samples = match &outputs.samples {
-        None => default.samples,
+        None => scene::Measurements::of_run(end).samples,
         Some(Sampling::EveryStep) => 0.0,
         Some(Sampling::Every(interval)) => interval.positive(context)?,
     };

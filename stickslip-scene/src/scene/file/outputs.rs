@@ -89,21 +89,26 @@ pub fn resolve(
     (bodies, end): (&[Body], f64),
     context: &Context,
 ) -> Result<scene::Outputs, Fault> {
-    let tables = outputs.and_then(|outputs| outputs.tables.as_ref());
-    let particles = outputs.and_then(|outputs| outputs.particles.as_ref());
-    let further = outputs.and_then(|outputs| outputs.particles_at.as_ref()).into_iter().flatten();
-    let mut further: Vec<f64> = further.map(|time| time.positive(context)).collect::<Result<_, _>>()?;
-    further.sort_by(f64::total_cmp);
-    let grid = outputs.and_then(|outputs| outputs.grid.as_ref());
-    let fringes = outputs.and_then(|outputs| outputs.fringes.as_ref());
-    Ok(scene::Outputs {
-        tables: tables.map_or(Ok(end / 200.0), |interval| interval.positive(context))?,
-        particles: particles.map_or(Ok(Some(end / 40.0)), |interval| interval.value(context))?,
-        particles_at: further,
-        grid: grid.map_or(Ok(None), |interval| interval.value(context))?,
-        fringes: fringes.map(|fringes| fringes.resolve(bodies, context)).transpose()?,
-        measurements: measurements::resolve(outputs, (bodies, end), context)?,
-    })
+    let mut resolved = scene::Outputs::of_run(end);
+    let Some(outputs) = outputs else { return Ok(resolved) };
+    if let Some(interval) = &outputs.tables {
+        resolved.tables = interval.positive(context)?;
+    }
+    if let Some(interval) = &outputs.particles {
+        resolved.particles = interval.value(context)?;
+    }
+    for time in outputs.particles_at.iter().flatten() {
+        resolved.particles_at.push(time.positive(context)?);
+    }
+    resolved.particles_at.sort_by(f64::total_cmp);
+    if let Some(interval) = &outputs.grid {
+        resolved.grid = interval.value(context)?;
+    }
+    if let Some(fringes) = &outputs.fringes {
+        resolved.fringes = Some(fringes.resolve(bodies, context)?);
+    }
+    resolved.measurements = measurements::resolve(outputs, (bodies, end), context)?;
+    Ok(resolved)
 }
 
 /// The known answers.

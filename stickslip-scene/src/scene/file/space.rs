@@ -16,13 +16,13 @@ table! {
         /// Side of a grid cell [m].
         cell: Quantity<Length>,
         /// Particles along each side of a cell, 1 to 8: 2 means 4 in the plane, 8 in space.
-        #[schemars(extend("default" = 2))]
+        #[schemars(extend("default" = Discretization::new(1.0).particles_per_side))]
         particles_per_side: Option<Count>,
         /// Shape functions between particles and grid.
-        #[schemars(extend("default" = "gimp"))]
+        #[schemars(extend("default" = BasisKind::default()))]
         basis: Option<Word<BasisKind>>,
         /// Number format of particles and grid.
-        #[schemars(extend("default" = "double"))]
+        #[schemars(extend("default" = Precision::default()))]
         precision: Option<Word<Precision>>,
         /// A box that holds all material; by default space is unbounded.
         domain: Option<Domain>,
@@ -37,22 +37,22 @@ table! {
         /// Upper corner [m].
         max: Vector<Length>,
         /// What the lower face across x does.
-        #[schemars(extend("default" = "open"))]
+        #[schemars(extend("default" = Face::default()))]
         x_min: Option<Word<Face>>,
         /// What the upper face across x does.
-        #[schemars(extend("default" = "open"))]
+        #[schemars(extend("default" = Face::default()))]
         x_max: Option<Word<Face>>,
         /// What the lower face across y does.
-        #[schemars(extend("default" = "open"))]
+        #[schemars(extend("default" = Face::default()))]
         y_min: Option<Word<Face>>,
         /// What the upper face across y does.
-        #[schemars(extend("default" = "open"))]
+        #[schemars(extend("default" = Face::default()))]
         y_max: Option<Word<Face>>,
         /// What the lower face across z does; three dimensions only.
-        #[schemars(extend("default" = "open"))]
+        #[schemars(extend("default" = Face::default()))]
         z_min: Option<Word<Face>>,
         /// What the upper face across z does; three dimensions only.
-        #[schemars(extend("default" = "open"))]
+        #[schemars(extend("default" = Face::default()))]
         z_max: Option<Word<Face>>,
     }
 }
@@ -88,19 +88,19 @@ impl Choice for Face {
 impl Space {
     /// Number format.
     pub fn precision(&self, context: &Context) -> Result<Precision, Fault> {
-        self.precision.as_ref().map_or(Ok(Precision::Double), |word| word.value(context))
+        self.precision.as_ref().map_or(Ok(Precision::default()), |word| word.value(context))
     }
 
     /// Cells, particles and shape functions.
     pub fn discretization(&self, context: &Context) -> Result<Discretization, Fault> {
-        Ok(Discretization {
-            cell: self.cell.positive(context)?,
-            particles_per_side: self
-                .particles_per_side
-                .as_ref()
-                .map_or(Ok(2), |n| n.value(context, 1..=8))?,
-            basis: self.basis.as_ref().map_or(Ok(BasisKind::Gimp), |word| word.value(context))?,
-        })
+        let mut chosen = Discretization::new(self.cell.positive(context)?);
+        if let Some(count) = &self.particles_per_side {
+            chosen.particles_per_side = count.value(context, 1..=8)?;
+        }
+        if let Some(word) = &self.basis {
+            chosen.basis = word.value(context)?;
+        }
+        Ok(chosen)
     }
 
     /// The box of all material, if there is one.
@@ -112,7 +112,7 @@ impl Space {
 impl Domain {
     fn resolve(&self, context: &Context) -> Result<scene::Domain, Fault> {
         let (min, max) = corners(&self.min, &self.max, context)?;
-        let mut faces = [[Face::Open; 2]; 3];
+        let mut domain = scene::Domain::new(min, max);
         let written = [[&self.x_min, &self.x_max], [&self.y_min, &self.y_max], [&self.z_min, &self.z_max]];
         for (axis, pair) in written.iter().enumerate() {
             for (side, word) in pair.iter().enumerate() {
@@ -122,10 +122,10 @@ impl Domain {
                         .node()
                         .fault("x_min, x_max, y_min and y_max only, as the scene is plane"));
                 }
-                faces[axis][side] = word.value(context)?;
+                domain.faces[axis][side] = word.value(context)?;
             }
         }
-        Ok(scene::Domain { min, max, faces })
+        Ok(domain)
     }
 }
 

@@ -13,22 +13,22 @@ table! {
         /// Simulated time at which the run ends [s].
         end: Quantity<Duration>,
         /// Time step as a fraction of the time in which a wave crosses a cell, above 0 and up to 1.
-        #[schemars(extend("default" = 0.4))]
+        #[schemars(extend("default" = scene::Time::until(1.0).courant))]
         courant: Option<Quantity<Ratio>>,
         /// No step is longer than this [s]; by default only the Courant number limits it.
         max_step: Option<Quantity<Duration>>,
         /// When in the step the stress is updated.
-        #[schemars(extend("default" = "modified-last"))]
+        #[schemars(extend("default" = StressUpdate::default()))]
         stress_update: Option<Word<StressUpdate>>,
         /// What velocities particles take from the grid and give to it.
-        #[schemars(extend("default" = "rflip"))]
+        #[schemars(extend("default" = Transfer::default()))]
         transfer: Option<Word<Transfer>>,
         /// Share of the grid's velocity itself (PIC) in the particles' new velocity, 0 to 1; the rest is FLIP.
-        #[schemars(extend("default" = 0))]
+        #[schemars(extend("default" = scene::Time::until(1.0).pic_share))]
         pic_share: Option<Quantity<Ratio>>,
         /// Drift of the total energy beyond which a run warns, over the largest energy that moved, was stored or turned
         /// to heat; above 0.
-        #[schemars(extend("default" = 0.1))]
+        #[schemars(extend("default" = scene::Time::until(1.0).energy_drift))]
         energy_drift: Option<Quantity<Ratio>>,
     }
 }
@@ -59,26 +59,27 @@ impl Choice for Transfer {
 impl Time {
     /// Duration and time step in SI units.
     pub fn resolve(&self, context: &Context) -> Result<scene::Time, Fault> {
-        let courant = self.courant.as_ref().map_or(Ok(0.4), |courant| {
-            courant.checked(context, "a number above 0 and up to 1", |value| value > 0.0 && value <= 1.0)
-        });
-        let pic_share = self.pic_share.as_ref().map_or(Ok(0.0), |share| {
-            share.checked(context, "a number from 0 to 1", |value| (0.0..=1.0).contains(&value))
-        });
-        let energy_drift = self
-            .energy_drift
-            .as_ref()
-            .map_or(Ok(0.1), |drift| drift.checked(context, "a number above 0", |value| value > 0.0));
-        let update = self.stress_update.as_ref();
-        let transfer = self.transfer.as_ref();
-        Ok(scene::Time {
-            end: self.end.positive(context)?,
-            courant: courant?,
-            max_step: self.max_step.as_ref().map(|step| step.positive(context)).transpose()?,
-            stress_update: update.map_or(Ok(StressUpdate::ModifiedLast), |word| word.value(context))?,
-            transfer: transfer.map_or(Ok(Transfer::Rflip), |word| word.value(context))?,
-            pic_share: pic_share?,
-            energy_drift: energy_drift?,
-        })
+        let mut time = scene::Time::until(self.end.positive(context)?);
+        if let Some(courant) = &self.courant {
+            let allowed = "a number above 0 and up to 1";
+            time.courant = courant.checked(context, allowed, |value| value > 0.0 && value <= 1.0)?;
+        }
+        if let Some(step) = &self.max_step {
+            time.max_step = Some(step.positive(context)?);
+        }
+        if let Some(word) = &self.stress_update {
+            time.stress_update = word.value(context)?;
+        }
+        if let Some(word) = &self.transfer {
+            time.transfer = word.value(context)?;
+        }
+        if let Some(share) = &self.pic_share {
+            let allowed = "a number from 0 to 1";
+            time.pic_share = share.checked(context, allowed, |value| (0.0..=1.0).contains(&value))?;
+        }
+        if let Some(drift) = &self.energy_drift {
+            time.energy_drift = drift.checked(context, "a number above 0", |value| value > 0.0)?;
+        }
+        Ok(time)
     }
 }

@@ -1,0 +1,51 @@
+//! Shapes in code.
+
+use super::Shape;
+
+impl Shape {
+    /// A ball [m].
+    pub fn ball(center: [f64; 3], radius: f64) -> Self {
+        Shape::Ball { center, radius }
+    }
+
+    /// A ball of plane scenes [m].
+    pub fn disk([x, y]: [f64; 2], radius: f64) -> Self {
+        Shape::Ball { center: [x, y, 0.0], radius }
+    }
+
+    /// A box with faces across the axes, between its lower and its upper corner [m].
+    pub fn cuboid(min: [f64; 3], max: [f64; 3]) -> Self {
+        Shape::Box { min, max }
+    }
+
+    /// A box of plane scenes, between its lower and its upper corner [m].
+    pub fn rectangle([x, y]: [f64; 2], [right, top]: [f64; 2]) -> Self {
+        Shape::Box { min: [x, y, 0.0], max: [right, top, 0.0] }
+    }
+
+    /// All points behind the plane through `point` [m] with this outward normal of any length.
+    pub fn half_space(point: [f64; 3], normal: [f64; 3]) -> Self {
+        Shape::HalfSpace { point, normal }
+    }
+
+    /// The shape turned by `angle` [rad], right-handed, about an axis through `center` [m]; in the plane the axis is
+    /// (0, 0, 1).
+    pub fn rotated(self, center: [f64; 3], axis: [f64; 3], angle: f64) -> Self {
+        Shape::Rotated { shape: Box::new(self), center, axis, angle }
+    }
+
+    /// Points in both shapes.
+    pub fn and(self, other: Shape) -> Self {
+        Shape::Intersection(vec![self, other])
+    }
+
+    /// Points in either shape.
+    pub fn or(self, other: Shape) -> Self {
+        Shape::Union(vec![self, other])
+    }
+
+    /// Points in this shape and not in the other.
+    pub fn without(self, other: Shape) -> Self {
+        Shape::Difference(vec![self, other])
+    }
+}

@@ -1,0 +1,288 @@
+//! Scenes in code: a constructor asks for what has no default, and all else begins as in a scene file that does not
+//! name it.
+//!
+//! The defaults of scene files stand here, in [`ContactRule`] and in the enums' `Default`, and nowhere else: scene
+//! files and their schema take them from here.
+
+use super::{
+    BasisKind, Body, ContactLaw, ContactRule, Dimension, Discretization, Domain, Expression, Face,
+    Measurements, Motion, NamedMaterial, Normal, Outputs, Precision, Problem, Scene, StressUpdate, Time,
+    Transfer,
+};
+use crate::geometry::{Arrangement, Shape};
+use crate::material::SHELF;
+
+/// Rows of tables in a run.
+const ROWS: f64 = 200.0;
+/// Snapshots of the particles in a run.
+const SNAPSHOTS: f64 = 40.0;
+/// Samples of probes, arrivals and fronts in a run.
+const SAMPLES: f64 = 1000.0;
+
+impl Scene {
+    /// An empty scene with cells of side `cell` [m] that runs until `end` [s].
+    pub fn new(dimension: Dimension, cell: f64, end: f64) -> Self {
+        Scene {
+            title: String::new(),
+            about: String::new(),
+            parameters: Default::default(),
+            dimension,
+            precision: Precision::default(),
+            discretization: Discretization::new(cell),
+            domain: None,
+            time: Time::until(end),
+            gravity: [0.0; 3],
+            materials: Vec::new(),
+            bodies: Vec::new(),
+            contact: Vec::new(),
+            outputs: Outputs::of_run(end),
+            references: Vec::new(),
+        }
+    }
+
+    /// Adds a material and returns its index, by which bodies name it.
+    pub fn add_material(&mut self, material: NamedMaterial) -> usize {
+        self.materials.push(material);
+        self.materials.len() - 1
+    }
+
+    /// Adds a body and returns its index, by which a simulation's states name it.
+    pub fn add_body(&mut self, body: Body) -> usize {
+        self.bodies.push(body);
+        self.bodies.len() - 1
+    }
+}
+
+impl Discretization {
+    /// Cells of this side [m].
+    pub fn new(cell: f64) -> Self {
+        Discretization { cell, particles_per_side: 2, basis: BasisKind::default() }
+    }
+}
+
+impl Time {
+    /// Steps as long as is stable until `end` [s].
+    pub fn until(end: f64) -> Self {
+        Time {
+            end,
+            courant: 0.4,
+            max_step: None,
+            stress_update: StressUpdate::default(),
+            transfer: Transfer::default(),
+            pic_share: 0.0,
+            energy_drift: 0.1,
+        }
+    }
+}
+
+impl Domain {
+    /// A box that is open on all sides, between its lower and its upper corner [m].
+    pub fn new(min: [f64; 3], max: [f64; 3]) -> Self {
+        Domain { min, max, faces: [[Face::default(); 2]; 3] }
+    }
+}
+
+impl Outputs {
+    /// Tables and snapshots of the particles, evenly over a run of this length [s].
+    pub fn of_run(end: f64) -> Self {
+        Outputs {
+            tables: end / ROWS,
+            particles: Some(end / SNAPSHOTS),
+            particles_at: Vec::new(),
+            grid: None,
+            fringes: None,
+            measurements: Measurements::of_run(end),
+        }
+    }
+}
+
+impl Measurements {
+    /// Nothing to measure, evenly over a run of this length [s].
+    pub fn of_run(end: f64) -> Self {
+        Measurements { samples: end / SAMPLES, ..Default::default() }
+    }
+}
+
+impl NamedMaterial {
+    /// A material of this density [kg/m^3] whose law and constants have the names of scene files, in SI units.
+    ///
+    /// # Errors
+    /// There is no such law or constant, or no stable material has these constants.
+    pub fn new(
+        name: &str,
+        density: f64,
+        law: &str,
+        constants: &[(&str, f64)],
+    ) -> Result<NamedMaterial, Problem> {
+        let problem = |key: &str, found: String, allowed: String| {
+            let key = format!("materials.{name}{key}");
+            Problem { key, found, allowed, help: None }
+        };
+        let Some(description) = SHELF.iter().find(|description| description.name == law) else {
+            let laws: Vec<&str> = SHELF.iter().map(|description| description.name).collect();
+            return Err(problem("", format!("no law `{law}`"), laws.join(", ")));
+        };
+        let names: Vec<&str> = description.constants.iter().map(|constant| constant.name).collect();
+        if let Some((unknown, _)) = constants.iter().find(|(constant, _)| !names.contains(constant)) {
+            return Err(problem(&format!(".{law}"), format!("no constant `{unknown}`"), names.join(", ")));
+        }
+        let values = constants.iter().copied().collect();
+        let law = description.build(&values).map_err(|bad| {
+            let constant = bad.key.map(|key| format!(".{key}")).unwrap_or_default();
+            problem(&format!(".{law}{constant}"), bad.found, bad.allowed)
+        })?;
+        Ok(NamedMaterial { name: name.to_string(), density, law })
+    }
+}
+
+impl Body {
+    /// A body at rest that deforms and moves under forces. `material` is what [`Scene::add_material`] returned.
+    pub fn new(name: &str, material: usize, shape: Shape) -> Self {
+        Body {
+            name: name.to_string(),
+            material,
+            shape,
+            particles: Arrangement::default(),
+            particles_per_side: None,
+            motion: Motion::default(),
+        }
+    }
+
+    /// The same body with its particles along its surface, see [`Arrangement::Fitted`].
+    pub fn fitted(self) -> Self {
+        Body { particles: Arrangement::Fitted, ..self }
+    }
+
+    /// The same body, deformable, with this velocity of its centre of mass [m/s] and this angular velocity about it
+    /// [rad/s].
+    pub fn moving(self, velocity: [f64; 3], spin: [f64; 3]) -> Self {
+        Body { motion: Motion::Free { velocity, spin }, ..self }
+    }
+
+    /// The same body, rigid, moved at this velocity [m/s] and turned at this angular velocity [rad/s] whatever pushes
+    /// it.
+    pub fn rigid(self, velocity: [f64; 3], spin: [f64; 3]) -> Self {
+        let [velocity, spin] = [velocity, spin].map(|vector| vector.map(Expression::Constant));
+        Body { motion: Motion::Rigid { velocity, spin }, ..self }
+    }
+}
+
+impl Default for Motion {
+    /// It is at rest at the start.
+    fn default() -> Self {
+        Motion::Free { velocity: [0.0; 3], spin: [0.0; 3] }
+    }
+}
+
+impl Default for ContactRule {
+    /// The law of exact surfaces without friction for every pair.
+    fn default() -> Self {
+        ContactRule::new(ContactLaw::Surface)
+    }
+}
+
+impl ContactRule {
+    /// A law without friction for every pair, with the normal that the law's papers use.
+    pub fn new(law: ContactLaw) -> Self {
+        let normal = match law {
+            ContactLaw::Kinematic | ContactLaw::Traction => Normal::Own,
+            ContactLaw::None
+            | ContactLaw::Separation
+            | ContactLaw::Regression
+            | ContactLaw::Gap
+            | ContactLaw::Surface
+            | ContactLaw::Glued => Normal::Common,
+        };
+        ContactRule {
+            between: [None, None],
+            law,
+            friction: 0.0,
+            friction_given: false,
+            kinetic_friction: 0.0,
+            friction_decay_speed: 0.0,
+            cohesion: 0.0,
+            adhesion: 0.0,
+            viscosity: 0.0,
+            normal,
+            max_strain: 0.5,
+        }
+    }
+
+    /// The same rule with this coefficient of friction, at rest and in motion; infinity sticks.
+    pub fn with_friction(self, friction: f64) -> Self {
+        ContactRule { friction, friction_given: true, kinetic_friction: friction, ..self }
+    }
+
+    /// The same rule for pairs of these two alone, each the name of a body or of a material.
+    pub fn between(self, first: &str, second: &str) -> Self {
+        ContactRule { between: [first, second].map(|name| Some(name.to_string())), ..self }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::parse;
+
+    #[test]
+    fn a_scene_in_code_is_that_of_the_file_which_says_no_more() {
+        let text = r#"
+gravity = [0, -9.81]
+[space]
+dimension = "plane-strain"
+cell = 0.1
+domain = { min = [-1, -1], max = [4, 4] }
+[time]
+end = 2
+[materials.rubber]
+density = 1000
+neo_hookean = { young_modulus = 1e6, poisson_ratio = 0.3 }
+[[bodies]]
+name = "disk"
+material = "rubber"
+shape.ball = { center = [0, 1], radius = 1 }
+spin = -2
+[[bodies]]
+name = "floor"
+material = "rubber"
+shape.half_space = { point = [0, 0], normal = [0, 1] }
+rigid = {}
+[[contact]]
+between = ["disk", "floor"]
+friction = 0.3
+[[contact]]
+law = "traction"
+"#;
+        let mut scene = Scene::new(Dimension::PlaneStrain, 0.1, 2.0);
+        scene.title = "written".to_string();
+        scene.gravity = [0.0, -9.81, 0.0];
+        scene.domain = Some(Domain::new([-1.0, -1.0, 0.0], [4.0, 4.0, 0.0]));
+        let constants = [("young_modulus", 1e6), ("poisson_ratio", 0.3)];
+        let rubber = NamedMaterial::new("rubber", 1000.0, "neo_hookean", &constants).unwrap();
+        let rubber = scene.add_material(rubber);
+        let disk = Body::new("disk", rubber, Shape::disk([0.0, 1.0], 1.0));
+        scene.add_body(disk.moving([0.0; 3], [0.0, 0.0, -2.0]));
+        let floor = Body::new("floor", rubber, Shape::half_space([0.0; 3], [0.0, 1.0, 0.0]));
+        scene.add_body(floor.rigid([0.0; 3], [0.0; 3]));
+        scene.contact.push(ContactRule::default().with_friction(0.3).between("disk", "floor"));
+        scene.contact.push(ContactRule::new(ContactLaw::Traction));
+        assert_eq!(scene, parse("written.toml", text, &[]).unwrap().scene);
+    }
+
+    #[test]
+    fn a_material_that_cannot_be_says_what_is_allowed() {
+        let say =
+            |law, constants: &[_]| NamedMaterial::new("rubber", 1.0, law, constants).unwrap_err().to_string();
+        assert!(
+            say("neo_hokean", &[])
+                .starts_with("materials.rubber: no law `neo_hokean`; allowed: neo_hookean, ")
+        );
+        let unknown = say("neo_hookean", &[("young_modul", 1.0)]);
+        assert!(
+            unknown.starts_with("materials.rubber.neo_hookean: no constant `young_modul`; allowed: "),
+            "{unknown}"
+        );
+        let unstable = say("neo_hookean", &[("young_modulus", 1.0), ("poisson_ratio", 0.5)]);
+        assert!(unstable.starts_with("materials.rubber.neo_hookean.poisson_ratio: 0.5; "), "{unstable}");
+    }
+}
