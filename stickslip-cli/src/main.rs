@@ -3,18 +3,18 @@
 mod bench;
 mod chart;
 mod commands;
-mod darkroom;
 mod drawing;
 mod failure;
+mod frame_pictures;
 mod free_memory;
 mod illustration;
+mod jobs;
 mod page;
 mod picture;
 mod progress;
 mod reproduce;
 mod sweep;
 mod validation;
-mod workshop;
 
 use clap::Parser;
 use std::process::ExitCode;

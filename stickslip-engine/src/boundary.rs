@@ -3,7 +3,7 @@
 //! Behind a mirror the particles' images are summed: nodes behind it give their share to the nodes before it and take
 //! their values back with the sign of the normal component turned, as if the other half of the bodies were there.
 
-use crate::grid::{Cover, Disjoint, Field, Node, SIDE, node_at, nodes_per_block};
+use crate::grid::{ActiveBlocks, Disjoint, Field, Node, SIDE, node_at, nodes_per_block};
 use crate::scene::Face;
 use crate::tensor::{Real, Vector};
 use crate::threads::each_range;
@@ -75,14 +75,14 @@ impl Boundary {
     }
 
     /// Finds the nodes that walls govern.
-    pub fn cover<const D: usize>(&mut self, cover: &Cover<D>) {
+    pub fn find_nodes<const D: usize>(&mut self, active: &ActiveBlocks<D>) {
         self.mirrored.resize_with(self.walls.len(), Vec::new);
         self.on_mirror.clear();
         self.fixed.clear();
         let n = nodes_per_block(D);
         for (wall, mirrored) in self.walls.iter().zip(&mut self.mirrored) {
             mirrored.clear();
-            for (slot, &(body, block)) in cover.slots.iter().enumerate() {
+            for (slot, &(body, block)) in active.slots.iter().enumerate() {
                 let first = block[wall.axis] * SIDE;
                 let nearest = if wall.inward > 0 { first } else { first + SIDE - 1 };
                 if (nearest - wall.node) * wall.inward > 0 {
@@ -95,7 +95,7 @@ impl Boundary {
                         Face::Fixed if depth <= 0 => self.fixed.push(index),
                         Face::Symmetry if depth == 0 => self.on_mirror.push((index, wall.axis)),
                         Face::Symmetry if depth < 0 => {
-                            if let Some(image) = cover.node_index(body as usize, wall.image(node)) {
+                            if let Some(image) = active.node_index(body as usize, wall.image(node)) {
                                 mirrored.push((index, image));
                             }
                         }
@@ -107,7 +107,7 @@ impl Boundary {
     }
 
     /// Adds what was scattered behind the mirrors to the nodes before them.
-    pub fn fold<T: Real, const D: usize>(&self, field: &mut Field<T, D>, share: Share) {
+    pub fn add_images<T: Real, const D: usize>(&self, field: &mut Field<T, D>, share: Share) {
         for (wall, mirrored) in self.walls.iter().zip(&self.mirrored) {
             each_image(mirrored, field, |image, node| {
                 if matches!(share, Share::Mass | Share::Everything) {
@@ -129,7 +129,7 @@ impl Boundary {
     }
 
     /// Makes the velocities obey the walls.
-    pub fn hold<T: Real, const D: usize>(&self, field: &mut Field<T, D>) {
+    pub fn impose<T: Real, const D: usize>(&self, field: &mut Field<T, D>) {
         for &node in &self.fixed {
             field.nodes[node].velocity = Vector::ZERO;
         }

@@ -1,8 +1,8 @@
 //! The flags of `stickslip render --fringes`.
 
 use super::render::positive;
-use crate::darkroom::{FringeChoice, material_sensitivity};
 use crate::failure::Failure;
+use crate::frame_pictures::{FringeChoice, material_sensitivity};
 use clap::Args;
 use std::f64::consts::PI;
 use stickslip::scene::{Field, Light, Overlay, Polariscope, Sensitivity};

@@ -2,9 +2,9 @@
 
 use super::fringes::FringeArguments;
 use super::{open, say};
-use crate::darkroom::Darkroom;
 use crate::drawing::{DrawError, save};
 use crate::failure::Failure;
+use crate::frame_pictures::FramePictures;
 use crate::illustration::{Album, PictureChoice, Pictures, snapshots};
 use crate::picture::{Quantity, QuantityParser, View};
 use clap::Args;
@@ -145,9 +145,9 @@ impl Arguments {
     ) -> Result<Box<dyn Pictures + 'a>, Failure> {
         if self.fringes.fringes {
             let choice = self.fringes.choice(results.manifest().dimension, self.size)?;
-            let darkroom = Darkroom::open(results, frames, &choice)?;
-            say(&darkroom.scale())?;
-            return Ok(Box::new(darkroom));
+            let pictures = FramePictures::open(results, frames, &choice)?;
+            say(&pictures.scale())?;
+            return Ok(Box::new(pictures));
         }
         let choice = PictureChoice {
             quantity: self.color.clone(),

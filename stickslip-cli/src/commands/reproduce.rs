@@ -2,8 +2,8 @@
 
 use super::{say, stop_on_interrupt};
 use crate::failure::Failure;
+use crate::jobs::{Earlier, JobRunner};
 use crate::reproduce::{Level, STUDIES, Study, reproduce};
-use crate::workshop::{Earlier, Workshop};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use miette::miette;
@@ -59,13 +59,13 @@ impl Arguments {
         std::fs::create_dir_all(&self.out)
             .map_err(|error| Failure::Input(miette!("cannot make {}: {error}", self.out.display())))?;
         let processors = || std::thread::available_parallelism().map_or(1, usize::from);
-        let workshop = Workshop {
+        let jobs = JobRunner {
             folder: self.out.join("runs"),
             threads: self.threads.map_or_else(processors, usize::from),
             stop: stop_on_interrupt()?,
             earlier: if self.fresh { Earlier::Replace } else { Earlier::Keep },
         };
-        let (page, runs) = reproduce(&studies, level, &workshop)?;
+        let (page, runs) = reproduce(&studies, level, &jobs)?;
         let report = self.out.join(REPORT);
         page.write(&report)?;
         say(&format!("{} is written; open it in a browser", report.display()))?;

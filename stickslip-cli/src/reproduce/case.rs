@@ -1,6 +1,6 @@
 //! What is run for the report, how finely, and what came of it.
 
-use crate::workshop::{Job, Outcomes};
+use crate::jobs::{Job, Outcomes};
 use stickslip::observe::Results;
 use stickslip::scene::SceneError;
 

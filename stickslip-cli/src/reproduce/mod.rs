@@ -21,8 +21,8 @@ pub use case::{Case, Level, Runs};
 
 use crate::drawing::DrawError;
 use crate::failure::Failure;
+use crate::jobs::{Job, JobRunner};
 use crate::page::{Making, Page, Section};
-use crate::workshop::{Job, Workshop};
 use maud::html;
 use std::time::Instant;
 
@@ -54,7 +54,7 @@ pub const STUDIES: &[&dyn Study] = &[
 ///
 /// # Errors
 /// A scene cannot be built, results cannot be read, or the user stopped the runs.
-pub fn reproduce(studies: &[&dyn Study], level: Level, workshop: &Workshop) -> Result<(Page, Runs), Failure> {
+pub fn reproduce(studies: &[&dyn Study], level: Level, runner: &JobRunner) -> Result<(Page, Runs), Failure> {
     let start = Instant::now();
     let mut jobs: Vec<Job> = Vec::new();
     for case in studies.iter().flat_map(|study| study.cases(level)) {
@@ -63,12 +63,12 @@ pub fn reproduce(studies: &[&dyn Study], level: Level, workshop: &Workshop) -> R
             jobs.push(case.job().map_err(Failure::input)?);
         }
     }
-    let runs = Runs::new(workshop.work(&jobs)?);
+    let runs = Runs::new(runner.work(&jobs)?);
     let sections: Vec<Section> =
         studies.iter().map(|study| study.section(level, &runs)).collect::<Result<_, _>>()?;
     let making = Making::now(start.elapsed())
         .note("Scale", level.explanation())
-        .note("Results of the runs", workshop.folder.display().to_string());
+        .note("Results of the runs", runner.folder.display().to_string());
     let mut page = Page::new("Bardenhagen et al. (2001), remade with Stickslip", making).lead(html! {
         "Every application of S. G. Bardenhagen, J. E. Guilkey, K. M. Roessig, J. U. Brackbill, W. M. Witzel and J. C. Foster (2001): "
         i { "An Improved Contact Algorithm for the Material Point Method and Application to Stress Propagation in Granular Material" }

@@ -46,11 +46,11 @@ impl Totals {
     }
 }
 
-/// A number in each lane: of each particle of a handful, or the sum over those that stood there.
+/// A number in each lane: of each particle of a chunk, or the sum over those that stood there.
 type Each = [f64; MOST_LANES];
 
 /// Mass and motion of a few particles that lie side by side in memory; zero in the lanes beyond.
-struct Handful {
+struct Chunk {
     mass: Each,
     position: [Each; 3],
     velocity: [Each; 3],
@@ -59,7 +59,7 @@ struct Handful {
     inertia: Each,
 }
 
-impl Handful {
+impl Chunk {
     /// # Safety
     /// The particles must exist, and nobody may write to them meanwhile.
     #[inline(always)]
@@ -68,7 +68,7 @@ impl Handful {
         gyration: &Gyration<f64>,
         (first, count): (usize, usize),
     ) -> Self {
-        let mut handful = Handful {
+        let mut chunk = Chunk {
             mass: [0.0; MOST_LANES],
             position: [[0.0; MOST_LANES]; 3],
             velocity: [[0.0; MOST_LANES]; 3],
@@ -77,24 +77,22 @@ impl Handful {
         };
         // SAFETY: the caller's.
         unsafe {
-            handful.mass = each(V::load_first(columns.at(Column::<D>::MASS, first), count));
+            chunk.mass = each(V::load_first(columns.at(Column::<D>::MASS, first), count));
             for i in 0..D {
-                handful.position[i] =
-                    each(V::load_first(columns.at(Column::<D>::POSITION + i, first), count));
-                handful.velocity[i] =
-                    each(V::load_first(columns.at(Column::<D>::VELOCITY + i, first), count));
+                chunk.position[i] = each(V::load_first(columns.at(Column::<D>::POSITION + i, first), count));
+                chunk.velocity[i] = each(V::load_first(columns.at(Column::<D>::VELOCITY + i, first), count));
             }
             for k in 0..spin_entries(D) {
-                handful.spin[3 - spin_entries(D) + k] =
+                chunk.spin[3 - spin_entries(D) + k] =
                     each(V::load_first(columns.at(Column::<D>::SPIN + k, first), count));
             }
             let half_width = each(V::load_first(columns.at(Column::<D>::HALF_WIDTH, first), count));
-            let of_each = handful.mass.iter().zip(&half_width);
-            for (inertia, (mass, &half_width)) in handful.inertia.iter_mut().zip(of_each) {
+            let of_each = chunk.mass.iter().zip(&half_width);
+            for (inertia, (mass, &half_width)) in chunk.inertia.iter_mut().zip(of_each) {
                 *inertia = mass * gyration.squared(half_width);
             }
         }
-        handful
+        chunk
     }
 
     /// m (x cross v + k^2 w), about a point that moves.
@@ -117,9 +115,9 @@ fn each<V: Lanes>(numbers: V) -> Each {
     each
 }
 
-/// The particles of a part, handful by handful.
+/// The particles of a part, chunk by chunk.
 #[inline(always)]
-fn handfuls<V: Lanes>(part: &Range<usize>) -> impl Iterator<Item = (usize, usize)> + use<V> {
+fn chunks<V: Lanes>(part: &Range<usize>) -> impl Iterator<Item = (usize, usize)> + use<V> {
     let end = part.end;
     part.clone().step_by(V::COUNT).map(move |first| (first, V::COUNT.min(end - first)))
 }
@@ -145,9 +143,9 @@ impl<T: Laned, const D: usize> Work for Sum<'_, T, D> {
         let [mut first_moment, mut momentum, mut angular_momentum] = [[[0.0; MOST_LANES]; 3]; 3];
         let [mut kinetic, mut strain, mut plastic]: [Each; 3] = [[0.0; MOST_LANES]; 3];
         let material = self.material.map(|material| material.map(M::Wide::splat));
-        for (first, count) in handfuls::<M::Wide>(&self.part) {
+        for (first, count) in chunks::<M::Wide>(&self.part) {
             // SAFETY: the particles are the body's, which is borrowed for reading.
-            let some = unsafe { Handful::new::<M::Wide, D>(&self.columns, &self.gyration, (first, count)) };
+            let some = unsafe { Chunk::new::<M::Wide, D>(&self.columns, &self.gyration, (first, count)) };
             for lane in 0..MOST_LANES {
                 let m = some.mass[lane];
                 mass[lane] += m;
@@ -247,9 +245,9 @@ impl<T: Laned, const D: usize> Work for Turning<T, D> {
         // sum m x x, sum m x cross v
         let mut moments = [[0.0; MOST_LANES]; 6];
         let mut angular = [[0.0; MOST_LANES]; 3];
-        for (first, count) in handfuls::<M::Wide>(&self.part) {
+        for (first, count) in chunks::<M::Wide>(&self.part) {
             // SAFETY: the particles are the body's, which is borrowed for reading.
-            let some = unsafe { Handful::new::<M::Wide, D>(&self.columns, &self.gyration, (first, count)) };
+            let some = unsafe { Chunk::new::<M::Wide, D>(&self.columns, &self.gyration, (first, count)) };
             for lane in 0..MOST_LANES {
                 let (m, l) = (some.mass[lane], some.angular_momentum(lane, self.center, self.mean));
                 let [x, y, z] = [0, 1, 2].map(|i| some.position[i][lane] - self.center[i]);

@@ -31,7 +31,7 @@ impl<T: Real, const D: usize> Near<'_, T, D> {
             });
             for offset in offsets::<D>(MAX_WIDTH) {
                 let cell = std::array::from_fn(|i| image.node[i] - offset[i] as i32);
-                for &index in self.cover.particles_in(body, cell) {
+                for &index in self.active.particles_in(body, cell) {
                     let particle = &self.bodies[body].particles.get(index as usize);
                     let arm = particle.position - seen;
                     let reach = self.lattice.cell + particle.half_width;

@@ -5,6 +5,7 @@
 //! integrated velocities; both uses share one survey.
 
 mod around;
+mod contact_sums;
 mod exchange;
 mod friction;
 mod law;
@@ -15,8 +16,8 @@ mod solve;
 mod spread;
 mod surroundings;
 mod survey;
-mod tally;
 
+pub use contact_sums::ContactSums;
 pub use exchange::{common_normal, own_normals};
 pub use friction::{Friction, Load};
 pub use law::{Law, Span};
@@ -25,4 +26,3 @@ pub use place::Place;
 pub use rules::{Rule, Rules};
 pub use solve::{Impulse, Impulses, Record, Solve};
 pub use survey::{Encounter, Facing, Look, Near, Part, Side, Site, Survey, room};
-pub use tally::Tally;

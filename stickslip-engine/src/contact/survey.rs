@@ -1,12 +1,14 @@
 //! Where bodies meet, and what the particles there say of their surfaces.
 
 use super::law::law;
-use super::surroundings::{Handful, Sums, Wanted, behind};
+use super::surroundings::{Chunk, Sums, Wanted, behind};
 use super::{Pair, Rules, Step, Surface};
 use crate::basis::Basis;
 use crate::body::Body;
 use crate::boundary::Boundary;
-use crate::grid::{Cover, Field, Lattice, Meeting, Node, Nodes, SIDE, next_of, node_at, nodes_per_block};
+use crate::grid::{
+    ActiveBlocks, Field, Lattice, Meeting, Node, Nodes, SIDE, next_of, node_at, nodes_per_block,
+};
 use crate::lanes::{Laned, Processor};
 use crate::scene::{ContactLaw, Face};
 use crate::tensor::{Real, Symmetric, Vector};
@@ -97,12 +99,12 @@ pub struct Survey<T, const D: usize> {
     /// How many parts this step has.
     count: usize,
     /// One for each thread.
-    desks: Vec<Mutex<Desk<T, D>>>,
+    scratches: Vec<Mutex<Scratch<T, D>>>,
 }
 
 impl<T, const D: usize> Default for Survey<T, D> {
     fn default() -> Self {
-        Survey { parts: Vec::new(), count: 0, desks: Vec::new() }
+        Survey { parts: Vec::new(), count: 0, scratches: Vec::new() }
     }
 }
 
@@ -110,7 +112,7 @@ impl<T, const D: usize> Survey<T, D> {
     /// A survey that found these sites.
     #[cfg(test)]
     pub fn of(parts: Vec<Part<T, D>>) -> Self {
-        Survey { count: parts.len(), parts, desks: Vec::new() }
+        Survey { count: parts.len(), parts, scratches: Vec::new() }
     }
 
     /// The sites, part by part.
@@ -121,7 +123,7 @@ impl<T, const D: usize> Survey<T, D> {
 
 /// What a thread writes down while it surveys a block.
 #[derive(Debug)]
-struct Desk<T, const D: usize> {
+struct Scratch<T, const D: usize> {
     /// Nodes that each body of the block reaches and shares.
     present: Vec<Nodes>,
     /// Places of two bodies among those of the block, and the number of their rule.
@@ -129,25 +131,25 @@ struct Desk<T, const D: usize> {
     /// Of each body, one node after the other.
     sums: Vec<Sums<T, D>>,
     /// Particles that are about to be added to them.
-    handfuls: Vec<Handful<D>>,
+    chunks: Vec<Chunk<D>>,
     /// Where the next sums of each body stand.
     next: Vec<usize>,
     /// P-wave modulus of each body [Pa].
     moduli: Vec<T>,
     /// Where each body stands among the sides of a node.
-    seats: Vec<Option<usize>>,
+    places_here: Vec<Option<usize>>,
 }
 
-impl<T, const D: usize> Default for Desk<T, D> {
+impl<T, const D: usize> Default for Scratch<T, D> {
     fn default() -> Self {
-        Desk {
+        Scratch {
             present: Vec::new(),
             pairs: Vec::new(),
             sums: Vec::new(),
-            handfuls: Vec::new(),
+            chunks: Vec::new(),
             next: Vec::new(),
             moduli: Vec::new(),
-            seats: Vec::new(),
+            places_here: Vec::new(),
         }
     }
 }
@@ -171,7 +173,7 @@ fn rigid_trace<T: Real>() -> T {
 /// What a survey looks at.
 pub struct Near<'a, T, const D: usize> {
     /// The blocks.
-    pub cover: &'a Cover<D>,
+    pub active: &'a ActiveBlocks<D>,
     /// The bodies.
     pub bodies: &'a [Body<T, D>],
     /// The field, scattered.
@@ -198,26 +200,31 @@ impl<T: Real, const D: usize> Near<'_, T, D> {
 impl<T: Laned, const D: usize> Near<'_, T, D> {
     /// Surveys every node that two or more bodies share.
     pub fn survey<B: Basis<T>>(&self, survey: &mut Survey<T, D>) {
-        let Survey { parts, count, desks } = survey;
-        *count = self.cover.meetings.len().div_ceil(BLOCKS);
+        let Survey { parts, count, scratches } = survey;
+        *count = self.active.meetings.len().div_ceil(BLOCKS);
         parts.resize_with(parts.len().max(*count), Part::default);
-        desks.resize_with(desks.len().max(rayon::current_num_threads()), Mutex::default);
-        let all = &self.cover.meetings;
+        scratches.resize_with(scratches.len().max(rayon::current_num_threads()), Mutex::default);
+        let all = &self.active.meetings;
         each(&mut parts[..*count], 1, |number, part| {
             let meetings = &all[number * BLOCKS..all.len().min((number + 1) * BLOCKS)];
             let thread = rayon::current_thread_index().unwrap_or(0);
-            let mut desk = desks[thread].lock().unwrap_or_else(PoisonError::into_inner);
+            let mut scratch = scratches[thread].lock().unwrap_or_else(PoisonError::into_inner);
             part.sites.clear();
             part.sides.clear();
             part.encounters.clear();
-            meetings.iter().for_each(|meeting| self.survey_block::<B>(meeting, &mut desk, part));
+            meetings.iter().for_each(|meeting| self.survey_block::<B>(meeting, &mut scratch, part));
         });
     }
 
-    fn survey_block<B: Basis<T>>(&self, meeting: &Meeting<D>, desk: &mut Desk<T, D>, part: &mut Part<T, D>) {
-        let Desk { present, pairs, sums, handfuls, next, moduli, seats } = desk;
-        let (n, slots, block) = (nodes_per_block(D), self.cover.slots_of(meeting), meeting.block);
-        let body = |slot: u32| self.cover.slots[slot as usize].0 as usize;
+    fn survey_block<B: Basis<T>>(
+        &self,
+        meeting: &Meeting<D>,
+        scratch: &mut Scratch<T, D>,
+        part: &mut Part<T, D>,
+    ) {
+        let Scratch { present, pairs, sums, chunks, next, moduli, places_here } = scratch;
+        let (n, slots, block) = (nodes_per_block(D), self.active.slots_of(meeting), meeting.block);
+        let body = |slot: u32| self.active.slots[slot as usize].0 as usize;
         present.clear();
         present.extend(slots.iter().map(|&slot| self.field.present[slot as usize]));
         let shared = self.pairs(slots, (&mut *present, !self.governed(block)), pairs);
@@ -241,16 +248,16 @@ impl<T: Laned, const D: usize> Near<'_, T, D> {
             let first = sums.len();
             next.push(first);
             sums.resize(first + present.count_ones() as usize, Sums::EMPTY);
-            self.sum_around::<B>((body(slot), block), (*present, sought), (&mut sums[first..], handfuls));
+            self.sum_around::<B>((body(slot), block), (*present, sought), (&mut sums[first..], chunks));
         }
         let mut nodes = shared;
         while let Some(local) = next_of(&mut nodes) {
             let node = node_at(block, local);
             let first = part.sides.len();
-            seats.clear();
+            places_here.clear();
             for (i, &slot) in slots.iter().enumerate() {
                 let here = present[i] >> local & 1 == 1;
-                seats.push(here.then_some(part.sides.len()));
+                places_here.push(here.then_some(part.sides.len()));
                 if here {
                     let modulus = moduli[i];
                     let index = slot as usize * n + local;
@@ -261,7 +268,7 @@ impl<T: Laned, const D: usize> Near<'_, T, D> {
             let reach = self.reach(&part.sides[first..]);
             let start = part.encounters.len();
             for &[a, b, rule] in &*pairs {
-                if let (Some(a), Some(b)) = (seats[a], seats[b]) {
+                if let (Some(a), Some(b)) = (places_here[a], places_here[b]) {
                     let pair = [a - first, b - first];
                     let look = Look { near: self, sides: &part.sides[first..], pair, node, reach };
                     let Some(facing) = law(self.rules.rule(rule).law).facing(&look) else { continue };
@@ -303,7 +310,7 @@ impl<T: Laned, const D: usize> Near<'_, T, D> {
             (present.iter()).fold([0, 0], |[once, twice], nodes| [once | nodes, twice | once & nodes])[1];
         let n = nodes_per_block(D);
         for (&slot, present) in slots.iter().zip(&mut *present) {
-            let owner = &self.bodies[self.cover.slots[slot as usize].0 as usize];
+            let owner = &self.bodies[self.active.slots[slot as usize].0 as usize];
             let trace = if owner.rigid { rigid_trace::<T>() } else { trace::<T>() };
             let least = trace * self.cell_volume() * owner.density;
             let mut nodes = *present & several & free;
@@ -313,7 +320,7 @@ impl<T: Laned, const D: usize> Near<'_, T, D> {
                 }
             }
         }
-        let body = |place: usize| self.cover.slots[slots[place] as usize].0 as usize;
+        let body = |place: usize| self.active.slots[slots[place] as usize].0 as usize;
         let mut all = 0;
         for a in 0..slots.len() {
             for b in a + 1..slots.len() {
@@ -338,7 +345,7 @@ impl<T: Laned, const D: usize> Near<'_, T, D> {
         sums: &Sums<T, D>,
         sought: Wanted,
     ) -> Side<T, D> {
-        let body = self.cover.slots[index / nodes_per_block(D)].0 as usize;
+        let body = self.active.slots[index / nodes_per_block(D)].0 as usize;
         let owner = &self.bodies[body];
         let arm = Vector::from_fn(|i| T::of(f64::from(node[i].rem_euclid(SIDE))) * self.lattice.cell);
         let Node { mass, force, .. } = self.field.nodes[index];

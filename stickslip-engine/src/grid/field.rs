@@ -1,6 +1,6 @@
 //! What the nodes carry: all bodies' blocks in one slab, and the window through which a tile sees its part of it.
 
-use super::{Cover, Nodes, SIDE, Tile, next_of, nodes_per_block};
+use super::{ActiveBlocks, Nodes, SIDE, Tile, next_of, nodes_per_block};
 use crate::basis::MAX_WIDTH;
 use crate::lanes::{Lanes, MOST_LANES, Machine, prefetch};
 use crate::pages::ask_for_large;
@@ -96,7 +96,7 @@ impl<T: Real, const D: usize> Node<T, D> {
 /// Blocks that a thread takes at a time.
 const BLOCKS: usize = 64;
 
-/// All bodies' blocks, in the order of [`Cover::slots`].
+/// All bodies' blocks, in the order of [`ActiveBlocks::slots`].
 #[derive(Clone, Debug, Default)]
 pub struct Field<T, const D: usize> {
     /// Nodes, block by block.
@@ -106,9 +106,9 @@ pub struct Field<T, const D: usize> {
 }
 
 impl<T: Real, const D: usize> Field<T, D> {
-    /// Empties the field and gives it the blocks of a cover.
-    pub fn clear(&mut self, cover: &Cover<D>) {
-        let count = cover.slots.len() * nodes_per_block(D);
+    /// Empties the field and gives it the active blocks.
+    pub fn clear(&mut self, active: &ActiveBlocks<D>) {
+        let count = active.slots.len() * nodes_per_block(D);
         if count > self.nodes.capacity() {
             // Nothing in it is of use any more, and a slab of its own gets pages of its own.
             self.nodes = Vec::with_capacity(count + count / 4);
@@ -175,20 +175,20 @@ pub struct Sought {
 pub type Sums<T> = [[T; 2]; 4];
 
 /// What a node tells: a velocity, and nothing in the places beyond.
-pub type Told<T> = [T; TOLD];
+pub type NodeValues<T> = [T; NODE_VALUES];
 
 /// Numbers of that.
-pub const TOLD: usize = 4;
+pub const NODE_VALUES: usize = 4;
 
 /// A tile's part of the field in one place: nodes `block * 4` to `block * 4 + 5` along each axis, the last fastest.
 #[derive(Clone, Debug)]
 pub struct Window<T, const D: usize> {
     /// Change of the velocities in the step [m/s].
-    pub change: [Told<T>; WINDOW_NODES],
+    pub change: [NodeValues<T>; WINDOW_NODES],
     /// The integrated velocities [m/s].
-    pub integrated: [Told<T>; WINDOW_NODES],
+    pub integrated: [NodeValues<T>; WINDOW_NODES],
     /// The velocities that move and strain particles [m/s].
-    pub flow: [Told<T>; WINDOW_NODES],
+    pub flow: [NodeValues<T>; WINDOW_NODES],
     /// What was scattered so far.
     pub sums: [Sums<T>; WINDOW_NODES],
 }
@@ -265,7 +265,7 @@ fn told<V: Lanes, const D: usize>(vector: &Vector<V::Real, D>) -> V {
 }
 
 #[inline(always)]
-fn tell<V: Lanes>(place: &mut Told<V::Real>, vector: V) {
+fn tell<V: Lanes>(place: &mut NodeValues<V::Real>, vector: V) {
     const { assert!(V::COUNT == 4) };
     // SAFETY: there is room for four numbers.
     unsafe { vector.store(place.as_mut_ptr()) }

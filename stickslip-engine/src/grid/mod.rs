@@ -3,13 +3,13 @@
 //! Space is cut into cells, nodes are their corners, and a block is 4^D nodes. Each body owns the blocks that its
 //! particles reach, so memory and time follow the particles, never bodies x grid nor the size of the domain.
 
-mod cover;
+mod active_blocks;
+mod cell_list;
 mod field;
-mod holding;
 
-pub use cover::{Blocks, Cover, Meeting, Tile};
-pub use field::{Disjoint, Field, Node, Sought, Sums, TOLD, Told, WINDOW, WINDOW_NODES, Window};
-pub use holding::{MOST_CELLS, addressable};
+pub use active_blocks::{ActiveBlocks, Blocks, Meeting, Tile};
+pub use cell_list::{MOST_CELLS, addressable};
+pub use field::{Disjoint, Field, NODE_VALUES, Node, NodeValues, Sought, Sums, WINDOW, WINDOW_NODES, Window};
 
 use crate::tensor::{Real, Vector};
 

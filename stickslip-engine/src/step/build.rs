@@ -8,7 +8,7 @@ use crate::basis::{Basis, Gimp, Linear};
 use crate::body::{Body, Particle};
 use crate::boundary::{Boundary, Wall};
 use crate::check;
-use crate::contact::{Rules, Tally};
+use crate::contact::{ContactSums, Rules};
 use crate::door::Simulation;
 use crate::geometry::{Filling, Mirror, Site, Whole, fill};
 use crate::grid::Lattice;
@@ -124,7 +124,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 disorder,
                 rigid,
                 unbounded,
-                tally: Tally::default(),
+                contact_sums: ContactSums::default(),
                 damping: 0.0,
                 signal: None,
                 time: 0.0,

@@ -45,12 +45,12 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let left = Disjoint::new(&mut self.workspace.left);
         let damped = Disjoint::new(&mut self.workspace.damped);
         let moved = Disjoint::new(&mut self.workspace.moved);
-        let (cover, bodies, room, path) =
-            (&self.workspace.cover, &self.state.bodies, &self.workspace.threads, self.settings.path);
+        let (active, bodies, room, path) =
+            (&self.workspace.active, &self.state.bodies, &self.workspace.threads, self.settings.path);
         // Fed with the fastest signal of the tiles before it in its list, which spares it the roots of slower ones.
         // Lists do not depend on threads.
         let visit = |index: u32, window: &mut Window<T, D>, signal: T| -> Found<T> {
-            let tile = &cover.tiles[index as usize];
+            let tile = &active.tiles[index as usize];
             let body = &bodies[tile.body];
             let for_rigid = Verbs { scatter: pass.verbs.scatter, ..Verbs::default() };
             let pass = &Pass { verbs: if body.rigid { for_rigid } else { pass.verbs }, ..*pass };
@@ -59,11 +59,11 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 tile,
                 body,
                 columns: room.columns[tile.body],
-                order: cover.order_of(tile.body),
-                cells: cover.cells_of(tile),
+                order: active.order_of(tile.body),
+                cells: active.cells_of(tile),
                 nodes: &nodes,
                 window,
-                next: cover.tiles.get(index as usize + 1),
+                next: active.tiles.get(index as usize + 1),
                 left: 0,
                 moved: 0,
                 damped: 0.0,
@@ -103,12 +103,12 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         };
         let tiles = |range: Range<usize>| range.map(|tile| tile as u32);
         if pass.verbs.scatter.is_none() {
-            each_range(cover.tiles.len(), TILES, &|range| several(&mut tiles(range)));
+            each_range(active.tiles.len(), TILES, &|range| several(&mut tiles(range)));
         } else {
-            each_range(cover.portions.len(), 1, &|portions| {
-                cover.portions[portions].iter().for_each(|portion| several(&mut tiles(portion.clone())));
+            each_range(active.portions.len(), 1, &|portions| {
+                active.portions[portions].iter().for_each(|portion| several(&mut tiles(portion.clone())));
             });
-            for color in &cover.colors {
+            for color in &active.colors {
                 each_range(color.len(), TILES, &|range| several(&mut color[range].iter().copied()));
             }
         }

@@ -142,12 +142,12 @@ impl<T: Laned, const D: usize, B: Basis<T>> View for Engine<T, D, B> {
 
     fn ledger(&self) -> Ledger {
         let mut ledger = Ledger {
-            friction: self.state.tally.friction,
-            external_work: self.state.tally.work,
-            adhesion: self.state.tally.adhesion,
+            friction: self.state.contact_sums.friction,
+            external_work: self.state.contact_sums.work,
+            adhesion: self.state.contact_sums.adhesion,
             damping: self.state.damping,
-            scaled_impulses: self.state.tally.scaled,
-            unsettled_nodes: self.state.tally.unsettled,
+            scaled_impulses: self.state.contact_sums.scaled,
+            unsettled_nodes: self.state.contact_sums.unsettled,
             ..Ledger::default()
         };
         let gravity = self.settings.gravity.space();
@@ -172,11 +172,11 @@ impl<T: Laned, const D: usize, B: Basis<T>> View for Engine<T, D, B> {
     }
 
     fn contact_sums(&self) -> Vec<ContactSum> {
-        self.state.tally.sums()
+        self.state.contact_sums.sums()
     }
 
     fn patches(&self) -> Vec<Patch> {
-        self.state.tally.patches()
+        self.state.contact_sums.patches()
     }
 
     fn snapshot(&self) -> ParticleSnapshot {
@@ -255,7 +255,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> View for Engine<T, D, B> {
             }
         }
         let n = nodes_per_block(D);
-        for (slot, &(body, block)) in self.workspace.cover.slots.iter().enumerate() {
+        for (slot, &(body, block)) in self.workspace.active.slots.iter().enumerate() {
             for local in 0..n {
                 let node = &self.workspace.field.nodes[slot * n + local];
                 let place = node_at(block, local);

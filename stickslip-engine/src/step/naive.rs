@@ -54,7 +54,7 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
                 self.found = self.found.and(Found { fault: Some(fault), signal: T::ZERO });
             }
         }
-        if self.pass.verbs.displace {
+        if self.pass.verbs.advect {
             let moved = Stencil::<T, D, B>::new(&self.pass.lattice, &particle).base() != stencil.base();
             self.left |= u64::from(moved) << cell;
             self.moved += u32::from(moved);
@@ -72,7 +72,7 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
     ) -> Result<(), FaultKind> {
         let Pass { verbs, dt, transfer, pic, ref lattice, domain } = *self.pass;
         let block = self.tile.block;
-        if verbs.accept {
+        if verbs.update_velocity {
             let kept = T::ONE - pic;
             particle.velocity += stencil.interpolate(&self.window.change, block);
             if transfer == Transfer::Rflip {
@@ -92,7 +92,7 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
             let sound = particle.velocity.is_finite() && particle.spin.is_finite();
             sound.then_some(()).ok_or(FaultKind::NotFinite)?;
         }
-        if verbs.strain {
+        if verbs.update_stress {
             let gradient = stencil.velocity_gradient(&self.window.flow, block);
             if transfer == Transfer::Rflip {
                 let before = self.body.kinetic(particle);
@@ -118,7 +118,7 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
             particle.stress = stress;
             particle.stress.is_finite().then_some(()).ok_or(FaultKind::NotFinite)?;
         }
-        if verbs.displace {
+        if verbs.advect {
             let position = particle.position + stencil.interpolate(&self.window.flow, block) * dt;
             if !position.is_finite() {
                 return Err(FaultKind::NotFinite);

@@ -28,11 +28,11 @@ pub enum Path {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Verbs {
     /// v_p = (1 - a) (v_p + sum S_i (v_i - v_i^0)) + a sum S_i v_i,   a: PIC share; the spin likewise, see [`crate::transfer::turning`]
-    pub accept: bool,
+    pub update_velocity: bool,
     /// F = (I + L dt) F,  V = V_0 det F,  sigma = law(F)
-    pub strain: bool,
+    pub update_stress: bool,
     /// x += v dt
-    pub displace: bool,
+    pub advect: bool,
     /// Gives to the nodes.
     pub scatter: Option<Share>,
 }
@@ -57,13 +57,17 @@ pub struct Pass<T, const D: usize> {
 impl<T: Real, const D: usize> Pass<T, D> {
     /// What it takes from the nodes.
     pub fn sought(&self) -> Sought {
-        let Verbs { accept, strain, displace, .. } = self.verbs;
-        Sought { change: accept, integrated: accept && self.pic > T::ZERO, flow: strain || displace }
+        let Verbs { update_velocity, update_stress, advect, .. } = self.verbs;
+        Sought {
+            change: update_velocity,
+            integrated: update_velocity && self.pic > T::ZERO,
+            flow: update_stress || advect,
+        }
     }
 
     /// Whether it takes anything from the nodes.
     pub fn gathers(&self) -> bool {
-        self.verbs.accept || self.verbs.strain || self.verbs.displace
+        self.verbs.update_velocity || self.verbs.update_stress || self.verbs.advect
     }
 }
 

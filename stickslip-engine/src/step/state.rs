@@ -4,8 +4,8 @@ use super::cpu::Threads;
 use super::unbounded::Unbounded;
 use crate::body::{Body, Totals};
 use crate::boundary::Boundary;
-use crate::contact::{Impulses, Rules, Survey, Tally};
-use crate::grid::{Cover, Field, Lattice};
+use crate::contact::{ContactSums, Impulses, Rules, Survey};
+use crate::grid::{ActiveBlocks, Field, Lattice};
 use crate::rigid::RigidMotion;
 use crate::scene::{Time, Transfer};
 use crate::tensor::Vector;
@@ -37,7 +37,7 @@ pub struct State<T, const D: usize> {
     /// Rigid bodies without bounds, with the blocks around which they have particles.
     pub unbounded: Vec<Unbounded<D>>,
     /// What contact did, pair by pair, and works since the start.
-    pub tally: Tally,
+    pub contact_sums: ContactSums,
     /// What damping took since the start [J].
     pub damping: f64,
     /// Fastest signal now [m/s]; unknown before the first step.
@@ -51,7 +51,7 @@ pub struct State<T, const D: usize> {
 /// Lists, grids and room to work in, all of which follow from the state: dropping them changes no step.
 pub struct Workspace<T, const D: usize> {
     /// Cell lists of the particles, and the active blocks.
-    pub cover: Cover<D>,
+    pub active: ActiveBlocks<D>,
     /// Whether the cell lists are those of the state but for the particles that `left`.
     pub listed: bool,
     /// Nodes of all bodies' active blocks.
@@ -80,7 +80,7 @@ impl<T, const D: usize> Workspace<T, D> {
     /// An empty one, for a domain with these faces.
     pub fn new(boundary: Boundary) -> Self {
         Workspace {
-            cover: Cover::default(),
+            active: ActiveBlocks::default(),
             listed: false,
             field: Field { nodes: Vec::new(), present: Vec::new() },
             boundary,

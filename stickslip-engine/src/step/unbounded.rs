@@ -193,7 +193,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             }
             let held = self
                 .workspace
-                .cover
+                .active
                 .slots
                 .iter()
                 .filter(|(body, _)| !self.state.bodies[*body as usize].rigid);
@@ -249,7 +249,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         body.particles = particles;
         self.state.disorder[number] = Disorder::any(body.particles.len());
         let (particles, grid) = (&body.particles, &self.settings.lattice);
-        self.workspace.cover.replace((number, particles.len(), B::WIDTH as i32 - 1), |particle| {
+        self.workspace.active.replace((number, particles.len(), B::WIDTH as i32 - 1), |particle| {
             home::<T, D, B>(grid, particles.place(particle))
         });
     }

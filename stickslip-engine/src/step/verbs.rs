@@ -34,16 +34,16 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let left = self.workspace.listed.then_some(&self.workspace.left[..]);
         let count = |body: usize| bodies[body].particles.len();
         let reach = B::WIDTH as i32 - 1;
-        let blocks = self.workspace.cover.update((bodies.len(), count, reach), left, |body, particle| {
+        let blocks = self.workspace.active.update((bodies.len(), count, reach), left, |body, particle| {
             home::<T, D, B>(lattice, bodies[body].particles.place(particle))
         });
         let blocks = blocks.max(self.spread(blocks));
         self.sort_particles();
-        let Workspace { cover, field, boundary, left, moved, damped, listed, .. } = &mut self.workspace;
+        let Workspace { active, field, boundary, left, moved, damped, listed, .. } = &mut self.workspace;
         if blocks == Blocks::New {
-            boundary.cover(cover);
+            boundary.find_nodes(active);
         }
-        let tiles = cover.tiles.len();
+        let tiles = active.tiles.len();
         left.clear();
         left.resize(tiles, 0);
         moved.clear();
@@ -51,24 +51,24 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         damped.clear();
         damped.resize(tiles, 0.0);
         *listed = true;
-        field.clear(cover);
+        field.clear(active);
         self.watch.lap("blocks", start);
     }
 
     /// Sorts particles in memory into the order in which tiles visit them,
     /// where disorder has cost as much as that does.
     fn sort_particles(&mut self) {
-        let (cover, disorder) = (&self.workspace.cover, &self.state.disorder);
+        let (active, disorder) = (&self.workspace.active, &self.state.disorder);
         let costly = |body: usize, count: usize| disorder[body].is_costly(count);
         each(&mut self.state.bodies, 16, |i, body| {
             if costly(i, body.particles.len()) {
-                body.particles.permute(cover.order_of(i));
+                body.particles.permute(active.order_of(i));
             }
         });
         for (i, disorder) in self.state.disorder.iter_mut().enumerate() {
             if disorder.is_costly(self.state.bodies[i].particles.len()) {
                 *disorder = Disorder::default();
-                self.workspace.cover.tidied(i);
+                self.workspace.active.tidied(i);
             }
         }
     }
@@ -76,7 +76,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// Counts the particles that changed their cells in the step.
     pub(super) fn count_disorder(&mut self) {
         for (body, disorder) in self.state.disorder.iter_mut().enumerate() {
-            let moved = &self.workspace.moved[self.workspace.cover.tiles_held(body)];
+            let moved = &self.workspace.moved[self.workspace.active.tiles_held(body)];
             disorder.add(moved.iter().map(|&moved| moved as usize).sum());
         }
     }
@@ -84,7 +84,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// P2G: the particles' share in the nodes.
     pub(super) fn particles_to_grid(&mut self, share: Share) {
         let verbs = Verbs { scatter: Some(share), ..Verbs::default() };
-        self.run_pass("scatter", verbs, T::ZERO).expect("a scatter changes no particle");
+        self.run_pass("P2G", verbs, T::ZERO).expect("a scatter changes no particle");
     }
 
     /// G2P and P2G of momentum:
@@ -93,29 +93,33 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// v_p = (1 - a) (v_p + sum S_i (v_i - v_i^0)) + a sum S_i v_i,   a: PIC share; the particle's rotation likewise
     /// ```
     pub(super) fn update_particle_velocities(&mut self, dt: T) -> Result<(), StepError> {
-        let verbs = Verbs { accept: true, scatter: Some(Share::Momentum), ..Verbs::default() };
-        self.run_pass("accept", verbs, dt)
+        let verbs = Verbs { update_velocity: true, scatter: Some(Share::Momentum), ..Verbs::default() };
+        self.run_pass("velocity update", verbs, dt)
     }
 
     /// G2P of velocity gradients, and P2G of forces:  F = (I + L dt) F,  sigma = law(F),  f = -sum V sigma grad S
     pub(super) fn update_stress(&mut self, dt: T) -> Result<(), StepError> {
-        let verbs = Verbs { strain: true, scatter: Some(Share::Force), ..Verbs::default() };
-        self.run_pass("strain", verbs, dt)
+        let verbs = Verbs { update_stress: true, scatter: Some(Share::Force), ..Verbs::default() };
+        self.run_pass("stress update", verbs, dt)
     }
 
     /// G2P:  v_p += dv,  x += v dt
     pub(super) fn update_velocities_and_positions(&mut self, dt: T) -> Result<(), StepError> {
-        self.run_pass("displace", Verbs { accept: true, displace: true, ..Verbs::default() }, dt)
+        self.run_pass("advection", Verbs { update_velocity: true, advect: true, ..Verbs::default() }, dt)
     }
 
     /// G2P:  v_p += dv,  F = (I + L dt) F,  sigma = law(F),  x += v dt
     pub(super) fn update_particles(&mut self, dt: T) -> Result<(), StepError> {
-        self.run_pass("strain", Verbs { accept: true, strain: true, displace: true, scatter: None }, dt)
+        self.run_pass(
+            "stress update",
+            Verbs { update_velocity: true, update_stress: true, advect: true, scatter: None },
+            dt,
+        )
     }
 
     /// G2P:  F = (I + L dt) F,  sigma = law(F),  x += v dt
     pub(super) fn update_stress_and_positions(&mut self, dt: T) -> Result<(), StepError> {
-        self.run_pass("strain", Verbs { strain: true, displace: true, ..Verbs::default() }, dt)
+        self.run_pass("stress update", Verbs { update_stress: true, advect: true, ..Verbs::default() }, dt)
     }
 
     fn run_pass(&mut self, name: &'static str, verbs: Verbs, dt: T) -> Result<(), StepError> {
@@ -128,15 +132,15 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             lattice: self.settings.lattice,
             domain: self.settings.domain,
         });
-        if verbs.accept || verbs.strain {
+        if verbs.update_velocity || verbs.update_stress {
             // Tile after tile, whoever took them.
             self.state.damping += self.workspace.damped.iter().sum::<f64>();
         }
-        if verbs.displace {
+        if verbs.advect {
             self.state.signal = Some(found.signal.f64());
         }
         if let Some(share) = verbs.scatter {
-            self.workspace.boundary.fold(&mut self.workspace.field, share);
+            self.workspace.boundary.add_images(&mut self.workspace.field, share);
         }
         self.watch.lap(name, start);
         found.fault.map_or(Ok(()), |fault| Err(self.error(&fault)))
@@ -146,33 +150,33 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     pub(super) fn interpolated_velocities(&mut self) {
         let start = Instant::now();
         self.workspace.field.find_present(Node::begin);
-        self.watch.lap("velocities", start);
+        self.watch.lap("grid", start);
     }
 
     /// v = p / m of the particles' new velocities.
     pub(super) fn interpolated_again(&mut self) {
-        self.at_nodes("velocities", Node::divide_by_mass);
+        self.at_nodes("grid", Node::divide_by_mass);
     }
 
     /// v += dt (f / m + g)
     pub(super) fn update_velocities(&mut self, dt: T) {
         let gravity = self.settings.gravity;
-        self.at_nodes("velocities", |node| node.accelerate(gravity, dt));
+        self.at_nodes("grid", |node| node.accelerate(gravity, dt));
     }
 
     /// Keeps the nodes' velocities beside those that change.
     pub(super) fn keep_velocities(&mut self) {
-        self.at_nodes("velocities", Node::keep);
+        self.at_nodes("grid", Node::keep);
     }
 
     /// Keeps the nodes' velocities and makes room for momentum.
     pub(super) fn keep_velocities_and_clear_momentum(&mut self) {
-        self.at_nodes("velocities", Node::keep_and_clear);
+        self.at_nodes("grid", Node::keep_and_clear);
     }
 
     /// Takes the velocities that were kept, and keeps those of now.
     pub(super) fn exchange_velocities(&mut self) {
-        self.at_nodes("velocities", Node::exchange);
+        self.at_nodes("grid", Node::exchange);
     }
 
     /// Does something to each node that has mass.
@@ -186,26 +190,26 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     pub(super) fn prescribed_velocities(&mut self) {
         let start = Instant::now();
         let n = nodes_per_block(D);
-        let Workspace { cover, field, boundary, .. } = &mut self.workspace;
+        let Workspace { active, field, boundary, .. } = &mut self.workspace;
         for (body, motion) in self.state.rigid.iter().enumerate() {
             let Some(motion) = motion else { continue };
-            for slot in cover.slots_held(body) {
-                let (_, block) = cover.slots[slot];
+            for slot in active.slots_held(body) {
+                let (_, block) = active.slots[slot];
                 for local in 0..n {
                     let position = self.settings.lattice.position(node_at(block, local)).space();
                     field.nodes[slot * n + local].velocity = Vector::of(motion.velocity_at(position));
                 }
             }
         }
-        boundary.hold(field);
-        self.watch.lap("velocities", start);
+        boundary.impose(field);
+        self.watch.lap("grid", start);
     }
 
     /// Where bodies meet: surfaces, normals and gaps at the nodes that they share.
     pub(super) fn detect_contact(&mut self, dt: T) {
         let start = Instant::now();
         let near = Near {
-            cover: &self.workspace.cover,
+            active: &self.workspace.active,
             bodies: &self.state.bodies,
             field: &self.workspace.field,
             lattice: self.settings.lattice,
@@ -218,7 +222,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             },
         };
         near.survey::<B>(&mut self.workspace.meeting);
-        self.watch.lap("survey", start);
+        self.watch.lap("contact detection", start);
     }
 
     /// Contact on the interpolated velocities, by the laws that judge these by themselves; they also strain the
@@ -256,9 +260,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let step = Step { duration, cell: self.settings.lattice.cell, purpose };
         let nodes = Disjoint::new(&mut field.nodes);
         Solve { survey: meeting, rules: &self.settings.rules, nodes, step, given }.impulses(record, listed);
-        self.state.tally.scaled += listed.reduced();
-        self.state.tally.unsettled += listed.unsettled();
-        boundary.hold(field);
+        self.state.contact_sums.scaled += listed.reduced();
+        self.state.contact_sums.unsettled += listed.unsettled();
+        boundary.impose(field);
         self.watch.lap("contact", start);
     }
 
@@ -268,8 +272,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let Workspace { impulses: [first, second, _], boundary, .. } = &self.workspace;
         let place = (&self.settings.lattice, boundary);
         // How long surfaces touch is counted once a step.
-        self.state.tally.add(first.iter().filter(|impulse| impulse.span == Span::EachUse), place, 0.0);
-        self.state.tally.add(second.iter(), place, dt.f64());
+        self.state.contact_sums.add(first.iter().filter(|impulse| impulse.span == Span::EachUse), place, 0.0);
+        self.state.contact_sums.add(second.iter(), place, dt.f64());
         self.book_friction(dt);
         self.watch.lap("contact", start);
     }
@@ -306,10 +310,10 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             }
             let [v, w] = impulse.nodes.map(seen);
             if rubs {
-                self.state.tally.rub(impulse.bodies, -tangential.dot(v - w).f64());
+                self.state.contact_sums.rub(impulse.bodies, -tangential.dot(v - w).f64());
             }
             if pulls {
-                self.state.tally.adhesion -= (on_a - tangential).dot(v - w).f64();
+                self.state.contact_sums.adhesion -= (on_a - tangential).dot(v - w).f64();
             }
         }
     }
@@ -356,7 +360,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 found = found.and(Found { fault, signal: signal(body, &particle, &history) });
             }
             motion.advance(&rotation, dt);
-            let tiles = self.workspace.cover.tiles_held(i);
+            let tiles = self.workspace.active.tiles_held(i);
             self.workspace.left[tiles.clone()].fill(u64::MAX);
             if let [first, ..] = &mut self.workspace.moved[tiles] {
                 *first = moved_on;

@@ -9,7 +9,7 @@
 
 use super::turning::moment;
 use crate::basis::{Basis, MAX_WIDTH, Shape};
-use crate::grid::{Sums, TOLD, Told, WINDOW, WINDOW_NODES, Window};
+use crate::grid::{NODE_VALUES, NodeValues, Sums, WINDOW, WINDOW_NODES, Window};
 use crate::lanes::{Lanes, MOST_LANES, Machine, Numbers};
 use crate::tensor::{Matrix, Number, Real, Symmetric, Vector};
 use std::marker::PhantomData;
@@ -20,7 +20,12 @@ pub trait Start: Copy {
     fn of(&self, lane: usize) -> usize;
 
     /// A component of the value at the node that comes `offset` after the base node.
-    fn value<V: Lanes>(&self, nodes: &[Told<V::Real>; WINDOW_NODES], offset: usize, component: usize) -> V;
+    fn value<V: Lanes>(
+        &self,
+        nodes: &[NodeValues<V::Real>; WINDOW_NODES],
+        offset: usize,
+        component: usize,
+    ) -> V;
 
     /// The place of all, if they share one.
     fn shared(&self) -> Option<usize>;
@@ -61,7 +66,12 @@ impl Start for Shared {
     }
 
     #[inline(always)]
-    fn value<V: Lanes>(&self, nodes: &[Told<V::Real>; WINDOW_NODES], offset: usize, component: usize) -> V {
+    fn value<V: Lanes>(
+        &self,
+        nodes: &[NodeValues<V::Real>; WINDOW_NODES],
+        offset: usize,
+        component: usize,
+    ) -> V {
         V::splat(nodes[self.0 + offset][component])
     }
 
@@ -78,10 +88,15 @@ impl Start for Own {
     }
 
     #[inline(always)]
-    fn value<V: Lanes>(&self, nodes: &[Told<V::Real>; WINDOW_NODES], offset: usize, component: usize) -> V {
+    fn value<V: Lanes>(
+        &self,
+        nodes: &[NodeValues<V::Real>; WINDOW_NODES],
+        offset: usize,
+        component: usize,
+    ) -> V {
         let mut index = [0; MOST_LANES];
         for lane in 0..V::COUNT {
-            index[lane] = (self.0[lane] + offset) * TOLD + component;
+            index[lane] = (self.0[lane] + offset) * NODE_VALUES + component;
         }
         // SAFETY: an offset is at most a particle's reach, and starts are before the last one.
         unsafe { V::gather(nodes.as_ptr().cast(), &index) }
@@ -160,7 +175,7 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
 
     /// sum S_i of a value at the nodes.
     #[inline(always)]
-    pub fn interpolate(&self, nodes: &[Told<V::Real>; WINDOW_NODES]) -> Vector<V, D> {
+    pub fn interpolate(&self, nodes: &[NodeValues<V::Real>; WINDOW_NODES]) -> Vector<V, D> {
         let [x, y, z] = [&self.shapes[0], &self.shapes[1], &self.shapes[D - 1]];
         let mut sum = [V::NOTHING; D];
         for i in 0..B::WIDTH {
@@ -186,7 +201,7 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
 
     /// h L = sum v_i (x) h grad S_i, embedded in space, and sum S_i v_i of the same velocities [m/s].
     #[inline(always)]
-    pub fn flow(&self, nodes: &[Told<V::Real>; WINDOW_NODES]) -> (Matrix<V>, Vector<V, D>) {
+    pub fn flow(&self, nodes: &[NodeValues<V::Real>; WINDOW_NODES]) -> (Matrix<V>, Vector<V, D>) {
         let mut slopes = [[V::ZERO; MAX_WIDTH]; D];
         for axis in 0..D {
             for i in 0..B::WIDTH {
@@ -198,7 +213,7 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
 
     /// sum S_i (x_i - x_p) x v_i over h, see [`super::turning`], and sum S_i v_i [m/s].
     #[inline(always)]
-    pub fn moment(&self, nodes: &[Told<V::Real>; WINDOW_NODES]) -> (Vector<V, 3>, Vector<V, D>) {
+    pub fn moment(&self, nodes: &[NodeValues<V::Real>; WINDOW_NODES]) -> (Vector<V, 3>, Vector<V, D>) {
         let mut arms = [[V::ZERO; MAX_WIDTH]; D];
         for axis in 0..D {
             for i in 0..B::WIDTH {
@@ -214,7 +229,7 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
     #[inline(always)]
     fn sums(
         &self,
-        nodes: &[Told<V::Real>; WINDOW_NODES],
+        nodes: &[NodeValues<V::Real>; WINDOW_NODES],
         others: &[[V; MAX_WIDTH]; D],
     ) -> (Matrix<V>, Vector<V, D>) {
         let [x, y, z] = [&self.shapes[0], &self.shapes[1], &self.shapes[D - 1]];

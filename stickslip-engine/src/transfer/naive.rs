@@ -3,7 +3,7 @@
 use super::{offsets, turning};
 use crate::basis::{Axis, Basis};
 use crate::body::Particle;
-use crate::grid::{Lattice, SIDE, Told, WINDOW, WINDOW_NODES, Window};
+use crate::grid::{Lattice, NodeValues, SIDE, WINDOW, WINDOW_NODES, Window};
 use crate::tensor::{Matrix, Real, Symmetric, Vector};
 use std::marker::PhantomData;
 
@@ -102,7 +102,7 @@ impl<T: Real, const D: usize, B: Basis<T>> Stencil<T, D, B> {
     }
 
     /// sum S_i of a value at the window's nodes.
-    pub fn interpolate(&self, nodes: &[Told<T>; WINDOW_NODES], block: [i32; D]) -> Vector<T, D> {
+    pub fn interpolate(&self, nodes: &[NodeValues<T>; WINDOW_NODES], block: [i32; D]) -> Vector<T, D> {
         let mut sum = Vector::ZERO;
         self.each(block, |place, offset| {
             sum += Vector::from_fn(|i| nodes[place][i]) * self.at(offset).0;
@@ -111,7 +111,7 @@ impl<T: Real, const D: usize, B: Basis<T>> Stencil<T, D, B> {
     }
 
     /// sum S_i (x_i - x_p) x v_i of a value at the window's nodes, see [`turning`]; in the plane about the third axis [m^2/s].
-    pub fn moment(&self, nodes: &[Told<T>; WINDOW_NODES], block: [i32; D]) -> Vector<T, 3> {
+    pub fn moment(&self, nodes: &[NodeValues<T>; WINDOW_NODES], block: [i32; D]) -> Vector<T, 3> {
         let mut moments = Matrix::ZERO;
         self.each(block, |place, offset| {
             let (weight, arm) = (self.at(offset).0, self.arm(offset));
@@ -125,7 +125,7 @@ impl<T: Real, const D: usize, B: Basis<T>> Stencil<T, D, B> {
     }
 
     /// L = sum v_i (x) grad S_i, embedded in space [1/s].
-    pub fn velocity_gradient(&self, nodes: &[Told<T>; WINDOW_NODES], block: [i32; D]) -> Matrix<T> {
+    pub fn velocity_gradient(&self, nodes: &[NodeValues<T>; WINDOW_NODES], block: [i32; D]) -> Matrix<T> {
         let mut l = Matrix::ZERO;
         self.each(block, |place, offset| {
             let (velocity, gradient) = (nodes[place], self.at(offset).1);

@@ -48,11 +48,11 @@ pub(super) struct Fringes {
     /// Whether there was a first look.
     looked: bool,
     contacts: ContactCursor,
-    darkroom: Writer<Darkroom>,
+    writer: Writer<FringeWriter>,
 }
 
 /// Where light falls on film and becomes pictures.
-struct Darkroom {
+struct FringeWriter {
     camera: scene::Fringes,
     specimens: Vec<usize>,
     folder: OutputFolder,
@@ -141,7 +141,7 @@ impl Fringes {
         let path = folder.join(FRINGES);
         fs::create_dir_all(&path).map_err(OutputError::at(&path))?;
         let birefringent = |body: &scene::Body| camera.bodies.contains(&body.name);
-        let darkroom = Darkroom {
+        let writer = FringeWriter {
             specimens: (0..scene.bodies.len()).filter(|&i| birefringent(&scene.bodies[i])).collect(),
             folder: folder.clone(),
             table: Table::create(folder.join(FRINGES_TABLE), scene.outputs.measurements.unit())?,
@@ -156,7 +156,7 @@ impl Fringes {
             overlay: camera.overlay,
             looked: false,
             contacts: ContactCursor::default(),
-            darkroom: Writer::start(darkroom).map_err(OutputError::at(&path))?,
+            writer: Writer::start(writer).map_err(OutputError::at(&path))?,
         })
     }
 }
@@ -172,7 +172,7 @@ fn idle_processors() -> Option<ThreadPool> {
     ThreadPoolBuilder::new().num_threads(idle).thread_name(|i| format!("pictures {i}")).build().ok()
 }
 
-impl Darkroom {
+impl FringeWriter {
     fn view(&self, particles: &ParticleSnapshot) -> Photograph {
         let shown = self.camera.view.or_else(|| bounds(particles, &self.specimens));
         // Bodies without particles leave nothing to frame.
@@ -243,7 +243,7 @@ impl Observer for Fringes {
         if !due && self.looked {
             return Ok(());
         }
-        self.darkroom.make_room()?;
+        self.writer.make_room()?;
         let particles = view.snapshot();
         let pushes = (due && self.overlay == Overlay::ForceChains).then(|| {
             let push = |contact: ContactState| Push {
@@ -254,14 +254,14 @@ impl Observer for Fringes {
         });
         let exposure = due.then(|| Exposure { time, pushes, last: self.shutter.pass(time) });
         let bytes = PARTICLE_BYTES * particles.mass.len();
-        self.darkroom.hand_over(bytes, move |darkroom| darkroom.look(&particles, exposure));
+        self.writer.hand_over(bytes, move |writer| writer.look(&particles, exposure));
         self.looked = true;
         Ok(())
     }
 
     fn conclude(&mut self) -> Result<(), OutputError> {
-        self.darkroom.hand_over(0, Darkroom::conclude);
-        self.darkroom.finish()
+        self.writer.hand_over(0, FringeWriter::conclude);
+        self.writer.finish()
     }
 }
 

@@ -17,10 +17,10 @@ use crate::scene::Scene;
 
 /// The observers that a scene asks for, and those that are added.
 pub struct Recorder<'a> {
-    seats: Vec<Seat<'a>>,
+    scheduled: Vec<Scheduled<'a>>,
 }
 
-struct Seat<'a> {
+struct Scheduled<'a> {
     observer: Box<dyn Observer + 'a>,
     /// Time of its last record [s].
     last: Option<f64>,
@@ -56,13 +56,13 @@ impl<'a> Recorder<'a> {
         if let Some(camera) = &scene.outputs.fringes {
             observers.push(Box::new(Fringes::create((scene, camera), folder)?));
         }
-        let seats = observers.into_iter().map(|observer| Seat { observer, last: None }).collect();
-        Ok(Recorder { seats })
+        let scheduled = observers.into_iter().map(|observer| Scheduled { observer, last: None }).collect();
+        Ok(Recorder { scheduled })
     }
 
     /// Adds an observer, to be asked after those of the scene.
     pub fn add(&mut self, observer: impl Observer + 'a) {
-        self.seats.push(Seat { observer: Box::new(observer), last: None });
+        self.scheduled.push(Scheduled { observer: Box::new(observer), last: None });
     }
 
     /// Records what is due: to be called after each step.
@@ -71,7 +71,7 @@ impl<'a> Recorder<'a> {
     /// A file cannot be written.
     pub fn record_due(&mut self, view: &dyn View) -> Result<(), OutputError> {
         let time = view.time();
-        self.record_where(view, |seat| time >= seat.observer.next())
+        self.record_where(view, |output| time >= output.observer.next())
     }
 
     /// Records the present state in every output that does not have it yet: at the start and the end of a run.
@@ -80,7 +80,7 @@ impl<'a> Recorder<'a> {
     /// A file cannot be written.
     pub fn record_present(&mut self, view: &dyn View) -> Result<(), OutputError> {
         let time = view.time();
-        self.record_where(view, |seat| seat.last != Some(time))
+        self.record_where(view, |output| output.last != Some(time))
     }
 
     /// Records the state in which a step failed. If the time did not advance, tables keep the row that they have and
@@ -90,7 +90,7 @@ impl<'a> Recorder<'a> {
     /// A file cannot be written.
     pub fn record_failure(&mut self, view: &dyn View) -> Result<(), OutputError> {
         let time = view.time();
-        self.record_where(view, |seat| seat.last != Some(time) || seat.observer.replaces())
+        self.record_where(view, |output| output.last != Some(time) || output.observer.replaces())
     }
 
     /// Lets every output write what only the whole run tells: to be called once, after the last record.
@@ -98,14 +98,18 @@ impl<'a> Recorder<'a> {
     /// # Errors
     /// A file cannot be written.
     pub fn conclude(&mut self) -> Result<(), OutputError> {
-        self.seats.iter_mut().try_for_each(|seat| seat.observer.conclude())
+        self.scheduled.iter_mut().try_for_each(|output| output.observer.conclude())
     }
 
-    fn record_where(&mut self, view: &dyn View, chosen: impl Fn(&Seat) -> bool) -> Result<(), OutputError> {
-        for seat in &mut self.seats {
-            if chosen(seat) {
-                seat.observer.observe(view)?;
-                seat.last = Some(view.time());
+    fn record_where(
+        &mut self,
+        view: &dyn View,
+        chosen: impl Fn(&Scheduled) -> bool,
+    ) -> Result<(), OutputError> {
+        for output in &mut self.scheduled {
+            if chosen(output) {
+                output.observer.observe(view)?;
+                output.last = Some(view.time());
             }
         }
         Ok(())

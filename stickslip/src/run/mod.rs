@@ -1,8 +1,8 @@
 //! The loop: step, observe, stop.
 
 mod clock;
+mod contact_watch;
 mod error;
-mod lookout;
 mod summary;
 mod verdict;
 mod widest;
@@ -17,7 +17,7 @@ use crate::march::March;
 use crate::observe::{Manifest, Observer, OutputFolder, Recorder, Status};
 use crate::scene::Scene;
 use clock::Clock;
-use lookout::Lookout;
+use contact_watch::ContactWatch;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -80,11 +80,11 @@ pub fn run_with(
     let start = simulation.ledger();
 
     let mut verdict = Verdict::new(scene, simulation);
-    let mut lookout = Lookout::new(simulation.time());
+    let mut contact_watch = ContactWatch::new(simulation.time());
     let outcome = Recorder::new(scene, &folder).map_err(RunError::from).and_then(|mut recorder| {
         observers.iter_mut().for_each(|observer| recorder.add(&mut **observer));
-        let (verdict, lookout) = (&mut verdict, &mut lookout);
-        let watched = Watched { scene, simulation, recorder, verdict, lookout, options, clock: &clock };
+        let (verdict, contact_watch) = (&mut verdict, &mut contact_watch);
+        let watched = Watched { scene, simulation, recorder, verdict, contact_watch, options, clock: &clock };
         watched.to(scene.time.end, progress)
     });
 
@@ -95,7 +95,7 @@ pub fn run_with(
     let saved = manifest.write(&folder);
     outcome?;
     saved?;
-    let contacts = lookout.widest(scene, simulation);
+    let contacts = contact_watch.widest(scene, simulation);
     let energies = Energies { start, scale: verdict.energy_scale() };
     Ok(Summary::new(scene, simulation, energies, (manifest, contacts)))
 }
@@ -106,7 +106,7 @@ struct Watched<'a> {
     simulation: &'a mut dyn Simulation,
     recorder: Recorder<'a>,
     verdict: &'a mut Verdict,
-    lookout: &'a mut Lookout,
+    contact_watch: &'a mut ContactWatch,
     options: &'a RunOptions,
     clock: &'a Clock,
 }
@@ -126,7 +126,7 @@ impl Watched<'_> {
             }
             self.step(&mut way)?;
             self.recorder.record_due(self.simulation)?;
-            notes.extend(self.lookout.look(self.scene, self.simulation));
+            notes.extend(self.contact_watch.look(self.scene, self.simulation));
             notes.extend(self.verdict.look(self.scene, self.simulation));
             if reports.due() || !notes.is_empty() {
                 let notes = std::mem::take(&mut notes);

@@ -1,7 +1,7 @@
 //! Particles of a cell, side by side, added to the nodes that they reach.
 
 use super::sums::{FIRST, FORCE, MASS, Sums, Wanted, placed_rows, stress_rows};
-use super::{Around, Handful};
+use super::{Around, Chunk};
 use crate::basis::{Basis, Shape};
 use crate::grid::{Nodes, next_of, node_at};
 use crate::lanes::{Laned, Lanes, MOST_LANES, Machine, Numbers, in_lanes, prefetch};
@@ -17,26 +17,26 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
     pub(super) fn add<M: Machine<T>, V: Lanes<Real = T>>(mut self) {
         let seen = Seen::<V, D>::new(&self);
         let columns = self.near.bodies[self.body].particles.view();
-        let order = self.near.cover.order_of(self.body);
-        let index = |handful: &Handful<D>| &order[handful.first as usize..][..handful.count as usize];
+        let order = self.near.active.order_of(self.body);
+        let index = |chunk: &Chunk<D>| &order[chunk.first as usize..][..chunk.count as usize];
         let mut copies = Copies([Numbers::ZERO; Column::<3>::COUNT]);
-        for place in 0..self.handfuls.len() {
-            if let Some(later) = self.handfuls.get(place + AHEAD) {
+        for place in 0..self.chunks.len() {
+            if let Some(later) = self.chunks.get(place + AHEAD) {
                 let index = index(later);
                 fetch(&columns, [index[0], index[index.len() - 1]], self.sought);
             }
-            let handful = self.handfuls[place];
-            let members = Members::new::<V>(&columns, index(&handful), self.sought, &mut copies);
-            self.handful::<M, V>(&seen, &members, &handful);
+            let chunk = self.chunks[place];
+            let members = Members::new::<V>(&columns, index(&chunk), self.sought, &mut copies);
+            self.chunk::<M, V>(&seen, &members, &chunk);
         }
     }
 
     #[inline(always)]
-    fn handful<M: Machine<T>, V: Lanes<Real = T>>(
+    fn chunk<M: Machine<T>, V: Lanes<Real = T>>(
         &mut self,
         seen: &Seen<V, D>,
         members: &Members<'_, T, D>,
-        &Handful { cell, base, nodes, .. }: &Handful<D>,
+        &Chunk { cell, base, nodes, .. }: &Chunk<D>,
     ) {
         // No closure: the compiler may leave one of some size uninlined, and then its instructions are calls.
         let mut position = Vector::<V, D>::ZERO;
@@ -258,7 +258,7 @@ impl<V: Lanes, const D: usize> Seen<V, D> {
     }
 }
 
-/// How many handfuls ahead of the present one numbers are fetched into the cache.
+/// How many chunks ahead of the present one numbers are fetched into the cache.
 const AHEAD: usize = 3;
 
 /// The columns that sums are made of.

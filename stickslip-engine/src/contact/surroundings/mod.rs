@@ -49,12 +49,12 @@ pub type Mirrors<'a, const D: usize> = [Option<&'a Wall>; D];
 
 impl<T: Laned, const D: usize> Near<'_, T, D> {
     /// Adds a body's particles to the wanted nodes of a block: the sums of the n-th of them are `sums[n]`.
-    /// `handfuls` is room to work in.
+    /// `chunks` is room to work in.
     pub fn sum_around<B: Basis<T>>(
         &self,
         (body, block): (usize, [i32; D]),
         (wanted, sought): (Nodes, Wanted),
-        (sums, handfuls): (&mut [Sums<T, D>], &mut Vec<Handful<D>>),
+        (sums, chunks): (&mut [Sums<T, D>], &mut Vec<Chunk<D>>),
     ) {
         let mut walls = self.boundary.walls.iter().filter(|wall| self.reflects::<B>(wall, block));
         let near: [Option<&Wall>; 6] = std::array::from_fn(|_| walls.next());
@@ -70,7 +70,7 @@ impl<T: Laned, const D: usize> Near<'_, T, D> {
                     wanted,
                     sought,
                     mirrors,
-                    handfuls: &mut *handfuls,
+                    chunks: &mut *chunks,
                     sums: &mut *sums,
                     basis: PhantomData::<B>,
                 };
@@ -95,7 +95,7 @@ struct Around<'a, T, const D: usize, B> {
     wanted: Nodes,
     sought: Wanted,
     mirrors: Mirrors<'a, D>,
-    handfuls: &'a mut Vec<Handful<D>>,
+    chunks: &'a mut Vec<Chunk<D>>,
     sums: &'a mut [Sums<T, D>],
     basis: PhantomData<B>,
 }
@@ -112,7 +112,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Work for Around<'_, T, D, B> {
 
 /// Particles of a cell, no more than there are lanes, and the nodes that they reach.
 #[derive(Clone, Copy, Debug)]
-pub struct Handful<const D: usize> {
+pub struct Chunk<const D: usize> {
     /// Place of the first in the body's order.
     first: u32,
     count: u32,
@@ -142,7 +142,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
                 reached[i][cell as usize] = nodes.fold(0, |all, nodes| all | nodes);
             }
         }
-        self.handfuls.clear();
+        self.chunks.clear();
         let ends: [[i32; 2]; D] =
             array([0; 2], |i| [lowest[i], lowest[i] + SIDE + reach - 1].map(|cell| cell.div_euclid(SIDE)));
         let mut home: [i32; D] = array(0, |i| ends[i][0]);
@@ -157,7 +157,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
                 let along = &reached[i][steps[i][0] as usize..steps[i][1] as usize];
                 nodes &= along.iter().fold(0, |all, nodes| all | nodes);
             }
-            let tile = if nodes == 0 { None } else { self.near.cover.tile_at(self.body, home) };
+            let tile = if nodes == 0 { None } else { self.near.active.tile_at(self.body, home) };
             if let Some((_, cells)) = tile {
                 self.list(cells, (lowest, home), (&reached, steps), V::COUNT);
             }
@@ -206,7 +206,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
                     while nodes != 0 && first < end {
                         let count = (end - first).min(lanes as u32);
                         let base = array(0, |i| step[i] - reach);
-                        self.handfuls.push(Handful { first, count, cell, base, nodes });
+                        self.chunks.push(Chunk { first, count, cell, base, nodes });
                         first += count;
                     }
                 }

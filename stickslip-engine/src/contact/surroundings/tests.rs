@@ -5,7 +5,7 @@ use crate::body::{Body, Gyration, Particle};
 use crate::boundary::{Boundary, reflect};
 use crate::contact::{Rules, rules};
 use crate::geometry::{Shape, Whole};
-use crate::grid::{Cover, Field, Lattice, next_of, node_at};
+use crate::grid::{ActiveBlocks, Field, Lattice, next_of, node_at};
 use crate::lanes::Processor;
 use crate::material::{Isotropic, Material, NeoHookean, Thickness};
 use crate::particles::{Column, Particles, deformation_entries, stress_entries};
@@ -118,8 +118,8 @@ fn plainly<const D: usize, B: Basis<f64>>(
 fn particles_of_a_cell_side_by_side_give_the_sums<const D: usize, B: Basis<f64>>() {
     let lattice = Lattice::new(Vector::ZERO, 1.0);
     let bodies = [body::<D>()];
-    let mut cover = Cover::<D>::default();
-    cover.update((1, |_| 300, B::WIDTH as i32 - 1), None, |_, particle| {
+    let mut active = ActiveBlocks::<D>::default();
+    active.update((1, |_| 300, B::WIDTH as i32 - 1), None, |_, particle| {
         let (position, half) = bodies[0].particles.place(particle);
         std::array::from_fn(|i| Number::max(B::reach(position[i], half), -9.0).floor() as i32)
     });
@@ -129,7 +129,7 @@ fn particles_of_a_cell_side_by_side_give_the_sums<const D: usize, B: Basis<f64>>
     let field = Field { nodes: Vec::new(), present: Vec::new() };
     for processor in Processor::available() {
         let near = Near {
-            cover: &cover,
+            active: &active,
             bodies: &bodies,
             field: &field,
             lattice,

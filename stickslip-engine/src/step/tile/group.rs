@@ -66,7 +66,7 @@ pub fn group<
     (base, start): (Vector<V, D>, S),
 ) -> Result<u32, FaultKind> {
     let Pass { verbs, dt, transfer, pic, .. } = *visit.pass;
-    let Verbs { accept, strain, displace, scatter } = verbs;
+    let Verbs { update_velocity, update_stress, advect, scatter } = verbs;
     let position = members.vector::<V>(Column::<D>::POSITION);
     let half_width = members.load::<V>(Column::<D>::HALF_WIDTH);
     let half = half_width * constants.per_cell;
@@ -81,13 +81,13 @@ pub fn group<
     let mut damped = V::ZERO;
     let rotates = transfer == Transfer::Rflip;
     let gives_momentum = scatter.is_some_and(|share| share != Share::Force);
-    if accept || displace || gives_momentum {
+    if update_velocity || advect || gives_momentum {
         velocity = members.vector::<V>(Column::<D>::VELOCITY);
     }
-    if accept || gives_momentum || (strain && rotates) {
+    if update_velocity || gives_momentum || (update_stress && rotates) {
         spin = members.spin::<V>();
     }
-    if accept {
+    if update_velocity {
         if rotates {
             let (moment, change) = group.moment(&visit.window.change);
             velocity += change;
@@ -113,13 +113,13 @@ pub fn group<
     let [mut jacobian, mut volume] = [V::ZERO; 2];
     let mut carried = Vector::ZERO;
     let pushes = matches!(scatter, Some(Share::Force | Share::Everything));
-    if strain || displace {
+    if update_stress || advect {
         deformation = members.deformation::<V>();
     }
-    if strain || pushes {
+    if update_stress || pushes {
         stress = members.stress::<V>();
     }
-    if strain {
+    if update_stress {
         let scale = V::splat(dt) * constants.per_cell;
         let (gradient, mean) = group.flow(&visit.window.flow);
         carried = mean;
@@ -153,7 +153,7 @@ pub fn group<
         sound.require(finite(&stress.0), FaultKind::NotFinite);
         volume = members.load::<V>(Column::<D>::MASS) * constants.per_density * jacobian;
     } else {
-        if displace {
+        if advect {
             jacobian = deformation.det();
         }
         if pushes {
@@ -162,8 +162,8 @@ pub fn group<
     }
 
     let mut inside = u32::MAX;
-    if displace {
-        if !strain {
+    if advect {
+        if !update_stress {
             carried = group.interpolate(&visit.window.flow);
         }
         let moved = position + carried * V::splat(dt);
@@ -204,21 +204,21 @@ pub fn group<
     if let Some(kind) = sound.fault::<V>() {
         return Err(kind);
     }
-    if accept {
+    if update_velocity {
         members.store_vector(Column::<D>::VELOCITY, &velocity);
         members.give_back::<V>(Column::<D>::VELOCITY..Column::<D>::SPIN);
     }
-    if (accept && pic > T::ZERO) || (strain && rotates) {
+    if (update_velocity && pic > T::ZERO) || (update_stress && rotates) {
         let energies = (damped * members.load::<V>(Column::<D>::MASS)).numbers();
         for &energy in &energies.0[..members.count::<V>().min(V::COUNT)] {
             visit.damped += 0.5 * energy.f64();
         }
     }
-    if accept || (strain && rotates) {
+    if update_velocity || (update_stress && rotates) {
         members.store_spin(&spin);
         members.give_back::<V>(Column::<D>::SPIN..Column::<D>::MASS);
     }
-    if strain {
+    if update_stress {
         members.store_deformation(&deformation);
         members.store_stress(&stress);
         members.give_back::<V>(Column::<D>::DEFORMATION..Column::<D>::START);

@@ -37,9 +37,9 @@ impl Reads {
     #[inline(always)]
     fn of(verbs: &Verbs, history: usize) -> Self {
         Reads {
-            deformation: verbs.strain || verbs.displace,
-            stress: verbs.strain || verbs.scatter.is_some_and(|share| share != Share::Momentum),
-            history: if verbs.strain || verbs.displace { history } else { 0 },
+            deformation: verbs.update_stress || verbs.advect,
+            stress: verbs.update_stress || verbs.scatter.is_some_and(|share| share != Share::Momentum),
+            history: if verbs.update_stress || verbs.advect { history } else { 0 },
         }
     }
 

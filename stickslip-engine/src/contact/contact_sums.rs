@@ -50,7 +50,7 @@ const CLOSE: f64 = 0.01;
 
 /// Impulses and works of contact since the start, by pair.
 #[derive(Clone, Debug, Default)]
-pub struct Tally {
+pub struct ContactSums {
     /// Pairs that ever touched, in the order in which they first did.
     pairs: Vec<Touched>,
     /// Where each of them stands.
@@ -121,7 +121,7 @@ impl Sum {
     }
 }
 
-impl Tally {
+impl ContactSums {
     /// Adds the impulses of one use of contact; surfaces count as touching for `duration` [s].
     pub fn add<'a, T: Real, const D: usize>(
         &mut self,
@@ -204,7 +204,7 @@ impl Tally {
 
     /// Where a pair stands, from now on if not before.
     fn place(&mut self, bodies: [usize; 2]) -> usize {
-        let Tally { pairs, places, .. } = self;
+        let ContactSums { pairs, places, .. } = self;
         *places.entry(bodies).or_insert_with(|| {
             pairs.push(Touched { bodies, sum: Sum::default(), largest: None });
             pairs.len() - 1
@@ -273,25 +273,25 @@ mod tests {
     /// The first use of a step counts for no time.
     #[test]
     fn area_and_gap_are_means_over_time() {
-        let (mut tally, lattice) = (Tally::default(), Lattice::new(Vector::ZERO, 0.5));
+        let (mut contact_sums, lattice) = (ContactSums::default(), Lattice::new(Vector::ZERO, 0.5));
         let nodes = [pushing([3, 0]), pushing([4, 0])];
-        tally.add(nodes.iter(), (&lattice, &Boundary::default()), 0.0);
-        tally.add(nodes.iter(), (&lattice, &Boundary::default()), 0.1);
-        tally.add([].iter(), (&lattice, &Boundary::default()), 0.3);
-        let found = &tally.sums()[0];
+        contact_sums.add(nodes.iter(), (&lattice, &Boundary::default()), 0.0);
+        contact_sums.add(nodes.iter(), (&lattice, &Boundary::default()), 0.1);
+        contact_sums.add([].iter(), (&lattice, &Boundary::default()), 0.3);
+        let found = &contact_sums.sums()[0];
         assert!((found.area - 0.1).abs() < 1e-15 && (found.gap + 0.01).abs() < 1e-15, "{found:?}");
-        assert_eq!(tally.patches()[0].area, 1.0);
+        assert_eq!(contact_sums.patches()[0].area, 1.0);
     }
 
     /// On the mirror half a node's surface is the image's, and the patch is twice what is before the mirror.
     #[test]
     fn a_patch_goes_on_behind_the_mirror() {
-        let (mut tally, lattice) = (Tally::default(), Lattice::new(Vector::ZERO, 0.5));
+        let (mut contact_sums, lattice) = (ContactSums::default(), Lattice::new(Vector::ZERO, 0.5));
         let mirror = Wall { axis: 0, node: 3, inward: 1, face: Face::Symmetry };
         let boundary = Boundary::new(vec![mirror]);
-        tally.add([pushing([3, 0]), pushing([4, 0])].iter(), (&lattice, &boundary), 1.0);
-        assert_eq!((tally.sums()[0].area, tally.patches()[0].area), (0.75, 1.5));
-        let (mut aside, far) = (Tally::default(), pushing([4, 0]));
+        contact_sums.add([pushing([3, 0]), pushing([4, 0])].iter(), (&lattice, &boundary), 1.0);
+        assert_eq!((contact_sums.sums()[0].area, contact_sums.patches()[0].area), (0.75, 1.5));
+        let (mut aside, far) = (ContactSums::default(), pushing([4, 0]));
         aside.add([far].iter(), (&lattice, &boundary), 1.0);
         assert_eq!(aside.patches()[0].area, 0.5);
     }
@@ -303,9 +303,9 @@ mod tests {
         let patch = |first: i32, boundary: &Boundary| {
             let row = |y: i32| (first..=23).map(move |x| Impulse { area: 0.25, ..pushing([x, y, 0]) });
             let nodes: Vec<_> = (0..4).flat_map(row).collect();
-            let mut tally = Tally::default();
-            tally.add(nodes.iter(), (&lattice, boundary), 1.0);
-            tally.patches()[0]
+            let mut contact_sums = ContactSums::default();
+            contact_sums.add(nodes.iter(), (&lattice, boundary), 1.0);
+            contact_sums.patches()[0]
         };
         let mirror = Wall { axis: 0, node: 3, inward: 1, face: Face::Symmetry };
         let [whole, half] = [patch(-17, &Boundary::default()), patch(3, &Boundary::new(vec![mirror]))];

@@ -46,7 +46,7 @@ fn corners_of<const D: usize>(cell: usize, reach: i32) -> Corners {
 
 /// The blocks of one body.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Holding {
+pub(super) struct CellList {
     /// Indices of the particles, by tile, then cell, then index.
     pub order: Vec<u32>,
     /// Place in `order` of each cell of each tile, and the end.
@@ -83,7 +83,7 @@ struct Next {
 struct NextTile {
     /// The tile with this home before, if there was one.
     old: Option<usize>,
-    /// Those who come, in [`Holding::movers`].
+    /// Those who come, in [`CellList::movers`].
     movers: Range<usize>,
     /// Its place in the order.
     start: usize,
@@ -110,14 +110,14 @@ impl Mover {
 /// Stands in the order for a particle that has left.
 const GONE: u32 = u32::MAX;
 
-impl Holding {
+impl CellList {
     /// Looks at all particles.
     pub fn start<const D: usize>(
         &mut self,
         (count, reach): (usize, i32),
         base: impl Fn(usize) -> [i32; D],
     ) -> Blocks {
-        *self = Holding { reach, ..Holding::default() };
+        *self = CellList { reach, ..CellList::default() };
         self.movers.extend((0..count).map(|particle| mover(base(particle), particle as u32)));
         self.settle::<D>();
         Blocks::New
@@ -320,33 +320,33 @@ mod tests {
             jumps in prop::collection::vec(prop::collection::vec((0..60_usize, prop::array::uniform2(-9..9_i32)), 0..9), 1..6),
         ) {
             let mut bases = start;
-            let mut holding = Holding::default();
-            holding.start((bases.len(), 1), |i| bases[i]);
+            let mut cell_list = CellList::default();
+            cell_list.start((bases.len(), 1), |i| bases[i]);
             for jumps in jumps {
-                let mut left = vec![0; holding.homes.len()];
+                let mut left = vec![0; cell_list.homes.len()];
                 for (i, to) in jumps {
                     let i = i % bases.len();
                     let home = mover(bases[i], 0);
                     // Only cells known before the step are marked, as the engine does.
-                    if let Ok(tile) = holding.homes.binary_search(&home.block) {
+                    if let Ok(tile) = cell_list.homes.binary_search(&home.block) {
                         left[tile] |= 1 << home.cell;
                         bases[i] = to;
                     }
                 }
-                let (homes, blocks_before) = (holding.homes.clone(), holding.blocks.clone());
-                let blocks = holding.update(&left, |i| bases[i]);
+                let (homes, blocks_before) = (cell_list.homes.clone(), cell_list.blocks.clone());
+                let blocks = cell_list.update(&left, |i| bases[i]);
                 let (order, expected, cells) = sorted(&bases);
-                prop_assert_eq!(&holding.order, &order);
-                prop_assert_eq!(&holding.cells, &cells);
-                prop_assert_eq!(&holding.homes, &expected);
+                prop_assert_eq!(&cell_list.order, &order);
+                prop_assert_eq!(&cell_list.cells, &cells);
+                prop_assert_eq!(&cell_list.homes, &expected);
                 // Every block that a particle reaches, and no other.
                 let mut reached: Vec<u64> = (bases.iter())
                     .flat_map(|&[x, y]| [[x, y], [x + 1, y], [x, y + 1], [x + 1, y + 1]].map(|node| key(locate(node).0)))
                     .collect();
                 reached.sort_unstable();
                 reached.dedup();
-                prop_assert_eq!(&holding.blocks, &reached);
-                prop_assert!(blocks == Blocks::New || homes == holding.homes && blocks_before == holding.blocks);
+                prop_assert_eq!(&cell_list.blocks, &reached);
+                prop_assert!(blocks == Blocks::New || homes == cell_list.homes && blocks_before == cell_list.blocks);
             }
         }
     }

@@ -25,7 +25,7 @@ pub struct Job {
 
 /// Where and how jobs are done.
 #[derive(Clone, Debug)]
-pub struct Workshop {
+pub struct JobRunner {
     /// A folder in here is made for each job.
     pub folder: PathBuf,
     /// Threads that all jobs share.
@@ -48,7 +48,7 @@ pub enum Earlier {
 /// Results of jobs by their names, or why there are none.
 pub type Outcomes = BTreeMap<String, Result<Results, String>>;
 
-impl Workshop {
+impl JobRunner {
     /// Does the jobs, the longest first. A run that fails does not keep the others from going on.
     ///
     /// # Errors
@@ -139,23 +139,23 @@ mod tests {
         Job { name: name.to_owned(), loaded }
     }
 
-    fn workshop(folder: &Path) -> Workshop {
+    fn jobs(folder: &Path) -> JobRunner {
         let stop = Arc::new(AtomicBool::new(false));
-        Workshop { folder: folder.to_path_buf(), threads: 2, stop, earlier: Earlier::Keep }
+        JobRunner { folder: folder.to_path_buf(), threads: 2, stop, earlier: Earlier::Keep }
     }
 
     #[test]
     fn what_is_done_is_not_done_again_unless_a_setting_changed() {
         let folder = tempfile::tempdir().unwrap();
-        let workshop = workshop(folder.path());
+        let jobs = jobs(folder.path());
         let wall_time = |outcomes: &Outcomes, name: &str| {
             outcomes[name].as_ref().unwrap().manifest().performance.wall_time
         };
-        let first = workshop.work(&[job("a", &[]), job("b", &[("friction", "0.1")])]).unwrap();
-        let second = workshop.work(&[job("a", &[]), job("b", &[("friction", "0.2")])]).unwrap();
+        let first = jobs.work(&[job("a", &[]), job("b", &[("friction", "0.1")])]).unwrap();
+        let second = jobs.work(&[job("a", &[]), job("b", &[("friction", "0.2")])]).unwrap();
         assert_eq!(wall_time(&first, "a"), wall_time(&second, "a"));
         assert_ne!(wall_time(&first, "b"), wall_time(&second, "b"));
-        let again = Workshop { earlier: Earlier::Replace, ..workshop };
+        let again = JobRunner { earlier: Earlier::Replace, ..jobs };
         let third = again.work(&[job("a", &[])]).unwrap();
         assert_ne!(wall_time(&first, "a"), wall_time(&third, "a"));
     }
@@ -165,7 +165,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         std::fs::create_dir(folder.path().join("a")).unwrap();
         std::fs::write(folder.path().join("a/thesis.tex"), "years of work").unwrap();
-        let outcomes = workshop(folder.path()).work(&[job("a", &[]), job("b", &[])]).unwrap();
+        let outcomes = jobs(folder.path()).work(&[job("a", &[]), job("b", &[])]).unwrap();
         assert!(outcomes["a"].as_ref().unwrap_err().contains("thesis.tex"));
         assert!(outcomes["b"].is_ok());
     }
@@ -173,8 +173,8 @@ mod tests {
     #[test]
     fn who_stops_the_work_gets_no_results() {
         let folder = tempfile::tempdir().unwrap();
-        let workshop = workshop(folder.path());
-        workshop.stop.store(true, Ordering::Relaxed);
-        assert!(matches!(workshop.work(&[job("a", &[])]), Err(Failure::Interrupted)));
+        let jobs = jobs(folder.path());
+        jobs.stop.store(true, Ordering::Relaxed);
+        assert!(matches!(jobs.work(&[job("a", &[])]), Err(Failure::Interrupted)));
     }
 }

@@ -4,7 +4,7 @@
 //! its own block and to the next one along each axis, as far as its particles reach,
 //! since no basis reaches more than three nodes.
 
-use super::holding::{Holding, block_of, corner_block, key};
+use super::cell_list::{CellList, block_of, corner_block, key};
 use super::{locate, nodes_per_block};
 use crate::threads::each;
 use std::ops::Range;
@@ -24,7 +24,7 @@ pub struct Tile<const D: usize> {
     pub slots: [u32; 8],
 }
 
-/// Bodies that hold the same block: `slots[start..end]` of [`Cover::shared_slots`].
+/// Bodies that hold the same block: `slots[start..end]` of [`ActiveBlocks::shared_slots`].
 #[derive(Clone, Copy, Debug)]
 pub struct Meeting<const D: usize> {
     /// The block.
@@ -35,8 +35,8 @@ pub struct Meeting<const D: usize> {
 
 /// The blocks under all bodies.
 #[derive(Clone, Debug, Default)]
-pub struct Cover<const D: usize> {
-    holdings: Vec<Holding>,
+pub struct ActiveBlocks<const D: usize> {
+    cell_lists: Vec<CellList>,
     /// Tiles of all bodies, by body and block.
     pub tiles: Vec<Tile<D>>,
     /// Tiles of small bodies, all tiles of several bodies in each range: ranges never write to the same slot.
@@ -74,7 +74,7 @@ pub enum Blocks {
     New,
 }
 
-impl<const D: usize> Cover<D> {
+impl<const D: usize> ActiveBlocks<D> {
     /// Covers so many bodies of so many particles each, which reach so many nodes beyond their base nodes, and says
     /// whether their blocks are others than before; `base(body, particle)` is a particle's base node,
     /// which must be [`addressable`].
@@ -87,16 +87,16 @@ impl<const D: usize> Cover<D> {
         left: Option<&[u64]>,
         base: impl Fn(usize, usize) -> [i32; D] + Sync,
     ) -> Blocks {
-        self.holdings.resize_with(bodies, Holding::default);
+        self.cell_lists.resize_with(bodies, CellList::default);
         let first_tile = &self.first_tile;
         let changed = AtomicBool::new(false);
-        each(&mut self.holdings, 16, |body, holding| {
+        each(&mut self.cell_lists, 16, |body, cell_list| {
             let blocks = match left {
                 Some(left) => {
                     let left = &left[first_tile[body]..first_tile[body + 1]];
-                    holding.update(left, |particle| base(body, particle))
+                    cell_list.update(left, |particle| base(body, particle))
                 }
-                None => holding.start((count(body), reach), |particle| base(body, particle)),
+                None => cell_list.start((count(body), reach), |particle| base(body, particle)),
             };
             if blocks == Blocks::New {
                 changed.store(true, Ordering::Relaxed);
@@ -109,9 +109,9 @@ impl<const D: usize> Cover<D> {
         Blocks::Same
     }
 
-    /// Covers a body anew: all its particles are others than before. Counts as [`Cover::update`] does.
+    /// Covers a body anew: all its particles are others than before. Counts as [`ActiveBlocks::update`] does.
     pub fn replace(&mut self, (body, count, reach): (usize, usize, i32), base: impl Fn(usize) -> [i32; D]) {
-        self.holdings[body].start((count, reach), base);
+        self.cell_lists[body].start((count, reach), base);
         self.rebuild();
     }
 
@@ -121,23 +121,25 @@ impl<const D: usize> Cover<D> {
         self.first_slot.clear();
         self.first_tile.clear();
         self.keys.clear();
-        for (body, holding) in self.holdings.iter().enumerate() {
+        for (body, cell_list) in self.cell_lists.iter().enumerate() {
             let first = self.slots.len();
             self.first_slot.push(first);
             self.first_tile.push(self.tiles.len());
-            for (i, &key) in holding.blocks.iter().enumerate() {
+            for (i, &key) in cell_list.blocks.iter().enumerate() {
                 self.slots.push((body as u32, block_of(key)));
                 self.keys.push((key, (first + i) as u32));
             }
-            for (number, &home) in holding.homes.iter().enumerate() {
+            for (number, &home) in cell_list.homes.iter().enumerate() {
                 let block = block_of(home);
                 let mut slots = [0; 8];
                 for (corner, slot) in slots.iter_mut().enumerate().take(1 << D) {
                     // What is not reached is given nothing: the home block may stand for it.
-                    let reached = holding.reached[number] >> corner & 1 == 1;
+                    let reached = cell_list.reached[number] >> corner & 1 == 1;
                     let key = key(if reached { corner_block(block, corner) } else { block });
-                    let place =
-                        holding.blocks.binary_search(&key).expect("a body holds every block its tiles reach");
+                    let place = cell_list
+                        .blocks
+                        .binary_search(&key)
+                        .expect("a body holds every block its tiles reach");
                     *slot = (first + place) as u32;
                 }
                 self.tiles.push(Tile { body, block, number, slots });
@@ -155,7 +157,7 @@ impl<const D: usize> Cover<D> {
         self.colors.resize_with(1 << D, Vec::new);
         self.colors.iter_mut().for_each(Vec::clear);
         let mut open = false;
-        for body in 0..self.holdings.len() {
+        for body in 0..self.cell_lists.len() {
             let tiles = self.tiles_held(body);
             let small = tiles.len() <= MOST_SMALL && tiles.len() * LEAST_SMALL <= self.tiles.len();
             if !small {
@@ -176,7 +178,7 @@ impl<const D: usize> Cover<D> {
     fn meet(&mut self) {
         self.meetings.clear();
         self.shared.clear();
-        if self.holdings.len() < 2 {
+        if self.cell_lists.len() < 2 {
             return;
         }
         self.keys.sort_unstable();
@@ -192,12 +194,12 @@ impl<const D: usize> Cover<D> {
     /// Places in the body's order where the particles of each cell of a tile begin, and where the last ends.
     pub fn cells_of(&self, tile: &Tile<D>) -> &[u32] {
         let n = nodes_per_block(D);
-        &self.holdings[tile.body].cells[tile.number * n..=(tile.number + 1) * n]
+        &self.cell_lists[tile.body].cells[tile.number * n..=(tile.number + 1) * n]
     }
 
     /// Indices of a body's particles by tile, cell and index.
     pub fn order_of(&self, body: usize) -> &[u32] {
-        &self.holdings[body].order
+        &self.cell_lists[body].order
     }
 
     /// The slots of a body.
@@ -212,7 +214,7 @@ impl<const D: usize> Cover<D> {
 
     /// Takes note that a body's particles have been brought into their order in memory.
     pub fn tidied(&mut self, body: usize) {
-        self.holdings[body].tidied();
+        self.cell_lists[body].tidied();
     }
 
     /// Slots of the bodies that hold a shared block, ordered by body.
@@ -223,7 +225,7 @@ impl<const D: usize> Cover<D> {
     /// The field index of a body's node, if the body holds its block.
     pub fn node_index(&self, body: usize, node: [i32; D]) -> Option<usize> {
         let (block, local) = locate(node);
-        let place = self.holdings[body].blocks.binary_search(&key(block)).ok()?;
+        let place = self.cell_lists[body].blocks.binary_search(&key(block)).ok()?;
         Some((self.first_slot[body] + place) * nodes_per_block(D) + local)
     }
 
@@ -231,10 +233,10 @@ impl<const D: usize> Cover<D> {
     /// cell begin, and where the last ends.
     #[inline]
     pub fn tile_at(&self, body: usize, block: [i32; D]) -> Option<(&[u32], &[u32])> {
-        let holding = &self.holdings[body];
-        let tile = holding.homes.binary_search(&key(block)).ok()?;
+        let cell_list = &self.cell_lists[body];
+        let tile = cell_list.homes.binary_search(&key(block)).ok()?;
         let n = nodes_per_block(D);
-        Some((&holding.order, &holding.cells[tile * n..=(tile + 1) * n]))
+        Some((&cell_list.order, &cell_list.cells[tile * n..=(tile + 1) * n]))
     }
 
     /// Indices of a body's particles whose home is a cell.

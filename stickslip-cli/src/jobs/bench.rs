@@ -14,7 +14,7 @@ pub struct Need {
     pub memory: f64,
 }
 
-/// Jobs, threads and memory that are free.
+/// JobRunner, threads and memory that are free.
 pub struct Bench {
     threads: usize,
     state: Mutex<State>,

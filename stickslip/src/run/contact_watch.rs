@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 
 /// Looks at the widest contact of each pair as often as tables are written, and tells once of each pair that bears a
 /// part of the force.
-pub(super) struct Lookout {
+pub(super) struct ContactWatch {
     next: f64,
     /// Patches when it looked last.
     before: Vec<Patch>,
@@ -23,9 +23,9 @@ const GROWTH: f64 = 0.01;
 /// Lines in a run: beyond, the summary tells.
 const MOST_LINES: usize = 5;
 
-impl Lookout {
+impl ContactWatch {
     pub(super) fn new(start: f64) -> Self {
-        Lookout {
+        ContactWatch {
             next: start,
             before: Vec::new(),
             told: BTreeSet::new(),
@@ -104,15 +104,15 @@ mod tests {
     /// Only those that were there at the last look and have not grown, once.
     #[test]
     fn a_contact_is_told_of_once_and_when_it_no_longer_grows() {
-        let mut lookout = Lookout::new(0.0);
-        let grown = |lookout: &Lookout, areas: &[f64]| -> Vec<usize> {
-            lookout.grown_up(&patches(areas)).iter().map(|patch| patch.body_a).collect()
+        let mut contact_watch = ContactWatch::new(0.0);
+        let grown = |contact_watch: &ContactWatch, areas: &[f64]| -> Vec<usize> {
+            contact_watch.grown_up(&patches(areas)).iter().map(|patch| patch.body_a).collect()
         };
-        assert!(grown(&lookout, &[1.0, 2.0]).is_empty());
-        lookout.before = patches(&[1.0, 2.0]);
-        assert_eq!(grown(&lookout, &[1.5, 2.0, 3.0]), [1]);
-        lookout.told.insert([1, 2]);
-        lookout.before = patches(&[1.5, 2.0, 3.0]);
-        assert_eq!(grown(&lookout, &[1.5, 2.0, 3.0]), [0, 2]);
+        assert!(grown(&contact_watch, &[1.0, 2.0]).is_empty());
+        contact_watch.before = patches(&[1.0, 2.0]);
+        assert_eq!(grown(&contact_watch, &[1.5, 2.0, 3.0]), [1]);
+        contact_watch.told.insert([1, 2]);
+        contact_watch.before = patches(&[1.5, 2.0, 3.0]);
+        assert_eq!(grown(&contact_watch, &[1.5, 2.0, 3.0]), [0, 2]);
     }
 }

@@ -35,7 +35,7 @@ pub struct FringeChoice {
 }
 
 /// The fringes of a run, ready to be drawn: with one window and one scale for all pictures.
-pub struct Darkroom<'a> {
+pub struct FramePictures<'a> {
     results: &'a Results,
     setting: Setting,
     bench: Bench,
@@ -53,7 +53,7 @@ const FRINGES: f64 = 4.0;
 /// Snapshots that are looked at to find out.
 const LOOKS: usize = 8;
 
-impl<'a> Darkroom<'a> {
+impl<'a> FramePictures<'a> {
     /// Gets ready for pictures of some snapshots of a run.
     ///
     /// # Errors
@@ -76,7 +76,7 @@ impl<'a> Darkroom<'a> {
             _ => Vec::new(),
         };
         let polariscope = polariscope(choice, camera.as_ref(), (&snapshots, &stage));
-        Ok(Darkroom {
+        Ok(FramePictures {
             results,
             setting: Setting::of_json(scene),
             bench: Bench::new(&polariscope, stage),
@@ -110,7 +110,7 @@ impl<'a> Darkroom<'a> {
     }
 }
 
-impl Pictures for Darkroom<'_> {
+impl Pictures for FramePictures<'_> {
     fn picture(&self, frame: &Frame) -> Result<Image, Failure> {
         let mut film = self.bench.film();
         let particles = self.results.particles(frame).map_err(Failure::input)?;
