@@ -1,8 +1,9 @@
 //! A pass as the equations read, one particle and one node after the other: an oracle for the tests.
 
-use super::pass::{Fault, FaultKind, Found, Pass, Visit, escaped, signal};
+use super::pass::{Fault, FaultKind, Found, Pass, Visit, escaped};
 use crate::basis::Basis;
 use crate::body::Particle;
+use crate::clock::signal;
 use crate::lanes::Any;
 use crate::material::Motion;
 use crate::scene::Transfer;

@@ -4,7 +4,6 @@ use crate::basis::Basis;
 use crate::body::{Body, Particle};
 use crate::grid::{Disjoint, Lattice, Node, SIDE, Sought, Tile, Window, addressable};
 use crate::lanes::{Machine, Processor};
-use crate::material::Recall;
 use crate::particles::Columns;
 use crate::scene::Transfer;
 use crate::tensor::{Real, Vector};
@@ -183,15 +182,6 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
             unsafe { self.window.add_to::<M>(self.nodes, self.tile, Self::REACHED) };
         }
     }
-}
-
-/// Wave speed plus particle speed [m/s], see [`crate::clock`].
-pub fn signal<T: Real, const D: usize>(
-    body: &Body<T, D>,
-    particle: &Particle<T, D>,
-    history: &impl Recall<T>,
-) -> T {
-    (body.wave_modulus(particle, history) / body.density).sqrt() + particle.velocity.norm()
 }
 
 /// Base node of a particle: the first that it reaches along each axis.

@@ -2,9 +2,10 @@
 
 use super::Engine;
 use super::build::spin;
-use super::pass::{Fault, FaultKind, Found, Pass, Path, Verbs, escaped, home, signal};
+use super::pass::{Fault, FaultKind, Found, Pass, Path, Verbs, escaped, home};
 use super::state::{Disorder, Workspace};
 use crate::basis::Basis;
+use crate::clock::signal;
 use crate::contact::{Change, Near, Record, Solve, Span, Step, Use};
 use crate::door::StepError;
 use crate::grid::{Blocks, Disjoint, Node, node_at, nodes_per_block};
