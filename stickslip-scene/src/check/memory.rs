@@ -13,7 +13,7 @@ pub trait Footprint {
     /// Particles that a rigid body without bounds has in its pose at the start around others that fill these boxes.
     fn particles_around(&self, scene: &Scene, body: usize, boxes: &[Bounds]) -> usize;
 
-    /// Memory of particles and grid [bytes]; `particles` counts those of each body.
+    /// Bytes of particles and grid; `particles` counts those of each body.
     fn memory(&self, scene: &Scene, particles: &[usize]) -> f64;
 }
 
