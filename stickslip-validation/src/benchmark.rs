@@ -52,7 +52,8 @@ pub enum Laws {
     Contact,
     /// Only the law that joins bodies for good.
     Glued,
-    /// None: the step itself is asked, so its schemes vary; bodies that touch do so by the law of scenes that name none.
+    /// None: the step itself is asked, so its schemes vary; bodies that touch do so by the law of scenes that name
+    /// none.
     Bulk,
 }
 
@@ -87,8 +88,19 @@ pub struct Target {
     pub at: Option<f64>,
     /// Why that much and no less.
     pub why: &'static str,
-    /// Resolutions at which the law or scheme of scenes that name none is known to miss it; at others a miss is a fault of the program.
-    pub missed_at: &'static [f64],
+    /// Where the law or scheme of scenes that name none is known to miss it, and by how much at the most; any other
+    /// miss is a fault of the program.
+    pub misses: &'static [Miss],
+}
+
+/// A known miss, and how far it may go.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Miss {
+    /// The resolution.
+    pub cells: f64,
+    /// How far from the exact value it may be: what was measured and half as much again, if the benchmark has no reason
+    /// for more.
+    pub off: f64,
 }
 
 /// What may be measured.
@@ -156,7 +168,7 @@ impl Resolution {
 impl Target {
     /// A target at every resolution.
     pub const fn new(metric: &'static str, exact: f64, allowed: Allowed, why: &'static str) -> Self {
-        Target { metric, exact, allowed, at: None, why, missed_at: &[] }
+        Target { metric, exact, allowed, at: None, why, misses: &[] }
     }
 
     /// The same target, stated for one resolution.
@@ -164,9 +176,14 @@ impl Target {
         Target { at: Some(cells), ..self }
     }
 
-    /// The same target, known to be missed by the law or scheme of scenes that name none at these resolutions.
-    pub const fn missed_at(self, cells: &'static [f64]) -> Self {
-        Target { missed_at: cells, ..self }
+    /// The same target, known to be missed by the law or scheme of scenes that name none.
+    pub const fn missed(self, misses: &'static [Miss]) -> Self {
+        Target { misses, ..self }
+    }
+
+    /// Whether a value that misses the target is as far off as is known at this resolution, and no farther.
+    pub fn is_known(&self, value: f64, cells: f64) -> bool {
+        self.misses.iter().any(|miss| miss.cells == cells && (value - self.exact).abs() <= miss.off)
     }
 
     /// Whether a measured value is good enough; what is not a number never is.

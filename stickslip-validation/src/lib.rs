@@ -1,8 +1,8 @@
 //! Problems with known answers, and how close each contact law and each scheme of the step comes to them.
 //!
-//! The laws come from the engine's list, the schemes from [`KEYS`], the problems from [`BENCHMARKS`]: one file each, which reads
-//! like a report. To add a benchmark, write its file and seat it there. Everything here drives the engine as any user can: scenes are text, and
-//! simulations are stepped and looked at through [`stickslip::door`].
+//! The laws come from the engine's list, the schemes from [`KEYS`], the problems from [`BENCHMARKS`]: one file each,
+//! which reads like a report. To add a benchmark, write its file and seat it there. Everything here drives the engine
+//! as any user can: scenes are text, and simulations are stepped and looked at through [`stickslip::door`].
 
 // What a benchmark is: its report, its targets, its resolutions.
 mod benchmark;
@@ -34,7 +34,7 @@ mod scheme;
 // All chosen laws and schemes through all chosen benchmarks, side by side on the machine's cores.
 mod suite;
 
-pub use benchmark::{Allowed, Benchmark, Case, Laws, Reason, Resolution, Target, Tier};
+pub use benchmark::{Allowed, Benchmark, Case, Laws, Miss, Reason, Resolution, Target, Tier};
 pub use benchmarks::BENCHMARKS;
 pub use failure::Failure;
 pub use outcome::{Measurement, Outcome};

@@ -9,7 +9,7 @@
 //!
 //! c is the speed of a longitudinal wave, sqrt(M/rho), for symmetry keeps the bar from bulging.
 //!
-//! `cargo run --release --example add_an_observer`
+//! `cargo run --release --package stickslip --example add_an_observer`
 
 use std::error::Error;
 use stickslip::door::View;

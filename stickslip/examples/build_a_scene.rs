@@ -9,7 +9,7 @@
 //!
 //! The axes are turned with the slope: x is down it, and gravity leans.
 //!
-//! `cargo run --release --example build_a_scene`
+//! `cargo run --release --package stickslip --example build_a_scene`
 
 use std::error::Error;
 use std::ops::ControlFlow;

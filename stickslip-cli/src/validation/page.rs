@@ -4,8 +4,8 @@ use super::text::short;
 use crate::page::{Cell, Column, Making, Page, Section, Table, Verdict, address};
 use std::time::Duration;
 use stickslip_validation::{
-    Benchmark, Entry, Laws, Measurement, Record, Report, Resolution, Run, Target, Tier, Verdict as Judgement,
-    Way,
+    Benchmark, Entry, Laws, Measurement, Miss, Record, Report, Resolution, Run, Target, Tier,
+    Verdict as Judgement, Way,
 };
 
 /// The page; it took so long.
@@ -222,7 +222,8 @@ fn value(run: &Run, target: &Target) -> Cell {
 
 /// What is asked, and why that much.
 fn targets(benchmark: &Benchmark) -> Table {
-    let columns = ["quantity", "exact", "target", "why"].map(Column::text).into();
+    let columns =
+        ["quantity", "exact", "target", "why", "known misses, at most off by"].map(Column::text).into();
     benchmark.targets.iter().fold(
         Table::new("What is asked, and why that much.", columns),
         |table, target| {
@@ -231,9 +232,16 @@ fn targets(benchmark: &Benchmark) -> Table {
                 Cell::text(target.exact.to_string()),
                 Cell::text(stated(benchmark, target)),
                 Cell::text(target.why),
+                Cell::text(misses(benchmark, target)),
             ])
         },
     )
+}
+
+/// Where the law or scheme of scenes that name none is known to miss a target, and how far it may be off there.
+fn misses(benchmark: &Benchmark, target: &Target) -> String {
+    let miss = |miss: &Miss| format!("{} at {} = {}", miss.off, benchmark.measure, miss.cells);
+    target.misses.iter().map(miss).collect::<Vec<_>>().join(", ")
 }
 
 /// What every run records.

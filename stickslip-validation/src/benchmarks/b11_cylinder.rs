@@ -18,14 +18,18 @@ pub const BENCHMARK: Benchmark = Benchmark {
         ______`--______--'______
         ////////////////////////  rigid floor
 ",
-    set_up: "Plane strain; R = E = rho = 1, nu = 0.3; the platen comes down by 0.016 R, smoothly, within 20 R/c, which makes the contact's half-width b about 0.1 R, and \
-rests for 10 R/c more, over which forces at nodes are averaged. Without friction.",
-    exact: "b = sqrt(4 P R/(pi E*)), p = (2P/(pi b)) sqrt(1 - x^2/b^2) for the measured load P per length, E* = E/(1 - nu^2). Half-width is measured as 2 sqrt(<x^2>) over \
-the forces at nodes, pressure as the largest of force over cell.",
+    set_up: "Plane strain; R = E = rho = 1, nu = 0.3; the platen comes down by 0.016 R, smoothly, within 20 R/c, \
+which makes the contact's half-width b about 0.1 R, and rests for 10 R/c more, over which forces at nodes are \
+averaged. Without friction.",
+    exact: "b = sqrt(4 P R/(pi E*)), p = (2P/(pi b)) sqrt(1 - x^2/b^2) for the measured load P per length, E* = \
+E/(1 - nu^2). Half-width is measured as 2 sqrt(<x^2>) over the forces at nodes, pressure as the largest of force \
+over cell.",
     laws: Laws::Contact,
     measure: "b/h",
     resolutions: &[Resolution::quick(2.0), Resolution::full(4.0), Resolution::full(8.0)],
     targets: &[
+        Target::new("half-width over Hertz", 1.0, Allowed::Within(0.1), COARSE).at(2.0),
+        Target::new("largest pressure over Hertz", 1.0, Allowed::Within(0.1), COARSE).at(2.0),
         Target::new("half-width over Hertz", 1.0, Allowed::Within(0.05), WHY).at(8.0),
         Target::new("largest pressure over Hertz", 1.0, Allowed::Within(0.05), WHY).at(8.0),
     ],
@@ -33,6 +37,8 @@ the forces at nodes, pressure as the largest of force over cell.",
     run,
 };
 
+const COARSE: &str = "shares of nodes half a half-width apart make it 4 % wide by themselves, sqrt(1 + 1/12); as \
+much again, and some, for the patch that ends between nodes; 5 and 2 % were measured";
 const WHY: &str = "an eighth of the half-width is a cell; b/R = 0.1 departs from the half-plane by 1 %";
 /// Half-width that the platen's way is made for, over R.
 const HALF_WIDTH: f64 = 0.1;

@@ -2,7 +2,7 @@
 
 use super::maw_curve::Impact;
 use super::reasons::{AT_A_DISTANCE, EXTRAPOLATED, OWN_NORMALS, RELEASE};
-use crate::benchmark::{Allowed, Benchmark, Case, Laws, Reason, Resolution, Target, Tier};
+use crate::benchmark::{Allowed, Benchmark, Case, Laws, Miss, Reason, Resolution, Target, Tier};
 use crate::failure::Failure;
 use crate::measuring::farthest;
 use crate::outcome::Outcome;
@@ -11,7 +11,8 @@ use crate::trial::Trial;
 pub const BENCHMARK: Benchmark = Benchmark {
     name: "B13",
     title: "Oblique impact of a sphere",
-    source: "Maw, Barber and Fawcett (1976), Wear 38, 101-114; computed by the reduction to one row of springs (Lyashenko and Popov 2015, Sci. Rep. 5, 8479)",
+    source: "Maw, Barber and Fawcett (1976), Wear 38, 101-114; computed by the reduction to one row of springs \
+(Lyashenko and Popov 2015, Sci. Rep. 5, 8479)",
     picture: "
                ___
               /   \\   u0 ->, v down
@@ -19,16 +20,22 @@ pub const BENCHMARK: Benchmark = Benchmark {
               \\___/
         ________________  rigid floor
 ",
-    set_up: "Three dimensions, half of the sphere behind a plane of symmetry; R = E = rho = 1, nu = 0.47, touching the floor at the start, not spinning, at a normal speed v that Hertz \
-lets dent it by 0.04 R, so that the contact's largest radius a is 0.2 R; mu = 0.3; u0 = 1 to 9 mu v (quick: 1, 4 and 8).",
-    exact: "The contact point's tangential velocity u = v_x - omega R after the impact. Below psi = 2(1 - nu) u0/((2 - nu) mu v) = 1 it sticks at first, above 4 chi - 1, chi = (7/2)(1 - nu)/(2 - nu), it slips throughout and \
-u1 = u0 - 7 mu v; in between the elastic patch throws it back, u1 < 0. Friction acts on the floor, R less the dent below the centre, which shortens its arm by up to 4 %: the curve has that in it. A rigid floor couples normal and tangential compliance, which the curve \
-leaves out: Dundurs' constant is (1 - 2 nu)/(2 - 2 nu), here 0.06. Velocities over v.",
+    set_up: "Three dimensions, half of the sphere behind a plane of symmetry; R = E = rho = 1, nu = 0.47, touching \
+the floor at the start, not spinning, at a normal speed v that Hertz lets dent it by 0.04 R, so that the contact's \
+largest radius a is 0.2 R; mu = 0.3; u0 = 1 to 9 mu v (quick: 1, 4 and 8).",
+    exact: "The contact point's tangential velocity u = v_x - omega R after the impact. Below psi = 2(1 - nu) \
+u0/((2 - nu) mu v) = 1 it sticks at first, above 4 chi - 1, chi = (7/2)(1 - nu)/(2 - nu), it slips throughout and \
+u1 = u0 - 7 mu v; in between the elastic patch throws it back, u1 < 0. Friction acts on the floor, R less the dent \
+below the centre, which shortens its arm by up to 4 %: the curve has that in it. A rigid floor couples normal and \
+tangential compliance, which the curve leaves out: Dundurs' constant is (1 - 2 nu)/(2 - 2 nu), here 0.06. \
+Velocities over v.",
     laws: Laws::Contact,
     measure: "a/h",
     resolutions: &[Resolution::quick(1.5), Resolution::full(4.0)],
     targets: &[
-        Target::new(OFF[0], 0.0, Allowed::Within(0.05), WHY).at(4.0).missed_at(&[4.0]),
+        Target::new(OFF[0], 0.0, Allowed::Within(0.05), WHY)
+            .at(4.0)
+            .missed(&[Miss { cells: 4.0, off: 0.11 }]),
         Target::new(OFF[1], 0.0, Allowed::Within(0.05), WHY).at(4.0),
         Target::new(OFF[2], 0.0, Allowed::Within(0.05), WHY).at(4.0),
         Target::new(
@@ -45,9 +52,12 @@ leaves out: Dundurs' constant is (1 - 2 nu)/(2 - 2 nu), here 0.06. Velocities ov
         EXTRAPOLATED,
         Reason {
             laws: &["surface"],
-            text: "Where it sticks (u0 = 1 and 2 mu v) it is 0.07 below the curve at a/h = 4. What counts there is the ratio of two stiffnesses. Four cells on the patch make the normal one too large: the force is 7 % above Hertz, the contact 5 % shorter, \
-and friction's swing is cut off with it; springs 10 % stiffer along the normal move the curve by -0.05. Dundurs' coupling adds -0.02 (at nu = 0.4 it is -0.04). The nodes' pushes are smooth in time, to 1 % from step to step, \
-so that no sticking node slips for a short push, and where the sphere slips throughout it is within 0.01 of the curve.",
+            text: "Where it sticks (u0 = 1 and 2 mu v) it is 0.07 below the curve at a/h = 4. What counts there is \
+the ratio of two stiffnesses. Four cells on the patch make the normal one too large: the force is 7 % above Hertz, \
+the contact 5 % shorter, and friction's swing is cut off with it; springs 10 % stiffer along the normal move the \
+curve by -0.05. Dundurs' coupling adds -0.02 (at nu = 0.4 it is -0.04). The nodes' pushes are smooth in time, to 1 \
+% from step to step, so that no sticking node slips for a short push, and where the sphere slips throughout it is \
+within 0.01 of the curve.",
         },
     ],
     run,

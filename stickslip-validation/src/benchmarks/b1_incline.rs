@@ -2,7 +2,7 @@
 
 use super::reasons::{AT_A_DISTANCE, EXTRAPOLATED, PLANE_OF_PARTICLES};
 use super::rolling_sphere::roll;
-use crate::benchmark::{Allowed, Benchmark, Case, Laws, Reason, Resolution, Target};
+use crate::benchmark::{Allowed, Benchmark, Case, Laws, Miss, Reason, Resolution, Target};
 use crate::failure::Failure;
 use crate::outcome::Outcome;
 
@@ -18,10 +18,10 @@ pub const BENCHMARK: Benchmark = Benchmark {
    ---------+-----------     +---- x, distance down the slope
    /////////////////////
 ",
-    set_up: "scenes/paper/inclined_plane_no_slip.toml and inclined_plane_slip.toml: R = 1.6 m, halved by a plane of symmetry; neo-Hookean, K = 6 MPa, G = 3 MPa, on a plane ten times \
-as stiff and dense; 8 particles a cell; 2 s.",
-    exact: "A rigid sphere: x = (25 sqrt 2/14) t^2 without slip, (5/2)(sqrt 3 - 2/7) t^2 with slip. Hertz lets the centre stand at R - (9 F^2/(16 R E*^2))^(1/3), with \
-E* = 7.64 MPa 1.555 m and 1.565 m. Static contact radius: R/6.",
+    set_up: "scenes/paper/inclined_plane_no_slip.toml and inclined_plane_slip.toml: R = 1.6 m, halved by a plane of \
+symmetry; neo-Hookean, K = 6 MPa, G = 3 MPa, on a plane ten times as stiff and dense; 8 particles a cell; 2 s.",
+    exact: "A rigid sphere: x = (25 sqrt 2/14) t^2 without slip, (5/2)(sqrt 3 - 2/7) t^2 with slip. Hertz lets the \
+centre stand at R - (9 F^2/(16 R E*^2))^(1/3), with E* = 7.64 MPa 1.555 m and 1.565 m. Static contact radius: R/6.",
     laws: Laws::Contact,
     measure: "R/h",
     resolutions: &[Resolution::quick(4.0), Resolution::full(8.0)],
@@ -58,7 +58,7 @@ E* = 7.64 MPa 1.555 m and 1.565 m. Static contact radius: R/6.",
             "the angle turned over the way in the second half: rolling is rolling",
         )
         .at(8.0)
-        .missed_at(&[8.0]),
+        .missed(&[Miss { cells: 8.0, off: 0.06 }]),
         Target::new("x, slipping", 1.0, Allowed::Within(0.01), FINE).at(8.0),
         Target::new("v, slipping", 1.0, Allowed::Within(0.02), FINE).at(8.0),
         Target::new(
@@ -82,8 +82,10 @@ E* = 7.64 MPa 1.555 m and 1.565 m. Static contact radius: R/6.",
         PLANE_OF_PARTICLES,
         Reason {
             laws: &["surface"],
-            text: "A soft sphere does not roll as a rigid one: the spin is the elastic sphere's. Friction that drives it lets it creep, by Kalker's linear theory by Q/(G a^2 C11) = 0.021 of its speed (Q/P = 2/7, a = R/6, C11 = 4.3, G = 5.5 MPa for both bodies), \
-more where part of the patch slips, while its surface, shorter by 0.02 under Hertz's pressure, turns it faster. R/8 gives 0.960.",
+            text: "A soft sphere does not roll as a rigid one: the spin is the elastic sphere's. Friction that \
+drives it lets it creep, by Kalker's linear theory by Q/(G a^2 C11) = 0.021 of its speed (Q/P = 2/7, a = R/6, C11 = \
+4.3, G = 5.5 MPa for both bodies), more where part of the patch slips, while its surface, shorter by 0.02 under \
+Hertz's pressure, turns it faster. R/8 gives 0.960.",
         },
     ],
     run,

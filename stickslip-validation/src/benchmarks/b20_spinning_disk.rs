@@ -1,6 +1,6 @@
 //! B20: a disk spins for turn after turn, and is pulled as it should be.
 
-use crate::benchmark::{Allowed, Benchmark, Case, Laws, Reason, Resolution, Target, Tier};
+use crate::benchmark::{Allowed, Benchmark, Case, Laws, Miss, Reason, Resolution, Target};
 use crate::failure::Failure;
 use crate::measuring::TimeMean;
 use crate::outcome::Outcome;
@@ -18,8 +18,8 @@ pub const BENCHMARK: Benchmark = Benchmark {
         \\ _-->_ /
 ",
     set_up: "A disk of R = E = rho = 1, nu = 0.3, neo-Hookean, spinning without any deformation at first with a rim \
-speed of a tenth of the wave speed sqrt(E/rho), in plane strain and in plane stress, for three turns, in the full \
-tier for ten.",
+speed of a tenth of the wave speed sqrt(E/rho), in plane strain and in plane stress, for three turns with R/8 \
+and for ten with R/16.",
     exact: "At the centre sigma = (3 + nu)/8 rho w^2 R^2 in plane stress, (3 - 2 nu)/(8 (1 - nu)) rho w^2 R^2 in \
 plane strain, both ways; at a distance r the mean of the two is less by (1 + nu)/4 rho w^2 r^2, with nu/(1 - nu) for \
 nu in plane strain. The disk rings about that. Measured over the exact, with the spin of the moment: the mean of the \
@@ -28,19 +28,22 @@ in-plane stresses within R/4 of the centre, in the last turn; and angular moment
     measure: "R/h",
     resolutions: &[Resolution::quick(8.0), Resolution::full(16.0)],
     targets: &[
-        Target::new(STRESS[0], 1.0, Allowed::Within(0.03), WHY).missed_at(&[8.0, 16.0]),
-        Target::new(STRESS[1], 1.0, Allowed::Within(0.03), WHY).missed_at(&[8.0, 16.0]),
-        Target::new(STRESS[0], 1.0, Allowed::Within(0.15), BOUND).at(8.0),
-        Target::new(STRESS[1], 1.0, Allowed::Within(0.22), BOUND).at(8.0),
-        Target::new(MOMENTUM[0], 1.0, Allowed::Within(0.001), TURNS),
-        Target::new(MOMENTUM[1], 1.0, Allowed::Within(0.001), TURNS),
+        Target::new(STRESS[0], 1.0, Allowed::Within(0.03), WHY)
+            .missed(&[Miss { cells: 8.0, off: 0.15 }, Miss { cells: 16.0, off: 0.56 }]),
+        Target::new(STRESS[1], 1.0, Allowed::Within(0.03), WHY)
+            .missed(&[Miss { cells: 8.0, off: 0.22 }, Miss { cells: 16.0, off: 0.79 }]),
+        Target::new(MOMENTUM[0], 1.0, Allowed::Within(0.001), TURNS)
+            .missed(&[Miss { cells: 16.0, off: 0.003 }]),
+        Target::new(MOMENTUM[1], 1.0, Allowed::Within(0.001), TURNS)
+            .missed(&[Miss { cells: 16.0, off: 0.004 }]),
     ],
     reasons: &[Reason {
         laws: &["gimp-modified-last-rflip"],
-        text: "The boxes of uniform GIMP do not turn with the particles. Where a body has turned through the grid, the gradients that \
-strain particles and the velocities that part them differ in the second order, and with two particles a side that adds \
-up: stresses are 10 % high in plane strain and 14 % in plane \
-stress after three turns with R/8.",
+        text: "The boxes of uniform GIMP do not turn with the particles. Where a body has turned through the grid, \
+the gradients that strain particles and the velocities that part them differ in the second order, and with two \
+particles a side that adds up: stresses are 10 % high in plane strain and 14 % in plane stress after three turns \
+with R/8, and 37 % and 52 % after ten with R/16, when 0.2 % and 0.3 % of the angular momentum are lost and 12 % of \
+the energy have come from nowhere.",
     }],
     run,
 };
@@ -49,7 +52,6 @@ const STRESS: [&str; 2] = ["stress at the centre, plane strain", "stress at the 
 const MOMENTUM: [&str; 2] = ["angular momentum, plane strain", "angular momentum, plane stress"];
 const WHY: &str = "the disk grows by 0.3 %, the mean of a turn has 1 % of the ringing left";
 const TURNS: &str = "nothing turns it, in ten turns as in three";
-const BOUND: &str = "what is missed, and half as much again";
 const SPIN: f64 = 0.1;
 const POISSON: f64 = 0.3;
 
@@ -63,7 +65,7 @@ fn run(case: &Case) -> Result<Outcome, Failure> {
 
 fn spin(case: &Case, (i, dimension): (usize, &str), outcome: &mut Outcome) -> Result<(), Failure> {
     let turn = TAU / SPIN;
-    let end = if case.tier == Tier::Quick { 3.0 * turn } else { 10.0 * turn };
+    let end = if case.cells == 8.0 { 3.0 * turn } else { 10.0 * turn };
     let mut trial = Trial::start(
         dimension.replace('-', "_"),
         format!(

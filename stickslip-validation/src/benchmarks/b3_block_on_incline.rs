@@ -1,7 +1,7 @@
 //! B3: a block on an incline slides as Coulomb says, or rests.
 
 use super::reasons::{EXTRAPOLATED, OWN_NORMALS, PLANE_OF_PARTICLES, STAIRS};
-use crate::benchmark::{Allowed, Benchmark, Case, Laws, Reason, Resolution, Target, Tier};
+use crate::benchmark::{Allowed, Benchmark, Case, Laws, Miss, Reason, Resolution, Target, Tier};
 use crate::failure::Failure;
 use crate::measuring::{farthest, slope};
 use crate::outcome::Outcome;
@@ -18,11 +18,16 @@ pub const BENCHMARK: Benchmark = Benchmark {
         ________|____|____                   rotated: floor and gravity turned through it by 30 degrees
         //////////////////  driven <-
 ",
-    set_up: "Plane strain; a block of soft rubber (E = 1 MPa, nu = 0.3, 1000 kg/m^3), 1 m long and 0.5 m high, on a rigid floor that is inclined by 30 degrees; g = 10 m/s^2. A block that is loaded \
-at once leaves the floor and sets off meanwhile, so gravity's part across the floor comes first, for 0.2 s, and its part along it smoothly within 0.6 s more, as the acceleration of the floor away from under the block, which is the \
-same to the block (d'Alembert); pic_share = 1 damps its shaking. Slides with mu = 0, 0.2, 0.4 and 0.99 tan(30 deg), rests with 1.01 tan(30 deg) and 0.8 (quick: 0, 0.4 and 0.8).",
-    exact: "a = g (sin - mu cos) against the floor while mu < tan, else rest. Measured over 0.4 s from there on are the acceleration by least squares, with any bounce taken out (d(v_along + mu v_away)/dt = g (sin - mu cos) whatever the block weighs \
-meanwhile), less the exact one, over that of a block without friction, and the way gone by a block at rest over the way of a block without friction that starts then.",
+    set_up: "Plane strain; a block of soft rubber (E = 1 MPa, nu = 0.3, 1000 kg/m^3), 1 m long and 0.5 m high, on a \
+rigid floor that is inclined by 30 degrees; g = 10 m/s^2. A block that is loaded at once leaves the floor and sets \
+off meanwhile, so gravity's part across the floor comes first, for 0.2 s, and its part along it smoothly within 0.6 \
+s more, as the acceleration of the floor away from under the block, which is the same to the block (d'Alembert); \
+pic_share = 1 damps its shaking. Slides with mu = 0, 0.2, 0.4 and 0.99 tan(30 deg), rests with 1.01 tan(30 deg) and \
+0.8 (quick: 0, 0.4 and 0.8).",
+    exact: "a = g (sin - mu cos) against the floor while mu < tan, else rest. Measured over 0.4 s from there on are \
+the acceleration by least squares, with any bounce taken out (d(v_along + mu v_away)/dt = g (sin - mu cos) whatever \
+the block weighs meanwhile), less the exact one, over that of a block without friction, and the way gone by a block \
+at rest over the way of a block without friction that starts then.",
     laws: Laws::Contact,
     measure: "block length/h",
     resolutions: &[Resolution::quick(10.0), Resolution::full(20.0)],
@@ -32,9 +37,12 @@ meanwhile), less the exact one, over that of a block without friction, and the w
             0.0,
             Allowed::Within(0.01),
             "the block is rigid but for its shaking, which is damped",
-        ),
+        )
+        .missed(&[Miss { cells: 20.0, off: 0.085 }]),
         Target::new(RESTS[0], 0.0, Allowed::Within(0.001), REST),
-        Target::new(NEAR[0], 0.0, Allowed::Within(0.001), REST).at(20.0).missed_at(&[20.0]),
+        Target::new(NEAR[0], 0.0, Allowed::Within(0.001), REST)
+            .at(20.0)
+            .missed(&[Miss { cells: 20.0, off: 0.048 }]),
         Target::new(
             SLIDES[1],
             0.0,
@@ -42,7 +50,9 @@ meanwhile), less the exact one, over that of a block without friction, and the w
             "particles on the grid's lattice make stairs of an inclined face",
         ),
         Target::new(RESTS[1], 0.0, Allowed::Within(0.001), REST),
-        Target::new(NEAR[1], 0.0, Allowed::Within(0.001), REST).at(20.0).missed_at(&[20.0]),
+        Target::new(NEAR[1], 0.0, Allowed::Within(0.001), REST)
+            .at(20.0)
+            .missed(&[Miss { cells: 20.0, off: 0.023 }]),
     ],
     reasons: &[
         OWN_NORMALS,
@@ -51,7 +61,12 @@ meanwhile), less the exact one, over that of a block without friction, and the w
         PLANE_OF_PARTICLES,
         Reason {
             laws: &["surface"],
-            text: "One per cent above the coefficient that would let it go, the block is set off by what is left of its shaking, and then slows down as Coulomb says, by a hundredth of free fall: too slowly to come to rest in the run. It creeps by 0.003 to 0.007 of free fall.",
+            text: "One per cent above the coefficient that would let it go, the block is set off by what is left of \
+its shaking, and then slows down as Coulomb says, by a hundredth of free fall: too slowly to come to rest in the \
+run. With the transfer flip it creeps by 0.005 of free fall at L/20. With rflip pic_share = 1 does not damp the \
+shaking: the block bounces with 0.02 m/s where it slides on 0.99 tan and rests on 1.01 tan, against 0.0006 m/s with \
+flip, nodes let go for moments as in B33, and it is set off more: 0.032 aligned and 0.015 rotated, and on 0.99 tan \
+its acceleration is 0.057 too large, against 0.0006 with flip.",
         },
     ],
     run,
@@ -93,7 +108,8 @@ fn run(case: &Case) -> Result<Outcome, Failure> {
     Ok(outcome)
 }
 
-/// Acceleration and way under the full load over those without friction; the floor is turned against the grid by `turn` [rad].
+/// Acceleration and way under the full load over those without friction; the floor is turned against the grid by `turn`
+/// [rad].
 fn slide(case: &Case, turn: f64, friction: f64, outcome: &mut Outcome) -> Result<(f64, f64), Failure> {
     let h = 1.0 / case.cells;
     let (along, away) = ([turn.cos(), -turn.sin()], [turn.sin(), turn.cos()]);
@@ -136,7 +152,8 @@ material = "rubber"
             let bodies = trial.bodies();
             let [floor, block] = [&bodies[0], &bodies[1]];
             let velocity = [0, 1].map(|i| block.velocity[i] - floor.velocity[i]);
-            // The bounce changes the weight on the floor, and with it the friction: along + mu x away changes by gravity alone.
+            // The bounce changes the weight on the floor, and with it the friction: along + mu x away changes by
+            // gravity alone.
             let moving = project(velocity, along) + friction * project(velocity, away);
             speeds.push((trial.time(), moving));
             ways.push(project([0, 1].map(|i| block.position[i] - floor.position[i]), along));

@@ -1,7 +1,7 @@
 //! B9: two elastic disks collide in the corner of a square.
 
 use super::reasons::{AT_A_DISTANCE, EXTRAPOLATED, RELEASE, STAIRS};
-use crate::benchmark::{Allowed, Benchmark, Case, Laws, Reason, Resolution, Target};
+use crate::benchmark::{Allowed, Benchmark, Case, Laws, Miss, Reason, Resolution, Target};
 use crate::failure::Failure;
 use crate::outcome::Outcome;
 use crate::trial::Trial;
@@ -18,10 +18,10 @@ pub const BENCHMARK: Benchmark = Benchmark {
            /  \\
            \\__/   (.2, .2), v = (.1, .1)
 ",
-    set_up: "Plane strain; disks of radius 0.2, rho = 1000, E = 1000, nu = 0.3, hypoelastic; 20 x 20 cells on the unit square, 4 particles a cell; \
-without friction, until t = 3.",
-    exact: "The circles touch at t = (0.6 sqrt 2 - 0.4)/(0.2 sqrt 2) = 1.58579; energy is constant; they cannot depart faster than they came. First contact is \
-measured in cells of approach, positive too early.",
+    set_up: "Plane strain; disks of radius 0.2, rho = 1000, E = 1000, nu = 0.3, hypoelastic; 20 x 20 cells on the \
+unit square, 4 particles a cell; without friction, until t = 3.",
+    exact: "The circles touch at t = (0.6 sqrt 2 - 0.4)/(0.2 sqrt 2) = 1.58579; energy is constant; they cannot \
+depart faster than they came. First contact is measured in cells of approach, positive too early.",
     laws: Laws::Contact,
     measure: "1/h",
     resolutions: &[Resolution::quick(20.0), Resolution::quick(40.0), Resolution::full(80.0)],
@@ -38,7 +38,7 @@ measured in cells of approach, positive too early.",
             Allowed::Within(0.01),
             "smooth loading: nothing may be lost but to what the grid does not resolve",
         )
-        .missed_at(&[20.0, 40.0]),
+        .missed(&[Miss { cells: 20.0, off: 0.144 }, Miss { cells: 40.0, off: 0.047 }]),
         Target::new("rebound over approach", 1.0, Allowed::AtMost(1.0), "no collision gains"),
     ],
     reasons: &[
@@ -48,7 +48,8 @@ measured in cells of approach, positive too early.",
         STAIRS,
         Reason {
             laws: &["surface"],
-            text: "What the grid does not resolve at the rim of the patch is lost, and falls with the cells: 8.9 % of the energy at 1/20, where the patch is 4.5 cells wide at most, 2.9 % at 1/40, where it is 8.9, 0.6 % at 1/80.",
+            text: "What the grid does not resolve at the rim of the patch is lost, and falls with the cells: 9.6 % \
+of the energy at 1/20, where the patch is 4.5 cells wide at most, 3.1 % at 1/40, where it is 8.9, 0.6 % at 1/80.",
         },
     ],
     run,

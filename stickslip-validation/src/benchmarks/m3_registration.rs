@@ -1,7 +1,7 @@
 //! M3: where the grid lies must not matter.
 
 use super::reasons::{AT_A_DISTANCE, OWN_NORMALS, RELEASE};
-use crate::benchmark::{Allowed, Benchmark, Case, Laws, Reason, Resolution, Target, Tier};
+use crate::benchmark::{Allowed, Benchmark, Case, Laws, Miss, Reason, Resolution, Target, Tier};
 use crate::failure::Failure;
 use crate::measuring::deviation;
 use crate::outcome::Outcome;
@@ -16,9 +16,11 @@ pub const BENCHMARK: Benchmark = Benchmark {
               /  \\  v->   /  \\      the same collision at sub-cell offsets
               \\__/        \\__/      and turned through the grid
 ",
-    set_up: "Plane strain; two disks of radius R, nu = 0.3, neo-Hookean, 4 particles a cell, a gap of R/3 (at R = 6 h, two cells), v/c = 0.05, without friction. 16 offsets of a quarter of a cell \
-in both directions and 8 directions from 0 to 78.75 degrees (quick: 4 and 2). Particles sit on the grid's lattice, so each run has stairs of its own.",
-    exact: "No scatter. Measured are the standard deviations of restitution and of the time of first contact times v/h.",
+    set_up: "Plane strain; two disks of radius R, nu = 0.3, neo-Hookean, 4 particles a cell, a gap of R/3 (at R = 6 \
+h, two cells), v/c = 0.05, without friction. 16 offsets of a quarter of a cell in both directions and 8 directions \
+from 0 to 78.75 degrees (quick: 4 and 2). Particles sit on the grid's lattice, so each run has stairs of its own.",
+    exact: "No scatter. Measured are the standard deviations of restitution and of the time of first contact times \
+v/h.",
     laws: Laws::Contact,
     measure: "R/h",
     resolutions: &[Resolution::quick(6.0), Resolution::full(12.0)],
@@ -29,7 +31,7 @@ in both directions and 8 directions from 0 to 78.75 degrees (quick: 4 and 2). Pa
             Allowed::Within(0.01),
             "a hundredth is what results of one grid may be trusted to",
         )
-        .missed_at(&[6.0]),
+        .missed(&[Miss { cells: 6.0, off: 0.026 }]),
         Target::new(
             "deviation of first contact [cells]",
             0.0,
@@ -43,13 +45,17 @@ in both directions and 8 directions from 0 to 78.75 degrees (quick: 4 and 2). Pa
         RELEASE,
         Reason {
             laws: &["surface"],
-            text: "At R/6 the patch is 2.7 to 3.7 cells wide at most, as the nodes lie. It widens by one node at a time, and what the grid does not resolve at its rim is lost: 1.1 to 2.5 % of the energy, so that restitution scatters by 0.012 over the quick tier's 8 runs \
-and by 0.010 over the full tier's 128. At R/12 it scatters by 0.003.",
+            text: "At R/6 the patch is 2.7 to 3.7 cells wide at most, as the nodes lie. It widens by one node at a \
+time, and what the grid does not resolve at its rim is lost: 1.1 to 2.5 % of the energy, so that restitution \
+scatters by 0.017 over the quick tier's 8 runs and by 0.010 over the full tier's 128. At R/12 it scatters by \
+0.003.",
         },
         Reason {
             laws: &["gap", "separation", "regression"],
-            text: "Stress reaches the rim of a patch of some three cells in steps of a cell, and what the grid does not resolve there is lost: more or less as the nodes lie. \
-Restitution scatters by 0.025 to 0.030 at R/6 and by 0.012 to 0.021 at R/12. First contact scatters by 0.18 to 0.24 cells at both, for these laws see the disks' stairs of particles.",
+            text: "Stress reaches the rim of a patch of some three cells in steps of a cell, and what the grid does \
+not resolve there is lost: more or less as the nodes lie. Restitution scatters by 0.025 to 0.030 at R/6 and by \
+0.012 to 0.021 at R/12. First contact scatters by 0.18 to 0.24 cells at both, for these laws see the disks' stairs \
+of particles.",
         },
     ],
     run,
@@ -80,7 +86,8 @@ fn run(case: &Case) -> Result<Outcome, Failure> {
     Ok(outcome)
 }
 
-/// Restitution and time of first contact. Units of R = rho = E = 1; `offset` in cells, `direction` of flight in radians.
+/// Restitution and time of first contact. Units of R = rho = E = 1; `offset` in cells, `direction` of flight in
+/// radians.
 fn collide(
     case: &Case,
     offset: [f64; 2],

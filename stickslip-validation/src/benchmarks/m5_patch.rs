@@ -1,7 +1,7 @@
 //! M5: an interface under uniform pressure leaves the stress uniform.
 
 use super::reasons::{PLANE_OF_PARTICLES, STAIRS};
-use crate::benchmark::{Allowed, Benchmark, Case, Laws, Reason, Resolution, Target, Tier};
+use crate::benchmark::{Allowed, Benchmark, Case, Laws, Miss, Reason, Resolution, Target, Tier};
 use crate::failure::Failure;
 use crate::outcome::Outcome;
 use crate::trial::Trial;
@@ -19,10 +19,14 @@ pub const BENCHMARK: Benchmark = Benchmark {
               |    _/  lower  |
               |_/_____________|
 ",
-    set_up: "Plane strain; a unit square, E = rho = 1, nu = 0.3, cut through its centre at 0, 15, 30 and 45 degrees to the grid; both parts by the law with infinite friction, the lower one first in the scene at 0 and 15 degrees, the upper one at 30 and 45. \
-A rigid platen glued on top comes down by 0.001 within 10 L/c_L, smoothly, and rests for 10 L/c_L more; the stress is averaged over that time. Both parts have 2 particles along each side of a cell; once more (full tier) the upper one has 3, so that no particle faces another.",
-    exact: "Confined compression: sigma_yy = -p everywhere, with p the platen's force over its width. Measured is the largest difference from it among all \
-particles more than two cells below the platen, over p; glue grips up to a cell deep.",
+    set_up: "Plane strain; a unit square, E = rho = 1, nu = 0.3, cut through its centre at 0, 15, 30 and 45 degrees \
+to the grid; both parts by the law with infinite friction, the lower one first in the scene at 0 and 15 degrees, \
+the upper one at 30 and 45. A rigid platen glued on top comes down by 0.001 within 10 L/c_L, smoothly, and rests \
+for 10 L/c_L more; the stress is averaged over that time. Both parts have 2 particles along each side of a cell; \
+once more (full tier) the upper one has 3, so that no particle faces another.",
+    exact: "Confined compression: sigma_yy = -p everywhere, with p the platen's force over its width. Measured is \
+the largest difference from it among all particles more than two cells below the platen, over p; glue grips up to a \
+cell deep.",
     laws: Laws::Contact,
     measure: "L/h",
     resolutions: &[Resolution::quick(8.0), Resolution::quick(16.0), Resolution::full(32.0)],
@@ -34,15 +38,19 @@ particles more than two cells below the platen, over p; glue grips up to a cell 
         Target::new(UNLIKE[0], 0.0, Allowed::Within(0.02), "faces along the grid are represented exactly")
             .at(32.0),
         Target::new(UNLIKE[1], 0.0, Allowed::Within(0.05), SLANTED).at(32.0),
-        Target::new(UNLIKE[2], 0.0, Allowed::Within(0.05), SLANTED).at(32.0).missed_at(&[32.0]),
+        Target::new(UNLIKE[2], 0.0, Allowed::Within(0.05), SLANTED)
+            .at(32.0)
+            .missed(&[Miss { cells: 32.0, off: 0.39 }]),
     ],
     reasons: &[
         STAIRS,
         PLANE_OF_PARTICLES,
         Reason {
             laws: &["surface"],
-            text: "Stairs of two unlike lattices do not fill space: along a slanted interface material is missing here and twice there, and particles within a cell of it bear 0.09 to 0.24 too much or too little. Glue, by which the parts are one body, has the \
-same: 0.14, 0.19 and 0.09 at 15, 30 and 45 degrees where surface has 0.18, 0.24 and 0.09 (L/32). More than a cell off the two agree.",
+            text: "Stairs of two unlike lattices do not fill space: along a slanted interface material is missing \
+here and twice there, and particles within a cell of it bear 0.09 to 0.24 too much or too little. Glue, by which \
+the parts are one body, has the same: 0.14, 0.19 and 0.09 at 15, 30 and 45 degrees where surface has 0.18, 0.24 and \
+0.09 (L/32). More than a cell off the two agree.",
         },
     ],
     run,
@@ -82,8 +90,8 @@ fn run(case: &Case) -> Result<Outcome, Failure> {
 
 const PRESS: f64 = 0.001;
 
-/// The largest error of stress, everywhere and more than a cell off the interface, which lies at an angle, with so many particles a side in the
-/// lower and the upper part.
+/// The largest error of stress, everywhere and more than a cell off the interface, which lies at an angle, with so many
+/// particles a side in the lower and the upper part.
 fn press(
     case: &Case,
     degrees: f64,
@@ -96,7 +104,9 @@ fn press(
     let (sin, cos) = degrees.to_radians().sin_cos();
     let part = |name: &str, per_side: usize, normal: [f64; 2]| {
         format!(
-            "[[bodies]]\nname = \"{name}\"\nparticles_per_side = {per_side}\nmaterial = \"elastic\"\nshape.intersection = [{{ box = {{ min = [0, 0], max = [1, 1] }} }}, {{ half_space = {{ point = [0.5, 0.5], normal = {normal:?} }} }}]\n"
+            "[[bodies]]\nname = \"{name}\"\nparticles_per_side = {per_side}\nmaterial = \
+\"elastic\"\nshape.intersection = [{{ box = {{ min = [0, 0], max = [1, 1] }} }}, {{ half_space = {{ point = [0.5, \
+0.5], normal = {normal:?} }} }}]\n"
         )
     };
     let [lower, upper] = [part("lower", per_side[0], [-sin, cos]), part("upper", per_side[1], [sin, -cos])];

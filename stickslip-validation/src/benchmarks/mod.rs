@@ -1,4 +1,5 @@
-//! The benchmarks, one file each; every file reads like a report. To add one, write its file and seat it in [`BENCHMARKS`].
+//! The benchmarks, one file each; every file reads like a report. To add one, write its file and seat it in
+//! [`BENCHMARKS`].
 
 mod b10_collinear_disks;
 mod b11_cylinder;
@@ -92,15 +93,42 @@ pub static BENCHMARKS: &[Benchmark] = &[
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::benchmark::Laws;
+    use crate::benchmark::{Laws, Target, Tier};
     use crate::scheme::schemes;
     use crate::suite::laws;
+
+    /// A bound that lies within the target, or at cells that nobody runs, bounds nothing.
+    #[test]
+    fn known_misses_are_of_resolutions_that_are_run_and_lie_beyond_the_target() {
+        for benchmark in BENCHMARKS {
+            for target in benchmark.targets {
+                for miss in target.misses {
+                    let name = (benchmark.name, target.metric, miss);
+                    let judged = target.at.is_none_or(|cells| cells == miss.cells);
+                    assert!(
+                        judged && benchmark.resolutions.iter().any(|run| run.cells == miss.cells),
+                        "{name:?}"
+                    );
+                    let beyond = [-miss.off, miss.off].map(|off| !target.holds(target.exact + off));
+                    assert!(beyond[0] || beyond[1], "{name:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn every_benchmark_can_fail_in_the_quick_tier() {
+        for benchmark in BENCHMARKS {
+            let due: Vec<f64> = benchmark.due(Tier::Quick).map(|resolution| resolution.cells).collect();
+            let judged = |target: &Target| target.at.is_none_or(|cells| due.contains(&cells));
+            assert!(!due.is_empty() && benchmark.targets.iter().any(judged), "{}", benchmark.name);
+        }
+    }
 
     /// Whoever reads that a miss is known wants to know why, and by how much.
     #[test]
     fn known_misses_have_reasons_with_figures() {
-        let known =
-            |benchmark: &&Benchmark| benchmark.targets.iter().any(|target| !target.missed_at.is_empty());
+        let known = |benchmark: &&Benchmark| benchmark.targets.iter().any(|target| !target.misses.is_empty());
         for benchmark in BENCHMARKS.iter().filter(known) {
             // Of what was measured, not names of benchmarks or cells.
             let digit = |c: Option<&u8>| c.is_some_and(u8::is_ascii_digit);
