@@ -52,13 +52,21 @@ mod tests {
     /// bodies have moved.
     fn scene(block: &str, height: f64) -> Scene {
         let text = format!(
-            "title = \"block\"\nspace.dimension = \"3d\"\nspace.cell = \"0.1 m\"\ntime.end = \"1 s\"\n\
-             [[material]]\nname = \"rubber\"\ndensity = \"1000 kg/m^3\"\n\
-             neo_hookean = {{ bulk_modulus = \"2 MPa\", shear_modulus = \"1 MPa\" }}\n\
-             [[body]]\nname = \"block\"\nmaterial = \"rubber\"\n{block}\
-             shape.box = {{ min = [-0.03, -0.03, {height}], max = [1.97, 1.97, {top}] }}\n\
-             [[body]]\nname = \"floor\"\nmaterial = \"rubber\"\nrigid = true\n\
-             shape.half_space = {{ point = [0.0, 0.0, -0.03], normal = [0.0, 0.0, 1.0] }}\n",
+            r#"
+            space = {{ dimension = "3d", cell = 0.1 }}
+            time.end = 1
+            materials.rubber = {{ density = 1000, neo_hookean = {{ young_modulus = 1e6, poisson_ratio = 0.3 }} }}
+            [[bodies]]
+            name = "block"
+            material = "rubber"
+            {block}
+            shape.box = {{ min = [-0.03, -0.03, {height}], max = [1.97, 1.97, {top}] }}
+            [[bodies]]
+            name = "floor"
+            material = "rubber"
+            rigid = {{}}
+            shape.half_space = {{ point = [0, 0, -0.03], normal = [0, 0, 1] }}
+            "#,
             top = height + 1.0
         );
         crate::scene::parse("block.toml", &text, &[]).unwrap_or_else(|e| panic!("{e:?}")).scene
@@ -79,7 +87,7 @@ mod tests {
         assert!((found as f64 / particles as f64 - 1.0).abs() < 0.2, "{found} of {particles}");
         let above = of_floor(&scene("", 2.97));
         assert!((above as f64 / found as f64 - 1.0).abs() < 0.2, "{above} {found}");
-        assert_eq!(of_floor(&scene("rigid = true\n", 2.97)), 0);
+        assert_eq!(of_floor(&scene("rigid = {}", 2.97)), 0);
     }
 
     /// At least what the particles hold: 30 columns of 8 bytes, and numbers.

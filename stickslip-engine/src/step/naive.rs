@@ -170,10 +170,18 @@ mod tests {
         format!(
             r#"
             gravity = {}
-            space = {{ dimension = "{dimension}", cell = 0.1, basis = "{basis}" }}
-            space.domain = {{ min = {}, max = {}, x_min = "symmetry", y_max = "fixed" }}
-            time = {{ end = 1, pic_share = 0.02, {time} }}
-            materials.rubber = {{ density = 1000, neo_hookean = {{ young_modulus = 1e5, poisson_ratio = 0.3 }} }}
+            [space]
+            dimension = "{dimension}"
+            cell = 0.1
+            basis = "{basis}"
+            domain = {{ min = {}, max = {}, x_min = "symmetry", y_max = "fixed" }}
+            [time]
+            end = 1
+            pic_share = 0.02
+            {time}
+            [materials.rubber]
+            density = 1000
+            neo_hookean = {{ young_modulus = 1e5, poisson_ratio = 0.3 }}
             [materials.rock]
             density = 2000
             von_mises = {{ young_modulus = 3e5, poisson_ratio = 0.2, yield_stress = 2e3 }}
@@ -228,7 +236,7 @@ mod tests {
             for (basis, steps) in [("gimp", 40), ("linear", 12)] {
                 for update in ["first", "last", "modified-last"] {
                     for transfer in ["flip", "rflip"] {
-                        let time = format!("stress_update = \"{update}\", transfer = \"{transfer}\"");
+                        let time = format!("stress_update = \"{update}\"\ntransfer = \"{transfer}\"");
                         let scene = scene(dimension, basis, &time);
                         let naive = outcome(&scene, Path::Naive, steps);
                         for path in [Path::OneLane, Path::Lanes(Processor::best())] {
