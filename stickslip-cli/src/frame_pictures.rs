@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 use stickslip::door::ParticleSnapshot;
 use stickslip::image::Image;
 use stickslip::observe::{ContactRow, Frame, Results};
-use stickslip::polariscope::{self, Bench, Push, Stage, Window};
+use stickslip::polariscope::{self, ImageWindow, OpticalBench, Push, Stage};
 use stickslip::scene::{Field, Fringes, Light, Overlay, Polariscope, Sensitivity};
 
 /// What the user wants of fringes; what is missing is as in the scene's `outputs.fringes`, or else usual.
@@ -38,7 +38,7 @@ pub struct FringeChoice {
 pub struct FramePictures<'a> {
     results: &'a Results,
     setting: Setting,
-    bench: Bench,
+    bench: OpticalBench,
     polariscope: Polariscope,
     exposure: f64,
     contacts: Vec<ContactRow>,
@@ -79,7 +79,7 @@ impl<'a> FramePictures<'a> {
         Ok(FramePictures {
             results,
             setting: Setting::of_json(scene),
-            bench: Bench::new(&polariscope, stage),
+            bench: OpticalBench::new(&polariscope, stage),
             polariscope,
             exposure: choice.exposure.or(camera.as_ref().map(|camera| camera.exposure)).unwrap_or(0.0),
             largest: contacts.iter().fold(0.0, |largest, row| largest.max(row.normal)),
@@ -154,15 +154,15 @@ fn window(
     view: Option<[[f64; 2]; 2]>,
     snapshots: &[ParticleSnapshot],
     (specimens, size): (&[usize], Option<[usize; 2]>),
-) -> Result<Window, Failure> {
+) -> Result<ImageWindow, Failure> {
     let seen = snapshots.iter().filter_map(|particles| polariscope::bounds(particles, specimens));
     let bounds = view.or_else(|| seen.reduce(polariscope::joined));
     let nothing =
         || Failure::Input(miette!("there is nothing to draw: the snapshots hold no birefringent body"));
     let bounds = bounds.ok_or_else(nothing)?;
-    let Some([width, height]) = size else { return Ok(Window::around(bounds, WIDTH)) };
+    let Some([width, height]) = size else { return Ok(ImageWindow::around(bounds, WIDTH)) };
     let height = height.saturating_sub(picture::HEADING).max(16);
-    Ok(Window::holding(bounds, [width, height]))
+    Ok(ImageWindow::holding(bounds, [width, height]))
 }
 
 fn polariscope(

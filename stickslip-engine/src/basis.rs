@@ -14,7 +14,7 @@ pub struct Axis<T> {
     /// Base node, in cells from the origin of the grid.
     pub base: i32,
     /// Weights and slopes.
-    pub shape: Shape<T>,
+    pub shape: ShapeFunctions<T>,
 }
 
 /// Weights and slopes along one axis, for the nodes from the base node on.
@@ -25,14 +25,14 @@ pub struct Axis<T> {
 /// sum f_i dS_i/dx = sum (f_{i+1} - f_i) rise_i
 /// ```
 #[derive(Clone, Copy, Debug)]
-pub struct Shape<N> {
+pub struct ShapeFunctions<N> {
     /// S(x_p - x_i) [-]; zero beyond the basis' width.
     pub weight: [N; MAX_WIDTH],
     /// What a difference between a node and the next one adds to the gradient [1/cell]; zero beyond the basis' width.
     pub rise: [N; MAX_WIDTH - 1],
 }
 
-impl<N: Number> Shape<N> {
+impl<N: Number> ShapeFunctions<N> {
     /// dS_i/dx [1/cell].
     #[inline(always)]
     pub fn slope(&self, i: usize) -> N {
@@ -57,7 +57,7 @@ pub trait Basis<T: Real>: Copy + Send + Sync + 'static {
     fn reach<N: Number>(x: N, half: N) -> N;
 
     /// Weights and slopes of a particle at `r` from its base node.
-    fn shape<N: Number>(r: N, half: N) -> Shape<N>;
+    fn shape<N: Number>(r: N, half: N) -> ShapeFunctions<N>;
 
     /// Base node, weights and slopes of a particle at `x` with half-width `half` [cells].
     #[inline(always)]
@@ -81,8 +81,8 @@ impl<T: Real> Basis<T> for Linear {
     }
 
     #[inline(always)]
-    fn shape<N: Number>(r: N, _half: N) -> Shape<N> {
-        Shape { weight: [N::ONE - r, r, N::ZERO], rise: [N::ONE, N::ZERO] }
+    fn shape<N: Number>(r: N, _half: N) -> ShapeFunctions<N> {
+        ShapeFunctions { weight: [N::ONE - r, r, N::ZERO], rise: [N::ONE, N::ZERO] }
     }
 }
 
@@ -109,7 +109,7 @@ impl<T: Real> Basis<T> for Gimp {
     }
 
     #[inline(always)]
-    fn shape<N: Number>(r: N, half: N) -> Shape<N> {
+    fn shape<N: Number>(r: N, half: N) -> ShapeFunctions<N> {
         // Without a branch: `near` stops at 2l, where S_0 goes on as a straight line. No sum cancels, so that a node
         // that a particle hardly reaches gets hardly any mass, but not less than none.
         let width = half + half;
@@ -120,7 +120,7 @@ impl<T: Real> Basis<T> for Gimp {
         let (falling, rising) = (near * per_width, beyond * per_width);
         let first = N::HALF * near * falling + (before - near);
         let last = N::HALF * beyond * rising;
-        Shape { weight: [first, N::ONE - first - last, last], rise: [falling, rising] }
+        ShapeFunctions { weight: [first, N::ONE - first - last, last], rise: [falling, rising] }
     }
 }
 

@@ -24,7 +24,7 @@ pub trait View {
     /// [`ContactCursor`] makes means of it.
     fn contact_sums(&self) -> Vec<ContactSum>;
     /// The widest contact of each pair of bodies since the start, ordered by pair.
-    fn patches(&self) -> Vec<Patch>;
+    fn patches(&self) -> Vec<ContactPatch>;
     /// All particles now, ordered by body and then by the particle's number in its body.
     fn snapshot(&self) -> ParticleSnapshot;
     /// Shows every particle of a body to `look`, in no order that means anything.
@@ -223,7 +223,7 @@ pub struct ContactState {
 
 /// The widest contact of two bodies so far.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Patch {
+pub struct ContactPatch {
     /// Index of the first body; smaller than `body_b`.
     pub body_a: usize,
     /// Index of the second body.

@@ -1,6 +1,6 @@
 //! What a benchmark is: its report, its targets, its resolutions.
 
-use crate::failure::Failure;
+use crate::failure::CaseFailure;
 use crate::outcome::Outcome;
 use crate::scheme::Scheme;
 use stickslip::scene::ContactLaw;
@@ -31,7 +31,7 @@ pub struct Benchmark {
     /// Why laws miss targets, as far as it is known.
     pub reasons: &'static [Reason],
     /// Runs it.
-    pub run: fn(&Case) -> Result<Outcome, Failure>,
+    pub run: fn(&Case) -> Result<Outcome, CaseFailure>,
 }
 
 /// Why some laws or schemes miss a benchmark's targets.

@@ -5,7 +5,7 @@ use stickslip::scene::{Problem, SceneError};
 
 /// Why a case gave no numbers.
 #[derive(Debug, thiserror::Error)]
-pub enum Failure {
+pub enum CaseFailure {
     /// The benchmark's scene is not one.
     #[error("{0}")]
     Scene(#[from] SceneError),

@@ -36,8 +36,8 @@ mod suite;
 
 pub use benchmark::{Allowed, Benchmark, Case, Laws, Miss, Reason, Resolution, Target, Tier};
 pub use benchmarks::BENCHMARKS;
-pub use failure::Failure;
+pub use failure::CaseFailure;
 pub use outcome::{Measurement, Outcome};
 pub use scheme::{KEYS, Key, Scheme, schemes};
-pub use suite::{Entry, Finished, Law, Report, Run, Suite, Verdict, Way, laws};
-pub use trial::{Record, Trial};
+pub use suite::{Candidate, Entry, Finished, LawUnderTest, Run, Suite, SuiteReport, Verdict, laws};
+pub use trial::{RunRecord, Trial};

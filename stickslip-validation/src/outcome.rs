@@ -1,6 +1,6 @@
 //! What a benchmark measured.
 
-use crate::trial::{Record, Trial};
+use crate::trial::{RunRecord, Trial};
 
 /// What one case measured.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -8,7 +8,7 @@ pub struct Outcome {
     /// The measured quantities, in the order in which the benchmark took them.
     pub measurements: Vec<Measurement>,
     /// What every run records, the worst of all runs.
-    pub record: Record,
+    pub record: RunRecord,
     /// The scenes that were run, by name, as `stickslip run` takes them.
     pub scenes: Vec<(String, String)>,
 }

@@ -1,7 +1,7 @@
 //! All chosen laws and schemes through all chosen benchmarks, side by side on the machine's cores.
 
 use crate::benchmark::{Benchmark, Case, Laws, Resolution, Target, Tier};
-use crate::failure::Failure;
+use crate::failure::CaseFailure;
 use crate::outcome::Outcome;
 use crate::scheme::{Scheme, schemes};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -11,7 +11,7 @@ use stickslip::scene::{ContactLaw, ContactRule};
 
 /// A contact law of the engine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Law {
+pub struct LawUnderTest {
     /// Its word in scene files.
     pub word: &'static str,
     /// When its bodies push on each other, in a sentence.
@@ -24,9 +24,9 @@ pub struct Law {
 
 /// What a benchmark is put to: a contact law, or a scheme of the step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Way {
+pub enum Candidate {
     /// A contact law, by the scheme of scenes that name none.
-    Law(Law),
+    Law(LawUnderTest),
     /// A scheme, with the contact law of scenes that name none.
     Scheme(&'static Scheme),
 }
@@ -37,7 +37,7 @@ pub struct Suite {
     /// The benchmarks.
     pub benchmarks: Vec<&'static Benchmark>,
     /// The laws for benchmarks of contact.
-    pub laws: Vec<Law>,
+    pub laws: Vec<LawUnderTest>,
     /// The schemes for benchmarks of the step itself, [`Laws::Bulk`].
     pub schemes: Vec<&'static Scheme>,
     /// How much.
@@ -48,7 +48,7 @@ pub struct Suite {
 
 /// What came of it.
 #[derive(Debug)]
-pub struct Report {
+pub struct SuiteReport {
     /// How much was run.
     pub tier: Tier,
     /// A benchmark and a law or scheme each, benchmark by benchmark.
@@ -61,7 +61,7 @@ pub struct Entry {
     /// The benchmark.
     pub benchmark: &'static Benchmark,
     /// The law or scheme.
-    pub way: Way,
+    pub way: Candidate,
     /// Those that have ended, from coarse to fine.
     pub runs: Vec<Run>,
 }
@@ -72,7 +72,7 @@ pub struct Run {
     /// The resolution.
     pub resolution: Resolution,
     /// What was measured.
-    pub result: Result<Outcome, Failure>,
+    pub result: Result<Outcome, CaseFailure>,
 }
 
 /// A case that just ended.
@@ -100,9 +100,14 @@ pub enum Verdict {
 }
 
 /// The engine's contact laws, the default first.
-pub fn laws() -> Vec<Law> {
-    let mut laws: Vec<Law> = ContactLaw::words()
-        .map(|(word, law, meaning)| Law { word, meaning, default: law == ContactRule::default().law, law })
+pub fn laws() -> Vec<LawUnderTest> {
+    let mut laws: Vec<LawUnderTest> = ContactLaw::words()
+        .map(|(word, law, meaning)| LawUnderTest {
+            word,
+            meaning,
+            default: law == ContactRule::default().law,
+            law,
+        })
         .collect();
     laws.sort_by_key(|law| !law.default);
     laws
@@ -111,14 +116,14 @@ pub fn laws() -> Vec<Law> {
 impl Suite {
     /// Runs everything, coarse resolutions before fine ones; `progress` is told of each case as it ends, and of all
     /// that have ended so far.
-    pub fn run(&self, progress: &mut dyn FnMut(&Finished, &Report)) -> Report {
-        let mut report = Report { tier: self.tier, entries: Vec::new() };
-        let mut jobs: Vec<Job> = Vec::new();
+    pub fn run(&self, progress: &mut dyn FnMut(&Finished, &SuiteReport)) -> SuiteReport {
+        let mut report = SuiteReport { tier: self.tier, entries: Vec::new() };
+        let mut jobs: Vec<CaseJob> = Vec::new();
         for &benchmark in &self.benchmarks {
             for way in self.ways(benchmark) {
                 for (rank, &resolution) in benchmark.due(self.tier).enumerate() {
                     let case = way.case(resolution, self.tier);
-                    jobs.push(Job { entry: report.entries.len(), rank, benchmark, resolution, case });
+                    jobs.push(CaseJob { entry: report.entries.len(), rank, benchmark, resolution, case });
                 }
                 report.entries.push(Entry { benchmark, way, runs: Vec::new() });
             }
@@ -126,7 +131,7 @@ impl Suite {
         jobs.sort_by_key(|job| job.rank);
         let mut done = 0;
         side_by_side(&jobs, self.threads, &mut |number, result| {
-            let Job { entry, resolution, .. } = jobs[number];
+            let CaseJob { entry, resolution, .. } = jobs[number];
             let runs = &mut report.entries[entry].runs;
             let place = runs.partition_point(|run| run.resolution.cells < resolution.cells);
             runs.insert(place, Run { resolution, result });
@@ -138,56 +143,56 @@ impl Suite {
     }
 
     /// The chosen laws or schemes that a benchmark can be put to.
-    fn ways(&self, benchmark: &Benchmark) -> Vec<Way> {
+    fn ways(&self, benchmark: &Benchmark) -> Vec<Candidate> {
         if benchmark.laws == Laws::Bulk {
-            return self.schemes.iter().copied().map(Way::Scheme).collect();
+            return self.schemes.iter().copied().map(Candidate::Scheme).collect();
         }
-        let fit = |law: &&Law| benchmark.laws.contains(law.law);
-        self.laws.iter().filter(fit).copied().map(Way::Law).collect()
+        let fit = |law: &&LawUnderTest| benchmark.laws.contains(law.law);
+        self.laws.iter().filter(fit).copied().map(Candidate::Law).collect()
     }
 }
 
-impl Way {
+impl Candidate {
     /// Its word on the command line.
     pub fn word(&self) -> &'static str {
         match self {
-            Way::Law(law) => law.word,
-            Way::Scheme(scheme) => &scheme.word,
+            Candidate::Law(law) => law.word,
+            Candidate::Scheme(scheme) => &scheme.word,
         }
     }
 
     /// What it does, in a sentence.
     pub fn meaning(&self) -> &'static str {
         match self {
-            Way::Law(law) => law.meaning,
-            Way::Scheme(scheme) => &scheme.meaning,
+            Candidate::Law(law) => law.meaning,
+            Candidate::Scheme(scheme) => &scheme.meaning,
         }
     }
 
     /// Whether scenes get it that name none.
     pub fn is_default(&self) -> bool {
         match self {
-            Way::Law(law) => law.default,
-            Way::Scheme(scheme) => scheme.default,
+            Candidate::Law(law) => law.default,
+            Candidate::Scheme(scheme) => scheme.default,
         }
     }
 
     /// Whether targets are asked of it, and not only figures to compare.
     fn is_held(&self) -> bool {
-        self.is_default() || matches!(self, Way::Law(Law { law: ContactLaw::Glued, .. }))
+        self.is_default() || matches!(self, Candidate::Law(LawUnderTest { law: ContactLaw::Glued, .. }))
     }
 
     fn case(&self, resolution: Resolution, tier: Tier) -> Case {
         let cells = resolution.cells;
         match self {
-            Way::Law(law) => Case { law: law.word, scheme: &schemes()[0], cells, tier },
-            Way::Scheme(scheme) => Case { law: laws()[0].word, scheme, cells, tier },
+            Candidate::Law(law) => Case { law: law.word, scheme: &schemes()[0], cells, tier },
+            Candidate::Scheme(scheme) => Case { law: laws()[0].word, scheme, cells, tier },
         }
     }
 }
 
 /// A case of a benchmark, and whose it is.
-struct Job {
+struct CaseJob {
     entry: usize,
     /// How many resolutions of the benchmark are coarser.
     rank: usize,
@@ -197,7 +202,11 @@ struct Job {
 }
 
 /// Does the jobs on so many threads, each with its engine on one thread, and hands on each result, here, as it comes.
-fn side_by_side(jobs: &[Job], threads: usize, receive: &mut dyn FnMut(usize, Result<Outcome, Failure>)) {
+fn side_by_side(
+    jobs: &[CaseJob],
+    threads: usize,
+    receive: &mut dyn FnMut(usize, Result<Outcome, CaseFailure>),
+) {
     let next = AtomicUsize::new(0);
     std::thread::scope(|scope| {
         let (sender, receiver) = mpsc::channel();
@@ -208,10 +217,10 @@ fn side_by_side(jobs: &[Job], threads: usize, receive: &mut dyn FnMut(usize, Res
                 let alone = alone.expect("the system has one more thread");
                 loop {
                     let number = next.fetch_add(1, Ordering::Relaxed);
-                    let Some(Job { benchmark, case, .. }) = jobs.get(number) else { break };
+                    let Some(CaseJob { benchmark, case, .. }) = jobs.get(number) else { break };
                     // A fault of the program in one case must not lose the others.
                     let result = catch_unwind(AssertUnwindSafe(|| alone.install(|| (benchmark.run)(case))));
-                    let result = result.unwrap_or(Err(Failure::Panic));
+                    let result = result.unwrap_or(Err(CaseFailure::Panic));
                     sender.send((number, result)).expect("whoever started this waits for it");
                 }
             });
@@ -308,9 +317,9 @@ mod tests {
     ];
 
     /// An error of 1/n^2; with the law "traction" the finest run fails, with "gap" by a fault.
-    fn square(case: &Case) -> Result<Outcome, Failure> {
+    fn square(case: &Case) -> Result<Outcome, CaseFailure> {
         if case.law == "traction" && case.cells > 15.0 {
-            return Err(Failure::Absent("a test"));
+            return Err(CaseFailure::Absent("a test"));
         }
         assert!(case.law != "gap" || case.cells < 15.0, "a test");
         let mut outcome = Outcome::default();

@@ -1,6 +1,6 @@
 //! A scene under way, and what every run records.
 
-use crate::failure::Failure;
+use crate::failure::CaseFailure;
 use crate::penetration::penetration;
 use std::time::Instant;
 use stickslip::door::{
@@ -12,7 +12,7 @@ use stickslip::{scene, step};
 
 /// What every run records besides what its benchmark measures.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Record {
+pub struct RunRecord {
     /// Largest energy gained from nowhere, over the largest energy that moved or was stored [-].
     pub energy_gain: f64,
     /// Energy gained, or if negative lost, until the end, over the same [-].
@@ -35,9 +35,9 @@ pub struct Record {
     pub wall_time: f64,
 }
 
-impl Record {
+impl RunRecord {
     /// Takes in another run: the worst drifts, the earliest contact, the sum of the times.
-    pub fn include(&mut self, other: &Record) {
+    pub fn include(&mut self, other: &RunRecord) {
         let worse = |a: f64, b: f64| if b.abs() > a.abs() { b } else { a };
         self.energy_gain = self.energy_gain.max(other.energy_gain);
         self.energy_drift = worse(self.energy_drift, other.energy_drift);
@@ -79,7 +79,7 @@ pub struct Trial {
     isolated: bool,
     next_balance: f64,
     next_overlap: f64,
-    record: Record,
+    record: RunRecord,
 }
 
 /// Looks at the ledger in a run.
@@ -92,7 +92,7 @@ impl Trial {
     ///
     /// # Errors
     /// The scene is not one or cannot be simulated.
-    pub fn start(name: impl Into<String>, text: impl Into<String>) -> Result<Self, Failure> {
+    pub fn start(name: impl Into<String>, text: impl Into<String>) -> Result<Self, CaseFailure> {
         let (name, text) = (name.into(), text.into());
         let scene = scene::parse(&name, &text, &[])?.scene;
         let simulation = step::build(&scene)?;
@@ -115,7 +115,7 @@ impl Trial {
             isolated,
             next_balance: 0.0,
             next_overlap: 0.0,
-            record: Record::default(),
+            record: RunRecord::default(),
             simulation,
         };
         trial.look(true);
@@ -126,7 +126,7 @@ impl Trial {
     ///
     /// # Errors
     /// The step's failure.
-    pub fn advance(&mut self) -> Result<bool, Failure> {
+    pub fn advance(&mut self) -> Result<bool, CaseFailure> {
         let now = self.simulation.time();
         let Some(step) = self.way.step(&mut *self.simulation)? else {
             self.look(true);
@@ -246,7 +246,7 @@ impl Trial {
     }
 
     /// Name, scene and record.
-    pub(crate) fn finish(mut self) -> (String, String, Record) {
+    pub(crate) fn finish(mut self) -> (String, String, RunRecord) {
         self.record.steps = self.simulation.steps();
         self.record.particle_steps = self.simulation.steps() as f64 * self.simulation.particles() as f64;
         self.record.wall_time = self.begin.elapsed().as_secs_f64();

@@ -102,7 +102,7 @@ impl View for Puppet {
         Vec::new()
     }
 
-    fn patches(&self) -> Vec<Patch> {
+    fn patches(&self) -> Vec<ContactPatch> {
         Vec::new()
     }
 

@@ -52,7 +52,7 @@ pub struct Effort {
 
 /// What was measured.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Sample {
+pub struct BenchSample {
     /// Bodies.
     pub bodies: usize,
     /// Particles in all bodies.
@@ -69,9 +69,9 @@ pub struct Sample {
     pub at_work: Option<f64>,
 }
 
-impl Sample {
+impl BenchSample {
     /// Adds the repetitions of another process, which took as many steps.
-    pub fn add(&mut self, other: Sample) {
+    pub fn add(&mut self, other: BenchSample) {
         let parts = [&*self, &other].map(|sample| sample.repetitions.iter().sum::<f64>());
         self.at_work = self
             .at_work
@@ -91,7 +91,7 @@ impl Order {
     ///
     /// # Errors
     /// The process cannot be started, or fails; what it says goes where this process's own errors go.
-    pub fn measure(&self) -> Result<Sample, Failure> {
+    pub fn measure(&self) -> Result<BenchSample, Failure> {
         let wrong = |what: &dyn std::fmt::Display| Failure::Run(miette!("cannot measure: {what}"));
         let program = std::env::current_exe().map_err(|error| wrong(&error))?;
         let mut process = Command::new(program)
@@ -130,14 +130,17 @@ pub fn answer() -> Result<(), Failure> {
     std::io::stdout().write_all(&sample).map_err(|error| Failure::Run(miette!("{error}")))
 }
 
-fn take(order: &Order) -> Result<Sample, Failure> {
+fn take(order: &Order) -> Result<BenchSample, Failure> {
     let start = Instant::now();
     let loaded =
         stickslip::scene::parse("benchmark", &order.scene, &order.overrides).map_err(Failure::input)?;
     let mut simulation = stickslip::step::build(&loaded.scene)
         .map_err(|problem| Failure::input(loaded.source.locate(problem)))?;
-    let mut sample =
-        Sample { bodies: loaded.scene.bodies.len(), particles: simulation.particles(), ..Sample::default() };
+    let mut sample = BenchSample {
+        bodies: loaded.scene.bodies.len(),
+        particles: simulation.particles(),
+        ..BenchSample::default()
+    };
     match &order.task {
         Task::Steps(effort) => step(&mut *simulation, *effort, &mut sample)?,
         Task::Run(folder) => {
@@ -153,7 +156,7 @@ fn take(order: &Order) -> Result<Sample, Failure> {
     Ok(sample)
 }
 
-fn step(simulation: &mut dyn Simulation, effort: Effort, sample: &mut Sample) -> Result<(), Failure> {
+fn step(simulation: &mut dyn Simulation, effort: Effort, sample: &mut BenchSample) -> Result<(), Failure> {
     advance(simulation, effort.warm_up)?;
     sample.steps = effort.steps_in(advance(simulation, 1)?);
     let before = verbs(simulation);
@@ -206,13 +209,13 @@ mod tests {
 
     #[test]
     fn samples_of_one_case_add_up() {
-        let sample = |seconds: f64, at_work| Sample {
+        let sample = |seconds: f64, at_work| BenchSample {
             steps: 4,
             repetitions: vec![seconds; 2],
             verbs: vec![("scatter".to_owned(), seconds)],
             at_work: Some(at_work),
             memory: Some((100.0 * seconds) as u64),
-            ..Sample::default()
+            ..BenchSample::default()
         };
         let mut sum = sample(1.0, 1.0);
         sum.add(sample(3.0, 0.6));

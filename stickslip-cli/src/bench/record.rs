@@ -2,7 +2,7 @@
 
 use super::goals::Goal;
 use super::limits::Limits;
-use super::measure::Sample;
+use super::measure::BenchSample;
 use super::problems::Case;
 use serde::{Deserialize, Serialize};
 
@@ -16,7 +16,7 @@ pub struct Record {
     /// When it was measured: seconds since 1970.
     pub unix_time: u64,
     /// Where.
-    pub machine: Machine,
+    pub machine: Computer,
     /// Problems P1 to P5.
     pub results: Vec<Measured>,
     /// What was left out, and why.
@@ -31,7 +31,7 @@ pub struct Record {
 
 /// The machine.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Machine {
+pub struct Computer {
     /// What the processor calls itself.
     pub processor: String,
     /// Cores that this process may use.
@@ -136,7 +136,7 @@ pub struct PeerResult {
 
 impl Measured {
     /// What a sample says about a case on a machine.
-    pub fn new(case: Case, sample: Sample, machine: &Machine) -> Self {
+    pub fn new(case: Case, sample: BenchSample, machine: &Computer) -> Self {
         let limits = machine.limits.iter().find(|limits| limits.threads == case.threads);
         let particle_steps = sample.particles as f64 * sample.steps as f64;
         let cores = case.threads as f64;
@@ -209,8 +209,8 @@ mod tests {
         };
         let multiply_add = MultiplyAdds { double: 446e6 * 8.0, single: 1.0 };
         let limits = Limits { threads: 2, copy: 4e6 * scheme.bytes(), multiply_add };
-        let machine = Machine { processor: String::new(), cores: 2, instructions: "", limits: vec![limits] };
-        let sample = Sample {
+        let machine = Computer { processor: String::new(), cores: 2, instructions: "", limits: vec![limits] };
+        let sample = BenchSample {
             bodies: 1,
             particles: 1_000_000,
             steps: 10,

@@ -1,7 +1,7 @@
 //! The report on the terminal.
 
 use super::goals::{Goal, Sense};
-use super::record::{Machine, Measured, Record, median};
+use super::record::{Computer, Measured, Record, median};
 use std::fmt::{Display, Formatter, Result, Write};
 
 impl Display for Record {
@@ -31,7 +31,7 @@ impl Display for Record {
     }
 }
 
-impl Display for Machine {
+impl Display for Computer {
     fn fmt(&self, f: &mut Formatter) -> Result {
         let cores = if self.cores == 1 { "core" } else { "cores" };
         writeln!(f, "{}, {} {cores}, {}", self.processor, self.cores, self.instructions)?;

@@ -3,12 +3,12 @@
 use super::end_to_end::wholes;
 use super::goals::{Findings, goals};
 use super::limits::{self, Care};
-use super::measure::{Effort, Order, Sample, Task};
+use super::measure::{BenchSample, Effort, Order, Task};
 use super::memory;
 use super::multiply_add::instructions;
 use super::peers::Peers;
 use super::problems::{Case, Extent, cases};
-use super::record::{Machine, Measured, Record, Skipped};
+use super::record::{Computer, Measured, Record, Skipped};
 use crate::failure::Failure;
 use miette::miette;
 use std::collections::BTreeSet;
@@ -84,7 +84,7 @@ impl Suite {
         cases(self.extent, self.threads).into_iter().filter(|case| self.wants(case.problem))
     }
 
-    fn machine(&self) -> Machine {
+    fn machine(&self) -> Computer {
         eprintln!("the machine's limits ...");
         let care = match self.extent {
             Extent::Full => Care { bytes: 512 << 20, duration: Duration::from_secs(1) },
@@ -92,7 +92,7 @@ impl Suite {
             Extent::Tiny => Care { bytes: 1 << 20, duration: Duration::from_millis(2) },
         };
         let threads = BTreeSet::from([1, self.threads]);
-        Machine {
+        Computer {
             processor: processor(),
             cores: std::thread::available_parallelism().map_or(1, usize::from),
             instructions: instructions(),
@@ -101,7 +101,7 @@ impl Suite {
     }
 
     /// Measures cases that are compared in turns: what slows the machine for a while slows all of them.
-    fn measure(&self, compared: &[Case], machine: &Machine) -> Result<Vec<Measured>, Failure> {
+    fn measure(&self, compared: &[Case], machine: &Computer) -> Result<Vec<Measured>, Failure> {
         let mut effort = match self.extent {
             Extent::Full => Effort { warm_up: 8, repetitions: 5, least: 12, steps: 64, seconds: 15.0 },
             Extent::Quick => Effort { warm_up: 2, repetitions: 3, least: 8, steps: 32, seconds: 1.2 },
@@ -113,7 +113,7 @@ impl Suite {
             (_, _) => TURNS_OF_QUICK,
         };
         effort.seconds /= turns as f64;
-        let mut samples: Vec<Sample> = Vec::new();
+        let mut samples: Vec<BenchSample> = Vec::new();
         for turn in 0..turns {
             for (i, case) in compared.iter().enumerate() {
                 if turn == 0 {

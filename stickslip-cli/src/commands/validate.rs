@@ -9,7 +9,7 @@ use miette::miette;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
-use stickslip_validation::{BENCHMARKS, Benchmark, Law, Scheme, Suite, Tier, laws, schemes};
+use stickslip_validation::{BENCHMARKS, Benchmark, LawUnderTest, Scheme, Suite, Tier, laws, schemes};
 
 /// Run problems with known answers by every contact law or scheme of the step, and say how close each comes.
 ///
@@ -23,7 +23,7 @@ pub struct Arguments {
 
     /// Contact law to run; may be repeated; all without this and `--scheme`.
     #[arg(long = "law", value_name = "LAW", value_parser = law_words())]
-    laws: Vec<Law>,
+    laws: Vec<LawUnderTest>,
 
     /// Scheme to run benchmarks of the step itself by, a basis and a stress update; may be repeated; without this and
     /// `--law` the default one, with `--all` all.
@@ -51,7 +51,7 @@ fn benchmark_names() -> impl TypedValueParser<Value = &'static Benchmark> {
     })
 }
 
-fn law_words() -> impl TypedValueParser<Value = Law> {
+fn law_words() -> impl TypedValueParser<Value = LawUnderTest> {
     let words = laws().into_iter().map(|law| PossibleValue::new(law.word).help(law.meaning));
     PossibleValuesParser::new(words)
         .map(|word| laws().into_iter().find(|law| law.word == word).expect("the word is one of them"))
@@ -69,7 +69,7 @@ fn unwritable(folder: &Path, error: &std::io::Error) -> Failure {
 
 impl Arguments {
     /// Those that are named; without a name all, and none where only schemes are named.
-    fn chosen_laws(&self) -> Vec<Law> {
+    fn chosen_laws(&self) -> Vec<LawUnderTest> {
         match (&self.laws[..], self.only(&self.schemes)) {
             ([], true) => Vec::new(),
             ([], false) => laws(),

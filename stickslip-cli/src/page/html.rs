@@ -2,7 +2,7 @@
 
 use super::figure::{Data, address};
 use super::table::Align;
-use super::{Block, Cell, Figure, Image, Making, Page, Section, Table, Verdict};
+use super::{Block, Cell, Figure, Image, Making, Mark, Page, Section, Table};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 const STYLE: &str = include_str!("style.css");
@@ -142,13 +142,13 @@ fn cell(cell: &Cell) -> Markup {
     }
 }
 
-impl Verdict {
+impl Mark {
     /// The word for it, which is its class of style too.
     fn class(self) -> &'static str {
         match self {
-            Verdict::Passed => "passed",
-            Verdict::Failed => "failed",
-            Verdict::Known => "known",
+            Mark::Passed => "passed",
+            Mark::Failed => "failed",
+            Mark::Known => "known",
         }
     }
 }

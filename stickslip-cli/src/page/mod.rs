@@ -10,7 +10,7 @@ mod table;
 
 pub use figure::{Figure, Image, address};
 pub use making::Making;
-pub use table::{Cell, Column, Table, Verdict};
+pub use table::{Cell, Column, Mark, Table};
 
 use crate::drawing::DrawError;
 use maud::{Markup, Render};

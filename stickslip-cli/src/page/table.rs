@@ -35,16 +35,16 @@ pub enum Cell {
     /// A number as it is to be read.
     Number(String),
     /// Whether something holds.
-    Verdict(Verdict),
+    Verdict(Mark),
     /// Words or a number that show whether something holds by their colour, with the address of more on the page.
-    Judged(String, Verdict, String),
+    Judged(String, Mark, String),
     /// Nothing to say.
     Empty,
 }
 
 /// Whether something holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Verdict {
+pub enum Mark {
     /// It does.
     Passed,
     /// It does not.
@@ -79,10 +79,10 @@ impl Column {
     }
 }
 
-impl Verdict {
+impl Mark {
     /// Passed if it holds, else failed.
     pub fn of(holds: bool) -> Self {
-        if holds { Verdict::Passed } else { Verdict::Failed }
+        if holds { Mark::Passed } else { Mark::Failed }
     }
 }
 

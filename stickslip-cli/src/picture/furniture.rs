@@ -2,7 +2,7 @@
 //! a scale and the directions of space.
 
 use super::camera::{Camera, unit};
-use super::plane::Window;
+use super::plane::PlaneView;
 use super::{Legend, Rgb, Setting};
 use crate::drawing::{DrawError, Ink, SAMPLES, axis_prefix, label, prefix, ticks};
 use plotters::prelude::*;
@@ -88,7 +88,7 @@ pub fn legend(ink: &Ink, legend: &Legend, column: i32) -> Result<(), DrawError> 
 }
 
 /// Axes in metres around the window of a plane scene, whose corner stands at `(left, top)`.
-pub fn axes(ink: &Ink, window: &Window, (left, top): (i32, i32)) -> Result<(), DrawError> {
+pub fn axes(ink: &Ink, window: &PlaneView, (left, top): (i32, i32)) -> Result<(), DrawError> {
     let [width, height] = window.size.map(|side| side as i32);
     let (right, bottom) = (left + width, top + height);
     for (from, to) in [

@@ -21,7 +21,7 @@ use crate::drawing::{Canvas, DrawError, Rgb, SAMPLES, Scale, body_color};
 use camera::{Camera, Point, unit};
 use grains::Grain;
 use light::Lit;
-use plane::{Drawn, Window};
+use plane::{Drawn, PlaneView};
 use stickslip::door::ParticleSnapshot;
 use stickslip::image::Image;
 use stickslip::tensor::Vector;
@@ -191,7 +191,7 @@ fn plane_picture(
     let scale = scale[0].min(scale[1]);
     let half = [0, 1].map(|axis| 0.5 * inner[axis] as f64 / scale);
     let middle = spans.map(|[low, high]| 0.5 * (low + high));
-    let window = Window {
+    let window = PlaneView {
         low: [middle[0] - half[0], middle[1] - half[1]],
         high: [middle[0] + half[0], middle[1] + half[1]],
         size: inner,

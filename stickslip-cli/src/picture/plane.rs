@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 /// A window on the plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Window {
+pub struct PlaneView {
     /// Lower left corner [m].
     pub low: [f64; 2],
     /// Upper right corner [m].
@@ -21,7 +21,7 @@ const BAND: usize = 48;
 /// Particles are drawn this much larger, so that rounding leaves no cracks between them.
 const OVERLAP: f64 = 1.03;
 
-impl Window {
+impl PlaneView {
     /// Pixel of a position, from the left and from the top.
     pub fn pixel(&self, x: [f64; 2]) -> [f64; 2] {
         let scale = self.scale();
@@ -44,7 +44,7 @@ pub struct Drawn<'a> {
 
 impl<'a> Drawn<'a> {
     /// Draws the grains; where they overlap, the later one shows.
-    pub fn new(grains: &'a [Grain], window: &Window) -> Self {
+    pub fn new(grains: &'a [Grain], window: &PlaneView) -> Self {
         let [width, height] = window.size;
         let mut grain = vec![NOTHING; width * height];
         grain.par_chunks_mut(BAND * width).enumerate().for_each(|(band, pixels)| {
@@ -73,7 +73,7 @@ impl<'a> Drawn<'a> {
 }
 
 /// Marks the pixels of one grain on the rows from `top` on: those whose place in the undeformed square is inside it.
-fn draw((index, grain): (u32, &Grain), window: &Window, top: usize, pixels: &mut [u32]) {
+fn draw((index, grain): (u32, &Grain), window: &PlaneView, top: usize, pixels: &mut [u32]) {
     let [width, _] = window.size;
     let rows = pixels.len() / width;
     let half = 0.5 * OVERLAP * grain.side * window.scale();
@@ -111,7 +111,7 @@ mod tests {
             color: [0.5; 3],
         };
         let grains = [grain];
-        let window = Window { low: [-2.0, -2.0], high: [2.0, 2.0], size: [80, 80] };
+        let window = PlaneView { low: [-2.0, -2.0], high: [2.0, 2.0], size: [80, 80] };
         let drawn = Drawn::new(&grains, &window);
         let hit = |x: f64, y: f64| {
             let [column, row] = window.pixel([x, y]);

@@ -4,7 +4,7 @@ use super::case::{Case, PaperScene, Rule};
 use super::momentum::momentum_error;
 use crate::failure::Failure;
 use stickslip::observe::{ArrivalRow, ContactRow, EnergyRow, Frame, Results};
-use stickslip::polariscope::{self, Bench, Stage, Window};
+use stickslip::polariscope::{self, ImageWindow, OpticalBench, Stage};
 use stickslip::scene::Fringes;
 
 /// The paper's disks: touching at the start, one particle a cell; surfaces that follow the disks and one normal for
@@ -35,7 +35,7 @@ pub struct Chain<'a> {
 pub struct Camera<'a> {
     results: &'a Results,
     transit: f64,
-    bench: Bench,
+    bench: OpticalBench,
 }
 
 /// Width of a picture [pixels].
@@ -167,8 +167,8 @@ impl<'a> Chain<'a> {
             .collect();
         let particles = self.results.particles(first).map_err(Failure::input)?;
         let Some(bounds) = polariscope::bounds(&particles, &specimens) else { return Ok(None) };
-        let stage = Stage { window: Window::around(bounds, WIDTH), specimens };
-        let bench = Bench::new(&fringes.polariscope, stage);
+        let stage = Stage { window: ImageWindow::around(bounds, WIDTH), specimens };
+        let bench = OpticalBench::new(&fringes.polariscope, stage);
         Ok(Some(Camera { results: self.results, transit: self.transit, bench }))
     }
 

@@ -6,7 +6,7 @@ use super::case::{Case, Level, PaperScene, Rule, Runs};
 use super::chain::{self, Chain};
 use super::frames;
 use crate::failure::Failure;
-use crate::page::{Cell, Column, Figure, Image, Section, Table, Verdict};
+use crate::page::{Cell, Column, Figure, Image, Mark, Section, Table};
 use maud::html;
 
 /// The study.
@@ -201,8 +201,8 @@ fn arrivals(rule: Rule, level: Level, runs: &Runs) -> Result<Table, Failure> {
         let late = before(glued.map(|time| LATER * time), sliding);
         row.push(match disk + 1 {
             1 | 2 => Cell::Empty,
-            DISKS => Cell::Verdict(Verdict::of(ordered && late)),
-            _ => Cell::Verdict(Verdict::of(ordered)),
+            DISKS => Cell::Verdict(Mark::of(ordered && late)),
+            _ => Cell::Verdict(Mark::of(ordered)),
         });
         table = table.row(row);
     }
@@ -241,7 +241,7 @@ fn load_paths(level: Level, runs: &Runs) -> Result<Table, Failure> {
                 );
                 holds = if title == "sliding" { before(wall, next) } else { before(next, wall) };
             }
-            row.push(Cell::Verdict(Verdict::of(holds)));
+            row.push(Cell::Verdict(Mark::of(holds)));
             table = table.row(row);
         }
     }

@@ -7,7 +7,7 @@ use super::drawn;
 use crate::chart::{Chart, Curve, Panel, svg};
 use crate::drawing::body_color;
 use crate::failure::Failure;
-use crate::page::{Cell, Column, Figure, Image, Section, Table, Verdict};
+use crate::page::{Cell, Column, Figure, Image, Mark, Section, Table};
 
 /// The study.
 pub struct Poisson;
@@ -69,8 +69,7 @@ impl Study for Poisson {
         table = table.row(row);
         let mut row = vec![Cell::text(format!("at least {SLOWER}")), Cell::Empty];
         row.extend(
-            slower
-                .map(|ratio| ratio.map_or(Cell::Empty, |ratio| Cell::Verdict(Verdict::of(ratio >= SLOWER)))),
+            slower.map(|ratio| ratio.map_or(Cell::Empty, |ratio| Cell::Verdict(Mark::of(ratio >= SLOWER)))),
         );
         table = table.row(row);
         curves.push(Curve {

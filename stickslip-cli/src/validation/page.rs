@@ -1,15 +1,15 @@
 //! The results of validation as a page: law or scheme by benchmark, then each benchmark with its report.
 
 use super::text::short;
-use crate::page::{Cell, Column, Making, Page, Section, Table, Verdict, address};
+use crate::page::{Cell, Column, Making, Mark, Page, Section, Table, address};
 use std::time::Duration;
 use stickslip_validation::{
-    Benchmark, Entry, Laws, Measurement, Miss, Record, Report, Resolution, Run, Target, Tier,
-    Verdict as Judgement, Way,
+    Benchmark, Candidate, Entry, Laws, Measurement, Miss, Resolution, Run, RunRecord, SuiteReport, Target,
+    Tier, Verdict,
 };
 
 /// The page; it took so long.
-pub fn page(report: &Report, took: Duration) -> Page {
+pub fn page(report: &SuiteReport, took: Duration) -> Page {
     let tier = match report.tier {
         Tier::Quick => "the quick tier: coarse resolutions and few variants",
         Tier::Full => "the full tier: every resolution and variant",
@@ -35,7 +35,7 @@ pub fn page(report: &Report, took: Duration) -> Page {
     page
 }
 
-fn benchmarks(report: &Report) -> Vec<&'static Benchmark> {
+fn benchmarks(report: &SuiteReport) -> Vec<&'static Benchmark> {
     let mut benchmarks: Vec<&'static Benchmark> =
         report.entries.iter().map(|entry| entry.benchmark).collect();
     benchmarks.dedup_by_key(|benchmark| benchmark.name);
@@ -46,16 +46,16 @@ fn benchmarks(report: &Report) -> Vec<&'static Benchmark> {
 struct Shelf {
     /// What one of them is.
     kind: &'static str,
-    ways: Vec<Way>,
+    ways: Vec<Candidate>,
 }
 
 impl Shelf {
     /// The laws and the schemes that were chosen, as far as there are any.
-    fn all(report: &Report) -> Vec<Shelf> {
+    fn all(report: &SuiteReport) -> Vec<Shelf> {
         let mut laws = Shelf { kind: "law", ways: Vec::new() };
         let mut schemes = Shelf { kind: "scheme", ways: Vec::new() };
         for entry in &report.entries {
-            let shelf = if matches!(entry.way, Way::Law(_)) { &mut laws } else { &mut schemes };
+            let shelf = if matches!(entry.way, Candidate::Law(_)) { &mut laws } else { &mut schemes };
             if !shelf.ways.contains(&entry.way) {
                 shelf.ways.push(entry.way);
             }
@@ -64,7 +64,7 @@ impl Shelf {
     }
 
     /// How many targets each law or scheme reaches in each benchmark.
-    fn overview(&self, report: &Report) -> Section {
+    fn overview(&self, report: &SuiteReport) -> Section {
         let kind = self.kind;
         let caption = format!("Targets reached of targets judged. * what a scene gets that names no {kind}.");
         let counts = self.by_benchmark(caption, report, |entry| entry.map_or(Cell::Empty, reached));
@@ -73,7 +73,7 @@ impl Shelf {
     }
 
     /// How long each law or scheme took for each benchmark.
-    fn times(&self, report: &Report) -> Table {
+    fn times(&self, report: &SuiteReport) -> Table {
         let caption = "Time taken [s], all resolutions together; one thread a run.".to_owned();
         self.by_benchmark(caption, report, |entry| {
             let outcomes =
@@ -84,12 +84,17 @@ impl Shelf {
     }
 
     /// A row for each benchmark that was put to one of these, with a cell for each.
-    fn by_benchmark(&self, caption: String, report: &Report, cell: impl Fn(Option<&Entry>) -> Cell) -> Table {
+    fn by_benchmark(
+        &self,
+        caption: String,
+        report: &SuiteReport,
+        cell: impl Fn(Option<&Entry>) -> Cell,
+    ) -> Table {
         let mut columns = vec![Column::text("benchmark")];
         columns.extend(self.ways.iter().map(|way| Column::number(word(way))));
         let mut table = Table::new(caption, columns);
         for benchmark in benchmarks(report) {
-            let entry = |way: &Way| entries(benchmark, report).find(|entry| entry.way == *way);
+            let entry = |way: &Candidate| entries(benchmark, report).find(|entry| entry.way == *way);
             if self.ways.iter().all(|way| entry(way).is_none()) {
                 continue;
             }
@@ -107,13 +112,14 @@ impl Shelf {
             _ => ("The schemes", "what moves between particles and grid, and when"),
         };
         let columns = vec![Column::text(self.kind), Column::text(does)];
-        let row = |table: Table, way: &Way| table.row(vec![Cell::text(word(way)), Cell::text(way.meaning())]);
+        let row =
+            |table: Table, way: &Candidate| table.row(vec![Cell::text(word(way)), Cell::text(way.meaning())]);
         Section::new(heading)
             .table(self.ways.iter().fold(Table::new("As scene files name them.", columns), row))
     }
 }
 
-fn entries<'a>(benchmark: &'a Benchmark, report: &'a Report) -> impl Iterator<Item = &'a Entry> {
+fn entries<'a>(benchmark: &'a Benchmark, report: &'a SuiteReport) -> impl Iterator<Item = &'a Entry> {
     report.entries.iter().filter(move |entry| entry.benchmark.name == benchmark.name)
 }
 
@@ -122,7 +128,7 @@ fn title(benchmark: &Benchmark) -> String {
 }
 
 /// The word of a law or scheme, with a star where it is what scenes get that name none.
-fn word(way: &Way) -> String {
+fn word(way: &Candidate) -> String {
     if way.is_default() { format!("{} *", way.word()) } else { way.word().to_owned() }
 }
 
@@ -131,24 +137,24 @@ fn kind(benchmark: &Benchmark) -> &'static str {
     if benchmark.laws == Laws::Bulk { "scheme" } else { "law" }
 }
 
-fn colour(judgement: Judgement) -> Verdict {
+fn colour(judgement: Verdict) -> Mark {
     match judgement {
-        Judgement::Reached => Verdict::Passed,
-        Judgement::Missed => Verdict::Failed,
-        Judgement::Open => Verdict::Known,
+        Verdict::Reached => Mark::Passed,
+        Verdict::Missed => Mark::Failed,
+        Verdict::Open => Mark::Known,
     }
 }
 
 fn reached(entry: &Entry) -> Cell {
     let verdicts: Vec<_> = entry.benchmark.targets.iter().map(|target| entry.verdict(target)).collect();
     let count = |wanted| verdicts.iter().filter(|verdict| **verdict == wanted).count();
-    let (reached, missed) = (count(Judgement::Reached), count(Judgement::Missed));
+    let (reached, missed) = (count(Verdict::Reached), count(Verdict::Missed));
     let text =
         if reached + missed == 0 { "open".to_owned() } else { format!("{reached} of {}", reached + missed) };
     Cell::Judged(text, colour(entry.overall()), address(&title(entry.benchmark)))
 }
 
-fn section(benchmark: &'static Benchmark, report: &Report) -> Section {
+fn section(benchmark: &'static Benchmark, report: &SuiteReport) -> Section {
     let mut section = Section::new(title(benchmark))
         .text(format!("Source: {}.", benchmark.source.trim_end_matches('.')))
         .sketch(benchmark.picture.trim_matches('\n'))
@@ -167,7 +173,7 @@ fn section(benchmark: &'static Benchmark, report: &Report) -> Section {
         }
     }
     section = section.table(results(benchmark, report));
-    for entry in entries(benchmark, report).filter(|entry| entry.overall() == Judgement::Missed) {
+    for entry in entries(benchmark, report).filter(|entry| entry.overall() == Verdict::Missed) {
         for reason in benchmark.reasons(entry.way.word()) {
             section = section.text(format!("What {} misses: {reason}", entry.way.word()));
         }
@@ -176,7 +182,7 @@ fn section(benchmark: &'static Benchmark, report: &Report) -> Section {
 }
 
 /// What each law or scheme measured at each resolution, against the targets.
-fn results(benchmark: &'static Benchmark, report: &Report) -> Table {
+fn results(benchmark: &'static Benchmark, report: &SuiteReport) -> Table {
     let mut columns = vec![Column::text(kind(benchmark)), Column::text("quantity")];
     let heading = |r: &Resolution| Column::number(format!("{} = {}", benchmark.measure, r.cells));
     columns.extend(benchmark.due(report.tier).map(heading));
@@ -197,7 +203,7 @@ fn results(benchmark: &'static Benchmark, report: &Report) -> Table {
             row.push(entry.order(target).map_or(Cell::Empty, |order| Cell::number(order, 1)));
             row.push(Cell::text(stated(benchmark, target)));
             row.push(match entry.verdict(target) {
-                Judgement::Open => Cell::text("not run at these cells"),
+                Verdict::Open => Cell::text("not run at these cells"),
                 verdict => Cell::Verdict(colour(verdict)),
             });
             table = table.row(row);
@@ -245,7 +251,7 @@ fn misses(benchmark: &Benchmark, target: &Target) -> String {
 }
 
 /// What every run records.
-fn records(benchmark: &'static Benchmark, report: &Report) -> Table {
+fn records(benchmark: &'static Benchmark, report: &SuiteReport) -> Table {
     let numbers = [
         benchmark.measure,
         "energy drift",
@@ -275,7 +281,7 @@ bodies' sqrt(2 mass * kinetic energy), where nothing outside acts; the overlap o
     table
 }
 
-fn record(record: &Record) -> [Cell; 8] {
+fn record(record: &RunRecord) -> [Cell; 8] {
     let optional = |drift: Option<f64>| drift.map_or(Cell::Empty, Cell::scientific);
     [
         Cell::percent(record.energy_drift, 2),

@@ -1,7 +1,7 @@
 //! The results of validation as text.
 
 use std::fmt::Write;
-use stickslip_validation::{Entry, Finished, Report, Target, Verdict, Way, schemes};
+use stickslip_validation::{Candidate, Entry, Finished, SuiteReport, Target, Verdict, schemes};
 
 /// One case that ended, on one line.
 pub fn line(finished: &Finished) -> String {
@@ -20,7 +20,7 @@ pub fn line(finished: &Finished) -> String {
 }
 
 /// What the default law, the default scheme and glue miss and are not known to miss; `None` if there is nothing.
-pub fn broken(report: &Report) -> Option<String> {
+pub fn broken(report: &SuiteReport) -> Option<String> {
     let lines: Vec<String> = (report.entries.iter())
         .flat_map(|entry| entry.broken().map(move |target| (entry, target)))
         .map(|(entry, target)| {
@@ -46,7 +46,7 @@ pub fn short(value: f64) -> String {
 }
 
 /// A table for each benchmark: a line for each law or scheme and quantity.
-pub fn table(report: &Report) -> String {
+pub fn table(report: &SuiteReport) -> String {
     let mut text = String::new();
     let mut heading = "";
     for entry in &report.entries {
@@ -70,8 +70,8 @@ fn write_heading(entry: &Entry, text: &mut String) {
 /// Width of the column of laws or schemes.
 fn column(entry: &Entry) -> usize {
     match entry.way {
-        Way::Law(_) => 10,
-        Way::Scheme(_) => schemes().iter().map(|scheme| scheme.word.len()).fold(10, usize::max),
+        Candidate::Law(_) => 10,
+        Candidate::Scheme(_) => schemes().iter().map(|scheme| scheme.word.len()).fold(10, usize::max),
     }
 }
 
@@ -149,9 +149,12 @@ mod tests {
         for law in laws() {
             let mut outcome = Outcome::default();
             benchmark.targets.iter().for_each(|target| outcome.measure(target.metric, 1.0));
-            let entry =
-                Entry { benchmark, way: Way::Law(law), runs: vec![Run { resolution, result: Ok(outcome) }] };
-            let said = broken(&Report { tier: Tier::Quick, entries: vec![entry] });
+            let entry = Entry {
+                benchmark,
+                way: Candidate::Law(law),
+                runs: vec![Run { resolution, result: Ok(outcome) }],
+            };
+            let said = broken(&SuiteReport { tier: Tier::Quick, entries: vec![entry] });
             let expected = format!("M4 by {}, {} = {}: ", law.word, benchmark.measure, resolution.cells);
             let held = law.default || law.word == "glued";
             assert_eq!(said.is_some(), held, "{}: {said:?}", law.word);

@@ -4,7 +4,7 @@ mod totals;
 
 pub use totals::Totals;
 
-use crate::geometry::Whole;
+use crate::geometry::MirroredShape;
 use crate::material::{Keep, Material, Motion, Recall, Thickness};
 use crate::particles::Particles;
 use crate::tensor::{Matrix, Number, Real, Symmetric, Vector};
@@ -75,7 +75,7 @@ pub struct Body<T, const D: usize> {
     /// Whether its motion is prescribed, whatever pushes it.
     pub rigid: bool,
     /// Its undeformed shape with its images in the domain's mirrors.
-    pub whole: Whole,
+    pub whole: MirroredShape,
     /// Which thickness its particles take.
     pub thickness: Thickness,
     /// What its particles' own rotation weighs.

@@ -123,7 +123,7 @@ fn chunks<V: Lanes>(part: &Range<usize>) -> impl Iterator<Item = (usize, usize)>
 }
 
 /// Totals of some particles of a body.
-struct Sum<'a, T, const D: usize> {
+struct SumOfRange<'a, T, const D: usize> {
     columns: Columns<T, D>,
     part: Range<usize>,
     gyration: Gyration<f64>,
@@ -133,7 +133,7 @@ struct Sum<'a, T, const D: usize> {
     density: f64,
 }
 
-impl<T: Laned, const D: usize> Work for Sum<'_, T, D> {
+impl<T: Laned, const D: usize> Work for SumOfRange<'_, T, D> {
     type Real = T;
     type Output = Totals;
 
@@ -277,7 +277,7 @@ impl<T: Laned, const D: usize> Body<T, D> {
             let material = (!self.rigid).then_some(&self.material);
             let density = self.density.f64();
             let (columns, gyration) = (self.particles.view(), self.gyration());
-            T::run(Processor::best(), Sum { columns, part, gyration, material, density })
+            T::run(Processor::best(), SumOfRange { columns, part, gyration, material, density })
         };
         self.by_parts(sum).iter().fold(Totals::default(), Totals::plus)
     }

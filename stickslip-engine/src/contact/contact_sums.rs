@@ -3,14 +3,14 @@
 use super::Impulse;
 use super::spread::Spread;
 use crate::boundary::Boundary;
-use crate::door::{ContactSum, Patch};
+use crate::door::{ContactPatch, ContactSum};
 use crate::grid::Lattice;
 use crate::tensor::Real;
 use std::collections::HashMap;
 use std::hash::{BuildHasherDefault, Hasher};
 
 #[derive(Clone, Debug, Default)]
-struct Sum {
+struct ImpulseSums {
     /// On the second body [N s].
     impulse: [f64; 3],
     normal: f64,
@@ -52,7 +52,7 @@ const CLOSE: f64 = 0.01;
 #[derive(Clone, Debug, Default)]
 pub struct ContactSums {
     /// Pairs that ever touched, in the order in which they first did.
-    pairs: Vec<Touched>,
+    pairs: Vec<TouchedPair>,
     /// Where each of them stands.
     places: HashMap<[usize; 2], usize, BuildHasherDefault<Mixer>>,
     /// Those that are part of a use.
@@ -72,11 +72,11 @@ pub struct ContactSums {
 
 /// Two bodies that touched.
 #[derive(Clone, Debug)]
-struct Touched {
+struct TouchedPair {
     bodies: [usize; 2],
-    sum: Sum,
+    sum: ImpulseSums,
     /// Largest area over which they touched since the start, images in mirrors included, if they pushed.
-    largest: Option<Patch>,
+    largest: Option<ContactPatch>,
 }
 
 /// Mixes the numbers of two bodies: nobody chooses them to collide.
@@ -99,7 +99,7 @@ impl Hasher for Mixer {
     }
 }
 
-impl Sum {
+impl ImpulseSums {
     /// Area times duration [m^2 s], and with the gap [m^3 s], with those of the last use.
     fn touched(&self) -> [f64; 2] {
         let Touching { duration, spread: Spread { area, .. }, gap, .. } = self.last;
@@ -177,7 +177,7 @@ impl ContactSums {
             self.work += impulse.work.f64();
         }
         for &place in &self.present {
-            let Touched { bodies: [body_a, body_b], sum: Sum { last, .. }, largest, .. } =
+            let TouchedPair { bodies: [body_a, body_b], sum: ImpulseSums { last, .. }, largest, .. } =
                 &mut self.pairs[place];
             let images = f64::from(1_u32 << last.mirrors.count_ones());
             let wider = largest.is_none_or(|patch| last.spread.area * images > patch.area);
@@ -190,7 +190,7 @@ impl ContactSums {
                 let area = whole.area;
                 let half_width = if D == 2 { 0.5 * area } else { whole.half_width(lattice.cell.f64()) };
                 let (body_a, body_b) = (*body_a, *body_b);
-                *largest = Some(Patch { body_a, body_b, area, half_width, impulse: 0.0 });
+                *largest = Some(ContactPatch { body_a, body_b, area, half_width, impulse: 0.0 });
             }
         }
     }
@@ -206,13 +206,13 @@ impl ContactSums {
     fn place(&mut self, bodies: [usize; 2]) -> usize {
         let ContactSums { pairs, places, .. } = self;
         *places.entry(bodies).or_insert_with(|| {
-            pairs.push(Touched { bodies, sum: Sum::default(), largest: None });
+            pairs.push(TouchedPair { bodies, sum: ImpulseSums::default(), largest: None });
             pairs.len() - 1
         })
     }
 
     /// Those of all pairs that something is known of, ordered by pair.
-    fn ordered<X>(&self, known: impl Fn(&Touched) -> Option<X>) -> Vec<X> {
+    fn ordered<X>(&self, known: impl Fn(&TouchedPair) -> Option<X>) -> Vec<X> {
         let mut all: Vec<_> =
             self.pairs.iter().filter_map(|pair| known(pair).map(|x| (pair.bodies, x))).collect();
         all.sort_unstable_by_key(|(bodies, _)| *bodies);
@@ -221,7 +221,7 @@ impl ContactSums {
 
     /// What contact did since the start, of pairs that pushed each other, ordered by pair.
     pub fn sums(&self) -> Vec<ContactSum> {
-        self.ordered(|Touched { bodies, sum, .. }| {
+        self.ordered(|TouchedPair { bodies, sum, .. }| {
             let [area, gap] = sum.touched();
             (sum.magnitude > 0.0).then(|| ContactSum {
                 bodies: *bodies,
@@ -240,8 +240,8 @@ impl ContactSums {
     }
 
     /// The largest area over which each pair touched since the start, ordered by pair, and what the pair bore.
-    pub fn patches(&self) -> Vec<Patch> {
-        self.ordered(|pair| pair.largest.map(|patch| Patch { impulse: pair.sum.magnitude, ..patch }))
+    pub fn patches(&self) -> Vec<ContactPatch> {
+        self.ordered(|pair| pair.largest.map(|patch| ContactPatch { impulse: pair.sum.magnitude, ..patch }))
     }
 }
 

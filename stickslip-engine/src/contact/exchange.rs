@@ -1,7 +1,7 @@
 //! Eq. (10) of Bardenhagen et al. (2001), whatever decides about contact: with one normal for the pair,
 //! and with each body's own.
 
-use super::{Change, Load, Pair, Surface};
+use super::{Change, Pair, SurfaceEstimate, SurfaceLoad};
 use crate::tensor::{Real, Vector};
 
 /// One normal for the pair and one decision, `touching(approach [m/s], n)`.
@@ -38,7 +38,7 @@ pub fn common_normal<T: Real, const D: usize>(
 pub fn own_normals<T: Real, const D: usize>(
     pair: &Pair<T, D>,
     velocities: [Vector<T, D>; 2],
-    touching: impl Fn(&Surface<T, D>, T, Vector<T, D>) -> bool,
+    touching: impl Fn(&SurfaceEstimate<T, D>, T, Vector<T, D>) -> bool,
 ) -> Change<T, D> {
     let [a, b] = pair.surfaces;
     let share = a.inverse_mass + b.inverse_mass;
@@ -60,7 +60,7 @@ pub fn own_normals<T: Real, const D: usize>(
         let slip = dv - n * approach;
         if surface.inverse_mass > T::ZERO {
             let mass = T::ONE / surface.inverse_mass;
-            let load = Load { mass, push: mass * approach.abs(), exposure: T::ZERO };
+            let load = SurfaceLoad { mass, push: mass * approach.abs(), exposure: T::ZERO };
             let tangential = slip * -pair.rule.friction.stopped(slip.norm(), load);
             change.impulse[i] = (tangential - n * approach) * mass;
             if i == 0 || a.inverse_mass <= T::ZERO {
@@ -139,7 +139,7 @@ mod tests {
     fn against_a_wall_the_walls_normal_counts() {
         let rule = rule(ContactLaw::Kinematic, Normal::Own, 0.0);
         let free = surface(2.0, [0.6, -0.8]);
-        let wall = Surface { inverse_mass: 0.0, ..surface(1.0, [0.0, 1.0]) };
+        let wall = SurfaceEstimate { inverse_mass: 0.0, ..surface(1.0, [0.0, 1.0]) };
         let pair = Pair {
             rule: &rule,
             surfaces: [&free, &wall],
@@ -156,7 +156,7 @@ mod tests {
     fn a_rigid_body_feels_the_reaction() {
         let rule = rule(ContactLaw::Kinematic, Normal::Own, 0.25);
         let free = surface(2.0, [0.0, -1.0]);
-        let rigid = Surface { inverse_mass: 0.0, ..surface(1.0, [0.0, 1.0]) };
+        let rigid = SurfaceEstimate { inverse_mass: 0.0, ..surface(1.0, [0.0, 1.0]) };
         for surfaces in [[&free, &rigid], [&rigid, &free]] {
             let pair = Pair { rule: &rule, surfaces, normal: None, gap: 0.0, area: 0.0, step: step(100.0) };
             let down = Vector([0.0, -8.0]);

@@ -39,7 +39,7 @@ const BOND: f64 = 0.01;
 
 /// How two surfaces are loaded at a node in one use of contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Load<T> {
+pub struct SurfaceLoad<T> {
     /// Reduced mass [kg].
     pub mass: T,
     /// Normal impulse that presses them together, not negative [N s].
@@ -68,7 +68,7 @@ impl<T: Real> Friction<T> {
     }
 
     /// The fraction of the slip `slip` [m/s] that the surfaces stop under a load: 1 where they stick [-].
-    pub fn stopped(&self, slip: T, load: Load<T>) -> T {
+    pub fn stopped(&self, slip: T, load: SurfaceLoad<T>) -> T {
         let momentum = load.mass * slip;
         let cohesion = self.cohesion * load.exposure;
         // An infinite coefficient sticks even without any push.
@@ -84,7 +84,7 @@ impl<T: Real> Friction<T> {
 
     /// The normal impulse that the surfaces bear where `wanted` keeps them together, and how they are loaded by it;
     /// `None` where they part. Positive pushes [N s]. Surfaces that touch and resist slip without a push bear none.
-    pub fn borne<const D: usize>(&self, wanted: T, pair: &Pair<T, D>) -> Option<(T, Load<T>)> {
+    pub fn borne<const D: usize>(&self, wanted: T, pair: &Pair<T, D>) -> Option<(T, SurfaceLoad<T>)> {
         let load = pair.load(wanted.max(T::ZERO));
         let touch = pair.gap <= T::of(BOND);
         let pull = if touch { self.adhesion * load.exposure } else { T::ZERO };
@@ -111,7 +111,7 @@ impl<T: Real> From<&ContactRule> for Friction<T> {
 mod tests {
     use super::*;
 
-    const LOAD: Load<f64> = Load { mass: 2.0, push: 3.0, exposure: 0.1 };
+    const LOAD: SurfaceLoad<f64> = SurfaceLoad { mass: 2.0, push: 3.0, exposure: 0.1 };
 
     #[test]
     fn coulomb_stops_what_the_push_bears() {
@@ -120,8 +120,8 @@ mod tests {
         for (slip, stopped) in [(0.5, 1.0), (0.75, 1.0), (1.5, 0.5), (7.5, 0.1)] {
             assert!((friction.stopped(slip, LOAD) - stopped).abs() < 1e-15, "{slip}");
         }
-        assert_eq!(Friction::coulomb(f64::INFINITY).stopped(1e9, Load { push: 0.0, ..LOAD }), 1.0);
-        assert_eq!(Friction::coulomb(0.5).stopped(1.0, Load { push: 0.0, ..LOAD }), 0.0);
+        assert_eq!(Friction::coulomb(f64::INFINITY).stopped(1e9, SurfaceLoad { push: 0.0, ..LOAD }), 1.0);
+        assert_eq!(Friction::coulomb(0.5).stopped(1.0, SurfaceLoad { push: 0.0, ..LOAD }), 0.0);
     }
 
     #[test]
@@ -139,7 +139,7 @@ mod tests {
     #[test]
     fn cohesion_bears_shear_without_a_push() {
         let friction = Friction { cohesion: 10.0, ..Friction::default() };
-        let load = Load { push: 0.0, ..LOAD };
+        let load = SurfaceLoad { push: 0.0, ..LOAD };
         assert_eq!(friction.stopped(0.5, load), 1.0);
         assert!((friction.stopped(2.0, load) - 0.25).abs() < 1e-15);
     }
@@ -147,7 +147,7 @@ mod tests {
     /// J_t = eta A dt s' with s' = s - J_t/m: s' = s m/(m + eta A dt), however viscous.
     #[test]
     fn viscosity_slows_without_turning_the_slip_back() {
-        let load = Load { push: 0.0, ..LOAD };
+        let load = SurfaceLoad { push: 0.0, ..LOAD };
         for (viscosity, kept) in [(20.0, 0.5), (1e12, 2.0 / 1e11)] {
             let friction = Friction { viscosity, ..Friction::default() };
             let after = 1.0 - friction.stopped(3.0, load);

@@ -19,10 +19,10 @@ mod survey;
 
 pub use contact_sums::ContactSums;
 pub use exchange::{common_normal, own_normals};
-pub use friction::{Friction, Load};
-pub use law::{Law, Span};
-pub use pair::{Change, Pair, Step, Surface, Use};
-pub use place::Place;
+pub use friction::{Friction, SurfaceLoad};
+pub use law::{PairLaw, Span};
+pub use pair::{Change, Pair, SurfaceEstimate, TimeStep, Use};
+pub use place::ReferenceMap;
 pub use rules::{Rule, Rules};
-pub use solve::{Impulse, Impulses, Record, Solve};
-pub use survey::{Encounter, Facing, Look, Near, Part, Side, Site, Survey, room};
+pub use solve::{Impulse, ImpulseRecord, Impulses, Solve};
+pub use survey::{BodyShare, Encounter, Facing, LawInputs, Near, SharedNode, Survey, SurveyPart, room};

@@ -1,13 +1,13 @@
 //! Two bodies at a node: what is known of them there, and what contact may do to them.
 
 use super::law::law;
-use super::{Load, Place, Rule, Span};
+use super::{ReferenceMap, Rule, Span, SurfaceLoad};
 use crate::scene::ContactLaw;
 use crate::tensor::{Real, Symmetric, Vector};
 
 /// What the particles around a node say of one body's surface there.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Surface<T, const D: usize> {
+pub struct SurfaceEstimate<T, const D: usize> {
     /// 1/m of the body's share of the node, zero for a rigid body [1/kg].
     pub inverse_mass: T,
     /// Outward normal from the gradient of the body's own grid mass, if it has one [-].
@@ -21,7 +21,7 @@ pub struct Surface<T, const D: usize> {
     /// Force of the body's stress on the node, -sum V sigma grad S, before this step's strain [N].
     pub force: Vector<T, D>,
     /// Where the material around the node was before it deformed.
-    pub place: Place<T, D>,
+    pub place: ReferenceMap<T, D>,
 }
 
 /// What the velocities of a pair are about to be used for.
@@ -37,7 +37,7 @@ pub enum Use {
 
 /// A step of time, as contact needs it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Step<T> {
+pub struct TimeStep<T> {
     /// dt [s]
     pub duration: T,
     /// Side of a cell [m].
@@ -46,7 +46,7 @@ pub struct Step<T> {
     pub purpose: Use,
 }
 
-impl<T: Real> Step<T> {
+impl<T: Real> TimeStep<T> {
     /// Speed of one cell in this step: h/dt [m/s].
     pub fn cell_speed(&self) -> T {
         self.cell / self.duration
@@ -59,7 +59,7 @@ pub struct Pair<'a, T, const D: usize> {
     /// The rule that holds between them.
     pub rule: &'a Rule<T>,
     /// Their surfaces.
-    pub surfaces: [&'a Surface<T, D>; 2],
+    pub surfaces: [&'a SurfaceEstimate<T, D>; 2],
     /// Common normal from the first to the second, from the difference of their volume gradients [-].
     pub normal: Option<Vector<T, D>>,
     /// Distance between the surfaces at the node, negative where they overlap [cells].
@@ -67,7 +67,7 @@ pub struct Pair<'a, T, const D: usize> {
     /// The node's share of the contact area [m^2], in the plane per depth [m].
     pub area: T,
     /// The step.
-    pub step: Step<T>,
+    pub step: TimeStep<T>,
 }
 
 /// What contact does to two bodies at a node.
@@ -108,8 +108,8 @@ impl<T: Real, const D: usize> Pair<'_, T, D> {
     }
 
     /// How the pair is loaded by a normal impulse that presses it together [N s].
-    pub fn load(&self, push: T) -> Load<T> {
-        Load { mass: self.reduced_mass(), push, exposure: self.area * self.step.duration }
+    pub fn load(&self, push: T) -> SurfaceLoad<T> {
+        SurfaceLoad { mass: self.reduced_mass(), push, exposure: self.area * self.step.duration }
     }
 
     /// Equal and opposite impulses: `normal` along the common normal `n` and `tangential` across it,
@@ -149,21 +149,21 @@ pub(super) mod tests {
     use crate::contact::Friction;
     use crate::scene::Normal;
 
-    pub fn surface(mass: f64, normal: [f64; 2]) -> Surface<f64, 2> {
-        Surface {
+    pub fn surface(mass: f64, normal: [f64; 2]) -> SurfaceEstimate<f64, 2> {
+        SurfaceEstimate {
             inverse_mass: 1.0 / mass,
             normal: Some(Vector(normal)),
             stress: Symmetric([0.0, -1.0, 0.0, 0.0, 0.0, 0.0]),
             volume: 1.0,
             modulus: 10.0,
             force: Vector::ZERO,
-            place: Place::EMPTY,
+            place: ReferenceMap::EMPTY,
         }
     }
 
     /// A step in which contact may change velocities by `limit` [m/s] under [`rule`].
-    pub fn step(limit: f64) -> Step<f64> {
-        Step { duration: 1.0, cell: 2.0 * limit, purpose: Use::Motion }
+    pub fn step(limit: f64) -> TimeStep<f64> {
+        TimeStep { duration: 1.0, cell: 2.0 * limit, purpose: Use::Motion }
     }
 
     pub fn rule(law: ContactLaw, normal: Normal, friction: f64) -> Rule<f64> {

@@ -1,6 +1,6 @@
 //! Where a body's material was before it deformed: what lets a node see the exact surface.
 
-use crate::geometry::Whole;
+use crate::geometry::MirroredShape;
 use crate::tensor::{Matrix, Real, Vector};
 
 /// The undeformed place of the material around a node, linear in the position.
@@ -14,7 +14,7 @@ use crate::tensor::{Matrix, Real, Vector};
 /// let the errors in: where such material is, positions alone say. The idea of carrying the undeformed place is the
 /// reference map's (Kamrin, Rycroft and Nave 2012, J. Mech. Phys. Solids 60, 1952).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Place<T, const D: usize> {
+pub struct ReferenceMap<T, const D: usize> {
     /// X at the node [m].
     pub place: Vector<T, D>,
     /// F^-1 [-].
@@ -32,15 +32,15 @@ pub struct Offset<T, const D: usize> {
     pub normal: Vector<T, D>,
 }
 
-impl<T: Real, const D: usize> Place<T, D> {
+impl<T: Real, const D: usize> ReferenceMap<T, D> {
     /// Nothing.
-    pub const EMPTY: Self = Place { place: Vector::ZERO, inverse: Matrix::ZERO, center: Vector::ZERO };
+    pub const EMPTY: Self = ReferenceMap { place: Vector::ZERO, inverse: Matrix::ZERO, center: Vector::ZERO };
 
     /// The same, seen from a point `arm` away [m].
     pub fn seen_from(&self, arm: Vector<T, D>) -> Self {
         let f = &self.inverse.0;
         let place = Vector::from_fn(|i| (0..D).fold(self.place[i], |x, j| x + f[i][j] * arm[j]));
-        Place { place, inverse: self.inverse, center: self.center - arm }
+        ReferenceMap { place, inverse: self.inverse, center: self.center - arm }
     }
 
     /// How far a point, seen from the node [m], is from the surface of an undeformed shape carried along.
@@ -48,7 +48,7 @@ impl<T: Real, const D: usize> Place<T, D> {
     /// ```text
     /// n = F^-T N / |F^-T N|,   distance = phi(X) / |F^-T N|,   N = grad phi
     /// ```
-    pub fn offset(&self, point: Vector<T, D>, whole: &Whole) -> Offset<T, D> {
+    pub fn offset(&self, point: Vector<T, D>, whole: &MirroredShape) -> Offset<T, D> {
         let f = &self.inverse.0;
         let place = Vector::<T, D>::from_fn(|i| (0..D).fold(self.place[i], |x, j| x + f[i][j] * point[j]));
         let level = whole.level(place.space());
@@ -67,18 +67,18 @@ mod tests {
     use crate::geometry::Shape;
 
     /// x = A X + b, so X = A^-1 (x - b), at the node `at`.
-    fn deformed(a: [[f64; 2]; 2], b: [f64; 2], at: [f64; 2]) -> Place<f64, 2> {
+    fn deformed(a: [[f64; 2]; 2], b: [f64; 2], at: [f64; 2]) -> ReferenceMap<f64, 2> {
         let f = Matrix([[a[0][0], a[0][1], 0.0], [a[1][0], a[1][1], 0.0], [0.0, 0.0, 1.0]]);
         let inverse = f.inverse();
         let arm = [at[0] - b[0], at[1] - b[1]];
         let place = Vector([0, 1].map(|i| inverse.0[i][0] * arm[0] + inverse.0[i][1] * arm[1]));
-        Place { place, inverse, center: Vector::ZERO }
+        ReferenceMap { place, inverse, center: Vector::ZERO }
     }
 
     /// A square stretched to twice its width, turned by 30 degrees and moved: faces, distances and normals are exact.
     #[test]
     fn a_stretched_and_turned_face_is_exact() {
-        let whole = Whole::new(&Shape::Box { min: [-1.0; 3], max: [1.0; 3] }, Vec::new(), 2);
+        let whole = MirroredShape::new(&Shape::Box { min: [-1.0; 3], max: [1.0; 3] }, Vec::new(), 2);
         let (sin, cos) = f64::sin_cos(30f64.to_radians());
         let a = [[2.0 * cos, -sin], [2.0 * sin, cos]];
         let (normal, side) = ([cos, sin], [-sin, cos]);
@@ -97,7 +97,7 @@ mod tests {
 
     #[test]
     fn a_sheared_face_has_the_deformed_normal() {
-        let whole = Whole::new(&Shape::Box { min: [-1.0; 3], max: [1.0; 3] }, Vec::new(), 2);
+        let whole = MirroredShape::new(&Shape::Box { min: [-1.0; 3], max: [1.0; 3] }, Vec::new(), 2);
         // The side X = 1 leans over: its tangent (0, 1) becomes (1/2, 1).
         let seen = deformed([[1.0, 0.5], [0.0, 1.0]], [0.0; 2], [1.2, 0.0]).offset(Vector::ZERO, &whole);
         let normal = Vector([1.0, -0.5]) / 1.25f64.sqrt();

@@ -1,7 +1,7 @@
 //! From pairs to a whole node: any number of bodies, each pair by its own law.
 
 use super::law::law;
-use super::{Change, Encounter, Part, Rules, Site, Span, Step, Survey, Use};
+use super::{Change, Encounter, Rules, SharedNode, Span, Survey, SurveyPart, TimeStep, Use};
 use crate::grid::{Disjoint, Node};
 use crate::tensor::{Real, Vector};
 use crate::threads::each;
@@ -115,14 +115,14 @@ pub struct Solve<'a, T, const D: usize> {
     /// The nodes with the velocities, which contact changes.
     pub nodes: Disjoint<'a, Node<T, D>>,
     /// The step.
-    pub step: Step<T>,
+    pub step: TimeStep<T>,
     /// What an earlier use of contact in this step did.
     pub given: Option<&'a Impulses<T, D>>,
 }
 
 /// What becomes of the impulses of a use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Record {
+pub enum ImpulseRecord {
     /// They are kept.
     Kept,
     /// Nobody asks for them.
@@ -135,7 +135,7 @@ impl<T: Real, const D: usize> Solve<'_, T, D> {
     /// Where more than two bodies meet, each pair's impulse is solved in turn with the others held until none changes
     /// (block Gauss-Seidel), so that every pair obeys its own law and momentum is conserved pair by pair. A law that
     /// judges the whole step sees the velocities without what it gave before.
-    pub fn impulses(&self, record: Record, listed: &mut Impulses<T, D>) {
+    pub fn impulses(&self, record: ImpulseRecord, listed: &mut Impulses<T, D>) {
         let parts = self.survey.parts();
         listed.parts.resize_with(parts.len().max(listed.parts.len()), List::default);
         let (used, unused) = listed.parts.split_at_mut(parts.len());
@@ -158,7 +158,7 @@ impl<T: Real, const D: usize> Solve<'_, T, D> {
                         unsafe { self.nodes.get(node) }.velocity += velocity;
                     }
                 }
-                if record == Record::Dropped {
+                if record == ImpulseRecord::Dropped {
                     list.reduced += list.impulses.iter().filter(|j| j.change.scale < T::ONE).count() as u64;
                     list.impulses.clear();
                 }
@@ -167,7 +167,12 @@ impl<T: Real, const D: usize> Solve<'_, T, D> {
     }
 
     /// Lists the impulses at a site.
-    fn site(&self, (part, site): (&Part<T, D>, &Site<D>), given: &[Impulse<T, D>], list: &mut List<T, D>) {
+    fn site(
+        &self,
+        (part, site): (&SurveyPart<T, D>, &SharedNode<D>),
+        given: &[Impulse<T, D>],
+        list: &mut List<T, D>,
+    ) {
         let Solve { rules, step, .. } = *self;
         let sides = &part.sides[site.sides.clone()];
         let List { impulses, velocities, unsettled, .. } = list;
@@ -291,7 +296,7 @@ fn harmless<T: Real, const D: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::{Facing, Friction, Place, Rule, Side, Surface};
+    use crate::contact::{BodyShare, Facing, Friction, ReferenceMap, Rule, SurfaceEstimate};
     use crate::scene::{ContactLaw, Normal};
     use crate::tensor::Symmetric;
     use proptest::prelude::*;
@@ -374,20 +379,20 @@ mod tests {
     /// The same where each pair has a rule of its own, or does not touch.
     fn at_node_of(state: &State, between: impl Fn([usize; 2]) -> Option<Touch>) -> Outcome {
         let mut nodes = Vec::new();
-        let mut part = Part::default();
+        let mut part = SurveyPart::default();
         for (body, &(mass, velocity, gradient)) in state.iter().enumerate() {
             nodes.push(Node { mass, velocity: Vector(velocity), ..Node::EMPTY });
             let volume_gradient = Vector(gradient);
-            let surface = Surface {
+            let surface = SurfaceEstimate {
                 inverse_mass: 1.0 / mass,
                 normal: (-volume_gradient).direction(),
                 stress: Symmetric([-1.0, -2.0, -3.0, 0.5, 0.2, 0.1]),
                 volume: 1.0,
                 modulus: 10.0,
                 force: Vector::ZERO,
-                place: Place::EMPTY,
+                place: ReferenceMap::EMPTY,
             };
-            part.sides.push(Side { body, index: body, surface, volume_gradient });
+            part.sides.push(BodyShare { body, index: body, surface, volume_gradient });
         }
         let n = state.len();
         let mut rules = Vec::new();
@@ -405,9 +410,9 @@ mod tests {
                 rules.push(Rule { law, normal: Normal::Common, friction, max_strain: 1.0 });
             }
         }
-        part.sites.push(Site { node: [0; 3], sides: 0..n, encounters: 0..part.encounters.len() });
+        part.sites.push(SharedNode { node: [0; 3], sides: 0..n, encounters: 0..part.encounters.len() });
         let rules = Rules::listed(n, rules);
-        let step = Step { duration: DURATION, cell: 1.0, purpose: Use::Motion };
+        let step = TimeStep { duration: DURATION, cell: 1.0, purpose: Use::Motion };
         let normals = part.encounters.iter().map(|e| e.facing.normal.expect("gradients differ")).collect();
         let velocities = |nodes: &[Node<f64, 3>]| nodes.iter().map(|node| node.velocity).collect();
         let before = velocities(&nodes);
@@ -415,7 +420,7 @@ mod tests {
         let survey = Survey::of(vec![part]);
         let solve =
             Solve { survey: &survey, rules: &rules, nodes: Disjoint::new(&mut nodes), step, given: None };
-        solve.impulses(Record::Kept, &mut impulses);
+        solve.impulses(ImpulseRecord::Kept, &mut impulses);
         let after = velocities(&nodes);
         let masses = state.iter().map(|body| body.0).collect();
         let unsettled = impulses.unsettled();

@@ -1,8 +1,8 @@
 //! Where bodies meet, and what the particles there say of their surfaces.
 
 use super::law::law;
-use super::surroundings::{Chunk, Sums, Wanted, behind};
-use super::{Pair, Rules, Step, Surface};
+use super::surroundings::{Chunk, MaterialSums, Wanted, behind};
+use super::{Pair, Rules, SurfaceEstimate, TimeStep};
 use crate::basis::Basis;
 use crate::body::Body;
 use crate::boundary::Boundary;
@@ -18,24 +18,24 @@ use std::sync::{Mutex, PoisonError};
 
 /// A node that two or more bodies share.
 #[derive(Clone, Debug)]
-pub struct Site<const D: usize> {
+pub struct SharedNode<const D: usize> {
     /// The node.
     pub node: [i32; D],
-    /// Its bodies, in [`Part::sides`].
+    /// Its bodies, in [`SurveyPart::sides`].
     pub sides: Range<usize>,
-    /// Its pairs, in [`Part::encounters`].
+    /// Its pairs, in [`SurveyPart::encounters`].
     pub encounters: Range<usize>,
 }
 
 /// One body's share of a site.
 #[derive(Clone, Copy, Debug)]
-pub struct Side<T, const D: usize> {
+pub struct BodyShare<T, const D: usize> {
     /// Index of the body.
     pub body: usize,
     /// Its node in the field.
     pub index: usize,
     /// Its surface there.
-    pub surface: Surface<T, D>,
+    pub surface: SurfaceEstimate<T, D>,
     /// Gradient of its volume, into the body [m^2].
     pub volume_gradient: Vector<T, D>,
 }
@@ -50,11 +50,11 @@ pub struct Facing<T, const D: usize> {
 }
 
 /// What a law may look at to tell how two bodies face each other.
-pub struct Look<'a, T, const D: usize> {
+pub struct LawInputs<'a, T, const D: usize> {
     /// Everything near.
     pub near: &'a Near<'a, T, D>,
     /// All bodies at the node.
-    pub sides: &'a [Side<T, D>],
+    pub sides: &'a [BodyShare<T, D>],
     /// The two among them.
     pub pair: [usize; 2],
     /// The node.
@@ -66,7 +66,7 @@ pub struct Look<'a, T, const D: usize> {
 /// Two sides of a site.
 #[derive(Clone, Copy, Debug)]
 pub struct Encounter<T, const D: usize> {
-    /// The two sides, in [`Part::sides`].
+    /// The two sides, in [`SurveyPart::sides`].
     pub sides: [usize; 2],
     /// Number of the pair's rule.
     pub rule: usize,
@@ -77,25 +77,25 @@ pub struct Encounter<T, const D: usize> {
 
 /// Sites of some blocks.
 #[derive(Clone, Debug)]
-pub struct Part<T, const D: usize> {
+pub struct SurveyPart<T, const D: usize> {
     /// Nodes that two or more bodies share.
-    pub sites: Vec<Site<D>>,
+    pub sites: Vec<SharedNode<D>>,
     /// Bodies at the sites.
-    pub sides: Vec<Side<T, D>>,
+    pub sides: Vec<BodyShare<T, D>>,
     /// Pairs at the sites.
     pub encounters: Vec<Encounter<T, D>>,
 }
 
-impl<T, const D: usize> Default for Part<T, D> {
+impl<T, const D: usize> Default for SurveyPart<T, D> {
     fn default() -> Self {
-        Part { sites: Vec::new(), sides: Vec::new(), encounters: Vec::new() }
+        SurveyPart { sites: Vec::new(), sides: Vec::new(), encounters: Vec::new() }
     }
 }
 
 /// All sites of a step, and room to find them in, kept from step to step.
 #[derive(Debug)]
 pub struct Survey<T, const D: usize> {
-    parts: Vec<Part<T, D>>,
+    parts: Vec<SurveyPart<T, D>>,
     /// How many parts this step has.
     count: usize,
     /// One for each thread.
@@ -111,12 +111,12 @@ impl<T, const D: usize> Default for Survey<T, D> {
 impl<T, const D: usize> Survey<T, D> {
     /// A survey that found these sites.
     #[cfg(test)]
-    pub fn of(parts: Vec<Part<T, D>>) -> Self {
+    pub fn of(parts: Vec<SurveyPart<T, D>>) -> Self {
         Survey { count: parts.len(), parts, scratches: Vec::new() }
     }
 
     /// The sites, part by part.
-    pub fn parts(&self) -> &[Part<T, D>] {
+    pub fn parts(&self) -> &[SurveyPart<T, D>] {
         &self.parts[..self.count]
     }
 }
@@ -129,7 +129,7 @@ struct Scratch<T, const D: usize> {
     /// Places of two bodies among those of the block, and the number of their rule.
     pairs: Vec<[usize; 3]>,
     /// Of each body, one node after the other.
-    sums: Vec<Sums<T, D>>,
+    sums: Vec<MaterialSums<T, D>>,
     /// Particles that are about to be added to them.
     chunks: Vec<Chunk<D>>,
     /// Where the next sums of each body stand.
@@ -202,7 +202,7 @@ impl<T: Laned, const D: usize> Near<'_, T, D> {
     pub fn survey<B: Basis<T>>(&self, survey: &mut Survey<T, D>) {
         let Survey { parts, count, scratches } = survey;
         *count = self.active.meetings.len().div_ceil(BLOCKS);
-        parts.resize_with(parts.len().max(*count), Part::default);
+        parts.resize_with(parts.len().max(*count), SurveyPart::default);
         scratches.resize_with(scratches.len().max(rayon::current_num_threads()), Mutex::default);
         let all = &self.active.meetings;
         each(&mut parts[..*count], 1, |number, part| {
@@ -220,7 +220,7 @@ impl<T: Laned, const D: usize> Near<'_, T, D> {
         &self,
         meeting: &Meeting<D>,
         scratch: &mut Scratch<T, D>,
-        part: &mut Part<T, D>,
+        part: &mut SurveyPart<T, D>,
     ) {
         let Scratch { present, pairs, sums, chunks, next, moduli, places_here } = scratch;
         let (n, slots, block) = (nodes_per_block(D), self.active.slots_of(meeting), meeting.block);
@@ -247,7 +247,7 @@ impl<T: Laned, const D: usize> Near<'_, T, D> {
             *present &= shared;
             let first = sums.len();
             next.push(first);
-            sums.resize(first + present.count_ones() as usize, Sums::EMPTY);
+            sums.resize(first + present.count_ones() as usize, MaterialSums::EMPTY);
             self.sum_around::<B>((body(slot), block), (*present, sought), (&mut sums[first..], chunks));
         }
         let mut nodes = shared;
@@ -270,7 +270,7 @@ impl<T: Laned, const D: usize> Near<'_, T, D> {
             for &[a, b, rule] in &*pairs {
                 if let (Some(a), Some(b)) = (places_here[a], places_here[b]) {
                     let pair = [a - first, b - first];
-                    let look = Look { near: self, sides: &part.sides[first..], pair, node, reach };
+                    let look = LawInputs { near: self, sides: &part.sides[first..], pair, node, reach };
                     let Some(facing) = law(self.rules.rule(rule).law).facing(&look) else { continue };
                     let area = area(&look, &facing);
                     part.encounters.push(Encounter { sides: [a, b], rule, facing, area });
@@ -280,7 +280,7 @@ impl<T: Laned, const D: usize> Near<'_, T, D> {
                 part.sides.truncate(first);
                 continue;
             }
-            part.sites.push(Site {
+            part.sites.push(SharedNode {
                 node,
                 sides: first..part.sides.len(),
                 encounters: start..part.encounters.len(),
@@ -342,9 +342,9 @@ impl<T: Laned, const D: usize> Near<'_, T, D> {
     fn side(
         &self,
         (index, node, modulus): (usize, [i32; D], T),
-        sums: &Sums<T, D>,
+        sums: &MaterialSums<T, D>,
         sought: Wanted,
-    ) -> Side<T, D> {
+    ) -> BodyShare<T, D> {
         let body = self.active.slots[index / nodes_per_block(D)].0 as usize;
         let owner = &self.bodies[body];
         let arm = Vector::from_fn(|i| T::of(f64::from(node[i].rem_euclid(SIDE))) * self.lattice.cell);
@@ -361,7 +361,7 @@ impl<T: Laned, const D: usize> Near<'_, T, D> {
         let exact =
             (owner.rigid && normal.is_some()).then(|| place.offset(Vector::ZERO, &owner.whole).normal);
         let normal = exact.filter(|n| *n != Vector::ZERO).or(normal);
-        let surface = Surface {
+        let surface = SurfaceEstimate {
             inverse_mass: if owner.rigid { T::ZERO } else { T::ONE / mass },
             normal,
             stress,
@@ -370,7 +370,7 @@ impl<T: Laned, const D: usize> Near<'_, T, D> {
             force,
             place,
         };
-        Side { body, index, surface, volume_gradient: sums.volume_gradient() }
+        BodyShare { body, index, surface, volume_gradient: sums.volume_gradient() }
     }
 
     /// Surfaces further apart at a node cannot touch in this step [cells].
@@ -378,10 +378,10 @@ impl<T: Laned, const D: usize> Near<'_, T, D> {
     /// Twice the largest way that the bodies could go against each other with the velocities and forces that they have,
     /// and a tenth of a cell for what they get in the step from elsewhere; a cell where forces are not known yet:
     /// nothing moves by that in a step.
-    fn reach(&self, sides: &[Side<T, D>]) -> T {
+    fn reach(&self, sides: &[BodyShare<T, D>]) -> T {
         let Some(dt) = self.ahead else { return T::ONE };
-        let node = |side: &Side<T, D>| &self.field.nodes[side.index];
-        let ahead = |side: &Side<T, D>| side.surface.force * (side.surface.inverse_mass * dt);
+        let node = |side: &BodyShare<T, D>| &self.field.nodes[side.index];
+        let ahead = |side: &BodyShare<T, D>| side.surface.force * (side.surface.inverse_mass * dt);
         let mut fastest = T::ZERO;
         for (i, a) in sides.iter().enumerate() {
             for b in &sides[..i] {
@@ -404,12 +404,12 @@ impl<T: Laned, const D: usize> Near<'_, T, D> {
 /// the node takes its width times h^(D-1) from that. Overlap is negative. Needs no normal, and stairs of the particles'
 /// lattice average out. All bodies that touch either of the two count.
 /// A surface of radius R seems h^2/(6R) further away than its nearest point.
-pub fn room<T: Real, const D: usize>(look: &Look<T, D>) -> Facing<T, D> {
-    let Look { near, sides, pair, .. } = look;
-    let touches = |a: &Side<T, D>, b: &Side<T, D>| {
+pub fn room<T: Real, const D: usize>(look: &LawInputs<T, D>) -> Facing<T, D> {
+    let LawInputs { near, sides, pair, .. } = look;
+    let touches = |a: &BodyShare<T, D>, b: &BodyShare<T, D>| {
         near.rules.rule(near.rules.number(a.body, b.body)).law != ContactLaw::None
     };
-    let counts = |(i, side): &(usize, &Side<T, D>)| {
+    let counts = |(i, side): &(usize, &BodyShare<T, D>)| {
         pair.contains(i) || pair.iter().any(|&of_pair| touches(side, &sides[of_pair]))
     };
     let volumes = sides.iter().enumerate().filter(counts).map(|(_, side)| side.surface.volume);
@@ -424,19 +424,19 @@ pub fn room<T: Real, const D: usize>(look: &Look<T, D>) -> Facing<T, D> {
 /// ```
 /// by the divergence theorem, so the volume gradient along the normal is the surface that the node sees; the pair
 /// shares the smaller of the two. Summed over nodes it is the whole area, as the functions S_i sum to one.
-fn area<T: Real, const D: usize>(look: &Look<T, D>, facing: &Facing<T, D>) -> T {
+fn area<T: Real, const D: usize>(look: &LawInputs<T, D>, facing: &Facing<T, D>) -> T {
     let Some(normal) = facing.normal else { return T::ZERO };
     let [a, b] = look.pair.map(|side| look.sides[side].volume_gradient.dot(normal));
     (-a).min(b).max(T::ZERO)
 }
 
-impl<T: Real, const D: usize> Part<T, D> {
+impl<T: Real, const D: usize> SurveyPart<T, D> {
     /// The pair of an encounter.
     pub fn pair<'a>(
         &'a self,
         encounter: &Encounter<T, D>,
         rules: &'a Rules<T>,
-        step: Step<T>,
+        step: TimeStep<T>,
     ) -> Pair<'a, T, D> {
         let [a, b] = encounter.sides.map(|side| &self.sides[side]);
         let rule = rules.rule(encounter.rule);

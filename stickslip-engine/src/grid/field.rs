@@ -205,7 +205,7 @@ impl<T: Real, const D: usize> Default for Window<T, D> {
 }
 
 /// Nodes that lie side by side in the window and in the field.
-struct Run {
+struct NodeRun {
     /// The first one's place in the window.
     place: usize,
     /// Its place in the field.
@@ -215,25 +215,25 @@ struct Run {
 }
 
 /// The `side`^D first nodes of a tile's window. An iterator, for loops over it are compiled where they stand.
-struct Runs<'a, const D: usize> {
+struct NodeRuns<'a, const D: usize> {
     tile: &'a Tile<D>,
     side: usize,
     /// Along the first two axes, and which half of the row.
     next: [usize; 3],
 }
 
-impl<'a, const D: usize> Runs<'a, D> {
+impl<'a, const D: usize> NodeRuns<'a, D> {
     #[inline(always)]
     fn new(tile: &'a Tile<D>, side: usize) -> Self {
-        Runs { tile, side, next: [0; 3] }
+        NodeRuns { tile, side, next: [0; 3] }
     }
 }
 
-impl<const D: usize> Iterator for Runs<'_, D> {
-    type Item = Run;
+impl<const D: usize> Iterator for NodeRuns<'_, D> {
+    type Item = NodeRun;
 
     #[inline(always)]
-    fn next(&mut self) -> Option<Run> {
+    fn next(&mut self) -> Option<NodeRun> {
         const S: usize = SIDE as usize;
         let [x, y, half] = self.next;
         if x == self.side {
@@ -249,7 +249,7 @@ impl<const D: usize> Iterator for Runs<'_, D> {
             2 => (x * WINDOW, x / S * 2, x % S * S),
             _ => ((x * WINDOW + y) * WINDOW, x / S * 4 + y / S * 2, (x % S * S + y % S) * S),
         };
-        Some(Run {
+        Some(NodeRun {
             place: place + half * S,
             node: self.tile.slots[corner + half] as usize * nodes_per_block(D) + local,
             count: if half == 0 { S } else { self.side - S },
@@ -290,7 +290,7 @@ impl<T: Real, const D: usize> Window<T, D> {
         side: usize,
         sought: Sought,
     ) {
-        for Run { place, node, count } in Runs::new(tile, side) {
+        for NodeRun { place, node, count } in NodeRuns::new(tile, side) {
             for k in 0..count {
                 // SAFETY: the caller keeps writers away from the tile's slots.
                 let node = unsafe { field.read(node + k) };
@@ -316,7 +316,7 @@ impl<T: Real, const D: usize> Window<T, D> {
     /// No other thread may touch the tile's slots meanwhile.
     #[inline(always)]
     pub unsafe fn add_to<M: Machine<T>>(&self, field: &Disjoint<Node<T, D>>, tile: &Tile<D>, side: usize) {
-        for Run { place, node, count } in Runs::new(tile, side) {
+        for NodeRun { place, node, count } in NodeRuns::new(tile, side) {
             for k in 0..count {
                 // SAFETY: the caller keeps other threads away from the tile's slots.
                 unsafe { Node::take::<M>(field.get(node + k), &self.sums[place + k]) };
@@ -329,7 +329,7 @@ impl<T: Real, const D: usize> Disjoint<'_, Node<T, D>> {
     /// Fetches the `side`^D first nodes of a tile's window into the cache.
     #[inline(always)]
     pub fn fetch(&self, tile: &Tile<D>, side: usize) {
-        for Run { node, count, .. } in Runs::new(tile, side) {
+        for NodeRun { node, count, .. } in NodeRuns::new(tile, side) {
             let (mut line, end) = (self.place(node).cast::<u8>(), self.place(node + count).cast::<u8>());
             while line < end {
                 prefetch(line);

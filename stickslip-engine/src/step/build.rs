@@ -2,7 +2,7 @@
 
 use super::state::{Disorder, Settings, State, Workspace};
 use super::unbounded::Unbounded;
-use super::watch::Watch;
+use super::watch::Stopwatch;
 use super::{Engine, Path};
 use crate::basis::{Basis, Gimp, Linear};
 use crate::body::{Body, Particle};
@@ -10,7 +10,7 @@ use crate::boundary::{Boundary, Wall};
 use crate::check;
 use crate::contact::{ContactSums, Rules};
 use crate::door::Simulation;
-use crate::geometry::{Filling, Mirror, Site, Whole, fill};
+use crate::geometry::{Filling, Mirror, MirroredShape, ParticleSite, fill};
 use crate::grid::Lattice;
 use crate::lanes::{Laned, Processor};
 use crate::material::{BadConstants, History, Material};
@@ -100,7 +100,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 density: T::of(scene.materials[body.material].density),
                 particles: particles(scene, body, &filling, (velocity, turning)),
                 rigid: motion.is_some(),
-                whole: Whole::new(&body.shape, mirrors::<D>(scene), D),
+                whole: MirroredShape::new(&body.shape, mirrors::<D>(scene), D),
                 thickness: scene.dimension.thickness(),
                 gyration: turning::gyration::<T, B>(scene.discretization.cell),
             });
@@ -131,7 +131,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 steps: 0,
             },
             workspace: Workspace::new(Boundary::new(walls::<D>(scene))),
-            watch: Watch::default(),
+            watch: Stopwatch::default(),
             basis: PhantomData,
         })
     }
@@ -176,7 +176,7 @@ fn particles<T: Real, const D: usize>(
 ) -> Particles<T, D> {
     let density = scene.materials[body.material].density;
     let particle = |number: usize| {
-        let site: &Site = &filling.sites[number];
+        let site: &ParticleSite = &filling.sites[number];
         Particle {
             position: Vector::of(site.position),
             velocity: Vector::of(velocity(site.position)),

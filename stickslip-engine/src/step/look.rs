@@ -8,7 +8,7 @@ use crate::boundary::Boundary;
 use crate::column::{ColumnDescription, Kind};
 use crate::contact::Span;
 use crate::door::{
-    BodyState, ContactSum, GridSnapshot, Ledger, ParticleSnapshot, ParticleView, Patch, Simulation,
+    BodyState, ContactPatch, ContactSum, GridSnapshot, Ledger, ParticleSnapshot, ParticleView, Simulation,
     SnapshotColumn, StepError, TracedParticle, View,
 };
 use crate::grid::{node_at, nodes_per_block};
@@ -175,7 +175,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> View for Engine<T, D, B> {
         self.state.contact_sums.sums()
     }
 
-    fn patches(&self) -> Vec<Patch> {
+    fn patches(&self) -> Vec<ContactPatch> {
         self.state.contact_sums.patches()
     }
 

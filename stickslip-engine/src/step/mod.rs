@@ -26,14 +26,14 @@ use crate::scene::StressUpdate;
 use crate::transfer::Share;
 use state::{Settings, State, Workspace};
 use std::marker::PhantomData;
-use watch::Watch;
+use watch::Stopwatch;
 
 /// A simulation in `D` dimensions and precision `T`, with shape functions `B`.
 pub struct Engine<T, const D: usize, B> {
     settings: Settings<T, D>,
     state: State<T, D>,
     workspace: Workspace<T, D>,
-    watch: Watch,
+    watch: Stopwatch,
     basis: PhantomData<B>,
 }
 

@@ -11,7 +11,7 @@ use super::state::Disorder;
 use crate::basis::Basis;
 use crate::body::Particle;
 use crate::check;
-use crate::geometry::{Bounds, Lattice, Mirror, Shape};
+use crate::geometry::{Bounds, Mirror, Shape, SiteLattice};
 use crate::grid::{Blocks, SIDE, addressable, locate};
 use crate::lanes::Laned;
 use crate::particles::Particles;
@@ -27,7 +27,7 @@ pub(super) struct Unbounded<const D: usize> {
     /// Its shape at the start.
     pub shape: Shape,
     /// Its particles' sites at the start.
-    pub sites: Lattice,
+    pub sites: SiteLattice,
     /// Side of a cell [m].
     pub cell: f64,
     /// What is behind them is no part of it.

@@ -6,7 +6,7 @@ use super::pass::{Fault, FaultKind, Found, Pass, Path, Verbs, escaped, home};
 use super::state::{Disorder, Workspace};
 use crate::basis::Basis;
 use crate::clock::signal;
-use crate::contact::{Change, Near, Record, Solve, Span, Step, Use};
+use crate::contact::{Change, ImpulseRecord, Near, Solve, Span, TimeStep, Use};
 use crate::door::StepError;
 use crate::grid::{Blocks, Disjoint, Node, node_at, nodes_per_block};
 use crate::lanes::{Laned, Processor};
@@ -253,12 +253,12 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let (purpose, record, given, listed) = match contact {
             Contact::Interpolated => {
                 let strains = self.settings.time.stress_update == StressUpdate::First;
-                (if strains { Use::Strain } else { Use::Start }, Record::Kept, None, first)
+                (if strains { Use::Strain } else { Use::Start }, ImpulseRecord::Kept, None, first)
             }
-            Contact::Integrated => (Use::Motion, Record::Kept, Some(&*first), second),
-            Contact::Straining => (Use::Strain, Record::Dropped, None, third),
+            Contact::Integrated => (Use::Motion, ImpulseRecord::Kept, Some(&*first), second),
+            Contact::Straining => (Use::Strain, ImpulseRecord::Dropped, None, third),
         };
-        let step = Step { duration, cell: self.settings.lattice.cell, purpose };
+        let step = TimeStep { duration, cell: self.settings.lattice.cell, purpose };
         let nodes = Disjoint::new(&mut field.nodes);
         Solve { survey: meeting, rules: &self.settings.rules, nodes, step, given }.impulses(record, listed);
         self.state.contact_sums.scaled += listed.reduced();

@@ -4,11 +4,11 @@ use std::time::{Duration, Instant};
 
 /// Wall time spent in each verb, in the order of first use.
 #[derive(Clone, Debug, Default)]
-pub struct Watch {
+pub struct Stopwatch {
     laps: Vec<(&'static str, Duration)>,
 }
 
-impl Watch {
+impl Stopwatch {
     /// Adds the time since `start` to a verb.
     pub fn lap(&mut self, verb: &'static str, start: Instant) {
         let elapsed = start.elapsed();

@@ -8,7 +8,7 @@
 #![allow(clippy::needless_range_loop)]
 
 use super::turning::moment;
-use crate::basis::{Basis, MAX_WIDTH, Shape};
+use crate::basis::{Basis, MAX_WIDTH, ShapeFunctions};
 use crate::grid::{NODE_VALUES, NodeValues, Sums, WINDOW, WINDOW_NODES, Window};
 use crate::lanes::{Lanes, MOST_LANES, Machine, Numbers};
 use crate::tensor::{Matrix, Number, Real, Symmetric, Vector};
@@ -111,7 +111,7 @@ impl Start for Own {
 /// Several particles of one tile with their shape functions.
 #[derive(Clone, Copy, Debug)]
 pub struct Group<V, const D: usize, B, S> {
-    shapes: [Shape<V>; D],
+    shapes: [ShapeFunctions<V>; D],
     /// Places after the base nodes [cells].
     r: Vector<V, D>,
     start: S,
@@ -122,7 +122,7 @@ pub struct Group<V, const D: usize, B, S> {
 
 /// What a group scatters.
 #[derive(Clone, Copy, Debug)]
-pub struct Load<V, const D: usize> {
+pub struct ScatterTerms<V, const D: usize> {
     /// Momentum and mass.
     pub momentum: Option<Momentum<V, D>>,
     /// V sigma/h, tension positive [N].
@@ -283,7 +283,7 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
     /// m_i += S_i m,   p_i += S_i m (v + G (x_i - x_p)),   f_i += -V sigma grad S_i
     /// ```
     #[inline(always)]
-    pub fn scatter<M: Machine<V::Real>>(&self, window: &mut Window<V::Real, D>, load: &Load<V, D>) {
+    pub fn scatter<M: Machine<V::Real>>(&self, window: &mut Window<V::Real, D>, load: &ScatterTerms<V, D>) {
         let n = self.count;
         // No closures, see `Group::new`.
         let mut pairs = PairLoad { momentum: None, stress: None };

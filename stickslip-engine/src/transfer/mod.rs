@@ -8,7 +8,7 @@ mod group;
 mod naive;
 pub mod turning;
 
-pub use group::{Group, Load, Momentum, Own, Shared, Start, pairs};
+pub use group::{Group, Momentum, Own, ScatterTerms, Shared, Start, pairs};
 #[cfg(test)]
 pub use naive::Stencil;
 

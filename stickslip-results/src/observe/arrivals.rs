@@ -2,7 +2,7 @@
 
 use super::file::OutputError;
 use super::folder::OutputFolder;
-use super::points::{Point, Points};
+use super::points::{Points, SamplePoint};
 use super::probes::points;
 use super::schedule::Schedule;
 use super::table::{Row, Table};
@@ -41,21 +41,21 @@ impl Row for ArrivalRow {
 /// Writes `arrivals.csv`.
 pub(super) struct Arrivals {
     scene: Scene,
-    lookout: Option<Lookout>,
+    lookout: Option<ArrivalWatches>,
     schedule: Schedule,
     table: Table<ArrivalRow>,
 }
 
 /// What has not arrived yet, and the points to look at.
-struct Lookout {
-    watches: Vec<Watch>,
+struct ArrivalWatches {
+    watches: Vec<ArrivalWatch>,
     points: Points,
 }
 
 /// One quantity at one place, until it arrives.
-struct Watch {
+struct ArrivalWatch {
     quantity: Observable,
-    source: Source,
+    source: ArrivalSource,
     crossing: Crossing,
     /// The row, but for time and place.
     row: ArrivalRow,
@@ -63,7 +63,7 @@ struct Watch {
 
 /// Where a watch looks.
 #[derive(Clone, Copy, Debug)]
-enum Source {
+enum ArrivalSource {
     /// The point with this index.
     Point(usize),
     /// The body with this index: its furthest particle.
@@ -125,7 +125,7 @@ impl Observer for Arrivals {
     }
 
     fn observe(&mut self, view: &dyn View) -> Result<(), OutputError> {
-        let lookout = self.lookout.get_or_insert_with(|| Lookout::new(&self.scene, view));
+        let lookout = self.lookout.get_or_insert_with(|| ArrivalWatches::new(&self.scene, view));
         let rows = lookout.arrived(view);
         self.table.append(rows)?;
         self.schedule.recorded(view.time());
@@ -137,33 +137,33 @@ impl Observer for Arrivals {
     }
 }
 
-impl Lookout {
+impl ArrivalWatches {
     fn new(scene: &Scene, view: &dyn View) -> Self {
         let wanted = &scene.outputs.measurements;
-        let mut points: Vec<Point> = points(scene, wanted.probes.iter()).collect();
+        let mut points: Vec<SamplePoint> = points(scene, wanted.probes.iter()).collect();
         let mut watches = Vec::new();
         for arrival in &wanted.arrivals {
             for name in &arrival.probes {
                 let probe = wanted.probes.iter().position(|probe| probe.name == *name);
                 let probe = probe.expect("arrivals name probes of their scene");
-                watches.push(Watch::new(arrival, ("probe", name), Source::Point(probe)));
+                watches.push(ArrivalWatch::new(arrival, ("probe", name), ArrivalSource::Point(probe)));
             }
             for name in &arrival.bodies {
                 let body = scene.bodies.iter().position(|body| body.name == *name);
                 let body = body.expect("arrivals name bodies of their scene");
                 let (reading, source) = match arrival.reading {
-                    Reading::Center => ("center", Source::Point(points.len())),
-                    Reading::Any => ("any", Source::Any(body)),
-                    Reading::Mean => ("mean", Source::Mean(body)),
+                    Reading::Center => ("center", ArrivalSource::Point(points.len())),
+                    Reading::Any => ("any", ArrivalSource::Any(body)),
+                    Reading::Mean => ("mean", ArrivalSource::Mean(body)),
                 };
                 if arrival.reading == Reading::Center {
                     let at = view.bodies()[body].position;
-                    points.push(Point { at, body: Some(body), fixed_in: Anchor::Material });
+                    points.push(SamplePoint { at, body: Some(body), fixed_in: Anchor::Material });
                 }
-                watches.push(Watch::new(arrival, (reading, name), source));
+                watches.push(ArrivalWatch::new(arrival, (reading, name), source));
             }
         }
-        Lookout { watches, points: Points::new(scene, points) }
+        ArrivalWatches { watches, points: Points::new(scene, points) }
     }
 
     /// What arrived since the last look, in the order of time; it is watched no longer.
@@ -172,10 +172,10 @@ impl Lookout {
         let mut rows = Vec::new();
         self.watches.retain_mut(|watch| {
             let seen = match watch.source {
-                Source::Point(point) => samples[point]
+                ArrivalSource::Point(point) => samples[point]
                     .map(|sample| (watch.value(&sample.velocity, &sample.stress), sample.position)),
-                Source::Any(body) => furthest(view, body, watch),
-                Source::Mean(body) => mean(view, body, watch),
+                ArrivalSource::Any(body) => furthest(view, body, watch),
+                ArrivalSource::Mean(body) => mean(view, body, watch),
             };
             let Some((value, [x, y, z])) = seen else { return true };
             let passed = watch.crossing.at(view.time(), value);
@@ -187,8 +187,8 @@ impl Lookout {
     }
 }
 
-impl Watch {
-    fn new(arrival: &Arrival, (reading, place): (&str, &str), source: Source) -> Self {
+impl ArrivalWatch {
+    fn new(arrival: &Arrival, (reading, place): (&str, &str), source: ArrivalSource) -> Self {
         let Arrival { quantity, threshold, .. } = *arrival;
         let row = ArrivalRow {
             quantity: quantity.name().to_string(),
@@ -197,7 +197,7 @@ impl Watch {
             place: place.to_string(),
             ..ArrivalRow::default()
         };
-        Watch { quantity, source, crossing: Crossing::of(threshold), row }
+        ArrivalWatch { quantity, source, crossing: Crossing::of(threshold), row }
     }
 
     fn value(&self, velocity: &[f64; 3], stress: &[f64; 6]) -> f64 {
@@ -206,7 +206,7 @@ impl Watch {
 }
 
 /// The value furthest to the threshold's side in a body, and where it is.
-fn furthest(view: &dyn View, body: usize, watch: &Watch) -> Option<(f64, [f64; 3])> {
+fn furthest(view: &dyn View, body: usize, watch: &ArrivalWatch) -> Option<(f64, [f64; 3])> {
     let mut furthest: Option<(f64, [f64; 3])> = None;
     let side = watch.crossing.threshold.signum();
     view.visit(body, &mut |particle| {
@@ -219,7 +219,7 @@ fn furthest(view: &dyn View, body: usize, watch: &Watch) -> Option<(f64, [f64; 3
 }
 
 /// The mean of the values over the mass of a body, and its centre of mass.
-fn mean(view: &dyn View, body: usize, watch: &Watch) -> Option<(f64, [f64; 3])> {
+fn mean(view: &dyn View, body: usize, watch: &ArrivalWatch) -> Option<(f64, [f64; 3])> {
     let (mut mass, mut sum, mut moment) = (0.0, 0.0, [0.0; 3]);
     view.visit(body, &mut |particle| {
         mass += particle.mass;

@@ -9,7 +9,7 @@ use super::writer::Writer;
 use super::{FRINGES, FRINGES_ANIMATION, FRINGES_TABLE, Observer};
 use crate::door::{ContactCursor, ContactState, ParticleSnapshot, View};
 use crate::image::{Image, write_animation};
-use crate::polariscope::{Bench, Film, Link, Push, Stage, Window, bounds, draw_links, links};
+use crate::polariscope::{Film, ImageWindow, Link, OpticalBench, Push, Stage, bounds, draw_links, links};
 use crate::scene::{self, Overlay, Scene};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use serde::{Deserialize, Serialize};
@@ -68,7 +68,7 @@ struct FringeWriter {
 
 /// The bench, and what has fallen on the film since the shutter opened.
 struct Photograph {
-    bench: Bench,
+    bench: OpticalBench,
     film: Film,
     times: Vec<f64>,
     links: Vec<Link>,
@@ -176,8 +176,9 @@ impl FringeWriter {
     fn view(&self, particles: &ParticleSnapshot) -> Photograph {
         let shown = self.camera.view.or_else(|| bounds(particles, &self.specimens));
         // Bodies without particles leave nothing to frame.
-        let window = Window::around(shown.unwrap_or([[0.0; 2], [1.0; 2]]), self.camera.width);
-        let bench = Bench::new(&self.camera.polariscope, Stage { window, specimens: self.specimens.clone() });
+        let window = ImageWindow::around(shown.unwrap_or([[0.0; 2], [1.0; 2]]), self.camera.width);
+        let bench =
+            OpticalBench::new(&self.camera.polariscope, Stage { window, specimens: self.specimens.clone() });
         Photograph { film: bench.film(), bench, times: Vec::new(), links: Vec::new() }
     }
 

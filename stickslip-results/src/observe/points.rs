@@ -5,7 +5,7 @@ use crate::scene::{Anchor, Motion, Scene};
 
 /// Motion and stress of the material at a point.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Sample {
+pub(super) struct PointSample {
     /// Where it is [m].
     pub position: [f64; 3],
     /// Its velocity [m/s].
@@ -16,7 +16,7 @@ pub(super) struct Sample {
 
 /// A point to sample.
 #[derive(Clone, Debug)]
-pub(super) struct Point {
+pub(super) struct SamplePoint {
     /// Where it is at the start [m].
     pub at: [f64; 3],
     /// Index of the body that it looks at; without it, all that are not rigid.
@@ -36,7 +36,7 @@ pub(super) struct Point {
 /// of space takes the particles that are there now; a point of the material takes those of the first sample,
 /// with their weights, for ever.
 pub(super) struct Points {
-    points: Vec<(Point, Hold)>,
+    points: Vec<(SamplePoint, Hold)>,
     /// Indices of the bodies that are not rigid.
     bodies: Vec<usize>,
     radius: f64,
@@ -57,7 +57,7 @@ const RADIUS: f64 = 2.0;
 
 impl Points {
     /// Points in a scene. A point of the material that names no body belongs to the nearest.
-    pub(super) fn new(scene: &Scene, points: impl IntoIterator<Item = Point>) -> Self {
+    pub(super) fn new(scene: &Scene, points: impl IntoIterator<Item = SamplePoint>) -> Self {
         let free = |i: &usize| matches!(scene.bodies[*i].motion, Motion::Free { .. });
         let bodies: Vec<usize> = (0..scene.bodies.len()).filter(free).collect();
         let nearest = |at: [f64; 3]| {
@@ -75,8 +75,8 @@ impl Points {
 
     /// The material at each point now; `None` where no particle is around.
     /// The first call binds the points of the material.
-    pub(super) fn sample(&mut self, view: &dyn View) -> Vec<Option<Sample>> {
-        let mut sums = vec![Sum::default(); self.points.len()];
+    pub(super) fn sample(&mut self, view: &dyn View) -> Vec<Option<PointSample>> {
+        let mut sums = vec![WeightedSum::default(); self.points.len()];
         let mut found: Vec<Vec<(u32, f64)>> = vec![Vec::new(); self.points.len()];
         for &body in &self.bodies {
             let mut here: Vec<usize> = Vec::new();
@@ -96,14 +96,14 @@ impl Points {
                 }
             });
         }
-        let samples: Vec<_> = sums.iter().map(Sum::mean).collect();
+        let samples: Vec<_> = sums.iter().map(WeightedSum::mean).collect();
         for (i, mut weights) in found.into_iter().enumerate() {
             let Some(mean) = samples[i].filter(|_| self.binds(i)) else { continue };
             weights.sort_unstable_by_key(|(number, _)| *number);
             let (point, hold) = &mut self.points[i];
             *hold = Hold::These { weights, beside: std::array::from_fn(|k| point.at[k] - mean.position[k]) };
         }
-        let place = |(sample, (point, hold)): (Option<Sample>, &(Point, Hold))| {
+        let place = |(sample, (point, hold)): (Option<PointSample>, &(SamplePoint, Hold))| {
             let mut sample = sample?;
             sample.position = match hold {
                 Hold::Around => point.at,
@@ -147,12 +147,12 @@ fn wendland(a: &[f64; 3], b: &[f64; 3], radius: f64) -> f64 {
 
 /// Weighted sums over particles.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Sum {
+pub(super) struct WeightedSum {
     weight: f64,
-    sample: Sample,
+    sample: PointSample,
 }
 
-impl Sum {
+impl WeightedSum {
     /// Adds a particle.
     pub(super) fn add(&mut self, weight: f64, particle: &ParticleView) {
         self.weight += weight;
@@ -166,8 +166,8 @@ impl Sum {
     }
 
     /// The mean; `None` of nothing.
-    pub(super) fn mean(&self) -> Option<Sample> {
-        (self.weight > 0.0).then(|| Sample {
+    pub(super) fn mean(&self) -> Option<PointSample> {
+        (self.weight > 0.0).then(|| PointSample {
             position: self.sample.position.map(|x| x / self.weight),
             velocity: self.sample.velocity.map(|v| v / self.weight),
             stress: self.sample.stress.map(|s| s / self.weight),

@@ -2,7 +2,7 @@
 
 use super::file::OutputError;
 use super::folder::OutputFolder;
-use super::points::{Point, Points, Sample};
+use super::points::{PointSample, Points, SamplePoint};
 use super::schedule::Schedule;
 use super::table::{Row, Table};
 use super::{Observer, PROBES};
@@ -56,7 +56,7 @@ impl Row for ProbeRow {
 }
 
 impl ProbeRow {
-    fn new(time: f64, probe: &str, sample: &Sample) -> Self {
+    fn new(time: f64, probe: &str, sample: &PointSample) -> Self {
         let ([x, y, z], [vx, vy, vz]) = (sample.position, sample.velocity);
         let [xx, yy, zz, xy, yz, xz] = sample.stress;
         let [pressure, stress_difference, von_mises] =
@@ -94,9 +94,9 @@ impl ProbeRow {
 pub(super) fn points<'a>(
     scene: &'a Scene,
     probes: impl Iterator<Item = &'a Probe>,
-) -> impl Iterator<Item = Point> {
+) -> impl Iterator<Item = SamplePoint> {
     let body = |name: &String| scene.bodies.iter().position(|body| body.name == *name);
-    probes.map(move |probe| Point {
+    probes.map(move |probe| SamplePoint {
         at: probe.at,
         body: probe.body.as_ref().and_then(body),
         fixed_in: probe.fixed_in,

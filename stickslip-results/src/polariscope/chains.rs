@@ -1,6 +1,6 @@
 //! Force chains: lines along which bodies press on each other.
 
-use super::Window;
+use super::ImageWindow;
 use super::cloud::{Cloud, clouds};
 use crate::door::ParticleSnapshot;
 use crate::image::Image;
@@ -78,7 +78,7 @@ fn meeting_place(a: &Cloud, b: &Cloud) -> Option<[f64; 2]> {
 }
 
 /// Draws links as lines, their width in proportion to the force and widest at the force `full` [N].
-pub fn draw_links(image: &mut Image, window: &Window, (links, full): (&[Link], f64)) {
+pub fn draw_links(image: &mut Image, window: &ImageWindow, (links, full): (&[Link], f64)) {
     let widest = (WIDEST * image.size[0] as f64).max(2.0);
     for link in links.iter().filter(|link| link.force > LEAST * full) {
         let half = 0.5 * (widest * (link.force / full).clamp(0.0, 1.0)).max(1.0);

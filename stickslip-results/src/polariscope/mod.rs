@@ -1,8 +1,8 @@
 //! A virtual polariscope: photoelastic fringes of the stress in a snapshot.
 //!
 //! Light runs along the third axis through birefringent bodies between two polarisers. [`stress_maps`] interpolates the
-//! stress between particles on the pixels of a [`Window`], [`Optics`] turns it into fringe orders and light, and
-//! [`Film`] sums up light while a shutter is open; [`Bench`] holds them together:
+//! stress between particles on the pixels of an [`ImageWindow`], [`Optics`] turns it into fringe orders and light, and
+//! [`Film`] sums up light while a shutter is open; [`OpticalBench`] holds them together:
 //!
 //! ```
 //! # use stickslip::{door::ParticleSnapshot, image::Image, scene::Polariscope};
@@ -30,7 +30,7 @@ pub use cloud::joined;
 pub use film::Film;
 pub use optics::{Optics, Phase, Rgb};
 pub use stress_map::{Ray, StressMap};
-pub use window::Window;
+pub use window::ImageWindow;
 
 use crate::door::ParticleSnapshot;
 use crate::image::Image;
@@ -41,14 +41,14 @@ use rayon::prelude::*;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stage {
     /// The part of the plane in the picture.
-    pub window: Window,
+    pub window: ImageWindow,
     /// Indices of the birefringent bodies; the others are opaque.
     pub specimens: Vec<usize>,
 }
 
 /// A polariscope with its stage.
 #[derive(Clone, Debug)]
-pub struct Bench {
+pub struct OpticalBench {
     stage: Stage,
     optics: Optics,
     background: Rgb,
@@ -61,11 +61,11 @@ const BACKGROUND: [Rgb; 2] = [[0.030, 0.036, 0.052], [0.42, 0.45, 0.52]];
 /// Room around the specimens in a picture of them, over their larger extent.
 const MARGIN: f64 = 0.04;
 
-impl Bench {
+impl OpticalBench {
     /// A polariscope with its stage.
     pub fn new(polariscope: &Polariscope, stage: Stage) -> Self {
         let background = BACKGROUND[usize::from(polariscope.field == Field::Light)];
-        Bench { stage, optics: Optics::new(polariscope), background }
+        OpticalBench { stage, optics: Optics::new(polariscope), background }
     }
 
     /// What is in the picture.
@@ -163,7 +163,7 @@ impl StressMap {
 }
 
 /// The stress of every body that is in the window, on its pixels, in the order of the bodies.
-pub fn stress_maps(particles: &ParticleSnapshot, window: &Window) -> Vec<StressMap> {
+pub fn stress_maps(particles: &ParticleSnapshot, window: &ImageWindow) -> Vec<StressMap> {
     cloud::clouds(particles, stress_map::REACH)
         .iter()
         .filter_map(|cloud| StressMap::new(cloud, window))

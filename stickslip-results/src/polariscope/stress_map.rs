@@ -14,7 +14,7 @@
 //! c = sum w / (pi R^2 / 4)       1 inside, 1/2 on a straight surface
 //! ```
 
-use super::Window;
+use super::ImageWindow;
 use super::cloud::Cloud;
 use rayon::prelude::*;
 use std::f64::consts::PI;
@@ -66,7 +66,7 @@ impl Ray {
 
 impl StressMap {
     /// The rays of a window that may meet a body; `None` if all miss it.
-    pub(super) fn new(cloud: &Cloud, window: &Window) -> Option<Self> {
+    pub(super) fn new(cloud: &Cloud, window: &ImageWindow) -> Option<Self> {
         let [left, bottom] = window.pixel(cloud.bounds[0].map(|x| x - cloud.reach));
         let [right, top] = window.pixel(cloud.bounds[1].map(|x| x + cloud.reach));
         let inside = |pixel: f64, axis: usize| pixel.clamp(0.0, window.size[axis] as f64) as usize;
@@ -80,7 +80,7 @@ impl StressMap {
         rays.par_chunks_mut(size[0]).enumerate().for_each_init(Vec::new, |sums, (row, rays)| {
             let first = window.position(corner[0], corner[1] + row);
             sums.clear();
-            sums.resize(rays.len(), Sums::default());
+            sums.resize(rays.len(), FitSums::default());
             sum_row(cloud, first, (window.scale(), &mut *sums));
             for (ray, sums) in rays.iter_mut().zip(&*sums) {
                 *ray = sums.ray(cloud.reach, window.scale());
@@ -103,14 +103,14 @@ impl StressMap {
 /// w, w v, w dy, w dy v, w dy dy | w dx, w dx v, w dx dy | w dx dx
 /// ```
 #[derive(Clone, Copy, Debug, Default)]
-struct Sums {
+struct FitSums {
     plain: [f64; 11],
     along: [f64; 6],
     square: f64,
 }
 
 /// Adds the points of a cloud to the pixels of a row, of which the first is at a place; `scale` is in pixels per metre.
-fn sum_row(cloud: &Cloud, first: [f64; 2], (scale, row): (f64, &mut [Sums])) {
+fn sum_row(cloud: &Cloud, first: [f64; 2], (scale, row): (f64, &mut [FitSums])) {
     let step = 1.0 / (scale * cloud.reach);
     for point in cloud.across(first[1]) {
         let [left, dy] = [0, 1].map(|axis| (point.place[axis] - first[axis]) / cloud.reach);
@@ -141,10 +141,10 @@ fn sum_row(cloud: &Cloud, first: [f64; 2], (scale, row): (f64, &mut [Sums])) {
     }
 }
 
-impl Sums {
+impl FitSums {
     /// The ray through a pixel whose points lie so far away at most [m]; `scale` is in pixels per metre.
     fn ray(&self, reach: f64, scale: f64) -> Ray {
-        let Sums { plain, along, square } = self;
+        let FitSums { plain, along, square } = self;
         let filled = plain[0] / (0.25 * PI * reach * reach);
         // Across a straight surface c rises by 128 / (35 pi R) a metre where it is 1/2.
         let rise = 128.0 / (35.0 * PI * reach * scale);

@@ -67,8 +67,8 @@ fn brazilian(order: f64) -> impl Fn([f64; 2]) -> [f64; 3] {
     }
 }
 
-fn window(size: usize) -> Window {
-    Window::around([[-1.1, -1.1], [1.1, 1.1]], size)
+fn window(size: usize) -> ImageWindow {
+    ImageWindow::around([[-1.1, -1.1], [1.1, 1.1]], size)
 }
 
 fn stage(size: usize) -> Stage {
@@ -76,7 +76,7 @@ fn stage(size: usize) -> Stage {
 }
 
 /// The order that the image has at a place.
-fn order_at(map: &StressMap, window: &Window, x: [f64; 2]) -> f64 {
+fn order_at(map: &StressMap, window: &ImageWindow, x: [f64; 2]) -> f64 {
     let [column, row] = window.pixel(x).map(|pixel| pixel as usize);
     Optics::new(&polariscope(Light::Grey)).order(map.ray(column, row).unwrap())
 }
@@ -144,7 +144,7 @@ fn uniform_stress_gives_uniform_light() {
         for (particles, field) in
             [(&particles, Field::Dark), (&particles, Field::Light), (&turned, Field::Dark)]
         {
-            let bench = Bench::new(&Polariscope { field, ..polariscope(Light::Grey) }, stage(101));
+            let bench = OpticalBench::new(&Polariscope { field, ..polariscope(Light::Grey) }, stage(101));
             let light = bench.light(particles);
             let exact = if field == Field::Dark { dark } else { 1.0 - dark };
             for (column, row) in [(50, 50), (30, 60), (75, 41), (50, 9)] {
@@ -160,7 +160,7 @@ fn a_plane_polariscope_darkens_where_stress_lies_along_the_polariser() {
     let particles = lattice(0.05, in_disk, |_| [0.0, 0.5 * FRINGE, 0.0]);
     for (degrees, exact) in [(0.0, 0.0), (90.0, 0.0), (45.0, 1.0), (22.5, 0.5)] {
         let polarizer = Some(f64::to_radians(degrees));
-        let bench = Bench::new(&Polariscope { polarizer, ..polariscope(Light::Grey) }, stage(51));
+        let bench = OpticalBench::new(&Polariscope { polarizer, ..polariscope(Light::Grey) }, stage(51));
         let light = bench.light(&particles)[25 * 51 + 25][0];
         assert!((light - exact).abs() < 1e-6, "{degrees}: {light}");
     }
@@ -198,7 +198,7 @@ fn white_light_gives_the_textbooks_colors() {
 
 #[test]
 fn an_open_shutter_averages_light() {
-    let bench = Bench::new(&polariscope(Light::Grey), stage(51));
+    let bench = OpticalBench::new(&polariscope(Light::Grey), stage(51));
     let mut film = bench.film();
     let mut sum = 0.0;
     for order in [0.0, 0.125, 0.25, 0.375] {
@@ -214,7 +214,7 @@ fn an_open_shutter_averages_light() {
 fn fringes_finer_than_pixels_are_grey() {
     let steep = |[x, _]: [f64; 2]| [200.0 * (x + 2.0) * FRINGE, 0.0, 0.0];
     let particles = lattice(0.02, in_disk, steep);
-    let light = Bench::new(&polariscope(Light::Grey), stage(60)).light(&particles);
+    let light = OpticalBench::new(&polariscope(Light::Grey), stage(60)).light(&particles);
     let row = &light[30 * 60 + 20..30 * 60 + 40];
     assert!(row.iter().all(|rgb| (rgb[0] - 0.5).abs() < 0.1), "{row:?}");
 }
@@ -266,7 +266,7 @@ fn force_chains_meet_where_bodies_touch() {
     assert_eq!(links(&particles, &[push], &[1]).len(), 1);
     assert!(links(&particles, &[Push { force: -1.0, ..push }], &[0, 1]).is_empty());
 
-    let window = Window::around([[-2.0, -1.0], [2.0, 1.0]], 200);
+    let window = ImageWindow::around([[-2.0, -1.0], [2.0, 1.0]], 200);
     let mut image = Image::new(window.size, [0; 3]);
     draw_links(&mut image, &window, (&both, 7.0));
     assert!(image.color(90, 50)[0] > 150 && image.color(110, 50)[0] > 150);
@@ -291,7 +291,7 @@ fn every_light_and_field_has_a_picture() {
         ("white", polariscope(Light::White)),
         ("plane", plane),
     ] {
-        let bench = Bench::new(&polariscope, stage(400));
+        let bench = OpticalBench::new(&polariscope, stage(400));
         let images = [&disk, &wedge].map(|particles| bench.photograph(particles));
         assert_ne!(images[0], images[1]);
         for (what, image) in ["disk", "wedge"].iter().zip(images) {

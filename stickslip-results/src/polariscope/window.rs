@@ -2,7 +2,7 @@
 
 /// A rectangle of the plane, and the pixels of its image.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Window {
+pub struct ImageWindow {
     /// Lower left corner [m].
     pub low: [f64; 2],
     /// Upper right corner [m].
@@ -11,12 +11,12 @@ pub struct Window {
     pub size: [usize; 2],
 }
 
-impl Window {
+impl ImageWindow {
     /// The whole of a rectangle in an image `width` pixels wide and as high as it takes.
     pub fn around([low, high]: [[f64; 2]; 2], width: usize) -> Self {
         let aspect = (high[1] - low[1]) / (high[0] - low[0]);
         let height = ((width as f64 * aspect).round() as usize).clamp(16, 8 * width);
-        Window { low, high, size: [width, height] }
+        ImageWindow { low, high, size: [width, height] }
     }
 
     /// A rectangle in the middle of an image of this size.
@@ -24,7 +24,7 @@ impl Window {
         let pixels = size.map(|side| side as f64);
         let scale = (pixels[0] / (high[0] - low[0])).min(pixels[1] / (high[1] - low[1]));
         let end = |axis: usize, side: f64| 0.5 * (low[axis] + high[axis] + side * pixels[axis] / scale);
-        Window { low: [end(0, -1.0), end(1, -1.0)], high: [end(0, 1.0), end(1, 1.0)], size }
+        ImageWindow { low: [end(0, -1.0), end(1, -1.0)], high: [end(0, 1.0), end(1, 1.0)], size }
     }
 
     /// Pixels per metre.
@@ -51,11 +51,11 @@ mod tests {
 
     #[test]
     fn a_window_holds_what_it_must() {
-        let tall = Window::around([[1.0, 0.0], [2.0, 3.0]], 100);
+        let tall = ImageWindow::around([[1.0, 0.0], [2.0, 3.0]], 100);
         assert_eq!((tall.size, tall.pixel([1.5, 3.0])), ([100, 300], [50.0, 0.0]));
         let [x, y] = tall.position(0, 299);
         assert!((x - 1.005).abs() < 1e-12 && (y - 0.005).abs() < 1e-12);
-        let wide = Window::holding([[1.0, 0.0], [2.0, 3.0]], [600, 300]);
+        let wide = ImageWindow::holding([[1.0, 0.0], [2.0, 3.0]], [600, 300]);
         assert_eq!((wide.low, wide.high), ([-1.5, 0.0], [4.5, 3.0]));
         assert_eq!(wide.scale(), 100.0);
     }

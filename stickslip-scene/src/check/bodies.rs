@@ -2,7 +2,7 @@
 
 use super::table::short;
 use super::{lattice, per_side};
-use crate::geometry::{self, Bounds, Shape, Site};
+use crate::geometry::{self, Bounds, ParticleSite, Shape};
 use crate::scene::{Problem, Scene};
 use rayon::prelude::*;
 
@@ -82,7 +82,7 @@ fn measure_body(scene: &Scene, i: usize) -> Result<Extent, Problem> {
     let density = scene.materials[body.material].density;
     let all =
         geometry::sites(&body.shape, &lattice, body.particles).expect("other shapes are refused before");
-    for Site { position, volume, half_width } in all {
+    for ParticleSite { position, volume, half_width } in all {
         extent.particles += 1;
         extent.mass += volume * density;
         whole += volume;

@@ -3,11 +3,11 @@
 use super::accuracy::Errors;
 use super::bodies::Extent;
 use super::flat::Flat;
-use super::hertz::{Hertz, Patch};
+use super::hertz::{Hertz, HertzPatch};
 use super::neighbours::pairs_within;
 use super::rules::{is_rigid, named_pairs};
 use super::touch::{SAME, Touch};
-use crate::geometry::Lattice;
+use crate::geometry::SiteLattice;
 use crate::scene::{Body, ContactLaw, Motion, Scene};
 use crate::tensor::Vector;
 use serde::Serialize;
@@ -26,11 +26,11 @@ pub struct ContactEstimate {
     pub approach: f64,
     /// The wider one of Hertz's patches under the load and at the impact; of a flat face its own half-width,
     /// without a depth.
-    pub patch: Patch,
+    pub patch: HertzPatch,
     /// Radius of the patch, in the plane its half-width, over the cell size [-].
     pub cells: f64,
     /// What to expect of the contact.
-    pub verdict: Verdict,
+    pub verdict: ContactResolution,
     /// By how much its results may be off.
     pub off: Errors,
 }
@@ -38,7 +38,7 @@ pub struct ContactEstimate {
 /// What to expect of a contact on the grid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Verdict {
+pub enum ContactResolution {
     /// Narrower than a cell: the grid decides how wide the bodies touch.
     NotResolved,
     /// 1 to 4 cells.
@@ -47,13 +47,13 @@ pub enum Verdict {
     Resolved,
 }
 
-impl Verdict {
+impl ContactResolution {
     /// From the radius or half-width of the patch in cells.
     pub fn of(cells: f64) -> Self {
         match cells {
-            cells if cells >= 4.0 => Verdict::Resolved,
-            cells if cells >= 1.0 => Verdict::Marginal,
-            _ => Verdict::NotResolved,
+            cells if cells >= 4.0 => ContactResolution::Resolved,
+            cells if cells >= 1.0 => ContactResolution::Marginal,
+            _ => ContactResolution::NotResolved,
         }
     }
 }
@@ -106,7 +106,7 @@ fn within_a_cell(scene: &Scene, extents: &[Extent], [a, b]: [usize; 2]) -> bool 
     let (cell, dimension) = (scene.discretization.cell, scene.dimension.axes());
     let around = |i: usize| extents[i].bounds.grown(0.5 * cell);
     let away = |i: usize, point| scene.bodies[i].shape.distance(point, dimension).max(0.0);
-    Lattice { origin: [0.0; 3], spacing: 0.5 * cell, dimension }
+    SiteLattice { origin: [0.0; 3], spacing: 0.5 * cell, dimension }
         .sites_around(&around(a).intersected(&around(b)))
         .any(|point| away(a, point) + away(b, point) <= cell)
 }
@@ -141,7 +141,7 @@ impl Pressing {
         Pressing { load, approach, reduced_mass: 1.0 / (inverse_masses[0] + inverse_masses[1]) }
     }
 
-    fn estimate(&self, scene: &Scene, pair: [usize; 2], gap: f64, patch: Patch) -> ContactEstimate {
+    fn estimate(&self, scene: &Scene, pair: [usize; 2], gap: f64, patch: HertzPatch) -> ContactEstimate {
         let cells = patch.radius / scene.discretization.cell;
         ContactEstimate {
             bodies: pair.map(|i| scene.bodies[i].name.clone()),
@@ -150,7 +150,7 @@ impl Pressing {
             approach: self.approach,
             patch,
             cells,
-            verdict: Verdict::of(cells),
+            verdict: ContactResolution::of(cells),
             off: Errors::of(cells),
         }
     }
@@ -176,7 +176,7 @@ fn estimate(touch: &Touch, scene: &Scene) -> Option<ContactEstimate> {
 /// A face touches as wide as it is, if anything presses it.
 fn of_face(flat: &Flat, scene: &Scene, extents: &[Extent]) -> Option<ContactEstimate> {
     let pressing = Pressing::new(scene, flat.pair, flat.direction, flat.pair.map(|i| extents[i].mass));
-    let patch = Patch { radius: flat.half_width, depth: 0.0 };
+    let patch = HertzPatch { radius: flat.half_width, depth: 0.0 };
     let pressed = pressing.load > 0.0 || pressing.approach > 0.0;
     pressed.then(|| pressing.estimate(scene, flat.pair, flat.gap, patch))
 }
@@ -224,14 +224,17 @@ mod tests {
         assert!((contact.load / weight - 1.0).abs() < 1e-9);
         assert!((1.6 - contact.patch.depth - 1.555).abs() < 5e-4, "{}", contact.patch.depth);
         assert!((contact.patch.radius / (1.6 / 6.0) - 1.0).abs() < 0.01, "{}", contact.patch.radius);
-        assert_eq!(contact.verdict, Verdict::Marginal);
+        assert_eq!(contact.verdict, ContactResolution::Marginal);
     }
 
     #[test]
     fn the_verdict_follows_the_cells() {
-        assert_eq!(estimates_of(&incline(4.0))[0].verdict, Verdict::NotResolved);
-        assert_eq!(Verdict::of(4.0), Verdict::Resolved);
-        assert!(Verdict::NotResolved < Verdict::Marginal && Verdict::Marginal < Verdict::Resolved);
+        assert_eq!(estimates_of(&incline(4.0))[0].verdict, ContactResolution::NotResolved);
+        assert_eq!(ContactResolution::of(4.0), ContactResolution::Resolved);
+        assert!(
+            ContactResolution::NotResolved < ContactResolution::Marginal
+                && ContactResolution::Marginal < ContactResolution::Resolved
+        );
     }
 
     #[test]
@@ -299,7 +302,10 @@ mod tests {
         assert!(estimates_of(&scene).is_empty());
         scene.gravity = [0.0, 0.0, -10.0];
         let found = estimates_of(&scene);
-        assert!((found[0].cells - 2.5).abs() < 1e-9 && found[0].verdict == Verdict::Marginal, "{found:?}");
+        assert!(
+            (found[0].cells - 2.5).abs() < 1e-9 && found[0].verdict == ContactResolution::Marginal,
+            "{found:?}"
+        );
     }
 
     #[test]

@@ -24,7 +24,7 @@ pub struct Hertz {
 
 /// Where two bodies touch.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Patch {
+pub struct HertzPatch {
     /// Radius of the circle, in the plane half-width of the strip, in which they touch [m].
     pub radius: f64,
     /// By how much the bodies' centres come closer [m].
@@ -42,17 +42,17 @@ impl Hertz {
     }
 
     /// At rest under a load [N], in the plane per metre of depth [N/m].
-    pub fn under_load(&self, load: f64) -> Patch {
+    pub fn under_load(&self, load: f64) -> HertzPatch {
         if load <= 0.0 {
-            return Patch::default();
+            return HertzPatch::default();
         }
         if self.dimension == 2 {
             let half_width = (4.0 * load * self.radius / (PI * self.modulus)).sqrt();
             let depth = load / (PI * self.modulus) * (2.0 * (4.0 * self.radius / half_width).ln() - 1.0);
-            return Patch { radius: half_width, depth };
+            return HertzPatch { radius: half_width, depth };
         }
         let radius = libm::cbrt(0.75 * load * self.radius / self.modulus);
-        Patch { radius, depth: radius * radius / self.radius }
+        HertzPatch { radius, depth: radius * radius / self.radius }
     }
 
     /// At the largest compression after an approach at `speed` [m/s]; `mass` = m1 m2 / (m1 + m2) [kg],
@@ -64,16 +64,16 @@ impl Hertz {
     /// ```
     /// Quasi-static: waves within the bodies are ignored. In the plane an estimate, as compression there depends on the
     /// bodies' size, taken as R*.
-    pub fn at_impact(&self, mass: f64, speed: f64) -> Patch {
+    pub fn at_impact(&self, mass: f64, speed: f64) -> HertzPatch {
         if mass <= 0.0 || speed <= 0.0 {
-            return Patch::default();
+            return HertzPatch::default();
         }
         if self.dimension == 2 {
             return self.under_load(self.impact_load_in_plane(0.5 * mass * speed * speed));
         }
         let energy = 15.0 * mass * speed * speed / (16.0 * self.modulus * self.radius.sqrt());
         let depth = energy.powf(0.4);
-        Patch { radius: (self.radius * depth).sqrt(), depth }
+        HertzPatch { radius: (self.radius * depth).sqrt(), depth }
     }
 
     /// The load at which the contact holds an energy [J/m]; the energy grows with it while b < R*.

@@ -25,14 +25,14 @@ mod touch;
 mod warning;
 
 pub use accuracy::Errors;
-pub use contact::{ContactEstimate, Verdict};
-pub use hertz::{Hertz, Patch};
+pub use contact::{ContactEstimate, ContactResolution};
+pub use hertz::{Hertz, HertzPatch};
 pub use memory::Footprint;
-pub use report::{BodyReport, Machine, MaterialReport, Report, report};
+pub use report::{BodyReport, MachineSpeed, MaterialReport, Report, report};
 pub use rules::RuleReport;
 pub use warning::Warning;
 
-use crate::geometry::Lattice;
+use crate::geometry::SiteLattice;
 use crate::scene::{Body, Problem, Scene};
 
 /// Finds what is wrong with a scene and takes its geometry to see.
@@ -57,8 +57,8 @@ fn examine(scene: &Scene) -> Result<Vec<bodies::Extent>, Problem> {
 }
 
 /// The particle sites of a body: every cell of the scene's grid divided into equal parts.
-pub fn lattice(scene: &Scene, body: &Body) -> Lattice {
-    Lattice {
+pub fn lattice(scene: &Scene, body: &Body) -> SiteLattice {
+    SiteLattice {
         origin: scene.domain.as_ref().map_or([0.0; 3], |domain| domain.min),
         spacing: scene.discretization.cell / per_side(scene, body),
         dimension: scene.dimension.axes(),

@@ -6,7 +6,7 @@ use super::neighbours::pairs_within;
 use super::penetration::deepest;
 use super::rules::is_rigid;
 use super::warning::Warning;
-use crate::geometry::{Bounds, Lattice};
+use crate::geometry::{Bounds, SiteLattice};
 use crate::scene::{Body, ContactLaw, Problem, Scene};
 use rayon::prelude::*;
 
@@ -84,7 +84,7 @@ fn shared(scene: &Scene, extents: &[Extent], [a, b]: [usize; 2]) -> Option<Probl
         inside(first).min(inside(second))
     };
     let common = extents[a].bounds.intersected(&extents[b].bounds);
-    let in_both = |lattice: &Lattice| {
+    let in_both = |lattice: &SiteLattice| {
         let deep = |&point: &[f64; 3]| depth(point) > ROUND_OFF * lattice.spacing;
         let mut sites = lattice.sites_around(&common).filter(deep);
         Some((sites.next()?, 1 + sites.count()))

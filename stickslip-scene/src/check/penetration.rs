@@ -10,7 +10,7 @@
 //! vanishes where the surfaces face each other. What a walk ends on is common to both; a deeper place than it finds may
 //! be missed, as in grooves finer than a cell.
 
-use crate::geometry::{Bounds, Level};
+use crate::geometry::{Bounds, SignedDistance};
 use crate::tensor::Vector;
 
 /// Where two bodies share most room.
@@ -25,7 +25,7 @@ pub(super) struct Shared {
 /// The deepest place in a `room` that two bodies share, if there is any; each `level` is of one body's surface, as
 /// [`crate::geometry::Shape::level`].
 pub(super) fn deepest(
-    levels: [&dyn Fn([f64; 3]) -> Level; 2],
+    levels: [&dyn Fn([f64; 3]) -> SignedDistance; 2],
     room: &Bounds,
     cell: f64,
     dimension: usize,
@@ -57,7 +57,7 @@ pub(super) fn deepest(
 }
 
 /// max(d_a, d_b) at a point [m].
-fn worse(levels: &[&dyn Fn([f64; 3]) -> Level; 2], point: [f64; 3]) -> f64 {
+fn worse(levels: &[&dyn Fn([f64; 3]) -> SignedDistance; 2], point: [f64; 3]) -> f64 {
     levels[0](point).distance.max(levels[1](point).distance)
 }
 
@@ -67,7 +67,7 @@ const HALVINGS: usize = 40;
 const STEPS: usize = 100;
 
 /// Walks down from a point; what it finds, if that is in both.
-fn descend(levels: &[&dyn Fn([f64; 3]) -> Level; 2], start: [f64; 3], cell: f64) -> Option<Shared> {
+fn descend(levels: &[&dyn Fn([f64; 3]) -> SignedDistance; 2], start: [f64; 3], cell: f64) -> Option<Shared> {
     let mut here = level_out(levels, start, cell);
     let mut low = worse(levels, here);
     let (mut step, mut halvings) = (0.5 * cell, 0);
@@ -91,7 +91,7 @@ fn descend(levels: &[&dyn Fn([f64; 3]) -> Level; 2], start: [f64; 3], cell: f64)
 }
 
 /// The point near one at which both distances are about equal.
-fn level_out(levels: &[&dyn Fn([f64; 3]) -> Level; 2], mut point: [f64; 3], cell: f64) -> [f64; 3] {
+fn level_out(levels: &[&dyn Fn([f64; 3]) -> SignedDistance; 2], mut point: [f64; 3], cell: f64) -> [f64; 3] {
     for _ in 0..4 {
         let [a, b] = levels.map(|level| level(point));
         let difference = a.distance - b.distance;

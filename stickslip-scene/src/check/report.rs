@@ -1,7 +1,7 @@
 //! What a run will be, before it runs.
 
 use super::bodies::{Extent, smallest_extent};
-use super::contact::{ContactEstimate, Estimates, Verdict, estimates, starting_velocity};
+use super::contact::{ContactEstimate, ContactResolution, Estimates, estimates, starting_velocity};
 use super::memory::Footprint;
 use super::rules::{RuleReport, is_rigid};
 use super::table::short;
@@ -14,18 +14,18 @@ use serde::Serialize;
 
 /// How fast the machine is that will run the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Machine {
+pub struct MachineSpeed {
     /// Particles times steps that one core does in a second [1/s].
     pub particle_steps_per_second: f64,
     /// Cores in use.
     pub cores: usize,
 }
 
-impl Default for Machine {
+impl Default for MachineSpeed {
     /// All cores of this machine, each at a million particle-steps per second, about what GIMP in space does.
     fn default() -> Self {
         let cores = std::thread::available_parallelism().map_or(1, usize::from);
-        Machine { particle_steps_per_second: 1e6, cores }
+        MachineSpeed { particle_steps_per_second: 1e6, cores }
     }
 }
 
@@ -55,7 +55,7 @@ pub struct Report {
     /// Steps of that length to the end.
     pub steps: u64,
     /// The machine that the expected time is for.
-    pub machine: Machine,
+    pub machine: MachineSpeed,
     /// Expected wall time [s].
     pub wall_time: f64,
     /// Which contact rules hold, and between which bodies.
@@ -126,19 +126,19 @@ pub fn report(scene: &Scene, footprint: &dyn Footprint) -> Result<Report, Proble
         time_step,
         // A last step that is only round-off is none.
         steps: (scene.time.end / time_step * (1.0 - 1e-12)).ceil() as u64,
-        machine: Machine::default(),
+        machine: MachineSpeed::default(),
         wall_time: 0.0,
         rules: rules::holding(scene, &boxes),
         warnings: warnings(scene, &extents, &contacts),
         contacts,
         contacts_unknown,
     };
-    Ok(report.on(Machine::default()))
+    Ok(report.on(MachineSpeed::default()))
 }
 
 impl Report {
     /// The same run on another machine.
-    pub fn on(self, machine: Machine) -> Self {
+    pub fn on(self, machine: MachineSpeed) -> Self {
         let rate = machine.particle_steps_per_second * machine.cores as f64;
         Report { machine, wall_time: self.particles as f64 * self.steps as f64 / rate, ..self }
     }
@@ -245,7 +245,7 @@ fn thin_rigid_bodies(scene: &Scene) -> Option<Warning> {
 }
 
 fn narrow_contacts(contacts: &[ContactEstimate]) -> Option<Warning> {
-    let narrow = contacts.iter().filter(|contact| contact.verdict == Verdict::NotResolved).count();
+    let narrow = contacts.iter().filter(|contact| contact.verdict == ContactResolution::NotResolved).count();
     let narrowest = contacts.first().filter(|_| narrow > 0)?;
     let text = format!(
         "not resolved: {narrow} of {} contacts; in the narrowest {}; it needs cells of {} m to be marginal, {} m to be resolved",
@@ -283,7 +283,7 @@ mod tests {
 
     #[test]
     fn the_expected_time_is_that_of_the_machine() {
-        let machine = Machine { particle_steps_per_second: 1e6, cores: 4 };
+        let machine = MachineSpeed { particle_steps_per_second: 1e6, cores: 4 };
         let report = report(&incline(4.0)).expect("no problem").on(machine);
         let exact = report.particles as f64 * report.steps as f64 / 4e6;
         assert!((report.wall_time / exact - 1.0).abs() < 1e-12);

@@ -5,7 +5,7 @@ use super::neighbours::pairs_within;
 use super::penetration::{Shared, deepest};
 use super::rules::is_rigid;
 use super::warning::{Warning, and_more};
-use crate::geometry::{Bounds, Level};
+use crate::geometry::{Bounds, SignedDistance};
 use crate::rigid::{Pose, RigidMotion};
 use crate::scene::{ContactLaw, Expression, Motion, Scene};
 use rayon::prelude::*;
@@ -110,7 +110,7 @@ fn meet(scene: &Scene, paths: [&Path; 2]) -> Option<Meeting> {
             let (shape, pose) = (&scene.bodies[path.body].shape, path.poses[*look]);
             move |x: [f64; 3]| {
                 let level = shape.level(pose.start(x), axes);
-                Level { gradient: pose.turned(level.gradient), ..level }
+                SignedDistance { gradient: pose.turned(level.gradient), ..level }
             }
         });
         let shared = deepest([&levels[0], &levels[1]], room, cell, axes)?;

@@ -1,6 +1,6 @@
 //! The report as a table for the terminal.
 
-use super::contact::{ContactEstimate, Verdict};
+use super::contact::{ContactEstimate, ContactResolution};
 use super::report::{BodyReport, Report};
 use super::rules::RuleReport;
 use crate::scene::ContactLaw;
@@ -130,7 +130,8 @@ impl Report {
         }
         if self.contacts.len() > CONTACTS {
             let of = |verdict| self.contacts.iter().filter(|contact| contact.verdict == verdict).count();
-            let verdicts = [Verdict::Resolved, Verdict::Marginal, Verdict::NotResolved];
+            let verdicts =
+                [ContactResolution::Resolved, ContactResolution::Marginal, ContactResolution::NotResolved];
             let counts = verdicts.map(|verdict| format!("{} {verdict}", of(verdict)));
             writeln!(f, "in all {}: {}", self.contacts.len(), counts.join(", "))?;
         }
@@ -155,12 +156,12 @@ impl Report {
     }
 }
 
-impl Display for Verdict {
+impl Display for ContactResolution {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
         f.write_str(match self {
-            Verdict::Resolved => "resolved",
-            Verdict::Marginal => "marginal",
-            Verdict::NotResolved => "not resolved",
+            ContactResolution::Resolved => "resolved",
+            ContactResolution::Marginal => "marginal",
+            ContactResolution::NotResolved => "not resolved",
         })
     }
 }
@@ -203,14 +204,14 @@ fn duration(seconds: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::check::Machine;
+    use crate::check::MachineSpeed;
     use crate::check::tests::{at_rest, free, incline, report, scene};
     use crate::geometry::Shape;
     use crate::scene::{ContactRule, Dimension};
 
     #[test]
     fn the_incline_reads_like_this() {
-        let machine = Machine { particle_steps_per_second: 1e6, cores: 2 };
+        let machine = MachineSpeed { particle_steps_per_second: 1e6, cores: 2 };
         let text = report(&incline(4.0)).expect("no problem").on(machine).to_string();
         let rows: Vec<_> =
             text.lines().map(|line| line.split_whitespace().collect::<Vec<_>>().join(" ")).collect();

@@ -3,7 +3,7 @@
 use super::lattice;
 use super::table::short;
 use super::warning::{Warning, and_more};
-use crate::geometry::{self, Mirror, Whole};
+use crate::geometry::{self, Mirror, MirroredShape};
 use crate::scene::{Face, Motion, Scene};
 use crate::tensor::Vector;
 use rayon::prelude::*;
@@ -45,7 +45,7 @@ pub(super) fn warning(scene: &Scene) -> Option<Warning> {
 fn thickness(scene: &Scene, body: usize, enough: f64) -> Option<f64> {
     let (axes, cell) = (scene.dimension.axes(), scene.discretization.cell);
     let shape = &scene.bodies[body].shape;
-    let whole = Whole::new(shape, continuing_faces(scene), axes);
+    let whole = MirroredShape::new(shape, continuing_faces(scene), axes);
     let sites = geometry::sites(shape, &lattice(scene, &scene.bodies[body]), scene.bodies[body].particles)?;
     let (mut deepest, mut depth) = (Vec::new(), 0.0);
     for site in sites {
@@ -77,7 +77,7 @@ const MOST_PLACES: usize = 64;
 
 /// Way from a point inside out of a body, at most `enough` [m]; where two parts of the body meet within a `seam`, it
 /// goes on [m].
-fn way_out(whole: &Whole, point: [f64; 3], way: [f64; 3], (enough, seam): (f64, f64)) -> f64 {
+fn way_out(whole: &MirroredShape, point: [f64; 3], way: [f64; 3], (enough, seam): (f64, f64)) -> f64 {
     let depth = |length: f64| -whole.level((Vector(point) + Vector(way) * length).0).distance;
     let mut length = 0.0;
     while length < enough {

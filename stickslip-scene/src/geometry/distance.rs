@@ -6,46 +6,46 @@ use super::{Shape, polygon};
 
 /// How far a point is from a surface, and which way leads out fastest.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Level {
+pub struct SignedDistance {
     /// Distance to the surface [m], negative inside.
     pub distance: f64,
     /// Its gradient, a unit vector; zero where no direction stands out, as at the centre of a ball [-].
     pub gradient: [f64; 3],
 }
 
-impl Level {
+impl SignedDistance {
     /// Far outside of everything.
-    const NOWHERE: Level = Level { distance: f64::INFINITY, gradient: [0.0; 3] };
+    const NOWHERE: SignedDistance = SignedDistance { distance: f64::INFINITY, gradient: [0.0; 3] };
     /// Deep inside of everything.
-    const EVERYWHERE: Level = Level { distance: f64::NEG_INFINITY, gradient: [0.0; 3] };
+    const EVERYWHERE: SignedDistance = SignedDistance { distance: f64::NEG_INFINITY, gradient: [0.0; 3] };
 
     fn new(distance: f64, gradient: [f64; 3]) -> Self {
-        Level { distance, gradient }
+        SignedDistance { distance, gradient }
     }
 
     /// Of the part that is in both.
-    fn intersected(self, other: Level) -> Level {
+    fn intersected(self, other: SignedDistance) -> SignedDistance {
         if other.distance > self.distance { other } else { self }
     }
 
     /// Of the part that is in either.
-    fn united(self, other: Level) -> Level {
+    fn united(self, other: SignedDistance) -> SignedDistance {
         if other.distance < self.distance { other } else { self }
     }
 
     /// Of what the shape leaves.
-    fn complement(self) -> Level {
-        Level { distance: -self.distance, gradient: self.gradient.map(|g| -g) }
+    fn complement(self) -> SignedDistance {
+        SignedDistance { distance: -self.distance, gradient: self.gradient.map(|g| -g) }
     }
 
     /// Of the part that is in both of two solids with faces at right angles, exactly.
-    fn square(self, other: Level) -> Level {
+    fn square(self, other: SignedDistance) -> SignedDistance {
         if self.distance <= 0.0 || other.distance <= 0.0 {
             return self.intersected(other);
         }
         let distance = self.distance.hypot(other.distance);
         let along = |k: usize| self.gradient[k] * self.distance + other.gradient[k] * other.distance;
-        Level { distance, gradient: std::array::from_fn(|k| along(k) / distance) }
+        SignedDistance { distance, gradient: std::array::from_fn(|k| along(k) / distance) }
     }
 }
 
@@ -68,18 +68,18 @@ impl Shape {
     ///
     /// Exact for simple and turned shapes; of shapes combined, the sign is exact and the magnitude is at most the true
     /// one: `min` over a union, `max` over an intersection. In the plane, a cylinder or a mesh is infinitely far away.
-    pub fn level(&self, point: [f64; 3], dimension: usize) -> Level {
+    pub fn level(&self, point: [f64; 3], dimension: usize) -> SignedDistance {
         match self {
             Shape::Ball { center, radius } => {
                 let arm = std::array::from_fn(|k| if k < dimension { point[k] - center[k] } else { 0.0 });
                 let length = norm(arm);
                 let gradient = if length > 0.0 { arm.map(|a| a / length) } else { [0.0; 3] };
-                Level::new(length - radius, gradient)
+                SignedDistance::new(length - radius, gradient)
             }
             Shape::Box { min, max } => (0..dimension)
                 .map(|k| slab(k, [min[k], max[k]], point[k]))
-                .fold(Level::EVERYWHERE, Level::square),
-            Shape::Cylinder { .. } if dimension == 2 => Level::NOWHERE,
+                .fold(SignedDistance::EVERYWHERE, SignedDistance::square),
+            Shape::Cylinder { .. } if dimension == 2 => SignedDistance::NOWHERE,
             Shape::Cylinder { start, end, radius } => {
                 let axis: [f64; 3] = std::array::from_fn(|k| end[k] - start[k]);
                 let length = norm(axis);
@@ -87,35 +87,38 @@ impl Shape {
                 let from_axis: [f64; 3] = std::array::from_fn(|k| point[k] - start[k] - along * axis[k]);
                 let outward = if across > 0.0 { from_axis.map(|a| a / across) } else { [0.0; 3] };
                 let (beyond, sign) = if along > 0.5 { (along - 1.0, 1.0) } else { (-along, -1.0) };
-                Level::new(across - radius, outward)
-                    .square(Level::new(beyond * length, axis.map(|a| sign * a / length)))
+                SignedDistance::new(across - radius, outward)
+                    .square(SignedDistance::new(beyond * length, axis.map(|a| sign * a / length)))
             }
             Shape::HalfSpace { point: on, normal } => {
                 let normal = std::array::from_fn(|k| if k < dimension { normal[k] } else { 0.0 });
                 let gradient = normal.map(|n| n / norm(normal));
-                Level::new((0..dimension).map(|k| (point[k] - on[k]) * gradient[k]).sum(), gradient)
+                SignedDistance::new((0..dimension).map(|k| (point[k] - on[k]) * gradient[k]).sum(), gradient)
             }
             Shape::Polygon { points, height } => {
                 let (distance, [x, y]) = polygon::distance(points, [point[0], point[1]]);
-                let base = Level::new(distance, [x, y, 0.0]);
+                let base = SignedDistance::new(distance, [x, y, 0.0]);
                 if dimension == 2 { base } else { base.square(slab(2, *height, point[2])) }
             }
-            Shape::Mesh(_) if dimension == 2 => Level::NOWHERE,
+            Shape::Mesh(_) if dimension == 2 => SignedDistance::NOWHERE,
             Shape::Mesh(mesh) => mesh.level(point),
-            Shape::Union(shapes) => {
-                shapes.iter().map(|shape| shape.level(point, dimension)).fold(Level::NOWHERE, Level::united)
-            }
+            Shape::Union(shapes) => shapes
+                .iter()
+                .map(|shape| shape.level(point, dimension))
+                .fold(SignedDistance::NOWHERE, SignedDistance::united),
             Shape::Intersection(shapes) => (shapes.iter())
                 .map(|shape| shape.level(point, dimension))
-                .fold(Level::EVERYWHERE, Level::intersected),
-            Shape::Difference(shapes) => shapes.split_first().map_or(Level::NOWHERE, |(first, others)| {
-                let cut = others.iter().map(|shape| shape.level(point, dimension).complement());
-                cut.fold(first.level(point, dimension), Level::intersected)
-            }),
+                .fold(SignedDistance::EVERYWHERE, SignedDistance::intersected),
+            Shape::Difference(shapes) => {
+                shapes.split_first().map_or(SignedDistance::NOWHERE, |(first, others)| {
+                    let cut = others.iter().map(|shape| shape.level(point, dimension).complement());
+                    cut.fold(first.level(point, dimension), SignedDistance::intersected)
+                })
+            }
             Shape::Rotated { shape, center, axis, angle } => {
                 let rotation = Rotation::new(*center, *axis, *angle, dimension);
                 let level = shape.level(rotation.back(point), dimension);
-                Level { gradient: rotation.turned(level.gradient), ..level }
+                SignedDistance { gradient: rotation.turned(level.gradient), ..level }
             }
         }
     }
@@ -139,11 +142,11 @@ impl Shape {
 }
 
 /// What lies between two faces across an axis.
-fn slab(axis: usize, [low, high]: [f64; 2], x: f64) -> Level {
+fn slab(axis: usize, [low, high]: [f64; 2], x: f64) -> SignedDistance {
     let (distance, sign) = if low - x > x - high { (low - x, -1.0) } else { (x - high, 1.0) };
     let mut gradient = [0.0; 3];
     gradient[axis] = sign;
-    Level { distance, gradient }
+    SignedDistance { distance, gradient }
 }
 
 fn norm(a: [f64; 3]) -> f64 {

@@ -13,7 +13,7 @@ const ROUND_OFF: f64 = 1e-7;
 /// With the spacing a whole fraction of a grid cell and the origin on a node,
 /// every cell holds the same number of sites.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Lattice {
+pub struct SiteLattice {
     /// A corner of a cube [m].
     pub origin: [f64; 3],
     /// Side of a cube [m].
@@ -35,7 +35,7 @@ pub enum Arrangement {
 
 /// Where a particle starts, and how large.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Site {
+pub struct ParticleSite {
     /// Centre [m]; in the plane z is zero.
     pub position: [f64; 3],
     /// Volume [m^3], in the plane area [m^2].
@@ -48,14 +48,14 @@ pub struct Site {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Filling {
     /// In an order of space: on the lattice by x, then y, then z.
-    pub sites: Vec<Site>,
+    pub sites: Vec<ParticleSite>,
 }
 
-impl Site {
+impl ParticleSite {
     /// A site with the half-width of its volume.
     pub(super) fn of_volume(position: [f64; 3], volume: f64, dimension: usize) -> Self {
         let side = if dimension == 2 { volume.sqrt() } else { libm::cbrt(volume) };
-        Site { position, volume, half_width: 0.5 * side }
+        ParticleSite { position, volume, half_width: 0.5 * side }
     }
 }
 
@@ -68,7 +68,7 @@ impl Filling {
     /// Centre of volume [m].
     pub fn center(&self) -> [f64; 3] {
         let volume = self.volume();
-        let add = |sum: [f64; 3], site: &Site| {
+        let add = |sum: [f64; 3], site: &ParticleSite| {
             std::array::from_fn(|k| sum[k] + site.position[k] * (site.volume / volume))
         };
         self.sites.iter().fold([0.0; 3], add)
@@ -80,7 +80,7 @@ pub(super) fn parts(whole: f64, most: f64) -> usize {
     (whole / most - ROUND_OFF).ceil().max(1.0) as usize
 }
 
-impl Lattice {
+impl SiteLattice {
     /// Number of sites in the lattice's cubes that meet a box: what filling anything within it costs.
     pub fn sites(&self, bounds: &Bounds) -> f64 {
         if bounds.is_empty() {
@@ -108,7 +108,7 @@ impl Lattice {
 
     /// Every site in a box and up to one spacing around it, ordered by x, then y, then z [m].
     pub fn sites_around(&self, bounds: &Bounds) -> impl Iterator<Item = [f64; 3]> + use<> {
-        let Lattice { origin, spacing, dimension } = *self;
+        let SiteLattice { origin, spacing, dimension } = *self;
         let range = |k: usize| match (bounds.is_empty(), k < dimension) {
             (true, _) => 0..0,
             (false, false) => 0..1,
@@ -138,20 +138,24 @@ impl Lattice {
 /// lattice. A site on the border but for round-off counts as [`Shape::contains`] says of a point exactly on it.
 ///
 /// Fitted particles are at most the lattice's spacing apart, and their volumes add up to the shape's.
-pub fn fill(shape: &Shape, lattice: &Lattice, arrangement: Arrangement) -> Option<Filling> {
+pub fn fill(shape: &Shape, lattice: &SiteLattice, arrangement: Arrangement) -> Option<Filling> {
     Some(Filling { sites: sites(shape, lattice, arrangement)?.collect() })
 }
 
 /// The particles that [`fill`] gives a shape, one after the other.
 pub fn sites<'a>(
     shape: &'a Shape,
-    lattice: &Lattice,
+    lattice: &SiteLattice,
     arrangement: Arrangement,
-) -> Option<Box<dyn Iterator<Item = Site> + 'a>> {
+) -> Option<Box<dyn Iterator<Item = ParticleSite> + 'a>> {
     Some(match arrangement {
         Arrangement::Lattice => {
             let (volume, half_width) = (lattice.volume(), 0.5 * lattice.spacing);
-            Box::new(lattice.sites_inside(shape)?.map(move |position| Site { position, volume, half_width }))
+            Box::new(lattice.sites_inside(shape)?.map(move |position| ParticleSite {
+                position,
+                volume,
+                half_width,
+            }))
         }
         Arrangement::Fitted => Box::new(fit(shape, lattice.spacing, lattice.dimension)?.into_iter()),
     })
@@ -164,13 +168,13 @@ mod tests {
     use proptest::prelude::*;
     use std::boxed::Box;
 
-    const UNIT: Lattice = Lattice { origin: [0.0; 3], spacing: 1.0, dimension: 3 };
+    const UNIT: SiteLattice = SiteLattice { origin: [0.0; 3], spacing: 1.0, dimension: 3 };
 
-    fn on_lattice(shape: &Shape, lattice: &Lattice) -> Option<Filling> {
+    fn on_lattice(shape: &Shape, lattice: &SiteLattice) -> Option<Filling> {
         fill(shape, lattice, Arrangement::Lattice)
     }
 
-    fn count(shape: &Shape, lattice: &Lattice) -> usize {
+    fn count(shape: &Shape, lattice: &SiteLattice) -> usize {
         on_lattice(shape, lattice).expect("bounded").sites.len()
     }
 
@@ -186,7 +190,7 @@ mod tests {
             // 1/3 has no finite binary expansion: every face is off by round-off.
             let spacing = 10f64.powi(magnitude) / 3.0;
             let origin = origin.map(|x| x * 1e4 * spacing);
-            let lattice = Lattice { origin, spacing, dimension };
+            let lattice = SiteLattice { origin, spacing, dimension };
             let min = std::array::from_fn(|k| origin[k] + f64::from(corner[k]) * spacing);
             let max = std::array::from_fn(|k| min[k] + size[k] as f64 * spacing);
             let expected = size[..dimension].iter().product::<usize>();
@@ -209,7 +213,7 @@ mod tests {
             b in any_shape(),
             dimension in 2..=3usize,
         ) {
-            let lattice = Lattice { origin: [0.03, -0.07, 0.11], spacing: 0.3, dimension };
+            let lattice = SiteLattice { origin: [0.03, -0.07, 0.11], spacing: 0.3, dimension };
             for shape in [a.clone(), Shape::Difference(vec![a, b])] {
                 let Some(filling) = on_lattice(&shape, &lattice) else { continue };
                 let everywhere = crate::geometry::Bounds { min: [-6.0; 3], max: [6.0; 3] };
@@ -225,7 +229,7 @@ mod tests {
             whole in any_shape(),
             cutter in any_shape(),
         ) {
-            let lattice = Lattice { origin: [0.0; 3], spacing: 0.25, dimension: 3 };
+            let lattice = SiteLattice { origin: [0.0; 3], spacing: 0.25, dimension: 3 };
             let pair = vec![whole.clone(), cutter];
             let Some(all) = on_lattice(&whole, &lattice) else { return Ok(()) };
             let parts = count(&Shape::Difference(pair.clone()), &lattice) + count(&Shape::Intersection(pair), &lattice);
@@ -248,7 +252,7 @@ mod tests {
             };
             let exact = shape.volume(3).expect("closed form");
             for (spacing, tolerance) in [(0.1, 0.02), (0.05, 0.01), (0.025, 0.005)] {
-                let filling = on_lattice(&shape, &Lattice { spacing, ..UNIT }).expect("bounded");
+                let filling = on_lattice(&shape, &SiteLattice { spacing, ..UNIT }).expect("bounded");
                 let error = filling.volume() / exact - 1.0;
                 assert!(error.abs() < tolerance, "{shape:?} at {spacing}: {error}");
             }
@@ -261,7 +265,7 @@ mod tests {
         let spacing = 0.1 / 3.0;
         let center = [0.5 * spacing; 3];
         let ball = Shape::Ball { center, radius: 5.0 * spacing };
-        let filling = on_lattice(&ball, &Lattice { spacing, ..UNIT }).expect("bounded");
+        let filling = on_lattice(&ball, &SiteLattice { spacing, ..UNIT }).expect("bounded");
         let sum = filling
             .sites
             .iter()
@@ -269,7 +273,7 @@ mod tests {
         assert!(sum.iter().all(|s| s.abs() < 1e-12), "{sum:?}");
         // And what is left around it takes exactly the other sites.
         let around = Shape::Box { min: [-6.0 * spacing; 3], max: [7.0 * spacing; 3] };
-        let left = count(&Shape::Difference(vec![around, ball]), &Lattice { spacing, ..UNIT });
+        let left = count(&Shape::Difference(vec![around, ball]), &SiteLattice { spacing, ..UNIT });
         assert_eq!(left + filling.sites.len(), 13 * 13 * 13);
     }
 
@@ -277,7 +281,7 @@ mod tests {
     fn shapes_that_share_a_slanted_face_through_sites_share_no_particle() {
         let square = || Shape::Box { min: [0.0; 3], max: [12.0, 12.0, 0.0] };
         let side = |normal| Shape::HalfSpace { point: [6.0, 6.0, 0.0], normal };
-        let lattice = Lattice { spacing: 1.2, dimension: 2, ..UNIT };
+        let lattice = SiteLattice { spacing: 1.2, dimension: 2, ..UNIT };
         for normal in [[1.0, -1.0, 0.0], [1.0, 1.0, 0.0]] {
             let halves = [normal, normal.map(|n| -n)]
                 .map(|n| count(&Shape::Intersection(vec![square(), side(n)]), &lattice));

@@ -1,7 +1,7 @@
 //! Fitting particles to a shape: rings, shells and boxes of its own instead of a lattice of space, with exact volumes.
 
 use super::Shape;
-use super::filling::{Site, parts};
+use super::filling::{ParticleSite, parts};
 use super::rings::sectors;
 use super::rotation::Rotation;
 use super::shells::pieces;
@@ -54,14 +54,14 @@ pub fn fits(shape: &Shape, dimension: usize) -> bool {
 /// Particles fitted to a shape, at most `spacing` apart; `None` for a shape that none can be fitted to.
 ///
 /// Their volumes add up to that of the shape, and none is larger than a cube of `spacing`.
-pub(super) fn fit(shape: &Shape, spacing: f64, dimension: usize) -> Option<Vec<Site>> {
+pub(super) fn fit(shape: &Shape, spacing: f64, dimension: usize) -> Option<Vec<ParticleSite>> {
     if let Shape::Rotated { shape, center, axis, angle } = shape {
         let rotation = Rotation::new(*center, *axis, *angle, dimension);
         let mut sites = fit(shape, spacing, dimension)?;
         sites.iter_mut().for_each(|site| site.position = rotation.forward(site.position));
         return Some(sites);
     }
-    let site = |position, volume| Site::of_volume(position, volume, dimension);
+    let site = |position, volume| ParticleSite::of_volume(position, volume, dimension);
     Some(match solid(shape, dimension)? {
         Solid::Box { min, max } => in_box(min, max, spacing, dimension),
         Solid::Disk { center, radius, frame, half } => sectors(radius, spacing, half)
@@ -155,7 +155,7 @@ fn placed(origin: [f64; 3], frame: &[[f64; 3]], coordinates: &[f64]) -> [f64; 3]
 }
 
 /// Equal boxes, as many along each axis as bring them to the spacing or below.
-fn in_box(min: [f64; 3], max: [f64; 3], spacing: f64, dimension: usize) -> Vec<Site> {
+fn in_box(min: [f64; 3], max: [f64; 3], spacing: f64, dimension: usize) -> Vec<ParticleSite> {
     let size: [f64; 3] = std::array::from_fn(|k| if k < dimension { max[k] - min[k] } else { 1.0 });
     let count: [usize; 3] = std::array::from_fn(|k| if k < dimension { parts(size[k], spacing) } else { 1 });
     let volume = (0..3).map(|k| size[k] / count[k] as f64).product();
@@ -166,7 +166,8 @@ fn in_box(min: [f64; 3], max: [f64; 3], spacing: f64, dimension: usize) -> Vec<S
     for i in 0..count[0] {
         for j in 0..count[1] {
             sites.extend(
-                (0..count[2]).map(|k| Site::of_volume([at(0, i), at(1, j), at(2, k)], volume, dimension)),
+                (0..count[2])
+                    .map(|k| ParticleSite::of_volume([at(0, i), at(1, j), at(2, k)], volume, dimension)),
             );
         }
     }
@@ -179,7 +180,7 @@ mod tests {
     use std::boxed::Box;
     use std::f64::consts::PI;
 
-    fn fitted(shape: &Shape, spacing: f64, dimension: usize) -> Vec<Site> {
+    fn fitted(shape: &Shape, spacing: f64, dimension: usize) -> Vec<ParticleSite> {
         let sites = fit(shape, spacing, dimension).expect("a shape that can be fitted");
         let most = 0.5 * spacing * (1.0 + 1e-9);
         for site in &sites {
@@ -233,7 +234,7 @@ mod tests {
         let upper = fitted(&cut(disk(), [0.0, 2.0, 0.0], normal), 0.05, 2);
         let whole = fitted(&disk(), 0.05, 2);
         assert_eq!(2 * upper.len(), whole.len());
-        let moment = |sites: &[Site], k: usize, c: f64| {
+        let moment = |sites: &[ParticleSite], k: usize, c: f64| {
             sites.iter().map(|s| s.volume * (s.position[k] - c).powi(2)).sum::<f64>()
         };
         for (k, c) in [(0, 1.0), (1, 2.0)] {

@@ -19,12 +19,12 @@ mod volume;
 mod whole;
 
 pub use bounds::Bounds;
-pub use distance::Level;
-pub use filling::{Arrangement, Filling, Lattice, Site, fill, sites};
+pub use distance::SignedDistance;
+pub use filling::{Arrangement, Filling, ParticleSite, SiteLattice, fill, sites};
 pub use fitted::{FITTED_SHAPES, fits};
 pub use mesh::{Mesh, MeshFault};
 pub use round::RoundPart;
-pub use whole::{Mirror, Whole};
+pub use whole::{Mirror, MirroredShape};
 
 use serde::Serialize;
 

@@ -1,7 +1,7 @@
 //! A shape together with its mirror images: a face that lies on a mirror is no surface.
 
 use super::rotation::Rotation;
-use super::{Level, Shape};
+use super::{Shape, SignedDistance};
 
 /// A mirror across an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,25 +16,25 @@ pub struct Mirror {
 
 /// A shape and its images in mirrors.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Whole {
+pub struct MirroredShape {
     /// The shape, continued through the mirrors where it ends on them.
     shape: Shape,
     mirrors: Vec<Mirror>,
     dimension: usize,
 }
 
-impl Whole {
+impl MirroredShape {
     /// A shape before mirrors.
     ///
     /// Faces on a mirror are left out of half-spaces, boxes, cylinders, polygons and meshes, also where these are
     /// combined; of shapes that are turned about another axis than the mirror's only out of half-spaces and meshes.
     pub fn new(shape: &Shape, mirrors: Vec<Mirror>, dimension: usize) -> Self {
         let shape = mirrors.iter().fold(shape.clone(), |shape, mirror| continued(shape, mirror, dimension));
-        Whole { shape, mirrors, dimension }
+        MirroredShape { shape, mirrors, dimension }
     }
 
     /// Signed distance to the surface and its gradient, as [`Shape::level`].
-    pub fn level(&self, mut point: [f64; 3]) -> Level {
+    pub fn level(&self, mut point: [f64; 3]) -> SignedDistance {
         let mut sign = [1.0; 3];
         for Mirror { axis, position, inward } in &self.mirrors {
             if (point[*axis] - position) * inward < 0.0 {
@@ -43,7 +43,7 @@ impl Whole {
             }
         }
         let level = self.shape.level(point, self.dimension);
-        Level { gradient: std::array::from_fn(|k| level.gradient[k] * sign[k]), ..level }
+        SignedDistance { gradient: std::array::from_fn(|k| level.gradient[k] * sign[k]), ..level }
     }
 }
 
@@ -177,7 +177,7 @@ mod tests {
             ball(),
         ];
         for shape in cut {
-            let whole = Whole::new(&shape, vec![MIRROR], 3);
+            let whole = MirroredShape::new(&shape, vec![MIRROR], 3);
             for point in [[0.3, 0.0, 0.4], [0.3, 0.01, 0.4], [0.1, -0.5, 0.2], [0.0, 0.0, 1.5]] {
                 assert_eq!(whole.level(point), ball().level(point, 3), "{shape:?}");
             }
@@ -187,7 +187,7 @@ mod tests {
         for shape in
             [Shape::Box { min: [-1.0, 0.0, 0.0], max: [1.0, 2.0, 0.0] }, Shape::Polygon { points, height }]
         {
-            let level = Whole::new(&shape, vec![MIRROR], 2).level([0.9, 0.01, 0.0]);
+            let level = MirroredShape::new(&shape, vec![MIRROR], 2).level([0.9, 0.01, 0.0]);
             assert!((level.distance + 0.1).abs() < 1e-12 && level.gradient[0] == 1.0, "{level:?}");
         }
     }
@@ -201,8 +201,8 @@ mod tests {
         let twice = cylinder([1.0, -0.1, 2.0], top);
         let lid = Mirror { position: 0.1, inward: -1.0, ..MIRROR };
         for [start, end] in [[foot, top], [top, foot]] {
-            let upon = Whole::new(&cylinder(start, end), vec![MIRROR], 3);
-            let between = Whole::new(&cylinder(start, end), vec![MIRROR, lid], 3);
+            let upon = MirroredShape::new(&cylinder(start, end), vec![MIRROR], 3);
+            let between = MirroredShape::new(&cylinder(start, end), vec![MIRROR, lid], 3);
             for point in [[1.4, 0.0, 2.0], [1.0, -0.05, 2.51], [1.4, 0.04, 2.0], [1.1, 0.2, 2.0]] {
                 let (found, exact) = (upon.level(point), twice.level(point, 3));
                 assert!((found.distance - exact.distance).abs() < 1e-12, "{point:?}: {found:?} {exact:?}");
@@ -212,7 +212,7 @@ mod tests {
         }
         let lying = cylinder([0.0; 3], [1.0, 0.0, 0.0]);
         assert_eq!(
-            Whole::new(&lying, vec![MIRROR], 3).level([0.5, 0.1, 0.0]),
+            MirroredShape::new(&lying, vec![MIRROR], 3).level([0.5, 0.1, 0.0]),
             lying.level([0.5, 0.1, 0.0], 3)
         );
     }
@@ -220,7 +220,7 @@ mod tests {
     #[test]
     fn a_face_off_the_mirror_stays() {
         let shape = Shape::Box { min: [-1.0, 0.5, 0.0], max: [1.0, 2.0, 0.0] };
-        let whole = Whole::new(&shape, vec![MIRROR], 2);
+        let whole = MirroredShape::new(&shape, vec![MIRROR], 2);
         let level = whole.level([0.0, -0.2, 0.0]);
         assert!((level.distance - 0.3).abs() < 1e-12 && level.gradient[1] == 1.0, "{level:?}");
     }

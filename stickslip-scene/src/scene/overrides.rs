@@ -7,7 +7,7 @@ use std::ops::Range;
 use toml::de::DeValue;
 
 /// Where an override stands among all documents: its name, and the start of its value.
-pub(super) struct Place {
+pub(super) struct OverridePlace {
     pub name: Range<usize>,
     pub value: usize,
 }
@@ -19,7 +19,7 @@ pub(super) struct Place {
 ///
 /// # Errors
 /// A parameter that does not exist; a path through a value that is no table or list.
-pub(super) fn put(root: &mut Node, name: &str, value: &str, place: &Place) -> Result<(), Fault> {
+pub(super) fn put(root: &mut Node, name: &str, value: &str, place: &OverridePlace) -> Result<(), Fault> {
     let written = value.trim();
     let start = place.value + (value.len() - value.trim_start().len());
     let read = match DeValue::parse(written) {
@@ -57,23 +57,23 @@ pub(super) fn put(root: &mut Node, name: &str, value: &str, place: &Place) -> Re
 }
 
 /// `bodies[0]` is two steps: a name and a number.
-enum Step<'a> {
+enum KeyStep<'a> {
     Name(&'a str),
     Number(&'a str),
 }
 
-fn steps(word: &str) -> impl Iterator<Item = Step<'_>> {
+fn steps(word: &str) -> impl Iterator<Item = KeyStep<'_>> {
     let (name, numbers) = word.split_at(word.find('[').unwrap_or(word.len()));
-    let numbers = numbers.split('[').skip(1).map(|number| Step::Number(number.trim_end_matches(']')));
-    std::iter::once(Step::Name(name)).chain(numbers)
+    let numbers = numbers.split('[').skip(1).map(|number| KeyStep::Number(number.trim_end_matches(']')));
+    std::iter::once(KeyStep::Name(name)).chain(numbers)
 }
 
-fn descend<'n>(node: &'n mut Node, step: Step<'_>, place: &Place) -> Result<&'n mut Node, Fault> {
+fn descend<'n>(node: &'n mut Node, step: KeyStep<'_>, place: &OverridePlace) -> Result<&'n mut Node, Fault> {
     let found = node.found();
     let key = node.key.clone();
     let fault = |found: String, allowed: &str| Fault::new(&key, found, allowed).at(place.name.clone());
     match (step, &mut node.value) {
-        (Step::Name(name), Value::Table(children)) => {
+        (KeyStep::Name(name), Value::Table(children)) => {
             let at = children.iter().position(|child| child.name == name).unwrap_or_else(|| {
                 children.push(Node {
                     key: joined(&key, name),
@@ -86,15 +86,15 @@ fn descend<'n>(node: &'n mut Node, step: Step<'_>, place: &Place) -> Result<&'n 
             });
             Ok(&mut children[at])
         }
-        (Step::Number(number), Value::List(items)) => {
+        (KeyStep::Number(number), Value::List(items)) => {
             let count = items.len();
             let item = number.parse().ok().and_then(|number: usize| items.get_mut(number));
             item.ok_or_else(|| {
                 fault(format!("number {number} of a list of {count}"), "a number in the list, from 0")
             })
         }
-        (Step::Name(name), _) => Err(fault(format!("`.{name}` in {found}"), "a name in a table")),
-        (Step::Number(number), _) => Err(fault(format!("`[{number}]` in {found}"), "a number in a list")),
+        (KeyStep::Name(name), _) => Err(fault(format!("`.{name}` in {found}"), "a name in a table")),
+        (KeyStep::Number(number), _) => Err(fault(format!("`[{number}]` in {found}"), "a number in a list")),
     }
 }
 

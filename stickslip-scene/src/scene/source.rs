@@ -69,7 +69,8 @@ impl Source {
             let name = name.trim();
             let document = Document { name: format!("--set {name}"), text: format!("{name}={value}"), start };
             source.documents.push(document);
-            let place = overrides::Place { name: start..start + name.len(), value: start + name.len() + 1 };
+            let place =
+                overrides::OverridePlace { name: start..start + name.len(), value: start + name.len() + 1 };
             overrides::put(&mut source.root, name, value, &place).map_err(|fault| source.show(fault))?;
         }
         Ok(source)

@@ -2,7 +2,7 @@
 
 use super::reasons::AT_A_DISTANCE;
 use crate::benchmark::{Allowed, Benchmark, Case, Laws, Resolution, Target};
-use crate::failure::Failure;
+use crate::failure::CaseFailure;
 use crate::measuring::mean;
 use crate::outcome::Outcome;
 use crate::scenery::with_parameter;
@@ -79,7 +79,7 @@ const SPEEDS: [&str; 2] = ["2.07e-3 * c_L", "5.9e-4 * c_L"];
 /// Part of rho c_L V at which the stress difference counts as arrived.
 const THRESHOLD: f64 = 0.3;
 
-fn run(case: &Case) -> Result<Outcome, Failure> {
+fn run(case: &Case) -> Result<Outcome, CaseFailure> {
     let mut outcome = Outcome::default();
     let mut intervals = [0.0; 2];
     for ((interval, speed), metric) in intervals.iter_mut().zip(SPEEDS).zip(INTERVAL) {
@@ -91,7 +91,7 @@ fn run(case: &Case) -> Result<Outcome, Failure> {
 }
 
 /// Mean interval between arrivals at the disks' centres [transits].
-fn wave(case: &Case, speed: &str, outcome: &mut Outcome) -> Result<f64, Failure> {
+fn wave(case: &Case, speed: &str, outcome: &mut Outcome) -> Result<f64, CaseFailure> {
     let scene = include_str!("../../../scenes/paper/disks_collinear.toml");
     // Each law takes its usual normal, as in all benchmarks.
     let scene: String =
@@ -124,7 +124,7 @@ fn wave(case: &Case, speed: &str, outcome: &mut Outcome) -> Result<f64, Failure>
     outcome.include(trial);
     match arrivals[..] {
         [first, .., last] if arrivals.len() == centers.len() => Ok((last - first) / 3.0),
-        _ => Err(Failure::Absent("the wave does not reach the last disk")),
+        _ => Err(CaseFailure::Absent("the wave does not reach the last disk")),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::reasons::AT_A_DISTANCE;
 use crate::benchmark::{Allowed, Benchmark, Case, Laws, Resolution, Target};
-use crate::failure::Failure;
+use crate::failure::CaseFailure;
 use crate::outcome::Outcome;
 use crate::trial::Trial;
 use std::collections::BTreeMap;
@@ -45,7 +45,7 @@ const HALF_WIDTH: f64 = 0.1;
 const RAMP: f64 = 20.0;
 const REST: f64 = 10.0;
 
-fn run(case: &Case) -> Result<Outcome, Failure> {
+fn run(case: &Case) -> Result<Outcome, CaseFailure> {
     let h = HALF_WIDTH / case.cells;
     let thick = 2.0 * h;
     let mut trial = Trial::start(

@@ -2,7 +2,7 @@
 
 use super::reasons::{AT_A_DISTANCE, RELEASE};
 use crate::benchmark::{Allowed, Benchmark, Case, Laws, Resolution, Target};
-use crate::failure::Failure;
+use crate::failure::CaseFailure;
 use crate::outcome::Outcome;
 use crate::trial::Trial;
 
@@ -71,7 +71,7 @@ const CONTACT_RADIUS: f64 = 0.15;
 /// Means of the force that are taken in the time of contact.
 const WINDOWS: f64 = 100.0;
 
-fn run(case: &Case) -> Result<Outcome, Failure> {
+fn run(case: &Case) -> Result<Outcome, CaseFailure> {
     let h = CONTACT_RADIUS / case.cells;
     let modulus = 1.0 / (1.0 - 0.3 * 0.3);
     let mass = 4.0 / 3.0 * std::f64::consts::PI;
@@ -130,7 +130,7 @@ rigid = {{}}
         }
     }
     let (Some(begin), Some(end)) = (begin, end) else {
-        return Err(Failure::Absent("the sphere never touches"));
+        return Err(CaseFailure::Absent("the sphere never touches"));
     };
     let mut outcome = Outcome::default();
     outcome.measure("duration over Hertz", (end - begin) / duration);

@@ -2,7 +2,7 @@
 
 use super::reasons::{AT_A_DISTANCE, EXTRAPOLATED, OWN_NORMALS, RELEASE};
 use crate::benchmark::{Allowed, Benchmark, Case, Laws, Reason, Resolution, Target};
-use crate::failure::Failure;
+use crate::failure::CaseFailure;
 use crate::outcome::Outcome;
 use crate::trial::Trial;
 
@@ -65,7 +65,7 @@ const METRICS: [&str; 3] = ["u1/v at u0 = 2 mu v", "u1/v off at u0 = 7 mu v", "u
 const SPEED: f64 = 0.02;
 const FRICTION: f64 = 0.3;
 
-fn run(case: &Case) -> Result<Outcome, Failure> {
+fn run(case: &Case) -> Result<Outcome, CaseFailure> {
     let mut outcome = Outcome::default();
     for (metric, slip) in METRICS.into_iter().zip([2.0, 7.0, 12.0]) {
         let (after, arm) = strike(case, slip * FRICTION, &mut outcome)?;
@@ -77,7 +77,7 @@ fn run(case: &Case) -> Result<Outcome, Failure> {
 
 /// The contact point's tangential velocity after the impact for one before it, both over the normal speed, and the mean
 /// height of the centre over the impulse of friction.
-fn strike(case: &Case, before: f64, outcome: &mut Outcome) -> Result<(f64, f64), Failure> {
+fn strike(case: &Case, before: f64, outcome: &mut Outcome) -> Result<(f64, f64), CaseFailure> {
     let h = 1.0 / case.cells;
     let mut trial = Trial::start(
         format!("slip_{before:.1}"),

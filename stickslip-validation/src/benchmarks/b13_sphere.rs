@@ -3,7 +3,7 @@
 use super::maw_curve::Impact;
 use super::reasons::{AT_A_DISTANCE, EXTRAPOLATED, OWN_NORMALS, RELEASE};
 use crate::benchmark::{Allowed, Benchmark, Case, Laws, Miss, Reason, Resolution, Target, Tier};
-use crate::failure::Failure;
+use crate::failure::CaseFailure;
 use crate::measuring::farthest;
 use crate::outcome::Outcome;
 use crate::trial::Trial;
@@ -72,7 +72,7 @@ const DENT: f64 = 0.04;
 const CONTACT_RADIUS: f64 = 0.2;
 const IMPACT: Impact = Impact { poisson_ratio: 0.47, friction: 0.3, dent: DENT };
 
-fn run(case: &Case) -> Result<Outcome, Failure> {
+fn run(case: &Case) -> Result<Outcome, CaseFailure> {
     let mut outcome = Outcome::default();
     let angles: [&[f64]; 3] = match case.tier {
         Tier::Quick => [&[1.0], &[4.0], &[8.0]],
@@ -94,7 +94,7 @@ fn run(case: &Case) -> Result<Outcome, Failure> {
 }
 
 /// The contact point's tangential velocity after the impact for one before it, both over the normal speed.
-fn strike(case: &Case, before: f64, outcome: &mut Outcome) -> Result<f64, Failure> {
+fn strike(case: &Case, before: f64, outcome: &mut Outcome) -> Result<f64, CaseFailure> {
     let h = CONTACT_RADIUS / case.cells;
     let nu = IMPACT.poisson_ratio;
     let (modulus, mass) = (1.0 / (1.0 - nu * nu), 4.0 / 3.0 * std::f64::consts::PI);

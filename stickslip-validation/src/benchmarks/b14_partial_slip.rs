@@ -2,7 +2,7 @@
 
 use super::reasons::{AT_A_DISTANCE, EXTRAPOLATED, OWN_NORMALS, PLANE_OF_PARTICLES};
 use crate::benchmark::{Allowed, Benchmark, Case, Laws, Reason, Resolution, Target};
-use crate::failure::Failure;
+use crate::failure::CaseFailure;
 use crate::outcome::Outcome;
 use crate::trial::Trial;
 use std::collections::BTreeMap;
@@ -81,7 +81,7 @@ const FRICTION: f64 = 0.3;
 const RAMP: f64 = 200.0;
 const REST: f64 = 50.0;
 
-fn run(case: &Case) -> Result<Outcome, Failure> {
+fn run(case: &Case) -> Result<Outcome, CaseFailure> {
     let h = 1.0 / case.cells;
     let mut trial = Trial::start("partial_slip", scene(case))?;
     // At rest after each way, by halves of the rest.

@@ -3,7 +3,7 @@
 use super::reasons::{AT_A_DISTANCE, EXTRAPOLATED, PLANE_OF_PARTICLES};
 use super::rolling_sphere::roll;
 use crate::benchmark::{Allowed, Benchmark, Case, Laws, Miss, Reason, Resolution, Target};
-use crate::failure::Failure;
+use crate::failure::CaseFailure;
 use crate::outcome::Outcome;
 
 pub const BENCHMARK: Benchmark = Benchmark {
@@ -93,7 +93,7 @@ Hertz's pressure, turns it faster. R/8 gives 0.960.",
 
 const FINE: &str = "the soft sphere follows the rigid one but for its settling";
 
-fn run(case: &Case) -> Result<Outcome, Failure> {
+fn run(case: &Case) -> Result<Outcome, CaseFailure> {
     let mut outcome = Outcome::default();
     let rolling = roll(
         "rolling",

@@ -1,7 +1,7 @@
 //! B20: a disk spins for turn after turn, and is pulled as it should be.
 
 use crate::benchmark::{Allowed, Benchmark, Case, Laws, Miss, Reason, Resolution, Target};
-use crate::failure::Failure;
+use crate::failure::CaseFailure;
 use crate::measuring::TimeMean;
 use crate::outcome::Outcome;
 use crate::trial::Trial;
@@ -55,7 +55,7 @@ const TURNS: &str = "nothing turns it, in ten turns as in three";
 const SPIN: f64 = 0.1;
 const POISSON: f64 = 0.3;
 
-fn run(case: &Case) -> Result<Outcome, Failure> {
+fn run(case: &Case) -> Result<Outcome, CaseFailure> {
     let mut outcome = Outcome::default();
     for (i, dimension) in ["plane-strain", "plane-stress"].into_iter().enumerate() {
         spin(case, (i, dimension), &mut outcome)?;
@@ -63,7 +63,7 @@ fn run(case: &Case) -> Result<Outcome, Failure> {
     Ok(outcome)
 }
 
-fn spin(case: &Case, (i, dimension): (usize, &str), outcome: &mut Outcome) -> Result<(), Failure> {
+fn spin(case: &Case, (i, dimension): (usize, &str), outcome: &mut Outcome) -> Result<(), CaseFailure> {
     let turn = TAU / SPIN;
     let end = if case.cells == 8.0 { 3.0 * turn } else { 10.0 * turn };
     let mut trial = Trial::start(

@@ -1,7 +1,7 @@
 //! B21: a cantilever swings with its first frequency.
 
 use crate::benchmark::{Allowed, Benchmark, Case, Laws, Resolution, Target};
-use crate::failure::Failure;
+use crate::failure::CaseFailure;
 use crate::measuring::angular_frequency;
 use crate::outcome::Outcome;
 use crate::trial::Trial;
@@ -45,7 +45,7 @@ const ENERGY: &str = "energy drift";
 const LENGTH: f64 = 8.0;
 const POISSON: f64 = 0.3;
 
-fn run(case: &Case) -> Result<Outcome, Failure> {
+fn run(case: &Case) -> Result<Outcome, CaseFailure> {
     let plane = 1.0 / (1.0 - POISSON * POISSON);
     let shear = 0.5 / (1.0 + POISSON);
     let bending = 1.875_10_f64.powi(2) * (plane / 12.0 / LENGTH.powi(4)).sqrt();

@@ -1,7 +1,7 @@
 //! B21-large: a beam that bends far under its own weight.
 
 use crate::benchmark::{Allowed, Benchmark, Case, Laws, Miss, Reason, Resolution, Target};
-use crate::failure::Failure;
+use crate::failure::CaseFailure;
 use crate::measuring::TimeMean;
 use crate::outcome::Outcome;
 use crate::trial::Trial;
@@ -71,7 +71,7 @@ const PERIOD: f64 = 383.0;
 /// How long the clamp turns: so slowly that the beam hardly swings after it.
 const TURN: f64 = 3.0 * PERIOD;
 
-fn run(case: &Case) -> Result<Outcome, Failure> {
+fn run(case: &Case) -> Result<Outcome, CaseFailure> {
     let gravity = LOAD / (1.0 - POISSON * POISSON) / 12.0 / LENGTH.powi(3);
     let [x, y] = elastica(gravity);
     let mut outcome = Outcome::default();
@@ -86,7 +86,7 @@ fn run(case: &Case) -> Result<Outcome, Failure> {
 }
 
 /// How far the centre is down and out from the root of a beam whose clamp has turned up.
-fn turn(case: &Case, gravity: f64, outcome: &mut Outcome) -> Result<[f64; 2], Failure> {
+fn turn(case: &Case, gravity: f64, outcome: &mut Outcome) -> Result<[f64; 2], CaseFailure> {
     let h = 1.0 / case.cells;
     let thick = 3.0 * h;
     let mut trial = Trial::start(
@@ -127,7 +127,7 @@ law = "glued"
 }
 
 /// How far the centre is down from the root of a beam that stands out from a fixed face.
-fn bend(case: &Case, gravity: f64, outcome: &mut Outcome) -> Result<f64, Failure> {
+fn bend(case: &Case, gravity: f64, outcome: &mut Outcome) -> Result<f64, CaseFailure> {
     let mut trial = Trial::start(
         "in_place",
         format!(

@@ -1,7 +1,7 @@
 //! B24: Taylor's bar, a copper rod shot at a wall.
 
 use crate::benchmark::{Allowed, Benchmark, Case, Laws, Resolution, Target};
-use crate::failure::Failure;
+use crate::failure::CaseFailure;
 use crate::outcome::Outcome;
 use crate::trial::Trial;
 
@@ -59,7 +59,7 @@ const LENGTH: &str = "length [mm]";
 const FOOT: &str = "foot radius [mm]";
 const RADIUS: f64 = 3.2e-3;
 
-fn run(case: &Case) -> Result<Outcome, Failure> {
+fn run(case: &Case) -> Result<Outcome, CaseFailure> {
     let h = RADIUS / case.cells;
     let room = (0.04 / h).ceil() * h;
     let mut trial = Trial::start(

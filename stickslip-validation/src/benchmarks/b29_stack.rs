@@ -1,7 +1,7 @@
 //! B29: a stack of ten blocks under its weight.
 
 use crate::benchmark::{Allowed, Benchmark, Case, Laws, Resolution, Target, Tier};
-use crate::failure::Failure;
+use crate::failure::CaseFailure;
 use crate::measuring::mean;
 use crate::outcome::Outcome;
 use crate::trial::Trial;
@@ -59,7 +59,7 @@ two fifths.",
 const BLOCKS: u32 = 10;
 const GRAVITY: f64 = 5e-4;
 
-fn run(case: &Case) -> Result<Outcome, Failure> {
+fn run(case: &Case) -> Result<Outcome, CaseFailure> {
     let h = 1.0 / case.cells;
     let transits = if case.tier == Tier::Full { 1000.0 } else { 25.0 };
     let end = transits * f64::from(BLOCKS);

@@ -1,7 +1,7 @@
 //! B30: a bar hangs from a fixed face, and goes on hanging.
 
 use crate::benchmark::{Allowed, Benchmark, Case, Laws, Resolution, Target, Tier};
-use crate::failure::Failure;
+use crate::failure::CaseFailure;
 use crate::measuring::TimeMean;
 use crate::outcome::Outcome;
 use crate::trial::Trial;
@@ -56,7 +56,7 @@ const POISSON: f64 = 0.3;
 const DENSITY: f64 = 1000.0;
 const G: f64 = 9.81;
 
-fn run(case: &Case) -> Result<Outcome, Failure> {
+fn run(case: &Case) -> Result<Outcome, CaseFailure> {
     let h = LENGTH / case.cells;
     let plane = YOUNG / (1.0 - POISSON * POISSON);
     let period = 4.0 * LENGTH / (plane / DENSITY).sqrt();

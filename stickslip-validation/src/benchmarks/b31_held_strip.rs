@@ -1,7 +1,7 @@
 //! B31: a strip is stretched and held, and goes on pulling.
 
 use crate::benchmark::{Allowed, Benchmark, Case, Laws, Miss, Reason, Resolution, Target, Tier};
-use crate::failure::Failure;
+use crate::failure::CaseFailure;
 use crate::measuring::TimeMean;
 use crate::outcome::Outcome;
 use crate::trial::Trial;
@@ -60,7 +60,7 @@ const WIDTH: f64 = 0.01;
 const YOUNG: f64 = 1e6;
 const POISSON: f64 = 0.3;
 
-fn run(case: &Case) -> Result<Outcome, Failure> {
+fn run(case: &Case) -> Result<Outcome, CaseFailure> {
     let mut outcome = Outcome::default();
     let end = if case.tier == Tier::Quick { 0.4 } else { 2.0 };
     let hold = format!("if(t < 0.1, {}, 0)", 0.01 * LENGTH / 0.1);
@@ -89,7 +89,7 @@ fn pull(
     (name, speed, end): (&str, &str, f64),
     spans: [(f64, f64); 2],
     outcome: &mut Outcome,
-) -> Result<[f64; 2], Failure> {
+) -> Result<[f64; 2], CaseFailure> {
     let h = LENGTH / case.cells;
     let grip = 3.0 * h;
     let mut trial = Trial::start(

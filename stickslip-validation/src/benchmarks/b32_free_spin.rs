@@ -1,7 +1,7 @@
 //! B32: bodies that nothing touches go on spinning.
 
 use crate::benchmark::{Allowed, Benchmark, Case, Laws, Resolution, Target, Tier};
-use crate::failure::Failure;
+use crate::failure::CaseFailure;
 use crate::outcome::Outcome;
 use crate::trial::Trial;
 use std::f64::consts::TAU;
@@ -111,7 +111,7 @@ const BLOCK: Names = Names {
 /// Speed of a rim at R over the wave speed.
 const SPIN: f64 = 1.0 / 37.0;
 
-fn run(case: &Case) -> Result<Outcome, Failure> {
+fn run(case: &Case) -> Result<Outcome, CaseFailure> {
     let mut outcome = Outcome::default();
     let (turns, fewer) = if case.tier == Tier::Quick { (2.0, 1.0) } else { (10.0, 5.0) };
     let round = "shape.ball = { center = [0, 0], radius = 1 }";
@@ -138,7 +138,7 @@ fn spin(
     names: &Names,
     (name, shape, spin, turns): (&str, &str, f64, f64),
     outcome: &mut Outcome,
-) -> Result<(), Failure> {
+) -> Result<(), CaseFailure> {
     let space = name.ends_with("ball");
     let (dimension, written) =
         if space { ("3d", format!("[0, 0, {spin}]")) } else { ("plane-strain", spin.to_string()) };

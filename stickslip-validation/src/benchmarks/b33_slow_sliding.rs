@@ -1,7 +1,7 @@
 //! B33: a floor creeps under a pressed block, and friction is what Coulomb says.
 
 use crate::benchmark::{Allowed, Benchmark, Case, Laws, Miss, Reason, Resolution, Target};
-use crate::failure::Failure;
+use crate::failure::CaseFailure;
 use crate::measuring::TimeMean;
 use crate::outcome::Outcome;
 use crate::trial::Trial;
@@ -50,7 +50,7 @@ const FRICTION: f64 = 0.3;
 /// How far the floor goes before all of the block slides: mu p/G, with p = 0.01 M [H].
 const GIVE: f64 = 0.009;
 
-fn run(case: &Case) -> Result<Outcome, Failure> {
+fn run(case: &Case) -> Result<Outcome, CaseFailure> {
     let mut outcome = Outcome::default();
     for (metric, speed) in METRICS.into_iter().zip([1e-4, 1e-3, 1e-2]) {
         let ratio = creep(case, speed, &mut outcome)?;
@@ -60,7 +60,7 @@ fn run(case: &Case) -> Result<Outcome, Failure> {
 }
 
 /// Mean force along the floor over that across it, at a speed of the floor over the wave speed.
-fn creep(case: &Case, speed: f64, outcome: &mut Outcome) -> Result<f64, Failure> {
+fn creep(case: &Case, speed: f64, outcome: &mut Outcome) -> Result<f64, CaseFailure> {
     let h = 1.0 / case.cells;
     let thick = 3.0 * h;
     let begin = 40.0 + 3.0 * GIVE / speed;

@@ -2,7 +2,7 @@
 
 use super::reasons::{EXTRAPOLATED, OWN_NORMALS, PLANE_OF_PARTICLES, STAIRS};
 use crate::benchmark::{Allowed, Benchmark, Case, Laws, Miss, Reason, Resolution, Target, Tier};
-use crate::failure::Failure;
+use crate::failure::CaseFailure;
 use crate::measuring::{farthest, slope};
 use crate::outcome::Outcome;
 use crate::scenery::turned_box;
@@ -84,7 +84,7 @@ const SETTLED: f64 = 0.2;
 const LOADED: f64 = 0.8;
 const END: f64 = 1.2;
 
-fn run(case: &Case) -> Result<Outcome, Failure> {
+fn run(case: &Case) -> Result<Outcome, CaseFailure> {
     let mut outcome = Outcome::default();
     let tan = ANGLE.tan();
     for (turn, variant) in [0.0, ANGLE].into_iter().zip(0..) {
@@ -110,7 +110,7 @@ fn run(case: &Case) -> Result<Outcome, Failure> {
 
 /// Acceleration and way under the full load over those without friction; the floor is turned against the grid by `turn`
 /// [rad].
-fn slide(case: &Case, turn: f64, friction: f64, outcome: &mut Outcome) -> Result<(f64, f64), Failure> {
+fn slide(case: &Case, turn: f64, friction: f64, outcome: &mut Outcome) -> Result<(f64, f64), CaseFailure> {
     let h = 1.0 / case.cells;
     let (along, away) = ([turn.cos(), -turn.sin()], [turn.sin(), turn.cos()]);
     let (press, free) = (G * ANGLE.cos(), G * ANGLE.sin());
@@ -160,6 +160,6 @@ material = "rubber"
         }
     }
     outcome.include(trial);
-    let [first, .., last] = ways[..] else { return Err(Failure::Absent("the run under the full load")) };
+    let [first, .., last] = ways[..] else { return Err(CaseFailure::Absent("the run under the full load")) };
     Ok((slope(&speeds) / free, (last - first) / (0.5 * free * (END - LOADED).powi(2))))
 }

@@ -2,7 +2,7 @@
 
 use super::reasons::{AT_A_DISTANCE, RELEASE};
 use crate::benchmark::{Allowed, Benchmark, Case, Laws, Reason, Resolution, Target};
-use crate::failure::Failure;
+use crate::failure::CaseFailure;
 use crate::outcome::Outcome;
 use crate::trial::Trial;
 
@@ -71,7 +71,7 @@ const RESTITUTION: [&str; 2] = ["restitution, v/c = 0.002", "restitution, v/c = 
 const END: [&str; 2] = ["contact ends over 2L/c, v/c = 0.002", "contact ends over 2L/c, v/c = 0.02"];
 const ENERGY: [&str; 2] = ["energy left over, v/c = 0.002", "energy left over, v/c = 0.02"];
 
-fn run(case: &Case) -> Result<Outcome, Failure> {
+fn run(case: &Case) -> Result<Outcome, CaseFailure> {
     let mut outcome = Outcome::default();
     for (i, speed) in SPEEDS.into_iter().enumerate() {
         impact(case, i, speed, &mut outcome)?;
@@ -79,7 +79,7 @@ fn run(case: &Case) -> Result<Outcome, Failure> {
     Ok(outcome)
 }
 
-fn impact(case: &Case, i: usize, speed: f64, outcome: &mut Outcome) -> Result<(), Failure> {
+fn impact(case: &Case, i: usize, speed: f64, outcome: &mut Outcome) -> Result<(), CaseFailure> {
     let h = 1.0 / case.cells;
     let height = 4.0 * h;
     let mut trial = Trial::start(
@@ -115,7 +115,7 @@ shape.box = {{ min = [1, 0], max = [2, {height}] }}
     }
     let bodies = trial.bodies();
     outcome.measure(RESTITUTION[i], (bodies[1].velocity[0] - bodies[0].velocity[0]) / speed);
-    outcome.measure(END[i], end.ok_or(Failure::Absent("the bars never push"))? / 2.0);
+    outcome.measure(END[i], end.ok_or(CaseFailure::Absent("the bars never push"))? / 2.0);
     outcome.measure(ENERGY[i], trial.ledger().total / trial.first_ledger().total - 1.0);
     if i == 0 {
         outcome.measure("strain/kinetic energy at L/c", shares);

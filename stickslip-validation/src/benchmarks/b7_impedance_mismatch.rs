@@ -2,7 +2,7 @@
 
 use super::reasons::OWN_NORMALS;
 use crate::benchmark::{Allowed, Benchmark, Case, Laws, Resolution, Target};
-use crate::failure::Failure;
+use crate::failure::CaseFailure;
 use crate::measuring::{farthest, mean};
 use crate::outcome::Outcome;
 use crate::trial::Trial;
@@ -46,7 +46,7 @@ both over the exact stress, the worst of the three pairs.",
 
 const SPEED: f64 = 0.01;
 
-fn run(case: &Case) -> Result<Outcome, Failure> {
+fn run(case: &Case) -> Result<Outcome, CaseFailure> {
     let mut outcome = Outcome::default();
     let (mut off, mut apart) = (Vec::new(), Vec::new());
     for (modulus, density) in [(10.0, 10.0), (1.0, 4.0), (16.0, 1.0)] {
@@ -60,7 +60,7 @@ fn run(case: &Case) -> Result<Outcome, Failure> {
 }
 
 /// Error of the transmitted stress and difference of tractions, over the exact stress.
-fn strike(case: &Case, modulus: f64, density: f64, outcome: &mut Outcome) -> Result<(f64, f64), Failure> {
+fn strike(case: &Case, modulus: f64, density: f64, outcome: &mut Outcome) -> Result<(f64, f64), CaseFailure> {
     let h = 1.0 / case.cells;
     let height = 4.0 * h;
     let wave = (modulus / density).sqrt();

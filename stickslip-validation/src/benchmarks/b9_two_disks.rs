@@ -2,7 +2,7 @@
 
 use super::reasons::{AT_A_DISTANCE, EXTRAPOLATED, RELEASE, STAIRS};
 use crate::benchmark::{Allowed, Benchmark, Case, Laws, Miss, Reason, Resolution, Target};
-use crate::failure::Failure;
+use crate::failure::CaseFailure;
 use crate::outcome::Outcome;
 use crate::trial::Trial;
 
@@ -57,7 +57,7 @@ of the energy at 1/20, where the patch is 4.5 cells wide at most, 3.1 % at 1/40,
 
 const SPEED: f64 = 0.1 * std::f64::consts::SQRT_2;
 
-fn run(case: &Case) -> Result<Outcome, Failure> {
+fn run(case: &Case) -> Result<Outcome, CaseFailure> {
     let h = 1.0 / case.cells;
     let mut trial = Trial::start(
         "disks",
@@ -83,7 +83,7 @@ velocity = [-0.1, -0.1]
     while trial.advance()? {}
     let mut outcome = Outcome::default();
     let exact = (0.6 * std::f64::consts::SQRT_2 - 0.4) / (2.0 * SPEED);
-    let seen = trial.first_contact().ok_or(Failure::Absent("the disks never push"))?;
+    let seen = trial.first_contact().ok_or(CaseFailure::Absent("the disks never push"))?;
     outcome.measure("cells too early", (exact - seen) * 2.0 * SPEED / h);
     outcome.measure("energy left over", trial.ledger().total / trial.first_ledger().total - 1.0);
     let bodies = trial.bodies();

@@ -2,7 +2,7 @@
 
 use super::reasons::AT_A_DISTANCE;
 use crate::benchmark::{Allowed, Benchmark, Case, Laws, Reason, Resolution, Target};
-use crate::failure::Failure;
+use crate::failure::CaseFailure;
 use crate::outcome::Outcome;
 use crate::trial::Trial;
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -104,7 +104,7 @@ fn way(time: f64) -> f64 {
     WAY * (share - (2.0 * PI * share).sin() / (2.0 * PI))
 }
 
-fn run(case: &Case) -> Result<Outcome, Failure> {
+fn run(case: &Case) -> Result<Outcome, CaseFailure> {
     let h = 1.0 / case.cells;
     let (half, thick) = (HALF_ANGLE.tan(), 4.0 * h);
     let wide = ((half + 0.5) / h).ceil() * h;

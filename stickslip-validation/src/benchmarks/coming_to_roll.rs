@@ -1,7 +1,7 @@
 //! Coming to roll: a disk that slides, and one that spins on the spot, end up rolling.
 
 use crate::benchmark::{Allowed, Benchmark, Case, Laws, Miss, Reason, Resolution, Target};
-use crate::failure::Failure;
+use crate::failure::CaseFailure;
 use crate::measuring::TimeMean;
 use crate::outcome::Outcome;
 use crate::trial::Trial;
@@ -58,7 +58,7 @@ const ROLLS: &str = "pressure shortens the surface by 0.006, a dent of 0.01 R fr
 const START: f64 = 0.06;
 const END: f64 = 120.0;
 
-fn run(case: &Case) -> Result<Outcome, Failure> {
+fn run(case: &Case) -> Result<Outcome, CaseFailure> {
     let mut outcome = Outcome::default();
     for (i, (name, start, part)) in [
         ("sliding", format!("velocity = [{START}, 0]"), 2.0 / 3.0),
@@ -75,7 +75,7 @@ fn run(case: &Case) -> Result<Outcome, Failure> {
 }
 
 /// Mean speed and mean spin, forward, over the last half of the run.
-fn roll(case: &Case, name: &str, start: &str, outcome: &mut Outcome) -> Result<[f64; 2], Failure> {
+fn roll(case: &Case, name: &str, start: &str, outcome: &mut Outcome) -> Result<[f64; 2], CaseFailure> {
     let mut trial = Trial::start(
         name,
         format!(

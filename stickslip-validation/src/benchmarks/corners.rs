@@ -2,7 +2,7 @@
 
 use super::reasons::{EXTRAPOLATED, OWN_NORMALS, PLANE_OF_PARTICLES, STAIRS};
 use crate::benchmark::{Allowed, Benchmark, Case, Laws, Resolution, Target};
-use crate::failure::Failure;
+use crate::failure::CaseFailure;
 use crate::measuring::{mean, slope};
 use crate::outcome::Outcome;
 use crate::scenery::turned_box;
@@ -56,7 +56,7 @@ const PRESS: f64 = 10.0;
 const PUSH: f64 = 6.0;
 const FRICTION: f64 = 0.3;
 
-fn run(case: &Case) -> Result<Outcome, Failure> {
+fn run(case: &Case) -> Result<Outcome, CaseFailure> {
     let mut outcome = Outcome::default();
     for (i, degrees) in [0.0_f64, 20.0].into_iter().enumerate() {
         let (acceleration, sinking) = push(case, degrees.to_radians(), &mut outcome)?;
@@ -68,7 +68,7 @@ fn run(case: &Case) -> Result<Outcome, Failure> {
 
 /// The block's acceleration along the bed, which is turned through the grid by `turn` [m/s^2], and how deep it sinks
 /// [cells].
-fn push(case: &Case, turn: f64, outcome: &mut Outcome) -> Result<(f64, f64), Failure> {
+fn push(case: &Case, turn: f64, outcome: &mut Outcome) -> Result<(f64, f64), CaseFailure> {
     let h = 1.0 / case.cells;
     let (sin, cos) = turn.sin_cos();
     let mut trial = Trial::start(

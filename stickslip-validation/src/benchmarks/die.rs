@@ -2,7 +2,7 @@
 
 use super::reasons::{AT_A_DISTANCE, EXTRAPOLATED, OWN_NORMALS, PLANE_OF_PARTICLES, RELEASE, STAIRS};
 use crate::benchmark::{Allowed, Benchmark, Case, Laws, Reason, Resolution, Target};
-use crate::failure::Failure;
+use crate::failure::CaseFailure;
 use crate::measuring::{farthest, mean};
 use crate::outcome::Outcome;
 use crate::scenery::turned_box;
@@ -67,7 +67,7 @@ const RAMP: f64 = 20.0;
 /// The run's end [L/c].
 const END: f64 = 30.0;
 
-fn run(case: &Case) -> Result<Outcome, Failure> {
+fn run(case: &Case) -> Result<Outcome, CaseFailure> {
     let mut outcome = Outcome::default();
     for (i, degrees) in [0.0_f64, 20.0].into_iter().enumerate() {
         press(case, i, degrees.to_radians(), &mut outcome)?;
@@ -83,7 +83,7 @@ fn stress() -> [f64; 2] {
     [j * j, 1.0].map(|b| 0.5 * bulk * (j - 1.0 / j) + shear * j.powf(-5.0 / 3.0) * (b - trace))
 }
 
-fn press(case: &Case, i: usize, turn: f64, outcome: &mut Outcome) -> Result<(), Failure> {
+fn press(case: &Case, i: usize, turn: f64, outcome: &mut Outcome) -> Result<(), CaseFailure> {
     let h = 1.0 / case.cells;
     let thick = 3.0 * h;
     let (sin, cos) = turn.sin_cos();
@@ -130,7 +130,7 @@ materials.rubber = {{ density = 1, neo_hookean = {{ young_modulus = 1, poisson_r
             }
         }
     }
-    let time = trial.time() - from.ok_or(Failure::Absent("the time of rest"))?;
+    let time = trial.time() - from.ok_or(CaseFailure::Absent("the time of rest"))?;
     let [along, sideways] = stress();
     let exact = [-along, -along, -0.5 * sideways, -0.5 * sideways];
     let off: Vec<f64> = (0..4).map(|wall| impulses[wall].abs() / time / exact[wall] - 1.0).collect();

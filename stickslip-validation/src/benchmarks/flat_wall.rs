@@ -1,7 +1,7 @@
 //! Flat wall: own normals know that a rigid wall is flat.
 
 use crate::benchmark::{Allowed, Benchmark, Case, Laws, Miss, Reason, Resolution, Target};
-use crate::failure::Failure;
+use crate::failure::CaseFailure;
 use crate::measuring::farthest;
 use crate::outcome::Outcome;
 use crate::scenery::turned_box;
@@ -44,7 +44,7 @@ and 0.0039 at L/24, and where that comes from is not known.",
 const METRICS: [&str; 3] = ["drag over push, kinematic", "drag over push, traction", "drag over push, gap"];
 const FLAT: &str = "the wall's own normal is exact: only round-off is left";
 
-fn run(case: &Case) -> Result<Outcome, Failure> {
+fn run(case: &Case) -> Result<Outcome, CaseFailure> {
     let mut outcome = Outcome::default();
     for (i, law) in ["kinematic", "traction", "gap"].into_iter().enumerate() {
         let aligned = strike(case, law, 0.0, &mut outcome)?;
@@ -56,7 +56,7 @@ fn run(case: &Case) -> Result<Outcome, Failure> {
 
 /// Impulse along the wall over impulse across it; the wall is turned through the grid by so many degrees. Units of
 /// block length = rho = E = 1.
-fn strike(case: &Case, law: &str, degrees: f64, outcome: &mut Outcome) -> Result<f64, Failure> {
+fn strike(case: &Case, law: &str, degrees: f64, outcome: &mut Outcome) -> Result<f64, CaseFailure> {
     let h = 1.0 / case.cells;
     let turn = degrees.to_radians();
     let (sin, cos) = turn.sin_cos();

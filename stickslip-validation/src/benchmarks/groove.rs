@@ -1,7 +1,7 @@
 //! Groove: a disk spins in a groove without friction, whatever its walls are written as.
 
 use crate::benchmark::{Allowed, Benchmark, Case, Laws, Miss, Reason, Resolution, Target};
-use crate::failure::Failure;
+use crate::failure::CaseFailure;
 use crate::outcome::Outcome;
 use crate::trial::Trial;
 use std::f64::consts::{FRAC_PI_4, SQRT_2, TAU};
@@ -52,7 +52,7 @@ const PRISMS: &str = "spin, prisms less boxes in space";
 const SAME: &str = "the shapes are one, but for round-off, and what it grows to";
 const RATE: f64 = 1.0 / 37.0;
 
-fn run(case: &Case) -> Result<Outcome, Failure> {
+fn run(case: &Case) -> Result<Outcome, CaseFailure> {
     let mut outcome = Outcome::default();
     let mut spin = |name: &str| turn(case, name, &mut outcome);
     let [boxes, polygons] = [spin("boxes")?, spin("polygons")?];
@@ -64,7 +64,7 @@ fn run(case: &Case) -> Result<Outcome, Failure> {
 }
 
 /// Spin after the run over that at the start.
-fn turn(case: &Case, name: &str, outcome: &mut Outcome) -> Result<f64, Failure> {
+fn turn(case: &Case, name: &str, outcome: &mut Outcome) -> Result<f64, CaseFailure> {
     let h = 1.0 / case.cells;
     let space = matches!(name, "boxes_in_space" | "prisms");
     let wall = |lower: [f64; 2], upper: [f64; 2], angle: f64| match name {

@@ -1,7 +1,7 @@
 //! Identity: a body cut in two and glued is the body.
 
 use crate::benchmark::{Allowed, Benchmark, Case, Laws, Resolution, Target, Tier};
-use crate::failure::Failure;
+use crate::failure::CaseFailure;
 use crate::outcome::Outcome;
 use crate::trial::Trial;
 use stickslip::door::ParticleSnapshot;
@@ -48,7 +48,7 @@ const CUTS: [(&str, &[[f64; 3]]); 2] = [
     ("3d", &[[1.0, 0.5, -0.7]]),
 ];
 
-fn run(case: &Case) -> Result<Outcome, Failure> {
+fn run(case: &Case) -> Result<Outcome, CaseFailure> {
     let mut outcome = Outcome::default();
     let (mut place, mut speed) = (0.0_f64, 0.0_f64);
     for (dimension, cuts) in &CUTS[..if case.tier == Tier::Full { 2 } else { 1 }] {
@@ -56,7 +56,7 @@ fn run(case: &Case) -> Result<Outcome, Failure> {
         for &cut in *cuts {
             let parts = drop(case, dimension, Some(cut), &mut outcome)?;
             if parts.len() != whole.len() {
-                return Err(Failure::Absent("the parts have not the particles of the whole"));
+                return Err(CaseFailure::Absent("the parts have not the particles of the whole"));
             }
             for (part, whole) in parts.iter().zip(&whole) {
                 for i in 0..3 {
@@ -84,7 +84,7 @@ fn drop(
     dimension: &str,
     cut: Option<[f64; 3]>,
     outcome: &mut Outcome,
-) -> Result<Vec<Particle>, Failure> {
+) -> Result<Vec<Particle>, CaseFailure> {
     let h = 1.0 / case.cells;
     // Vectors of the scene have as many components as it has dimensions.
     let vector = |x: [f64; 3]| if dimension == "3d" { format!("{x:?}") } else { format!("{:?}", &x[..2]) };

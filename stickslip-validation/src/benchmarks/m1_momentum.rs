@@ -3,7 +3,7 @@
 use super::meeting::{BODIES, meet};
 use super::reasons::OWN_NORMALS;
 use crate::benchmark::{Allowed, Benchmark, Case, Laws, Resolution, Target};
-use crate::failure::Failure;
+use crate::failure::CaseFailure;
 use crate::outcome::Outcome;
 
 pub const BENCHMARK: Benchmark = Benchmark {
@@ -37,7 +37,7 @@ node in any step, over the sum of the bodies' momenta there before contact.",
 const METRICS: [&str; 4] = ["momentum from nowhere, 2 bodies", "3 bodies", "4 bodies", "5 bodies"];
 const ROUND_OFF: &str = "round-off of some hundred sums of impulses";
 
-fn run(case: &Case) -> Result<Outcome, Failure> {
+fn run(case: &Case) -> Result<Outcome, CaseFailure> {
     let mut outcome = Outcome::default();
     for (metric, bodies) in METRICS.into_iter().zip(BODIES) {
         let mut worst = 0.0_f64;

@@ -1,9 +1,9 @@
 //! M2: contact gives no node energy.
 
-use super::meeting::{BODIES, Side, meet};
+use super::meeting::{BODIES, BodyAtNode, meet};
 use super::reasons::OWN_NORMALS;
 use crate::benchmark::{Allowed, Benchmark, Case, Laws, Resolution, Target};
-use crate::failure::Failure;
+use crate::failure::CaseFailure;
 use crate::outcome::Outcome;
 
 pub const BENCHMARK: Benchmark = Benchmark {
@@ -36,12 +36,12 @@ at any node over the energy there before.",
 const METRICS: [&str; 4] = ["energy gained, 2 bodies", "3 bodies", "4 bodies", "5 bodies"];
 const ROUND_OFF: &str = "round-off of some hundred sums of squares; a gain is never right";
 
-fn run(case: &Case) -> Result<Outcome, Failure> {
+fn run(case: &Case) -> Result<Outcome, CaseFailure> {
     let mut outcome = Outcome::default();
     for (metric, bodies) in METRICS.into_iter().zip(BODIES) {
         let mut worst = f64::NEG_INFINITY;
         meet(case, (bodies, 1), &mut outcome, &mut |sides| {
-            let before = kinetic(sides, Side::free);
+            let before = kinetic(sides, BodyAtNode::free);
             worst = worst.max(kinetic(sides, |side| side.velocity) / before - 1.0);
         })?;
         outcome.measure(metric, worst);
@@ -49,6 +49,6 @@ fn run(case: &Case) -> Result<Outcome, Failure> {
     Ok(outcome)
 }
 
-fn kinetic(sides: &[Side], velocity: impl Fn(&Side) -> [f64; 3]) -> f64 {
+fn kinetic(sides: &[BodyAtNode], velocity: impl Fn(&BodyAtNode) -> [f64; 3]) -> f64 {
     sides.iter().map(|side| 0.5 * side.mass * velocity(side).iter().map(|v| v * v).sum::<f64>()).sum()
 }

@@ -2,7 +2,7 @@
 
 use super::reasons::{AT_A_DISTANCE, OWN_NORMALS, RELEASE};
 use crate::benchmark::{Allowed, Benchmark, Case, Laws, Miss, Reason, Resolution, Target, Tier};
-use crate::failure::Failure;
+use crate::failure::CaseFailure;
 use crate::measuring::deviation;
 use crate::outcome::Outcome;
 use crate::trial::Trial;
@@ -63,7 +63,7 @@ of particles.",
 
 const SPEED: f64 = 0.05;
 
-fn run(case: &Case) -> Result<Outcome, Failure> {
+fn run(case: &Case) -> Result<Outcome, CaseFailure> {
     let mut outcome = Outcome::default();
     let (offsets, directions) = match case.tier {
         Tier::Quick => (2, 2),
@@ -93,7 +93,7 @@ fn collide(
     offset: [f64; 2],
     direction: f64,
     outcome: &mut Outcome,
-) -> Result<(f64, f64), Failure> {
+) -> Result<(f64, f64), CaseFailure> {
     let h = 1.0 / case.cells;
     let (sin, cos) = direction.sin_cos();
     let [x, y] = offset.map(|offset| offset * h);
@@ -126,7 +126,7 @@ shape.ball = {{ center = [{}, {}], radius = 1 }}
     let bodies = trial.bodies();
     let along = |v: [f64; 3]| v[0] * cos + v[1] * sin;
     let restitution = (along(bodies[1].velocity) - along(bodies[0].velocity)) / SPEED;
-    let first = trial.first_contact().ok_or(Failure::Absent("the disks never push"))?;
+    let first = trial.first_contact().ok_or(CaseFailure::Absent("the disks never push"))?;
     outcome.include(trial);
     Ok((restitution, first))
 }

@@ -2,7 +2,7 @@
 
 use super::reasons::{AT_A_DISTANCE, EXTRAPOLATED};
 use crate::benchmark::{Allowed, Benchmark, Case, Laws, Resolution, Target};
-use crate::failure::Failure;
+use crate::failure::CaseFailure;
 use crate::measuring::farthest;
 use crate::outcome::Outcome;
 use crate::trial::Trial;
@@ -48,7 +48,7 @@ const WHY: &str = "a twentieth of a cell is small against elastic approach at an
 const GAP: f64 = 2.0;
 const SPEED: f64 = 0.02;
 
-fn run(case: &Case) -> Result<Outcome, Failure> {
+fn run(case: &Case) -> Result<Outcome, CaseFailure> {
     let mut outcome = Outcome::default();
     for (metrics, arrangement) in [(LATTICE, "lattice"), (FITTED, "fitted")] {
         for (metric, particles) in metrics.into_iter().zip(1..) {
@@ -68,7 +68,7 @@ fn approach(
     (arrangement, particles): (&str, usize),
     meeting: f64,
     outcome: &mut Outcome,
-) -> Result<f64, Failure> {
+) -> Result<f64, CaseFailure> {
     // Fitted bars are no whole number of particles long and high.
     let (longer, height) = if arrangement == "fitted" { (0.37, 3.81) } else { (0.0, 4.0) };
     let (length, exact) = (case.cells + longer, GAP / SPEED);
@@ -102,7 +102,7 @@ velocity = [{drift}, 0]
         ),
     )?;
     while trial.first_contact().is_none() && trial.advance()? {}
-    let seen = trial.first_contact().ok_or(Failure::Absent("the bars never push"))?;
+    let seen = trial.first_contact().ok_or(CaseFailure::Absent("the bars never push"))?;
     outcome.include(trial);
     Ok((exact - seen) * SPEED)
 }

@@ -2,7 +2,7 @@
 
 use super::reasons::{PLANE_OF_PARTICLES, STAIRS};
 use crate::benchmark::{Allowed, Benchmark, Case, Laws, Miss, Reason, Resolution, Target, Tier};
-use crate::failure::Failure;
+use crate::failure::CaseFailure;
 use crate::outcome::Outcome;
 use crate::trial::Trial;
 
@@ -66,7 +66,7 @@ const ANGLES: [f64; 4] = [0.0, 15.0, 30.0, 45.0];
 const SLANTED: &str =
     "a slanted face is stairs on the particles' lattice; the error shall stay within them and fall with h";
 
-fn run(case: &Case) -> Result<Outcome, Failure> {
+fn run(case: &Case) -> Result<Outcome, CaseFailure> {
     let mut outcome = Outcome::default();
     for (metric, degrees) in METRICS.into_iter().zip(ANGLES) {
         let [everywhere, _] = press(case, degrees, [2, 2], &mut outcome)?;
@@ -97,7 +97,7 @@ fn press(
     degrees: f64,
     per_side: [usize; 2],
     outcome: &mut Outcome,
-) -> Result<[f64; 2], Failure> {
+) -> Result<[f64; 2], CaseFailure> {
     let h = 1.0 / case.cells;
     let modulus: f64 = 0.7 / (1.3 * 0.4);
     let ramp = 10.0 / modulus.sqrt();

@@ -2,7 +2,7 @@
 
 use super::reasons::{EXTRAPOLATED, OWN_NORMALS, PLANE_OF_PARTICLES, STAIRS};
 use crate::benchmark::{Allowed, Benchmark, Case, Laws, Resolution, Target};
-use crate::failure::Failure;
+use crate::failure::CaseFailure;
 use crate::outcome::Outcome;
 use crate::scenery::turned_box;
 use crate::trial::Trial;
@@ -41,7 +41,7 @@ over mu.",
 const METRICS: [&str; 2] = ["ratio/mu, aligned", "ratio/mu, rotated"];
 const FRICTION: f64 = 0.3;
 
-fn run(case: &Case) -> Result<Outcome, Failure> {
+fn run(case: &Case) -> Result<Outcome, CaseFailure> {
     let mut outcome = Outcome::default();
     for (metric, degrees) in METRICS.into_iter().zip([0.0_f64, 30.0]) {
         let ratio = strike(case, degrees.to_radians(), &mut outcome)?;
@@ -52,7 +52,7 @@ fn run(case: &Case) -> Result<Outcome, Failure> {
 
 /// Impulse along the face over impulse across it; the face is turned through the grid by `turn` [rad]. Units of block
 /// length = rho = E = 1.
-fn strike(case: &Case, turn: f64, outcome: &mut Outcome) -> Result<f64, Failure> {
+fn strike(case: &Case, turn: f64, outcome: &mut Outcome) -> Result<f64, CaseFailure> {
     let h = 1.0 / case.cells;
     let (sin, cos) = turn.sin_cos();
     let (along, down) = (0.05, 0.005);

@@ -1,7 +1,7 @@
 //! What M1 and M2 share: bodies that meet at one node.
 
 use crate::benchmark::{Case, Tier};
-use crate::failure::Failure;
+use crate::failure::CaseFailure;
 use crate::outcome::Outcome;
 use crate::trial::Trial;
 use std::collections::BTreeMap;
@@ -11,7 +11,7 @@ use std::f64::consts::PI;
 pub const BODIES: [usize; 4] = [2, 3, 4, 5];
 
 /// A body at a node after a step.
-pub struct Side {
+pub struct BodyAtNode {
     /// Its mass there [kg].
     pub mass: f64,
     /// Its velocity with contact [m/s].
@@ -20,7 +20,7 @@ pub struct Side {
     pub impulse: [f64; 3],
 }
 
-impl Side {
+impl BodyAtNode {
     /// Velocity without what contact did [m/s].
     pub fn free(&self) -> [f64; 3] {
         std::array::from_fn(|i| self.velocity[i] - self.impulse[i] / self.mass)
@@ -34,8 +34,8 @@ pub fn meet(
     case: &Case,
     (bodies, steps): (usize, usize),
     outcome: &mut Outcome,
-    look: &mut dyn FnMut(&[Side]),
-) -> Result<(), Failure> {
+    look: &mut dyn FnMut(&[BodyAtNode]),
+) -> Result<(), CaseFailure> {
     let draws = if case.tier == Tier::Full { 8 } else { 1 };
     for dimension in ["plane-strain", "3d"] {
         for friction in [0.3, f64::INFINITY] {
@@ -54,15 +54,15 @@ fn fly(
     mut trial: Trial,
     steps: usize,
     outcome: &mut Outcome,
-    look: &mut dyn FnMut(&[Side]),
-) -> Result<(), Failure> {
+    look: &mut dyn FnMut(&[BodyAtNode]),
+) -> Result<(), CaseFailure> {
     for _ in 0..steps {
         trial.advance()?;
         let grid = trial.grid();
-        let mut nodes: BTreeMap<[i64; 3], Vec<Side>> = BTreeMap::new();
+        let mut nodes: BTreeMap<[i64; 3], Vec<BodyAtNode>> = BTreeMap::new();
         for (i, x) in grid.position.iter().enumerate() {
             let place = x.map(|x| (x / grid.cell).round() as i64);
-            nodes.entry(place).or_default().push(Side {
+            nodes.entry(place).or_default().push(BodyAtNode {
                 mass: grid.mass[i],
                 velocity: grid.velocity[i],
                 impulse: grid.contact_impulse[i],

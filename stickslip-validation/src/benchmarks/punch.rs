@@ -1,7 +1,7 @@
 //! Punch: a block that is nearly incompressible gives way as it should.
 
 use crate::benchmark::{Allowed, Benchmark, Case, Laws, Miss, Reason, Resolution, Target};
-use crate::failure::Failure;
+use crate::failure::CaseFailure;
 use crate::measuring::TimeMean;
 use crate::outcome::Outcome;
 use crate::trial::Trial;
@@ -65,7 +65,7 @@ const POISSON: [f64; 3] = [0.3, 0.49, 0.4999];
 const DEPTH: f64 = 0.01;
 const DOWN: f64 = 12.0;
 
-fn run(case: &Case) -> Result<Outcome, Failure> {
+fn run(case: &Case) -> Result<Outcome, CaseFailure> {
     let mut outcome = Outcome::default();
     for (metric, poisson) in FORCES.into_iter().zip(POISSON) {
         let force = punch(case, poisson, &mut outcome)?;
@@ -76,7 +76,7 @@ fn run(case: &Case) -> Result<Outcome, Failure> {
 }
 
 /// Mean force on the half punch once it rests.
-fn punch(case: &Case, poisson: f64, outcome: &mut Outcome) -> Result<f64, Failure> {
+fn punch(case: &Case, poisson: f64, outcome: &mut Outcome) -> Result<f64, CaseFailure> {
     let h = 1.0 / case.cells;
     let mut trial = Trial::start(
         format!("nu_{poisson}"),

@@ -1,7 +1,7 @@
 //! Rigid floor: it does what a very stiff deformable floor does.
 
 use crate::benchmark::{Allowed, Benchmark, Case, Laws, Resolution, Target};
-use crate::failure::Failure;
+use crate::failure::CaseFailure;
 use crate::outcome::Outcome;
 use crate::trial::Trial;
 
@@ -44,7 +44,7 @@ Measured are the differences of restitution and of the largest force over a tent
 
 const SPEED: f64 = 0.05;
 
-fn run(case: &Case) -> Result<Outcome, Failure> {
+fn run(case: &Case) -> Result<Outcome, CaseFailure> {
     let mut outcome = Outcome::default();
     let rigid = drop(case, "rigid", "rigid = {}", &mut outcome)?;
     let stiff = drop(case, "stiff", "", &mut outcome)?;
@@ -54,7 +54,7 @@ fn run(case: &Case) -> Result<Outcome, Failure> {
 }
 
 /// Restitution, and the largest mean force over a tenth of R/c.
-fn drop(case: &Case, name: &str, motion: &str, outcome: &mut Outcome) -> Result<(f64, f64), Failure> {
+fn drop(case: &Case, name: &str, motion: &str, outcome: &mut Outcome) -> Result<(f64, f64), CaseFailure> {
     let h = 1.0 / case.cells;
     let mut trial = Trial::start(
         name,

@@ -1,7 +1,7 @@
 //! What B1 and B2 share: the paper's soft sphere on its plane, held against a rigid one.
 
 use crate::benchmark::Case;
-use crate::failure::Failure;
+use crate::failure::CaseFailure;
 use crate::measuring::{mean, slope};
 use crate::outcome::Outcome;
 use crate::scenery::with_parameter;
@@ -30,7 +30,7 @@ pub struct Roll {
 }
 
 /// Rolls the sphere of one of the paper's scenes; the cells are those on its radius.
-pub fn roll(name: &str, scene: &str, case: &Case, outcome: &mut Outcome) -> Result<Roll, Failure> {
+pub fn roll(name: &str, scene: &str, case: &Case, outcome: &mut Outcome) -> Result<Roll, CaseFailure> {
     let text = with_parameter(scene, "cells_per_radius", &case.cells.to_string());
     let mut trial = Trial::start(name, with_parameter(&text, "contact", &format!("\"{}\"", case.law)))?;
     let end = trial.scene().time.end;
@@ -51,13 +51,13 @@ pub fn roll(name: &str, scene: &str, case: &Case, outcome: &mut Outcome) -> Resu
     let sphere = trial.bodies().swap_remove(0);
     let scene = trial.scene();
     let Some(radius) = scene.parameters.get("radius").and_then(Parameter::number) else {
-        return Err(Failure::Absent("the scene has no radius"));
+        return Err(CaseFailure::Absent("the scene has no radius"));
     };
     let exact = |quantity: &str, time: f64| {
         let stated = scene.references.iter().find(|reference| reference.quantity == quantity);
         stated.map_or(f64::NAN, |reference| reference.value.at(time))
     };
-    let (half, from) = middle.ok_or(Failure::Absent("the second half of the run"))?;
+    let (half, from) = middle.ok_or(CaseFailure::Absent("the second half of the run"))?;
     let roll = Roll {
         distance: sphere.position[0] / exact("x", end),
         speed: sphere.velocity[0] / exact("vx", end),

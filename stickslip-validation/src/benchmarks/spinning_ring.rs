@@ -1,7 +1,7 @@
 //! Ring: a thin ring spins, and its hoop holds it together.
 
 use crate::benchmark::{Allowed, Benchmark, Case, Laws, Resolution, Target, Tier};
-use crate::failure::Failure;
+use crate::failure::CaseFailure;
 use crate::measuring::TimeMean;
 use crate::outcome::Outcome;
 use crate::trial::Trial;
@@ -44,7 +44,7 @@ const HOOP: &str = "hoop stress";
 const MOMENTUM: &str = "angular momentum";
 const SPIN: f64 = 0.05;
 
-fn run(case: &Case) -> Result<Outcome, Failure> {
+fn run(case: &Case) -> Result<Outcome, CaseFailure> {
     let turn = TAU / SPIN;
     let end = if case.tier == Tier::Quick { turn } else { 10.0 * turn };
     let mut trial = Trial::start(

@@ -1,7 +1,7 @@
 //! Spinning to a stop: a rod that stands on its end and turns is stopped by friction.
 
 use crate::benchmark::{Allowed, Benchmark, Case, Laws, Resolution, Target};
-use crate::failure::Failure;
+use crate::failure::CaseFailure;
 use crate::measuring::slope;
 use crate::outcome::Outcome;
 use crate::trial::Trial;
@@ -49,7 +49,7 @@ const SPIN: f64 = 0.024;
 const FRICTION: f64 = 0.3;
 const G: f64 = 0.002;
 
-fn run(case: &Case) -> Result<Outcome, Failure> {
+fn run(case: &Case) -> Result<Outcome, CaseFailure> {
     let mut trial = Trial::start(
         "pivot",
         format!(

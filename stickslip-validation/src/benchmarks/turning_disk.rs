@@ -2,7 +2,7 @@
 
 use super::reasons::{AT_A_DISTANCE, EXTRAPOLATED, OWN_NORMALS, RELEASE};
 use crate::benchmark::{Allowed, Benchmark, Case, Laws, Miss, Reason, Resolution, Target};
-use crate::failure::Failure;
+use crate::failure::CaseFailure;
 use crate::measuring::{deviation, mean};
 use crate::outcome::Outcome;
 use crate::trial::Trial;
@@ -84,7 +84,7 @@ const RAMP: f64 = 30.0;
 /// The walls rest, and what their stopping left has rung out [R/c].
 const BEGIN: f64 = 35.0;
 
-fn run(case: &Case) -> Result<Outcome, Failure> {
+fn run(case: &Case) -> Result<Outcome, CaseFailure> {
     let h = 1.0 / case.cells;
     let thick = 3.0 * h;
     let end = BEGIN + 2.0 * std::f64::consts::PI / SPIN;
@@ -130,7 +130,7 @@ rigid.velocity = [0, "-{speed}"]
             (impulse, since) = (0.0, trial.time());
         }
     }
-    let turning = turning.ok_or(Failure::Absent("the time after the walls have closed in"))?;
+    let turning = turning.ok_or(CaseFailure::Absent("the time after the walls have closed in"))?;
     let lost = turning - trial.ledger().angular_momentum[2];
     let mut outcome = Outcome::default();
     outcome.measure(NOISE, deviation(&forces) / mean(&forces));

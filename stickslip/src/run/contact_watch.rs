@@ -1,8 +1,8 @@
 //! During a run: contacts that have become as wide as they will be, and are not resolved by the grid.
 
 use super::widest::{LargestForces, WidestContacts};
-use crate::check::Verdict;
-use crate::door::{Patch, View};
+use crate::check::ContactResolution;
+use crate::door::{ContactPatch, View};
 use crate::scene::Scene;
 use std::collections::BTreeSet;
 
@@ -11,7 +11,7 @@ use std::collections::BTreeSet;
 pub(super) struct ContactWatch {
     next: f64,
     /// Patches when it looked last.
-    before: Vec<Patch>,
+    before: Vec<ContactPatch>,
     told: BTreeSet<[usize; 2]>,
     lines: usize,
     forces: LargestForces,
@@ -41,7 +41,7 @@ impl ContactWatch {
         }
         self.next = view.time() + scene.outputs.tables;
         let touched = self.forces.look(view);
-        let patches: Vec<Patch> = touched.iter().map(|touched| touched.patch).collect();
+        let patches: Vec<ContactPatch> = touched.iter().map(|touched| touched.patch).collect();
         let new = self.grown_up(&patches);
         self.before = patches;
         if self.lines == MOST_LINES {
@@ -52,11 +52,11 @@ impl ContactWatch {
         let name = |body: usize| scene.bodies[body].name.as_str();
         let new_names: BTreeSet<_> = new.iter().map(|patch| [patch.body_a, patch.body_b].map(name)).collect();
         found.0.retain(|contact| {
-            contact.verdict == Verdict::NotResolved
+            contact.verdict == ContactResolution::NotResolved
                 && new_names.contains(&contact.bodies.each_ref().map(String::as_str))
         });
         // Others may widen yet.
-        let pair = |patch: &Patch| [patch.body_a, patch.body_b];
+        let pair = |patch: &ContactPatch| [patch.body_a, patch.body_b];
         let told: BTreeSet<_> =
             found.0.iter().map(|contact| contact.bodies.each_ref().map(String::as_str)).collect();
         self.told.extend(new.iter().map(pair).filter(|pair| told.contains(&pair.map(name))));
@@ -72,16 +72,16 @@ impl ContactWatch {
     }
 
     /// Those that have not been told of, and no longer grow.
-    fn grown_up(&self, patches: &[Patch]) -> Vec<Patch> {
-        let pair = |patch: &Patch| [patch.body_a, patch.body_b];
+    fn grown_up(&self, patches: &[ContactPatch]) -> Vec<ContactPatch> {
+        let pair = |patch: &ContactPatch| [patch.body_a, patch.body_b];
         let mut before = self.before.iter().peekable();
-        let grown = |patch: &&Patch| {
+        let grown = |patch: &&ContactPatch| {
             // Both are ordered by pair, and none is lost.
             while before.next_if(|old| pair(old) < pair(patch)).is_some() {}
             let old = before.next_if(|old| pair(old) == pair(patch));
             old.is_some_and(|old| patch.area <= (1.0 + GROWTH) * old.area)
         };
-        let grown: Vec<Patch> = patches.iter().filter(grown).copied().collect();
+        let grown: Vec<ContactPatch> = patches.iter().filter(grown).copied().collect();
         grown.into_iter().filter(|patch| patch.area > 0.0 && !self.told.contains(&pair(patch))).collect()
     }
 }
@@ -90,8 +90,8 @@ impl ContactWatch {
 mod tests {
     use super::*;
 
-    fn patches(areas: &[f64]) -> Vec<Patch> {
-        let patch = |(i, &area): (usize, &f64)| Patch {
+    fn patches(areas: &[f64]) -> Vec<ContactPatch> {
+        let patch = |(i, &area): (usize, &f64)| ContactPatch {
             body_a: i,
             body_b: i + 1,
             area,

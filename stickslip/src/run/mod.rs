@@ -22,7 +22,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use summary::Energies;
-use verdict::Verdict;
+use verdict::RunChecks;
 
 /// How a scene is run.
 #[derive(Clone, Debug)]
@@ -79,7 +79,7 @@ pub fn run_with(
     manifest.write(&folder)?;
     let start = simulation.ledger();
 
-    let mut verdict = Verdict::new(scene, simulation);
+    let mut verdict = RunChecks::new(scene, simulation);
     let mut contact_watch = ContactWatch::new(simulation.time());
     let outcome = Recorder::new(scene, &folder).map_err(RunError::from).and_then(|mut recorder| {
         observers.iter_mut().for_each(|observer| recorder.add(&mut **observer));
@@ -105,7 +105,7 @@ struct Watched<'a> {
     scene: &'a Scene,
     simulation: &'a mut dyn Simulation,
     recorder: Recorder<'a>,
-    verdict: &'a mut Verdict,
+    verdict: &'a mut RunChecks,
     contact_watch: &'a mut ContactWatch,
     options: &'a RunOptions,
     clock: &'a Clock,

@@ -1,7 +1,7 @@
 //! During and after a run: which contacts the grid resolved, from how wide the bodies touched.
 
-use crate::check::{Errors, Verdict};
-use crate::door::{Patch, View};
+use crate::check::{ContactResolution, Errors};
+use crate::door::{ContactPatch, View};
 use crate::scene::Scene;
 use std::collections::HashMap;
 use std::fmt::{self, Display, Formatter};
@@ -16,7 +16,7 @@ pub struct WidestContact {
     /// The same over the cell size [-].
     pub cells: f64,
     /// What to expect of the contact.
-    pub verdict: Verdict,
+    pub verdict: ContactResolution,
     /// By how much its results may be off.
     pub off: Errors,
     /// What it bore of all contacts: its part of the force over the whole time [-].
@@ -30,7 +30,7 @@ pub struct WidestContact {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Touched {
     /// Their widest contact, and the impulses between them.
-    pub patch: Patch,
+    pub patch: ContactPatch,
     /// Largest mean of the force from one look to the next [N].
     pub force: f64,
 }
@@ -55,7 +55,7 @@ impl LargestForces {
         self.see(&view.patches(), view.time())
     }
 
-    fn see(&mut self, patches: &[Patch], time: f64) -> Vec<Touched> {
+    fn see(&mut self, patches: &[ContactPatch], time: f64) -> Vec<Touched> {
         self.longest = self.longest.max(time - self.time);
         self.time = time;
         let mut touched = Vec::with_capacity(patches.len());
@@ -97,7 +97,7 @@ impl WidestContacts {
                     bodies,
                     half_width,
                     cells,
-                    verdict: Verdict::of(cells),
+                    verdict: ContactResolution::of(cells),
                     off: Errors::of(cells),
                     share: part(patch.impulse, all),
                     weight: part(patch.impulse, most[0]).max(part(*force, most[1])),
@@ -141,7 +141,7 @@ impl WidestContacts {
 
 impl Display for WidestContacts {
     fn fmt(&self, f: &mut Formatter) -> fmt::Result {
-        let coarse = self.0.iter().filter(|contact| contact.verdict != Verdict::Resolved).cloned();
+        let coarse = self.0.iter().filter(|contact| contact.verdict != ContactResolution::Resolved).cloned();
         let (bearing, grazing): (Vec<_>, Vec<_>) = coarse.partition(|contact| contact.weight >= GRAZING);
         let bearing = WidestContacts(bearing);
         let Some(narrowest) = bearing.0.first() else { return Ok(()) };
@@ -191,8 +191,8 @@ mod tests {
         WidestContacts::new(&scene, &touched)
     }
 
-    fn patch(body_a: usize, half_width: f64, impulse: f64) -> Patch {
-        Patch { body_a, body_b: body_a + 1, area: 2.0 * half_width, half_width, impulse }
+    fn patch(body_a: usize, half_width: f64, impulse: f64) -> ContactPatch {
+        ContactPatch { body_a, body_b: body_a + 1, area: 2.0 * half_width, half_width, impulse }
     }
 
     fn equal(half_widths: &[f64]) -> WidestContacts {
@@ -205,7 +205,10 @@ mod tests {
         let cells: Vec<_> = found.0.iter().map(|contact| contact.cells).collect();
         assert!((0..3).all(|i| (cells[i] - [0.5, 2.5, 5.0][i]).abs() < 1e-12), "{cells:?}");
         let verdicts: Vec<_> = found.0.iter().map(|contact| contact.verdict).collect();
-        assert_eq!(verdicts, [Verdict::NotResolved, Verdict::Marginal, Verdict::Resolved]);
+        assert_eq!(
+            verdicts,
+            [ContactResolution::NotResolved, ContactResolution::Marginal, ContactResolution::Resolved]
+        );
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Two bodies whose particles fly freely through gravity: a simulation in which every number is known.
 
 use stickslip::door::{
-    BodyState, ContactSum, GridSnapshot, Ledger, ParticleSnapshot, Patch, Simulation, StepError, View,
+    BodyState, ContactPatch, ContactSum, GridSnapshot, Ledger, ParticleSnapshot, Simulation, StepError, View,
 };
 use stickslip::geometry::{Arrangement, Shape};
 use stickslip::material::SHELF;
@@ -131,7 +131,7 @@ impl View for Ballistic {
         if self.steps > 0 { vec![sum] } else { Vec::new() }
     }
 
-    fn patches(&self) -> Vec<Patch> {
+    fn patches(&self) -> Vec<ContactPatch> {
         Vec::new()
     }
 

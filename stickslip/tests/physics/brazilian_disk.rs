@@ -24,7 +24,7 @@
 use std::f64::consts::PI;
 use std::path::Path;
 use stickslip::door::ContactCursor;
-use stickslip::polariscope::{StressMap, Window, stress_maps};
+use stickslip::polariscope::{ImageWindow, StressMap, stress_maps};
 use stickslip::scene::Scene;
 use stickslip::{scene, step};
 
@@ -83,7 +83,7 @@ fn pressed(cells: usize, particles: &str) -> Errors {
     mean.position.iter_mut().for_each(|x| *x = x.map(|x| x / radius));
     mean.volume.iter_mut().for_each(|volume| *volume /= radius * radius);
     let edge = 0.5 * WIDTH;
-    let window = Window::around([[-edge; 2], [edge; 2]], PIXELS);
+    let window = ImageWindow::around([[-edge; 2], [edge; 2]], PIXELS);
     let maps = stress_maps(&mean, &window);
     let map = maps.iter().find(|map| map.body == 0).expect("the disk is in the picture");
     let picture = Picture { map, window };
@@ -100,7 +100,7 @@ fn pressed(cells: usize, particles: &str) -> Errors {
 /// The stress on the pixels of a picture of the unit disk under unit load.
 struct Picture<'a> {
     map: &'a StressMap,
-    window: Window,
+    window: ImageWindow,
 }
 
 impl Picture<'_> {

@@ -5,7 +5,7 @@
 //! ```
 //! with the gap of [`Pair::gap`] and the traction rule for release. Our own; needs no list of particles.
 
-use super::Law;
+use super::PairLaw;
 use super::traction::{joint, pressed};
 use crate::contact::{Change, Pair, common_normal, own_normals};
 use crate::scene::Normal;
@@ -19,7 +19,7 @@ fn touching<T: Real>() -> T {
     T::of(1e-6).max(T::of(16.0) * T::EPSILON)
 }
 
-impl<T: Real, const D: usize> Law<T, D> for Gap {
+impl<T: Real, const D: usize> PairLaw<T, D> for Gap {
     fn change(&self, pair: &Pair<T, D>, velocities: [Vector<T, D>; 2]) -> Change<T, D> {
         if pair.gap > touching() {
             return Change::NONE;

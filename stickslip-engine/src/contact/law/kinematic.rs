@@ -5,7 +5,7 @@
 //! ```
 //! Frictionless collisions gain energy by it.
 
-use super::Law;
+use super::PairLaw;
 use crate::contact::{Change, Pair, common_normal, own_normals};
 use crate::scene::Normal;
 use crate::tensor::{Real, Vector};
@@ -13,7 +13,7 @@ use crate::tensor::{Real, Vector};
 /// Contact on approach.
 pub struct Kinematic;
 
-impl<T: Real, const D: usize> Law<T, D> for Kinematic {
+impl<T: Real, const D: usize> PairLaw<T, D> for Kinematic {
     fn change(&self, pair: &Pair<T, D>, velocities: [Vector<T, D>; 2]) -> Change<T, D> {
         match pair.rule.normal {
             Normal::Common => common_normal(pair, velocities, |approach, _| approach > T::ZERO),

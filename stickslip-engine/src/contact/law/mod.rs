@@ -9,7 +9,7 @@ mod separation;
 mod surface;
 mod traction;
 
-use super::{Change, Facing, Look, Pair, room};
+use super::{Change, Facing, LawInputs, Pair, room};
 use crate::scene::ContactLaw;
 use crate::tensor::{Real, Vector};
 
@@ -23,7 +23,7 @@ pub enum Span {
 }
 
 /// What a pair of bodies does at a node that they share.
-pub trait Law<T: Real, const D: usize>: Sync {
+pub trait PairLaw<T: Real, const D: usize>: Sync {
     /// What contact does to two bodies with these velocities [m/s], before it is scaled.
     fn change(&self, pair: &Pair<T, D>, velocities: [Vector<T, D>; 2]) -> Change<T, D>;
 
@@ -33,7 +33,7 @@ pub trait Law<T: Real, const D: usize>: Sync {
     }
 
     /// Normal and gap of a pair at a node, unless they are so far apart that they cannot touch in this step.
-    fn facing(&self, look: &Look<T, D>) -> Option<Facing<T, D>> {
+    fn facing(&self, look: &LawInputs<T, D>) -> Option<Facing<T, D>> {
         Some(room(look))
     }
 
@@ -45,7 +45,7 @@ pub trait Law<T: Real, const D: usize>: Sync {
 }
 
 /// The shelf: the law of each word in scene files.
-pub fn law<T: Real, const D: usize>(law: ContactLaw) -> &'static dyn Law<T, D> {
+pub fn law<T: Real, const D: usize>(law: ContactLaw) -> &'static dyn PairLaw<T, D> {
     match law {
         ContactLaw::None => &none::None,
         ContactLaw::Kinematic => &kinematic::Kinematic,

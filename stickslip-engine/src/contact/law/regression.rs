@@ -10,8 +10,8 @@
 //! surfaces. Bodies push while they approach without a gap. The plane is found by damped Gauss-Newton steps from the
 //! difference of the volume gradients.
 
-use super::Law;
-use crate::contact::{Change, Facing, Look, Pair, common_normal};
+use super::PairLaw;
+use crate::contact::{Change, Facing, LawInputs, Pair, common_normal};
 use crate::tensor::{Matrix, Real, Vector};
 
 /// Contact by logistic regression.
@@ -29,14 +29,14 @@ const FIRST_SLOPE: f64 = 4.0;
 
 /// A particle near a node: where it is [cells], which body it is of (-1 or 1), and its deformed half-axes [cells].
 #[derive(Clone, Copy)]
-struct Point<T, const D: usize> {
+struct NearParticle<T, const D: usize> {
     arm: Vector<T, D>,
     label: T,
     axes: Matrix<T>,
 }
 
-impl<T: Real, const D: usize> Law<T, D> for Regression {
-    fn facing(&self, look: &Look<T, D>) -> Option<Facing<T, D>> {
+impl<T: Real, const D: usize> PairLaw<T, D> for Regression {
+    fn facing(&self, look: &LawInputs<T, D>) -> Option<Facing<T, D>> {
         let [a, b] = look.pair.map(|side| &look.sides[side]);
         let Some(start) = (b.volume_gradient - a.volume_gradient).direction() else {
             return Some(Facing { normal: None, gap: T::ONE });
@@ -45,7 +45,7 @@ impl<T: Real, const D: usize> Law<T, D> for Regression {
         let mut points = Vec::new();
         for (side, label) in [(a, -T::ONE), (b, T::ONE)] {
             look.near.around(side.body, look.node, |arm, particle, mirror| {
-                points.push(Point {
+                points.push(NearParticle {
                     arm: arm * per_cell,
                     label,
                     axes: mirror * particle.deformation * (particle.half_width * per_cell),
@@ -65,7 +65,7 @@ impl<T: Real, const D: usize> Law<T, D> for Regression {
 }
 
 /// Normal of the plane between two groups of points.
-fn plane<T: Real, const D: usize>(points: &[Point<T, D>], start: Vector<T, D>) -> Vector<T, D> {
+fn plane<T: Real, const D: usize>(points: &[NearParticle<T, D>], start: Vector<T, D>) -> Vector<T, D> {
     let mut slope: [f64; 4] = [0.0; 4];
     (0..D).for_each(|i| slope[i] = FIRST_SLOPE * start[i].f64());
     // The offset is the last unknown.
@@ -106,7 +106,7 @@ fn plane<T: Real, const D: usize>(points: &[Point<T, D>], start: Vector<T, D>) -
 }
 
 /// Distance between the particles of the two groups along a normal, negative where they overlap [cells].
-fn gap<T: Real, const D: usize>(points: &[Point<T, D>], normal: Vector<T, D>) -> T {
+fn gap<T: Real, const D: usize>(points: &[NearParticle<T, D>], normal: Vector<T, D>) -> T {
     let (mut first, mut second) = (None::<T>, None::<T>);
     for point in points {
         let along = point.arm.dot(normal);
@@ -150,7 +150,7 @@ mod tests {
     use super::*;
 
     /// Particles of half-width 1/4 cell on a lattice, parted by a plane with the given normal through the node.
-    fn lattice(normal: [f64; 2], overhang: f64) -> Vec<Point<f64, 2>> {
+    fn lattice(normal: [f64; 2], overhang: f64) -> Vec<NearParticle<f64, 2>> {
         let mut points = Vec::new();
         for i in -3..3 {
             for j in -3..3 {
@@ -160,7 +160,7 @@ mod tests {
                 // The second body ends at the side, as at the corner of a block.
                 if along < 0.0 || across < overhang {
                     let label = if along < 0.0 { -1.0 } else { 1.0 };
-                    points.push(Point { arm, label, axes: Matrix::IDENTITY * 0.25 });
+                    points.push(NearParticle { arm, label, axes: Matrix::IDENTITY * 0.25 });
                 }
             }
         }

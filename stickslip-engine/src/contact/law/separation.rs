@@ -10,9 +10,9 @@
 //! fill their domains. Extrapolated positions see a body through its mass around the node,
 //! so the gap is known to a fraction of a cell.
 
-use super::Law;
+use super::PairLaw;
 use super::traction::joint;
-use crate::contact::{Change, Facing, Look, Pair, common_normal};
+use crate::contact::{Change, Facing, LawInputs, Pair, common_normal};
 use crate::tensor::{Real, Vector};
 
 /// Contact of extrapolated positions.
@@ -29,8 +29,8 @@ fn edge<T: Real>(center: T) -> T {
     T::of(1.0 - 2.0 * libm::pow((center.abs().f64() / REACH).min(1.0), POWER))
 }
 
-impl<T: Real, const D: usize> Law<T, D> for Separation {
-    fn facing(&self, look: &Look<T, D>) -> Option<Facing<T, D>> {
+impl<T: Real, const D: usize> PairLaw<T, D> for Separation {
+    fn facing(&self, look: &LawInputs<T, D>) -> Option<Facing<T, D>> {
         let [a, b] = look.pair.map(|side| &look.sides[side]);
         let Some(normal) = (b.volume_gradient - a.volume_gradient).direction() else {
             return Some(Facing { normal: None, gap: T::ONE });

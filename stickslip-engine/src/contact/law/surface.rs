@@ -1,6 +1,6 @@
 //! Contact of exact surfaces: bodies touch where their undeformed shapes, carried along by the deformation, touch.
 //!
-//! Our own. Each body knows where the material around a node was before it deformed ([`crate::contact::Place`]), hence
+//! Our own. Each body knows where the material around a node was before it deformed ([`crate::contact::ReferenceMap`]), hence
 //! the distance and the normal of its surface there. The pair takes one normal from both, the flatter and surer one
 //! deciding, and one gap, where the smaller share of the node lies. Contact is one unilateral impulse a step, with
 //! Coulomb's bound on the whole of it (Moreau 1988):
@@ -12,15 +12,15 @@
 //! for the velocities that strain and move particles is not part of the sum: bodies that press on each other strain
 //! with a common normal velocity, whether they are being compressed or released.
 
-use super::Law;
+use super::PairLaw;
 use crate::body::Body;
-use crate::contact::{Change, Facing, Look, Pair, Side, Span, Use};
+use crate::contact::{BodyShare, Change, Facing, LawInputs, Pair, Span, Use};
 use crate::tensor::{Real, Vector};
 
 /// Contact of carried surfaces.
 pub struct Surface;
 
-impl<T: Real, const D: usize> Law<T, D> for Surface {
+impl<T: Real, const D: usize> PairLaw<T, D> for Surface {
     fn span(&self) -> Span {
         Span::WholeStep
     }
@@ -29,12 +29,12 @@ impl<T: Real, const D: usize> Law<T, D> for Surface {
         true
     }
 
-    fn facing(&self, look: &Look<T, D>) -> Option<Facing<T, D>> {
+    fn facing(&self, look: &LawInputs<T, D>) -> Option<Facing<T, D>> {
         let pair = look.pair.map(|side| &look.sides[side]);
         // Seen from the body with less volume there: the other may go on far beyond it.
         let near = if pair[0].surface.volume <= pair[1].surface.volume { 0 } else { 1 };
         let seen = |side: usize, point: Vector<T, D>| {
-            let Side { body, surface, .. } = pair[side];
+            let BodyShare { body, surface, .. } = pair[side];
             surface.place.offset(point, &look.near.bodies[*body].whole)
         };
         // Its centre, moved onto the other's surface.
@@ -120,7 +120,7 @@ fn flatness<T: Real, const D: usize>(normal: impl Fn(Vector<T, D>) -> Vector<T, 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::Step;
+    use crate::contact::TimeStep;
     use crate::contact::pair::tests::{rule, surface};
     use crate::scene::{ContactLaw, Normal};
 
@@ -134,7 +134,7 @@ mod tests {
         let mut rule = rule(ContactLaw::Surface, Normal::Common, 0.5);
         rule.friction.adhesion = adhesion;
         let surfaces = [
-            crate::contact::Surface { force: Vector([0.0, force]), ..surface(1.0, [0.0, -1.0]) },
+            crate::contact::SurfaceEstimate { force: Vector([0.0, force]), ..surface(1.0, [0.0, -1.0]) },
             surface(3.0, [0.0, 1.0]),
         ];
         let pair = Pair {
@@ -143,7 +143,7 @@ mod tests {
             normal: Some(Vector([0.0, -1.0])),
             gap,
             area: 1.0,
-            step: Step { duration: 1.0, cell: 1.0, purpose },
+            step: TimeStep { duration: 1.0, cell: 1.0, purpose },
         };
         Surface.change(&pair, [Vector(velocity), Vector::ZERO]).impulse[0].0
     }

@@ -5,15 +5,15 @@
 //! ```
 //! Bodies that are stress free are judged by approach alone. Bodies that rebound so give back their strain energy.
 
-use super::Law;
-use crate::contact::{Change, Pair, Surface, common_normal, own_normals};
+use super::PairLaw;
+use crate::contact::{Change, Pair, SurfaceEstimate, common_normal, own_normals};
 use crate::scene::Normal;
 use crate::tensor::{Real, Vector};
 
 /// Contact under compression.
 pub struct Traction;
 
-impl<T: Real, const D: usize> Law<T, D> for Traction {
+impl<T: Real, const D: usize> PairLaw<T, D> for Traction {
     fn change(&self, pair: &Pair<T, D>, velocities: [Vector<T, D>; 2]) -> Change<T, D> {
         match pair.rule.normal {
             Normal::Common => common_normal(pair, velocities, |approach, n| {
@@ -28,7 +28,7 @@ impl<T: Real, const D: usize> Law<T, D> for Traction {
 
 /// Whether a body alone is in contact by its own traction.
 pub(super) fn pressed<T: Real, const D: usize>(
-    surface: &Surface<T, D>,
+    surface: &SurfaceEstimate<T, D>,
     approach: T,
     n: Vector<T, D>,
 ) -> bool {

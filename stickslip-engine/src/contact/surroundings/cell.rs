@@ -1,8 +1,8 @@
 //! Particles of a cell, side by side, added to the nodes that they reach.
 
-use super::sums::{FIRST, FORCE, MASS, Sums, Wanted, placed_rows, stress_rows};
+use super::sums::{FIRST, FORCE, MASS, MaterialSums, Wanted, placed_rows, stress_rows};
 use super::{Around, Chunk};
-use crate::basis::{Basis, Shape};
+use crate::basis::{Basis, ShapeFunctions};
 use crate::grid::{Nodes, next_of, node_at};
 use crate::lanes::{Laned, Lanes, MOST_LANES, Machine, Numbers, in_lanes, prefetch};
 use crate::particles::{Column, Columns, deformation_entries, stress_entries};
@@ -125,7 +125,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
         &mut self,
         seen: &Seen<V, D>,
         members: &Members<'_, T, D>,
-        (shapes, base, mut nodes): (&[Shape<V>; D], [i32; D], Nodes),
+        (shapes, base, mut nodes): (&[ShapeFunctions<V>; D], [i32; D], Nodes),
         [room, filled]: [V; 2],
     ) {
         let mut stress = Symmetric::<V>::ZERO;
@@ -182,7 +182,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
     #[inline(always)]
     fn shares<V: Lanes<Real = T>>(
         &self,
-        shapes: &[Shape<V>; D],
+        shapes: &[ShapeFunctions<V>; D],
         base: [i32; D],
         node: usize,
         factor: V,
@@ -204,7 +204,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
 
     /// The sums at a node of the block.
     #[inline(always)]
-    fn sums_at(&mut self, node: usize) -> &mut Sums<T, D> {
+    fn sums_at(&mut self, node: usize) -> &mut MaterialSums<T, D> {
         &mut self.sums[(self.wanted & ((1 << node) - 1)).count_ones() as usize]
     }
 }

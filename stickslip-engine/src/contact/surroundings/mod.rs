@@ -11,7 +11,7 @@ mod sums;
 #[cfg(test)]
 mod tests;
 
-pub use sums::{Sums, Wanted};
+pub use sums::{MaterialSums, Wanted};
 
 use super::Near;
 use crate::basis::{Basis, MAX_WIDTH};
@@ -54,7 +54,7 @@ impl<T: Laned, const D: usize> Near<'_, T, D> {
         &self,
         (body, block): (usize, [i32; D]),
         (wanted, sought): (Nodes, Wanted),
-        (sums, chunks): (&mut [Sums<T, D>], &mut Vec<Chunk<D>>),
+        (sums, chunks): (&mut [MaterialSums<T, D>], &mut Vec<Chunk<D>>),
     ) {
         let mut walls = self.boundary.walls.iter().filter(|wall| self.reflects::<B>(wall, block));
         let near: [Option<&Wall>; 6] = std::array::from_fn(|_| walls.next());
@@ -96,7 +96,7 @@ struct Around<'a, T, const D: usize, B> {
     sought: Wanted,
     mirrors: Mirrors<'a, D>,
     chunks: &'a mut Vec<Chunk<D>>,
-    sums: &'a mut [Sums<T, D>],
+    sums: &'a mut [MaterialSums<T, D>],
     basis: PhantomData<B>,
 }
 

@@ -1,6 +1,6 @@
 //! Sums over the particles around a node.
 
-use crate::contact::Place;
+use crate::contact::ReferenceMap;
 use crate::particles::stress_entries;
 use crate::tensor::{Matrix, Real, Symmetric, Vector};
 
@@ -26,7 +26,7 @@ pub enum Wanted {
 /// wanted, all from the stress on is zero.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(32))]
-pub struct Sums<T, const D: usize>(pub(super) [[T; 4]; ROWS]);
+pub struct MaterialSums<T, const D: usize>(pub(super) [[T; 4]; ROWS]);
 
 pub(super) const ROWS: usize = 9;
 pub(super) const MASS: usize = 7;
@@ -44,9 +44,9 @@ pub(super) const fn stress_rows(dimension: usize) -> usize {
     stress_entries(dimension).div_ceil(4)
 }
 
-impl<T: Real, const D: usize> Sums<T, D> {
+impl<T: Real, const D: usize> MaterialSums<T, D> {
     /// Of no particle.
-    pub const EMPTY: Self = Sums([[T::ZERO; 4]; ROWS]);
+    pub const EMPTY: Self = MaterialSums([[T::ZERO; 4]; ROWS]);
 
     /// sum V S [m^3]
     pub fn volume(&self) -> T {
@@ -87,7 +87,7 @@ impl<T: Real, const D: usize> Sums<T, D> {
     }
 
     /// The place weighted by volume, of a body that flows plastically or not.
-    pub fn place(&self, flow: bool) -> Place<T, D> {
+    pub fn place(&self, flow: bool) -> ReferenceMap<T, D> {
         let share = T::ONE / self.volume();
         let vector = |first: usize| Vector::from_fn(|i| self.number(first + i) * share);
         let inverse = Matrix::from_fn(|i, j| match i < D && j < D {
@@ -99,6 +99,6 @@ impl<T: Real, const D: usize> Sums<T, D> {
             // So far the mean of the places of the particles themselves.
             place = Vector::from_fn(|i| (0..D).fold(place[i], |x, j| x - inverse.0[i][j] * center[j]));
         }
-        Place { place, inverse, center }
+        ReferenceMap { place, inverse, center }
     }
 }

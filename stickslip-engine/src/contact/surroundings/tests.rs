@@ -4,7 +4,7 @@ use crate::basis::{Gimp, Linear};
 use crate::body::{Body, Gyration, Particle};
 use crate::boundary::{Boundary, reflect};
 use crate::contact::{Rules, rules};
-use crate::geometry::{Shape, Whole};
+use crate::geometry::{MirroredShape, Shape};
 use crate::grid::{ActiveBlocks, Field, Lattice, next_of, node_at};
 use crate::lanes::Processor;
 use crate::material::{Isotropic, Material, NeoHookean, Thickness};
@@ -48,7 +48,7 @@ fn body<const D: usize>() -> Body<f64, D> {
         density: 1.0,
         particles,
         rigid: false,
-        whole: Whole::new(&Shape::Ball { center: [0.0; 3], radius: 1.0 }, Vec::new(), D),
+        whole: MirroredShape::new(&Shape::Ball { center: [0.0; 3], radius: 1.0 }, Vec::new(), D),
         thickness: Thickness::Moved,
         gyration: Gyration { cell: 0.0, share: 0.0 },
     }
@@ -59,8 +59,8 @@ fn plainly<const D: usize, B: Basis<f64>>(
     near: &Near<'_, f64, D>,
     node: [i32; D],
     first: Vector<f64, D>,
-) -> Sums<f64, D> {
-    let mut sums = Sums::<f64, D>::EMPTY;
+) -> MaterialSums<f64, D> {
+    let mut sums = MaterialSums::<f64, D>::EMPTY;
     for turned in offsets::<D>(2) {
         let walls: Vec<&Wall> = near.boundary.walls.iter().filter(|wall| turned[wall.axis] == 1).collect();
         if walls.len() != turned.iter().sum::<usize>() {
@@ -141,7 +141,7 @@ fn particles_of_a_cell_side_by_side_give_the_sums<const D: usize, B: Basis<f64>>
         for block in offsets::<D>(2).map(|block| block.map(|b| b as i32)) {
             let wanted = every_node(D) & 0x9e37_79b9_7f4a_7c15;
             let [everything, places] = [Wanted::Everything, Wanted::Places].map(|sought| {
-                let mut sums = vec![Sums::EMPTY; wanted.count_ones() as usize];
+                let mut sums = vec![MaterialSums::EMPTY; wanted.count_ones() as usize];
                 near.sum_around::<B>((0, block), (wanted, sought), (&mut sums, &mut Vec::new()));
                 sums
             });

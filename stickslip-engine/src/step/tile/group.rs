@@ -10,7 +10,7 @@ use crate::particles::Column;
 use crate::scene::Transfer;
 use crate::step::pass::{FaultKind, Pass, Verbs, Visit};
 use crate::tensor::{Matrix, Real, Symmetric, Vector};
-use crate::transfer::{Group, Load, Momentum, Share, Start, turning};
+use crate::transfer::{Group, Momentum, ScatterTerms, Share, Start, turning};
 
 /// What all particles of a tile have in common.
 pub struct Constants<V, const D: usize> {
@@ -227,7 +227,7 @@ pub fn group<
         history.store::<V>();
     }
     if let Some(share) = scatter {
-        let mut load = Load { momentum: None, stress: None };
+        let mut load = ScatterTerms { momentum: None, stress: None };
         if gives_momentum {
             let mass = members.load::<V>(Column::<D>::MASS);
             load.momentum = Some(Momentum {

@@ -67,18 +67,18 @@ pub struct Members<'a, T, const D: usize, const WHOLE: bool> {
     first: *mut T,
     stride: usize,
     /// Whence they were copied, if they were.
-    runs: Option<&'a Runs>,
+    runs: Option<&'a ParticleRuns>,
 }
 
 /// Columns of particles that do not lie side by side or, without masks, do not fill the lanes, with room for a register from any lane on.
 pub struct Copies<T> {
     columns: [[MaybeUninit<Numbers<T>>; 2]; MOST_COLUMNS],
-    runs: Runs,
+    runs: ParticleRuns,
 }
 
 /// Particles of a group that lie side by side in memory.
 #[derive(Clone, Copy)]
-struct Run {
+struct ParticleRun {
     /// Lane of the first.
     lane: usize,
     /// Its index.
@@ -87,13 +87,14 @@ struct Run {
 }
 
 /// All particles of a group.
-struct Runs {
-    runs: [Run; MOST_LANES],
+struct ParticleRuns {
+    runs: [ParticleRun; MOST_LANES],
     count: usize,
 }
 
-impl Runs {
-    const NONE: Self = Runs { runs: [Run { lane: 0, first: 0, count: 0 }; MOST_LANES], count: 0 };
+impl ParticleRuns {
+    const NONE: Self =
+        ParticleRuns { runs: [ParticleRun { lane: 0, first: 0, count: 0 }; MOST_LANES], count: 0 };
 
     /// The runs of a group's indices, one after the other.
     #[inline(always)]
@@ -104,7 +105,7 @@ impl Runs {
             match self.runs[..self.count].last_mut() {
                 Some(run) if run.first + run.count == first => run.count += 1,
                 _ => {
-                    self.runs[self.count] = Run { lane, first, count: 1 };
+                    self.runs[self.count] = ParticleRun { lane, first, count: 1 };
                     self.count += 1;
                 }
             }
@@ -177,7 +178,7 @@ impl<'a, T: Real, const D: usize, const WHOLE: bool> Members<'a, T, D, WHOLE> {
     /// Writes what was stored in copies of some columns to the particles.
     #[inline(always)]
     pub fn give_back<V: Lanes<Real = T>>(&self, columns: Range<usize>) {
-        let Some(Runs { runs, count }) = self.runs else { return };
+        let Some(ParticleRuns { runs, count }) = self.runs else { return };
         for run in &runs[..*count] {
             for column in columns.clone() {
                 // SAFETY: the tile's particles are this pass' alone, and copies have room for a register from any lane on.
@@ -337,7 +338,7 @@ impl<V: Lanes, const D: usize, const WHOLE: bool> Keep<V> for HistoryOfGroup<'_,
 impl<T: Real> Copies<T> {
     /// Nothing yet.
     pub const EMPTY: Self =
-        Copies { columns: [const { [MaybeUninit::uninit(); 2] }; MOST_COLUMNS], runs: Runs::NONE };
+        Copies { columns: [const { [MaybeUninit::uninit(); 2] }; MOST_COLUMNS], runs: ParticleRuns::NONE };
 
     /// Entries from a column to the next.
     const STRIDE: usize = size_of::<[Numbers<T>; 2]>() / size_of::<T>();
@@ -386,7 +387,7 @@ impl<T: Real> Copies<T> {
     unsafe fn take_run<V: Lanes<Real = T>, const D: usize>(
         &mut self,
         columns: &Columns<T, D>,
-        run: Run,
+        run: ParticleRun,
         which: Range<usize>,
     ) {
         // SAFETY: the caller's, and there is room for a register from any lane on.

@@ -69,7 +69,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
     #[inline(never)]
     fn one(&mut self, index: u32, cell: usize) {
         let (columns, indices) = (self.columns, [index]);
-        let place = Place::new(self.tile.block, cell);
+        let place = CellStart::new(self.tile.block, cell);
         let base = Vector::from_fn(|i| Pack([T::of(f64::from(place.base[i]))]));
         let start = Shared::new::<D>(place.start);
         let members = Members::in_a_row(&columns, &indices);
@@ -131,7 +131,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
                 }
                 // Indices within a cell ascend.
                 let in_a_row = index[index.len() - 1] as usize - index[0] as usize == index.len() - 1;
-                let place = Place::new(visit.tile.block, cell);
+                let place = CellStart::new(visit.tile.block, cell);
                 let base = Vector::from_fn(|i| V::splat(T::of(f64::from(place.base[i]))));
                 let start = Shared::new::<D>(place.start);
                 match visit.group::<M, V, _>(&constants, (index, in_a_row), (base, start), &mut copies) {
@@ -200,7 +200,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
                 } else {
                     homes[lane] = homes[0];
                 }
-                let place = Place::new(visit.tile.block, homes[lane]);
+                let place = CellStart::new(visit.tile.block, homes[lane]);
                 starts[lane] = place.start;
                 for (bases, base) in bases.iter_mut().zip(place.base) {
                     bases[lane] = T::of(f64::from(base));
@@ -230,17 +230,17 @@ fn outside(inside: u32, lanes: usize) -> u32 {
 }
 
 /// A cell.
-struct Place<const D: usize> {
+struct CellStart<const D: usize> {
     /// Its base node.
     base: [i32; D],
     /// That node's place in the window.
     start: usize,
 }
 
-impl<const D: usize> Place<D> {
+impl<const D: usize> CellStart<D> {
     #[inline(always)]
     fn new(block: [i32; D], cell: usize) -> Self {
         let start = node_at([0; D], cell).iter().fold(0, |place, &n| place * WINDOW + n as usize);
-        Place { base: node_at(block, cell), start }
+        CellStart { base: node_at(block, cell), start }
     }
 }

@@ -19,13 +19,13 @@ pub(in crate::observe) struct Points {
     appended: usize,
     count: usize,
     fields: BTreeMap<String, f64>,
-    arrays: BTreeMap<String, Place>,
+    arrays: BTreeMap<String, ArrayPlace>,
     /// Names of the arrays in the order of the file.
     names: Vec<String>,
 }
 
 /// Where an array lies in the appended data, and what it is made of.
-struct Place {
+struct ArrayPlace {
     kind: String,
     components: usize,
     offset: usize,
@@ -79,7 +79,7 @@ impl Points {
                     }
                 }
                 Event::Empty(tag) if tag.name().0 == "DataArray" => {
-                    let place = Place {
+                    let place = ArrayPlace {
                         kind: attribute(&tag, "type")?,
                         components: attribute(&tag, "NumberOfComponents")?,
                         offset: attribute(&tag, "offset")?,
@@ -108,7 +108,7 @@ impl Points {
     /// An array as it describes itself: its unit, what each point has, and the values of one point after the other.
     pub(in crate::observe) fn described(&self, name: &str) -> Result<(String, Kind, Vec<f64>), ReadError> {
         let none = || missing(&format!("array `{name}`")).at(&self.path);
-        let Place { unit, components, .. } = self.arrays.get(name).ok_or_else(none)?;
+        let ArrayPlace { unit, components, .. } = self.arrays.get(name).ok_or_else(none)?;
         let (kind, values) = match components {
             1 => (Kind::Number, self.numbers(name)?),
             3 => (Kind::Vector, self.array::<f64, 3>(name)?.into_flattened()),

@@ -11,7 +11,7 @@ mod triangle;
 pub use fault::MeshFault;
 
 use super::rotation::Rotation;
-use super::{Bounds, Level, Mirror};
+use super::{Bounds, Mirror, SignedDistance};
 use crate::tensor::{Vector, cross};
 use serde::{Serialize, Serializer};
 use std::collections::HashMap;
@@ -158,7 +158,7 @@ impl Mesh {
     }
 
     /// Signed distance and its gradient.
-    pub(super) fn level(&self, point: [f64; 3]) -> Level {
+    pub(super) fn level(&self, point: [f64; 3]) -> SignedDistance {
         let (mut squared, mut found) = (f64::INFINITY, (0, [0.0; 3], Feature::Face));
         self.0.tree.nearest(point, |number| {
             let (nearest, feature) = closest(self.corners(&self.0.triangles[number]), point);
@@ -175,7 +175,7 @@ impl Mesh {
         let normal = match feature {
             Feature::Face => {
                 let distance = away.dot(Vector(triangle.normal));
-                return Level { distance, gradient: triangle.normal };
+                return SignedDistance { distance, gradient: triangle.normal };
             }
             Feature::Edge(i) => triangle.edge_normals[i],
             Feature::Corner(i) => self.0.corner_normals[triangle.corners[i] as usize],
@@ -187,7 +187,7 @@ impl Mesh {
         } else {
             normal.direction().unwrap_or(Vector(triangle.normal))
         };
-        Level { distance: sign * length, gradient: out.0 }
+        SignedDistance { distance: sign * length, gradient: out.0 }
     }
 
     /// The mesh after a turn.

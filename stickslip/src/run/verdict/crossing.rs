@@ -1,6 +1,6 @@
 //! Stressed particles that cross cells with linear functions, whose slopes jump there.
 
-use super::{Check, Finding, Look};
+use super::{Check, CheckInputs, Finding};
 use crate::scene::BasisKind;
 
 /// Counts the particles that have left their first cell while their body is under stress.
@@ -20,7 +20,7 @@ impl Check for Crossing {
         "forces jump at each crossing: take space.basis = \"gimp\""
     }
 
-    fn look(&mut self, look: &Look) -> Vec<Finding> {
+    fn look(&mut self, look: &CheckInputs) -> Vec<Finding> {
         match look.scene.discretization.basis {
             BasisKind::Linear => look.free().filter_map(|body| crossing(look, body)).collect(),
             BasisKind::Gimp => Vec::new(),
@@ -28,7 +28,7 @@ impl Check for Crossing {
     }
 }
 
-fn crossing(look: &Look, body: usize) -> Option<Finding> {
+fn crossing(look: &CheckInputs, body: usize) -> Option<Finding> {
     let origin = look.scene.domain.as_ref().map_or([0.0; 3], |domain| domain.min);
     let size = look.scene.discretization.cell;
     let cell = |x: [f64; 3]| [0, 1, 2].map(|i| ((x[i] - origin[i]) / size).floor() as i64);

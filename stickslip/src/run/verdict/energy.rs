@@ -1,6 +1,6 @@
 //! Energy that came from nowhere or went there.
 
-use super::{Check, Finding, Look};
+use super::{Check, CheckInputs, Finding};
 use crate::door::Ledger;
 
 /// The total of the ledger against its start, over the largest energy so far that moved, was stored, was set free by
@@ -42,7 +42,7 @@ impl Check for Energy {
         "try smaller cells, the gimp basis, a smaller time.courant; time.energy_drift sets what is allowed"
     }
 
-    fn look(&mut self, look: &Look) -> Vec<Finding> {
+    fn look(&mut self, look: &CheckInputs) -> Vec<Finding> {
         let bound = look.scene.time.energy_drift;
         let drift = look.balance.relative();
         if drift.is_nan() || drift.abs() <= bound {

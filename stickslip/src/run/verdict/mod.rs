@@ -37,11 +37,11 @@ trait Check {
     fn advice(&self) -> &'static str;
 
     /// What is wrong now.
-    fn look(&mut self, look: &Look) -> Vec<Finding>;
+    fn look(&mut self, look: &CheckInputs) -> Vec<Finding>;
 }
 
 /// What a check sees.
-struct Look<'a> {
+struct CheckInputs<'a> {
     scene: &'a Scene,
     simulation: &'a dyn View,
     /// Energy and momentum now.
@@ -56,7 +56,7 @@ struct Look<'a> {
     particles: &'a [Vec<TracedParticle>],
 }
 
-impl Look<'_> {
+impl CheckInputs<'_> {
     /// Bodies that deform.
     fn free(&self) -> impl Iterator<Item = usize> {
         let free = |&i: &usize| matches!(self.scene.bodies[i].motion, Motion::Free { .. });
@@ -89,7 +89,7 @@ struct Finding {
 }
 
 /// Looks at a run now and then, and remembers what was wrong.
-pub(super) struct Verdict {
+pub(super) struct RunChecks {
     checks: Vec<Box<dyn Check>>,
     balance: Balance,
     neighbours: Vec<Neighbours>,
@@ -107,10 +107,10 @@ const STEPS: u64 = 200;
 /// Lines in a run: beyond, the summary tells.
 const MOST_LINES: usize = 6;
 
-impl Verdict {
+impl RunChecks {
     /// The verdict on a run that begins.
     pub(super) fn new(scene: &Scene, simulation: &dyn View) -> Self {
-        Verdict {
+        RunChecks {
             checks: checks(),
             balance: Balance::default(),
             neighbours: neighbours::of_bodies(scene, simulation),
@@ -145,7 +145,7 @@ impl Verdict {
         let particles: Vec<_> = (self.neighbours.iter().enumerate())
             .map(|(body, neighbours)| neighbours.particles(simulation, body))
             .collect();
-        let look = Look {
+        let look = CheckInputs {
             scene,
             simulation,
             ledger: &ledger,

@@ -1,6 +1,6 @@
 //! Steps that are lost in the rounding of positions.
 
-use super::{Check, Finding, Look, norm};
+use super::{Check, CheckInputs, Finding, norm};
 use crate::scene;
 
 /// Adds up the way of bodies whose steps are about as short as the spacing of numbers where they are.
@@ -25,7 +25,7 @@ impl Check for Precision {
         "take space.precision = \"double\", or bring the bodies nearer to the origin"
     }
 
-    fn look(&mut self, look: &Look) -> Vec<Finding> {
+    fn look(&mut self, look: &CheckInputs) -> Vec<Finding> {
         let epsilon = match look.scene.precision {
             scene::Precision::Single => f64::from(f32::EPSILON),
             scene::Precision::Double => f64::EPSILON,

@@ -1,6 +1,6 @@
 //! Motion within a body that nears the speed of its waves.
 
-use super::{Check, Finding, Look, minus, norm, place};
+use super::{Check, CheckInputs, Finding, minus, norm, place};
 
 /// Holds the speed of particles, relative to their body on the whole, against its waves.
 pub(super) struct Speed;
@@ -17,7 +17,7 @@ impl Check for Speed {
         "it strains by about as much at once: try slower motion, a stiffer material, a smaller time.courant"
     }
 
-    fn look(&mut self, look: &Look) -> Vec<Finding> {
+    fn look(&mut self, look: &CheckInputs) -> Vec<Finding> {
         let of_body = |body: usize| {
             let whole = look.bodies[body].velocity;
             let speed = |velocity| norm(minus(velocity, whole));

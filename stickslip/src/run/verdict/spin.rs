@@ -1,6 +1,6 @@
 //! Angular momentum lost or gained where no torque acts.
 
-use super::{Check, Finding, Look, minus, norm};
+use super::{Check, CheckInputs, Finding, minus, norm};
 use crate::door::BodyState;
 use crate::scene::{Face, Motion, Scene};
 use crate::tensor::cross;
@@ -54,7 +54,7 @@ impl Check for Spin {
         "try smaller cells; compare with another stress_update"
     }
 
-    fn look(&mut self, look: &Look) -> Vec<Finding> {
+    fn look(&mut self, look: &CheckInputs) -> Vec<Finding> {
         if !self.begun {
             self.begin(look);
             return Vec::new();
@@ -69,7 +69,7 @@ impl Check for Spin {
 }
 
 impl Spin {
-    fn begin(&mut self, look: &Look) {
+    fn begin(&mut self, look: &CheckInputs) {
         self.begun = true;
         let time = look.simulation.time();
         let alone = |body: usize| {
@@ -97,7 +97,7 @@ fn own(state: &BodyState) -> [f64; 3] {
 }
 
 impl Alone {
-    fn unpushed(&self, look: &Look) -> bool {
+    fn unpushed(&self, look: &CheckInputs) -> bool {
         let state = &look.bodies[self.body];
         let fallen = look.simulation.time() - self.time;
         let push: [f64; 3] =
@@ -107,7 +107,7 @@ impl Alone {
             && !look.particles[self.body].iter().any(|particle| near_face(look.scene, particle.position))
     }
 
-    fn look(&self, look: &Look) -> Option<Finding> {
+    fn look(&self, look: &CheckInputs) -> Option<Finding> {
         let state = &look.bodies[self.body];
         let now = own(state);
         let (before, after) = (norm(self.angular_momentum), norm(now));
@@ -132,7 +132,7 @@ impl Alone {
 }
 
 impl Together {
-    fn look(&mut self, look: &Look) -> Option<Finding> {
+    fn look(&mut self, look: &CheckInputs) -> Option<Finding> {
         let mass: f64 = look.bodies.iter().map(|state| state.mass).sum();
         let mean = |of: fn(&BodyState) -> [f64; 3]| {
             [0, 1, 2].map(|i| look.bodies.iter().map(|state| state.mass * of(state)[i]).sum::<f64>() / mass)

@@ -1,7 +1,7 @@
 //! Stretch by the deformation gradient against stretch by positions: what a law sees, and where the particles are.
 
 use super::neighbours::Neighbours;
-use super::{Check, Finding, Look, minus, norm, place};
+use super::{Check, CheckInputs, Finding, minus, norm, place};
 use std::collections::BTreeMap;
 
 /// Holds the distances of neighbours against those that their deformation gradients give.
@@ -41,7 +41,7 @@ const REGION: f64 = 4.0;
 
 /// Sums over the pairs of a group.
 #[derive(Clone, Copy, Default)]
-struct Sum {
+struct PairSums {
     count: f64,
     difference: f64,
     squares: f64,
@@ -58,7 +58,7 @@ impl Check for Strain {
         "particles move without straining, or strain without moving: try another time.stress_update, smaller cells"
     }
 
-    fn look(&mut self, look: &Look) -> Vec<Finding> {
+    fn look(&mut self, look: &CheckInputs) -> Vec<Finding> {
         if self.bodies.is_empty() {
             let side = REGION * look.scene.discretization.cell;
             self.bodies = look.neighbours.iter().map(|neighbours| Stretch::new(neighbours, side)).collect();
@@ -80,10 +80,10 @@ impl Stretch {
         Stretch { largest: 0.0, group, groups: known.len() }
     }
 
-    fn look(&mut self, look: &Look, body: usize) -> Option<Finding> {
+    fn look(&mut self, look: &CheckInputs, body: usize) -> Option<Finding> {
         let (Neighbours { start, pairs, .. }, now) = (&look.neighbours[body], &look.particles[body]);
         let mut squares = 0.0;
-        let mut sums = vec![Sum::default(); self.groups];
+        let mut sums = vec![PairSums::default(); self.groups];
         for (&[p, q], &group) in pairs.iter().zip(&self.group) {
             let (a, b) = (&now[p as usize], &now[q as usize]);
             let before = minus(start[q as usize], start[p as usize]);
@@ -128,9 +128,9 @@ fn direction(way: [f64; 3]) -> i64 {
 
 /// Root mean square of the difference that pairs of a group share [-], and a particle where it is largest; `None`
 /// without pairs enough.
-fn shared(sums: &[Sum]) -> Option<(f64, u32)> {
+fn shared(sums: &[PairSums]) -> Option<(f64, u32)> {
     let several = || sums.iter().filter(|sum| sum.count > 1.0);
-    let square = |sum: &Sum| (sum.difference * sum.difference - sum.squares) / (sum.count - 1.0);
+    let square = |sum: &PairSums| (sum.difference * sum.difference - sum.squares) / (sum.count - 1.0);
     let count: f64 = several().map(|sum| sum.count).sum();
     let worst = several().max_by(|a, b| (square(a) / a.count).total_cmp(&(square(b) / b.count)))?;
     let total: f64 = several().map(square).sum();
@@ -143,7 +143,7 @@ mod tests {
 
     #[test]
     fn only_what_pairs_share_counts() {
-        let sum = |differences: &[f64]| Sum {
+        let sum = |differences: &[f64]| PairSums {
             count: differences.len() as f64,
             difference: differences.iter().sum(),
             squares: differences.iter().map(|d| d * d).sum(),

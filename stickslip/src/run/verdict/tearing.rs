@@ -1,6 +1,6 @@
 //! Numerical fracture: particles that parted beyond the reach of their functions.
 
-use super::{Check, Finding, Look, minus, place};
+use super::{Check, CheckInputs, Finding, minus, place};
 use crate::door::TracedParticle;
 use crate::scene::BasisKind;
 
@@ -23,7 +23,7 @@ impl Check for Tearing {
         "no law tears it, the grid lost it: try more particles_per_side, the gimp basis, smaller cells, a smaller load"
     }
 
-    fn look(&mut self, look: &Look) -> Vec<Finding> {
+    fn look(&mut self, look: &CheckInputs) -> Vec<Finding> {
         self.first.resize(look.bodies.len(), None);
         let of_body = |body: usize| {
             let tear = tear(look, body)?;
@@ -53,7 +53,7 @@ struct Tear {
 }
 
 /// Neighbours at the start that are so far apart along an axis that no node need reach both, with nothing between them.
-fn tear(look: &Look, body: usize) -> Option<Tear> {
+fn tear(look: &CheckInputs, body: usize) -> Option<Tear> {
     let now = &look.particles[body];
     let pairs = &look.neighbours[body].pairs;
     let parted = |&[a, b]: &[u32; 2]| {
@@ -81,7 +81,7 @@ fn tear(look: &Look, body: usize) -> Option<Tear> {
 }
 
 /// Distance along an axis up to which two particles share a node wherever they lie [m].
-fn reach(look: &Look, a: &TracedParticle, b: &TracedParticle) -> f64 {
+fn reach(look: &CheckInputs, a: &TracedParticle, b: &TracedParticle) -> f64 {
     let cell = look.scene.discretization.cell;
     match look.scene.discretization.basis {
         BasisKind::Linear => cell,
