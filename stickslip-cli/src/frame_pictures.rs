@@ -9,7 +9,7 @@ use stickslip::door::ParticleSnapshot;
 use stickslip::image::Image;
 use stickslip::observe::{ContactRow, Frame, Results};
 use stickslip::polariscope::{self, ImageWindow, OpticalBench, Push, Stage};
-use stickslip::scene::{Field, Fringes, Light, Overlay, Polariscope, Sensitivity};
+use stickslip::scene::{Fringes, Light, Overlay, Polariscope, PolariscopeField, Sensitivity};
 
 /// What the user wants of fringes; what is missing is as in the scene's `outputs.fringes`, or else usual.
 #[derive(Clone, Debug)]
@@ -19,7 +19,7 @@ pub struct FringeChoice {
     /// Wavelength [m].
     pub wavelength: Option<f64>,
     /// What unloaded bodies look like; dark.
-    pub field: Option<Field>,
+    pub field: Option<PolariscopeField>,
     /// The light; grey.
     pub light: Option<Light>,
     /// Angle of the polariser [rad]; a circular polariscope.
@@ -175,7 +175,7 @@ fn polariscope(
     Polariscope {
         sensitivity: sensitivity.unwrap_or_else(|| few_fringes(snapshots, stage)),
         wavelength: choice.wavelength.or(own.map(|own| own.wavelength)).unwrap_or(Polariscope::MERCURY_GREEN),
-        field: choice.field.or(own.map(|own| own.field)).unwrap_or(Field::Dark),
+        field: choice.field.or(own.map(|own| own.field)).unwrap_or(PolariscopeField::Dark),
         light: choice.light.or(own.map(|own| own.light)).unwrap_or(Light::Grey),
         polarizer: choice.polarizer.or(own.and_then(|own| own.polarizer)),
     }

@@ -75,9 +75,9 @@ pub const fn spin_entries(dimension: usize) -> usize {
 
 /// Where the entries of the columns of [`EVERY`] begin.
 #[derive(Clone, Copy, Debug)]
-pub struct Column<const D: usize>;
+pub struct ColumnStart<const D: usize>;
 
-impl<const D: usize> Column<D> {
+impl<const D: usize> ColumnStart<D> {
     /// First component of the position.
     pub const POSITION: usize = known("position", D);
     /// First component of the velocity.
@@ -131,7 +131,7 @@ impl<T: Real, const D: usize> Particles<T, D> {
 
     /// Columns of a body whose law remembers this, an entry each, with room for one more.
     const fn columns_of(history: &[History]) -> usize {
-        Column::<D>::HISTORY + history_entries(history, D) + 1
+        ColumnStart::<D>::HISTORY + history_entries(history, D) + 1
     }
 
     /// Memory that so many particles take, of a body whose law remembers this: all columns and numbers, and the room in
@@ -151,10 +151,10 @@ impl<T: Real, const D: usize> Particles<T, D> {
             let particle = f(i);
             particles.set(i, &particle);
             for k in 0..D {
-                particles.columns[(Column::<D>::START + k) * stride + i] = particle.position[k];
+                particles.columns[(ColumnStart::<D>::START + k) * stride + i] = particle.position[k];
             }
         }
-        let mut column = Column::<D>::HISTORY;
+        let mut column = ColumnStart::<D>::HISTORY;
         for remembered in history {
             for entry in 0..remembered.column.kind.entries(D) {
                 particles.columns[column * stride..][..count].fill(T::of(remembered.start_of(D, entry)));
@@ -216,7 +216,7 @@ impl<T: Real, const D: usize> Particles<T, D> {
     #[inline]
     pub fn place(&self, i: usize) -> (Vector<T, D>, T) {
         let at = |column: usize| self.columns[self.first() + column * self.stride + i];
-        (Vector::from_fn(|k| at(Column::<D>::POSITION + k)), at(Column::<D>::HALF_WIDTH))
+        (Vector::from_fn(|k| at(ColumnStart::<D>::POSITION + k)), at(ColumnStart::<D>::HALF_WIDTH))
     }
 
     /// Writes particle `i`.
@@ -256,7 +256,7 @@ impl<T: Real, const D: usize> Particles<T, D> {
     /// Puts the particles into the order of a permutation: first the one whose index comes first. Every column moves into the room beside it.
     pub fn permute(&mut self, order: &[u32]) {
         assert_eq!(order.len(), self.len, "a permutation names every particle");
-        let count = Column::<D>::HISTORY + history_entries(self.history, D);
+        let count = ColumnStart::<D>::HISTORY + history_entries(self.history, D);
         for column in 0..count {
             let column = if self.later { column } else { count - 1 - column };
             move_over(&mut self.columns[column * self.stride..][..2 * self.stride], self.later, order);
@@ -317,7 +317,7 @@ impl<T: Real, const D: usize> Columns<T, D> {
     /// The column and the particle must exist, and nobody may use the entry but by this pointer.
     #[inline(always)]
     pub unsafe fn at(&self, column: usize, i: usize) -> *mut T {
-        debug_assert!(column < Column::<D>::HISTORY + self.history && i < self.stride, "an entry");
+        debug_assert!(column < ColumnStart::<D>::HISTORY + self.history && i < self.stride, "an entry");
         // SAFETY: the caller's.
         unsafe { self.start.add(column * self.stride + i) }
     }
@@ -332,23 +332,23 @@ impl<T: Real, const D: usize> Columns<T, D> {
         let at = |column: usize| unsafe { *self.at(column, i) };
         let mut deformation = Matrix::ZERO;
         for (k, &[row, column]) in deformation_entries(D).iter().enumerate() {
-            deformation.0[row][column] = at(Column::<D>::DEFORMATION + k);
+            deformation.0[row][column] = at(ColumnStart::<D>::DEFORMATION + k);
         }
         let mut stress = Symmetric::ZERO;
         for (k, entry) in stress.0.iter_mut().enumerate().take(stress_entries(D)) {
-            *entry = at(Column::<D>::STRESS + k);
+            *entry = at(ColumnStart::<D>::STRESS + k);
         }
         let mut spin = Vector::ZERO;
         for k in 0..spin_entries(D) {
-            spin[3 - spin_entries(D) + k] = at(Column::<D>::SPIN + k);
+            spin[3 - spin_entries(D) + k] = at(ColumnStart::<D>::SPIN + k);
         }
         Particle {
-            position: Vector::from_fn(|k| at(Column::<D>::POSITION + k)),
-            velocity: Vector::from_fn(|k| at(Column::<D>::VELOCITY + k)),
+            position: Vector::from_fn(|k| at(ColumnStart::<D>::POSITION + k)),
+            velocity: Vector::from_fn(|k| at(ColumnStart::<D>::VELOCITY + k)),
             spin,
-            mass: at(Column::<D>::MASS),
-            volume: at(Column::<D>::VOLUME),
-            half_width: at(Column::<D>::HALF_WIDTH),
+            mass: at(ColumnStart::<D>::MASS),
+            volume: at(ColumnStart::<D>::VOLUME),
+            half_width: at(ColumnStart::<D>::HALF_WIDTH),
             deformation,
             stress,
             number: 0,
@@ -363,20 +363,20 @@ impl<T: Real, const D: usize> Columns<T, D> {
         // SAFETY: the caller's.
         let put = |column: usize, x: T| unsafe { *self.at(column, i) = x };
         for k in 0..D {
-            put(Column::<D>::POSITION + k, particle.position[k]);
-            put(Column::<D>::VELOCITY + k, particle.velocity[k]);
+            put(ColumnStart::<D>::POSITION + k, particle.position[k]);
+            put(ColumnStart::<D>::VELOCITY + k, particle.velocity[k]);
         }
         for k in 0..spin_entries(D) {
-            put(Column::<D>::SPIN + k, particle.spin[3 - spin_entries(D) + k]);
+            put(ColumnStart::<D>::SPIN + k, particle.spin[3 - spin_entries(D) + k]);
         }
-        put(Column::<D>::MASS, particle.mass);
-        put(Column::<D>::VOLUME, particle.volume);
-        put(Column::<D>::HALF_WIDTH, particle.half_width);
+        put(ColumnStart::<D>::MASS, particle.mass);
+        put(ColumnStart::<D>::VOLUME, particle.volume);
+        put(ColumnStart::<D>::HALF_WIDTH, particle.half_width);
         for (k, &[row, column]) in deformation_entries(D).iter().enumerate() {
-            put(Column::<D>::DEFORMATION + k, particle.deformation.0[row][column]);
+            put(ColumnStart::<D>::DEFORMATION + k, particle.deformation.0[row][column]);
         }
         for (k, &x) in particle.stress.0.iter().enumerate().take(stress_entries(D)) {
-            put(Column::<D>::STRESS + k, x);
+            put(ColumnStart::<D>::STRESS + k, x);
         }
     }
 }
@@ -408,7 +408,7 @@ impl<T: Real, const D: usize> Recall<T> for HistoryOf<T, D> {
             return T::ZERO;
         }
         // SAFETY: that of `Columns::history_of`.
-        unsafe { *self.columns.at(Column::<D>::HISTORY + entry, self.particle) }
+        unsafe { *self.columns.at(ColumnStart::<D>::HISTORY + entry, self.particle) }
     }
 }
 
@@ -416,7 +416,7 @@ impl<T: Real, const D: usize> Keep<T> for HistoryOf<T, D> {
     #[inline(always)]
     fn keep(&mut self, entry: usize, value: T) {
         // SAFETY: as above.
-        unsafe { *self.columns.at(Column::<D>::HISTORY + entry, self.particle) = value }
+        unsafe { *self.columns.at(ColumnStart::<D>::HISTORY + entry, self.particle) = value }
     }
 }
 
@@ -503,14 +503,28 @@ mod tests {
 
     #[test]
     fn columns_lie_one_behind_the_other() {
-        let at = [Column::<3>::POSITION, Column::<3>::VELOCITY, Column::<3>::SPIN, Column::<3>::MASS];
+        let at = [
+            ColumnStart::<3>::POSITION,
+            ColumnStart::<3>::VELOCITY,
+            ColumnStart::<3>::SPIN,
+            ColumnStart::<3>::MASS,
+        ];
         assert_eq!(at, [0, 3, 6, 9]);
-        let at =
-            [Column::<3>::VOLUME, Column::<3>::HALF_WIDTH, Column::<3>::DEFORMATION, Column::<3>::STRESS];
+        let at = [
+            ColumnStart::<3>::VOLUME,
+            ColumnStart::<3>::HALF_WIDTH,
+            ColumnStart::<3>::DEFORMATION,
+            ColumnStart::<3>::STRESS,
+        ];
         assert_eq!(at, [10, 11, 12, 21]);
-        assert_eq!([Column::<3>::START, Column::<3>::HISTORY], [27, 30]);
+        assert_eq!([ColumnStart::<3>::START, ColumnStart::<3>::HISTORY], [27, 30]);
         assert_eq!(
-            [Column::<2>::SPIN, Column::<2>::MASS, Column::<2>::STRESS, Column::<2>::HISTORY],
+            [
+                ColumnStart::<2>::SPIN,
+                ColumnStart::<2>::MASS,
+                ColumnStart::<2>::STRESS,
+                ColumnStart::<2>::HISTORY
+            ],
             [4, 5, 13, 19]
         );
         for (k, &[row, column]) in deformation_entries(2).iter().enumerate() {

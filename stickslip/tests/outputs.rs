@@ -16,7 +16,7 @@ use stickslip::image::Image;
 use stickslip::march::MarchError;
 use stickslip::observe::{FolderError, Results, Status};
 use stickslip::run::{RunError, RunOptions, Summary, run};
-use stickslip::scene::{Field, Fringes, Light, Overlay, Polariscope, Sensitivity};
+use stickslip::scene::{Fringes, Light, Overlay, Polariscope, PolariscopeField, Sensitivity};
 
 fn options(out: &Path) -> RunOptions {
     RunOptions { out: out.to_path_buf(), stop: Arc::new(AtomicBool::new(false)), threads: 2 }
@@ -339,7 +339,7 @@ fn a_camera_leaves_its_frames_a_table_and_an_animation() {
     let polariscope = Polariscope {
         sensitivity: Sensitivity::StressPerFringe(2.0),
         wavelength: Polariscope::MERCURY_GREEN,
-        field: Field::Dark,
+        field: PolariscopeField::Dark,
         light: Light::White,
         polarizer: None,
     };

@@ -5,7 +5,7 @@
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use stickslip::door::*;
-use stickslip::observe::{Results, Warning};
+use stickslip::observe::{Results, RunWarning};
 use stickslip::run::{self, RunOptions};
 use stickslip::scene::{self, Scene};
 
@@ -24,11 +24,11 @@ const SPACING: f64 = 0.05;
 const STEP: f64 = 1.0 / 1024.0;
 
 /// Where a particle is that was at a point, its velocity and its deformation gradient.
-type Motion = fn([f64; 2], f64) -> ([f64; 2], [f64; 2], [[f64; 2]; 2]);
+type BodyMotion = fn([f64; 2], f64) -> ([f64; 2], [f64; 2], [[f64; 2]; 2]);
 
 /// A body that moves as it is told.
 struct Puppet {
-    motion: Motion,
+    motion: BodyMotion,
     /// Total and strain energy at a time [J].
     energy: fn(f64) -> [f64; 2],
     time: f64,
@@ -38,7 +38,7 @@ struct Puppet {
 const REST: [[f64; 2]; 2] = [[1.0, 0.0], [0.0, 1.0]];
 
 impl Puppet {
-    fn new(motion: Motion) -> Self {
+    fn new(motion: BodyMotion) -> Self {
         Puppet { motion, energy: |_| [0.0, 0.0], time: 0.0, steps: 0 }
     }
 
@@ -149,7 +149,7 @@ impl Simulation for Puppet {
 }
 
 /// What a run of this scene notes while it runs, and what its record says in the end.
-fn judge(text: &str, simulation: &mut dyn Simulation) -> (Vec<String>, Vec<Warning>) {
+fn judge(text: &str, simulation: &mut dyn Simulation) -> (Vec<String>, Vec<RunWarning>) {
     let scene: Scene = scene::parse("puppet.toml", text, &[]).unwrap().scene;
     let out = tempfile::tempdir().unwrap();
     let stop = Arc::new(AtomicBool::new(false));
@@ -179,7 +179,7 @@ fn turning([x, y]: [f64; 2], t: f64) -> ([f64; 2], [f64; 2], [[f64; 2]; 2]) {
 #[test]
 fn a_body_that_turns_flies_and_stretches_is_sound() {
     assert!(kinds(SCENE, Puppet::new(turning)).is_empty());
-    let stretching: Motion = |[x, y], t| {
+    let stretching: BodyMotion = |[x, y], t| {
         let stretch = 1.0 + 0.5 * t;
         ([stretch * x, y], [0.5 * x, 0.0], [[stretch, 0.0], [0.0, 1.0]])
     };
@@ -208,7 +208,7 @@ fn the_scene_sets_how_far_energy_may_drift() {
 
 #[test]
 fn spin_that_goes_where_nothing_touches_is_found() {
-    let slowing: Motion = |x, t| {
+    let slowing: BodyMotion = |x, t| {
         let (position, velocity, f) = turning(x, t);
         (position, [2.0 + (1.0 - 0.1 * t) * (velocity[0] - 2.0), (1.0 - 0.1 * t) * velocity[1]], f)
     };
@@ -217,7 +217,7 @@ fn spin_that_goes_where_nothing_touches_is_found() {
     assert_eq!((warning.kind.as_str(), warning.body.as_deref()), ("angular-momentum", Some("block")));
     assert!((warning.worst - 0.1).abs() < 1e-3, "{warning:?}");
     // A push that gravity does not explain is somebody's touch.
-    let pushed: Motion = |x, t| {
+    let pushed: BodyMotion = |x, t| {
         let (position, velocity, f) = turning(x, t);
         (position, [2.0 + t + (1.0 - 0.1 * t) * (velocity[0] - 2.0), (1.0 - 0.1 * t) * velocity[1]], f)
     };
@@ -226,7 +226,7 @@ fn spin_that_goes_where_nothing_touches_is_found() {
 
 #[test]
 fn positions_that_leave_their_strain_behind_are_found() {
-    let drifting: Motion = |[x, y], t| {
+    let drifting: BodyMotion = |[x, y], t| {
         let stretch = 1.0 + 0.01 * t;
         ([stretch * x, y], [0.0; 2], [[1.0 + 0.006 * t, 0.0], [0.0, 1.0]])
     };
@@ -238,7 +238,7 @@ fn positions_that_leave_their_strain_behind_are_found() {
 
 #[test]
 fn noise_of_single_particles_is_no_stretch() {
-    let noisy: Motion = |[x, y], t| {
+    let noisy: BodyMotion = |[x, y], t| {
         let scattered = |k: f64| 3e-5 * (1e4 * (x * k).sin() + 1e4 * (y * (k + 1.0)).cos()).sin() * t;
         ([x + scattered(3.0), y + scattered(5.0)], [0.0; 2], REST)
     };
@@ -248,20 +248,20 @@ fn noise_of_single_particles_is_no_stretch() {
 #[test]
 fn a_body_that_tears_is_found_where_it_does() {
     // The right half leaves; 0.15 m is the reach of gimp.
-    let torn: Motion = |[x, y], t| ([x + if x > 0.1 { 0.3 * t } else { 0.0 }, y], [0.0; 2], REST);
+    let torn: BodyMotion = |[x, y], t| ([x + if x > 0.1 { 0.3 * t } else { 0.0 }, y], [0.0; 2], REST);
     let warnings = judge(SCENE, &mut Puppet::new(torn)).1;
     let tearing = warnings.iter().find(|warning| warning.kind == "tearing").expect("it tears");
     assert!(tearing.time > 0.3 && tearing.time < 0.6, "{tearing:?}");
     let place = tearing.position.unwrap();
     assert!((place[0] - 0.165).abs() < 0.02, "{tearing:?}");
     // Halves that slide along each other have others between them.
-    let sliding: Motion = |[x, y], t| ([x + if y > 0.0 { 0.4 * t } else { 0.0 }, y], [0.0; 2], REST);
+    let sliding: BodyMotion = |[x, y], t| ([x + if y > 0.0 { 0.4 * t } else { 0.0 }, y], [0.0; 2], REST);
     assert!(!kinds(SCENE, Puppet::new(sliding)).contains(&"tearing".to_owned()));
 }
 
 #[test]
 fn linear_functions_are_named_where_stress_crosses_cells() {
-    let flying: Motion = |[x, y], t| ([x + 0.2 * t, y], [0.2, 0.0], REST);
+    let flying: BodyMotion = |[x, y], t| ([x + 0.2 * t, y], [0.2, 0.0], REST);
     let linear = SCENE.replace("gimp", "linear");
     // 2 W / M V = 1e-5 with M = 33.3 kPa and V = 0.4 m^2
     let stressed = || Puppet { energy: |_| [0.0, 0.067], ..Puppet::new(flying) };
@@ -273,21 +273,21 @@ fn linear_functions_are_named_where_stress_crosses_cells() {
 #[test]
 fn a_part_that_moves_as_fast_as_waves_is_found() {
     // Waves: sqrt(33.3 kPa / 1000 kg/m^3) = 5.8 m/s
-    let struck: Motion = |x, _| (x, [if x[0] > 0.4 { 4.0 } else { 0.0 }, 0.0], REST);
+    let struck: BodyMotion = |x, _| (x, [if x[0] > 0.4 { 4.0 } else { 0.0 }, 0.0], REST);
     assert_eq!(kinds(SCENE, Puppet::new(struck)), ["speed"]);
-    let whole: Motion = |[x, y], t| ([x + 40.0 * t, y], [40.0, 0.0], REST);
+    let whole: BodyMotion = |[x, y], t| ([x + 40.0 * t, y], [40.0, 0.0], REST);
     assert!(kinds(SCENE, Puppet::new(whole)).is_empty());
 }
 
 #[test]
 fn steps_below_the_spacing_of_numbers_are_found() {
     // At 1e4 m, single precision has numbers every 1.2 mm; the body moves by 0.5 mm a step.
-    let far: Motion = |[x, y], t| ([1e4 + x + 0.5 * t, y], [0.5, 0.0], REST);
+    let far: BodyMotion = |[x, y], t| ([1e4 + x + 0.5 * t, y], [0.5, 0.0], REST);
     let single = SCENE.replace("basis", "precision = \"single\", basis");
     let kind = |text: &str, motion| kinds(text, Puppet::new(motion));
     assert!(kind(&single, far).contains(&"precision".to_owned()));
     assert!(!kind(SCENE, far).contains(&"precision".to_owned()));
-    let near: Motion = |[x, y], t| ([x + 0.5 * t, y], [0.5, 0.0], REST);
+    let near: BodyMotion = |[x, y], t| ([x + 0.5 * t, y], [0.5, 0.0], REST);
     assert!(kind(&single, near).is_empty());
 }
 

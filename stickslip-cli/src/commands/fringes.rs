@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::frame_pictures::{FringeChoice, material_sensitivity};
 use clap::Args;
 use std::f64::consts::PI;
-use stickslip::scene::{Field, Light, Overlay, Polariscope, Sensitivity};
+use stickslip::scene::{Light, Overlay, Polariscope, PolariscopeField, Sensitivity};
 
 /// What the user wants of fringes.
 #[derive(Debug, Args)]
@@ -81,7 +81,7 @@ impl FringeArguments {
             field: self
                 .field
                 .as_deref()
-                .map(|field| if field == "dark" { Field::Dark } else { Field::Light }),
+                .map(|field| if field == "dark" { PolariscopeField::Dark } else { PolariscopeField::Light }),
             light: self.light.as_deref().map(|light| match light {
                 "monochrome" => Light::Monochrome,
                 "white" => Light::White,

@@ -14,12 +14,12 @@ pub struct Figure {
     /// What is to be seen.
     pub caption: Markup,
     /// Rows of images; images of one row are equally wide.
-    pub rows: Vec<Vec<Image>>,
+    pub rows: Vec<Vec<EmbeddedImage>>,
 }
 
 /// An image that the page carries with it.
 #[derive(Clone, Debug)]
-pub struct Image {
+pub struct EmbeddedImage {
     pub(super) data: Data,
     /// What the image shows, for readers who cannot see it.
     pub(super) description: String,
@@ -41,25 +41,25 @@ impl Figure {
     }
 
     /// Adds a row of images.
-    pub fn row(mut self, images: Vec<Image>) -> Self {
+    pub fn row(mut self, images: Vec<EmbeddedImage>) -> Self {
         self.rows.push(images);
         self
     }
 }
 
-impl Image {
+impl EmbeddedImage {
     /// A drawing of lines and letters, as SVG.
     pub fn svg(svg: &str, description: impl Into<String>) -> Self {
         // What precedes the element belongs to files only.
         let start = svg.find("<svg").unwrap_or(0);
         let data = Data::Svg(svg[start..].to_owned());
-        Image { data, description: description.into(), label: String::new() }
+        EmbeddedImage { data, description: description.into(), label: String::new() }
     }
 
     /// A picture, the bytes of a PNG file.
     pub fn png(png: &[u8], description: impl Into<String>) -> Self {
         let data = Data::Png(STANDARD.encode(png));
-        Image { data, description: description.into(), label: String::new() }
+        EmbeddedImage { data, description: description.into(), label: String::new() }
     }
 
     /// The same with a line under it.
@@ -87,7 +87,7 @@ mod tests {
 
     #[test]
     fn what_precedes_the_drawing_is_left_out() {
-        let image = Image::svg("<?xml version=\"1.0\"?>\n<svg></svg>", "nothing");
+        let image = EmbeddedImage::svg("<?xml version=\"1.0\"?>\n<svg></svg>", "nothing");
         assert!(matches!(image.data, Data::Svg(svg) if svg == "<svg></svg>"));
     }
 }

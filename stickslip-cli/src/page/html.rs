@@ -2,7 +2,7 @@
 
 use super::figure::{Data, address};
 use super::table::Align;
-use super::{Block, Cell, Figure, Image, Making, Mark, Page, Section, Table};
+use super::{Block, Cell, EmbeddedImage, Figure, Making, Mark, Page, Section, Table};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 const STYLE: &str = include_str!("style.css");
@@ -93,7 +93,7 @@ fn figure(figure: &Figure) -> Markup {
     }
 }
 
-fn image(image: &Image) -> Markup {
+fn image(image: &EmbeddedImage) -> Markup {
     html! {
         div.image {
             @match &image.data {
@@ -174,8 +174,10 @@ mod tests {
     use std::time::Duration;
 
     fn example() -> String {
-        let figure = Figure::new("Figure 3", "A line & more")
-            .row(vec![Image::svg("<svg><path/></svg>", "a line"), Image::png(b"PNG", "dots").label("t = 2")]);
+        let figure = Figure::new("Figure 3", "A line & more").row(vec![
+            EmbeddedImage::svg("<svg><path/></svg>", "a line"),
+            EmbeddedImage::png(b"PNG", "dots").label("t = 2"),
+        ]);
         let columns = vec![Column::text("case"), Column::number("x [m]")];
         let table = Table::new("Distances", columns).row(vec![Cell::text("R/4"), Cell::number(9.5, 2)]);
         let section = Section::new("Sphere").text("x < y").warning("it failed").figure(figure).table(table);

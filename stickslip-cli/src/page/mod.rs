@@ -8,7 +8,7 @@ mod html;
 mod making;
 mod table;
 
-pub use figure::{Figure, Image, address};
+pub use figure::{EmbeddedImage, Figure, address};
 pub use making::Making;
 pub use table::{Cell, Column, Mark, Table};
 

@@ -7,7 +7,7 @@ use super::drawn;
 use crate::chart::{Chart, Curve, Panel, svg};
 use crate::drawing::body_color;
 use crate::failure::Failure;
-use crate::page::{Cell, Column, Figure, Image, Table};
+use crate::page::{Cell, Column, EmbeddedImage, Figure, Table};
 
 /// Times at which the balance is drawn up, 3 us after impact and at the end [s].
 const BALANCES: [f64; 2] = [3e-6, f64::INFINITY];
@@ -53,7 +53,7 @@ pub fn figure(level: Level, runs: &Runs) -> Result<Option<Figure>, Failure> {
             cells(level)
         );
         Figure::new("Energy balance", caption)
-            .row(vec![Image::svg(&svg, "Energy from nowhere over time by three rules")])
+            .row(vec![EmbeddedImage::svg(&svg, "Energy from nowhere over time by three rules")])
     }))
 }
 

@@ -7,7 +7,7 @@ use super::drawn;
 use crate::chart::{Chart, Curve, Panel, svg};
 use crate::drawing::body_color;
 use crate::failure::Failure;
-use crate::page::{Cell, Column, Figure, Image, Section, Table};
+use crate::page::{Cell, Column, EmbeddedImage, Figure, Section, Table};
 
 /// The study.
 pub struct Convergence;
@@ -95,7 +95,8 @@ impl Study for Convergence {
                 "Convergence",
                 "Mean interval between arrivals at neighbouring disks in transits against resolution.",
             );
-            section = section.figure(figure.row(vec![Image::svg(&svg, "Mean interval against resolution")]));
+            section = section
+                .figure(figure.row(vec![EmbeddedImage::svg(&svg, "Mean interval against resolution")]));
         }
         Ok(section.table(table))
     }

@@ -6,7 +6,7 @@ use super::case::{Case, Level, PaperScene, Rule, Runs};
 use super::chain::{self, Chain};
 use super::frames;
 use crate::failure::Failure;
-use crate::page::{Cell, Column, Figure, Image, Mark, Section, Table};
+use crate::page::{Cell, Column, EmbeddedImage, Figure, Mark, Section, Table};
 use maud::html;
 
 /// The study.
@@ -129,7 +129,8 @@ impl Arrangement {
                     let description =
                         format!("{}, {} at t = {shown:.1}, a time of {whose}", self.title, rule.title());
                     row.push(
-                        Image::png(&png, description).label(format!("{}, t = {shown:.1}", rule.short())),
+                        EmbeddedImage::png(&png, description)
+                            .label(format!("{}, t = {shown:.1}", rule.short())),
                     );
                 }
                 figure = figure.row(row);

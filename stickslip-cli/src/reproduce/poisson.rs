@@ -7,7 +7,7 @@ use super::drawn;
 use crate::chart::{Chart, Curve, Panel, svg};
 use crate::drawing::body_color;
 use crate::failure::Failure;
-use crate::page::{Cell, Column, Figure, Image, Mark, Section, Table};
+use crate::page::{Cell, Column, EmbeddedImage, Figure, Mark, Section, Table};
 
 /// The study.
 pub struct Poisson;
@@ -95,8 +95,9 @@ impl Study for Poisson {
                 "Poisson study",
                 "Speed of the fringes against Poisson's ratio, the longitudinal speed held.",
             );
-            section = section
-                .figure(figure.row(vec![Image::svg(&svg, "Speed of the fringes against Poisson's ratio")]));
+            section = section.figure(
+                figure.row(vec![EmbeddedImage::svg(&svg, "Speed of the fringes against Poisson's ratio")]),
+            );
         }
         Ok(section.table(table))
     }

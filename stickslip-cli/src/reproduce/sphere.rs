@@ -6,7 +6,7 @@ use super::drawn;
 use crate::chart::{Chart, Curve, Panel, svg};
 use crate::drawing::{Rgb, body_color};
 use crate::failure::Failure;
-use crate::page::{Cell, Column, Figure, Image, Table};
+use crate::page::{Cell, Column, EmbeddedImage, Figure, Table};
 use stickslip::observe::Results;
 
 /// A sphere of a scene, by a rule, on cells of a part of its radius.
@@ -68,7 +68,7 @@ pub fn figure(figure: Figure, axis: Axis, spheres: &[Sphere], runs: &Runs) -> Re
         };
         if let Some(svg) = drawn(svg(&chart, SIZE))? {
             let description = format!("{} over time, {}", axis.name, rule.title());
-            charts.push(Image::svg(&svg, description).label(rule.title()));
+            charts.push(EmbeddedImage::svg(&svg, description).label(rule.title()));
         }
     }
     Ok(figure.row(charts))

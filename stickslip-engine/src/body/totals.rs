@@ -3,7 +3,7 @@
 use super::{Body, Gyration};
 use crate::lanes::{Laned, Lanes, MOST_LANES, Machine, Processor, Work};
 use crate::material::{Material, Recall};
-use crate::particles::{Column, Columns, deformation_entries, spin_entries, stress_entries};
+use crate::particles::{ColumnStart, Columns, deformation_entries, spin_entries, stress_entries};
 use crate::tensor::{Matrix, Real, Symmetric, cross};
 use crate::threads::by_parts;
 use std::ops::Range;
@@ -50,7 +50,7 @@ impl Totals {
 type Each = [f64; MOST_LANES];
 
 /// Mass and motion of a few particles that lie side by side in memory; zero in the lanes beyond.
-struct Chunk {
+struct ParticleChunk {
     mass: Each,
     position: [Each; 3],
     velocity: [Each; 3],
@@ -59,7 +59,7 @@ struct Chunk {
     inertia: Each,
 }
 
-impl Chunk {
+impl ParticleChunk {
     /// # Safety
     /// The particles must exist, and nobody may write to them meanwhile.
     #[inline(always)]
@@ -68,7 +68,7 @@ impl Chunk {
         gyration: &Gyration<f64>,
         (first, count): (usize, usize),
     ) -> Self {
-        let mut chunk = Chunk {
+        let mut chunk = ParticleChunk {
             mass: [0.0; MOST_LANES],
             position: [[0.0; MOST_LANES]; 3],
             velocity: [[0.0; MOST_LANES]; 3],
@@ -77,16 +77,18 @@ impl Chunk {
         };
         // SAFETY: the caller's.
         unsafe {
-            chunk.mass = each(V::load_first(columns.at(Column::<D>::MASS, first), count));
+            chunk.mass = each(V::load_first(columns.at(ColumnStart::<D>::MASS, first), count));
             for i in 0..D {
-                chunk.position[i] = each(V::load_first(columns.at(Column::<D>::POSITION + i, first), count));
-                chunk.velocity[i] = each(V::load_first(columns.at(Column::<D>::VELOCITY + i, first), count));
+                chunk.position[i] =
+                    each(V::load_first(columns.at(ColumnStart::<D>::POSITION + i, first), count));
+                chunk.velocity[i] =
+                    each(V::load_first(columns.at(ColumnStart::<D>::VELOCITY + i, first), count));
             }
             for k in 0..spin_entries(D) {
                 chunk.spin[3 - spin_entries(D) + k] =
-                    each(V::load_first(columns.at(Column::<D>::SPIN + k, first), count));
+                    each(V::load_first(columns.at(ColumnStart::<D>::SPIN + k, first), count));
             }
-            let half_width = each(V::load_first(columns.at(Column::<D>::HALF_WIDTH, first), count));
+            let half_width = each(V::load_first(columns.at(ColumnStart::<D>::HALF_WIDTH, first), count));
             let of_each = chunk.mass.iter().zip(&half_width);
             for (inertia, (mass, &half_width)) in chunk.inertia.iter_mut().zip(of_each) {
                 *inertia = mass * gyration.squared(half_width);
@@ -145,7 +147,8 @@ impl<T: Laned, const D: usize> Work for SumOfRange<'_, T, D> {
         let material = self.material.map(|material| material.map(M::Wide::splat));
         for (first, count) in chunks::<M::Wide>(&self.part) {
             // SAFETY: the particles are the body's, which is borrowed for reading.
-            let some = unsafe { Chunk::new::<M::Wide, D>(&self.columns, &self.gyration, (first, count)) };
+            let some =
+                unsafe { ParticleChunk::new::<M::Wide, D>(&self.columns, &self.gyration, (first, count)) };
             for lane in 0..MOST_LANES {
                 let m = some.mass[lane];
                 mass[lane] += m;
@@ -201,10 +204,10 @@ unsafe fn stored<V: Lanes, const D: usize>(
     // SAFETY: the caller's.
     unsafe {
         for (k, &[row, column]) in deformation_entries(D).iter().enumerate() {
-            f.0[row][column] = V::load_first(columns.at(Column::<D>::DEFORMATION + k, first), count);
+            f.0[row][column] = V::load_first(columns.at(ColumnStart::<D>::DEFORMATION + k, first), count);
         }
         for k in 0..stress_entries(D) {
-            stress.0[k] = V::load_first(columns.at(Column::<D>::STRESS + k, first), count);
+            stress.0[k] = V::load_first(columns.at(ColumnStart::<D>::STRESS + k, first), count);
         }
     }
     let [energy, dissipation] = material.energies(&f, &stress, &HistoryOfSome { columns, first, count });
@@ -223,7 +226,7 @@ impl<V: Lanes, const D: usize> Recall<V> for HistoryOfSome<'_, V::Real, D> {
     #[inline(always)]
     fn recall(&self, entry: usize) -> V {
         // SAFETY: the particles are the body's, which is borrowed for reading.
-        unsafe { V::load_first(self.columns.at(Column::<D>::HISTORY + entry, self.first), self.count) }
+        unsafe { V::load_first(self.columns.at(ColumnStart::<D>::HISTORY + entry, self.first), self.count) }
     }
 }
 
@@ -247,7 +250,8 @@ impl<T: Laned, const D: usize> Work for Turning<T, D> {
         let mut angular = [[0.0; MOST_LANES]; 3];
         for (first, count) in chunks::<M::Wide>(&self.part) {
             // SAFETY: the particles are the body's, which is borrowed for reading.
-            let some = unsafe { Chunk::new::<M::Wide, D>(&self.columns, &self.gyration, (first, count)) };
+            let some =
+                unsafe { ParticleChunk::new::<M::Wide, D>(&self.columns, &self.gyration, (first, count)) };
             for lane in 0..MOST_LANES {
                 let (m, l) = (some.mass[lane], some.angular_momentum(lane, self.center, self.mean));
                 let [x, y, z] = [0, 1, 2].map(|i| some.position[i][lane] - self.center[i]);

@@ -8,7 +8,7 @@ use crate::tensor::{Matrix, Real, Vector};
 use crate::transfer::offsets;
 
 /// A node or one of its mirror images, with the signs that turn vectors between the two.
-struct Image<T, const D: usize> {
+struct MirroredNode<T, const D: usize> {
     node: [i32; D],
     sign: [T; D],
 }
@@ -44,14 +44,14 @@ impl<T: Real, const D: usize> Near<'_, T, D> {
     }
 
     /// A node and its images in the mirrors near it.
-    fn images(&self, node: [i32; D]) -> Vec<Image<T, D>> {
-        let mut images = vec![Image { node, sign: [T::ONE; D] }];
+    fn images(&self, node: [i32; D]) -> Vec<MirroredNode<T, D>> {
+        let mut images = vec![MirroredNode { node, sign: [T::ONE; D] }];
         for wall in self.boundary.walls.iter().filter(|wall| wall.face == Face::Symmetry) {
             if wall.depth(node) < MAX_WIDTH as i32 {
                 for i in 0..images.len() {
-                    let Image { node, mut sign } = images[i];
+                    let MirroredNode { node, mut sign } = images[i];
                     sign[wall.axis] = -sign[wall.axis];
-                    images.push(Image { node: wall.image(node), sign });
+                    images.push(MirroredNode { node: wall.image(node), sign });
                 }
             }
         }

@@ -35,10 +35,10 @@ pub(super) fn corner_block<const D: usize>(block: [i32; D], corner: usize) -> [i
 }
 
 /// Blocks at a block + {0, 1}^D, a bit each.
-pub(super) type Corners = u8;
+pub(super) type CornerBlocks = u8;
 
 /// The blocks that the particles of a cell reach.
-fn corners_of<const D: usize>(cell: usize, reach: i32) -> Corners {
+fn corners_of<const D: usize>(cell: usize, reach: i32) -> CornerBlocks {
     let place: [i32; D] = node_at([0; D], cell);
     let reaches = |corner: usize| (0..D).all(|i| corner >> (D - 1 - i) & 1 == 0 || place[i] + reach >= SIDE);
     (0..1 << D).filter(|&corner| reaches(corner)).fold(0, |corners, corner| corners | 1 << corner)
@@ -54,7 +54,7 @@ pub(super) struct CellList {
     /// Home blocks with particles, sorted.
     pub homes: Vec<u64>,
     /// Of each tile, which blocks at `home` + {0, 1}^D its particles reach, a bit each.
-    pub reached: Vec<Corners>,
+    pub reached: Vec<CornerBlocks>,
     /// Blocks that the particles reach, sorted.
     pub blocks: Vec<u64>,
     /// Nodes that a particle reaches beyond its base node, along each axis.
@@ -74,7 +74,7 @@ struct Next {
     order: Vec<u32>,
     cells: Vec<u32>,
     homes: Vec<u64>,
-    reached: Vec<Corners>,
+    reached: Vec<CornerBlocks>,
     tiles: Vec<NextTile>,
 }
 

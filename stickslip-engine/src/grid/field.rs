@@ -72,7 +72,7 @@ impl<T: Real, const D: usize> Node<T, D> {
         std::mem::swap(&mut self.integrated, &mut self.velocity);
     }
 
-    /// Where a node's first eight numbers are in [`Sums`]: mass, velocity and force, and then zeros: in the plane the
+    /// Where a node's first eight numbers are in [`NodeSums`]: mass, velocity and force, and then zeros: in the plane the
     /// third axis has nothing to give.
     const GIVEN: [usize; MOST_LANES] =
         if D == 2 { [6, 0, 2, 1, 3, 4, 5, 7] } else { [6, 0, 2, 4, 1, 3, 5, 7] };
@@ -82,7 +82,7 @@ impl<T: Real, const D: usize> Node<T, D> {
     /// # Safety
     /// The node must be there, and nobody else may use it meanwhile.
     #[inline(always)]
-    unsafe fn take<M: Machine<T>>(node: *mut Self, sums: &Sums<T>) {
+    unsafe fn take<M: Machine<T>>(node: *mut Self, sums: &NodeSums<T>) {
         const { assert!(size_of::<Self>() == (1 + 4 * D) * size_of::<T>()) };
         let first = node.cast::<T>();
         // SAFETY: the sums are eight numbers, and a node has nine or more.
@@ -172,7 +172,7 @@ pub struct Sought {
 }
 
 /// What a node is given: momentum [kg m/s] and force [N] along each axis, mass [kg] and nothing in the last place.
-pub type Sums<T> = [[T; 2]; 4];
+pub type NodeSums<T> = [[T; 2]; 4];
 
 /// What a node tells: a velocity, and nothing in the places beyond.
 pub type NodeValues<T> = [T; NODE_VALUES];
@@ -190,7 +190,7 @@ pub struct Window<T, const D: usize> {
     /// The velocities that move and strain particles [m/s].
     pub flow: [NodeValues<T>; WINDOW_NODES],
     /// What was scattered so far.
-    pub sums: [Sums<T>; WINDOW_NODES],
+    pub sums: [NodeSums<T>; WINDOW_NODES],
 }
 
 impl<T: Real, const D: usize> Default for Window<T, D> {

@@ -9,7 +9,9 @@ mod field;
 
 pub use active_blocks::{ActiveBlocks, Blocks, Meeting, Tile};
 pub use cell_list::{MOST_CELLS, addressable};
-pub use field::{Disjoint, Field, NODE_VALUES, Node, NodeValues, Sought, Sums, WINDOW, WINDOW_NODES, Window};
+pub use field::{
+    Disjoint, Field, NODE_VALUES, Node, NodeSums, NodeValues, Sought, WINDOW, WINDOW_NODES, Window,
+};
 
 use crate::tensor::{Real, Vector};
 

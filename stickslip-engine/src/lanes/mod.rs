@@ -12,7 +12,7 @@ mod pair;
 mod x86;
 
 pub use pack::Pack;
-pub use pair::Pair;
+pub use pair::RegisterPair;
 
 use crate::number::{Number, Real};
 
@@ -238,11 +238,11 @@ pub trait Machine<T>: Copy + 'static {
 pub struct Any;
 
 impl<T: Real> Machine<T> for Any {
-    type Wide = Pair<Pack<T, 4>>;
+    type Wide = RegisterPair<Pack<T, 4>>;
     type Quad = Pack<T, 4>;
 
     #[inline(always)]
-    fn halves(Pair(lower, upper): Self::Wide) -> Self::Quad {
+    fn halves(RegisterPair(lower, upper): Self::Wide) -> Self::Quad {
         lower + upper
     }
 }

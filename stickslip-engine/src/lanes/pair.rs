@@ -6,18 +6,18 @@ use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssi
 
 /// The lanes of one register and then those of another.
 #[derive(Clone, Copy, Debug)]
-pub struct Pair<V>(pub V, pub V);
+pub struct RegisterPair<V>(pub V, pub V);
 
 macro_rules! lanewise {
     ($op:ident, $f:ident, $assign:ident, $g:ident) => {
-        impl<V: Lanes> $op for Pair<V> {
+        impl<V: Lanes> $op for RegisterPair<V> {
             type Output = Self;
             #[inline(always)]
             fn $f(self, other: Self) -> Self {
-                Pair(self.0.$f(other.0), self.1.$f(other.1))
+                RegisterPair(self.0.$f(other.0), self.1.$f(other.1))
             }
         }
-        impl<V: Lanes> $assign for Pair<V> {
+        impl<V: Lanes> $assign for RegisterPair<V> {
             #[inline(always)]
             fn $g(&mut self, other: Self) {
                 *self = self.$f(other);
@@ -30,71 +30,71 @@ lanewise!(Sub, sub, SubAssign, sub_assign);
 lanewise!(Mul, mul, MulAssign, mul_assign);
 lanewise!(Div, div, DivAssign, div_assign);
 
-impl<V: Lanes> Neg for Pair<V> {
+impl<V: Lanes> Neg for RegisterPair<V> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        Pair(-self.0, -self.1)
+        RegisterPair(-self.0, -self.1)
     }
 }
 
-impl<V: Lanes> Number for Pair<V> {
-    const ZERO: Self = Pair(V::ZERO, V::ZERO);
-    const NOTHING: Self = Pair(V::NOTHING, V::NOTHING);
-    const ONE: Self = Pair(V::ONE, V::ONE);
-    const HALF: Self = Pair(V::HALF, V::HALF);
-    const EPSILON: Self = Pair(V::EPSILON, V::EPSILON);
+impl<V: Lanes> Number for RegisterPair<V> {
+    const ZERO: Self = RegisterPair(V::ZERO, V::ZERO);
+    const NOTHING: Self = RegisterPair(V::NOTHING, V::NOTHING);
+    const ONE: Self = RegisterPair(V::ONE, V::ONE);
+    const HALF: Self = RegisterPair(V::HALF, V::HALF);
+    const EPSILON: Self = RegisterPair(V::EPSILON, V::EPSILON);
     #[inline(always)]
     fn of(value: f64) -> Self {
-        Pair(V::of(value), V::of(value))
+        RegisterPair(V::of(value), V::of(value))
     }
     #[inline(always)]
     fn sqrt(self) -> Self {
-        Pair(self.0.sqrt(), self.1.sqrt())
+        RegisterPair(self.0.sqrt(), self.1.sqrt())
     }
     #[inline(always)]
     fn cbrt(self) -> Self {
-        Pair(self.0.cbrt(), self.1.cbrt())
+        RegisterPair(self.0.cbrt(), self.1.cbrt())
     }
     #[inline(always)]
     fn ln(self) -> Self {
-        Pair(self.0.ln(), self.1.ln())
+        RegisterPair(self.0.ln(), self.1.ln())
     }
     #[inline(always)]
     fn exp(self) -> Self {
-        Pair(self.0.exp(), self.1.exp())
+        RegisterPair(self.0.exp(), self.1.exp())
     }
     #[inline(always)]
     fn abs(self) -> Self {
-        Pair(self.0.abs(), self.1.abs())
+        RegisterPair(self.0.abs(), self.1.abs())
     }
     #[inline(always)]
     fn min(self, other: Self) -> Self {
-        Pair(self.0.min(other.0), self.1.min(other.1))
+        RegisterPair(self.0.min(other.0), self.1.min(other.1))
     }
     #[inline(always)]
     fn max(self, other: Self) -> Self {
-        Pair(self.0.max(other.0), self.1.max(other.1))
+        RegisterPair(self.0.max(other.0), self.1.max(other.1))
     }
     #[inline(always)]
     fn times_plus(self, factor: Self, other: Self) -> Self {
-        Pair(self.0.times_plus(factor.0, other.0), self.1.times_plus(factor.1, other.1))
+        RegisterPair(self.0.times_plus(factor.0, other.0), self.1.times_plus(factor.1, other.1))
     }
 }
 
-impl<V: Lanes> Lanes for Pair<V> {
+impl<V: Lanes> Lanes for RegisterPair<V> {
     type Real = V::Real;
     const COUNT: usize = 2 * V::COUNT;
 
     #[inline(always)]
     fn splat(x: V::Real) -> Self {
-        Pair(V::splat(x), V::splat(x))
+        RegisterPair(V::splat(x), V::splat(x))
     }
 
     #[inline(always)]
     unsafe fn load(first: *const V::Real) -> Self {
         // SAFETY: the caller has as many numbers there as both registers hold.
-        unsafe { Pair(V::load(first), V::load(first.add(V::COUNT))) }
+        unsafe { RegisterPair(V::load(first), V::load(first.add(V::COUNT))) }
     }
 
     #[inline(always)]
@@ -111,7 +111,7 @@ impl<V: Lanes> Lanes for Pair<V> {
         let upper = first.wrapping_add(V::COUNT);
         // SAFETY: the caller's.
         unsafe {
-            Pair(
+            RegisterPair(
                 V::load_part(first, count.min(V::COUNT), rest),
                 V::load_part(upper, count.saturating_sub(V::COUNT), rest),
             )
@@ -123,7 +123,7 @@ impl<V: Lanes> Lanes for Pair<V> {
         let upper = first.wrapping_add(V::COUNT);
         // SAFETY: the caller's.
         unsafe {
-            Pair(
+            RegisterPair(
                 V::load_first(first, count.min(V::COUNT)),
                 V::load_first(upper, count.saturating_sub(V::COUNT)),
             )
@@ -145,33 +145,33 @@ impl<V: Lanes> Lanes for Pair<V> {
         let mut rest = [index[V::COUNT]; MOST_LANES];
         rest[..V::COUNT].copy_from_slice(&index[V::COUNT..2 * V::COUNT]);
         // SAFETY: the caller's.
-        unsafe { Pair(V::gather(first, index), V::gather(first, &rest)) }
+        unsafe { RegisterPair(V::gather(first, index), V::gather(first, &rest)) }
     }
 
     #[inline(always)]
     fn alternate(pair: [V::Real; 2]) -> Self {
-        Pair(V::alternate(pair), V::alternate(pair))
+        RegisterPair(V::alternate(pair), V::alternate(pair))
     }
 
     #[inline(always)]
     fn first(self, count: usize) -> Self {
-        Pair(self.0.first(count.min(V::COUNT)), self.1.first(count.saturating_sub(V::COUNT)))
+        RegisterPair(self.0.first(count.min(V::COUNT)), self.1.first(count.saturating_sub(V::COUNT)))
     }
 
     #[inline(always)]
     fn every_fourth(self, n: usize) -> Self {
         const { assert!(V::COUNT.is_multiple_of(4)) };
-        Pair(self.0.every_fourth(n), self.1.every_fourth(n))
+        RegisterPair(self.0.every_fourth(n), self.1.every_fourth(n))
     }
 
     #[inline(always)]
     fn fold(self, other: Self) -> Self {
-        Pair(self.0.fold(other.0), self.1.fold(other.1))
+        RegisterPair(self.0.fold(other.0), self.1.fold(other.1))
     }
 
     #[inline(always)]
     fn inverse_cube_root_guess(self) -> Self {
-        Pair(self.0.inverse_cube_root_guess(), self.1.inverse_cube_root_guess())
+        RegisterPair(self.0.inverse_cube_root_guess(), self.1.inverse_cube_root_guess())
     }
 
     #[inline(always)]

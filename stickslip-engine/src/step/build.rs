@@ -17,7 +17,7 @@ use crate::material::{BadConstants, History, Material};
 use crate::particles::Particles;
 use crate::rigid::RigidMotion;
 use crate::scene::{
-    self, BasisKind, Dimension, Face, Motion, NamedMaterial, Precision, Problem, Scene, Transfer,
+    self, BasisKind, BodyMotion, Dimension, Face, NamedMaterial, Precision, Problem, Scene, Transfer,
 };
 use crate::tensor::{Matrix, Real, Symmetric, Vector, cross};
 use crate::transfer::turning;
@@ -83,14 +83,14 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             });
             let motion = prescribed(body, center);
             let velocity = |x| match (&body.motion, &motion) {
-                (Motion::Free { velocity, spin }, _) => about(center, *velocity, *spin, x),
+                (BodyMotion::Free { velocity, spin }, _) => about(center, *velocity, *spin, x),
                 (_, Some(motion)) => motion.velocity_at(x),
                 _ => [0.0; 3],
             };
             // By FLIP particles carry no rotation; those of rigid bodies give the nodes their exact velocity whatever
             // the transfer.
             let turning = match (&body.motion, &motion) {
-                (Motion::Free { spin, .. }, _) if scene.time.transfer == Transfer::Rflip => *spin,
+                (BodyMotion::Free { spin, .. }, _) if scene.time.transfer == Transfer::Rflip => *spin,
                 (_, Some(motion)) => motion.spin(),
                 _ => [0.0; 3],
             };
@@ -152,8 +152,10 @@ fn material<T: Real>(scene: &Scene, body: &scene::Body) -> Result<Material<T>, P
 /// The prescribed motion of a rigid body.
 fn prescribed(body: &scene::Body, center: [f64; 3]) -> Option<RigidMotion> {
     match &body.motion {
-        Motion::Free { .. } => None,
-        Motion::Rigid { velocity, spin } => Some(RigidMotion::new(center, velocity.clone(), spin.clone())),
+        BodyMotion::Free { .. } => None,
+        BodyMotion::Rigid { velocity, spin } => {
+            Some(RigidMotion::new(center, velocity.clone(), spin.clone()))
+        }
     }
 }
 
@@ -195,8 +197,8 @@ fn particles<T: Real, const D: usize>(
 /// What the particles of a body remember: rigid ones nothing.
 pub fn history(scene: &Scene, body: &scene::Body) -> &'static [History] {
     match body.motion {
-        Motion::Free { .. } => scene.materials[body.material].law.history(),
-        Motion::Rigid { .. } => &[],
+        BodyMotion::Free { .. } => scene.materials[body.material].law.history(),
+        BodyMotion::Rigid { .. } => &[],
     }
 }
 

@@ -13,7 +13,7 @@ use crate::door::{
 };
 use crate::grid::{node_at, nodes_per_block};
 use crate::lanes::Laned;
-use crate::particles::{Column, Columns};
+use crate::particles::{ColumnStart, Columns};
 use crate::tensor::{Real, Vector};
 use crate::threads::by_parts;
 use rayon::prelude::*;
@@ -221,7 +221,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> View for Engine<T, D, B> {
         let mut starts = vec![[0.0; 3]; particles.len()];
         for (i, &number) in particles.numbers().iter().enumerate() {
             // SAFETY: the particle is the body's, which is borrowed for reading.
-            let at = |k: usize| unsafe { *columns.at(Column::<D>::START + k, i) };
+            let at = |k: usize| unsafe { *columns.at(ColumnStart::<D>::START + k, i) };
             starts[number as usize] = Vector::<T, D>::from_fn(at).space();
         }
         starts

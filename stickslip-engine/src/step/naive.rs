@@ -1,6 +1,6 @@
 //! A pass as the equations read, one particle and one node after the other: an oracle for the tests.
 
-use super::pass::{Fault, FaultKind, Found, Pass, Visit, escaped};
+use super::pass::{FaultKind, Found, ParticleFault, Pass, Visit, escaped};
 use crate::basis::Basis;
 use crate::body::Particle;
 use crate::clock::signal;
@@ -51,7 +51,7 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
         match outcome {
             Ok(()) => self.scatter_naively(&particle, &stencil),
             Err(kind) => {
-                let fault = Fault { body: self.tile.body, particle: index as usize, kind };
+                let fault = ParticleFault { body: self.tile.body, particle: index as usize, kind };
                 self.found = self.found.and(Found { fault: Some(fault), signal: T::ZERO });
             }
         }

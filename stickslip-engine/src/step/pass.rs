@@ -72,7 +72,7 @@ impl<T: Real, const D: usize> Pass<T, D> {
 
 /// A particle that a pass cannot go on with.
 #[derive(Clone, Copy, Debug)]
-pub struct Fault {
+pub struct ParticleFault {
     /// Index of the body.
     pub body: usize,
     /// Index of the particle in memory.
@@ -98,7 +98,7 @@ pub enum FaultKind {
 #[derive(Clone, Copy, Debug)]
 pub struct Found<T> {
     /// The first fault by body and particle.
-    pub fault: Option<Fault>,
+    pub fault: Option<ParticleFault>,
     /// Fastest signal of the particles that it displaced [m/s].
     pub signal: T,
 }

@@ -2,7 +2,7 @@
 
 use super::Engine;
 use super::build::spin;
-use super::pass::{Fault, FaultKind, Found, Pass, Path, Verbs, escaped, home};
+use super::pass::{FaultKind, Found, ParticleFault, Pass, Path, Verbs, escaped, home};
 use super::state::{Disorder, Workspace};
 use crate::basis::Basis;
 use crate::clock::signal;
@@ -355,7 +355,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                     home::<T, D, B>(&self.settings.lattice, (particle.position, particle.half_width))
                         != before,
                 );
-                let fault = kind.map(|kind| Fault { body: i, particle: p, kind });
+                let fault = kind.map(|kind| ParticleFault { body: i, particle: p, kind });
                 // SAFETY: the particles are borrowed here alone.
                 let history = unsafe { body.particles.view().history_of(p) };
                 found = found.and(Found { fault, signal: signal(body, &particle, &history) });
@@ -372,7 +372,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         found.fault.map_or(Ok(()), |fault| Err(self.error(&fault)))
     }
 
-    fn error(&self, fault: &Fault) -> StepError {
+    fn error(&self, fault: &ParticleFault) -> StepError {
         let body = &self.state.bodies[fault.body];
         let particle = body.particles.get(fault.particle);
         let (name, number, position, time) =

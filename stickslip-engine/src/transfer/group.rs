@@ -9,7 +9,7 @@
 
 use super::turning::moment;
 use crate::basis::{Basis, MAX_WIDTH, ShapeFunctions};
-use crate::grid::{NODE_VALUES, NodeValues, Sums, WINDOW, WINDOW_NODES, Window};
+use crate::grid::{NODE_VALUES, NodeSums, NodeValues, WINDOW, WINDOW_NODES, Window};
 use crate::lanes::{Lanes, MOST_LANES, Machine, Numbers};
 use crate::tensor::{Matrix, Number, Real, Symmetric, Vector};
 use std::marker::PhantomData;
@@ -33,18 +33,18 @@ pub trait Start: Copy {
 
 /// Particles of one cell.
 #[derive(Clone, Copy, Debug)]
-pub struct Shared(usize);
+pub struct CellGroup(usize);
 
 /// Particles each of a cell of its own.
 #[derive(Clone, Copy, Debug)]
 pub struct Own([usize; MOST_LANES]);
 
-impl Shared {
+impl CellGroup {
     /// Particles whose base node has a place in the window.
     #[inline(always)]
     pub fn new<const D: usize>(start: usize) -> Self {
         assert!(start <= last_start(D), "a tile's cells lie in its block");
-        Shared(start)
+        CellGroup(start)
     }
 }
 
@@ -59,7 +59,7 @@ impl Own {
     }
 }
 
-impl Start for Shared {
+impl Start for CellGroup {
     #[inline(always)]
     fn of(&self, _lane: usize) -> usize {
         self.0
@@ -296,14 +296,14 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
                 }
             }
             pairs.momentum = Some(MomentumRows {
-                first: Rows::of::<V, D>([first[0], first[1], first[D - 1], mass], n),
+                first: RowsOfLanes::of::<V, D>([first[0], first[1], first[D - 1], mass], n),
                 steps: [
-                    Rows::of::<V, D>([m[0][0], m[1][0], m[2][0], V::ZERO], n),
-                    Rows::of::<V, D>([m[0][1], m[1][1], m[2][1], V::ZERO], n),
+                    RowsOfLanes::of::<V, D>([m[0][0], m[1][0], m[2][0], V::ZERO], n),
+                    RowsOfLanes::of::<V, D>([m[0][1], m[1][1], m[2][1], V::ZERO], n),
                     if D == 2 {
-                        Rows::ZERO
+                        RowsOfLanes::ZERO
                     } else {
-                        Rows::of::<V, D>([m[0][2], m[1][2], m[2][2], V::ZERO], n)
+                        RowsOfLanes::of::<V, D>([m[0][2], m[1][2], m[2][2], V::ZERO], n)
                     },
                 ],
             });
@@ -312,9 +312,9 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
             let [xx, yy, zz, xy, yz, xz] = stress.0;
             let [xx, yy, zz] = [xx.first(n), yy.first(n), zz.first(n)];
             let [xy, yz, xz] = [xy.first(n), yz.first(n), xz.first(n)];
-            let x = Rows::new([xx, xy, xz, V::ZERO]);
-            let y = Rows::new([xy, yy, yz, V::ZERO]);
-            let z = if D == 2 { y } else { Rows::new([xz, yz, zz, V::ZERO]) };
+            let x = RowsOfLanes::new([xx, xy, xz, V::ZERO]);
+            let y = RowsOfLanes::new([xy, yy, yz, V::ZERO]);
+            let z = if D == 2 { y } else { RowsOfLanes::new([xz, yz, zz, V::ZERO]) };
             pairs.stress = Some([x, y, z]);
         }
         match self.start.shared() {
@@ -396,7 +396,7 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
     fn forces<M: Machine<V::Real>>(
         &self,
         i: usize,
-        load: &[Rows<V::Real>; 3],
+        load: &[RowsOfLanes<V::Real>; 3],
         below: &[M::Wide; MAX_WIDTH * MAX_WIDTH],
     ) -> ([M::Wide; MAX_WIDTH * MAX_WIDTH], [M::Wide; MAX_WIDTH * MAX_WIDTH]) {
         let [x, y, z] = [&self.shapes[0], &self.shapes[1], &self.shapes[D - 1]];
@@ -547,22 +547,22 @@ struct PairLoad<T> {
     /// Momentum and mass.
     momentum: Option<MomentumRows<T>>,
     /// Columns of V sigma/h.
-    stress: Option<[Rows<T>; 3]>,
+    stress: Option<[RowsOfLanes<T>; 3]>,
 }
 
 /// Momentum and mass at the base node, and by how much they change to the next node along each axis.
 struct MomentumRows<T> {
-    first: Rows<T>,
-    steps: [Rows<T>; 3],
+    first: RowsOfLanes<T>,
+    steps: [RowsOfLanes<T>; 3],
 }
 
 /// Four numbers of each particle of a group: of two particles the first, then the second and so on.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
-struct Rows<T>([[[T; 2]; 4]; MOST_LANES / 2]);
+struct RowsOfLanes<T>([[[T; 2]; 4]; MOST_LANES / 2]);
 
-impl<T: Real> Rows<T> {
-    const ZERO: Self = Rows([[[T::ZERO; 2]; 4]; MOST_LANES / 2]);
+impl<T: Real> RowsOfLanes<T> {
+    const ZERO: Self = RowsOfLanes([[[T::ZERO; 2]; 4]; MOST_LANES / 2]);
 
     #[inline(always)]
     fn new<V: Lanes<Real = T>>(columns: [V; 4]) -> Self {
@@ -601,7 +601,7 @@ fn factors<M: Machine<T>, T: Real>(numbers: &Numbers<T>, pair: usize) -> M::Wide
 
 /// Adds momentum and force, each of two particles, to a node.
 #[inline(always)]
-fn add<M: Machine<T>, T: Real>(node: &mut Sums<T>, momentum: M::Wide, force: M::Wide) {
+fn add<M: Machine<T>, T: Real>(node: &mut NodeSums<T>, momentum: M::Wide, force: M::Wide) {
     let node = node.as_mut_ptr().cast();
     // SAFETY: a node has eight numbers, borrowed for writing.
     unsafe { (M::Wide::load(node) + momentum.fold(force)).store(node) }

@@ -8,7 +8,7 @@ mod group;
 mod naive;
 pub mod turning;
 
-pub use group::{Group, Momentum, Own, ScatterTerms, Shared, Start, pairs};
+pub use group::{CellGroup, Group, Momentum, Own, ScatterTerms, Start, pairs};
 #[cfg(test)]
 pub use naive::Stencil;
 

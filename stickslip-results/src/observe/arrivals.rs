@@ -5,7 +5,7 @@ use super::folder::OutputFolder;
 use super::points::{Points, SamplePoint};
 use super::probes::points;
 use super::schedule::Schedule;
-use super::table::{Row, Table};
+use super::table::{CsvTable, TableRow};
 use super::{ARRIVALS, Observer};
 use crate::door::View;
 use crate::scene::{Anchor, Arrival, Observable, Reading, Scene};
@@ -32,7 +32,7 @@ pub struct ArrivalRow {
     pub z: f64,
 }
 
-impl Row for ArrivalRow {
+impl TableRow for ArrivalRow {
     fn time(&self) -> f64 {
         self.time
     }
@@ -43,7 +43,7 @@ pub(super) struct Arrivals {
     scene: Scene,
     lookout: Option<ArrivalWatches>,
     schedule: Schedule,
-    table: Table<ArrivalRow>,
+    table: CsvTable<ArrivalRow>,
 }
 
 /// What has not arrived yet, and the points to look at.
@@ -56,7 +56,7 @@ struct ArrivalWatches {
 struct ArrivalWatch {
     quantity: Observable,
     source: ArrivalSource,
-    crossing: Crossing,
+    crossing: ThresholdCrossing,
     /// The row, but for time and place.
     row: ArrivalRow,
 }
@@ -74,15 +74,15 @@ enum ArrivalSource {
 
 /// Notices when a value first passes a threshold.
 #[derive(Clone, Debug)]
-pub(super) struct Crossing {
+pub(super) struct ThresholdCrossing {
     threshold: f64,
     before: Option<[f64; 2]>,
 }
 
-impl Crossing {
+impl ThresholdCrossing {
     /// A threshold, which is passed away from zero.
     pub(super) fn of(threshold: f64) -> Self {
-        Crossing { threshold, before: None }
+        ThresholdCrossing { threshold, before: None }
     }
 
     /// Takes the value at a time [s]; the time of passing if it is at the threshold or beyond:
@@ -111,7 +111,7 @@ impl Arrivals {
             scene: scene.clone(),
             lookout: None,
             schedule: Schedule::every(wanted.samples),
-            table: Table::create(folder.join(ARRIVALS), wanted.unit())?,
+            table: CsvTable::create(folder.join(ARRIVALS), wanted.unit())?,
         })
     }
 }
@@ -197,7 +197,7 @@ impl ArrivalWatch {
             place: place.to_string(),
             ..ArrivalRow::default()
         };
-        ArrivalWatch { quantity, source, crossing: Crossing::of(threshold), row }
+        ArrivalWatch { quantity, source, crossing: ThresholdCrossing::of(threshold), row }
     }
 
     fn value(&self, velocity: &[f64; 3], stress: &[f64; 6]) -> f64 {
@@ -235,7 +235,7 @@ mod tests {
 
     /// Time of passing of a quantity that is sampled at these times and values.
     fn passing(threshold: f64, samples: &[[f64; 2]]) -> Option<f64> {
-        let mut crossing = Crossing::of(threshold);
+        let mut crossing = ThresholdCrossing::of(threshold);
         samples.iter().find_map(|&[time, value]| crossing.at(time, value))
     }
 

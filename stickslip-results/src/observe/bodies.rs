@@ -3,7 +3,7 @@
 use super::file::OutputError;
 use super::folder::OutputFolder;
 use super::schedule::Schedule;
-use super::table::{Row, Table};
+use super::table::{CsvTable, TableRow};
 use super::{BODIES, Observer};
 use crate::door::{BodyState, View};
 use crate::scene::Scene;
@@ -71,7 +71,7 @@ impl BodyRow {
     }
 }
 
-impl Row for BodyRow {
+impl TableRow for BodyRow {
     fn time(&self) -> f64 {
         self.time
     }
@@ -81,7 +81,7 @@ impl Row for BodyRow {
 pub(super) struct Bodies {
     names: Vec<String>,
     schedule: Schedule,
-    table: Table<BodyRow>,
+    table: CsvTable<BodyRow>,
 }
 
 impl Bodies {
@@ -89,7 +89,7 @@ impl Bodies {
         Ok(Bodies {
             names: scene.bodies.iter().map(|body| body.name.clone()).collect(),
             schedule: Schedule::every(scene.outputs.tables),
-            table: Table::create(folder.join(BODIES), scene.outputs.measurements.unit())?,
+            table: CsvTable::create(folder.join(BODIES), scene.outputs.measurements.unit())?,
         })
     }
 }

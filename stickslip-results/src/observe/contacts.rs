@@ -3,7 +3,7 @@
 use super::file::OutputError;
 use super::folder::OutputFolder;
 use super::schedule::Schedule;
-use super::table::{Row, Table};
+use super::table::{CsvTable, TableRow};
 use super::{CONTACTS, Observer};
 use crate::door::{ContactCursor, View};
 use crate::scene::Scene;
@@ -50,7 +50,7 @@ pub struct ContactRow {
     pub friction: f64,
 }
 
-impl Row for ContactRow {
+impl TableRow for ContactRow {
     fn time(&self) -> f64 {
         self.time
     }
@@ -61,7 +61,7 @@ pub(super) struct Contacts {
     names: Vec<String>,
     cursor: ContactCursor,
     schedule: Schedule,
-    table: Table<ContactRow>,
+    table: CsvTable<ContactRow>,
 }
 
 impl Contacts {
@@ -70,7 +70,7 @@ impl Contacts {
             names: scene.bodies.iter().map(|body| body.name.clone()).collect(),
             cursor: ContactCursor::default(),
             schedule: Schedule::every(scene.outputs.tables),
-            table: Table::create(folder.join(CONTACTS), scene.outputs.measurements.unit())?,
+            table: CsvTable::create(folder.join(CONTACTS), scene.outputs.measurements.unit())?,
         })
     }
 }

@@ -3,7 +3,7 @@
 use super::file::OutputError;
 use super::folder::OutputFolder;
 use super::schedule::Schedule;
-use super::table::{Row, Table};
+use super::table::{CsvTable, TableRow};
 use super::{ENERGY, Observer};
 use crate::door::{Ledger, View};
 use crate::scene::Scene;
@@ -83,28 +83,28 @@ impl EnergyRow {
     }
 }
 
-impl Row for EnergyRow {
+impl TableRow for EnergyRow {
     fn time(&self) -> f64 {
         self.time
     }
 }
 
 /// Writes `energy.csv`.
-pub(super) struct Energy {
+pub(super) struct EnergyObserver {
     schedule: Schedule,
-    table: Table<EnergyRow>,
+    table: CsvTable<EnergyRow>,
 }
 
-impl Energy {
+impl EnergyObserver {
     pub(super) fn create(scene: &Scene, folder: &OutputFolder) -> Result<Self, OutputError> {
-        Ok(Energy {
+        Ok(EnergyObserver {
             schedule: Schedule::every(scene.outputs.tables),
-            table: Table::create(folder.join(ENERGY), scene.outputs.measurements.unit())?,
+            table: CsvTable::create(folder.join(ENERGY), scene.outputs.measurements.unit())?,
         })
     }
 }
 
-impl Observer for Energy {
+impl Observer for EnergyObserver {
     fn next(&self) -> f64 {
         self.schedule.next()
     }

@@ -4,7 +4,7 @@
 use super::file::{OutputError, replace};
 use super::folder::OutputFolder;
 use super::particles::PARTICLE_BYTES;
-use super::table::{Row, Table};
+use super::table::{CsvTable, TableRow};
 use super::writer::Writer;
 use super::{FRINGES, FRINGES_ANIMATION, FRINGES_TABLE, Observer};
 use crate::door::{ContactCursor, ContactState, ParticleSnapshot, View};
@@ -35,14 +35,14 @@ pub struct FringeRow {
     pub samples: usize,
 }
 
-impl Row for FringeRow {
+impl TableRow for FringeRow {
     fn time(&self) -> f64 {
         self.time
     }
 }
 
 /// Writes `fringes.csv`, the frames in `fringes/`, and at the end `fringes.png`, all by a thread of its own.
-pub(super) struct Fringes {
+pub(super) struct FringesObserver {
     shutter: Shutter,
     overlay: Overlay,
     /// Whether there was a first look.
@@ -56,7 +56,7 @@ struct FringeWriter {
     camera: scene::Fringes,
     specimens: Vec<usize>,
     folder: OutputFolder,
-    table: Table<FringeRow>,
+    table: CsvTable<FringeRow>,
     frames: Vec<PathBuf>,
     /// From the first look on.
     view: Option<Photograph>,
@@ -133,7 +133,7 @@ impl Shutter {
     }
 }
 
-impl Fringes {
+impl FringesObserver {
     pub(super) fn create(
         (scene, camera): (&Scene, &scene::Fringes),
         folder: &OutputFolder,
@@ -144,14 +144,14 @@ impl Fringes {
         let writer = FringeWriter {
             specimens: (0..scene.bodies.len()).filter(|&i| birefringent(&scene.bodies[i])).collect(),
             folder: folder.clone(),
-            table: Table::create(folder.join(FRINGES_TABLE), scene.outputs.measurements.unit())?,
+            table: CsvTable::create(folder.join(FRINGES_TABLE), scene.outputs.measurements.unit())?,
             frames: Vec::new(),
             view: None,
             largest: 0.0,
             hands: idle_processors(),
             camera: camera.clone(),
         };
-        Ok(Fringes {
+        Ok(FringesObserver {
             shutter: Shutter::new(camera),
             overlay: camera.overlay,
             looked: false,
@@ -233,7 +233,7 @@ impl FringeWriter {
     }
 }
 
-impl Observer for Fringes {
+impl Observer for FringesObserver {
     fn next(&self) -> f64 {
         // The first look, at the start, says where the bodies are.
         if self.looked { self.shutter.next() } else { f64::NEG_INFINITY }

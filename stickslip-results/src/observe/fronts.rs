@@ -3,7 +3,7 @@
 use super::file::OutputError;
 use super::folder::OutputFolder;
 use super::schedule::Schedule;
-use super::table::{Row, Table};
+use super::table::{CsvTable, TableRow};
 use super::{FRONT_SPEEDS, FRONTS, Observer};
 use crate::door::{ParticleView, View};
 use crate::scene::{Front, Scene};
@@ -54,13 +54,13 @@ pub struct FrontSpeedRow {
     pub samples: usize,
 }
 
-impl Row for FrontRow {
+impl TableRow for FrontRow {
     fn time(&self) -> f64 {
         self.time
     }
 }
 
-impl Row for FrontSpeedRow {
+impl TableRow for FrontSpeedRow {
     fn time(&self) -> f64 {
         self.time
     }
@@ -70,8 +70,8 @@ impl Row for FrontSpeedRow {
 pub(super) struct Fronts {
     tracks: Vec<Track>,
     schedule: Schedule,
-    table: Table<FrontRow>,
-    speeds: Table<FrontSpeedRow>,
+    table: CsvTable<FrontRow>,
+    speeds: CsvTable<FrontSpeedRow>,
 }
 
 /// A front and where it has been.
@@ -96,8 +96,8 @@ impl Fronts {
         Ok(Fronts {
             tracks: wanted.fronts.iter().map(track).collect(),
             schedule: Schedule::every(wanted.samples),
-            table: Table::create(folder.join(FRONTS), wanted.unit())?,
-            speeds: Table::create(folder.join(FRONT_SPEEDS), wanted.unit())?,
+            table: CsvTable::create(folder.join(FRONTS), wanted.unit())?,
+            speeds: CsvTable::create(folder.join(FRONT_SPEEDS), wanted.unit())?,
         })
     }
 }

@@ -30,7 +30,7 @@ pub struct Manifest {
     pub performance: Performance,
     /// What is wrong with its results, in the order in which it was found.
     #[serde(default)]
-    pub warnings: Vec<Warning>,
+    pub warnings: Vec<RunWarning>,
     /// Known answers, to be held against `bodies.csv`.
     pub references: Vec<ReferenceCurve>,
     /// The scene as run, in SI units, parameters resolved; numbers that are infinite stand as `null`.
@@ -53,7 +53,7 @@ pub enum Status {
 
 /// Something that makes the results of a run doubtful, at its worst.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Warning {
+pub struct RunWarning {
     /// What kind of thing.
     pub kind: String,
     /// What is wrong, by how much, and what is allowed.

@@ -40,7 +40,7 @@ pub use frames::Frame;
 pub use fringes::{FRAMES_PER_SECOND, FringeRow};
 pub use fronts::{FrontRow, FrontSpeedRow};
 pub use grid::encode_grid;
-pub use manifest::{Manifest, Performance, ReferenceCurve, Status, Timing, Warning};
+pub use manifest::{Manifest, Performance, ReferenceCurve, RunWarning, Status, Timing};
 pub use network::Network;
 pub use particles::{encode_particles, read_particles};
 pub use probes::ProbeRow;

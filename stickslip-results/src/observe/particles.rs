@@ -33,20 +33,20 @@ const OF_ALL: [&str; 14] = [
 ];
 
 /// Writes `particles.pvd` and `particles/`.
-pub(super) struct Particles {
+pub(super) struct ParticlesObserver {
     schedule: Schedule,
     frames: Frames,
 }
 
-impl Particles {
+impl ParticlesObserver {
     pub(super) fn create(scene: &Scene, folder: &OutputFolder) -> Result<Self, OutputError> {
         let interval = scene.outputs.particles.unwrap_or(f64::INFINITY);
         let schedule = Schedule::every(interval).and_at(&scene.outputs.particles_at);
-        Ok(Particles { schedule, frames: Frames::create(folder, PARTICLES)? })
+        Ok(ParticlesObserver { schedule, frames: Frames::create(folder, PARTICLES)? })
     }
 }
 
-impl Observer for Particles {
+impl Observer for ParticlesObserver {
     fn next(&self) -> f64 {
         self.schedule.next()
     }

@@ -4,7 +4,7 @@ use super::file::OutputError;
 use super::folder::OutputFolder;
 use super::points::{PointSample, Points, SamplePoint};
 use super::schedule::Schedule;
-use super::table::{Row, Table};
+use super::table::{CsvTable, TableRow};
 use super::{Observer, PROBES};
 use crate::door::View;
 use crate::scene::{Observable, Probe, Scene};
@@ -49,7 +49,7 @@ pub struct ProbeRow {
     pub von_mises: f64,
 }
 
-impl Row for ProbeRow {
+impl TableRow for ProbeRow {
     fn time(&self) -> f64 {
         self.time
     }
@@ -108,7 +108,7 @@ pub(super) struct Probes {
     names: Vec<String>,
     points: Points,
     schedule: Schedule,
-    table: Table<ProbeRow>,
+    table: CsvTable<ProbeRow>,
 }
 
 impl Probes {
@@ -118,7 +118,7 @@ impl Probes {
             names: wanted.probes.iter().map(|probe| probe.name.clone()).collect(),
             points: Points::new(scene, points(scene, wanted.probes.iter())),
             schedule: Schedule::every(wanted.samples),
-            table: Table::create(folder.join(PROBES), wanted.unit())?,
+            table: CsvTable::create(folder.join(PROBES), wanted.unit())?,
         })
     }
 }

@@ -4,13 +4,13 @@ use super::Observer;
 use super::arrivals::Arrivals;
 use super::bodies::Bodies;
 use super::contacts::Contacts;
-use super::energy::Energy;
+use super::energy::EnergyObserver;
 use super::file::OutputError;
 use super::folder::OutputFolder;
-use super::fringes::Fringes;
+use super::fringes::FringesObserver;
 use super::fronts::Fronts;
 use super::grid::Grid;
-use super::particles::Particles;
+use super::particles::ParticlesObserver;
 use super::probes::Probes;
 use crate::door::View;
 use crate::scene::Scene;
@@ -34,7 +34,7 @@ impl<'a> Recorder<'a> {
     pub fn new(scene: &Scene, folder: &OutputFolder) -> Result<Self, OutputError> {
         let mut observers: Vec<Box<dyn Observer + 'a>> = vec![
             Box::new(Bodies::create(scene, folder)?),
-            Box::new(Energy::create(scene, folder)?),
+            Box::new(EnergyObserver::create(scene, folder)?),
             Box::new(Contacts::create(scene, folder)?),
         ];
         let wanted = &scene.outputs.measurements;
@@ -48,13 +48,13 @@ impl<'a> Recorder<'a> {
             observers.push(Box::new(Fronts::create(scene, folder)?));
         }
         if scene.outputs.particles.is_some() || !scene.outputs.particles_at.is_empty() {
-            observers.push(Box::new(Particles::create(scene, folder)?));
+            observers.push(Box::new(ParticlesObserver::create(scene, folder)?));
         }
         if let Some(interval) = scene.outputs.grid {
             observers.push(Box::new(Grid::create(interval, folder)?));
         }
         if let Some(camera) = &scene.outputs.fringes {
-            observers.push(Box::new(Fringes::create((scene, camera), folder)?));
+            observers.push(Box::new(FringesObserver::create((scene, camera), folder)?));
         }
         let scheduled = observers.into_iter().map(|observer| Scheduled { observer, last: None }).collect();
         Ok(Recorder { scheduled })

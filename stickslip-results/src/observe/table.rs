@@ -10,7 +10,7 @@ use std::marker::PhantomData;
 use std::path::{Path, PathBuf};
 
 /// A row of a table through time.
-pub(super) trait Row: Serialize + Default {
+pub(super) trait TableRow: Serialize + Default {
     /// Simulated time [s].
     fn time(&self) -> f64;
 }
@@ -20,7 +20,7 @@ pub(super) const TIME_UNITS: &str = "time_units";
 
 /// A growing table whose columns are the fields of a row and, if the scene has a unit of time, the time in it.
 /// A thread of its own writes it.
-pub(super) struct Table<R> {
+pub(super) struct CsvTable<R> {
     writer: Writer<Sheet>,
     /// Length of the scene's unit of time [s].
     unit: Option<f64>,
@@ -35,7 +35,7 @@ struct Sheet {
     length: u64,
 }
 
-impl<R: Row> Table<R> {
+impl<R: TableRow> CsvTable<R> {
     /// A table with its header and no rows yet.
     pub(super) fn create(path: PathBuf, unit: Option<f64>) -> Result<Self, OutputError> {
         let file = File::create(&path).map_err(OutputError::at(&path))?;
@@ -44,7 +44,7 @@ impl<R: Row> Table<R> {
         let header = with_header.split(|&byte| byte == b'\n').next().unwrap_or_default();
         let more = if unit.is_some() { format!(",{TIME_UNITS}\n") } else { "\n".to_string() };
         sheet.write(&[header, more.as_bytes()].concat())?;
-        Ok(Table { writer: Writer::start(sheet).map_err(OutputError::at(&path))?, unit, row: PhantomData })
+        Ok(CsvTable { writer: Writer::start(sheet).map_err(OutputError::at(&path))?, unit, row: PhantomData })
     }
 
     /// Adds rows. They are complete when they are in the file, which is soon.
@@ -70,7 +70,7 @@ impl<R: Row> Table<R> {
     /// Waits until all rows are in the file.
     ///
     /// # Errors
-    /// As [`Table::append`].
+    /// As [`CsvTable::append`].
     pub(super) fn finish(&mut self) -> Result<(), OutputError> {
         self.writer.finish()
     }
@@ -119,43 +119,46 @@ mod tests {
     use serde::Deserialize;
 
     #[derive(Debug, Default, PartialEq, Serialize, Deserialize)]
-    struct Place {
+    struct FieldPlace {
         time: f64,
         body: String,
     }
 
-    impl Row for Place {
+    impl TableRow for FieldPlace {
         fn time(&self) -> f64 {
             self.time
         }
     }
 
-    fn row(time: f64, body: &str) -> Place {
-        Place { time, body: body.into() }
+    fn row(time: f64, body: &str) -> FieldPlace {
+        FieldPlace { time, body: body.into() }
     }
 
     #[test]
     fn numbers_and_names_come_back_exactly() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("table.csv");
-        let mut table = Table::create(path.clone(), None).unwrap();
+        let mut table = CsvTable::create(path.clone(), None).unwrap();
         assert_eq!(fs::read_to_string(&path).unwrap(), "time,body\n");
         table.append([row(0.1 + 0.2, "a"), row(-1e-300, "ball, \"left\"")]).unwrap();
         table.finish().unwrap();
-        assert_eq!(read_rows::<Place>(&path).unwrap(), [row(0.1 + 0.2, "a"), row(-1e-300, "ball, \"left\"")]);
+        assert_eq!(
+            read_rows::<FieldPlace>(&path).unwrap(),
+            [row(0.1 + 0.2, "a"), row(-1e-300, "ball, \"left\"")]
+        );
         fs::OpenOptions::new().append(true).open(&path).unwrap().write_all(b"0.5,ca").unwrap();
-        assert_eq!(read_rows::<Place>(&path).unwrap().len(), 2);
+        assert_eq!(read_rows::<FieldPlace>(&path).unwrap().len(), 2);
     }
 
     #[test]
     fn a_unit_of_time_adds_a_column_that_readers_may_leave_out() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("table.csv");
-        let mut table = Table::create(path.clone(), Some(0.25)).unwrap();
+        let mut table = CsvTable::create(path.clone(), Some(0.25)).unwrap();
         table.append([row(0.5, "a"), row(1.0, "b, c")]).unwrap();
         table.finish().unwrap();
         assert_eq!(fs::read_to_string(&path).unwrap(), "time,body,time_units\n0.5,a,2.0\n1.0,\"b, c\",4.0\n");
-        assert_eq!(read_rows::<Place>(&path).unwrap(), [row(0.5, "a"), row(1.0, "b, c")]);
+        assert_eq!(read_rows::<FieldPlace>(&path).unwrap(), [row(0.5, "a"), row(1.0, "b, c")]);
     }
 
     #[test]
@@ -165,7 +168,7 @@ mod tests {
         let path = folder.path().join("table.csv");
         let sheet = Sheet { path: path.clone(), file: File::create("/dev/full").unwrap(), length: 0 };
         let mut table =
-            Table::<Place> { writer: Writer::start(sheet).unwrap(), unit: None, row: PhantomData };
+            CsvTable::<FieldPlace> { writer: Writer::start(sheet).unwrap(), unit: None, row: PhantomData };
         let error = table.append([row(0.5, "a")]).and_then(|()| table.finish()).unwrap_err();
         assert_eq!((error.path, error.source.kind()), (path, io::ErrorKind::StorageFull));
     }
@@ -173,7 +176,7 @@ mod tests {
     #[test]
     #[cfg(target_os = "linux")]
     fn a_full_disk_is_an_error_that_names_the_table() {
-        let error = Table::<Place>::create("/dev/full".into(), None).err().unwrap();
+        let error = CsvTable::<FieldPlace>::create("/dev/full".into(), None).err().unwrap();
         assert!(error.to_string().contains("/dev/full"), "{error}");
         assert_eq!(error.source.kind(), io::ErrorKind::StorageFull);
     }

@@ -13,14 +13,14 @@ const ROOM: usize = 64 << 20;
 ///
 /// The first error ends it: it is returned by the next call, and nothing that was handed over later is written.
 pub(super) struct Writer<F> {
-    tasks: Option<Sender<(usize, Task<F>)>>,
+    tasks: Option<Sender<(usize, WriterTask<F>)>>,
     done: Receiver<(usize, Result<(), OutputError>)>,
     /// Bytes handed over and not yet written.
     waiting: usize,
     thread: Option<JoinHandle<()>>,
 }
 
-type Task<F> = Box<dyn FnOnce(&mut F) -> Result<(), OutputError> + Send>;
+type WriterTask<F> = Box<dyn FnOnce(&mut F) -> Result<(), OutputError> + Send>;
 
 impl<F: Send + 'static> Writer<F> {
     /// Starts the thread.
@@ -28,7 +28,7 @@ impl<F: Send + 'static> Writer<F> {
     /// # Errors
     /// The system gives no thread.
     pub(super) fn start(mut files: F) -> io::Result<Self> {
-        let (tasks, handed_over) = channel::<(usize, Task<F>)>();
+        let (tasks, handed_over) = channel::<(usize, WriterTask<F>)>();
         let (report, done) = channel();
         let thread = Builder::new().name("writer".to_string()).spawn(move || {
             for (bytes, task) in handed_over {

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 
 /// A particle of a plane scene, or the particles of a scene in space that lie one behind the other.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Point {
+pub struct CloudPoint {
     /// Place in the plane [m].
     pub place: [f64; 2],
     /// Area that it stands for [m^2].
@@ -27,7 +27,7 @@ pub struct Cloud {
     pub center: [f64; 2],
     bins: [usize; 2],
     starts: Vec<u32>,
-    points: Vec<Point>,
+    points: Vec<CloudPoint>,
 }
 
 /// The bodies of a snapshot that have particles, in their order; `reach` is in distances between particles.
@@ -54,10 +54,10 @@ pub fn clouds(particles: &ParticleSnapshot, reach: f64) -> Vec<Cloud> {
 }
 
 /// A particle of a plane scene: its volume is per metre of depth, and so is its way.
-fn flat(particles: &ParticleSnapshot, i: usize) -> Point {
+fn flat(particles: &ParticleSnapshot, i: usize) -> CloudPoint {
     let [x, y, _] = particles.position[i];
     let [xx, yy, _, xy, _, _] = particles.stress[i];
-    Point { place: [x, y], area: particles.volume[i], values: [xx, yy, xy, 1.0] }
+    CloudPoint { place: [x, y], area: particles.volume[i], values: [xx, yy, xy, 1.0] }
 }
 
 /// Particles in columns along the third axis, a column for each square of side `side` [m] that holds any:
@@ -65,7 +65,7 @@ fn flat(particles: &ParticleSnapshot, i: usize) -> Point {
 /// ```text
 /// way = sum V / side^2,   stress = sum V sigma / sum V
 /// ```
-fn columns(particles: &ParticleSnapshot, range: std::ops::Range<usize>, side: f64) -> Vec<Point> {
+fn columns(particles: &ParticleSnapshot, range: std::ops::Range<usize>, side: f64) -> Vec<CloudPoint> {
     let low = [0, 1].map(|axis| {
         particles.position[range.clone()].iter().map(|x| x[axis]).fold(f64::INFINITY, f64::min) - 0.5 * side
     });
@@ -80,7 +80,7 @@ fn columns(particles: &ParticleSnapshot, range: std::ops::Range<usize>, side: f6
             *sum += particles.volume[i] * value;
         }
     }
-    let point = |[volume, x, y, xx, yy, xy]: [f64; 6]| Point {
+    let point = |[volume, x, y, xx, yy, xy]: [f64; 6]| CloudPoint {
         place: [x / volume, y / volume],
         area: side * side,
         values: [xx / volume, yy / volume, xy / volume, volume / (side * side)],
@@ -94,7 +94,7 @@ pub fn joined([a, b]: [[f64; 2]; 2], [c, d]: [[f64; 2]; 2]) -> [[f64; 2]; 2] {
 }
 
 impl Cloud {
-    fn sorted(body: usize, points: Vec<Point>, (center, reach): ([f64; 2], f64)) -> Self {
+    fn sorted(body: usize, points: Vec<CloudPoint>, (center, reach): ([f64; 2], f64)) -> Self {
         let mut bounds = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
         for point in &points {
             bounds = joined(bounds, [point.place; 2]);
@@ -105,7 +105,7 @@ impl Cloud {
         let reach = reach * (wide[0] * wide[1] / most).sqrt().max(1.0);
         let bins = [0, 1].map(|axis| (2.0 * (bounds[1][axis] - bounds[0][axis]) / reach) as usize + 1);
         let mut cloud = Cloud { body, reach, bounds, center, bins, starts: Vec::new(), points: Vec::new() };
-        let bin = |point: &Point| {
+        let bin = |point: &CloudPoint| {
             let [column, row] = cloud.bin(point.place).map(|index| index as usize);
             row * bins[0] + column
         };
@@ -124,7 +124,7 @@ impl Cloud {
     }
 
     /// Points in the bins around a place: all that are nearer than `reach`, and some more.
-    pub fn near(&self, x: [f64; 2]) -> impl Iterator<Item = &Point> {
+    pub fn near(&self, x: [f64; 2]) -> impl Iterator<Item = &CloudPoint> {
         let [column, row] = self.bin(x);
         let [columns, rows] = self.bins.map(|count| count as i64);
         let (left, right) = ((column - 2).max(0), (column + 3).min(columns));
@@ -136,7 +136,7 @@ impl Cloud {
     }
 
     /// Points in the rows of bins around a height: all that are nearer to it than `reach`, and some more.
-    pub fn across(&self, y: f64) -> &[Point] {
+    pub fn across(&self, y: f64) -> &[CloudPoint] {
         let [_, row] = self.bin([self.bounds[0][0], y]);
         let start = |row: i64| {
             let row = row.clamp(0, self.bins[1] as i64) as usize;
@@ -146,7 +146,7 @@ impl Cloud {
     }
 
     /// All points.
-    pub fn points(&self) -> &[Point] {
+    pub fn points(&self) -> &[CloudPoint] {
         &self.points
     }
 }

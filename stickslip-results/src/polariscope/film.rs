@@ -1,7 +1,7 @@
 //! Film: sums up light while the shutter is open.
 
 use super::color::Screen;
-use super::optics::Rgb;
+use super::optics::LinearRgb;
 use crate::image::Image;
 
 /// Light on each pixel, linear, summed over exposures.
@@ -24,7 +24,7 @@ impl Film {
     }
 
     /// Adds the light of an instant, rows from the top.
-    pub(super) fn expose(&mut self, light: &[Rgb]) {
+    pub(super) fn expose(&mut self, light: &[LinearRgb]) {
         self.exposures += 1;
         for (sum, light) in self.light.iter_mut().zip(light) {
             (0..3).for_each(|i| sum[i] += light[i] as f32);

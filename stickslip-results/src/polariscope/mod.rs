@@ -28,13 +28,13 @@ mod window;
 pub use chains::{Link, Push, draw_links, links};
 pub use cloud::joined;
 pub use film::Film;
-pub use optics::{Optics, Phase, Rgb};
+pub use optics::{LinearRgb, Optics, Phase};
 pub use stress_map::{Ray, StressMap};
 pub use window::ImageWindow;
 
 use crate::door::ParticleSnapshot;
 use crate::image::Image;
-use crate::scene::{Field, Polariscope};
+use crate::scene::{Polariscope, PolariscopeField};
 use rayon::prelude::*;
 
 /// What stands between the polarisers.
@@ -51,20 +51,20 @@ pub struct Stage {
 pub struct OpticalBench {
     stage: Stage,
     optics: Optics,
-    background: Rgb,
+    background: LinearRgb,
 }
 
 /// Light of opaque bodies.
-const OPAQUE: Rgb = [0.23, 0.24, 0.26];
+const OPAQUE: LinearRgb = [0.23, 0.24, 0.26];
 /// Light beside the bodies, told from theirs by a trace of colour: in a dark field and in a light field.
-const BACKGROUND: [Rgb; 2] = [[0.030, 0.036, 0.052], [0.42, 0.45, 0.52]];
+const BACKGROUND: [LinearRgb; 2] = [[0.030, 0.036, 0.052], [0.42, 0.45, 0.52]];
 /// Room around the specimens in a picture of them, over their larger extent.
 const MARGIN: f64 = 0.04;
 
 impl OpticalBench {
     /// A polariscope with its stage.
     pub fn new(polariscope: &Polariscope, stage: Stage) -> Self {
-        let background = BACKGROUND[usize::from(polariscope.field == Field::Light)];
+        let background = BACKGROUND[usize::from(polariscope.field == PolariscopeField::Light)];
         OpticalBench { stage, optics: Optics::new(polariscope), background }
     }
 
@@ -91,9 +91,9 @@ impl OpticalBench {
     }
 
     /// Light on each pixel, rows from the top.
-    pub fn light(&self, particles: &ParticleSnapshot) -> Vec<Rgb> {
+    pub fn light(&self, particles: &ParticleSnapshot) -> Vec<LinearRgb> {
         let [width, height] = self.stage.window.size;
-        let layers: Vec<Layer> =
+        let layers: Vec<BodyLayer> =
             stress_maps(particles, &self.stage.window).into_iter().map(|map| self.layer(map)).collect();
         let mut light = vec![[0.0; 3]; width * height];
         light.par_chunks_mut(width).enumerate().for_each(|(row, light)| {
@@ -123,15 +123,15 @@ impl OpticalBench {
         light
     }
 
-    fn layer(&self, map: StressMap) -> Layer {
+    fn layer(&self, map: StressMap) -> BodyLayer {
         let birefringent = self.stage.specimens.contains(&map.body);
         let orders = birefringent.then(|| map.rays.iter().map(|ray| self.optics.order(ray)).collect());
-        Layer { map, orders }
+        BodyLayer { map, orders }
     }
 }
 
 /// A body in the picture, with the fringe order of each ray if it is birefringent.
-struct Layer {
+struct BodyLayer {
     map: StressMap,
     orders: Option<Vec<f64>>,
 }

@@ -16,20 +16,20 @@
 
 use super::color::{spectral_color, white_light};
 use super::stress_map::Ray;
-use crate::scene::{Field, Light, Polariscope, Sensitivity};
+use crate::scene::{Light, Polariscope, PolariscopeField, Sensitivity};
 use std::f64::consts::PI;
 
 /// Linear red, green and blue.
-pub type Rgb = [f64; 3];
+pub type LinearRgb = [f64; 3];
 
 /// A polariscope ready to be looked through.
 #[derive(Clone, Debug)]
 pub struct Optics {
     polariscope: Polariscope,
     /// Light without polarisers.
-    lamp: Rgb,
+    lamp: LinearRgb,
     /// Of white light, the mean of cos(2 pi N(lambda)) by colour, at multiples of 1 / [`PER_ORDER`] of N.
-    mean_cosine: Vec<Rgb>,
+    mean_cosine: Vec<LinearRgb>,
 }
 
 /// Entries of the table of white light in one order.
@@ -74,7 +74,7 @@ impl Optics {
     }
 
     /// Light that leaves the polariscope, of a lamp of brightness 1, averaged over the pixel.
-    pub fn light(&self, phase: &Phase) -> Rgb {
+    pub fn light(&self, phase: &Phase) -> LinearRgb {
         // Mean of cos(2 pi N) over a pixel on which N is linear.
         let blur = sinc(phase.change[0]) * sinc(phase.change[1]);
         let cosine = self.cosine(phase.order);
@@ -84,13 +84,13 @@ impl Optics {
             Some(alpha) => turned.map(|light| light * (2.0 * (phase.angle - alpha)).sin().powi(2)),
         };
         match self.polariscope.field {
-            Field::Dark => crossed,
-            Field::Light => [0, 1, 2].map(|i| self.lamp[i] - crossed[i]),
+            PolariscopeField::Dark => crossed,
+            PolariscopeField::Light => [0, 1, 2].map(|i| self.lamp[i] - crossed[i]),
         }
     }
 
     /// The lamp's light times cos(2 pi N), by colour.
-    fn cosine(&self, order: f64) -> Rgb {
+    fn cosine(&self, order: f64) -> LinearRgb {
         if self.polariscope.light != Light::White {
             let cosine = (2.0 * PI * order).cos();
             return self.lamp.map(|light| light * cosine);
@@ -104,7 +104,7 @@ impl Optics {
     }
 }
 
-fn white_cosines(wavelength: f64) -> Vec<Rgb> {
+fn white_cosines(wavelength: f64) -> Vec<LinearRgb> {
     let spectrum = white_light();
     let mean = |entry: usize| {
         let order = entry as f64 / PER_ORDER as f64;

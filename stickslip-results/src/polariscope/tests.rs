@@ -11,7 +11,7 @@ fn polariscope(light: Light) -> Polariscope {
     Polariscope {
         sensitivity: Sensitivity::StressPerFringe(FRINGE),
         wavelength: Polariscope::MERCURY_GREEN,
-        field: Field::Dark,
+        field: PolariscopeField::Dark,
         light,
         polarizer: None,
     }
@@ -141,12 +141,14 @@ fn uniform_stress_gives_uniform_light() {
     for (order, dark) in [(0.0, 0.0), (0.25, 0.5), (0.5, 1.0), (1.0, 0.0), (2.5, 1.0)] {
         let particles = lattice(0.05, in_disk, |_| [order * FRINGE, 0.0, 0.0]);
         let turned = lattice(0.05, in_disk, |_| [3e5, 3e5, 0.5 * order * FRINGE]);
-        for (particles, field) in
-            [(&particles, Field::Dark), (&particles, Field::Light), (&turned, Field::Dark)]
-        {
+        for (particles, field) in [
+            (&particles, PolariscopeField::Dark),
+            (&particles, PolariscopeField::Light),
+            (&turned, PolariscopeField::Dark),
+        ] {
             let bench = OpticalBench::new(&Polariscope { field, ..polariscope(Light::Grey) }, stage(101));
             let light = bench.light(particles);
-            let exact = if field == Field::Dark { dark } else { 1.0 - dark };
+            let exact = if field == PolariscopeField::Dark { dark } else { 1.0 - dark };
             for (column, row) in [(50, 50), (30, 60), (75, 41), (50, 9)] {
                 let rgb = light[row * 101 + column];
                 assert!(rgb.iter().all(|light| (light - exact).abs() < 1e-6), "{order} {field:?} {rgb:?}");
@@ -192,7 +194,7 @@ fn white_light_gives_the_textbooks_colors() {
     assert!(green > 1.5 * red && green > 1.2 * blue, "green {red} {green} {blue}");
     let [red, green, blue] = color(1020.0);
     assert!(red > 1.5 * green && red > blue, "red of the second order {red} {green} {blue}");
-    let spread = |[red, green, blue]: Rgb| red.max(green).max(blue) - red.min(green).min(blue);
+    let spread = |[red, green, blue]: LinearRgb| red.max(green).max(blue) - red.min(green).min(blue);
     assert!(spread(color(9000.0)) < 0.15, "white of high order");
 }
 
@@ -286,7 +288,7 @@ fn every_light_and_field_has_a_picture() {
     let plane = Polariscope { polarizer: Some(0.3), ..circular };
     for (name, polariscope) in [
         ("grey", circular),
-        ("light_field", Polariscope { field: Field::Light, ..circular }),
+        ("light_field", Polariscope { field: PolariscopeField::Light, ..circular }),
         ("monochrome", polariscope(Light::Monochrome)),
         ("white", polariscope(Light::White)),
         ("plane", plane),

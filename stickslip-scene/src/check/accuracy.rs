@@ -6,15 +6,15 @@ use std::fmt::{self, Display, Formatter};
 
 /// What benchmarks measured with the law `surface`, gimp and two particles a side: radius or half-width of the patch in
 /// cells, relative error.
-type Measured = [(f64, f64)];
+type ErrorTable = [(f64, f64)];
 
 /// Pressure and width of B11's cylinder (book, chapter 13).
-const STRESS: &Measured = &[(1.0, 0.32), (2.0, 0.13), (8.0, 0.032)];
+const STRESS: &ErrorTable = &[(1.0, 0.32), (2.0, 0.13), (8.0, 0.032)];
 
 /// 1 less the restitution of B12's sphere, whose largest contact has a radius of 0.15 R. What is lost stays mostly as
 /// vibration. At 2/3 cells, where the nodes happened to lie well, it was 0.060: left out, as others need not be so
 /// lucky.
-const REBOUND: &Measured = &[
+const REBOUND: &ErrorTable = &[
     (0.25, 0.305),
     (1.0 / 3.0, 0.260),
     (0.5, 0.190),
@@ -27,7 +27,7 @@ const REBOUND: &Measured = &[
 ];
 
 /// What B1's rolling sphere lacks of its way (book, chapter 5).
-const MOTION: &Measured = &[(1.0 / 3.0, 0.22), (2.0 / 3.0, 0.05), (4.0 / 3.0, 0.01)];
+const MOTION: &ErrorTable = &[(1.0 / 3.0, 0.22), (2.0 / 3.0, 0.05), (4.0 / 3.0, 0.01)];
 
 /// By how much results of a contact may be off. Beyond the benchmarks' points the last line goes on; at most 1: beyond,
 /// the grid decides.
@@ -50,7 +50,7 @@ impl Errors {
 }
 
 /// The measured error at `cells`, on straight lines in logarithms through the points.
-fn between(points: &Measured, cells: f64) -> f64 {
+fn between(points: &ErrorTable, cells: f64) -> f64 {
     let upper =
         points.iter().position(|&(at, _)| at >= cells).unwrap_or(points.len()).clamp(1, points.len() - 1);
     let [(x0, y0), (x1, y1)] = [points[upper - 1], points[upper]];

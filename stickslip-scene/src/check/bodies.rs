@@ -17,7 +17,7 @@ const ROUND_OFF: f64 = 1e-6;
 
 /// The filling of a body in numbers.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Extent {
+pub(super) struct FillingExtent {
     /// Number of particles.
     pub particles: usize,
     /// Mass of all particles [kg], in the plane per metre of depth.
@@ -30,26 +30,32 @@ pub(super) struct Extent {
     pub center: [f64; 3],
 }
 
-impl Extent {
+impl FillingExtent {
     /// Of a rigid body without bounds.
-    fn unbounded(center: [f64; 3]) -> Extent {
-        Extent { particles: 0, mass: 0.0, bounds: Bounds::EVERYTHING, centers: Bounds::EVERYTHING, center }
+    fn unbounded(center: [f64; 3]) -> FillingExtent {
+        FillingExtent {
+            particles: 0,
+            mass: 0.0,
+            bounds: Bounds::EVERYTHING,
+            centers: Bounds::EVERYTHING,
+            center,
+        }
     }
 }
 
 /// Each body's extent, in the order of the scene.
-pub(super) fn measure(scene: &Scene) -> Result<Vec<Extent>, Problem> {
+pub(super) fn measure(scene: &Scene) -> Result<Vec<FillingExtent>, Problem> {
     // Collected before the first problem is taken, so that it is the first in the scene and not the first in time.
     let all: Vec<_> = (0..scene.bodies.len()).into_par_iter().map(|i| measure_body(scene, i)).collect();
     all.into_iter().collect()
 }
 
-fn measure_body(scene: &Scene, i: usize) -> Result<Extent, Problem> {
+fn measure_body(scene: &Scene, i: usize) -> Result<FillingExtent, Problem> {
     let body = &scene.bodies[i];
     let lattice = lattice(scene, body);
     // Only rigid bodies may be without bounds; those have particles where others come near.
     let Some(bounds) = body.shape.bounds(lattice.dimension) else {
-        return Ok(Extent::unbounded(body.shape.anchor(lattice.dimension)));
+        return Ok(FillingExtent::unbounded(body.shape.anchor(lattice.dimension)));
     };
     let sites = lattice.sites(&bounds);
     if sites > MOST_SITES {
@@ -76,8 +82,13 @@ fn measure_body(scene: &Scene, i: usize) -> Result<Extent, Problem> {
             help: Some("put the corner space.domain.min near the bodies: the grid starts there".into()),
         });
     }
-    let mut extent =
-        Extent { particles: 0, mass: 0.0, bounds: Bounds::EMPTY, centers: Bounds::EMPTY, center: [0.0; 3] };
+    let mut extent = FillingExtent {
+        particles: 0,
+        mass: 0.0,
+        bounds: Bounds::EMPTY,
+        centers: Bounds::EMPTY,
+        center: [0.0; 3],
+    };
     let (mut moment, mut whole) = ([0.0; 3], 0.0);
     let density = scene.materials[body.material].density;
     let all =
@@ -142,7 +153,7 @@ pub(super) fn smallest_extent(shape: &Shape, dimension: usize) -> f64 {
 }
 
 /// Refuses a body with particles' centres outside the domain, where a step would refuse them.
-pub(super) fn check_domain(scene: &Scene, extents: &[Extent]) -> Result<(), Problem> {
+pub(super) fn check_domain(scene: &Scene, extents: &[FillingExtent]) -> Result<(), Problem> {
     let Some(domain) = &scene.domain else { return Ok(()) };
     for (i, extent) in extents.iter().enumerate().filter(|(_, extent)| extent.bounds.is_finite()) {
         let lattice = lattice(scene, &scene.bodies[i]);

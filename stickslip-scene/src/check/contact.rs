@@ -1,14 +1,14 @@
 //! Whether the grid resolves contacts: the patch that Hertz predicts, in cells.
 
 use super::accuracy::Errors;
-use super::bodies::Extent;
+use super::bodies::FillingExtent;
 use super::flat::Flat;
 use super::hertz::{Hertz, HertzPatch};
 use super::neighbours::pairs_within;
 use super::rules::{is_rigid, named_pairs};
-use super::touch::{SAME, Touch};
+use super::touch::{BallContact, SAME};
 use crate::geometry::SiteLattice;
-use crate::scene::{Body, ContactLaw, Motion, Scene};
+use crate::scene::{Body, BodyMotion, ContactLaw, Scene};
 use crate::tensor::Vector;
 use serde::Serialize;
 use std::collections::BTreeSet;
@@ -72,7 +72,7 @@ pub(super) struct Estimates {
 /// a ball the other body may be a ball, to a cylinder a cylinder, hollow or full, and it counts as flat where it is
 /// something else. The load is the weight of the upper body alone, without what rests on it. Pairs that nothing presses
 /// together at the start are left out, as are rigid or glued pairs.
-pub(super) fn estimates(scene: &Scene, extents: &[Extent]) -> Estimates {
+pub(super) fn estimates(scene: &Scene, extents: &[FillingExtent]) -> Estimates {
     let named = named_pairs(scene);
     let boxes: Vec<_> = extents.iter().map(|extent| extent.bounds).collect();
     let near = pairs_within(&boxes, scene.discretization.cell);
@@ -80,7 +80,7 @@ pub(super) fn estimates(scene: &Scene, extents: &[Extent]) -> Estimates {
     let (mut found, mut unknown) = (Vec::new(), Vec::new());
     for pair in pairs.into_iter().filter(|&pair| pushes(scene, pair)) {
         let [a, b] = pair;
-        let touches = [Touch::of(scene, extents, [a, b]), Touch::of(scene, extents, [b, a])];
+        let touches = [BallContact::of(scene, extents, [a, b]), BallContact::of(scene, extents, [b, a])];
         let near = |gap: f64| gap <= scene.discretization.cell || named.contains(&pair);
         if let Some(nearest) = touches.into_iter().flatten().min_by(|a, b| a.gap.total_cmp(&b.gap)) {
             found.extend(estimate(&nearest, scene).filter(|_| near(nearest.gap)));
@@ -102,7 +102,7 @@ pub(super) fn estimates(scene: &Scene, extents: &[Extent]) -> Estimates {
 ///
 /// From a point the two are as far away as they are apart, or more. Around a point where they touch, one on a lattice
 /// of half a cell is within a quarter of a cell along each axis.
-fn within_a_cell(scene: &Scene, extents: &[Extent], [a, b]: [usize; 2]) -> bool {
+fn within_a_cell(scene: &Scene, extents: &[FillingExtent], [a, b]: [usize; 2]) -> bool {
     let (cell, dimension) = (scene.discretization.cell, scene.dimension.axes());
     let around = |i: usize| extents[i].bounds.grown(0.5 * cell);
     let away = |i: usize, point| scene.bodies[i].shape.distance(point, dimension).max(0.0);
@@ -127,7 +127,7 @@ struct Pressing {
 impl Pressing {
     fn new(scene: &Scene, pair: [usize; 2], direction: Vector<f64, 3>, masses: [f64; 2]) -> Self {
         let bodies = pair.map(|i| &scene.bodies[i]);
-        let rigid = bodies.map(|body| matches!(body.motion, Motion::Rigid { .. }));
+        let rigid = bodies.map(|body| matches!(body.motion, BodyMotion::Rigid { .. }));
         let gravity = Vector(scene.gravity);
         // The one above rests on the other; gravity along the surface presses nothing, but for round-off.
         let along = direction.dot(gravity);
@@ -157,9 +157,9 @@ impl Pressing {
 }
 
 /// `None` if nothing presses the two together.
-fn estimate(touch: &Touch, scene: &Scene) -> Option<ContactEstimate> {
+fn estimate(touch: &BallContact, scene: &Scene) -> Option<ContactEstimate> {
     let bodies = touch.pair.map(|i| &scene.bodies[i]);
-    let rigid = bodies.map(|body| matches!(body.motion, Motion::Rigid { .. }));
+    let rigid = bodies.map(|body| matches!(body.motion, BodyMotion::Rigid { .. }));
     let materials =
         std::array::from_fn(|i| (!rigid[i]).then(|| scene.materials[bodies[i].material].law.elastic()));
     let modulus = Hertz::effective_modulus(materials, scene.dimension);
@@ -174,7 +174,7 @@ fn estimate(touch: &Touch, scene: &Scene) -> Option<ContactEstimate> {
 }
 
 /// A face touches as wide as it is, if anything presses it.
-fn of_face(flat: &Flat, scene: &Scene, extents: &[Extent]) -> Option<ContactEstimate> {
+fn of_face(flat: &Flat, scene: &Scene, extents: &[FillingExtent]) -> Option<ContactEstimate> {
     let pressing = Pressing::new(scene, flat.pair, flat.direction, flat.pair.map(|i| extents[i].mass));
     let patch = HertzPatch { radius: flat.half_width, depth: 0.0 };
     let pressed = pressing.load > 0.0 || pressing.approach > 0.0;
@@ -184,8 +184,8 @@ fn of_face(flat: &Flat, scene: &Scene, extents: &[Extent]) -> Option<ContactEsti
 /// Velocity of the centre of mass at the start [m/s]; spin moves a ball's surface along the contact, not into it.
 pub(super) fn starting_velocity(body: &Body) -> [f64; 3] {
     match &body.motion {
-        Motion::Free { velocity, .. } => *velocity,
-        Motion::Rigid { velocity, .. } => velocity.each_ref().map(|v| v.at(0.0)),
+        BodyMotion::Free { velocity, .. } => *velocity,
+        BodyMotion::Rigid { velocity, .. } => velocity.each_ref().map(|v| v.at(0.0)),
     }
 }
 
@@ -207,7 +207,7 @@ mod tests {
     }
 
     fn moving(mut body: Body, velocity: [f64; 3]) -> Body {
-        body.motion = Motion::Free { velocity, spin: [0.0, 0.0, 5.0] };
+        body.motion = BodyMotion::Free { velocity, spin: [0.0, 0.0, 5.0] };
         body
     }
 
@@ -259,7 +259,7 @@ mod tests {
     fn a_disk_presses_a_rigid_floor_with_its_weight_per_metre() {
         let mut floor = free("floor", 1, Shape::Box { min: [-2.0, -1.0, 0.0], max: [2.0, 0.0, 0.0] });
         let still = || [0.0; 3].map(Expression::Constant);
-        floor.motion = Motion::Rigid { velocity: still(), spin: still() };
+        floor.motion = BodyMotion::Rigid { velocity: still(), spin: still() };
         let disk = free("disk", 0, Shape::Ball { center: [0.0, 0.5, 0.0], radius: 0.5 });
         let mut scene = scene(Dimension::PlaneStrain, 0.1, vec![floor, disk]);
         scene.gravity = [0.0, -10.0, 0.0];
@@ -358,7 +358,7 @@ mod tests {
         scene.contact[0].law = ContactLaw::Glued;
         assert!(estimates_of(&scene).is_empty());
         scene.contact[0].law = ContactLaw::Gap;
-        scene.bodies[0].motion = Motion::Free { velocity: [-1.0, 0.0, 0.0], spin: [0.0; 3] };
+        scene.bodies[0].motion = BodyMotion::Free { velocity: [-1.0, 0.0, 0.0], spin: [0.0; 3] };
         assert!(estimates_of(&scene).is_empty());
     }
 

@@ -16,7 +16,7 @@ pub(super) struct Flat {
 }
 
 /// A face of a box.
-struct Face {
+struct BoxFace {
     center: [f64; 3],
     normal: [f64; 3],
     corners: Vec<[f64; 3]>,
@@ -29,7 +29,7 @@ impl Flat {
     pub(super) fn of(scene: &Scene, pair: [usize; 2]) -> Option<Flat> {
         let [first, second] = pair.map(|i| &scene.bodies[i].shape);
         let dimension = scene.dimension.axes();
-        let flat = |face: Face| {
+        let flat = |face: BoxFace| {
             let gap = second.distance(face.center, dimension);
             let round_off = SAME * face.half_width;
             let out = Vector(second.level(face.center, dimension).gradient).dot(Vector(face.normal));
@@ -48,7 +48,7 @@ impl Flat {
     }
 }
 
-fn faces(shape: &Shape, dimension: usize) -> Vec<Face> {
+fn faces(shape: &Shape, dimension: usize) -> Vec<BoxFace> {
     match shape {
         Shape::Box { min, max } => (0..dimension)
             .flat_map(|axis| [(axis, min[axis], -1.0), (axis, max[axis], 1.0)])
@@ -64,7 +64,7 @@ fn faces(shape: &Shape, dimension: usize) -> Vec<Face> {
                     corner[axis] = at;
                     corner
                 };
-                Face {
+                BoxFace {
                     center,
                     normal,
                     corners: (0..1 << dimension).map(corner).collect(),
@@ -74,10 +74,10 @@ fn faces(shape: &Shape, dimension: usize) -> Vec<Face> {
             .collect(),
         Shape::Rotated { shape, center, axis, angle } => {
             let turn = |point| Shape::turned_point(point, (*center, *axis, *angle), dimension);
-            let turned = |face: Face| {
+            let turned = |face: BoxFace| {
                 let tip = turn(std::array::from_fn(|k| face.center[k] + face.normal[k]));
                 let center = turn(face.center);
-                Face {
+                BoxFace {
                     center,
                     normal: std::array::from_fn(|k| tip[k] - center[k]),
                     corners: face.corners.into_iter().map(turn).collect(),

@@ -1,6 +1,6 @@
 //! How much memory a run takes, and whether a machine has it.
 
-use super::bodies::Extent;
+use super::bodies::FillingExtent;
 use super::rules::is_rigid;
 use super::table::{bytes, short};
 use super::warning::Warning;
@@ -21,7 +21,7 @@ pub trait Footprint {
 /// near it count as if they had been moved straight to its surface, as they will have fallen or flown.
 pub(super) fn particles_near_others(
     footprint: &dyn Footprint,
-    (scene, extents): (&Scene, &[Extent]),
+    (scene, extents): (&Scene, &[FillingExtent]),
     body: usize,
 ) -> usize {
     if extents[body].bounds.is_finite() {

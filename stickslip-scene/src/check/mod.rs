@@ -46,7 +46,7 @@ pub fn problems(scene: &Scene) -> Result<(), Problem> {
 }
 
 /// Finds what is wrong, and returns each body's filling in numbers.
-fn examine(scene: &Scene) -> Result<Vec<bodies::Extent>, Problem> {
+fn examine(scene: &Scene) -> Result<Vec<bodies::FillingExtent>, Problem> {
     settings::check(scene)?;
     shapes::check(scene)?;
     measurements::check(scene)?;

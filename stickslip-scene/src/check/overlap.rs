@@ -1,6 +1,6 @@
 //! Two bodies in one place.
 
-use super::bodies::Extent;
+use super::bodies::FillingExtent;
 use super::lattice;
 use super::neighbours::pairs_within;
 use super::penetration::deepest;
@@ -17,7 +17,7 @@ const ROUND_OFF: f64 = 1e-6;
 ///
 /// Bodies that overlap by more than a lattice resolves share sites of it. If each has its own, the coarser one may see
 /// what lies between the sites of the finer one.
-pub(super) fn check(scene: &Scene, extents: &[Extent]) -> Result<(), Problem> {
+pub(super) fn check(scene: &Scene, extents: &[FillingExtent]) -> Result<(), Problem> {
     let boxes: Vec<_> = extents.iter().map(|extent| extent.bounds).collect();
     let pairs = pairs_within(&boxes, 0.0);
     match pairs.par_iter().find_map_first(|&pair| shared(scene, extents, pair)) {
@@ -74,7 +74,7 @@ pub(super) fn warning(scene: &Scene) -> Option<Warning> {
 }
 
 /// The problem with a pair of bodies, if they share sites.
-fn shared(scene: &Scene, extents: &[Extent], [a, b]: [usize; 2]) -> Option<Problem> {
+fn shared(scene: &Scene, extents: &[FillingExtent], [a, b]: [usize; 2]) -> Option<Problem> {
     let (first, second) = (&scene.bodies[a], &scene.bodies[b]);
     let mut lattices = [first, second].map(|body| lattice(scene, body));
     lattices.sort_by(|a, b| a.spacing.total_cmp(&b.spacing));

@@ -15,7 +15,7 @@ use crate::tensor::Vector;
 
 /// Where two bodies share most room.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Shared {
+pub(super) struct SharedRoom {
     /// A place in both [m].
     pub place: [f64; 3],
     /// By how much they overlap there [m].
@@ -29,12 +29,12 @@ pub(super) fn deepest(
     room: &Bounds,
     cell: f64,
     dimension: usize,
-) -> Option<Shared> {
+) -> Option<SharedRoom> {
     if room.is_empty() || !room.is_finite() {
         return None;
     }
     let mut boxes = vec![*room];
-    let mut found: Option<Shared> = None;
+    let mut found: Option<SharedRoom> = None;
     while let Some(part) = boxes.pop() {
         let size = part.size();
         let half_diagonal = 0.5 * Vector(size).norm();
@@ -67,7 +67,11 @@ const HALVINGS: usize = 40;
 const STEPS: usize = 100;
 
 /// Walks down from a point; what it finds, if that is in both.
-fn descend(levels: &[&dyn Fn([f64; 3]) -> SignedDistance; 2], start: [f64; 3], cell: f64) -> Option<Shared> {
+fn descend(
+    levels: &[&dyn Fn([f64; 3]) -> SignedDistance; 2],
+    start: [f64; 3],
+    cell: f64,
+) -> Option<SharedRoom> {
     let mut here = level_out(levels, start, cell);
     let mut low = worse(levels, here);
     let (mut step, mut halvings) = (0.5 * cell, 0);
@@ -87,7 +91,7 @@ fn descend(levels: &[&dyn Fn([f64; 3]) -> SignedDistance; 2], start: [f64; 3], c
             halvings += 1;
         }
     }
-    (low < 0.0 && low.is_finite()).then_some(Shared { place: here, depth: -2.0 * low })
+    (low < 0.0 && low.is_finite()).then_some(SharedRoom { place: here, depth: -2.0 * low })
 }
 
 /// The point near one at which both distances are about equal.
@@ -112,7 +116,7 @@ mod tests {
     use super::*;
     use crate::geometry::Shape;
 
-    fn shared(a: &Shape, b: &Shape, dimension: usize) -> Option<Shared> {
+    fn shared(a: &Shape, b: &Shape, dimension: usize) -> Option<SharedRoom> {
         let [of_a, of_b] = [a, b].map(|shape| move |x| shape.level(x, dimension));
         let bounds = |shape: &Shape| shape.bounds(dimension).unwrap_or(Bounds::EVERYTHING);
         deepest([&of_a, &of_b], &bounds(a).intersected(&bounds(b)), 0.1, dimension)

@@ -1,6 +1,6 @@
 //! What a run will be, before it runs.
 
-use super::bodies::{Extent, smallest_extent};
+use super::bodies::{FillingExtent, smallest_extent};
 use super::contact::{ContactEstimate, ContactResolution, Estimates, estimates, starting_velocity};
 use super::memory::Footprint;
 use super::rules::{RuleReport, is_rigid};
@@ -8,7 +8,7 @@ use super::table::short;
 use super::warning::{Warning, and_more};
 use super::{examine, lattice, locking, memory, overlap, per_side, rigid_pairs, rules, thickness};
 use crate::geometry::Bounds;
-use crate::scene::{Body, Dimension, Motion, Problem, Scene, Source};
+use crate::scene::{Body, BodyMotion, Dimension, Problem, Scene, Source};
 use crate::tensor::Vector;
 use serde::Serialize;
 
@@ -158,7 +158,7 @@ impl Report {
 }
 
 /// What is doubtful with a scene: first what it says, then what the grid makes of it.
-fn warnings(scene: &Scene, extents: &[Extent], contacts: &[ContactEstimate]) -> Vec<Warning> {
+fn warnings(scene: &Scene, extents: &[FillingExtent], contacts: &[ContactEstimate]) -> Vec<Warning> {
     (rules::idle(scene))
         .chain(overlap::warning(scene))
         .chain(rigid_pairs::warning(scene, extents))
@@ -176,11 +176,11 @@ fn fewest_and_most(scene: &Scene) -> [usize; 2] {
     [of().min().unwrap_or(usual), of().max().unwrap_or(usual)]
 }
 
-fn of_body(scene: &Scene, body: &Body, extent: &Extent) -> BodyReport {
+fn of_body(scene: &Scene, body: &Body, extent: &FillingExtent) -> BodyReport {
     BodyReport {
         name: body.name.clone(),
         material: scene.materials[body.material].name.clone(),
-        rigid: matches!(body.motion, Motion::Rigid { .. }),
+        rigid: matches!(body.motion, BodyMotion::Rigid { .. }),
         particles: extent.particles,
         mass: extent.mass,
         size: extent.bounds.size(),
@@ -203,7 +203,7 @@ fn longitudinal_speed(scene: &Scene, material: usize) -> f64 {
 }
 
 /// Half the diagonal of a body's box; of one without bounds, of the box around all that have some [m].
-fn half_diagonal(extent: &Extent, extents: &[Extent]) -> f64 {
+fn half_diagonal(extent: &FillingExtent, extents: &[FillingExtent]) -> f64 {
     let finite = extents.iter().map(|extent| extent.bounds).filter(Bounds::is_finite);
     let bounds = match extent.bounds.is_finite() {
         true => extent.bounds,
@@ -213,11 +213,11 @@ fn half_diagonal(extent: &Extent, extents: &[Extent]) -> f64 {
 }
 
 /// courant h / max(c + |v|) at the start, at most the longest step that the scene allows [s].
-fn time_step(scene: &Scene, extents: &[Extent]) -> f64 {
-    let signal = |(body, extent): (&Body, &Extent)| {
+fn time_step(scene: &Scene, extents: &[FillingExtent]) -> f64 {
+    let signal = |(body, extent): (&Body, &FillingExtent)| {
         let (wave, spin) = match &body.motion {
-            Motion::Free { spin, .. } => (longitudinal_speed(scene, body.material), *spin),
-            Motion::Rigid { spin, .. } => (0.0, spin.each_ref().map(|s| s.at(0.0))),
+            BodyMotion::Free { spin, .. } => (longitudinal_speed(scene, body.material), *spin),
+            BodyMotion::Rigid { spin, .. } => (0.0, spin.each_ref().map(|s| s.at(0.0))),
         };
         let reach = half_diagonal(extent, extents);
         wave + Vector(starting_velocity(body)).norm() + Vector(spin).norm() * reach
@@ -315,7 +315,7 @@ mod tests {
     #[test]
     fn motion_at_the_start_shortens_the_step_and_a_limit_caps_it() {
         let mut scene = incline(4.0);
-        scene.bodies[0].motion = Motion::Free { velocity: [60.0, 0.0, 80.0], spin: [0.0; 3] };
+        scene.bodies[0].motion = BodyMotion::Free { velocity: [60.0, 0.0, 80.0], spin: [0.0; 3] };
         assert!((report(&scene).expect("no problem").time_step - 0.4 * 0.4 / 200.0).abs() < 1e-12);
         scene.time.max_step = Some(1e-4);
         let report = report(&scene).expect("no problem");

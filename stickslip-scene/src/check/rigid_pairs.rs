@@ -1,13 +1,13 @@
 //! Rigid bodies that run into each other: contact does not act between them, so they pass.
 
-use super::bodies::Extent;
+use super::bodies::FillingExtent;
 use super::neighbours::pairs_within;
-use super::penetration::{Shared, deepest};
+use super::penetration::{SharedRoom, deepest};
 use super::rules::is_rigid;
 use super::warning::{Warning, and_more};
 use crate::geometry::{Bounds, SignedDistance};
 use crate::rigid::{Pose, RigidMotion};
-use crate::scene::{ContactLaw, Expression, Motion, Scene};
+use crate::scene::{BodyMotion, ContactLaw, Expression, Scene};
 use rayon::prelude::*;
 
 /// Times at which the bodies' places are looked at, from the start to the end.
@@ -18,15 +18,15 @@ const CLOSE_LOOKS: usize = 64;
 const TOUCH: f64 = 1e-3;
 
 /// A rigid body's places at equal intervals, and the box that holds it at each.
-struct Path {
+struct RigidPath {
     body: usize,
     poses: Vec<Pose>,
     boxes: Vec<Bounds>,
 }
 
-impl Path {
-    fn of(scene: &Scene, extent: &Extent, body: usize) -> Option<Path> {
-        let Motion::Rigid { velocity, spin } = &scene.bodies[body].motion else { return None };
+impl RigidPath {
+    fn of(scene: &Scene, extent: &FillingExtent, body: usize) -> Option<RigidPath> {
+        let BodyMotion::Rigid { velocity, spin } = &scene.bodies[body].motion else { return None };
         let mut motion = RigidMotion::new(extent.center, velocity.clone(), spin.clone());
         let step = scene.time.end / LOOKS as f64;
         let mut poses = vec![motion.pose()];
@@ -41,7 +41,7 @@ impl Path {
             false => bounds,
         };
         let boxes = poses.iter().map(place).collect();
-        Some(Path { body, poses, boxes })
+        Some(RigidPath { body, poses, boxes })
     }
 
     fn swept(&self) -> Bounds {
@@ -50,18 +50,18 @@ impl Path {
 }
 
 /// Where and when two paths meet first.
-struct Meeting {
+struct PathMeeting {
     pair: [usize; 2],
     time: f64,
-    shared: Shared,
+    shared: SharedRoom,
 }
 
 /// Rigid bodies whose shapes overlap at one of 1024 times; those of a rule with the law `none` are meant to, and those
 /// without bounds are not compared with each other.
-pub(super) fn warning(scene: &Scene, extents: &[Extent]) -> Option<Warning> {
+pub(super) fn warning(scene: &Scene, extents: &[FillingExtent]) -> Option<Warning> {
     let rigid = (0..scene.bodies.len()).filter(|&body| is_rigid(scene, body));
-    let paths: Vec<_> = rigid.filter_map(|body| Path::of(scene, &extents[body], body)).collect();
-    let swept: Vec<_> = paths.iter().map(Path::swept).collect();
+    let paths: Vec<_> = rigid.filter_map(|body| RigidPath::of(scene, &extents[body], body)).collect();
+    let swept: Vec<_> = paths.iter().map(RigidPath::swept).collect();
     let pairs = pairs_within(&swept, 0.0);
     let met: Vec<_> = pairs.par_iter().filter_map(|&[a, b]| meet(scene, [&paths[a], &paths[b]])).collect();
     let first = met.iter().min_by(|a, b| a.time.total_cmp(&b.time))?;
@@ -84,15 +84,15 @@ pub(super) fn warning(scene: &Scene, extents: &[Extent]) -> Option<Warning> {
 /// Whether two bodies never move against each other.
 fn together(scene: &Scene, pair: [usize; 2]) -> bool {
     let motions = pair.map(|body| match &scene.bodies[body].motion {
-        Motion::Rigid { velocity, spin } => Some((velocity, spin)),
-        Motion::Free { .. } => None,
+        BodyMotion::Rigid { velocity, spin } => Some((velocity, spin)),
+        BodyMotion::Free { .. } => None,
     });
     let [Some((v, spin)), Some((w, turn))] = motions else { return false };
     let still = |spin: &[Expression; 3]| spin.iter().all(|s| *s == Expression::Constant(0.0));
     v == w && still(spin) && still(turn)
 }
 
-fn meet(scene: &Scene, paths: [&Path; 2]) -> Option<Meeting> {
+fn meet(scene: &Scene, paths: [&RigidPath; 2]) -> Option<PathMeeting> {
     let pair = paths.map(|path| path.body);
     if together(scene, pair) || scene.contact_between(pair[0], pair[1]).law == ContactLaw::None {
         return None;
@@ -115,7 +115,7 @@ fn meet(scene: &Scene, paths: [&Path; 2]) -> Option<Meeting> {
         });
         let shared = deepest([&levels[0], &levels[1]], room, cell, axes)?;
         let time = scene.time.end * *look as f64 / LOOKS as f64;
-        (shared.depth > TOUCH * cell).then_some(Meeting { pair, time, shared })
+        (shared.depth > TOUCH * cell).then_some(PathMeeting { pair, time, shared })
     };
     // Far apart first, then all between the last look without and the first with.
     let every = near.len().div_ceil(CLOSE_LOOKS).max(1);
@@ -134,7 +134,7 @@ mod tests {
     fn block(name: &str, x: f64, velocity: [f64; 3], spin: f64) -> Body {
         let shape = Shape::Box { min: [x, 0.0, 0.0], max: [x + 1.0, 1.0, 0.0] };
         let [velocity, spin] = [velocity, [0.0, 0.0, spin]].map(|v| v.map(Expression::Constant));
-        Body { motion: Motion::Rigid { velocity, spin }, ..free(name, 1, shape) }
+        Body { motion: BodyMotion::Rigid { velocity, spin }, ..free(name, 1, shape) }
     }
 
     fn said(bodies: Vec<Body>) -> Option<String> {

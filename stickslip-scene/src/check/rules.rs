@@ -3,7 +3,7 @@
 use super::neighbours::pairs_within;
 use super::warning::Warning;
 use crate::geometry::Bounds;
-use crate::scene::{ContactLaw, ContactRule, Motion, Scene};
+use crate::scene::{BodyMotion, ContactLaw, ContactRule, Scene};
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
@@ -79,21 +79,21 @@ pub(super) fn named_pairs(scene: &Scene) -> BTreeSet<[usize; 2]> {
 }
 
 pub(super) fn is_rigid(scene: &Scene, body: usize) -> bool {
-    matches!(scene.bodies[body].motion, Motion::Rigid { .. })
+    matches!(scene.bodies[body].motion, BodyMotion::Rigid { .. })
 }
 
 /// Bodies that no rule tells from each other.
-struct Kind {
-    /// Numbers of their names in [`Rules::numbers`], of the body and of the material, and that of "any".
+struct BodyClass {
+    /// Numbers of their names in [`RulesByName::numbers`], of the body and of the material, and that of "any".
     names: [Option<usize>; 3],
     deforming: usize,
     rigid: usize,
 }
 
 /// Rules by the names that they mention.
-struct Rules<'a> {
+struct RulesByName<'a> {
     scene: &'a Scene,
-    kinds: Vec<Kind>,
+    kinds: Vec<BodyClass>,
     /// Numbers of the names that rules mention; "any" is 0.
     numbers: HashMap<&'a str, usize>,
     /// The first rule that mentions two names.
@@ -103,9 +103,10 @@ struct Rules<'a> {
 /// Stands for every body.
 const ANY: usize = 0;
 
-impl<'a> Rules<'a> {
+impl<'a> RulesByName<'a> {
     fn new(scene: &'a Scene) -> Self {
-        let mut rules = Rules { scene, kinds: Vec::new(), numbers: HashMap::new(), first: HashMap::new() };
+        let mut rules =
+            RulesByName { scene, kinds: Vec::new(), numbers: HashMap::new(), first: HashMap::new() };
         for name in scene.contact.iter().flat_map(|rule| rule.between.iter().flatten()) {
             let next = rules.numbers.len() + 1;
             rules.numbers.entry(name).or_insert(next);
@@ -120,7 +121,7 @@ impl<'a> Rules<'a> {
             let number = |name: &String| rules.numbers.get(name.as_str()).copied();
             let names = [number(&body.name), number(&scene.materials[body.material].name), Some(ANY)];
             let place = *places.entry(names).or_insert_with(|| {
-                rules.kinds.push(Kind { names, deforming: 0, rigid: 0 });
+                rules.kinds.push(BodyClass { names, deforming: 0, rigid: 0 });
                 rules.kinds.len() - 1
             });
             let kind = &mut rules.kinds[place];
@@ -198,7 +199,7 @@ impl<'a> Rules<'a> {
 
 /// Rules that hold for no pair of bodies, and why.
 pub(super) fn idle(scene: &Scene) -> impl Iterator<Item = Warning> {
-    let rules = Rules::new(scene);
+    let rules = RulesByName::new(scene);
     (0..scene.contact.len())
         .filter_map(move |rule| Some(Warning::about(format!("contact[{rule}]"), rules.idle(rule)?)))
 }

@@ -1,7 +1,7 @@
 //! Numbers that do not fit each other: the grid, the domain, time, materials, motion out of the plane.
 
 use super::table::short;
-use crate::scene::{Dimension, Domain, Expression, Face, Motion, NamedMaterial, Problem, Scene};
+use crate::scene::{BodyMotion, Dimension, Domain, Expression, Face, NamedMaterial, Problem, Scene};
 
 /// Walls may miss the nodes of the grid by this share of a cell.
 const WALL_TOLERANCE: f64 = 1e-6;
@@ -117,8 +117,8 @@ fn check_plane(scene: &Scene) -> Result<(), Problem> {
             if zero { Ok(()) } else { Err(problem(&format!("bodies[{i}].{key}"), found, stays)) }
         };
         let (moves, turns) = match &body.motion {
-            Motion::Free { velocity, spin } => (velocity[2] != 0.0, spin[0] != 0.0 || spin[1] != 0.0),
-            Motion::Rigid { velocity, spin } => {
+            BodyMotion::Free { velocity, spin } => (velocity[2] != 0.0, spin[0] != 0.0 || spin[1] != 0.0),
+            BodyMotion::Rigid { velocity, spin } => {
                 let zero = Expression::Constant(0.0);
                 (velocity[2] != zero, spin[0] != zero || spin[1] != zero)
             }
@@ -191,12 +191,12 @@ mod tests {
         falling.gravity = [0.0, 0.0, -9.81];
         assert_eq!(check(&falling).expect_err("along z").key, "gravity");
         let mut rolling = plane();
-        rolling.bodies[0].motion = Motion::Free { velocity: [0.0; 3], spin: [1.0, 0.0, 0.0] };
+        rolling.bodies[0].motion = BodyMotion::Free { velocity: [0.0; 3], spin: [1.0, 0.0, 0.0] };
         assert_eq!(check(&rolling).expect_err("about x").key, "bodies[0].spin");
         let mut leaving = plane();
         let [zero, one] = [0.0, 1.0].map(Expression::Constant);
         let spin = [zero.clone(), zero.clone(), one.clone()];
-        leaving.bodies[0].motion = Motion::Rigid { velocity: [zero.clone(), zero, one], spin };
+        leaving.bodies[0].motion = BodyMotion::Rigid { velocity: [zero.clone(), zero, one], spin };
         assert_eq!(check(&leaving).expect_err("along z").key, "bodies[0].velocity");
     }
 }

@@ -1,13 +1,13 @@
 //! Shapes that are none: no radius, corners the wrong way round, only of three dimensions in the plane, without bounds.
 
 use crate::geometry::{Arrangement, FITTED_SHAPES, Shape, fits};
-use crate::scene::{Motion, Problem, Scene};
+use crate::scene::{BodyMotion, Problem, Scene};
 
 pub(super) fn check(scene: &Scene) -> Result<(), Problem> {
     for (i, body) in scene.bodies.iter().enumerate() {
         let key = format!("bodies[{i}].shape");
         check_shape(&body.shape, &key, scene.dimension.axes())?;
-        let rigid = matches!(body.motion, Motion::Rigid { .. });
+        let rigid = matches!(body.motion, BodyMotion::Rigid { .. });
         if !rigid && body.shape.bounds(scene.dimension.axes()).is_none() {
             return Err(Problem {
                 key,

@@ -1,6 +1,6 @@
 //! Where a ball or a cylinder of one body is nearest to another body.
 
-use super::bodies::Extent;
+use super::bodies::FillingExtent;
 use crate::geometry::{RoundPart, Shape};
 use crate::scene::{Body, Scene};
 use crate::tensor::{Vector, cross};
@@ -9,7 +9,7 @@ use crate::tensor::{Vector, cross};
 pub(super) const SAME: f64 = 1e-6;
 
 /// A ball of one body that faces another body, or a cylinder that does so all along.
-pub(super) struct Touch {
+pub(super) struct BallContact {
     pub pair: [usize; 2],
     /// Masses that move: of the ball or cylinder itself, even if a symmetry plane cuts it, and of the other body [kg].
     pub masses: [f64; 2],
@@ -22,9 +22,9 @@ pub(super) struct Touch {
     pub length: Option<f64>,
 }
 
-impl Touch {
+impl BallContact {
     /// Where a ball or cylinder of the first body is nearest to the second; `None` if none faces it.
-    pub(super) fn of(scene: &Scene, extents: &[Extent], pair: [usize; 2]) -> Option<Touch> {
+    pub(super) fn of(scene: &Scene, extents: &[FillingExtent], pair: [usize; 2]) -> Option<BallContact> {
         let [first, second] = pair.map(|i| &scene.bodies[i]);
         let full = |part: &RoundPart| !part.hollow;
         let balls = first.shape.round_parts(scene.dimension.axes()).into_iter().filter(full);
@@ -41,7 +41,7 @@ impl Touch {
             let length = lengths.map(|axis| Vector(axis).norm()).reduce(f64::min);
             let other_ball = opposite.filter(full).and_then(|part| whole(part, second));
             let masses = [whole(ball, first)?, other_ball.unwrap_or(extents[pair[1]].mass)];
-            (radius > 0.0 && radius.is_finite()).then_some(Touch {
+            (radius > 0.0 && radius.is_finite()).then_some(BallContact {
                 pair,
                 masses,
                 radius,
@@ -102,9 +102,9 @@ mod tests {
     use crate::check::tests::{free, scene};
     use crate::scene::Dimension;
 
-    fn touch(first: Shape, second: Shape) -> Option<Touch> {
+    fn touch(first: Shape, second: Shape) -> Option<BallContact> {
         let scene = scene(Dimension::Space, 0.1, vec![free("first", 0, first), free("second", 0, second)]);
-        Touch::of(&scene, &measure(&scene).expect("filled"), [0, 1])
+        BallContact::of(&scene, &measure(&scene).expect("filled"), [0, 1])
     }
 
     fn ball(x: f64, radius: f64) -> Shape {

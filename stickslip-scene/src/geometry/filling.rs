@@ -1,7 +1,7 @@
 //! Filling a shape with particles.
 
 use super::fitted::fit;
-use super::inside::Probe;
+use super::inside::NudgedPoint;
 use super::{Bounds, Shape};
 use serde::Serialize;
 
@@ -103,7 +103,7 @@ impl SiteLattice {
 
     /// Whether a site is inside a shape; on the border but for round-off it is where [`Shape::contains`] says.
     pub fn holds(&self, shape: &Shape, site: [f64; 3]) -> bool {
-        shape.holds(Probe::new(site, ROUND_OFF * self.spacing, self.dimension))
+        shape.holds(NudgedPoint::new(site, ROUND_OFF * self.spacing, self.dimension))
     }
 
     /// Every site in a box and up to one spacing around it, ordered by x, then y, then z [m].

@@ -7,27 +7,27 @@
 use super::rotation::Rotation;
 use super::{Shape, polygon};
 
-/// Direction in which a [`Probe`] is moved: no plane that people draw holds it.
+/// Direction in which a [`NudgedPoint`] is moved: no plane that people draw holds it.
 const NUDGE: [f64; 3] = [1.0, 0.754_877_666_2, 0.569_840_290_9];
 
 /// A point, and the short way by which it is moved off faces that round-off would decide about.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Probe {
+pub(super) struct NudgedPoint {
     point: [f64; 3],
     nudged: [f64; 3],
     margin: f64,
     dimension: usize,
 }
 
-impl Probe {
+impl NudgedPoint {
     /// A point that decides ties of up to `margin` [m] as an exact point on the border would.
     pub(super) fn new(point: [f64; 3], margin: f64, dimension: usize) -> Self {
         let nudged = std::array::from_fn(|k| point[k] + margin * NUDGE[k]);
-        Probe { point, nudged, margin, dimension }
+        NudgedPoint { point, nudged, margin, dimension }
     }
 
     fn turned_back(self, rotation: &Rotation) -> Self {
-        Probe { point: rotation.back(self.point), nudged: rotation.back(self.nudged), ..self }
+        NudgedPoint { point: rotation.back(self.point), nudged: rotation.back(self.nudged), ..self }
     }
 }
 
@@ -35,12 +35,12 @@ impl Shape {
     /// Whether a point [m] is inside; faces are half-open, balls open. In the plane,
     /// a cylinder or a mesh holds no point.
     pub fn contains(&self, point: [f64; 3], dimension: usize) -> bool {
-        self.holds(Probe::new(point, 0.0, dimension))
+        self.holds(NudgedPoint::new(point, 0.0, dimension))
     }
 
     /// [`Shape::contains`] for a point that may lie on the border but for round-off.
-    pub(super) fn holds(&self, probe: Probe) -> bool {
-        let Probe { point, nudged, margin, dimension } = probe;
+    pub(super) fn holds(&self, probe: NudgedPoint) -> bool {
+        let NudgedPoint { point, nudged, margin, dimension } = probe;
         match self {
             Shape::Ball { center, radius } => {
                 let squared: f64 = (0..dimension).map(|k| (point[k] - center[k]).powi(2)).sum();

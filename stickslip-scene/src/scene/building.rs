@@ -5,8 +5,8 @@
 //! files and their schema take them from here.
 
 use super::{
-    BasisKind, Body, ContactLaw, ContactRule, Dimension, Discretization, Domain, Expression, Face,
-    Measurements, Motion, NamedMaterial, Normal, Outputs, Precision, Problem, Scene, StressUpdate, Time,
+    BasisKind, Body, BodyMotion, ContactLaw, ContactRule, Dimension, Discretization, Domain, Expression,
+    Face, Measurements, NamedMaterial, Normal, Outputs, Precision, Problem, Scene, StressUpdate, Time,
     Transfer,
 };
 use crate::geometry::{Arrangement, Shape};
@@ -144,7 +144,7 @@ impl Body {
             shape,
             particles: Arrangement::default(),
             particles_per_side: None,
-            motion: Motion::default(),
+            motion: BodyMotion::default(),
         }
     }
 
@@ -156,21 +156,21 @@ impl Body {
     /// The same body, deformable, with this velocity of its centre of mass [m/s] and this angular velocity about it
     /// [rad/s].
     pub fn moving(self, velocity: [f64; 3], spin: [f64; 3]) -> Self {
-        Body { motion: Motion::Free { velocity, spin }, ..self }
+        Body { motion: BodyMotion::Free { velocity, spin }, ..self }
     }
 
     /// The same body, rigid, moved at this velocity [m/s] and turned at this angular velocity [rad/s] whatever pushes
     /// it.
     pub fn rigid(self, velocity: [f64; 3], spin: [f64; 3]) -> Self {
         let [velocity, spin] = [velocity, spin].map(|vector| vector.map(Expression::Constant));
-        Body { motion: Motion::Rigid { velocity, spin }, ..self }
+        Body { motion: BodyMotion::Rigid { velocity, spin }, ..self }
     }
 }
 
-impl Default for Motion {
+impl Default for BodyMotion {
     /// It is at rest at the start.
     fn default() -> Self {
-        Motion::Free { velocity: [0.0; 3], spin: [0.0; 3] }
+        BodyMotion::Free { velocity: [0.0; 3], spin: [0.0; 3] }
     }
 }
 

@@ -34,7 +34,7 @@ pub struct Polariscope {
     /// The wavelength for which `sensitivity` holds, and that of monochromatic light [m].
     pub wavelength: f64,
     /// What unloaded bodies look like.
-    pub field: Field,
+    pub field: PolariscopeField,
     /// The light.
     pub light: Light,
     /// Angle of the first polariser from the x axis in a plane polariscope [rad]; `None` is a circular polariscope.
@@ -55,7 +55,7 @@ pub enum Sensitivity {
 /// What unloaded bodies look like between the polarisers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Field {
+pub enum PolariscopeField {
     /// Black: crossed polarisers, fringes of whole order are black.
     Dark,
     /// Bright: parallel polarisers, fringes of half order are black.

@@ -58,7 +58,7 @@ fn neighbour(path: &Path) -> Option<String> {
 mod tests {
     use super::*;
     use crate::geometry::Shape;
-    use crate::scene::{BasisKind, ContactLaw, Dimension, Face, Motion, Normal, Parameter, Precision};
+    use crate::scene::{BasisKind, BodyMotion, ContactLaw, Dimension, Face, Normal, Parameter, Precision};
 
     const ROLLING: &str = include_str!("../../tests/scenes/rolling.toml");
     const WEDGE: &str = include_str!("../../tests/scenes/wedge.toml");
@@ -82,7 +82,7 @@ mod tests {
         assert_eq!(scene.domain.as_ref().map(|domain| domain.faces[1]), Some([Face::Symmetry, Face::Open]));
         assert_eq!(scene.materials[1].density, 2600.0);
         assert_eq!(scene.bodies[0].shape, Shape::Ball { center: [0.0, 0.0, 1.6], radius: 1.6 });
-        assert_eq!(scene.bodies[0].motion, Motion::Free { velocity: [0.0; 3], spin: [0.0, 5.0, 0.0] });
+        assert_eq!(scene.bodies[0].motion, BodyMotion::Free { velocity: [0.0; 3], spin: [0.0, 5.0, 0.0] });
         let rule = scene.contact_between(0, 1);
         assert_eq!((rule.law, rule.friction, rule.normal), (ContactLaw::Gap, 0.495, Normal::Common));
         assert_eq!(
@@ -99,10 +99,12 @@ mod tests {
         let scene = scene(WEDGE, &[]);
         assert_eq!((scene.dimension, scene.precision), (Dimension::PlaneStrain, Precision::Single));
         assert_eq!(scene.discretization.basis, BasisKind::Linear);
-        let Motion::Free { velocity, spin } = scene.bodies[0].motion else { panic!("the ring is free") };
+        let BodyMotion::Free { velocity, spin } = scene.bodies[0].motion else { panic!("the ring is free") };
         assert!((velocity[1] + (2.0_f64 * 9.81 * 0.2).sqrt()).abs() < 1e-14);
         assert!((spin[2] - std::f64::consts::PI / 6.0).abs() < 1e-15);
-        let Motion::Rigid { velocity, spin } = &scene.bodies[1].motion else { panic!("the wedge is rigid") };
+        let BodyMotion::Rigid { velocity, spin } = &scene.bodies[1].motion else {
+            panic!("the wedge is rigid")
+        };
         assert_eq!([0.0, 0.001, 0.01].map(|t| velocity[1].at(t)), [0.0, -0.05, -0.1]);
         assert_eq!([0.0, 0.009, 0.01].map(|t| spin[2].at(t)), [1.0, 1.0, 0.0]);
         let rule = scene.contact_between(1, 0);
@@ -141,7 +143,7 @@ mod tests {
         assert_eq!((changed.time.end, changed.outputs.grid), (0.5, Some(0.1)));
         assert_eq!(
             changed.bodies[0].motion,
-            Motion::Free { velocity: [0.02, 0.0, 0.0], spin: [0.0, 0.0, 1.0] }
+            BodyMotion::Free { velocity: [0.02, 0.0, 0.0], spin: [0.0, 0.0, 1.0] }
         );
     }
 

@@ -21,7 +21,7 @@ mod units;
 
 pub use error::{Mistake, SceneError};
 pub use expression::{Expression, Program};
-pub use fringes::{Field, Fringes, Light, Overlay, Polariscope, Sensitivity};
+pub use fringes::{Fringes, Light, Overlay, Polariscope, PolariscopeField, Sensitivity};
 pub use load::{Loaded, load, parse};
 pub use measurements::{Anchor, Arrival, Front, Measurements, Observable, Probe, Reading, TimeUnit};
 pub use problem::Problem;
@@ -257,13 +257,13 @@ pub struct Body {
     /// Particles along each side of a cell, where it has not those of the scene.
     pub particles_per_side: Option<usize>,
     /// How it moves.
-    pub motion: Motion,
+    pub motion: BodyMotion,
 }
 
 /// How a body moves.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Motion {
+pub enum BodyMotion {
     /// It deforms and moves under forces, from this start.
     Free {
         /// Velocity of its centre of mass [m/s].

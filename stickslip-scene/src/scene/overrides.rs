@@ -1,7 +1,7 @@
 //! `--set name=value`: parameters and keys that are replaced before a scene is read.
 
 use super::error::Fault;
-use super::source::{Node, Value, joined, node};
+use super::source::{DocumentNode, Value, joined, node};
 use super::suggestion::did_you_mean;
 use std::ops::Range;
 use toml::de::DeValue;
@@ -19,12 +19,17 @@ pub(super) struct OverridePlace {
 ///
 /// # Errors
 /// A parameter that does not exist; a path through a value that is no table or list.
-pub(super) fn put(root: &mut Node, name: &str, value: &str, place: &OverridePlace) -> Result<(), Fault> {
+pub(super) fn put(
+    root: &mut DocumentNode,
+    name: &str,
+    value: &str,
+    place: &OverridePlace,
+) -> Result<(), Fault> {
     let written = value.trim();
     let start = place.value + (value.len() - value.trim_start().len());
     let read = match DeValue::parse(written) {
         Ok(parsed) => node(&parsed, String::new(), start),
-        Err(_) => Node {
+        Err(_) => DocumentNode {
             key: String::new(),
             name: String::new(),
             name_span: place.name.clone(),
@@ -52,7 +57,7 @@ pub(super) fn put(root: &mut Node, name: &str, value: &str, place: &OverridePlac
         target = descend(target, step, place)?;
     }
     let key = target.key.clone();
-    *target = Node { name: target.name.clone(), name_span: place.name.clone(), ..renamed(read, key) };
+    *target = DocumentNode { name: target.name.clone(), name_span: place.name.clone(), ..renamed(read, key) };
     Ok(())
 }
 
@@ -68,14 +73,18 @@ fn steps(word: &str) -> impl Iterator<Item = KeyStep<'_>> {
     std::iter::once(KeyStep::Name(name)).chain(numbers)
 }
 
-fn descend<'n>(node: &'n mut Node, step: KeyStep<'_>, place: &OverridePlace) -> Result<&'n mut Node, Fault> {
+fn descend<'n>(
+    node: &'n mut DocumentNode,
+    step: KeyStep<'_>,
+    place: &OverridePlace,
+) -> Result<&'n mut DocumentNode, Fault> {
     let found = node.found();
     let key = node.key.clone();
     let fault = |found: String, allowed: &str| Fault::new(&key, found, allowed).at(place.name.clone());
     match (step, &mut node.value) {
         (KeyStep::Name(name), Value::Table(children)) => {
             let at = children.iter().position(|child| child.name == name).unwrap_or_else(|| {
-                children.push(Node {
+                children.push(DocumentNode {
                     key: joined(&key, name),
                     name: name.to_string(),
                     name_span: place.name.clone(),
@@ -99,7 +108,7 @@ fn descend<'n>(node: &'n mut Node, step: KeyStep<'_>, place: &OverridePlace) -> 
 }
 
 /// The value with all its keys as if it stood at `key`.
-fn renamed(mut node: Node, key: String) -> Node {
+fn renamed(mut node: DocumentNode, key: String) -> DocumentNode {
     match &mut node.value {
         Value::Table(children) => {
             for child in children {
@@ -113,5 +122,5 @@ fn renamed(mut node: Node, key: String) -> Node {
         }
         _ => {}
     }
-    Node { key, ..node }
+    DocumentNode { key, ..node }
 }

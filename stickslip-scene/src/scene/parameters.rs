@@ -3,8 +3,8 @@
 use super::Parameter;
 use super::error::Fault;
 use super::expression::Expression;
-use super::formula::{self, Formula, FormulaError, Kind, Meaning, Names, Quantity};
-use super::source::{Node, Source, Value};
+use super::formula::{self, Formula, FormulaError, FormulaNumber, Meaning, Names, NumberKind};
+use super::source::{DocumentNode, Source, Value};
 use super::suggestion::did_you_mean;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -12,27 +12,27 @@ use std::collections::BTreeMap;
 /// The parameters of a scene, evaluated when they are first asked for.
 pub(super) struct Parameters<'s> {
     source: &'s Source,
-    nodes: &'s [Node],
-    evaluated: RefCell<BTreeMap<&'s str, Result<Quantity, Fault>>>,
+    nodes: &'s [DocumentNode],
+    evaluated: RefCell<BTreeMap<&'s str, Result<FormulaNumber, Fault>>>,
     /// Parameters that are being evaluated, to notice circles.
     pending: RefCell<Vec<&'s str>>,
 }
 
 /// May a formula use `t`?
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Variation {
+pub(super) enum TimeDependence {
     Constant,
     InTime,
 }
 
-struct Scope<'a, 's>(&'a Parameters<'s>, Variation);
+struct Scope<'a, 's>(&'a Parameters<'s>, TimeDependence);
 
 impl<'s> Parameters<'s> {
     /// The parameters `nodes` of `source`.
     ///
     /// # Errors
     /// Names that no formula can use; values that are neither number nor text.
-    pub fn new(source: &'s Source, nodes: &'s [Node]) -> Result<Self, Fault> {
+    pub fn new(source: &'s Source, nodes: &'s [DocumentNode]) -> Result<Self, Fault> {
         for node in nodes {
             let name = &node.name;
             let plain = name.starts_with(|first: char| first.is_alphabetic() || first == '_')
@@ -80,10 +80,15 @@ impl<'s> Parameters<'s> {
     /// # Errors
     /// A value that is no number and no formula, and whatever is wrong with the formula;
     /// `allowed` says what would be right.
-    pub fn formula(&self, node: &Node, variation: Variation, allowed: &str) -> Result<Formula, Fault> {
+    pub fn formula(
+        &self,
+        node: &DocumentNode,
+        variation: TimeDependence,
+        allowed: &str,
+    ) -> Result<Formula, Fault> {
         match &node.value {
             Value::Number(number) => {
-                Ok(Formula { expression: Expression::Constant(*number), kind: Kind::Number })
+                Ok(Formula { expression: Expression::Constant(*number), kind: NumberKind::Number })
             }
             Value::Text(text) => {
                 formula::compile(text, &Scope(self, variation)).map_err(|error| match error {
@@ -101,7 +106,7 @@ impl<'s> Parameters<'s> {
     ///
     /// # Errors
     /// A value that is no text, a parameter that does not exist, a brace without end.
-    pub fn text(&self, node: &Node) -> Result<String, Fault> {
+    pub fn text(&self, node: &DocumentNode) -> Result<String, Fault> {
         let text = match &node.value {
             Value::Text(text) => text,
             Value::Number(number) => return Ok(number.to_string()),
@@ -144,22 +149,26 @@ impl<'s> Parameters<'s> {
     }
 
     /// The parameter as a number, if there is one of that name.
-    fn quantity(&self, name: &str) -> Option<Result<Quantity, Fault>> {
+    fn quantity(&self, name: &str) -> Option<Result<FormulaNumber, Fault>> {
         let node = self.nodes.iter().find(|node| node.name == name)?;
         if let Some(known) = self.evaluated.borrow().get(name) {
             return Some(known.clone());
         }
         let quantity = self.guarded(node, || {
-            let formula = self.formula(node, Variation::Constant, "a number")?;
-            let kind = if formula.kind == Kind::Number { Kind::Any } else { formula.kind };
-            Ok(Quantity { value: formula.expression.at(0.0), kind })
+            let formula = self.formula(node, TimeDependence::Constant, "a number")?;
+            let kind = if formula.kind == NumberKind::Number { NumberKind::Any } else { formula.kind };
+            Ok(FormulaNumber { value: formula.expression.at(0.0), kind })
         });
         self.evaluated.borrow_mut().insert(&node.name, quantity.clone());
         Some(quantity)
     }
 
     /// `evaluate`, unless that is going on already.
-    fn guarded<T>(&self, node: &'s Node, evaluate: impl FnOnce() -> Result<T, Fault>) -> Result<T, Fault> {
+    fn guarded<T>(
+        &self,
+        node: &'s DocumentNode,
+        evaluate: impl FnOnce() -> Result<T, Fault>,
+    ) -> Result<T, Fault> {
         if let Some(first) = self.pending.borrow().iter().position(|name| *name == node.name) {
             let circle = self.pending.borrow()[first..].join(" -> ");
             let allowed = "parameters that do not need each other in a circle";
@@ -178,7 +187,7 @@ impl<'s> Parameters<'s> {
 
 impl Names for Scope<'_, '_> {
     fn meaning(&self, name: &str) -> Meaning {
-        if name == "t" && self.1 == Variation::InTime {
+        if name == "t" && self.1 == TimeDependence::InTime {
             return Meaning::Time;
         }
         match self.0.quantity(name) {
@@ -194,13 +203,13 @@ impl Names for Scope<'_, '_> {
 }
 
 /// `gap`, `modified-last`
-fn is_word(node: &Node) -> bool {
+fn is_word(node: &DocumentNode) -> bool {
     matches!(&node.value, Value::Text(text) if text.starts_with(char::is_alphabetic)
         && text.chars().all(|letter| letter.is_alphanumeric() || letter == '-' || letter == '_'))
 }
 
 /// Does any text in the scene say `{name}`?
-fn is_used_as_text(name: &str, node: &Node) -> bool {
+fn is_used_as_text(name: &str, node: &DocumentNode) -> bool {
     match &node.value {
         Value::Text(text) => text
             .split('{')

@@ -11,7 +11,7 @@ use toml::de::{DeTable, DeValue};
 pub struct Source {
     /// The file, then each override: all in one range of byte positions, one after the other.
     documents: Vec<Document>,
-    root: Node,
+    root: DocumentNode,
 }
 
 #[derive(Clone, Debug)]
@@ -23,7 +23,7 @@ struct Document {
 
 /// A value with its key and its place.
 #[derive(Clone, Debug)]
-pub(super) struct Node {
+pub(super) struct DocumentNode {
     /// The whole path: `bodies[1].shape.ball`.
     pub key: String,
     /// The last word of the path; empty in a list.
@@ -42,9 +42,9 @@ pub(super) enum Value {
     Text(String),
     /// True, false, and dates: no key takes them.
     Other(String),
-    List(Vec<Node>),
+    List(Vec<DocumentNode>),
     /// In the order of the file.
-    Table(Vec<Node>),
+    Table(Vec<DocumentNode>),
 }
 
 impl Source {
@@ -54,7 +54,7 @@ impl Source {
     /// Text that is no TOML; overrides of parameters that do not exist.
     pub(super) fn read(name: &str, text: &str, overrides: &[(String, String)]) -> Result<Source, SceneError> {
         let document = Document { name: name.to_string(), text: text.to_string(), start: 0 };
-        let empty = Node {
+        let empty = DocumentNode {
             key: String::new(),
             name: String::new(),
             name_span: 0..0,
@@ -98,12 +98,12 @@ impl Source {
         &self.documents[0].text
     }
 
-    pub(super) fn root(&self) -> &Node {
+    pub(super) fn root(&self) -> &DocumentNode {
         &self.root
     }
 
     /// Where in all documents the letter `at` of the text value `node` stands, if it is written without escapes.
-    pub(super) fn inside(&self, node: &Node, at: Range<usize>) -> Range<usize> {
+    pub(super) fn inside(&self, node: &DocumentNode, at: Range<usize>) -> Range<usize> {
         let Value::Text(text) = &node.value else { return node.span.clone() };
         let document = self.document(node.span.start);
         let written = &document.text[node.span.start - document.start..node.span.end - document.start];
@@ -173,9 +173,9 @@ impl Document {
     }
 }
 
-impl Node {
+impl DocumentNode {
     /// Values in a list or a table.
-    pub fn children(&self) -> &[Node] {
+    pub fn children(&self) -> &[DocumentNode] {
         match &self.value {
             Value::List(children) | Value::Table(children) => children,
             _ => &[],
@@ -193,7 +193,7 @@ impl Node {
             Value::Text(text) => format!("{text:?}"),
             Value::Other(text) => format!("`{text}`"),
             Value::List(items) if items.len() <= 3 && !items.iter().any(|item| item.is_table()) => {
-                format!("[{}]", items.iter().map(Node::found).collect::<Vec<_>>().join(", "))
+                format!("[{}]", items.iter().map(DocumentNode::found).collect::<Vec<_>>().join(", "))
             }
             Value::List(items) => format!("a list of {}", items.len()),
             Value::Table(_) => "a table".to_string(),
@@ -224,11 +224,11 @@ pub(super) fn joined(key: &str, name: &str) -> String {
 }
 
 fn table_value(table: &DeTable<'_>, key: &str, shift: usize) -> Value {
-    let mut nodes: Vec<Node> = table
+    let mut nodes: Vec<DocumentNode> = table
         .iter()
         .map(|(name, value)| {
             let span = name.span();
-            Node {
+            DocumentNode {
                 name: name.get_ref().to_string(),
                 name_span: span.start + shift..span.end + shift,
                 ..node(value, joined(key, name.get_ref()), shift)
@@ -240,7 +240,7 @@ fn table_value(table: &DeTable<'_>, key: &str, shift: usize) -> Value {
 }
 
 /// The value with all keys and places in it; `shift` is the start of its document.
-pub(super) fn node(value: &Spanned<DeValue<'_>>, key: String, shift: usize) -> Node {
+pub(super) fn node(value: &Spanned<DeValue<'_>>, key: String, shift: usize) -> DocumentNode {
     let span = value.span().start + shift..value.span().end + shift;
     let value = match value.get_ref() {
         DeValue::String(text) => Value::Text(text.to_string()),
@@ -263,7 +263,7 @@ pub(super) fn node(value: &Spanned<DeValue<'_>>, key: String, shift: usize) -> N
         }
         DeValue::Table(table) => table_value(table, &key, shift),
     };
-    Node { key, name: String::new(), name_span: span.clone(), span, value }
+    DocumentNode { key, name: String::new(), name_span: span.clone(), span, value }
 }
 
 fn syntax_fault(text: &str, error: &toml::de::Error) -> Fault {

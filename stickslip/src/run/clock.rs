@@ -34,16 +34,16 @@ impl Progress {
 const REPORT: Duration = Duration::from_millis(100);
 
 /// When and where a run started.
-pub(super) struct Clock {
+pub(super) struct RunClock {
     start: Instant,
     threads: usize,
     first_time: f64,
     first_step: u64,
 }
 
-impl Clock {
+impl RunClock {
     pub(super) fn start(view: &dyn View, threads: usize) -> Self {
-        Clock { start: Instant::now(), threads, first_time: view.time(), first_step: view.steps() }
+        RunClock { start: Instant::now(), threads, first_time: view.time(), first_step: view.steps() }
     }
 
     pub(super) fn progress(&self, view: &dyn View, end: f64) -> Progress {

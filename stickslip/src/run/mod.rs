@@ -16,7 +16,7 @@ use crate::door::Simulation;
 use crate::march::March;
 use crate::observe::{Manifest, Observer, OutputFolder, Recorder, Status};
 use crate::scene::Scene;
-use clock::Clock;
+use clock::RunClock;
 use contact_watch::ContactWatch;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -74,7 +74,7 @@ pub fn run_with(
     progress: &mut dyn FnMut(&Progress),
 ) -> Result<Summary, RunError> {
     let folder = OutputFolder::prepare(&options.out)?;
-    let clock = Clock::start(simulation, options.threads);
+    let clock = RunClock::start(simulation, options.threads);
     let mut manifest = Manifest::new(scene, clock.performance(simulation));
     manifest.write(&folder)?;
     let start = simulation.ledger();
@@ -108,7 +108,7 @@ struct Watched<'a> {
     verdict: &'a mut RunChecks,
     contact_watch: &'a mut ContactWatch,
     options: &'a RunOptions,
-    clock: &'a Clock,
+    clock: &'a RunClock,
 }
 
 impl Watched<'_> {

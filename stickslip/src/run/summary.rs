@@ -3,7 +3,7 @@
 use super::WidestContacts;
 use super::verdict::line;
 use crate::door::{Ledger, View};
-use crate::observe::{BodyRow, Manifest, Performance, Status, Warning};
+use crate::observe::{BodyRow, Manifest, Performance, RunWarning, Status};
 use crate::scene::Scene;
 use std::fmt::{self, Display, Formatter};
 
@@ -23,7 +23,7 @@ pub struct Summary {
     /// How wide the bodies touched, and whether the grid resolved it.
     pub contacts: WidestContacts,
     /// What is wrong with the results.
-    pub warnings: Vec<Warning>,
+    pub warnings: Vec<RunWarning>,
     /// How the run compares with each known answer of the scene.
     pub references: Vec<ReferenceResult>,
 }

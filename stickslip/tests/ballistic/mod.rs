@@ -207,7 +207,7 @@ pub fn scene() -> Scene {
         shape: Shape::Ball { center: [0.0; 3], radius: 1.0 },
         particles: Arrangement::Lattice,
         particles_per_side: None,
-        motion: Motion::Free { velocity: [2.0, 0.0, 0.0], spin: [0.0; 3] },
+        motion: BodyMotion::Free { velocity: [2.0, 0.0, 0.0], spin: [0.0; 3] },
     };
     Scene {
         title: "two bodies in flight".into(),

@@ -5,7 +5,7 @@ use super::{Around, Chunk};
 use crate::basis::{Basis, ShapeFunctions};
 use crate::grid::{Nodes, next_of, node_at};
 use crate::lanes::{Laned, Lanes, MOST_LANES, Machine, Numbers, in_lanes, prefetch};
-use crate::particles::{Column, Columns, deformation_entries, stress_entries};
+use crate::particles::{ColumnStart, Columns, deformation_entries, stress_entries};
 use crate::tensor::{Matrix, Number, Real, Symmetric, Vector, array};
 use crate::transfer::pairs;
 use std::marker::PhantomData;
@@ -19,14 +19,14 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
         let columns = self.near.bodies[self.body].particles.view();
         let order = self.near.active.order_of(self.body);
         let index = |chunk: &Chunk<D>| &order[chunk.first as usize..][..chunk.count as usize];
-        let mut copies = Copies([Numbers::ZERO; Column::<3>::COUNT]);
+        let mut copies = CellCopies([Numbers::ZERO; ColumnStart::<3>::COUNT]);
         for place in 0..self.chunks.len() {
             if let Some(later) = self.chunks.get(place + AHEAD) {
                 let index = index(later);
                 fetch(&columns, [index[0], index[index.len() - 1]], self.sought);
             }
             let chunk = self.chunks[place];
-            let members = Members::new::<V>(&columns, index(&chunk), self.sought, &mut copies);
+            let members = CellMembers::new::<V>(&columns, index(&chunk), self.sought, &mut copies);
             self.chunk::<M, V>(&seen, &members, &chunk);
         }
     }
@@ -35,15 +35,15 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
     fn chunk<M: Machine<T>, V: Lanes<Real = T>>(
         &mut self,
         seen: &Seen<V, D>,
-        members: &Members<'_, T, D>,
+        members: &CellMembers<'_, T, D>,
         &Chunk { cell, base, nodes, .. }: &Chunk<D>,
     ) {
         // No closure: the compiler may leave one of some size uninlined, and then its instructions are calls.
         let mut position = Vector::<V, D>::ZERO;
-        let half = members.load::<V>(Column::<D>::HALF_WIDTH) * seen.per_cell;
+        let half = members.load::<V>(ColumnStart::<D>::HALF_WIDTH) * seen.per_cell;
         let mut shapes = [B::shape(V::ZERO, half); D];
         for i in 0..D {
-            position[i] = members.load(Column::<D>::POSITION + i);
+            position[i] = members.load(ColumnStart::<D>::POSITION + i);
             let r = (position[i] - seen.origin[i]) * seen.per_cell - V::splat(T::of(f64::from(cell[i])));
             shapes[i] = B::shape(r, half);
             // The node sees a particle move away as the particle sees the node move: grad at the node = -grad S(x_p).
@@ -51,10 +51,10 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
                 *rise *= seen.per_cell * -seen.sign[i];
             }
         }
-        let volume: V = members.load(Column::<D>::VOLUME);
+        let volume: V = members.load(ColumnStart::<D>::VOLUME);
         let mut f = Matrix::ZERO;
         for (k, &[row, column]) in deformation_entries(D).iter().enumerate() {
-            f.0[row][column] = members.load(Column::<D>::DEFORMATION + k);
+            f.0[row][column] = members.load(ColumnStart::<D>::DEFORMATION + k);
         }
         let jacobian = f.det();
         // The room on the grid, in the plane an area.
@@ -71,7 +71,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
         let (mut arm, mut place) = (Vector::<V, D>::ZERO, Vector::<V, D>::ZERO);
         for i in 0..D {
             arm[i] = seen.offset[i] + seen.sign[i] * position[i] - seen.first[i];
-            let start: V = members.load(Column::<D>::START + i);
+            let start: V = members.load(ColumnStart::<D>::START + i);
             place[i] = seen.offset[i] + seen.sign[i] * start;
         }
 
@@ -124,13 +124,13 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
     fn stress_and_mass<M: Machine<T>, V: Lanes<Real = T>>(
         &mut self,
         seen: &Seen<V, D>,
-        members: &Members<'_, T, D>,
+        members: &CellMembers<'_, T, D>,
         (shapes, base, mut nodes): (&[ShapeFunctions<V>; D], [i32; D], Nodes),
         [room, filled]: [V; 2],
     ) {
         let mut stress = Symmetric::<V>::ZERO;
         for k in 0..stress_entries(D) {
-            stress.0[k] = members.load::<V>(Column::<D>::STRESS + k) * seen.turn[k];
+            stress.0[k] = members.load::<V>(ColumnStart::<D>::STRESS + k) * seen.turn[k];
         }
         let mut rows = [Rows::<T>::EMPTY; MOST_STRESS];
         for row in 0..stress_rows(D) {
@@ -150,7 +150,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
             }
             force[j].fill(column);
         }
-        let mass: V = members.load(Column::<D>::MASS);
+        let mass: V = members.load(ColumnStart::<D>::MASS);
         let mut masses = Rows::<T>::EMPTY;
         masses.fill([mass; 4]);
         let here = V::ONE.first(members.count);
@@ -264,12 +264,12 @@ const AHEAD: usize = 3;
 /// The columns that sums are made of.
 #[inline(always)]
 fn columns_read<const D: usize>(sought: Wanted) -> [Range<usize>; 3] {
-    let (stress, start) = (Column::<D>::STRESS, Column::<D>::START);
+    let (stress, start) = (ColumnStart::<D>::STRESS, ColumnStart::<D>::START);
     let [first, last] = match sought {
-        Wanted::Places => [Column::<D>::VOLUME, stress],
-        Wanted::Everything => [Column::<D>::MASS, start],
+        Wanted::Places => [ColumnStart::<D>::VOLUME, stress],
+        Wanted::Everything => [ColumnStart::<D>::MASS, start],
     };
-    [Column::<D>::POSITION..Column::<D>::VELOCITY, first..last, start..Column::<D>::COUNT]
+    [ColumnStart::<D>::POSITION..ColumnStart::<D>::VELOCITY, first..last, start..ColumnStart::<D>::COUNT]
 }
 
 /// Fetches what is read of two particles and those beside them.
@@ -287,7 +287,7 @@ fn fetch<T: Real, const D: usize>(columns: &Columns<T, D>, particles: [u32; 2], 
 
 /// Particles of a cell, one in each lane, the first in the lanes beyond: as columns,
 /// the body's own where they lie side by side, else copies.
-struct Members<'a, T, const D: usize> {
+struct CellMembers<'a, T, const D: usize> {
     first: *const T,
     stride: usize,
     count: usize,
@@ -295,15 +295,15 @@ struct Members<'a, T, const D: usize> {
 }
 
 /// Columns of particles that do not lie side by side.
-struct Copies<T>([Numbers<T>; Column::<3>::COUNT]);
+struct CellCopies<T>([Numbers<T>; ColumnStart::<3>::COUNT]);
 
-impl<'a, T: Real, const D: usize> Members<'a, T, D> {
+impl<'a, T: Real, const D: usize> CellMembers<'a, T, D> {
     #[inline(always)]
     fn new<V: Lanes<Real = T>>(
         columns: &'a Columns<T, D>,
         index: &[u32],
         sought: Wanted,
-        copies: &'a mut Copies<T>,
+        copies: &'a mut CellCopies<T>,
     ) -> Self {
         // Indices within a cell ascend.
         let in_a_row = (index[index.len() - 1] - index[0]) as usize == index.len() - 1;
@@ -322,7 +322,7 @@ impl<'a, T: Real, const D: usize> Members<'a, T, D> {
             }
             (copies.0.as_ptr().cast(), size_of::<Numbers<T>>() / size_of::<T>())
         };
-        Members { first, stride, count: index.len(), source: PhantomData }
+        CellMembers { first, stride, count: index.len(), source: PhantomData }
     }
 
     /// Their numbers in a column.

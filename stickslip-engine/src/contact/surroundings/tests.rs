@@ -8,7 +8,7 @@ use crate::geometry::{MirroredShape, Shape};
 use crate::grid::{ActiveBlocks, Field, Lattice, next_of, node_at};
 use crate::lanes::Processor;
 use crate::material::{Isotropic, Material, NeoHookean, Thickness};
-use crate::particles::{Column, Particles, deformation_entries, stress_entries};
+use crate::particles::{ColumnStart, Particles, deformation_entries, stress_entries};
 use crate::tensor::{Matrix, Number, Symmetric, Vector};
 use crate::transfer::{Stencil, offsets};
 
@@ -88,7 +88,7 @@ fn plainly<const D: usize, B: Basis<f64>>(
             let inverse = particle.deformation.inverse();
             let inverse = Matrix::from_fn(|i, j| inverse.0[i][j] * sign(i) * sign(j));
             let arm = seen(particle.position) - first;
-            let at = |k: usize| unsafe { *columns.at(Column::<D>::START + k, index) };
+            let at = |k: usize| unsafe { *columns.at(ColumnStart::<D>::START + k, index) };
             // SAFETY of `at`: nobody else uses the particles.
             let start = seen(Vector::from_fn(at));
             let mut placed = Vec::new();

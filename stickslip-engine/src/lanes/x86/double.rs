@@ -1,6 +1,6 @@
 //! Lanes of numbers in double precision.
 
-use super::super::{Lanes, MOST_LANES, Machine, Pair};
+use super::super::{Lanes, MOST_LANES, Machine, RegisterPair};
 use super::{Avx2, Avx512, THIRD, mask, turn_pd};
 use crate::number::{CUBE_ROOT_F64, Number};
 use std::arch::x86_64::*;
@@ -20,11 +20,11 @@ impl Machine<f64> for Avx512 {
     }
 }
 impl Machine<f64> for Avx2 {
-    type Wide = Pair<F64x4>;
+    type Wide = RegisterPair<F64x4>;
     type Quad = F64x4;
 
     #[inline(always)]
-    fn halves(Pair(lower, upper): Pair<F64x4>) -> F64x4 {
+    fn halves(RegisterPair(lower, upper): RegisterPair<F64x4>) -> F64x4 {
         lower + upper
     }
 }

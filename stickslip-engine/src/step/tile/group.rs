@@ -6,7 +6,7 @@ use crate::basis::Basis;
 use crate::body::Gyration;
 use crate::lanes::{Laned, Lanes, Machine};
 use crate::material::{Material, Motion, Thickness};
-use crate::particles::Column;
+use crate::particles::ColumnStart;
 use crate::scene::Transfer;
 use crate::step::pass::{FaultKind, Pass, Verbs, Visit};
 use crate::tensor::{Matrix, Real, Symmetric, Vector};
@@ -67,8 +67,8 @@ pub fn group<
 ) -> Result<u32, FaultKind> {
     let Pass { verbs, dt, transfer, pic, .. } = *visit.pass;
     let Verbs { update_velocity, update_stress, advect, scatter } = verbs;
-    let position = members.vector::<V>(Column::<D>::POSITION);
-    let half_width = members.load::<V>(Column::<D>::HALF_WIDTH);
+    let position = members.vector::<V>(ColumnStart::<D>::POSITION);
+    let half_width = members.load::<V>(ColumnStart::<D>::HALF_WIDTH);
     let half = half_width * constants.per_cell;
     let group =
         Group::<V, D, B, S>::new(constants.in_cells(&position) - base, half, start, members.count::<V>());
@@ -82,7 +82,7 @@ pub fn group<
     let rotates = transfer == Transfer::Rflip;
     let gives_momentum = scatter.is_some_and(|share| share != Share::Force);
     if update_velocity || advect || gives_momentum {
-        velocity = members.vector::<V>(Column::<D>::VELOCITY);
+        velocity = members.vector::<V>(ColumnStart::<D>::VELOCITY);
     }
     if update_velocity || gives_momentum || (update_stress && rotates) {
         spin = members.spin::<V>();
@@ -134,7 +134,7 @@ pub fn group<
         jacobian = deformation.det();
         sound.require(finite(&[jacobian]), FaultKind::NotFinite);
         sound.require(jacobian.at_least(V::splat(T::TINY)), FaultKind::Inverted);
-        volume = members.load::<V>(Column::<D>::MASS) * constants.per_density * jacobian;
+        volume = members.load::<V>(ColumnStart::<D>::MASS) * constants.per_density * jacobian;
         if V::COUNT == 1
             && let Some(kind) = sound.fault::<V>()
         {
@@ -151,13 +151,13 @@ pub fn group<
         }
         history.changed = true;
         sound.require(finite(&stress.0), FaultKind::NotFinite);
-        volume = members.load::<V>(Column::<D>::MASS) * constants.per_density * jacobian;
+        volume = members.load::<V>(ColumnStart::<D>::MASS) * constants.per_density * jacobian;
     } else {
         if advect {
             jacobian = deformation.det();
         }
         if pushes {
-            volume = members.load::<V>(Column::<D>::VOLUME);
+            volume = members.load::<V>(ColumnStart::<D>::VOLUME);
         }
     }
 
@@ -185,12 +185,12 @@ pub fn group<
         }
         if let Some(kind) = sound.fault::<V>() {
             if V::COUNT == 1 && kind == FaultKind::Escaped {
-                members.store_vector(Column::<D>::POSITION, &moved);
+                members.store_vector(ColumnStart::<D>::POSITION, &moved);
             }
             return Err(kind);
         }
-        members.store_vector(Column::<D>::POSITION, &moved);
-        members.give_back::<V>(Column::<D>::POSITION..Column::<D>::VELOCITY);
+        members.store_vector(ColumnStart::<D>::POSITION, &moved);
+        members.give_back::<V>(ColumnStart::<D>::POSITION..ColumnStart::<D>::VELOCITY);
         let modulus =
             constants.material.wave_modulus(visit.body.thickness, (&deformation, jacobian), &history);
         let [wave, speed] = [modulus * constants.per_density, velocity.dot(velocity)];
@@ -205,31 +205,31 @@ pub fn group<
         return Err(kind);
     }
     if update_velocity {
-        members.store_vector(Column::<D>::VELOCITY, &velocity);
-        members.give_back::<V>(Column::<D>::VELOCITY..Column::<D>::SPIN);
+        members.store_vector(ColumnStart::<D>::VELOCITY, &velocity);
+        members.give_back::<V>(ColumnStart::<D>::VELOCITY..ColumnStart::<D>::SPIN);
     }
     if (update_velocity && pic > T::ZERO) || (update_stress && rotates) {
-        let energies = (damped * members.load::<V>(Column::<D>::MASS)).numbers();
+        let energies = (damped * members.load::<V>(ColumnStart::<D>::MASS)).numbers();
         for &energy in &energies.0[..members.count::<V>().min(V::COUNT)] {
             visit.damped += 0.5 * energy.f64();
         }
     }
     if update_velocity || (update_stress && rotates) {
         members.store_spin(&spin);
-        members.give_back::<V>(Column::<D>::SPIN..Column::<D>::MASS);
+        members.give_back::<V>(ColumnStart::<D>::SPIN..ColumnStart::<D>::MASS);
     }
     if update_stress {
         members.store_deformation(&deformation);
         members.store_stress(&stress);
-        members.give_back::<V>(Column::<D>::DEFORMATION..Column::<D>::START);
-        members.store(Column::<D>::VOLUME, volume);
-        members.give_back::<V>(Column::<D>::VOLUME..Column::<D>::VOLUME + 1);
+        members.give_back::<V>(ColumnStart::<D>::DEFORMATION..ColumnStart::<D>::START);
+        members.store(ColumnStart::<D>::VOLUME, volume);
+        members.give_back::<V>(ColumnStart::<D>::VOLUME..ColumnStart::<D>::VOLUME + 1);
         history.store::<V>();
     }
     if let Some(share) = scatter {
         let mut load = ScatterTerms { momentum: None, stress: None };
         if gives_momentum {
-            let mass = members.load::<V>(Column::<D>::MASS);
+            let mass = members.load::<V>(ColumnStart::<D>::MASS);
             load.momentum = Some(Momentum {
                 own: velocity * mass,
                 per_cell: turning::gradient::<V, D>(&spin, V::splat(T::HALF * dt)) * (mass * constants.cell),

@@ -2,7 +2,7 @@
 
 use crate::lanes::{Lanes, MOST_LANES, Numbers, prefetch};
 use crate::material::{Keep, MOST_HISTORY, Recall};
-use crate::particles::{Column, Columns, deformation_entries, spin_entries, stress_entries};
+use crate::particles::{ColumnStart, Columns, deformation_entries, spin_entries, stress_entries};
 use crate::step::pass::{FaultKind, Verbs};
 use crate::tensor::{Matrix, Real, Symmetric, Vector};
 use crate::transfer::Share;
@@ -48,10 +48,10 @@ impl Reads {
     fn columns<const D: usize>(self) -> [Range<usize>; 4] {
         let only = |read: bool, columns: Range<usize>| if read { columns } else { 0..0 };
         [
-            0..Column::<D>::DEFORMATION,
-            only(self.deformation, Column::<D>::DEFORMATION..Column::<D>::STRESS),
-            only(self.stress, Column::<D>::STRESS..Column::<D>::START),
-            Column::<D>::HISTORY..Column::<D>::HISTORY + self.history,
+            0..ColumnStart::<D>::DEFORMATION,
+            only(self.deformation, ColumnStart::<D>::DEFORMATION..ColumnStart::<D>::STRESS),
+            only(self.stress, ColumnStart::<D>::STRESS..ColumnStart::<D>::START),
+            ColumnStart::<D>::HISTORY..ColumnStart::<D>::HISTORY + self.history,
         ]
     }
 }
@@ -114,7 +114,7 @@ impl ParticleRuns {
 }
 
 /// Columns of a particle in space.
-const MOST_COLUMNS: usize = Column::<3>::HISTORY + MOST_HISTORY;
+const MOST_COLUMNS: usize = ColumnStart::<3>::HISTORY + MOST_HISTORY;
 
 impl<'a, T: Real, const D: usize, const WHOLE: bool> Members<'a, T, D, WHOLE> {
     /// Particles that lie side by side.
@@ -212,7 +212,7 @@ impl<'a, T: Real, const D: usize, const WHOLE: bool> Members<'a, T, D, WHOLE> {
     pub fn spin<V: Lanes<Real = T>>(&self) -> Vector<V, 3> {
         let mut spin = Vector::ZERO;
         for k in 0..spin_entries(D) {
-            spin[3 - spin_entries(D) + k] = self.load(Column::<D>::SPIN + k);
+            spin[3 - spin_entries(D) + k] = self.load(ColumnStart::<D>::SPIN + k);
         }
         spin
     }
@@ -220,7 +220,7 @@ impl<'a, T: Real, const D: usize, const WHOLE: bool> Members<'a, T, D, WHOLE> {
     #[inline(always)]
     pub fn store_spin<V: Lanes<Real = T>>(&self, spin: &Vector<V, 3>) {
         for k in 0..spin_entries(D) {
-            self.store(Column::<D>::SPIN + k, spin[3 - spin_entries(D) + k]);
+            self.store(ColumnStart::<D>::SPIN + k, spin[3 - spin_entries(D) + k]);
         }
     }
 
@@ -228,7 +228,7 @@ impl<'a, T: Real, const D: usize, const WHOLE: bool> Members<'a, T, D, WHOLE> {
     pub fn deformation<V: Lanes<Real = T>>(&self) -> Matrix<V> {
         let mut f = Matrix::ZERO;
         for (k, &[row, column]) in deformation_entries(D).iter().enumerate() {
-            f.0[row][column] = self.load(Column::<D>::DEFORMATION + k);
+            f.0[row][column] = self.load(ColumnStart::<D>::DEFORMATION + k);
         }
         f
     }
@@ -236,7 +236,7 @@ impl<'a, T: Real, const D: usize, const WHOLE: bool> Members<'a, T, D, WHOLE> {
     #[inline(always)]
     pub fn store_deformation<V: Lanes<Real = T>>(&self, f: &Matrix<V>) {
         for (k, &[row, column]) in deformation_entries(D).iter().enumerate() {
-            self.store(Column::<D>::DEFORMATION + k, f.0[row][column]);
+            self.store(ColumnStart::<D>::DEFORMATION + k, f.0[row][column]);
         }
     }
 
@@ -244,7 +244,7 @@ impl<'a, T: Real, const D: usize, const WHOLE: bool> Members<'a, T, D, WHOLE> {
     pub fn stress<V: Lanes<Real = T>>(&self) -> Symmetric<V> {
         let mut stress = Symmetric::ZERO;
         for k in 0..stress_entries(D) {
-            stress.0[k] = self.load(Column::<D>::STRESS + k);
+            stress.0[k] = self.load(ColumnStart::<D>::STRESS + k);
         }
         stress
     }
@@ -252,7 +252,7 @@ impl<'a, T: Real, const D: usize, const WHOLE: bool> Members<'a, T, D, WHOLE> {
     #[inline(always)]
     pub fn store_stress<V: Lanes<Real = T>>(&self, stress: &Symmetric<V>) {
         for k in 0..stress_entries(D) {
-            self.store(Column::<D>::STRESS + k, stress.0[k]);
+            self.store(ColumnStart::<D>::STRESS + k, stress.0[k]);
         }
     }
 }
@@ -263,7 +263,7 @@ impl<T: Real, const D: usize, const WHOLE: bool> Members<'_, T, D, WHOLE> {
     pub fn store_picture<V: Lanes<Real = T>>(&self, (deformation, volume): (&Matrix<V>, V), kind: FaultKind) {
         if kind == FaultKind::Inverted {
             self.store_deformation(deformation);
-            self.store(Column::<D>::VOLUME, volume);
+            self.store(ColumnStart::<D>::VOLUME, volume);
         }
     }
 }
@@ -305,7 +305,7 @@ impl<'a, 'b, T: Real, const D: usize, const WHOLE: bool> HistoryOfGroup<'a, 'b, 
     /// Writes what was kept to the particles.
     #[inline(always)]
     pub fn store<V: Lanes<Real = T>>(&mut self) {
-        let first = Column::<D>::HISTORY;
+        let first = ColumnStart::<D>::HISTORY;
         for entry in 0..self.entries() {
             // SAFETY: it was kept.
             let numbers = unsafe { V::load(self.lanes(entry)) };
@@ -322,7 +322,7 @@ impl<V: Lanes, const D: usize, const WHOLE: bool> Recall<V> for HistoryOfGroup<'
         match self.changed {
             // SAFETY: it was kept.
             true => unsafe { V::load(self.kept(entry)) },
-            false => self.members.load(Column::<D>::HISTORY + entry),
+            false => self.members.load(ColumnStart::<D>::HISTORY + entry),
         }
     }
 }
@@ -359,15 +359,19 @@ impl<T: Real> Copies<T> {
             let run = self.runs.runs[i];
             // SAFETY: the caller's.
             unsafe {
-                self.take_run::<V, D>(columns, run, 0..Column::<D>::DEFORMATION);
+                self.take_run::<V, D>(columns, run, 0..ColumnStart::<D>::DEFORMATION);
                 if reads.deformation {
-                    self.take_run::<V, D>(columns, run, Column::<D>::DEFORMATION..Column::<D>::STRESS);
+                    self.take_run::<V, D>(
+                        columns,
+                        run,
+                        ColumnStart::<D>::DEFORMATION..ColumnStart::<D>::STRESS,
+                    );
                 }
                 if reads.stress {
-                    self.take_run::<V, D>(columns, run, Column::<D>::STRESS..Column::<D>::START);
+                    self.take_run::<V, D>(columns, run, ColumnStart::<D>::STRESS..ColumnStart::<D>::START);
                 }
                 if reads.history > 0 {
-                    let first = Column::<D>::HISTORY;
+                    let first = ColumnStart::<D>::HISTORY;
                     self.take_run::<V, D>(columns, run, first..first + reads.history);
                 }
             }

@@ -7,13 +7,13 @@ mod group;
 mod members;
 mod thickness;
 
-use super::pass::{Fault, FaultKind, Found, Visit};
+use super::pass::{FaultKind, Found, ParticleFault, Visit};
 use crate::basis::Basis;
 use crate::body::Gyration;
 use crate::grid::{WINDOW, node_at};
 use crate::lanes::{Any, Laned, Lanes, MOST_LANES, Machine, Pack, Work};
 use crate::tensor::Vector;
-use crate::transfer::{Own, Shared, Start};
+use crate::transfer::{CellGroup, Own, Start};
 use group::{Constants, every, group, splat};
 use members::{AHEAD, Copies, Members, fetch};
 
@@ -71,7 +71,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
         let (columns, indices) = (self.columns, [index]);
         let place = CellStart::new(self.tile.block, cell);
         let base = Vector::from_fn(|i| Pack([T::of(f64::from(place.base[i]))]));
-        let start = Shared::new::<D>(place.start);
+        let start = CellGroup::new::<D>(place.start);
         let members = Members::in_a_row(&columns, &indices);
         let constants = self.constants::<Pack<T, 1>>();
         match group::<T, Pack<T, 1>, Any, D, B, _, true>(self, &constants, &members, (base, start)) {
@@ -80,7 +80,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
                 self.moved += outside(inside, 1);
             }
             Err(kind) => {
-                let fault = Fault { body: self.tile.body, particle: index as usize, kind };
+                let fault = ParticleFault { body: self.tile.body, particle: index as usize, kind };
                 self.found = self.found.and(Found { fault: Some(fault), signal: T::ZERO });
             }
         }
@@ -133,7 +133,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
                 let in_a_row = index[index.len() - 1] as usize - index[0] as usize == index.len() - 1;
                 let place = CellStart::new(visit.tile.block, cell);
                 let base = Vector::from_fn(|i| V::splat(T::of(f64::from(place.base[i]))));
-                let start = Shared::new::<D>(place.start);
+                let start = CellGroup::new::<D>(place.start);
                 match visit.group::<M, V, _>(&constants, (index, in_a_row), (base, start), &mut copies) {
                     Ok(inside) => {
                         visit.left |= u64::from(!every::<V>(inside)) << cell;

@@ -3,12 +3,12 @@
 use super::Context;
 use super::quantity::Velocity;
 use super::read::table;
-use super::shape::Shape;
+use super::shape::ShapeInput;
 use super::text::{Choice, Count, Text, Word};
-use super::vector::{Spin, Vector};
+use super::vector::{SpinInput, VectorInput};
 use crate::geometry::Arrangement;
 use crate::scene::error::Fault;
-use crate::scene::{self, Expression, Motion, NamedMaterial};
+use crate::scene::{self, BodyMotion, Expression, NamedMaterial};
 
 table! {
     /// A body: a shape filled with a material, and how it moves at the start.
@@ -18,16 +18,16 @@ table! {
         /// Name of its material.
         material: Text,
         /// Where it is at the start: shape.ball = { center = [0, 0, 1], radius = 1 }.
-        shape: Shape,
+        shape: ShapeInput,
         /// How its particles are laid out.
         #[schemars(extend("default" = Arrangement::default()))]
         particles: Option<Word<Arrangement>>,
         /// Particles along each side of a cell, 1 to 8; by default as many as space has.
         particles_per_side: Option<Count>,
         /// Velocity at the start [m/s]; by default none.
-        velocity: Option<Vector<Velocity>>,
+        velocity: Option<VectorInput<Velocity>>,
         /// Angular velocity about its centre of mass at the start [rad/s]; in the plane one number. By default none.
-        spin: Option<Spin>,
+        spin: Option<SpinInput>,
         /// Makes the body rigid and prescribes its motion; excludes velocity and spin.
         rigid: Option<Rigid>,
     }
@@ -37,9 +37,9 @@ table! {
     /// Prescribed motion of a rigid body. Formulas may use `t`, the time; {} is a body at rest.
     Rigid {
         /// Velocity of its centre of mass [m/s]: ["0.1 m/s * min(t / 1 ms, 1)", 0, 0]. By default none.
-        velocity: Option<Vector<Velocity>>,
+        velocity: Option<VectorInput<Velocity>>,
         /// Angular velocity about its centre of mass [rad/s]; in the plane one number. By default none.
-        spin: Option<Spin>,
+        spin: Option<SpinInput>,
     }
 }
 
@@ -89,21 +89,21 @@ pub fn resolve(
 }
 
 impl Body {
-    fn motion(&self, context: &Context) -> Result<Motion, Fault> {
+    fn motion(&self, context: &Context) -> Result<BodyMotion, Fault> {
         let Some(rigid) = &self.rigid else {
-            return Ok(Motion::Free {
+            return Ok(BodyMotion::Free {
                 velocity: self.velocity.as_ref().map_or(Ok([0.0; 3]), |velocity| velocity.value(context))?,
                 spin: self.spin.as_ref().map_or(Ok([0.0; 3]), |spin| spin.value(context))?,
             });
         };
-        let start = self.velocity.as_ref().map(Vector::node).or(self.spin.as_ref().map(Spin::node));
+        let start = self.velocity.as_ref().map(VectorInput::node).or(self.spin.as_ref().map(SpinInput::node));
         if let Some(node) = start {
             let found = format!("`{}` of a rigid body", node.name);
             let allowed = format!("its motion in rigid = {{ {} = ... }}", node.name);
             return Err(Fault::new(&node.key, found, allowed).at(node.name_span.clone()));
         }
         let rest = || Ok([0.0; 3].map(Expression::Constant));
-        Ok(Motion::Rigid {
+        Ok(BodyMotion::Rigid {
             velocity: rigid.velocity.as_ref().map_or_else(rest, |velocity| velocity.over_time(context))?,
             spin: rigid.spin.as_ref().map_or_else(rest, |spin| spin.over_time(context))?,
         })

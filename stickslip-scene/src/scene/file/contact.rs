@@ -1,11 +1,11 @@
 //! `[[contact]]`: rules for how bodies touch.
 
 use super::Context;
-use super::quantity::{Measure, Pressure, Quantity, Ratio, SurfaceViscosity, Velocity};
+use super::quantity::{Measure, Pressure, QuantityInput, Ratio, SurfaceViscosity, Velocity};
 use super::read::{Read, table};
 use super::text::{Choice, Text, Word};
 use crate::scene::error::Fault;
-use crate::scene::source::{Node, Value};
+use crate::scene::source::{DocumentNode, Value};
 use crate::scene::{Body, ContactLaw, ContactRule, NamedMaterial, Normal};
 use schemars::JsonSchema;
 
@@ -13,41 +13,42 @@ table! {
     /// How bodies touch.
     Contact {
         /// The pair it holds for: two names of bodies or materials; "any", the default for both, matches every body.
-        between: Option<Pair>,
+        between: Option<NamePair>,
         /// When the bodies push on each other.
         #[schemars(extend("default" = ContactRule::default().law))]
         law: Option<Word<ContactLaw>>,
         /// Coefficient of friction; inf sticks, 0 is frictionless.
         #[schemars(extend("default" = 0))]
-        friction: Option<Quantity<Ratio>>,
+        friction: Option<QuantityInput<Ratio>>,
         /// Coefficient of friction once the surfaces slip, at most `friction`; by default the same.
-        kinetic_friction: Option<Quantity<Ratio>>,
+        kinetic_friction: Option<QuantityInput<Ratio>>,
         /// Speed of slip over which friction falls from `friction` to `kinetic_friction`; 0: as soon as they slip.
         #[schemars(extend("default" = 0))]
-        friction_decay_speed: Option<Quantity<Velocity>>,
+        friction_decay_speed: Option<QuantityInput<Velocity>>,
         /// Shear traction that the contact bears beside friction, pressed or not, where the surfaces touch.
         #[schemars(extend("default" = 0))]
-        cohesion: Option<Quantity<Pressure>>,
+        cohesion: Option<QuantityInput<Pressure>>,
         /// Tensile traction that the contact bears before the surfaces part.
         #[schemars(extend("default" = 0))]
-        adhesion: Option<Quantity<Pressure>>,
+        adhesion: Option<QuantityInput<Pressure>>,
         /// Viscous shear traction over speed of slip, beside friction.
         #[schemars(extend("default" = 0))]
-        viscosity: Option<Quantity<SurfaceViscosity>>,
+        viscosity: Option<QuantityInput<SurfaceViscosity>>,
         /// Where the direction of contact comes from; by default "own" for the laws kinematic and traction, as the
         /// paper has it, "common" for the others; surface, separation and regression find one direction for the pair
         /// and take no "own".
         normal: Option<Word<Normal>>,
         /// Largest strain of a cell by contact in one step, the paper's gamma, above 0 and up to 1.
         #[schemars(extend("default" = ContactRule::default().max_strain))]
-        max_strain: Option<Quantity<Ratio>>,
+        max_strain: Option<QuantityInput<Ratio>>,
     }
 }
 
 /// Two names.
 #[derive(JsonSchema)]
 #[schemars(transparent)]
-pub struct Pair([Text; 2]);
+#[schemars(rename = "Pair")]
+pub struct NamePair([Text; 2]);
 
 impl Choice for ContactLaw {
     const WORDS: &'static [(&'static str, Self, &'static str)] = &[
@@ -113,7 +114,7 @@ impl Contact {
         let law = self.law.as_ref().map_or(Ok(ContactRule::default().law), |word| word.value(context))?;
         let default = ContactRule::new(law);
         let mut between = default.between;
-        if let Some(Pair(pair)) = &self.between {
+        if let Some(NamePair(pair)) = &self.between {
             for (side, text) in between.iter_mut().zip(pair) {
                 let name = text.name_of(context, "the name of a body or a material, or any", names)?;
                 *side = (name != "any").then_some(name);
@@ -159,14 +160,18 @@ impl Contact {
 }
 
 /// A quantity from zero on; zero where the file is silent.
-fn not_negative<M: Measure>(quantity: &Option<Quantity<M>>, context: &Context) -> Result<f64, Fault> {
+fn not_negative<M: Measure>(quantity: &Option<QuantityInput<M>>, context: &Context) -> Result<f64, Fault> {
     quantity
         .as_ref()
         .map_or(Ok(0.0), |quantity| quantity.checked(context, "a quantity from 0 on", |value| value >= 0.0))
 }
 
 /// What surfaces bear over the contact's area, for which a pair needs one direction; zero where the file is silent.
-fn bond<M: Measure>(quantity: &Option<Quantity<M>>, normal: Normal, context: &Context) -> Result<f64, Fault> {
+fn bond<M: Measure>(
+    quantity: &Option<QuantityInput<M>>,
+    normal: Normal,
+    context: &Context,
+) -> Result<f64, Fault> {
     match (quantity, normal) {
         (Some(quantity), Normal::Own) => quantity.checked(
             context,
@@ -177,15 +182,15 @@ fn bond<M: Measure>(quantity: &Option<Quantity<M>>, normal: Normal, context: &Co
     }
 }
 
-impl Read for Pair {
+impl Read for NamePair {
     fn wanted() -> String {
         "two names of bodies or materials: [\"sphere\", \"any\"]".to_string()
     }
 
-    fn read(node: &Node) -> Result<Self, Fault> {
+    fn read(node: &DocumentNode) -> Result<Self, Fault> {
         match &node.value {
             Value::List(items) if items.len() == 2 => {
-                Ok(Pair([Text::read(&items[0])?, Text::read(&items[1])?]))
+                Ok(NamePair([Text::read(&items[0])?, Text::read(&items[1])?]))
             }
             _ => Err(node.fault(Self::wanted())),
         }

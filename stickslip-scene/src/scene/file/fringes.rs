@@ -1,12 +1,14 @@
 //! `outputs.fringes`: a camera behind a polariscope.
 
 use super::Context;
-use super::quantity::{Angle, Compliance, Duration, Length, Pressure, Quantity};
+use super::quantity::{Angle, Compliance, Duration, Length, Pressure, QuantityInput};
 use super::read::table;
 use super::text::{Choice, Count, Text, Word};
-use super::vector::Vector;
+use super::vector::VectorInput;
 use crate::scene::error::Fault;
-use crate::scene::{self, Body, Dimension, Field, Light, Motion, Overlay, Polariscope, Sensitivity};
+use crate::scene::{
+    self, Body, BodyMotion, Dimension, Light, Overlay, Polariscope, PolariscopeField, Sensitivity,
+};
 use std::f64::consts::PI;
 
 table! {
@@ -15,31 +17,31 @@ table! {
     Fringes {
         /// When the shutter opens for the first frame [s].
         #[schemars(extend("default" = 0))]
-        first: Option<Quantity<Duration>>,
+        first: Option<QuantityInput<Duration>>,
         /// From one opening of the shutter to the next [s].
-        interval: Quantity<Duration>,
+        interval: QuantityInput<Duration>,
         /// How long the shutter stays open [s]; a frame is the mean of the light in that time.
         #[schemars(extend("default" = 0))]
-        exposure: Option<Quantity<Duration>>,
+        exposure: Option<QuantityInput<Duration>>,
         /// Instants in the open time whose light is averaged, 1 to 64; by default 8, without exposure 1.
         samples: Option<Count>,
         /// Stress-optic coefficient C: the refractive indices differ by C times the principal stress difference [1/Pa].
-        stress_optic_coefficient: Option<Quantity<Compliance>>,
+        stress_optic_coefficient: Option<QuantityInput<Compliance>>,
         /// Thickness that light crosses in a plane scene [m].
-        thickness: Option<Quantity<Length>>,
+        thickness: Option<QuantityInput<Length>>,
         /// The paper's parameter s: a circular polariscope shows cos((sigma_1 - sigma_2) / s) [Pa].
-        stress_parameter: Option<Quantity<Pressure>>,
+        stress_parameter: Option<QuantityInput<Pressure>>,
         /// Wavelength of the light, and the one that the coefficient or the parameter holds for [m];
         /// by default 546.1 nm.
-        wavelength: Option<Quantity<Length>>,
+        wavelength: Option<QuantityInput<Length>>,
         /// What unloaded bodies look like.
         #[schemars(extend("default" = "dark"))]
-        field: Option<Word<Field>>,
+        field: Option<Word<PolariscopeField>>,
         /// The light.
         #[schemars(extend("default" = "grey"))]
         light: Option<Word<Light>>,
         /// Angle of the polariser from x [rad]: a plane polariscope, with isoclinics; by default it is circular.
-        polarizer: Option<Quantity<Angle>>,
+        polarizer: Option<QuantityInput<Angle>>,
         /// Names of the birefringent bodies; by default all but rigid ones. The others are opaque.
         bodies: Option<Vec<Text>>,
         /// What the frames show; by default the birefringent bodies at the start.
@@ -56,16 +58,20 @@ table! {
     /// A rectangle of the plane.
     View {
         /// Lower corner: [x, y] [m].
-        min: Vector<Length>,
+        min: VectorInput<Length>,
         /// Upper corner: [x, y] [m].
-        max: Vector<Length>,
+        max: VectorInput<Length>,
     }
 }
 
-impl Choice for Field {
+impl Choice for PolariscopeField {
     const WORDS: &'static [(&'static str, Self, &'static str)] = &[
-        ("dark", Field::Dark, "Crossed polarisers: unloaded bodies and fringes of whole order are black."),
-        ("light", Field::Light, "Parallel polarisers: fringes of half order are black."),
+        (
+            "dark",
+            PolariscopeField::Dark,
+            "Crossed polarisers: unloaded bodies and fringes of whole order are black.",
+        ),
+        ("light", PolariscopeField::Light, "Parallel polarisers: fringes of half order are black."),
     ];
 }
 
@@ -120,7 +126,7 @@ impl Fringes {
         Ok(Polariscope {
             sensitivity: self.sensitivity(wavelength, context)?,
             wavelength,
-            field: self.field.as_ref().map_or(Ok(Field::Dark), |word| word.value(context))?,
+            field: self.field.as_ref().map_or(Ok(PolariscopeField::Dark), |word| word.value(context))?,
             light: self.light.as_ref().map_or(Ok(Light::Grey), |word| word.value(context))?,
             polarizer: self.polarizer.as_ref().map(|angle| angle.value(context)).transpose()?,
         })
@@ -168,7 +174,7 @@ impl Fringes {
                 names.iter().map(|name| name.name_of(context, "the name of a body", &known)).collect()
             }
             None => {
-                let free = bodies.iter().filter(|body| matches!(body.motion, Motion::Free { .. }));
+                let free = bodies.iter().filter(|body| matches!(body.motion, BodyMotion::Free { .. }));
                 Ok(free.map(|body| body.name.clone()).collect())
             }
         }
@@ -188,7 +194,7 @@ impl View {
     }
 }
 
-fn at_least_zero(time: Option<&Quantity<Duration>>, context: &Context) -> Result<f64, Fault> {
+fn at_least_zero(time: Option<&QuantityInput<Duration>>, context: &Context) -> Result<f64, Fault> {
     let allowed = "a time [s] of 0 or more, like \"2.5 ms\"";
     time.map_or(Ok(0.0), |time| time.checked(context, allowed, |value| value >= 0.0))
 }

@@ -1,19 +1,19 @@
 //! `[materials.NAME]`: density and a law from the shelf with its constants.
 
 use super::Context;
-use super::quantity::{Density, Quantity, evaluate};
+use super::quantity::{Density, QuantityInput, evaluate};
 use super::read::{Read, check_keys, field, unknown_key};
 use crate::material::{Constant, Description, Form, Given, Quantity as Wanted, SHELF};
 use crate::scene::error::Fault;
-use crate::scene::parameters::Variation;
-use crate::scene::source::{Node, Value};
+use crate::scene::parameters::TimeDependence;
+use crate::scene::source::{DocumentNode, Value};
 use crate::scene::units::Powers;
 use crate::scene::{NamedMaterial, Problem};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use std::borrow::Cow;
 
 /// The materials by name.
-pub struct Materials(Vec<Node>);
+pub struct Materials(Vec<DocumentNode>);
 
 impl Materials {
     /// The materials in the order of the file.
@@ -23,14 +23,14 @@ impl Materials {
 }
 
 /// One material: its density and exactly one law.
-fn material(node: &Node, context: &Context) -> Result<NamedMaterial, Fault> {
+fn material(node: &DocumentNode, context: &Context) -> Result<NamedMaterial, Fault> {
     let laws: Vec<&str> = SHELF.iter().map(|law| law.name).collect();
     let keys: Vec<&str> = std::iter::once("density").chain(laws.iter().copied()).collect();
     if node.name == "any" {
         return Err(Fault::new(&node.key, "the name `any`, which matches every body", "another name"));
     }
     check_keys(node, &keys)?;
-    let density = field::<Quantity<Density>>(node, "density")?.positive(context)?;
+    let density = field::<QuantityInput<Density>>(node, "density")?.positive(context)?;
     let mut named = node
         .children()
         .iter()
@@ -59,7 +59,7 @@ fn material(node: &Node, context: &Context) -> Result<NamedMaterial, Fault> {
 }
 
 /// The constants of a law in SI units.
-fn constants(table: &Node, law: &Description, context: &Context) -> Result<Given, Fault> {
+fn constants(table: &DocumentNode, law: &Description, context: &Context) -> Result<Given, Fault> {
     let names: Vec<&str> = law.constants.iter().map(|constant| constant.name).collect();
     let Value::Table(children) = &table.value else {
         return Err(table.fault(format!("a table {{ ... }} with the keys {}", names.join(", "))));
@@ -77,18 +77,18 @@ fn constants(table: &Node, law: &Description, context: &Context) -> Result<Given
     Ok(given)
 }
 
-fn number(node: &Node, wanted: &Wanted, context: &Context) -> Result<f64, Fault> {
+fn number(node: &DocumentNode, wanted: &Wanted, context: &Context) -> Result<f64, Fault> {
     let powers = Powers::from(wanted.unit.powers);
     let allowed = match powers == Powers::NONE {
         true => powers.name(),
         false => format!("{}, like \"{}\"", powers.name(), powers.example()),
     };
-    Ok(evaluate(node, powers, &allowed, (context, Variation::Constant))?.at(0.0))
+    Ok(evaluate(node, powers, &allowed, (context, TimeDependence::Constant))?.at(0.0))
 }
 
 /// The numbers of a list of pairs, one after the other.
 fn pairs(
-    node: &Node,
+    node: &DocumentNode,
     (constant, wanted): (&Constant, &[Wanted; 2]),
     context: &Context,
 ) -> Result<Vec<f64>, Fault> {
@@ -131,7 +131,7 @@ impl Read for Materials {
         "a table for each material: [materials.NAME] with density and a law".to_string()
     }
 
-    fn read(node: &Node) -> Result<Self, Fault> {
+    fn read(node: &DocumentNode) -> Result<Self, Fault> {
         match &node.value {
             Value::Table(materials) if !materials.is_empty() => Ok(Materials(materials.clone())),
             _ => Err(node.fault(Self::wanted())),
@@ -146,7 +146,7 @@ impl JsonSchema for Materials {
 
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
         let mut properties = serde_json::Map::new();
-        let mut density = Quantity::<Density>::json_schema(generator);
+        let mut density = QuantityInput::<Density>::json_schema(generator);
         density.insert("description".into(), "Mass per undeformed volume [kg/m^3].".into());
         properties.insert("density".into(), density.into());
         for law in SHELF {

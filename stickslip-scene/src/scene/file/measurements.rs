@@ -2,15 +2,15 @@
 
 use super::Context;
 use super::outputs::Outputs;
-use super::quantity::{Duration, Length, Quantity, Ratio, evaluate};
+use super::quantity::{Duration, Length, QuantityInput, Ratio, evaluate};
 use super::read::{Read, table};
 use super::text::{Choice, Text, Word};
-use super::vector::Vector;
+use super::vector::VectorInput;
 use crate::scene::error::Fault;
-use crate::scene::parameters::Variation;
-use crate::scene::source::{Node, Value};
+use crate::scene::parameters::TimeDependence;
+use crate::scene::source::{DocumentNode, Value};
 use crate::scene::units::Powers;
-use crate::scene::{self, Anchor, Body, Motion, Observable, Reading};
+use crate::scene::{self, Anchor, Body, BodyMotion, Observable, Reading};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use std::borrow::Cow;
 
@@ -20,7 +20,7 @@ table! {
         /// Its name.
         name: Text,
         /// Where it is at the start [m].
-        at: Vector<Length>,
+        at: VectorInput<Length>,
         /// Name of the body that it looks at; by default whichever is there.
         body: Option<Text>,
         /// What it stays with.
@@ -56,33 +56,34 @@ table! {
         /// As that of an arrival.
         threshold: Threshold,
         /// The point from which its way is measured [m].
-        from: Vector<Length>,
+        from: VectorInput<Length>,
         /// The direction along which it is measured; any length.
-        direction: Vector<Ratio>,
+        direction: VectorInput<Ratio>,
         /// Only material within this distance of the line along `direction` counts [m]; by default all.
-        within: Option<Quantity<Length>>,
+        within: Option<QuantityInput<Length>>,
         /// Names of the bodies in which it runs; by default all but rigid ones.
         bodies: Option<Vec<Text>>,
         /// Start and end of the way over which its speed is fitted [m];
         /// by default from 10 % to 90 % of the way that it went.
-        fit: Option<Way>,
+        fit: Option<WayInput>,
     }
 }
 
 /// A number whose dimension depends on the quantity it is for.
-pub struct Threshold(Node);
+pub struct Threshold(DocumentNode);
 
 /// Start and end of a way.
 #[derive(JsonSchema)]
 #[schemars(transparent)]
-pub struct Way([Quantity<Length>; 2]);
+#[schemars(rename = "Way")]
+pub struct WayInput([QuantityInput<Length>; 2]);
 
 /// An interval, or every step.
 pub enum Sampling {
     /// The word "step".
     EveryStep,
     /// The interval.
-    Every(Quantity<Duration>),
+    Every(QuantityInput<Duration>),
 }
 
 impl Choice for Anchor {
@@ -128,7 +129,7 @@ pub fn resolve(
     (bodies, end): (&[Body], f64),
     context: &Context,
 ) -> Result<scene::Measurements, Fault> {
-    let free = bodies.iter().filter(|body| matches!(body.motion, Motion::Free { .. }));
+    let free = bodies.iter().filter(|body| matches!(body.motion, BodyMotion::Free { .. }));
     let bodies: Vec<&str> = free.map(|body| body.name.as_str()).collect();
     let mut probes: Vec<scene::Probe> = Vec::new();
     for probe in outputs.probes.iter().flatten() {
@@ -155,7 +156,7 @@ pub fn resolve(
     Ok(scene::Measurements { time_unit, samples, probes, arrivals, fronts })
 }
 
-fn time_unit(unit: &Quantity<Duration>, context: &Context) -> Result<scene::TimeUnit, Fault> {
+fn time_unit(unit: &QuantityInput<Duration>, context: &Context) -> Result<scene::TimeUnit, Fault> {
     let seconds = unit.positive(context)?;
     let name = match &unit.node().value {
         Value::Text(text) => text.clone(),
@@ -242,12 +243,12 @@ impl Threshold {
     fn value(&self, quantity: Observable, context: &Context) -> Result<f64, Fault> {
         let powers = Powers::from(quantity.powers());
         let allowed = format!("{} other than 0, like \"{}\"", powers.name(), powers.example());
-        let value = evaluate(&self.0, powers, &allowed, (context, Variation::Constant))?.at(0.0);
+        let value = evaluate(&self.0, powers, &allowed, (context, TimeDependence::Constant))?.at(0.0);
         if value != 0.0 && value.is_finite() { Ok(value) } else { Err(self.0.fault(allowed)) }
     }
 }
 
-impl Way {
+impl WayInput {
     fn value(&self, context: &Context) -> Result<[f64; 2], Fault> {
         let [start, end] = [self.0[0].value(context)?, self.0[1].value(context)?];
         if start < end {
@@ -263,7 +264,7 @@ impl Read for Threshold {
         "a number with the unit of the quantity, like \"2 MPa\"".to_string()
     }
 
-    fn read(node: &Node) -> Result<Self, Fault> {
+    fn read(node: &DocumentNode) -> Result<Self, Fault> {
         match node.value {
             Value::Text(_) | Value::Number(_) => Ok(Threshold(node.clone())),
             _ => Err(node.fault(Self::wanted())),
@@ -271,15 +272,15 @@ impl Read for Threshold {
     }
 }
 
-impl Read for Way {
+impl Read for WayInput {
     fn wanted() -> String {
         "two lengths: [\"5 mm\", \"30 mm\"]".to_string()
     }
 
-    fn read(node: &Node) -> Result<Self, Fault> {
+    fn read(node: &DocumentNode) -> Result<Self, Fault> {
         match &node.value {
             Value::List(items) if items.len() == 2 => {
-                Ok(Way([Quantity::read(&items[0])?, Quantity::read(&items[1])?]))
+                Ok(WayInput([QuantityInput::read(&items[0])?, QuantityInput::read(&items[1])?]))
             }
             _ => Err(node.fault(Self::wanted())),
         }
@@ -288,13 +289,13 @@ impl Read for Way {
 
 impl Read for Sampling {
     fn wanted() -> String {
-        format!("{}, or \"step\"", Quantity::<Duration>::wanted())
+        format!("{}, or \"step\"", QuantityInput::<Duration>::wanted())
     }
 
-    fn read(node: &Node) -> Result<Self, Fault> {
+    fn read(node: &DocumentNode) -> Result<Self, Fault> {
         match &node.value {
             Value::Text(text) if text == "step" => Ok(Sampling::EveryStep),
-            Value::Text(_) | Value::Number(_) => Ok(Sampling::Every(Quantity::new(node))),
+            Value::Text(_) | Value::Number(_) => Ok(Sampling::Every(QuantityInput::new(node))),
             _ => Err(node.fault(Self::wanted())),
         }
     }

@@ -1,10 +1,10 @@
 //! Shapes from files: `shape.mesh = { file = "gear.stl", scale = "1 mm" }`.
 
 use super::Context;
-use super::quantity::{Length, Quantity};
+use super::quantity::{Length, QuantityInput};
 use super::read::table;
 use super::text::Text;
-use super::vector::Vector;
+use super::vector::VectorInput;
 use crate::geometry::{self, MeshFault};
 use crate::scene::error::Fault;
 use std::io::Cursor;
@@ -16,9 +16,9 @@ table! {
         /// An STL file (text or binary) or an OBJ file; a relative path starts at the folder of the scene file.
         file: Text,
         /// Length of the file's unit [m]: "1 mm". By default 1 m.
-        scale: Option<Quantity<Length>>,
+        scale: Option<QuantityInput<Length>>,
         /// How far it is moved after it is scaled [m]. By default not at all.
-        translation: Option<Vector<Length>>,
+        translation: Option<VectorInput<Length>>,
     }
 }
 

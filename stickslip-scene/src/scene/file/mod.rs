@@ -18,7 +18,7 @@ mod vector;
 
 use super::error::Fault;
 use super::parameters::Parameters;
-use super::source::{Node, Source, Value};
+use super::source::{DocumentNode, Source, Value};
 use super::{Dimension, Scene};
 use quantity::Acceleration;
 use read::{Read, table};
@@ -26,7 +26,7 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use std::borrow::Cow;
 use std::path::Path;
 use text::Text;
-use vector::Vector;
+use vector::VectorInput;
 
 /// What values in a file are read with.
 pub struct Context<'a> {
@@ -48,7 +48,7 @@ table! {
         about: Option<Text>,
         /// Acceleration of every body, such as [0, 0, "-9.81 m/s^2"]; by default none.
         /// It stands above the first [table].
-        gravity: Option<Vector<Acceleration>>,
+        gravity: Option<VectorInput<Acceleration>>,
         /// Named numbers, formulas and words for the rest of the file; `--set name=value` replaces one.
         parameters: Option<ParameterTable>,
         /// Dimensions, cells, particles and domain.
@@ -70,7 +70,7 @@ table! {
 }
 
 /// Named parameters: [`Parameters`] reads them.
-pub struct ParameterTable(Vec<Node>);
+pub struct ParameterTable(Vec<DocumentNode>);
 
 /// The scene that a source describes.
 ///
@@ -114,7 +114,7 @@ impl Read for ParameterTable {
         "a table: [parameters]".to_string()
     }
 
-    fn read(node: &Node) -> Result<Self, Fault> {
+    fn read(node: &DocumentNode) -> Result<Self, Fault> {
         match &node.value {
             Value::Table(nodes) => Ok(ParameterTable(nodes.clone())),
             _ => Err(node.fault(Self::wanted())),

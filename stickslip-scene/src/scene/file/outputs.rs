@@ -3,12 +3,12 @@
 use super::Context;
 use super::fringes::Fringes;
 use super::measurements::{self, Arrival, Front, Probe, Sampling};
-use super::quantity::{Duration, Quantity, evaluate};
+use super::quantity::{Duration, QuantityInput, evaluate};
 use super::read::{Read, table};
 use super::text::Text;
 use crate::scene::error::Fault;
-use crate::scene::parameters::Variation;
-use crate::scene::source::{Node, Value};
+use crate::scene::parameters::TimeDependence;
+use crate::scene::source::{DocumentNode, Value};
 use crate::scene::units::Powers;
 use crate::scene::{self, Body};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
@@ -18,18 +18,18 @@ table! {
     /// What is written, and how often, in simulated time.
     Outputs {
         /// Interval between rows of bodies.csv, energy.csv and contacts.csv [s]; by default 1/200 of the run.
-        tables: Option<Quantity<Duration>>,
+        tables: Option<QuantityInput<Duration>>,
         /// Interval between snapshots of the particles for ParaView [s], or "never"; by default 1/40 of the run.
         particles: Option<Interval>,
         /// Times of further snapshots of the particles [s].
-        particles_at: Option<Vec<Quantity<Duration>>>,
+        particles_at: Option<Vec<QuantityInput<Duration>>>,
         /// Interval between snapshots of the grid for ParaView [s], or "never".
         #[schemars(extend("default" = "never"))]
         grid: Option<Interval>,
         /// Pictures of photoelastic fringes, and an animation of them: a camera behind a virtual polariscope.
         fringes: Option<Fringes>,
         /// What non-dimensional time counts in, such as "diameter / c_L" [s]; tables then have a column `time_units`.
-        time_unit: Option<Quantity<Duration>>,
+        time_unit: Option<QuantityInput<Duration>>,
         /// Interval between samples of probes, arrivals and fronts [s], or "step" for every step;
         /// by default 1/1000 of the run.
         samples: Option<Sampling>,
@@ -61,11 +61,11 @@ pub enum Interval {
     /// The word.
     Never,
     /// The time.
-    Every(Quantity<Duration>),
+    Every(QuantityInput<Duration>),
 }
 
 /// A formula whose dimension depends on the quantity it is for.
-pub struct Answer(Node);
+pub struct Answer(DocumentNode);
 
 /// Columns of `bodies.csv` that a reference can name, with powers of kilogram, metre and second.
 const QUANTITIES: &[(&str, [i8; 3])] = &[
@@ -126,7 +126,7 @@ pub fn references(
             QUANTITIES.iter().find(|(name, _)| *name == quantity).expect("name_of found it in names");
         let powers = Powers::from(*powers);
         let allowed = format!("{}, like \"{}\"", powers.name(), powers.example());
-        let value = evaluate(&reference.value.0, powers, &allowed, (context, Variation::InTime))?;
+        let value = evaluate(&reference.value.0, powers, &allowed, (context, TimeDependence::InTime))?;
         Ok(scene::Reference { body, quantity, value, label: reference.label.value(context)? })
     };
     references.iter().map(resolve).collect()
@@ -143,13 +143,13 @@ impl Interval {
 
 impl Read for Interval {
     fn wanted() -> String {
-        format!("{}, or \"never\"", Quantity::<Duration>::wanted())
+        format!("{}, or \"never\"", QuantityInput::<Duration>::wanted())
     }
 
-    fn read(node: &Node) -> Result<Self, Fault> {
+    fn read(node: &DocumentNode) -> Result<Self, Fault> {
         match &node.value {
             Value::Text(text) if text == "never" => Ok(Interval::Never),
-            Value::Text(_) | Value::Number(_) => Ok(Interval::Every(Quantity::new(node))),
+            Value::Text(_) | Value::Number(_) => Ok(Interval::Every(QuantityInput::new(node))),
             _ => Err(node.fault(Self::wanted())),
         }
     }
@@ -160,7 +160,7 @@ impl Read for Answer {
         "a number, or a formula of t in quotes".to_string()
     }
 
-    fn read(node: &Node) -> Result<Self, Fault> {
+    fn read(node: &DocumentNode) -> Result<Self, Fault> {
         match node.value {
             Value::Text(_) | Value::Number(_) => Ok(Answer(node.clone())),
             _ => Err(node.fault(Self::wanted())),

@@ -4,8 +4,8 @@ use super::Context;
 use super::read::Read;
 use crate::scene::Expression;
 use crate::scene::error::Fault;
-use crate::scene::parameters::Variation;
-use crate::scene::source::{Node, Value};
+use crate::scene::parameters::TimeDependence;
+use crate::scene::source::{DocumentNode, Value};
 use crate::scene::units::Powers;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use std::borrow::Cow;
@@ -71,15 +71,15 @@ impl Measure for Angle {
 }
 
 /// A number in SI units, or text: a quantity with its unit or a formula.
-pub struct Quantity<M> {
-    node: Node,
+pub struct QuantityInput<M> {
+    node: DocumentNode,
     measure: PhantomData<M>,
 }
 
-impl<M: Measure> Quantity<M> {
+impl<M: Measure> QuantityInput<M> {
     /// The quantity at `node`.
-    pub fn new(node: &Node) -> Self {
-        Quantity { node: node.clone(), measure: PhantomData }
+    pub fn new(node: &DocumentNode) -> Self {
+        QuantityInput { node: node.clone(), measure: PhantomData }
     }
 
     /// Its value in SI units, finite.
@@ -90,15 +90,19 @@ impl<M: Measure> Quantity<M> {
 
     /// Its value in SI units, perhaps infinite.
     pub fn extended(&self, context: &Context) -> Result<f64, Fault> {
-        let expression =
-            evaluate(&self.node, Powers::from(M::POWERS), &Self::wanted(), (context, Variation::Constant))?;
+        let expression = evaluate(
+            &self.node,
+            Powers::from(M::POWERS),
+            &Self::wanted(),
+            (context, TimeDependence::Constant),
+        )?;
         let value = expression.at(0.0);
         if value.is_nan() { Err(self.refused(value, Self::wanted())) } else { Ok(value) }
     }
 
     /// Its value as a function of time.
     pub fn over_time(&self, context: &Context) -> Result<Expression, Fault> {
-        evaluate(&self.node, Powers::from(M::POWERS), &Self::wanted(), (context, Variation::InTime))
+        evaluate(&self.node, Powers::from(M::POWERS), &Self::wanted(), (context, TimeDependence::InTime))
     }
 
     /// Its value, above zero.
@@ -134,17 +138,17 @@ impl<M: Measure> Quantity<M> {
     }
 
     /// Where it stands.
-    pub fn node(&self) -> &Node {
+    pub fn node(&self) -> &DocumentNode {
         &self.node
     }
 }
 
 /// What a number or formula says, if it has the dimension `wanted`; `allowed` says so in words.
 pub fn evaluate(
-    node: &Node,
+    node: &DocumentNode,
     wanted: Powers,
     allowed: &str,
-    (context, variation): (&Context, Variation),
+    (context, variation): (&Context, TimeDependence),
 ) -> Result<Expression, Fault> {
     let formula = context.parameters.formula(node, variation, allowed)?;
     if formula.kind.fits(wanted) {
@@ -154,20 +158,20 @@ pub fn evaluate(
     Err(Fault::new(&node.key, found, allowed).at(node.span.clone()))
 }
 
-impl<M: Measure> Read for Quantity<M> {
+impl<M: Measure> Read for QuantityInput<M> {
     fn wanted() -> String {
         format!("{}, like \"{}\"", M::name(), M::example()).replace("\"0.5\"", "0.5")
     }
 
-    fn read(node: &Node) -> Result<Self, Fault> {
+    fn read(node: &DocumentNode) -> Result<Self, Fault> {
         match node.value {
-            Value::Number(_) | Value::Text(_) => Ok(Quantity::new(node)),
+            Value::Number(_) | Value::Text(_) => Ok(QuantityInput::new(node)),
             _ => Err(node.fault(Self::wanted())),
         }
     }
 }
 
-impl<M: Measure> JsonSchema for Quantity<M> {
+impl<M: Measure> JsonSchema for QuantityInput<M> {
     fn schema_name() -> Cow<'static, str> {
         format!("Quantity_{}", Powers::from(M::POWERS).symbol()).into()
     }

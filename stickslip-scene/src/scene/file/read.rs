@@ -1,7 +1,7 @@
 //! From located values to the tables of a scene file.
 
 use crate::scene::error::Fault;
-use crate::scene::source::{Node, Value, joined};
+use crate::scene::source::{DocumentNode, Value, joined};
 use crate::scene::suggestion::did_you_mean;
 
 /// Something that a key of a scene file can hold.
@@ -13,13 +13,13 @@ pub trait Read: Sized {
     ///
     /// # Errors
     /// Values of another type, unknown and missing keys.
-    fn read(node: &Node) -> Result<Self, Fault>;
+    fn read(node: &DocumentNode) -> Result<Self, Fault>;
 
     /// What it is when `table` does not have the key `name`.
     ///
     /// # Errors
     /// Whatever must be there.
-    fn absent(table: &Node, name: &str) -> Result<Self, Fault> {
+    fn absent(table: &DocumentNode, name: &str) -> Result<Self, Fault> {
         Err(Fault::new(&joined(&table.key, name), "nothing, the key is missing", Self::wanted()))
     }
 }
@@ -29,11 +29,11 @@ impl<T: Read> Read for Option<T> {
         T::wanted()
     }
 
-    fn read(node: &Node) -> Result<Self, Fault> {
+    fn read(node: &DocumentNode) -> Result<Self, Fault> {
         T::read(node).map(Some)
     }
 
-    fn absent(_table: &Node, _name: &str) -> Result<Self, Fault> {
+    fn absent(_table: &DocumentNode, _name: &str) -> Result<Self, Fault> {
         Ok(None)
     }
 }
@@ -43,7 +43,7 @@ impl<T: Read> Read for Box<T> {
         T::wanted()
     }
 
-    fn read(node: &Node) -> Result<Self, Fault> {
+    fn read(node: &DocumentNode) -> Result<Self, Fault> {
         T::read(node).map(Box::new)
     }
 }
@@ -53,7 +53,7 @@ impl<T: Read> Read for Vec<T> {
         format!("a list [...] of {}", T::wanted())
     }
 
-    fn read(node: &Node) -> Result<Self, Fault> {
+    fn read(node: &DocumentNode) -> Result<Self, Fault> {
         match &node.value {
             Value::List(items) => items.iter().map(T::read).collect(),
             Value::Table(_) => {
@@ -66,7 +66,7 @@ impl<T: Read> Read for Vec<T> {
 }
 
 /// The value of `name` in the table `node`.
-pub fn field<T: Read>(node: &Node, name: &str) -> Result<T, Fault> {
+pub fn field<T: Read>(node: &DocumentNode, name: &str) -> Result<T, Fault> {
     match node.children().iter().find(|child| child.name == name) {
         Some(child) => T::read(child),
         None => T::absent(node, name),
@@ -74,7 +74,7 @@ pub fn field<T: Read>(node: &Node, name: &str) -> Result<T, Fault> {
 }
 
 /// Refuses a value that is no table, and keys that are not among `known`.
-pub fn check_keys(node: &Node, known: &[&str]) -> Result<(), Fault> {
+pub fn check_keys(node: &DocumentNode, known: &[&str]) -> Result<(), Fault> {
     let Value::Table(children) = &node.value else {
         return Err(node.fault(format!("a table with the keys {}", known.join(", "))));
     };
@@ -85,7 +85,7 @@ pub fn check_keys(node: &Node, known: &[&str]) -> Result<(), Fault> {
 }
 
 /// The fault of a key that is not among `known`.
-pub fn unknown_key(child: &Node, known: &[&str]) -> Fault {
+pub fn unknown_key(child: &DocumentNode, known: &[&str]) -> Fault {
     let name = child.name.as_str();
     let help = did_you_mean(name, known.iter().copied()).or_else(|| {
         let above = super::File::KEYS.contains(&name) && child.key != name;
@@ -117,7 +117,7 @@ macro_rules! table {
             }
 
             fn read(
-                node: &$crate::scene::source::Node,
+                node: &$crate::scene::source::DocumentNode,
             ) -> Result<Self, $crate::scene::error::Fault> {
                 $crate::scene::file::read::check_keys(node, Self::KEYS)?;
                 Ok($name { $($field: $crate::scene::file::read::field(node, stringify!($field))?,)* })

@@ -2,21 +2,22 @@
 
 use super::Context;
 use super::mesh::Mesh;
-use super::quantity::{Angle, Length, Quantity, Ratio};
+use super::quantity::{Angle, Length, QuantityInput, Ratio};
 use super::read::{Read, table};
 use super::space::corners;
-use super::vector::Vector;
+use super::vector::VectorInput;
 use crate::geometry;
 use crate::scene::Dimension;
 use crate::scene::error::Fault;
-use crate::scene::source::{Node, Value};
+use crate::scene::source::{DocumentNode, Value};
 use crate::scene::suggestion::did_you_mean;
 use schemars::JsonSchema;
 
 /// A region of space: one of the shapes.
 #[derive(JsonSchema)]
 #[schemars(rename_all = "snake_case")]
-pub enum Shape {
+#[schemars(rename = "Shape")]
+pub enum ShapeInput {
     /// A ball; in the plane, a disk.
     Ball(Ball),
     /// A box with faces across the axes; in the plane, a rectangle.
@@ -30,11 +31,11 @@ pub enum Shape {
     /// What a closed surface of triangles holds, read from a file; three dimensions only.
     Mesh(Mesh),
     /// Points in any of the shapes.
-    Union(Vec<Shape>),
+    Union(Vec<ShapeInput>),
     /// Points in all of the shapes.
-    Intersection(Vec<Shape>),
+    Intersection(Vec<ShapeInput>),
     /// Points in the first shape and in none of the others.
-    Difference(Vec<Shape>),
+    Difference(Vec<ShapeInput>),
     /// A shape turned about a point.
     Rotated(Rotated),
 }
@@ -57,9 +58,9 @@ table! {
     /// A ball; in the plane, a disk.
     Ball {
         /// Centre [m].
-        center: Vector<Length>,
+        center: VectorInput<Length>,
         /// Radius [m].
-        radius: Quantity<Length>,
+        radius: QuantityInput<Length>,
     }
 }
 
@@ -67,9 +68,9 @@ table! {
     /// A box with faces across the axes; in the plane, a rectangle.
     Cuboid {
         /// Lower corner [m].
-        min: Vector<Length>,
+        min: VectorInput<Length>,
         /// Upper corner [m].
-        max: Vector<Length>,
+        max: VectorInput<Length>,
     }
 }
 
@@ -77,11 +78,11 @@ table! {
     /// A solid cylinder between the centres of its two ends; three dimensions only.
     Cylinder {
         /// Centre of one end [m].
-        start: Vector<Length>,
+        start: VectorInput<Length>,
         /// Centre of the other end [m].
-        end: Vector<Length>,
+        end: VectorInput<Length>,
         /// Radius [m].
-        radius: Quantity<Length>,
+        radius: QuantityInput<Length>,
     }
 }
 
@@ -89,9 +90,9 @@ table! {
     /// All points behind a plane.
     HalfSpace {
         /// A point on the plane [m].
-        point: Vector<Length>,
+        point: VectorInput<Length>,
         /// Direction out of the half-space, of any length.
-        normal: Vector<Ratio>,
+        normal: VectorInput<Ratio>,
     }
 }
 
@@ -99,9 +100,9 @@ table! {
     /// A polygon in the plane of x and y; in three dimensions a prism over it.
     Polygon {
         /// Corners in order, [[0, 0], [1, 0], [0, 1]] [m]; the last joins the first.
-        points: Corners,
+        points: CornersInput,
         /// Lower and upper z of the prism, [0, "1 m"]; three dimensions only.
-        height: Option<Vector<Length>>,
+        height: Option<VectorInput<Length>>,
     }
 }
 
@@ -109,47 +110,48 @@ table! {
     /// A shape turned about a point.
     Rotated {
         /// The shape before it is turned.
-        shape: Box<Shape>,
+        shape: Box<ShapeInput>,
         /// The point that stays in place [m].
-        center: Vector<Length>,
+        center: VectorInput<Length>,
         /// Axis of the turn, of any length; three dimensions only.
-        axis: Option<Vector<Ratio>>,
+        axis: Option<VectorInput<Ratio>>,
         /// Angle, right-handed about the axis, in the plane counterclockwise: "30 deg".
-        angle: Quantity<Angle>,
+        angle: QuantityInput<Angle>,
     }
 }
 
 /// Corners of a polygon, with the place of their list.
 #[derive(JsonSchema)]
 #[schemars(transparent)]
-pub struct Corners(Vec<Vector<Length>>, #[schemars(skip)] Node);
+#[schemars(rename = "Corners")]
+pub struct CornersInput(Vec<VectorInput<Length>>, #[schemars(skip)] DocumentNode);
 
-impl Shape {
+impl ShapeInput {
     /// The shape in SI units.
     pub fn resolve(&self, context: &Context) -> Result<geometry::Shape, Fault> {
-        let all = |shapes: &[Shape]| -> Result<Vec<_>, Fault> {
+        let all = |shapes: &[ShapeInput]| -> Result<Vec<_>, Fault> {
             shapes.iter().map(|shape| shape.resolve(context)).collect()
         };
         Ok(match self {
-            Shape::Ball(ball) => geometry::Shape::Ball {
+            ShapeInput::Ball(ball) => geometry::Shape::Ball {
                 center: ball.center.value(context)?,
                 radius: ball.radius.positive(context)?,
             },
-            Shape::Box(cuboid) => {
+            ShapeInput::Box(cuboid) => {
                 let (min, max) = corners(&cuboid.min, &cuboid.max, context)?;
                 geometry::Shape::Box { min, max }
             }
-            Shape::Cylinder(cylinder) => cylinder.resolve(context)?,
-            Shape::HalfSpace(half) => geometry::Shape::HalfSpace {
+            ShapeInput::Cylinder(cylinder) => cylinder.resolve(context)?,
+            ShapeInput::HalfSpace(half) => geometry::Shape::HalfSpace {
                 point: half.point.value(context)?,
                 normal: direction(&half.normal, context)?,
             },
-            Shape::Polygon(polygon) => polygon.resolve(context)?,
-            Shape::Mesh(mesh) => geometry::Shape::Mesh(mesh.resolve(context)?),
-            Shape::Union(shapes) => geometry::Shape::Union(all(shapes)?),
-            Shape::Intersection(shapes) => geometry::Shape::Intersection(all(shapes)?),
-            Shape::Difference(shapes) => geometry::Shape::Difference(all(shapes)?),
-            Shape::Rotated(rotated) => rotated.resolve(context)?,
+            ShapeInput::Polygon(polygon) => polygon.resolve(context)?,
+            ShapeInput::Mesh(mesh) => geometry::Shape::Mesh(mesh.resolve(context)?),
+            ShapeInput::Union(shapes) => geometry::Shape::Union(all(shapes)?),
+            ShapeInput::Intersection(shapes) => geometry::Shape::Intersection(all(shapes)?),
+            ShapeInput::Difference(shapes) => geometry::Shape::Difference(all(shapes)?),
+            ShapeInput::Rotated(rotated) => rotated.resolve(context)?,
         })
     }
 }
@@ -223,17 +225,17 @@ impl Rotated {
 }
 
 /// A vector that is not zero.
-fn direction(vector: &Vector<Ratio>, context: &Context) -> Result<[f64; 3], Fault> {
+fn direction(vector: &VectorInput<Ratio>, context: &Context) -> Result<[f64; 3], Fault> {
     let value = vector.value(context)?;
     if value == [0.0; 3] { Err(vector.node().fault("a direction, not zero")) } else { Ok(value) }
 }
 
-impl Read for Shape {
+impl Read for ShapeInput {
     fn wanted() -> String {
         format!("a shape ({}), like shape.ball = {{ center = [0, 0, 1], radius = 1 }}", KINDS.join(", "))
     }
 
-    fn read(node: &Node) -> Result<Self, Fault> {
+    fn read(node: &DocumentNode) -> Result<Self, Fault> {
         let Value::Table(children) = &node.value else { return Err(node.fault(Self::wanted())) };
         let child = match &children[..] {
             [child] => child,
@@ -247,16 +249,16 @@ impl Read for Shape {
             }
         };
         Ok(match child.name.as_str() {
-            "ball" => Shape::Ball(Ball::read(child)?),
-            "box" => Shape::Box(Cuboid::read(child)?),
-            "cylinder" => Shape::Cylinder(Cylinder::read(child)?),
-            "half_space" => Shape::HalfSpace(HalfSpace::read(child)?),
-            "polygon" => Shape::Polygon(Polygon::read(child)?),
-            "mesh" => Shape::Mesh(Mesh::read(child)?),
-            "union" => Shape::Union(several(child, 1)?),
-            "intersection" => Shape::Intersection(several(child, 1)?),
-            "difference" => Shape::Difference(several(child, 2)?),
-            "rotated" => Shape::Rotated(Rotated::read(child)?),
+            "ball" => ShapeInput::Ball(Ball::read(child)?),
+            "box" => ShapeInput::Box(Cuboid::read(child)?),
+            "cylinder" => ShapeInput::Cylinder(Cylinder::read(child)?),
+            "half_space" => ShapeInput::HalfSpace(HalfSpace::read(child)?),
+            "polygon" => ShapeInput::Polygon(Polygon::read(child)?),
+            "mesh" => ShapeInput::Mesh(Mesh::read(child)?),
+            "union" => ShapeInput::Union(several(child, 1)?),
+            "intersection" => ShapeInput::Intersection(several(child, 1)?),
+            "difference" => ShapeInput::Difference(several(child, 2)?),
+            "rotated" => ShapeInput::Rotated(Rotated::read(child)?),
             name => {
                 let help = did_you_mean(name, KINDS.iter().copied());
                 let fault = Fault::new(&child.key, format!("unknown shape `{name}`"), KINDS.join(", "));
@@ -267,22 +269,22 @@ impl Read for Shape {
 }
 
 /// At least so many shapes.
-fn several(node: &Node, least: usize) -> Result<Vec<Shape>, Fault> {
-    let shapes = Vec::<Shape>::read(node)?;
+fn several(node: &DocumentNode, least: usize) -> Result<Vec<ShapeInput>, Fault> {
+    let shapes = Vec::<ShapeInput>::read(node)?;
     if shapes.len() < least {
         return Err(node.fault(format!("a list of at least {least}")));
     }
     Ok(shapes)
 }
 
-impl Read for Corners {
+impl Read for CornersInput {
     fn wanted() -> String {
         "a list of corners: [[0, 0], [1, 0], [0, 1]]".to_string()
     }
 
-    fn read(node: &Node) -> Result<Self, Fault> {
+    fn read(node: &DocumentNode) -> Result<Self, Fault> {
         match node.value {
-            Value::List(_) => Ok(Corners(Vec::read(node)?, node.clone())),
+            Value::List(_) => Ok(CornersInput(Vec::read(node)?, node.clone())),
             _ => Err(node.fault(Self::wanted())),
         }
     }

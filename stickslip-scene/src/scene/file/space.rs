@@ -1,10 +1,10 @@
 //! `[space]`: dimensions, cells, particles and domain.
 
 use super::Context;
-use super::quantity::{Length, Quantity};
+use super::quantity::{Length, QuantityInput};
 use super::read::table;
 use super::text::{Choice, Count, Word};
-use super::vector::Vector;
+use super::vector::VectorInput;
 use crate::scene::error::Fault;
 use crate::scene::{self, BasisKind, Dimension, Discretization, Face, Precision};
 
@@ -14,7 +14,7 @@ table! {
         /// Plane strain, plane stress or three dimensions.
         dimension: Word<Dimension>,
         /// Side of a grid cell [m].
-        cell: Quantity<Length>,
+        cell: QuantityInput<Length>,
         /// Particles along each side of a cell, 1 to 8: 2 means 4 in the plane, 8 in space.
         #[schemars(extend("default" = Discretization::new(1.0).particles_per_side))]
         particles_per_side: Option<Count>,
@@ -33,9 +33,9 @@ table! {
     /// A box that holds all material. A particle that leaves it stops the run.
     Domain {
         /// Lower corner [m].
-        min: Vector<Length>,
+        min: VectorInput<Length>,
         /// Upper corner [m].
-        max: Vector<Length>,
+        max: VectorInput<Length>,
         /// What the lower face across x does.
         #[schemars(extend("default" = Face::default()))]
         x_min: Option<Word<Face>>,
@@ -131,8 +131,8 @@ impl Domain {
 
 /// Two corners of a box, the lower below the upper along each axis.
 pub fn corners(
-    min: &Vector<Length>,
-    max: &Vector<Length>,
+    min: &VectorInput<Length>,
+    max: &VectorInput<Length>,
     context: &Context,
 ) -> Result<([f64; 3], [f64; 3]), Fault> {
     let (lower, upper) = (min.value(context)?, max.value(context)?);

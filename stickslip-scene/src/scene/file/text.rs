@@ -1,10 +1,10 @@
 //! Names, choices and counts as scene files write them.
 
 use super::Context;
-use super::quantity::{Quantity, Ratio};
+use super::quantity::{QuantityInput, Ratio};
 use super::read::Read;
 use crate::scene::error::Fault;
-use crate::scene::source::{Node, Value};
+use crate::scene::source::{DocumentNode, Value};
 use crate::scene::suggestion::{did_you_mean, listed};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use std::borrow::Cow;
@@ -12,7 +12,7 @@ use std::marker::PhantomData;
 use std::ops::RangeInclusive;
 
 /// Text, with parameters in braces.
-pub struct Text(Node);
+pub struct Text(DocumentNode);
 
 /// One of a few words.
 pub trait Choice: Copy + 'static {
@@ -22,12 +22,12 @@ pub trait Choice: Copy + 'static {
 
 /// One of a few words, or a parameter in braces that holds one.
 pub struct Word<C> {
-    node: Node,
+    node: DocumentNode,
     choice: PhantomData<C>,
 }
 
 /// A small whole number.
-pub struct Count(Quantity<Ratio>);
+pub struct Count(QuantityInput<Ratio>);
 
 impl Text {
     /// The text with its parameters replaced.
@@ -92,7 +92,7 @@ impl<C: Choice> Word<C> {
     }
 
     /// Where it stands.
-    pub fn node(&self) -> &Node {
+    pub fn node(&self) -> &DocumentNode {
         &self.node
     }
 }
@@ -111,7 +111,7 @@ impl Read for Text {
         "text in quotes".to_string()
     }
 
-    fn read(node: &Node) -> Result<Self, Fault> {
+    fn read(node: &DocumentNode) -> Result<Self, Fault> {
         match node.value {
             Value::Text(_) => Ok(Text(node.clone())),
             _ => Err(node.fault(Self::wanted())),
@@ -125,7 +125,7 @@ impl<C: Choice> Read for Word<C> {
         listed(quoted.iter().map(String::as_str))
     }
 
-    fn read(node: &Node) -> Result<Self, Fault> {
+    fn read(node: &DocumentNode) -> Result<Self, Fault> {
         match node.value {
             Value::Text(_) => Ok(Word { node: node.clone(), choice: PhantomData }),
             _ => Err(node.fault(Self::wanted())),
@@ -138,9 +138,9 @@ impl Read for Count {
         "a whole number".to_string()
     }
 
-    fn read(node: &Node) -> Result<Self, Fault> {
+    fn read(node: &DocumentNode) -> Result<Self, Fault> {
         match node.value {
-            Value::Number(_) | Value::Text(_) => Ok(Count(Quantity::new(node))),
+            Value::Number(_) | Value::Text(_) => Ok(Count(QuantityInput::new(node))),
             _ => Err(node.fault(Self::wanted())),
         }
     }

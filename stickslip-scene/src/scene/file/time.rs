@@ -1,7 +1,7 @@
 //! `[time]`: duration and time step.
 
 use super::Context;
-use super::quantity::{Duration, Quantity, Ratio};
+use super::quantity::{Duration, QuantityInput, Ratio};
 use super::read::table;
 use super::text::{Choice, Word};
 use crate::scene::error::Fault;
@@ -11,12 +11,12 @@ table! {
     /// Duration and time step.
     Time {
         /// Simulated time at which the run ends [s].
-        end: Quantity<Duration>,
+        end: QuantityInput<Duration>,
         /// Time step as a fraction of the time in which a wave crosses a cell, above 0 and up to 1.
         #[schemars(extend("default" = scene::Time::until(1.0).courant))]
-        courant: Option<Quantity<Ratio>>,
+        courant: Option<QuantityInput<Ratio>>,
         /// No step is longer than this [s]; by default only the Courant number limits it.
-        max_step: Option<Quantity<Duration>>,
+        max_step: Option<QuantityInput<Duration>>,
         /// When in the step the stress is updated.
         #[schemars(extend("default" = StressUpdate::default()))]
         stress_update: Option<Word<StressUpdate>>,
@@ -25,11 +25,11 @@ table! {
         transfer: Option<Word<Transfer>>,
         /// Share of the grid's velocity itself (PIC) in the particles' new velocity, 0 to 1; the rest is FLIP.
         #[schemars(extend("default" = scene::Time::until(1.0).pic_share))]
-        pic_share: Option<Quantity<Ratio>>,
+        pic_share: Option<QuantityInput<Ratio>>,
         /// Drift of the total energy beyond which a run warns, over the largest energy that moved, was stored or turned
         /// to heat; above 0.
         #[schemars(extend("default" = scene::Time::until(1.0).energy_drift))]
-        energy_drift: Option<Quantity<Ratio>>,
+        energy_drift: Option<QuantityInput<Ratio>>,
     }
 }
 

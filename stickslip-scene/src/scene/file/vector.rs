@@ -1,25 +1,25 @@
 //! Vectors as scene files write them: two components in the plane, three in space.
 
 use super::Context;
-use super::quantity::{AngularVelocity, Measure, Quantity};
+use super::quantity::{AngularVelocity, Measure, QuantityInput};
 use super::read::Read;
 use crate::scene::error::Fault;
-use crate::scene::source::{Node, Value};
+use crate::scene::source::{DocumentNode, Value};
 use crate::scene::units::Powers;
 use crate::scene::{Dimension, Expression};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use std::borrow::Cow;
 
 /// A vector: as many quantities as the scene has dimensions.
-pub struct Vector<M> {
-    node: Node,
-    parts: Vec<Quantity<M>>,
+pub struct VectorInput<M> {
+    node: DocumentNode,
+    parts: Vec<QuantityInput<M>>,
 }
 
 /// An angular velocity: a vector, in the plane a number.
-pub struct Spin(Node);
+pub struct SpinInput(DocumentNode);
 
-impl<M: Measure> Vector<M> {
+impl<M: Measure> VectorInput<M> {
     /// Its components in SI units; in the plane the third is zero.
     pub fn value(&self, context: &Context) -> Result<[f64; 3], Fault> {
         self.each(context, |part| part.value(context), 0.0)
@@ -39,19 +39,19 @@ impl<M: Measure> Vector<M> {
     }
 
     /// The component across an axis, as written.
-    pub fn part(&self, axis: usize) -> &Quantity<M> {
+    pub fn part(&self, axis: usize) -> &QuantityInput<M> {
         &self.parts[axis]
     }
 
     /// Where it stands.
-    pub fn node(&self) -> &Node {
+    pub fn node(&self) -> &DocumentNode {
         &self.node
     }
 
     fn each<T: Clone>(
         &self,
         context: &Context,
-        of: impl Fn(&Quantity<M>) -> Result<T, Fault>,
+        of: impl Fn(&QuantityInput<M>) -> Result<T, Fault>,
         zero: T,
     ) -> Result<[T; 3], Fault> {
         match (&self.parts[..], context.dimension) {
@@ -65,7 +65,7 @@ impl<M: Measure> Vector<M> {
     }
 }
 
-impl Spin {
+impl SpinInput {
     /// Its components in SI units; in the plane only the third is not zero.
     pub fn value(&self, context: &Context) -> Result<[f64; 3], Fault> {
         match context.dimension {
@@ -86,57 +86,57 @@ impl Spin {
     }
 
     /// Where it stands.
-    pub fn node(&self) -> &Node {
+    pub fn node(&self) -> &DocumentNode {
         &self.0
     }
 
-    fn vector(&self) -> Result<Vector<AngularVelocity>, Fault> {
+    fn vector(&self) -> Result<VectorInput<AngularVelocity>, Fault> {
         match self.0.value {
-            Value::List(_) => Vector::read(&self.0),
+            Value::List(_) => VectorInput::read(&self.0),
             _ => Err(self.0.fault("3 numbers, as the scene is 3d, like [0, \"5 rad/s\", 0]")),
         }
     }
 
-    fn turn(&self) -> Result<Quantity<AngularVelocity>, Fault> {
+    fn turn(&self) -> Result<QuantityInput<AngularVelocity>, Fault> {
         match self.0.value {
             Value::List(_) => {
                 Err(self.0.fault("one number, as the scene is plane: the turn about z, like \"5 rad/s\""))
             }
-            _ => Ok(Quantity::new(&self.0)),
+            _ => Ok(QuantityInput::new(&self.0)),
         }
     }
 }
 
-impl<M: Measure> Read for Vector<M> {
+impl<M: Measure> Read for VectorInput<M> {
     fn wanted() -> String {
         format!("a list such as [0, \"{}\", 0], two in the plane", M::example()).replace("\"0.5\"", "0.5")
     }
 
-    fn read(node: &Node) -> Result<Self, Fault> {
+    fn read(node: &DocumentNode) -> Result<Self, Fault> {
         match &node.value {
             Value::List(items) => {
-                let parts = items.iter().map(Quantity::read).collect::<Result<_, _>>()?;
-                Ok(Vector { node: node.clone(), parts })
+                let parts = items.iter().map(QuantityInput::read).collect::<Result<_, _>>()?;
+                Ok(VectorInput { node: node.clone(), parts })
             }
             _ => Err(node.fault(Self::wanted())),
         }
     }
 }
 
-impl Read for Spin {
+impl Read for SpinInput {
     fn wanted() -> String {
         "a list such as [0, \"5 rad/s\", 0], one number in the plane".to_string()
     }
 
-    fn read(node: &Node) -> Result<Self, Fault> {
+    fn read(node: &DocumentNode) -> Result<Self, Fault> {
         match node.value {
-            Value::Number(_) | Value::Text(_) | Value::List(_) => Ok(Spin(node.clone())),
+            Value::Number(_) | Value::Text(_) | Value::List(_) => Ok(SpinInput(node.clone())),
             _ => Err(node.fault(Self::wanted())),
         }
     }
 }
 
-impl<M: Measure> JsonSchema for Vector<M> {
+impl<M: Measure> JsonSchema for VectorInput<M> {
     fn schema_name() -> Cow<'static, str> {
         format!("Vector_{}", Powers::from(M::POWERS).symbol()).into()
     }
@@ -146,12 +146,12 @@ impl<M: Measure> JsonSchema for Vector<M> {
     }
 
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
-        let part = Quantity::<M>::json_schema(generator);
+        let part = QuantityInput::<M>::json_schema(generator);
         json_schema!({ "type": "array", "items": part, "minItems": 2, "maxItems": 3 })
     }
 }
 
-impl JsonSchema for Spin {
+impl JsonSchema for SpinInput {
     fn schema_name() -> Cow<'static, str> {
         "Spin".into()
     }
@@ -161,8 +161,8 @@ impl JsonSchema for Spin {
     }
 
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
-        let number = Quantity::<AngularVelocity>::json_schema(generator);
-        let vector = Vector::<AngularVelocity>::json_schema(generator);
+        let number = QuantityInput::<AngularVelocity>::json_schema(generator);
+        let vector = VectorInput::<AngularVelocity>::json_schema(generator);
         json_schema!({ "anyOf": [number, vector] })
     }
 }

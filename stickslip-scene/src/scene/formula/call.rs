@@ -1,15 +1,15 @@
 //! Calls of functions: `min(t / 1 ms, 1)`, `if(t < 1 s, a, b)`.
 
-use super::parser::{Parser, Part, Read, fail};
+use super::parser::{Parsed, ParsedPart, Parser, fail};
 use super::token::Token;
-use super::{Function, Kind};
+use super::{Function, NumberKind};
 use crate::scene::expression::Instruction;
 use crate::scene::suggestion::did_you_mean;
 use std::ops::Range;
 
 impl Parser<'_> {
     /// Reads a call from its bracket on.
-    pub(super) fn call(&mut self, name: &str, span: Range<usize>) -> Read<Part> {
+    pub(super) fn call(&mut self, name: &str, span: Range<usize>) -> Parsed<ParsedPart> {
         let function = Function::named(name);
         if function.is_none() && name != "if" {
             let all: Vec<&str> = Function::ALL.iter().map(|(name, _)| *name).chain(["if"]).collect();
@@ -30,14 +30,14 @@ impl Parser<'_> {
                 let (kind, value) = self.agree(a, b)?;
                 self.code.push(Instruction::Call(function));
                 let span = a.span.start..b.span.end;
-                arguments = vec![self.folded(Part { kind, value, start, span })];
+                arguments = vec![self.folded(ParsedPart { kind, value, start, span })];
             }
         }
         let end = self.expect(")")?.end;
         let span = span.start..end;
         match (function, &arguments[..]) {
             (None, [condition, then, otherwise]) => {
-                if condition.kind != Kind::Truth {
+                if condition.kind != NumberKind::Truth {
                     return fail(
                         condition.span.clone(),
                         condition.kind.name(),
@@ -47,18 +47,18 @@ impl Parser<'_> {
                 }
                 let (kind, value) = self.agree(then, otherwise)?;
                 self.code.push(Instruction::Choose);
-                Ok(self.folded(Part { kind, value: condition.value.and(value), start, span }))
+                Ok(self.folded(ParsedPart { kind, value: condition.value.and(value), start, span }))
             }
-            (Some(Function::Min | Function::Max), [part]) => Ok(Part { span, start, ..*part }),
+            (Some(Function::Min | Function::Max), [part]) => Ok(ParsedPart { span, start, ..*part }),
             (Some(function @ Function::Atan2), [y, x]) => {
                 let (_, value) = self.agree(y, x)?;
                 self.code.push(Instruction::Call(function));
-                Ok(self.folded(Part { kind: Kind::Number, value, start, span }))
+                Ok(self.folded(ParsedPart { kind: NumberKind::Number, value, start, span }))
             }
             (Some(function), [part]) if function.arguments() == 1 => {
                 let kind = result(function, part)?;
                 self.code.push(Instruction::Call(function));
-                Ok(self.folded(Part { kind, value: part.value, start, span }))
+                Ok(self.folded(ParsedPart { kind, value: part.value, start, span }))
             }
             _ => {
                 let wanted = match function {
@@ -73,10 +73,10 @@ impl Parser<'_> {
 }
 
 /// Kind of a function of one number.
-fn result(function: Function, part: &Part) -> Read<Kind> {
+fn result(function: Function, part: &ParsedPart) -> Parsed<NumberKind> {
     let kind = match function {
         Function::Abs | Function::Floor | Function::Ceil => part.kind,
-        Function::Sqrt => part.kind.power(Some(0.5)).unwrap_or(Kind::Truth),
+        Function::Sqrt => part.kind.power(Some(0.5)).unwrap_or(NumberKind::Truth),
         _ if part.kind.has_dimension() => {
             let help = "divide by a quantity of the same dimension: `t / 1 s`".to_string();
             return fail(
@@ -86,10 +86,10 @@ fn result(function: Function, part: &Part) -> Read<Kind> {
                 Some(help),
             );
         }
-        _ => Kind::Number,
+        _ => NumberKind::Number,
     };
     match part.kind {
-        Kind::Truth => fail(part.span.clone(), part.kind.name(), "a number", None),
+        NumberKind::Truth => fail(part.span.clone(), part.kind.name(), "a number", None),
         _ => Ok(kind),
     }
 }

@@ -4,7 +4,7 @@ use crate::scene::units::Powers;
 
 /// What is known of a number's dimension.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Kind {
+pub enum NumberKind {
     /// A plain number in the formula itself: a pure number in products, an SI value in sums.
     Number,
     /// A plain number from elsewhere: of whatever dimension fits.
@@ -20,33 +20,33 @@ pub enum Kind {
 /// Two kinds that do not go together.
 pub struct Clash;
 
-impl Kind {
+impl NumberKind {
     /// The dimension, if it is known or probable.
     fn powers(self) -> Option<Powers> {
         match self {
-            Kind::Known(powers) | Kind::Timed(powers) => Some(powers),
-            Kind::Number => Some(Powers::NONE),
-            Kind::Any | Kind::Truth => None,
+            NumberKind::Known(powers) | NumberKind::Timed(powers) => Some(powers),
+            NumberKind::Number => Some(Powers::NONE),
+            NumberKind::Any | NumberKind::Truth => None,
         }
     }
 
     /// May a number of this kind stand where `wanted` is asked for?
     pub fn fits(self, wanted: Powers) -> bool {
         match self {
-            Kind::Known(powers) => powers == wanted,
-            Kind::Truth => false,
-            Kind::Number | Kind::Any | Kind::Timed(_) => true,
+            NumberKind::Known(powers) => powers == wanted,
+            NumberKind::Truth => false,
+            NumberKind::Number | NumberKind::Any | NumberKind::Timed(_) => true,
         }
     }
 
     /// Has it a dimension by the units written?
     pub fn has_dimension(self) -> bool {
-        matches!(self, Kind::Known(powers) if powers != Powers::NONE)
+        matches!(self, NumberKind::Known(powers) if powers != Powers::NONE)
     }
 
     /// Kind of a sum, and of anything else whose terms must agree.
-    pub fn sum(self, other: Kind) -> Result<Kind, Clash> {
-        use Kind::*;
+    pub fn sum(self, other: NumberKind) -> Result<NumberKind, Clash> {
+        use NumberKind::*;
         match (self, other) {
             (Truth, _) | (_, Truth) => Err(Clash),
             (Number, kind) | (kind, Number) | (Any, kind) | (kind, Any) => Ok(kind),
@@ -57,8 +57,8 @@ impl Kind {
     }
 
     /// Kind of a product with the other factor raised to `exponent`.
-    pub fn product(self, other: Kind, exponent: f64) -> Result<Kind, Clash> {
-        use Kind::*;
+    pub fn product(self, other: NumberKind, exponent: f64) -> Result<NumberKind, Clash> {
+        use NumberKind::*;
         let (Some(a), Some(b)) = (self.powers(), other.powers()) else {
             return if self == Truth || other == Truth { Err(Clash) } else { Ok(Any) };
         };
@@ -71,16 +71,16 @@ impl Kind {
     }
 
     /// Kind of a power; `exponent` is `None` where it varies in time.
-    pub fn power(self, exponent: Option<f64>) -> Result<Kind, Clash> {
+    pub fn power(self, exponent: Option<f64>) -> Result<NumberKind, Clash> {
         match (self, exponent) {
-            (Kind::Number | Kind::Any, _) => Ok(self),
+            (NumberKind::Number | NumberKind::Any, _) => Ok(self),
             (_, Some(exponent)) if exponent.is_finite() => match self {
-                Kind::Timed(powers) => Ok(Kind::Timed(Powers::NONE.times(powers, exponent))),
-                Kind::Known(powers) => Ok(Kind::Known(Powers::NONE.times(powers, exponent))),
+                NumberKind::Timed(powers) => Ok(NumberKind::Timed(Powers::NONE.times(powers, exponent))),
+                NumberKind::Known(powers) => Ok(NumberKind::Known(Powers::NONE.times(powers, exponent))),
                 _ => Err(Clash),
             },
-            (Kind::Timed(_), _) => Ok(Kind::Any),
-            (Kind::Known(powers), _) if powers == Powers::NONE => Ok(self),
+            (NumberKind::Timed(_), _) => Ok(NumberKind::Any),
+            (NumberKind::Known(powers), _) if powers == Powers::NONE => Ok(self),
             _ => Err(Clash),
         }
     }
@@ -88,10 +88,10 @@ impl Kind {
     /// `a length [m]`
     pub fn name(self) -> String {
         match self {
-            Kind::Known(powers) if powers == Powers::NONE => "an angle or a ratio".to_string(),
-            Kind::Known(powers) | Kind::Timed(powers) => powers.name(),
-            Kind::Number | Kind::Any => "a plain number".to_string(),
-            Kind::Truth => "a comparison".to_string(),
+            NumberKind::Known(powers) if powers == Powers::NONE => "an angle or a ratio".to_string(),
+            NumberKind::Known(powers) | NumberKind::Timed(powers) => powers.name(),
+            NumberKind::Number | NumberKind::Any => "a plain number".to_string(),
+            NumberKind::Truth => "a comparison".to_string(),
         }
     }
 }

@@ -3,7 +3,7 @@
 //! A unit goes on over `*`, `/` and `^` as long as names of units follow. Where such a name is also a parameter, spaces
 //! decide or nobody does: `2 kg/m` is a unit, `2 kg / m` is refused.
 
-use super::parser::{Parser, Read, fail};
+use super::parser::{Parsed, Parser, fail};
 use super::token::Token;
 use crate::scene::suggestion::did_you_mean;
 use crate::scene::units::Unit;
@@ -13,7 +13,7 @@ const LARGEST_POWER: f64 = 9.0;
 
 impl Parser<'_> {
     /// Reads what stands for the unit after a number that ends at `end`; returns where the unit ends.
-    pub(super) fn unit(&mut self, end: usize) -> Read<(Option<Unit>, usize)> {
+    pub(super) fn unit(&mut self, end: usize) -> Parsed<(Option<Unit>, usize)> {
         let (Token::Name(name), span) = self.peek() else { return Ok((None, end)) };
         let Some(first) = Unit::named(name).filter(|_| !self.calls()) else {
             let known = self.names.all();
@@ -55,7 +55,7 @@ impl Parser<'_> {
     }
 
     /// Reads the power of a unit that ends at `end`: `^2`, `^-1` or nothing.
-    fn unit_power(&mut self, end: usize) -> Read<(i32, usize)> {
+    fn unit_power(&mut self, end: usize) -> Parsed<(i32, usize)> {
         if self.peek().0 != Token::Symbol("^") {
             return Ok((1, end));
         }

@@ -15,7 +15,7 @@ mod parser;
 mod token;
 
 pub(super) use function::Function;
-pub(super) use kind::Kind;
+pub(super) use kind::NumberKind;
 
 use super::error::Fault;
 use super::expression::Expression;
@@ -23,9 +23,9 @@ use std::ops::Range;
 
 /// A number in SI units with what is known of its dimension.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Quantity {
+pub(super) struct FormulaNumber {
     pub value: f64,
-    pub kind: Kind,
+    pub kind: NumberKind,
 }
 
 /// What a name in a formula stands for.
@@ -33,7 +33,7 @@ pub(super) enum Meaning {
     /// The simulated time.
     Time,
     /// A number.
-    Value(Quantity),
+    Value(FormulaNumber),
     /// A parameter that is wrong itself.
     Wrong(Fault),
     /// Nothing.
@@ -69,7 +69,7 @@ pub(super) enum FormulaError {
 /// A formula that was understood.
 pub(super) struct Formula {
     pub expression: Expression,
-    pub kind: Kind,
+    pub kind: NumberKind,
 }
 
 /// Names that no parameter may have.

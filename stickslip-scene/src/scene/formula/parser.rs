@@ -4,7 +4,7 @@
 //! number with its unit.
 
 use super::token::{self, Token};
-use super::{Formula, FormulaError, Kind, Meaning, Misread, Names, Quantity, reserved};
+use super::{Formula, FormulaError, FormulaNumber, Meaning, Misread, Names, NumberKind, reserved};
 use crate::scene::expression::{Expression, Instruction, run};
 use crate::scene::suggestion::did_you_mean;
 use crate::scene::units::{Powers, Unit};
@@ -26,25 +26,25 @@ pub struct Parser<'a> {
 }
 
 /// A part of the formula that has been read and whose instructions stand at `code[start..]`.
-pub struct Part {
-    pub kind: Kind,
+pub struct ParsedPart {
+    pub kind: NumberKind,
     /// Its value, unless it varies in time.
     pub value: Option<f64>,
     pub start: usize,
     pub span: Range<usize>,
 }
 
-pub type Read<T> = Result<T, FormulaError>;
+pub type Parsed<T> = Result<T, FormulaError>;
 
 impl<'a> Parser<'a> {
     /// A parser at the start of `text`.
-    pub fn new(text: &'a str, names: &'a dyn Names) -> Read<Self> {
+    pub fn new(text: &'a str, names: &'a dyn Names) -> Parsed<Self> {
         let words = token::split(text).map_err(FormulaError::Here)?;
         Ok(Parser { text, words, next: 0, depth: 0, code: Vec::new(), names })
     }
 
     /// Reads all of it.
-    pub fn formula(mut self) -> Read<Formula> {
+    pub fn formula(mut self) -> Parsed<Formula> {
         let whole = self.expression(0)?;
         let (token, span) = self.peek();
         if token != Token::End {
@@ -59,14 +59,14 @@ impl<'a> Parser<'a> {
             };
             return fail(span.clone(), self.quote(&span), "an operator, or the end of the formula", help);
         }
-        if whole.kind == Kind::Truth {
+        if whole.kind == NumberKind::Truth {
             return fail(whole.span, "a comparison", "a number", Some("if(condition, a, b) chooses".into()));
         }
         Ok(Formula { expression: Expression::new(self.text, self.code), kind: whole.kind })
     }
 
     /// Reads operators stronger than `weakest` and their operands.
-    pub(super) fn expression(&mut self, weakest: u8) -> Read<Part> {
+    pub(super) fn expression(&mut self, weakest: u8) -> Parsed<ParsedPart> {
         self.depth += 1;
         if self.depth > DEEPEST {
             let found = format!("more than {DEEPEST} levels of brackets and powers");
@@ -88,7 +88,7 @@ impl<'a> Parser<'a> {
                 "^" => (8, SIGN),
                 _ => break,
             };
-            if strength < weakest || (strength == 1 && left.kind == Kind::Truth) {
+            if strength < weakest || (strength == 1 && left.kind == NumberKind::Truth) {
                 break;
             }
             self.next += 1;
@@ -100,33 +100,33 @@ impl<'a> Parser<'a> {
     }
 
     /// Reads a sign, a bracket, a quantity or a name.
-    fn operand(&mut self) -> Read<Part> {
+    fn operand(&mut self) -> Parsed<ParsedPart> {
         let (token, span) = self.take();
         let start = self.code.len();
         match token {
             Token::Number(number) => {
                 let (unit, end) = self.unit(span.end)?;
-                let kind = unit.map_or(Kind::Number, |unit| Kind::Known(unit.powers));
+                let kind = unit.map_or(NumberKind::Number, |unit| NumberKind::Known(unit.powers));
                 let value = unit.map_or(number, |unit| unit.to_si(number));
-                Ok(self.push(Quantity { value, kind }, span.start..end))
+                Ok(self.push(FormulaNumber { value, kind }, span.start..end))
             }
             Token::Name(name) if self.peek().0 == Token::Symbol("(") => self.call(name, span),
             Token::Name(name) => self.name(name, span),
             Token::Symbol(sign @ ("-" | "+")) => {
                 let part = self.expression(SIGN)?;
-                if part.kind == Kind::Truth {
+                if part.kind == NumberKind::Truth {
                     return fail(part.span, "a comparison", "a number", None);
                 }
                 if sign == "-" {
                     self.code.push(Instruction::Negate);
                 }
                 let span = span.start..part.span.end;
-                Ok(self.folded(Part { span, ..part }))
+                Ok(self.folded(ParsedPart { span, ..part }))
             }
             Token::Symbol("(") => {
                 let inner = self.expression(0)?;
                 let end = self.expect(")")?.end;
-                Ok(Part { span: span.start..end, start, ..inner })
+                Ok(ParsedPart { span: span.start..end, start, ..inner })
             }
             _ => {
                 fail(span.clone(), self.quote(&span), "a number, a parameter, a function or a bracket", None)
@@ -135,8 +135,8 @@ impl<'a> Parser<'a> {
     }
 
     /// The meaning of a name that stands alone.
-    fn name(&mut self, name: &str, span: Range<usize>) -> Read<Part> {
-        let number = |value| Quantity { value, kind: Kind::Number };
+    fn name(&mut self, name: &str, span: Range<usize>) -> Parsed<ParsedPart> {
+        let number = |value| FormulaNumber { value, kind: NumberKind::Number };
         match name {
             "pi" => return Ok(self.push(number(std::f64::consts::PI), span)),
             "inf" => return Ok(self.push(number(f64::INFINITY), span)),
@@ -148,7 +148,7 @@ impl<'a> Parser<'a> {
             Meaning::Time => {
                 let start = self.code.len();
                 self.code.push(Instruction::Time);
-                Ok(Part { kind: Kind::Timed(Powers::TIME), value: None, start, span })
+                Ok(ParsedPart { kind: NumberKind::Timed(Powers::TIME), value: None, start, span })
             }
             Meaning::Unknown if name == "t" => {
                 let allowed = "a formula without time: only prescribed motion and references vary in time";
@@ -174,13 +174,13 @@ impl<'a> Parser<'a> {
     }
 
     /// Emits an operator between two parts.
-    fn combine(&mut self, left: Part, symbol: &str, right: Part) -> Read<Part> {
+    fn combine(&mut self, left: ParsedPart, symbol: &str, right: ParsedPart) -> Parsed<ParsedPart> {
         let value = left.value.and(right.value);
         let (instruction, kind) = match symbol {
             "*" => (Instruction::Multiply, left.kind.product(right.kind, 1.0)),
             "/" => (Instruction::Divide, left.kind.product(right.kind, -1.0)),
             "^" => {
-                if right.kind.has_dimension() || right.kind == Kind::Truth {
+                if right.kind.has_dimension() || right.kind == NumberKind::Truth {
                     return fail(
                         right.span,
                         format!("{} as exponent", right.kind.name()),
@@ -204,7 +204,7 @@ impl<'a> Parser<'a> {
                     "==" => Instruction::Equal,
                     _ => Instruction::NotEqual,
                 };
-                (instruction, Ok(Kind::Truth))
+                (instruction, Ok(NumberKind::Truth))
             }
         };
         let span = left.span.start..right.span.end;
@@ -213,15 +213,15 @@ impl<'a> Parser<'a> {
             return fail(span, found, "numbers, and constant exponents of quantities with units", None);
         };
         self.code.push(instruction);
-        Ok(self.folded(Part { kind, value, start: left.start, span }))
+        Ok(self.folded(ParsedPart { kind, value, start: left.start, span }))
     }
 
     /// The common kind of two parts; the value only says whether both are constant.
-    pub(super) fn agree(&self, a: &Part, b: &Part) -> Read<(Kind, Option<f64>)> {
+    pub(super) fn agree(&self, a: &ParsedPart, b: &ParsedPart) -> Parsed<(NumberKind, Option<f64>)> {
         let span = a.span.start..b.span.end;
         let Ok(kind) = a.kind.sum(b.kind) else {
             let found = format!("{} with {}", a.kind.name(), b.kind.name());
-            let timed = matches!(a.kind, Kind::Timed(_)) || matches!(b.kind, Kind::Timed(_));
+            let timed = matches!(a.kind, NumberKind::Timed(_)) || matches!(b.kind, NumberKind::Timed(_));
             let help =
                 timed.then(|| "where units are written, every number needs its own; t is in s".to_string());
             return fail(span, found, "terms of the same dimension", help);
@@ -229,20 +229,20 @@ impl<'a> Parser<'a> {
         Ok((kind, a.value.and(b.value)))
     }
 
-    fn push(&mut self, quantity: Quantity, span: Range<usize>) -> Part {
+    fn push(&mut self, quantity: FormulaNumber, span: Range<usize>) -> ParsedPart {
         self.code.push(Instruction::Push(quantity.value));
-        Part { kind: quantity.kind, value: Some(quantity.value), start: self.code.len() - 1, span }
+        ParsedPart { kind: quantity.kind, value: Some(quantity.value), start: self.code.len() - 1, span }
     }
 
     /// The part with its instructions replaced by their number if it does not vary in time.
-    pub(super) fn folded(&mut self, part: Part) -> Part {
+    pub(super) fn folded(&mut self, part: ParsedPart) -> ParsedPart {
         if part.value.is_none() {
             return part;
         }
         let value = run(&self.code[part.start..], 0.0);
         self.code.truncate(part.start);
         self.code.push(Instruction::Push(value));
-        Part { value: Some(value), ..part }
+        ParsedPart { value: Some(value), ..part }
     }
 
     pub(super) fn peek(&self) -> (Token<'a>, Range<usize>) {
@@ -256,7 +256,7 @@ impl<'a> Parser<'a> {
         word
     }
 
-    pub(super) fn expect(&mut self, symbol: &'static str) -> Read<Range<usize>> {
+    pub(super) fn expect(&mut self, symbol: &'static str) -> Parsed<Range<usize>> {
         match self.take() {
             (Token::Symbol(found), span) if found == symbol => Ok(span),
             (_, span) => fail(span.clone(), self.quote(&span), format!("`{symbol}`"), None),
@@ -277,6 +277,6 @@ pub fn fail<T>(
     found: impl Into<String>,
     allowed: impl Into<String>,
     help: Option<String>,
-) -> Read<T> {
+) -> Parsed<T> {
     Err(FormulaError::Here(Misread { span, found: found.into(), allowed: allowed.into(), help }))
 }

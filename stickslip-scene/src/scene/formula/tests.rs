@@ -7,13 +7,13 @@ struct Sample;
 
 impl Names for Sample {
     fn meaning(&self, name: &str) -> Meaning {
-        let value = |value, kind| Meaning::Value(Quantity { value, kind });
+        let value = |value, kind| Meaning::Value(FormulaNumber { value, kind });
         match name {
             "t" => Meaning::Time,
-            "radius" => value(2.0, Kind::Known(Powers::from([0, 1, 0]))),
-            "n" => value(8.0, Kind::Any),
-            "m" => value(3.0, Kind::Any),
-            "g" => value(9.81, Kind::Any),
+            "radius" => value(2.0, NumberKind::Known(Powers::from([0, 1, 0]))),
+            "n" => value(8.0, NumberKind::Any),
+            "m" => value(3.0, NumberKind::Any),
+            "g" => value(9.81, NumberKind::Any),
             _ => Meaning::Unknown,
         }
     }

@@ -4,14 +4,14 @@ use super::{Check, CheckInputs, Finding};
 use crate::scene::BasisKind;
 
 /// Counts the particles that have left their first cell while their body is under stress.
-pub(super) struct Crossing;
+pub(super) struct CrossingCheck;
 
 /// Share of the particles that may cross.
 const CROSSED: f64 = 0.1;
 /// Stress over the stiffness against waves, below which jumps of the forces harm nobody.
 const STRESSED: f64 = 1e-3;
 
-impl Check for Crossing {
+impl Check for CrossingCheck {
     fn kind(&self) -> &'static str {
         "cell-crossing"
     }

@@ -6,7 +6,7 @@ use crate::door::Ledger;
 /// The total of the ledger against its start, over the largest energy so far that moved, was stored, was set free by
 /// falling or turned to heat.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Balance {
+pub(super) struct EnergyBalance {
     first: Option<Ledger>,
     /// Energy gained since the start, lost if negative [J].
     pub drift: f64,
@@ -14,7 +14,7 @@ pub(super) struct Balance {
     pub scale: f64,
 }
 
-impl Balance {
+impl EnergyBalance {
     pub(super) fn update(&mut self, now: &Ledger) {
         let first = self.first.get_or_insert_with(|| now.clone());
         let heat = now.friction + now.adhesion + now.plastic + now.damping;
@@ -31,9 +31,9 @@ impl Balance {
 }
 
 /// Holds the drift against the bound that the scene sets.
-pub(super) struct Energy;
+pub(super) struct EnergyCheck;
 
-impl Check for Energy {
+impl Check for EnergyCheck {
     fn kind(&self) -> &'static str {
         "energy"
     }

@@ -10,21 +10,21 @@ mod strain;
 mod tearing;
 
 use crate::door::{BodyState, Ledger, TracedParticle, View};
-use crate::observe::Warning;
-use crate::scene::{Motion, Scene};
-use energy::Balance;
+use crate::observe::RunWarning;
+use crate::scene::{BodyMotion, Scene};
+use energy::EnergyBalance;
 use neighbours::Neighbours;
 
 /// Every check of a run.
 fn checks() -> Vec<Box<dyn Check>> {
     vec![
-        Box::new(energy::Energy),
-        Box::new(spin::Spin::default()),
-        Box::new(strain::Strain::default()),
-        Box::new(tearing::Tearing::default()),
-        Box::new(crossing::Crossing),
-        Box::new(speed::Speed),
-        Box::new(precision::Precision::default()),
+        Box::new(energy::EnergyCheck),
+        Box::new(spin::SpinCheck::default()),
+        Box::new(strain::StrainCheck::default()),
+        Box::new(tearing::TearingCheck::default()),
+        Box::new(crossing::CrossingCheck),
+        Box::new(speed::SpeedCheck),
+        Box::new(precision::PrecisionCheck::default()),
     ]
 }
 
@@ -47,7 +47,7 @@ struct CheckInputs<'a> {
     /// Energy and momentum now.
     ledger: &'a Ledger,
     /// Energy since the start.
-    balance: &'a Balance,
+    balance: &'a EnergyBalance,
     /// The bodies now.
     bodies: &'a [BodyState],
     /// Neighbours at the start, body by body; none in rigid bodies.
@@ -59,7 +59,7 @@ struct CheckInputs<'a> {
 impl CheckInputs<'_> {
     /// Bodies that deform.
     fn free(&self) -> impl Iterator<Item = usize> {
-        let free = |&i: &usize| matches!(self.scene.bodies[i].motion, Motion::Free { .. });
+        let free = |&i: &usize| matches!(self.scene.bodies[i].motion, BodyMotion::Free { .. });
         (0..self.bodies.len()).filter(free)
     }
 
@@ -91,12 +91,12 @@ struct Finding {
 /// Looks at a run now and then, and remembers what was wrong.
 pub(super) struct RunChecks {
     checks: Vec<Box<dyn Check>>,
-    balance: Balance,
+    balance: EnergyBalance,
     neighbours: Vec<Neighbours>,
     interval: f64,
     next_time: f64,
     next_step: u64,
-    warnings: Vec<Warning>,
+    warnings: Vec<RunWarning>,
     lines: usize,
 }
 
@@ -112,7 +112,7 @@ impl RunChecks {
     pub(super) fn new(scene: &Scene, simulation: &dyn View) -> Self {
         RunChecks {
             checks: checks(),
-            balance: Balance::default(),
+            balance: EnergyBalance::default(),
             neighbours: neighbours::of_bodies(scene, simulation),
             interval: scene.outputs.tables.max(scene.time.end / LOOKS),
             next_time: simulation.time(),
@@ -169,7 +169,7 @@ impl RunChecks {
                     }
                     return None;
                 }
-                self.warnings.push(Warning {
+                self.warnings.push(RunWarning {
                     kind: check.kind().to_owned(),
                     message: finding.message,
                     advice: check.advice().to_owned(),
@@ -199,7 +199,7 @@ impl RunChecks {
     }
 
     /// What was wrong, in the order in which it was found.
-    pub(super) fn warnings(&self) -> &[Warning] {
+    pub(super) fn warnings(&self) -> &[RunWarning] {
         &self.warnings
     }
 }
@@ -208,7 +208,7 @@ impl RunChecks {
 const EARLY: f64 = 1e-6;
 
 /// A warning as it is printed.
-pub(super) fn line(warning: &Warning) -> String {
+pub(super) fn line(warning: &RunWarning) -> String {
     format!("{}; {}", warning.message, warning.advice)
 }
 

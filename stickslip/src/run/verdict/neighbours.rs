@@ -1,7 +1,7 @@
 //! Particles that were neighbours before anything moved: some of each body, chosen once.
 
 use crate::door::{TracedParticle, View};
-use crate::scene::{Motion, Scene};
+use crate::scene::{BodyMotion, Scene};
 use std::collections::{HashMap, HashSet};
 
 /// Neighbours of a body at its start.
@@ -28,8 +28,8 @@ pub(super) fn of_bodies(scene: &Scene, view: &dyn View) -> Vec<Neighbours> {
     let all = view.particles();
     (scene.bodies.iter().enumerate())
         .map(|(i, body)| match body.motion {
-            Motion::Free { .. } => Neighbours::new(view, i, all),
-            Motion::Rigid { .. } => Neighbours::default(),
+            BodyMotion::Free { .. } => Neighbours::new(view, i, all),
+            BodyMotion::Rigid { .. } => Neighbours::default(),
         })
         .collect()
 }

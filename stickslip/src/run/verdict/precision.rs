@@ -5,7 +5,7 @@ use crate::scene;
 
 /// Adds up the way of bodies whose steps are about as short as the spacing of numbers where they are.
 #[derive(Default)]
-pub(super) struct Precision {
+pub(super) struct PrecisionCheck {
     /// Way that may be lost, body by body [m].
     doubtful: Vec<f64>,
     time: f64,
@@ -16,7 +16,7 @@ const SPACINGS: f64 = 5.0;
 /// Way that may be lost, in cells.
 const BOUND: f64 = 0.1;
 
-impl Check for Precision {
+impl Check for PrecisionCheck {
     fn kind(&self) -> &'static str {
         "precision"
     }

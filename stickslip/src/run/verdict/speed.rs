@@ -3,12 +3,12 @@
 use super::{Check, CheckInputs, Finding, minus, norm, place};
 
 /// Holds the speed of particles, relative to their body on the whole, against its waves.
-pub(super) struct Speed;
+pub(super) struct SpeedCheck;
 
 /// Share of the wave speed that is allowed: an impact at it strains by about as much.
 const BOUND: f64 = 0.5;
 
-impl Check for Speed {
+impl Check for SpeedCheck {
     fn kind(&self) -> &'static str {
         "speed"
     }

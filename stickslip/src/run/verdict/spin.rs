@@ -2,14 +2,14 @@
 
 use super::{Check, CheckInputs, Finding, minus, norm};
 use crate::door::BodyState;
-use crate::scene::{Face, Motion, Scene};
+use crate::scene::{BodyMotion, Face, Scene};
 use crate::tensor::cross;
 use std::collections::BTreeSet;
 
 /// Holds angular momentum against its start: of each body that nothing but gravity has touched, about its own centre of
 /// mass, and of all bodies where nothing from outside acts.
 #[derive(Default)]
-pub(super) struct Spin {
+pub(super) struct SpinCheck {
     alone: Vec<Alone>,
     together: Option<Together>,
     begun: bool,
@@ -45,7 +45,7 @@ const PUSHED: f64 = 1e-4;
 /// Cells to a face that does something: nearer, a body may feel it.
 const NEAR: f64 = 2.0;
 
-impl Check for Spin {
+impl Check for SpinCheck {
     fn kind(&self) -> &'static str {
         "angular-momentum"
     }
@@ -68,7 +68,7 @@ impl Check for Spin {
     }
 }
 
-impl Spin {
+impl SpinCheck {
     fn begin(&mut self, look: &CheckInputs) {
         self.begun = true;
         let time = look.simulation.time();
@@ -87,7 +87,7 @@ impl Spin {
 fn isolated(scene: &Scene) -> bool {
     let faces = scene.domain.iter().flat_map(|domain| domain.faces).flatten();
     scene.gravity == [0.0; 3]
-        && scene.bodies.iter().all(|body| matches!(body.motion, Motion::Free { .. }))
+        && scene.bodies.iter().all(|body| matches!(body.motion, BodyMotion::Free { .. }))
         && faces.into_iter().all(|face| face == Face::Open)
 }
 

@@ -16,7 +16,7 @@ use std::collections::BTreeMap;
 /// m^2 = ((sum d)^2 - sum d^2) / (n (n - 1))
 /// ```
 #[derive(Default)]
-pub(super) struct Strain {
+pub(super) struct StrainCheck {
     bodies: Vec<Stretch>,
 }
 
@@ -49,7 +49,7 @@ struct PairSums {
     particle: u32,
 }
 
-impl Check for Strain {
+impl Check for StrainCheck {
     fn kind(&self) -> &'static str {
         "strain"
     }

@@ -6,7 +6,7 @@ use crate::scene::BasisKind;
 
 /// Looks for neighbours that no longer share a node of the grid.
 #[derive(Default)]
-pub(super) struct Tearing {
+pub(super) struct TearingCheck {
     /// Where each body tore first [m].
     first: Vec<Option<[f64; 3]>>,
 }
@@ -14,7 +14,7 @@ pub(super) struct Tearing {
 /// Pairs whose gap is looked into, the widest first.
 const LOOKED_INTO: usize = 16;
 
-impl Check for Tearing {
+impl Check for TearingCheck {
     fn kind(&self) -> &'static str {
         "tearing"
     }
