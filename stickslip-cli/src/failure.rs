@@ -50,7 +50,9 @@ impl Failure {
             Failure::Input(report) | Failure::Run(report) => {
                 let mut text = String::new();
                 let drawn = std::io::stderr().is_terminal()
-                    && GraphicalReportHandler::new().render_report(&mut text, &Drawn::new(report)).is_ok();
+                    && GraphicalReportHandler::new()
+                        .render_report(&mut text, &DrawnError::new(report))
+                        .is_ok();
                 if !drawn {
                     text = plain(report.as_ref());
                 }
@@ -86,12 +88,12 @@ impl From<DrawError> for Failure {
 /// so the headline leaves them out.
 #[derive(Debug, thiserror::Error)]
 #[error("{headline}")]
-struct Drawn<'a> {
+struct DrawnError<'a> {
     headline: String,
     error: &'a dyn Diagnostic,
 }
 
-impl<'a> Drawn<'a> {
+impl<'a> DrawnError<'a> {
     fn new(report: &'a Report) -> Self {
         let error: &dyn Diagnostic = report.as_ref();
         let message = error.to_string();
@@ -102,11 +104,11 @@ impl<'a> Drawn<'a> {
         if let Some(help) = error.help() {
             headline = headline.strip_suffix(&format!("; {help}")).unwrap_or(headline);
         }
-        Drawn { headline: headline.to_owned(), error }
+        DrawnError { headline: headline.to_owned(), error }
     }
 }
 
-impl Diagnostic for Drawn<'_> {
+impl Diagnostic for DrawnError<'_> {
     fn help<'b>(&'b self) -> Option<Box<dyn std::fmt::Display + 'b>> {
         self.error.help()
     }
@@ -188,7 +190,7 @@ mod tests {
             .with_label(LabeledSpan::at(0..6, "here"));
         let report = Report::new(error).with_source_code(NamedSource::new("a.toml", "radios = 1\n"));
         let mut text = String::new();
-        GraphicalReportHandler::new().render_report(&mut text, &Drawn::new(&report)).unwrap();
+        GraphicalReportHandler::new().render_report(&mut text, &DrawnError::new(&report)).unwrap();
         assert_eq!(text.matches("a.toml:1:1").count(), 1, "{text}");
         assert_eq!(text.matches("did you mean").count(), 1, "{text}");
     }

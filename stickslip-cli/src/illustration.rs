@@ -1,9 +1,11 @@
 //! Pictures and a chart of a folder of results.
 
-use crate::chart::{Choice, chart};
+use crate::chart::{ChartChoice, chart};
 use crate::drawing::{DrawError, Scale, save};
 use crate::failure::Failure;
-use crate::picture::{self, Bounds, Look, Mirror, Quantity, Quarters, Setting, View};
+use crate::picture::{
+    self, BoxCorners, ColorQuantity, PictureStyle, Quarters, Setting, SymmetryPlane, Viewpoint,
+};
 use miette::miette;
 use std::path::Path;
 use stickslip::door::ParticleSnapshot;
@@ -20,11 +22,11 @@ pub trait Pictures {
 #[derive(Clone, Debug)]
 pub struct PictureChoice {
     /// What colour stands for.
-    pub quantity: Quantity,
+    pub quantity: ColorQuantity,
     /// Values at the ends of the colours; those that occur, without it.
     pub range: Option<[f64; 2]>,
     /// Where the camera stands.
-    pub view: View,
+    pub view: Viewpoint,
     /// `x`, `y`, `z` or `none`. Without it, pictures of bodies are mirrored where the scene has just one plane of
     /// symmetry; pictures of values are not, as the cut shows the inside.
     pub mirror: Option<String>,
@@ -34,7 +36,13 @@ pub struct PictureChoice {
 
 impl Default for PictureChoice {
     fn default() -> Self {
-        PictureChoice { quantity: Quantity::Body, range: None, view: View::Auto, mirror: None, size: None }
+        PictureChoice {
+            quantity: ColorQuantity::Body,
+            range: None,
+            view: Viewpoint::Auto,
+            mirror: None,
+            size: None,
+        }
     }
 }
 
@@ -44,9 +52,9 @@ pub struct Album<'a> {
     results: &'a Results,
     setting: Setting,
     quarters: Quarters,
-    mirror: Option<Mirror>,
+    mirror: Option<SymmetryPlane>,
     choice: PictureChoice,
-    bounds: Option<Bounds>,
+    bounds: Option<BoxCorners>,
 }
 
 impl<'a> Album<'a> {
@@ -100,7 +108,7 @@ impl<'a> Album<'a> {
 impl Pictures for Album<'_> {
     fn picture(&self, frame: &Frame) -> Result<Image, Failure> {
         let particles = self.results.particles(frame).map_err(Failure::input)?;
-        let look = Look {
+        let look = PictureStyle {
             quantity: self.choice.quantity.clone(),
             scale: self.scale(&particles),
             view: self.choice.view,
@@ -127,9 +135,9 @@ pub fn snapshots(results: &Results) -> Result<&[Frame], Failure> {
     Some(results.frames()).filter(|frames| !frames.is_empty()).ok_or_else(none)
 }
 
-fn mirror(setting: &Setting, choice: &PictureChoice) -> Result<Option<Mirror>, Failure> {
+fn mirror(setting: &Setting, choice: &PictureChoice) -> Result<Option<SymmetryPlane>, Failure> {
     let Some(name) = &choice.mirror else {
-        let bodies = choice.quantity == Quantity::Body;
+        let bodies = choice.quantity == ColorQuantity::Body;
         return Ok(setting.only_mirror().filter(|_| bodies));
     };
     let Some(axis) = ["x", "y", "z"].iter().position(|axis| axis == name) else { return Ok(None) };
@@ -144,7 +152,7 @@ pub fn illustrate(folder: &Path) -> Result<String, Failure> {
     let mut drawn = vec!["bodies.csv", "energy.csv", "contacts.csv", "run.json"];
     let measured = ["probes.csv", "arrivals.csv", "fronts.csv", "front_speeds.csv"];
     drawn.extend(measured.into_iter().filter(|name| folder.join(name).exists()));
-    let chart = chart(&results, &Choice::default()).map_err(Failure::input)?;
+    let chart = chart(&results, &ChartChoice::default()).map_err(Failure::input)?;
     match crate::chart::draw(&chart, &folder.join("plot.png"), chart.size()) {
         Ok(()) => drawn.push("plot.png"),
         Err(DrawError::Empty(_)) => {}

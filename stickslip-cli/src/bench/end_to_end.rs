@@ -1,14 +1,14 @@
 //! Problem P6: whole runs as a user starts them, with and without outputs.
 
 use super::measure::{Order, Task};
-use super::problems::Extent;
+use super::problems::BenchExtent;
 use super::record::EndToEnd;
 use crate::failure::Failure;
 use miette::miette;
 use std::path::{Path, PathBuf};
 
 /// A scene of the paper that is run whole.
-pub struct Whole {
+pub struct WholeRun {
     /// Its name.
     pub name: &'static str,
     scene: &'static str,
@@ -24,25 +24,25 @@ const SILENT: [(&str, &str); 3] =
     [("outputs.tables", "1e9 s"), ("outputs.particles", "never"), ("outputs.grid", "never")];
 
 /// The scenes that are run whole.
-pub fn wholes(extent: Extent) -> Vec<Whole> {
-    let sphere = |overrides| Whole { name: "sphere R/8", scene: SPHERE, overrides };
-    let disks = |overrides| Whole { name: "disks n = 80", scene: DISKS, overrides };
+pub fn wholes(extent: BenchExtent) -> Vec<WholeRun> {
+    let sphere = |overrides| WholeRun { name: "sphere R/8", scene: SPHERE, overrides };
+    let disks = |overrides| WholeRun { name: "disks n = 80", scene: DISKS, overrides };
     match extent {
-        Extent::Full => {
+        BenchExtent::Full => {
             vec![sphere(&[("cells_per_radius", "8")]), disks(&[("cells_per_diameter", "80")])]
         }
-        Extent::Quick => Vec::new(),
-        Extent::Tiny => vec![sphere(&[("cells_per_radius", "2"), ("time.end", "10 ms")])],
+        BenchExtent::Quick => Vec::new(),
+        BenchExtent::Tiny => vec![sphere(&[("cells_per_radius", "2"), ("time.end", "10 ms")])],
     }
 }
 
-impl Whole {
+impl WholeRun {
     /// Runs it with and without outputs, each in a process of its own.
     ///
     /// # Errors
     /// A run fails, or its folder cannot be written.
     pub fn measure(&self, threads: usize) -> Result<EndToEnd, Failure> {
-        let folder = Scratch::new()?;
+        let folder = TemporaryFolder::new()?;
         let (mut with_outputs, mut without_outputs) = (Vec::new(), Vec::new());
         let mut sample = None;
         for _ in 0..REPETITIONS {
@@ -76,18 +76,18 @@ impl Whole {
 }
 
 /// A folder for results that nobody will look at; it goes with this value.
-struct Scratch(PathBuf);
+struct TemporaryFolder(PathBuf);
 
-impl Scratch {
+impl TemporaryFolder {
     fn new() -> Result<Self, Failure> {
         let folder = std::env::temp_dir().join(format!("stickslip-bench-{}", std::process::id()));
         let cannot = |path: &Path, error| Failure::Run(miette!("cannot make {}: {error}", path.display()));
         std::fs::create_dir_all(&folder).map_err(|error| cannot(&folder, error))?;
-        Ok(Scratch(folder))
+        Ok(TemporaryFolder(folder))
     }
 }
 
-impl Drop for Scratch {
+impl Drop for TemporaryFolder {
     fn drop(&mut self) {
         // What is left of it lies where the system clears up itself.
         let _ = std::fs::remove_dir_all(&self.0);

@@ -186,7 +186,7 @@ fn extremes(values: &[f64]) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::problems::{Case, Scheme};
+    use super::super::problems::{BenchCase, BenchScheme};
     use super::*;
 
     fn measured(
@@ -194,9 +194,9 @@ mod tests {
         [basis, precision, stress_update]: [&'static str; 3],
         rate: f64,
     ) -> Measured {
-        let scheme = Scheme { basis, precision, stress_update };
+        let scheme = BenchScheme { basis, precision, stress_update };
         Measured {
-            case: Case {
+            case: BenchCase {
                 problem,
                 variant: if problem == "P2" { BLOCKS_IN_CONTACT.to_owned() } else { String::new() },
                 scheme,

@@ -196,7 +196,7 @@ fn verbs(simulation: &dyn Simulation) -> Vec<(String, f64)> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::problems::{Extent, cases};
+    use super::super::problems::{BenchExtent, cases};
     use super::*;
 
     #[test]
@@ -225,7 +225,7 @@ mod tests {
 
     #[test]
     fn steps_are_counted_and_timed() {
-        let case = cases(Extent::Tiny, 1).swap_remove(0);
+        let case = cases(BenchExtent::Tiny, 1).swap_remove(0);
         let effort = Effort { warm_up: 2, repetitions: 3, least: 1, steps: 4, seconds: 60.0 };
         let order = Order { scene: case.scene, overrides: Vec::new(), threads: 1, task: Task::Steps(effort) };
         let sample = take(&order).unwrap();

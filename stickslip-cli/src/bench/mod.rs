@@ -18,5 +18,5 @@ mod suite;
 
 pub use measure::answer;
 pub use peers::Peers;
-pub use problems::Extent;
-pub use suite::{PROBLEMS, Suite, write_scenes};
+pub use problems::BenchExtent;
+pub use suite::{BenchSuite, PROBLEMS, write_scenes};

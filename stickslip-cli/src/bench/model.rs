@@ -14,7 +14,7 @@
 //! (weights 3, gradient 6, mass 1, momentum 3, force 9, velocity and its change 6, velocity gradient 9) and 150 for the
 //! particle itself (F, its determinant, the law).
 
-use super::problems::Scheme;
+use super::problems::BenchScheme;
 
 /// Particles a cell of every problem here.
 const PARTICLES_PER_CELL: f64 = 8.0;
@@ -22,7 +22,7 @@ const NODE_NUMBERS: f64 = 26.0;
 const ADDS_PER_NODE: f64 = 37.0;
 const ADDS_PER_PARTICLE: f64 = 150.0;
 
-impl Scheme {
+impl BenchScheme {
     /// Bytes of a number.
     pub fn number_bytes(&self) -> f64 {
         if self.number() == "f32" { 4.0 } else { 8.0 }
@@ -52,12 +52,12 @@ mod tests {
 
     #[test]
     fn the_model_is_what_its_text_says() {
-        let linear = Scheme { stress_update: "last", ..Scheme::default() };
+        let linear = BenchScheme { stress_update: "last", ..BenchScheme::default() };
         assert_eq!(linear.bytes(), 8.0 * 55.25);
         assert_eq!(linear.multiply_adds(), 446.0);
-        let single = Scheme { precision: "single", ..linear };
+        let single = BenchScheme { precision: "single", ..linear };
         assert_eq!(single.bytes(), 0.5 * linear.bytes());
-        let safest = Scheme { stress_update: "modified-last", ..linear };
+        let safest = BenchScheme { stress_update: "modified-last", ..linear };
         assert_eq!(safest.bytes() - linear.bytes(), 13.0 * 8.0);
     }
 }

@@ -1,7 +1,7 @@
 //! The same problem with other programs, as their users write it.
 
 use super::measure::Effort;
-use super::problems::Extent;
+use super::problems::BenchExtent;
 use super::record::PeerResult;
 use crate::failure::Failure;
 use miette::miette;
@@ -13,7 +13,7 @@ pub struct Peers {
     /// Folder of the Python environment, made if it is not there.
     pub environment: PathBuf,
     /// How much is measured.
-    pub extent: Extent,
+    pub extent: BenchExtent,
 }
 
 /// Packages that are installed; the newest of each, and what runs is in the report.
@@ -90,9 +90,13 @@ impl Peers {
     /// Cells along the cube, and how long to step.
     fn effort(&self) -> (usize, Effort) {
         match self.extent {
-            Extent::Full => (32, Effort { warm_up: 8, repetitions: 5, least: 1, steps: 48, seconds: 15.0 }),
-            Extent::Quick => (32, Effort { warm_up: 2, repetitions: 3, least: 1, steps: 32, seconds: 1.2 }),
-            Extent::Tiny => (4, Effort { warm_up: 1, repetitions: 2, least: 1, steps: 2, seconds: 0.1 }),
+            BenchExtent::Full => {
+                (32, Effort { warm_up: 8, repetitions: 5, least: 1, steps: 48, seconds: 15.0 })
+            }
+            BenchExtent::Quick => {
+                (32, Effort { warm_up: 2, repetitions: 3, least: 1, steps: 32, seconds: 1.2 })
+            }
+            BenchExtent::Tiny => (4, Effort { warm_up: 1, repetitions: 2, least: 1, steps: 2, seconds: 0.1 }),
         }
     }
 }

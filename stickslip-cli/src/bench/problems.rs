@@ -5,7 +5,7 @@ use std::fmt::{Display, Write as _};
 
 /// How a problem is computed, in the words of scene files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-pub struct Scheme {
+pub struct BenchScheme {
     /// `linear` or `gimp`.
     pub basis: &'static str,
     /// `double` or `single`.
@@ -14,22 +14,22 @@ pub struct Scheme {
     pub stress_update: &'static str,
 }
 
-impl Default for Scheme {
+impl Default for BenchScheme {
     /// Linear functions, and what scene files have by default.
     fn default() -> Self {
-        Scheme { basis: "linear", precision: "double", stress_update: "modified-last" }
+        BenchScheme { basis: "linear", precision: "double", stress_update: "modified-last" }
     }
 }
 
 /// One problem, computed in one way by so many threads.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Case {
+pub struct BenchCase {
     /// `P1` to `P5`.
     pub problem: &'static str,
     /// What distinguishes it within the problem: `cube`, `64 balls`.
     pub variant: String,
     /// How it is computed.
-    pub scheme: Scheme,
+    pub scheme: BenchScheme,
     /// Threads.
     pub threads: usize,
     /// The scene.
@@ -40,11 +40,11 @@ pub struct Case {
     pub expected: usize,
 }
 
-impl Case {
+impl BenchCase {
     /// Whether the two differ in one thing whose cost is asked for: blocks with and without contact,
     /// a cube in a wide domain, threads.
-    pub fn is_compared_with(&self, other: &Case) -> bool {
-        let same = |of: fn(&Case) -> &str| of(self) == of(other);
+    pub fn is_compared_with(&self, other: &BenchCase) -> bool {
+        let same = |of: fn(&BenchCase) -> &str| of(self) == of(other);
         let alike = match self.problem {
             "P1" | "P4" => matches!(other.problem, "P1" | "P4"),
             "P2" => same(|case| case.problem),
@@ -56,14 +56,14 @@ impl Case {
 
     /// A few words that no other case has: `P3 64 balls, linear f64 last, 2 threads`.
     pub fn label(&self) -> String {
-        let Scheme { basis, stress_update, .. } = self.scheme;
+        let BenchScheme { basis, stress_update, .. } = self.scheme;
         let number = self.scheme.number();
         let threads = if self.threads == 1 { String::new() } else { format!(", {} threads", self.threads) };
         format!("{} {}, {basis} {number} {stress_update}{threads}", self.problem, self.variant)
     }
 }
 
-impl Scheme {
+impl BenchScheme {
     /// `f64` or `f32`.
     pub fn number(&self) -> &'static str {
         if self.precision == "single" { "f32" } else { "f64" }
@@ -72,7 +72,7 @@ impl Scheme {
 
 /// How much is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Extent {
+pub enum BenchExtent {
     /// All sizes.
     Full,
     /// What fits into a minute.
@@ -97,38 +97,38 @@ const WIDE_MARGIN: usize = 208;
 /// Particles of a ball, about.
 const BALL: usize = 2145;
 
-impl Extent {
+impl BenchExtent {
     /// Cells along the cube of P1.
     fn cells(self) -> usize {
-        if self == Extent::Tiny { 4 } else { 32 }
+        if self == BenchExtent::Tiny { 4 } else { 32 }
     }
 
     /// Balls along each side of the packs of P3.
     fn balls(self) -> &'static [usize] {
         match self {
-            Extent::Full => &[1, 2, 4, 8, 16],
-            Extent::Quick => &[2, 4, 6],
-            Extent::Tiny => &[1, 2],
+            BenchExtent::Full => &[1, 2, 4, 8, 16],
+            BenchExtent::Quick => &[2, 4, 6],
+            BenchExtent::Tiny => &[1, 2],
         }
     }
 
     /// Cells along the cubes of P5: 1, 4 and 16 million particles.
     fn growth(self) -> &'static [usize] {
         match self {
-            Extent::Full => &[50, 79, 126],
-            Extent::Quick => &[],
-            Extent::Tiny => &[5, 6],
+            BenchExtent::Full => &[50, 79, 126],
+            BenchExtent::Quick => &[],
+            BenchExtent::Tiny => &[5, 6],
         }
     }
 }
 
 /// All that is measured, on one thread and then on all `threads`. What is compared stands side by side.
-pub fn cases(extent: Extent, threads: usize) -> Vec<Case> {
-    let linear = Scheme::default();
-    let gimp = Scheme { basis: "gimp", ..linear };
+pub fn cases(extent: BenchExtent, threads: usize) -> Vec<BenchCase> {
+    let linear = BenchScheme::default();
+    let gimp = BenchScheme { basis: "gimp", ..linear };
     let mut cases = Vec::new();
     let mut add = |problem, variant: &str, (scheme, threads), (expected, scene)| {
-        cases.push(Case { problem, variant: variant.to_owned(), scheme, threads, scene, expected });
+        cases.push(BenchCase { problem, variant: variant.to_owned(), scheme, threads, scene, expected });
     };
     let mut in_parallel = vec![1];
     in_parallel.extend((threads > 1).then_some(threads));
@@ -165,15 +165,15 @@ pub fn cases(extent: Extent, threads: usize) -> Vec<Case> {
 }
 
 /// In which ways P1 is computed.
-fn schemes(extent: Extent) -> Vec<Scheme> {
+fn schemes(extent: BenchExtent) -> Vec<BenchScheme> {
     let mut schemes = Vec::new();
     for basis in ["linear", "gimp"] {
         for stress_update in ["last", "first", "modified-last"] {
             for precision in ["double", "single"] {
                 let few =
                     stress_update == "last" || (stress_update == "modified-last" && precision == "double");
-                if extent == Extent::Full || few {
-                    schemes.push(Scheme { basis, precision, stress_update });
+                if extent == BenchExtent::Full || few {
+                    schemes.push(BenchScheme { basis, precision, stress_update });
                 }
             }
         }
@@ -182,14 +182,14 @@ fn schemes(extent: Extent) -> Vec<Scheme> {
 }
 
 /// A cube and its number of particles.
-fn cube(scheme: Scheme, cells: usize, margin: usize) -> (usize, String) {
+fn cube(scheme: BenchScheme, cells: usize, margin: usize) -> (usize, String) {
     let turn = usize::from(scheme.stress_update != "last");
     (8 * cells.pow(3), with(CUBE, scheme, &[("cells", &cells), ("margin", &margin), ("turn", &turn)]))
 }
 
 /// A scene with other parameters than its file has.
-fn with(scene: &str, scheme: Scheme, others: &[(&str, &dyn Display)]) -> String {
-    let Scheme { basis, precision, stress_update } = scheme;
+fn with(scene: &str, scheme: BenchScheme, others: &[(&str, &dyn Display)]) -> String {
+    let BenchScheme { basis, precision, stress_update } = scheme;
     let words = [("basis", basis), ("precision", precision), ("stress_update", stress_update)];
     let mut values: Vec<(String, String)> =
         words.iter().map(|(name, word)| (format!("{name} = "), format!("\"{word}\""))).collect();
@@ -211,7 +211,7 @@ fn with(scene: &str, scheme: Scheme, others: &[(&str, &dyn Display)]) -> String 
 }
 
 /// Balls of 8 cells' diameter in a hexagonal pack with `side` balls along each side.
-fn balls(scheme: Scheme, side: usize) -> String {
+fn balls(scheme: BenchScheme, side: usize) -> String {
     /// Radius of a ball, as in the file [m].
     const RADIUS: f64 = 0.125;
     /// By how much the balls approach the middle of the pack [1/s].
@@ -246,7 +246,7 @@ mod tests {
 
     #[test]
     fn every_problem_is_a_sound_scene() {
-        for case in cases(Extent::Tiny, 2) {
+        for case in cases(BenchExtent::Tiny, 2) {
             let loaded = stickslip::scene::parse("bench", &case.scene, &[]).unwrap_or_else(|e| panic!("{e}"));
             stickslip::check::problems(&loaded.scene).unwrap_or_else(|e| panic!("{case:?}: {e:?}"));
         }
@@ -258,17 +258,17 @@ mod tests {
             let loaded = stickslip::scene::parse("bench", scene, &[]).unwrap();
             stickslip::check::report(&loaded.scene).unwrap()
         };
-        assert_eq!(report(&cube(Scheme::default(), 32, 32).1).particles, 262_144);
-        assert_eq!(report(&with(BLOCKS, Scheme::default(), &[])).particles, 262_144);
+        assert_eq!(report(&cube(BenchScheme::default(), 32, 32).1).particles, 262_144);
+        assert_eq!(report(&with(BLOCKS, BenchScheme::default(), &[])).particles, 262_144);
         let blocks = |variant| {
-            let cases = cases(Extent::Tiny, 1);
+            let cases = cases(BenchExtent::Tiny, 1);
             let case = cases.into_iter().find(|case| case.variant == variant).expect("it is measured");
             report(&case.scene)
         };
         let [pressed, apart] = [BLOCKS_IN_CONTACT, BLOCKS_APART].map(blocks);
         assert_eq!((pressed.particles, pressed.contacts.len()), (apart.particles, 1));
         assert!(apart.contacts.is_empty(), "{apart}");
-        let pack = report(&balls(Scheme::default(), 2));
+        let pack = report(&balls(BenchScheme::default(), 2));
         assert_eq!(pack.bodies.len(), 8);
         assert!(pack.bodies.iter().all(|ball| (2080..2200).contains(&ball.particles)), "{pack}");
         assert!(!pack.contacts.is_empty(), "the balls touch");
@@ -276,7 +276,7 @@ mod tests {
 
     #[test]
     fn parameters_are_replaced_where_they_stand() {
-        let scheme = Scheme { basis: "gimp", precision: "single", stress_update: "first" };
+        let scheme = BenchScheme { basis: "gimp", precision: "single", stress_update: "first" };
         let loaded = stickslip::scene::parse("bench", &cube(scheme, 8, 4).1, &[]).unwrap();
         let scene = loaded.scene;
         assert_eq!(scene.discretization.basis, stickslip::scene::BasisKind::Gimp);

@@ -3,12 +3,12 @@
 use super::goals::Goal;
 use super::limits::Limits;
 use super::measure::BenchSample;
-use super::problems::Case;
+use super::problems::BenchCase;
 use serde::{Deserialize, Serialize};
 
 /// Everything that one call of `stickslip bench` found.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Record {
+pub struct BenchRecord {
     /// `stickslip`.
     pub program: &'static str,
     /// Version of the program.
@@ -47,7 +47,7 @@ pub struct Computer {
 pub struct Measured {
     /// The case.
     #[serde(flatten)]
-    pub case: Case,
+    pub case: BenchCase,
     /// Bodies.
     pub bodies: usize,
     /// Particles.
@@ -89,7 +89,7 @@ pub struct Verb {
 pub struct Skipped {
     /// The case.
     #[serde(flatten)]
-    pub case: Case,
+    pub case: BenchCase,
     /// Why.
     pub reason: String,
 }
@@ -136,7 +136,7 @@ pub struct PeerResult {
 
 impl Measured {
     /// What a sample says about a case on a machine.
-    pub fn new(case: Case, sample: BenchSample, machine: &Computer) -> Self {
+    pub fn new(case: BenchCase, sample: BenchSample, machine: &Computer) -> Self {
         let limits = machine.limits.iter().find(|limits| limits.threads == case.threads);
         let particle_steps = sample.particles as f64 * sample.steps as f64;
         let cores = case.threads as f64;
@@ -193,13 +193,13 @@ fn spread(values: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::super::multiply_add::MultiplyAdds;
-    use super::super::problems::Scheme;
+    use super::super::problems::BenchScheme;
     use super::*;
 
     #[test]
     fn rates_are_per_core_and_fractions_of_the_limits() {
-        let scheme = Scheme { stress_update: "last", ..Scheme::default() };
-        let case = Case {
+        let scheme = BenchScheme { stress_update: "last", ..BenchScheme::default() };
+        let case = BenchCase {
             problem: "P1",
             variant: "cube".into(),
             scheme,

@@ -1,10 +1,10 @@
 //! The report on the terminal.
 
 use super::goals::{Goal, Sense};
-use super::record::{Computer, Measured, Record, median};
+use super::record::{BenchRecord, Computer, Measured, median};
 use std::fmt::{Display, Formatter, Result, Write};
 
-impl Display for Record {
+impl Display for BenchRecord {
     fn fmt(&self, f: &mut Formatter) -> Result {
         writeln!(f, "{}", self.machine)?;
         if !self.results.is_empty() {
@@ -36,7 +36,7 @@ impl Display for Computer {
         let cores = if self.cores == 1 { "core" } else { "cores" };
         writeln!(f, "{}, {} {cores}, {}", self.processor, self.cores, self.instructions)?;
         let mut table =
-            Table::new(&["<threads", "copy GB/s", "f64 G multiply-adds/s", "f32 G multiply-adds/s"]);
+            TextTable::new(&["<threads", "copy GB/s", "f64 G multiply-adds/s", "f32 G multiply-adds/s"]);
         for limits in &self.limits {
             let giga = |rate: f64| format!("{:.1}", rate / 1e9);
             let adds = limits.multiply_add;
@@ -47,8 +47,16 @@ impl Display for Computer {
 }
 
 fn results(results: &[Measured]) -> String {
-    let mut table =
-        Table::new(&["<problem", "particles", "M/core s", "+-", "bytes", "of copy", "of m-adds", "memory B"]);
+    let mut table = TextTable::new(&[
+        "<problem",
+        "particles",
+        "M/core s",
+        "+-",
+        "bytes",
+        "of copy",
+        "of m-adds",
+        "memory B",
+    ]);
     for measured in results {
         table.row([
             measured.case.label(),
@@ -85,7 +93,7 @@ fn verbs(results: &[Measured]) -> String {
     let mut head = vec!["<problem"];
     head.extend(&names);
     head.extend(["rest", "all"]);
-    let mut table = Table::new(&head);
+    let mut table = TextTable::new(&head);
     for measured in results {
         let all = 1e9 / measured.rate;
         let known: f64 = measured.verbs.iter().map(|verb| verb.nanoseconds).sum();
@@ -101,10 +109,10 @@ fn verbs(results: &[Measured]) -> String {
     format!("Where the time goes: core-nanoseconds for a particle and a step.\n{table}\n")
 }
 
-impl Record {
+impl BenchRecord {
     fn whole_runs(&self) -> String {
         let mut table =
-            Table::new(&["<scene", "particles", "steps", "threads", "with s", "without s", "ratio"]);
+            TextTable::new(&["<scene", "particles", "steps", "threads", "with s", "without s", "ratio"]);
         for run in &self.end_to_end {
             let fastest =
                 |times: &[f64]| format!("{:.2}", times.iter().copied().fold(f64::INFINITY, f64::min));
@@ -123,7 +131,7 @@ impl Record {
 
     fn other_programs(&self) -> String {
         let mut table =
-            Table::new(&["<program", "<version", "<basis", "threads", "M/core s", "first step s"]);
+            TextTable::new(&["<program", "<version", "<basis", "threads", "M/core s", "first step s"]);
         for peer in &self.peers {
             table.row([
                 peer.program.clone(),
@@ -139,7 +147,7 @@ impl Record {
 }
 
 fn goals(goals: &[Goal]) -> String {
-    let mut table = Table::new(&["<goal", "measured", "<", "goal", "stretch", "<"]);
+    let mut table = TextTable::new(&["<goal", "measured", "<", "goal", "stretch", "<"]);
     for goal in goals {
         let number = |value: f64| if value < 100.0 { format!("{value:.2}") } else { format!("{value:.0}") };
         table.row([
@@ -163,16 +171,16 @@ fn percent(share: f64) -> String {
 }
 
 /// Columns under a head; those whose head starts with `<` stand left, the others right.
-struct Table {
+struct TextTable {
     rows: Vec<Vec<String>>,
     left: Vec<bool>,
 }
 
-impl Table {
+impl TextTable {
     fn new(head: &[&str]) -> Self {
         let left = head.iter().map(|name| name.starts_with('<')).collect();
         let names = head.iter().map(|name| name.trim_start_matches('<').to_owned()).collect();
-        Table { rows: vec![names], left }
+        TextTable { rows: vec![names], left }
     }
 
     fn row(&mut self, cells: impl Into<Vec<String>>) {
@@ -180,7 +188,7 @@ impl Table {
     }
 }
 
-impl Display for Table {
+impl Display for TextTable {
     fn fmt(&self, f: &mut Formatter) -> Result {
         let width =
             |column: usize| self.rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
@@ -206,7 +214,7 @@ mod tests {
 
     #[test]
     fn columns_stand_under_their_heads() {
-        let mut table = Table::new(&["<name", "rate"]);
+        let mut table = TextTable::new(&["<name", "rate"]);
         table.row(["a longer name".to_owned(), "1.5".to_owned()]);
         table.row(["b".to_owned(), "12.25".to_owned()]);
         assert_eq!(table.to_string(), "name            rate\na longer name    1.5\nb              12.25\n");

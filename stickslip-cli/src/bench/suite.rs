@@ -7,8 +7,8 @@ use super::measure::{BenchSample, Effort, Order, Task};
 use super::memory;
 use super::multiply_add::instructions;
 use super::peers::Peers;
-use super::problems::{Case, Extent, cases};
-use super::record::{Computer, Measured, Record, Skipped};
+use super::problems::{BenchCase, BenchExtent, cases};
+use super::record::{BenchRecord, Computer, Measured, Skipped};
 use crate::failure::Failure;
 use miette::miette;
 use std::collections::BTreeSet;
@@ -16,9 +16,9 @@ use std::path::Path;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 /// What is to be measured.
-pub struct Suite {
+pub struct BenchSuite {
     /// How much of each problem.
-    pub extent: Extent,
+    pub extent: BenchExtent,
     /// `P1` to `P6`; all if empty.
     pub only: Vec<String>,
     /// Most threads.
@@ -32,16 +32,16 @@ pub const PROBLEMS: [&str; 6] = ["P1", "P2", "P3", "P4", "P5", "P6"];
 /// What a process may need for a particle; a case is left out if the machine does not have so much [bytes].
 const MEMORY: f64 = 1000.0;
 
-impl Suite {
+impl BenchSuite {
     /// Measures everything, and says on standard error what it is at.
     ///
     /// # Errors
     /// Other programs cannot be installed, or a measurement fails.
-    pub fn run(&self) -> Result<Record, Failure> {
+    pub fn run(&self) -> Result<BenchRecord, Failure> {
         // First what may be missing, then what takes long.
         let python = self.peers.as_ref().map(Peers::prepare).transpose()?;
         let machine = self.machine();
-        let mut record = Record {
+        let mut record = BenchRecord {
             program: "stickslip",
             version: env!("CARGO_PKG_VERSION"),
             unix_time: SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |time| time.as_secs()),
@@ -52,8 +52,8 @@ impl Suite {
             peers: Vec::new(),
             goals: Vec::new(),
         };
-        let cases: Vec<Case> = self.cases().collect();
-        for compared in cases.chunk_by(Case::is_compared_with) {
+        let cases: Vec<BenchCase> = self.cases().collect();
+        for compared in cases.chunk_by(BenchCase::is_compared_with) {
             match compared.iter().find_map(too_large) {
                 Some(reason) => record.skipped.extend(
                     compared.iter().map(|case| Skipped { case: case.clone(), reason: reason.clone() }),
@@ -80,16 +80,16 @@ impl Suite {
         self.only.is_empty() || self.only.iter().any(|only| only == problem)
     }
 
-    fn cases(&self) -> impl Iterator<Item = Case> {
+    fn cases(&self) -> impl Iterator<Item = BenchCase> {
         cases(self.extent, self.threads).into_iter().filter(|case| self.wants(case.problem))
     }
 
     fn machine(&self) -> Computer {
         eprintln!("the machine's limits ...");
         let care = match self.extent {
-            Extent::Full => Care { bytes: 512 << 20, duration: Duration::from_secs(1) },
-            Extent::Quick => Care { bytes: 256 << 20, duration: Duration::from_millis(300) },
-            Extent::Tiny => Care { bytes: 1 << 20, duration: Duration::from_millis(2) },
+            BenchExtent::Full => Care { bytes: 512 << 20, duration: Duration::from_secs(1) },
+            BenchExtent::Quick => Care { bytes: 256 << 20, duration: Duration::from_millis(300) },
+            BenchExtent::Tiny => Care { bytes: 1 << 20, duration: Duration::from_millis(2) },
         };
         let threads = BTreeSet::from([1, self.threads]);
         Computer {
@@ -101,15 +101,15 @@ impl Suite {
     }
 
     /// Measures cases that are compared in turns: what slows the machine for a while slows all of them.
-    fn measure(&self, compared: &[Case], machine: &Computer) -> Result<Vec<Measured>, Failure> {
+    fn measure(&self, compared: &[BenchCase], machine: &Computer) -> Result<Vec<Measured>, Failure> {
         let mut effort = match self.extent {
-            Extent::Full => Effort { warm_up: 8, repetitions: 5, least: 12, steps: 64, seconds: 15.0 },
-            Extent::Quick => Effort { warm_up: 2, repetitions: 3, least: 8, steps: 32, seconds: 1.2 },
-            Extent::Tiny => Effort { warm_up: 1, repetitions: 2, least: 1, steps: 2, seconds: 0.1 },
+            BenchExtent::Full => Effort { warm_up: 8, repetitions: 5, least: 12, steps: 64, seconds: 15.0 },
+            BenchExtent::Quick => Effort { warm_up: 2, repetitions: 3, least: 8, steps: 32, seconds: 1.2 },
+            BenchExtent::Tiny => Effort { warm_up: 1, repetitions: 2, least: 1, steps: 2, seconds: 0.1 },
         };
         let turns = match (compared.len(), self.extent) {
             (1, _) => 1,
-            (_, Extent::Full) => TURNS,
+            (_, BenchExtent::Full) => TURNS,
             (_, _) => TURNS_OF_QUICK,
         };
         effort.seconds /= turns as f64;
@@ -128,7 +128,7 @@ impl Suite {
                 (effort.steps, effort.seconds) = (samples[0].steps, f64::MAX);
             }
         }
-        let measured = |(case, sample): (&Case, _)| Measured::new(case.clone(), sample, machine);
+        let measured = |(case, sample): (&BenchCase, _)| Measured::new(case.clone(), sample, machine);
         Ok(compared.iter().zip(samples).map(measured).collect())
     }
 }
@@ -137,7 +137,7 @@ impl Suite {
 const TURNS: usize = 5;
 const TURNS_OF_QUICK: usize = 2;
 
-fn order(case: &Case, effort: Effort) -> Order {
+fn order(case: &BenchCase, effort: Effort) -> Order {
     Order {
         scene: case.scene.clone(),
         overrides: Vec::new(),
@@ -147,7 +147,7 @@ fn order(case: &Case, effort: Effort) -> Order {
 }
 
 /// Why a case does not fit into the machine's memory, if it may not.
-fn too_large(case: &Case) -> Option<String> {
+fn too_large(case: &BenchCase) -> Option<String> {
     let (needed, left) = (MEMORY * case.expected as f64, memory::available()? as f64);
     let gigabytes = |bytes: f64| format!("{:.1} GB", bytes / 1e9);
     (needed > left).then(|| format!("it may need {}, and {} are free", gigabytes(needed), gigabytes(left)))
@@ -164,7 +164,7 @@ fn processor() -> String {
 ///
 /// # Errors
 /// The folder cannot be written.
-pub fn write_scenes(suite: &Suite, folder: &Path) -> Result<usize, Failure> {
+pub fn write_scenes(suite: &BenchSuite, folder: &Path) -> Result<usize, Failure> {
     let cannot = |error| Failure::Input(miette!("cannot write scenes to {}: {error}", folder.display()));
     std::fs::create_dir_all(folder).map_err(cannot)?;
     let mut written = 0;

@@ -1,6 +1,6 @@
 //! What a chart shows: the quantities that the scene knows answers for, or those that the user asks for.
 
-use super::measurements::{self, Clock};
+use super::measurements::{self, ChartTime};
 use super::{Chart, Curve, Panel};
 use crate::drawing::{Rgb, body_color};
 use clap::ValueEnum;
@@ -8,18 +8,18 @@ use stickslip::observe::{BodyRow, EnergyRow, ReadError, ReferenceCurve, Results}
 
 /// What the user asks for; nothing at all gives what the scene is about.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Choice {
+pub struct ChartChoice {
     /// Names of bodies; none means all that have something to show.
     pub bodies: Vec<String>,
     /// Columns of the table; none means those with known answers, or the table's first.
     pub quantities: Vec<String>,
     /// The table; none means those that the scene asks for.
-    pub table: Option<Table>,
+    pub table: Option<ChartTable>,
 }
 
 /// Tables that can be drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Table {
+pub enum ChartTable {
     /// Bodies through time
     Bodies,
     /// Force between each pair of bodies that touch
@@ -32,16 +32,16 @@ pub enum Table {
     Fronts,
 }
 
-impl Table {
+impl ChartTable {
     /// Its columns that can be drawn, the usual one first.
     pub fn columns(self) -> &'static [&'static str] {
         match self {
-            Table::Bodies => {
+            ChartTable::Bodies => {
                 &["x", "y", "z", "vx", "vy", "vz", "wx", "wy", "wz", "mass", "kinetic", "strain"]
             }
-            Table::Contacts => &["normal", "tangential", "fx", "fy", "fz", "nodes"],
-            Table::Probes => measurements::PROBE_COLUMNS,
-            Table::Arrivals | Table::Fronts => &["distance"],
+            ChartTable::Contacts => &["normal", "tangential", "fx", "fy", "fz", "nodes"],
+            ChartTable::Probes => measurements::PROBE_COLUMNS,
+            ChartTable::Arrivals | ChartTable::Fronts => &["distance"],
         }
     }
 }
@@ -54,20 +54,20 @@ const EXACT: Rgb = [0.22, 0.24, 0.27];
 ///
 /// # Errors
 /// The tables cannot be read.
-pub fn chart(results: &Results, choice: &Choice) -> Result<Chart, ReadError> {
+pub fn chart(results: &Results, choice: &ChartChoice) -> Result<Chart, ReadError> {
     let mut chart = match choice.table {
-        Some(Table::Bodies) => of_bodies(results, choice)?,
+        Some(ChartTable::Bodies) => of_bodies(results, choice)?,
         Some(table) => measurements::chart(results, (table, choice))?,
         None if choice.bodies.is_empty() && choice.quantities.is_empty() => of_everything(results)?,
         None => of_bodies(results, choice)?,
     };
-    Clock::of(results).apply(&mut chart);
+    ChartTime::of(results).apply(&mut chart);
     Ok(chart)
 }
 
 /// What the scene knows answers for and what it measures; without either, energy and the way of the centres.
 fn of_everything(results: &Results) -> Result<Chart, ReadError> {
-    let nothing = Choice::default();
+    let nothing = ChartChoice::default();
     let mut chart = of_bodies(results, &nothing)?;
     let measured = measurements::all(results)?;
     if !measured.panels.is_empty() {
@@ -80,7 +80,7 @@ fn of_everything(results: &Results) -> Result<Chart, ReadError> {
     Ok(chart)
 }
 
-fn of_bodies(results: &Results, choice: &Choice) -> Result<Chart, ReadError> {
+fn of_bodies(results: &Results, choice: &ChartChoice) -> Result<Chart, ReadError> {
     let rows = results.bodies_table()?;
     let references = &results.manifest().references;
     let shown = shown(results, choice);
@@ -104,7 +104,7 @@ struct Shown {
 }
 
 /// The quantities to show, in the order of the bodies; none for the picture of a run that nobody knows the answer to.
-fn shown(results: &Results, choice: &Choice) -> Vec<Shown> {
+fn shown(results: &Results, choice: &ChartChoice) -> Vec<Shown> {
     let wanted = |list: &[String], name: &str| list.is_empty() || list.iter().any(|entry| entry == name);
     let mut quantities = choice.quantities.clone();
     let mut shown = Vec::new();

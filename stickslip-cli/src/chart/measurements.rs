@@ -1,6 +1,6 @@
 //! What a chart shows of forces, probes, arrivals and fronts.
 
-use super::contents::{Choice, MOST_CURVES, Table};
+use super::contents::{ChartChoice, ChartTable, MOST_CURVES};
 use super::{Chart, Curve, Panel};
 use crate::drawing::body_color;
 use stickslip::observe::{ArrivalRow, ContactRow, FrontSpeedRow, ProbeRow, ReadError, Results};
@@ -25,18 +25,18 @@ pub const PROBE_COLUMNS: &[&str] = &[
 ];
 
 /// The time that a chart is drawn over: seconds, or the scene's own unit.
-pub struct Clock {
+pub struct ChartTime {
     unit: f64,
     name: String,
 }
 
-impl Clock {
+impl ChartTime {
     /// The unit of a run.
     pub fn of(results: &Results) -> Self {
         let unit = &results.manifest().scene["outputs"]["measurements"]["time_unit"];
         match (unit["seconds"].as_f64(), unit["name"].as_str()) {
-            (Some(seconds), Some(name)) => Clock { unit: seconds, name: format!("time / ({name})") },
-            _ => Clock { unit: 1.0, name: "time [s]".to_owned() },
+            (Some(seconds), Some(name)) => ChartTime { unit: seconds, name: format!("time / ({name})") },
+            _ => ChartTime { unit: 1.0, name: "time [s]".to_owned() },
         }
     }
 
@@ -58,30 +58,30 @@ pub fn empty(results: &Results) -> Chart {
 ///
 /// # Errors
 /// The table cannot be read.
-pub fn chart(results: &Results, (table, choice): (Table, &Choice)) -> Result<Chart, ReadError> {
+pub fn chart(results: &Results, (table, choice): (ChartTable, &ChartChoice)) -> Result<Chart, ReadError> {
     let mut chart = empty(results);
     let usual = [table.columns()[0].to_owned()];
     let columns = if choice.quantities.is_empty() { &usual } else { &choice.quantities[..] };
     let wanted = |name: &str| choice.bodies.is_empty() || choice.bodies.iter().any(|body| body == name);
     match table {
-        Table::Bodies => {}
-        Table::Contacts => {
+        ChartTable::Bodies => {}
+        ChartTable::Contacts => {
             let rows: Vec<ContactRow> = results.contacts_table()?;
             let rows = rows.into_iter().filter(|row| wanted(&row.body_a) || wanted(&row.body_b)).collect();
             let times: Vec<f64> = results.energy_table()?.iter().map(|row| row.time).collect();
             chart.panels = forces(rows, &times, columns);
         }
-        Table::Probes => {
+        ChartTable::Probes => {
             let mut rows = results.probes_table()?;
             rows.retain(|row| wanted(&row.probe));
             chart.panels = probes(&rows, columns);
         }
-        Table::Arrivals => {
+        ChartTable::Arrivals => {
             let mut rows = results.arrivals_table()?;
             rows.retain(|row| wanted(&row.place));
             chart.panels.extend(arrivals(&rows));
         }
-        Table::Fronts => {
+        ChartTable::Fronts => {
             let mut speeds = results.front_speeds_table()?;
             speeds.retain(|row| wanted(&row.front));
             let mut fronts =
@@ -100,14 +100,14 @@ pub fn chart(results: &Results, (table, choice): (Table, &Choice)) -> Result<Cha
 /// A table cannot be read.
 pub fn all(results: &Results) -> Result<Chart, ReadError> {
     let mut all = empty(results);
-    let choice = Choice::default();
-    for table in [Table::Probes, Table::Fronts, Table::Arrivals] {
+    let choice = ChartChoice::default();
+    for table in [ChartTable::Probes, ChartTable::Fronts, ChartTable::Arrivals] {
         let Chart { panels, caption, .. } = chart(results, (table, &choice))?;
         all.panels.extend(panels);
         all.caption += &caption;
     }
     if !all.panels.is_empty() {
-        let forces = chart(results, (Table::Contacts, &choice))?;
+        let forces = chart(results, (ChartTable::Contacts, &choice))?;
         all.panels.extend(forces.panels);
     }
     Ok(all)

@@ -4,7 +4,7 @@ mod contents;
 mod measurements;
 mod paper;
 
-pub use contents::{Choice, Table, chart};
+pub use contents::{ChartChoice, ChartTable, chart};
 pub use paper::{draw, svg};
 
 use crate::drawing::Rgb;

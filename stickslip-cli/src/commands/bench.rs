@@ -1,7 +1,7 @@
 //! `stickslip bench`: how fast the program is, and how fast this machine could be.
 
 use super::say;
-use crate::bench::{Extent, PROBLEMS, Peers, Suite, answer, write_scenes};
+use crate::bench::{BenchExtent, BenchSuite, PROBLEMS, Peers, answer, write_scenes};
 use crate::failure::Failure;
 use clap::Args;
 use miette::miette;
@@ -68,12 +68,12 @@ impl Arguments {
             return answer();
         }
         let extent = match (self.tiny, self.quick) {
-            (true, _) => Extent::Tiny,
-            (_, true) => Extent::Quick,
-            _ => Extent::Full,
+            (true, _) => BenchExtent::Tiny,
+            (_, true) => BenchExtent::Quick,
+            _ => BenchExtent::Full,
         };
         let all = std::thread::available_parallelism().map_or(1, usize::from);
-        let suite = Suite {
+        let suite = BenchSuite {
             extent,
             only: self.only,
             threads: self.threads.map_or(all, usize::from),

@@ -1,7 +1,7 @@
 //! `stickslip plot DIR`: charts over time.
 
 use super::{open, say};
-use crate::chart::{Choice, Table, chart, draw};
+use crate::chart::{ChartChoice, ChartTable, chart, draw};
 use crate::failure::Failure;
 use crate::sweep;
 use clap::Args;
@@ -17,7 +17,7 @@ pub struct Arguments {
 
     /// The table to draw; without this, what the scene knows answers for or measures.
     #[arg(long)]
-    table: Option<Table>,
+    table: Option<ChartTable>,
 
     /// Only this body, or the probe or front of this name; may be repeated.
     #[arg(long = "body", value_name = "NAME")]
@@ -51,7 +51,7 @@ impl Arguments {
             return self.sweep();
         }
         let results = open(&self.folder)?;
-        let table = self.table.unwrap_or(Table::Bodies);
+        let table = self.table.unwrap_or(ChartTable::Bodies);
         let names = names(&results, table).map_err(Failure::input)?;
         if let Some(unknown) = self.bodies.iter().find(|body| !names.contains(body)) {
             return Err(Failure::Input(miette!("--body: found `{unknown}`; allowed: {}", names.join(", "))));
@@ -60,7 +60,7 @@ impl Arguments {
             let allowed = table.columns().join(", ");
             return Err(Failure::Input(miette!("--quantity: found `{unknown}`; allowed: {allowed}")));
         }
-        let choice = Choice { bodies: self.bodies, quantities: self.quantities, table: self.table };
+        let choice = ChartChoice { bodies: self.bodies, quantities: self.quantities, table: self.table };
         let out = self.out.unwrap_or_else(|| self.folder.join("plot.png"));
         let chart = chart(&results, &choice).map_err(Failure::input)?;
         draw(&chart, &out, chart.size())?;
@@ -86,12 +86,12 @@ impl Arguments {
 }
 
 /// What the rows of a table are about.
-fn names(results: &Results, table: Table) -> Result<Vec<String>, ReadError> {
+fn names(results: &Results, table: ChartTable) -> Result<Vec<String>, ReadError> {
     let mut names: Vec<String> = match table {
-        Table::Bodies | Table::Contacts => return Ok(results.body_names().to_vec()),
-        Table::Probes => results.probes_table()?.into_iter().map(|row| row.probe).collect(),
-        Table::Arrivals => results.arrivals_table()?.into_iter().map(|row| row.place).collect(),
-        Table::Fronts => results.fronts_table()?.into_iter().map(|row| row.front).collect(),
+        ChartTable::Bodies | ChartTable::Contacts => return Ok(results.body_names().to_vec()),
+        ChartTable::Probes => results.probes_table()?.into_iter().map(|row| row.probe).collect(),
+        ChartTable::Arrivals => results.arrivals_table()?.into_iter().map(|row| row.place).collect(),
+        ChartTable::Fronts => results.fronts_table()?.into_iter().map(|row| row.front).collect(),
     };
     names.sort();
     names.dedup();

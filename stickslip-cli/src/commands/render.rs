@@ -6,7 +6,7 @@ use crate::drawing::{DrawError, save};
 use crate::failure::Failure;
 use crate::frame_pictures::FramePictures;
 use crate::illustration::{Album, PictureChoice, Pictures, snapshots};
-use crate::picture::{Quantity, QuantityParser, View};
+use crate::picture::{ColorQuantity, QuantityParser, Viewpoint};
 use clap::Args;
 use miette::miette;
 use std::fs::File;
@@ -43,7 +43,7 @@ pub struct Arguments {
 
     /// What colour stands for.
     #[arg(long, value_parser = QuantityParser, default_value = "body")]
-    color: Quantity,
+    color: ColorQuantity,
 
     /// Values at the ends of the colours, in SI units: LOW,HIGH.
     #[arg(long, value_name = "LOW,HIGH", value_parser = pair, allow_hyphen_values = true)]
@@ -51,7 +51,7 @@ pub struct Arguments {
 
     /// Where the camera stands: auto, an axis (x, -x, ...), or AZIMUTH,ELEVATION in degrees from the front.
     #[arg(long, default_value = "auto", allow_hyphen_values = true)]
-    view: View,
+    view: Viewpoint,
 
     /// Draw the other half across a plane of symmetry; without this, pictures of bodies do where the scene has just
     /// one.

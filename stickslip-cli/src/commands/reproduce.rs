@@ -3,7 +3,7 @@
 use super::{say, stop_on_interrupt};
 use crate::failure::Failure;
 use crate::jobs::{Earlier, JobRunner};
-use crate::reproduce::{Level, STUDIES, Study, reproduce};
+use crate::reproduce::{PaperResolution, STUDIES, Study, reproduce};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use miette::miette;
@@ -52,9 +52,9 @@ impl Arguments {
             |study: &&&dyn Study| self.only.is_empty() || self.only.iter().any(|name| name == study.name());
         let studies: Vec<&dyn Study> = STUDIES.iter().filter(chosen).copied().collect();
         let level = match (self.sketch, self.quick) {
-            (true, _) => Level::Sketch,
-            (false, true) => Level::Quick,
-            (false, false) => Level::Full,
+            (true, _) => PaperResolution::Sketch,
+            (false, true) => PaperResolution::Quick,
+            (false, false) => PaperResolution::Full,
         };
         std::fs::create_dir_all(&self.out)
             .map_err(|error| Failure::Input(miette!("cannot make {}: {error}", self.out.display())))?;

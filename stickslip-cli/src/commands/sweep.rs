@@ -6,7 +6,7 @@ use crate::chart::draw;
 use crate::drawing::DrawError;
 use crate::failure::Failure;
 use crate::progress::Family;
-use crate::sweep::{self, Crew, Member, News, Record, Row, Sweep, Variation};
+use crate::sweep::{self, Crew, Member, News, Sweep, SweepRecord, SweepRow, Variation};
 use clap::Args;
 use miette::miette;
 use std::io::IsTerminal;
@@ -55,13 +55,13 @@ impl Arguments {
         let members: Result<Vec<(Member, Loaded)>, Failure> =
             sweep::members(&self.variations).into_iter().map(read).collect();
         let members = members?;
-        let pending = |(member, loaded): &(Member, Loaded)| Row {
+        let pending = |(member, loaded): &(Member, Loaded)| SweepRow {
             run: member.folder.clone(),
             status: "pending".to_owned(),
             parameters: sweep::values(loaded, member, &varied),
-            ..Row::default()
+            ..SweepRow::default()
         };
-        let record = Record::new(&members[0].1.scene.title, varied.clone());
+        let record = SweepRecord::new(&members[0].1.scene.title, varied.clone());
         let mut table = Sweep { record, rows: members.iter().map(pending).collect() };
         let folder = self.out.clone().unwrap_or_else(|| default_folder(&self.scene, "sweep"));
         sweep::prepare(&folder, &table.record)?;
@@ -79,7 +79,8 @@ impl Arguments {
                     News::Progress(number, share) => display.show(number, share),
                     News::Ended(number, row) => {
                         let place = &mut table.rows[number];
-                        *place = Row { run: place.run.clone(), parameters: place.parameters.clone(), ..*row };
+                        *place =
+                            SweepRow { run: place.run.clone(), parameters: place.parameters.clone(), ..*row };
                         display.ended(number, &format!("{}: {} {}", place.run, place.status, place.error));
                         if written.is_ok() {
                             written = sweep::write_table(&crew.folder, &table);

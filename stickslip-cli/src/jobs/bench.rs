@@ -15,13 +15,13 @@ pub struct Need {
 }
 
 /// JobRunner, threads and memory that are free.
-pub struct Bench {
+pub struct FreeResources {
     threads: usize,
-    state: Mutex<State>,
+    state: Mutex<ResourceState>,
     freed: Condvar,
 }
 
-struct State {
+struct ResourceState {
     /// The longest last.
     waiting: Vec<Need>,
     threads: usize,
@@ -32,7 +32,7 @@ struct State {
 /// A run takes more memory than its particles and its grid: files under way, the order of particles, the program.
 const MARGIN: f64 = 1.5;
 
-impl Bench {
+impl FreeResources {
     /// A bench with this many threads and the memory that the machine has free.
     pub fn new(needs: Vec<Need>, threads: usize) -> Self {
         Self::with_memory(needs, threads, free_memory())
@@ -40,8 +40,8 @@ impl Bench {
 
     fn with_memory(mut needs: Vec<Need>, threads: usize, memory: f64) -> Self {
         needs.sort_by(|a, b| a.work.total_cmp(&b.work));
-        let state = State { waiting: needs, threads, memory, running: 0 };
-        Bench { threads, state: Mutex::new(state), freed: Condvar::new() }
+        let state = ResourceState { waiting: needs, threads, memory, running: 0 };
+        FreeResources { threads, state: Mutex::new(state), freed: Condvar::new() }
     }
 
     /// Calls `run` with each job and a number of threads, and gives what came out, in no order.
@@ -85,12 +85,12 @@ impl Bench {
         self.freed.notify_all();
     }
 
-    fn lock(&self) -> MutexGuard<'_, State> {
+    fn lock(&self) -> MutexGuard<'_, ResourceState> {
         self.state.lock().expect("no thread panics with the bench")
     }
 }
 
-impl State {
+impl ResourceState {
     /// A job takes as many of all `threads` as its part of the work that waits, at least one. A job too large for the
     /// memory runs alone: the estimate may be wrong, and nothing else would ever run it.
     fn take(&mut self, threads: usize) -> Option<(Need, usize)> {
@@ -120,14 +120,15 @@ mod tests {
 
     #[test]
     fn every_job_is_done_once() {
-        let mut done = Bench::with_memory(needs(&[3.0, 1.0, 2.0, 5.0], 1.0), 3, 100.0).work(|job, _| job);
+        let mut done =
+            FreeResources::with_memory(needs(&[3.0, 1.0, 2.0, 5.0], 1.0), 3, 100.0).work(|job, _| job);
         done.sort_unstable();
         assert_eq!(done, [0, 1, 2, 3]);
     }
 
     #[test]
     fn the_longest_comes_first_and_gets_its_share_of_threads() {
-        let bench = Bench::with_memory(needs(&[1.0, 6.0, 1.0], 0.0), 8, 1.0);
+        let bench = FreeResources::with_memory(needs(&[1.0, 6.0, 1.0], 0.0), 8, 1.0);
         let taken = [(); 2].map(|()| bench.take().map(|(need, threads)| (need.job, threads)));
         assert_eq!(taken[0], Some((1, 6)));
         assert_eq!(
@@ -141,7 +142,7 @@ mod tests {
     fn jobs_run_together_only_while_memory_lasts() {
         let most = AtomicUsize::new(0);
         let now = AtomicUsize::new(0);
-        Bench::with_memory(needs(&[1.0; 6], 10.0), 4, 2.0 * MARGIN * 10.0).work(|_, _| {
+        FreeResources::with_memory(needs(&[1.0; 6], 10.0), 4, 2.0 * MARGIN * 10.0).work(|_, _| {
             most.fetch_max(now.fetch_add(1, Ordering::SeqCst) + 1, Ordering::SeqCst);
             std::thread::sleep(std::time::Duration::from_millis(5));
             now.fetch_sub(1, Ordering::SeqCst);
@@ -151,6 +152,9 @@ mod tests {
 
     #[test]
     fn a_job_that_is_too_large_runs_alone() {
-        assert_eq!(Bench::with_memory(needs(&[1.0, 1.0], 1e9), 2, 1.0).work(|_, threads| threads).len(), 2);
+        assert_eq!(
+            FreeResources::with_memory(needs(&[1.0, 1.0], 1e9), 2, 1.0).work(|_, threads| threads).len(),
+            2
+        );
     }
 }

@@ -4,7 +4,7 @@ mod bench;
 mod board;
 
 use crate::failure::Failure;
-use bench::{Bench, Need};
+use bench::{FreeResources, Need};
 use board::Board;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -74,7 +74,7 @@ impl JobRunner {
             }
         }
         let board = Board::new(needs.len(), outcomes.len());
-        let done = Bench::new(needs, self.threads).work(|number, threads| {
+        let done = FreeResources::new(needs, self.threads).work(|number, threads| {
             let job = &jobs[number];
             let outcome = (!self.stop.load(Ordering::Relaxed)).then(|| self.run(job, threads, &board));
             (job.name.clone(), outcome)

@@ -9,7 +9,7 @@ pub type Point = Vector<f64, 3>;
 
 /// Where the camera stands.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum View {
+pub enum Viewpoint {
     /// From the front, to the right and above, with gravity pointing down.
     Auto,
     /// On an axis: which, and on its negative side or not.
@@ -23,22 +23,22 @@ pub enum View {
 #[error("found `{0}`; allowed: auto, x, -x, y, -y, z, -z, or two angles in degrees such as 30,20")]
 pub struct UnknownView(String);
 
-impl FromStr for View {
+impl FromStr for Viewpoint {
     type Err = UnknownView;
 
     fn from_str(text: &str) -> Result<Self, UnknownView> {
         let axis = |name: &str| ["x", "y", "z"].iter().position(|axis| *axis == name);
         let unknown = || UnknownView(text.to_owned());
         if text == "auto" {
-            return Ok(View::Auto);
+            return Ok(Viewpoint::Auto);
         }
         if let Some(axis) = axis(text.trim_start_matches('-')) {
-            return Ok(View::Axis(axis, text.starts_with('-')));
+            return Ok(Viewpoint::Axis(axis, text.starts_with('-')));
         }
         let (azimuth, elevation) = text.split_once(',').ok_or_else(unknown)?;
         let angle = |text: &str| text.trim().parse::<f64>().ok().filter(|angle| angle.is_finite());
         match (angle(azimuth), angle(elevation)) {
-            (Some(azimuth), Some(elevation)) => Ok(View::Angles(azimuth, elevation)),
+            (Some(azimuth), Some(elevation)) => Ok(Viewpoint::Angles(azimuth, elevation)),
             _ => Err(unknown()),
         }
     }
@@ -61,14 +61,14 @@ pub struct Camera {
 
 impl Camera {
     /// A camera that looks in a direction of the user's choice; [`Camera::fit`] moves it to where things are.
-    pub fn new(view: View, setting: &Setting) -> Self {
+    pub fn new(view: Viewpoint, setting: &Setting) -> Self {
         let up = vertical(setting);
         let front = front(setting, up);
         let side = Vector(cross(up.0, front.0));
         let toward = match view {
-            View::Auto => from_angles([front, side, up], 16.0, 18.0),
-            View::Angles(azimuth, elevation) => from_angles([front, side, up], azimuth, elevation),
-            View::Axis(axis, negative) => unit(axis) * if negative { -1.0 } else { 1.0 },
+            Viewpoint::Auto => from_angles([front, side, up], 16.0, 18.0),
+            Viewpoint::Angles(azimuth, elevation) => from_angles([front, side, up], azimuth, elevation),
+            Viewpoint::Axis(axis, negative) => unit(axis) * if negative { -1.0 } else { 1.0 },
         };
         Camera::facing(toward, up)
     }
@@ -154,16 +154,16 @@ mod tests {
 
     #[test]
     fn views_read_as_they_are_written() {
-        assert_eq!("-y".parse::<View>().unwrap(), View::Axis(1, true));
-        assert_eq!("30,-5".parse::<View>().unwrap(), View::Angles(30.0, -5.0));
-        assert!("above".parse::<View>().unwrap_err().to_string().contains("`above`"));
-        assert!("1,inf".parse::<View>().is_err());
+        assert_eq!("-y".parse::<Viewpoint>().unwrap(), Viewpoint::Axis(1, true));
+        assert_eq!("30,-5".parse::<Viewpoint>().unwrap(), Viewpoint::Angles(30.0, -5.0));
+        assert!("above".parse::<Viewpoint>().unwrap_err().to_string().contains("`above`"));
+        assert!("1,inf".parse::<Viewpoint>().is_err());
     }
 
     #[test]
     fn unproject_undoes_project() {
         let setting = Setting { gravity: [7.0, 0.0, -7.0], ..Setting::default() };
-        let camera = Camera::new(View::Auto, &setting);
+        let camera = Camera::new(Viewpoint::Auto, &setting);
         let camera = camera.fit([unit(0), unit(1), -unit(2)], [10.0, 20.0, 300.0, 200.0]);
         let point = Vector([0.3, -0.2, 0.9]);
         assert!((camera.unproject(camera.project(point)) - point).norm() < 1e-12);
@@ -172,7 +172,7 @@ mod tests {
     #[test]
     fn every_axis_can_be_looked_along() {
         for axis in 0..3 {
-            let camera = Camera::new(View::Axis(axis, false), &Setting::default());
+            let camera = Camera::new(Viewpoint::Axis(axis, false), &Setting::default());
             assert!((camera.right.norm() - 1.0).abs() < 1e-12);
             assert!((Vector(cross(camera.right.0, camera.up.0)) - camera.toward).norm() < 1e-12);
         }
@@ -181,6 +181,6 @@ mod tests {
     #[test]
     fn x_runs_to_the_right() {
         let setting = Setting { gravity: [7.0, 0.0, -7.0], ..Setting::default() };
-        assert!(Camera::new(View::Auto, &setting).right[0] > 0.0);
+        assert!(Camera::new(Viewpoint::Auto, &setting).right[0] > 0.0);
     }
 }

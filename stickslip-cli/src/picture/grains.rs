@@ -1,8 +1,8 @@
 //! Particles as a picture shows them: place, size, shape and colour, with mirror images where the user wants them.
 
 use super::quantity::{colors, determinant};
-use super::setting::{Mirror, Setting};
-use super::{Quantity, Rgb};
+use super::setting::{Setting, SymmetryPlane};
+use super::{ColorQuantity, Rgb};
 use crate::drawing::{Scale, body_color, shaded};
 use std::collections::HashMap;
 use stickslip::door::ParticleSnapshot;
@@ -35,12 +35,12 @@ pub type Quarters = HashMap<(u32, u32), bool>;
 /// The particles of a snapshot, coloured.
 pub fn grains(
     particles: &ParticleSnapshot,
-    quantity: &Quantity,
+    quantity: &ColorQuantity,
     scale: &Scale,
     quarters: &Quarters,
 ) -> Vec<Grain> {
     let colors = match quantity {
-        Quantity::Body => quartered(particles, quarters),
+        ColorQuantity::Body => quartered(particles, quarters),
         _ => colors(quantity, scale, particles),
     };
     let count = particles.body.len();
@@ -80,8 +80,8 @@ pub fn quarters(first: &ParticleSnapshot, setting: &Setting) -> Quarters {
 }
 
 /// Adds the mirror image of every grain.
-pub fn mirrored(mut grains: Vec<Grain>, mirror: Mirror) -> Vec<Grain> {
-    let Mirror { axis, position } = mirror;
+pub fn mirrored(mut grains: Vec<Grain>, mirror: SymmetryPlane) -> Vec<Grain> {
+    let SymmetryPlane { axis, position } = mirror;
     let image = |grain: &Grain| {
         let mut image = *grain;
         image.position[axis] = 2.0 * position - grain.position[axis];
@@ -109,7 +109,7 @@ mod tests {
             deformation: [1.0, 0.3, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0],
             color: [0.0; 3],
         };
-        let both = mirrored(vec![grain], Mirror { axis: 1, position: 0.5 });
+        let both = mirrored(vec![grain], SymmetryPlane { axis: 1, position: 0.5 });
         assert_eq!(both[1].position, [1.0, -1.0, 3.0]);
         assert_eq!(both[1].deformation[1], -0.3);
         assert_eq!(both[1].deformation[0], 1.0);

@@ -131,7 +131,7 @@ impl<'a> Lit<'a> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::camera::View;
+    use super::super::camera::Viewpoint;
     use super::super::setting::Setting;
     use super::super::{sample, surface::surface};
     use super::*;
@@ -141,7 +141,7 @@ mod tests {
     fn the_side_that_faces_the_lamp_is_brighter() {
         let grains = sample::ball([0.0; 3], 1.0, 0.1);
         let balls = surface(&grains);
-        let camera = Camera::new(View::Auto, &Setting::default());
+        let camera = Camera::new(Viewpoint::Auto, &Setting::default());
         let corners = [Vector([-1.2; 3]), Vector([1.2; 3])];
         let lit = Lit::new(&grains, &balls, camera.fit(corners, [0.0, 0.0, 200.0, 200.0]), [200, 200], 1.0);
         let brightness = |x, y| lit.color(x, y).map(|rgb| rgb.iter().sum::<f32>());

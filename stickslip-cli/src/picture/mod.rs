@@ -12,39 +12,39 @@ mod setting;
 mod splat;
 mod surface;
 
-pub use camera::View;
+pub use camera::Viewpoint;
 pub use grains::{Quarters, quarters};
-pub use quantity::{Quantity, QuantityParser};
-pub use setting::{Mirror, Setting};
+pub use quantity::{ColorQuantity, QuantityParser};
+pub use setting::{Setting, SymmetryPlane};
 
 use crate::drawing::{Canvas, DrawError, Rgb, SAMPLES, Scale, body_color};
 use camera::{Camera, Point, unit};
 use grains::Grain;
 use light::Lit;
-use plane::{Drawn, PlaneView};
+use plane::{DrawnGrains, PlaneView};
 use stickslip::door::ParticleSnapshot;
 use stickslip::image::Image;
 use stickslip::tensor::Vector;
 
 /// How a picture is to look.
 #[derive(Clone, Debug)]
-pub struct Look {
+pub struct PictureStyle {
     /// What colour stands for.
-    pub quantity: Quantity,
+    pub quantity: ColorQuantity,
     /// The colours of values.
     pub scale: Scale,
     /// Where the camera stands; plane scenes are always seen from the front.
-    pub view: View,
+    pub view: Viewpoint,
     /// Where the other half of the scene is drawn.
-    pub mirror: Option<Mirror>,
+    pub mirror: Option<SymmetryPlane>,
     /// Width and height in pixels; without them, the height follows the scene.
     pub size: Option<[usize; 2]>,
     /// The part of space to show, mirror image left out; without it, everything there is.
-    pub bounds: Option<Bounds>,
+    pub bounds: Option<BoxCorners>,
 }
 
 /// A box along the axes: lower and upper corner [m].
-pub type Bounds = [[f64; 3]; 2];
+pub type BoxCorners = [[f64; 3]; 2];
 
 /// What the colours mean.
 enum Legend {
@@ -72,7 +72,7 @@ pub fn draw(
     particles: &ParticleSnapshot,
     setting: &Setting,
     quarters: &Quarters,
-    (time, look): (f64, &Look),
+    (time, look): (f64, &PictureStyle),
 ) -> Result<Canvas, DrawError> {
     if particles.body.is_empty() {
         return Err(DrawError::Empty("the snapshot has no particles".to_owned()));
@@ -105,7 +105,7 @@ pub fn headed(image: &Image, setting: &Setting, time: f64) -> Result<Image, Draw
 }
 
 /// Points that the picture must hold: the corners of the user's box, or of every particle's.
-fn extent(grains: &[Grain], look: &Look) -> Vec<Point> {
+fn extent(grains: &[Grain], look: &PictureStyle) -> Vec<Point> {
     let corners = |low: [f64; 3], high: [f64; 3]| {
         (0..8).map(move |i| Vector::from_fn(|axis| if i >> axis & 1 == 0 { low[axis] } else { high[axis] }))
     };
@@ -131,7 +131,7 @@ fn span(points: &[Point], direction: Point) -> [f64; 2] {
 }
 
 /// The smallest box around all particles with their sizes [m].
-pub fn bounds(particles: &ParticleSnapshot) -> Bounds {
+pub fn bounds(particles: &ParticleSnapshot) -> BoxCorners {
     let mut bounds = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
     for (x, volume) in particles.position.iter().zip(&particles.volume) {
         let half = 0.5 * if particles.dimension == 2 { volume.sqrt() } else { volume.cbrt() };
@@ -144,7 +144,7 @@ pub fn bounds(particles: &ParticleSnapshot) -> Bounds {
 }
 
 /// The box with its mirror image.
-fn widened(mut bounds: Bounds, mirror: Mirror) -> Bounds {
+fn widened(mut bounds: BoxCorners, mirror: SymmetryPlane) -> BoxCorners {
     let ends = [bounds[0][mirror.axis], bounds[1][mirror.axis]];
     for end in ends {
         let image = 2.0 * mirror.position - end;
@@ -154,8 +154,8 @@ fn widened(mut bounds: Bounds, mirror: Mirror) -> Bounds {
     bounds
 }
 
-fn legend(particles: &ParticleSnapshot, setting: &Setting, look: &Look) -> Legend {
-    if look.quantity != Quantity::Body {
+fn legend(particles: &ParticleSnapshot, setting: &Setting, look: &PictureStyle) -> Legend {
+    if look.quantity != ColorQuantity::Body {
         let (title, unit) = look.quantity.label(particles);
         return Legend::Bar { scale: look.scale, title, unit };
     }
@@ -165,7 +165,7 @@ fn legend(particles: &ParticleSnapshot, setting: &Setting, look: &Look) -> Legen
 }
 
 /// Pixels of the picture and of the room for the bodies in it: (left, top, right, bottom) margins go off.
-fn room(look: &Look, margins: [usize; 4], aspect: f64) -> [[usize; 2]; 2] {
+fn room(look: &PictureStyle, margins: [usize; 4], aspect: f64) -> [[usize; 2]; 2] {
     let [left, top, right, bottom] = margins;
     let size = look.size.unwrap_or_else(|| {
         let height = ((WIDTH - left - right) as f64 / aspect).clamp(280.0, 800.0) as usize;
@@ -178,7 +178,7 @@ fn room(look: &Look, margins: [usize; 4], aspect: f64) -> [[usize; 2]; 2] {
 fn plane_picture(
     grains: &[Grain],
     extent: &[Point],
-    look: &Look,
+    look: &PictureStyle,
     legend: &Legend,
 ) -> Result<Canvas, DrawError> {
     let spans = [0, 1].map(|axis| span(extent, unit(axis)));
@@ -197,7 +197,7 @@ fn plane_picture(
         size: inner,
     };
     let [left, top] = [margins[0] * SAMPLES, margins[1] * SAMPLES];
-    let drawn = Drawn::new(grains, &window);
+    let drawn = DrawnGrains::new(grains, &window);
     canvas.paint([left, top, inner[0], inner[1]], |x, y| drawn.color(x, y));
     let ink = canvas.ink();
     furniture::axes(&ink, &window, (left as i32, top as i32))?;
@@ -209,7 +209,7 @@ fn plane_picture(
 fn space_picture(
     grains: &[Grain],
     extent: &[Point],
-    (look, setting): (&Look, &Setting),
+    (look, setting): (&PictureStyle, &Setting),
     legend: &Legend,
 ) -> Result<Canvas, DrawError> {
     let camera = Camera::new(look.view, setting);
@@ -223,7 +223,7 @@ fn space_picture(
     let area = [margins[0], margins[1], inner[0], inner[1]].map(|length| (length * SAMPLES) as f64);
     let camera = camera.fit(extent.iter().copied(), area);
     let balls = surface::surface(grains);
-    let contrast = if look.quantity == Quantity::Body { 1.0 } else { VALUE_CONTRAST };
+    let contrast = if look.quantity == ColorQuantity::Body { 1.0 } else { VALUE_CONTRAST };
     let lit = Lit::new(grains, &balls, camera, canvas.size, contrast);
     let [width, height] = canvas.size;
     canvas.paint([0, 0, width, height], |x, y| lit.color(x, y));
@@ -240,13 +240,13 @@ mod tests {
     use super::*;
     use crate::drawing::save;
 
-    fn look(quantity: Quantity, particles: &ParticleSnapshot) -> Look {
+    fn look(quantity: ColorQuantity, particles: &ParticleSnapshot) -> PictureStyle {
         let count = particles.body.len();
         let values: Vec<f64> = (0..count).map(|i| quantity.value(particles, i)).collect();
-        Look {
+        PictureStyle {
             scale: quantity.scale(&values),
             quantity,
-            view: View::Auto,
+            view: Viewpoint::Auto,
             mirror: None,
             size: None,
             bounds: None,
@@ -260,7 +260,7 @@ mod tests {
             gravity,
             bodies: vec!["sphere".to_owned(), "slab".to_owned()],
             round: vec![Some(center), None],
-            mirrors: vec![Mirror { axis: 1, position: -2.0 }],
+            mirrors: vec![SymmetryPlane { axis: 1, position: -2.0 }],
         }
     }
 
@@ -282,7 +282,7 @@ mod tests {
             center[dimension - 1] = 1.0;
             let setting = setting(gravity, center);
             let quarters = quarters(&particles, &setting);
-            for quantity in [Quantity::Body, Quantity::Velocity, Quantity::Pressure] {
+            for quantity in [ColorQuantity::Body, ColorQuantity::Velocity, ColorQuantity::Pressure] {
                 let look = look(quantity.clone(), &particles);
                 let canvas = draw(&particles, &setting, &quarters, (0.5, &look)).unwrap();
                 let share = inked_share(&canvas);
@@ -296,7 +296,7 @@ mod tests {
     #[test]
     fn a_snapshot_without_particles_is_an_error() {
         let nothing = ParticleSnapshot { dimension: 3, ..ParticleSnapshot::default() };
-        let look = look(Quantity::Body, &nothing);
+        let look = look(ColorQuantity::Body, &nothing);
         let drawn = draw(&nothing, &Setting::default(), &Quarters::default(), (0.0, &look));
         assert!(matches!(drawn, Err(DrawError::Empty(_))));
     }

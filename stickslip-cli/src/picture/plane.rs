@@ -35,14 +35,14 @@ impl PlaneView {
 }
 
 /// The grains in a window.
-pub struct Drawn<'a> {
+pub struct DrawnGrains<'a> {
     grains: &'a [Grain],
     size: [usize; 2],
     /// Index of the grain at each pixel.
     grain: Vec<u32>,
 }
 
-impl<'a> Drawn<'a> {
+impl<'a> DrawnGrains<'a> {
     /// Draws the grains; where they overlap, the later one shows.
     pub fn new(grains: &'a [Grain], window: &PlaneView) -> Self {
         let [width, height] = window.size;
@@ -52,7 +52,7 @@ impl<'a> Drawn<'a> {
                 draw((i as u32, each), window, band * BAND, pixels);
             }
         });
-        Drawn { grains, size: window.size, grain }
+        DrawnGrains { grains, size: window.size, grain }
     }
 
     /// The colour of a pixel; `None` where there is nothing.
@@ -112,7 +112,7 @@ mod tests {
         };
         let grains = [grain];
         let window = PlaneView { low: [-2.0, -2.0], high: [2.0, 2.0], size: [80, 80] };
-        let drawn = Drawn::new(&grains, &window);
+        let drawn = DrawnGrains::new(&grains, &window);
         let hit = |x: f64, y: f64| {
             let [column, row] = window.pixel([x, y]);
             drawn.color(column as usize, row as usize).is_some()

@@ -10,7 +10,7 @@ use stickslip::door::ParticleSnapshot;
 /// What the colour of a particle stands for.
 #[derive(Clone, Debug, PartialEq, Eq, ValueEnum)]
 #[value(rename_all = "snake_case")]
-pub enum Quantity {
+pub enum ColorQuantity {
     /// The body it belongs to; round bodies get quarters, so that turning shows
     Body,
     /// Speed
@@ -45,22 +45,22 @@ pub enum Quantity {
     History(String),
 }
 
-/// Reads a [`Quantity`]: a word that stands for one, or else the name of a law's history.
+/// Reads a [`ColorQuantity`]: a word that stands for one, or else the name of a law's history.
 #[derive(Clone, Debug)]
 pub struct QuantityParser;
 
 impl TypedValueParser for QuantityParser {
-    type Value = Quantity;
+    type Value = ColorQuantity;
 
     fn parse_ref(
         &self,
         command: &Command,
         argument: Option<&Arg>,
         value: &OsStr,
-    ) -> Result<Quantity, clap::Error> {
-        let known = EnumValueParser::<Quantity>::new().parse_ref(command, argument, value);
+    ) -> Result<ColorQuantity, clap::Error> {
+        let known = EnumValueParser::<ColorQuantity>::new().parse_ref(command, argument, value);
         match value.to_str() {
-            Some(name) if known.is_err() && is_name(name) => Ok(Quantity::History(name.to_owned())),
+            Some(name) if known.is_err() && is_name(name) => Ok(ColorQuantity::History(name.to_owned())),
             _ => known,
         }
     }
@@ -70,7 +70,7 @@ impl TypedValueParser for QuantityParser {
             "What a material's law remembers, such as plastic_strain: a number itself, of a tensor the root of the sum of its \
              squared entries",
         );
-        let words = Quantity::value_variants().iter().filter_map(ValueEnum::to_possible_value);
+        let words = ColorQuantity::value_variants().iter().filter_map(ValueEnum::to_possible_value);
         Some(Box::new(words.chain([history])))
     }
 }
@@ -82,55 +82,57 @@ fn is_name(text: &str) -> bool {
 
 /// Where the colours of a quantity come from.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Kind {
+enum ColorSource {
     /// From zero up.
     Magnitude,
     /// Both sides of a special value.
     Around(f64),
 }
 
-impl Quantity {
-    /// The value at a particle in SI units; 0 for [`Quantity::Body`], which has no value.
+impl ColorQuantity {
+    /// The value at a particle in SI units; 0 for [`ColorQuantity::Body`], which has no value.
     pub fn value(&self, particles: &ParticleSnapshot, i: usize) -> f64 {
         let v = &particles.velocity[i];
         let s = &particles.stress[i];
         match self {
-            Quantity::Body => 0.0,
-            Quantity::Velocity => v.iter().map(|c| c * c).sum::<f64>().sqrt(),
-            Quantity::Vx => v[0],
-            Quantity::Vy => v[1],
-            Quantity::Vz => v[2],
-            Quantity::Pressure => -(s[0] + s[1] + s[2]) / 3.0,
-            Quantity::VonMises => von_mises(s),
-            Quantity::Xx => s[0],
-            Quantity::Yy => s[1],
-            Quantity::Zz => s[2],
-            Quantity::Xy => s[3],
-            Quantity::Yz => s[4],
-            Quantity::Xz => s[5],
-            Quantity::Jacobian => determinant(&particles.deformation[i]),
-            Quantity::History(name) => particles.remembered(name).map_or(0.0, |column| column.magnitude(i)),
+            ColorQuantity::Body => 0.0,
+            ColorQuantity::Velocity => v.iter().map(|c| c * c).sum::<f64>().sqrt(),
+            ColorQuantity::Vx => v[0],
+            ColorQuantity::Vy => v[1],
+            ColorQuantity::Vz => v[2],
+            ColorQuantity::Pressure => -(s[0] + s[1] + s[2]) / 3.0,
+            ColorQuantity::VonMises => von_mises(s),
+            ColorQuantity::Xx => s[0],
+            ColorQuantity::Yy => s[1],
+            ColorQuantity::Zz => s[2],
+            ColorQuantity::Xy => s[3],
+            ColorQuantity::Yz => s[4],
+            ColorQuantity::Xz => s[5],
+            ColorQuantity::Jacobian => determinant(&particles.deformation[i]),
+            ColorQuantity::History(name) => {
+                particles.remembered(name).map_or(0.0, |column| column.magnitude(i))
+            }
         }
     }
 
     /// Words and unit for the colour bar; no unit for a ratio.
     pub fn label(&self, particles: &ParticleSnapshot) -> (String, String) {
         let (words, unit) = match self {
-            Quantity::Body => ("body", ""),
-            Quantity::Velocity => ("speed", "m/s"),
-            Quantity::Vx => ("velocity x", "m/s"),
-            Quantity::Vy => ("velocity y", "m/s"),
-            Quantity::Vz => ("velocity z", "m/s"),
-            Quantity::Pressure => ("pressure", "Pa"),
-            Quantity::VonMises => ("von Mises stress", "Pa"),
-            Quantity::Xx => ("stress xx", "Pa"),
-            Quantity::Yy => ("stress yy", "Pa"),
-            Quantity::Zz => ("stress zz", "Pa"),
-            Quantity::Xy => ("stress xy", "Pa"),
-            Quantity::Yz => ("stress yz", "Pa"),
-            Quantity::Xz => ("stress xz", "Pa"),
-            Quantity::Jacobian => ("volume ratio J", ""),
-            Quantity::History(name) => {
+            ColorQuantity::Body => ("body", ""),
+            ColorQuantity::Velocity => ("speed", "m/s"),
+            ColorQuantity::Vx => ("velocity x", "m/s"),
+            ColorQuantity::Vy => ("velocity y", "m/s"),
+            ColorQuantity::Vz => ("velocity z", "m/s"),
+            ColorQuantity::Pressure => ("pressure", "Pa"),
+            ColorQuantity::VonMises => ("von Mises stress", "Pa"),
+            ColorQuantity::Xx => ("stress xx", "Pa"),
+            ColorQuantity::Yy => ("stress yy", "Pa"),
+            ColorQuantity::Zz => ("stress zz", "Pa"),
+            ColorQuantity::Xy => ("stress xy", "Pa"),
+            ColorQuantity::Yz => ("stress yz", "Pa"),
+            ColorQuantity::Xz => ("stress xz", "Pa"),
+            ColorQuantity::Jacobian => ("volume ratio J", ""),
+            ColorQuantity::History(name) => {
                 let unit = particles.remembered(name).map_or("", |column| &column.unit);
                 return (name.replace('_', " "), unit.to_owned());
             }
@@ -140,11 +142,11 @@ impl Quantity {
 
     /// Whether a snapshot has it; if not, what there is instead.
     pub fn is_in(&self, particles: &ParticleSnapshot) -> Result<(), String> {
-        let Quantity::History(name) = self else { return Ok(()) };
+        let ColorQuantity::History(name) = self else { return Ok(()) };
         if particles.remembered(name).is_some() {
             return Ok(());
         }
-        let words = Quantity::value_variants().iter().filter_map(ValueEnum::to_possible_value);
+        let words = ColorQuantity::value_variants().iter().filter_map(ValueEnum::to_possible_value);
         let words: Vec<String> = words.map(|word| word.get_name().to_owned()).collect();
         let history = particles.history.iter().map(|column| column.name.clone());
         let all: Vec<String> = words.into_iter().chain(history).collect();
@@ -160,8 +162,10 @@ impl Quantity {
         };
         let (low, high) = (at(0.001), at(0.999));
         match self.kind(low) {
-            Kind::Magnitude => Scale { range: [0.0, if high > 0.0 { high } else { 1.0 }], diverging: false },
-            Kind::Around(middle) => {
+            ColorSource::Magnitude => {
+                Scale { range: [0.0, if high > 0.0 { high } else { 1.0 }], diverging: false }
+            }
+            ColorSource::Around(middle) => {
                 let half = (high - middle).abs().max((low - middle).abs());
                 let half = if half > 0.0 { half } else { 1.0 };
                 Scale { range: [middle - half, middle + half], diverging: true }
@@ -171,16 +175,16 @@ impl Quantity {
 
     /// Colours between two ends that the user chose.
     pub fn scale_between(&self, range: [f64; 2]) -> Scale {
-        Scale { range, diverging: self.kind(range[0]) != Kind::Magnitude }
+        Scale { range, diverging: self.kind(range[0]) != ColorSource::Magnitude }
     }
 
     /// Where the colours come from if values go down to this.
-    fn kind(&self, low: f64) -> Kind {
+    fn kind(&self, low: f64) -> ColorSource {
         match self {
-            Quantity::Body | Quantity::Velocity | Quantity::VonMises => Kind::Magnitude,
-            Quantity::History(_) if low >= 0.0 => Kind::Magnitude,
-            Quantity::Jacobian => Kind::Around(1.0),
-            _ => Kind::Around(0.0),
+            ColorQuantity::Body | ColorQuantity::Velocity | ColorQuantity::VonMises => ColorSource::Magnitude,
+            ColorQuantity::History(_) if low >= 0.0 => ColorSource::Magnitude,
+            ColorQuantity::Jacobian => ColorSource::Around(1.0),
+            _ => ColorSource::Around(0.0),
         }
     }
 }
@@ -199,7 +203,7 @@ pub fn determinant(f: &[f64; 9]) -> f64 {
 }
 
 /// The colour of every particle for a quantity with values.
-pub fn colors(quantity: &Quantity, scale: &Scale, particles: &ParticleSnapshot) -> Vec<Rgb> {
+pub fn colors(quantity: &ColorQuantity, scale: &Scale, particles: &ParticleSnapshot) -> Vec<Rgb> {
     (0..particles.body.len()).map(|i| scale.color(quantity.value(particles, i))).collect()
 }
 
@@ -233,7 +237,7 @@ mod tests {
             ..Default::default()
         };
         let [heat, back_stress, none] =
-            ["heat", "back_stress", "none"].map(|name| Quantity::History(name.into()));
+            ["heat", "back_stress", "none"].map(|name| ColorQuantity::History(name.into()));
         assert_eq!([heat.value(&particles, 1), back_stress.value(&particles, 0)], [-1.0, 3.0]);
         assert!((back_stress.value(&particles, 1) - 8.0_f64.sqrt()).abs() < 1e-15);
         assert_eq!(back_stress.label(&particles), ("back stress".into(), "Pa".into()));
@@ -244,13 +248,13 @@ mod tests {
 
     #[test]
     fn a_signed_scale_is_symmetric() {
-        let scale = Quantity::Pressure.scale(&[-1.0, 0.5, 4.0, 4.0]);
+        let scale = ColorQuantity::Pressure.scale(&[-1.0, 0.5, 4.0, 4.0]);
         assert_eq!(scale.range, [-4.0, 4.0]);
     }
 
     #[test]
     fn a_scale_of_nothing_is_still_a_scale() {
-        let [low, high] = Quantity::Velocity.scale(&[]).range;
+        let [low, high] = ColorQuantity::Velocity.scale(&[]).range;
         assert!(low < high);
     }
 }

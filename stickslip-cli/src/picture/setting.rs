@@ -16,12 +16,12 @@ pub struct Setting {
     /// Centres at the start of the bodies that are round [m].
     pub round: Vec<Option<[f64; 3]>>,
     /// The planes of symmetry.
-    pub mirrors: Vec<Mirror>,
+    pub mirrors: Vec<SymmetryPlane>,
 }
 
 /// A plane of symmetry across an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Mirror {
+pub struct SymmetryPlane {
     /// 0, 1 or 2.
     pub axis: usize,
     /// Where it stands on the axis [m].
@@ -48,7 +48,7 @@ impl Setting {
     }
 
     /// The plane of symmetry to mirror the picture at when the user asks for nothing else: the only one there is.
-    pub fn only_mirror(&self) -> Option<Mirror> {
+    pub fn only_mirror(&self) -> Option<SymmetryPlane> {
         match self.mirrors.as_slice() {
             [mirror] => Some(*mirror),
             _ => None,
@@ -74,11 +74,14 @@ fn round(shape: &Value) -> Option<[f64; 3]> {
     parts.as_array()?.iter().find_map(round)
 }
 
-fn mirrors(domain: &Value) -> Vec<Mirror> {
+fn mirrors(domain: &Value) -> Vec<SymmetryPlane> {
     let face = |axis: usize, side: usize| {
         let corner = if side == 0 { "min" } else { "max" };
         let symmetric = domain["faces"][axis][side] == "symmetry";
-        symmetric.then(|| domain[corner][axis].as_f64()).flatten().map(|position| Mirror { axis, position })
+        symmetric
+            .then(|| domain[corner][axis].as_f64())
+            .flatten()
+            .map(|position| SymmetryPlane { axis, position })
     };
     (0..6).filter_map(|i| face(i / 2, i % 2)).collect()
 }
@@ -107,7 +110,7 @@ mod tests {
         });
         let setting = Setting::of_json(&scene);
         assert_eq!(setting.round, vec![Some([1.0, 0.0, 2.0])]);
-        assert_eq!(setting.only_mirror(), Some(Mirror { axis: 1, position: 0.0 }));
+        assert_eq!(setting.only_mirror(), Some(SymmetryPlane { axis: 1, position: 0.0 }));
         assert_eq!(setting.body_name(0), "ball");
         assert_eq!(setting.body_name(7), "body 7");
     }

@@ -104,7 +104,7 @@ fn draw(
 
 #[cfg(test)]
 mod tests {
-    use super::super::camera::{Point, View};
+    use super::super::camera::{Point, Viewpoint};
     use super::super::setting::Setting;
     use super::*;
     use stickslip::tensor::Vector;
@@ -115,7 +115,7 @@ mod tests {
 
     #[test]
     fn the_nearer_ball_hides_the_other() {
-        let camera = Camera::new(View::Axis(2, false), &Setting::default());
+        let camera = Camera::new(Viewpoint::Axis(2, false), &Setting::default());
         let corners = [Vector([-2.0, -2.0, 0.0]), Vector([2.0, 2.0, 0.0])];
         let camera = camera.fit(corners, [0.0, 0.0, 100.0, 100.0]);
         for order in [[0, 1], [1, 0]] {

@@ -27,7 +27,7 @@ const COVERING: f64 = 0.74;
 /// at a flat face it is 0.8 in the first layer and 0.3 in the second, inside it is 0.
 const EXPOSED: f64 = 0.16;
 
-type Cell = (u32, [i32; 3]);
+type SurfaceCell = (u32, [i32; 3]);
 
 /// The surface of all bodies.
 ///
@@ -38,7 +38,7 @@ type Cell = (u32, [i32; 3]);
 pub fn surface(grains: &[Grain]) -> Vec<Ball> {
     let reach = REACH * grains.iter().map(|grain| grain.size()).fold(0.0, f64::max);
     let cell = |grain: &Grain| grain.position.map(|x| (x / reach).floor() as i32);
-    let mut cells: HashMap<Cell, Vec<u32>> = HashMap::new();
+    let mut cells: HashMap<SurfaceCell, Vec<u32>> = HashMap::new();
     for (i, grain) in grains.iter().enumerate() {
         cells.entry((grain.body, cell(grain))).or_default().push(i as u32);
     }
@@ -57,7 +57,11 @@ pub fn surface(grains: &[Grain]) -> Vec<Ball> {
     grains.par_iter().enumerate().filter_map(ball).collect()
 }
 
-fn mean_offset(grains: &[Grain], cells: &HashMap<Cell, Vec<u32>>, (i, home): (usize, [i32; 3])) -> Point {
+fn mean_offset(
+    grains: &[Grain],
+    cells: &HashMap<SurfaceCell, Vec<u32>>,
+    (i, home): (usize, [i32; 3]),
+) -> Point {
     let grain = &grains[i];
     let reach = REACH * grain.size();
     let (mut sum, mut weights) = (Vector::ZERO, 0.0);

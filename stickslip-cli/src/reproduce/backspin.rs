@@ -1,7 +1,7 @@
 //! Section 3.2: a spinning sphere set on a plane; figures 7 and 8.
 
 use super::Study;
-use super::case::{Case, Level, PaperScene, Rule, Runs};
+use super::case::{PaperCase, PaperResolution, PaperScene, Runs, TouchRule};
 use super::sphere::{DISTANCE, SPEED, Sphere, figure, table};
 use crate::failure::Failure;
 use crate::page::{Figure, Section};
@@ -14,11 +14,11 @@ impl Study for Backspin {
         "backspin"
     }
 
-    fn cases(&self, level: Level) -> Vec<Case> {
+    fn cases(&self, level: PaperResolution) -> Vec<PaperCase> {
         spheres(level).iter().map(Sphere::case).collect()
     }
 
-    fn section(&self, level: Level, runs: &Runs) -> Result<Section, Failure> {
+    fn section(&self, level: PaperResolution, runs: &Runs) -> Result<Section, Failure> {
         let spheres = spheres(level);
         let title = "Sphere of 1 m that spins at 5 rad/s, set on a flat plane with friction 0.5.";
         let section = Section::new("Backspin").text(
@@ -33,13 +33,13 @@ impl Study for Backspin {
     }
 }
 
-fn spheres(level: Level) -> Vec<Sphere> {
+fn spheres(level: PaperResolution) -> Vec<Sphere> {
     let cells: &[usize] = match level {
-        Level::Sketch => &[2],
-        Level::Quick => &[4],
-        Level::Full => &[4, 8],
+        PaperResolution::Sketch => &[2],
+        PaperResolution::Quick => &[4],
+        PaperResolution::Full => &[4, 8],
     };
     let of_rule =
         |rule| cells.iter().map(move |&cells| Sphere { scene: PaperScene::BACKSPIN, rule, cells, label: "" });
-    Rule::BOTH.into_iter().flat_map(of_rule).collect()
+    TouchRule::BOTH.into_iter().flat_map(of_rule).collect()
 }

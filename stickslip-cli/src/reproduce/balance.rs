@@ -1,6 +1,6 @@
 //! Energy and momentum that the disks have from nowhere, over time and at two times.
 
-use super::case::{Case, Level, Rule, Runs};
+use super::case::{PaperCase, PaperResolution, Runs, TouchRule};
 use super::chain::Chain;
 use super::disks::{ARRANGEMENTS, cells, frictionless, kinematic, to_the_letter};
 use super::drawn;
@@ -18,12 +18,12 @@ const FIRST: f64 = 0.5;
 ///
 /// # Errors
 /// A table cannot be read.
-pub fn figure(level: Level, runs: &Runs) -> Result<Option<Figure>, Failure> {
+pub fn figure(level: PaperResolution, runs: &Runs) -> Result<Option<Figure>, Failure> {
     let [row, ..] = &ARRANGEMENTS;
     let cases = [
-        (Rule::Kinematic, kinematic(level)),
-        (Rule::Traction, row.case(Rule::Traction, level)),
-        (Rule::Surface, row.case(Rule::Surface, level)),
+        (TouchRule::Kinematic, kinematic(level)),
+        (TouchRule::Traction, row.case(TouchRule::Traction, level)),
+        (TouchRule::Surface, row.case(TouchRule::Surface, level)),
     ];
     let mut curves = Vec::new();
     for (number, (rule, case)) in cases.iter().enumerate() {
@@ -61,7 +61,7 @@ pub fn figure(level: Level, runs: &Runs) -> Result<Option<Figure>, Failure> {
 ///
 /// # Errors
 /// A table cannot be read.
-pub fn table(level: Level, runs: &Runs) -> Result<Table, Failure> {
+pub fn table(level: PaperResolution, runs: &Runs) -> Result<Table, Failure> {
     let columns = vec![
         Column::text("disks"),
         Column::text("contact rule"),
@@ -77,7 +77,7 @@ pub fn table(level: Level, runs: &Runs) -> Result<Table, Failure> {
          each body's own normal, and particles stand on a lattice: where a surface is stairs, the normals of two bodies do not oppose each \
          other, and momentum is lost (its equation 16). All other runs take a common normal for each pair, and particles in rings that \
          follow the disks.";
-    let row = |title: &str, rule: Rule, case: &Case| -> Result<Vec<Cell>, Failure> {
+    let row = |title: &str, rule: TouchRule, case: &PaperCase| -> Result<Vec<Cell>, Failure> {
         let mut row = vec![Cell::text(title), Cell::text(rule.short())];
         match runs.get(case).and_then(Chain::new) {
             None => row.push(Cell::text("failed")),
@@ -92,9 +92,9 @@ pub fn table(level: Level, runs: &Runs) -> Result<Table, Failure> {
         Ok(row)
     };
     let mut table = Table::new(caption, columns)
-        .row(row("in a row", Rule::Kinematic, &kinematic(level))?)
-        .row(row("in a row, to the letter", Rule::Traction, &to_the_letter(level))?);
-    for rule in Rule::BOTH {
+        .row(row("in a row", TouchRule::Kinematic, &kinematic(level))?)
+        .row(row("in a row, to the letter", TouchRule::Traction, &to_the_letter(level))?);
+    for rule in TouchRule::BOTH {
         for each in &ARRANGEMENTS {
             table = table.row(row(each.short, rule, &each.case(rule, level))?);
         }

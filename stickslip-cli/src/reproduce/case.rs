@@ -6,7 +6,7 @@ use stickslip::scene::SceneError;
 
 /// How finely everything is resolved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Level {
+pub enum PaperResolution {
     /// As coarse as anything runs: shows that the report works, not what the method can do.
     Sketch,
     /// Minutes on two cores.
@@ -17,7 +17,7 @@ pub enum Level {
 
 /// A scene of the paper with its settings.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Case {
+pub struct PaperCase {
     /// Name of the run and its folder: `backspin-traction-4`.
     pub name: String,
     scene: PaperScene,
@@ -49,7 +49,7 @@ impl PaperScene {
 
 /// Which bodies count as touching.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Rule {
+pub enum TouchRule {
     /// The one before the paper's, of 2000.
     Kinematic,
     /// The paper's of 2001.
@@ -69,29 +69,29 @@ pub struct FailedRun<'a> {
     pub error: &'a str,
 }
 
-impl Level {
+impl PaperResolution {
     /// What it means, for the reader of the report.
     pub fn explanation(self) -> &'static str {
         match self {
-            Level::Sketch => "a sketch: far too coarse to mean anything",
-            Level::Quick => {
+            PaperResolution::Sketch => "a sketch: far too coarse to mean anything",
+            PaperResolution::Quick => {
                 "quick: coarser than the paper; run without --quick for the paper's own resolution"
             }
-            Level::Full => "full: the paper's own resolution, and finer",
+            PaperResolution::Full => "full: the paper's own resolution, and finer",
         }
     }
 }
 
-impl Case {
+impl PaperCase {
     /// A scene with settings, as `stickslip run --set` takes them; `label` tells it from others of the same scene.
     pub fn new(scene: PaperScene, label: &str, settings: &[(&str, &str)]) -> Self {
         let settings = settings.iter().map(|(key, value)| (key.to_string(), value.to_string())).collect();
-        Case { name: format!("{}-{label}", scene.name), scene, settings }
+        PaperCase { name: format!("{}-{label}", scene.name), scene, settings }
     }
 
     /// The same with one more word in its name.
     pub fn labelled(self, label: &str) -> Self {
-        Case { name: format!("{}-{label}", self.name), ..self }
+        PaperCase { name: format!("{}-{label}", self.name), ..self }
     }
 
     /// The case, ready to be run.
@@ -105,40 +105,40 @@ impl Case {
     }
 }
 
-impl Rule {
+impl TouchRule {
     /// The two that everything is run with, the paper's first.
-    pub const BOTH: [Rule; 2] = [Rule::Traction, Rule::Surface];
+    pub const BOTH: [TouchRule; 2] = [TouchRule::Traction, TouchRule::Surface];
 
     /// What chooses it in the paper's scenes. The paper has FLIP; Stickslip's own law goes with its own transfer.
     pub fn settings(self) -> [(&'static str, &'static str); 2] {
-        let transfer = if self == Rule::Surface { "rflip" } else { "flip" };
+        let transfer = if self == TouchRule::Surface { "rflip" } else { "flip" };
         [("contact", self.word()), ("time.transfer", transfer)]
     }
 
     /// Its word in scenes.
     pub fn word(self) -> &'static str {
         match self {
-            Rule::Kinematic => "kinematic",
-            Rule::Traction => "traction",
-            Rule::Surface => "surface",
+            TouchRule::Kinematic => "kinematic",
+            TouchRule::Traction => "traction",
+            TouchRule::Surface => "surface",
         }
     }
 
     /// Its name in tables.
     pub fn short(self) -> &'static str {
         match self {
-            Rule::Kinematic => "kinematic (older)",
-            Rule::Traction => "traction (paper)",
-            Rule::Surface => "surface (default)",
+            TouchRule::Kinematic => "kinematic (older)",
+            TouchRule::Traction => "traction (paper)",
+            TouchRule::Surface => "surface (default)",
         }
     }
 
     /// Its name in sentences.
     pub fn title(self) -> &'static str {
         match self {
-            Rule::Kinematic => "the rule before the paper's (kinematic)",
-            Rule::Traction => "the paper's rule (traction)",
-            Rule::Surface => "Stickslip's default (surface)",
+            TouchRule::Kinematic => "the rule before the paper's (kinematic)",
+            TouchRule::Traction => "the paper's rule (traction)",
+            TouchRule::Surface => "Stickslip's default (surface)",
         }
     }
 }
@@ -150,7 +150,7 @@ impl Runs {
     }
 
     /// Results of a case, if it was run and did not fail.
-    pub fn get(&self, case: &Case) -> Option<&Results> {
+    pub fn get(&self, case: &PaperCase) -> Option<&Results> {
         self.0.get(&case.name)?.as_ref().ok()
     }
 
@@ -176,7 +176,7 @@ mod tests {
 
     #[test]
     fn every_case_of_every_level_is_a_scene() {
-        for level in [Level::Sketch, Level::Quick, Level::Full] {
+        for level in [PaperResolution::Sketch, PaperResolution::Quick, PaperResolution::Full] {
             for case in STUDIES.iter().flat_map(|study| study.cases(level)) {
                 let name = case.name.clone();
                 case.job().unwrap_or_else(|error| panic!("{name}: {error}"));
@@ -186,7 +186,8 @@ mod tests {
 
     #[test]
     fn cases_of_one_name_are_one_case() {
-        let cases: Vec<Case> = STUDIES.iter().flat_map(|study| study.cases(Level::Full)).collect();
+        let cases: Vec<PaperCase> =
+            STUDIES.iter().flat_map(|study| study.cases(PaperResolution::Full)).collect();
         for (i, case) in cases.iter().enumerate() {
             assert!(cases[..i].iter().all(|other| other.name != case.name || other == case), "{}", case.name);
         }

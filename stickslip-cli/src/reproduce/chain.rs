@@ -1,6 +1,6 @@
 //! What the studies of disks share: cases, times in transits, arrivals of the wave, the balance of momentum and energy.
 
-use super::case::{Case, PaperScene, Rule};
+use super::case::{PaperCase, PaperScene, TouchRule};
 use super::momentum::momentum_error;
 use crate::failure::Failure;
 use stickslip::observe::{ArrivalRow, ContactRow, EnergyRow, Frame, Results};
@@ -9,7 +9,7 @@ use stickslip::scene::Fringes;
 
 /// The paper's disks: touching at the start, one particle a cell; surfaces that follow the disks and one normal for
 /// each pair, unless `more` says otherwise.
-pub fn case(scene: PaperScene, rule: Rule, cells: usize, more: &[(&str, &str)]) -> Case {
+pub fn case(scene: PaperScene, rule: TouchRule, cells: usize, more: &[(&str, &str)]) -> PaperCase {
     let (label, cells) = (format!("{}-n{cells}", rule.word()), cells.to_string());
     let settings = [
         ("cells_per_diameter", cells.as_str()),
@@ -21,7 +21,7 @@ pub fn case(scene: PaperScene, rule: Rule, cells: usize, more: &[(&str, &str)]) 
         ("outputs.samples", "step"),
     ];
     // Glued disks have no rule between them; that at the frame stays as it is.
-    Case::new(scene, &label, &[&settings[..], &rule.settings(), more].concat())
+    PaperCase::new(scene, &label, &[&settings[..], &rule.settings(), more].concat())
 }
 
 /// A chain of disks after its run.
@@ -32,7 +32,7 @@ pub struct Chain<'a> {
 }
 
 /// A camera behind a polariscope, with the disks of a run before it.
-pub struct Camera<'a> {
+pub struct PolariscopeCamera<'a> {
     results: &'a Results,
     transit: f64,
     bench: OpticalBench,
@@ -157,7 +157,7 @@ impl<'a> Chain<'a> {
     ///
     /// # Errors
     /// The first snapshot cannot be read.
-    pub fn camera(&self) -> Result<Option<Camera<'a>>, Failure> {
+    pub fn camera(&self) -> Result<Option<PolariscopeCamera<'a>>, Failure> {
         let manifest = self.results.manifest();
         let fringes: Option<Fringes> =
             serde_json::from_value(manifest.scene["outputs"]["fringes"].clone()).ok();
@@ -169,7 +169,7 @@ impl<'a> Chain<'a> {
         let Some(bounds) = polariscope::bounds(&particles, &specimens) else { return Ok(None) };
         let stage = Stage { window: ImageWindow::around(bounds, WIDTH), specimens };
         let bench = OpticalBench::new(&fringes.polariscope, stage);
-        Ok(Some(Camera { results: self.results, transit: self.transit, bench }))
+        Ok(Some(PolariscopeCamera { results: self.results, transit: self.transit, bench }))
     }
 
     /// The balance of the disks at a time [s], or at the end of the run if that is earlier.
@@ -195,7 +195,7 @@ fn gain(row: &EnergyRow) -> f64 {
     row.total / row.external_work.abs()
 }
 
-impl Camera<'_> {
+impl PolariscopeCamera<'_> {
     /// The picture of the snapshot nearest to a time in transits, as PNG, and its time in transits.
     ///
     /// # Errors

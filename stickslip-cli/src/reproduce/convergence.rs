@@ -1,7 +1,7 @@
 //! Arrivals at the disks in a row on finer and finer cells, against codes with sharp contact.
 
 use super::Study;
-use super::case::{Case, Level, PaperScene, Rule, Runs};
+use super::case::{PaperCase, PaperResolution, PaperScene, Runs, TouchRule};
 use super::chain::{self, Chain};
 use super::drawn;
 use crate::chart::{Chart, Curve, Panel, svg};
@@ -25,11 +25,14 @@ impl Study for Convergence {
         "convergence"
     }
 
-    fn cases(&self, level: Level) -> Vec<Case> {
-        Rule::BOTH.iter().flat_map(|&rule| cells(level).iter().map(move |&cells| case(rule, cells))).collect()
+    fn cases(&self, level: PaperResolution) -> Vec<PaperCase> {
+        TouchRule::BOTH
+            .iter()
+            .flat_map(|&rule| cells(level).iter().map(move |&cells| case(rule, cells)))
+            .collect()
     }
 
-    fn section(&self, level: Level, runs: &Runs) -> Result<Section, Failure> {
+    fn section(&self, level: PaperResolution, runs: &Runs) -> Result<Section, Failure> {
         let columns = vec![
             Column::text("contact"),
             Column::number("cells across a disk"),
@@ -44,7 +47,7 @@ impl Study for Convergence {
         let exact = mean_interval(&SHARP);
         let mut table = Table::new(caption, columns);
         let mut curves = Vec::new();
-        for (number, rule) in Rule::BOTH.into_iter().enumerate() {
+        for (number, rule) in TouchRule::BOTH.into_iter().enumerate() {
             let mut points = Vec::new();
             for &cells in cells(level) {
                 let chain = runs.get(&case(rule, cells)).and_then(Chain::new);
@@ -102,16 +105,16 @@ impl Study for Convergence {
     }
 }
 
-fn case(rule: Rule, cells: usize) -> Case {
+fn case(rule: TouchRule, cells: usize) -> PaperCase {
     let settings = [("speed", SPEED)];
     chain::case(PaperScene::COLLINEAR, rule, cells, &settings).labelled("experiment")
 }
 
-fn cells(level: Level) -> &'static [usize] {
+fn cells(level: PaperResolution) -> &'static [usize] {
     match level {
-        Level::Sketch => &[20],
-        Level::Quick => &[20, 40],
-        Level::Full => &[20, 40, 80, 160],
+        PaperResolution::Sketch => &[20],
+        PaperResolution::Quick => &[20, 40],
+        PaperResolution::Full => &[20, 40, 80, 160],
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::Study;
 use super::balance;
-use super::case::{Case, Level, PaperScene, Rule, Runs};
+use super::case::{PaperCase, PaperResolution, PaperScene, Runs, TouchRule};
 use super::chain::{self, Chain};
 use super::frames;
 use crate::failure::Failure;
@@ -13,7 +13,7 @@ use maud::html;
 pub struct Disks;
 
 /// One of the paper's arrangements with the times of its frames in transits.
-pub struct Arrangement {
+pub struct DiskArrangement {
     pub figure: &'static str,
     scene: PaperScene,
     title: &'static str,
@@ -26,8 +26,8 @@ pub struct Arrangement {
 }
 
 /// The three that the paper shows.
-pub const ARRANGEMENTS: [Arrangement; 3] = [
-    Arrangement {
+pub const ARRANGEMENTS: [DiskArrangement; 3] = [
+    DiskArrangement {
         figure: "Figure 9",
         scene: PaperScene::COLLINEAR,
         title: "Four disks in a row",
@@ -35,7 +35,7 @@ pub const ARRANGEMENTS: [Arrangement; 3] = [
         simulated: [2.2, 5.5, 7.7],
         measured: [2.6, 6.6, 9.2],
     },
-    Arrangement {
+    DiskArrangement {
         figure: "Figure 10",
         scene: PaperScene::ZIGZAG,
         title: "Five disks in a zig-zag that slide on each other with friction 0.5",
@@ -43,7 +43,7 @@ pub const ARRANGEMENTS: [Arrangement; 3] = [
         simulated: [3.0, 6.0, 9.0],
         measured: [5.3, 10.5, 15.8],
     },
-    Arrangement {
+    DiskArrangement {
         figure: "Figure 11",
         scene: PaperScene::GLUED,
         title: "The same five disks, glued",
@@ -63,9 +63,9 @@ impl Study for Disks {
         "disks"
     }
 
-    fn cases(&self, level: Level) -> Vec<Case> {
+    fn cases(&self, level: PaperResolution) -> Vec<PaperCase> {
         let mut cases = Vec::new();
-        for rule in Rule::BOTH {
+        for rule in TouchRule::BOTH {
             cases.extend(ARRANGEMENTS.iter().map(|each| each.case(rule, level)));
             cases.push(frictionless(rule, level));
         }
@@ -73,7 +73,7 @@ impl Study for Disks {
         cases
     }
 
-    fn section(&self, level: Level, runs: &Runs) -> Result<Section, Failure> {
+    fn section(&self, level: PaperResolution, runs: &Runs) -> Result<Section, Failure> {
         let mut section = Section::new("Stress waves through disks").text(html! {
             "Section 3.3. Disks of 1 cm in a frame are struck at the right by a step of velocity, and light between polarisers shows the \
              difference of the principal stresses as fringes, cos((σ" sub { "1" } " − σ" sub { "2" } ") / s). Here s = 0.3 ρ c V is the same \
@@ -91,7 +91,7 @@ impl Study for Disks {
              striker's speed: in the zig-zag its path leaves the centres aside, so their stress tells little. What comes first is what is ordered: \
              by the paper's rule, with 40 cells and more, the fifth disk reaches a tenth of the striker's speed sooner without friction than with it.",
         );
-        for rule in Rule::BOTH {
+        for rule in TouchRule::BOTH {
             section = section.table(arrivals(rule, level, runs)?);
         }
         section = section.table(load_paths(level, runs)?);
@@ -102,21 +102,21 @@ impl Study for Disks {
     }
 }
 
-impl Arrangement {
+impl DiskArrangement {
     /// What is run of it.
-    pub fn case(&self, rule: Rule, level: Level) -> Case {
+    pub fn case(&self, rule: TouchRule, level: PaperResolution) -> PaperCase {
         let times = self.simulated.iter().chain(&self.measured);
         let times: Vec<String> = times.map(|time| format!("\"{time} * transit\"")).collect();
         let times = format!("[{}]", times.join(", "));
         chain::case(self.scene, rule, cells(level), &[("outputs.particles_at", &times)])
     }
 
-    fn figure(&self, level: Level, runs: &Runs) -> Result<Figure, Failure> {
+    fn figure(&self, level: PaperResolution, runs: &Runs) -> Result<Figure, Failure> {
         let caption = html! {
             (self.title) ", " (cells(level)) " cells across each. Times in transits; above the paper's of its simulation, below its experiment's, for each rule."
         };
         let mut figure = Figure::new(self.figure, caption);
-        for rule in Rule::BOTH {
+        for rule in TouchRule::BOTH {
             let case = self.case(rule, level);
             let Some(chain) = runs.get(&case).and_then(Chain::new) else { continue };
             let Some(camera) = chain.camera()? else { continue };
@@ -141,32 +141,32 @@ impl Arrangement {
 }
 
 /// Cells across a disk.
-pub fn cells(level: Level) -> usize {
+pub fn cells(level: PaperResolution) -> usize {
     match level {
-        Level::Sketch => 20,
-        Level::Quick => 40,
-        Level::Full => 80,
+        PaperResolution::Sketch => 20,
+        PaperResolution::Quick => 40,
+        PaperResolution::Full => 80,
     }
 }
 
 /// The zig-zag without friction, which the paper does not show: the other end of the order.
-pub fn frictionless(rule: Rule, level: Level) -> Case {
+pub fn frictionless(rule: TouchRule, level: PaperResolution) -> PaperCase {
     chain::case(PaperScene::ZIGZAG, rule, cells(level), &[("friction", "0")]).labelled("frictionless")
 }
 
 /// The rule before the paper's, for the energy that it gains.
-pub fn kinematic(level: Level) -> Case {
-    chain::case(PaperScene::COLLINEAR, Rule::Kinematic, cells(level), &[])
+pub fn kinematic(level: PaperResolution) -> PaperCase {
+    chain::case(PaperScene::COLLINEAR, TouchRule::Kinematic, cells(level), &[])
 }
 
 /// The paper's rule in a row to the letter: each disk's own normals, and surfaces that are stairs of particles.
-pub fn to_the_letter(level: Level) -> Case {
+pub fn to_the_letter(level: PaperResolution) -> PaperCase {
     let settings = [("normal", "own"), ("particles", "lattice")];
-    chain::case(PaperScene::COLLINEAR, Rule::Traction, cells(level), &settings).labelled("letter")
+    chain::case(PaperScene::COLLINEAR, TouchRule::Traction, cells(level), &settings).labelled("letter")
 }
 
 /// When the wave comes to each disk of the zig-zag.
-fn arrivals(rule: Rule, level: Level, runs: &Runs) -> Result<Table, Failure> {
+fn arrivals(rule: TouchRule, level: PaperResolution, runs: &Runs) -> Result<Table, Failure> {
     let [_, sliding, glued] = &ARRANGEMENTS;
     let cases = [glued.case(rule, level), sliding.case(rule, level), frictionless(rule, level)];
     let mut times: Vec<Vec<Option<f64>>> = Vec::new();
@@ -211,7 +211,7 @@ fn arrivals(rule: Rule, level: Level, runs: &Runs) -> Result<Table, Failure> {
 }
 
 /// Which way the load goes at the third disk of the zig-zag: to the wall that it leans on, or on to the next disk.
-fn load_paths(level: Level, runs: &Runs) -> Result<Table, Failure> {
+fn load_paths(level: PaperResolution, runs: &Runs) -> Result<Table, Failure> {
     let [_, sliding, glued] = &ARRANGEMENTS;
     let columns = vec![
         Column::text("disks"),
@@ -228,7 +228,7 @@ fn load_paths(level: Level, runs: &Runs) -> Result<Table, Failure> {
          from contact to contact. What counts is {LOAD}; where disks slide, a precursor of {PRECURSOR} comes to both at about the same time."
     );
     let mut table = Table::new(caption, columns);
-    for rule in Rule::BOTH {
+    for rule in TouchRule::BOTH {
         for (title, each) in [("sliding", sliding), ("glued", glued)] {
             let Some(chain) = runs.get(&each.case(rule, level)).and_then(Chain::new) else { continue };
             let mut row = vec![Cell::text(title), Cell::text(rule.short())];

@@ -1,8 +1,8 @@
 //! The times of the paper's frames, and those at which the default's fringes have come as far.
 
-use super::case::{Level, Rule, Runs};
+use super::case::{PaperResolution, Runs, TouchRule};
 use super::chain::Chain;
-use super::disks::Arrangement;
+use super::disks::DiskArrangement;
 use crate::failure::Failure;
 use crate::page::{Cell, Column, Table};
 
@@ -10,7 +10,11 @@ use crate::page::{Cell, Column, Table};
 ///
 /// # Errors
 /// A table cannot be read.
-pub fn table(arrangements: &[Arrangement], level: Level, runs: &Runs) -> Result<Table, Failure> {
+pub fn table(
+    arrangements: &[DiskArrangement],
+    level: PaperResolution,
+    runs: &Runs,
+) -> Result<Table, Failure> {
     let columns = vec![
         Column::text("figure"),
         Column::number("the paper's simulation"),
@@ -34,7 +38,7 @@ pub fn table(arrangements: &[Arrangement], level: Level, runs: &Runs) -> Result<
         let track = |rule| {
             runs.get(&each.case(rule, level)).and_then(Chain::new).map(|chain| chain.front()).transpose()
         };
-        let (paper, default) = (track(Rule::Traction)?, track(Rule::Surface)?);
+        let (paper, default) = (track(TouchRule::Traction)?, track(TouchRule::Surface)?);
         for (simulated, measured) in each.simulated.into_iter().zip(each.measured) {
             let foremost = paper.as_ref().and_then(|track| place(track, simulated));
             let all = paper.as_ref().and_then(|track| track.last()).map(|last| last[1]);

@@ -1,7 +1,7 @@
 //! Section 3.1: a sphere on an inclined plane, without and with slip; figures 3 to 6.
 
 use super::Study;
-use super::case::{Case, Level, PaperScene, Rule, Runs};
+use super::case::{PaperCase, PaperResolution, PaperScene, Runs, TouchRule};
 use super::sphere::{DISTANCE, SPEED, Sphere, figure, table};
 use crate::failure::Failure;
 use crate::page::{Figure, Section};
@@ -14,11 +14,11 @@ impl Study for InclinedPlane {
         "inclined-plane"
     }
 
-    fn cases(&self, level: Level) -> Vec<Case> {
+    fn cases(&self, level: PaperResolution) -> Vec<PaperCase> {
         no_slip(level).iter().chain(&slip(level)).map(Sphere::case).collect()
     }
 
-    fn section(&self, level: Level, runs: &Runs) -> Result<Section, Failure> {
+    fn section(&self, level: PaperResolution, runs: &Runs) -> Result<Section, Failure> {
         let (no_slip, slip) = (no_slip(level), slip(level));
         let finest = finest(&no_slip).max(finest(&slip));
         let both: Vec<Sphere> =
@@ -49,23 +49,23 @@ impl Study for InclinedPlane {
 
 fn spheres(scene: PaperScene, label: &'static str, cells: &[usize]) -> Vec<Sphere> {
     let of_rule = |rule| cells.iter().map(move |&cells| Sphere { scene, rule, cells, label });
-    Rule::BOTH.into_iter().flat_map(of_rule).collect()
+    TouchRule::BOTH.into_iter().flat_map(of_rule).collect()
 }
 
-fn no_slip(level: Level) -> Vec<Sphere> {
+fn no_slip(level: PaperResolution) -> Vec<Sphere> {
     let cells: &[usize] = match level {
-        Level::Sketch => &[2],
-        Level::Quick => &[2, 4],
-        Level::Full => &[2, 4, 8],
+        PaperResolution::Sketch => &[2],
+        PaperResolution::Quick => &[2, 4],
+        PaperResolution::Full => &[2, 4, 8],
     };
     spheres(PaperScene::NO_SLIP, "no slip", cells)
 }
 
-fn slip(level: Level) -> Vec<Sphere> {
+fn slip(level: PaperResolution) -> Vec<Sphere> {
     let cells: &[usize] = match level {
-        Level::Sketch => &[2],
-        Level::Quick => &[4],
-        Level::Full => &[4, 8],
+        PaperResolution::Sketch => &[2],
+        PaperResolution::Quick => &[4],
+        PaperResolution::Full => &[4, 8],
     };
     spheres(PaperScene::SLIP, "slip", cells)
 }

@@ -17,7 +17,7 @@ mod momentum;
 mod poisson;
 mod sphere;
 
-pub use case::{Case, Level, Runs};
+pub use case::{PaperCase, PaperResolution, Runs};
 
 use crate::drawing::DrawError;
 use crate::failure::Failure;
@@ -32,13 +32,13 @@ pub trait Study: Sync {
     fn name(&self) -> &'static str;
 
     /// What is to be run.
-    fn cases(&self, level: Level) -> Vec<Case>;
+    fn cases(&self, level: PaperResolution) -> Vec<PaperCase>;
 
     /// What came out; runs that failed are missing in it.
     ///
     /// # Errors
     /// Results cannot be read.
-    fn section(&self, level: Level, runs: &Runs) -> Result<Section, Failure>;
+    fn section(&self, level: PaperResolution, runs: &Runs) -> Result<Section, Failure>;
 }
 
 /// All applications, in the order of the paper.
@@ -54,7 +54,11 @@ pub const STUDIES: &[&dyn Study] = &[
 ///
 /// # Errors
 /// A scene cannot be built, results cannot be read, or the user stopped the runs.
-pub fn reproduce(studies: &[&dyn Study], level: Level, runner: &JobRunner) -> Result<(Page, Runs), Failure> {
+pub fn reproduce(
+    studies: &[&dyn Study],
+    level: PaperResolution,
+    runner: &JobRunner,
+) -> Result<(Page, Runs), Failure> {
     let start = Instant::now();
     let mut jobs: Vec<Job> = Vec::new();
     for case in studies.iter().flat_map(|study| study.cases(level)) {

@@ -1,7 +1,7 @@
 //! The paper's study of Poisson's ratio with the longitudinal speed held.
 
 use super::Study;
-use super::case::{Case, Level, PaperScene, Rule, Runs};
+use super::case::{PaperCase, PaperResolution, PaperScene, Runs, TouchRule};
 use super::chain::{self, Chain};
 use super::drawn;
 use crate::chart::{Chart, Curve, Panel, svg};
@@ -21,22 +21,22 @@ impl Study for Poisson {
         "poisson"
     }
 
-    fn cases(&self, level: Level) -> Vec<Case> {
-        Rule::BOTH
+    fn cases(&self, level: PaperResolution) -> Vec<PaperCase> {
+        TouchRule::BOTH
             .iter()
             .flat_map(|&rule| ratios(level).iter().map(move |nu| case(rule, level, nu)))
             .collect()
     }
 
-    fn section(&self, level: Level, runs: &Runs) -> Result<Section, Failure> {
+    fn section(&self, level: PaperResolution, runs: &Runs) -> Result<Section, Failure> {
         let mut columns =
             vec![Column::number("Poisson's ratio"), Column::number("shear / longitudinal speed")];
         columns.extend(
-            Rule::BOTH.map(|rule| Column::number(format!("fringes / longitudinal, {}", rule.short()))),
+            TouchRule::BOTH.map(|rule| Column::number(format!("fringes / longitudinal, {}", rule.short()))),
         );
         let caption = "Speed of the fringes from the second disk's centre to the last one's, over the longitudinal speed.";
         let mut table = Table::new(caption, columns);
-        let mut curves: Vec<Curve> = Rule::BOTH
+        let mut curves: Vec<Curve> = TouchRule::BOTH
             .into_iter()
             .enumerate()
             .map(|(number, rule)| Curve {
@@ -51,7 +51,7 @@ impl Study for Poisson {
             let nu: f64 = text.parse().expect("ratios are numbers");
             let mut row = vec![Cell::number(nu, 2), Cell::number(shear_speed(nu), 3)];
             shear.push([nu, shear_speed(nu)]);
-            for (rule, curve) in Rule::BOTH.into_iter().zip(&mut curves) {
+            for (rule, curve) in TouchRule::BOTH.into_iter().zip(&mut curves) {
                 let chain = runs.get(&case(rule, level, text)).and_then(Chain::new);
                 let speed = chain.map_or(Ok(None), |chain| chain.fringe_speed())?;
                 row.push(speed.map_or(Cell::text("none"), |speed| Cell::number(speed, 3)));
@@ -103,23 +103,23 @@ impl Study for Poisson {
     }
 }
 
-fn case(rule: Rule, level: Level, nu: &str) -> Case {
+fn case(rule: TouchRule, level: PaperResolution, nu: &str) -> PaperCase {
     chain::case(PaperScene::COLLINEAR, rule, cells(level), &[("nu", nu)]).labelled(&format!("nu{nu}"))
 }
 
-fn cells(level: Level) -> usize {
+fn cells(level: PaperResolution) -> usize {
     match level {
-        Level::Sketch => 20,
-        Level::Quick => 40,
-        Level::Full => 80,
+        PaperResolution::Sketch => 20,
+        PaperResolution::Quick => 40,
+        PaperResolution::Full => 80,
     }
 }
 
-fn ratios(level: Level) -> &'static [&'static str] {
+fn ratios(level: PaperResolution) -> &'static [&'static str] {
     match level {
-        Level::Sketch => &["0.22", "0.48"],
-        Level::Quick => &["0.22", "0.35", "0.48"],
-        Level::Full => &["0.22", "0.30", "0.38", "0.43", "0.48"],
+        PaperResolution::Sketch => &["0.22", "0.48"],
+        PaperResolution::Quick => &["0.22", "0.35", "0.48"],
+        PaperResolution::Full => &["0.22", "0.30", "0.38", "0.43", "0.48"],
     }
 }
 

@@ -1,7 +1,7 @@
 //! What the studies of a sphere share: its curves against those of a rigid one, and the table of where it got.
 
 use super::accounts::energy_error;
-use super::case::{Case, PaperScene, Rule, Runs};
+use super::case::{PaperCase, PaperScene, Runs, TouchRule};
 use super::drawn;
 use crate::chart::{Chart, Curve, Panel, svg};
 use crate::drawing::{Rgb, body_color};
@@ -13,7 +13,7 @@ use stickslip::observe::Results;
 #[derive(Clone, Copy, Debug)]
 pub struct Sphere {
     pub scene: PaperScene,
-    pub rule: Rule,
+    pub rule: TouchRule,
     /// Cells in a radius.
     pub cells: usize,
     /// What it is called in legends and tables.
@@ -22,14 +22,14 @@ pub struct Sphere {
 
 /// A column of `bodies.csv` with what stands on the axis.
 #[derive(Clone, Copy, Debug)]
-pub struct Axis {
+pub struct ChartAxis {
     pub quantity: &'static str,
     pub name: &'static str,
     pub unit: &'static str,
 }
 
-pub const DISTANCE: Axis = Axis { quantity: "x", name: "distance of the centre", unit: "m" };
-pub const SPEED: Axis = Axis { quantity: "vx", name: "velocity of the centre", unit: "m/s" };
+pub const DISTANCE: ChartAxis = ChartAxis { quantity: "x", name: "distance of the centre", unit: "m" };
+pub const SPEED: ChartAxis = ChartAxis { quantity: "vx", name: "velocity of the centre", unit: "m/s" };
 
 /// Width and height of a chart; the page scales it.
 const SIZE: [usize; 2] = [480, 360];
@@ -37,11 +37,11 @@ const EXACT: Rgb = [0.22, 0.24, 0.27];
 
 impl Sphere {
     /// The case to be run.
-    pub fn case(&self) -> Case {
+    pub fn case(&self) -> PaperCase {
         let cells = self.cells.to_string();
         let label = format!("{}-R{cells}", self.rule.word());
         let finely = [("cells_per_radius", cells.as_str()), ("outputs.particles", "0.5 s")];
-        Case::new(self.scene, &label, &[self.rule.settings(), finely].concat())
+        PaperCase::new(self.scene, &label, &[self.rule.settings(), finely].concat())
     }
 
     fn name(&self) -> String {
@@ -54,9 +54,9 @@ impl Sphere {
 }
 
 /// A figure of one quantity, a chart for each rule.
-pub fn figure(figure: Figure, axis: Axis, spheres: &[Sphere], runs: &Runs) -> Result<Figure, Failure> {
+pub fn figure(figure: Figure, axis: ChartAxis, spheres: &[Sphere], runs: &Runs) -> Result<Figure, Failure> {
     let mut charts = Vec::new();
-    for rule in Rule::BOTH {
+    for rule in TouchRule::BOTH {
         let of_rule: Vec<&Sphere> = spheres.iter().filter(|sphere| sphere.rule == rule).collect();
         let panel =
             Panel { name: axis.name.to_owned(), unit: axis.unit, curves: curves(&of_rule, axis, runs)? };
@@ -74,7 +74,7 @@ pub fn figure(figure: Figure, axis: Axis, spheres: &[Sphere], runs: &Runs) -> Re
     Ok(figure.row(charts))
 }
 
-fn curves(spheres: &[&Sphere], axis: Axis, runs: &Runs) -> Result<Vec<Curve>, Failure> {
+fn curves(spheres: &[&Sphere], axis: ChartAxis, runs: &Runs) -> Result<Vec<Curve>, Failure> {
     let mut curves = Vec::new();
     let mut exact: Vec<Curve> = Vec::new();
     for (number, sphere) in spheres.iter().enumerate() {
@@ -139,7 +139,7 @@ pub fn table(caption: &str, spheres: &[Sphere], runs: &Runs) -> Result<Table, Fa
 }
 
 /// What the sphere and the rigid one reached at the end.
-fn reached(results: &Results, axis: Axis) -> Result<[f64; 2], Failure> {
+fn reached(results: &Results, axis: ChartAxis) -> Result<[f64; 2], Failure> {
     let rows = results.bodies_table().map_err(Failure::input)?;
     let value = rows.iter().rfind(|row| row.body == BODY).and_then(|row| row.quantity(axis.quantity));
     let references = &results.manifest().references;

@@ -1,6 +1,6 @@
 //! What a sweep came to, over the first of its parameters that is a number.
 
-use super::record::{Row, Sweep};
+use super::record::{Sweep, SweepRow};
 use crate::chart::{Chart, Curve, Panel};
 use crate::drawing::body_color;
 
@@ -17,7 +17,7 @@ const MOST_CURVES: usize = 8;
 
 /// The chart of a sweep; without panels if no parameter is a number or nothing was measured.
 pub fn chart(sweep: &Sweep) -> Chart {
-    let number = |row: &Row, i: usize| row.parameters[i].parse::<f64>().ok();
+    let number = |row: &SweepRow, i: usize| row.parameters[i].parse::<f64>().ok();
     let over =
         (0..sweep.record.parameters.len()).find(|&i| sweep.rows.iter().all(|row| number(row, i).is_some()));
     let panels = PANELS.iter().filter_map(|(start, name, unit)| {
@@ -71,17 +71,17 @@ fn curves(sweep: &Sweep, over: usize, start: &str) -> Vec<Curve> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sweep::record::Record;
+    use crate::sweep::record::SweepRecord;
 
     #[test]
     fn figures_are_drawn_over_the_first_number_for_each_value_of_the_others() {
-        let row = |law: &str, nu: &str, speed: f64| Row {
+        let row = |law: &str, nu: &str, speed: f64| SweepRow {
             parameters: vec![law.to_owned(), nu.to_owned()],
             figures: vec![("speed fringe".to_owned(), speed), ("energy_drift".to_owned(), 0.0)],
-            ..Row::default()
+            ..SweepRow::default()
         };
         let rows = vec![row("gap", "0.3", 2.0), row("gap", "0.2", 3.0), row("glued", "0.2", 5.0)];
-        let record = Record::new("waves", vec!["law".to_owned(), "nu".to_owned()]);
+        let record = SweepRecord::new("waves", vec!["law".to_owned(), "nu".to_owned()]);
         let chart = chart(&Sweep { record, rows });
         assert_eq!((chart.over.as_str(), chart.panels.len()), ("nu", 1));
         let [gap, glued] = &chart.panels[0].curves[..] else { panic!("{chart:?}") };

@@ -7,7 +7,7 @@ mod table;
 
 pub use chart::chart;
 pub use plan::{Member, Variation, members, varied};
-pub use record::{Record, Row, Sweep, is_sweep, prepare, read, write_table};
+pub use record::{Sweep, SweepRecord, SweepRow, is_sweep, prepare, read, write_table};
 pub use table::table;
 
 use crate::illustration::illustrate;
@@ -36,7 +36,7 @@ pub enum News {
     /// It has come so far, as a share of its end time.
     Progress(usize, f64),
     /// It has ended.
-    Ended(usize, Box<Row>),
+    Ended(usize, Box<SweepRow>),
 }
 
 /// Values of the varied parameters in a scene: in SI units where they are numbers, else as they were given.
@@ -75,7 +75,7 @@ impl Crew {
         });
     }
 
-    fn run_one(&self, out: &Path, loaded: &Loaded, (number, sender): (usize, &Sender<News>)) -> Row {
+    fn run_one(&self, out: &Path, loaded: &Loaded, (number, sender): (usize, &Sender<News>)) -> SweepRow {
         let pool = match rayon::ThreadPoolBuilder::new().num_threads(self.threads).build() {
             Ok(pool) => pool,
             Err(error) => return failed(error.to_string()),
@@ -103,12 +103,12 @@ impl Crew {
     }
 }
 
-fn failed(error: String) -> Row {
-    Row { status: "failed".to_owned(), error, ..Row::default() }
+fn failed(error: String) -> SweepRow {
+    SweepRow { status: "failed".to_owned(), error, ..SweepRow::default() }
 }
 
 /// What a run that reached its end, or was stopped, came to.
-fn row(summary: &Summary, loaded: &Loaded, results: &Results) -> Row {
+fn row(summary: &Summary, loaded: &Loaded, results: &Results) -> SweepRow {
     let performance = &summary.performance;
     let mut figures = vec![
         ("time".to_owned(), performance.time),
@@ -131,7 +131,7 @@ fn row(summary: &Summary, loaded: &Loaded, results: &Results) -> Row {
     let speeds = results.front_speeds_table().unwrap_or_default();
     figures.extend(speeds.into_iter().map(|row| (format!("speed {}", row.front), row.speed)));
     let status = if summary.status == Status::Interrupted { "interrupted" } else { "finished" };
-    Row { status: status.to_owned(), figures, ..Row::default() }
+    SweepRow { status: status.to_owned(), figures, ..SweepRow::default() }
 }
 
 /// When bodies first pushed on each other, to a row of the table, and the largest push of a pair.

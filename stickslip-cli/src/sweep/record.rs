@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 /// What was swept.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Record {
+pub struct SweepRecord {
     /// `stickslip`.
     program: String,
     /// Version of the program.
@@ -22,7 +22,7 @@ pub struct Record {
 
 /// One run; a row of `sweep.csv`.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Row {
+pub struct SweepRow {
     /// Name of its folder.
     pub run: String,
     /// `finished`, `interrupted`, `failed`, or `pending`.
@@ -39,18 +39,18 @@ pub struct Row {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sweep {
     /// What was swept.
-    pub record: Record,
+    pub record: SweepRecord,
     /// The runs in the order of the plan.
-    pub rows: Vec<Row>,
+    pub rows: Vec<SweepRow>,
 }
 
 const RECORD: &str = "sweep.json";
 const TABLE: &str = "sweep.csv";
 
-impl Record {
+impl SweepRecord {
     pub fn new(title: &str, parameters: Vec<String>) -> Self {
         let (program, version) = ("stickslip".to_owned(), env!("CARGO_PKG_VERSION").to_owned());
-        Record { program, version, title: title.to_owned(), parameters }
+        SweepRecord { program, version, title: title.to_owned(), parameters }
     }
 }
 
@@ -59,8 +59,8 @@ pub fn is_sweep(folder: &Path) -> bool {
     read_record(folder).is_some()
 }
 
-fn read_record(folder: &Path) -> Option<Record> {
-    let record: Record = serde_json::from_slice(&fs::read(folder.join(RECORD)).ok()?).ok()?;
+fn read_record(folder: &Path) -> Option<SweepRecord> {
+    let record: SweepRecord = serde_json::from_slice(&fs::read(folder.join(RECORD)).ok()?).ok()?;
     (record.program == "stickslip").then_some(record)
 }
 
@@ -68,7 +68,7 @@ fn read_record(folder: &Path) -> Option<Record> {
 ///
 /// # Errors
 /// The folder holds files that are not those of a sweep, or cannot be written.
-pub fn prepare(folder: &Path, record: &Record) -> Result<(), Failure> {
+pub fn prepare(folder: &Path, record: &SweepRecord) -> Result<(), Failure> {
     let unusable = |source: io::Error| {
         let help = "give a folder that you may write to with --out";
         Failure::Input(miette!(help = help, "cannot write results to {}: {source}", folder.display()))
@@ -145,7 +145,7 @@ pub fn read(folder: &Path) -> Result<Sweep, Failure> {
         let line = line.map_err(|error| damaged(&error.to_string()))?;
         let figures =
             (end..header.len() - 1).filter_map(|i| Some((header[i].to_owned(), line[i].parse().ok()?)));
-        rows.push(Row {
+        rows.push(SweepRow {
             run: line[0].to_owned(),
             status: line[1].to_owned(),
             parameters: (2..end).map(|i| line[i].to_owned()).collect(),
@@ -169,9 +169,9 @@ mod tests {
     #[test]
     fn a_table_comes_back_with_its_holes() {
         let folder = tempfile::tempdir().unwrap();
-        let record = Record::new("waves", vec!["nu".to_owned()]);
+        let record = SweepRecord::new("waves", vec!["nu".to_owned()]);
         prepare(folder.path(), &record).unwrap();
-        let row = |run: &str, figures: &[(&str, f64)], error: &str| Row {
+        let row = |run: &str, figures: &[(&str, f64)], error: &str| SweepRow {
             run: run.to_owned(),
             status: "finished".to_owned(),
             parameters: vec![run.to_owned()],
@@ -192,9 +192,9 @@ mod tests {
     #[test]
     fn a_parameter_with_the_name_of_a_figure_keeps_it() {
         let folder = tempfile::tempdir().unwrap();
-        let record = Record::new("waves", vec!["steps".to_owned()]);
+        let record = SweepRecord::new("waves", vec!["steps".to_owned()]);
         let figures = vec![("steps".to_owned(), 7.0)];
-        let row = Row { parameters: vec!["3".to_owned()], figures, ..Row::default() };
+        let row = SweepRow { parameters: vec!["3".to_owned()], figures, ..SweepRow::default() };
         write_table(folder.path(), &Sweep { record, rows: vec![row] }).unwrap();
         let text = fs::read_to_string(folder.path().join(TABLE)).unwrap();
         assert_eq!(text, "run,status,steps,steps_of_run,error\n,,3,7,\n");
@@ -204,7 +204,7 @@ mod tests {
     fn a_folder_with_other_files_is_refused_and_left_alone() {
         let folder = tempfile::tempdir().unwrap();
         fs::write(folder.path().join("thesis.tex"), "years of work").unwrap();
-        let refused = prepare(folder.path(), &Record::new("waves", Vec::new()));
+        let refused = prepare(folder.path(), &SweepRecord::new("waves", Vec::new()));
         assert!(matches!(refused, Err(Failure::Input(_))));
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
     }

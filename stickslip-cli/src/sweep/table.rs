@@ -1,6 +1,6 @@
 //! What differs between the runs of a sweep, as text for the terminal.
 
-use super::record::{Row, Sweep};
+use super::record::{Sweep, SweepRow};
 
 /// A line for each run: the parameters that vary, and every figure that is not the same in all runs.
 ///
@@ -17,7 +17,8 @@ pub fn table(sweep: &Sweep) -> String {
         }
     }
     for name in names {
-        let figure = |row: &Row| row.figures.iter().find(|(other, _)| other == name).map(|(_, value)| *value);
+        let figure =
+            |row: &SweepRow| row.figures.iter().find(|(other, _)| other == name).map(|(_, value)| *value);
         let first = sweep.rows.first().and_then(figure);
         if sweep.rows.iter().any(|row| figure(row) != first) {
             columns.push(column(name, sweep, |row| figure(row).map_or("-".to_owned(), short)));
@@ -41,7 +42,7 @@ pub fn table(sweep: &Sweep) -> String {
     text
 }
 
-fn column(name: &str, sweep: &Sweep, cell: impl Fn(&Row) -> String) -> Vec<String> {
+fn column(name: &str, sweep: &Sweep, cell: impl Fn(&SweepRow) -> String) -> Vec<String> {
     [name.to_owned()].into_iter().chain(sweep.rows.iter().map(cell)).collect()
 }
 
@@ -56,12 +57,12 @@ fn short(value: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::record::Record;
+    use super::super::record::SweepRecord;
     use super::*;
 
     #[test]
     fn what_is_the_same_in_all_runs_is_left_out() {
-        let row = |law: &str, drift: f64, failed: bool| Row {
+        let row = |law: &str, drift: f64, failed: bool| SweepRow {
             status: if failed { "failed" } else { "finished" }.to_owned(),
             parameters: vec![law.to_owned()],
             figures: if failed {
@@ -69,9 +70,9 @@ mod tests {
             } else {
                 vec![("particles".to_owned(), 96.0), ("energy_drift".to_owned(), drift)]
             },
-            ..Row::default()
+            ..SweepRow::default()
         };
-        let record = Record::new("laws", vec!["law".to_owned()]);
+        let record = SweepRecord::new("laws", vec!["law".to_owned()]);
         let rows = vec![row("surface", -0.0312, false), row("gap", 4e-5, false)];
         let mut sweep = Sweep { record, rows };
         assert_eq!(table(&sweep), "    law  energy_drift\nsurface       -0.0312\n    gap      4.000e-5\n");

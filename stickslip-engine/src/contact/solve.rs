@@ -302,10 +302,10 @@ mod tests {
     use proptest::prelude::*;
 
     /// Mass, velocity and volume gradient of each body at one node.
-    type State = Vec<(f64, [f64; 3], [f64; 3])>;
+    type NodeBodies = Vec<(f64, [f64; 3], [f64; 3])>;
 
     /// Two to five bodies with masses over four decades, as at the rim of a body.
-    fn states() -> impl Strategy<Value = State> {
+    fn states() -> impl Strategy<Value = NodeBodies> {
         let vector = || prop::array::uniform3(-1.0..1.0_f64);
         prop::collection::vec(((-4.0..0.0_f64).prop_map(|e| 10_f64.powf(e)), vector(), vector()), 2..=5)
     }
@@ -313,7 +313,7 @@ mod tests {
     /// Of the step [s].
     const DURATION: f64 = 1e-6;
 
-    struct Outcome {
+    struct SolveOutcome {
         masses: Vec<f64>,
         before: Vec<Vector<f64, 3>>,
         after: Vec<Vector<f64, 3>>,
@@ -336,17 +336,17 @@ mod tests {
     const UNILATERAL: [ContactLaw; 3] = [ContactLaw::Kinematic, ContactLaw::Regression, ContactLaw::Surface];
 
     /// What holds between each two of five bodies.
-    fn mixtures() -> impl Strategy<Value = Vec<Option<Touch>>> {
+    fn mixtures() -> impl Strategy<Value = Vec<Option<TouchingBodies>>> {
         let friction = prop_oneof![0.0..2.0_f64, Just(f64::INFINITY)];
         let touch = (prop::sample::select(&LAWS[..]), friction, prop::array::uniform3(-1.0..1.0_f64));
         let touch = touch.prop_map(|(law, friction, normal)| {
             let normal = (law == ContactLaw::Regression).then_some(normal);
-            Touch { law, friction, normal }
+            TouchingBodies { law, friction, normal }
         });
         prop::collection::vec(prop::option::weighted(0.8, touch), 10)
     }
 
-    impl Outcome {
+    impl SolveOutcome {
         /// |sum of m dv| over the sum of m |v|.
         fn momentum_gained(&self) -> f64 {
             let (mut change, mut size) = (Vector::ZERO, 0.0);
@@ -364,7 +364,7 @@ mod tests {
 
     /// What holds between two bodies that touch.
     #[derive(Clone, Copy, Debug)]
-    struct Touch {
+    struct TouchingBodies {
         law: ContactLaw,
         friction: f64,
         /// Any direction, as one that regression finds; that of the volume gradients if there is none.
@@ -372,12 +372,15 @@ mod tests {
     }
 
     /// What one rule does to bodies that all touch each other at one node under pressure.
-    fn at_node(state: &State, law: ContactLaw, friction: f64) -> Outcome {
-        at_node_of(state, |_| Some(Touch { law, friction, normal: None }))
+    fn at_node(state: &NodeBodies, law: ContactLaw, friction: f64) -> SolveOutcome {
+        at_node_of(state, |_| Some(TouchingBodies { law, friction, normal: None }))
     }
 
     /// The same where each pair has a rule of its own, or does not touch.
-    fn at_node_of(state: &State, between: impl Fn([usize; 2]) -> Option<Touch>) -> Outcome {
+    fn at_node_of(
+        state: &NodeBodies,
+        between: impl Fn([usize; 2]) -> Option<TouchingBodies>,
+    ) -> SolveOutcome {
         let mut nodes = Vec::new();
         let mut part = SurveyPart::default();
         for (body, &(mass, velocity, gradient)) in state.iter().enumerate() {
@@ -398,7 +401,7 @@ mod tests {
         let mut rules = Vec::new();
         for a in 0..n {
             for b in a + 1..n {
-                let Some(Touch { law, friction, normal }) = between([a, b]) else { continue };
+                let Some(TouchingBodies { law, friction, normal }) = between([a, b]) else { continue };
                 let own = part.sides[b].volume_gradient - part.sides[a].volume_gradient;
                 part.encounters.push(Encounter {
                     sides: [a, b],
@@ -424,7 +427,14 @@ mod tests {
         let after = velocities(&nodes);
         let masses = state.iter().map(|body| body.0).collect();
         let unsettled = impulses.unsettled();
-        Outcome { masses, before, after, normals, impulses: impulses.iter().copied().collect(), unsettled }
+        SolveOutcome {
+            masses,
+            before,
+            after,
+            normals,
+            impulses: impulses.iter().copied().collect(),
+            unsettled,
+        }
     }
 
     /// A body with a millionth of the mass carries momentum from one neighbour to the other by a millionth a sweep.
@@ -437,7 +447,7 @@ mod tests {
                 (1.0, [-1.0, 0.5, 0.0], [0.0, 0.0, 1.0]),
             ]
         };
-        let glue = Touch { law: ContactLaw::Glued, friction: 0.0, normal: None };
+        let glue = TouchingBodies { law: ContactLaw::Glued, friction: 0.0, normal: None };
         let in_a_row = |[a, b]: [usize; 2]| (b == a + 1).then_some(glue);
         for (middle, unsettled) in [(1.0, 0), (1e-6, 1)] {
             let node = at_node_of(&state(middle), in_a_row);
@@ -447,7 +457,7 @@ mod tests {
 
     /// Three bodies that stick as soon as they approach: stopping one pair sets off the next, for ever.
     /// A proptest of 20,000 nodes found them.
-    fn circling() -> State {
+    fn circling() -> NodeBodies {
         vec![
             (0.00182, [0.644, 0.0986, -0.405], [0.661, -0.575, -0.721]),
             (0.00561, [-0.255, 0.465, -0.550], [0.516, -0.777, -0.277]),

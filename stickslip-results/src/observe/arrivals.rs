@@ -39,7 +39,7 @@ impl TableRow for ArrivalRow {
 }
 
 /// Writes `arrivals.csv`.
-pub(super) struct Arrivals {
+pub(super) struct ArrivalsObserver {
     scene: Scene,
     lookout: Option<ArrivalWatches>,
     schedule: Schedule,
@@ -104,10 +104,10 @@ impl ThresholdCrossing {
     }
 }
 
-impl Arrivals {
+impl ArrivalsObserver {
     pub(super) fn create(scene: &Scene, folder: &OutputFolder) -> Result<Self, OutputError> {
         let wanted = &scene.outputs.measurements;
-        Ok(Arrivals {
+        Ok(ArrivalsObserver {
             scene: scene.clone(),
             lookout: None,
             schedule: Schedule::every(wanted.samples),
@@ -116,7 +116,7 @@ impl Arrivals {
     }
 }
 
-impl Observer for Arrivals {
+impl Observer for ArrivalsObserver {
     fn next(&self) -> f64 {
         match &self.lookout {
             Some(lookout) if lookout.watches.is_empty() => f64::INFINITY,

@@ -78,15 +78,15 @@ impl TableRow for BodyRow {
 }
 
 /// Writes `bodies.csv`.
-pub(super) struct Bodies {
+pub(super) struct BodiesObserver {
     names: Vec<String>,
     schedule: Schedule,
     table: CsvTable<BodyRow>,
 }
 
-impl Bodies {
+impl BodiesObserver {
     pub(super) fn create(scene: &Scene, folder: &OutputFolder) -> Result<Self, OutputError> {
-        Ok(Bodies {
+        Ok(BodiesObserver {
             names: scene.bodies.iter().map(|body| body.name.clone()).collect(),
             schedule: Schedule::every(scene.outputs.tables),
             table: CsvTable::create(folder.join(BODIES), scene.outputs.measurements.unit())?,
@@ -94,7 +94,7 @@ impl Bodies {
     }
 }
 
-impl Observer for Bodies {
+impl Observer for BodiesObserver {
     fn next(&self) -> f64 {
         self.schedule.next()
     }

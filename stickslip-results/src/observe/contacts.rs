@@ -57,16 +57,16 @@ impl TableRow for ContactRow {
 }
 
 /// Writes `contacts.csv`; each row is the mean since the row before.
-pub(super) struct Contacts {
+pub(super) struct ContactsObserver {
     names: Vec<String>,
     cursor: ContactCursor,
     schedule: Schedule,
     table: CsvTable<ContactRow>,
 }
 
-impl Contacts {
+impl ContactsObserver {
     pub(super) fn create(scene: &Scene, folder: &OutputFolder) -> Result<Self, OutputError> {
-        Ok(Contacts {
+        Ok(ContactsObserver {
             names: scene.bodies.iter().map(|body| body.name.clone()).collect(),
             cursor: ContactCursor::default(),
             schedule: Schedule::every(scene.outputs.tables),
@@ -75,7 +75,7 @@ impl Contacts {
     }
 }
 
-impl Observer for Contacts {
+impl Observer for ContactsObserver {
     fn next(&self) -> f64 {
         self.schedule.next()
     }

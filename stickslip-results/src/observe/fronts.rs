@@ -67,7 +67,7 @@ impl TableRow for FrontSpeedRow {
 }
 
 /// Writes `fronts.csv`, and at the end `front_speeds.csv`.
-pub(super) struct Fronts {
+pub(super) struct FrontsObserver {
     tracks: Vec<Track>,
     schedule: Schedule,
     table: CsvTable<FrontRow>,
@@ -83,7 +83,7 @@ struct Track {
     furthest: Vec<[f64; 2]>,
 }
 
-impl Fronts {
+impl FrontsObserver {
     pub(super) fn create(scene: &Scene, folder: &OutputFolder) -> Result<Self, OutputError> {
         let wanted = &scene.outputs.measurements;
         let track = |front: &Front| Track {
@@ -93,7 +93,7 @@ impl Fronts {
                 .collect(),
             furthest: Vec::new(),
         };
-        Ok(Fronts {
+        Ok(FrontsObserver {
             tracks: wanted.fronts.iter().map(track).collect(),
             schedule: Schedule::every(wanted.samples),
             table: CsvTable::create(folder.join(FRONTS), wanted.unit())?,
@@ -102,7 +102,7 @@ impl Fronts {
     }
 }
 
-impl Observer for Fronts {
+impl Observer for FrontsObserver {
     fn next(&self) -> f64 {
         self.schedule.next()
     }

@@ -12,18 +12,18 @@ use crate::door::{GridSnapshot, View};
 const NODE_BYTES: usize = 13 * size_of::<f64>() + size_of::<u32>();
 
 /// Writes `grid.pvd` and `grid/`.
-pub(super) struct Grid {
+pub(super) struct GridObserver {
     schedule: Schedule,
     frames: Frames,
 }
 
-impl Grid {
+impl GridObserver {
     pub(super) fn create(interval: f64, folder: &OutputFolder) -> Result<Self, OutputError> {
-        Ok(Grid { schedule: Schedule::every(interval), frames: Frames::create(folder, GRID)? })
+        Ok(GridObserver { schedule: Schedule::every(interval), frames: Frames::create(folder, GRID)? })
     }
 }
 
-impl Observer for Grid {
+impl Observer for GridObserver {
     fn next(&self) -> f64 {
         self.schedule.next()
     }

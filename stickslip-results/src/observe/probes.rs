@@ -104,17 +104,17 @@ pub(super) fn points<'a>(
 }
 
 /// Writes `probes.csv`.
-pub(super) struct Probes {
+pub(super) struct ProbesObserver {
     names: Vec<String>,
     points: Points,
     schedule: Schedule,
     table: CsvTable<ProbeRow>,
 }
 
-impl Probes {
+impl ProbesObserver {
     pub(super) fn create(scene: &Scene, folder: &OutputFolder) -> Result<Self, OutputError> {
         let wanted = &scene.outputs.measurements;
-        Ok(Probes {
+        Ok(ProbesObserver {
             names: wanted.probes.iter().map(|probe| probe.name.clone()).collect(),
             points: Points::new(scene, points(scene, wanted.probes.iter())),
             schedule: Schedule::every(wanted.samples),
@@ -123,7 +123,7 @@ impl Probes {
     }
 }
 
-impl Observer for Probes {
+impl Observer for ProbesObserver {
     fn next(&self) -> f64 {
         self.schedule.next()
     }

@@ -1,17 +1,17 @@
 //! All observers of a run, asked at the right times.
 
 use super::Observer;
-use super::arrivals::Arrivals;
-use super::bodies::Bodies;
-use super::contacts::Contacts;
+use super::arrivals::ArrivalsObserver;
+use super::bodies::BodiesObserver;
+use super::contacts::ContactsObserver;
 use super::energy::EnergyObserver;
 use super::file::OutputError;
 use super::folder::OutputFolder;
 use super::fringes::FringesObserver;
-use super::fronts::Fronts;
-use super::grid::Grid;
+use super::fronts::FrontsObserver;
+use super::grid::GridObserver;
 use super::particles::ParticlesObserver;
-use super::probes::Probes;
+use super::probes::ProbesObserver;
 use crate::door::View;
 use crate::scene::Scene;
 
@@ -33,25 +33,25 @@ impl<'a> Recorder<'a> {
     /// A file cannot be made.
     pub fn new(scene: &Scene, folder: &OutputFolder) -> Result<Self, OutputError> {
         let mut observers: Vec<Box<dyn Observer + 'a>> = vec![
-            Box::new(Bodies::create(scene, folder)?),
+            Box::new(BodiesObserver::create(scene, folder)?),
             Box::new(EnergyObserver::create(scene, folder)?),
-            Box::new(Contacts::create(scene, folder)?),
+            Box::new(ContactsObserver::create(scene, folder)?),
         ];
         let wanted = &scene.outputs.measurements;
         if !wanted.probes.is_empty() {
-            observers.push(Box::new(Probes::create(scene, folder)?));
+            observers.push(Box::new(ProbesObserver::create(scene, folder)?));
         }
         if !wanted.arrivals.is_empty() {
-            observers.push(Box::new(Arrivals::create(scene, folder)?));
+            observers.push(Box::new(ArrivalsObserver::create(scene, folder)?));
         }
         if !wanted.fronts.is_empty() {
-            observers.push(Box::new(Fronts::create(scene, folder)?));
+            observers.push(Box::new(FrontsObserver::create(scene, folder)?));
         }
         if scene.outputs.particles.is_some() || !scene.outputs.particles_at.is_empty() {
             observers.push(Box::new(ParticlesObserver::create(scene, folder)?));
         }
         if let Some(interval) = scene.outputs.grid {
-            observers.push(Box::new(Grid::create(interval, folder)?));
+            observers.push(Box::new(GridObserver::create(interval, folder)?));
         }
         if let Some(camera) = &scene.outputs.fringes {
             observers.push(Box::new(FringesObserver::create((scene, camera), folder)?));

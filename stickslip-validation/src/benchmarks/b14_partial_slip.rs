@@ -85,7 +85,7 @@ fn run(case: &Case) -> Result<Outcome, CaseFailure> {
     let h = 1.0 / case.cells;
     let mut trial = Trial::start("partial_slip", scene(case))?;
     // At rest after each way, by halves of the rest.
-    let mut rests = [[Traction::default(), Traction::default()], Default::default(), Default::default()];
+    let mut rests = [[NodalPush::default(), NodalPush::default()], Default::default(), Default::default()];
     while trial.advance()? {
         // In ways: the whole part counts those that are over.
         let now = trial.time() / (RAMP + REST);
@@ -119,12 +119,12 @@ fn run(case: &Case) -> Result<Outcome, CaseFailure> {
 
 /// Push and tangential impulse at the nodes of the contact, by their places along x in cells.
 #[derive(Default)]
-struct Traction(BTreeMap<i64, [f64; 2]>);
+struct NodalPush(BTreeMap<i64, [f64; 2]>);
 
 /// Edge of stick: q over mu p there.
 const NEARLY: f64 = 0.9;
 
-impl Traction {
+impl NodalPush {
     fn take(&mut self, x: i64, impulse: [f64; 2]) {
         if impulse != [0.0; 2] {
             let sum = self.0.entry(x).or_default();
@@ -232,7 +232,7 @@ mod tests {
     fn measures_of_the_exact_traction_are_exact() {
         let ellipse = |x: i64, half: f64| (half * half - (x * x) as f64).max(0.0).sqrt();
         let (b, c, turned) = (200.0, 200.0 * 0.4_f64.sqrt(), 200.0 * 0.7_f64.sqrt());
-        let [mut loaded, mut unloaded] = [Traction::default(), Traction::default()];
+        let [mut loaded, mut unloaded] = [NodalPush::default(), NodalPush::default()];
         for x in -200..=200 {
             let p = ellipse(x, b);
             let q = FRICTION * (p - ellipse(x, c));

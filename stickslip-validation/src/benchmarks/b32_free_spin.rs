@@ -56,7 +56,7 @@ times that when it rings. Measured at the end over the start.",
 /// Cells on R from which on the finer targets hold.
 const FINE: f64 = 5.0;
 
-const fn momentum(names: &Names, cells: f64) -> Target {
+const fn momentum(names: &MetricNames, cells: f64) -> Target {
     let (tolerance, why) = match cells < FINE {
         true => (0.002, "nothing turns it; four cells on a radius may lose twice what five do"),
         false => (0.001, "nothing turns it; a transfer that has no affine part loses a little at the rim"),
@@ -64,45 +64,45 @@ const fn momentum(names: &Names, cells: f64) -> Target {
     Target::new(names.momentum, 1.0, Allowed::Within(tolerance), why).at(cells)
 }
 
-const fn energy(names: &Names, cells: f64) -> Target {
+const fn energy(names: &MetricNames, cells: f64) -> Target {
     let why = "ten times what angular momentum may be off: small motion within cells is lost";
     Target::new(names.energy, 1.0, Allowed::Within(0.01), why).at(cells)
 }
 
-const fn strain(names: &Names, cells: f64) -> Target {
+const fn strain(names: &MetricNames, cells: f64) -> Target {
     let most = if cells < FINE { 0.002 } else { 0.001 };
     let why = "the pull of the spin and its ringing store 0.0006; more is strain of what should turn rigidly";
     Target::new(names.strain, 0.0, Allowed::AtMost(most), why).at(cells)
 }
 
 /// What is measured of a body, by name.
-struct Names {
+struct MetricNames {
     momentum: &'static str,
     energy: &'static str,
     strain: &'static str,
 }
 
-const DISK: Names = Names {
+const DISK: MetricNames = MetricNames {
     momentum: "angular momentum, disk",
     energy: "kinetic and strain energy, disk",
     strain: "strain over kinetic energy, disk",
 };
-const SLOW: Names = Names {
+const SLOW: MetricNames = MetricNames {
     momentum: "angular momentum, slow disk",
     energy: "kinetic and strain energy, slow disk",
     strain: "strain over kinetic energy, slow disk",
 };
-const BALL: Names = Names {
+const BALL: MetricNames = MetricNames {
     momentum: "angular momentum, ball",
     energy: "kinetic and strain energy, ball",
     strain: "strain over kinetic energy, ball",
 };
-const FITTED: Names = Names {
+const FITTED: MetricNames = MetricNames {
     momentum: "angular momentum, fitted ball",
     energy: "kinetic and strain energy, fitted ball",
     strain: "strain over kinetic energy, fitted ball",
 };
-const BLOCK: Names = Names {
+const BLOCK: MetricNames = MetricNames {
     momentum: "angular momentum, block",
     energy: "kinetic and strain energy, block",
     strain: "strain over kinetic energy, block",
@@ -135,7 +135,7 @@ fn run(case: &Case) -> Result<Outcome, CaseFailure> {
 /// Lets a body spin for so many turns about the origin.
 fn spin(
     case: &Case,
-    names: &Names,
+    names: &MetricNames,
     (name, shape, spin, turns): (&str, &str, f64, f64),
     outcome: &mut Outcome,
 ) -> Result<(), CaseFailure> {

@@ -71,7 +71,7 @@ fn run(case: &Case) -> Result<Outcome, CaseFailure> {
     Ok(outcome)
 }
 
-struct Particle {
+struct BlockParticle {
     start: [i64; 3],
     position: [f64; 3],
     velocity: [f64; 3],
@@ -84,7 +84,7 @@ fn drop(
     dimension: &str,
     cut: Option<[f64; 3]>,
     outcome: &mut Outcome,
-) -> Result<Vec<Particle>, CaseFailure> {
+) -> Result<Vec<BlockParticle>, CaseFailure> {
     let h = 1.0 / case.cells;
     // Vectors of the scene have as many components as it has dimensions.
     let vector = |x: [f64; 3]| if dimension == "3d" { format!("{x:?}") } else { format!("{:?}", &x[..2]) };
@@ -132,10 +132,10 @@ rigid = {{}}
 }
 
 /// Deformable particles in the order of their places at the start, which the parts share with the whole.
-fn arranged(end: &ParticleSnapshot, start: &ParticleSnapshot) -> Vec<Particle> {
-    let mut particles: Vec<Particle> = (0..end.body.len())
+fn arranged(end: &ParticleSnapshot, start: &ParticleSnapshot) -> Vec<BlockParticle> {
+    let mut particles: Vec<BlockParticle> = (0..end.body.len())
         .filter(|&p| start.position[p][1] > -0.05)
-        .map(|p| Particle {
+        .map(|p| BlockParticle {
             start: [0, 1, 2].map(|i| (start.position[p][i] * 1e6).round() as i64),
             position: end.position[p],
             velocity: end.velocity[p],
