@@ -1,7 +1,7 @@
 //! Problems with known answers, and how close each contact law and each scheme of the step comes to them.
 //!
 //! The laws come from the engine's list, the schemes from [`KEYS`], the problems from [`BENCHMARKS`]: one file each,
-//! which reads like a report. To add a benchmark, write its file and seat it there. Everything here drives the engine
+//! which reads like a report. To add a benchmark, write its file and list it there. Everything here drives the engine
 //! as any user can: scenes are text, and simulations are stepped and looked at through [`stickslip::door`].
 
 // What a benchmark is: its report, its targets, its resolutions.

@@ -2,7 +2,7 @@
 //! measured and put side by side with what it says.
 //!
 //! A [`Study`] is an application: the cases that it needs, and the section of the report that it makes of their
-//! results. To add one, write its file and seat it in [`STUDIES`].
+//! results. To add one, write its file and list it in [`STUDIES`].
 
 mod accounts;
 mod backspin;

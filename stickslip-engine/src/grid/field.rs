@@ -72,8 +72,8 @@ impl<T: Real, const D: usize> Node<T, D> {
         std::mem::swap(&mut self.integrated, &mut self.velocity);
     }
 
-    /// Where a node's first eight numbers are in [`NodeSums`]: mass, velocity and force, and then zeros: in the plane the
-    /// third axis has nothing to give.
+    /// Where a node's first eight numbers are in [`NodeSums`]: mass, velocity and force, and then zeros: in the plane
+    /// the third axis has nothing to give.
     const GIVEN: [usize; MOST_LANES] =
         if D == 2 { [6, 0, 2, 1, 3, 4, 5, 7] } else { [6, 0, 2, 4, 1, 3, 5, 7] };
 

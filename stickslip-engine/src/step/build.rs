@@ -3,7 +3,7 @@
 use super::state::{Disorder, Settings, State, Workspace};
 use super::unbounded::Unbounded;
 use super::watch::Stopwatch;
-use super::{Engine, Path};
+use super::{Engine, ParticleLoop};
 use crate::basis::{Basis, Gimp, Linear};
 use crate::body::{Body, Particle};
 use crate::boundary::{Boundary, Wall};
@@ -28,14 +28,14 @@ use std::marker::PhantomData;
 /// # Errors
 /// What [`check::problems`] finds.
 pub fn build(scene: &Scene) -> Result<Box<dyn Simulation>, Problem> {
-    build_on(scene, Path::Lanes(Processor::best()))
+    build_on(scene, ParticleLoop::Lanes(Processor::best()))
 }
 
 /// The simulation of a scene, with its particles taken one at a time or several.
 ///
 /// # Errors
 /// What [`check::problems`] finds.
-pub fn build_on(scene: &Scene, path: Path) -> Result<Box<dyn Simulation>, Problem> {
+pub fn build_on(scene: &Scene, path: ParticleLoop) -> Result<Box<dyn Simulation>, Problem> {
     match (scene.dimension, scene.precision) {
         (Dimension::PlaneStrain | Dimension::PlaneStress, Precision::Double) => {
             with_basis::<f64, 2>(scene, path)
@@ -48,7 +48,10 @@ pub fn build_on(scene: &Scene, path: Path) -> Result<Box<dyn Simulation>, Proble
     }
 }
 
-fn with_basis<T: Laned, const D: usize>(scene: &Scene, path: Path) -> Result<Box<dyn Simulation>, Problem> {
+fn with_basis<T: Laned, const D: usize>(
+    scene: &Scene,
+    path: ParticleLoop,
+) -> Result<Box<dyn Simulation>, Problem> {
     Ok(match scene.discretization.basis {
         BasisKind::Linear => Box::new(Engine::<T, D, Linear>::new(scene, path)?),
         BasisKind::Gimp => Box::new(Engine::<T, D, Gimp>::new(scene, path)?),
@@ -60,7 +63,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     ///
     /// # Errors
     /// What [`check::problems`] finds.
-    pub fn new(scene: &Scene, path: Path) -> Result<Self, Problem> {
+    pub fn new(scene: &Scene, path: ParticleLoop) -> Result<Self, Problem> {
         check::problems(scene)?;
         let mut bodies = Vec::new();
         let mut rigid = Vec::new();

@@ -4,7 +4,7 @@
 //! colours one after the other, and a tile's particles in their own order: no sum depends on which thread comes first.
 
 use super::Engine;
-use super::pass::{Found, Pass, Path, Verbs, Visit};
+use super::pass::{Found, ParticleLoop, Pass, Verbs, Visit};
 use super::tile::SeveralAtATime;
 use crate::basis::Basis;
 use crate::grid::{Disjoint, Window};
@@ -75,10 +75,10 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             // portions and tiles of one colour share none.
             unsafe {
                 match path {
-                    Path::Lanes(processor) => T::run(processor, SeveralAtATime(&mut visit)),
-                    Path::OneLane => visit.take_one_by_one(),
+                    ParticleLoop::Lanes(processor) => T::run(processor, SeveralAtATime(&mut visit)),
+                    ParticleLoop::OneLane => visit.take_one_by_one(),
                     #[cfg(test)]
-                    Path::Naive => visit.take_naively(),
+                    ParticleLoop::Naive => visit.take_naively(),
                 }
             }
             // SAFETY: every tile has a place of its own.

@@ -15,7 +15,7 @@ mod watch;
 
 pub(crate) use build::history;
 pub use build::{build, build_on};
-pub use pass::Path;
+pub use pass::ParticleLoop;
 pub(crate) use unbounded::particles_around;
 
 use crate::basis::Basis;

@@ -160,7 +160,7 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
 mod tests {
     use crate::door::ParticleSnapshot;
     use crate::lanes::Processor;
-    use crate::step::{Path, build_on};
+    use crate::step::{ParticleLoop, build_on};
 
     fn scene(dimension: &str, basis: &str, time: &str) -> String {
         let v = |x: &str, y: &str, z: &str| match dimension {
@@ -216,7 +216,7 @@ mod tests {
         )
     }
 
-    fn outcome(scene: &str, path: Path, steps: usize) -> ParticleSnapshot {
+    fn outcome(scene: &str, path: ParticleLoop, steps: usize) -> ParticleSnapshot {
         let loaded =
             crate::scene::parse("naive.toml", scene, &[]).unwrap_or_else(|e| panic!("{e:?}\n{scene}"));
         let mut simulation = build_on(&loaded.scene, path).unwrap_or_else(|e| panic!("{e:?}\n{scene}"));
@@ -238,8 +238,8 @@ mod tests {
                     for transfer in ["flip", "rflip"] {
                         let time = format!("stress_update = \"{update}\"\ntransfer = \"{transfer}\"");
                         let scene = scene(dimension, basis, &time);
-                        let naive = outcome(&scene, Path::Naive, steps);
-                        for path in [Path::OneLane, Path::Lanes(Processor::best())] {
+                        let naive = outcome(&scene, ParticleLoop::Naive, steps);
+                        for path in [ParticleLoop::OneLane, ParticleLoop::Lanes(Processor::best())] {
                             let found = outcome(&scene, path, steps);
                             let position = largest_difference(&found.position, &naive.position) / 0.3;
                             let velocity = largest_difference(&found.velocity, &naive.velocity);

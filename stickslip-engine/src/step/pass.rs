@@ -12,7 +12,7 @@ use std::marker::PhantomData;
 
 /// Who does the work on particles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Path {
+pub enum ParticleLoop {
     /// Several particles at a time, by the best that the processor has.
     Lanes(Processor),
     /// One particle at a time, by the same code: what finds out what is wrong with whom, and serves processors that hold

@@ -11,7 +11,7 @@ use crate::scene::{Time, Transfer};
 use crate::tensor::Vector;
 use std::sync::{Arc, Mutex};
 
-use super::pass::Path;
+use super::pass::ParticleLoop;
 
 /// What the scene says, the same in every step.
 pub struct Settings<T, const D: usize> {
@@ -23,7 +23,7 @@ pub struct Settings<T, const D: usize> {
     pub pic_share: T,
     pub rules: Rules<T>,
     pub time: Time,
-    pub path: Path,
+    pub path: ParticleLoop,
 }
 
 /// All that a copied, stored or resumed simulation needs: the same state takes the same steps, bit for bit.

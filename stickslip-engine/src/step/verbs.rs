@@ -2,7 +2,7 @@
 
 use super::Engine;
 use super::build::spin;
-use super::pass::{FaultKind, Found, ParticleFault, Pass, Path, Verbs, escaped, home};
+use super::pass::{FaultKind, Found, ParticleFault, ParticleLoop, Pass, Verbs, escaped, home};
 use super::state::{Disorder, Workspace};
 use crate::basis::Basis;
 use crate::clock::signal;
@@ -218,7 +218,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             rules: &self.settings.rules,
             ahead: (self.settings.time.stress_update != StressUpdate::First).then_some(dt),
             processor: match self.settings.path {
-                Path::Lanes(processor) => processor,
+                ParticleLoop::Lanes(processor) => processor,
                 _ => Processor::Any,
             },
         };

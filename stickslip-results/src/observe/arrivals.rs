@@ -41,7 +41,7 @@ impl TableRow for ArrivalRow {
 /// Writes `arrivals.csv`.
 pub(super) struct ArrivalsObserver {
     scene: Scene,
-    lookout: Option<ArrivalWatches>,
+    awaited: Option<ArrivalWatches>,
     schedule: Schedule,
     table: CsvTable<ArrivalRow>,
 }
@@ -109,7 +109,7 @@ impl ArrivalsObserver {
         let wanted = &scene.outputs.measurements;
         Ok(ArrivalsObserver {
             scene: scene.clone(),
-            lookout: None,
+            awaited: None,
             schedule: Schedule::every(wanted.samples),
             table: CsvTable::create(folder.join(ARRIVALS), wanted.unit())?,
         })
@@ -118,15 +118,15 @@ impl ArrivalsObserver {
 
 impl Observer for ArrivalsObserver {
     fn next(&self) -> f64 {
-        match &self.lookout {
-            Some(lookout) if lookout.watches.is_empty() => f64::INFINITY,
+        match &self.awaited {
+            Some(awaited) if awaited.watches.is_empty() => f64::INFINITY,
             _ => self.schedule.next(),
         }
     }
 
     fn observe(&mut self, view: &dyn View) -> Result<(), OutputError> {
-        let lookout = self.lookout.get_or_insert_with(|| ArrivalWatches::new(&self.scene, view));
-        let rows = lookout.arrived(view);
+        let awaited = self.awaited.get_or_insert_with(|| ArrivalWatches::new(&self.scene, view));
+        let rows = awaited.arrived(view);
         self.table.append(rows)?;
         self.schedule.recorded(view.time());
         Ok(())

@@ -1,6 +1,6 @@
 //! Everything that a run writes, and reading it back.
 //!
-//! One file for each kind of output; to add one, write its file and seat it in [`Recorder::new`]. An [`Observer`] of
+//! One file for each kind of output; to add one, write its file and list it in [`Recorder::new`]. An [`Observer`] of
 //! another crate is added with [`Recorder::add`]. Outputs look at the simulation between steps and never change how it
 //! steps: a record is made after the first step that reaches a multiple of the output's interval and carries the true
 //! time; the start and the end are always recorded. Whatever ends a run (its end time, the user, a failing step, a full

@@ -1,4 +1,4 @@
-//! The benchmarks, one file each; every file reads like a report. To add one, write its file and seat it in
+//! The benchmarks, one file each; every file reads like a report. To add one, write its file and list it in
 //! [`BENCHMARKS`].
 
 mod b10_collinear_disks;

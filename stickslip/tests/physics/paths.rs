@@ -13,7 +13,7 @@
 use crate::trial::{STRESS_UPDATES, largest_difference, start_on, take_steps};
 use stickslip::door::{ContactCursor, ParticleSnapshot};
 use stickslip::lanes::Processor;
-use stickslip::step::Path;
+use stickslip::step::ParticleLoop;
 
 fn scene(dimension: &str, precision: &str, basis: &str, update: &str) -> String {
     let space = dimension == "3d";
@@ -57,7 +57,7 @@ fn scene(dimension: &str, precision: &str, basis: &str, update: &str) -> String 
     )
 }
 
-fn outcome(scene: &str, path: Path, steps: usize) -> (ParticleSnapshot, f64) {
+fn outcome(scene: &str, path: ParticleLoop, steps: usize) -> (ParticleSnapshot, f64) {
     let mut simulation = start_on(scene, path);
     take_steps(&mut *simulation, steps);
     assert!(ContactCursor::default().read(&*simulation).len() >= 2, "bodies touch");
@@ -72,7 +72,7 @@ fn compare(dimension: &str, precision: &str, basis: &str, update: &str) {
 }
 
 fn compare_paths(scene: &str, steps: usize, name: &str) {
-    let (reference, time) = outcome(scene, Path::OneLane, steps);
+    let (reference, time) = outcome(scene, ParticleLoop::OneLane, steps);
     for (processor, found, found_time) in outcomes_with_the_same_bits(scene, steps) {
         let position = largest_difference(&found.position, &reference.position) / 0.3;
         let velocity = largest_difference(&found.velocity, &reference.velocity);
@@ -94,7 +94,7 @@ fn compare_paths(scene: &str, steps: usize, name: &str) {
 fn outcomes_with_the_same_bits(scene: &str, steps: usize) -> Vec<(Processor, ParticleSnapshot, f64)> {
     let mut outcomes: Vec<(Processor, ParticleSnapshot, f64)> = Vec::new();
     for processor in Processor::available() {
-        let (found, time) = outcome(scene, Path::Lanes(processor), steps);
+        let (found, time) = outcome(scene, ParticleLoop::Lanes(processor), steps);
         if let Some((first, other, _)) =
             outcomes.iter().find(|(first, ..)| first.fuses() == processor.fuses())
         {
@@ -159,7 +159,7 @@ fn metal() {
         let scene = scene(dimension, "double", "gimp", "modified-last")
             .replace(elastic, metal)
             .replace("cell = 0.1,", &format!("cell = 0.1, particles_per_side = {particles},"));
-        let (found, _) = outcome(&scene, Path::OneLane, 60);
+        let (found, _) = outcome(&scene, ParticleLoop::OneLane, 60);
         let plastic_strain = found.remembered("plastic_strain").expect("a law that flows");
         let most = plastic_strain.values.iter().fold(0.0, |a: f64, &b| a.max(b));
         assert!(most > 1e-3, "{dimension}: {most}");

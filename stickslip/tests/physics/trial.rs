@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 use stickslip::door::{ParticleSnapshot, Simulation};
 use stickslip::march::march;
-use stickslip::step::Path;
+use stickslip::step::ParticleLoop;
 use stickslip::{scene, step};
 
 /// Every stress update by its word in scene files.
@@ -26,7 +26,7 @@ pub fn start_in(folder: &std::path::Path, text: &str) -> Box<dyn Simulation> {
 }
 
 /// The simulation of a scene on a path.
-pub fn start_on(text: &str, path: Path) -> Box<dyn Simulation> {
+pub fn start_on(text: &str, path: ParticleLoop) -> Box<dyn Simulation> {
     let loaded = scene::parse("trial.toml", text, &[]).unwrap_or_else(|error| panic!("{error:?}\n{text}"));
     step::build_on(&loaded.scene, path).unwrap_or_else(|problem| panic!("{problem:?}\n{text}"))
 }
