@@ -9,7 +9,8 @@
 //!
 #![doc = concat!("```\n", include_str!("../examples/build_a_scene.rs"), "```")]
 //!
-//! `examples/add_an_observer.rs` looks at a run after every step, with an observer of its own.
+//! `examples/add_an_observer.rs` looks at a run after every step, with an observer of its own; `examples/add_a_law.rs`
+//! gives a body a law of its own.
 
 pub use stickslip_engine::{
     basis, body, boundary, clock, contact, door, grid, lanes, march, pages, particles, step, transfer,
