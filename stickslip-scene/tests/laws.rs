@@ -1,4 +1,5 @@
-//! A law is two files: its own, and the list. Outside of them and of tests, nothing in the workspace says its name, nor that of what it remembers.
+//! A law is two files: its own, and the list. Outside of them and of tests, nothing in the workspace says its name,
+//! nor that of what it remembers.
 
 use std::path::{Path, PathBuf};
 use stickslip_scene::material::{Given, SHELF};

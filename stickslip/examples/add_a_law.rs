@@ -1,4 +1,5 @@
-//! A law of our own, from outside the crate: Saint Venant-Kirchhoff elasticity that remembers how far it was compressed.
+//! A law of our own, from outside the crate: Saint Venant-Kirchhoff elasticity that remembers how far it was
+//! compressed.
 //!
 //! ```text
 //! S = lambda tr(E) I + 2 mu E,   E = (F^T F - I) / 2,   sigma = F S F^T / J

@@ -4,8 +4,8 @@
 //! ([`stickslip_scene`]), the engine ([`stickslip_engine`]) and results ([`stickslip_results`]).
 //!
 //! A scene comes from a file, by [`scene::load`], or from code, by [`scene::Scene::new`]; [`step::build`] makes a
-//! [`door::Simulation`] of it, which is stepped and looked at; [`run::run`] does that until the scene's end and writes what the
-//! scene asks for. This is `examples/build_a_scene.rs`:
+//! [`door::Simulation`] of it, which is stepped and looked at; [`run::run`] does that until the scene's end and writes
+//! what the scene asks for. This is `examples/build_a_scene.rs`:
 //!
 #![doc = concat!("```\n", include_str!("../examples/build_a_scene.rs"), "```")]
 //!

@@ -1,10 +1,12 @@
 //! A law from outside the crate, with a history of its own.
 //!
-//! Set-up: a disk falls on a fixed floor and rebounds, in plane strain and plane stress and, as a ball, in space. Its law is given as an object:
-//! the neo-Hookean law one particle at a time, which also counts its steps, sums their duration and remembers the deformation gradient.
+//! Set-up: a disk falls on a fixed floor and rebounds, in plane strain and plane stress and, as a ball, in space. Its
+//! law is given as an object: the neo-Hookean law one particle at a time, which also counts its steps, sums their
+//! duration and remembers the deformation gradient.
 //!
-//! Expected: particles move as those of the built-in law do, but for round-off (1e-9 of the cell); every particle has counted every step, though
-//! particles are sorted anew, and remembers its own F, so that a snapshot's column is the snapshot's deformation.
+//! Expected: particles move as those of the built-in law do, but for round-off (1e-9 of the cell); every particle has
+//! counted every step, though particles are sorted anew, and remembers its own F,
+//! so that a snapshot's column is the snapshot's deformation.
 
 use crate::trial::{largest_difference, take_steps};
 use stickslip::column::Kind;

@@ -1,14 +1,15 @@
 //! A bar that is torn takes the fracture energy, whatever the cells.
 //!
-//! Source: crack band of Bazant and Oh (1983): what softens is as wide as a cell, and a cell dissipates G_f over its width.
+//! Source: crack band of Bazant and Oh (1983): what softens is as wide as a cell,
+//! and a cell dissipates G_f over its width.
 //!
 //! Set-up: the plane, nu = 0. A bar of length L = E = rho = 1 and two cells high between grips, of which one moves away
-//! slowly and smoothly. Strength 5e-4, G_f = 4e-7: 2 E G_f/f_t^2 is 3.2 L, so the bar softens without snapping. At the end
-//! the crack is open by n = 4 times G_f/f_t.
+//! slowly and smoothly. Strength 5e-4, G_f = 4e-7: 2 E G_f/f_t^2 is 3.2 L, so the bar softens without snapping. At the
+//! end the crack is open by n = 4 times G_f/f_t.
 //!
-//! Expected: the crack took G_f (1 - exp(-n) (1 + n/2)) = 0.945 G_f of the section (the rest is stored yet), within 5 %, on 10,
-//! 20 and 40 cells; without regularisation it would be half as much with each. The ledger closes within 2 % of the work.
-//! Broken particles are those of one column of cells, and one beside it at most.
+//! Expected: the crack took G_f (1 - exp(-n) (1 + n/2)) = 0.945 G_f of the section (the rest is stored yet), within 5
+//! %, on 10, 20 and 40 cells; without regularisation it would be half as much with each. The ledger closes within 2 %
+//! of the work. Broken particles are those of one column of cells, and one beside it at most.
 
 use crate::trial::{run_to, start};
 

@@ -1,14 +1,14 @@
 //! Particles taken several at a time do what particles taken one by one do, and all processors do the same.
 //!
 //! Set-up: a soft ball and a stone that fly into each other and a rigid floor before a symmetry face, with friction,
-//! gravity, and a share of PIC; both round, for next to an edge round-off decides which way a surface looks; in the plane
-//! and in space, both precisions, both bases, all stress updates, with one lane and on every path that this processor has.
-//! A naive pass of its own is held against both in `stickslip-engine/src/step/naive.rs`.
+//! gravity, and a share of PIC; both round, for next to an edge round-off decides which way a surface looks; in the
+//! plane and in space, both precisions, both bases, all stress updates, with one lane and on every path that this
+//! processor has. A naive pass of its own is held against both in `stickslip-engine/src/step/naive.rs`.
 //!
 //! Expected: after 60 steps (15 with linear functions) positions agree within 1e-10 of the bodies' size and velocities
-//! within 1e-9 of their speed in double precision, 1e-5 and 1e-3 in single: a product and a sum are rounded once or twice,
-//! and a stiff law turns round-off of strain into forces. All paths that take several at a time and round a product and a
-//! sum once agree bit for bit with each other: they sum in one order, whatever the processor has.
+//! within 1e-9 of their speed in double precision, 1e-5 and 1e-3 in single: a product and a sum are rounded once or
+//! twice, and a stiff law turns round-off of strain into forces. All paths that take several at a time and round a
+//! product and a sum once agree bit for bit with each other: they sum in one order, whatever the processor has.
 
 use crate::trial::{STRESS_UPDATES, largest_difference, start_on, take_steps};
 use stickslip::door::{ContactCursor, ParticleSnapshot};
