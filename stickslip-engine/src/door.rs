@@ -100,7 +100,7 @@ pub struct Ledger {
     pub friction: f64,
     /// Taken by bonds of contacts that adhere, where they give way [J].
     pub adhesion: f64,
-    /// Dissipated by plastic flow [J].
+    /// Dissipated by the materials: by plastic flow, viscosity and damage [J].
     pub plastic: f64,
     /// Dissipated by damping [J].
     pub damping: f64,

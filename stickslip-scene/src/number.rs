@@ -52,6 +52,12 @@ pub trait Number:
     fn min(self, other: Self) -> Self;
     /// The larger of two numbers.
     fn max(self, other: Self) -> Self;
+    /// How many stand side by side.
+    const SIDE_BY_SIDE: usize;
+    /// The one in a lane.
+    fn lane(self, lane: usize) -> f64;
+    /// Each lane's number from a function: the nearest to what it returns.
+    fn from_lanes(f: impl FnMut(usize) -> f64) -> Self;
     /// self * factor + other. Single numbers round the product and the sum; several side by side round once where the
     /// processor has an instruction for that ([`crate::lanes::Processor::fuses`]).
     #[inline(always)]
@@ -88,6 +94,15 @@ macro_rules! real {
             const ONE: Self = 1.0;
             const HALF: Self = 0.5;
             const EPSILON: Self = <$t>::EPSILON;
+            const SIDE_BY_SIDE: usize = 1;
+            #[inline(always)]
+            fn lane(self, _lane: usize) -> f64 {
+                self as f64
+            }
+            #[inline(always)]
+            fn from_lanes(mut f: impl FnMut(usize) -> f64) -> Self {
+                f(0) as $t
+            }
             #[inline(always)]
             fn of(value: f64) -> Self {
                 value as $t

@@ -4,12 +4,13 @@
 //! ([`stickslip_scene`]), the engine ([`stickslip_engine`]) and results ([`stickslip_results`]).
 //!
 //! A scene comes from a file, by [`scene::load`], or from code, by [`scene::Scene::new`]; [`step::build`] makes a
-//! [`door::Simulation`] of it, which is stepped and looked at; [`run::run`] does that until the scene's end and writes what the
-//! scene asks for. This is `examples/build_a_scene.rs`:
+//! [`door::Simulation`] of it, which is stepped and looked at; [`run::run`] does that until the scene's end and writes
+//! what the scene asks for. This is `examples/build_a_scene.rs`:
 //!
 #![doc = concat!("```\n", include_str!("../examples/build_a_scene.rs"), "```")]
 //!
-//! `examples/add_an_observer.rs` looks at a run after every step, with an observer of its own.
+//! `examples/add_an_observer.rs` looks at a run after every step, with an observer of its own; `examples/add_a_law.rs`
+//! gives a body a law of its own.
 
 pub use stickslip_engine::{
     basis, body, boundary, clock, contact, door, grid, lanes, march, pages, particles, step, transfer,

@@ -67,8 +67,7 @@ impl TypedValueParser for QuantityParser {
 
     fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
         let history = PossibleValue::new("NAME").help(
-            "What a material's law remembers, such as plastic_strain: a number itself, of a tensor the root of the sum of its \
-             squared entries",
+            "A column that a material's law remembers: a number itself, of a tensor the root of the sum of its squared entries",
         );
         let words = ColorQuantity::value_variants().iter().filter_map(ValueEnum::to_possible_value);
         Some(Box::new(words.chain([history])))

@@ -170,7 +170,7 @@ pub trait Lanes: Number {
     fn store_pairs(columns: [Self; 4], pairs: &mut [[[Self::Real; 2]; 4]; MOST_LANES / 2]) {
         let columns =
             [columns[0].numbers(), columns[1].numbers(), columns[2].numbers(), columns[3].numbers()];
-        for (i, pair) in pairs.iter_mut().enumerate().take(Self::COUNT / 2) {
+        for (i, pair) in pairs.iter_mut().enumerate().take(Self::COUNT.div_ceil(2)) {
             for (entry, column) in pair.iter_mut().zip(&columns) {
                 *entry = [column.0[2 * i], column.0[2 * i + 1]];
             }

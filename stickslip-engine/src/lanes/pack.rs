@@ -61,6 +61,15 @@ impl<T: Real, const N: usize> Number for Pack<T, N> {
     const ONE: Self = Pack([T::ONE; N]);
     const HALF: Self = Pack([T::HALF; N]);
     const EPSILON: Self = Pack([T::EPSILON; N]);
+    const SIDE_BY_SIDE: usize = N;
+    #[inline(always)]
+    fn lane(self, lane: usize) -> f64 {
+        Number::lane(self.numbers().0[lane], 0)
+    }
+    #[inline(always)]
+    fn from_lanes(mut f: impl FnMut(usize) -> f64) -> Self {
+        <Self as Lanes>::from_fn(|lane| Number::of(f(lane)))
+    }
     #[inline(always)]
     fn of(value: f64) -> Self {
         Pack([T::of(value); N])

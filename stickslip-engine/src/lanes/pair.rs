@@ -44,6 +44,15 @@ impl<V: Lanes> Number for RegisterPair<V> {
     const ONE: Self = RegisterPair(V::ONE, V::ONE);
     const HALF: Self = RegisterPair(V::HALF, V::HALF);
     const EPSILON: Self = RegisterPair(V::EPSILON, V::EPSILON);
+    const SIDE_BY_SIDE: usize = <Self as Lanes>::COUNT;
+    #[inline(always)]
+    fn lane(self, lane: usize) -> f64 {
+        Number::lane(self.numbers().0[lane], 0)
+    }
+    #[inline(always)]
+    fn from_lanes(mut f: impl FnMut(usize) -> f64) -> Self {
+        <Self as Lanes>::from_fn(|lane| Number::of(f(lane)))
+    }
     #[inline(always)]
     fn of(value: f64) -> Self {
         RegisterPair(V::of(value), V::of(value))

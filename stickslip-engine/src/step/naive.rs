@@ -153,7 +153,8 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
 /// The pass that ships, in one lane and in several, does what the naive one does.
 ///
 /// Set-up: a soft ball and a stone that flows, which fly into each other and into a rigid floor before a symmetry face,
-/// with friction, gravity and a share of PIC; in the plane and in space, both bases, all stress updates, both transfers.
+/// with friction, gravity and a share of PIC; in the plane and in space, both bases, all stress updates,
+/// both transfers.
 ///
 /// Expected: after 40 steps positions agree within 1e-10 of the bodies' size, velocities within 1e-9 of their speed:
 /// sums are taken in another order, and a stiff law turns round-off of strain into forces.

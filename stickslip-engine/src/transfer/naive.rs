@@ -110,7 +110,8 @@ impl<T: Real, const D: usize, B: Basis<T>> Stencil<T, D, B> {
         sum
     }
 
-    /// sum S_i (x_i - x_p) x v_i of a value at the window's nodes, see [`turning`]; in the plane about the third axis [m^2/s].
+    /// sum S_i (x_i - x_p) x v_i of a value at the window's nodes, see [`turning`];
+    /// in the plane about the third axis [m^2/s].
     pub fn moment(&self, nodes: &[NodeValues<T>; WINDOW_NODES], block: [i32; D]) -> Vector<T, 3> {
         let mut moments = Matrix::ZERO;
         self.each(block, |place, offset| {

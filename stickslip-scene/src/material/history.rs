@@ -73,9 +73,7 @@ pub(super) fn symmetric<T: Number>(entries: &[T], first: usize) -> Symmetric<T> 
 /// Writes a symmetric tensor to a place of a history.
 #[inline(always)]
 pub(super) fn put_symmetric<T: Number>(entries: &mut [T], first: usize, tensor: &Symmetric<T>) {
-    for k in 0..6 {
-        entries[first + k] = tensor.0[k];
-    }
+    entries[first..first + 6].copy_from_slice(&tensor.0);
 }
 
 /// Where the history of a particle is read, entry by entry as its columns have them.

@@ -3,11 +3,13 @@
 //! To add a law: write its file (what it declares, [`Law`], tests) and put its line on the list below. Scene files, schema, checks,
 //! the engine, snapshots and pictures find it there, with its constants and its history.
 
+mod custom;
 mod declaration;
 mod elastic;
 mod history;
 mod plane_stress;
 
+pub use custom::{Custom, CustomLaw};
 pub use declaration::{
     Absent, BadConstants, Bounds, Constant, Declared, Description, End, Form, Given, Quantity, Unit,
 };
@@ -29,6 +31,8 @@ macro_rules! laws {
         #[serde(rename_all = "snake_case")]
         pub enum Material<T> {
             $(#[doc = concat!("See [`", stringify!($law), "`].")] $law($law<T>),)*
+            /// See [`CustomLaw`]; no scene file can name it.
+            Custom(Custom<T>),
         }
 
         /// Every law that a scene file can name.
@@ -41,14 +45,36 @@ macro_rules! laws {
 
         macro_rules! of_law {
             ($d material:expr, $d law:ident => $d does:expr) => {
-                match $d material { $(Material::$law($d law) => $d does,)* }
+                match $d material {
+                    $(Material::$law($d law) => $d does,)*
+                    Material::Custom($d law) => $d does,
+                }
             };
         }
 
         impl Material<f64> {
             /// Key of its law in scene files.
             pub fn name(&self) -> &'static str {
-                match self { $(Material::$law(_) => stringify!($file),)* }
+                match self {
+                    $(Material::$law(_) => stringify!($file),)*
+                    Material::Custom(custom) => custom.law().name(),
+                }
+            }
+
+            /// Elastic moduli at small strain, of a sudden strain where they depend on time.
+            pub fn elastic(&self) -> Isotropic<f64> {
+                match self {
+                    $(Material::$law(law) => Declared::elastic(law),)*
+                    Material::Custom(custom) => custom.law().elastic(),
+                }
+            }
+
+            /// Its constants, as [`Description::build`] takes them; none of a law from outside.
+            pub fn given(&self) -> Given {
+                match self {
+                    $(Material::$law(law) => Declared::given(law),)*
+                    Material::Custom(_) => Given::default(),
+                }
             }
 
             /// The material for cells of this side [m].
@@ -56,7 +82,10 @@ macro_rules! laws {
             /// # Errors
             /// Cells for which its law has no answer.
             pub fn on_grid(self, cell: f64) -> Result<Self, BadConstants> {
-                Ok(match self { $(Material::$law(law) => Material::$law(law.on_grid(cell)?),)* })
+                Ok(match self {
+                    $(Material::$law(law) => Material::$law(law.on_grid(cell)?),)*
+                    Material::Custom(_) => self,
+                })
             }
         }
 
@@ -64,7 +93,10 @@ macro_rules! laws {
             /// The same material with its constants in other numbers.
             #[inline(always)]
             pub fn map<U: Number>(&self, f: impl Fn(T) -> U) -> Material<U> {
-                match self { $(Material::$law(law) => Material::$law(law.map(f)),)* }
+                match self {
+                    $(Material::$law(law) => Material::$law(law.map(f)),)*
+                    Material::Custom(custom) => Material::Custom(Custom::new(custom.law())),
+                }
             }
         }
     };
@@ -74,6 +106,8 @@ laws! { $
     neo_hookean NeoHookean;
     hypoelastic Hypoelastic;
     von_mises VonMises;
+    viscoelastic Viscoelastic;
+    damage Damage;
 }
 
 /// What a law is told of a particle's step.
@@ -142,23 +176,21 @@ impl Material<f64> {
         self.map(T::of)
     }
 
-    /// Elastic moduli at small strain, of a sudden strain where they depend on time.
-    pub fn elastic(&self) -> Isotropic<f64> {
-        of_law!(self, law => Declared::elastic(law))
-    }
-
-    /// Its constants, as [`Description::build`] takes them.
-    pub fn given(&self) -> Given {
-        of_law!(self, law => Declared::given(law))
-    }
-
     /// Whether its constants are within the bounds that its law declares.
     ///
     /// # Errors
     /// A constant that is not, or several that do not fit.
     pub fn check(&self) -> Result<(), BadConstants> {
+        if let Material::Custom(custom) = self {
+            return custom::check(custom.law());
+        }
         let law = SHELF.iter().find(|law| law.name == self.name()).expect("the shelf has every law");
         law.build(&self.given()).map(|_| ())
+    }
+
+    /// A law from outside this crate, for a scene that is built in code.
+    pub fn custom(law: &'static dyn CustomLaw) -> Self {
+        Material::Custom(Custom::new(law))
     }
 }
 

@@ -21,6 +21,9 @@ pub enum Thickness {
     Free,
 }
 
+/// A motion with its free thickness, and the response to it.
+type Moved<T, H> = (Motion<T>, Response<T, H>);
+
 /// Trials before a law counts as one without an answer; a sound step takes two or three.
 const MOST_TRIALS: usize = 300;
 
@@ -44,7 +47,7 @@ pub(super) fn with_free_thickness<T: Real, L: Law<T>>(
     law: &L,
     motion: &Motion<T>,
     history: &L::History,
-) -> Option<(Motion<T>, Response<T, L::History>)> {
+) -> Option<Moved<T, L::History>> {
     let (one, two) = (T::ONE, T::of(2.0));
     let waves = law.wave_modulus(&motion.deformation, motion.jacobian, history);
     let shear = law.shear_modulus(&motion.deformation, motion.jacobian, history);

@@ -71,7 +71,7 @@ fn values_out_of_range() {
             (
                 "neo_hookean = ",
                 "neohookean = ",
-                "10:1: materials.rubber.neohookean: found unknown key `neohookean`; allowed: density, neo_hookean, hypoelastic, von_mises; did you mean `neo_hookean`?",
+                "10:1: materials.rubber.neohookean: found unknown key `neohookean`; allowed: density, neo_hookean, hypoelastic, von_mises, viscoelastic, damage; did you mean `neo_hookean`?",
             ),
             (
                 "neo_hookean = ",
@@ -85,8 +85,28 @@ fn values_out_of_range() {
             ),
             (
                 "neo_hookean = ",
+                "viscoelastic = ",
+                "10:1: materials.rubber.viscoelastic: found no prony; allowed: prony, a list of pairs [share, time], like [[0.5, \"10 ms\"]]",
+            ),
+            (
+                "neo_hookean = { ",
+                "viscoelastic = { prony = [[0.5, \"10 ms\"], [1.5, \"1 s\"]], ",
+                "10:26: materials.rubber.viscoelastic.prony: found a list (share 1.5); allowed: share above 0 and below 1",
+            ),
+            (
+                "neo_hookean = { ",
+                "viscoelastic = { prony = [[0.5, \"10 mm\"]], ",
+                "10:33: materials.rubber.viscoelastic.prony[0][1]: found \"10 mm\", a length [m]; allowed: a time [s], like \"2.5 ms\"",
+            ),
+            (
+                "neo_hookean = { ",
+                "damage = { tensile_strength = \"1 MPa\", fracture_energy = \"-1 J/m^2\", ",
+                "10:62: materials.rubber.damage.fracture_energy: found \"-1 J/m^2\" (-1 J/m^2); allowed: a positive number",
+            ),
+            (
+                "neo_hookean = ",
                 "#",
-                "8:12: materials.rubber: found no law; allowed: a law (neo_hookean, hypoelastic, von_mises), like neo_hookean = { bulk_modulus = \"6 MPa\", shear_modulus = \"3 MPa\" }",
+                "8:12: materials.rubber: found no law; allowed: a law (neo_hookean, hypoelastic, von_mises, viscoelastic, damage), like neo_hookean = { bulk_modulus = \"6 MPa\", shear_modulus = \"3 MPa\" }",
             ),
             (
                 "shear_modulus",

@@ -1,14 +1,14 @@
 //! Particles taken several at a time do what particles taken one by one do, and all processors do the same.
 //!
 //! Set-up: a soft ball and a stone that fly into each other and a rigid floor before a symmetry face, with friction,
-//! gravity, and a share of PIC; both round, for next to an edge round-off decides which way a surface looks; in the plane
-//! and in space, both precisions, both bases, all stress updates, with one lane and on every path that this processor has.
-//! A naive pass of its own is held against both in `stickslip-engine/src/step/naive.rs`.
+//! gravity, and a share of PIC; both round, for next to an edge round-off decides which way a surface looks; in the
+//! plane and in space, both precisions, both bases, all stress updates, with one lane and on every path that this
+//! processor has. A naive pass of its own is held against both in `stickslip-engine/src/step/naive.rs`.
 //!
 //! Expected: after 60 steps (15 with linear functions) positions agree within 1e-10 of the bodies' size and velocities
-//! within 1e-9 of their speed in double precision, 1e-5 and 1e-3 in single: a product and a sum are rounded once or twice,
-//! and a stiff law turns round-off of strain into forces. All paths that take several at a time and round a product and a
-//! sum once agree bit for bit with each other: they sum in one order, whatever the processor has.
+//! within 1e-9 of their speed in double precision, 1e-5 and 1e-3 in single: a product and a sum are rounded once or
+//! twice, and a stiff law turns round-off of strain into forces. All paths that take several at a time and round a
+//! product and a sum once agree bit for bit with each other: they sum in one order, whatever the processor has.
 
 use crate::trial::{STRESS_UPDATES, largest_difference, start_on, take_steps};
 use stickslip::door::{ContactCursor, ParticleSnapshot};
@@ -83,7 +83,9 @@ fn compare_paths(scene: &str, steps: usize, name: &str) {
             let values = found.values.iter().zip(&reference.values);
             let scale = reference.values.iter().fold(1.0, |largest: f64, x| largest.max(x.abs()));
             let off = values.fold(0.0, |largest: f64, (a, b)| largest.max((a - b).abs())) / scale;
-            assert!(off < fastest, "{processor:?}: {} differs by {off:.1e}", found.name);
+            // The thickness of what is broken is free but for a millionth of the stiffness.
+            let most = if found.name.starts_with("damage") { 1e3 * fastest } else { fastest };
+            assert!(off < most, "{processor:?}: {} differs by {off:.1e}", found.name);
         }
         // Steps follow the fastest signal of any particle.
         assert!((found_time / time - 1.0).abs() < most, "{processor:?}: {found_time} s, {time} s");
@@ -164,6 +166,28 @@ fn metal() {
         let most = plastic_strain.values.iter().fold(0.0, |a: f64, &b| a.max(b));
         assert!(most > 1e-3, "{dimension}: {most}");
         compare_paths(&scene, 60, &format!("metal, {dimension}, {particles} a side"));
+    }
+}
+
+/// Histories of several tensors, and of a law that breaks.
+#[test]
+fn histories() {
+    let elastic = "hypoelastic = { young_modulus = 3e5, poisson_ratio = 0.2 }";
+    let relaxing =
+        "viscoelastic = { young_modulus = 3e5, poisson_ratio = 0.2, prony = [[0.3, 0.003], [0.2, 0.05]] }";
+    let breaking =
+        "damage = { young_modulus = 3e5, poisson_ratio = 0.2, tensile_strength = 2e3, fracture_energy = 20 }";
+    for (dimension, particles) in [("plane-strain", 2), ("plane-strain", 1), ("plane-stress", 2), ("3d", 2)] {
+        for (law, name) in [(relaxing, "viscous_dissipation"), (breaking, "damage")] {
+            let scene = scene(dimension, "double", "gimp", "modified-last")
+                .replace(elastic, law)
+                .replace("cell = 0.1,", &format!("cell = 0.1, particles_per_side = {particles},"));
+            let (found, _) = outcome(&scene, ParticleLoop::OneLane, 60);
+            let history = found.remembered(name).expect("a law with history");
+            let most = history.values.iter().fold(0.0, |a: f64, &b| a.max(b));
+            assert!(most > 1e-3, "{dimension}, {name}: {most}");
+            compare_paths(&scene, 60, &format!("{name}, {dimension}, {particles} a side"));
+        }
     }
 }
 

@@ -108,6 +108,15 @@ macro_rules! lanes {
             const ONE: Self = Self::constant(1.0);
             const HALF: Self = Self::constant(0.5);
             const EPSILON: Self = Self::constant(<$t>::EPSILON);
+            const SIDE_BY_SIDE: usize = <Self as Lanes>::COUNT;
+            #[inline(always)]
+            fn lane(self, lane: usize) -> f64 {
+                Number::lane(self.numbers().0[lane], 0)
+            }
+            #[inline(always)]
+            fn from_lanes(mut f: impl FnMut(usize) -> f64) -> Self {
+                <Self as Lanes>::from_fn(|lane| Number::of(f(lane)))
+            }
             #[inline(always)]
             fn of(value: f64) -> Self {
                 Self::splat(value as $t)

@@ -1,0 +1,280 @@
+//! A law from outside this crate: an object that takes one particle at a time, in double precision.
+//!
+//! The laws of the list are compiled for several particles at a time; this one is called for each. Its history lies in columns like any other.
+
+use super::{
+    BadConstants, Entries, History, Isotropic, Law, MOST_HISTORY, Motion, Response, history_entries,
+};
+use crate::tensor::{Matrix, Number, Symmetric, array};
+use serde::{Serialize, Serializer};
+use std::marker::PhantomData;
+
+/// A law that a user of this crate writes: [`Law`] for one particle in double precision, as an object.
+///
+/// Put it into a scene by [`super::Material::custom`]. All quantities are in SI units, tension is positive.
+pub trait CustomLaw: std::fmt::Debug + Send + Sync {
+    /// Its name in manifests and errors, one word.
+    fn name(&self) -> &'static str;
+
+    /// The columns that it remembers, with at most [`MOST_HISTORY`] components in space together. Their names must differ from those
+    /// that other laws of the scene give to columns of another kind.
+    fn history(&self) -> &'static [History] {
+        &[]
+    }
+
+    /// Elastic moduli at small strain, of a sudden strain where they depend on time [Pa].
+    fn elastic(&self) -> Isotropic<f64>;
+
+    /// Cauchy stress at the end of the step [Pa]; `history` is that at its start, the components in space of one column after the other, to be
+    /// changed into that at its end.
+    ///
+    /// It must depend on nothing else: plane stress asks several times for one step.
+    fn respond(&self, motion: &Motion<f64>, history: &mut [f64]) -> Symmetric<f64>;
+
+    /// Strain energy per undeformed volume [J/m^3].
+    fn strain_energy(&self, deformation: &Matrix<f64>, stress: &Symmetric<f64>, history: &[f64]) -> f64;
+
+    /// What the material dissipated so far per undeformed volume [J/m^3].
+    fn dissipation(&self, _history: &[f64]) -> f64 {
+        0.0
+    }
+
+    /// Stiffness against a longitudinal wave in the present state, times J [Pa]; too small a value makes the step unstable.
+    fn wave_modulus(&self, _deformation: &Matrix<f64>, jacobian: f64, _history: &[f64]) -> f64 {
+        self.elastic().p_wave_modulus() * jacobian
+    }
+
+    /// Stiffness against a shear wave in the present state, times J [Pa].
+    fn shear_modulus(&self, _deformation: &Matrix<f64>, jacobian: f64, _history: &[f64]) -> f64 {
+        self.elastic().shear_modulus * jacobian
+    }
+
+    /// [`Law::trusts_deformation`]
+    fn trusts_deformation(&self) -> bool {
+        true
+    }
+}
+
+/// A [`CustomLaw`] in other numbers.
+#[derive(Clone, Copy, Debug)]
+pub struct Custom<T> {
+    law: &'static dyn CustomLaw,
+    numbers: PhantomData<T>,
+}
+
+impl<T> Custom<T> {
+    /// The law for several particles, one by one.
+    pub fn new(law: &'static dyn CustomLaw) -> Self {
+        Custom { law, numbers: PhantomData }
+    }
+
+    /// The law itself.
+    pub fn law(&self) -> &'static dyn CustomLaw {
+        self.law
+    }
+}
+
+/// The same object.
+impl<T> PartialEq for Custom<T> {
+    fn eq(&self, other: &Self) -> bool {
+        std::ptr::addr_eq(self.law, other.law) && self.law.name() == other.law.name()
+    }
+}
+
+impl<T> Serialize for Custom<T> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.law.name())
+    }
+}
+
+/// Whether the history of a law finds room.
+pub(super) fn check(law: &dyn CustomLaw) -> Result<(), BadConstants> {
+    let components = history_entries(law.history(), 3);
+    if components <= MOST_HISTORY {
+        return Ok(());
+    }
+    let found = format!("a history of {components} components");
+    Err(BadConstants::together(found, format!("at most {MOST_HISTORY} components in space")))
+}
+
+/// Lanes of any processor.
+const MOST_LANES: usize = 8;
+
+/// The state of some particles, each in a lane, and then what a law says of it.
+struct State {
+    deformation: [[f64; MOST_LANES]; 9],
+    increment: [[f64; MOST_LANES]; 9],
+    stress: [[f64; MOST_LANES]; 6],
+    jacobian: [f64; MOST_LANES],
+    dt: f64,
+    history: [[f64; MOST_LANES]; MOST_HISTORY],
+    /// An energy or a stiffness.
+    answer: [f64; MOST_LANES],
+}
+
+/// What a law is asked.
+#[derive(Clone, Copy)]
+enum Question {
+    Response,
+    StrainEnergy,
+    Dissipation,
+    WaveModulus,
+    ShearModulus,
+}
+
+/// Writes the lanes of a number.
+#[inline(always)]
+fn spread<T: Number>(number: T, to: &mut [f64; MOST_LANES]) {
+    for (lane, to) in to.iter_mut().enumerate().take(T::SIDE_BY_SIDE) {
+        *to = number.lane(lane);
+    }
+}
+
+#[inline(always)]
+fn collected<T: Number>(from: &[f64; MOST_LANES]) -> T {
+    T::from_lanes(|lane| from[lane])
+}
+
+impl State {
+    const NONE: Self = State {
+        deformation: [[0.0; MOST_LANES]; 9],
+        increment: [[0.0; MOST_LANES]; 9],
+        stress: [[0.0; MOST_LANES]; 6],
+        jacobian: [0.0; MOST_LANES],
+        dt: 0.0,
+        history: [[0.0; MOST_LANES]; MOST_HISTORY],
+        answer: [0.0; MOST_LANES],
+    };
+
+    #[inline(always)]
+    fn new<T: Number>(deformation: &Matrix<T>, history: &[T; MOST_HISTORY], components: usize) -> Self {
+        let mut state = Self::NONE;
+        for i in 0..3 {
+            for j in 0..3 {
+                spread(deformation.0[i][j], &mut state.deformation[3 * i + j]);
+            }
+        }
+        for (&number, to) in history.iter().zip(&mut state.history).take(components) {
+            spread(number, to);
+        }
+        state
+    }
+
+    #[inline(always)]
+    fn put_stress<T: Number>(&mut self, stress: &Symmetric<T>) {
+        for k in 0..6 {
+            spread(stress.0[k], &mut self.stress[k]);
+        }
+    }
+
+    /// Puts a question to a law for each particle, one after the other.
+    #[inline(never)]
+    fn ask(&mut self, law: &dyn CustomLaw, question: Question, (lanes, components): (usize, usize)) {
+        for lane in 0..lanes {
+            let deformation = Matrix::from_fn(|i, j| self.deformation[3 * i + j][lane]);
+            let stress = Symmetric(array(0.0, |k| self.stress[k][lane]));
+            let jacobian = self.jacobian[lane];
+            let mut history: [f64; MOST_HISTORY] = array(0.0, |entry| self.history[entry][lane]);
+            let history = &mut history[..components];
+            let answer = &mut self.answer[lane];
+            match question {
+                Question::Response => {
+                    let increment = Matrix::from_fn(|i, j| self.increment[3 * i + j][lane]);
+                    let motion = Motion { deformation, jacobian, increment, stress, dt: self.dt };
+                    let stress = law.respond(&motion, history);
+                    for (place, x) in self.stress.iter_mut().zip(stress.0) {
+                        place[lane] = x;
+                    }
+                    for (place, &mut x) in self.history.iter_mut().zip(history) {
+                        place[lane] = x;
+                    }
+                }
+                Question::StrainEnergy => *answer = law.strain_energy(&deformation, &stress, history),
+                Question::Dissipation => *answer = law.dissipation(history),
+                Question::WaveModulus => *answer = law.wave_modulus(&deformation, jacobian, history),
+                Question::ShearModulus => *answer = law.shear_modulus(&deformation, jacobian, history),
+            }
+        }
+    }
+}
+
+impl<T: Number> Custom<T> {
+    /// Components in space of all its columns.
+    #[inline(always)]
+    fn components(&self) -> usize {
+        history_entries(self.law.history(), 3).min(MOST_HISTORY)
+    }
+
+    #[inline(always)]
+    fn answer(&self, state: &mut State, question: Question) -> T {
+        state.ask(self.law, question, (T::SIDE_BY_SIDE, self.components()));
+        collected(&state.answer)
+    }
+}
+
+impl<T: Number> Law<T> for Custom<T> {
+    type History = [T; MOST_HISTORY];
+
+    #[inline(always)]
+    fn history(&self) -> &'static [History] {
+        self.law.history()
+    }
+
+    #[inline(always)]
+    fn trusts_deformation(&self) -> bool {
+        self.law.trusts_deformation()
+    }
+
+    #[inline(always)]
+    fn respond(&self, motion: &Motion<T>, history: &[T; MOST_HISTORY]) -> Response<T, [T; MOST_HISTORY]> {
+        let components = self.components();
+        let mut state = State::new(&motion.deformation, history, components);
+        for i in 0..3 {
+            for j in 0..3 {
+                spread(motion.increment.0[i][j], &mut state.increment[3 * i + j]);
+            }
+        }
+        state.put_stress(&motion.stress);
+        spread(motion.jacobian, &mut state.jacobian);
+        state.dt = motion.dt.lane(0);
+        state.ask(self.law, Question::Response, (T::SIDE_BY_SIDE, components));
+        let mut next = <[T; MOST_HISTORY]>::ZERO;
+        for (next, from) in next.iter_mut().zip(&state.history).take(components) {
+            *next = collected(from);
+        }
+        let stress = Symmetric(array(T::ZERO, |k| collected(&state.stress[k])));
+        Response { stress, history: next }
+    }
+
+    #[inline(always)]
+    fn strain_energy(
+        &self,
+        deformation: &Matrix<T>,
+        stress: &Symmetric<T>,
+        history: &[T; MOST_HISTORY],
+    ) -> T {
+        let mut state = State::new(deformation, history, self.components());
+        state.put_stress(stress);
+        self.answer(&mut state, Question::StrainEnergy)
+    }
+
+    #[inline(always)]
+    fn dissipation(&self, history: &[T; MOST_HISTORY]) -> T {
+        let mut state = State::new(&Matrix::ZERO, history, self.components());
+        self.answer(&mut state, Question::Dissipation)
+    }
+
+    #[inline(always)]
+    fn wave_modulus(&self, deformation: &Matrix<T>, jacobian: T, history: &[T; MOST_HISTORY]) -> T {
+        let mut state = State::new(deformation, history, self.components());
+        spread(jacobian, &mut state.jacobian);
+        self.answer(&mut state, Question::WaveModulus)
+    }
+
+    #[inline(always)]
+    fn shear_modulus(&self, deformation: &Matrix<T>, jacobian: T, history: &[T; MOST_HISTORY]) -> T {
+        let mut state = State::new(deformation, history, self.components());
+        spread(jacobian, &mut state.jacobian);
+        self.answer(&mut state, Question::ShearModulus)
+    }
+}

@@ -1,0 +1,106 @@
+//! A law from outside the crate, with a history of its own.
+//!
+//! Set-up: a disk falls on a fixed floor and rebounds, in plane strain and plane stress and, as a ball, in space. Its
+//! law is given as an object: the neo-Hookean law one particle at a time, which also counts its steps, sums their
+//! duration and remembers the deformation gradient.
+//!
+//! Expected: particles move as those of the built-in law do, but for round-off (1e-9 of the cell); every particle has
+//! counted every step, though particles are sorted anew, and remembers its own F,
+//! so that a snapshot's column is the snapshot's deformation.
+
+use crate::trial::{largest_difference, take_steps};
+use stickslip::column::Kind;
+use stickslip::door::Simulation;
+use stickslip::material::{CustomLaw, History, Isotropic, Law, Material, Motion, NeoHookean};
+use stickslip::tensor::{Matrix, Symmetric};
+use stickslip::{scene, step};
+
+const ELASTIC: Isotropic<f64> = Isotropic { bulk_modulus: 6e5, shear_modulus: 3e5 };
+
+const HISTORY: &[History] = &[
+    History::new("count", "", Kind::Number),
+    History::new("age", "s", Kind::Number),
+    History { start: 1.0, ..History::new("remembered", "", Kind::Tensor) },
+];
+
+#[derive(Debug)]
+struct Counting;
+
+impl CustomLaw for Counting {
+    fn name(&self) -> &'static str {
+        "counting"
+    }
+
+    fn history(&self) -> &'static [History] {
+        HISTORY
+    }
+
+    fn elastic(&self) -> Isotropic<f64> {
+        ELASTIC
+    }
+
+    fn respond(&self, motion: &Motion<f64>, history: &mut [f64]) -> Symmetric<f64> {
+        history[0] += 1.0;
+        history[1] += motion.dt;
+        history[2..].copy_from_slice(motion.deformation.0.as_flattened());
+        NeoHookean { elastic: ELASTIC }.stress(motion)
+    }
+
+    fn strain_energy(&self, deformation: &Matrix<f64>, stress: &Symmetric<f64>, _: &[f64]) -> f64 {
+        NeoHookean { elastic: ELASTIC }.strain_energy(deformation, stress, &[])
+    }
+
+    fn wave_modulus(&self, deformation: &Matrix<f64>, jacobian: f64, _: &[f64]) -> f64 {
+        NeoHookean { elastic: ELASTIC }.wave_modulus(deformation, jacobian, &[])
+    }
+
+    fn shear_modulus(&self, deformation: &Matrix<f64>, jacobian: f64, _: &[f64]) -> f64 {
+        NeoHookean { elastic: ELASTIC }.shear_modulus(deformation, jacobian, &[])
+    }
+}
+
+fn falling(dimension: &str, law: Option<&'static dyn CustomLaw>) -> Box<dyn Simulation> {
+    let space = dimension == "3d";
+    let v = |x: &str| if space { format!("[{x}, 0]") } else { format!("[{x}]") };
+    let text = format!(
+        r#"
+        space = {{ dimension = "{dimension}", cell = 0.1, domain = {{ min = {}, max = {}, y_min = "fixed" }} }}
+        time.end = 1
+        materials.rubber = {{ density = 1000, neo_hookean = {{ bulk_modulus = 6e5, shear_modulus = 3e5 }} }}
+        [[bodies]]
+        name = "disk"
+        material = "rubber"
+        shape.ball = {{ center = {}, radius = 0.35 }}
+        velocity = {}
+        "#,
+        if space { "[-1, 0, -1]" } else { "[-1, 0]" },
+        if space { "[1, 2, 1]" } else { "[1, 2]" },
+        v("0, 0.45"),
+        v("1, -4"),
+    );
+    let mut scene = scene::parse("trial.toml", &text, &[]).unwrap_or_else(|e| panic!("{e:?}")).scene;
+    if let Some(law) = law {
+        scene.materials[0].law = Material::custom(law);
+    }
+    step::build(&scene).unwrap_or_else(|problem| panic!("{problem:?}"))
+}
+
+#[test]
+fn a_law_as_an_object_moves_particles_as_the_built_in_one_and_remembers() {
+    for dimension in ["plane-strain", "plane-stress", "3d"] {
+        let (mut exact, mut found) = (falling(dimension, None), falling(dimension, Some(&Counting)));
+        take_steps(&mut *exact, 150);
+        take_steps(&mut *found, 150);
+        let (exact, now) = (exact.snapshot(), found.snapshot());
+        let off = largest_difference(&now.position, &exact.position);
+        println!("{dimension}: positions differ by {off:.1e} m");
+        assert!(off < 1e-10, "{dimension}: {off:.1e}");
+        let of = |name: &str| now.remembered(name).unwrap_or_else(|| panic!("no {name}"));
+        assert!(of("count").values.iter().all(|&count| count == 150.0), "{dimension}");
+        let age = of("age");
+        assert_eq!(age.unit, "s");
+        assert!(age.values.iter().all(|age| (age / found.time() - 1.0).abs() < 1e-12), "{dimension}");
+        assert_eq!(of("remembered").values, now.deformation.as_flattened(), "{dimension}");
+        assert!(exact.history.is_empty());
+    }
+}
