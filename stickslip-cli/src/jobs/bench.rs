@@ -14,7 +14,7 @@ pub struct Need {
     pub memory: f64,
 }
 
-/// JobRunner, threads and memory that are free.
+/// Threads and memory that are free, and the jobs that wait for them.
 pub struct FreeResources {
     threads: usize,
     state: Mutex<ResourceState>,
@@ -33,7 +33,7 @@ struct ResourceState {
 const MARGIN: f64 = 1.5;
 
 impl FreeResources {
-    /// A bench with this many threads and the memory that the machine has free.
+    /// This many threads and the memory that the machine has free.
     pub fn new(needs: Vec<Need>, threads: usize) -> Self {
         Self::with_memory(needs, threads, free_memory())
     }

@@ -1,8 +1,8 @@
 //! Contact of exact surfaces: bodies touch where their undeformed shapes, carried along by the deformation, touch.
 //!
 //! Our own. Each body knows where the material around a node was before it deformed ([`crate::contact::ReferenceMap`]),
-//! hence the distance and the normal of its surface there. The pair takes one normal from both, the flatter and surer one
-//! deciding, and one gap, where the smaller share of the node lies. Contact is one unilateral impulse a step, with
+//! hence the distance and the normal of its surface there. The pair takes one normal from both, the flatter and surer
+//! one deciding, and one gap, where the smaller share of the node lies. Contact is one unilateral impulse a step, with
 //! Coulomb's bound on the whole of it (Moreau 1988):
 //!
 //! ```text
