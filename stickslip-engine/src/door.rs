@@ -1,6 +1,7 @@
 //! A running simulation with dimension and precision erased: what the command line, Python and observers see.
 //!
-//! Everything that crosses this door is `f64`, SI and three-dimensional; plane scenes have zeros in the third component.
+//! Everything that crosses this door is `f64`, SI and three-dimensional;
+//! plane scenes have zeros in the third component.
 
 use crate::column::Kind;
 use serde::Serialize;
@@ -75,7 +76,8 @@ pub struct BodyState {
     pub position: [f64; 3],
     /// Velocity of the centre of mass [m/s].
     pub velocity: [f64; 3],
-    /// Angular velocity: the inverse of the inertia tensor times the angular momentum, both about the centre of mass [rad/s].
+    /// Angular velocity: the inverse of the inertia tensor times the angular momentum,
+    /// both about the centre of mass [rad/s].
     pub spin: [f64; 3],
     /// Angular momentum about the origin; zero for a rigid body without bounds [kg m^2/s].
     pub angular_momentum: [f64; 3],
@@ -104,7 +106,8 @@ pub struct Ledger {
     pub plastic: f64,
     /// Dissipated by damping [J].
     pub damping: f64,
-    /// kinetic + strain + potential + friction + adhesion + plastic + damping - external work [J]; constant in an exact solution.
+    /// kinetic + strain + potential + friction + adhesion + plastic + damping - external work [J];
+    /// constant in an exact solution.
     pub total: f64,
     /// Linear momentum [kg m/s].
     pub momentum: [f64; 3],
@@ -112,7 +115,8 @@ pub struct Ledger {
     pub angular_momentum: [f64; 3],
     /// Impulses of contact at nodes that were reduced to the rule's `max_strain`, since the start.
     pub scaled_impulses: u64,
-    /// Nodes of three bodies and more where contact was still changing velocities when it was cut short, since the start.
+    /// Nodes of three bodies and more where contact was still changing velocities when it was cut short,
+    /// since the start.
     pub unsettled_nodes: u64,
 }
 
@@ -202,16 +206,18 @@ pub struct ContactState {
     pub body_b: usize,
     /// Mean force of `a` on `b` [N].
     pub force: [f64; 3],
-    /// Mean of the sum over nodes of the force along each node's normal, positive when the bodies push each other apart [N].
+    /// Mean of the sum over nodes of the force along each node's normal,
+    /// positive when the bodies push each other apart [N].
     pub normal: f64,
-    /// Magnitude of the mean of the sum over nodes of the force across each node's normal: forces that oppose each other, at two
-    /// nodes or at two times, cancel [N].
+    /// Magnitude of the mean of the sum over nodes of the force across each node's normal: forces that oppose each
+    /// other, at two nodes or at two times, cancel [N].
     pub tangential: f64,
     /// Grid nodes that passed a force in the last step in which the surfaces touched.
     pub nodes: usize,
     /// Centre of the forces over nodes and time, each by its magnitude [m].
     pub position: [f64; 3],
-    /// Area over which the bodies touched, its mean over the time as the force's [m^2], in the plane length per depth [m].
+    /// Area over which the bodies touched, its mean over the time as the force's [m^2],
+    /// in the plane length per depth [m].
     pub area: f64,
     /// Mean distance between the surfaces over area and time, negative where they overlap [m].
     pub gap: f64,
@@ -228,10 +234,11 @@ pub struct ContactPatch {
     pub body_a: usize,
     /// Index of the second body.
     pub body_b: usize,
-    /// Largest area over which they touched in a step, images in mirrors included [m^2], in the plane length per depth [m].
+    /// Largest area over which they touched in a step, images in mirrors included [m^2],
+    /// in the plane length per depth [m].
     pub area: f64,
-    /// Half of its shorter side: of a circle the radius, of an ellipse the shorter half-axis, of a strip 1.1 of its half-width, of a
-    /// ring the radius of a circle with its area; in the plane half of its length [m].
+    /// Half of its shorter side: of a circle the radius, of an ellipse the shorter half-axis, of a strip 1.1 of its
+    /// half-width, of a ring the radius of a circle with its area; in the plane half of its length [m].
     pub half_width: f64,
     /// Impulses between the two since the start, the sum of their magnitudes over nodes and steps [N s].
     pub impulse: f64,
@@ -276,8 +283,8 @@ pub struct SnapshotColumn {
 }
 
 impl SnapshotColumn {
-    /// One number for a particle: a number itself, the length of a vector, and of a tensor the root of the sum of its squared
-    /// entries (Frobenius).
+    /// One number for a particle: a number itself, the length of a vector, and of a tensor the root of the sum of its
+    /// squared entries (Frobenius).
     pub fn magnitude(&self, particle: usize) -> f64 {
         let count = self.kind.components();
         let values = &self.values[particle * count..][..count];

@@ -8,10 +8,11 @@ use crate::pages::ask_for_large;
 use crate::tensor::{Matrix, Real, Symmetric, Vector};
 use crate::threads::each_range;
 
-/// The columns that the particles of every body have, in the order of memory; behind them lies the history of the body's law.
+/// The columns that the particles of every body have, in the order of memory;
+/// behind them lies the history of the body's law.
 ///
-/// The volume is J times the undeformed one; the half-width is half the side of the undeformed box; the start is the position before
-/// anything moved, which no step writes to.
+/// The volume is J times the undeformed one; the half-width is half the side of the undeformed box; the start is the
+/// position before anything moved, which no step writes to.
 pub const EVERY: [ColumnDescription; 9] = [
     described("position", "m", Kind::Vector),
     described("velocity", "m/s", Kind::Vector),
@@ -253,7 +254,8 @@ impl<T: Real, const D: usize> Particles<T, D> {
         }
     }
 
-    /// Puts the particles into the order of a permutation: first the one whose index comes first. Every column moves into the room beside it.
+    /// Puts the particles into the order of a permutation: first the one whose index comes first.
+    /// Every column moves into the room beside it.
     pub fn permute(&mut self, order: &[u32]) {
         assert_eq!(order.len(), self.len, "a permutation names every particle");
         let count = ColumnStart::<D>::HISTORY + history_entries(self.history, D);
@@ -283,8 +285,8 @@ fn move_over<X: Copy + Send + Sync>(halves: &mut [X], later: bool, order: &[u32]
     });
 }
 
-/// The columns of a body's particles, open to many threads that keep to particles of their own. Good until the particles are used in
-/// any other way.
+/// The columns of a body's particles, open to many threads that keep to particles of their own. Good until the
+/// particles are used in any other way.
 #[derive(Clone, Copy, Debug)]
 pub struct Columns<T, const D: usize> {
     start: *mut T,
@@ -381,7 +383,8 @@ impl<T: Real, const D: usize> Columns<T, D> {
     }
 }
 
-/// The history of one particle in its columns; nobody else may use the particle meanwhile. Rigid bodies keep none, and recall zeros.
+/// The history of one particle in its columns; nobody else may use the particle meanwhile. Rigid bodies keep none,
+/// and recall zeros.
 #[derive(Clone, Copy, Debug)]
 pub struct HistoryOf<T, const D: usize> {
     columns: Columns<T, D>,

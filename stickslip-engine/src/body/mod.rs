@@ -91,7 +91,8 @@ impl<T: Real, const D: usize> Body<T, D> {
         T::HALF * particle.mass * (velocity.dot(velocity) + turning)
     }
 
-    /// A particle's motion with the thickness that it takes, and the stress after it; `None` if no thickness is free of stress.
+    /// A particle's motion with the thickness that it takes, and the stress after it;
+    /// `None` if no thickness is free of stress.
     #[inline]
     pub fn respond(
         &self,

@@ -286,7 +286,8 @@ impl<T: Laned, const D: usize> Body<T, D> {
         self.by_parts(sum).iter().fold(Totals::default(), Totals::plus)
     }
 
-    /// Angular velocity: the inverse of the inertia tensor times the angular momentum, both about the centre of mass [rad/s].
+    /// Angular velocity: the inverse of the inertia tensor times the angular momentum,
+    /// both about the centre of mass [rad/s].
     pub fn spin(&self, totals: &Totals) -> [f64; 3] {
         let center = totals.first_moment.map(|x| x / totals.mass);
         let mean = totals.momentum.map(|p| p / totals.mass);

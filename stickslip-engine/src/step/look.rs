@@ -46,7 +46,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.state.bodies.iter().map(of_body).collect()
     }
 
-    /// A column of all particles, given by body and place in memory: the components in space, and zeros where a body has no such column.
+    /// A column of all particles, given by body and place in memory: the components in space,
+    /// and zeros where a body has no such column.
     fn column<const N: usize>(&self, rows: &[[u32; 2]], (name, kind): (&str, Kind)) -> Vec<[f64; N]> {
         let places = self.places_of(name, kind);
         let of_row = |&[body, place]: &[u32; 2]| {
@@ -284,7 +285,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
         for motion in self.state.rigid.iter_mut().flatten() {
             motion.set_time(self.state.time + 0.5 * dt);
         }
-        // One of the pool's threads takes the whole step: handing it every loop from outside would cost more than many a loop.
+        // One of the pool's threads takes the whole step: handing it every loop from outside would cost more than many
+        // a loop.
         rayon::scope(|_| self.advance(T::of(dt)))?;
         self.count_disorder();
         self.state.time += dt;

@@ -15,8 +15,8 @@ use std::marker::PhantomData;
 pub enum ParticleLoop {
     /// Several particles at a time, by the best that the processor has.
     Lanes(Processor),
-    /// One particle at a time, by the same code: what finds out what is wrong with whom, and serves processors that hold
-    /// no numbers side by side.
+    /// One particle at a time, by the same code: what finds out what is wrong with whom, and serves processors that
+    /// hold no numbers side by side.
     OneLane,
     /// One particle and one node after the other, by code of its own.
     #[cfg(test)]
@@ -26,7 +26,8 @@ pub enum ParticleLoop {
 /// What a pass does to each particle, in this order.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Verbs {
-    /// v_p = (1 - a) (v_p + sum S_i (v_i - v_i^0)) + a sum S_i v_i,   a: PIC share; the spin likewise, see [`crate::transfer::turning`]
+    /// v_p = (1 - a) (v_p + sum S_i (v_i - v_i^0)) + a sum S_i v_i,   a: PIC share; the spin likewise,
+    /// see [`crate::transfer::turning`]
     pub update_velocity: bool,
     /// F = (I + L dt) F,  V = V_0 det F,  sigma = law(F)
     pub update_stress: bool,

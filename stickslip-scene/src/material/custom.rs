@@ -1,6 +1,7 @@
 //! A law from outside this crate: an object that takes one particle at a time, in double precision.
 //!
-//! The laws of the list are compiled for several particles at a time; this one is called for each. Its history lies in columns like any other.
+//! The laws of the list are compiled for several particles at a time; this one is called for each.
+//! Its history lies in columns like any other.
 
 use super::{
     BadConstants, Entries, History, Isotropic, Law, MOST_HISTORY, Motion, Response, history_entries,
@@ -16,8 +17,8 @@ pub trait CustomLaw: std::fmt::Debug + Send + Sync {
     /// Its name in manifests and errors, one word.
     fn name(&self) -> &'static str;
 
-    /// The columns that it remembers, with at most [`MOST_HISTORY`] components in space together. Their names must differ from those
-    /// that other laws of the scene give to columns of another kind.
+    /// The columns that it remembers, with at most [`MOST_HISTORY`] components in space together. Their names must
+    /// differ from those that other laws of the scene give to columns of another kind.
     fn history(&self) -> &'static [History] {
         &[]
     }
@@ -25,8 +26,8 @@ pub trait CustomLaw: std::fmt::Debug + Send + Sync {
     /// Elastic moduli at small strain, of a sudden strain where they depend on time [Pa].
     fn elastic(&self) -> Isotropic<f64>;
 
-    /// Cauchy stress at the end of the step [Pa]; `history` is that at its start, the components in space of one column after the other, to be
-    /// changed into that at its end.
+    /// Cauchy stress at the end of the step [Pa]; `history` is that at its start, the components in space of one column
+    /// after the other, to be changed into that at its end.
     ///
     /// It must depend on nothing else: plane stress asks several times for one step.
     fn respond(&self, motion: &Motion<f64>, history: &mut [f64]) -> Symmetric<f64>;
@@ -39,7 +40,8 @@ pub trait CustomLaw: std::fmt::Debug + Send + Sync {
         0.0
     }
 
-    /// Stiffness against a longitudinal wave in the present state, times J [Pa]; too small a value makes the step unstable.
+    /// Stiffness against a longitudinal wave in the present state, times J [Pa];
+    /// too small a value makes the step unstable.
     fn wave_modulus(&self, _deformation: &Matrix<f64>, jacobian: f64, _history: &[f64]) -> f64 {
         self.elastic().p_wave_modulus() * jacobian
     }

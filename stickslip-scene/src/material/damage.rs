@@ -1,4 +1,5 @@
-//! Isotropic damage with softening that the cell regularises: neo-Hookean elasticity, of which a crack takes what it can no longer carry.
+//! Isotropic damage with softening that the cell regularises: neo-Hookean elasticity,
+//! of which a crack takes what it can no longer carry.
 //!
 //! ```text
 //! sigma = (1 - d) (dev(sigma_0) + p_0(max(J, 1)) I) + p_0(min(J, 1)) I        sigma_0, p_0: neo-Hookean; a closed crack bears pressure
@@ -9,11 +10,13 @@
 //! D     = Y dd,   Y = W_dev + W_vol(max(J, 1))                                dissipated per undeformed volume
 //! ```
 //!
-//! The equivalent strain e is the strain of a bar in tension, and a bar in compression bears r times as much. A crack is as wide as a cell, so
-//! what a bar of it dissipates, f_t k_0/2 + f_t k_f, is the fracture energy over the cell, whatever the cell (crack band). Where the cell is
-//! above 2 E G_f/f_t^2 no softening is slow enough for that: the bar would snap back, and the scene is refused.
+//! The equivalent strain e is the strain of a bar in tension, and a bar in compression bears r times as much. A crack
+//! is as wide as a cell, so what a bar of it dissipates, f_t k_0/2 + f_t k_f, is the fracture energy over the cell,
+//! whatever the cell (crack band). Where the cell is above 2 E G_f/f_t^2 no softening is slow enough for that: the bar
+//! would snap back, and the scene is refused.
 //!
-//! Damage never heals, and ends a millionth below one. It follows strain at once and knows no direction; a crack that runs at an angle to the grid is wider than a cell.
+//! Damage never heals, and ends a millionth below one. It follows strain at once and knows no direction; a crack that
+//! runs at an angle to the grid is wider than a cell.
 
 use super::declaration::{
     BadConstants, Bounds, Constant, Declared, ENERGY_PER_AREA, End, Given, POSITIVE, PRESSURE, RATIO,
@@ -52,7 +55,8 @@ const HISTORY: [History; 3] = [
     History::new("damage_dissipation", "J/m^3", Kind::Number),
 ];
 
-/// What is left of the stiffness of broken pieces at least: without any, a thin plate of them would have no thickness [-].
+/// What is left of the stiffness of broken pieces at least: without any,
+/// a thin plate of them would have no thickness [-].
 const LEAST_LEFT: f64 = 1e-6;
 /// Strain that stands for no softening.
 const NEVER: f64 = 1e30;
@@ -261,7 +265,8 @@ mod tests {
         law.on_grid(cell).unwrap()
     }
 
-    /// A bar whose length has this strain, with free sides as long as it is whole: Hooke's strains, which damage leaves in proportion.
+    /// A bar whose length has this strain, with free sides as long as it is whole: Hooke's strains,
+    /// which damage leaves in proportion.
     fn bar(strain: f64) -> Matrix<f64> {
         let across = 1.0 - ELASTIC.poisson_ratio() * strain;
         Matrix([[1.0 + strain, 0.0, 0.0], [0.0, across, 0.0], [0.0, 0.0, across]])
@@ -282,7 +287,8 @@ mod tests {
         }
     }
 
-    /// sigma = f_t exp(-(e - k_0)/k_f) in a bar, within the squares of strain, and the strength in compression is r times as large.
+    /// sigma = f_t exp(-(e - k_0)/k_f) in a bar, within the squares of strain,
+    /// and the strength in compression is r times as large.
     #[test]
     fn a_bar_softens_by_the_exponential_and_bears_more_in_compression() {
         let law = law(0.1);

@@ -1,4 +1,5 @@
-//! What a law declares of itself: its constants with their units and bounds. Scene files, schema, checks and error messages follow.
+//! What a law declares of itself: its constants with their units and bounds. Scene files, schema,
+//! checks and error messages follow.
 
 use super::{Isotropic, Material};
 use std::collections::BTreeMap;

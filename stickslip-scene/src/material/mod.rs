@@ -1,7 +1,7 @@
 //! Constitutive laws: pure functions from local motion to Cauchy stress, one file each, and the list of them.
 //!
-//! To add a law: write its file (what it declares, [`Law`], tests) and put its line on the list below. Scene files, schema, checks,
-//! the engine, snapshots and pictures find it there, with its constants and its history.
+//! To add a law: write its file (what it declares, [`Law`], tests) and put its line on the list below. Scene files,
+//! schema, checks, the engine, snapshots and pictures find it there, with its constants and its history.
 
 mod custom;
 mod declaration;
@@ -20,8 +20,8 @@ pub use plane_stress::Thickness;
 use crate::tensor::{Matrix, Number, Real, Symmetric};
 use serde::Serialize;
 
-/// The list of laws, each by its file and its type, becomes the modules, [`Material`], [`SHELF`] and `of_law!`, which does one thing with
-/// whichever law a material has.
+/// The list of laws, each by its file and its type, becomes the modules, [`Material`], [`SHELF`] and `of_law!`, which
+/// does one thing with whichever law a material has.
 macro_rules! laws {
     ($d:tt $($file:ident $law:ident;)*) => {
         $(mod $file; pub use $file::$law;)*
@@ -136,9 +136,11 @@ pub struct Response<T, H> {
 
 /// A constitutive law in three dimensions.
 ///
-/// A law is written once over [`Number`], with no branch on the motion: the engine calls it for several particles at a time.
+/// A law is written once over [`Number`], with no branch on the motion:
+/// the engine calls it for several particles at a time.
 pub trait Law<T: Number>: Copy + Send + Sync {
-    /// What it remembers of a particle: `[T; N]`, the components in space of all columns of [`Law::history`], one after the other.
+    /// What it remembers of a particle: `[T; N]`, the components in space of all columns of [`Law::history`],
+    /// one after the other.
     type History: Entries<T>;
 
     /// The columns that it remembers.
@@ -156,14 +158,15 @@ pub trait Law<T: Number>: Copy + Send + Sync {
         T::ZERO
     }
 
-    /// Stiffness against a longitudinal wave in the present state, times J [Pa]: over the undeformed density it is the squared wave speed.
+    /// Stiffness against a longitudinal wave in the present state, times J [Pa]:
+    /// over the undeformed density it is the squared wave speed.
     fn wave_modulus(&self, deformation: &Matrix<T>, jacobian: T, history: &Self::History) -> T;
 
     /// Stiffness against a shear wave in the present state, times J [Pa]; plane stress needs it for its waves.
     fn shear_modulus(&self, deformation: &Matrix<T>, jacobian: T, history: &Self::History) -> T;
 
-    /// Whether stress resists every error of F, so that it stays small and surfaces may be found by F. Where it does not, as in plastic flow,
-    /// contact finds surfaces by means of positions, and stretch is judged less strictly.
+    /// Whether stress resists every error of F, so that it stays small and surfaces may be found by F. Where it does
+    /// not, as in plastic flow, contact finds surfaces by means of positions, and stretch is judged less strictly.
     #[inline(always)]
     fn trusts_deformation(&self) -> bool {
         true
@@ -231,7 +234,8 @@ impl<T: Number> Material<T> {
         })
     }
 
-    /// Stiffness against the fastest wave in the present state, times J [Pa]: [`Law::wave_modulus`], in plane stress that of a plate.
+    /// Stiffness against the fastest wave in the present state, times J [Pa]: [`Law::wave_modulus`],
+    /// in plane stress that of a plate.
     #[inline(always)]
     pub fn wave_modulus(
         &self,
@@ -258,8 +262,8 @@ impl<T: Number> Material<T> {
 }
 
 impl<T: Real> Material<T> {
-    /// The motion with the thickness that the particle takes, and the stress after it; `None` if no thickness is free of stress, and then its
-    /// history stays as it was.
+    /// The motion with the thickness that the particle takes, and the stress after it; `None` if no thickness is free
+    /// of stress, and then its history stays as it was.
     pub fn respond_with(
         &self,
         thickness: Thickness,
@@ -299,7 +303,8 @@ mod tests {
         Motion { deformation: f, jacobian: f.det(), increment: f, stress: Symmetric::ZERO, dt: 1.0 }
     }
 
-    /// The state and history after a motion from rest in equal steps of a duration, and the work of the stress per undeformed volume.
+    /// The state and history after a motion from rest in equal steps of a duration,
+    /// and the work of the stress per undeformed volume.
     pub fn follow<L: Law<f64>>(
         law: &L,
         (steps, duration): (usize, f64),

@@ -4,9 +4,9 @@
 //! sigma_zz(F') = 0,   F' = diag(1, 1, a) F,   a = F_zz' / F_zz
 //! ```
 //!
-//! A thin plate with free faces. Its particles have the reference thickness one; the thickness is F_zz, so det F is the volume,
-//! and the in-plane force of a particle is -V0 det F sigma grad S as in every scene: the stress acts on the present thickness.
-//! F is block diagonal, so isotropic laws leave no shear out of the plane, and one unknown is left.
+//! A thin plate with free faces. Its particles have the reference thickness one; the thickness is F_zz, so det F is the
+//! volume, and the in-plane force of a particle is -V0 det F sigma grad S as in every scene: the stress acts on the
+//! present thickness. F is block diagonal, so isotropic laws leave no shear out of the plane, and one unknown is left.
 
 use super::{Law, Motion, Response};
 use crate::tensor::{Number, Real};
@@ -39,10 +39,10 @@ struct Trial<T> {
 /// The motion with its free thickness, and the response to it; `None` if the law has none.
 ///
 /// `motion` has the thickness of the start of the step, which its increment leaves alone. The first trial is Hooke's,
-/// `a = 1 - (1 - 2G/M) tr(dF - I)`, the next are Newton's with M and the secant's; once two trials enclose the answer, none leaves
-/// the bracket and every third one halves it, so the search ends for every law whose sigma_zz grows from compression to tension as the
-/// thickness does. What is left of sigma_zz is round-off of M; it stays in the stress, so that the next step of a
-/// law in rate form makes up for it.
+/// `a = 1 - (1 - 2G/M) tr(dF - I)`, the next are Newton's with M and the secant's; once two trials enclose the answer,
+/// none leaves the bracket and every third one halves it, so the search ends for every law whose sigma_zz grows from
+/// compression to tension as the thickness does. What is left of sigma_zz is round-off of M; it stays in the stress, so
+/// that the next step of a law in rate form makes up for it.
 pub(super) fn with_free_thickness<T: Real, L: Law<T>>(
     law: &L,
     motion: &Motion<T>,
@@ -104,7 +104,8 @@ fn secant<T: Real>(a: Trial<T>, b: Trial<T>) -> T {
     b.stretch - b.stress * ((b.stretch - a.stretch) / (b.stress - a.stress))
 }
 
-/// Stiffness against the fastest wave of a thin plate, from those against longitudinal and shear waves, all times J [Pa].
+/// Stiffness against the fastest wave of a thin plate, from those against longitudinal and shear waves,
+/// all times J [Pa].
 ///
 /// ```text
 /// M - (M - 2G)^2 / M = 4 G (1 - G/M)          at rest E/(1 - nu^2)
@@ -243,7 +244,8 @@ mod tests {
         }
     }
 
-    /// A strip drawn by a tenth in many steps thins as flow has it: it keeps its volume, though round-off is a part of the yield stress.
+    /// A strip drawn by a tenth in many steps thins as flow has it: it keeps its volume,
+    /// though round-off is a part of the yield stress.
     #[test]
     fn single_precision_flows_at_constant_volume() {
         let law = VonMises {

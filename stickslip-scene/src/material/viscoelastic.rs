@@ -1,5 +1,5 @@
-//! Finite-strain linear viscoelasticity with a Prony series: a neo-Hookean network, part of whose chains let go and join again, after
-//! Lubliner (1985) and Simo (1987); Simo and Hughes (1998), chapter 10.
+//! Finite-strain linear viscoelasticity with a Prony series: a neo-Hookean network, part of whose chains let go and
+//! join again, after Lubliner (1985) and Simo (1987); Simo and Hughes (1998), chapter 10.
 //!
 //! ```text
 //! g(t)  = 1 - sum_i g_i (1 - exp(-t/tau_i))         shear modulus over the instantaneous one, t after a sudden strain
@@ -9,19 +9,20 @@
 //! D     = sum G g_i/(2 tau_i) (tr X_i + tr X_i^-1 - 6) >= 0,   X_i = C_ A_i          dissipated per undeformed volume and time
 //! ```
 //!
-//! What a branch remembers is its viscous strain E_i in the undeformed body, so a rotation leaves it alone. Its equation is linear: after a
-//! sudden strain of any size, the stress relaxes by the Prony series exactly. Simo relaxes the branches' stresses instead, which gives the
-//! same there and at small strain, but no energy that is exact at any; here stored and dissipated energy are, and D is never negative.
+//! What a branch remembers is its viscous strain E_i in the undeformed body, so a rotation leaves it alone. Its
+//! equation is linear: after a sudden strain of any size, the stress relaxes by the Prony series exactly. Simo relaxes
+//! the branches' stresses instead, which gives the same there and at small strain, but no energy that is exact at any;
+//! here stored and dissipated energy are, and D is never negative.
 //!
-//! A step takes C_^-1 as linear in time and the decay as 1/(1 + x + x^2/2), x = dt/tau, which is exp(-x) to second order and needs no
-//! exponential:
+//! A step takes C_^-1 as linear in time and the decay as 1/(1 + x + x^2/2), x = dt/tau, which is exp(-x) to second
+//! order and needs no exponential:
 //!
 //! ```text
 //! A_i' = (A_i + x/2 C_n^-1 + x/2 (1 + x) C_n+1^-1) / (1 + x + x^2/2)
 //! ```
 //!
-//! All weights are positive and their sum is one, so A_i stays positive definite at any step, and a step of many tau goes to the limit.
-//! Volume strain is elastic.
+//! All weights are positive and their sum is one, so A_i stays positive definite at any step, and a step of many tau
+//! goes to the limit. Volume strain is elastic.
 
 use super::declaration::{
     Absent, BadConstants, Bounds, Constant, Declared, Form, Given, POSITIVE, Quantity, RATIO, TIME,
@@ -305,7 +306,8 @@ mod tests {
         }
     }
 
-    /// Relaxation after a sudden strain of any size: the deviator follows the Prony series, and halving the step quarters the error.
+    /// Relaxation after a sudden strain of any size: the deviator follows the Prony series,
+    /// and halving the step quarters the error.
     #[test]
     fn stress_relaxes_by_the_prony_series_to_second_order() {
         for h in sample_gradients() {
@@ -377,8 +379,8 @@ mod tests {
         }
     }
 
-    /// A thin plate under a sudden small strain that is held: sigma_xx = E(t)/(1 - nu(t)^2) e with the moduli of K and G g(t), for both
-    /// the strain in the plane and the stress out of it are given at all times.
+    /// A thin plate under a sudden small strain that is held: sigma_xx = E(t)/(1 - nu(t)^2) e with the moduli of K and
+    /// G g(t), for both the strain in the plane and the stress out of it are given at all times.
     #[test]
     fn a_thin_plate_relaxes_with_a_free_thickness() {
         struct Memory(Vec<f64>);

@@ -1,5 +1,5 @@
-//! Elastoplasticity of von Mises with linear isotropic hardening: elasticity in rate form, [`Hypoelastic`], and a radial return (Wilkins
-//! 1964; Simo and Hughes 1998, section 3.3).
+//! Elastoplasticity of von Mises with linear isotropic hardening: elasticity in rate form, [`Hypoelastic`], and a
+//! radial return (Wilkins 1964; Simo and Hughes 1998, section 3.3).
 //!
 //! ```text
 //! J q <= Y,   q = sqrt(3/2 s : s),   s = dev(sigma),   Y = Y_0 + H a          a: equivalent plastic strain
@@ -8,8 +8,8 @@
 //! W_p = Y_0 a + H a^2 / 2                           dissipated per undeformed volume
 //! ```
 //!
-//! The yield stress bounds the Kirchhoff stress J sigma, so that what flow dissipates depends on a alone; J is one but for the elastic
-//! volume strain. Flow keeps the volume.
+//! The yield stress bounds the Kirchhoff stress J sigma, so that what flow dissipates depends on a alone; J is one but
+//! for the elastic volume strain. Flow keeps the volume.
 
 use super::declaration::{BadConstants, Constant, Declared, Given, NOT_NEGATIVE, POSITIVE, PRESSURE};
 use super::{History, Hypoelastic, Isotropic, Law, Motion, Response, elastic};
@@ -174,8 +174,8 @@ mod tests {
         }
     }
 
-    /// sigma_xx of a bar whose sides are free and whose length has this logarithmic strain, e > Y_0/E, at small elastic strain:
-    /// Y_0 + H (e - sigma/E), so (Y_0 + H e)/(1 + H/E).
+    /// sigma_xx of a bar whose sides are free and whose length has this logarithmic strain, e > Y_0/E, at small elastic
+    /// strain: Y_0 + H (e - sigma/E), so (Y_0 + H e)/(1 + H/E).
     #[test]
     fn a_bar_in_tension_hardens_by_the_tangent_of_the_textbook() {
         let Isotropic { bulk_modulus: k, shear_modulus: g } = LAW.elastic.elastic;

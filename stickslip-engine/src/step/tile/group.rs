@@ -44,12 +44,12 @@ pub fn splat<V: Lanes, const D: usize>(vector: &Vector<V::Real, D>) -> Vector<V,
 
 /// Takes a group through a pass and says which particles did not leave their cells.
 ///
-/// This is all that is ever done to a particle, written once for any number of lanes. Particles have base nodes and places
-/// of these in the window.
+/// This is all that is ever done to a particle, written once for any number of lanes. Particles have base nodes and
+/// places of these in the window.
 ///
 /// # Errors
-/// A particle has a fault. Of several particles nothing is changed, and which fault it is does not say. A single one keeps
-/// what was found out of it, to be looked at, and the first fault is told.
+/// A particle has a fault. Of several particles nothing is changed, and which fault it is does not say. A single one
+/// keeps what was found out of it, to be looked at, and the first fault is told.
 #[inline(always)]
 pub fn group<
     T: Laned,

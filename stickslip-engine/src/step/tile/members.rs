@@ -9,7 +9,8 @@ use crate::transfer::Share;
 use std::mem::MaybeUninit;
 use std::ops::Range;
 
-/// How many particles ahead of the present ones numbers are fetched into the cache: columns are too many for a processor to do so by itself.
+/// How many particles ahead of the present ones numbers are fetched into the cache:
+/// columns are too many for a processor to do so by itself.
 pub const AHEAD: usize = 32;
 
 /// Fetches what a pass needs of a particle and those beside it.
@@ -58,8 +59,8 @@ impl Reads {
 
 /// Up to as many particles as there are lanes, as columns: the body's own where they lie side by side, else copies.
 ///
-/// `WHOLE` ones are read and written whole registers at a time: those that fill the lanes, and on processors that do not mask lanes
-/// all of them, from copies. The others are a type of their own, for masks cost those that need none.
+/// `WHOLE` ones are read and written whole registers at a time: those that fill the lanes, and on processors that do
+/// not mask lanes all of them, from copies. The others are a type of their own, for masks cost those that need none.
 pub struct Members<'a, T, const D: usize, const WHOLE: bool> {
     columns: &'a Columns<T, D>,
     /// How many.
@@ -70,7 +71,8 @@ pub struct Members<'a, T, const D: usize, const WHOLE: bool> {
     runs: Option<&'a ParticleRuns>,
 }
 
-/// Columns of particles that do not lie side by side or, without masks, do not fill the lanes, with room for a register from any lane on.
+/// Columns of particles that do not lie side by side or, without masks, do not fill the lanes,
+/// with room for a register from any lane on.
 pub struct Copies<T> {
     columns: [[MaybeUninit<Numbers<T>>; 2]; MOST_COLUMNS],
     runs: ParticleRuns,
@@ -181,7 +183,8 @@ impl<'a, T: Real, const D: usize, const WHOLE: bool> Members<'a, T, D, WHOLE> {
         let Some(ParticleRuns { runs, count }) = self.runs else { return };
         for run in &runs[..*count] {
             for column in columns.clone() {
-                // SAFETY: the tile's particles are this pass' alone, and copies have room for a register from any lane on.
+                // SAFETY: the tile's particles are this pass' alone, and copies have room for a register from any lane
+                // on.
                 unsafe {
                     let copy = V::load(self.first.add(column * self.stride + run.lane));
                     copy.store_part(self.columns.at(column, run.first), run.count);

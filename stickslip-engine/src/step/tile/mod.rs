@@ -1,7 +1,9 @@
 //! A pass over the particles of a tile, several at a time.
 //!
-//! Particles of one cell are taken as many at a time as the processor has lanes, and where cells of the plane have too few, those of a tile: straight from memory where they lie side by side there
-//! and fill the lanes or the processor masks them, else by copies. A group with a fault is taken again, one particle at a time, to find out what is wrong with whom.
+//! Particles of one cell are taken as many at a time as the processor has lanes, and where cells of the plane have too
+//! few, those of a tile: straight from memory where they lie side by side there and fill the lanes or the processor
+//! masks them, else by copies. A group with a fault is taken again, one particle at a time,
+//! to find out what is wrong with whom.
 
 mod group;
 mod members;

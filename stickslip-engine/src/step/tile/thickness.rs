@@ -9,7 +9,8 @@ use crate::tensor::{Matrix, Real, Symmetric, array};
 /// Numbers of a motion.
 const COUNT: usize = 25;
 
-/// The motion with the thickness that every particle takes, one by one, and the stress and history after it; `None` if any has none.
+/// The motion with the thickness that every particle takes, one by one, and the stress and history after it;
+/// `None` if any has none.
 #[inline(always)]
 pub fn free_thickness<T: Real, V: Lanes<Real = T>, const D: usize, const WHOLE: bool>(
     body: &Body<T, D>,
