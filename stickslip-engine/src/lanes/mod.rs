@@ -322,7 +322,7 @@ pub trait Laned: Real {
 }
 
 macro_rules! laned {
-    ($t:ty) => {
+    ($t:ty, $avx512:ident, $avx2:ident) => {
         impl Laned for $t {
             #[inline]
             fn run<W: Work<Real = Self>>(processor: Processor, work: W) -> W::Output {
@@ -331,9 +331,9 @@ macro_rules! laned {
                     assert!(processor <= Processor::best(), "the processor has it");
                     match processor {
                         // SAFETY: the processor has AVX-512.
-                        Processor::Avx512 => return unsafe { x86::avx512::<$t, W>(work) },
+                        Processor::Avx512 => return unsafe { x86::$avx512::run(work) },
                         // SAFETY: the processor has AVX2.
-                        Processor::Avx2 => return unsafe { x86::avx2::<$t, W>(work) },
+                        Processor::Avx2 => return unsafe { x86::$avx2::run(work) },
                         Processor::Any => {}
                     }
                 }
@@ -344,8 +344,8 @@ macro_rules! laned {
         }
     };
 }
-laned!(f32);
-laned!(f64);
+laned!(f32, single_avx512, single_avx2);
+laned!(f64, double_avx512, double_avx2);
 
 #[cfg(test)]
 mod tests;

@@ -1,12 +1,12 @@
 //! Lanes of x86-64 processors: which there are, and what their types have in common.
 
-use super::{Machine, Work};
+use super::Work;
 use std::arch::x86_64::*;
 
 /// A third of 2^33, rounded up: the upper bits of a product with it are a third, for every number of 32 bits.
 const THIRD: i64 = 0xaaaa_aaab;
 
-/// Whether the processor has all of AVX-512 that [`avx512`] uses.
+/// Whether the processor has all of AVX-512 that [`Avx512`] uses.
 pub fn has_avx512() -> bool {
     std::arch::is_x86_feature_detected!("avx512f")
         && std::arch::is_x86_feature_detected!("avx512vl")
@@ -15,7 +15,7 @@ pub fn has_avx512() -> bool {
         && has_avx2()
 }
 
-/// Whether the processor has all that [`avx2`] uses.
+/// Whether the processor has all that [`Avx2`] uses.
 pub fn has_avx2() -> bool {
     std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma")
 }
@@ -28,29 +28,28 @@ pub struct Avx512;
 #[derive(Clone, Copy)]
 pub struct Avx2;
 
-/// Does work with AVX-512.
-///
-/// # Safety
-/// The processor must have it, see [`has_avx512`].
-#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,fma")]
-pub unsafe fn avx512<T, W: Work<Real = T>>(work: W) -> W::Output
-where
-    Avx512: Machine<T>,
-{
-    work.run::<Avx512>()
-}
+/// Does work on a kind of number with one of them, in a module of its own: the compiler takes modules side by side, and
+/// all kernels in one would keep one core busy while the others wait.
+macro_rules! compiled_apart {
+    ($module:ident: $t:ty, $machine:ident, $features:literal) => {
+        pub mod $module {
+            use super::{$machine, Work};
 
-/// Does work with AVX2.
-///
-/// # Safety
-/// The processor must have it, and FMA.
-#[target_feature(enable = "avx2,fma")]
-pub unsafe fn avx2<T, W: Work<Real = T>>(work: W) -> W::Output
-where
-    Avx2: Machine<T>,
-{
-    work.run::<Avx2>()
+            /// Does work with it.
+            ///
+            /// # Safety
+            /// The processor must have it.
+            #[target_feature(enable = $features)]
+            pub unsafe fn run<W: Work<Real = $t>>(work: W) -> W::Output {
+                work.run::<$machine>()
+            }
+        }
+    };
 }
+compiled_apart!(double_avx512: f64, Avx512, "avx512f,avx512vl,avx512dq,avx512bw,fma");
+compiled_apart!(single_avx512: f32, Avx512, "avx512f,avx512vl,avx512dq,avx512bw,fma");
+compiled_apart!(double_avx2: f64, Avx2, "avx2,fma");
+compiled_apart!(single_avx2: f32, Avx2, "avx2,fma");
 
 macro_rules! operator {
     ($name:ident $(<const $flag:ident>)?, $op:ident $f:ident $assign:ident $g:ident $intrinsic:ident) => {
