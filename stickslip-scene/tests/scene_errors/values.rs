@@ -91,7 +91,7 @@ fn values_out_of_range() {
             (
                 "neo_hookean = { ",
                 "viscoelastic = { prony = [[0.5, \"10 ms\"], [1.5, \"1 s\"]], ",
-                "10:26: materials.rubber.viscoelastic.prony: found a list (share 1.5); allowed: share above 0 and below 1",
+                "10:26: materials.rubber.viscoelastic.prony: found [[0.5, \"10 ms\"], [1.5, \"1 s\"]] (share 1.5); allowed: share above 0 and below 1",
             ),
             (
                 "neo_hookean = { ",
@@ -101,7 +101,7 @@ fn values_out_of_range() {
             (
                 "neo_hookean = { ",
                 "damage = { tensile_strength = \"1 MPa\", fracture_energy = \"-1 J/m^2\", ",
-                "10:62: materials.rubber.damage.fracture_energy: found \"-1 J/m^2\" (-1 J/m^2); allowed: a positive number",
+                "10:58: materials.rubber.damage.fracture_energy: found \"-1 J/m^2\" (-1 J/m^2); allowed: a positive number",
             ),
             (
                 "neo_hookean = ",

@@ -33,7 +33,7 @@ pub struct Avx2;
 macro_rules! compiled_apart {
     ($module:ident: $t:ty, $machine:ident, $features:literal) => {
         pub mod $module {
-            use super::{$machine, Work};
+            use super::{Work, $machine};
 
             /// Does work with it.
             ///
