@@ -21,7 +21,7 @@ pub trait View {
     fn bodies(&self) -> Vec<BodyState>;
     /// The energy and momentum ledger now.
     fn ledger(&self) -> Ledger;
-    /// What contact did since the start, per pair of bodies that ever pushed each other, ordered by pair; a
+    /// What contact did since the start, per pair of bodies whose surfaces ever touched, ordered by pair; a
     /// [`ContactCursor`] makes means of it.
     fn contact_sums(&self) -> Vec<ContactSum>;
     /// The widest contact of each pair of bodies since the start, ordered by pair.

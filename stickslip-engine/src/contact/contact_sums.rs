@@ -219,11 +219,11 @@ impl ContactSums {
         all.into_iter().map(|(_, x)| x).collect()
     }
 
-    /// What contact did since the start, of pairs that pushed each other, ordered by pair.
+    /// What contact did since the start, of pairs whose surfaces touched, ordered by pair.
     pub fn sums(&self) -> Vec<ContactSum> {
         self.ordered(|TouchedPair { bodies, sum, .. }| {
             let [area, gap] = sum.touched();
-            (sum.magnitude > 0.0).then(|| ContactSum {
+            Some(ContactSum {
                 bodies: *bodies,
                 impulse: sum.impulse,
                 normal: sum.normal,
