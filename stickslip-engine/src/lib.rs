@@ -25,7 +25,7 @@ pub mod particles;
 // The sparse field: blocks of nodes under each body's particles.
 pub mod grid;
 
-// Particles -> field, field -> particles.
+// Particles to grid (P2G), grid to particles (G2P).
 pub mod transfer;
 
 // Mirrors and fixed faces of the domain.

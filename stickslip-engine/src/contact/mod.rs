@@ -1,8 +1,9 @@
 //! Contact: what bodies do to each other at the nodes that they share.
 //!
 //! [`Survey`] finds the nodes and asks the particles around each for the surfaces there; a law turns that and the
-//! bodies' velocities into changes of velocity, pair by pair. Contact is applied twice a step, to interpolated and to
-//! integrated velocities; both uses share one survey.
+//! bodies' velocities into changes of velocity, pair by pair. A *use* of contact is one such change of all velocities:
+//! of the interpolated ones, of the integrated ones, and with MUSL of those that strain particles. All uses of a step
+//! share one survey. [`Use`] says what the velocities of a use are for.
 
 mod around;
 mod contact_sums;

@@ -27,11 +27,11 @@ pub struct SurfaceEstimate<T, const D: usize> {
 /// What the velocities of a pair are about to be used for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Use {
-    /// As what forces and later contact change: interpolated velocities that strain nothing.
+    /// As what forces and later contact change: interpolated velocities that strain nothing (USL, MUSL).
     Start,
-    /// To strain the particles, and to move them with that.
+    /// To strain the particles, and to displace them by the same (USF: interpolated, MUSL: interpolated once more).
     Strain,
-    /// To be taken by the particles as change of their velocities: with all forces of the step.
+    /// To change the particles' velocities: integrated with all forces of the step. In USL they also strain.
     Motion,
 }
 

@@ -16,7 +16,7 @@ use crate::threads::each;
 use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 
-/// A node that two or more bodies share.
+/// A node that two or more bodies share, below also a *site*. A *side* is one body there, an *encounter* two of them.
 #[derive(Clone, Debug)]
 pub struct SharedNode<const D: usize> {
     /// The node.
@@ -27,7 +27,7 @@ pub struct SharedNode<const D: usize> {
     pub encounters: Range<usize>,
 }
 
-/// One body's share of a site.
+/// One body's share of a site: a side.
 #[derive(Clone, Copy, Debug)]
 pub struct BodyShare<T, const D: usize> {
     /// Index of the body.

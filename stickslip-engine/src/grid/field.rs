@@ -20,7 +20,8 @@ pub struct Node<T, const D: usize> {
     pub force: Vector<T, D>,
     /// Velocity as interpolated from the particles, before contact and forces [m/s].
     pub start: Vector<T, D>,
-    /// Velocity as integrated with all forces and contact, whose change the particles take [m/s].
+    /// Velocity as integrated with all forces and contact, whose change from `start` the particles take [m/s]. If the
+    /// stress is updated first, the one that strains waits here while forces act on `velocity`.
     pub integrated: Vector<T, D>,
 }
 
@@ -53,20 +54,20 @@ impl<T: Real, const D: usize> Node<T, D> {
         self.velocity += (self.force / self.mass + gravity) * dt;
     }
 
-    /// Keeps the velocity as the integrated one.
+    /// Keeps the velocity in `integrated`.
     #[inline]
     pub fn keep(&mut self) {
         self.integrated = self.velocity;
     }
 
-    /// Keeps the velocity as the integrated one, and makes room for momentum.
+    /// Keeps the velocity in `integrated`, and makes room for momentum.
     #[inline]
     pub fn keep_and_clear(&mut self) {
         self.keep();
         self.velocity = Vector::ZERO;
     }
 
-    /// Takes the velocity that was kept, and keeps the one of now.
+    /// Takes the velocity that was kept, and keeps the one of now in `integrated`.
     #[inline]
     pub fn exchange(&mut self) {
         std::mem::swap(&mut self.integrated, &mut self.velocity);

@@ -1,4 +1,4 @@
-//! The engine behind its door.
+//! The engine behind its door: what others may see of it, and the step that they may ask for.
 
 use super::Engine;
 use super::state::Workspace;

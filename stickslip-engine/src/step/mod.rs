@@ -1,4 +1,17 @@
 //! The step: explicit MPM with contact, as a list of verbs for each way to update the stress.
+//!
+//! Most verbs are a *pass* over all particles, or do one thing at each node. Where it is written out:
+//!
+//! | what | where |
+//! |---|---|
+//! | the length of the step, and what happens around it | `Simulation::step` in `look.rs` |
+//! | which passes a step makes, and in which order | the recipes below |
+//! | what a pass does to a particle: velocity, F and stress, position | `tile/group.rs`, from top to bottom |
+//! | the sums over nodes of G2P and P2G | `interpolate`, `flow`, `moment` and `scatter` of [`crate::transfer::Group`] |
+//! | the same as the equations read, one particle and node after the other | `naive.rs`, and `transfer/naive.rs` |
+//! | the stress | `respond` of a law in [`crate::material`] |
+//! | what happens at a node: v = p / m, v += dt (f / m + g) | [`crate::grid::Node`] |
+//! | contact at a node | `contact/solve.rs`, by a law of `contact/law/` |
 
 mod build;
 mod cpu;
@@ -39,9 +52,16 @@ pub struct Engine<T, const D: usize, B> {
 
 /// The recipes. Numbers are equations of Bardenhagen et al. (2001). P2G: particles to grid, G2P: grid to particles.
 ///
+/// ```text
+/// v~    velocity of a node after contact and walls
+/// v^0   the interpolated velocity, before contact, walls and forces
+/// dv    change of the step that a particle takes: sum S_i (v~_i - v_i^0), with v~ integrated
+/// L     sum v~_i (x) grad S_i, of the velocities that strain
+/// ```
 /// All have contact on the interpolated and on the integrated velocities, and strain and move particles by the same
-/// velocities; they differ in which velocities these are. The paper's contact laws act in both places; the law
-/// `surface` acts on the integrated velocities and, to strain bodies that touch, on those that strain.
+/// velocities; they differ in which velocities these are. In MUSL they are interpolated a second time, and contact acts
+/// a third time. All contact laws but one act in all of these places, as the paper's do. `surface`, the default, leaves
+/// alone interpolated velocities that strain nothing.
 impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// One step of `dt`.
     fn advance(&mut self, dt: T) -> Result<(), StepError> {
@@ -64,10 +84,10 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.update_stress(dt)?; //                   G2P: F = (I + L dt) F, sigma = law(F); P2G: f
         self.keep_velocities(); //                    v~ moves the particles, too
         self.update_velocities(dt); //                v += dt (f / m + g)                           (3)
-        self.prescribed_velocities();
+        self.prescribed_velocities(); //              once more
         self.contact_on_integrated(dt); //            v~
         self.book_contact(dt); //                     impulses, work of friction
-        self.exchange_velocities(); //                v~ of before, to move by
+        self.exchange_velocities(); //                v~ that was kept, to move by; v~ of now, for dv
         self.update_velocities_and_positions(dt)?; // G2P: v_p += dv, x += v~ dt
         self.move_rigid_bodies(dt)
     }
@@ -80,12 +100,12 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.prescribed_velocities(); //              of rigid bodies and walls
         self.detect_contact(dt); //                   surfaces, normals and gaps where bodies meet
         self.join_glued_bodies(); //                  one v for bodies that glue joins
-        self.contact_on_interpolated(dt); //          v~, by the paper's laws        (5)-(13), (20)-(22)
+        self.contact_on_interpolated(dt); //          v~, by all laws but `surface`  (5)-(13), (20)-(22)
         self.update_velocities(dt); //                v += dt (f / m + g)                           (3)
-        self.prescribed_velocities();
+        self.prescribed_velocities(); //              once more
         self.contact_on_integrated(dt); //            v~
         self.book_contact(dt); //                     impulses, work of friction
-        self.keep_velocities();
+        self.keep_velocities(); //                    v~, for dv
         self.update_particles(dt)?; //                G2P: v_p += dv, F, sigma, x += v~ dt
         self.move_rigid_bodies(dt)
     }
@@ -99,21 +119,21 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.prescribed_velocities(); //              of rigid bodies and walls
         self.detect_contact(dt); //                   surfaces, normals and gaps where bodies meet
         self.join_glued_bodies(); //                  one v for bodies that glue joins
-        self.contact_on_interpolated(dt); //          v~, by the paper's laws        (5)-(13), (20)-(22)
+        self.contact_on_interpolated(dt); //          v~, by all laws but `surface`  (5)-(13), (20)-(22)
         self.update_velocities(dt); //                v += dt (f / m + g)                           (3)
-        self.prescribed_velocities();
+        self.prescribed_velocities(); //              once more
         self.contact_on_integrated(dt); //            v~
-        self.keep_velocities_and_clear_momentum();
+        self.keep_velocities_and_clear_momentum(); // v~, for dv; p = 0
         self.update_particle_velocities(dt)?; //      G2P: v_p += dv; P2G: p
-        self.interpolated_again(); //                 v = p / m
-        self.prescribed_velocities();
+        self.interpolated_again(); //                 v = p / m, with m as before
+        self.prescribed_velocities(); //              and again
         self.book_contact(dt); //                     impulses, work of friction
         self.contact_on_straining(dt); //             v~, booked nowhere: no particle takes it as a change
         self.update_stress_and_positions(dt)?; //     G2P: F = (I + L dt) F, sigma = law(F), x += v~ dt
         self.move_rigid_bodies(dt)
     }
 
-    /// Longest stable step now [s].
+    /// Longest stable step now, courant h / max(c + |v_p|): the speed is the fastest *signal* ([`crate::clock`]) [s].
     fn stable(&self) -> f64 {
         let signal = self.state.signal.unwrap_or_else(|| fastest_signal(&self.state.bodies));
         let step = self.settings.time.courant * self.settings.lattice.cell.f64() / signal;

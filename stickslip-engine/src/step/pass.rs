@@ -23,17 +23,17 @@ pub enum ParticleLoop {
     Naive,
 }
 
-/// What a pass does to each particle, in this order.
+/// What a pass does to each particle, in this order: one verb of a recipe may ask for several.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Verbs {
-    /// v_p = (1 - a) (v_p + sum S_i (v_i - v_i^0)) + a sum S_i v_i,   a: PIC share; the spin likewise,
+    /// G2P:  v_p = (1 - a) (v_p + sum S_i (v_i - v_i^0)) + a sum S_i v_i,   a: PIC share; the spin likewise,
     /// see [`crate::transfer::turning`]
     pub update_velocity: bool,
-    /// F = (I + L dt) F,  V = V_0 det F,  sigma = law(F)
+    /// G2P:  F = (I + L dt) F,  V = V_0 det F,  sigma = law(F)
     pub update_stress: bool,
-    /// x += v dt
+    /// G2P:  x += dt sum S_i v_i
     pub advect: bool,
-    /// Gives to the nodes.
+    /// P2G: gives this share to the nodes.
     pub scatter: Option<Share>,
 }
 

@@ -52,7 +52,8 @@ pub struct State<T, const D: usize> {
 pub struct Workspace<T, const D: usize> {
     /// Cell lists of the particles, and the active blocks.
     pub active: ActiveBlocks<D>,
-    /// Whether the cell lists are those of the state but for the particles that `left`.
+    /// Whether there are cell lists that hold for all particles but those that `left` their cells; else they are made
+    /// from nothing.
     pub listed: bool,
     /// Nodes of all bodies' active blocks.
     pub field: Field<T, D>,
@@ -60,7 +61,7 @@ pub struct Workspace<T, const D: usize> {
     pub boundary: Boundary,
     /// Where bodies meet in this step.
     pub meeting: Survey<T, D>,
-    /// Which bodies glue joins at a node.
+    /// Room for glue at one node: for each body there, one that stands for all that glue joins with it.
     pub groups: Vec<usize>,
     /// What contact did in the last step, use by use.
     pub impulses: [Impulses<T, D>; 3],

@@ -1,4 +1,6 @@
-//! The verbs of the step: what each does to a node or a particle.
+//! The verbs of the step: what each does to a node, and which pass it makes over the particles.
+//!
+//! What a pass does to a particle is written in `tile/group.rs`, what a verb does to a node in [`Node`].
 
 use super::Engine;
 use super::build::spin;
@@ -16,14 +18,15 @@ use crate::threads::each;
 use crate::transfer::Share;
 use std::time::Instant;
 
-/// The uses of contact in a step.
+/// The uses of contact in a step, in their order. What the velocities of each are for is [`Use`]: the interpolated ones
+/// are [`Use::Strain`] if the stress is updated first, else [`Use::Start`].
 #[derive(Clone, Copy)]
 enum Contact {
     /// Of the interpolated velocities.
     Interpolated,
-    /// Of the integrated velocities.
+    /// Of the integrated velocities: [`Use::Motion`].
     Integrated,
-    /// Of the velocities that strain and move particles, where they are interpolated anew.
+    /// Of the velocities that strain and move particles, where they are interpolated anew: [`Use::Strain`].
     Straining,
 }
 
@@ -165,17 +168,18 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.at_nodes("grid", |node| node.accelerate(gravity, dt));
     }
 
-    /// Keeps the nodes' velocities beside those that change.
+    /// Keeps the nodes' velocities, for the particles to take later: in USL those whose change they take, in USF those
+    /// that strained them and move them.
     pub(super) fn keep_velocities(&mut self) {
         self.at_nodes("grid", Node::keep);
     }
 
-    /// Keeps the nodes' velocities and makes room for momentum.
+    /// Keeps the nodes' velocities, whose change the particles take, and makes room for the momentum of the second P2G.
     pub(super) fn keep_velocities_and_clear_momentum(&mut self) {
         self.at_nodes("grid", Node::keep_and_clear);
     }
 
-    /// Takes the velocities that were kept, and keeps those of now.
+    /// Takes the velocities that were kept, and keeps those of now, whose change the particles take.
     pub(super) fn exchange_velocities(&mut self) {
         self.at_nodes("grid", Node::exchange);
     }
@@ -226,8 +230,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.watch.lap("contact detection", start);
     }
 
-    /// Contact on the interpolated velocities, by the laws that judge these by themselves; they also strain the
-    /// particles where the stress is updated first.
+    /// Contact on the interpolated velocities. If the stress is updated first, these strain the particles, and all laws
+    /// act; else only laws that judge each use of contact by itself ([`Span::EachUse`]), as the paper's do.
     pub(super) fn contact_on_interpolated(&mut self, dt: T) {
         let strains = self.settings.time.stress_update == StressUpdate::First;
         if strains || self.settings.rules.judge_interpolated() {
@@ -240,8 +244,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.apply_contact(dt, Contact::Integrated);
     }
 
-    /// Contact on the velocities that strain and move the particles: it enters no sum of forces and works, for no
-    /// particle takes it as a change of its velocity.
+    /// Contact on the velocities that strain and move the particles. It enters no sum of forces and no sum of works,
+    /// for no particle takes it as a change of its velocity.
     pub(super) fn contact_on_straining(&mut self, dt: T) {
         self.apply_contact(dt, Contact::Straining);
     }

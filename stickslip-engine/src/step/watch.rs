@@ -1,4 +1,4 @@
-//! Wall time by verb. Nothing in the step depends on it.
+//! Wall time by verb; verbs of a kind share a name, such as `grid` or `contact`. Nothing in the step depends on it.
 
 use std::time::{Duration, Instant};
 

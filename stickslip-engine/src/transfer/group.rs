@@ -173,7 +173,7 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
     /// Nodes along the third axis.
     const DEPTH: usize = if D == 2 { 1 } else { B::WIDTH };
 
-    /// sum S_i of a value at the nodes.
+    /// G2P: sum S_i of a value at the nodes.
     #[inline(always)]
     pub fn interpolate(&self, nodes: &[NodeValues<V::Real>; WINDOW_NODES]) -> Vector<V, D> {
         let [x, y, z] = [&self.shapes[0], &self.shapes[1], &self.shapes[D - 1]];
@@ -199,7 +199,7 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
         Vector(sum)
     }
 
-    /// h L = sum v_i (x) h grad S_i, embedded in space, and sum S_i v_i of the same velocities [m/s].
+    /// G2P: h L = sum v_i (x) h grad S_i, embedded in space, and sum S_i v_i of the same velocities [m/s].
     #[inline(always)]
     pub fn flow(&self, nodes: &[NodeValues<V::Real>; WINDOW_NODES]) -> (Matrix<V>, Vector<V, D>) {
         let mut slopes = [[V::ZERO; MAX_WIDTH]; D];
@@ -211,7 +211,7 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
         self.sums(nodes, &slopes)
     }
 
-    /// sum S_i (x_i - x_p) x v_i over h, see [`super::turning`], and sum S_i v_i [m/s].
+    /// G2P: sum S_i (x_i - x_p) x v_i over h, see [`super::turning`], and sum S_i v_i [m/s].
     #[inline(always)]
     pub fn moment(&self, nodes: &[NodeValues<V::Real>; WINDOW_NODES]) -> (Vector<V, 3>, Vector<V, D>) {
         let mut arms = [[V::ZERO; MAX_WIDTH]; D];
@@ -277,7 +277,7 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
         (sums, sum)
     }
 
-    /// Adds what the particles scatter to the window, two particles at a time.
+    /// P2G: adds what the particles scatter to the window, two particles at a time.
     ///
     /// ```text
     /// m_i += S_i m,   p_i += S_i m (v + G (x_i - x_p)),   f_i += -V sigma grad S_i

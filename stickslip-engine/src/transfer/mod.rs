@@ -1,7 +1,14 @@
-//! Particles to field, field to particles: the sums over the nodes that particles reach.
+//! Particles to grid (P2G, scatter) and grid to particles (G2P, gather): the sums over the nodes that particles reach.
 //!
 //! [`Group`] takes one or several particles of a tile at once. The tests hold it against a naive transfer, one particle
-//! and one node after the other.
+//! and one node after the other as the equations read (`naive.rs`): the place to read them first.
+//!
+//! | sum | what for |
+//! |---|---|
+//! | [`Group::interpolate`] | G2P of velocities: sum S_i v_i, sum S_i dv_i |
+//! | [`Group::flow`] | G2P of the velocity gradient L, and of the velocity with it |
+//! | [`Group::moment`] | G2P of angular velocities, see [`turning`] |
+//! | [`Group::scatter`] | P2G of mass, momentum and force |
 
 mod group;
 #[cfg(test)]

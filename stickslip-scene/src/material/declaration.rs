@@ -32,7 +32,8 @@ pub trait Declared: Sized {
     /// Its constants, as [`Declared::build`] takes them.
     fn given(&self) -> Given;
 
-    /// Elastic moduli at small strain, of a sudden strain where they depend on time.
+    /// Elastic moduli at small strain, of a sudden strain where they depend on time: for what is said of a scene before
+    /// it runs.
     fn elastic(&self) -> Isotropic<f64>;
 
     /// The law for cells of this side [m]; most laws do not ask for it.
@@ -171,7 +172,7 @@ impl std::fmt::Display for Bounds {
 /// What holds where a constant is not given.
 #[derive(Clone, Copy, Debug)]
 pub enum Absent {
-    /// It must be given, like this.
+    /// It must be given, like this: as scene files have it, a number with a unit in quotes.
     Refused(&'static str),
     /// This number.
     Default(f64),
@@ -180,7 +181,7 @@ pub enum Absent {
 }
 
 impl Constant {
-    /// A number that must be given, like `example`.
+    /// A number that must be given, like `example`, which is written as in a scene file: `"\"4 MPa\""`.
     pub const fn required(
         name: &'static str,
         summary: &'static str,

@@ -149,7 +149,8 @@ pub trait Law<T: Number>: Copy + Send + Sync {
     /// Stress and history at the end of the step, from those at its start, its strain and its duration.
     fn respond(&self, motion: &Motion<T>, history: &Self::History) -> Response<T, Self::History>;
 
-    /// Strain energy per undeformed volume in a state of deformation, Cauchy stress and history [J/m^3].
+    /// Strain energy per undeformed volume in a state of deformation, Cauchy stress and history [J/m^3]. Laws that know
+    /// it from F ignore the stress; laws in rate form know it from the stress alone.
     fn strain_energy(&self, deformation: &Matrix<T>, stress: &Symmetric<T>, history: &Self::History) -> T;
 
     /// What the material dissipated so far per undeformed volume [J/m^3].
@@ -158,8 +159,9 @@ pub trait Law<T: Number>: Copy + Send + Sync {
         T::ZERO
     }
 
-    /// Stiffness against a longitudinal wave in the present state, times J [Pa]:
-    /// over the undeformed density it is the squared wave speed.
+    /// Stiffness against a longitudinal wave in the present state, times J [Pa]: over the undeformed density it is the
+    /// squared wave speed. The stable step rests on it, so it should be that of the stiffest direction or above,
+    /// and not below [`Law::shear_modulus`]; at rest it is K + 4G/3.
     fn wave_modulus(&self, deformation: &Matrix<T>, jacobian: T, history: &Self::History) -> T;
 
     /// Stiffness against a shear wave in the present state, times J [Pa]; plane stress needs it for its waves.

@@ -16,9 +16,9 @@ use crate::tensor::{Real, Vector};
 /// Over how much of a step a law judges its impulse.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Span {
-    /// Each of the two uses of contact by itself, as the paper does.
+    /// Each use of contact by itself, as the paper does.
     EachUse,
-    /// The sum of both; the first use only prepares the strain.
+    /// The whole of it, in the use for [`crate::contact::Use::Motion`]; impulses on velocities that strain are no part.
     WholeStep,
 }
 
@@ -44,7 +44,7 @@ pub trait PairLaw<T: Real, const D: usize>: Sync {
     }
 }
 
-/// The shelf: the law of each word in scene files.
+/// The list: the law of each word in scene files.
 pub fn law<T: Real, const D: usize>(law: ContactLaw) -> &'static dyn PairLaw<T, D> {
     match law {
         ContactLaw::None => &none::None,

@@ -1,4 +1,4 @@
-//! What a pass does to a group of particles.
+//! What a pass does to a group of particles: G2P of velocities, stress update, advection, P2G, in this order.
 
 use super::members::{HistoryOfGroup, Members};
 use super::thickness::free_thickness;
@@ -14,7 +14,7 @@ use crate::transfer::{Group, Momentum, ScatterTerms, Share, Start, turning};
 
 /// What all particles of a tile have in common.
 pub struct Constants<V, const D: usize> {
-    /// Its law.
+    /// The body's law.
     pub material: Material<V>,
     /// 1/rho_0 [m^3/kg]
     pub per_density: V,
@@ -77,7 +77,7 @@ pub fn group<
     let mut velocity = Vector::ZERO;
     let mut spin = Vector::ZERO;
     let gyration = constants.gyration.squared(half_width);
-    // What is taken from twice the kinetic energy over the mass.
+    // What PIC and `turning` take: v^2 + k^2 w^2 before less that after, so twice the kinetic energy over the mass.
     let mut damped = V::ZERO;
     let rotates = transfer == Transfer::Rflip;
     let gives_momentum = scatter.is_some_and(|share| share != Share::Force);
@@ -87,6 +87,7 @@ pub fn group<
     if update_velocity || gives_momentum || (update_stress && rotates) {
         spin = members.spin::<V>();
     }
+    // G2P: v_p += sum S_i (v_i - v_i^0), and what `turning` says of the spin.
     if update_velocity {
         if rotates {
             let (moment, change) = group.moment(&visit.window.change);
@@ -111,7 +112,9 @@ pub fn group<
     let mut stress = Symmetric::ZERO;
     let mut history = HistoryOfGroup::new(members);
     let [mut jacobian, mut volume] = [V::ZERO; 2];
+    // sum S_i v_i of the velocities that strain and move.
     let mut carried = Vector::ZERO;
+    // Whether the stress gives forces to the nodes.
     let pushes = matches!(scatter, Some(Share::Force | Share::Everything));
     if update_stress || advect {
         deformation = members.deformation::<V>();
@@ -119,6 +122,7 @@ pub fn group<
     if update_stress || pushes {
         stress = members.stress::<V>();
     }
+    // G2P: L, then F = (I + L dt) F and sigma = law(F).
     if update_stress {
         let scale = V::splat(dt) * constants.per_cell;
         let (gradient, mean) = group.flow(&visit.window.flow);
@@ -161,6 +165,7 @@ pub fn group<
         }
     }
 
+    // x += v dt; who leaves its cell, and how fast the fastest signal is.
     let mut inside = u32::MAX;
     if advect {
         if !update_stress {
@@ -204,6 +209,7 @@ pub fn group<
     if let Some(kind) = sound.fault::<V>() {
         return Err(kind);
     }
+    // No fault: what changed goes back to memory.
     if update_velocity {
         members.store_vector(ColumnStart::<D>::VELOCITY, &velocity);
         members.give_back::<V>(ColumnStart::<D>::VELOCITY..ColumnStart::<D>::SPIN);
@@ -226,6 +232,7 @@ pub fn group<
         members.give_back::<V>(ColumnStart::<D>::VOLUME..ColumnStart::<D>::VOLUME + 1);
         history.store::<V>();
     }
+    // P2G: m, m (v + G (x_i - x_p)), -V sigma grad S.
     if let Some(share) = scatter {
         let mut load = ScatterTerms { momentum: None, stress: None };
         if gives_momentum {
