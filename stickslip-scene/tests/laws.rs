@@ -2,7 +2,8 @@
 //! nor that of what it remembers.
 
 use std::path::{Path, PathBuf};
-use stickslip_scene::material::{Given, SHELF};
+use stickslip_scene::material::{Absent, Description, Material, SHELF};
+use stickslip_scene::scene;
 
 /// All source files of the workspace that are no tests.
 fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
@@ -64,28 +65,36 @@ fn a_law_is_its_own_file_and_a_line_on_the_list() {
     }
 }
 
-/// Constants that make a material of each law.
-fn given(law: &str) -> Given {
-    let mut given = Given::from([("young_modulus", 1e9), ("poisson_ratio", 0.25)]);
-    for (name, values) in [
-        ("yield_stress", vec![1e6]),
-        ("prony", vec![0.5, 1e-2]),
-        ("tensile_strength", vec![1e6]),
-        ("fracture_energy", vec![10.0]),
-    ] {
-        let description =
-            SHELF.iter().find(|description| description.name == law).expect("a law of the shelf");
-        if description.constants.iter().any(|constant| constant.name == name) {
-            given.put(name, values);
+/// A material by the constants that a law declares: two elastic ones if it takes any two, and the examples of those
+/// that must be given, as a scene file would have them.
+fn example(law: &Description) -> Material<f64> {
+    let mut constants = Vec::new();
+    for constant in law.constants {
+        match (constant.absent, constant.name) {
+            (Absent::Refused(example), name) => constants.push(format!("{name} = {example}")),
+            (Absent::Judged, "young_modulus") => constants.push("young_modulus = 1e9".to_string()),
+            (Absent::Judged, "poisson_ratio") => constants.push("poisson_ratio = 0.25".to_string()),
+            _ => {}
         }
     }
-    given
+    let text = format!(
+        r#"
+        space = {{ dimension = "plane-strain", cell = "1 mm" }}
+        time.end = 1
+        materials.one = {{ density = 1000, {} = {{ {} }} }}
+        bodies = [{{ name = "ball", material = "one", shape.ball = {{ center = [0, 0], radius = 1 }} }}]
+        "#,
+        law.name,
+        constants.join(", ")
+    );
+    let loaded = scene::parse("law.toml", &text, &[]).unwrap_or_else(|error| panic!("{error}\n{text}"));
+    loaded.scene.materials[0].law
 }
 
 #[test]
 fn every_law_gives_its_constants_back_and_is_within_their_bounds() {
     for description in SHELF {
-        let material = description.build(&given(description.name)).expect("sound constants");
+        let material = example(description);
         assert_eq!(material.name(), description.name);
         assert_eq!(material.check(), Ok(()));
         let again = description.build(&material.given()).expect("its own constants");

@@ -1,6 +1,7 @@
 //! Every mistake in a scene file is shown with its place, its key, what was found, what is allowed and what to try.
 //!
-//! Each case is a right scene with one edit, and the whole message that it must give.
+//! Each case is a right scene with one edit, and the whole message that it must give; `LAWS` in it stands for the names
+//! of all materials' laws.
 
 mod bodies;
 mod keys;
@@ -10,6 +11,7 @@ mod parameters;
 mod places;
 mod values;
 
+use stickslip_scene::material::SHELF;
 use stickslip_scene::scene;
 
 const MINIMAL: &str = include_str!("../scenes/minimal.toml");
@@ -36,11 +38,12 @@ fn edited(text: &str, from: &str, to: &str) -> String {
 }
 
 fn check(text: &str, cases: &[(&str, &str, &str)]) {
+    let laws = SHELF.iter().map(|law| law.name).collect::<Vec<_>>().join(", ");
     let wrong: Vec<String> = cases
         .iter()
         .filter_map(|(from, to, expected)| {
             let found = message(&edited(text, from, to));
-            let expected = format!("a.toml:{expected}");
+            let expected = format!("a.toml:{}", expected.replace("LAWS", &laws));
             (found != expected).then(|| format!("`{from}` -> `{to}`\n  gives {found}\n  not   {expected}\n"))
         })
         .collect();
