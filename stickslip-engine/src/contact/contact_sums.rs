@@ -283,6 +283,17 @@ mod tests {
         assert_eq!(contact_sums.patches()[0].area, 1.0);
     }
 
+    /// Surfaces that touch and do not push are in the sums: else the first mean with a push would begin with all that went
+    /// before.
+    #[test]
+    fn surfaces_that_only_touch_are_summed() {
+        let (mut sums, lattice) = (ContactSums::default(), Lattice::new(Vector::ZERO, 0.5));
+        let near = Impulse { change: Change::NONE, ..pushing([3, 0]) };
+        sums.add([near].iter(), (&lattice, &Boundary::default()), 0.1);
+        let found = sums.sums();
+        assert!(found.len() == 1 && found[0].area > 0.0 && found[0].magnitude == 0.0, "{found:?}");
+    }
+
     /// On the mirror half a node's surface is the image's, and the patch is twice what is before the mirror.
     #[test]
     fn a_patch_goes_on_behind_the_mirror() {
