@@ -64,6 +64,20 @@ pub trait Number:
     fn times_plus(self, factor: Self, other: Self) -> Self {
         self * factor + other
     }
+    /// Does a task in a function of its own, with the instructions that these numbers have: it is compiled once for each
+    /// kind of number, not into every loop that asks for it.
+    #[inline(never)]
+    fn apart<J: Task>(task: J) -> J::Output {
+        task.run()
+    }
+}
+
+/// What [`Number::apart`] does.
+pub trait Task {
+    /// What comes of it.
+    type Output;
+    /// Does it. Must be `inline(always)` with all that it calls.
+    fn run(self) -> Self::Output;
 }
 
 /// A floating-point number: `f32` or `f64`.

@@ -1,7 +1,7 @@
 //! Lanes in two registers, where one holds half of what is wanted.
 
 use super::{Lanes, MOST_LANES};
-use crate::number::Number;
+use crate::number::{Number, Task};
 use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
 /// The lanes of one register and then those of another.
@@ -88,6 +88,10 @@ impl<V: Lanes> Number for RegisterPair<V> {
     #[inline(always)]
     fn times_plus(self, factor: Self, other: Self) -> Self {
         RegisterPair(self.0.times_plus(factor.0, other.0), self.1.times_plus(factor.1, other.1))
+    }
+    #[inline(always)]
+    fn apart<J: Task>(task: J) -> J::Output {
+        V::apart(task)
     }
 }
 

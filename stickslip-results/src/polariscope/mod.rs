@@ -5,13 +5,13 @@
 //! [`Film`] sums up light while a shutter is open; [`OpticalBench`] holds them together:
 //!
 //! ```
-//! # use stickslip::{door::ParticleSnapshot, image::Image, scene::Polariscope};
-//! use stickslip::polariscope::{Bench, Stage, Window, bounds};
+//! # use stickslip_results::{door::ParticleSnapshot, image::Image, scene::Polariscope};
+//! use stickslip_results::polariscope::{ImageWindow, OpticalBench, Stage, bounds};
 //!
 //! fn picture(particles: &ParticleSnapshot, polariscope: &Polariscope) -> Option<Image> {
 //!     let specimens = vec![0, 1]; // the other bodies are opaque
-//!     let window = Window::around(bounds(particles, &specimens)?, 800);
-//!     Some(Bench::new(polariscope, Stage { window, specimens }).photograph(particles))
+//!     let window = ImageWindow::around(bounds(particles, &specimens)?, 800);
+//!     Some(OpticalBench::new(polariscope, Stage { window, specimens }).photograph(particles))
 //! }
 //! ```
 

@@ -3,6 +3,7 @@
 //! To add a law: write its file (what it declares, [`Law`], tests) and put its line on the list below. Scene files,
 //! schema, checks, the engine, snapshots and pictures find it there, with its constants and its history.
 
+mod apart;
 mod custom;
 mod declaration;
 mod elastic;
@@ -212,17 +213,17 @@ impl<T: Number> Material<T> {
         of_law!(self, law => law.trusts_deformation())
     }
 
-    /// [`Law::respond`] with a history where it is kept, where the compiler can see it.
+    /// [`Law::respond`] with a history where it is kept.
     #[inline(always)]
     pub fn respond(&self, motion: &Motion<T>, history: &mut impl Keep<T>) -> Symmetric<T> {
         of_law!(self, law => {
-            let response = law.respond(motion, &history::recalled(law.history(), history));
+            let response = apart::respond(law, motion, &history::recalled(law.history(), history));
             history::kept(law.history(), &response.history, history);
             response.stress
         })
     }
 
-    /// [`Law::strain_energy`] and [`Law::dissipation`] where the compiler can see them.
+    /// [`Law::strain_energy`] and [`Law::dissipation`]
     #[inline(always)]
     pub fn energies(
         &self,
@@ -231,8 +232,7 @@ impl<T: Number> Material<T> {
         history: &impl Recall<T>,
     ) -> [T; 2] {
         of_law!(self, law => {
-            let history = history::recalled(law.history(), history);
-            [law.strain_energy(deformation, stress, &history), law.dissipation(&history)]
+            apart::energies(law, (deformation, stress), &history::recalled(law.history(), history))
         })
     }
 
@@ -247,13 +247,7 @@ impl<T: Number> Material<T> {
     ) -> T {
         of_law!(self, law => {
             let history = history::recalled(law.history(), history);
-            let waves = law.wave_modulus(deformation, jacobian, &history);
-            match thickness {
-                Thickness::Moved => waves,
-                Thickness::Free => {
-                    plane_stress::plate_modulus(waves, law.shear_modulus(deformation, jacobian, &history))
-                }
-            }
+            apart::wave_modulus(law, thickness, (deformation, jacobian), &history)
         })
     }
 

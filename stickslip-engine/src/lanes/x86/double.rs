@@ -1,8 +1,8 @@
 //! Lanes of numbers in double precision.
 
 use super::super::{Lanes, MOST_LANES, Machine, RegisterPair};
-use super::{Avx2, Avx512, THIRD, mask, turn_pd};
-use crate::number::{CUBE_ROOT_F64, Number};
+use super::{Avx2, Avx512, THIRD, apart_avx2, apart_avx512, mask, turn_pd};
+use crate::number::{CUBE_ROOT_F64, Number, Task};
 use std::arch::x86_64::*;
 use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
@@ -31,7 +31,7 @@ impl Machine<f64> for Avx2 {
 
 lanes! { F64x8: __m512d as [f64; 8];
     _mm512_set1_pd _mm512_loadu_pd _mm512_storeu_pd;
-    _mm512_add_pd _mm512_sub_pd _mm512_mul_pd _mm512_div_pd; _mm512_sqrt_pd _mm512_min_pd _mm512_max_pd _mm512_fmadd_pd;
+    _mm512_add_pd _mm512_sub_pd _mm512_mul_pd _mm512_div_pd; _mm512_sqrt_pd _mm512_min_pd _mm512_max_pd _mm512_fmadd_pd apart_avx512;
     |a, b| u32::from(_mm512_cmp_pd_mask::<_CMP_GE_OQ>(a, b));
     const MASKED: bool = true;
     #[inline(always)]
@@ -129,7 +129,7 @@ lanes! { F64x8: __m512d as [f64; 8];
 
 lanes! { F64x4: __m256d as [f64; 4];
     _mm256_set1_pd _mm256_loadu_pd _mm256_storeu_pd;
-    _mm256_add_pd _mm256_sub_pd _mm256_mul_pd _mm256_div_pd; _mm256_sqrt_pd _mm256_min_pd _mm256_max_pd _mm256_fmadd_pd;
+    _mm256_add_pd _mm256_sub_pd _mm256_mul_pd _mm256_div_pd; _mm256_sqrt_pd _mm256_min_pd _mm256_max_pd _mm256_fmadd_pd apart_avx2;
     |a, b| _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_GE_OQ>(a, b)) as u32;
     #[inline(always)]
     fn inverse_cube_root_guess(self) -> Self {

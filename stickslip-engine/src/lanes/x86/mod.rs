@@ -1,6 +1,7 @@
 //! Lanes of x86-64 processors: which there are, and what their types have in common.
 
 use super::Work;
+use crate::number::Task;
 use std::arch::x86_64::*;
 
 /// A third of 2^33, rounded up: the upper bits of a product with it are a third, for every number of 32 bits.
@@ -46,6 +47,26 @@ macro_rules! compiled_apart {
         }
     };
 }
+/// Does a task with AVX-512, see [`Number::apart`].
+///
+/// # Safety
+/// The processor must have it.
+#[inline(never)]
+#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,fma")]
+unsafe fn apart_avx512<J: Task>(task: J) -> J::Output {
+    task.run()
+}
+
+/// Does a task with AVX2, see [`Number::apart`].
+///
+/// # Safety
+/// The processor must have it.
+#[inline(never)]
+#[target_feature(enable = "avx2,fma")]
+unsafe fn apart_avx2<J: Task>(task: J) -> J::Output {
+    task.run()
+}
+
 compiled_apart!(double_avx512: f64, Avx512, "avx512f,avx512vl,avx512dq,avx512bw,fma");
 compiled_apart!(single_avx512: f32, Avx512, "avx512f,avx512vl,avx512dq,avx512bw,fma");
 compiled_apart!(double_avx2: f64, Avx2, "avx2,fma");
@@ -73,7 +94,7 @@ macro_rules! operator {
 macro_rules! lanes {
     ($name:ident $(<const $flag:ident>)?: $register:ty as [$t:ty; $count:literal];
      $set:ident $load:ident $store:ident; $add:ident $sub:ident $mul:ident $div:ident;
-     $sqrt:ident $min:ident $max:ident $times_plus:ident;
+     $sqrt:ident $min:ident $max:ident $times_plus:ident $apart:ident;
      |$a:ident, $b:ident| $at_least:expr; $($part:item)*) => {
         #[doc = concat!(stringify!($count), " numbers in a register.")]
         #[derive(Clone, Copy, Debug)]
@@ -153,6 +174,10 @@ macro_rules! lanes {
             #[inline(always)]
             fn times_plus(self, factor: Self, other: Self) -> Self {
                 unsafe { Self($times_plus(self.0, factor.0, other.0)) }
+            }
+            #[inline(always)]
+            fn apart<J: Task>(task: J) -> J::Output {
+                unsafe { $apart(task) }
             }
         }
 

@@ -1,8 +1,8 @@
 //! Lanes of numbers in single precision.
 
 use super::super::{Lanes, MOST_LANES, Machine};
-use super::{Avx2, Avx512, THIRD, mask, turn_pd};
-use crate::number::{CUBE_ROOT_F32, Number};
+use super::{Avx2, Avx512, THIRD, apart_avx2, mask, turn_pd};
+use crate::number::{CUBE_ROOT_F32, Number, Task};
 use std::arch::x86_64::*;
 use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
@@ -30,7 +30,7 @@ impl Machine<f32> for Avx2 {
 
 lanes! { F32x8<const MASKS>: __m256 as [f32; 8];
     _mm256_set1_ps _mm256_loadu_ps _mm256_storeu_ps;
-    _mm256_add_ps _mm256_sub_ps _mm256_mul_ps _mm256_div_ps; _mm256_sqrt_ps _mm256_min_ps _mm256_max_ps _mm256_fmadd_ps;
+    _mm256_add_ps _mm256_sub_ps _mm256_mul_ps _mm256_div_ps; _mm256_sqrt_ps _mm256_min_ps _mm256_max_ps _mm256_fmadd_ps apart_avx2;
     |a, b| _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_GE_OQ>(a, b)) as u32;
     #[inline(always)]
     fn inverse_cube_root_guess(self) -> Self {
@@ -176,7 +176,7 @@ lanes! { F32x8<const MASKS>: __m256 as [f32; 8];
 
 lanes! { F32x4: __m128 as [f32; 4];
     _mm_set1_ps _mm_loadu_ps _mm_storeu_ps;
-    _mm_add_ps _mm_sub_ps _mm_mul_ps _mm_div_ps; _mm_sqrt_ps _mm_min_ps _mm_max_ps _mm_fmadd_ps;
+    _mm_add_ps _mm_sub_ps _mm_mul_ps _mm_div_ps; _mm_sqrt_ps _mm_min_ps _mm_max_ps _mm_fmadd_ps apart_avx2;
     |a, b| _mm_movemask_ps(_mm_cmpge_ps(a, b)) as u32;
     #[inline(always)]
     fn inverse_cube_root_guess(self) -> Self {

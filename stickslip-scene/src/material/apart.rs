@@ -1,0 +1,93 @@
+//! What loops over particles ask of a law, each in a function of its own.
+//!
+//! There is a loop for every dimension, basis, transfer and processor. A law that were inlined into all of them would
+//! make the program grow by as much as a transfer, and its build by a minute; [`Number::apart`] compiles it once for
+//! each kind of number.
+
+use super::{Law, Motion, Response, Thickness, plane_stress};
+use crate::number::Task;
+use crate::tensor::{Matrix, Number, Symmetric};
+
+struct Respond<'a, T: Number, L: Law<T>> {
+    law: &'a L,
+    motion: &'a Motion<T>,
+    history: &'a L::History,
+}
+
+impl<T: Number, L: Law<T>> Task for Respond<'_, T, L> {
+    type Output = Response<T, L::History>;
+    #[inline(always)]
+    fn run(self) -> Self::Output {
+        self.law.respond(self.motion, self.history)
+    }
+}
+
+/// [`Law::respond`]
+#[inline(always)]
+pub fn respond<T: Number, L: Law<T>>(
+    law: &L,
+    motion: &Motion<T>,
+    history: &L::History,
+) -> Response<T, L::History> {
+    T::apart(Respond { law, motion, history })
+}
+
+struct Energies<'a, T: Number, L: Law<T>> {
+    law: &'a L,
+    deformation: &'a Matrix<T>,
+    stress: &'a Symmetric<T>,
+    history: &'a L::History,
+}
+
+impl<T: Number, L: Law<T>> Task for Energies<'_, T, L> {
+    type Output = [T; 2];
+    #[inline(always)]
+    fn run(self) -> [T; 2] {
+        let Energies { law, deformation, stress, history } = self;
+        [law.strain_energy(deformation, stress, history), law.dissipation(history)]
+    }
+}
+
+/// [`Law::strain_energy`] and [`Law::dissipation`]
+#[inline(always)]
+pub fn energies<T: Number, L: Law<T>>(
+    law: &L,
+    (deformation, stress): (&Matrix<T>, &Symmetric<T>),
+    history: &L::History,
+) -> [T; 2] {
+    T::apart(Energies { law, deformation, stress, history })
+}
+
+struct WaveModulus<'a, T: Number, L: Law<T>> {
+    law: &'a L,
+    thickness: Thickness,
+    deformation: &'a Matrix<T>,
+    jacobian: T,
+    history: &'a L::History,
+}
+
+impl<T: Number, L: Law<T>> Task for WaveModulus<'_, T, L> {
+    type Output = T;
+    #[inline(always)]
+    fn run(self) -> T {
+        let WaveModulus { law, thickness, deformation, jacobian, history } = self;
+        let waves = law.wave_modulus(deformation, jacobian, history);
+        match thickness {
+            Thickness::Moved => waves,
+            Thickness::Free => {
+                plane_stress::plate_modulus(waves, law.shear_modulus(deformation, jacobian, history))
+            }
+        }
+    }
+}
+
+/// [`Law::wave_modulus`], in plane stress that of a plate.
+#[inline(always)]
+pub fn wave_modulus<T: Number, L: Law<T>>(
+    law: &L,
+    thickness: Thickness,
+    (deformation, jacobian): (&Matrix<T>, T),
+    history: &L::History,
+) -> T {
+    T::apart(WaveModulus { law, thickness, deformation, jacobian, history })
+}
