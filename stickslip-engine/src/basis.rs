@@ -59,6 +59,26 @@ pub trait Basis<T: Real>: Copy + Send + Sync + 'static {
     /// Weights and slopes of a particle at `r` from its base node.
     fn shape<N: Number>(r: N, half: N) -> ShapeFunctions<N>;
 
+    /// Factors that make the affine part of a field of its values at the nodes of an axis [1/cell]:
+    ///
+    /// ```text
+    /// a_i = S_i (x_i - x_p) / sum_j S_j (x_j - x_p)^2
+    /// ```
+    #[inline(always)]
+    fn affine<N: Number>(shape: &ShapeFunctions<N>, r: N) -> [N; MAX_WIDTH] {
+        let mut factors = [N::ZERO; MAX_WIDTH];
+        let mut spread = N::ZERO;
+        for (i, factor) in factors.iter_mut().enumerate().take(Self::WIDTH) {
+            let arm = N::of(i as f64) - r;
+            *factor = shape.weight[i] * arm;
+            spread += *factor * arm;
+        }
+        for factor in &mut factors {
+            *factor = *factor / spread;
+        }
+        factors
+    }
+
     /// Base node, weights and slopes of a particle at `x` with half-width `half` [cells].
     #[inline(always)]
     fn axis(x: T, half: T) -> Axis<T> {
@@ -74,6 +94,12 @@ pub struct Linear;
 impl<T: Real> Basis<T> for Linear {
     const WIDTH: usize = 2;
     const BOX_SPREAD: f64 = 0.0;
+
+    /// Slopes: the limit of the quotient where a particle sits on a node, and the same elsewhere.
+    #[inline(always)]
+    fn affine<N: Number>(shape: &ShapeFunctions<N>, _r: N) -> [N; MAX_WIDTH] {
+        [shape.slope(0), shape.slope(1), N::ZERO]
+    }
 
     #[inline(always)]
     fn reach<N: Number>(x: N, _half: N) -> N {
@@ -95,7 +121,14 @@ impl<T: Real> Basis<T> for Linear {
 /// else:        S_0 = (1 + l - r)^2 / (4l),  S_2 = (r - 1 + l)^2 / (4l)
 /// S_1 = 1 - S_0 - S_2
 /// ```
-/// Needs l <= 1/2.
+/// Needs l <= 1/2. With l = 1/2, whatever the particle's size, they are the quadratic B-splines of its centre
+/// (Steffen, Kirby and Berzins 2008, Int. J. Numer. Meth. Eng. 76), the tent averaged over a cell:
+///
+/// ```text
+/// S_0 = (3/2 - r)^2 / 2,   S_1 = 3/4 - (r - 1)^2,   S_2 = (r - 1/2)^2 / 2
+/// ```
+/// That is `space.basis = "spline"`. The grid has no end at walls and mirrors, nodes beyond them are images of those
+/// before them, so no function is cut there.
 #[derive(Clone, Copy, Debug)]
 pub struct Gimp;
 
@@ -150,6 +183,54 @@ mod tests {
     #[test]
     fn gimp_reproduces_linear_fields() {
         reproduces_linear_fields::<Gimp>();
+    }
+
+    /// Against the formulas of the splines.
+    #[test]
+    fn boxes_of_a_cell_make_quadratic_splines() {
+        for i in 0..=100 {
+            let r = 0.5 + 0.01 * f64::from(i);
+            let shape = <Gimp as Basis<f64>>::shape(r, 0.5);
+            let exact =
+                [0.5 * (1.5 - r) * (1.5 - r), 0.75 - (r - 1.0) * (r - 1.0), 0.5 * (r - 0.5) * (r - 0.5)];
+            let slopes = [r - 1.5, 2.0 - 2.0 * r, r - 0.5];
+            for k in 0..3 {
+                assert!((shape.weight[k] - exact[k]).abs() < 1e-14, "{r} {k}");
+                assert!((shape.slope(k) - slopes[k]).abs() < 1e-14, "{r} {k}");
+            }
+        }
+    }
+
+    #[test]
+    fn slopes_of_splines_are_continuous() {
+        let slope = |x: f64, node: i32| {
+            let axis = <Gimp as Basis<f64>>::axis(x, 0.5);
+            (0..3).filter(|k| axis.base + k == node).map(|k| axis.shape.slope(k as usize)).sum::<f64>()
+        };
+        for node in -1..3 {
+            for crossing in [0.5, 1.5] {
+                let jump = slope(crossing + 1e-9, node) - slope(crossing - 1e-9, node);
+                assert!(jump.abs() < 1e-8, "{node} {crossing}: {jump}");
+            }
+        }
+    }
+
+    /// A linear field u = 0.3 + 0.7 x of the nodes has this slope by the factors of APIC, too.
+    fn finds_the_affine_part<B: Basis<f64>>() {
+        for i in 0..200 {
+            let x = 0.01 * f64::from(i) + 1e-3;
+            let axis = B::axis(x, 0.25);
+            let factors = B::affine(&axis.shape, x - f64::from(axis.base));
+            let value = |k: usize| 0.3 + 0.7 * (f64::from(axis.base) + k as f64);
+            let found: f64 = (0..MAX_WIDTH).map(|k| factors[k] * value(k)).sum();
+            assert!((found - 0.7).abs() < 1e-12, "{x}: {found}");
+        }
+    }
+
+    #[test]
+    fn both_find_the_affine_part() {
+        finds_the_affine_part::<Linear>();
+        finds_the_affine_part::<Gimp>();
     }
 
     fn spreads_over_the_nodes<B: Basis<f64>>() {

@@ -7,6 +7,7 @@ use crate::material::{History, Keep, Recall, history_entries};
 use crate::pages::ask_for_large;
 use crate::tensor::{Matrix, Real, Symmetric, Vector};
 use crate::threads::each_range;
+use std::ops::Range;
 
 /// The columns that the particles of every body have, in the order of memory;
 /// behind them lies the history of the body's law.
@@ -118,6 +119,29 @@ pub struct Particles<T, const D: usize> {
     later: bool,
     /// What the body's law remembers.
     history: &'static [History],
+    /// What its transfer carries beside the columns that all have.
+    carried: &'static [History],
+}
+
+/// Columns that not all bodies have: what a law remembers, and behind that what a transfer carries.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct OwnColumns {
+    /// Of the law.
+    pub history: &'static [History],
+    /// Of the transfer.
+    pub carried: &'static [History],
+}
+
+impl OwnColumns {
+    /// All of them.
+    fn all(self) -> impl Iterator<Item = &'static History> {
+        self.history.iter().chain(self.carried)
+    }
+
+    /// Their entries.
+    const fn entries(self, dimension: usize) -> usize {
+        history_entries(self.history, dimension) + history_entries(self.carried, dimension)
+    }
 }
 
 /// Bytes in a cache line.
@@ -130,24 +154,26 @@ impl<T: Real, const D: usize> Particles<T, D> {
         lines * LINE / size_of::<T>()
     }
 
-    /// Columns of a body whose law remembers this, an entry each, with room for one more.
-    const fn columns_of(history: &[History]) -> usize {
-        ColumnStart::<D>::HISTORY + history_entries(history, D) + 1
+    /// Columns of a body with these of its own, an entry each, with room for one more.
+    const fn columns_of(own: OwnColumns) -> usize {
+        ColumnStart::<D>::HISTORY + own.entries(D) + 1
     }
 
-    /// Memory that so many particles take, of a body whose law remembers this: all columns and numbers, and the room in
-    /// which they are sorted [bytes].
-    pub const fn bytes_of(count: usize, history: &[History]) -> usize {
-        Self::stride_of(count) * Self::columns_of(history) * size_of::<T>() + 2 * count * size_of::<u32>()
+    /// Memory that so many particles take, of a body with these columns of its own: all columns and numbers, and the
+    /// room in which they are sorted [bytes].
+    pub const fn bytes_of(count: usize, own: OwnColumns) -> usize {
+        Self::stride_of(count) * Self::columns_of(own) * size_of::<T>() + 2 * count * size_of::<u32>()
     }
 
-    /// The particles `f(0)` to `f(count - 1)`, before anything moves, of a body whose law remembers this.
-    pub fn from_fn(count: usize, history: &'static [History], f: impl Fn(usize) -> Particle<T, D>) -> Self {
+    /// The particles `f(0)` to `f(count - 1)`, before anything moves, of a body with these columns of its own.
+    pub fn from_fn(count: usize, own: OwnColumns, f: impl Fn(usize) -> Particle<T, D>) -> Self {
         let stride = Self::stride_of(count);
-        let columns = vec![T::ZERO; stride * Self::columns_of(history)];
+        let columns = vec![T::ZERO; stride * Self::columns_of(own)];
         ask_for_large(columns.as_ptr(), columns.len());
         let numbers = vec![0; 2 * count];
-        let mut particles = Particles { len: count, columns, stride, numbers, later: false, history };
+        let OwnColumns { history, carried } = own;
+        let mut particles =
+            Particles { len: count, columns, stride, numbers, later: false, history, carried };
         for i in 0..count {
             let particle = f(i);
             particles.set(i, &particle);
@@ -156,7 +182,7 @@ impl<T: Real, const D: usize> Particles<T, D> {
             }
         }
         let mut column = ColumnStart::<D>::HISTORY;
-        for remembered in history {
+        for remembered in own.all() {
             for entry in 0..remembered.column.kind.entries(D) {
                 particles.columns[column * stride..][..count].fill(T::of(remembered.start_of(D, entry)));
                 column += 1;
@@ -175,10 +201,15 @@ impl<T: Real, const D: usize> Particles<T, D> {
         self.history
     }
 
-    /// All columns by the place of their first entry: those that every body has, and the history.
+    /// Its own columns.
+    fn own(&self) -> OwnColumns {
+        OwnColumns { history: self.history, carried: self.carried }
+    }
+
+    /// All columns by the place of their first entry: those that every body has, and its own.
     pub fn described(&self) -> impl Iterator<Item = (usize, ColumnDescription)> {
-        let history = self.history.iter().map(|history| history.column);
-        EVERY.into_iter().chain(history).scan(0, |first, column| {
+        let own = self.own().all().map(|own| own.column);
+        EVERY.into_iter().chain(own).scan(0, |first, column| {
             let this = *first;
             *first += column.kind.entries(D);
             Some((this, column))
@@ -241,6 +272,7 @@ impl<T: Real, const D: usize> Particles<T, D> {
             start: self.columns[self.first()..].as_ptr().cast_mut(),
             stride: self.stride,
             history: history_entries(self.history, D),
+            carried: history_entries(self.carried, D),
         }
     }
 
@@ -251,6 +283,7 @@ impl<T: Real, const D: usize> Particles<T, D> {
             start: self.columns[first..].as_mut_ptr(),
             stride: self.stride,
             history: history_entries(self.history, D),
+            carried: history_entries(self.carried, D),
         }
     }
 
@@ -258,7 +291,7 @@ impl<T: Real, const D: usize> Particles<T, D> {
     /// Every column moves into the room beside it.
     pub fn permute(&mut self, order: &[u32]) {
         assert_eq!(order.len(), self.len, "a permutation names every particle");
-        let count = ColumnStart::<D>::HISTORY + history_entries(self.history, D);
+        let count = ColumnStart::<D>::HISTORY + self.own().entries(D);
         for column in 0..count {
             let column = if self.later { column } else { count - 1 - column };
             move_over(&mut self.columns[column * self.stride..][..2 * self.stride], self.later, order);
@@ -293,6 +326,8 @@ pub struct Columns<T, const D: usize> {
     stride: usize,
     /// Entries of the history.
     history: usize,
+    /// Entries of what the transfer carries.
+    carried: usize,
 }
 
 // SAFETY: entries are only reached through unsafe functions, whose callers keep threads apart.
@@ -313,13 +348,20 @@ impl<T: Real, const D: usize> Columns<T, D> {
         self.history
     }
 
+    /// Places of the columns of the transfer.
+    #[inline(always)]
+    pub fn carried(&self) -> Range<usize> {
+        let first = ColumnStart::<D>::HISTORY + self.history;
+        first..first + self.carried
+    }
+
     /// The entry of particle `i` in a column.
     ///
     /// # Safety
     /// The column and the particle must exist, and nobody may use the entry but by this pointer.
     #[inline(always)]
     pub unsafe fn at(&self, column: usize, i: usize) -> *mut T {
-        debug_assert!(column < ColumnStart::<D>::HISTORY + self.history && i < self.stride, "an entry");
+        debug_assert!(column < self.carried().end && i < self.stride, "an entry");
         // SAFETY: the caller's.
         unsafe { self.start.add(column * self.stride + i) }
     }
@@ -434,6 +476,10 @@ mod tests {
         History::new("energy", "J/m^3", Kind::Number),
     ];
 
+    fn own(history: &'static [History]) -> OwnColumns {
+        OwnColumns { history, ..OwnColumns::default() }
+    }
+
     /// Orders by steps that share no factor with the count, one after the other.
     fn sorted_again_and_again<const D: usize>(count: usize, history: &'static [History]) {
         let number = |i: usize, k: usize| (31 * i + k) as f64;
@@ -448,7 +494,7 @@ mod tests {
             stress: Symmetric::isotropic(number(i, 13)),
             number: i as u32,
         };
-        let mut particles = Particles::<f64, D>::from_fn(count, history, particle);
+        let mut particles = Particles::<f64, D>::from_fn(count, own(history), particle);
         let entries = history_entries(history, D);
         for i in 0..count {
             // SAFETY: the particle exists and is nobody else's.
@@ -476,7 +522,7 @@ mod tests {
     #[test]
     fn the_bytes_of_particles_are_those_that_they_hold() {
         let held = |count: usize, history: &'static [History]| {
-            let particles = Particles::<f64, 3>::from_fn(count, history, |_| Particle {
+            let particles = Particles::<f64, 3>::from_fn(count, own(history), |_| Particle {
                 position: Vector::ZERO,
                 velocity: Vector::ZERO,
                 spin: Vector::ZERO,
@@ -490,9 +536,9 @@ mod tests {
             size_of_val(&particles.columns[..]) + size_of_val(&particles.numbers[..])
         };
         for (count, history) in [(0, &[][..]), (1, HISTORY), (1000, &[]), (100_000, HISTORY)] {
-            assert_eq!(Particles::<f64, 3>::bytes_of(count, history), held(count, history), "{count}");
+            assert_eq!(Particles::<f64, 3>::bytes_of(count, own(history)), held(count, history), "{count}");
         }
-        let each = Particles::<f64, 3>::bytes_of(1_000_000, &[]) as f64 / 1e6;
+        let each = Particles::<f64, 3>::bytes_of(1_000_000, OwnColumns::default()) as f64 / 1e6;
         assert!((each / (31.0 * 8.0 + 2.0 * 4.0) - 1.0).abs() < 1e-3, "{each}");
     }
 
@@ -548,7 +594,7 @@ mod tests {
             stress: Symmetric::ZERO,
             number: 0,
         };
-        let particles = Particles::<f64, 2>::from_fn(3, HISTORY, particle);
+        let particles = Particles::<f64, 2>::from_fn(3, own(HISTORY), particle);
         // SAFETY: the particle exists and is nobody else's.
         let memory = unsafe { particles.view().history_of(2) };
         let found: Vec<f64> = (0..9).map(|entry| memory.recall(entry)).collect();

@@ -21,6 +21,7 @@ pub static KEYS: &[Key] = &[
         words: &[
             ("gimp", "tent functions averaged over the particle's box"),
             ("linear", "tent functions at the particle's centre"),
+            ("spline", "quadratic B-splines of the particle's centre"),
         ],
     },
     Key {
@@ -38,6 +39,9 @@ pub static KEYS: &[Key] = &[
         words: &[
             ("rflip", "particles take changes of velocity and of their rotation"),
             ("flip", "particles take changes of velocity alone"),
+            ("apic", "particles take the velocity and its affine field"),
+            ("xpic", "particles take the velocity itself, but for what the grid resolves"),
+            ("pic", "particles take the velocity itself"),
         ],
     },
 ];

@@ -19,7 +19,7 @@ pub struct Totals {
     pub momentum: [f64; 3],
     /// sum m (x cross v + k^2 w), about the origin; k: radius of gyration, w: angular velocity of a particle [kg m^2/s]
     pub angular_momentum: [f64; 3],
-    /// sum m (v^2 + k^2 w^2) / 2 [J]
+    /// sum m (v^2 + k^2 w^2 + k^2/2 |E|^2) / 2, E: rate of strain that a particle carries by APIC [J]
     pub kinetic: f64,
     /// sum V W [J]
     pub strain: f64,
@@ -145,6 +145,7 @@ impl<T: Laned, const D: usize> Work for SumOfRange<'_, T, D> {
         let [mut first_moment, mut momentum, mut angular_momentum] = [[[0.0; MOST_LANES]; 3]; 3];
         let [mut kinetic, mut strain, mut plastic]: [Each; 3] = [[0.0; MOST_LANES]; 3];
         let material = self.material.map(|material| material.map(M::Wide::splat));
+        let carries_strain = !self.columns.carried().is_empty();
         for (first, count) in chunks::<M::Wide>(&self.part) {
             // SAFETY: the particles are the body's, which is borrowed for reading.
             let some =
@@ -160,6 +161,13 @@ impl<T: Laned, const D: usize> Work for SumOfRange<'_, T, D> {
                     angular_momentum[i][lane] += l[i];
                     let w = some.spin[i][lane];
                     kinetic[lane] += 0.5 * (m * v * v + some.inertia[lane] * w * w);
+                }
+            }
+            if carries_strain {
+                // SAFETY: as above.
+                let rates = unsafe { strain_rates::<M::Wide, D>(&self.columns, (first, count)) };
+                for lane in 0..count {
+                    kinetic[lane] += 0.25 * some.inertia[lane] * rates[lane];
                 }
             }
             if let Some(material) = &material {
@@ -187,6 +195,23 @@ impl<T: Laned, const D: usize> Work for SumOfRange<'_, T, D> {
             plastic: sum(plastic),
         }
     }
+}
+
+/// |E|^2 of the rate of strain that a transfer carries [1/s^2].
+///
+/// # Safety
+/// As for [`stored`].
+#[inline(always)]
+unsafe fn strain_rates<V: Lanes, const D: usize>(
+    columns: &Columns<V::Real, D>,
+    (first, count): (usize, usize),
+) -> Each {
+    let mut rate = Symmetric::ZERO;
+    for (entry, column) in rate.0.iter_mut().zip(columns.carried()) {
+        // SAFETY: the caller's.
+        *entry = unsafe { V::load_first(columns.at(column, first), count) };
+    }
+    each(rate.double_dot(&rate))
 }
 
 /// Strain energy and dissipation per undeformed volume [J/m^3], and J [-].

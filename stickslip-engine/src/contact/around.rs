@@ -34,7 +34,7 @@ impl<T: Real, const D: usize> Near<'_, T, D> {
                 for &index in self.active.particles_in(body, cell) {
                     let particle = &self.bodies[body].particles.get(index as usize);
                     let arm = particle.position - seen;
-                    let reach = self.lattice.cell + particle.half_width;
+                    let reach = self.lattice.cell + self.lattice.half_box(particle.half_width);
                     if (0..D).all(|i| arm[i].abs() < reach) {
                         f(Vector::from_fn(|i| arm[i] * image.sign[i]), particle, mirror);
                     }

@@ -104,6 +104,9 @@ pub struct Field<T, const D: usize> {
     pub nodes: Vec<Node<T, D>>,
     /// Of each block, the nodes with mass, once [`Field::find_present`] has found them.
     pub present: Vec<Nodes>,
+    /// Velocities of the nodes' start as the transfer wants them, if it filters them: v(m) of
+    /// [`crate::transfer::Xpic`] [m/s].
+    pub filtered: Vec<Vector<T, D>>,
 }
 
 impl<T: Real, const D: usize> Field<T, D> {
@@ -133,6 +136,24 @@ impl<T: Real, const D: usize> Field<T, D> {
                 if node.mass > T::ZERO {
                     *present |= 1 << local;
                     f(node);
+                }
+            }
+        });
+    }
+
+    /// Does something to each node that has mass and to its filtered velocity.
+    pub fn each_filtered(&mut self, f: impl Fn(&mut Node<T, D>, &mut Vector<T, D>) + Sync) {
+        let n = nodes_per_block(D);
+        self.filtered.resize(self.nodes.len(), Vector::ZERO);
+        let (nodes, filtered) = (Disjoint::new(&mut self.nodes), Disjoint::new(&mut self.filtered));
+        let present = &self.present;
+        each_range(present.len(), BLOCKS, &|blocks| {
+            for block in blocks {
+                // SAFETY: every block has nodes of its own.
+                let (nodes, filtered) = unsafe { (nodes.part(block * n, n), filtered.part(block * n, n)) };
+                let mut places = present[block];
+                while let Some(local) = next_of(&mut places) {
+                    f(&mut nodes[local], &mut filtered[local]);
                 }
             }
         });
@@ -168,6 +189,8 @@ pub struct Sought {
     pub change: bool,
     /// The integrated velocities themselves, of which PIC takes a share.
     pub integrated: bool,
+    /// With the filtered velocities of the start in them, for those of the start.
+    pub filtered: bool,
     /// The velocities that move and strain particles.
     pub flow: bool,
 }
@@ -286,13 +309,14 @@ impl<T: Real, const D: usize> Window<T, D> {
     #[inline(always)]
     pub unsafe fn load<M: Machine<T>>(
         &mut self,
-        field: &Disjoint<Node<T, D>>,
+        (field, filtered): (&Disjoint<Node<T, D>>, &[Vector<T, D>]),
         tile: &Tile<D>,
         side: usize,
         sought: Sought,
     ) {
         for NodeRun { place, node, count } in NodeRuns::new(tile, side) {
             for k in 0..count {
+                let start = filtered.get(node + k);
                 // SAFETY: the caller keeps writers away from the tile's slots.
                 let node = unsafe { field.read(node + k) };
                 let place = place + k;
@@ -302,7 +326,11 @@ impl<T: Real, const D: usize> Window<T, D> {
                     tell(&mut self.change[place], integrated - start);
                 }
                 if sought.integrated {
-                    tell::<M::Quad>(&mut self.integrated[place], told(&node.integrated));
+                    let mut integrated: M::Quad = told(&node.integrated);
+                    if let (true, Some(start)) = (sought.filtered, start) {
+                        integrated += told::<M::Quad, D>(start) - told(&node.start);
+                    }
+                    tell::<M::Quad>(&mut self.integrated[place], integrated);
                 }
                 if sought.flow {
                     tell::<M::Quad>(&mut self.flow[place], told(&node.velocity));

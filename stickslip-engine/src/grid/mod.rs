@@ -46,12 +46,26 @@ pub struct Lattice<T, const D: usize> {
     pub cell: T,
     /// Its inverse [1/m].
     pub per_cell: T,
+    /// Whether the nodes see each particle as a box of a cell, see [`crate::basis::Gimp`], and not as its own box.
+    pub whole_cells: bool,
 }
 
 impl<T: Real, const D: usize> Lattice<T, D> {
     /// A grid with a node at `origin` and cells of side `cell` [m].
     pub fn new(origin: Vector<T, D>, cell: T) -> Self {
-        Lattice { origin, cell, per_cell: T::ONE / cell }
+        Lattice { origin, cell, per_cell: T::ONE / cell, whole_cells: false }
+    }
+
+    /// Half of the side of the box as which the nodes see a particle with this half-width [m], in cells.
+    #[inline(always)]
+    pub fn half(&self, half_width: T) -> T {
+        if self.whole_cells { T::HALF } else { half_width * self.per_cell }
+    }
+
+    /// The same in metres.
+    #[inline(always)]
+    pub fn half_box(&self, half_width: T) -> T {
+        if self.whole_cells { T::HALF * self.cell } else { half_width }
     }
 
     /// Position in cells from the origin.

@@ -14,13 +14,11 @@ use crate::geometry::{Filling, Mirror, MirroredShape, ParticleSite, fill};
 use crate::grid::Lattice;
 use crate::lanes::{Laned, Processor};
 use crate::material::{BadConstants, History, Material};
-use crate::particles::{EVERY, Particles};
+use crate::particles::{EVERY, OwnColumns, Particles};
 use crate::rigid::RigidMotion;
-use crate::scene::{
-    self, BasisKind, BodyMotion, Dimension, Face, NamedMaterial, Precision, Problem, Scene, Transfer,
-};
+use crate::scene::{self, BasisKind, BodyMotion, Dimension, Face, NamedMaterial, Precision, Problem, Scene};
 use crate::tensor::{Matrix, Real, Symmetric, Vector, cross};
-use crate::transfer::turning;
+use crate::transfer::{carries_spin, pic_share, turning};
 use std::marker::PhantomData;
 
 /// The simulation of a scene.
@@ -54,7 +52,8 @@ fn with_basis<T: Laned, const D: usize>(
 ) -> Result<Box<dyn Simulation>, Problem> {
     Ok(match scene.discretization.basis {
         BasisKind::Linear => Box::new(Engine::<T, D, Linear>::new(scene, path)?),
-        BasisKind::Gimp => Box::new(Engine::<T, D, Gimp>::new(scene, path)?),
+        // Boxes of a cell: see `Gimp`.
+        BasisKind::Gimp | BasisKind::Spline => Box::new(Engine::<T, D, Gimp>::new(scene, path)?),
     })
 }
 
@@ -65,6 +64,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// What [`check::problems`] finds.
     pub fn new(scene: &Scene, path: ParticleLoop) -> Result<Self, Problem> {
         check::problems(scene)?;
+        let cell = scene.discretization.cell;
+        let whole_cells = scene.discretization.basis == BasisKind::Spline;
         let mut bodies = Vec::new();
         let mut rigid = Vec::new();
         let mut unbounded = Vec::new();
@@ -77,7 +78,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                     body: bodies.len(),
                     shape: body.shape.clone(),
                     sites,
-                    cell: scene.discretization.cell,
+                    cell,
                     mirrors: mirrors::<D>(scene),
                     served: Vec::new(),
                     pose: None,
@@ -90,10 +91,10 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 (_, Some(motion)) => motion.velocity_at(x),
                 _ => [0.0; 3],
             };
-            // By FLIP particles carry no rotation; those of rigid bodies give the nodes their exact velocity whatever
+            // Not by every transfer do particles carry rotation; those of rigid bodies give the nodes their exact velocity whatever
             // the transfer.
             let turning = match (&body.motion, &motion) {
-                (BodyMotion::Free { spin, .. }, _) if scene.time.transfer == Transfer::Rflip => *spin,
+                (BodyMotion::Free { spin, .. }, _) if carries_spin(scene.time.transfer) => *spin,
                 (_, Some(motion)) => motion.spin(),
                 _ => [0.0; 3],
             };
@@ -105,7 +106,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 rigid: motion.is_some(),
                 whole: MirroredShape::new(&body.shape, mirrors::<D>(scene), D),
                 thickness: scene.dimension.thickness(),
-                gyration: turning::gyration::<T, B>(scene.discretization.cell),
+                gyration: turning::gyration::<T, B>(cell, whole_cells),
             });
             rigid.push(motion);
         }
@@ -113,11 +114,11 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let disorder = bodies.iter().map(|body: &Body<T, D>| Disorder::any(body.particles.len())).collect();
         Ok(Engine {
             settings: Settings {
-                lattice: Lattice::new(Vector::of(origin), T::of(scene.discretization.cell)),
+                lattice: Lattice { whole_cells, ..Lattice::new(Vector::of(origin), T::of(cell)) },
                 domain: scene.domain.as_ref().map(|domain| [domain.min, domain.max].map(Vector::of)),
                 gravity: Vector::of(scene.gravity),
                 transfer: scene.time.transfer,
-                pic_share: T::of(scene.time.pic_share),
+                pic_share: T::of(pic_share(scene.time.transfer, scene.time.pic_share)),
                 rules: Rules::new(scene),
                 time: scene.time.clone(),
                 path,
@@ -199,14 +200,17 @@ fn particles<T: Real, const D: usize>(
             number: number as u32,
         }
     };
-    Particles::from_fn(filling.sites.len(), history(scene, body), particle)
+    Particles::from_fn(filling.sites.len(), own_columns(scene, body), particle)
 }
 
-/// What the particles of a body remember: rigid ones nothing.
-pub fn history(scene: &Scene, body: &scene::Body) -> &'static [History] {
+/// The columns that the particles of a body have for its law and its transfer: rigid ones none.
+pub fn own_columns(scene: &Scene, body: &scene::Body) -> OwnColumns {
     match body.motion {
-        BodyMotion::Free { .. } => scene.materials[body.material].law.history(),
-        BodyMotion::Rigid { .. } => &[],
+        BodyMotion::Free { .. } => OwnColumns {
+            history: scene.materials[body.material].law.history(),
+            carried: crate::transfer::columns(scene.time.transfer),
+        },
+        BodyMotion::Rigid { .. } => OwnColumns::default(),
     }
 }
 

@@ -7,7 +7,7 @@ use super::Engine;
 use super::pass::{Found, ParticleLoop, Pass, Verbs, Visit};
 use super::tile::SeveralAtATime;
 use crate::basis::Basis;
-use crate::grid::{Disjoint, Window};
+use crate::grid::{Disjoint, Field, Window};
 use crate::lanes::Laned;
 use crate::particles::Columns;
 use crate::threads::each_range;
@@ -41,7 +41,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             .resize_with(threads.max(self.workspace.threads.windows.len()), Mutex::default);
         self.workspace.threads.columns.clear();
         self.workspace.threads.columns.extend(self.state.bodies.iter_mut().map(|body| body.particles.open()));
-        let nodes = Disjoint::new(&mut self.workspace.field.nodes);
+        let Field { nodes, filtered, .. } = &mut self.workspace.field;
+        let nodes = Disjoint::new(nodes);
         let left = Disjoint::new(&mut self.workspace.left);
         let damped = Disjoint::new(&mut self.workspace.damped);
         let moved = Disjoint::new(&mut self.workspace.moved);
@@ -62,6 +63,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 order: active.order_of(tile.body),
                 cells: active.cells_of(tile),
                 nodes: &nodes,
+                filtered,
                 window,
                 next: active.tiles.get(index as usize + 1),
                 left: 0,

@@ -26,7 +26,7 @@ mod unbounded;
 mod verbs;
 mod watch;
 
-pub(crate) use build::history;
+pub(crate) use build::own_columns;
 pub use build::{build, build_on};
 pub use pass::ParticleLoop;
 pub(crate) use unbounded::particles_around;
@@ -77,6 +77,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.find_active_blocks(); //                 cell lists; blocks of nodes under each body's particles
         self.particles_to_grid(Share::Mass); //       P2G: m, p
         self.interpolated_velocities(); //            v = p / m                                     (4)
+        self.filter_velocities(); //                  v(m) of XPIC; nothing by other transfers
         self.prescribed_velocities(); //              of rigid bodies and walls
         self.detect_contact(dt); //                   surfaces, normals and gaps where bodies meet
         self.join_glued_bodies(); //                  one v for bodies that glue joins
@@ -97,6 +98,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.find_active_blocks(); //                 cell lists; blocks of nodes under each body's particles
         self.particles_to_grid(Share::Everything); // P2G: m, p, f = -sum V sigma grad S
         self.interpolated_velocities(); //            v = p / m                                     (4)
+        self.filter_velocities(); //                  v(m) of XPIC; nothing by other transfers
         self.prescribed_velocities(); //              of rigid bodies and walls
         self.detect_contact(dt); //                   surfaces, normals and gaps where bodies meet
         self.join_glued_bodies(); //                  one v for bodies that glue joins
@@ -116,6 +118,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.find_active_blocks(); //                 cell lists; blocks of nodes under each body's particles
         self.particles_to_grid(Share::Everything); // P2G: m, p, f = -sum V sigma grad S
         self.interpolated_velocities(); //            v = p / m                                     (4)
+        self.filter_velocities(); //                  v(m) of XPIC; nothing by other transfers
         self.prescribed_velocities(); //              of rigid bodies and walls
         self.detect_contact(dt); //                   surfaces, normals and gaps where bodies meet
         self.join_glued_bodies(); //                  one v for bodies that glue joins

@@ -7,7 +7,7 @@ use crate::lanes::{Machine, Processor};
 use crate::particles::Columns;
 use crate::scene::Transfer;
 use crate::tensor::{Real, Vector};
-use crate::transfer::Share;
+use crate::transfer::{Share, filters};
 use std::marker::PhantomData;
 
 /// Who does the work on particles.
@@ -26,8 +26,9 @@ pub enum ParticleLoop {
 /// What a pass does to each particle, in this order: one verb of a recipe may ask for several.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Verbs {
-    /// G2P:  v_p = (1 - a) (v_p + sum S_i (v_i - v_i^0)) + a sum S_i v_i,   a: PIC share; the spin likewise,
-    /// see [`crate::transfer::turning`]
+    /// G2P of u = sum S_i u_i, to be given back to the nodes in the place of v_p, see [`crate::transfer::Xpic`].
+    pub smooth: bool,
+    /// G2P:  v_p = (1 - a) (v_p + sum S_i (v_i - v_i^0)) + a sum S_i v_i,   a: PIC share, or as else the transfer says.
     pub update_velocity: bool,
     /// G2P:  F = (I + L dt) F,  V = V_0 det F,  sigma = law(F)
     pub update_stress: bool,
@@ -57,17 +58,18 @@ pub struct Pass<T, const D: usize> {
 impl<T: Real, const D: usize> Pass<T, D> {
     /// What it takes from the nodes.
     pub fn sought(&self) -> Sought {
-        let Verbs { update_velocity, update_stress, advect, .. } = self.verbs;
+        let Verbs { smooth, update_velocity, update_stress, advect, .. } = self.verbs;
         Sought {
             change: update_velocity,
-            integrated: update_velocity && self.pic > T::ZERO,
+            integrated: smooth || (update_velocity && self.pic > T::ZERO),
+            filtered: update_velocity && filters(self.transfer),
             flow: update_stress || advect,
         }
     }
 
     /// Whether it takes anything from the nodes.
     pub fn gathers(&self) -> bool {
-        self.verbs.update_velocity || self.verbs.update_stress || self.verbs.advect
+        self.verbs.smooth || self.verbs.update_velocity || self.verbs.update_stress || self.verbs.advect
     }
 }
 
@@ -134,6 +136,8 @@ pub struct Visit<'a, T, const D: usize, B> {
     pub cells: &'a [u32],
     /// All nodes.
     pub nodes: &'a Disjoint<'a, Node<T, D>>,
+    /// Filtered velocities of the nodes, if there are any.
+    pub filtered: &'a [Vector<T, D>],
     /// The tile's nodes.
     pub window: &'a mut Window<T, D>,
     /// The tile that is likely to come next.
@@ -162,7 +166,10 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
     pub unsafe fn open<M: Machine<T>>(&mut self) {
         if self.pass.gathers() {
             // SAFETY: the caller's.
-            unsafe { self.window.load::<M>(self.nodes, self.tile, Self::REACHED, self.pass.sought()) };
+            unsafe {
+                let field = (self.nodes, self.filtered);
+                self.window.load::<M>(field, self.tile, Self::REACHED, self.pass.sought());
+            }
         }
         if self.pass.verbs.scatter.is_some() {
             self.window.clear();
@@ -191,7 +198,7 @@ pub fn home<T: Real, const D: usize, B: Basis<T>>(
     (position, half_width): (Vector<T, D>, T),
 ) -> [i32; D] {
     let x = lattice.cells(position);
-    std::array::from_fn(|i| B::reach(x[i], half_width * lattice.per_cell).floor())
+    std::array::from_fn(|i| B::reach(x[i], lattice.half(half_width)).floor())
 }
 
 /// Whether a particle is outside the domain, or so far away that its cell has no number.

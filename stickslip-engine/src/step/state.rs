@@ -83,7 +83,7 @@ impl<T, const D: usize> Workspace<T, D> {
         Workspace {
             active: ActiveBlocks::default(),
             listed: false,
-            field: Field { nodes: Vec::new(), present: Vec::new() },
+            field: Field { nodes: Vec::new(), present: Vec::new(), filtered: Vec::new() },
             boundary,
             meeting: Survey::default(),
             groups: Vec::new(),

@@ -14,7 +14,7 @@ use crate::check;
 use crate::geometry::{Bounds, Mirror, Shape, SiteLattice};
 use crate::grid::{Blocks, SIDE, addressable, locate};
 use crate::lanes::Laned;
-use crate::particles::Particles;
+use crate::particles::{OwnColumns, Particles};
 use crate::rigid::{Pose, RigidMotion};
 use crate::scene::{Expression, Scene};
 use crate::tensor::{Matrix, Symmetric, Vector};
@@ -242,7 +242,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             number: i as u32,
         };
         // They start where they would have been at the start, and are moved from there.
-        let mut particles = Particles::from_fn(sites.len(), &[], particle);
+        let mut particles = Particles::from_fn(sites.len(), OwnColumns::default(), particle);
         for (i, &site) in sites.iter().enumerate() {
             particles.set(i, &Particle { position: Vector::of(pose.now(site)), ..particle(i) });
         }

@@ -15,7 +15,7 @@ use crate::lanes::{Laned, Processor};
 use crate::scene::{ContactLaw, StressUpdate};
 use crate::tensor::{Matrix, Vector};
 use crate::threads::each;
-use crate::transfer::Share;
+use crate::transfer::{Filter, Share, filters};
 use std::time::Instant;
 
 /// The uses of contact in a step, in their order. What the velocities of each are for is [`Use`]: the interpolated ones
@@ -116,7 +116,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     pub(super) fn update_particles(&mut self, dt: T) -> Result<(), StepError> {
         self.run_pass(
             "stress update",
-            Verbs { update_velocity: true, update_stress: true, advect: true, scatter: None },
+            Verbs { update_velocity: true, update_stress: true, advect: true, ..Verbs::default() },
             dt,
         )
     }
@@ -155,6 +155,20 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let start = Instant::now();
         self.workspace.field.find_present(Node::begin);
         self.watch.lap("grid", start);
+    }
+
+    /// v(m) of the interpolated velocities by XPIC, see [`crate::transfer::Xpic`]; nothing by other transfers.
+    pub(super) fn filter_velocities(&mut self) {
+        if !filters(self.settings.transfer) {
+            return;
+        }
+        Filter(&mut self.workspace.field).begin();
+        for _ in 1..self.settings.time.xpic_order {
+            let verbs = Verbs { smooth: true, scatter: Some(Share::Momentum), ..Verbs::default() };
+            self.run_pass("P2G", verbs, T::ZERO).expect("it changes no particle");
+            Filter(&mut self.workspace.field).next();
+        }
+        Filter(&mut self.workspace.field).end();
     }
 
     /// v = p / m of the particles' new velocities.

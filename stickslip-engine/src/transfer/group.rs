@@ -7,7 +7,6 @@
 // Sums over nodes and components read better by their indices.
 #![allow(clippy::needless_range_loop)]
 
-use super::turning::moment;
 use crate::basis::{Basis, MAX_WIDTH, ShapeFunctions};
 use crate::grid::{NODE_VALUES, NodeSums, NodeValues, WINDOW, WINDOW_NODES, Window};
 use crate::lanes::{Lanes, MOST_LANES, Machine, Numbers};
@@ -129,7 +128,7 @@ pub struct ScatterTerms<V, const D: usize> {
     pub stress: Option<Symmetric<V>>,
 }
 
-/// Momentum that a group scatters, see [`super::turning`].
+/// Momentum that a group scatters.
 #[derive(Clone, Copy, Debug)]
 pub struct Momentum<V, const D: usize> {
     /// m v [kg m/s]
@@ -211,17 +210,26 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
         self.sums(nodes, &slopes)
     }
 
-    /// G2P: sum S_i (x_i - x_p) x v_i over h, see [`super::turning`], and sum S_i v_i [m/s].
+    /// G2P: sum v_i (x) S_i (x_i - x_p) over h, embedded in space, and sum S_i v_i [m/s].
     #[inline(always)]
-    pub fn moment(&self, nodes: &[NodeValues<V::Real>; WINDOW_NODES]) -> (Vector<V, 3>, Vector<V, D>) {
+    pub fn moments(&self, nodes: &[NodeValues<V::Real>; WINDOW_NODES]) -> (Matrix<V>, Vector<V, D>) {
         let mut arms = [[V::ZERO; MAX_WIDTH]; D];
         for axis in 0..D {
             for i in 0..B::WIDTH {
                 arms[axis][i] = self.shapes[axis].weight[i] * (V::of(i as f64) - self.r[axis]);
             }
         }
-        let (moments, mean) = self.sums(nodes, &arms);
-        (moment::<V, D>(&moments), mean)
+        self.sums(nodes, &arms)
+    }
+
+    /// G2P: h times the affine part of the velocities, [`Basis::affine`], embedded in space, and sum S_i v_i [m/s].
+    #[inline(always)]
+    pub fn affine(&self, nodes: &[NodeValues<V::Real>; WINDOW_NODES]) -> (Matrix<V>, Vector<V, D>) {
+        let mut factors = [[V::ZERO; MAX_WIDTH]; D];
+        for axis in 0..D {
+            factors[axis] = B::affine(&self.shapes[axis], self.r[axis]);
+        }
+        self.sums(nodes, &factors)
     }
 
     /// Sums of v_i, by components, with the shape function's factor along each axis in turn replaced by another one,

@@ -7,17 +7,145 @@
 //! |---|---|
 //! | [`Group::interpolate`] | G2P of velocities: sum S_i v_i, sum S_i dv_i |
 //! | [`Group::flow`] | G2P of the velocity gradient L, and of the velocity with it |
-//! | [`Group::moment`] | G2P of angular velocities, see [`turning`] |
+//! | [`Group::moments`], [`Group::affine`] | G2P of rotation and of affine velocities |
 //! | [`Group::scatter`] | P2G of mass, momentum and force |
 
+mod apic;
+mod flip;
 mod group;
 #[cfg(test)]
 mod naive;
+mod pic;
+mod rflip;
 pub mod turning;
+mod xpic;
 
+pub use apic::Apic;
+pub use flip::Flip;
 pub use group::{CellGroup, Group, Momentum, Own, ScatterTerms, Start, pairs};
 #[cfg(test)]
 pub use naive::Stencil;
+pub use pic::Pic;
+pub use rflip::Rflip;
+pub use xpic::{Filter, Xpic};
+
+use crate::basis::Basis;
+use crate::grid::Window;
+use crate::lanes::Lanes;
+use crate::material::History;
+use crate::scene::Transfer;
+use crate::tensor::{Matrix, Number, Symmetric, Vector};
+
+/// What a particle carries of the velocities around it from step to step.
+#[derive(Clone, Copy, Debug)]
+pub struct Carried<V, const D: usize> {
+    /// v_p [m/s]
+    pub velocity: Vector<V, D>,
+    /// w_p, in the plane about the third axis [rad/s].
+    pub spin: Vector<V, 3>,
+    /// Symmetric part of the velocity gradient that it carries, if its transfer has that column, embedded in
+    /// space [1/s].
+    pub strain_rate: Symmetric<V>,
+}
+
+/// Particles among their nodes, when they take velocities.
+pub struct Surroundings<'a, V: Lanes, const D: usize, B, S> {
+    /// The particles.
+    pub group: &'a Group<V, D, B, S>,
+    /// The nodes.
+    pub window: &'a Window<V::Real, D>,
+    /// Side of a cell [m].
+    pub cell: V,
+    /// Inverse of it [1/m].
+    pub per_cell: V,
+    /// k^2 [m^2], see [`Rflip`].
+    pub gyration: V,
+}
+
+/// How velocities go from particles to nodes and back.
+///
+/// To add a transfer: write its file with this, name it in [`crate::scene::Transfer`], and put both on the list below.
+/// The changes that it takes of the nodes' velocities must be the transpose of what it gives to the nodes: then they do
+/// the same work on both, and the ledger knows that all else that it takes is damping.
+pub trait TransferRule {
+    /// Whether particles keep their spin from step to step; else only those of rigid bodies have any.
+    const CARRIES_SPIN: bool = false;
+    /// Columns that particles have for it: none, or the rate of strain.
+    const COLUMNS: &'static [History] = &[];
+    /// Whether particles take the nodes' velocities themselves, and not a share of them.
+    const ALWAYS_PIC: bool = false;
+    /// Whether these velocities are v(m) + dv of [`Xpic`].
+    const FILTERS: bool = false;
+
+    /// G2P of the changes of the nodes' velocities.
+    fn take_change<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start>(
+        around: &Surroundings<'_, V, D, B, S>,
+        carried: &mut Carried<V, D>,
+    );
+
+    /// G2P of a share of the nodes' velocities themselves.
+    fn take_share<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start>(
+        around: &Surroundings<'_, V, D, B, S>,
+        carried: &mut Carried<V, D>,
+        share: V,
+    );
+
+    /// |C|^2 of the rate of strain that it carries [1/s^2]: over k^2/4 and the mass it is a part of the kinetic energy.
+    #[inline(always)]
+    fn strains<V: Lanes, const D: usize>(_carried: &Carried<V, D>) -> V {
+        V::ZERO
+    }
+
+    /// The spin after a step in which velocities had this gradient, embedded in space [1/s]; `dt` in [s].
+    #[inline(always)]
+    fn settle<N: Number, const D: usize>(spin: Vector<N, 3>, _gradient: &Matrix<N>, _dt: N) -> Vector<N, 3> {
+        spin
+    }
+
+    /// Gradient of the velocities that a particle gives to its nodes, embedded in space [1/s]; `half_step` is dt/2 in
+    /// the middle of a step, else 0 [s]. Particles of rigid bodies turn, whatever the transfer.
+    #[inline(always)]
+    fn gradient<V: Lanes, const D: usize>(carried: &Carried<V, D>, half_step: V) -> Matrix<V> {
+        turning::gradient::<V, D>(&carried.spin, half_step)
+    }
+}
+
+/// The list of transfers: does one thing with the rule of whichever transfer is at hand.
+macro_rules! of_transfer {
+    ($transfer:expr, $rule:ident => $does:expr) => {
+        of_transfer!($transfer, $rule => $does; Rflip Flip Pic Apic Xpic)
+    };
+    ($transfer:expr, $rule:ident => $does:expr; $($name:ident)*) => {
+        match $transfer {
+            $($crate::scene::Transfer::$name => {
+                type $rule = $crate::transfer::$name;
+                $does
+            })*
+        }
+    };
+}
+pub(crate) use of_transfer;
+
+/// [`TransferRule::CARRIES_SPIN`]
+#[inline(always)]
+pub fn carries_spin(transfer: Transfer) -> bool {
+    of_transfer!(transfer, Rule => Rule::CARRIES_SPIN)
+}
+
+/// [`TransferRule::COLUMNS`]
+pub fn columns(transfer: Transfer) -> &'static [History] {
+    of_transfer!(transfer, Rule => Rule::COLUMNS)
+}
+
+/// [`TransferRule::FILTERS`]
+pub fn filters(transfer: Transfer) -> bool {
+    of_transfer!(transfer, Rule => Rule::FILTERS)
+}
+
+/// The share of the nodes' velocities themselves that particles take, where a scene wants this one.
+pub fn pic_share(transfer: Transfer, wanted: f64) -> f64 {
+    if of_transfer!(transfer, Rule => Rule::ALWAYS_PIC) { 1.0 } else { wanted }
+}
 
 /// What a scatter gives to the nodes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

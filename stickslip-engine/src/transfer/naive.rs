@@ -1,6 +1,6 @@
 //! The transfer as the equations read, one particle and one node after the other: an oracle for the tests.
 
-use super::{offsets, turning};
+use super::offsets;
 use crate::basis::{Axis, Basis};
 use crate::body::Particle;
 use crate::grid::{Lattice, NodeValues, SIDE, WINDOW, WINDOW_NODES, Window};
@@ -23,7 +23,7 @@ impl<T: Real, const D: usize, B: Basis<T>> Stencil<T, D, B> {
     #[inline(always)]
     pub fn new(lattice: &Lattice<T, D>, particle: &Particle<T, D>) -> Self {
         let x = lattice.cells(particle.position);
-        let half = particle.half_width * lattice.per_cell;
+        let half = lattice.half(particle.half_width);
         let axes: [Axis<T>; D] = std::array::from_fn(|i| B::axis(x[i], half));
         let r = std::array::from_fn(|i| x[i] - T::of(f64::from(axes[i].base)));
         Stencil { axes, r, per_cell: lattice.per_cell, basis: PhantomData }
@@ -68,7 +68,7 @@ impl<T: Real, const D: usize, B: Basis<T>> Stencil<T, D, B> {
     /// ```text
     /// m_i += S_i m,   p_i += S_i m (v + G (x_i - x_p))          Sulsky, Chen and Schreyer (1994) with G = 0
     /// ```
-    /// G: see [`turning`], [1/s]. `mass` is what the nodes are given; 0 where they have their mass already.
+    /// G: gradient of the velocities that a particle gives, [`super::TransferRule::gradient`] [1/s]. `mass` is what the nodes are given; 0 where they have their mass already.
     pub fn scatter_momentum(
         &self,
         window: &mut Window<T, D>,
@@ -110,9 +110,8 @@ impl<T: Real, const D: usize, B: Basis<T>> Stencil<T, D, B> {
         sum
     }
 
-    /// sum S_i (x_i - x_p) x v_i of a value at the window's nodes, see [`turning`];
-    /// in the plane about the third axis [m^2/s].
-    pub fn moment(&self, nodes: &[NodeValues<T>; WINDOW_NODES], block: [i32; D]) -> Vector<T, 3> {
+    /// sum v_i (x) S_i (x_i - x_p) of a value at the window's nodes, embedded in space [m^2/s].
+    pub fn moments(&self, nodes: &[NodeValues<T>; WINDOW_NODES], block: [i32; D]) -> Matrix<T> {
         let mut moments = Matrix::ZERO;
         self.each(block, |place, offset| {
             let (weight, arm) = (self.at(offset).0, self.arm(offset));
@@ -122,7 +121,24 @@ impl<T: Real, const D: usize, B: Basis<T>> Stencil<T, D, B> {
                 }
             }
         });
-        turning::moment::<T, D>(&moments)
+        moments
+    }
+
+    /// (sum v_i (x) S_i (x_i - x_p)) D^-1 with D = sum S_i (x_i - x_p) (x) (x_i - x_p), which is diagonal; for linear
+    /// functions, where D may be zero, its limit L. Embedded in space [1/s].
+    pub fn affine(&self, nodes: &[NodeValues<T>; WINDOW_NODES], block: [i32; D]) -> Matrix<T> {
+        if B::WIDTH == 2 {
+            return self.velocity_gradient(nodes, block);
+        }
+        let mut spread = [T::ONE; 3];
+        let mut sum = Vector::<T, D>::ZERO;
+        self.each(block, |_, offset| {
+            let (weight, arm) = (self.at(offset).0, self.arm(offset));
+            sum += Vector::from_fn(|i| weight * arm[i] * arm[i]);
+        });
+        spread[..D].copy_from_slice(&sum.0);
+        let moments = self.moments(nodes, block);
+        Matrix::from_fn(|i, j| moments.0[i][j] / spread[j])
     }
 
     /// L = sum v_i (x) grad S_i, embedded in space [1/s].

@@ -69,6 +69,7 @@ impl Time {
             max_step: None,
             stress_update: StressUpdate::default(),
             transfer: Transfer::default(),
+            xpic_order: 2,
             pic_share: 0.0,
             energy_drift: 0.1,
         }

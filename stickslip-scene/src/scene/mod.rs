@@ -162,6 +162,8 @@ pub enum BasisKind {
     /// Tent functions averaged over the particle's undeformed box (uniform GIMP; Bardenhagen and Kober 2004).
     #[default]
     Gimp,
+    /// Quadratic B-splines of the particle's centre (Steffen, Kirby and Berzins 2008).
+    Spline,
 }
 
 /// A box that holds all material. A particle that leaves it stops the run.
@@ -204,6 +206,8 @@ pub struct Time {
     /// Share of the grid's velocity itself (PIC) in the particles' new velocity;
     /// the rest takes the grid's change of velocity (FLIP). 0 to 1.
     pub pic_share: f64,
+    /// m of XPIC(m); other transfers have none.
+    pub xpic_order: usize,
     /// Drift of the energy that a run may have before its verdict names it, over the energy that moved [-].
     pub energy_drift: f64,
 }
@@ -230,6 +234,12 @@ pub enum Transfer {
     Rflip,
     /// FLIP: particles take the grid's change of velocity (Brackbill and Ruppel 1986).
     Flip,
+    /// PIC: particles take the grid's velocity (Harlow 1964).
+    Pic,
+    /// XPIC(m): PIC that leaves alone what the grid resolves (Hammerquist and Nairn 2017).
+    Xpic,
+    /// APIC: particles take the grid's velocity and its affine field around them (Jiang et al. 2015).
+    Apic,
 }
 
 /// A material with its name and density.

@@ -224,6 +224,7 @@ pub fn scene() -> Scene {
             stress_update: StressUpdate::Last,
             transfer: Transfer::Flip,
             pic_share: 0.0,
+            xpic_order: 2,
             energy_drift: 0.1,
         },
         gravity: [0.0, -GRAVITY, 0.0],

@@ -28,4 +28,5 @@ mod rigid_bodies;
 mod spinning_disk;
 mod struck_bar;
 mod threads;
+mod transfers;
 mod unbounded_bodies;

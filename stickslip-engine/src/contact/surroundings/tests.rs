@@ -36,7 +36,7 @@ fn body<const D: usize>() -> Body<f64, D> {
         }
     };
     // Where they were at first, and where they are now.
-    let mut particles = Particles::from_fn(300, &[], particle);
+    let mut particles = Particles::from_fn(300, crate::particles::OwnColumns::default(), particle);
     for i in 0..300 {
         particles.set(i, &Particle { position: place(i, 3), ..particle(i) });
     }
@@ -126,7 +126,7 @@ fn particles_of_a_cell_side_by_side_give_the_sums<const D: usize, B: Basis<f64>>
     let wall = |axis, node, inward| Wall { axis, node, inward, face: Face::Symmetry };
     let boundary = Boundary::new(vec![wall(0, 0, 1), wall(D - 1, 5, -1)]);
     let rules = Rules::listed(1, vec![rules::Rule::from(&crate::scene::ContactRule::default())]);
-    let field = Field { nodes: Vec::new(), present: Vec::new() };
+    let field = Field { nodes: Vec::new(), present: Vec::new(), filtered: Vec::new() };
     for processor in Processor::available() {
         let near = Near {
             active: &active,

@@ -7,10 +7,12 @@ use crate::body::Gyration;
 use crate::lanes::{Laned, Lanes, Machine};
 use crate::material::{Material, Motion, Thickness};
 use crate::particles::ColumnStart;
-use crate::scene::Transfer;
 use crate::step::pass::{FaultKind, Pass, Verbs, Visit};
 use crate::tensor::{Matrix, Real, Symmetric, Vector};
-use crate::transfer::{Group, Momentum, ScatterTerms, Share, Start, turning};
+use crate::transfer::{
+    Carried, Group, Momentum, ScatterTerms, Share, Start, Surroundings, TransferRule, carries_spin,
+    of_transfer,
+};
 
 /// What all particles of a tile have in common.
 pub struct Constants<V, const D: usize> {
@@ -66,46 +68,51 @@ pub fn group<
     (base, start): (Vector<V, D>, S),
 ) -> Result<u32, FaultKind> {
     let Pass { verbs, dt, transfer, pic, .. } = *visit.pass;
-    let Verbs { update_velocity, update_stress, advect, scatter } = verbs;
+    let Verbs { smooth, update_velocity, update_stress, advect, scatter } = verbs;
     let position = members.vector::<V>(ColumnStart::<D>::POSITION);
     let half_width = members.load::<V>(ColumnStart::<D>::HALF_WIDTH);
-    let half = half_width * constants.per_cell;
+    let half = if visit.pass.lattice.whole_cells { V::HALF } else { half_width * constants.per_cell };
     let group =
         Group::<V, D, B, S>::new(constants.in_cells(&position) - base, half, start, members.count::<V>());
     let mut sound = Sound::EVERYTHING;
 
-    let mut velocity = Vector::ZERO;
-    let mut spin = Vector::ZERO;
+    let mut carried = Carried { velocity: Vector::ZERO, spin: Vector::ZERO, strain_rate: Symmetric::ZERO };
     let gyration = constants.gyration.squared(half_width);
     // What PIC and `turning` take: v^2 + k^2 w^2 before less that after, so twice the kinetic energy over the mass.
     let mut damped = V::ZERO;
-    let rotates = transfer == Transfer::Rflip;
+    let rotates = carries_spin(transfer);
     let gives_momentum = scatter.is_some_and(|share| share != Share::Force);
-    if update_velocity || advect || gives_momentum {
-        velocity = members.vector::<V>(ColumnStart::<D>::VELOCITY);
+    if smooth {
+        // G2P: u = sum S_i u_i, in the place of v_p.
+        carried.velocity = group.interpolate(&visit.window.integrated);
+    } else if update_velocity || advect || gives_momentum {
+        carried.velocity = members.vector::<V>(ColumnStart::<D>::VELOCITY);
     }
-    if update_velocity || gives_momentum || (update_stress && rotates) {
-        spin = members.spin::<V>();
+    if !smooth && (update_velocity || gives_momentum || (update_stress && rotates)) {
+        carried.spin = members.spin::<V>();
     }
-    // G2P: v_p += sum S_i (v_i - v_i^0), and what `turning` says of the spin.
+    if !smooth && (update_velocity || gives_momentum) {
+        carried.strain_rate = members.strain_rate::<V>();
+    }
+    // G2P: v_p += sum S_i (v_i - v_i^0), or what else the transfer takes.
     if update_velocity {
-        if rotates {
-            let (moment, change) = group.moment(&visit.window.change);
-            velocity += change;
-            spin += moment * (constants.cell / gyration);
-        } else {
-            velocity += group.interpolate(&visit.window.change);
-        }
-        if pic > T::ZERO {
-            let before = kinetic(&velocity, &spin, gyration);
-            let (gradient, mean) = group.flow(&visit.window.integrated);
-            velocity = velocity * V::splat(T::ONE - pic) + mean * V::splat(pic);
-            if rotates {
-                spin = turning::toward(spin, &(gradient * constants.per_cell), V::splat(pic));
+        let around = Surroundings {
+            group: &group,
+            window: visit.window,
+            cell: constants.cell,
+            per_cell: constants.per_cell,
+            gyration,
+        };
+        of_transfer!(transfer, Rule => {
+            Rule::take_change(&around, &mut carried);
+            if pic > T::ZERO {
+                let before = kinetic::<V, D, Rule>(&carried, gyration);
+                Rule::take_share(&around, &mut carried, V::splat(pic));
+                damped = before - kinetic::<V, D, Rule>(&carried, gyration);
             }
-            damped = before - kinetic(&velocity, &spin, gyration);
-        }
-        sound.require(finite(&spin.0) & finite(&velocity.0), FaultKind::NotFinite);
+        });
+        let Carried { velocity, spin, strain_rate } = &carried;
+        sound.require(finite(&spin.0) & finite(&velocity.0) & finite(&strain_rate.0), FaultKind::NotFinite);
     }
 
     let mut deformation = Matrix::ZERO;
@@ -113,7 +120,7 @@ pub fn group<
     let mut history = HistoryOfGroup::new(members);
     let [mut jacobian, mut volume] = [V::ZERO; 2];
     // sum S_i v_i of the velocities that strain and move.
-    let mut carried = Vector::ZERO;
+    let mut flow = Vector::ZERO;
     // Whether the stress gives forces to the nodes.
     let pushes = matches!(scatter, Some(Share::Force | Share::Everything));
     if update_stress || advect {
@@ -126,12 +133,14 @@ pub fn group<
     if update_stress {
         let scale = V::splat(dt) * constants.per_cell;
         let (gradient, mean) = group.flow(&visit.window.flow);
-        carried = mean;
+        flow = mean;
         if rotates {
-            let before = kinetic(&Vector::<V, D>::ZERO, &spin, gyration);
-            spin = turning::settled::<V, D>(spin, &(gradient * constants.per_cell), V::splat(dt));
-            damped += before - kinetic(&Vector::<V, D>::ZERO, &spin, gyration);
-            sound.require(finite(&spin.0), FaultKind::NotFinite);
+            let spin = carried.spin;
+            let gradient = gradient * constants.per_cell;
+            carried.spin =
+                of_transfer!(transfer, Rule => Rule::settle::<V, D>(spin, &gradient, V::splat(dt)));
+            damped += gyration * spin.dot(spin) - gyration * carried.spin.dot(carried.spin);
+            sound.require(finite(&carried.spin.0), FaultKind::NotFinite);
         }
         let increment = Matrix::IDENTITY + gradient * scale;
         deformation = increment * deformation;
@@ -169,9 +178,9 @@ pub fn group<
     let mut inside = u32::MAX;
     if advect {
         if !update_stress {
-            carried = group.interpolate(&visit.window.flow);
+            flow = group.interpolate(&visit.window.flow);
         }
-        let moved = position + carried * V::splat(dt);
+        let moved = position + flow * V::splat(dt);
         sound.require(finite(&moved.0), FaultKind::NotFinite);
         let cells = constants.in_cells(&moved);
         for i in 0..D {
@@ -198,7 +207,7 @@ pub fn group<
         members.give_back::<V>(ColumnStart::<D>::POSITION..ColumnStart::<D>::VELOCITY);
         let modulus =
             constants.material.wave_modulus(visit.body.thickness, (&deformation, jacobian), &history);
-        let [wave, speed] = [modulus * constants.per_density, velocity.dot(velocity)];
+        let [wave, speed] = [modulus * constants.per_density, carried.velocity.dot(carried.velocity)];
         if !every::<V>(no_faster(wave, speed, V::splat(visit.found.signal))) {
             let signals = (wave.sqrt() + speed.sqrt()).numbers();
             for &signal in &signals.0[..V::COUNT] {
@@ -211,8 +220,9 @@ pub fn group<
     }
     // No fault: what changed goes back to memory.
     if update_velocity {
-        members.store_vector(ColumnStart::<D>::VELOCITY, &velocity);
+        members.store_vector(ColumnStart::<D>::VELOCITY, &carried.velocity);
         members.give_back::<V>(ColumnStart::<D>::VELOCITY..ColumnStart::<D>::SPIN);
+        members.store_strain_rate(&carried.strain_rate);
     }
     if (update_velocity && pic > T::ZERO) || (update_stress && rotates) {
         let energies = (damped * members.load::<V>(ColumnStart::<D>::MASS)).numbers();
@@ -221,7 +231,7 @@ pub fn group<
         }
     }
     if update_velocity || (update_stress && rotates) {
-        members.store_spin(&spin);
+        members.store_spin(&carried.spin);
         members.give_back::<V>(ColumnStart::<D>::SPIN..ColumnStart::<D>::MASS);
     }
     if update_stress {
@@ -237,9 +247,11 @@ pub fn group<
         let mut load = ScatterTerms { momentum: None, stress: None };
         if gives_momentum {
             let mass = members.load::<V>(ColumnStart::<D>::MASS);
+            let half_step = V::splat(T::HALF * dt);
+            let gradient = of_transfer!(transfer, Rule => Rule::gradient::<V, D>(&carried, half_step));
             load.momentum = Some(Momentum {
-                own: velocity * mass,
-                per_cell: turning::gradient::<V, D>(&spin, V::splat(T::HALF * dt)) * (mass * constants.cell),
+                own: carried.velocity * mass,
+                per_cell: gradient * (mass * constants.cell),
                 mass: if share == Share::Momentum { V::ZERO } else { mass },
             });
         }
@@ -280,10 +292,12 @@ impl Sound {
     }
 }
 
-/// v^2 + k^2 w^2, with the square of the radius of gyration.
+/// v^2 + k^2 w^2 + k^2/2 |E|^2, with the square of the radius of gyration and the rate of strain that is carried.
 #[inline(always)]
-fn kinetic<V: Lanes, const D: usize>(velocity: &Vector<V, D>, spin: &Vector<V, 3>, gyration: V) -> V {
-    gyration.times_plus(spin.dot(*spin), velocity.dot(*velocity))
+fn kinetic<V: Lanes, const D: usize, R: TransferRule>(carried: &Carried<V, D>, gyration: V) -> V {
+    let Carried { velocity, spin, .. } = carried;
+    let strains = V::HALF * R::strains(carried);
+    gyration.times_plus(spin.dot(*spin) + strains, velocity.dot(*velocity))
 }
 
 /// Whether the bits of all lanes are set.

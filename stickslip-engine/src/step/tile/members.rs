@@ -16,7 +16,7 @@ pub const AHEAD: usize = 32;
 /// Fetches what a pass needs of a particle and those beside it.
 #[inline(always)]
 pub fn fetch<T: Real, const D: usize>(columns: &Columns<T, D>, particle: usize, verbs: &Verbs) {
-    for range in Reads::of(verbs, columns.history()).columns::<D>() {
+    for range in Reads::of(verbs, columns).columns(columns) {
         for column in range {
             // SAFETY: the particle exists.
             prefetch(unsafe { columns.at(column, particle) });
@@ -31,28 +31,33 @@ struct Reads {
     stress: bool,
     /// Entries of the history.
     history: usize,
+    /// Entries of what the transfer carries.
+    carried: usize,
 }
 
 impl Reads {
-    /// Of particles whose history has so many entries.
+    /// Of particles with these columns.
     #[inline(always)]
-    fn of(verbs: &Verbs, history: usize) -> Self {
+    fn of<T: Real, const D: usize>(verbs: &Verbs, columns: &Columns<T, D>) -> Self {
+        let gives_momentum = verbs.scatter.is_some_and(|share| share != Share::Force);
         Reads {
             deformation: verbs.update_stress || verbs.advect,
             stress: verbs.update_stress || verbs.scatter.is_some_and(|share| share != Share::Momentum),
-            history: if verbs.update_stress || verbs.advect { history } else { 0 },
+            history: if verbs.update_stress || verbs.advect { columns.history() } else { 0 },
+            carried: if verbs.update_velocity || gives_momentum { columns.carried().len() } else { 0 },
         }
     }
 
     /// All columns that are read.
     #[inline(always)]
-    fn columns<const D: usize>(self) -> [Range<usize>; 4] {
+    fn columns<T: Real, const D: usize>(self, of: &Columns<T, D>) -> [Range<usize>; 5] {
         let only = |read: bool, columns: Range<usize>| if read { columns } else { 0..0 };
         [
             0..ColumnStart::<D>::DEFORMATION,
             only(self.deformation, ColumnStart::<D>::DEFORMATION..ColumnStart::<D>::STRESS),
             only(self.stress, ColumnStart::<D>::STRESS..ColumnStart::<D>::START),
             ColumnStart::<D>::HISTORY..ColumnStart::<D>::HISTORY + self.history,
+            of.carried().start..of.carried().start + self.carried,
         ]
     }
 }
@@ -116,7 +121,7 @@ impl ParticleRuns {
 }
 
 /// Columns of a particle in space.
-const MOST_COLUMNS: usize = ColumnStart::<3>::HISTORY + MOST_HISTORY;
+const MOST_COLUMNS: usize = ColumnStart::<3>::HISTORY + MOST_HISTORY + stress_entries(3);
 
 impl<'a, T: Real, const D: usize, const WHOLE: bool> Members<'a, T, D, WHOLE> {
     /// Particles that lie side by side.
@@ -136,7 +141,7 @@ impl<'a, T: Real, const D: usize, const WHOLE: bool> Members<'a, T, D, WHOLE> {
         copies: &'a mut Copies<T>,
     ) -> Self {
         // SAFETY: the tile's particles are this pass' alone.
-        unsafe { copies.take::<V, D>(columns, index, Reads::of(verbs, columns.history())) };
+        unsafe { copies.take::<V, D>(columns, index, Reads::of(verbs, columns)) };
         Members {
             columns,
             count: index.len(),
@@ -225,6 +230,24 @@ impl<'a, T: Real, const D: usize, const WHOLE: bool> Members<'a, T, D, WHOLE> {
         for k in 0..spin_entries(D) {
             self.store(ColumnStart::<D>::SPIN + k, spin[3 - spin_entries(D) + k]);
         }
+    }
+
+    /// The rate of strain that the transfer carries; zero if it carries none.
+    #[inline(always)]
+    pub fn strain_rate<V: Lanes<Real = T>>(&self) -> Symmetric<V> {
+        let mut rate = Symmetric::ZERO;
+        for (entry, column) in rate.0.iter_mut().zip(self.columns.carried()) {
+            *entry = self.load(column);
+        }
+        rate
+    }
+
+    #[inline(always)]
+    pub fn store_strain_rate<V: Lanes<Real = T>>(&self, rate: &Symmetric<V>) {
+        for (&entry, column) in rate.0.iter().zip(self.columns.carried()) {
+            self.store(column, entry);
+        }
+        self.give_back::<V>(self.columns.carried());
     }
 
     #[inline(always)]
@@ -377,10 +400,13 @@ impl<T: Real> Copies<T> {
                     let first = ColumnStart::<D>::HISTORY;
                     self.take_run::<V, D>(columns, run, first..first + reads.history);
                 }
+                if reads.carried > 0 {
+                    self.take_run::<V, D>(columns, run, columns.carried());
+                }
             }
         }
         if !V::MASKED && self.runs.count > 1 && index.len() < V::COUNT {
-            for column in reads.columns::<D>().into_iter().flatten() {
+            for column in reads.columns(columns).into_iter().flatten() {
                 let copy = &mut self.columns[column];
                 let copy = copy.as_mut_ptr().cast::<T>();
                 // SAFETY: the first was copied, and there is room for a register from any lane on.

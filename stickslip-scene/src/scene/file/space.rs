@@ -69,6 +69,7 @@ impl Choice for BasisKind {
     const WORDS: &'static [(&'static str, Self, &'static str)] = &[
         ("gimp", BasisKind::Gimp, "Tent functions averaged over the particle's box (uniform GIMP)."),
         ("linear", BasisKind::Linear, "Tent functions at the particle's centre."),
+        ("spline", BasisKind::Spline, "Quadratic B-splines of the particle's centre: smooth slopes."),
     ];
 }
 

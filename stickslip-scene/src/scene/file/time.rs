@@ -3,7 +3,7 @@
 use super::Context;
 use super::quantity::{Duration, QuantityInput, Ratio};
 use super::read::table;
-use super::text::{Choice, Word};
+use super::text::{Choice, Count, Word};
 use crate::scene::error::Fault;
 use crate::scene::{self, StressUpdate, Transfer};
 
@@ -26,6 +26,9 @@ table! {
         /// Share of the grid's velocity itself (PIC) in the particles' new velocity, 0 to 1; the rest is FLIP.
         #[schemars(extend("default" = scene::Time::until(1.0).pic_share))]
         pic_share: Option<QuantityInput<Ratio>>,
+        /// Order m of the transfer `xpic`: 1 is PIC, each order more costs a pass over the particles and damps less.
+        #[schemars(extend("default" = scene::Time::until(1.0).xpic_order))]
+        xpic_order: Option<Count>,
         /// Drift of the total energy beyond which a run warns, over the largest energy that moved, was stored or turned
         /// to heat; above 0.
         #[schemars(extend("default" = scene::Time::until(1.0).energy_drift))]
@@ -53,6 +56,21 @@ impl Choice for Transfer {
             Transfer::Flip,
             "Changes of velocity alone (FLIP), as most codes have it: bodies lose spin at their rims.",
         ),
+        (
+            "apic",
+            Transfer::Apic,
+            "The grid's velocity and its affine field (APIC): bodies keep their spin, vibration is damped by the step.",
+        ),
+        (
+            "xpic",
+            Transfer::Xpic,
+            "PIC that leaves alone what the grid resolves (XPIC, of order `xpic_order`): noise goes, waves stay.",
+        ),
+        (
+            "pic",
+            Transfer::Pic,
+            "The grid's velocity itself (PIC): spin and vibration are damped by the step.",
+        ),
     ];
 }
 
@@ -74,8 +92,15 @@ impl Time {
             time.transfer = word.value(context)?;
         }
         if let Some(share) = &self.pic_share {
+            if matches!(time.transfer, Transfer::Pic | Transfer::Apic | Transfer::Xpic) {
+                return Err(share
+                    .refused(share.value(context)?, "no share unless `transfer` is \"rflip\" or \"flip\""));
+            }
             let allowed = "a number from 0 to 1";
             time.pic_share = share.checked(context, allowed, |value| (0.0..=1.0).contains(&value))?;
+        }
+        if let Some(order) = &self.xpic_order {
+            time.xpic_order = order.value(context, 1..=20)?;
         }
         if let Some(drift) = &self.energy_drift {
             time.energy_drift = drift.checked(context, "a number above 0", |value| value > 0.0)?;

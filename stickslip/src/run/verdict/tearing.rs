@@ -86,6 +86,7 @@ fn reach(look: &CheckInputs, a: &TracedParticle, b: &TracedParticle) -> f64 {
     match look.scene.discretization.basis {
         BasisKind::Linear => cell,
         BasisKind::Gimp => cell + a.half_width + b.half_width,
+        BasisKind::Spline => 2.0 * cell,
     }
 }
 

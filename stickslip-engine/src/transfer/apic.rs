@@ -1,0 +1,73 @@
+//! APIC: particles carry the affine field of velocities around them (Jiang, Schroeder, Selle, Teran and Stomakhin 2015,
+//! ACM Trans. Graph. 34).
+//!
+//! ```text
+//! m_i v_i = sum_p m_p S_ip (v_p + C_p (x_i - x_p))
+//! v_p = sum_i S_ip v_i
+//! C_p = (sum_i S_ip v_i (x) (x_i - x_p)) D_p^-1,   D_p = sum_i S_ip (x_i - x_p) (x) (x_i - x_p)
+//! ```
+//! D is diagonal, for functions are products over axes, and for linear functions C is the velocity gradient. As in PIC,
+//! what a cell cannot tell apart is averaged away in every step, but for linear fields: a body that turns as a whole
+//! keeps its spin, one that vibrates loses energy, the faster the smaller the step.
+//!
+//! The ledger closes as for FLIP: first velocities take the changes at the nodes by the transpose of the first line,
+//! with a second moment q = k^2/2 that does not depend on the place, which leaves all of their work,
+//!
+//! ```text
+//! v_p += sum_i S_ip dv_i,   q C_p += sum_i S_ip dv_i (x) (x_i - x_p),   kinetic energy  m (v^2 + q |C|^2)/2
+//! ```
+//! and what the second and third line then take is damping.
+//!
+//! C is kept as its two parts: the spin, which every particle has, and the rate of strain, a column of its own.
+
+use super::{Carried, Start, Surroundings, TransferRule, turning};
+use crate::basis::Basis;
+use crate::column::Kind;
+use crate::lanes::Lanes;
+use crate::material::History;
+use crate::tensor::Matrix;
+
+/// See the module.
+#[derive(Clone, Copy, Debug)]
+pub struct Apic;
+
+impl TransferRule for Apic {
+    const CARRIES_SPIN: bool = true;
+    const COLUMNS: &'static [History] = &[History::new("strain_rate", "1/s", Kind::Symmetric)];
+    const ALWAYS_PIC: bool = true;
+
+    #[inline(always)]
+    fn take_change<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start>(
+        around: &Surroundings<'_, V, D, B, S>,
+        carried: &mut Carried<V, D>,
+    ) {
+        let (moments, change) = around.group.moments(&around.window.change);
+        carried.velocity += change;
+        let scale = around.cell / around.gyration;
+        carried.spin += turning::moment::<V, D>(&moments) * scale;
+        carried.strain_rate = carried.strain_rate + moments.symmetric_part() * (scale + scale);
+    }
+
+    #[inline(always)]
+    fn take_share<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start>(
+        around: &Surroundings<'_, V, D, B, S>,
+        carried: &mut Carried<V, D>,
+        _share: V,
+    ) {
+        let (gradient, mean) = around.group.affine(&around.window.integrated);
+        let gradient: Matrix<V> = gradient * around.per_cell;
+        carried.velocity = mean;
+        carried.spin = turning::toward(carried.spin, &gradient, V::ONE);
+        carried.strain_rate = gradient.symmetric_part();
+    }
+
+    #[inline(always)]
+    fn strains<V: Lanes, const D: usize>(carried: &Carried<V, D>) -> V {
+        carried.strain_rate.double_dot(&carried.strain_rate)
+    }
+
+    #[inline(always)]
+    fn gradient<V: Lanes, const D: usize>(carried: &Carried<V, D>, _half_step: V) -> Matrix<V> {
+        turning::gradient::<V, D>(&carried.spin, V::ZERO) + carried.strain_rate.matrix()
+    }
+}

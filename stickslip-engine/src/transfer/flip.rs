@@ -1,0 +1,39 @@
+//! FLIP: particles take the changes of the nodes' velocities (Brackbill and Ruppel 1986, J. Comput. Phys. 65;
+//! Sulsky, Chen and Schreyer 1994 for MPM), with a share of PIC if the scene wants one (Stomakhin et al. 2013).
+//!
+//! ```text
+//! m_i v_i = sum_p m_p S_ip v_p
+//! v_p += sum_i S_ip dv_i
+//! v_p  = (1 - a) v_p + a sum_i S_ip v_i                        a: `pic_share`
+//! ```
+//! The second line is the transpose of the first, so forces at the nodes do the same work on the particles as on the
+//! nodes, and no kinetic energy is lost but what `a` takes. A body loses spin at its rim, see [`super::rflip`].
+
+use super::{Carried, Surroundings, TransferRule};
+use crate::basis::Basis;
+use crate::lanes::Lanes;
+use crate::transfer::Start;
+
+/// See the module.
+#[derive(Clone, Copy, Debug)]
+pub struct Flip;
+
+impl TransferRule for Flip {
+    #[inline(always)]
+    fn take_change<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start>(
+        around: &Surroundings<'_, V, D, B, S>,
+        carried: &mut Carried<V, D>,
+    ) {
+        carried.velocity += around.group.interpolate(&around.window.change);
+    }
+
+    #[inline(always)]
+    fn take_share<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start>(
+        around: &Surroundings<'_, V, D, B, S>,
+        carried: &mut Carried<V, D>,
+        share: V,
+    ) {
+        let mean = around.group.flow(&around.window.integrated).1;
+        carried.velocity = carried.velocity * (V::ONE - share) + mean * share;
+    }
+}

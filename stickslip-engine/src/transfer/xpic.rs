@@ -1,0 +1,74 @@
+//! XPIC(m): PIC that leaves alone what the nodes can tell (Hammerquist and Nairn 2017, Comput. Methods Appl. Mech.
+//! Eng. 318).
+//!
+//! With S the interpolation from nodes to particles, and S+ = m^-1 S^T m_p that from particles to nodes:
+//!
+//! ```text
+//! v    = S+ v_p                                                as every transfer begins a step
+//! v(m) = sum_(j < m) (1 - S+ S)^j v                            m: `xpic_order`; v(1) = v is PIC
+//! v_p  = S (v(m) + dv)                                         dv: the step's change, by forces, contact and walls
+//! ```
+//! S v(m) goes to the particle velocities without those that no node sees as m grows: noise goes, waves and rotation
+//! that cells resolve stay. Each order above the first costs a pass over the particles.
+
+use super::flip::Flip;
+use super::{Carried, Start, Surroundings, TransferRule};
+use crate::basis::Basis;
+use crate::grid::Field;
+use crate::lanes::Lanes;
+use crate::tensor::{Real, Vector};
+
+/// See the module. What it takes instead of the nodes' velocities is made by [`Filter`].
+#[derive(Clone, Copy, Debug)]
+pub struct Xpic;
+
+impl TransferRule for Xpic {
+    const ALWAYS_PIC: bool = true;
+    const FILTERS: bool = true;
+
+    #[inline(always)]
+    fn take_change<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start>(
+        around: &Surroundings<'_, V, D, B, S>,
+        carried: &mut Carried<V, D>,
+    ) {
+        Flip::take_change(around, carried);
+    }
+
+    #[inline(always)]
+    fn take_share<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start>(
+        around: &Surroundings<'_, V, D, B, S>,
+        carried: &mut Carried<V, D>,
+        share: V,
+    ) {
+        Flip::take_share(around, carried, share);
+    }
+}
+
+/// What happens at the nodes between the passes that make v(m). u_j = (1 - S+ S)^j v stands in `integrated`, where
+/// every pass finds it, and m S+ S u_j comes into `velocity`.
+pub struct Filter<'a, T, const D: usize>(pub &'a mut Field<T, D>);
+
+impl<T: Real, const D: usize> Filter<'_, T, D> {
+    /// u_0 = v
+    pub fn begin(&mut self) {
+        self.0.each_filtered(|node, filtered| {
+            *filtered = node.velocity;
+            node.keep_and_clear();
+        });
+    }
+
+    /// u_j+1 = u_j - S+ S u_j, added to v(m).
+    pub fn next(&mut self) {
+        self.0.each_filtered(|node, filtered| {
+            node.divide_by_mass();
+            node.integrated = node.integrated - node.velocity;
+            node.velocity = Vector::ZERO;
+            *filtered += node.integrated;
+        });
+    }
+
+    /// The nodes get their velocities back.
+    pub fn end(&mut self) {
+        self.0.each_filtered(|node, _| node.velocity = node.start);
+    }
+}
