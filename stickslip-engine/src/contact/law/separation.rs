@@ -10,8 +10,8 @@
 //! fill their domains. Extrapolated positions see a body through its mass around the node,
 //! so the gap is known to a fraction of a cell.
 
-use super::{NearParticle, PairLaw};
 use super::traction::joint;
+use super::{NearParticle, PairLaw};
 use crate::contact::{Change, Facing, LawInputs, Pair, common_normal};
 use crate::tensor::{Real, Vector};
 
