@@ -183,10 +183,10 @@ fn the_deepest_formulas_have_a_value() {
         read(&text).expression.at(0.5)
     };
     assert_eq!(nested("0 * t + if(t < 1, ", ", 0)", 31), 0.5);
-    assert_eq!(nested("if(t > 1, 0, ", ")", 63), 0.5);
-    assert_eq!(nested("if(", " > 2 * t, 1, 0.5)", 63), 0.5);
+    assert_eq!(nested("if(t > 1, 0, ", ")", 62), 0.5);
+    assert_eq!(nested("if(", " > 2 * t, 1, 0.5)", 61), 0.5);
     assert_eq!(nested("atan2(0 * t, 1) + min(2 * t, ", ")", 31), 0.5);
-    assert_eq!(nested("1 + 2 * (0 * t + ", ") ^ 1 - 2 + if(t < 0, t, 0 * t)", 15), 16_383.5);
+    assert_eq!(nested("1 + 2 * (0 * t + ", ") ^ 1 - 2 + if(t < 0, t, 0 * t)", 15), -16_383.0);
 }
 
 use std::ops::Add;
