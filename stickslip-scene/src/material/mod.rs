@@ -186,7 +186,7 @@ impl Material<f64> {
     /// own.
     ///
     /// # Errors
-    /// A constant that is not, or several that do not fit; a column of history whose name is taken, or too many of them.
+    /// A constant that is not, or several that do not fit; a history whose name is taken, or too much of it.
     pub fn check(&self) -> Result<(), BadConstants> {
         history::check(self.history())?;
         if let Material::Custom(_) = self {
