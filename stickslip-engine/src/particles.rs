@@ -1,34 +1,13 @@
 //! Particles of one body as columns, so that a processor can take several at a time; seen from outside, they are rows.
 
 use crate::body::Particle;
-use crate::column::{ColumnDescription, Kind};
+use crate::column::{ColumnDescription, EVERY, Kind, same};
 use crate::grid::Disjoint;
 use crate::material::{History, Keep, Recall, history_entries};
 use crate::pages::ask_for_large;
 use crate::tensor::{Matrix, Real, Symmetric, Vector};
 use crate::threads::each_range;
 use std::ops::Range;
-
-/// The columns that the particles of every body have, in the order of memory;
-/// behind them lies the history of the body's law.
-///
-/// The volume is J times the undeformed one; the half-width is half the side of the undeformed box; the start is the
-/// position before anything moved, which no step writes to.
-pub const EVERY: [ColumnDescription; 9] = [
-    described("position", "m", Kind::Vector),
-    described("velocity", "m/s", Kind::Vector),
-    described("spin", "rad/s", Kind::Rotation),
-    described("mass", "kg", Kind::Number),
-    described("volume", "m^3", Kind::Number),
-    described("half_width", "m", Kind::Number),
-    described("deformation", "", Kind::Tensor),
-    described("stress", "Pa", Kind::Symmetric),
-    described("start", "m", Kind::Vector),
-];
-
-const fn described(name: &'static str, unit: &'static str, kind: Kind) -> ColumnDescription {
-    ColumnDescription { name, unit, kind }
-}
 
 /// Place of the first entry of a column of [`EVERY`], or, of a name that it does not have, of the history.
 pub const fn first_of(name: &str, dimension: usize) -> usize {
@@ -38,15 +17,6 @@ pub const fn first_of(name: &str, dimension: usize) -> usize {
         i += 1;
     }
     sum
-}
-
-const fn same(a: &str, b: &str) -> bool {
-    let (a, b) = (a.as_bytes(), b.as_bytes());
-    let mut i = 0;
-    while i < a.len() && i < b.len() && a[i] == b[i] {
-        i += 1;
-    }
-    i == a.len() && i == b.len()
 }
 
 /// A place that must be known.
@@ -144,6 +114,9 @@ impl OwnColumns {
     }
 }
 
+/// Components in space that a column has at most.
+pub const MOST_COMPONENTS: usize = Kind::Tensor.components();
+
 /// Bytes in a cache line.
 const LINE: usize = 64;
 
@@ -214,6 +187,18 @@ impl<T: Real, const D: usize> Particles<T, D> {
             *first += column.kind.entries(D);
             Some((this, column))
         })
+    }
+
+    /// The description and the entries of the column of this name: its components in space, one value a particle in the
+    /// order of memory, and `None` for a component that the motion does not leave free.
+    pub fn column(&self, name: &str) -> Option<(ColumnDescription, [Option<&[T]>; MOST_COMPONENTS])> {
+        let (first, column) = self.described().find(|(_, column)| column.name == name)?;
+        let mut components = [None; MOST_COMPONENTS];
+        for entry in 0..column.kind.entries(D) {
+            let line = &self.columns[self.first() + (first + entry) * self.stride..][..self.len];
+            components[column.kind.place(D, entry)] = Some(line);
+        }
+        Some((column, components))
     }
 
     /// None at all.

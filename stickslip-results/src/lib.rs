@@ -3,7 +3,7 @@
 //! The rooms below are in reading order: each uses only rooms above it.
 
 use stickslip_engine::door;
-use stickslip_scene::{column, scene, tensor};
+use stickslip_scene::{column, scene};
 
 // RGB images: PNG files and animations.
 pub mod image;

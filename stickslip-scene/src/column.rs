@@ -2,6 +2,8 @@
 //!
 //! Memory, packing for lanes, snapshots, files and colours follow from this description; none lists columns by hand.
 
+use crate::tensor::Symmetric;
+
 /// A column of particles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ColumnDescription {
@@ -11,6 +13,93 @@ pub struct ColumnDescription {
     pub unit: &'static str,
     /// What a particle has in it.
     pub kind: Kind,
+}
+
+/// The columns that the particles of every body have, in the order of memory;
+/// behind them lies the history of the body's law.
+///
+/// The volume is J times the undeformed one; the half-width is half the side of the undeformed box; the start is the
+/// position before anything moved, which no step writes to.
+pub const EVERY: [ColumnDescription; 9] = [
+    described("position", "m", Kind::Vector),
+    described("velocity", "m/s", Kind::Vector),
+    described("spin", "rad/s", Kind::Rotation),
+    described("mass", "kg", Kind::Number),
+    described("volume", "m^3", Kind::Number),
+    described("half_width", "m", Kind::Number),
+    described("deformation", "", Kind::Tensor),
+    described("stress", "Pa", Kind::Symmetric),
+    described("start", "m", Kind::Vector),
+];
+
+/// Whose a particle is, and which: columns of whole numbers in snapshots and files.
+pub const IDENTITY: [&str; 2] = ["body", "number"];
+
+/// A number that follows from a column of every particle. No particle carries it; files have it for whoever looks.
+#[derive(Clone, Copy, Debug)]
+pub struct Derived {
+    /// Name, unit and components.
+    pub column: ColumnDescription,
+    /// The column of [`EVERY`] from which it follows.
+    pub from: &'static str,
+    /// Its value, from the components in space of that column.
+    pub value: fn(&[f64]) -> f64,
+}
+
+/// The numbers that files have beside what particles carry, from the Cauchy stress sigma (tension positive) [Pa]:
+///
+/// ```text
+/// pressure  = -tr(sigma) / 3
+/// von_mises = sqrt(3/2 s : s),   s = sigma - tr(sigma)/3 I
+/// ```
+pub const DERIVED: [Derived; 2] = [
+    Derived {
+        column: described("pressure", "Pa", Kind::Number),
+        from: "stress",
+        value: |sigma| -symmetric(sigma).trace() / 3.0,
+    },
+    Derived {
+        column: described("von_mises", "Pa", Kind::Number),
+        from: "stress",
+        value: |sigma| {
+            let s = symmetric(sigma).deviator();
+            (1.5 * s.double_dot(&s)).sqrt()
+        },
+    },
+];
+
+fn symmetric(components: &[f64]) -> Symmetric<f64> {
+    Symmetric(std::array::from_fn(|k| components[k]))
+}
+
+const fn described(name: &'static str, unit: &'static str, kind: Kind) -> ColumnDescription {
+    ColumnDescription { name, unit, kind }
+}
+
+/// The column of [`EVERY`] of this name, which must be there.
+pub const fn every(name: &str) -> ColumnDescription {
+    let mut i = 0;
+    while !same(EVERY[i].name, name) {
+        i += 1;
+        assert!(i < EVERY.len(), "a column of every particle");
+    }
+    EVERY[i]
+}
+
+/// Whether two names are the same.
+pub const fn same(a: &str, b: &str) -> bool {
+    let (a, b) = (a.as_bytes(), b.as_bytes());
+    let mut i = 0;
+    while i < a.len() && i < b.len() && a[i] == b[i] {
+        i += 1;
+    }
+    i == a.len() && i == b.len()
+}
+
+/// Names that no column of history may have: a file would hold two columns called the same.
+pub fn reserved() -> impl Iterator<Item = &'static str> {
+    let every = EVERY.iter().map(|column| column.name);
+    every.chain(IDENTITY).chain(DERIVED.iter().map(|derived| derived.column.name))
 }
 
 /// What a particle has in a column.

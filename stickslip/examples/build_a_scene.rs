@@ -13,7 +13,7 @@
 
 use std::error::Error;
 use std::ops::ControlFlow;
-use stickslip::door::View;
+use stickslip::door::{NoColumn, View};
 use stickslip::geometry::Shape;
 use stickslip::march::march;
 use stickslip::scene::{Body, ContactRule, Dimension, NamedMaterial, Scene};
@@ -33,7 +33,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         march(&mut *simulation, END, |_, _| ControlFlow::Continue(()))?;
         let disk = &simulation.bodies()[0];
         let acceleration = disk.velocity[0] / simulation.time();
-        let top = speed_of_top(&*simulation) / disk.velocity[0];
+        let top = speed_of_top(&*simulation)? / disk.velocity[0];
         println!(
             "friction {friction}: acceleration {acceleration:.3} m/s^2, that of a rigid disk {exact:.3} m/s^2"
         );
@@ -59,11 +59,12 @@ fn slope(friction: f64) -> Result<Scene, Box<dyn Error>> {
     Ok(scene)
 }
 
-/// Velocity down the slope of the disk's highest particle [m/s]. A snapshot is columns of equal length, an entry a
-/// particle.
-fn speed_of_top(view: &dyn View) -> f64 {
-    let particles = view.snapshot();
-    let disk = (0..particles.body.len()).filter(|&i| particles.body[i] == 0);
-    let top = disk.max_by(|&i, &j| particles.position[i][1].total_cmp(&particles.position[j][1]));
-    top.map_or(0.0, |top| particles.velocity[top][0])
+/// Velocity down the slope of the disk's highest particle [m/s]. The disk is body 0; all columns of a body have its
+/// particles in the same order.
+fn speed_of_top(view: &dyn View) -> Result<f64, NoColumn> {
+    let (position, velocity) = (view.column(0, "position")?, view.column(0, "velocity")?);
+    let heights = position.rows().map(|(_, [_, y, _])| y);
+    let speeds = velocity.rows().map(|(_, [vx, _, _])| vx);
+    let top = heights.zip(speeds).max_by(|(a, _), (b, _)| a.total_cmp(b));
+    Ok(top.map_or(0.0, |(_, speed)| speed))
 }

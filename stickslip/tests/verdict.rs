@@ -4,6 +4,7 @@
 
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
+use stickslip::column;
 use stickslip::door::*;
 use stickslip::observe::{Results, RunWarning};
 use stickslip::run::{self, RunOptions};
@@ -22,6 +23,15 @@ const SCENE: &str = r#"
 const DENSITY: f64 = 1000.0;
 const SPACING: f64 = 0.05;
 const STEP: f64 = 1.0 / 1024.0;
+/// Particles along x and along y.
+const SIDES: [usize; 2] = [20, 8];
+const PARTICLES: usize = SIDES[0] * SIDES[1];
+
+/// Where a particle is before anything moves [m].
+fn start(number: usize) -> [f64; 2] {
+    let along = |i: usize, count: usize| SPACING * (i as f64 + 0.5 - 0.5 * count as f64);
+    [along(number % SIDES[0], SIDES[0]), along(number / SIDES[0], SIDES[1])]
+}
 
 /// Where a particle is that was at a point, its velocity and its deformation gradient.
 type BodyMotion = fn([f64; 2], f64) -> ([f64; 2], [f64; 2], [[f64; 2]; 2]);
@@ -43,10 +53,11 @@ impl Puppet {
     }
 
     fn now(&self) -> impl Iterator<Item = TracedParticle> {
-        self.starts(0).into_iter().zip(0..).map(|([x, y, _], number)| {
+        (0..PARTICLES).map(|number| {
+            let [x, y] = start(number);
             let (position, velocity, f) = (self.motion)([x, y], self.time);
             TracedParticle {
-                number,
+                number: number as u32,
                 half_width: 0.5 * SPACING,
                 position: [position[0], position[1], 0.0],
                 velocity: [velocity[0], velocity[1], 0.0],
@@ -66,7 +77,7 @@ impl View for Puppet {
     }
 
     fn particles(&self) -> usize {
-        20 * 8
+        PARTICLES
     }
 
     fn stable_step(&self) -> f64 {
@@ -121,9 +132,12 @@ impl View for Puppet {
         snapshot
     }
 
-    fn starts(&self, _body: usize) -> Vec<[f64; 3]> {
-        let along = |i: usize, count: usize| SPACING * (i as f64 + 0.5 - 0.5 * count as f64);
-        (0..self.particles()).map(|i| [along(i % 20, 20), along(i / 20, 8), 0.0]).collect()
+    /// The start is all that is asked for.
+    fn column(&self, _body: usize, name: &str) -> Result<ColumnRef<'_>, NoColumn> {
+        assert_eq!(name, "start");
+        let numbers: Vec<u32> = (0..PARTICLES as u32).collect();
+        let at = |row, component| if component < 2 { start(row)[component] } else { 0.0 };
+        Ok(ColumnRef::new(column::every(name), numbers, at))
     }
 
     fn trace(&self, _body: usize, wanted: &(dyn Fn(u32) -> bool + Sync)) -> Vec<TracedParticle> {

@@ -22,7 +22,7 @@ impl<T: Real, const D: usize> Near<'_, T, D> {
         node: [i32; D],
         mut f: impl FnMut(Vector<T, D>, &Particle<T, D>, Matrix<T>),
     ) {
-        for image in &self.images(node) {
+        for image in self.images(node) {
             let seen = self.lattice.position(image.node);
             let mirror = Matrix::from_fn(|i, j| match (i == j, i < D) {
                 (true, true) => image.sign[i],
@@ -43,18 +43,19 @@ impl<T: Real, const D: usize> Near<'_, T, D> {
         }
     }
 
-    /// A node and its images in the mirrors near it.
-    fn images(&self, node: [i32; D]) -> Vec<MirroredNode<T, D>> {
-        let mut images = vec![MirroredNode { node, sign: [T::ONE; D] }];
-        for wall in self.boundary.walls.iter().filter(|wall| wall.face == Face::Symmetry) {
-            if wall.depth(node) < MAX_WIDTH as i32 {
-                for i in 0..images.len() {
-                    let MirroredNode { node, mut sign } = images[i];
-                    sign[wall.axis] = -sign[wall.axis];
-                    images.push(MirroredNode { node: wall.image(node), sign });
-                }
+    /// A node and its images in the mirrors near it, each mirror turning around all that those before it gave.
+    fn images(&self, node: [i32; D]) -> impl Iterator<Item = MirroredNode<T, D>> {
+        let walls = &self.boundary.walls;
+        let near = walls
+            .iter()
+            .filter(move |wall| wall.face == Face::Symmetry && wall.depth(node) < MAX_WIDTH as i32);
+        (0..1_usize << near.clone().count()).map(move |turned| {
+            let mut image = MirroredNode { node, sign: [T::ONE; D] };
+            for (_, wall) in near.clone().enumerate().filter(|(i, _)| turned >> i & 1 == 1) {
+                image.sign[wall.axis] = -image.sign[wall.axis];
+                image.node = wall.image(image.node);
             }
-        }
-        images
+            image
+        })
     }
 }

@@ -1,6 +1,6 @@
 //! Where bodies meet, and what the particles there say of their surfaces.
 
-use super::law::law;
+use super::law::{NearParticle, law};
 use super::surroundings::{Chunk, MaterialSums, Wanted, behind};
 use super::{Pair, Rules, SurfaceEstimate, TimeStep};
 use crate::basis::Basis;
@@ -138,6 +138,8 @@ struct Scratch<T, const D: usize> {
     moduli: Vec<T>,
     /// Where each body stands among the sides of a node.
     places_here: Vec<Option<usize>>,
+    /// Particles near a node, of laws that look at single ones.
+    points: Vec<NearParticle<T, D>>,
 }
 
 impl<T, const D: usize> Default for Scratch<T, D> {
@@ -150,6 +152,7 @@ impl<T, const D: usize> Default for Scratch<T, D> {
             next: Vec::new(),
             moduli: Vec::new(),
             places_here: Vec::new(),
+            points: Vec::new(),
         }
     }
 }
@@ -222,7 +225,7 @@ impl<T: Laned, const D: usize> Near<'_, T, D> {
         scratch: &mut Scratch<T, D>,
         part: &mut SurveyPart<T, D>,
     ) {
-        let Scratch { present, pairs, sums, chunks, next, moduli, places_here } = scratch;
+        let Scratch { present, pairs, sums, chunks, next, moduli, places_here, points } = scratch;
         let (n, slots, block) = (nodes_per_block(D), self.active.slots_of(meeting), meeting.block);
         let body = |slot: u32| self.active.slots[slot as usize].0 as usize;
         present.clear();
@@ -271,7 +274,7 @@ impl<T: Laned, const D: usize> Near<'_, T, D> {
                 if let (Some(a), Some(b)) = (places_here[a], places_here[b]) {
                     let pair = [a - first, b - first];
                     let look = LawInputs { near: self, sides: &part.sides[first..], pair, node, reach };
-                    let Some(facing) = law(self.rules.rule(rule).law).facing(&look) else { continue };
+                    let Some(facing) = law(self.rules.rule(rule).law).facing(&look, points) else { continue };
                     let area = area(&look, &facing);
                     part.encounters.push(Encounter { sides: [a, b], rule, facing, area });
                 }

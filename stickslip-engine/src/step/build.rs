@@ -14,7 +14,7 @@ use crate::geometry::{Filling, Mirror, MirroredShape, ParticleSite, fill};
 use crate::grid::Lattice;
 use crate::lanes::{Laned, Processor};
 use crate::material::{BadConstants, History, Material};
-use crate::particles::{EVERY, OwnColumns, Particles};
+use crate::particles::{OwnColumns, Particles};
 use crate::rigid::RigidMotion;
 use crate::scene::{self, BasisKind, BodyMotion, Dimension, Face, NamedMaterial, Precision, Problem, Scene};
 use crate::tensor::{Matrix, Real, Symmetric, Vector, cross};
@@ -150,11 +150,6 @@ fn material<T: Real>(scene: &Scene, body: &scene::Body) -> Result<Material<T>, P
         allowed: bad.allowed,
         help: None,
     };
-    let taken = |history: &&History| EVERY.iter().any(|column| column.name == history.column.name);
-    if let Some(history) = law.history().iter().find(taken) {
-        let found = format!("a history called `{}`, as a column of every particle is", history.column.name);
-        return Err(at(BadConstants::together(found, "another name")));
-    }
     law.on_grid(scene.discretization.cell).map(|law| law.cast()).map_err(at)
 }
 

@@ -8,15 +8,15 @@ use crate::boundary::Boundary;
 use crate::column::{ColumnDescription, Kind};
 use crate::contact::Span;
 use crate::door::{
-    BodyState, ContactPatch, ContactSum, GridSnapshot, Ledger, ParticleSnapshot, ParticleView, Simulation,
-    SnapshotColumn, StepError, TracedParticle, View,
+    BodyState, ColumnRef, ColumnSource, ContactPatch, ContactSum, GridSnapshot, Ledger, NoColumn,
+    ParticleSnapshot, ParticleView, Simulation, SnapshotColumn, StepError, TracedParticle, View,
 };
 use crate::grid::{node_at, nodes_per_block};
 use crate::lanes::Laned;
-use crate::particles::{ColumnStart, Columns};
-use crate::tensor::{Real, Vector};
+use crate::tensor::Real;
 use crate::threads::by_parts;
 use rayon::prelude::*;
+use std::convert::Infallible;
 use std::ops::Range;
 use std::sync::{Arc, PoisonError};
 
@@ -28,6 +28,45 @@ fn add(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     std::array::from_fn(|i| a[i] + b[i])
 }
 
+/// The particles of all bodies as a snapshot has them: by body, then by number.
+struct Rows<'a, T, const D: usize> {
+    bodies: &'a [Body<T, D>],
+    /// Each particle's body, and its place in memory there.
+    places: Vec<[u32; 2]>,
+}
+
+impl<'a, T: Laned, const D: usize> Rows<'a, T, D> {
+    fn of(bodies: &'a [Body<T, D>]) -> Self {
+        let mut places = Vec::with_capacity(bodies.iter().map(|body| body.particles.len()).sum());
+        for (i, body) in bodies.iter().enumerate() {
+            let first = places.len();
+            places.resize(first + body.particles.len(), [i as u32, 0]);
+            for (place, &number) in body.particles.numbers().iter().enumerate() {
+                places[first + number as usize][1] = place as u32;
+            }
+        }
+        Rows { bodies, places }
+    }
+
+    /// The components in space of a column, and zeros where a body has no such column.
+    fn values<const N: usize>(&self, column: &ColumnDescription) -> Vec<[f64; N]> {
+        let of_body = |body: &'a Body<T, D>| body.particles.column(column.name).map(|(_, lines)| lines);
+        let bodies: Vec<_> = self.bodies.iter().map(of_body).collect();
+        let row = |&[body, place]: &[u32; 2]| {
+            let Some(lines) = &bodies[body as usize] else { return [0.0; N] };
+            std::array::from_fn(|k| lines[k].map_or(0.0, |line| line[place as usize].f64()))
+        };
+        self.places.par_iter().map(row).collect()
+    }
+}
+
+impl<T: Laned, const D: usize> ColumnSource for Rows<'_, T, D> {
+    type Error = Infallible;
+    fn column<const N: usize>(&self, column: &ColumnDescription) -> Result<Vec<[f64; N]>, Infallible> {
+        Ok(self.values(column))
+    }
+}
+
 impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// What the particles of each body add up to, summed once a step for whoever asks.
     fn totals(&self) -> Arc<[Totals]> {
@@ -36,59 +75,23 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         known.get_or_insert_with(|| by_parts(self.state.bodies.len(), 1, sum).into()).clone()
     }
 
-    /// Where the columns of this name begin in each body, if it has them.
-    fn places_of(&self, name: &str, kind: Kind) -> Vec<Option<(usize, Columns<T, D>)>> {
-        let of_body = |body: &Body<T, D>| {
-            let mut columns = body.particles.described();
-            let found = columns.find(|(_, column)| column.name == name && column.kind == kind);
-            found.map(|(first, _)| (first, body.particles.view()))
-        };
-        self.state.bodies.iter().map(of_body).collect()
-    }
-
-    /// A column of all particles, given by body and place in memory: the components in space,
-    /// and zeros where a body has no such column.
-    fn column<const N: usize>(&self, rows: &[[u32; 2]], (name, kind): (&str, Kind)) -> Vec<[f64; N]> {
-        let places = self.places_of(name, kind);
-        let of_row = |&[body, place]: &[u32; 2]| {
-            let mut values = [0.0; N];
-            if let Some((first, columns)) = &places[body as usize] {
-                for entry in 0..kind.entries(D) {
-                    // SAFETY: the particle is the body's, which is borrowed for reading.
-                    let value = unsafe { *columns.at(first + entry, place as usize) };
-                    values[kind.place(D, entry)] = value.f64();
-                }
-            }
-            values
-        };
-        rows.par_iter().map(of_row).collect()
-    }
-
-    /// A column of one component.
-    fn numbers(&self, rows: &[[u32; 2]], name: &str) -> Vec<f64> {
-        self.column::<1>(rows, (name, Kind::Number)).into_flattened()
-    }
-
     /// What the laws of the bodies remember: what two laws call alike is one column.
-    fn remembered(&self, rows: &[[u32; 2]]) -> Vec<SnapshotColumn> {
+    fn remembered(&self, rows: &Rows<T, D>) -> Vec<SnapshotColumn> {
         let mut declared: Vec<ColumnDescription> = Vec::new();
         for history in self.state.bodies.iter().flat_map(|body| body.particles.history()) {
-            if !declared
-                .iter()
-                .any(|known| (known.name, known.kind) == (history.column.name, history.column.kind))
-            {
+            if !declared.iter().any(|known| known.name == history.column.name) {
                 declared.push(history.column);
             }
         }
-        let column = |ColumnDescription { name, unit, kind }| SnapshotColumn {
-            name: String::from(name),
-            unit: String::from(unit),
-            kind,
-            values: match kind {
-                Kind::Number => self.numbers(rows, name),
-                Kind::Vector | Kind::Rotation => self.column::<3>(rows, (name, kind)).into_flattened(),
-                Kind::Symmetric => self.column::<6>(rows, (name, kind)).into_flattened(),
-                Kind::Tensor => self.column::<9>(rows, (name, kind)).into_flattened(),
+        let column = |column: ColumnDescription| SnapshotColumn {
+            name: String::from(column.name),
+            unit: String::from(column.unit),
+            kind: column.kind,
+            values: match column.kind {
+                Kind::Number => rows.values::<1>(&column).into_flattened(),
+                Kind::Vector | Kind::Rotation => rows.values::<3>(&column).into_flattened(),
+                Kind::Symmetric => rows.values::<6>(&column).into_flattened(),
+                Kind::Tensor => rows.values::<9>(&column).into_flattened(),
             },
         };
         declared.into_iter().map(column).collect()
@@ -181,26 +184,13 @@ impl<T: Laned, const D: usize, B: Basis<T>> View for Engine<T, D, B> {
     }
 
     fn snapshot(&self) -> ParticleSnapshot {
-        // By body, then by number: where each particle stands.
-        let mut rows = Vec::with_capacity(self.particles());
-        for (i, body) in self.state.bodies.iter().enumerate() {
-            let first = rows.len();
-            rows.resize(first + body.particles.len(), [i as u32, 0]);
-            for (place, &number) in body.particles.numbers().iter().enumerate() {
-                rows[first + number as usize][1] = place as u32;
-            }
-        }
+        let rows = Rows::of(&self.state.bodies);
+        let Ok(snapshot) = ParticleSnapshot::of_columns(D, &rows);
         ParticleSnapshot {
-            dimension: D,
-            body: rows.par_iter().map(|&[body, _]| body).collect(),
+            body: rows.places.par_iter().map(|&[body, _]| body).collect(),
             number: (self.state.bodies.iter()).flat_map(|body| 0..body.particles.len() as u32).collect(),
-            position: self.column(&rows, ("position", Kind::Vector)),
-            velocity: self.column(&rows, ("velocity", Kind::Vector)),
-            mass: self.numbers(&rows, "mass"),
-            volume: self.numbers(&rows, "volume"),
-            stress: self.column(&rows, ("stress", Kind::Symmetric)),
-            deformation: self.column(&rows, ("deformation", Kind::Tensor)),
             history: self.remembered(&rows),
+            ..snapshot
         }
     }
 
@@ -216,16 +206,17 @@ impl<T: Laned, const D: usize, B: Basis<T>> View for Engine<T, D, B> {
         }
     }
 
-    fn starts(&self, body: usize) -> Vec<[f64; 3]> {
+    fn columns(&self, body: usize) -> Vec<ColumnDescription> {
+        self.state.bodies[body].particles.described().map(|(_, column)| column).collect()
+    }
+
+    fn column(&self, body: usize, name: &str) -> Result<ColumnRef<'_>, NoColumn> {
         let particles = &self.state.bodies[body].particles;
-        let columns = particles.view();
-        let mut starts = vec![[0.0; 3]; particles.len()];
-        for (i, &number) in particles.numbers().iter().enumerate() {
-            // SAFETY: the particle is the body's, which is borrowed for reading.
-            let at = |k: usize| unsafe { *columns.at(ColumnStart::<D>::START + k, i) };
-            starts[number as usize] = Vector::<T, D>::from_fn(at).space();
-        }
-        starts
+        let found = particles.column(name);
+        let (described, components) = found.ok_or_else(|| NoColumn::among(&self.columns(body), name))?;
+        let at =
+            move |row: usize, component: usize| components[component].map_or(0.0, |line| line[row].f64());
+        Ok(ColumnRef::new(described, particles.numbers(), at))
     }
 
     fn trace(&self, body: usize, wanted: &(dyn Fn(u32) -> bool + Sync)) -> Vec<TracedParticle> {

@@ -3,7 +3,6 @@
 
 use super::file::{OutputError, replace};
 use super::folder::OutputFolder;
-use super::particles::PARTICLE_BYTES;
 use super::table::{CsvTable, TableRow};
 use super::writer::Writer;
 use super::{FRINGES, FRINGES_ANIMATION, FRINGES_TABLE, Observer};
@@ -254,8 +253,7 @@ impl Observer for FringesObserver {
             self.contacts.read(view).into_iter().map(push).collect()
         });
         let exposure = due.then(|| Exposure { time, pushes, last: self.shutter.pass(time) });
-        let bytes = PARTICLE_BYTES * particles.mass.len();
-        self.writer.hand_over(bytes, move |writer| writer.look(&particles, exposure));
+        self.writer.hand_over(particles.bytes(), move |writer| writer.look(&particles, exposure));
         self.looked = true;
         Ok(())
     }

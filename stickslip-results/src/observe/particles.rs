@@ -4,33 +4,12 @@ use super::file::{OutputError, ReadError};
 use super::folder::OutputFolder;
 use super::frames::Frames;
 use super::schedule::Schedule;
-use super::vtu::{NUMBER, Points, SYMMETRIC, TENSOR, VECTOR, Vtu};
+use super::vtu::{NUMBER, Points, Vtu};
 use super::{Observer, PARTICLES};
-use crate::door::{ParticleSnapshot, SnapshotColumn, View};
+use crate::column::{ColumnDescription, DERIVED, IDENTITY, Kind, every, reserved};
+use crate::door::{ColumnSource, ParticleSnapshot, SnapshotColumn, View};
 use crate::scene::Scene;
-use crate::tensor::Symmetric;
 use std::path::Path;
-
-/// Bytes of a particle in a snapshot but for its history: 23 numbers and two whole ones.
-pub(super) const PARTICLE_BYTES: usize = 23 * size_of::<f64>() + 2 * size_of::<u32>();
-
-/// Arrays of every file; the others are history.
-const OF_ALL: [&str; 14] = [
-    "points",
-    "connectivity",
-    "offsets",
-    "types",
-    "velocity",
-    "stress",
-    "pressure",
-    "von_mises",
-    "deformation",
-    "body",
-    "number",
-    "mass",
-    "volume",
-    "dimension",
-];
 
 /// Writes `particles.pvd` and `particles/`.
 pub(super) struct ParticlesObserver {
@@ -55,9 +34,7 @@ impl Observer for ParticlesObserver {
         let time = view.time();
         self.frames.make_room()?;
         let snapshot = view.snapshot();
-        let history: usize = snapshot.history.iter().map(|column| size_of_val(&column.values[..])).sum();
-        let bytes = PARTICLE_BYTES * snapshot.mass.len() + history;
-        self.frames.push(time, bytes, move || encode_particles(&snapshot, time));
+        self.frames.push(time, snapshot.bytes(), move || encode_particles(&snapshot, time));
         self.schedule.recorded(time);
         Ok(())
     }
@@ -73,38 +50,37 @@ impl Observer for ParticlesObserver {
 
 /// A snapshot at a time [s] as a file for ParaView, ready to be written.
 ///
-/// Beside the columns of the snapshot it holds, from the Cauchy stress sigma (tension positive) [Pa]:
-///
-/// ```text
-/// pressure  = -tr(sigma) / 3
-/// von_mises = sqrt(3/2 s : s),   s = sigma - tr(sigma)/3 I
-/// ```
+/// It holds the columns of the snapshot, and behind each those of [`DERIVED`] that follow from it; first vectors and
+/// tensors, then whose each particle is, then numbers, then history. What a reader cannot know, the units of history,
+/// the file says.
 pub fn encode_particles(snapshot: &ParticleSnapshot, time: f64) -> Vtu {
-    let body: Vec<i32> = snapshot.body.iter().map(|&body| body as i32).collect();
-    let stress = || snapshot.stress.iter().map(|&sigma| Symmetric(sigma));
-    let pressure: Vec<f64> = stress().map(|sigma| -sigma.trace() / 3.0).collect();
-    let von_mises: Vec<f64> = stress()
-        .map(|sigma| {
-            let s = sigma.deviator();
-            (1.5 * s.double_dot(&s)).sqrt()
-        })
-        .collect();
-
     let mut file = Vtu::new(time, &snapshot.position);
     file.field("dimension", snapshot.dimension as f64);
-    file.point_data("velocity", VECTOR, snapshot.velocity.as_flattened());
-    file.point_data("stress", SYMMETRIC, snapshot.stress.as_flattened());
-    file.point_data("pressure", NUMBER, &pressure);
-    file.point_data("von_mises", NUMBER, &von_mises);
-    file.point_data("deformation", TENSOR, snapshot.deformation.as_flattened());
-    file.point_data("body", NUMBER, &body);
-    file.point_data("number", NUMBER, &snapshot.number);
-    file.point_data("mass", NUMBER, &snapshot.mass);
-    file.point_data("volume", NUMBER, &snapshot.volume);
+    // The positions are the points themselves.
+    let of_every = || snapshot.columns().filter(|(column, _)| column.name != POSITION);
+    let is_number = |(column, _): &(ColumnDescription, &[f64])| column.kind == Kind::Number;
+    of_every().filter(|column| !is_number(column)).for_each(|column| add_with_derived(&mut file, column));
+    let [body, number] = IDENTITY;
+    let bodies: Vec<i32> = snapshot.body.iter().map(|&body| body as i32).collect();
+    file.point_data(body, NUMBER, &bodies);
+    file.point_data(number, NUMBER, &snapshot.number);
+    of_every().filter(is_number).for_each(|column| add_with_derived(&mut file, column));
     for SnapshotColumn { name, unit, kind, values } in &snapshot.history {
         file.described((name, unit), *kind, values);
     }
     file
+}
+
+/// The column that a file has as its points.
+const POSITION: &str = every("position").name;
+
+/// Adds a column and what follows from it.
+fn add_with_derived(file: &mut Vtu, (column, values): (ColumnDescription, &[f64])) {
+    file.described((column.name, ""), column.kind, values);
+    for derived in DERIVED.iter().filter(|derived| derived.from == column.name) {
+        let values: Vec<f64> = values.chunks(column.kind.components()).map(derived.value).collect();
+        file.described((derived.column.name, ""), derived.column.kind, &values);
+    }
 }
 
 /// The particles in a file that [`encode_particles`] made, bit for bit.
@@ -113,29 +89,31 @@ pub fn encode_particles(snapshot: &ParticleSnapshot, time: f64) -> Vtu {
 /// The file is missing, cut short, or was written by another program.
 pub fn read_particles(path: &Path) -> Result<ParticleSnapshot, ReadError> {
     let file = Points::open(path)?;
+    let [body, number] = IDENTITY;
+    let remembered = |name: &str| {
+        let (unit, kind, values) = file.described(name)?;
+        Ok(SnapshotColumn { name: name.to_string(), unit, kind, values })
+    };
     Ok(ParticleSnapshot {
-        dimension: file.field("dimension")? as usize,
-        body: file.numbers::<i32>("body")?.into_iter().map(|body| body as u32).collect(),
-        number: file.numbers("number")?,
-        position: file.array("points")?,
-        velocity: file.array("velocity")?,
-        mass: file.numbers("mass")?,
-        volume: file.numbers("volume")?,
-        stress: file.array("stress")?,
-        deformation: file.array("deformation")?,
-        history: (file.names().filter(|name| !OF_ALL.contains(name)))
-            .map(|name| {
-                let (unit, kind, values) = file.described(name)?;
-                Ok(SnapshotColumn { name: name.to_string(), unit, kind, values })
-            })
+        body: file.numbers::<i32>(body)?.into_iter().map(|body| body as u32).collect(),
+        number: file.numbers(number)?,
+        history: (file.names().filter(|&name| !reserved().any(|known| known == name)))
+            .map(remembered)
             .collect::<Result<_, ReadError>>()?,
+        ..ParticleSnapshot::of_columns(file.field("dimension")? as usize, &file)?
     })
+}
+
+impl ColumnSource for Points {
+    type Error = ReadError;
+    fn column<const N: usize>(&self, column: &ColumnDescription) -> Result<Vec<[f64; N]>, ReadError> {
+        if column.name == POSITION { self.positions() } else { self.array(column.name) }
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::column::Kind;
     use std::fs;
 
     /// Enough particles for several blocks of every array, with values that use all their bits.
@@ -176,6 +154,27 @@ mod tests {
             encode_particles(&written, 0.25).write(&path).unwrap();
             assert_eq!(read_particles(&path).unwrap(), written, "{particles} particles");
         }
+    }
+
+    #[test]
+    fn arrays_follow_from_what_columns_are_described() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("00000.vtu");
+        let written = snapshot(3);
+        encode_particles(&written, 0.25).write(&path).unwrap();
+        let file = Points::open(&path).unwrap();
+        let names: Vec<&str> = file.names().collect();
+        let expected =
+            "velocity stress pressure von_mises deformation body number mass volume damage back_stress";
+        assert_eq!(names.join(" "), expected);
+        // Of a stress x (1, 2, 3; -1, 1/2, 0): s = x (-1, 0, 1; -1, 1/2, 0), s : s = 2 x^2 (1 + 1 + 1/4).
+        let (pressure, von_mises) = (file.numbers("pressure").unwrap(), file.numbers("von_mises").unwrap());
+        for (i, &[x, ..]) in written.stress.iter().enumerate() {
+            let expected: [f64; 2] = [-2.0 * x, x.abs() * 6.75_f64.sqrt()];
+            let off = |found: f64, expected: f64| (found / expected - 1.0).abs();
+            assert!(off(pressure[i], expected[0]) < 1e-14 && off(von_mises[i], expected[1]) < 1e-14);
+        }
+        assert_eq!(written.bytes(), 3 * (23 * 8 + 2 * 4 + 7 * 8));
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Numbers that do not fit each other: the grid, the domain, time, materials, motion out of the plane.
 
 use super::table::short;
+use crate::column::ColumnDescription;
 use crate::scene::{BodyMotion, Dimension, Domain, Expression, Face, NamedMaterial, Problem, Scene};
 
 /// Walls may miss the nodes of the grid by this share of a cell.
@@ -27,6 +28,7 @@ pub(super) fn check(scene: &Scene) -> Result<(), Problem> {
     for material in &scene.materials {
         check_material(&format!("materials.{}", material.name), material, scene)?;
     }
+    check_histories(scene)?;
     if let Some(domain) = &scene.domain {
         check_domain(domain, scene.discretization.cell, scene.dimension.axes())?;
     }
@@ -72,6 +74,22 @@ fn check_material(key: &str, material: &NamedMaterial, scene: &Scene) -> Result<
             _ => "K above 0, G at least 0 and a finite wave speed, else the material is not stable",
         },
     ))
+}
+
+/// What two laws call alike is one column in snapshots and files, so it must be of one kind.
+fn check_histories(scene: &Scene) -> Result<(), Problem> {
+    let all = || (scene.materials.iter()).flat_map(|of| of.law.history().iter().map(move |h| (of, h.column)));
+    for (i, (material, column)) in all().enumerate() {
+        let unlike =
+            |(_, other): &(_, ColumnDescription)| other.name == column.name && other.kind != column.kind;
+        if let Some((other, theirs)) = all().take(i).find(unlike) {
+            let key = format!("materials.{}.{}", material.name, material.law.name());
+            let found = format!("a history called `{}` of kind {:?}", column.name, column.kind);
+            let allowed = format!("{:?}, as in `{}`, or another name", theirs.kind, other.name);
+            return Err(problem(&key, found, &allowed));
+        }
+    }
+    Ok(())
 }
 
 fn check_domain(domain: &Domain, cell: f64, dimension: usize) -> Result<(), Problem> {

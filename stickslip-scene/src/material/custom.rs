@@ -3,9 +3,7 @@
 //! The laws of the list are compiled for several particles at a time; this one is called for each.
 //! Its history lies in columns like any other.
 
-use super::{
-    BadConstants, Entries, History, Isotropic, Law, MOST_HISTORY, Motion, Response, history_entries,
-};
+use super::{Entries, History, Isotropic, Law, MOST_HISTORY, Motion, Response, history_entries};
 use crate::tensor::{Matrix, Number, Symmetric, array};
 use serde::{Serialize, Serializer};
 use std::marker::PhantomData;
@@ -18,7 +16,8 @@ pub trait CustomLaw: std::fmt::Debug + Send + Sync {
     fn name(&self) -> &'static str;
 
     /// The columns that it remembers, with at most [`MOST_HISTORY`] components in space together. Their names must
-    /// differ from those that other laws of the scene give to columns of another kind.
+    /// differ from those that all particles and files have ([`crate::column::reserved`]), and from those that other
+    /// laws of the scene give to columns of another kind.
     fn history(&self) -> &'static [History] {
         &[]
     }
@@ -87,16 +86,6 @@ impl<T> Serialize for Custom<T> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.serialize_str(self.law.name())
     }
-}
-
-/// Whether the history of a law finds room.
-pub(super) fn check(law: &dyn CustomLaw) -> Result<(), BadConstants> {
-    let components = history_entries(law.history(), 3);
-    if components <= MOST_HISTORY {
-        return Ok(());
-    }
-    let found = format!("a history of {components} components");
-    Err(BadConstants::together(found, format!("at most {MOST_HISTORY} components in space")))
 }
 
 /// Lanes of any processor.

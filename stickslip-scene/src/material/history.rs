@@ -1,6 +1,7 @@
 //! What particles remember of their past: declared by their law, kept in columns of their own.
 
-use crate::column::{ColumnDescription, Kind};
+use super::BadConstants;
+use crate::column::{ColumnDescription, Kind, reserved};
 use crate::tensor::{Number, Symmetric, array};
 
 /// Most entries that the history of a particle in space may have.
@@ -40,6 +41,36 @@ pub const fn history_entries(history: &[History], dimension: usize) -> usize {
         i += 1;
     }
     sum
+}
+
+/// Whether a history finds room, and its columns have names of their own.
+///
+/// # Errors
+/// More components than [`MOST_HISTORY`]; a name that is no word, that every particle or every file has already, or
+/// that two columns have.
+pub(super) fn check(history: &[History]) -> Result<(), BadConstants> {
+    let components = history_entries(history, 3);
+    if components > MOST_HISTORY {
+        let found = format!("a history of {components} components");
+        return Err(BadConstants::together(found, format!("at most {MOST_HISTORY} components in space")));
+    }
+    for (i, name) in history.iter().map(|history| history.column.name).enumerate() {
+        let found = format!("a history called `{name}`");
+        if name.is_empty() || !name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_')
+        {
+            let allowed = "a word of lower-case letters, digits and underscores";
+            return Err(BadConstants::together(found, allowed));
+        }
+        if reserved().any(|taken| taken == name) {
+            let taken: Vec<&str> = reserved().collect();
+            let allowed = format!("a name that no column has already; these are taken: {}", taken.join(", "));
+            return Err(BadConstants::together(found, allowed));
+        }
+        if history[..i].iter().any(|before| before.column.name == name) {
+            return Err(BadConstants::together(format!("{found} twice"), "a name for each column"));
+        }
+    }
+    Ok(())
 }
 
 /// A law's history as it computes with it: the components of its columns in space, one after the other.
@@ -136,5 +167,35 @@ pub(super) fn kept<T: Number, E: Entries<T>, K: Keep<T>>(declared: &[History], h
             entry += 1;
         }
         first += kind.components();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const fn number(name: &'static str) -> History {
+        History::new(name, "", Kind::Number)
+    }
+
+    #[test]
+    fn names_that_files_have_already_are_refused() {
+        for name in ["velocity", "half_width", "pressure", "von_mises", "body", "number"] {
+            let bad = check(&[number("heat"), number(name)]).expect_err(name);
+            assert_eq!(bad.found, format!("a history called `{name}`"));
+            assert!(
+                bad.allowed.contains("position, velocity, ") && bad.allowed.contains("pressure"),
+                "{bad}"
+            );
+        }
+        for name in ["", "Heat", "back stress", "a<b"] {
+            let bad = check(&[number(name)]).expect_err(name);
+            assert!(bad.allowed.starts_with("a word of lower-case letters"), "{bad}");
+        }
+        let twice = check(&[number("heat"), number("heat")]).expect_err("twice");
+        assert_eq!(twice.found, "a history called `heat` twice");
+        let much = [History::new("strain", "", Kind::Tensor); 8];
+        assert_eq!(check(&much).expect_err("72").found, "a history of 72 components");
+        assert_eq!(check(&[number("heat"), number("pressure_2")]), Ok(()));
     }
 }

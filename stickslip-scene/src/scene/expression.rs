@@ -1,6 +1,6 @@
 //! Formulas in scene files.
 
-use super::formula::Function;
+use super::formula::{DEEPEST, Function};
 use serde::{Serialize, Serializer};
 
 /// A number that may depend on time: `"5 m/s * min(t / 1 ms, 1)"`, compiled.
@@ -69,12 +69,35 @@ impl Serialize for Expression {
     }
 }
 
+/// Numbers that well-formed code has on the stack at most: at each level of brackets and powers an operand and two
+/// arguments of `if` wait for what stands deeper, and the deepest has a number of its own.
+const HIGHEST: usize = 3 * DEEPEST + 1;
+
+/// Numbers that wait for their operator. They need no memory of the system's: a step asks for prescribed motion.
+struct Stack {
+    numbers: [f64; HIGHEST],
+    height: usize,
+}
+
+const WELL_FORMED: &str = "the parser emits an operator after its operands, and refuses what nests too deep";
+
+impl Stack {
+    fn push(&mut self, number: f64) {
+        *self.numbers.get_mut(self.height).expect(WELL_FORMED) = number;
+        self.height += 1;
+    }
+
+    fn pop(&mut self) -> f64 {
+        self.height = self.height.checked_sub(1).expect(WELL_FORMED);
+        self.numbers[self.height]
+    }
+}
+
 /// The number that well-formed code leaves on the stack at time `t` [s].
 pub(super) fn run(code: &[Instruction], t: f64) -> f64 {
-    const WELL_FORMED: &str = "the parser emits an operator after its operands";
-    let mut stack: Vec<f64> = Vec::with_capacity(code.len());
+    let mut stack = Stack { numbers: [0.0; HIGHEST], height: 0 };
     for instruction in code {
-        let mut pop = || stack.pop().expect(WELL_FORMED);
+        let mut pop = || stack.pop();
         let truth = |is: bool| if is { 1.0 } else { 0.0 };
         let value = match *instruction {
             Instruction::Push(value) => value,
@@ -104,5 +127,5 @@ pub(super) fn run(code: &[Instruction], t: f64) -> f64 {
         };
         stack.push(value);
     }
-    stack.pop().expect(WELL_FORMED)
+    stack.pop()
 }

@@ -12,6 +12,7 @@ use crate::trial::{largest_difference, take_steps};
 use stickslip::column::Kind;
 use stickslip::door::Simulation;
 use stickslip::material::{CustomLaw, History, Isotropic, Law, Material, Motion, NeoHookean};
+use stickslip::scene::{NamedMaterial, Scene};
 use stickslip::tensor::{Matrix, Symmetric};
 use stickslip::{scene, step};
 
@@ -59,7 +60,7 @@ impl CustomLaw for Counting {
     }
 }
 
-fn falling(dimension: &str, law: Option<&'static dyn CustomLaw>) -> Box<dyn Simulation> {
+fn scene_of(dimension: &str) -> Scene {
     let space = dimension == "3d";
     let v = |x: &str| if space { format!("[{x}, 0]") } else { format!("[{x}]") };
     let text = format!(
@@ -78,7 +79,11 @@ fn falling(dimension: &str, law: Option<&'static dyn CustomLaw>) -> Box<dyn Simu
         v("0, 0.45"),
         v("1, -4"),
     );
-    let mut scene = scene::parse("trial.toml", &text, &[]).unwrap_or_else(|e| panic!("{e:?}")).scene;
+    scene::parse("trial.toml", &text, &[]).unwrap_or_else(|e| panic!("{e:?}")).scene
+}
+
+fn falling(dimension: &str, law: Option<&'static dyn CustomLaw>) -> Box<dyn Simulation> {
+    let mut scene = scene_of(dimension);
     if let Some(law) = law {
         scene.materials[0].law = Material::custom(law);
     }
@@ -103,4 +108,51 @@ fn a_law_as_an_object_moves_particles_as_the_built_in_one_and_remembers() {
         assert_eq!(of("remembered").values, now.deformation.as_flattened(), "{dimension}");
         assert!(exact.history.is_empty());
     }
+}
+
+/// A law that remembers what it is told to.
+#[derive(Debug)]
+struct Remembering(&'static [History]);
+
+impl CustomLaw for Remembering {
+    fn name(&self) -> &'static str {
+        "remembering"
+    }
+
+    fn history(&self) -> &'static [History] {
+        self.0
+    }
+
+    fn elastic(&self) -> Isotropic<f64> {
+        ELASTIC
+    }
+
+    fn respond(&self, motion: &Motion<f64>, _: &mut [f64]) -> Symmetric<f64> {
+        NeoHookean { elastic: ELASTIC }.stress(motion)
+    }
+
+    fn strain_energy(&self, deformation: &Matrix<f64>, stress: &Symmetric<f64>, _: &[f64]) -> f64 {
+        NeoHookean { elastic: ELASTIC }.strain_energy(deformation, stress, &[])
+    }
+}
+
+#[test]
+fn a_history_with_a_name_that_is_taken_is_refused_before_the_run() {
+    let problem = |laws: &[&'static dyn CustomLaw]| {
+        let mut scene = scene_of("plane-strain");
+        let first = scene.materials[0].clone();
+        let of_law =
+            |&law: &&'static dyn CustomLaw| NamedMaterial { law: Material::custom(law), ..first.clone() };
+        scene.materials = laws.iter().map(of_law).collect();
+        step::build(&scene).err().expect("a problem")
+    };
+    static PRESSURE: Remembering = Remembering(&[History::new("pressure", "Pa", Kind::Number)]);
+    let taken = problem(&[&PRESSURE]);
+    assert_eq!(taken.key, "materials.rubber.remembering");
+    assert_eq!(taken.found, "a history called `pressure`");
+    assert!(taken.allowed.contains("position, velocity, spin, mass"), "{}", taken.allowed);
+    static AGE: Remembering = Remembering(&[History::new("age", "s", Kind::Vector)]);
+    let unlike = problem(&[&Counting, &AGE]);
+    assert_eq!(unlike.found, "a history called `age` of kind Vector");
+    assert_eq!(unlike.allowed, "Number, as in `rubber`, or another name");
 }

@@ -51,9 +51,8 @@ fn torn(cells: usize, dimension: &str) -> [f64; 3] {
     ));
     run_to(&mut *simulation, end, |_| {});
     let ledger = simulation.ledger();
-    let now = simulation.snapshot();
-    let damage = now.remembered("damage").expect("a law that breaks");
-    let broken = damage.values.iter().filter(|&&damage| damage > 0.5).count() as f64 / 8.0;
+    let damage = simulation.column(0, "damage").expect("a law that breaks");
+    let broken = damage.rows().filter(|(_, [damage])| *damage > 0.5).count() as f64 / 8.0;
     [ledger.plastic / (ENERGY * height), ledger.total / ledger.external_work, broken]
 }
 

@@ -8,6 +8,7 @@ mod trial;
 mod body_at_rest;
 mod brazilian_disk;
 mod colliding_disks;
+mod columns;
 mod custom_law;
 mod empty_space;
 mod exact_surfaces;

@@ -9,6 +9,8 @@ mod separation;
 mod surface;
 mod traction;
 
+pub use regression::NearParticle;
+
 use super::{Change, Facing, LawInputs, Pair, room};
 use crate::scene::ContactLaw;
 use crate::tensor::{Real, Vector};
@@ -32,8 +34,9 @@ pub trait PairLaw<T: Real, const D: usize>: Sync {
         Span::EachUse
     }
 
-    /// Normal and gap of a pair at a node, unless they are so far apart that they cannot touch in this step.
-    fn facing(&self, look: &LawInputs<T, D>) -> Option<Facing<T, D>> {
+    /// Normal and gap of a pair at a node, unless they are so far apart that they cannot touch in this step. A law that
+    /// looks at single particles lists them in `points`, which are the thread's and kept from step to step.
+    fn facing(&self, look: &LawInputs<T, D>, _points: &mut Vec<NearParticle<T, D>>) -> Option<Facing<T, D>> {
         Some(room(look))
     }
 

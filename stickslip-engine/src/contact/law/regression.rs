@@ -28,21 +28,21 @@ const LONGEST: f64 = 0.5;
 const FIRST_SLOPE: f64 = 4.0;
 
 /// A particle near a node: where it is [cells], which body it is of (-1 or 1), and its deformed half-axes [cells].
-#[derive(Clone, Copy)]
-struct NearParticle<T, const D: usize> {
+#[derive(Clone, Copy, Debug)]
+pub struct NearParticle<T, const D: usize> {
     arm: Vector<T, D>,
     label: T,
     axes: Matrix<T>,
 }
 
 impl<T: Real, const D: usize> PairLaw<T, D> for Regression {
-    fn facing(&self, look: &LawInputs<T, D>) -> Option<Facing<T, D>> {
+    fn facing(&self, look: &LawInputs<T, D>, points: &mut Vec<NearParticle<T, D>>) -> Option<Facing<T, D>> {
         let [a, b] = look.pair.map(|side| &look.sides[side]);
         let Some(start) = (b.volume_gradient - a.volume_gradient).direction() else {
             return Some(Facing { normal: None, gap: T::ONE });
         };
         let per_cell = T::ONE / look.near.lattice.cell;
-        let mut points = Vec::new();
+        points.clear();
         for (side, label) in [(a, -T::ONE), (b, T::ONE)] {
             look.near.around(side.body, look.node, |arm, particle, mirror| {
                 points.push(NearParticle {
@@ -52,8 +52,8 @@ impl<T: Real, const D: usize> PairLaw<T, D> for Regression {
                 });
             });
         }
-        let normal = plane(&points, start);
-        Some(Facing { normal: Some(normal), gap: gap(&points, normal) })
+        let normal = plane(points, start);
+        Some(Facing { normal: Some(normal), gap: gap(points, normal) })
     }
 
     fn change(&self, pair: &Pair<T, D>, velocities: [Vector<T, D>; 2]) -> Change<T, D> {

@@ -10,8 +10,8 @@
 //! fill their domains. Extrapolated positions see a body through its mass around the node,
 //! so the gap is known to a fraction of a cell.
 
-use super::PairLaw;
 use super::traction::joint;
+use super::{NearParticle, PairLaw};
 use crate::contact::{Change, Facing, LawInputs, Pair, common_normal};
 use crate::tensor::{Real, Vector};
 
@@ -30,7 +30,7 @@ fn edge<T: Real>(center: T) -> T {
 }
 
 impl<T: Real, const D: usize> PairLaw<T, D> for Separation {
-    fn facing(&self, look: &LawInputs<T, D>) -> Option<Facing<T, D>> {
+    fn facing(&self, look: &LawInputs<T, D>, _: &mut Vec<NearParticle<T, D>>) -> Option<Facing<T, D>> {
         let [a, b] = look.pair.map(|side| &look.sides[side]);
         let Some(normal) = (b.volume_gradient - a.volume_gradient).direction() else {
             return Some(Facing { normal: None, gap: T::ONE });

@@ -12,7 +12,7 @@
 //! for the velocities that strain and move particles is not part of the sum: bodies that press on each other strain
 //! with a common normal velocity, whether they are being compressed or released.
 
-use super::PairLaw;
+use super::{NearParticle, PairLaw};
 use crate::body::Body;
 use crate::contact::{BodyShare, Change, Facing, LawInputs, Pair, Span, Use};
 use crate::tensor::{Real, Vector};
@@ -29,7 +29,7 @@ impl<T: Real, const D: usize> PairLaw<T, D> for Surface {
         true
     }
 
-    fn facing(&self, look: &LawInputs<T, D>) -> Option<Facing<T, D>> {
+    fn facing(&self, look: &LawInputs<T, D>, _: &mut Vec<NearParticle<T, D>>) -> Option<Facing<T, D>> {
         let pair = look.pair.map(|side| &look.sides[side]);
         // Seen from the body with less volume there: the other may go on far beyond it.
         let near = if pair[0].surface.volume <= pair[1].surface.volume { 0 } else { 1 };

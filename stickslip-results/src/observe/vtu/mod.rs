@@ -14,7 +14,7 @@ mod write;
 
 pub(super) use read::Points;
 pub use write::Vtu;
-pub(super) use write::{NUMBER, SYMMETRIC, TENSOR, VECTOR};
+pub(super) use write::{NUMBER, VECTOR};
 
 /// Bytes of a full block before compression: a multiple of every number's size, small enough to stay in a core's cache.
 const BLOCK: usize = 1 << 17;

@@ -19,8 +19,11 @@ pub(in crate::observe) struct Points {
     appended: usize,
     count: usize,
     fields: BTreeMap<String, f64>,
+    /// Where the points are.
+    positions: Option<ArrayPlace>,
+    /// What each point has.
     arrays: BTreeMap<String, ArrayPlace>,
-    /// Names of the arrays in the order of the file.
+    /// Names of the arrays of what each point has, in the order of the file.
     names: Vec<String>,
 }
 
@@ -42,6 +45,7 @@ impl Points {
             appended: 0,
             count: 0,
             fields: BTreeMap::new(),
+            positions: None,
             arrays: BTreeMap::new(),
             names: Vec::new(),
         };
@@ -59,7 +63,7 @@ impl Points {
         let header = str::from_utf8(&bytes[..appended]).map_err(|_| missing("readable header"))?;
 
         let mut reader = Reader::from_str(header);
-        let mut field = None;
+        let (mut field, mut section) = (None, String::new());
         loop {
             match reader.read_event()? {
                 Event::Start(tag) if tag.name().0 == "VTKFile" => {
@@ -86,9 +90,17 @@ impl Points {
                         unit: attribute(&tag, "Unit").unwrap_or_default(),
                     };
                     let name: String = attribute(&tag, "Name")?;
-                    self.names.push(name.clone());
-                    self.arrays.insert(name, place);
+                    match &section[..] {
+                        "Points" => self.positions = Some(place),
+                        "PointData" => {
+                            self.names.push(name.clone());
+                            self.arrays.insert(name, place);
+                        }
+                        // Each point is a cell of its own.
+                        _ => {}
+                    }
                 }
+                Event::Start(tag) => section = tag.name().0.to_string(),
                 Event::Eof => return Ok(()),
                 _ => {}
             }
@@ -100,7 +112,7 @@ impl Points {
         self.fields.get(name).copied().ok_or_else(|| missing(&format!("field `{name}`")).at(&self.path))
     }
 
-    /// Names of its arrays, in their order.
+    /// Names of what each point has, in their order.
     pub(in crate::observe) fn names(&self) -> impl Iterator<Item = &str> {
         self.names.iter().map(String::as_str)
     }
@@ -129,12 +141,21 @@ impl Points {
         &self,
         name: &str,
     ) -> Result<Vec<[T; N]>, ReadError> {
-        self.unpack(name).map_err(|problem| problem.at(&self.path))
+        self.unpack(name, self.arrays.get(name)).map_err(|problem| problem.at(&self.path))
     }
 
-    fn unpack<T: Scalar, const N: usize>(&self, name: &str) -> Result<Vec<[T; N]>, ReadProblem> {
+    /// Where the points are.
+    pub(in crate::observe) fn positions<T: Scalar, const N: usize>(&self) -> Result<Vec<[T; N]>, ReadError> {
+        self.unpack("points", self.positions.as_ref()).map_err(|problem| problem.at(&self.path))
+    }
+
+    fn unpack<T: Scalar, const N: usize>(
+        &self,
+        name: &str,
+        place: Option<&ArrayPlace>,
+    ) -> Result<Vec<[T; N]>, ReadProblem> {
         let wanted = || missing(&format!("array `{name}` of {} with {N} components", T::NAME));
-        let place = self.arrays.get(name).ok_or_else(wanted)?;
+        let place = place.ok_or_else(wanted)?;
         if place.kind != T::NAME || place.components != N {
             return Err(wanted());
         }

@@ -51,8 +51,8 @@ fn components(kind: Kind) -> &'static [&'static str] {
 /// Names of the components of a number, of a vector, of a symmetric tensor and of a tensor, in VTK's order.
 pub(in crate::observe) const NUMBER: &[&str] = &[""];
 pub(in crate::observe) const VECTOR: &[&str] = &["X", "Y", "Z"];
-pub(in crate::observe) const SYMMETRIC: &[&str] = &["XX", "YY", "ZZ", "XY", "YZ", "XZ"];
-pub(in crate::observe) const TENSOR: &[&str] = &["XX", "XY", "XZ", "YX", "YY", "YZ", "ZX", "ZY", "ZZ"];
+const SYMMETRIC: &[&str] = &["XX", "YY", "ZZ", "XY", "YZ", "XZ"];
+const TENSOR: &[&str] = &["XX", "XY", "XZ", "YX", "YY", "YZ", "ZX", "ZY", "ZZ"];
 
 impl Vtu {
     /// Points at a time [s], each a cell of its own, so that ParaView can threshold and select them one by one.

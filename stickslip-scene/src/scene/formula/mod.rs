@@ -16,6 +16,7 @@ mod token;
 
 pub(super) use function::Function;
 pub(super) use kind::NumberKind;
+pub(super) use parser::DEEPEST;
 
 use super::error::Fault;
 use super::expression::Expression;

@@ -11,7 +11,7 @@ use crate::scene::units::{Powers, Unit};
 use std::ops::Range;
 
 /// Brackets and powers may nest this deep.
-const DEEPEST: usize = 64;
+pub const DEEPEST: usize = 64;
 /// Strength of a sign before its operand: above `*`, below `^`.
 const SIGN: u8 = 6;
 

@@ -175,6 +175,20 @@ fn deep_nesting_is_refused() {
     assert_eq!(value(&"1 + ".repeat(1000).add("1")), 1001.0);
 }
 
+/// Each level lets as many numbers wait as it can: an operand, two arguments, and what a comparison turned around.
+#[test]
+fn the_deepest_formulas_have_a_value() {
+    let nested = |before: &str, after: &str, levels: usize| {
+        let text = format!("{}t{}", before.repeat(levels), after.repeat(levels));
+        read(&text).expression.at(0.5)
+    };
+    assert_eq!(nested("0 * t + if(t < 1, ", ", 0)", 31), 0.5);
+    assert_eq!(nested("if(t > 1, 0, ", ")", 62), 0.5);
+    assert_eq!(nested("if(", " > 2 * t, 1, 0.5)", 61), 0.5);
+    assert_eq!(nested("atan2(0 * t, 1) + min(2 * t, ", ")", 31), 0.5);
+    assert_eq!(nested("1 + 2 * (0 * t + ", ") ^ 1 - 2 + if(t < 0, t, 0 * t)", 15), -16_383.0);
+}
+
 use std::ops::Add;
 
 proptest! {

@@ -36,7 +36,8 @@ pub(super) fn of_bodies(scene: &Scene, view: &dyn View) -> Vec<Neighbours> {
 
 impl Neighbours {
     fn new(view: &dyn View, body: usize, all: usize) -> Self {
-        let start = view.starts(body);
+        let Ok(start) = view.column(body, "start") else { return Neighbours::default() };
+        let start = start.by_number::<3>();
         let chosen = chosen(start.len(), (MOST * start.len() / all.max(1)).max(FEWEST));
         let mut seeds = vec![false; start.len()];
         chosen.iter().for_each(|&number| seeds[number as usize] = true);

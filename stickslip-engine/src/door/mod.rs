@@ -3,7 +3,13 @@
 //! Everything that crosses this door is `f64`, SI and three-dimensional;
 //! plane scenes have zeros in the third component.
 
-use crate::column::Kind;
+mod column;
+mod snapshot;
+
+pub use column::{ColumnRef, NoColumn};
+pub use snapshot::{ColumnSource, ParticleSnapshot, SnapshotColumn};
+
+use crate::column::ColumnDescription;
 use serde::Serialize;
 use std::collections::HashMap;
 
@@ -41,11 +47,19 @@ pub trait View {
             });
         }
     }
-    /// Where each particle of a body was before anything moved, by their numbers; empty where nobody knows [m].
-    fn starts(&self, _body: usize) -> Vec<[f64; 3]> {
+    /// What each particle of a body has: the columns of [`crate::column::EVERY`], and what the body's law remembers.
+    /// None where nobody knows.
+    fn columns(&self, _body: usize) -> Vec<ColumnDescription> {
         Vec::new()
     }
-    /// The particles of a body whose numbers are `wanted`, in no order that means anything; none without starts.
+    /// The column of this name of a body's particles, where it lies; nothing is copied.
+    ///
+    /// # Errors
+    /// The body's particles have no such column; the error names those that they have.
+    fn column(&self, body: usize, name: &str) -> Result<ColumnRef<'_>, NoColumn> {
+        Err(NoColumn::among(&self.columns(body), name))
+    }
+    /// The particles of a body whose numbers are `wanted`, in no order that means anything.
     fn trace(&self, _body: usize, _wanted: &(dyn Fn(u32) -> bool + Sync)) -> Vec<TracedParticle> {
         Vec::new()
     }
@@ -242,67 +256,6 @@ pub struct ContactPatch {
     pub half_width: f64,
     /// Impulses between the two since the start, the sum of their magnitudes over nodes and steps [N s].
     pub impulse: f64,
-}
-
-/// Particles of all bodies as columns of equal length.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct ParticleSnapshot {
-    /// 2 or 3.
-    pub dimension: usize,
-    /// Index of the body.
-    pub body: Vec<u32>,
-    /// Number of the particle in its body, from the filling; it never changes.
-    pub number: Vec<u32>,
-    /// Position [m].
-    pub position: Vec<[f64; 3]>,
-    /// Velocity [m/s].
-    pub velocity: Vec<[f64; 3]>,
-    /// Mass [kg].
-    pub mass: Vec<f64>,
-    /// Volume now [m^3].
-    pub volume: Vec<f64>,
-    /// Cauchy stress xx, yy, zz, xy, yz, xz, tension positive [Pa].
-    pub stress: Vec<[f64; 6]>,
-    /// Deformation gradient, row by row [-].
-    pub deformation: Vec<[f64; 9]>,
-    /// What the laws of the bodies remember; of the particles of other bodies zero.
-    pub history: Vec<SnapshotColumn>,
-}
-
-/// A column of history in a snapshot: what a law calls it, and a value for every particle of all bodies.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SnapshotColumn {
-    /// Its name.
-    pub name: String,
-    /// SI unit; empty for a number without one.
-    pub unit: String,
-    /// What each particle has.
-    pub kind: Kind,
-    /// The components in space of one particle after the other.
-    pub values: Vec<f64>,
-}
-
-impl SnapshotColumn {
-    /// One number for a particle: a number itself, the length of a vector, and of a tensor the root of the sum of its
-    /// squared entries (Frobenius).
-    pub fn magnitude(&self, particle: usize) -> f64 {
-        let count = self.kind.components();
-        let values = &self.values[particle * count..][..count];
-        let of_squares = |values: &[f64]| values.iter().map(|x| x * x).sum::<f64>();
-        match self.kind {
-            Kind::Number => values[0],
-            // The entries beside the diagonal stand for two each.
-            Kind::Symmetric => (of_squares(values) + of_squares(&values[3..])).sqrt(),
-            Kind::Vector | Kind::Rotation | Kind::Tensor => of_squares(values).sqrt(),
-        }
-    }
-}
-
-impl ParticleSnapshot {
-    /// The history of this name; `None` where no body's law has it.
-    pub fn remembered(&self, name: &str) -> Option<&SnapshotColumn> {
-        self.history.iter().find(|column| column.name == name)
-    }
 }
 
 /// A particle now, as [`Simulation::visit`] shows it.

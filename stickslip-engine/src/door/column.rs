@@ -1,0 +1,94 @@
+//! A column of a body's particles where it lies in the engine's memory, whatever its precision and dimension.
+
+use crate::column::ColumnDescription;
+use std::borrow::Cow;
+
+/// A column of a body's particles: borrowed, and read as f64 in SI units and three dimensions.
+///
+/// Its rows are in the order of memory, the same for all columns of a body as long as nothing steps. That order changes
+/// from step to step; a particle's number never does.
+pub struct ColumnRef<'a> {
+    /// Name, unit and components.
+    pub description: ColumnDescription,
+    numbers: Cow<'a, [u32]>,
+    at: Box<dyn Fn(usize, usize) -> f64 + 'a>,
+}
+
+impl<'a> ColumnRef<'a> {
+    /// A column of particles with these numbers, which are 0, 1, 2 ... in any order: `at(row, component)` is a
+    /// component in space.
+    pub fn new(
+        description: ColumnDescription,
+        numbers: impl Into<Cow<'a, [u32]>>,
+        at: impl Fn(usize, usize) -> f64 + 'a,
+    ) -> Self {
+        ColumnRef { description, numbers: numbers.into(), at: Box::new(at) }
+    }
+
+    /// Particles of the body.
+    pub fn len(&self) -> usize {
+        self.numbers.len()
+    }
+
+    /// Whether the body has none.
+    pub fn is_empty(&self) -> bool {
+        self.numbers.is_empty()
+    }
+
+    /// Each particle's number, and its `N` components in space.
+    ///
+    /// # Panics
+    /// `N` is not what [`Kind::components`](crate::column::Kind::components) says.
+    pub fn rows<const N: usize>(&self) -> impl ExactSizeIterator<Item = (u32, [f64; N])> {
+        let ColumnDescription { name, kind, .. } = self.description;
+        assert_eq!(N, kind.components(), "components of `{name}`, which is a {kind:?}");
+        let row = |(row, &number): (usize, &u32)| (number, std::array::from_fn(|k| (self.at)(row, k)));
+        self.numbers.iter().enumerate().map(row)
+    }
+
+    /// The `N` components in space of each particle, by its number.
+    ///
+    /// # Panics
+    /// `N` is not what [`Kind::components`](crate::column::Kind::components) says.
+    pub fn by_number<const N: usize>(&self) -> Vec<[f64; N]> {
+        let mut values = vec![[0.0; N]; self.len()];
+        self.copy_to(values.as_flattened_mut());
+        values
+    }
+
+    /// Writes the components in space of one particle after the other, by their numbers.
+    ///
+    /// # Panics
+    /// There is not room for exactly so many.
+    pub fn copy_to(&self, values: &mut [f64]) {
+        let count = self.description.kind.components();
+        assert_eq!(values.len(), count * self.len(), "room for `{}`", self.description.name);
+        for (row, &number) in self.numbers.iter().enumerate() {
+            let to = &mut values[number as usize * count..][..count];
+            to.iter_mut().enumerate().for_each(|(k, x)| *x = (self.at)(row, k));
+        }
+    }
+}
+
+impl std::fmt::Debug for ColumnRef<'_> {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(formatter, "{:?} of {} particles", self.description, self.len())
+    }
+}
+
+/// A column that particles do not have.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("found a column `{name}`, which the particles of the body do not have; allowed: {}", known.join(", "))]
+pub struct NoColumn {
+    /// What was asked for.
+    pub name: String,
+    /// What there is.
+    pub known: Vec<&'static str>,
+}
+
+impl NoColumn {
+    /// No column of this name among those there are.
+    pub fn among(columns: &[ColumnDescription], name: &str) -> Self {
+        NoColumn { name: name.to_string(), known: columns.iter().map(|column| column.name).collect() }
+    }
+}
