@@ -82,7 +82,7 @@ impl<'a> FramePictures<'a> {
             bench: OpticalBench::new(&polariscope, stage),
             polariscope,
             exposure: choice.exposure.or(camera.as_ref().map(|camera| camera.exposure)).unwrap_or(0.0),
-            largest: contacts.iter().fold(0.0, |largest, row| largest.max(row.normal)),
+            largest: contacts.iter().fold(0.0, |largest, row| largest.max(row.mean.normal)),
             contacts,
         })
     }
@@ -104,7 +104,7 @@ impl<'a> FramePictures<'a> {
         let body = |name: &str| names.iter().position(|known| known == name);
         let rows = self.contacts.iter().filter(|row| Some(row.time) == later);
         rows.filter_map(|row| {
-            Some(Push { bodies: [body(&row.body_a)?, body(&row.body_b)?], force: row.normal })
+            Some(Push { bodies: [body(&row.body_a)?, body(&row.body_b)?], force: row.mean.normal })
         })
         .collect()
     }

@@ -134,7 +134,9 @@ impl Trial {
         };
         self.step = step;
         self.contacts = self.cursor.read(&*self.simulation);
-        if self.record.first_contact.is_none() && self.contacts.iter().any(|contact| contact.normal > 0.0) {
+        if self.record.first_contact.is_none()
+            && self.contacts.iter().any(|contact| contact.mean.normal > 0.0)
+        {
             self.record.first_contact = Some(now);
         }
         self.look(false);
@@ -242,7 +244,7 @@ impl Trial {
     /// Force of body `a` on body `b` in the last step [N], `a` before `b` in the scene.
     pub fn force(&self, a: usize, b: usize) -> [f64; 3] {
         let contact = self.contacts.iter().find(|contact| (contact.body_a, contact.body_b) == (a, b));
-        contact.map_or([0.0; 3], |contact| contact.force)
+        contact.map_or([0.0; 3], |contact| contact.mean.force)
     }
 
     /// Name, scene and record.

@@ -3,7 +3,8 @@
 use super::case::{PaperCase, PaperScene, TouchRule};
 use super::momentum::momentum_error;
 use crate::failure::Failure;
-use stickslip::observe::{ArrivalRow, ContactRow, EnergyRow, Frame, Results};
+use stickslip::door::Ledger;
+use stickslip::observe::{ArrivalRow, ContactRow, Frame, Results};
 use stickslip::polariscope::{self, ImageWindow, OpticalBench, Stage};
 use stickslip::scene::Fringes;
 
@@ -80,7 +81,8 @@ impl<'a> Chain<'a> {
         let rows = self.results.bodies_table().map_err(Failure::input)?;
         let first = |disk: &&String| {
             let states = rows.iter().filter(|row| row.body == **disk);
-            let states: Vec<[f64; 2]> = states.map(|row| [row.time, row.vx.hypot(row.vy)]).collect();
+            let states: Vec<[f64; 2]> =
+                states.map(|row| [row.time, row.state.velocity[0].hypot(row.state.velocity[1])]).collect();
             let passed = states.windows(2).find(|pair| pair[1][1] >= speed)?;
             let [[t0, v0], [t1, v1]] = [passed[0], passed[1]];
             Some((t0 + (speed - v0) / (v1 - v0) * (t1 - t0)) / self.transit)
@@ -100,7 +102,11 @@ impl<'a> Chain<'a> {
         let rows = self.results.contacts_table().map_err(Failure::input)?;
         let of_pair =
             |row: &&ContactRow| [&row.body_a, &row.body_b] == pair || [&row.body_b, &row.body_a] == pair;
-        Ok(rows.iter().filter(of_pair).find(|row| row.normal >= force).map(|row| row.time / self.transit))
+        Ok(rows
+            .iter()
+            .filter(of_pair)
+            .find(|row| row.mean.normal >= force)
+            .map(|row| row.time / self.transit))
     }
 
     /// Names of the bodies of the frame but for the striker.
@@ -149,8 +155,8 @@ impl<'a> Chain<'a> {
     /// The table cannot be read.
     pub fn energy_gain(&self) -> Result<Vec<[f64; 2]>, Failure> {
         let rows = self.results.energy_table().map_err(Failure::input)?;
-        let worked = rows.iter().filter(|row| row.external_work != 0.0);
-        Ok(worked.map(|row| [row.time / self.transit, gain(row)]).collect())
+        let worked = rows.iter().filter(|row| row.ledger.external_work != 0.0);
+        Ok(worked.map(|row| [row.time / self.transit, gain(&row.ledger)]).collect())
     }
 
     /// Takes pictures of the fringes.
@@ -184,15 +190,15 @@ impl<'a> Chain<'a> {
         };
         Ok(Balance {
             time: end.time / self.transit,
-            energy: gain(end),
+            energy: gain(&end.ledger),
             momentum: momentum_error(self.results, time)?.unwrap_or(f64::NAN),
         })
     }
 }
 
 /// Energy from nowhere over the striker's work until then [-].
-fn gain(row: &EnergyRow) -> f64 {
-    row.total / row.external_work.abs()
+fn gain(ledger: &Ledger) -> f64 {
+    ledger.total / ledger.external_work.abs()
 }
 
 impl PolariscopeCamera<'_> {

@@ -47,8 +47,9 @@ fn is_watched(name: &str) -> bool {
 /// Mass [kg] and momentum [kg m/s] of the watched bodies at a time.
 fn moving(bodies: &[BodyRow], time: f64) -> (f64, [f64; 3]) {
     let rows = bodies.iter().filter(|row| row.time == time && is_watched(&row.body));
-    rows.fold((0.0, [0.0; 3]), |(mass, [x, y, z]), row| {
-        (mass + row.mass, [x + row.mass * row.vx, y + row.mass * row.vy, z + row.mass * row.vz])
+    rows.fold((0.0, [0.0; 3]), |(mass, momentum), BodyRow { state, .. }| {
+        let more = state.velocity.map(|v| state.mass * v);
+        (mass + state.mass, [0, 1, 2].map(|axis| momentum[axis] + more[axis]))
     })
 }
 
@@ -65,7 +66,7 @@ fn impulse(body: &str, contacts: &[ContactRow], energy: &[EnergyRow], until: f64
         // A row is a mean from the row of all tables before it to its own.
         let before = energy[..energy.partition_point(|other| other.time < row.time)].last();
         let duration = row.time - before.map_or(0.0, |other| other.time);
-        for (sum, force) in sum.iter_mut().zip([row.fx, row.fy, row.fz]) {
+        for (sum, force) in sum.iter_mut().zip(row.mean.force) {
             *sum += sign * force * duration;
         }
     }
@@ -75,6 +76,7 @@ fn impulse(body: &str, contacts: &[ContactRow], energy: &[EnergyRow], until: f64
 #[cfg(test)]
 mod tests {
     use super::*;
+    use stickslip::door::ContactMean;
 
     #[test]
     fn impulses_are_forces_times_intervals_whoever_comes_first() {
@@ -83,8 +85,7 @@ mod tests {
             time,
             body_a: body_a.to_owned(),
             body_b: body_b.to_owned(),
-            fx,
-            ..ContactRow::default()
+            mean: ContactMean { force: [fx, 0.0, 0.0], ..ContactMean::default() },
         };
         let contacts = [
             row(0.5, "striker", "disk_1", -4.0),

@@ -43,9 +43,11 @@ pub use grid::encode_grid;
 pub use manifest::{Manifest, Performance, ReferenceCurve, RunWarning, Status, Timing};
 pub use network::Network;
 pub use particles::{encode_particles, read_particles};
+pub use points::PointSample;
 pub use probes::ProbeRow;
 pub use recorder::Recorder;
 pub use results::Results;
+pub use table::{Entry, TableRow};
 pub use vtu::Vtu;
 
 use crate::door::View;

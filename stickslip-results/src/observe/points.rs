@@ -5,7 +5,7 @@ use crate::scene::{Anchor, BodyMotion, Scene};
 
 /// Motion and stress of the material at a point.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct PointSample {
+pub struct PointSample {
     /// Where it is [m].
     pub position: [f64; 3],
     /// Its velocity [m/s].

@@ -11,10 +11,9 @@ use super::fronts::{FrontRow, FrontSpeedRow};
 use super::manifest::Manifest;
 use super::particles::read_particles;
 use super::probes::ProbeRow;
-use super::table::read_rows;
+use super::table::{TableRow, read_rows};
 use super::{ARRIVALS, BODIES, CONTACTS, ENERGY, FRINGES_TABLE, FRONT_SPEEDS, FRONTS, PARTICLES, PROBES};
 use crate::door::ParticleSnapshot;
-use serde::de::DeserializeOwned;
 use std::path::{Path, PathBuf};
 
 /// The results of a run, finished or not.
@@ -125,7 +124,7 @@ impl Results {
     }
 
     /// The rows of a table that is there only if the scene asks for it.
-    fn measured<R: DeserializeOwned>(&self, name: &str) -> Result<Vec<R>, ReadError> {
+    fn measured<R: TableRow>(&self, name: &str) -> Result<Vec<R>, ReadError> {
         let path = self.folder.join(name);
         if path.exists() { read_rows(&path) } else { Ok(Vec::new()) }
     }

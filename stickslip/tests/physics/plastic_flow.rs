@@ -59,7 +59,7 @@ fn press(dimension: &str, cell: f64, constraint: f64) {
         pressure = constraint * (YIELD + HARDENING * strain);
     }
     // The law bounds J sigma, and J over the height is the face.
-    let force = contacts[0].normal / (pressure / height);
+    let force = contacts[0].mean.normal / (pressure / height);
     let now = simulation.snapshot();
     let plastic_strain = &now.remembered("plastic_strain").expect("a law that flows").values;
     let found = mean_where(&now, |p| now.body[p] == 0, |p| plastic_strain[p]);
