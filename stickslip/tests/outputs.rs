@@ -117,8 +117,8 @@ fn the_record_of_the_run_says_what_was_run_and_how_fast() {
     assert_eq!(manifest.performance, summary.performance);
     assert_eq!(manifest.performance.threads, 2);
     assert_eq!(manifest.performance.timings[0].verb, "fly");
-    assert_eq!(manifest.scene["time"]["end"], 1.0);
-    assert_eq!(manifest.scene["parameters"]["speed"], 2.0);
+    let scene = results.scene().unwrap();
+    assert_eq!((scene.time.end, scene.number("speed")), (Some(1.0), 2.0));
     let curve = &manifest.references[0];
     assert_eq!((curve.body.as_str(), curve.quantity.as_str()), ("sphere", "vx"));
     assert_eq!(curve.points.last(), Some(&[1.0, 2.5]));

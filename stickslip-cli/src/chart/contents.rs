@@ -62,7 +62,7 @@ pub fn chart(results: &Results, choice: &ChartChoice) -> Result<Chart, ReadError
         None if choice.bodies.is_empty() && choice.quantities.is_empty() => of_everything(results)?,
         None => of_bodies(results, choice)?,
     };
-    ChartTime::of(results).apply(&mut chart);
+    ChartTime::of(results)?.apply(&mut chart);
     Ok(chart)
 }
 

@@ -4,6 +4,7 @@ use super::contents::{ChartChoice, ChartTable, MOST_CURVES};
 use super::{Chart, Curve, Panel};
 use crate::drawing::body_color;
 use stickslip::observe::{ArrivalRow, ContactRow, FrontSpeedRow, ProbeRow, ReadError, Results, TableRow};
+use stickslip::scene::TimeUnit;
 
 /// Columns of `probes.csv` that can be drawn.
 pub const PROBE_COLUMNS: &[&str] = &[
@@ -32,12 +33,14 @@ pub struct ChartTime {
 
 impl ChartTime {
     /// The unit of a run.
-    pub fn of(results: &Results) -> Self {
-        let unit = &results.manifest().scene["outputs"]["measurements"]["time_unit"];
-        match (unit["seconds"].as_f64(), unit["name"].as_str()) {
-            (Some(seconds), Some(name)) => ChartTime { unit: seconds, name: format!("time / ({name})") },
-            _ => ChartTime { unit: 1.0, name: "time [s]".to_owned() },
-        }
+    ///
+    /// # Errors
+    /// The record of its scene cannot be read.
+    pub fn of(results: &Results) -> Result<Self, ReadError> {
+        Ok(match results.scene()?.outputs.measurements.time_unit {
+            Some(TimeUnit { seconds, name }) => ChartTime { unit: seconds, name: format!("time / ({name})") },
+            None => ChartTime { unit: 1.0, name: "time [s]".to_owned() },
+        })
     }
 
     /// Draws a chart that is in seconds over this time.

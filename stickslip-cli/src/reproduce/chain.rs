@@ -4,9 +4,8 @@ use super::case::{PaperCase, PaperScene, TouchRule};
 use super::momentum::momentum_error;
 use crate::failure::Failure;
 use stickslip::door::Ledger;
-use stickslip::observe::{ArrivalRow, ContactRow, Frame, Results};
+use stickslip::observe::{ArrivalRow, ContactRow, Frame, RecordedScene, Results};
 use stickslip::polariscope::{self, ImageWindow, OpticalBench, Stage};
-use stickslip::scene::Fringes;
 
 /// The paper's disks: touching at the start, one particle a cell; surfaces that follow the disks and one normal for
 /// each pair, unless `more` says otherwise.
@@ -28,6 +27,7 @@ pub fn case(scene: PaperScene, rule: TouchRule, cells: usize, more: &[(&str, &st
 /// A chain of disks after its run.
 pub struct Chain<'a> {
     results: &'a Results,
+    scene: RecordedScene,
     /// Time in which a longitudinal wave crosses a disk [s].
     transit: f64,
 }
@@ -54,8 +54,9 @@ pub struct Balance {
 
 impl<'a> Chain<'a> {
     pub fn new(results: &'a Results) -> Option<Self> {
-        let transit = results.manifest().scene["outputs"]["measurements"]["time_unit"]["seconds"].as_f64()?;
-        Some(Chain { results, transit })
+        let scene = results.scene().ok()?;
+        let transit = scene.outputs.measurements.time_unit.as_ref()?.seconds;
+        Some(Chain { results, scene, transit })
     }
 
     /// When the wave came to the centre of each disk, counted from the striker, in transits.
@@ -77,7 +78,7 @@ impl<'a> Chain<'a> {
     /// # Errors
     /// The table cannot be read.
     pub fn set_off(&self, part: f64) -> Result<Vec<Option<f64>>, Failure> {
-        let speed = part * self.results.manifest().scene["parameters"]["speed"].as_f64().unwrap_or(f64::NAN);
+        let speed = part * self.scene.number("speed");
         let rows = self.results.bodies_table().map_err(Failure::input)?;
         let first = |disk: &&String| {
             let states = rows.iter().filter(|row| row.body == **disk);
@@ -96,8 +97,7 @@ impl<'a> Chain<'a> {
     /// # Errors
     /// The table cannot be read.
     pub fn pressed(&self, pair: [&str; 2], part: f64) -> Result<Option<f64>, Failure> {
-        let parameters = &self.results.manifest().scene["parameters"];
-        let value = |name: &str| parameters[name].as_f64().unwrap_or(f64::NAN);
+        let value = |name: &str| self.scene.number(name);
         let force = part * value("density") * value("c_L") * value("speed") * 0.5 * value("diameter");
         let rows = self.results.contacts_table().map_err(Failure::input)?;
         let of_pair =
@@ -138,7 +138,7 @@ impl<'a> Chain<'a> {
     /// # Errors
     /// The table cannot be read.
     pub fn front(&self) -> Result<Vec<[f64; 2]>, Failure> {
-        let diameter = self.results.manifest().scene["parameters"]["diameter"].as_f64().unwrap_or(f64::NAN);
+        let diameter = self.scene.number("diameter");
         let rows = self.results.fronts_table().map_err(Failure::input)?;
         let mut furthest = 0.0_f64;
         let track = rows.iter().map(|row| {
@@ -164,13 +164,11 @@ impl<'a> Chain<'a> {
     /// # Errors
     /// The first snapshot cannot be read.
     pub fn camera(&self) -> Result<Option<PolariscopeCamera<'a>>, Failure> {
-        let manifest = self.results.manifest();
-        let fringes: Option<Fringes> =
-            serde_json::from_value(manifest.scene["outputs"]["fringes"].clone()).ok();
+        let fringes = self.scene.outputs.fringes.as_ref();
         let (Some(fringes), Some(first)) = (fringes, self.results.frames().first()) else { return Ok(None) };
-        let specimens: Vec<usize> = (0..manifest.bodies.len())
-            .filter(|&body| fringes.bodies.contains(&manifest.bodies[body]))
-            .collect();
+        let bodies = self.results.body_names();
+        let specimens: Vec<usize> =
+            (0..bodies.len()).filter(|&body| fringes.bodies.contains(&bodies[body])).collect();
         let particles = self.results.particles(first).map_err(Failure::input)?;
         let Some(bounds) = polariscope::bounds(&particles, &specimens) else { return Ok(None) };
         let stage = Stage { window: ImageWindow::around(bounds, WIDTH), specimens };

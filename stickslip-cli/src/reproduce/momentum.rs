@@ -3,6 +3,7 @@
 
 use crate::failure::Failure;
 use stickslip::observe::{BodyRow, ContactRow, EnergyRow, Results};
+use stickslip::scene::Face;
 
 /// Momentum from nowhere until a time [s], over all impulses [-]; M is the mass of the disks or the sphere,
 /// p their momentum:
@@ -19,17 +20,17 @@ pub fn momentum_error(results: &Results, until: f64) -> Result<Option<f64>, Fail
     let energy = results.energy_table().map_err(Failure::input)?;
     let contacts = results.contacts_table().map_err(Failure::input)?;
     let bodies = results.bodies_table().map_err(Failure::input)?;
-    let scene = &results.manifest().scene;
+    let scene = results.scene().map_err(Failure::input)?;
     let (Some(start), Some(end)) = (energy.first(), energy.iter().rfind(|row| row.time <= until)) else {
         return Ok(None);
     };
-    let mirrored = |axis: usize| (0..2).any(|side| scene["domain"]["faces"][axis][side] == "symmetry");
+    let mirrored = |axis: usize| {
+        scene.domain.as_ref().is_some_and(|domain| domain.faces[axis].contains(&Face::Symmetry))
+    };
     let axes = || (0..3).filter(|&axis| !mirrored(axis));
     let norm = |vector: [f64; 3]| axes().map(|axis| vector[axis].powi(2)).sum::<f64>().sqrt();
     let [(_, before), (mass, after)] = [start.time, end.time].map(|time| moving(&bodies, time));
-    let weight: [f64; 3] = std::array::from_fn(|axis| {
-        mass * scene["gravity"][axis].as_f64().unwrap_or(0.0) * (end.time - start.time)
-    });
+    let weight: [f64; 3] = std::array::from_fn(|axis| mass * scene.gravity[axis] * (end.time - start.time));
     let names = results.body_names().iter().map(String::as_str);
     let others = names.filter(|name| !is_watched(name));
     let impulses: Vec<[f64; 3]> = others.map(|body| impulse(body, &contacts, &energy, end.time)).collect();
