@@ -7,7 +7,7 @@ use stickslip::door::{
     BodyState, ContactCursor, ContactState, GridSnapshot, Ledger, ParticleSnapshot, Simulation,
 };
 use stickslip::march::March;
-use stickslip::scene::{BodyMotion, Face, Scene};
+use stickslip::scene::{Face, Scene};
 use stickslip::{scene, step};
 
 /// What every run records besides what its benchmark measures.
@@ -97,7 +97,7 @@ impl Trial {
         let scene = scene::parse(&name, &text, &[])?.scene;
         let simulation = step::build(&scene)?;
         let isolated = scene.gravity == [0.0; 3]
-            && scene.bodies.iter().all(|body| matches!(body.motion, BodyMotion::Free { .. }))
+            && scene.bodies.iter().all(|body| !body.is_rigid())
             && scene.domain.iter().flat_map(|domain| domain.faces).flatten().all(|face| face == Face::Open);
         let first = simulation.ledger();
         let end = scene.time.end;

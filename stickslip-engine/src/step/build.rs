@@ -66,7 +66,6 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     pub fn new(scene: &Scene, path: ParticleLoop) -> Result<Self, Problem> {
         check::problems(scene)?;
         let mut bodies = Vec::new();
-        let mut rigid = Vec::new();
         let mut unbounded = Vec::new();
         for body in &scene.bodies {
             let sites = check::lattice(scene, body);
@@ -84,7 +83,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 });
                 Filling { sites: Vec::new() }
             });
-            let motion = prescribed(body, center);
+            let motion = RigidMotion::prescribed(&body.motion, center);
             let velocity = |x| match (&body.motion, &motion) {
                 (BodyMotion::Free { velocity, spin }, _) => about(center, *velocity, *spin, x),
                 (_, Some(motion)) => motion.velocity_at(x),
@@ -102,12 +101,11 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 material: material(scene, body)?,
                 density: T::of(scene.materials[body.material].density),
                 particles: particles(scene, body, &filling, (velocity, turning)),
-                rigid: motion.is_some(),
+                motion,
                 whole: MirroredShape::new(&body.shape, mirrors::<D>(scene), D),
                 thickness: scene.dimension.thickness(),
                 gyration: turning::gyration::<T, B>(scene.discretization.cell),
             });
-            rigid.push(motion);
         }
         let origin = scene.domain.as_ref().map_or([0.0; 3], |domain| domain.min);
         let disorder = bodies.iter().map(|body: &Body<T, D>| Disorder::any(body.particles.len())).collect();
@@ -125,7 +123,6 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             state: State {
                 bodies,
                 disorder,
-                rigid,
                 unbounded,
                 contact_sums: ContactSums::default(),
                 damping: 0.0,
@@ -155,16 +152,6 @@ fn material<T: Real>(scene: &Scene, body: &scene::Body) -> Result<Material<T>, P
         return Err(at(BadConstants::together(found, "another name")));
     }
     law.on_grid(scene.discretization.cell).map(|law| law.cast()).map_err(at)
-}
-
-/// The prescribed motion of a rigid body.
-fn prescribed(body: &scene::Body, center: [f64; 3]) -> Option<RigidMotion> {
-    match &body.motion {
-        BodyMotion::Free { .. } => None,
-        BodyMotion::Rigid { velocity, spin } => {
-            Some(RigidMotion::new(center, velocity.clone(), spin.clone()))
-        }
-    }
 }
 
 /// The part of an angular velocity that a motion in `D` dimensions has.
@@ -204,10 +191,7 @@ fn particles<T: Real, const D: usize>(
 
 /// What the particles of a body remember: rigid ones nothing.
 pub fn history(scene: &Scene, body: &scene::Body) -> &'static [History] {
-    match body.motion {
-        BodyMotion::Free { .. } => scene.materials[body.material].law.history(),
-        BodyMotion::Rigid { .. } => &[],
-    }
+    if body.is_rigid() { &[] } else { scene.materials[body.material].law.history() }
 }
 
 /// The domain's faces that are mirrors.

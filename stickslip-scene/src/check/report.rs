@@ -3,7 +3,7 @@
 use super::bodies::{FillingExtent, smallest_extent};
 use super::contact::{ContactEstimate, ContactResolution, Estimates, estimates, starting_velocity};
 use super::memory::Footprint;
-use super::rules::{RuleReport, is_rigid};
+use super::rules::RuleReport;
 use super::table::short;
 use super::warning::{Warning, and_more};
 use super::{examine, lattice, locking, memory, overlap, per_side, rigid_pairs, rules, thickness};
@@ -180,7 +180,7 @@ fn of_body(scene: &Scene, body: &Body, extent: &FillingExtent) -> BodyReport {
     BodyReport {
         name: body.name.clone(),
         material: scene.materials[body.material].name.clone(),
-        rigid: matches!(body.motion, BodyMotion::Rigid { .. }),
+        rigid: body.is_rigid(),
         particles: extent.particles,
         mass: extent.mass,
         size: extent.bounds.size(),
@@ -232,7 +232,8 @@ fn time_step(scene: &Scene, extents: &[FillingExtent]) -> f64 {
 fn thin_rigid_bodies(scene: &Scene) -> Option<Warning> {
     let needed = |body: &Body| 2.0 * lattice(scene, body).spacing * (1.0 - 1e-9);
     let thickness = |body: usize| smallest_extent(&scene.bodies[body].shape, scene.dimension.axes());
-    let is_thin = |&body: &usize| is_rigid(scene, body) && thickness(body) < needed(&scene.bodies[body]);
+    let is_thin =
+        |&body: &usize| scene.bodies[body].is_rigid() && thickness(body) < needed(&scene.bodies[body]);
     let mut thin = (0..scene.bodies.len()).filter(is_thin);
     let first = thin.next()?;
     let body = &scene.bodies[first];

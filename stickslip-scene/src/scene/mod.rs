@@ -377,6 +377,13 @@ pub struct Reference {
     pub label: String,
 }
 
+impl Body {
+    /// Whether it is rigid and moves as prescribed.
+    pub fn is_rigid(&self) -> bool {
+        matches!(self.motion, BodyMotion::Rigid { .. })
+    }
+}
+
 impl Scene {
     /// The rule for two bodies, given by index: the first in the file that matches, else the default rule.
     pub fn contact_between(&self, a: usize, b: usize) -> ContactRule {

@@ -11,7 +11,7 @@ mod tearing;
 
 use crate::door::{BodyState, Ledger, TracedParticle, View};
 use crate::observe::RunWarning;
-use crate::scene::{BodyMotion, Scene};
+use crate::scene::Scene;
 use energy::EnergyBalance;
 use neighbours::Neighbours;
 
@@ -59,7 +59,7 @@ struct CheckInputs<'a> {
 impl CheckInputs<'_> {
     /// Bodies that deform.
     fn free(&self) -> impl Iterator<Item = usize> {
-        let free = |&i: &usize| matches!(self.scene.bodies[i].motion, BodyMotion::Free { .. });
+        let free = |&i: &usize| !self.scene.bodies[i].is_rigid();
         (0..self.bodies.len()).filter(free)
     }
 
