@@ -190,16 +190,10 @@ fn of_body(scene: &Scene, body: &Body, extent: &FillingExtent) -> BodyReport {
 fn of_materials(scene: &Scene) -> Vec<MaterialReport> {
     let speeds = (0..scene.materials.len()).map(|i| MaterialReport {
         name: scene.materials[i].name.clone(),
-        longitudinal_speed: longitudinal_speed(scene, i),
+        longitudinal_speed: scene.materials[i].wave_speed(scene.dimension.thickness()),
         shear_speed: (scene.materials[i].law.elastic().shear_modulus / scene.materials[i].density).sqrt(),
     });
     speeds.collect()
-}
-
-fn longitudinal_speed(scene: &Scene, material: usize) -> f64 {
-    let material = &scene.materials[material];
-    let modulus = material.law.wave_modulus_at_rest(scene.dimension.thickness());
-    (modulus / material.density).sqrt()
 }
 
 /// Half the diagonal of a body's box; of one without bounds, of the box around all that have some [m].
@@ -216,7 +210,9 @@ fn half_diagonal(extent: &FillingExtent, extents: &[FillingExtent]) -> f64 {
 fn time_step(scene: &Scene, extents: &[FillingExtent]) -> f64 {
     let signal = |(body, extent): (&Body, &FillingExtent)| {
         let (wave, spin) = match &body.motion {
-            BodyMotion::Free { spin, .. } => (longitudinal_speed(scene, body.material), *spin),
+            BodyMotion::Free { spin, .. } => {
+                (scene.materials[body.material].wave_speed(scene.dimension.thickness()), *spin)
+            }
             BodyMotion::Rigid { spin, .. } => (0.0, spin.each_ref().map(|s| s.at(0.0))),
         };
         let reach = half_diagonal(extent, extents);

@@ -377,6 +377,13 @@ pub struct Reference {
     pub label: String,
 }
 
+impl NamedMaterial {
+    /// Speed of the fastest wave in an undeformed body, in plane stress in a plate [m/s].
+    pub fn wave_speed(&self, thickness: Thickness) -> f64 {
+        (self.law.wave_modulus_at_rest(thickness) / self.density).sqrt()
+    }
+}
+
 impl Body {
     /// Whether it is rigid and moves as prescribed.
     pub fn is_rigid(&self) -> bool {

@@ -66,7 +66,7 @@ impl CheckInputs<'_> {
     /// Speed of the fastest wave in an undeformed body [m/s].
     fn wave_speed(&self, body: usize) -> f64 {
         let material = &self.scene.materials[self.scene.bodies[body].material];
-        (self.wave_modulus(body) / material.density).sqrt()
+        material.wave_speed(self.scene.dimension.thickness())
     }
 
     /// Stiffness against the fastest wave in an undeformed body [Pa].
