@@ -7,7 +7,7 @@ use miette::miette;
 use std::f64::consts::PI;
 use stickslip::door::ParticleSnapshot;
 use stickslip::image::Image;
-use stickslip::observe::{ContactRow, Frame, Results};
+use stickslip::observe::{ContactRow, Frame, RecordedBody, RecordedScene, Results};
 use stickslip::polariscope::{self, ImageWindow, OpticalBench, Push, Stage};
 use stickslip::scene::{Fringes, Light, Overlay, Polariscope, PolariscopeField, Sensitivity};
 
@@ -59,30 +59,30 @@ impl<'a> FramePictures<'a> {
     /// # Errors
     /// There are no snapshots or they cannot be read, or the user names a body that is not there.
     pub fn open(results: &'a Results, frames: &[Frame], choice: &FringeChoice) -> Result<Self, Failure> {
-        let scene = &results.manifest().scene;
-        let camera: Option<Fringes> = serde_json::from_value(scene["outputs"]["fringes"].clone()).ok();
-        let specimens = specimens(results, choice, camera.as_ref())?;
+        let scene = results.scene().map_err(Failure::input)?;
+        let camera = scene.outputs.fringes.as_ref();
+        let specimens = specimens(&scene, choice)?;
         // A run has hundreds of snapshots; a few show where the bodies are and how much they are loaded.
         let looks: Vec<&Frame> =
             frames.iter().step_by(frames.len().div_ceil(LOOKS).max(1)).chain(frames.last()).collect();
         let snapshots = looks.iter().map(|frame| results.particles(frame).map_err(Failure::input));
         let snapshots: Vec<ParticleSnapshot> = snapshots.collect::<Result<_, _>>()?;
-        let view = camera.as_ref().and_then(|camera| camera.view);
+        let view = camera.and_then(|camera| camera.view);
         let window = window(view, &snapshots, (&specimens, choice.size))?;
         let stage = Stage { window, specimens };
-        let overlay = choice.overlay.or(camera.as_ref().map(|camera| camera.overlay));
+        let overlay = choice.overlay.or(camera.map(|camera| camera.overlay));
         let contacts = match overlay {
             Some(Overlay::ForceChains) => results.contacts_table().map_err(Failure::input)?,
             _ => Vec::new(),
         };
-        let polariscope = polariscope(choice, camera.as_ref(), (&snapshots, &stage));
+        let polariscope = polariscope(choice, camera, (&snapshots, &stage));
         Ok(FramePictures {
             results,
-            setting: Setting::of_json(scene),
+            setting: Setting::of(&scene),
             bench: OpticalBench::new(&polariscope, stage),
             polariscope,
-            exposure: choice.exposure.or(camera.as_ref().map(|camera| camera.exposure)).unwrap_or(0.0),
-            largest: contacts.iter().fold(0.0, |largest, row| largest.max(row.normal)),
+            exposure: choice.exposure.or(camera.map(|camera| camera.exposure)).unwrap_or(0.0),
+            largest: contacts.iter().fold(0.0, |largest, row| largest.max(row.mean.normal)),
             contacts,
         })
     }
@@ -104,7 +104,7 @@ impl<'a> FramePictures<'a> {
         let body = |name: &str| names.iter().position(|known| known == name);
         let rows = self.contacts.iter().filter(|row| Some(row.time) == later);
         rows.filter_map(|row| {
-            Some(Push { bodies: [body(&row.body_a)?, body(&row.body_b)?], force: row.normal })
+            Some(Push { bodies: [body(&row.body_a)?, body(&row.body_b)?], force: row.mean.normal })
         })
         .collect()
     }
@@ -128,12 +128,8 @@ impl Pictures for FramePictures<'_> {
 }
 
 /// Indices of the birefringent bodies.
-fn specimens(
-    results: &Results,
-    choice: &FringeChoice,
-    camera: Option<&Fringes>,
-) -> Result<Vec<usize>, Failure> {
-    let names = results.body_names();
+fn specimens(scene: &RecordedScene, choice: &FringeChoice) -> Result<Vec<usize>, Failure> {
+    let names: Vec<&str> = scene.bodies.iter().map(|body| body.name.as_str()).collect();
     if let Some(wanted) = &choice.bodies {
         let find = |name: &String| {
             let missing = || miette!("--bodies: found `{name}`; allowed: {}", names.join(", "));
@@ -141,12 +137,11 @@ fn specimens(
         };
         return wanted.iter().map(find).collect();
     }
-    let rigid = |body: usize| results.manifest().scene["bodies"][body]["motion"].get("rigid").is_some();
-    let birefringent = |body: &usize| match camera {
-        Some(camera) => camera.bodies.contains(&names[*body]),
-        None => !rigid(*body),
+    let birefringent = |body: &RecordedBody| match &scene.outputs.fringes {
+        Some(camera) => camera.bodies.contains(&body.name),
+        None => !body.is_rigid(),
     };
-    Ok((0..names.len()).filter(birefringent).collect())
+    Ok((0..names.len()).filter(|&i| birefringent(&scene.bodies[i])).collect())
 }
 
 /// What the pictures show: the scene's own view, or the birefringent bodies wherever they go.

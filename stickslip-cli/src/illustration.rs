@@ -65,7 +65,7 @@ impl<'a> Album<'a> {
     /// user wants a mirror.
     pub fn open(results: &'a Results, choice: PictureChoice) -> Result<Self, Failure> {
         let first = snapshots(results)?.first().expect("there is at least one");
-        let setting = Setting::of_json(&results.manifest().scene);
+        let setting = Setting::of(&results.scene().map_err(Failure::input)?);
         let mirror = mirror(&setting, &choice)?;
         let first = results.particles(first).map_err(Failure::input)?;
         choice.quantity.is_in(&first).map_err(|what| Failure::Input(miette!("--color: {what}")))?;

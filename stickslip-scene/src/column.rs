@@ -96,10 +96,13 @@ pub const fn same(a: &str, b: &str) -> bool {
     i == a.len() && i == b.len()
 }
 
+/// Name of the column in which a transfer carries the rate of strain.
+pub const STRAIN_RATE: &str = "strain_rate";
+
 /// Names that no column of history may have: a file would hold two columns called the same.
 pub fn reserved() -> impl Iterator<Item = &'static str> {
     let every = EVERY.iter().map(|column| column.name);
-    every.chain(IDENTITY).chain(DERIVED.iter().map(|derived| derived.column.name))
+    every.chain(IDENTITY).chain([STRAIN_RATE]).chain(DERIVED.iter().map(|derived| derived.column.name))
 }
 
 /// What a particle has in a column.

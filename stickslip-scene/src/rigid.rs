@@ -1,6 +1,6 @@
 //! Rigid bodies with prescribed motion.
 
-use crate::scene::Expression;
+use crate::scene::{BodyMotion, Expression};
 use crate::tensor::{Matrix, cross};
 
 /// How a rigid body moves, and where it is.
@@ -21,6 +21,16 @@ pub struct RigidMotion {
 }
 
 impl RigidMotion {
+    /// The prescribed motion of a body whose centre is at `center` [m]; `None` if it is not rigid.
+    pub fn prescribed(motion: &BodyMotion, center: [f64; 3]) -> Option<Self> {
+        match motion {
+            BodyMotion::Free { .. } => None,
+            BodyMotion::Rigid { velocity, spin } => {
+                Some(RigidMotion::new(center, velocity.clone(), spin.clone()))
+            }
+        }
+    }
+
     /// A body at rest at `center` until its first step.
     pub fn new(center: [f64; 3], velocity: [Expression; 3], spin: [Expression; 3]) -> Self {
         let (start, orientation) = (center, Matrix::IDENTITY);

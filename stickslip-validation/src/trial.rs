@@ -7,7 +7,7 @@ use stickslip::door::{
     BodyState, ContactCursor, ContactState, GridSnapshot, Ledger, ParticleSnapshot, Simulation,
 };
 use stickslip::march::March;
-use stickslip::scene::{BodyMotion, Face, Scene};
+use stickslip::scene::{Face, Scene};
 use stickslip::{scene, step};
 
 /// What every run records besides what its benchmark measures.
@@ -97,7 +97,7 @@ impl Trial {
         let scene = scene::parse(&name, &text, &[])?.scene;
         let simulation = step::build(&scene)?;
         let isolated = scene.gravity == [0.0; 3]
-            && scene.bodies.iter().all(|body| matches!(body.motion, BodyMotion::Free { .. }))
+            && scene.bodies.iter().all(|body| !body.is_rigid())
             && scene.domain.iter().flat_map(|domain| domain.faces).flatten().all(|face| face == Face::Open);
         let first = simulation.ledger();
         let end = scene.time.end;
@@ -134,7 +134,9 @@ impl Trial {
         };
         self.step = step;
         self.contacts = self.cursor.read(&*self.simulation);
-        if self.record.first_contact.is_none() && self.contacts.iter().any(|contact| contact.normal > 0.0) {
+        if self.record.first_contact.is_none()
+            && self.contacts.iter().any(|contact| contact.mean.normal > 0.0)
+        {
             self.record.first_contact = Some(now);
         }
         self.look(false);
@@ -242,7 +244,7 @@ impl Trial {
     /// Force of body `a` on body `b` in the last step [N], `a` before `b` in the scene.
     pub fn force(&self, a: usize, b: usize) -> [f64; 3] {
         let contact = self.contacts.iter().find(|contact| (contact.body_a, contact.body_b) == (a, b));
-        contact.map_or([0.0; 3], |contact| contact.force)
+        contact.map_or([0.0; 3], |contact| contact.mean.force)
     }
 
     /// Name, scene and record.

@@ -93,8 +93,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("the bar stands still {stands:.4} transits of a wave after first touch");
     println!("it was compressed by {mean:.4} v/c, the mean of its particles");
     assert!((stands - 1.0).abs() < 0.03, "{stands}");
-    // Behind the front the bar swings by some percent; the largest is remembered.
-    assert!((1.0..1.15).contains(&mean), "{mean}");
+    // The largest is remembered. Behind a front on a grid the bar swings: by up to 27 % where nothing damps it (the
+    // integral of Airy's function), and less where the front is young.
+    assert!((1.0..1.27).contains(&mean), "{mean}");
     Ok(())
 }
 

@@ -70,15 +70,19 @@ fn a_run_records_its_start_every_interval_and_its_exact_end() {
     let rows = results.bodies_table().unwrap();
     assert_eq!(rows.len(), 2 * 11, "the start, every 0.1 s to the end, two bodies");
     let (last, state) = (rows.last().unwrap(), &simulation.bodies()[1]);
-    assert_eq!((last.body.as_str(), last.time, last.y), ("plane", 1.0, state.position[1]));
+    assert_eq!((last.body.as_str(), last.time, &last.state), ("plane", 1.0, state));
     assert_eq!(results.energy_table().unwrap().len(), 11);
 
     let contacts = results.contacts_table().unwrap();
     assert_eq!(contacts.len(), 10, "no step, no contact: none at the start");
     assert_eq!((contacts[0].body_a.as_str(), contacts[0].body_b.as_str()), ("sphere", "plane"));
-    let friction: f64 = contacts.iter().map(|row| row.friction).sum();
+    let friction: f64 = contacts.iter().map(|row| row.mean.friction).sum();
     assert_eq!(friction, 0.75 * simulation.steps() as f64, "each step's contact is in one row");
-    assert!(contacts.iter().all(|row| (row.fy - 2.0).abs() < 1e-12 && (row.x - 0.5).abs() < 1e-12));
+    assert!(
+        contacts
+            .iter()
+            .all(|row| (row.mean.force[1] - 2.0).abs() < 1e-12 && (row.mean.position[0] - 0.5).abs() < 1e-12)
+    );
 }
 
 #[test]
@@ -113,8 +117,8 @@ fn the_record_of_the_run_says_what_was_run_and_how_fast() {
     assert_eq!(manifest.performance, summary.performance);
     assert_eq!(manifest.performance.threads, 2);
     assert_eq!(manifest.performance.timings[0].verb, "fly");
-    assert_eq!(manifest.scene["time"]["end"], 1.0);
-    assert_eq!(manifest.scene["parameters"]["speed"], 2.0);
+    let scene = results.scene().unwrap();
+    assert_eq!((scene.time.end, scene.number("speed")), (Some(1.0), 2.0));
     let curve = &manifest.references[0];
     assert_eq!((curve.body.as_str(), curve.quantity.as_str()), ("sphere", "vx"));
     assert_eq!(curve.points.last(), Some(&[1.0, 2.5]));

@@ -4,7 +4,8 @@ use super::measurements::{self, ChartTime};
 use super::{Chart, Curve, Panel};
 use crate::drawing::{Rgb, body_color};
 use clap::ValueEnum;
-use stickslip::observe::{BodyRow, EnergyRow, ReadError, ReferenceCurve, Results};
+use stickslip::door::Ledger;
+use stickslip::observe::{BodyRow, EnergyRow, ReadError, ReferenceCurve, Results, TableRow};
 
 /// What the user asks for; nothing at all gives what the scene is about.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -61,7 +62,7 @@ pub fn chart(results: &Results, choice: &ChartChoice) -> Result<Chart, ReadError
         None if choice.bodies.is_empty() && choice.quantities.is_empty() => of_everything(results)?,
         None => of_bodies(results, choice)?,
     };
-    ChartTime::of(results).apply(&mut chart);
+    ChartTime::of(results)?.apply(&mut chart);
     Ok(chart)
 }
 
@@ -161,7 +162,7 @@ fn panels(rows: &[BodyRow], references: &[ReferenceCurve], shown: &[Shown]) -> V
 
 fn curve(rows: &[BodyRow], shown: &Shown, color: Rgb) -> Curve {
     let rows = rows.iter().filter(|row| row.body == shown.body);
-    let points = rows.filter_map(|row| Some([row.time, row.quantity(&shown.quantity)?]));
+    let points = rows.filter_map(|row| Some([row.time, row.number(&shown.quantity)?]));
     Curve {
         label: format!("{} {}", shown.body, shown.quantity),
         color,
@@ -179,7 +180,7 @@ fn caption(rows: &[BodyRow], references: &[ReferenceCurve], shown: &[Shown]) -> 
     let ratio = |each: &Shown| {
         let exact = reference(references, each)?;
         let row = rows.iter().rfind(|row| row.body == each.body)?;
-        let ratio = row.quantity(&each.quantity)? / interpolated(&exact.points, row.time)?;
+        let ratio = row.number(&each.quantity)? / interpolated(&exact.points, row.time)?;
         ratio.is_finite().then(|| (row.time, format!("{} {} {ratio:.3}", each.body, each.quantity)))
     };
     let ratios: Vec<(f64, String)> = shown.iter().filter_map(ratio).collect();
@@ -201,17 +202,17 @@ fn interpolated(points: &[[f64; 2]], time: f64) -> Option<f64> {
 }
 
 fn energy_panel(rows: &[EnergyRow]) -> Panel {
-    let curve = |label: &str, color: Rgb, term: fn(&EnergyRow) -> f64| Curve {
+    let curve = |label: &str, color: Rgb, term: fn(&Ledger) -> f64| Curve {
         label: label.to_owned(),
         color,
         dashed: false,
-        points: rows.iter().map(|row| [row.time, term(row)]).collect(),
+        points: rows.iter().map(|row| [row.time, term(&row.ledger)]).collect(),
     };
     let curves = vec![
-        curve("kinetic", body_color(0), |row| row.kinetic),
-        curve("strain", body_color(2), |row| row.strain),
-        curve("potential", body_color(1), |row| row.potential),
-        curve("total", EXACT, |row| row.total),
+        curve("kinetic", body_color(0), |ledger| ledger.kinetic),
+        curve("strain", body_color(2), |ledger| ledger.strain),
+        curve("potential", body_color(1), |ledger| ledger.potential),
+        curve("total", EXACT, |ledger| ledger.total),
     ];
     Panel { name: "energy".to_owned(), unit: "J", curves }
 }
@@ -240,9 +241,11 @@ fn center_panel(rows: &[BodyRow], bodies: &[String]) -> Panel {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use stickslip::door::BodyState;
 
     fn row(time: f64, x: f64) -> BodyRow {
-        BodyRow { time, body: "sphere".to_owned(), x, ..BodyRow::default() }
+        let state = BodyState { position: [x, 0.0, 0.0], ..BodyState::default() };
+        BodyRow { time, body: "sphere".to_owned(), state }
     }
 
     fn shown(quantity: &str) -> Shown {

@@ -3,7 +3,8 @@
 use super::contents::{ChartChoice, ChartTable, MOST_CURVES};
 use super::{Chart, Curve, Panel};
 use crate::drawing::body_color;
-use stickslip::observe::{ArrivalRow, ContactRow, FrontSpeedRow, ProbeRow, ReadError, Results};
+use stickslip::observe::{ArrivalRow, ContactRow, FrontSpeedRow, ProbeRow, ReadError, Results, TableRow};
+use stickslip::scene::TimeUnit;
 
 /// Columns of `probes.csv` that can be drawn.
 pub const PROBE_COLUMNS: &[&str] = &[
@@ -32,12 +33,14 @@ pub struct ChartTime {
 
 impl ChartTime {
     /// The unit of a run.
-    pub fn of(results: &Results) -> Self {
-        let unit = &results.manifest().scene["outputs"]["measurements"]["time_unit"];
-        match (unit["seconds"].as_f64(), unit["name"].as_str()) {
-            (Some(seconds), Some(name)) => ChartTime { unit: seconds, name: format!("time / ({name})") },
-            _ => ChartTime { unit: 1.0, name: "time [s]".to_owned() },
-        }
+    ///
+    /// # Errors
+    /// The record of its scene cannot be read.
+    pub fn of(results: &Results) -> Result<Self, ReadError> {
+        Ok(match results.scene()?.outputs.measurements.time_unit {
+            Some(TimeUnit { seconds, name }) => ChartTime { unit: seconds, name: format!("time / ({name})") },
+            None => ChartTime { unit: 1.0, name: "time [s]".to_owned() },
+        })
     }
 
     /// Draws a chart that is in seconds over this time.
@@ -139,10 +142,10 @@ fn named<'a>(points: impl Iterator<Item = (&'a String, [f64; 2])>) -> Vec<Curve>
 /// Force against time of the pairs with the largest forces. Pairs that did not touch have no row, and no force.
 fn forces(rows: Vec<ContactRow>, times: &[f64], columns: &[String]) -> Vec<Panel> {
     let panels = columns.iter().filter_map(|column| {
-        let pairs: Vec<(String, [f64; 2])> = rows
-            .iter()
-            .map(|row| (format!("{}, {}", row.body_a, row.body_b), [row.time, force(row, column)]))
-            .collect();
+        let point = |row: &ContactRow| {
+            Some((format!("{}, {}", row.body_a, row.body_b), [row.time, row.number(column)?]))
+        };
+        let pairs: Vec<(String, [f64; 2])> = rows.iter().filter_map(point).collect();
         let mut curves = named(pairs.iter().map(|(pair, point)| (pair, *point)));
         for curve in &mut curves {
             let touching = std::mem::take(&mut curve.points);
@@ -163,20 +166,10 @@ fn forces(rows: Vec<ContactRow>, times: &[f64], columns: &[String]) -> Vec<Panel
     panels.collect()
 }
 
-fn force(row: &ContactRow, column: &str) -> f64 {
-    match column {
-        "tangential" => row.tangential,
-        "fx" => row.fx,
-        "fy" => row.fy,
-        "fz" => row.fz,
-        "nodes" => row.nodes as f64,
-        _ => row.normal,
-    }
-}
-
-fn probes(rows: &[ProbeRow], columns: &[String]) -> Vec<Panel> {
+fn probes<'a>(rows: &'a [ProbeRow], columns: &[String]) -> Vec<Panel> {
     let panels = columns.iter().filter_map(|column| {
-        let curves = named(rows.iter().map(|row| (&row.probe, [row.time, probe(row, column)])));
+        let point = |row: &'a ProbeRow| Some((&row.probe, [row.time, row.number(column)?]));
+        let curves = named(rows.iter().filter_map(point));
         let unit = match column.as_str() {
             "x" | "y" | "z" => "m",
             "vx" | "vy" | "vz" => "m/s",
@@ -187,26 +180,6 @@ fn probes(rows: &[ProbeRow], columns: &[String]) -> Vec<Panel> {
     panels.collect()
 }
 
-fn probe(row: &ProbeRow, column: &str) -> f64 {
-    match column {
-        "x" => row.x,
-        "y" => row.y,
-        "z" => row.z,
-        "vx" => row.vx,
-        "vy" => row.vy,
-        "vz" => row.vz,
-        "xx" => row.xx,
-        "yy" => row.yy,
-        "zz" => row.zz,
-        "xy" => row.xy,
-        "yz" => row.yz,
-        "xz" => row.xz,
-        "pressure" => row.pressure,
-        "von_mises" => row.von_mises,
-        _ => row.stress_difference,
-    }
-}
-
 /// Distance from the place where each threshold was first passed, against time.
 fn arrivals(rows: &[ArrivalRow]) -> Option<Panel> {
     let series: Vec<(String, &ArrivalRow)> = rows
@@ -215,7 +188,7 @@ fn arrivals(rows: &[ArrivalRow]) -> Option<Panel> {
         .collect();
     let point = |(name, row): &(String, &ArrivalRow)| {
         let first = series.iter().find(|(other, _)| other == name).map_or(*row, |(_, first)| first);
-        let way = [row.x - first.x, row.y - first.y, row.z - first.z];
+        let way = [0, 1, 2].map(|axis| row.position[axis] - first.position[axis]);
         [row.time, way.iter().map(|x| x * x).sum::<f64>().sqrt()]
     };
     panel("distance of arrival", "m", named(series.iter().map(|each| (&each.0, point(each)))))
@@ -229,6 +202,7 @@ fn speed_caption(speeds: &[FrontSpeedRow]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use stickslip::door::ContactMean;
 
     #[test]
     fn pairs_that_do_not_touch_have_no_force() {
@@ -236,8 +210,7 @@ mod tests {
             time,
             body_a: "disk".to_owned(),
             body_b: b.to_owned(),
-            normal,
-            ..ContactRow::default()
+            mean: ContactMean { normal, ..ContactMean::default() },
         };
         let rows = vec![row(1.0, "wall", 2.0), row(2.0, "wall", 3.0), row(2.0, "striker", 9.0)];
         let panels = forces(rows, &[0.0, 1.0, 2.0, 3.0], &["normal".to_owned()]);
@@ -249,18 +222,19 @@ mod tests {
 
     #[test]
     fn arrivals_are_drawn_by_their_distance_from_the_first() {
-        let row =
-            |time: f64, x: f64| ArrivalRow { time, x, quantity: "vx".to_owned(), ..ArrivalRow::default() };
+        let row = |time: f64, x: f64| ArrivalRow {
+            time,
+            position: [x, 0.0, 0.0],
+            quantity: "vx".to_owned(),
+            ..ArrivalRow::default()
+        };
         let panel = arrivals(&[row(1.0, 5.0), row(3.0, 2.0)]).unwrap();
         assert_eq!(panel.curves[0].points, [[1.0, 0.0], [3.0, 3.0]]);
         assert_eq!(arrivals(&[]), None);
     }
 
     #[test]
-    fn every_column_of_probes_is_itself() {
-        let row =
-            ProbeRow { xx: 1.0, vy: 2.0, von_mises: 3.0, stress_difference: 4.0, ..ProbeRow::default() };
-        let values: f64 = PROBE_COLUMNS.iter().map(|column| probe(&row, column)).sum();
-        assert_eq!(values, 10.0);
+    fn every_column_of_probes_is_a_number() {
+        assert!(PROBE_COLUMNS.iter().all(|column| ProbeRow::default().number(column).is_some()));
     }
 }

@@ -5,6 +5,7 @@ use super::momentum::momentum_error;
 use crate::failure::Failure;
 use crate::page::{Cell, Column, Section, Table};
 use crate::progress::duration;
+use stickslip::door::Ledger;
 use stickslip::observe::Results;
 
 /// Every run with its energy error and what it took.
@@ -49,8 +50,9 @@ pub fn section(runs: &Runs) -> Result<Section, Failure> {
 /// The zero of potential energy is arbitrary: its change counts, not its value.
 pub fn energy_error(results: &Results) -> Result<f64, Failure> {
     let rows = results.energy_table().map_err(Failure::input)?;
-    let (Some(start), Some(end)) = (rows.first(), rows.last()) else { return Ok(f64::NAN) };
-    let stored = rows.iter().map(|row| row.kinetic + row.strain).fold(0.0, f64::max);
+    let ledgers: Vec<&Ledger> = rows.iter().map(|row| &row.ledger).collect();
+    let (Some(start), Some(end)) = (ledgers.first(), ledgers.last()) else { return Ok(f64::NAN) };
+    let stored = ledgers.iter().map(|ledger| ledger.kinetic + ledger.strain).fold(0.0, f64::max);
     let heat = end.friction + end.plastic + end.damping;
     let fallen = (end.potential - start.potential).abs();
     Ok((end.total - start.total) / stored.max(heat).max(fallen))

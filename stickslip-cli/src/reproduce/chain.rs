@@ -3,9 +3,9 @@
 use super::case::{PaperCase, PaperScene, TouchRule};
 use super::momentum::momentum_error;
 use crate::failure::Failure;
-use stickslip::observe::{ArrivalRow, ContactRow, EnergyRow, Frame, Results};
+use stickslip::door::Ledger;
+use stickslip::observe::{ArrivalRow, ContactRow, Frame, RecordedScene, Results};
 use stickslip::polariscope::{self, ImageWindow, OpticalBench, Stage};
-use stickslip::scene::Fringes;
 
 /// The paper's disks: touching at the start, one particle a cell; surfaces that follow the disks and one normal for
 /// each pair, unless `more` says otherwise.
@@ -27,6 +27,7 @@ pub fn case(scene: PaperScene, rule: TouchRule, cells: usize, more: &[(&str, &st
 /// A chain of disks after its run.
 pub struct Chain<'a> {
     results: &'a Results,
+    scene: RecordedScene,
     /// Time in which a longitudinal wave crosses a disk [s].
     transit: f64,
 }
@@ -53,8 +54,9 @@ pub struct Balance {
 
 impl<'a> Chain<'a> {
     pub fn new(results: &'a Results) -> Option<Self> {
-        let transit = results.manifest().scene["outputs"]["measurements"]["time_unit"]["seconds"].as_f64()?;
-        Some(Chain { results, transit })
+        let scene = results.scene().ok()?;
+        let transit = scene.outputs.measurements.time_unit.as_ref()?.seconds;
+        Some(Chain { results, scene, transit })
     }
 
     /// When the wave came to the centre of each disk, counted from the striker, in transits.
@@ -76,11 +78,12 @@ impl<'a> Chain<'a> {
     /// # Errors
     /// The table cannot be read.
     pub fn set_off(&self, part: f64) -> Result<Vec<Option<f64>>, Failure> {
-        let speed = part * self.results.manifest().scene["parameters"]["speed"].as_f64().unwrap_or(f64::NAN);
+        let speed = part * self.scene.number("speed");
         let rows = self.results.bodies_table().map_err(Failure::input)?;
         let first = |disk: &&String| {
             let states = rows.iter().filter(|row| row.body == **disk);
-            let states: Vec<[f64; 2]> = states.map(|row| [row.time, row.vx.hypot(row.vy)]).collect();
+            let states: Vec<[f64; 2]> =
+                states.map(|row| [row.time, row.state.velocity[0].hypot(row.state.velocity[1])]).collect();
             let passed = states.windows(2).find(|pair| pair[1][1] >= speed)?;
             let [[t0, v0], [t1, v1]] = [passed[0], passed[1]];
             Some((t0 + (speed - v0) / (v1 - v0) * (t1 - t0)) / self.transit)
@@ -94,13 +97,16 @@ impl<'a> Chain<'a> {
     /// # Errors
     /// The table cannot be read.
     pub fn pressed(&self, pair: [&str; 2], part: f64) -> Result<Option<f64>, Failure> {
-        let parameters = &self.results.manifest().scene["parameters"];
-        let value = |name: &str| parameters[name].as_f64().unwrap_or(f64::NAN);
+        let value = |name: &str| self.scene.number(name);
         let force = part * value("density") * value("c_L") * value("speed") * 0.5 * value("diameter");
         let rows = self.results.contacts_table().map_err(Failure::input)?;
         let of_pair =
             |row: &&ContactRow| [&row.body_a, &row.body_b] == pair || [&row.body_b, &row.body_a] == pair;
-        Ok(rows.iter().filter(of_pair).find(|row| row.normal >= force).map(|row| row.time / self.transit))
+        Ok(rows
+            .iter()
+            .filter(of_pair)
+            .find(|row| row.mean.normal >= force)
+            .map(|row| row.time / self.transit))
     }
 
     /// Names of the bodies of the frame but for the striker.
@@ -132,7 +138,7 @@ impl<'a> Chain<'a> {
     /// # Errors
     /// The table cannot be read.
     pub fn front(&self) -> Result<Vec<[f64; 2]>, Failure> {
-        let diameter = self.results.manifest().scene["parameters"]["diameter"].as_f64().unwrap_or(f64::NAN);
+        let diameter = self.scene.number("diameter");
         let rows = self.results.fronts_table().map_err(Failure::input)?;
         let mut furthest = 0.0_f64;
         let track = rows.iter().map(|row| {
@@ -149,8 +155,8 @@ impl<'a> Chain<'a> {
     /// The table cannot be read.
     pub fn energy_gain(&self) -> Result<Vec<[f64; 2]>, Failure> {
         let rows = self.results.energy_table().map_err(Failure::input)?;
-        let worked = rows.iter().filter(|row| row.external_work != 0.0);
-        Ok(worked.map(|row| [row.time / self.transit, gain(row)]).collect())
+        let worked = rows.iter().filter(|row| row.ledger.external_work != 0.0);
+        Ok(worked.map(|row| [row.time / self.transit, gain(&row.ledger)]).collect())
     }
 
     /// Takes pictures of the fringes.
@@ -158,13 +164,11 @@ impl<'a> Chain<'a> {
     /// # Errors
     /// The first snapshot cannot be read.
     pub fn camera(&self) -> Result<Option<PolariscopeCamera<'a>>, Failure> {
-        let manifest = self.results.manifest();
-        let fringes: Option<Fringes> =
-            serde_json::from_value(manifest.scene["outputs"]["fringes"].clone()).ok();
+        let fringes = self.scene.outputs.fringes.as_ref();
         let (Some(fringes), Some(first)) = (fringes, self.results.frames().first()) else { return Ok(None) };
-        let specimens: Vec<usize> = (0..manifest.bodies.len())
-            .filter(|&body| fringes.bodies.contains(&manifest.bodies[body]))
-            .collect();
+        let bodies = self.results.body_names();
+        let specimens: Vec<usize> =
+            (0..bodies.len()).filter(|&body| fringes.bodies.contains(&bodies[body])).collect();
         let particles = self.results.particles(first).map_err(Failure::input)?;
         let Some(bounds) = polariscope::bounds(&particles, &specimens) else { return Ok(None) };
         let stage = Stage { window: ImageWindow::around(bounds, WIDTH), specimens };
@@ -184,15 +188,15 @@ impl<'a> Chain<'a> {
         };
         Ok(Balance {
             time: end.time / self.transit,
-            energy: gain(end),
+            energy: gain(&end.ledger),
             momentum: momentum_error(self.results, time)?.unwrap_or(f64::NAN),
         })
     }
 }
 
 /// Energy from nowhere over the striker's work until then [-].
-fn gain(row: &EnergyRow) -> f64 {
-    row.total / row.external_work.abs()
+fn gain(ledger: &Ledger) -> f64 {
+    ledger.total / ledger.external_work.abs()
 }
 
 impl PolariscopeCamera<'_> {

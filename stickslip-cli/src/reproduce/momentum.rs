@@ -3,6 +3,7 @@
 
 use crate::failure::Failure;
 use stickslip::observe::{BodyRow, ContactRow, EnergyRow, Results};
+use stickslip::scene::Face;
 
 /// Momentum from nowhere until a time [s], over all impulses [-]; M is the mass of the disks or the sphere,
 /// p their momentum:
@@ -19,17 +20,17 @@ pub fn momentum_error(results: &Results, until: f64) -> Result<Option<f64>, Fail
     let energy = results.energy_table().map_err(Failure::input)?;
     let contacts = results.contacts_table().map_err(Failure::input)?;
     let bodies = results.bodies_table().map_err(Failure::input)?;
-    let scene = &results.manifest().scene;
+    let scene = results.scene().map_err(Failure::input)?;
     let (Some(start), Some(end)) = (energy.first(), energy.iter().rfind(|row| row.time <= until)) else {
         return Ok(None);
     };
-    let mirrored = |axis: usize| (0..2).any(|side| scene["domain"]["faces"][axis][side] == "symmetry");
+    let mirrored = |axis: usize| {
+        scene.domain.as_ref().is_some_and(|domain| domain.faces[axis].contains(&Face::Symmetry))
+    };
     let axes = || (0..3).filter(|&axis| !mirrored(axis));
     let norm = |vector: [f64; 3]| axes().map(|axis| vector[axis].powi(2)).sum::<f64>().sqrt();
     let [(_, before), (mass, after)] = [start.time, end.time].map(|time| moving(&bodies, time));
-    let weight: [f64; 3] = std::array::from_fn(|axis| {
-        mass * scene["gravity"][axis].as_f64().unwrap_or(0.0) * (end.time - start.time)
-    });
+    let weight: [f64; 3] = std::array::from_fn(|axis| mass * scene.gravity[axis] * (end.time - start.time));
     let names = results.body_names().iter().map(String::as_str);
     let others = names.filter(|name| !is_watched(name));
     let impulses: Vec<[f64; 3]> = others.map(|body| impulse(body, &contacts, &energy, end.time)).collect();
@@ -47,8 +48,9 @@ fn is_watched(name: &str) -> bool {
 /// Mass [kg] and momentum [kg m/s] of the watched bodies at a time.
 fn moving(bodies: &[BodyRow], time: f64) -> (f64, [f64; 3]) {
     let rows = bodies.iter().filter(|row| row.time == time && is_watched(&row.body));
-    rows.fold((0.0, [0.0; 3]), |(mass, [x, y, z]), row| {
-        (mass + row.mass, [x + row.mass * row.vx, y + row.mass * row.vy, z + row.mass * row.vz])
+    rows.fold((0.0, [0.0; 3]), |(mass, momentum), BodyRow { state, .. }| {
+        let more = state.velocity.map(|v| state.mass * v);
+        (mass + state.mass, [0, 1, 2].map(|axis| momentum[axis] + more[axis]))
     })
 }
 
@@ -65,7 +67,7 @@ fn impulse(body: &str, contacts: &[ContactRow], energy: &[EnergyRow], until: f64
         // A row is a mean from the row of all tables before it to its own.
         let before = energy[..energy.partition_point(|other| other.time < row.time)].last();
         let duration = row.time - before.map_or(0.0, |other| other.time);
-        for (sum, force) in sum.iter_mut().zip([row.fx, row.fy, row.fz]) {
+        for (sum, force) in sum.iter_mut().zip(row.mean.force) {
             *sum += sign * force * duration;
         }
     }
@@ -75,6 +77,7 @@ fn impulse(body: &str, contacts: &[ContactRow], energy: &[EnergyRow], until: f64
 #[cfg(test)]
 mod tests {
     use super::*;
+    use stickslip::door::ContactMean;
 
     #[test]
     fn impulses_are_forces_times_intervals_whoever_comes_first() {
@@ -83,8 +86,7 @@ mod tests {
             time,
             body_a: body_a.to_owned(),
             body_b: body_b.to_owned(),
-            fx,
-            ..ContactRow::default()
+            mean: ContactMean { force: [fx, 0.0, 0.0], ..ContactMean::default() },
         };
         let contacts = [
             row(0.5, "striker", "disk_1", -4.0),

@@ -7,7 +7,7 @@ use crate::chart::{Chart, Curve, Panel, svg};
 use crate::drawing::{Rgb, body_color};
 use crate::failure::Failure;
 use crate::page::{Cell, Column, EmbeddedImage, Figure, Table};
-use stickslip::observe::Results;
+use stickslip::observe::{Results, TableRow};
 
 /// A sphere of a scene, by a rule, on cells of a part of its radius.
 #[derive(Clone, Copy, Debug)]
@@ -81,7 +81,7 @@ fn curves(spheres: &[&Sphere], axis: ChartAxis, runs: &Runs) -> Result<Vec<Curve
         let Some(results) = runs.get(&sphere.case()) else { continue };
         let rows = results.bodies_table().map_err(Failure::input)?;
         let rows = rows.iter().filter(|row| row.body == BODY);
-        let points = rows.filter_map(|row| Some([row.time, row.quantity(axis.quantity)?])).collect();
+        let points = rows.filter_map(|row| Some([row.time, row.number(axis.quantity)?])).collect();
         curves.push(Curve { label: sphere.name(), color: body_color(number), dashed: false, points });
         let reference = results
             .manifest()
@@ -141,7 +141,7 @@ pub fn table(caption: &str, spheres: &[Sphere], runs: &Runs) -> Result<Table, Fa
 /// What the sphere and the rigid one reached at the end.
 fn reached(results: &Results, axis: ChartAxis) -> Result<[f64; 2], Failure> {
     let rows = results.bodies_table().map_err(Failure::input)?;
-    let value = rows.iter().rfind(|row| row.body == BODY).and_then(|row| row.quantity(axis.quantity));
+    let value = rows.iter().rfind(|row| row.body == BODY).and_then(|row| row.number(axis.quantity));
     let references = &results.manifest().references;
     let reference = references.iter().find(|each| each.body == BODY && each.quantity == axis.quantity);
     let exact = reference.and_then(|reference| reference.points.last()).map(|point| point[1]);

@@ -137,8 +137,8 @@ fn row(summary: &Summary, loaded: &Loaded, results: &Results) -> SweepRow {
 /// When bodies first pushed on each other, to a row of the table, and the largest push of a pair.
 /// Without contact there is neither.
 fn contact(rows: &[ContactRow]) -> Vec<(String, f64)> {
-    let Some(first) = rows.iter().find(|row| row.normal > 0.0) else { return Vec::new() };
-    let largest = rows.iter().map(|row| row.normal).fold(0.0, f64::max);
+    let Some(first) = rows.iter().find(|row| row.mean.normal > 0.0) else { return Vec::new() };
+    let largest = rows.iter().map(|row| row.mean.normal).fold(0.0, f64::max);
     vec![("first_contact".to_owned(), first.time), ("largest_push".to_owned(), largest)]
 }
 

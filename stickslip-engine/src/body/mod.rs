@@ -7,6 +7,7 @@ pub use totals::Totals;
 use crate::geometry::MirroredShape;
 use crate::material::{Keep, Material, Motion, Recall, Thickness};
 use crate::particles::Particles;
+use crate::rigid::RigidMotion;
 use crate::tensor::{Matrix, Number, Real, Symmetric, Vector};
 
 /// A material point.
@@ -72,8 +73,8 @@ pub struct Body<T, const D: usize> {
     pub density: T,
     /// Its particles, in the order of memory.
     pub particles: Particles<T, D>,
-    /// Whether its motion is prescribed, whatever pushes it.
-    pub rigid: bool,
+    /// Its motion and pose if it is rigid: prescribed, whatever pushes it.
+    pub motion: Option<RigidMotion>,
     /// Its undeformed shape with its images in the domain's mirrors.
     pub whole: MirroredShape,
     /// Which thickness its particles take.
@@ -109,9 +110,15 @@ impl<T: Real, const D: usize> Body<T, D> {
         self.material.wave_modulus(self.thickness, (f, f.det()), history)
     }
 
+    /// Whether it is rigid and moves as prescribed.
+    #[inline]
+    pub fn is_rigid(&self) -> bool {
+        self.motion.is_some()
+    }
+
     /// Whether surfaces may be found by its particles' deformation: of one that deforms its law says so.
     #[inline]
     pub fn trusts_deformation(&self) -> bool {
-        self.rigid || self.material.trusts_deformation()
+        self.is_rigid() || self.material.trusts_deformation()
     }
 }

@@ -303,7 +303,7 @@ impl<T: Laned, const D: usize> Body<T, D> {
     /// Mass, momentum and energy, summed in the order of memory, part by part.
     pub fn totals(&self) -> Totals {
         let sum = |part| {
-            let material = (!self.rigid).then_some(&self.material);
+            let material = (!self.is_rigid()).then_some(&self.material);
             let density = self.density.f64();
             let (columns, gyration) = (self.particles.view(), self.gyration());
             T::run(Processor::best(), SumOfRange { columns, part, gyration, material, density })

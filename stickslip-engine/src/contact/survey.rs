@@ -314,7 +314,7 @@ impl<T: Laned, const D: usize> Near<'_, T, D> {
         let n = nodes_per_block(D);
         for (&slot, present) in slots.iter().zip(&mut *present) {
             let owner = &self.bodies[self.active.slots[slot as usize].0 as usize];
-            let trace = if owner.rigid { rigid_trace::<T>() } else { trace::<T>() };
+            let trace = if owner.is_rigid() { rigid_trace::<T>() } else { trace::<T>() };
             let least = trace * self.cell_volume() * owner.density;
             let mut nodes = *present & several & free;
             while let Some(local) = next_of(&mut nodes) {
@@ -329,7 +329,7 @@ impl<T: Laned, const D: usize> Near<'_, T, D> {
             for b in a + 1..slots.len() {
                 let shared = present[a] & present[b] & free;
                 let bodies = [body(a), body(b)];
-                if shared == 0 || bodies.iter().all(|&body| self.bodies[body].rigid) {
+                if shared == 0 || bodies.iter().all(|&body| self.bodies[body].is_rigid()) {
                     continue;
                 }
                 let rule = self.rules.number(bodies[0], bodies[1]);
@@ -362,10 +362,10 @@ impl<T: Laned, const D: usize> Near<'_, T, D> {
         let place = sums.place(!owner.trusts_deformation()).seen_from(arm);
         // A rigid surface is where it is said to be; its lattice has stairs.
         let exact =
-            (owner.rigid && normal.is_some()).then(|| place.offset(Vector::ZERO, &owner.whole).normal);
+            (owner.is_rigid() && normal.is_some()).then(|| place.offset(Vector::ZERO, &owner.whole).normal);
         let normal = exact.filter(|n| *n != Vector::ZERO).or(normal);
         let surface = SurfaceEstimate {
-            inverse_mass: if owner.rigid { T::ZERO } else { T::ONE / mass },
+            inverse_mass: if owner.is_rigid() { T::ZERO } else { T::ONE / mass },
             normal,
             stress,
             volume: sums.volume(),

@@ -10,7 +10,6 @@ pub use column::{ColumnRef, NoColumn};
 pub use snapshot::{ColumnSource, ParticleSnapshot, SnapshotColumn};
 
 use crate::column::ColumnDescription;
-use serde::Serialize;
 use std::collections::HashMap;
 
 /// A simulation as it is now: observers, checks and pictures look at this. Asking changes nothing.
@@ -82,7 +81,7 @@ pub trait Simulation: View + Send {
 }
 
 /// One body at one time.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct BodyState {
     /// Mass; zero for a rigid body without bounds [kg].
     pub mass: f64,
@@ -102,7 +101,7 @@ pub struct BodyState {
 }
 
 /// Energy and momentum of everything. Dissipated and supplied energies are summed from the start.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Ledger {
     /// Kinetic energy of the particles [J].
     pub kinetic: f64,
@@ -198,27 +197,36 @@ impl ContactSum {
         (magnitude > 0.0).then(|| ContactState {
             body_a: self.bodies[0],
             body_b: self.bodies[1],
-            force: since(|sum| sum.impulse).map(|j| j / elapsed),
-            normal: (self.normal - before.normal) / elapsed,
-            tangential: since(|sum| sum.tangential).iter().map(|j| j * j).sum::<f64>().sqrt() / elapsed,
-            nodes: self.nodes,
-            position: since(|sum| sum.moment).map(|x| x / magnitude),
-            area: area / elapsed,
-            gap: if area > 0.0 { gap / area } else { 0.0 },
-            slip: self.slip - before.slip,
-            friction: self.friction - before.friction,
+            mean: ContactMean {
+                force: since(|sum| sum.impulse).map(|j| j / elapsed),
+                normal: (self.normal - before.normal) / elapsed,
+                tangential: since(|sum| sum.tangential).iter().map(|j| j * j).sum::<f64>().sqrt() / elapsed,
+                nodes: self.nodes,
+                position: since(|sum| sum.moment).map(|x| x / magnitude),
+                area: area / elapsed,
+                gap: if area > 0.0 { gap / area } else { 0.0 },
+                slip: self.slip - before.slip,
+                friction: self.friction - before.friction,
+            },
         })
     }
 }
 
-/// Contact between two bodies, averaged over the time between two readings, see [`ContactCursor`].
-#[derive(Clone, Debug, PartialEq, Serialize)]
+/// Contact between two bodies, see [`ContactCursor`].
+#[derive(Clone, Debug, PartialEq)]
 pub struct ContactState {
     /// Index of the first body; smaller than `body_b`.
     pub body_a: usize,
     /// Index of the second body.
     pub body_b: usize,
-    /// Mean force of `a` on `b` [N].
+    /// How they pressed on each other.
+    pub mean: ContactMean,
+}
+
+/// Contact of two bodies, averaged over the time between two readings.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ContactMean {
+    /// Mean force of the first on the second [N].
     pub force: [f64; 3],
     /// Mean of the sum over nodes of the force along each node's normal,
     /// positive when the bodies push each other apart [N].
@@ -242,7 +250,7 @@ pub struct ContactState {
 }
 
 /// The widest contact of two bodies so far.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactPatch {
     /// Index of the first body; smaller than `body_b`.
     pub body_a: usize,

@@ -13,7 +13,7 @@ use crate::door::Simulation;
 use crate::geometry::{Filling, Mirror, MirroredShape, ParticleSite, fill};
 use crate::grid::Lattice;
 use crate::lanes::{Laned, Processor};
-use crate::material::{BadConstants, History, Material};
+use crate::material::{BadConstants, Material};
 use crate::particles::{OwnColumns, Particles};
 use crate::rigid::RigidMotion;
 use crate::scene::{self, BasisKind, BodyMotion, Dimension, Face, NamedMaterial, Precision, Problem, Scene};
@@ -67,7 +67,6 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let cell = scene.discretization.cell;
         let whole_cells = scene.discretization.basis == BasisKind::Spline;
         let mut bodies = Vec::new();
-        let mut rigid = Vec::new();
         let mut unbounded = Vec::new();
         for body in &scene.bodies {
             let sites = check::lattice(scene, body);
@@ -85,7 +84,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 });
                 Filling { sites: Vec::new() }
             });
-            let motion = prescribed(body, center);
+            let motion = RigidMotion::prescribed(&body.motion, center);
             let velocity = |x| match (&body.motion, &motion) {
                 (BodyMotion::Free { velocity, spin }, _) => about(center, *velocity, *spin, x),
                 (_, Some(motion)) => motion.velocity_at(x),
@@ -103,12 +102,11 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 material: material(scene, body)?,
                 density: T::of(scene.materials[body.material].density),
                 particles: particles(scene, body, &filling, (velocity, turning)),
-                rigid: motion.is_some(),
+                motion,
                 whole: MirroredShape::new(&body.shape, mirrors::<D>(scene), D),
                 thickness: scene.dimension.thickness(),
                 gyration: turning::gyration::<T, B>(cell, whole_cells),
             });
-            rigid.push(motion);
         }
         let origin = scene.domain.as_ref().map_or([0.0; 3], |domain| domain.min);
         let disorder = bodies.iter().map(|body: &Body<T, D>| Disorder::any(body.particles.len())).collect();
@@ -126,7 +124,6 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             state: State {
                 bodies,
                 disorder,
-                rigid,
                 unbounded,
                 contact_sums: ContactSums::default(),
                 damping: 0.0,
@@ -151,16 +148,6 @@ fn material<T: Real>(scene: &Scene, body: &scene::Body) -> Result<Material<T>, P
         help: None,
     };
     law.on_grid(scene.discretization.cell).map(|law| law.cast()).map_err(at)
-}
-
-/// The prescribed motion of a rigid body.
-fn prescribed(body: &scene::Body, center: [f64; 3]) -> Option<RigidMotion> {
-    match &body.motion {
-        BodyMotion::Free { .. } => None,
-        BodyMotion::Rigid { velocity, spin } => {
-            Some(RigidMotion::new(center, velocity.clone(), spin.clone()))
-        }
-    }
 }
 
 /// The part of an angular velocity that a motion in `D` dimensions has.
@@ -200,13 +187,11 @@ fn particles<T: Real, const D: usize>(
 
 /// The columns that the particles of a body have for its law and its transfer: rigid ones none.
 pub fn own_columns(scene: &Scene, body: &scene::Body) -> OwnColumns {
-    match body.motion {
-        BodyMotion::Free { .. } => OwnColumns {
-            history: scene.materials[body.material].law.history(),
-            carried: crate::transfer::columns(scene.time.transfer),
-        },
-        BodyMotion::Rigid { .. } => OwnColumns::default(),
+    if body.is_rigid() {
+        return OwnColumns::default();
     }
+    let history = scene.materials[body.material].law.history();
+    OwnColumns { history, carried: crate::transfer::columns(scene.time.transfer) }
 }
 
 /// The domain's faces that are mirrors.

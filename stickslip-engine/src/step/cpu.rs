@@ -54,7 +54,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             let tile = &active.tiles[index as usize];
             let body = &bodies[tile.body];
             let for_rigid = Verbs { scatter: pass.verbs.scatter, ..Verbs::default() };
-            let pass = &Pass { verbs: if body.rigid { for_rigid } else { pass.verbs }, ..*pass };
+            let pass = &Pass { verbs: if body.is_rigid() { for_rigid } else { pass.verbs }, ..*pass };
             let mut visit = Visit {
                 pass,
                 tile,

@@ -26,7 +26,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 for encounter in &part.encounters[site.encounters.clone()] {
                     let bodies = encounter.sides.map(|side| part.sides[side].body);
                     let glued = self.settings.rules.rule(encounter.rule).law == ContactLaw::Glued;
-                    if glued && bodies.iter().all(|&body| self.state.rigid[body].is_none()) {
+                    if glued && bodies.iter().all(|&body| !self.state.bodies[body].is_rigid()) {
                         let [a, b] = encounter.sides.map(|side| groups[side - site.sides.start]);
                         groups.iter_mut().filter(|group| **group == b).for_each(|group| *group = a);
                     }

@@ -156,7 +156,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> View for Engine<T, D, B> {
         };
         let gravity = self.settings.gravity.space();
         let all = self.totals();
-        for (_, totals) in self.state.bodies.iter().zip(&*all).filter(|(body, _)| !body.rigid) {
+        for (_, totals) in self.state.bodies.iter().zip(&*all).filter(|(body, _)| !body.is_rigid()) {
             ledger.kinetic += totals.kinetic;
             ledger.strain += totals.strain;
             ledger.plastic += totals.plastic;
@@ -273,7 +273,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
     fn step(&mut self, longest: f64) -> Result<f64, StepError> {
         *self.workspace.totals.get_mut().unwrap_or_else(PoisonError::into_inner) = None;
         let dt = self.stable().min(longest);
-        for motion in self.state.rigid.iter_mut().flatten() {
+        for motion in self.state.bodies.iter_mut().filter_map(|body| body.motion.as_mut()) {
             motion.set_time(self.state.time + 0.5 * dt);
         }
         // One of the pool's threads takes the whole step: handing it every loop from outside would cost more than many

@@ -6,7 +6,6 @@ use crate::body::{Body, Totals};
 use crate::boundary::Boundary;
 use crate::contact::{ContactSums, Impulses, Rules, Survey};
 use crate::grid::{ActiveBlocks, Field, Lattice};
-use crate::rigid::RigidMotion;
 use crate::scene::{Time, Transfer};
 use crate::tensor::Vector;
 use std::sync::{Arc, Mutex};
@@ -28,12 +27,11 @@ pub struct Settings<T, const D: usize> {
 
 /// All that a copied, stored or resumed simulation needs: the same state takes the same steps, bit for bit.
 pub struct State<T, const D: usize> {
-    /// Bodies with their particles, in the order in which these lie in memory: sums follow that order.
+    /// Bodies with their particles, in the order in which these lie in memory: sums follow that order. Rigid ones have
+    /// their motion and pose.
     pub bodies: Vec<Body<T, D>>,
     /// How far each body's order in memory is from that of tiles and cells.
     pub disorder: Vec<Disorder>,
-    /// Prescribed motion of rigid bodies, with their poses.
-    pub rigid: Vec<Option<RigidMotion>>,
     /// Rigid bodies without bounds, with the blocks around which they have particles.
     pub unbounded: Vec<Unbounded<D>>,
     /// What contact did, pair by pair, and works since the start.

@@ -137,6 +137,8 @@ pub(crate) fn particles_around(scene: &Scene, body: usize, boxes: &[Bounds]) -> 
     }
 }
 
+const ONLY_RIGID: &str = "only rigid bodies may be without bounds";
+
 /// Nodes beyond a box that its particles reach [cells].
 const REACH: f64 = 1.5;
 
@@ -177,7 +179,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// Motion of a body, if it is rigid and without bounds.
     pub(super) fn without_bounds(&self, body: usize) -> Option<&RigidMotion> {
         let unbounded = self.state.unbounded.iter().any(|unbounded| unbounded.body == body);
-        self.state.rigid[body].as_ref().filter(|_| unbounded)
+        self.state.bodies[body].motion.as_ref().filter(|_| unbounded)
     }
 
     /// Gives rigid bodies without bounds particles around the blocks that deformable bodies have come to hold.
@@ -185,9 +187,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let mut changed = Blocks::Same;
         for i in 0..self.state.unbounded.len() {
             let unbounded = &self.state.unbounded[i];
-            let motion =
-                self.state.rigid[unbounded.body].as_ref().expect("only rigid bodies may be without bounds");
-            let pose = motion.pose();
+            let pose = self.without_bounds(unbounded.body).expect(ONLY_RIGID).pose();
             if blocks == Blocks::Same && unbounded.pose == Some(pose) {
                 continue;
             }
@@ -196,7 +196,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 .active
                 .slots
                 .iter()
-                .filter(|(body, _)| !self.state.bodies[*body as usize].rigid);
+                .filter(|(body, _)| !self.state.bodies[*body as usize].is_rigid());
             let near = held.map(|(_, block)| *block).filter(|&block| unbounded.meets(block, &pose));
             let drifted = unbounded.drifted(&pose);
             if !drifted && near.clone().all(|block| unbounded.served.binary_search(&block).is_ok()) {
@@ -227,14 +227,13 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     fn refill(&mut self, i: usize, sites: &[[f64; 3]]) {
         let Unbounded { body, sites: lattice, .. } = &self.state.unbounded[i];
         let (number, volume) = (*body, T::of(lattice.volume()));
-        let motion = self.state.rigid[number].as_ref().expect("only rigid bodies may be without bounds");
-        let pose = motion.pose();
-        let body = &mut self.state.bodies[number];
+        let motion = self.without_bounds(number).expect(ONLY_RIGID);
+        let (pose, density) = (motion.pose(), self.state.bodies[number].density);
         let particle = |i: usize| Particle {
             position: Vector::of(sites[i]),
             velocity: Vector::of(motion.velocity_at(pose.now(sites[i]))),
             spin: spin::<T, D>(motion.spin()),
-            mass: volume * body.density,
+            mass: volume * density,
             volume,
             half_width: T::of(0.5 * lattice.spacing),
             deformation: Matrix::from_fn(|i, j| T::of(pose.orientation.0[i][j])),
@@ -246,6 +245,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         for (i, &site) in sites.iter().enumerate() {
             particles.set(i, &Particle { position: Vector::of(pose.now(site)), ..particle(i) });
         }
+        let body = &mut self.state.bodies[number];
         body.particles = particles;
         self.state.disorder[number] = Disorder::any(body.particles.len());
         let (particles, grid) = (&body.particles, &self.settings.lattice);

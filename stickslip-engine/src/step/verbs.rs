@@ -7,6 +7,7 @@ use super::build::spin;
 use super::pass::{FaultKind, Found, ParticleFault, ParticleLoop, Pass, Verbs, escaped, home};
 use super::state::{Disorder, Workspace};
 use crate::basis::Basis;
+use crate::body::Body;
 use crate::clock::signal;
 use crate::contact::{Change, ImpulseRecord, Near, Solve, Span, TimeStep, Use};
 use crate::door::StepError;
@@ -210,7 +211,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let start = Instant::now();
         let n = nodes_per_block(D);
         let Workspace { active, field, boundary, .. } = &mut self.workspace;
-        for (body, motion) in self.state.rigid.iter().enumerate() {
+        for (body, Body { motion, .. }) in self.state.bodies.iter().enumerate() {
             let Some(motion) = motion else { continue };
             for slot in active.slots_held(body) {
                 let (_, block) = active.slots[slot];
@@ -341,8 +342,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     pub(super) fn move_rigid_bodies(&mut self, dt: T) -> Result<(), StepError> {
         let start = Instant::now();
         let mut found = Found { signal: T::of(self.state.signal.unwrap_or(0.0)), ..Found::NOTHING };
-        for (i, (body, motion)) in self.state.bodies.iter_mut().zip(&mut self.state.rigid).enumerate() {
-            let Some(motion) = motion else { continue };
+        for (i, body) in self.state.bodies.iter_mut().enumerate() {
+            // Taken out while the particles change, and put back moved on.
+            let Some(mut motion) = body.motion.take() else { continue };
             let dt = dt.f64();
             let rotation = motion.rotation(dt);
             // One without bounds is everywhere: its particles stand for what the others are near.
@@ -379,6 +381,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 found = found.and(Found { fault, signal: signal(body, &particle, &history) });
             }
             motion.advance(&rotation, dt);
+            body.motion = Some(motion);
             let tiles = self.workspace.active.tiles_held(i);
             self.workspace.left[tiles.clone()].fill(u64::MAX);
             if let [first, ..] = &mut self.workspace.moved[tiles] {

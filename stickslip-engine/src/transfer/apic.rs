@@ -22,7 +22,7 @@
 
 use super::{Carried, Start, Surroundings, TransferRule, turning};
 use crate::basis::Basis;
-use crate::column::Kind;
+use crate::column::{Kind, STRAIN_RATE};
 use crate::lanes::Lanes;
 use crate::material::History;
 use crate::tensor::Matrix;
@@ -33,7 +33,7 @@ pub struct Apic;
 
 impl TransferRule for Apic {
     const CARRIES_SPIN: bool = true;
-    const COLUMNS: &'static [History] = &[History::new("strain_rate", "1/s", Kind::Symmetric)];
+    const COLUMNS: &'static [History] = &[History::new(STRAIN_RATE, "1/s", Kind::Symmetric)];
     const ALWAYS_PIC: bool = true;
 
     #[inline(always)]

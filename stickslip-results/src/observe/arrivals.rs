@@ -5,14 +5,13 @@ use super::folder::OutputFolder;
 use super::points::{Points, SamplePoint};
 use super::probes::points;
 use super::schedule::Schedule;
-use super::table::{CsvTable, TableRow};
+use super::table::{CsvTable, Entry, TableRow, columns};
 use super::{ARRIVALS, Observer};
 use crate::door::View;
 use crate::scene::{Anchor, Arrival, Observable, Reading, Scene};
-use serde::{Deserialize, Serialize};
 
 /// A threshold that was passed; the columns of `arrivals.csv`. A threshold that was not passed has no row.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct ArrivalRow {
     /// Simulated time at which it was passed, on a straight line between the samples before and after [s].
     pub time: f64,
@@ -24,17 +23,14 @@ pub struct ArrivalRow {
     pub reading: String,
     /// Name of the probe or the body.
     pub place: String,
-    /// Where it was passed, first component [m].
-    pub x: f64,
-    /// Where it was passed, second component [m].
-    pub y: f64,
-    /// Where it was passed, third component [m].
-    pub z: f64,
+    /// Where it was passed [m].
+    pub position: [f64; 3],
 }
 
 impl TableRow for ArrivalRow {
-    fn time(&self) -> f64 {
-        self.time
+    fn columns(&mut self) -> Vec<(&'static str, Entry<'_>)> {
+        let Self { time, quantity, threshold, reading, place, position: [x, y, z] } = self;
+        columns![time, quantity, threshold, reading, place, x, y, z]
     }
 }
 
@@ -177,9 +173,9 @@ impl ArrivalWatches {
                 ArrivalSource::Any(body) => furthest(view, body, watch),
                 ArrivalSource::Mean(body) => mean(view, body, watch),
             };
-            let Some((value, [x, y, z])) = seen else { return true };
+            let Some((value, position)) = seen else { return true };
             let passed = watch.crossing.at(view.time(), value);
-            rows.extend(passed.map(|time| ArrivalRow { time, x, y, z, ..watch.row.clone() }));
+            rows.extend(passed.map(|time| ArrivalRow { time, position, ..watch.row.clone() }));
             passed.is_none()
         });
         rows.sort_by(|a, b| a.time.total_cmp(&b.time));

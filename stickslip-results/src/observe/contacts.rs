@@ -3,16 +3,15 @@
 use super::file::OutputError;
 use super::folder::OutputFolder;
 use super::schedule::Schedule;
-use super::table::{CsvTable, TableRow};
+use super::table::{CsvTable, Entry, TableRow, columns};
 use super::{CONTACTS, Observer};
-use crate::door::{ContactCursor, View};
+use crate::door::{ContactCursor, ContactMean, ContactState, View};
 use crate::scene::Scene;
-use serde::{Deserialize, Serialize};
 
 /// Contact of one pair of bodies, averaged from the row before to this one; the columns of `contacts.csv`.
 ///
 /// Pairs that exerted no force on each other in that time have no row.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct ContactRow {
     /// Simulated time at which the average ends [s].
     pub time: f64,
@@ -20,39 +19,18 @@ pub struct ContactRow {
     pub body_a: String,
     /// Name of the second body.
     pub body_b: String,
-    /// Mean force of the first on the second body, first component [N].
-    pub fx: f64,
-    /// Mean force of the first on the second body, second component [N].
-    pub fy: f64,
-    /// Mean force of the first on the second body, third component [N].
-    pub fz: f64,
-    /// Mean of the sum over nodes of the force along each node's normal, positive when the bodies push each other apart
-    /// [N].
-    pub normal: f64,
-    /// Magnitude of the mean of the sum over nodes of the force across each node's normal: forces that oppose each
-    /// other, at two nodes or at two times, cancel [N].
-    pub tangential: f64,
-    /// Grid nodes that passed a force in the last step in which the surfaces touched.
-    pub nodes: usize,
-    /// Centre of the forces over nodes and time, each by its magnitude; first component [m].
-    pub x: f64,
-    /// Centre of the forces, second component [m].
-    pub y: f64,
-    /// Centre of the forces, third component [m].
-    pub z: f64,
-    /// Area over which the bodies touched, averaged as the force is [m^2], in the plane length per depth [m].
-    pub area: f64,
-    /// Mean distance between the surfaces over area and time, negative where they overlap [m].
-    pub gap: f64,
-    /// How far the surfaces slipped on each other since the row before, the mean over their area [m].
-    pub slip: f64,
-    /// Work of friction, cohesion and viscosity since the row before [J].
-    pub friction: f64,
+    /// How they pressed on each other since the row before.
+    pub mean: ContactMean,
 }
 
 impl TableRow for ContactRow {
-    fn time(&self) -> f64 {
-        self.time
+    fn columns(&mut self) -> Vec<(&'static str, Entry<'_>)> {
+        let Self { time, body_a, body_b, mean } = self;
+        let ContactMean { force: [fx, fy, fz], normal, tangential, nodes, position: [x, y, z], .. } = mean;
+        let ContactMean { area, gap, slip, friction, .. } = mean;
+        columns![
+            time, body_a, body_b, fx, fy, fz, normal, tangential, nodes, x, y, z, area, gap, slip, friction
+        ]
     }
 }
 
@@ -82,27 +60,13 @@ impl Observer for ContactsObserver {
 
     fn observe(&mut self, view: &dyn View) -> Result<(), OutputError> {
         let time = view.time();
-        let contacts = self.cursor.read(view);
-        self.table.append(contacts.into_iter().map(|contact| {
-            let ([fx, fy, fz], [x, y, z]) = (contact.force, contact.position);
-            ContactRow {
-                time,
-                body_a: self.names[contact.body_a].clone(),
-                body_b: self.names[contact.body_b].clone(),
-                fx,
-                fy,
-                fz,
-                normal: contact.normal,
-                tangential: contact.tangential,
-                nodes: contact.nodes,
-                x,
-                y,
-                z,
-                area: contact.area,
-                gap: contact.gap,
-                slip: contact.slip,
-                friction: contact.friction,
-            }
+        let name = |body: usize| self.names[body].clone();
+        let contacts = self.cursor.read(view).into_iter();
+        self.table.append(contacts.map(|ContactState { body_a, body_b, mean }| ContactRow {
+            time,
+            body_a: name(body_a),
+            body_b: name(body_b),
+            mean,
         }))?;
         self.schedule.recorded(time);
         Ok(())

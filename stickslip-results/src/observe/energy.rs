@@ -3,66 +3,28 @@
 use super::file::OutputError;
 use super::folder::OutputFolder;
 use super::schedule::Schedule;
-use super::table::{CsvTable, TableRow};
+use super::table::{CsvTable, Entry, TableRow, columns};
 use super::{ENERGY, Observer};
 use crate::door::{Ledger, View};
 use crate::scene::Scene;
-use serde::{Deserialize, Serialize};
 
-/// Energy and momentum of everything at one time; the columns of `energy.csv`. See [`Ledger`] for what each term is.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+/// Energy and momentum of everything at one time; the columns of `energy.csv`.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct EnergyRow {
     /// Simulated time [s].
     pub time: f64,
-    /// Kinetic energy [J].
-    pub kinetic: f64,
-    /// Strain energy [J].
-    pub strain: f64,
-    /// Potential energy in gravity [J].
-    pub potential: f64,
-    /// Work of prescribed motion since the start [J].
-    pub external_work: f64,
-    /// Dissipated by friction, cohesion and viscosity of contacts since the start [J].
-    pub friction: f64,
-    /// Taken by bonds of contacts that adhere since the start, where they give way [J].
-    pub adhesion: f64,
-    /// Dissipated by plastic flow since the start [J].
-    pub plastic: f64,
-    /// Dissipated by damping since the start [J].
-    pub damping: f64,
-    /// Sum that is constant in an exact solution [J].
-    pub total: f64,
-    /// Momentum, first component [kg m/s].
-    pub px: f64,
-    /// Momentum, second component [kg m/s].
-    pub py: f64,
-    /// Momentum, third component [kg m/s].
-    pub pz: f64,
-    /// Angular momentum about the origin, first component [kg m^2/s].
-    pub lx: f64,
-    /// Angular momentum about the origin, second component [kg m^2/s].
-    pub ly: f64,
-    /// Angular momentum about the origin, third component [kg m^2/s].
-    pub lz: f64,
+    /// What each term is; impulses and nodes that are counted have no column.
+    pub ledger: Ledger,
 }
 
-impl EnergyRow {
-    /// The row of a ledger at a time [s].
-    pub fn new(time: f64, ledger: &Ledger) -> Self {
+impl TableRow for EnergyRow {
+    fn columns(&mut self) -> Vec<(&'static str, Entry<'_>)> {
+        let Self { time, ledger } = self;
+        let Ledger { kinetic, strain, potential, external_work, friction, adhesion, .. } = ledger;
         let Ledger {
-            kinetic,
-            strain,
-            potential,
-            external_work,
-            friction,
-            adhesion,
-            plastic,
-            damping,
-            total,
-            ..
-        } = *ledger;
-        let ([px, py, pz], [lx, ly, lz]) = (ledger.momentum, ledger.angular_momentum);
-        EnergyRow {
+            plastic, damping, total, momentum: [px, py, pz], angular_momentum: [lx, ly, lz], ..
+        } = ledger;
+        columns![
             time,
             kinetic,
             strain,
@@ -78,14 +40,8 @@ impl EnergyRow {
             pz,
             lx,
             ly,
-            lz,
-        }
-    }
-}
-
-impl TableRow for EnergyRow {
-    fn time(&self) -> f64 {
-        self.time
+            lz
+        ]
     }
 }
 
@@ -111,7 +67,7 @@ impl Observer for EnergyObserver {
 
     fn observe(&mut self, view: &dyn View) -> Result<(), OutputError> {
         let time = view.time();
-        self.table.append([EnergyRow::new(time, &view.ledger())])?;
+        self.table.append([EnergyRow { time, ledger: view.ledger() }])?;
         self.schedule.recorded(time);
         Ok(())
     }

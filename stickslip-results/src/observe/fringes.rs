@@ -3,7 +3,7 @@
 
 use super::file::{OutputError, replace};
 use super::folder::OutputFolder;
-use super::table::{CsvTable, TableRow};
+use super::table::{CsvTable, Entry, TableRow, columns};
 use super::writer::Writer;
 use super::{FRINGES, FRINGES_ANIMATION, FRINGES_TABLE, Observer};
 use crate::door::{ContactCursor, ContactState, ParticleSnapshot, View};
@@ -11,7 +11,6 @@ use crate::image::{Image, write_animation};
 use crate::polariscope::{Film, ImageWindow, Link, OpticalBench, Push, Stage, bounds, draw_links, links};
 use crate::scene::{self, Overlay, Scene};
 use rayon::{ThreadPool, ThreadPoolBuilder};
-use serde::{Deserialize, Serialize};
 use std::fs;
 use std::num::NonZero;
 use std::path::PathBuf;
@@ -20,7 +19,7 @@ use std::path::PathBuf;
 pub const FRAMES_PER_SECOND: f64 = 10.0;
 
 /// One frame; the columns of `fringes.csv`.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct FringeRow {
     /// Number of the frame, which is the name of its file.
     pub frame: usize,
@@ -35,8 +34,9 @@ pub struct FringeRow {
 }
 
 impl TableRow for FringeRow {
-    fn time(&self) -> f64 {
-        self.time
+    fn columns(&mut self) -> Vec<(&'static str, Entry<'_>)> {
+        let Self { frame, time, from, to, samples } = self;
+        columns![frame, time, from, to, samples]
     }
 }
 
@@ -248,7 +248,7 @@ impl Observer for FringesObserver {
         let pushes = (due && self.overlay == Overlay::ForceChains).then(|| {
             let push = |contact: ContactState| Push {
                 bodies: [contact.body_a, contact.body_b],
-                force: contact.normal,
+                force: contact.mean.normal,
             };
             self.contacts.read(view).into_iter().map(push).collect()
         });

@@ -3,14 +3,13 @@
 use super::file::OutputError;
 use super::folder::OutputFolder;
 use super::schedule::Schedule;
-use super::table::{CsvTable, TableRow};
+use super::table::{CsvTable, Entry, TableRow, columns};
 use super::{FRONT_SPEEDS, FRONTS, Observer};
 use crate::door::{ParticleView, View};
 use crate::scene::{Front, Scene};
-use serde::{Deserialize, Serialize};
 
 /// A front at one time, in SI units; the columns of `fronts.csv`. A front that is nowhere has no row.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct FrontRow {
     /// Simulated time [s].
     pub time: f64,
@@ -18,12 +17,8 @@ pub struct FrontRow {
     pub front: String,
     /// How far it is from its starting point, along its direction [m].
     pub distance: f64,
-    /// The particle there, first component [m].
-    pub x: f64,
-    /// The particle there, second component [m].
-    pub y: f64,
-    /// The particle there, third component [m].
-    pub z: f64,
+    /// Where the particle there is [m].
+    pub position: [f64; 3],
 }
 
 /// The speed of a front, in SI units; the columns of `front_speeds.csv`.
@@ -34,7 +29,7 @@ pub struct FrontRow {
 /// ```
 ///
 /// over the samples in which s, the furthest that the front has been, lies on the way that is fitted.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct FrontSpeedRow {
     /// Time of the last sample that is fitted [s].
     pub time: f64,
@@ -55,14 +50,16 @@ pub struct FrontSpeedRow {
 }
 
 impl TableRow for FrontRow {
-    fn time(&self) -> f64 {
-        self.time
+    fn columns(&mut self) -> Vec<(&'static str, Entry<'_>)> {
+        let Self { time, front, distance, position: [x, y, z] } = self;
+        columns![time, front, distance, x, y, z]
     }
 }
 
 impl TableRow for FrontSpeedRow {
-    fn time(&self) -> f64 {
-        self.time
+    fn columns(&mut self) -> Vec<(&'static str, Entry<'_>)> {
+        let Self { time, front, speed, error, start_time, start, end, samples } = self;
+        columns![time, front, speed, error, start_time, start, end, samples]
     }
 }
 
@@ -136,11 +133,11 @@ impl Track {
                 };
             });
         }
-        let (distance, [x, y, z]) = first?;
+        let (distance, position) = first?;
         let time = view.time();
         let before = self.furthest.last().map_or(f64::NEG_INFINITY, |[_, distance]| *distance);
         self.furthest.push([time, distance.max(before)]);
-        Some(FrontRow { time, front: self.front.name.clone(), distance, x, y, z })
+        Some(FrontRow { time, front: self.front.name.clone(), distance, position })
     }
 
     /// Its speed, if it went over enough of the way.

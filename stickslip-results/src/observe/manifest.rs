@@ -34,6 +34,7 @@ pub struct Manifest {
     /// Known answers, to be held against `bodies.csv`.
     pub references: Vec<ReferenceCurve>,
     /// The scene as run, in SI units, parameters resolved; numbers that are infinite stand as `null`.
+    /// [`Results::scene`](super::Results::scene) reads it.
     pub scene: serde_json::Value,
 }
 

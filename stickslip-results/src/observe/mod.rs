@@ -22,6 +22,7 @@ mod network;
 mod particles;
 mod points;
 mod probes;
+mod recorded;
 mod recorder;
 mod results;
 mod schedule;
@@ -43,9 +44,14 @@ pub use grid::encode_grid;
 pub use manifest::{Manifest, Performance, ReferenceCurve, RunWarning, Status, Timing};
 pub use network::Network;
 pub use particles::{encode_particles, read_particles};
+pub use points::PointSample;
 pub use probes::ProbeRow;
+pub use recorded::{
+    RecordedBody, RecordedMeasurements, RecordedOutputs, RecordedScene, RecordedShape, RecordedTime,
+};
 pub use recorder::Recorder;
 pub use results::Results;
+pub use table::{Entry, TableRow};
 pub use vtu::Vtu;
 
 use crate::door::View;

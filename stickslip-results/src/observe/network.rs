@@ -6,6 +6,7 @@ use super::bodies::BodyRow;
 use super::contacts::ContactRow;
 use super::file::ReadError;
 use super::results::Results;
+use super::table::TableRow;
 use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, BytesText, Event};
 use std::collections::BTreeSet;
@@ -22,7 +23,7 @@ pub struct Network {
     pub contacts: Vec<ContactRow>,
 }
 
-/// Attributes of a body in the graph, and of a contact.
+/// Attributes of a body in the graph, its name and columns of its table, and of a contact.
 const OF_BODY: [&str; 5] = ["name", "x", "y", "z", "mass"];
 const OF_CONTACT: [&str; 12] =
     ["fx", "fy", "fz", "normal", "tangential", "x", "y", "z", "area", "gap", "slip", "friction"];
@@ -81,37 +82,19 @@ impl Network {
                 .with_attributes([("id", time.as_str()), ("edgedefault", "directed")])
                 .write_inner_content(|xml| {
                     for row in &self.bodies {
-                        let values = [row.x, row.y, row.z, row.mass].map(|value| value.to_string());
-                        let values: Vec<String> = std::iter::once(row.body.clone()).chain(values).collect();
+                        let value = |column: &str| row.number(column).map(|number| number.to_string());
+                        let values = OF_BODY.map(|column| value(column).unwrap_or_else(|| row.body.clone()));
                         xml.create_element("node")
                             .with_attribute(("id", row.body.as_str()))
                             .write_inner_content(|xml| data(xml, "node", &OF_BODY, &values))?;
                     }
                     for row in &self.contacts {
-                        let ContactRow {
-                            fx,
-                            fy,
-                            fz,
-                            normal,
-                            tangential,
-                            x,
-                            y,
-                            z,
-                            area,
-                            gap,
-                            slip,
-                            friction,
-                            ..
-                        } = *row;
-                        let values = [fx, fy, fz, normal, tangential, x, y, z, area, gap, slip, friction];
-                        xml.create_element("edge")
-                            .with_attributes([
-                                ("source", row.body_a.as_str()),
-                                ("target", row.body_b.as_str()),
-                            ])
-                            .write_inner_content(|xml| {
-                                data(xml, "edge", &OF_CONTACT, &values.map(|value| value.to_string()))
-                            })?;
+                        let value =
+                            |column: &str| row.number(column).expect("a column of numbers").to_string();
+                        let ends = [("source", row.body_a.as_str()), ("target", row.body_b.as_str())];
+                        xml.create_element("edge").with_attributes(ends).write_inner_content(|xml| {
+                            data(xml, "edge", &OF_CONTACT, &OF_CONTACT.map(value))
+                        })?;
                     }
                     Ok(())
                 })?;
@@ -134,13 +117,18 @@ fn data<W: Write>(xml: &mut Writer<W>, kind: &str, names: &[&str], values: &[Str
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::door::{BodyState, ContactMean};
 
     fn network() -> Network {
-        let body = |name: &str| BodyRow { body: name.into(), mass: 2.0, ..BodyRow::default() };
+        let body = |name: &str| BodyRow {
+            body: name.into(),
+            state: BodyState { mass: 2.0, ..BodyState::default() },
+            ..BodyRow::default()
+        };
         let contact = |a: &str, b: &str| ContactRow {
             body_a: a.into(),
             body_b: b.into(),
-            normal: 7.5,
+            mean: ContactMean { normal: 7.5, ..ContactMean::default() },
             ..ContactRow::default()
         };
         Network {

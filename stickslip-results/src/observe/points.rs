@@ -1,11 +1,11 @@
 //! Points at which the material is sampled, by a smooth mean over the particles around.
 
 use crate::door::{ParticleView, View};
-use crate::scene::{Anchor, BodyMotion, Scene};
+use crate::scene::{Anchor, Scene};
 
 /// Motion and stress of the material at a point.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct PointSample {
+pub struct PointSample {
     /// Where it is [m].
     pub position: [f64; 3],
     /// Its velocity [m/s].
@@ -58,7 +58,7 @@ const RADIUS: f64 = 2.0;
 impl Points {
     /// Points in a scene. A point of the material that names no body belongs to the nearest.
     pub(super) fn new(scene: &Scene, points: impl IntoIterator<Item = SamplePoint>) -> Self {
-        let free = |i: &usize| matches!(scene.bodies[*i].motion, BodyMotion::Free { .. });
+        let free = |i: &usize| !scene.bodies[*i].is_rigid();
         let bodies: Vec<usize> = (0..scene.bodies.len()).filter(free).collect();
         let nearest = |at: [f64; 3]| {
             let distance = |i: usize| scene.bodies[i].shape.distance(at, scene.dimension.axes());

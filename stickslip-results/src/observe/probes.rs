@@ -4,43 +4,20 @@ use super::file::OutputError;
 use super::folder::OutputFolder;
 use super::points::{PointSample, Points, SamplePoint};
 use super::schedule::Schedule;
-use super::table::{CsvTable, TableRow};
+use super::table::{CsvTable, Entry, TableRow, columns};
 use super::{Observer, PROBES};
 use crate::door::View;
 use crate::scene::{Observable, Probe, Scene};
-use serde::{Deserialize, Serialize};
 
 /// A probe at one time, in SI units; the columns of `probes.csv`. A probe without material around has no row.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct ProbeRow {
     /// Simulated time [s].
     pub time: f64,
     /// Name of the probe.
     pub probe: String,
-    /// Where it is, first component [m].
-    pub x: f64,
-    /// Where it is, second component [m].
-    pub y: f64,
-    /// Where it is, third component [m].
-    pub z: f64,
-    /// Velocity of the material, first component [m/s].
-    pub vx: f64,
-    /// Velocity of the material, second component [m/s].
-    pub vy: f64,
-    /// Velocity of the material, third component [m/s].
-    pub vz: f64,
-    /// Cauchy stress, normal along x, tension positive [Pa].
-    pub xx: f64,
-    /// Normal stress along y [Pa].
-    pub yy: f64,
-    /// Normal stress along z [Pa].
-    pub zz: f64,
-    /// Shear stress in the plane of x and y [Pa].
-    pub xy: f64,
-    /// Shear stress in the plane of y and z [Pa].
-    pub yz: f64,
-    /// Shear stress in the plane of x and z [Pa].
-    pub xz: f64,
+    /// Where it is, and the motion and stress of the material there.
+    pub sample: PointSample,
     /// Minus a third of the trace of the stress [Pa].
     pub pressure: f64,
     /// Difference of the principal stresses in the plane of x and y [Pa].
@@ -50,20 +27,11 @@ pub struct ProbeRow {
 }
 
 impl TableRow for ProbeRow {
-    fn time(&self) -> f64 {
-        self.time
-    }
-}
-
-impl ProbeRow {
-    fn new(time: f64, probe: &str, sample: &PointSample) -> Self {
-        let ([x, y, z], [vx, vy, vz]) = (sample.position, sample.velocity);
-        let [xx, yy, zz, xy, yz, xz] = sample.stress;
-        let [pressure, stress_difference, von_mises] =
-            [Observable::Pressure, Observable::StressDifference, Observable::VonMises]
-                .map(|quantity| quantity.value(&sample.velocity, &sample.stress));
-        let probe = probe.to_string();
-        ProbeRow {
+    fn columns(&mut self) -> Vec<(&'static str, Entry<'_>)> {
+        let Self { time, probe, sample, pressure, stress_difference, von_mises } = self;
+        let PointSample { position: [x, y, z], velocity: [vx, vy, vz], stress: [xx, yy, zz, xy, yz, xz] } =
+            sample;
+        columns![
             time,
             probe,
             x,
@@ -80,13 +48,22 @@ impl ProbeRow {
             xz,
             pressure,
             stress_difference,
-            von_mises,
-        }
+            von_mises
+        ]
     }
+}
 
-    /// The value of a quantity.
-    pub fn quantity(&self, quantity: Observable) -> f64 {
-        quantity.value(&[self.vx, self.vy, self.vz], &[self.xx, self.yy, self.zz, self.xy, self.yz, self.xz])
+impl ProbeRow {
+    fn new(time: f64, probe: &str, sample: PointSample) -> Self {
+        let value = |quantity: Observable| quantity.value(&sample.velocity, &sample.stress);
+        ProbeRow {
+            time,
+            probe: probe.to_string(),
+            sample,
+            pressure: value(Observable::Pressure),
+            stress_difference: value(Observable::StressDifference),
+            von_mises: value(Observable::VonMises),
+        }
     }
 }
 
@@ -130,11 +107,8 @@ impl Observer for ProbesObserver {
 
     fn observe(&mut self, view: &dyn View) -> Result<(), OutputError> {
         let time = view.time();
-        let samples = self.points.sample(view);
-        let rows = self.names.iter().zip(&samples);
-        self.table.append(
-            rows.filter_map(|(name, sample)| sample.as_ref().map(|sample| ProbeRow::new(time, name, sample))),
-        )?;
+        let samples = self.names.iter().zip(self.points.sample(view));
+        self.table.append(samples.filter_map(|(name, sample)| Some(ProbeRow::new(time, name, sample?))))?;
         self.schedule.recorded(time);
         Ok(())
     }

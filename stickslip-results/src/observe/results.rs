@@ -4,17 +4,18 @@ use super::arrivals::ArrivalRow;
 use super::bodies::BodyRow;
 use super::contacts::ContactRow;
 use super::energy::EnergyRow;
-use super::file::ReadError;
+use super::file::{ReadError, ReadProblem};
 use super::frames::{Frame, read_frames};
 use super::fringes::FringeRow;
 use super::fronts::{FrontRow, FrontSpeedRow};
 use super::manifest::Manifest;
 use super::particles::read_particles;
 use super::probes::ProbeRow;
-use super::table::read_rows;
+use super::recorded::RecordedScene;
+use super::table::{TableRow, read_rows};
 use super::{ARRIVALS, BODIES, CONTACTS, ENERGY, FRINGES_TABLE, FRONT_SPEEDS, FRONTS, PARTICLES, PROBES};
 use crate::door::ParticleSnapshot;
-use serde::de::DeserializeOwned;
+use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
 /// The results of a run, finished or not.
@@ -40,6 +41,15 @@ impl Results {
     /// What was run and how it went.
     pub fn manifest(&self) -> &Manifest {
         &self.manifest
+    }
+
+    /// The scene that was run.
+    ///
+    /// # Errors
+    /// Another version of the program wrote it.
+    pub fn scene(&self) -> Result<RecordedScene, ReadError> {
+        RecordedScene::deserialize(&self.manifest.scene)
+            .map_err(|error| ReadProblem::from(error).at(&self.folder.join(Manifest::FILE)))
     }
 
     /// Names of the bodies, in the order of the numbers in snapshots.
@@ -125,7 +135,7 @@ impl Results {
     }
 
     /// The rows of a table that is there only if the scene asks for it.
-    fn measured<R: DeserializeOwned>(&self, name: &str) -> Result<Vec<R>, ReadError> {
+    fn measured<R: TableRow>(&self, name: &str) -> Result<Vec<R>, ReadError> {
         let path = self.folder.join(name);
         if path.exists() { read_rows(&path) } else { Ok(Vec::new()) }
     }

@@ -3,22 +3,80 @@
 use super::file::{OutputError, ReadError, ReadProblem};
 use super::writer::Writer;
 use serde::Serialize;
-use serde::de::DeserializeOwned;
 use std::fs::{self, File};
 use std::io::{self, Write};
 use std::marker::PhantomData;
 use std::path::{Path, PathBuf};
 
-/// A row of a table through time.
-pub(super) trait TableRow: Serialize + Default {
-    /// Simulated time [s].
-    fn time(&self) -> f64;
+/// A row of a table through time. The list of its columns serves writing, reading and looking up.
+pub trait TableRow: Clone + Default {
+    /// Its columns in the order of the file, the time among them: name, and where the row keeps the entry.
+    fn columns(&mut self) -> Vec<(&'static str, Entry<'_>)>;
+
+    /// The number in a column by the column's name; `None` for a name that is no column of numbers.
+    fn number(&self, column: &str) -> Option<f64> {
+        match self.clone().columns().into_iter().find(|(name, _)| *name == column)?.1 {
+            Entry::Number(number) => Some(*number),
+            Entry::Count(count) => Some(*count as f64),
+            Entry::Name(_) => None,
+        }
+    }
+}
+
+/// What a row has in a column.
+#[derive(Debug, Serialize)]
+#[serde(untagged)]
+pub enum Entry<'a> {
+    /// A number.
+    Number(&'a mut f64),
+    /// How many.
+    Count(&'a mut usize),
+    /// A name.
+    Name(&'a mut String),
+}
+
+/// Columns that are called as the variables that borrow their entries.
+macro_rules! columns {
+    ($($name:ident),*) => {
+        vec![$((stringify!($name), $crate::observe::table::Entry::from($name))),*]
+    };
+}
+pub(super) use columns;
+
+impl<'a> From<&'a mut f64> for Entry<'a> {
+    fn from(number: &'a mut f64) -> Self {
+        Entry::Number(number)
+    }
+}
+
+impl<'a> From<&'a mut usize> for Entry<'a> {
+    fn from(count: &'a mut usize) -> Self {
+        Entry::Count(count)
+    }
+}
+
+impl<'a> From<&'a mut String> for Entry<'a> {
+    fn from(name: &'a mut String) -> Self {
+        Entry::Name(name)
+    }
+}
+
+impl Entry<'_> {
+    /// Takes what a file has; `None` where that is no number.
+    fn take(self, text: &str) -> Option<()> {
+        match self {
+            Entry::Number(number) => *number = text.parse().ok()?,
+            Entry::Count(count) => *count = text.parse().ok()?,
+            Entry::Name(name) => text.clone_into(name),
+        }
+        Some(())
+    }
 }
 
 /// Column of the time in the scene's own unit, after those of the row.
 pub(super) const TIME_UNITS: &str = "time_units";
 
-/// A growing table whose columns are the fields of a row and, if the scene has a unit of time, the time in it.
+/// A growing table whose columns are those of a row and, if the scene has a unit of time, the time in it.
 /// A thread of its own writes it.
 pub(super) struct CsvTable<R> {
     writer: Writer<Sheet>,
@@ -40,10 +98,9 @@ impl<R: TableRow> CsvTable<R> {
     pub(super) fn create(path: PathBuf, unit: Option<f64>) -> Result<Self, OutputError> {
         let file = File::create(&path).map_err(OutputError::at(&path))?;
         let mut sheet = Sheet { path: path.clone(), file, length: 0 };
-        let with_header = encode([R::default()], true);
-        let header = with_header.split(|&byte| byte == b'\n').next().unwrap_or_default();
-        let more = if unit.is_some() { format!(",{TIME_UNITS}\n") } else { "\n".to_string() };
-        sheet.write(&[header, more.as_bytes()].concat())?;
+        let mut row = R::default();
+        let names = row.columns().into_iter().map(|(name, _)| name).chain(unit.map(|_| TIME_UNITS));
+        sheet.write((names.collect::<Vec<_>>().join(",") + "\n").as_bytes())?;
         Ok(CsvTable { writer: Writer::start(sheet).map_err(OutputError::at(&path))?, unit, row: PhantomData })
     }
 
@@ -53,16 +110,7 @@ impl<R: TableRow> CsvTable<R> {
     /// The disk was full or refused when rows were added before; then the file ends with those before them.
     pub(super) fn append(&mut self, rows: impl IntoIterator<Item = R>) -> Result<(), OutputError> {
         self.writer.make_room()?;
-        let bytes = match self.unit {
-            None => encode(rows, false),
-            Some(unit) => {
-                let timed = rows.into_iter().map(|row| {
-                    let time = row.time() / unit;
-                    (row, time)
-                });
-                encode(timed, false)
-            }
-        };
+        let bytes = encode(rows, self.unit);
         self.writer.hand_over(bytes.len(), move |sheet| sheet.write(&bytes));
         Ok(())
     }
@@ -88,27 +136,50 @@ impl Sheet {
     }
 }
 
-fn encode<R: Serialize>(rows: impl IntoIterator<Item = R>, header: bool) -> Vec<u8> {
-    let mut writer = csv::WriterBuilder::new().has_headers(header).from_writer(Vec::new());
-    for row in rows {
-        writer.serialize(row).expect("rows are flat structs of numbers and names");
+/// The lines of rows, each with its time in the scene's own unit [s] if there is one.
+fn encode<R: TableRow>(rows: impl IntoIterator<Item = R>, unit: Option<f64>) -> Vec<u8> {
+    let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new());
+    for mut row in rows {
+        let mut in_units = unit.map(|unit| row.number("time").expect("every row has its time") / unit);
+        let entries = row.columns().into_iter().map(|(_, entry)| entry);
+        let entries: Vec<Entry> = entries.chain(in_units.as_mut().map(Entry::Number)).collect();
+        writer.serialize(entries).expect("entries are numbers and names");
     }
     writer.into_inner().expect("a vector takes all bytes")
 }
 
-/// All whole rows of a table.
+/// All whole rows of a table. Columns are found by their names, and others passed over.
 ///
 /// # Errors
 /// The file is missing or is not a table of such rows. A last line that is cut short is ignored:
 /// a run may be writing it.
-pub(super) fn read_rows<R: DeserializeOwned>(path: &Path) -> Result<Vec<R>, ReadError> {
+pub(super) fn read_rows<R: TableRow>(path: &Path) -> Result<Vec<R>, ReadError> {
     let rows = || -> Result<Vec<R>, ReadProblem> {
         let bytes = fs::read(path)?;
         let whole = bytes.iter().rposition(|&byte| byte == b'\n').map_or(0, |last| last + 1);
         if whole == 0 {
             return Err(io::Error::from(io::ErrorKind::UnexpectedEof).into());
         }
-        Ok(csv::Reader::from_reader(&bytes[..whole]).deserialize().collect::<Result<_, _>>()?)
+        let mut reader = csv::Reader::from_reader(&bytes[..whole]);
+        let header = reader.headers()?.clone();
+        let mut row = R::default();
+        let place = |(name, _): (&str, Entry)| {
+            let missing = || ReadProblem::Layout(format!("it has no column `{name}`"));
+            header.iter().position(|found| found == name).ok_or_else(missing)
+        };
+        let places: Vec<usize> = row.columns().into_iter().map(place).collect::<Result<_, _>>()?;
+        let read = |record: csv::Result<csv::StringRecord>| {
+            let record = record?;
+            for ((name, entry), &place) in row.columns().into_iter().zip(&places) {
+                let (line, text) = (record.position().map_or(0, csv::Position::line), &record[place]);
+                let wrong = || {
+                    ReadProblem::Layout(format!("line {line}: found `{text}` as {name}; allowed: a number"))
+                };
+                entry.take(text).ok_or_else(wrong)?;
+            }
+            Ok(row.clone())
+        };
+        reader.records().map(read).collect()
     };
     rows().map_err(|problem| problem.at(path))
 }
@@ -116,17 +187,17 @@ pub(super) fn read_rows<R: DeserializeOwned>(path: &Path) -> Result<Vec<R>, Read
 #[cfg(test)]
 mod tests {
     use super::*;
-    use serde::Deserialize;
 
-    #[derive(Debug, Default, PartialEq, Serialize, Deserialize)]
+    #[derive(Clone, Debug, Default, PartialEq)]
     struct FieldPlace {
         time: f64,
         body: String,
     }
 
     impl TableRow for FieldPlace {
-        fn time(&self) -> f64 {
-            self.time
+        fn columns(&mut self) -> Vec<(&'static str, Entry<'_>)> {
+            let Self { time, body } = self;
+            columns![time, body]
         }
     }
 
@@ -148,6 +219,25 @@ mod tests {
         );
         fs::OpenOptions::new().append(true).open(&path).unwrap().write_all(b"0.5,ca").unwrap();
         assert_eq!(read_rows::<FieldPlace>(&path).unwrap().len(), 2);
+    }
+
+    #[test]
+    fn numbers_are_known_by_the_names_of_their_columns() {
+        let row = row(0.5, "a");
+        assert_eq!(["time", "body", "mass"].map(|column| row.number(column)), [Some(0.5), None, None]);
+    }
+
+    #[test]
+    fn what_is_no_table_of_such_rows_says_why() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("table.csv");
+        for (text, expected) in
+            [("time,name\n", "no column `body`"), ("body,time\na,1\nb,x\n", "line 3: found `x` as time")]
+        {
+            fs::write(&path, text).unwrap();
+            let error = read_rows::<FieldPlace>(&path).unwrap_err().to_string();
+            assert!(error.contains(expected), "{error}");
+        }
     }
 
     #[test]

@@ -5,7 +5,7 @@ use super::bodies::FillingExtent;
 use super::flat::Flat;
 use super::hertz::{Hertz, HertzPatch};
 use super::neighbours::pairs_within;
-use super::rules::{is_rigid, named_pairs};
+use super::rules::named_pairs;
 use super::touch::{BallContact, SAME};
 use crate::geometry::SiteLattice;
 use crate::scene::{Body, BodyMotion, ContactLaw, Scene};
@@ -113,7 +113,7 @@ fn within_a_cell(scene: &Scene, extents: &[FillingExtent], [a, b]: [usize; 2]) -
 
 /// Whether contact of a pair can press it together: not both rigid, and neither glued nor left alone.
 fn pushes(scene: &Scene, [a, b]: [usize; 2]) -> bool {
-    let rigid = is_rigid(scene, a) && is_rigid(scene, b);
+    let rigid = scene.bodies[a].is_rigid() && scene.bodies[b].is_rigid();
     !rigid && !matches!(scene.contact_between(a, b).law, ContactLaw::None | ContactLaw::Glued)
 }
 
@@ -127,7 +127,7 @@ struct Pressing {
 impl Pressing {
     fn new(scene: &Scene, pair: [usize; 2], direction: Vector<f64, 3>, masses: [f64; 2]) -> Self {
         let bodies = pair.map(|i| &scene.bodies[i]);
-        let rigid = bodies.map(|body| matches!(body.motion, BodyMotion::Rigid { .. }));
+        let rigid = bodies.map(Body::is_rigid);
         let gravity = Vector(scene.gravity);
         // The one above rests on the other; gravity along the surface presses nothing, but for round-off.
         let along = direction.dot(gravity);
@@ -159,7 +159,7 @@ impl Pressing {
 /// `None` if nothing presses the two together.
 fn estimate(touch: &BallContact, scene: &Scene) -> Option<ContactEstimate> {
     let bodies = touch.pair.map(|i| &scene.bodies[i]);
-    let rigid = bodies.map(|body| matches!(body.motion, BodyMotion::Rigid { .. }));
+    let rigid = bodies.map(Body::is_rigid);
     let materials =
         std::array::from_fn(|i| (!rigid[i]).then(|| scene.materials[bodies[i].material].law.elastic()));
     let modulus = Hertz::effective_modulus(materials, scene.dimension);

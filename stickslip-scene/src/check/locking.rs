@@ -1,7 +1,7 @@
 //! Nearly incompressible materials, in which the grid resists more than the material does.
 
 use super::warning::{Warning, and_more};
-use crate::scene::{BodyMotion, Dimension, Scene};
+use crate::scene::{Dimension, Scene};
 
 /// Above this Poisson's ratio forces come out too high by per cents. At 0.4999 a pressed body pushed back by 21 % too
 /// much.
@@ -15,7 +15,7 @@ pub(super) fn warning(scene: &Scene) -> Option<Warning> {
     }
     let deforms = |material: usize| {
         let of = |body: &&crate::scene::Body| body.material == material;
-        scene.bodies.iter().filter(of).any(|body| matches!(body.motion, BodyMotion::Free { .. }))
+        scene.bodies.iter().filter(of).any(|body| !body.is_rigid())
     };
     let ratio = |material: usize| scene.materials[material].law.elastic().poisson_ratio();
     let close: Vec<_> =

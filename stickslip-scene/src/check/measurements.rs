@@ -1,6 +1,6 @@
 //! Probes that would ride with no material.
 
-use crate::scene::{Anchor, BodyMotion, Problem, Scene};
+use crate::scene::{Anchor, Problem, Scene};
 
 /// Each point of the material must start in its body, or within a cell of it.
 pub(super) fn check(scene: &Scene) -> Result<(), Problem> {
@@ -9,8 +9,7 @@ pub(super) fn check(scene: &Scene) -> Result<(), Problem> {
             continue;
         }
         let holds = |body: &&crate::scene::Body| {
-            matches!(body.motion, BodyMotion::Free { .. })
-                && probe.body.as_ref().is_none_or(|name| *name == body.name)
+            !body.is_rigid() && probe.body.as_ref().is_none_or(|name| *name == body.name)
         };
         let distances = scene
             .bodies

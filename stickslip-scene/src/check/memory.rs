@@ -1,7 +1,6 @@
 //! How much memory a run takes, and whether a machine has it.
 
 use super::bodies::FillingExtent;
-use super::rules::is_rigid;
 use super::table::{bytes, short};
 use super::warning::Warning;
 use crate::geometry::Bounds;
@@ -27,7 +26,7 @@ pub(super) fn particles_near_others(
     if extents[body].bounds.is_finite() {
         return 0;
     }
-    let others = (0..scene.bodies.len()).filter(|&i| !is_rigid(scene, i)).map(|i| extents[i].bounds);
+    let others = (0..scene.bodies.len()).filter(|&i| !scene.bodies[i].is_rigid()).map(|i| extents[i].bounds);
     let boxes: Vec<_> = others.map(|bounds| at_surface(scene, body, bounds)).collect();
     footprint.particles_around(scene, body, &boxes)
 }

@@ -4,7 +4,6 @@ use super::bodies::FillingExtent;
 use super::lattice;
 use super::neighbours::pairs_within;
 use super::penetration::deepest;
-use super::rules::is_rigid;
 use super::warning::Warning;
 use crate::geometry::{Bounds, SiteLattice};
 use crate::scene::{Body, ContactLaw, Problem, Scene};
@@ -44,7 +43,9 @@ pub(super) fn warning(scene: &Scene) -> Option<Warning> {
     let boxes: Vec<_> = scene.bodies.iter().map(bounds).collect();
     let overlap = |&[a, b]: &[usize; 2]| {
         let law = scene.contact_between(a, b).law;
-        if matches!(law, ContactLaw::None | ContactLaw::Glued) || is_rigid(scene, a) && is_rigid(scene, b) {
+        if matches!(law, ContactLaw::None | ContactLaw::Glued)
+            || scene.bodies[a].is_rigid() && scene.bodies[b].is_rigid()
+        {
             return None;
         }
         let room = boxes[a].intersected(&boxes[b]);

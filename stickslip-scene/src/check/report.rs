@@ -3,7 +3,7 @@
 use super::bodies::{FillingExtent, smallest_extent};
 use super::contact::{ContactEstimate, ContactResolution, Estimates, estimates, starting_velocity};
 use super::memory::Footprint;
-use super::rules::{RuleReport, is_rigid};
+use super::rules::RuleReport;
 use super::table::short;
 use super::warning::{Warning, and_more};
 use super::{examine, lattice, locking, memory, overlap, per_side, rigid_pairs, rules, thickness};
@@ -180,7 +180,7 @@ fn of_body(scene: &Scene, body: &Body, extent: &FillingExtent) -> BodyReport {
     BodyReport {
         name: body.name.clone(),
         material: scene.materials[body.material].name.clone(),
-        rigid: matches!(body.motion, BodyMotion::Rigid { .. }),
+        rigid: body.is_rigid(),
         particles: extent.particles,
         mass: extent.mass,
         size: extent.bounds.size(),
@@ -190,16 +190,10 @@ fn of_body(scene: &Scene, body: &Body, extent: &FillingExtent) -> BodyReport {
 fn of_materials(scene: &Scene) -> Vec<MaterialReport> {
     let speeds = (0..scene.materials.len()).map(|i| MaterialReport {
         name: scene.materials[i].name.clone(),
-        longitudinal_speed: longitudinal_speed(scene, i),
+        longitudinal_speed: scene.materials[i].wave_speed(scene.dimension.thickness()),
         shear_speed: (scene.materials[i].law.elastic().shear_modulus / scene.materials[i].density).sqrt(),
     });
     speeds.collect()
-}
-
-fn longitudinal_speed(scene: &Scene, material: usize) -> f64 {
-    let material = &scene.materials[material];
-    let modulus = material.law.wave_modulus_at_rest(scene.dimension.thickness());
-    (modulus / material.density).sqrt()
 }
 
 /// Half the diagonal of a body's box; of one without bounds, of the box around all that have some [m].
@@ -216,7 +210,9 @@ fn half_diagonal(extent: &FillingExtent, extents: &[FillingExtent]) -> f64 {
 fn time_step(scene: &Scene, extents: &[FillingExtent]) -> f64 {
     let signal = |(body, extent): (&Body, &FillingExtent)| {
         let (wave, spin) = match &body.motion {
-            BodyMotion::Free { spin, .. } => (longitudinal_speed(scene, body.material), *spin),
+            BodyMotion::Free { spin, .. } => {
+                (scene.materials[body.material].wave_speed(scene.dimension.thickness()), *spin)
+            }
             BodyMotion::Rigid { spin, .. } => (0.0, spin.each_ref().map(|s| s.at(0.0))),
         };
         let reach = half_diagonal(extent, extents);
@@ -232,7 +228,8 @@ fn time_step(scene: &Scene, extents: &[FillingExtent]) -> f64 {
 fn thin_rigid_bodies(scene: &Scene) -> Option<Warning> {
     let needed = |body: &Body| 2.0 * lattice(scene, body).spacing * (1.0 - 1e-9);
     let thickness = |body: usize| smallest_extent(&scene.bodies[body].shape, scene.dimension.axes());
-    let is_thin = |&body: &usize| is_rigid(scene, body) && thickness(body) < needed(&scene.bodies[body]);
+    let is_thin =
+        |&body: &usize| scene.bodies[body].is_rigid() && thickness(body) < needed(&scene.bodies[body]);
     let mut thin = (0..scene.bodies.len()).filter(is_thin);
     let first = thin.next()?;
     let body = &scene.bodies[first];

@@ -3,7 +3,6 @@
 use super::bodies::FillingExtent;
 use super::neighbours::pairs_within;
 use super::penetration::{SharedRoom, deepest};
-use super::rules::is_rigid;
 use super::warning::{Warning, and_more};
 use crate::geometry::{Bounds, SignedDistance};
 use crate::rigid::{Pose, RigidMotion};
@@ -26,8 +25,7 @@ struct RigidPath {
 
 impl RigidPath {
     fn of(scene: &Scene, extent: &FillingExtent, body: usize) -> Option<RigidPath> {
-        let BodyMotion::Rigid { velocity, spin } = &scene.bodies[body].motion else { return None };
-        let mut motion = RigidMotion::new(extent.center, velocity.clone(), spin.clone());
+        let mut motion = RigidMotion::prescribed(&scene.bodies[body].motion, extent.center)?;
         let step = scene.time.end / LOOKS as f64;
         let mut poses = vec![motion.pose()];
         for i in 0..LOOKS {
@@ -59,8 +57,8 @@ struct PathMeeting {
 /// Rigid bodies whose shapes overlap at one of 1024 times; those of a rule with the law `none` are meant to, and those
 /// without bounds are not compared with each other.
 pub(super) fn warning(scene: &Scene, extents: &[FillingExtent]) -> Option<Warning> {
-    let rigid = (0..scene.bodies.len()).filter(|&body| is_rigid(scene, body));
-    let paths: Vec<_> = rigid.filter_map(|body| RigidPath::of(scene, &extents[body], body)).collect();
+    let paths = (0..scene.bodies.len()).filter_map(|body| RigidPath::of(scene, &extents[body], body));
+    let paths: Vec<_> = paths.collect();
     let swept: Vec<_> = paths.iter().map(RigidPath::swept).collect();
     let pairs = pairs_within(&swept, 0.0);
     let met: Vec<_> = pairs.par_iter().filter_map(|&[a, b]| meet(scene, [&paths[a], &paths[b]])).collect();

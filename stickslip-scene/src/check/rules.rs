@@ -3,7 +3,7 @@
 use super::neighbours::pairs_within;
 use super::warning::Warning;
 use crate::geometry::Bounds;
-use crate::scene::{BodyMotion, ContactLaw, ContactRule, Scene};
+use crate::scene::{ContactLaw, ContactRule, Scene};
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
@@ -56,7 +56,7 @@ pub(super) fn holding(scene: &Scene, boxes: &[Bounds]) -> Vec<RuleReport> {
         pairs_within(boxes, scene.discretization.cell).into_iter().chain(named_pairs(scene)).collect()
     };
     let mut reports: BTreeMap<usize, RuleReport> = BTreeMap::new();
-    for [a, b] in pairs.into_iter().filter(|pair| !pair.iter().all(|&body| is_rigid(scene, body))) {
+    for [a, b] in pairs.into_iter().filter(|pair| !pair.iter().all(|&body| scene.bodies[body].is_rigid())) {
         let rule = scene.contact_rule_between(a, b);
         let report = reports.entry(rule.unwrap_or(usize::MAX)).or_insert_with(|| {
             let ContactRule { law, friction, kinetic_friction, friction_given, .. } =
@@ -76,10 +76,6 @@ pub(super) fn named_pairs(scene: &Scene) -> BTreeSet<[usize; 2]> {
         Some([a?.min(b?), a?.max(b?)]).filter(|[a, b]| a != b)
     };
     scene.contact.iter().filter_map(pair).collect()
-}
-
-pub(super) fn is_rigid(scene: &Scene, body: usize) -> bool {
-    matches!(scene.bodies[body].motion, BodyMotion::Rigid { .. })
 }
 
 /// Bodies that no rule tells from each other.
@@ -125,7 +121,7 @@ impl<'a> RulesByName<'a> {
                 rules.kinds.len() - 1
             });
             let kind = &mut rules.kinds[place];
-            *(if is_rigid(scene, i) { &mut kind.rigid } else { &mut kind.deforming }) += 1;
+            *(if scene.bodies[i].is_rigid() { &mut kind.rigid } else { &mut kind.deforming }) += 1;
         }
         rules
     }

@@ -51,10 +51,9 @@ fn require_positive(key: &str, value: f64, unit: &str) -> Result<(), Problem> {
 fn check_material(key: &str, material: &NamedMaterial, scene: &Scene) -> Result<(), Problem> {
     require_positive(&format!("{key}.density"), material.density, "kg/m^3")?;
     let dimension = scene.dimension;
-    let modulus = material.law.wave_modulus_at_rest(dimension.thickness());
     let elastic = material.law.elastic();
     let (k, g) = (elastic.bulk_modulus, elastic.shear_modulus);
-    let speed = (modulus / material.density).sqrt();
+    let speed = material.wave_speed(dimension.thickness());
     if k > 0.0 && g >= 0.0 && speed > 0.0 && speed.is_finite() {
         let sound = material.law.check().and_then(|()| material.law.on_grid(scene.discretization.cell));
         return sound.map(|_| ()).map_err(|bad| {

@@ -1,14 +1,13 @@
 //! Shapes that are none: no radius, corners the wrong way round, only of three dimensions in the plane, without bounds.
 
 use crate::geometry::{Arrangement, FITTED_SHAPES, Shape, fits};
-use crate::scene::{BodyMotion, Problem, Scene};
+use crate::scene::{Problem, Scene};
 
 pub(super) fn check(scene: &Scene) -> Result<(), Problem> {
     for (i, body) in scene.bodies.iter().enumerate() {
         let key = format!("bodies[{i}].shape");
         check_shape(&body.shape, &key, scene.dimension.axes())?;
-        let rigid = matches!(body.motion, BodyMotion::Rigid { .. });
-        if !rigid && body.shape.bounds(scene.dimension.axes()).is_none() {
+        if !body.is_rigid() && body.shape.bounds(scene.dimension.axes()).is_none() {
             return Err(Problem {
                 key,
                 found: format!("`{}` deforms and is unbounded", body.name),

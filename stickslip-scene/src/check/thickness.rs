@@ -4,7 +4,7 @@ use super::lattice;
 use super::table::short;
 use super::warning::{Warning, and_more};
 use crate::geometry::{self, Mirror, MirroredShape};
-use crate::scene::{BodyMotion, Face, Scene};
+use crate::scene::{Face, Scene};
 use crate::tensor::Vector;
 use rayon::prelude::*;
 
@@ -20,7 +20,7 @@ pub(super) fn warning(scene: &Scene) -> Option<Warning> {
     let cell = scene.discretization.cell;
     let thin: Vec<_> = (0..scene.bodies.len())
         .into_par_iter()
-        .filter(|&body| matches!(scene.bodies[body].motion, BodyMotion::Free { .. }))
+        .filter(|&body| !scene.bodies[body].is_rigid())
         .filter_map(|body| Some((body, thickness(scene, body, NEEDED * cell)?)))
         .collect();
     let (body, thickness) = *thin.iter().min_by(|a, b| a.1.total_cmp(&b.1))?;

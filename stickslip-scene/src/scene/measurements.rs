@@ -1,6 +1,6 @@
 //! What the user asks to be measured in a run: probes, arrivals and fronts, and the unit of time that they are told in.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Measurements of waves.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -18,7 +18,7 @@ pub struct Measurements {
 }
 
 /// A unit of time that belongs to the scene, such as the time in which a wave crosses a disk.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TimeUnit {
     /// Its length [s].
     pub seconds: f64,

@@ -30,7 +30,7 @@ pub use source::Source;
 
 use crate::geometry::{Arrangement, Shape};
 use crate::material::{Material, Thickness};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// Everything that a run needs, resolved to SI units.
@@ -67,7 +67,7 @@ pub struct Scene {
 }
 
 /// A named parameter of a scene file as it was used.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Parameter {
     /// A number in SI units.
@@ -167,7 +167,7 @@ pub enum BasisKind {
 }
 
 /// A box that holds all material. A particle that leaves it stops the run.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Domain {
     /// Lower corner [m]; grid nodes lie at whole cells from here.
     pub min: [f64; 3],
@@ -178,7 +178,7 @@ pub struct Domain {
 }
 
 /// What a face of the domain does. Faces other than `Open` lie on grid nodes.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Face {
     /// Nothing; material that reaches it stops the run.
@@ -385,6 +385,20 @@ pub struct Reference {
     pub value: Expression,
     /// What the answer assumes: `"rigid sphere, paper eq. (23)"`.
     pub label: String,
+}
+
+impl NamedMaterial {
+    /// Speed of the fastest wave in an undeformed body, in plane stress in a plate [m/s].
+    pub fn wave_speed(&self, thickness: Thickness) -> f64 {
+        (self.law.wave_modulus_at_rest(thickness) / self.density).sqrt()
+    }
+}
+
+impl Body {
+    /// Whether it is rigid and moves as prescribed.
+    pub fn is_rigid(&self) -> bool {
+        matches!(self.motion, BodyMotion::Rigid { .. })
+    }
 }
 
 impl Scene {

@@ -126,7 +126,7 @@ materials.rubber = {{ density = 1, neo_hookean = {{ young_modulus = 1, poisson_r
             let direction = if wall < 3 { up } else { across };
             impulses[wall - 1] += (force[0] * direction[0] + force[1] * direction[1]) * trial.step_length();
             if let Some(contact) = trial.contacts().iter().find(|contact| contact.body_b == wall) {
-                gaps[wall - 1].push(contact.gap / h);
+                gaps[wall - 1].push(contact.mean.gap / h);
             }
         }
     }

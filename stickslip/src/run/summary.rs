@@ -3,7 +3,7 @@
 use super::WidestContacts;
 use super::verdict::line;
 use crate::door::{Ledger, View};
-use crate::observe::{BodyRow, Manifest, Performance, RunWarning, Status};
+use crate::observe::{BodyRow, Manifest, Performance, RunWarning, Status, TableRow};
 use crate::scene::Scene;
 use std::fmt::{self, Display, Formatter};
 
@@ -71,12 +71,12 @@ impl Summary {
         let (time, bodies) = (simulation.time(), simulation.bodies());
         let references = scene.references.iter().filter_map(|reference| {
             let body = scene.bodies.iter().position(|body| body.name == reference.body)?;
-            let row = BodyRow::new(time, &reference.body, &bodies[body]);
+            let row = BodyRow { time, body: reference.body.clone(), state: bodies[body].clone() };
             Some(ReferenceResult {
                 body: reference.body.clone(),
                 quantity: reference.quantity.clone(),
                 label: reference.label.clone(),
-                value: row.quantity(&reference.quantity)?,
+                value: row.number(&reference.quantity)?,
                 exact: reference.value.at(time),
             })
         });

@@ -100,13 +100,14 @@ impl Chain {
         {
             for contact in cursor.read(&*simulation) {
                 let pair = [contact.body_a, contact.body_b].map(|body| setting.names[body].clone());
-                if contact.normal >= setting.load && chain.loaded.iter().all(|(other, _)| *other != pair) {
+                if contact.mean.normal >= setting.load && chain.loaded.iter().all(|(other, _)| *other != pair)
+                {
                     chain.loaded.push((pair, simulation.time() / setting.transit));
                 }
                 let deformable = [contact.body_a, contact.body_b].map(|body| setting.is_disk(body));
                 if deformable[0] != deformable[1] {
                     let sign = if deformable[0] { -dt } else { dt };
-                    (0..2).for_each(|i| impulse[i] += sign * contact.force[i]);
+                    (0..2).for_each(|i| impulse[i] += sign * contact.mean.force[i]);
                     pushed = pushed.max(impulse[0].abs());
                 }
             }

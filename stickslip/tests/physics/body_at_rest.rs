@@ -47,7 +47,7 @@ fn contact_carries_the_weight() {
             let dt = s.time() - last;
             last = s.time();
             for contact in cursor.read(s) {
-                (0..3).for_each(|i| impulse[i] += contact.force[i] * dt);
+                (0..3).for_each(|i| impulse[i] += contact.mean.force[i] * dt);
             }
             let block = &s.bodies()[1];
             let expected = [impulse[0], impulse[1] - weight * s.time(), impulse[2]];

@@ -64,7 +64,7 @@ fn pressed(cells: usize, particles: &str) -> Errors {
     let (mut load, mut looks, mut before) = (0.0, 0.0, simulation.time());
     run_to(&mut *simulation, 40.0 * transit, |s| {
         // Both platens press, so half of the sum of their pushes.
-        let pushes: f64 = cursor.read(s).iter().map(|contact| contact.force[1].abs()).sum();
+        let pushes: f64 = cursor.read(s).iter().map(|contact| contact.mean.force[1].abs()).sum();
         load += 0.5 * pushes * (s.time() - before);
         before = s.time();
         if s.steps() % 8 == 0 {

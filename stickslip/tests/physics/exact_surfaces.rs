@@ -54,8 +54,8 @@ fn a_block_slides_through_the_grid() {
             let dt = s.time() - last;
             last = s.time();
             for contact in cursor.read(s) {
-                normal += contact.normal * dt;
-                tangential += contact.tangential * dt;
+                normal += contact.mean.normal * dt;
+                tangential += contact.mean.tangential * dt;
             }
             if s.time() > 0.4 && from.is_none() {
                 from = Some((s.time(), s.bodies()[1].velocity));

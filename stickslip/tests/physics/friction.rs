@@ -74,8 +74,8 @@ fn slide(scene: &str, body: usize, end: f64) -> Slide {
         if s.time() > 0.5 * end {
             points.push((s.time(), s.bodies()[body].velocity[0]));
             for contact in contacts.iter().filter(|contact| contact.body_b == body) {
-                normal += contact.normal * dt;
-                tangential += contact.tangential * dt;
+                normal += contact.mean.normal * dt;
+                tangential += contact.mean.tangential * dt;
             }
         }
     });

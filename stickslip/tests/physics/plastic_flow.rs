@@ -59,7 +59,7 @@ fn press(dimension: &str, cell: f64, constraint: f64) {
         pressure = constraint * (YIELD + HARDENING * strain);
     }
     // The law bounds J sigma, and J over the height is the face.
-    let force = contacts[0].normal / (pressure / height);
+    let force = contacts[0].mean.normal / (pressure / height);
     let plastic_strain = simulation.column(0, "plastic_strain").expect("a law that flows");
     let sum: f64 = plastic_strain.rows().map(|(_, [strain])| strain).sum();
     let found = sum / plastic_strain.len() as f64;

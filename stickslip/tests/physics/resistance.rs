@@ -171,6 +171,7 @@ fn contact_says_where_how_wide_and_how_far() {
     let moved = simulation.bodies()[1].position[0] - 0.5;
     println!("{contact:?}, moved {moved}");
     assert_eq!((contact.body_a, contact.body_b), (0, 1));
+    let contact = &contact.mean;
     assert!((contact.area - AREA).abs() < 0.1, "{}", contact.area);
     assert!(contact.gap.abs() < 0.005, "{}", contact.gap);
     assert!((contact.slip / moved - 1.0).abs() < 0.1, "{} {moved}", contact.slip);

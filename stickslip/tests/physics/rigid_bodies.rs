@@ -43,7 +43,7 @@ fn a_punch_pushes_a_block() {
         run_to(&mut *simulation, end, |s| {
             let dt = s.time() - last;
             last = s.time();
-            impulse += cursor.read(s).iter().map(|contact| contact.force[0] * dt).sum::<f64>();
+            impulse += cursor.read(s).iter().map(|contact| contact.mean.force[0] * dt).sum::<f64>();
         });
         let (ledger, bodies) = (simulation.ledger(), simulation.bodies());
         let gained = ledger.kinetic + ledger.strain + ledger.friction;

@@ -74,7 +74,7 @@ fn impact(scene: &str, moves: bool) -> Impact {
         let t = s.time();
         // A tenth of the force that the theory has.
         let force = 0.1 * SPEED * 4.0 * h * if moves { 0.5 } else { 1.0 };
-        if cursor.read(s).iter().any(|contact| contact.force[0] > force) {
+        if cursor.read(s).iter().any(|contact| contact.mean.force[0] > force) {
             seen.release = t;
         }
         let now = s.ledger();

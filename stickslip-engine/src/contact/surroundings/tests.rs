@@ -47,7 +47,7 @@ fn body<const D: usize>() -> Body<f64, D> {
         }),
         density: 1.0,
         particles,
-        rigid: false,
+        motion: None,
         whole: MirroredShape::new(&Shape::Ball { center: [0.0; 3], radius: 1.0 }, Vec::new(), D),
         thickness: Thickness::Moved,
         gyration: Gyration { cell: 0.0, share: 0.0 },

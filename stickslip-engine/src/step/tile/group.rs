@@ -4,6 +4,7 @@ use super::members::{HistoryOfGroup, Members};
 use super::thickness::free_thickness;
 use crate::basis::Basis;
 use crate::body::Gyration;
+use crate::clock::{no_faster, signal_speed};
 use crate::lanes::{Laned, Lanes, Machine};
 use crate::material::{Material, Motion, Thickness};
 use crate::particles::ColumnStart;
@@ -207,9 +208,9 @@ pub fn group<
         members.give_back::<V>(ColumnStart::<D>::POSITION..ColumnStart::<D>::VELOCITY);
         let modulus =
             constants.material.wave_modulus(visit.body.thickness, (&deformation, jacobian), &history);
-        let [wave, speed] = [modulus * constants.per_density, carried.velocity.dot(carried.velocity)];
-        if !every::<V>(no_faster(wave, speed, V::splat(visit.found.signal))) {
-            let signals = (wave.sqrt() + speed.sqrt()).numbers();
+        let squares = [modulus * constants.per_density, carried.velocity.dot(carried.velocity)];
+        if !every::<V>(no_faster(squares, V::splat(visit.found.signal))) {
+            let signals = signal_speed(squares).numbers();
             for &signal in &signals.0[..V::COUNT] {
                 visit.found.signal = visit.found.signal.max(signal);
             }
@@ -315,12 +316,4 @@ fn finite<V: Lanes>(numbers: &[V]) -> u32 {
         sum += x;
     }
     V::splat(V::Real::LARGEST).at_least(sum.abs())
-}
-
-/// Lanes in which sqrt(a) + sqrt(b) <= most, told without a root:  2 sqrt(a b) <= most^2 - a - b.
-#[inline(always)]
-fn no_faster<V: Lanes>(a: V, b: V, most: V) -> u32 {
-    let rest = most * most - a - b;
-    let product = a * b;
-    rest.at_least(V::ZERO) & (rest * rest).at_least((product + product) + (product + product))
 }

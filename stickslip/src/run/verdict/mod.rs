@@ -11,7 +11,7 @@ mod tearing;
 
 use crate::door::{BodyState, Ledger, TracedParticle, View};
 use crate::observe::RunWarning;
-use crate::scene::{BodyMotion, Scene};
+use crate::scene::Scene;
 use energy::EnergyBalance;
 use neighbours::Neighbours;
 
@@ -59,14 +59,14 @@ struct CheckInputs<'a> {
 impl CheckInputs<'_> {
     /// Bodies that deform.
     fn free(&self) -> impl Iterator<Item = usize> {
-        let free = |&i: &usize| matches!(self.scene.bodies[i].motion, BodyMotion::Free { .. });
+        let free = |&i: &usize| !self.scene.bodies[i].is_rigid();
         (0..self.bodies.len()).filter(free)
     }
 
     /// Speed of the fastest wave in an undeformed body [m/s].
     fn wave_speed(&self, body: usize) -> f64 {
         let material = &self.scene.materials[self.scene.bodies[body].material];
-        (self.wave_modulus(body) / material.density).sqrt()
+        material.wave_speed(self.scene.dimension.thickness())
     }
 
     /// Stiffness against the fastest wave in an undeformed body [Pa].

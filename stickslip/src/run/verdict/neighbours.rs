@@ -1,7 +1,7 @@
 //! Particles that were neighbours before anything moved: some of each body, chosen once.
 
 use crate::door::{TracedParticle, View};
-use crate::scene::{BodyMotion, Scene};
+use crate::scene::Scene;
 use std::collections::{HashMap, HashSet};
 
 /// Neighbours of a body at its start.
@@ -27,10 +27,7 @@ const NONE: u32 = u32::MAX;
 pub(super) fn of_bodies(scene: &Scene, view: &dyn View) -> Vec<Neighbours> {
     let all = view.particles();
     (scene.bodies.iter().enumerate())
-        .map(|(i, body)| match body.motion {
-            BodyMotion::Free { .. } => Neighbours::new(view, i, all),
-            BodyMotion::Rigid { .. } => Neighbours::default(),
-        })
+        .map(|(i, body)| if body.is_rigid() { Neighbours::default() } else { Neighbours::new(view, i, all) })
         .collect()
 }
 

@@ -2,7 +2,7 @@
 
 use super::{Check, CheckInputs, Finding, minus, norm};
 use crate::door::BodyState;
-use crate::scene::{BodyMotion, Face, Scene};
+use crate::scene::{Face, Scene};
 use crate::tensor::cross;
 use std::collections::BTreeSet;
 
@@ -87,7 +87,7 @@ impl SpinCheck {
 fn isolated(scene: &Scene) -> bool {
     let faces = scene.domain.iter().flat_map(|domain| domain.faces).flatten();
     scene.gravity == [0.0; 3]
-        && scene.bodies.iter().all(|body| matches!(body.motion, BodyMotion::Free { .. }))
+        && scene.bodies.iter().all(|body| !body.is_rigid())
         && faces.into_iter().all(|face| face == Face::Open)
 }
 
