@@ -74,7 +74,7 @@ pub trait Basis<T: Real>: Copy + Send + Sync + 'static {
             spread += *factor * arm;
         }
         for factor in &mut factors {
-            *factor = *factor / spread;
+            *factor /= spread;
         }
         factors
     }

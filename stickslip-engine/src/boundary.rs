@@ -68,6 +68,11 @@ impl Boundary {
         self.walls.iter().any(|wall| wall.face == Face::Symmetry && wall.depth(node) < 0)
     }
 
+    /// Whether a fixed face holds a node.
+    pub fn holds<const D: usize>(&self, node: [i32; D]) -> bool {
+        self.walls.iter().any(|wall| wall.face == Face::Fixed && wall.depth(node) <= 0)
+    }
+
     /// The mirrors on which a node lies, a bit each.
     pub fn mirrors_through<const D: usize>(&self, node: [i32; D]) -> u32 {
         let on = |(_, wall): &(usize, &Wall)| wall.face == Face::Symmetry && wall.depth(node) == 0;

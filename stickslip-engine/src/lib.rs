@@ -34,6 +34,9 @@ pub mod boundary;
 // The stable time step.
 pub mod clock;
 
+// Damping of the nodes' velocities.
+pub mod damping;
+
 // A running simulation with dimension and precision erased.
 pub mod door;
 

@@ -49,12 +49,13 @@ impl March {
         March { until, last: 0.0 }
     }
 
-    /// Whether the end is reached.
+    /// Whether the end is reached, or the state at rest that dynamic relaxation looks for.
     pub fn is_done(&self, simulation: &dyn Simulation) -> bool {
-        self.until - simulation.time() <= ROUNDING * self.last
+        let at_rest = simulation.relaxation().is_some_and(|relaxation| relaxation.at_rest);
+        at_rest || self.until - simulation.time() <= ROUNDING * self.last
     }
 
-    /// Takes the next step and returns its length [s]; none is left at the end, which is reached exactly.
+    /// Takes the next step and returns its length [s]; none is left at the end, which is reached exactly, and at rest.
     ///
     /// # Errors
     /// See [`MarchError`]; the simulation is left as it was when it went wrong.

@@ -250,6 +250,15 @@ impl<T: Real, const D: usize> Particles<T, D> {
         (0..self.len()).map(|i| self.get(i))
     }
 
+    /// Takes from all particles their velocities and what else they carry of motion.
+    pub fn stop(&mut self) {
+        let carried = self.view().carried();
+        for column in (ColumnStart::<D>::VELOCITY..ColumnStart::<D>::MASS).chain(carried) {
+            let first = self.first() + column * self.stride;
+            self.columns[first..][..self.len].fill(T::ZERO);
+        }
+    }
+
     /// The columns, to be read only.
     #[inline(always)]
     pub fn view(&self) -> Columns<T, D> {

@@ -10,6 +10,7 @@ pub use column::{ColumnRef, NoColumn};
 pub use snapshot::{ColumnSource, ParticleSnapshot, SnapshotColumn};
 
 use crate::column::ColumnDescription;
+use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 
 /// A simulation as it is now: observers, checks and pictures look at this. Asking changes nothing.
@@ -26,6 +27,10 @@ pub trait View {
     fn bodies(&self) -> Vec<BodyState>;
     /// The energy and momentum ledger now.
     fn ledger(&self) -> Ledger;
+    /// How far dynamic relaxation has come; `None` where the scene asks for none.
+    fn relaxation(&self) -> Option<RelaxationState> {
+        None
+    }
     /// What contact did since the start, per pair of bodies whose surfaces ever touched, ordered by pair; a
     /// [`ContactCursor`] makes means of it.
     fn contact_sums(&self) -> Vec<ContactSum>;
@@ -131,6 +136,19 @@ pub struct Ledger {
     /// Nodes of three bodies and more where contact was still changing velocities when it was cut short,
     /// since the start.
     pub unsettled_nodes: u64,
+}
+
+/// How far dynamic relaxation has come.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RelaxationState {
+    /// Sum of the unbalanced forces at the nodes over that of the internal or of the external ones, whichever is
+    /// larger; 1 before the first step [-].
+    pub residual: f64,
+    /// How often the kinetic energy passed a peak, and the bodies were stopped.
+    pub peaks: u64,
+    /// Whether the residual is as small as the scene asks, and the kinetic energy at most the square of that part of
+    /// the strain energy, while no rigid body moves.
+    pub at_rest: bool,
 }
 
 /// What contact did to two bodies since the start. Sums over time and nodes: differences are what it did in between.

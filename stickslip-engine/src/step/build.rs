@@ -1,5 +1,6 @@
 //! From a scene to a simulation.
 
+use super::relax::Relaxation;
 use super::state::{Disorder, Settings, State, Workspace};
 use super::unbounded::Unbounded;
 use super::watch::Stopwatch;
@@ -9,6 +10,7 @@ use crate::body::{Body, Particle};
 use crate::boundary::{Boundary, Wall};
 use crate::check;
 use crate::contact::{ContactSums, Rules};
+use crate::damping::Damping;
 use crate::door::Simulation;
 use crate::geometry::{Filling, Mirror, MirroredShape, ParticleSite, fill};
 use crate::grid::Lattice;
@@ -117,6 +119,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 gravity: Vector::of(scene.gravity),
                 transfer: scene.time.transfer,
                 pic_share: T::of(pic_share(scene.time.transfer, scene.time.pic_share)),
+                damping: Damping::new(&scene.damping),
                 rules: Rules::new(scene),
                 time: scene.time.clone(),
                 path,
@@ -127,6 +130,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 unbounded,
                 contact_sums: ContactSums::default(),
                 damping: 0.0,
+                relaxation: Relaxation::default(),
                 signal: None,
                 time: 0.0,
                 steps: 0,

@@ -1,6 +1,7 @@
 //! The engine behind its door: what others may see of it, and the step that they may ask for.
 
 use super::Engine;
+use super::relax::Relaxation;
 use super::state::Workspace;
 use crate::basis::Basis;
 use crate::body::{Body, Totals};
@@ -9,7 +10,8 @@ use crate::column::{ColumnDescription, Kind};
 use crate::contact::Span;
 use crate::door::{
     BodyState, ColumnRef, ColumnSource, ContactPatch, ContactSum, GridSnapshot, Ledger, NoColumn,
-    ParticleSnapshot, ParticleView, Simulation, SnapshotColumn, StepError, TracedParticle, View,
+    ParticleSnapshot, ParticleView, RelaxationState, Simulation, SnapshotColumn, StepError, TracedParticle,
+    View,
 };
 use crate::grid::{node_at, nodes_per_block};
 use crate::lanes::Laned;
@@ -69,7 +71,7 @@ impl<T: Laned, const D: usize> ColumnSource for Rows<'_, T, D> {
 
 impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// What the particles of each body add up to, summed once a step for whoever asks.
-    fn totals(&self) -> Arc<[Totals]> {
+    pub(super) fn totals(&self) -> Arc<[Totals]> {
         let mut known = self.workspace.totals.lock().unwrap_or_else(PoisonError::into_inner);
         let sum = |range: Range<usize>| Body::totals(&self.state.bodies[range.start]);
         known.get_or_insert_with(|| by_parts(self.state.bodies.len(), 1, sum).into()).clone()
@@ -173,6 +175,11 @@ impl<T: Laned, const D: usize, B: Basis<T>> View for Engine<T, D, B> {
             + ledger.damping
             - ledger.external_work;
         ledger
+    }
+
+    fn relaxation(&self) -> Option<RelaxationState> {
+        let Relaxation { residual, peaks, at_rest, .. } = self.state.relaxation;
+        self.settings.time.relax.map(|_| RelaxationState { residual, peaks, at_rest })
     }
 
     fn contact_sums(&self) -> Vec<ContactSum> {
@@ -280,6 +287,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
         // a loop.
         rayon::scope(|_| self.advance(T::of(dt)))?;
         self.count_disorder();
+        self.relax();
         self.state.time += dt;
         self.state.steps += 1;
         Ok(dt)

@@ -10,16 +10,20 @@
 //! | the sums over nodes of G2P and P2G | `interpolate`, `flow`, `moment` and `scatter` of [`crate::transfer::Group`] |
 //! | the same as the equations read, one particle and node after the other | `naive.rs`, and `transfer/naive.rs` |
 //! | the stress | `respond` of a law in [`crate::material`] |
+//! | damping at a node | [`crate::damping`] |
+//! | dynamic relaxation, between two steps | `relax.rs` |
 //! | what happens at a node: v = p / m, v += dt (f / m + g) | [`crate::grid::Node`] |
 //! | contact at a node | `contact/solve.rs`, by a law of `contact/law/` |
 
 mod build;
 mod cpu;
+mod damp;
 mod join;
 mod look;
 #[cfg(test)]
 mod naive;
 mod pass;
+mod relax;
 mod state;
 mod tile;
 mod unbounded;
@@ -89,6 +93,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.contact_on_integrated(dt); //            v~
         self.book_contact(dt); //                     impulses, work of friction
         self.exchange_velocities(); //                v~ that was kept, to move by; v~ of now, for dv
+        self.measure_balance(dt); //                  unbalanced forces, for dynamic relaxation
+        self.damp(dt); //                             of v~ for dv
+        self.book_damping(); //                       its work
         self.update_velocities_and_positions(dt)?; // G2P: v_p += dv, x += v~ dt
         self.move_rigid_bodies(dt)
     }
@@ -108,6 +115,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.contact_on_integrated(dt); //            v~
         self.book_contact(dt); //                     impulses, work of friction
         self.keep_velocities(); //                    v~, for dv
+        self.measure_balance(dt); //                  unbalanced forces, for dynamic relaxation
+        self.damp(dt); //                             of v~ for dv
+        self.book_damping(); //                       its work
         self.update_particles(dt)?; //                G2P: v_p += dv, F, sigma, x += v~ dt
         self.move_rigid_bodies(dt)
     }
@@ -127,10 +137,13 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.prescribed_velocities(); //              once more
         self.contact_on_integrated(dt); //            v~
         self.keep_velocities_and_clear_momentum(); // v~, for dv; p = 0
+        self.measure_balance(dt); //                  unbalanced forces, for dynamic relaxation
+        self.damp(dt); //                             of v~ for dv
         self.update_particle_velocities(dt)?; //      G2P: v_p += dv; P2G: p
         self.interpolated_again(); //                 v = p / m, with m as before
         self.prescribed_velocities(); //              and again
         self.book_contact(dt); //                     impulses, work of friction
+        self.book_damping(); //                       its work
         self.contact_on_straining(dt); //             v~, booked nowhere: no particle takes it as a change
         self.update_stress_and_positions(dt)?; //     G2P: F = (I + L dt) F, sigma = law(F), x += v~ dt
         self.move_rigid_bodies(dt)

@@ -1,10 +1,13 @@
 //! What a simulation is between two steps, and what can be made anew from that.
 
 use super::cpu::Threads;
+use super::damp::NodeTotals;
+use super::relax::Relaxation;
 use super::unbounded::Unbounded;
 use crate::body::{Body, Totals};
 use crate::boundary::Boundary;
 use crate::contact::{ContactSums, Impulses, Rules, Survey};
+use crate::damping::Damping;
 use crate::grid::{ActiveBlocks, Field, Lattice};
 use crate::scene::{Time, Transfer};
 use crate::tensor::Vector;
@@ -20,6 +23,7 @@ pub struct Settings<T, const D: usize> {
     pub gravity: Vector<T, D>,
     pub transfer: Transfer,
     pub pic_share: T,
+    pub damping: Damping<T>,
     pub rules: Rules<T>,
     pub time: Time,
     pub path: ParticleLoop,
@@ -38,6 +42,8 @@ pub struct State<T, const D: usize> {
     pub contact_sums: ContactSums,
     /// What damping took since the start [J].
     pub damping: f64,
+    /// How far dynamic relaxation has come.
+    pub relaxation: Relaxation,
     /// Fastest signal now [m/s]; unknown before the first step.
     pub signal: Option<f64>,
     /// Simulated time [s].
@@ -69,6 +75,10 @@ pub struct Workspace<T, const D: usize> {
     pub moved: Vec<u32>,
     /// What the last pass took from the kinetic energy of each tile's particles [J].
     pub damped: Vec<f64>,
+    /// Impulses of damping at the nodes in the last step, where there is damping [N s].
+    pub damping_impulses: Vec<Vector<T, D>>,
+    /// Room for sums over the nodes of each block.
+    pub block_sums: Vec<NodeTotals>,
     /// What the particles of each body add up to since the last step, once somebody has asked.
     pub totals: Mutex<Option<Arc<[Totals]>>>,
     /// What threads work with.
@@ -89,6 +99,8 @@ impl<T, const D: usize> Workspace<T, D> {
             left: Vec::new(),
             moved: Vec::new(),
             damped: Vec::new(),
+            damping_impulses: Vec::new(),
+            block_sums: Vec::new(),
             totals: Mutex::new(None),
             threads: Threads::default(),
         }

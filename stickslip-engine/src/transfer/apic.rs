@@ -45,7 +45,7 @@ impl TransferRule for Apic {
         carried.velocity += change;
         let scale = around.cell / around.gyration;
         carried.spin += turning::moment::<V, D>(&moments) * scale;
-        carried.strain_rate = carried.strain_rate + moments.symmetric_part() * (scale + scale);
+        carried.strain_rate += moments.symmetric_part() * (scale + scale);
     }
 
     #[inline(always)]

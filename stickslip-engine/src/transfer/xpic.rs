@@ -61,7 +61,7 @@ impl<T: Real, const D: usize> Filter<'_, T, D> {
     pub fn next(&mut self) {
         self.0.each_filtered(|node, filtered| {
             node.divide_by_mass();
-            node.integrated = node.integrated - node.velocity;
+            node.integrated -= node.velocity;
             node.velocity = Vector::ZERO;
             *filtered += node.integrated;
         });

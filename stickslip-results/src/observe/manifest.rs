@@ -2,6 +2,7 @@
 
 use super::file::{OutputError, ReadError, ReadProblem, replace};
 use super::folder::OutputFolder;
+use crate::door::RelaxationState;
 use crate::scene::Scene;
 use serde::{Deserialize, Serialize};
 use std::fs;
@@ -28,6 +29,9 @@ pub struct Manifest {
     pub bodies: Vec<String>,
     /// How far the run has come.
     pub performance: Performance,
+    /// How far dynamic relaxation came, if the scene asks for it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub relaxation: Option<RelaxationState>,
     /// What is wrong with its results, in the order in which it was found.
     #[serde(default)]
     pub warnings: Vec<RunWarning>,
@@ -133,6 +137,7 @@ impl Manifest {
             cell: scene.discretization.cell,
             bodies: scene.bodies.iter().map(|body| body.name.clone()).collect(),
             performance,
+            relaxation: None,
             warnings: Vec::new(),
             references: reference_curves(scene),
             scene: serde_json::to_value(scene).expect("a scene is plain data whose keys are text"),

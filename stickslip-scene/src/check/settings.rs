@@ -2,7 +2,9 @@
 
 use super::table::short;
 use crate::column::ColumnDescription;
-use crate::scene::{BodyMotion, Dimension, Domain, Expression, Face, NamedMaterial, Problem, Scene};
+use crate::scene::{
+    BodyMotion, Damping, Dimension, Domain, Expression, Face, NamedMaterial, Problem, Relaxation, Scene,
+};
 
 /// Walls may miss the nodes of the grid by this share of a cell.
 const WALL_TOLERANCE: f64 = 1e-6;
@@ -22,6 +24,7 @@ pub(super) fn check(scene: &Scene) -> Result<(), Problem> {
     if !(scene.time.end >= 0.0 && scene.time.end.is_finite()) {
         return Err(problem("time.end", format!("{} s", scene.time.end), "a finite number, at least 0"));
     }
+    check_damping(scene)?;
     if scene.bodies.is_empty() {
         return Err(problem("bodies", "no body".into(), "at least one body"));
     }
@@ -33,6 +36,23 @@ pub(super) fn check(scene: &Scene) -> Result<(), Problem> {
         check_domain(domain, scene.discretization.cell, scene.dimension.axes())?;
     }
     if scene.dimension.axes() == 2 { check_plane(scene) } else { Ok(()) }
+}
+
+/// Damping takes energy and never gives any; a residual of 1 is a body on which forces act unopposed.
+fn check_damping(scene: &Scene) -> Result<(), Problem> {
+    let Damping { viscous, local } = scene.damping;
+    if !(viscous >= 0.0 && viscous.is_finite()) {
+        return Err(problem("damping.viscous", format!("{viscous} 1/s"), "a finite number, at least 0"));
+    }
+    if !(0.0..1.0).contains(&local) {
+        return Err(problem("damping.local", format!("{local}"), "a number from 0 to below 1"));
+    }
+    match scene.time.relax {
+        Some(Relaxation { residual }) if !(residual > 0.0 && residual < 1.0) => {
+            Err(problem("time.relax.residual", format!("{residual}"), "a number above 0 and below 1"))
+        }
+        _ => Ok(()),
+    }
 }
 
 fn problem(key: &str, found: String, allowed: &str) -> Problem {
@@ -167,6 +187,10 @@ mod tests {
         assert_eq!(key_of(|s| s.time.courant = -0.1), "time.courant");
         assert_eq!(key_of(|s| s.time.max_step = Some(0.0)), "time.max_step");
         assert_eq!(key_of(|s| s.time.end = f64::INFINITY), "time.end");
+        assert_eq!(key_of(|s| s.damping.viscous = f64::NAN), "damping.viscous");
+        assert_eq!(key_of(|s| s.damping.local = 1.0), "damping.local");
+        let never = Relaxation { residual: 0.0 };
+        assert_eq!(key_of(|s| s.time.relax = Some(never)), "time.relax.residual");
         assert_eq!(key_of(|s| s.bodies.clear()), "bodies");
         assert_eq!(
             key_of(|s| s.materials[1].density = -1.0),

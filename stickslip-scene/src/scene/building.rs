@@ -5,9 +5,9 @@
 //! files and their schema take them from here.
 
 use super::{
-    BasisKind, Body, BodyMotion, ContactLaw, ContactRule, Dimension, Discretization, Domain, Expression,
-    Face, Measurements, NamedMaterial, Normal, Outputs, Precision, Problem, Scene, StressUpdate, Time,
-    Transfer,
+    BasisKind, Body, BodyMotion, ContactLaw, ContactRule, Damping, Dimension, Discretization, Domain,
+    Expression, Face, Measurements, NamedMaterial, Normal, Outputs, Precision, Problem, Relaxation, Scene,
+    StressUpdate, Time, Transfer,
 };
 use crate::geometry::{Arrangement, Shape};
 use crate::material::SHELF;
@@ -31,6 +31,7 @@ impl Scene {
             discretization: Discretization::new(cell),
             domain: None,
             time: Time::until(end),
+            damping: Damping::default(),
             gravity: [0.0; 3],
             materials: Vec::new(),
             bodies: Vec::new(),
@@ -71,8 +72,16 @@ impl Time {
             transfer: Transfer::default(),
             xpic_order: 2,
             pic_share: 0.0,
+            relax: None,
             energy_drift: 0.1,
         }
+    }
+}
+
+impl Default for Relaxation {
+    /// To a thousandth of the forces.
+    fn default() -> Self {
+        Relaxation { residual: 1e-3 }
     }
 }
 

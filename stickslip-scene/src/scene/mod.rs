@@ -52,6 +52,8 @@ pub struct Scene {
     pub domain: Option<Domain>,
     /// Time and how it is stepped.
     pub time: Time,
+    /// What slows the bodies down beside contact and materials.
+    pub damping: Damping,
     /// Acceleration of every body [m/s^2].
     pub gravity: [f64; 3],
     /// The materials that bodies name.
@@ -208,8 +210,29 @@ pub struct Time {
     pub pic_share: f64,
     /// m of XPIC(m); other transfers have none.
     pub xpic_order: usize,
+    /// The run looks for the state at rest, and ends there if that comes before `end`.
+    pub relax: Option<Relaxation>,
     /// Drift of the energy that a run may have before its verdict names it, over the energy that moved [-].
     pub energy_drift: f64,
+}
+
+/// Dynamic relaxation by kinetic damping: wherever the kinetic energy of the deformable bodies has passed a peak, their
+/// velocities are set to zero (Cundall 1982).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Relaxation {
+    /// The bodies are at rest once the sum of the unbalanced forces at the nodes is at most this part of the sum of the
+    /// internal or of the external forces there, whichever is larger [-].
+    pub residual: f64,
+}
+
+/// What slows deformable bodies down beside contact and materials; by default nothing.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Damping {
+    /// Rate alpha of a force f = -alpha m v at every node, relative to the grid at rest [1/s].
+    pub viscous: f64,
+    /// Part lambda of the unbalanced force at a node that acts against its velocity, f_d = -lambda |f| sign(v)
+    /// (Cundall 1987): from 0 to below 1 [-].
+    pub local: f64,
 }
 
 /// When in the step strain and stress are computed (Bardenhagen 2002; Nairn 2003).

@@ -30,6 +30,36 @@ fn values_out_of_range() {
             ),
             (
                 "\"1 s\"",
+                "1\nrelax = { residual = 1 }",
+                "7:22: time.relax.residual: found 1; allowed: a number above 0 and below 1",
+            ),
+            (
+                "\"1 s\"",
+                "1\nrelax = { residuum = 0.1 }",
+                "7:11: time.relax.residuum: found unknown key `residuum`; allowed: residual; did you mean `residual`?",
+            ),
+            (
+                "[time]",
+                "[damping]\nviscous = -1\n[time]",
+                "6:11: damping.viscous: found -1; allowed: a rate [1/s] from 0 on",
+            ),
+            (
+                "[time]",
+                "[damping]\nviscous = \"1 s\"\n[time]",
+                "6:11: damping.viscous: found \"1 s\", a time [s]; allowed: a rate [1/s], like \"1 / 0.2 s\"",
+            ),
+            (
+                "[time]",
+                "[damping]\nlocal = 1\n[time]",
+                "6:9: damping.local: found 1; allowed: a number from 0 to below 1",
+            ),
+            (
+                "[time]",
+                "[damping]\nglobal = 1\n[time]",
+                "6:1: damping.global: found unknown key `global`; allowed: viscous, local; did you mean `local`?",
+            ),
+            (
+                "\"1 s\"",
                 "1\nmax_step = 0",
                 "7:12: time.max_step: found 0; allowed: a time [s] above 0, like \"2.5 ms\"",
             ),

@@ -43,7 +43,8 @@ impl RunOptions {
     }
 }
 
-/// Runs a scene from the present state of its simulation to the end time, and writes what the scene asks for.
+/// Runs a scene from the present state of its simulation to the end time, or to the state at rest that dynamic
+/// relaxation looks for, and writes what the scene asks for.
 ///
 /// Nothing is written before the folder is found usable. `progress` is called about ten times a second of wall time,
 /// when there is something to note, and at the end.
@@ -90,6 +91,7 @@ pub fn run_with(
 
     manifest.performance = clock.performance(simulation);
     manifest.status = *outcome.as_ref().unwrap_or(&Status::Failed);
+    manifest.relaxation = simulation.relaxation();
     manifest.warnings = verdict.warnings().to_vec();
     manifest.error = outcome.as_ref().err().map(RunError::to_string);
     let saved = manifest.write(&folder);

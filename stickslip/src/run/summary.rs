@@ -2,7 +2,7 @@
 
 use super::WidestContacts;
 use super::verdict::line;
-use crate::door::{Ledger, View};
+use crate::door::{Ledger, RelaxationState, View};
 use crate::observe::{BodyRow, Manifest, Performance, RunWarning, Status, TableRow};
 use crate::scene::Scene;
 use std::fmt::{self, Display, Formatter};
@@ -20,6 +20,8 @@ pub struct Summary {
     pub end: Ledger,
     /// Largest energy that moved or was stored at a time, turned to heat or was set free by falling [J].
     pub energy_scale: f64,
+    /// How far dynamic relaxation came, if the scene asks for it.
+    pub relaxation: Option<RelaxationState>,
     /// How wide the bodies touched, and whether the grid resolved it.
     pub contacts: WidestContacts,
     /// What is wrong with the results.
@@ -81,7 +83,7 @@ impl Summary {
             })
         });
         let references = references.collect();
-        let Manifest { status, performance, warnings, .. } = manifest;
+        let Manifest { status, performance, relaxation, warnings, .. } = manifest;
         let Energies { start, scale: energy_scale } = energies;
         Summary {
             status,
@@ -89,6 +91,7 @@ impl Summary {
             start,
             energy_scale,
             end: simulation.ledger(),
+            relaxation,
             contacts,
             warnings,
             references,
@@ -128,6 +131,13 @@ impl Display for Summary {
             vector(self.start.momentum),
             vector(self.end.momentum)
         )?;
+        if let Some(RelaxationState { residual, peaks, at_rest }) = self.relaxation {
+            let state = if at_rest { "at rest" } else { "not at rest" };
+            writeln!(
+                f,
+                "  relaxation {state}: residual {residual:.2e} after {peaks} peaks of the kinetic energy"
+            )?;
+        }
         if self.end.scaled_impulses > 0 {
             writeln!(
                 f,

@@ -3,6 +3,7 @@
 
 mod body;
 mod contact;
+mod damping;
 mod fringes;
 mod material;
 mod measurements;
@@ -19,7 +20,7 @@ mod vector;
 use super::error::Fault;
 use super::parameters::Parameters;
 use super::source::{DocumentNode, Source, Value};
-use super::{Dimension, Scene};
+use super::{Damping, Dimension, Scene};
 use quantity::Acceleration;
 use read::{Read, table};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
@@ -55,6 +56,8 @@ table! {
         space: space::Space,
         /// Duration and time step.
         time: time::Time,
+        /// What slows the bodies down beside contact and materials; by default nothing.
+        damping: Option<damping::Damping>,
         /// The materials by name.
         materials: material::Materials,
         /// The bodies: [[bodies]].
@@ -99,6 +102,7 @@ pub(super) fn resolve(source: &Source) -> Result<Scene, Fault> {
         precision: file.space.precision(context)?,
         discretization: file.space.discretization(context)?,
         domain: file.space.domain(context)?,
+        damping: file.damping.map_or(Ok(Damping::default()), |damping| damping.resolve(context))?,
         gravity: file.gravity.map_or(Ok([0.0; 3]), |gravity| gravity.value(context))?,
         outputs: outputs::resolve(file.outputs.as_ref(), (&bodies, time.end), context)?,
         references: outputs::references(file.references.as_deref().unwrap_or_default(), &bodies, context)?,

@@ -5,7 +5,7 @@ use super::quantity::{Duration, QuantityInput, Ratio};
 use super::read::table;
 use super::text::{Choice, Count, Word};
 use crate::scene::error::Fault;
-use crate::scene::{self, StressUpdate, Transfer};
+use crate::scene::{self, Relaxation, StressUpdate, Transfer};
 
 table! {
     /// Duration and time step.
@@ -29,10 +29,24 @@ table! {
         /// Order m of the transfer `xpic`: 1 is PIC, each order more costs a pass over the particles and damps less.
         #[schemars(extend("default" = scene::Time::until(1.0).xpic_order))]
         xpic_order: Option<Count>,
+        /// Dynamic relaxation: the run looks for the state at rest and ends as soon as it has it, at `end` at the
+        /// latest. By default it does not.
+        relax: Option<RelaxTable>,
         /// Drift of the total energy beyond which a run warns, over the largest energy that moved, was stored or turned
         /// to heat; above 0.
         #[schemars(extend("default" = scene::Time::until(1.0).energy_drift))]
         energy_drift: Option<QuantityInput<Ratio>>,
+    }
+}
+
+table! {
+    /// Dynamic relaxation by kinetic damping: wherever the kinetic energy of the deformable bodies has passed a peak,
+    /// all their velocities are set to zero (Cundall 1982).
+    RelaxTable {
+        /// The run ends once the sum of the unbalanced forces at the nodes is at most this part of the sum of the
+        /// internal or of the external forces there, whichever is larger; above 0 and below 1.
+        #[schemars(extend("default" = Relaxation::default().residual))]
+        residual: Option<QuantityInput<Ratio>>,
     }
 }
 
@@ -101,6 +115,15 @@ impl Time {
         }
         if let Some(order) = &self.xpic_order {
             time.xpic_order = order.value(context, 1..=20)?;
+        }
+        if let Some(table) = &self.relax {
+            let mut relaxation = Relaxation::default();
+            if let Some(residual) = &table.residual {
+                let allowed = "a number above 0 and below 1";
+                relaxation.residual =
+                    residual.checked(context, allowed, |value| value > 0.0 && value < 1.0)?;
+            }
+            time.relax = Some(relaxation);
         }
         if let Some(drift) = &self.energy_drift {
             time.energy_drift = drift.checked(context, "a number above 0", |value| value > 0.0)?;

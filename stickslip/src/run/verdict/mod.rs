@@ -4,6 +4,7 @@ mod crossing;
 mod energy;
 mod neighbours;
 mod precision;
+mod relaxation;
 mod speed;
 mod spin;
 mod strain;
@@ -25,6 +26,7 @@ fn checks() -> Vec<Box<dyn Check>> {
         Box::new(crossing::CrossingCheck),
         Box::new(speed::SpeedCheck),
         Box::new(precision::PrecisionCheck::default()),
+        Box::new(relaxation::RelaxationCheck),
     ]
 }
 

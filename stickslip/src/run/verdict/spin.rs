@@ -2,7 +2,7 @@
 
 use super::{Check, CheckInputs, Finding, minus, norm};
 use crate::door::BodyState;
-use crate::scene::{Face, Scene};
+use crate::scene::{Damping, Face, Scene};
 use crate::tensor::cross;
 use std::collections::BTreeSet;
 
@@ -55,6 +55,9 @@ impl Check for SpinCheck {
     }
 
     fn look(&mut self, look: &CheckInputs) -> Vec<Finding> {
+        if damped(look.scene) {
+            return Vec::new();
+        }
         if !self.begun {
             self.begin(look);
             return Vec::new();
@@ -81,6 +84,11 @@ impl SpinCheck {
             self.together = Some(Together { angular_momentum: look.ledger.angular_momentum, scale: 0.0 });
         }
     }
+}
+
+/// Damping slows turning bodies down, as it should.
+fn damped(scene: &Scene) -> bool {
+    scene.damping != Damping::default() || scene.time.relax.is_some()
 }
 
 /// Nothing outside the bodies acts on them.

@@ -1,0 +1,111 @@
+//! Dynamic relaxation by kinetic damping: the state at rest, looked for by motion.
+//!
+//! Bodies that are let go swing about the state at rest, and pass it when they are fastest. Where their kinetic energy
+//! has passed a peak they are stopped, and let go again from there (Cundall 1982, Adaptive density-scaling for
+//! time-explicit calculations; Barnes 1999, Int. J. Space Struct. 14). What that takes from them the ledger counts as
+//! damping.
+
+use super::Engine;
+use super::state::Workspace;
+use crate::basis::Basis;
+use crate::lanes::Laned;
+use crate::rigid::RigidMotion;
+use crate::scene;
+use crate::threads::each;
+use std::sync::PoisonError;
+use std::time::Instant;
+
+/// How far the bodies are from rest.
+#[derive(Clone, Copy, Debug)]
+pub struct Relaxation {
+    /// Unbalanced forces at the nodes over those that act there, in the last step [-].
+    pub residual: f64,
+    /// Kinetic energy at the nodes with which the last step began, and the step before that [J].
+    pub kinetic: [f64; 2],
+    /// How often they were stopped.
+    pub peaks: u64,
+    /// Whether they are at rest.
+    pub at_rest: bool,
+}
+
+impl Default for Relaxation {
+    /// Nothing is known yet.
+    fn default() -> Self {
+        Relaxation { residual: 1.0, kinetic: [0.0; 2], peaks: 0, at_rest: false }
+    }
+}
+
+impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
+    /// Measures how far from balance the forces of this step are, over the nodes i of deformable bodies:
+    ///
+    /// ```text
+    /// R = sum |r_i| / max(sum |f_i|, sum |r_i - f_i|),   r_i = m_i (v~_i - v_i^0) / dt
+    /// ```
+    /// r: unbalanced force, with which walls leave alone what they hold; f: force of the stress; r - f: gravity and
+    /// contact. Nodes at a fixed face count in f alone, which is there what the wall bears.
+    pub(super) fn measure_balance(&mut self, dt: T) {
+        if self.settings.time.relax.is_none() {
+            return;
+        }
+        let start = Instant::now();
+        let [unbalanced, internal, external, kinetic] = self.workspace.sum_over_nodes(
+            &self.state.bodies,
+            |Workspace { field, boundary, .. }, place, index| {
+                let node = &field.nodes[index];
+                let kinetic = 0.5 * (node.start.dot(node.start) * node.mass).f64();
+                if boundary.holds(place) {
+                    return [0.0, node.force.norm().f64(), 0.0, kinetic];
+                }
+                let unbalanced = (node.integrated - node.start) * (node.mass / dt);
+                let external = unbalanced - node.force;
+                [unbalanced.norm().f64(), node.force.norm().f64(), external.norm().f64(), kinetic]
+            },
+        );
+        let applied = internal.max(external);
+        let known = &mut self.state.relaxation;
+        known.residual = if applied > 0.0 { unbalanced / applied } else { 0.0 };
+        known.kinetic = [kinetic, known.kinetic[0]];
+        self.watch.lap("relaxation", start);
+    }
+
+    /// Stops the bodies where their kinetic energy has passed a peak, and says whether they are at rest.
+    pub(super) fn relax(&mut self) {
+        let Some(scene::Relaxation { residual }) = self.settings.time.relax else { return };
+        let start = Instant::now();
+        let [now, before] = self.state.relaxation.kinetic;
+        if now < before {
+            self.stop();
+        }
+        let moved = |velocity: [f64; 3]| velocity != [0.0; 3];
+        let driven = |motion: &RigidMotion| moved(motion.velocity()) || moved(motion.spin());
+        let mut motions = self.state.bodies.iter().filter_map(|body| body.motion.as_ref());
+        let balanced = self.state.relaxation.residual <= residual;
+        self.state.relaxation.at_rest = balanced && !motions.any(driven) && {
+            let [kinetic, strain] = self.energies();
+            kinetic <= residual * residual * strain
+        };
+        self.watch.lap("relaxation", start);
+    }
+
+    /// Kinetic and strain energy of the deformable bodies [J].
+    fn energies(&self) -> [f64; 2] {
+        let (bodies, totals) = (&self.state.bodies, self.totals());
+        let free = bodies.iter().zip(&*totals).filter(|(body, _)| !body.is_rigid());
+        free.fold([0.0; 2], |[kinetic, strain], (_, totals)| {
+            [kinetic + totals.kinetic, strain + totals.strain]
+        })
+    }
+
+    /// Takes all velocities from the deformable bodies.
+    fn stop(&mut self) {
+        self.state.damping += self.energies()[0];
+        each(&mut self.state.bodies, 1, |_, body| {
+            if !body.is_rigid() {
+                body.particles.stop();
+            }
+        });
+        *self.workspace.totals.get_mut().unwrap_or_else(PoisonError::into_inner) = None;
+        self.state.relaxation.peaks += 1;
+        self.state.relaxation.kinetic = [0.0; 2];
+    }
+}

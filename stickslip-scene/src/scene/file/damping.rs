@@ -1,0 +1,52 @@
+//! `[damping]`: what slows the bodies down beside contact and materials.
+
+use super::Context;
+use super::quantity::{Measure, QuantityInput, Ratio};
+use super::read::table;
+use crate::scene;
+use crate::scene::error::Fault;
+use crate::scene::units::Powers;
+
+/// In one over seconds.
+pub struct Rate;
+
+impl Measure for Rate {
+    const POWERS: [i8; 3] = [0, 0, -1];
+
+    fn name() -> String {
+        Powers::from(Self::POWERS).name()
+    }
+
+    fn example() -> String {
+        "1 / 0.2 s".to_string()
+    }
+}
+
+table! {
+    /// What slows deformable bodies down beside contact and materials; by default nothing.
+    Damping {
+        /// Rate alpha [1/s] of a force f = -alpha m v at every node, relative to the grid at rest (mass-proportional
+        /// Rayleigh damping): a free body loses its velocity as exp(-alpha t).
+        #[schemars(extend("default" = 0))]
+        viscous: Option<QuantityInput<Rate>>,
+        /// Part lambda, 0 to below 1, of the unbalanced force at a node that acts against its velocity, component by
+        /// component: f_d = -lambda |f| sign(v) (Cundall 1987). Forces in balance are left alone.
+        #[schemars(extend("default" = 0))]
+        local: Option<QuantityInput<Ratio>>,
+    }
+}
+
+impl Damping {
+    /// Damping in SI units.
+    pub fn resolve(&self, context: &Context) -> Result<scene::Damping, Fault> {
+        let mut damping = scene::Damping::default();
+        if let Some(rate) = &self.viscous {
+            damping.viscous = rate.checked(context, "a rate [1/s] from 0 on", |value| value >= 0.0)?;
+        }
+        if let Some(share) = &self.local {
+            let allowed = "a number from 0 to below 1";
+            damping.local = share.checked(context, allowed, |value| (0.0..1.0).contains(&value))?;
+        }
+        Ok(damping)
+    }
+}

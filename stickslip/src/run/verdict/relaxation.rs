@@ -1,0 +1,30 @@
+//! Dynamic relaxation that came to its end before the bodies were at rest.
+
+use super::{Check, CheckInputs, EARLY, Finding};
+
+/// Looks whether the bodies are at rest when the run ends.
+pub(super) struct RelaxationCheck;
+
+impl Check for RelaxationCheck {
+    fn kind(&self) -> &'static str {
+        "relaxation"
+    }
+
+    fn advice(&self) -> &'static str {
+        "try a later time.end, a larger time.relax.residual, damping.local beside it"
+    }
+
+    fn look(&mut self, look: &CheckInputs) -> Vec<Finding> {
+        let (Some(state), Some(asked)) = (look.simulation.relaxation(), look.scene.time.relax) else {
+            return Vec::new();
+        };
+        if state.at_rest || look.simulation.time() < look.scene.time.end * (1.0 - EARLY) {
+            return Vec::new();
+        }
+        let message = format!(
+            "the bodies are not at rest at the end: residual {:.2e} after {} peaks, where {:.0e} is asked for",
+            state.residual, state.peaks, asked.residual
+        );
+        vec![Finding { body: None, position: None, worst: state.residual, message }]
+    }
+}
