@@ -42,7 +42,7 @@ use crate::basis::Basis;
 use crate::lanes::Lanes;
 use crate::tensor::{Matrix, Number, Vector};
 
-/// See the module.
+/// FLIP with rotation: equations in `transfer/rflip.rs`.
 #[derive(Clone, Copy, Debug)]
 pub struct Rflip;
 

@@ -4,7 +4,7 @@ use crate::basis::Basis;
 use crate::body::Gyration;
 use crate::tensor::{Matrix, Number, Real, Vector};
 
-/// Gradient of the velocities around a particle that turns, (c) of [`super::rflip`], embedded in space [1/s].
+/// Gradient of the velocities around a particle that turns, (c) of [`super::Rflip`], embedded in space [1/s].
 /// `half_step` is dt/2 in the middle of a step, else 0 [s].
 #[inline(always)]
 pub fn gradient<N: Number, const D: usize>(spin: &Vector<N, 3>, half_step: N) -> Matrix<N> {
