@@ -1,4 +1,4 @@
-//! Damping of the nodes' velocities: a viscous force, and Cundall's local damping.
+//! NodeDamping of the nodes' velocities: a viscous force, and Cundall's local damping.
 //!
 //! Both act on the velocity v~ with which a body leaves the forces, walls and contacts of a step that it began with
 //! v^0. Contact forces so belong to the unbalanced force, and bodies that rest on each other are left alone.
@@ -6,19 +6,19 @@
 use crate::scene;
 use crate::tensor::{Real, Vector};
 
-/// Damping at the nodes of deformable bodies.
+/// NodeDamping at the nodes of deformable bodies.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Damping<T> {
+pub struct NodeDamping<T> {
     /// alpha [1/s]
     viscous: T,
     /// lambda, from 0 to below 1 [-]
     local: T,
 }
 
-impl<T: Real> Damping<T> {
+impl<T: Real> NodeDamping<T> {
     /// What a scene asks for.
     pub fn new(scene: &scene::Damping) -> Self {
-        Damping { viscous: T::of(scene.viscous), local: T::of(scene.local) }
+        NodeDamping { viscous: T::of(scene.viscous), local: T::of(scene.local) }
     }
 
     /// Whether it does anything.
@@ -50,8 +50,8 @@ impl<T: Real> Damping<T> {
 mod tests {
     use super::*;
 
-    fn damping(viscous: f64, local: f64) -> Damping<f64> {
-        Damping::new(&scene::Damping { viscous, local })
+    fn damping(viscous: f64, local: f64) -> NodeDamping<f64> {
+        NodeDamping::new(&scene::Damping { viscous, local })
     }
 
     #[test]

@@ -90,7 +90,7 @@ pub struct Particles<T, const D: usize> {
     /// What the body's law remembers.
     history: &'static [History],
     /// What its transfer carries beside the columns that all have.
-    carried: &'static [History],
+    transfer: &'static [History],
 }
 
 /// Columns that not all bodies have: what a law remembers, and behind that what a transfer carries.
@@ -99,18 +99,18 @@ pub struct OwnColumns {
     /// Of the law.
     pub history: &'static [History],
     /// Of the transfer.
-    pub carried: &'static [History],
+    pub transfer: &'static [History],
 }
 
 impl OwnColumns {
     /// All of them.
     fn all(self) -> impl Iterator<Item = &'static History> {
-        self.history.iter().chain(self.carried)
+        self.history.iter().chain(self.transfer)
     }
 
     /// Their entries.
     const fn entries(self, dimension: usize) -> usize {
-        history_entries(self.history, dimension) + history_entries(self.carried, dimension)
+        history_entries(self.history, dimension) + history_entries(self.transfer, dimension)
     }
 }
 
@@ -144,9 +144,9 @@ impl<T: Real, const D: usize> Particles<T, D> {
         let columns = vec![T::ZERO; stride * Self::columns_of(own)];
         ask_for_large(columns.as_ptr(), columns.len());
         let numbers = vec![0; 2 * count];
-        let OwnColumns { history, carried } = own;
+        let OwnColumns { history, transfer } = own;
         let mut particles =
-            Particles { len: count, columns, stride, numbers, later: false, history, carried };
+            Particles { len: count, columns, stride, numbers, later: false, history, transfer };
         for i in 0..count {
             let particle = f(i);
             particles.set(i, &particle);
@@ -176,13 +176,17 @@ impl<T: Real, const D: usize> Particles<T, D> {
 
     /// Its own columns.
     fn own(&self) -> OwnColumns {
-        OwnColumns { history: self.history, carried: self.carried }
+        OwnColumns { history: self.history, transfer: self.transfer }
+    }
+
+    /// The columns that not all bodies have, of its law and of its transfer.
+    pub fn own_columns(&self) -> impl Iterator<Item = ColumnDescription> {
+        self.own().all().map(|own| own.column)
     }
 
     /// All columns by the place of their first entry: those that every body has, and its own.
     pub fn described(&self) -> impl Iterator<Item = (usize, ColumnDescription)> {
-        let own = self.own().all().map(|own| own.column);
-        EVERY.into_iter().chain(own).scan(0, |first, column| {
+        EVERY.into_iter().chain(self.own_columns()).scan(0, |first, column| {
             let this = *first;
             *first += column.kind.entries(D);
             Some((this, column))
@@ -252,8 +256,8 @@ impl<T: Real, const D: usize> Particles<T, D> {
 
     /// Takes from all particles their velocities and what else they carry of motion.
     pub fn stop(&mut self) {
-        let carried = self.view().carried();
-        for column in (ColumnStart::<D>::VELOCITY..ColumnStart::<D>::MASS).chain(carried) {
+        let transfer = self.view().transfer_columns();
+        for column in (ColumnStart::<D>::VELOCITY..ColumnStart::<D>::MASS).chain(transfer) {
             let first = self.first() + column * self.stride;
             self.columns[first..][..self.len].fill(T::ZERO);
         }
@@ -266,7 +270,7 @@ impl<T: Real, const D: usize> Particles<T, D> {
             start: self.columns[self.first()..].as_ptr().cast_mut(),
             stride: self.stride,
             history: history_entries(self.history, D),
-            carried: history_entries(self.carried, D),
+            transfer: history_entries(self.transfer, D),
         }
     }
 
@@ -277,7 +281,7 @@ impl<T: Real, const D: usize> Particles<T, D> {
             start: self.columns[first..].as_mut_ptr(),
             stride: self.stride,
             history: history_entries(self.history, D),
-            carried: history_entries(self.carried, D),
+            transfer: history_entries(self.transfer, D),
         }
     }
 
@@ -321,7 +325,7 @@ pub struct Columns<T, const D: usize> {
     /// Entries of the history.
     history: usize,
     /// Entries of what the transfer carries.
-    carried: usize,
+    transfer: usize,
 }
 
 // SAFETY: entries are only reached through unsafe functions, whose callers keep threads apart.
@@ -344,9 +348,9 @@ impl<T: Real, const D: usize> Columns<T, D> {
 
     /// Places of the columns of the transfer.
     #[inline(always)]
-    pub fn carried(&self) -> Range<usize> {
+    pub fn transfer_columns(&self) -> Range<usize> {
         let first = ColumnStart::<D>::HISTORY + self.history;
-        first..first + self.carried
+        first..first + self.transfer
     }
 
     /// The entry of particle `i` in a column.
@@ -355,7 +359,7 @@ impl<T: Real, const D: usize> Columns<T, D> {
     /// The column and the particle must exist, and nobody may use the entry but by this pointer.
     #[inline(always)]
     pub unsafe fn at(&self, column: usize, i: usize) -> *mut T {
-        debug_assert!(column < self.carried().end && i < self.stride, "an entry");
+        debug_assert!(column < self.transfer_columns().end && i < self.stride, "an entry");
         // SAFETY: the caller's.
         unsafe { self.start.add(column * self.stride + i) }
     }

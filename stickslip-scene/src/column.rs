@@ -99,10 +99,15 @@ pub const fn same(a: &str, b: &str) -> bool {
 /// Name of the column in which a transfer carries the rate of strain.
 pub const STRAIN_RATE: &str = "strain_rate";
 
+/// Names of the columns that every file of particles may have.
+pub fn in_files() -> impl Iterator<Item = &'static str> {
+    let every = EVERY.iter().map(|column| column.name);
+    every.chain(IDENTITY).chain(DERIVED.iter().map(|derived| derived.column.name))
+}
+
 /// Names that no column of history may have: a file would hold two columns called the same.
 pub fn reserved() -> impl Iterator<Item = &'static str> {
-    let every = EVERY.iter().map(|column| column.name);
-    every.chain(IDENTITY).chain([STRAIN_RATE]).chain(DERIVED.iter().map(|derived| derived.column.name))
+    in_files().chain([STRAIN_RATE])
 }
 
 /// What a particle has in a column.

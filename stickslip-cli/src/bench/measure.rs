@@ -11,6 +11,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 use stickslip::door::Simulation;
+use stickslip::march::March;
 use stickslip::run::RunOptions;
 
 /// What a process is asked to measure.
@@ -176,8 +177,9 @@ fn step(simulation: &mut dyn Simulation, effort: Effort, sample: &mut BenchSampl
 /// Wall time of so many steps [s].
 fn advance(simulation: &mut dyn Simulation, steps: u64) -> Result<f64, Failure> {
     let start = Instant::now();
+    let mut march = March::to(f64::INFINITY);
     for _ in 0..steps {
-        simulation.step(f64::INFINITY).map_err(|error| Failure::Run(miette!("{error}")))?;
+        march.step(simulation).map_err(|error| Failure::Run(miette!("{error}")))?;
     }
     Ok(start.elapsed().as_secs_f64())
 }

@@ -17,7 +17,7 @@ pub struct Particle<T, const D: usize> {
     pub position: Vector<T, D>,
     /// Velocity [m/s].
     pub velocity: Vector<T, D>,
-    /// Angular velocity, see [`crate::transfer::turning`]; in the plane about the third axis [rad/s].
+    /// Angular velocity, see [`crate::transfer::rotation`]; in the plane about the third axis [rad/s].
     pub spin: Vector<T, 3>,
     /// Mass [kg].
     pub mass: T,
@@ -45,7 +45,7 @@ impl<T: Real, const D: usize> Particle<T, D> {
 /// ```text
 /// k^2 = cell + share l^2          l: half the side of the undeformed box
 /// ```
-/// See [`crate::transfer::turning`] for its source.
+/// See [`crate::transfer::rotation`] for its source.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gyration<T> {
     /// Of all particles alike [m^2].

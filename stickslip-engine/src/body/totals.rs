@@ -145,7 +145,7 @@ impl<T: Laned, const D: usize> Work for SumOfRange<'_, T, D> {
         let [mut first_moment, mut momentum, mut angular_momentum] = [[[0.0; MOST_LANES]; 3]; 3];
         let [mut kinetic, mut strain, mut plastic]: [Each; 3] = [[0.0; MOST_LANES]; 3];
         let material = self.material.map(|material| material.map(M::Wide::splat));
-        let carries_strain = !self.columns.carried().is_empty();
+        let carries_strain = !self.columns.transfer_columns().is_empty();
         for (first, count) in chunks::<M::Wide>(&self.part) {
             // SAFETY: the particles are the body's, which is borrowed for reading.
             let some =
@@ -207,7 +207,7 @@ unsafe fn strain_rates<V: Lanes, const D: usize>(
     (first, count): (usize, usize),
 ) -> Each {
     let mut rate = Symmetric::ZERO;
-    for (entry, column) in rate.0.iter_mut().zip(columns.carried()) {
+    for (entry, column) in rate.0.iter_mut().zip(columns.transfer_columns()) {
         // SAFETY: the caller's.
         *entry = unsafe { V::load_first(columns.at(column, first), count) };
     }

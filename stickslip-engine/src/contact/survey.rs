@@ -7,7 +7,7 @@ use crate::basis::Basis;
 use crate::body::Body;
 use crate::boundary::Boundary;
 use crate::grid::{
-    ActiveBlocks, Field, Lattice, Meeting, Node, Nodes, SIDE, next_of, node_at, nodes_per_block,
+    ActiveBlocks, Field, Lattice, Node, Nodes, SIDE, SharedBlock, next_of, node_at, nodes_per_block,
 };
 use crate::lanes::{Laned, Processor};
 use crate::scene::{ContactLaw, Face};
@@ -204,24 +204,24 @@ impl<T: Laned, const D: usize> Near<'_, T, D> {
     /// Surveys every node that two or more bodies share.
     pub fn survey<B: Basis<T>>(&self, survey: &mut Survey<T, D>) {
         let Survey { parts, count, scratches } = survey;
-        *count = self.active.meetings.len().div_ceil(BLOCKS);
+        *count = self.active.shared_blocks.len().div_ceil(BLOCKS);
         parts.resize_with(parts.len().max(*count), SurveyPart::default);
         scratches.resize_with(scratches.len().max(rayon::current_num_threads()), Mutex::default);
-        let all = &self.active.meetings;
+        let all = &self.active.shared_blocks;
         each(&mut parts[..*count], 1, |number, part| {
-            let meetings = &all[number * BLOCKS..all.len().min((number + 1) * BLOCKS)];
+            let shared_blocks = &all[number * BLOCKS..all.len().min((number + 1) * BLOCKS)];
             let thread = rayon::current_thread_index().unwrap_or(0);
             let mut scratch = scratches[thread].lock().unwrap_or_else(PoisonError::into_inner);
             part.sites.clear();
             part.sides.clear();
             part.encounters.clear();
-            meetings.iter().for_each(|meeting| self.survey_block::<B>(meeting, &mut scratch, part));
+            shared_blocks.iter().for_each(|meeting| self.survey_block::<B>(meeting, &mut scratch, part));
         });
     }
 
     fn survey_block<B: Basis<T>>(
         &self,
-        meeting: &Meeting<D>,
+        meeting: &SharedBlock<D>,
         scratch: &mut Scratch<T, D>,
         part: &mut SurveyPart<T, D>,
     ) {

@@ -26,7 +26,7 @@ pub struct Tile<const D: usize> {
 
 /// Bodies that hold the same block: `slots[start..end]` of [`ActiveBlocks::shared_slots`].
 #[derive(Clone, Copy, Debug)]
-pub struct Meeting<const D: usize> {
+pub struct SharedBlock<const D: usize> {
     /// The block.
     pub block: [i32; D],
     start: usize,
@@ -50,7 +50,7 @@ pub struct ActiveBlocks<const D: usize> {
     /// First tile of each body, and the number of tiles.
     first_tile: Vec<usize>,
     /// Blocks that two or more bodies hold.
-    pub meetings: Vec<Meeting<D>>,
+    pub shared_blocks: Vec<SharedBlock<D>>,
     shared: Vec<u32>,
     /// Key and slot of every block, sorted.
     keys: Vec<(u64, u32)>,
@@ -158,7 +158,7 @@ impl<const D: usize> ActiveBlocks<D> {
         self.colors.iter_mut().for_each(Vec::clear);
         let mut open = false;
         for body in 0..self.cell_lists.len() {
-            let tiles = self.tiles_held(body);
+            let tiles = self.tiles_of_body(body);
             let small = tiles.len() <= MOST_SMALL && tiles.len() * LEAST_SMALL <= self.tiles.len();
             if !small {
                 for i in tiles {
@@ -176,7 +176,7 @@ impl<const D: usize> ActiveBlocks<D> {
     }
 
     fn meet(&mut self) {
-        self.meetings.clear();
+        self.shared_blocks.clear();
         self.shared.clear();
         if self.cell_lists.len() < 2 {
             return;
@@ -185,10 +185,14 @@ impl<const D: usize> ActiveBlocks<D> {
         for group in self.keys.chunk_by(|a, b| a.0 == b.0).filter(|group| group.len() > 1) {
             let start = self.shared.len();
             self.shared.extend(group.iter().map(|(_, slot)| slot));
-            self.meetings.push(Meeting { block: block_of(group[0].0), start, end: self.shared.len() });
+            self.shared_blocks.push(SharedBlock {
+                block: block_of(group[0].0),
+                start,
+                end: self.shared.len(),
+            });
         }
         // By first body: its particles stay in the cache from block to block.
-        self.meetings.sort_unstable_by_key(|meeting| self.shared[meeting.start]);
+        self.shared_blocks.sort_unstable_by_key(|meeting| self.shared[meeting.start]);
     }
 
     /// Places in the body's order where the particles of each cell of a tile begin, and where the last ends.
@@ -203,12 +207,12 @@ impl<const D: usize> ActiveBlocks<D> {
     }
 
     /// The slots of a body.
-    pub fn slots_held(&self, body: usize) -> Range<usize> {
+    pub fn slots_of_body(&self, body: usize) -> Range<usize> {
         self.first_slot[body]..self.first_slot[body + 1]
     }
 
     /// The tiles of a body.
-    pub fn tiles_held(&self, body: usize) -> Range<usize> {
+    pub fn tiles_of_body(&self, body: usize) -> Range<usize> {
         self.first_tile[body]..self.first_tile[body + 1]
     }
 
@@ -218,7 +222,7 @@ impl<const D: usize> ActiveBlocks<D> {
     }
 
     /// Slots of the bodies that hold a shared block, ordered by body.
-    pub fn slots_of(&self, meeting: &Meeting<D>) -> &[u32] {
+    pub fn slots_of(&self, meeting: &SharedBlock<D>) -> &[u32] {
         &self.shared[meeting.start..meeting.end]
     }
 

@@ -283,13 +283,13 @@ impl<const D: usize> Iterator for NodeRuns<'_, D> {
 
 /// A vector in the first places of four lanes.
 #[inline(always)]
-fn told<V: Lanes, const D: usize>(vector: &Vector<V::Real, D>) -> V {
+fn load_vector<V: Lanes, const D: usize>(vector: &Vector<V::Real, D>) -> V {
     // SAFETY: it has `D` components.
     unsafe { V::load_first(vector.0.as_ptr(), D) }
 }
 
 #[inline(always)]
-fn tell<V: Lanes>(place: &mut NodeValues<V::Real>, vector: V) {
+fn store_vector<V: Lanes>(place: &mut NodeValues<V::Real>, vector: V) {
     const { assert!(V::COUNT == 4) };
     // SAFETY: there is room for four numbers.
     unsafe { vector.store(place.as_mut_ptr()) }
@@ -321,19 +321,19 @@ impl<T: Real, const D: usize> Window<T, D> {
                 let node = unsafe { field.read(node + k) };
                 let place = place + k;
                 if sought.change {
-                    let integrated: M::Quad = told(&node.integrated);
-                    let start: M::Quad = told(&node.start);
-                    tell(&mut self.change[place], integrated - start);
+                    let integrated: M::Quad = load_vector(&node.integrated);
+                    let start: M::Quad = load_vector(&node.start);
+                    store_vector(&mut self.change[place], integrated - start);
                 }
                 if sought.integrated {
-                    let mut integrated: M::Quad = told(&node.integrated);
+                    let mut integrated: M::Quad = load_vector(&node.integrated);
                     if let (true, Some(start)) = (sought.filtered, start) {
-                        integrated += told::<M::Quad, D>(start) - told(&node.start);
+                        integrated += load_vector::<M::Quad, D>(start) - load_vector(&node.start);
                     }
-                    tell::<M::Quad>(&mut self.integrated[place], integrated);
+                    store_vector::<M::Quad>(&mut self.integrated[place], integrated);
                 }
                 if sought.flow {
-                    tell::<M::Quad>(&mut self.flow[place], told(&node.velocity));
+                    store_vector::<M::Quad>(&mut self.flow[place], load_vector(&node.velocity));
                 }
             }
         }

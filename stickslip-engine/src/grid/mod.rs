@@ -7,7 +7,7 @@ mod active_blocks;
 mod cell_list;
 mod field;
 
-pub use active_blocks::{ActiveBlocks, Blocks, Meeting, Tile};
+pub use active_blocks::{ActiveBlocks, Blocks, SharedBlock, Tile};
 pub use cell_list::{MOST_CELLS, addressable};
 pub use field::{
     Disjoint, Field, NODE_VALUES, Node, NodeSums, NodeValues, Sought, WINDOW, WINDOW_NODES, Window,

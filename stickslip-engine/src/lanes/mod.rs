@@ -123,7 +123,7 @@ pub trait Lanes: Number {
 
     /// Sums of neighbours, of one and another in turn:  a_0 + a_1, b_0 + b_1, a_2 + a_3, b_2 + b_3, ...
     #[inline(always)]
-    fn fold(self, other: Self) -> Self {
+    fn add_neighbours(self, other: Self) -> Self {
         let (a, b) = (self.numbers(), other.numbers());
         Self::from_fn(|lane| {
             let pair = if lane % 2 == 0 { &a.0 } else { &b.0 };

@@ -178,8 +178,8 @@ impl<V: Lanes> Lanes for RegisterPair<V> {
     }
 
     #[inline(always)]
-    fn fold(self, other: Self) -> Self {
-        RegisterPair(self.0.fold(other.0), self.1.fold(other.1))
+    fn add_neighbours(self, other: Self) -> Self {
+        RegisterPair(self.0.add_neighbours(other.0), self.1.add_neighbours(other.1))
     }
 
     #[inline(always)]

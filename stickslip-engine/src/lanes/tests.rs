@@ -29,7 +29,7 @@ impl<T: Laned> Work for Everything<'_, T> {
                 x.ln(),
                 M::Wide::HALF - M::Wide::ONE,
                 M::Wide::splat(above),
-                x.fold(-two),
+                x.add_neighbours(-two),
                 x.times_plus(x, -(x * x)),
             ];
             for result in results {

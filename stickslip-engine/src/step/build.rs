@@ -1,6 +1,6 @@
 //! From a scene to a simulation.
 
-use super::relax::Relaxation;
+use super::relax::RelaxationProgress;
 use super::state::{Disorder, Settings, State, Workspace};
 use super::unbounded::Unbounded;
 use super::watch::Stopwatch;
@@ -10,7 +10,7 @@ use crate::body::{Body, Particle};
 use crate::boundary::{Boundary, Wall};
 use crate::check;
 use crate::contact::{ContactSums, Rules};
-use crate::damping::Damping;
+use crate::damping::NodeDamping;
 use crate::door::Simulation;
 use crate::geometry::{Filling, Mirror, MirroredShape, ParticleSite, fill};
 use crate::grid::Lattice;
@@ -20,7 +20,7 @@ use crate::particles::{OwnColumns, Particles};
 use crate::rigid::RigidMotion;
 use crate::scene::{self, BasisKind, BodyMotion, Dimension, Face, NamedMaterial, Precision, Problem, Scene};
 use crate::tensor::{Matrix, Real, Symmetric, Vector, cross};
-use crate::transfer::{carries_spin, pic_share, turning};
+use crate::transfer::{has_spin, pic_share, rotation};
 use std::marker::PhantomData;
 
 /// The simulation of a scene.
@@ -95,7 +95,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             // Not by every transfer do particles carry rotation; those of rigid bodies give the nodes their exact velocity whatever
             // the transfer.
             let turning = match (&body.motion, &motion) {
-                (BodyMotion::Free { spin, .. }, _) if carries_spin(scene.time.transfer) => *spin,
+                (BodyMotion::Free { spin, .. }, _) if has_spin(scene.time.transfer) => *spin,
                 (_, Some(motion)) => motion.spin(),
                 _ => [0.0; 3],
             };
@@ -107,7 +107,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 motion,
                 whole: MirroredShape::new(&body.shape, mirrors::<D>(scene), D),
                 thickness: scene.dimension.thickness(),
-                gyration: turning::gyration::<T, B>(cell, whole_cells),
+                gyration: rotation::gyration::<T, B>(cell, whole_cells),
             });
         }
         let origin = scene.domain.as_ref().map_or([0.0; 3], |domain| domain.min);
@@ -119,7 +119,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 gravity: Vector::of(scene.gravity),
                 transfer: scene.time.transfer,
                 pic_share: T::of(pic_share(scene.time.transfer, scene.time.pic_share)),
-                damping: Damping::new(&scene.damping),
+                damping: NodeDamping::new(&scene.damping),
                 rules: Rules::new(scene),
                 time: scene.time.clone(),
                 path,
@@ -130,7 +130,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 unbounded,
                 contact_sums: ContactSums::default(),
                 damping: 0.0,
-                relaxation: Relaxation::default(),
+                relaxation: RelaxationProgress::default(),
                 signal: None,
                 time: 0.0,
                 steps: 0,
@@ -195,7 +195,7 @@ pub fn own_columns(scene: &Scene, body: &scene::Body) -> OwnColumns {
         return OwnColumns::default();
     }
     let history = scene.materials[body.material].law.history();
-    OwnColumns { history, carried: crate::transfer::columns(scene.time.transfer) }
+    OwnColumns { history, transfer: crate::transfer::columns(scene.time.transfer) }
 }
 
 /// The domain's faces that are mirrors.

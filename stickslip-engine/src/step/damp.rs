@@ -16,7 +16,7 @@ const BLOCKS: usize = 16;
 
 impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// Damps the integrated velocities of deformable bodies, whose change the particles take, by
-    /// [`crate::damping::Damping::damped`]. What mirrors repeat is damped alike.
+    /// [`crate::damping::NodeDamping::damped`]. What mirrors repeat is damped alike.
     pub(super) fn damp(&mut self, dt: T) {
         let damping = self.settings.damping;
         if !damping.acts() {

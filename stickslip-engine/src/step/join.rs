@@ -19,7 +19,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             return;
         }
         let groups = &mut self.workspace.groups;
-        for part in self.workspace.meeting.parts() {
+        for part in self.workspace.survey.parts() {
             for site in &part.sites {
                 groups.clear();
                 groups.extend(site.sides.clone());

@@ -1,7 +1,7 @@
 //! The engine behind its door: what others may see of it, and the step that they may ask for.
 
 use super::Engine;
-use super::relax::Relaxation;
+use super::relax::RelaxationProgress;
 use super::state::Workspace;
 use crate::basis::Basis;
 use crate::body::{Body, Totals};
@@ -31,13 +31,13 @@ fn add(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
 }
 
 /// The particles of all bodies as a snapshot has them: by body, then by number.
-struct Rows<'a, T, const D: usize> {
+struct SnapshotRows<'a, T, const D: usize> {
     bodies: &'a [Body<T, D>],
     /// Each particle's body, and its place in memory there.
     places: Vec<[u32; 2]>,
 }
 
-impl<'a, T: Laned, const D: usize> Rows<'a, T, D> {
+impl<'a, T: Laned, const D: usize> SnapshotRows<'a, T, D> {
     fn of(bodies: &'a [Body<T, D>]) -> Self {
         let mut places = Vec::with_capacity(bodies.iter().map(|body| body.particles.len()).sum());
         for (i, body) in bodies.iter().enumerate() {
@@ -47,7 +47,7 @@ impl<'a, T: Laned, const D: usize> Rows<'a, T, D> {
                 places[first + number as usize][1] = place as u32;
             }
         }
-        Rows { bodies, places }
+        SnapshotRows { bodies, places }
     }
 
     /// The components in space of a column, and zeros where a body has no such column.
@@ -62,7 +62,7 @@ impl<'a, T: Laned, const D: usize> Rows<'a, T, D> {
     }
 }
 
-impl<T: Laned, const D: usize> ColumnSource for Rows<'_, T, D> {
+impl<T: Laned, const D: usize> ColumnSource for SnapshotRows<'_, T, D> {
     type Error = Infallible;
     fn column<const N: usize>(&self, column: &ColumnDescription) -> Result<Vec<[f64; N]>, Infallible> {
         Ok(self.values(column))
@@ -77,12 +77,12 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         known.get_or_insert_with(|| by_parts(self.state.bodies.len(), 1, sum).into()).clone()
     }
 
-    /// What the laws of the bodies remember: what two laws call alike is one column.
-    fn remembered(&self, rows: &Rows<T, D>) -> Vec<SnapshotColumn> {
+    /// What the laws of the bodies remember and their transfer has: what two laws call alike is one column.
+    fn remembered(&self, rows: &SnapshotRows<T, D>) -> Vec<SnapshotColumn> {
         let mut declared: Vec<ColumnDescription> = Vec::new();
-        for history in self.state.bodies.iter().flat_map(|body| body.particles.history()) {
-            if !declared.iter().any(|known| known.name == history.column.name) {
-                declared.push(history.column);
+        for column in self.state.bodies.iter().flat_map(|body| body.particles.own_columns()) {
+            if !declared.iter().any(|known| known.name == column.name) {
+                declared.push(column);
             }
         }
         let column = |column: ColumnDescription| SnapshotColumn {
@@ -178,7 +178,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> View for Engine<T, D, B> {
     }
 
     fn relaxation(&self) -> Option<RelaxationState> {
-        let Relaxation { residual, peaks, at_rest, .. } = self.state.relaxation;
+        let RelaxationProgress { residual, peaks, at_rest, .. } = self.state.relaxation;
         self.settings.time.relax.map(|_| RelaxationState { residual, peaks, at_rest })
     }
 
@@ -191,7 +191,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> View for Engine<T, D, B> {
     }
 
     fn snapshot(&self) -> ParticleSnapshot {
-        let rows = Rows::of(&self.state.bodies);
+        let rows = SnapshotRows::of(&self.state.bodies);
         let Ok(snapshot) = ParticleSnapshot::of_columns(D, &rows);
         ParticleSnapshot {
             body: rows.places.par_iter().map(|&[body, _]| body).collect(),

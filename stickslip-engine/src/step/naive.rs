@@ -8,7 +8,7 @@ use crate::lanes::Any;
 use crate::material::Motion;
 use crate::scene::Transfer;
 use crate::tensor::{Matrix, Real, Symmetric};
-use crate::transfer::{Rflip, Share, Stencil, TransferRule, carries_spin, turning};
+use crate::transfer::{Rflip, Share, Stencil, TransferRule, has_spin, rotation};
 
 impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
     /// Takes the tile's particles one by one through the pass.
@@ -84,8 +84,8 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
             particle.velocity += stencil.interpolate(&self.window.change, block);
             let moments = stencil.moments(&self.window.change, block);
             let gyration = self.body.gyration.squared(particle.half_width);
-            if carries_spin(transfer) {
-                particle.spin += turning::moment::<T, D>(&moments) * (T::ONE / gyration);
+            if has_spin(transfer) {
+                particle.spin += rotation::moment::<T, D>(&moments) * (T::ONE / gyration);
             }
             let mut rate = self.strain_rate(index);
             if transfer == Transfer::Apic {
@@ -100,12 +100,12 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
                 particle.velocity = particle.velocity * kept + mean * pic;
                 if transfer == Transfer::Rflip {
                     let gradient = stencil.velocity_gradient(&self.window.integrated, block);
-                    particle.spin = turning::toward(particle.spin, &gradient, pic);
+                    particle.spin = rotation::toward(particle.spin, &gradient, pic);
                 }
             }
             if transfer == Transfer::Apic {
                 let affine = stencil.affine(&self.window.integrated, block);
-                particle.spin = turning::toward(particle.spin, &affine, T::ONE);
+                particle.spin = rotation::toward(particle.spin, &affine, T::ONE);
                 rate = affine.symmetric_part();
             }
             let damped = before - kinetic(particle, &rate);
@@ -156,7 +156,7 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
     /// The rate of strain that the transfer carries; zero if it carries none.
     fn strain_rate(&self, index: usize) -> Symmetric<T> {
         let mut rate = Symmetric::ZERO;
-        for (entry, column) in rate.0.iter_mut().zip(self.columns.carried()) {
+        for (entry, column) in rate.0.iter_mut().zip(self.columns.transfer_columns()) {
             // SAFETY: the caller of this pass keeps others away from the tile's particles.
             *entry = unsafe { *self.columns.at(column, index) };
         }
@@ -164,7 +164,7 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
     }
 
     fn put_strain_rate(&self, index: usize, rate: &Symmetric<T>) {
-        for (&entry, column) in rate.0.iter().zip(self.columns.carried()) {
+        for (&entry, column) in rate.0.iter().zip(self.columns.transfer_columns()) {
             // SAFETY: as above.
             unsafe { *self.columns.at(column, index) = entry };
         }
@@ -173,7 +173,7 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
     fn scatter_naively(&mut self, (particle, index): (&Particle<T, D>, usize), stencil: &Stencil<T, D, B>) {
         let half_step = if self.pass.transfer == Transfer::Apic { T::ZERO } else { T::HALF * self.pass.dt };
         let gradient =
-            turning::gradient::<T, D>(&particle.spin, half_step) + self.strain_rate(index).matrix();
+            rotation::gradient::<T, D>(&particle.spin, half_step) + self.strain_rate(index).matrix();
         let (window, block) = (&mut *self.window, self.tile.block);
         match self.pass.verbs.scatter {
             Some(Share::Mass | Share::Everything) => {

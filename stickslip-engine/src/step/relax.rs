@@ -17,7 +17,7 @@ use std::time::Instant;
 
 /// How far the bodies are from rest.
 #[derive(Clone, Copy, Debug)]
-pub struct Relaxation {
+pub struct RelaxationProgress {
     /// Unbalanced forces at the nodes over those that act there, in the last step [-].
     pub residual: f64,
     /// Kinetic energy at the nodes with which the last step began, and the step before that [J].
@@ -28,10 +28,10 @@ pub struct Relaxation {
     pub at_rest: bool,
 }
 
-impl Default for Relaxation {
+impl Default for RelaxationProgress {
     /// Nothing is known yet.
     fn default() -> Self {
-        Relaxation { residual: 1.0, kinetic: [0.0; 2], peaks: 0, at_rest: false }
+        RelaxationProgress { residual: 1.0, kinetic: [0.0; 2], peaks: 0, at_rest: false }
     }
 }
 

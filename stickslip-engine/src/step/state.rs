@@ -2,12 +2,12 @@
 
 use super::cpu::Threads;
 use super::damp::NodeTotals;
-use super::relax::Relaxation;
+use super::relax::RelaxationProgress;
 use super::unbounded::Unbounded;
 use crate::body::{Body, Totals};
 use crate::boundary::Boundary;
 use crate::contact::{ContactSums, Impulses, Rules, Survey};
-use crate::damping::Damping;
+use crate::damping::NodeDamping;
 use crate::grid::{ActiveBlocks, Field, Lattice};
 use crate::scene::{Time, Transfer};
 use crate::tensor::Vector;
@@ -23,7 +23,7 @@ pub struct Settings<T, const D: usize> {
     pub gravity: Vector<T, D>,
     pub transfer: Transfer,
     pub pic_share: T,
-    pub damping: Damping<T>,
+    pub damping: NodeDamping<T>,
     pub rules: Rules<T>,
     pub time: Time,
     pub path: ParticleLoop,
@@ -43,7 +43,7 @@ pub struct State<T, const D: usize> {
     /// What damping took since the start [J].
     pub damping: f64,
     /// How far dynamic relaxation has come.
-    pub relaxation: Relaxation,
+    pub relaxation: RelaxationProgress,
     /// Fastest signal now [m/s]; unknown before the first step.
     pub signal: Option<f64>,
     /// Simulated time [s].
@@ -64,7 +64,7 @@ pub struct Workspace<T, const D: usize> {
     /// Nodes that walls govern.
     pub boundary: Boundary,
     /// Where bodies meet in this step.
-    pub meeting: Survey<T, D>,
+    pub survey: Survey<T, D>,
     /// Room for glue at one node: for each body there, one that stands for all that glue joins with it.
     pub groups: Vec<usize>,
     /// What contact did in the last step, use by use.
@@ -93,7 +93,7 @@ impl<T, const D: usize> Workspace<T, D> {
             listed: false,
             field: Field { nodes: Vec::new(), present: Vec::new(), filtered: Vec::new() },
             boundary,
-            meeting: Survey::default(),
+            survey: Survey::default(),
             groups: Vec::new(),
             impulses: Default::default(),
             left: Vec::new(),

@@ -81,7 +81,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// Counts the particles that changed their cells in the step.
     pub(super) fn count_disorder(&mut self) {
         for (body, disorder) in self.state.disorder.iter_mut().enumerate() {
-            let moved = &self.workspace.moved[self.workspace.active.tiles_held(body)];
+            let moved = &self.workspace.moved[self.workspace.active.tiles_of_body(body)];
             disorder.add(moved.iter().map(|&moved| moved as usize).sum());
         }
     }
@@ -213,7 +213,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let Workspace { active, field, boundary, .. } = &mut self.workspace;
         for (body, Body { motion, .. }) in self.state.bodies.iter().enumerate() {
             let Some(motion) = motion else { continue };
-            for slot in active.slots_held(body) {
+            for slot in active.slots_of_body(body) {
                 let (_, block) = active.slots[slot];
                 for local in 0..n {
                     let position = self.settings.lattice.position(node_at(block, local)).space();
@@ -241,7 +241,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 _ => Processor::Any,
             },
         };
-        near.survey::<B>(&mut self.workspace.meeting);
+        near.survey::<B>(&mut self.workspace.survey);
         self.watch.lap("contact detection", start);
     }
 
@@ -267,8 +267,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
 
     fn apply_contact(&mut self, duration: T, contact: Contact) {
         let start = Instant::now();
-        let Workspace { impulses: [first, second, third], meeting, field, boundary, .. } =
-            &mut self.workspace;
+        let Workspace { impulses: [first, second, third], survey, field, boundary, .. } = &mut self.workspace;
         let (purpose, record, given, listed) = match contact {
             Contact::Interpolated => {
                 let strains = self.settings.time.stress_update == StressUpdate::First;
@@ -279,7 +278,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         };
         let step = TimeStep { duration, cell: self.settings.lattice.cell, purpose };
         let nodes = Disjoint::new(&mut field.nodes);
-        Solve { survey: meeting, rules: &self.settings.rules, nodes, step, given }.impulses(record, listed);
+        Solve { survey, rules: &self.settings.rules, nodes, step, given }.impulses(record, listed);
         self.state.contact_sums.scaled += listed.reduced();
         self.state.contact_sums.unsettled += listed.unsettled();
         boundary.impose(field);
@@ -382,7 +381,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             }
             motion.advance(&rotation, dt);
             body.motion = Some(motion);
-            let tiles = self.workspace.active.tiles_held(i);
+            let tiles = self.workspace.active.tiles_of_body(i);
             self.workspace.left[tiles.clone()].fill(u64::MAX);
             if let [first, ..] = &mut self.workspace.moved[tiles] {
                 *first = moved_on;

@@ -20,7 +20,7 @@
 //!
 //! C is kept as its two parts: the spin, which every particle has, and the rate of strain, a column of its own.
 
-use super::{Carried, Start, Surroundings, TransferRule, turning};
+use super::{Start, Surroundings, TransferRule, VelocityState, rotation};
 use crate::basis::Basis;
 use crate::column::{Kind, STRAIN_RATE};
 use crate::lanes::Lanes;
@@ -32,42 +32,42 @@ use crate::tensor::Matrix;
 pub struct Apic;
 
 impl TransferRule for Apic {
-    const CARRIES_SPIN: bool = true;
+    const HAS_SPIN: bool = true;
     const COLUMNS: &'static [History] = &[History::new(STRAIN_RATE, "1/s", Kind::Symmetric)];
     const ALWAYS_PIC: bool = true;
 
     #[inline(always)]
     fn take_change<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start>(
         around: &Surroundings<'_, V, D, B, S>,
-        carried: &mut Carried<V, D>,
+        state: &mut VelocityState<V, D>,
     ) {
         let (moments, change) = around.group.moments(&around.window.change);
-        carried.velocity += change;
+        state.velocity += change;
         let scale = around.cell / around.gyration;
-        carried.spin += turning::moment::<V, D>(&moments) * scale;
-        carried.strain_rate += moments.symmetric_part() * (scale + scale);
+        state.spin += rotation::moment::<V, D>(&moments) * scale;
+        state.strain_rate += moments.symmetric_part() * (scale + scale);
     }
 
     #[inline(always)]
     fn take_share<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start>(
         around: &Surroundings<'_, V, D, B, S>,
-        carried: &mut Carried<V, D>,
+        state: &mut VelocityState<V, D>,
         _share: V,
     ) {
         let (gradient, mean) = around.group.affine(&around.window.integrated);
         let gradient: Matrix<V> = gradient * around.per_cell;
-        carried.velocity = mean;
-        carried.spin = turning::toward(carried.spin, &gradient, V::ONE);
-        carried.strain_rate = gradient.symmetric_part();
+        state.velocity = mean;
+        state.spin = rotation::toward(state.spin, &gradient, V::ONE);
+        state.strain_rate = gradient.symmetric_part();
     }
 
     #[inline(always)]
-    fn strains<V: Lanes, const D: usize>(carried: &Carried<V, D>) -> V {
-        carried.strain_rate.double_dot(&carried.strain_rate)
+    fn strains<V: Lanes, const D: usize>(state: &VelocityState<V, D>) -> V {
+        state.strain_rate.double_dot(&state.strain_rate)
     }
 
     #[inline(always)]
-    fn gradient<V: Lanes, const D: usize>(carried: &Carried<V, D>, _half_step: V) -> Matrix<V> {
-        turning::gradient::<V, D>(&carried.spin, V::ZERO) + carried.strain_rate.matrix()
+    fn gradient<V: Lanes, const D: usize>(state: &VelocityState<V, D>, _half_step: V) -> Matrix<V> {
+        rotation::gradient::<V, D>(&state.spin, V::ZERO) + state.strain_rate.matrix()
     }
 }

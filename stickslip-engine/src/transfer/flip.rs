@@ -9,31 +9,10 @@
 //! The second line is the transpose of the first, so forces at the nodes do the same work on the particles as on the
 //! nodes, and no kinetic energy is lost but what `a` takes. A body loses spin at its rim, see [`super::rflip`].
 
-use super::{Carried, Surroundings, TransferRule};
-use crate::basis::Basis;
-use crate::lanes::Lanes;
-use crate::transfer::Start;
+use super::TransferRule;
 
-/// See the module.
+/// What [`TransferRule`] says unless a rule says otherwise.
 #[derive(Clone, Copy, Debug)]
 pub struct Flip;
 
-impl TransferRule for Flip {
-    #[inline(always)]
-    fn take_change<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start>(
-        around: &Surroundings<'_, V, D, B, S>,
-        carried: &mut Carried<V, D>,
-    ) {
-        carried.velocity += around.group.interpolate(&around.window.change);
-    }
-
-    #[inline(always)]
-    fn take_share<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start>(
-        around: &Surroundings<'_, V, D, B, S>,
-        carried: &mut Carried<V, D>,
-        share: V,
-    ) {
-        let mean = around.group.flow(&around.window.integrated).1;
-        carried.velocity = carried.velocity * (V::ONE - share) + mean * share;
-    }
-}
+impl TransferRule for Flip {}

@@ -612,5 +612,5 @@ fn factors<M: Machine<T>, T: Real>(numbers: &Numbers<T>, pair: usize) -> M::Wide
 fn add<M: Machine<T>, T: Real>(node: &mut NodeSums<T>, momentum: M::Wide, force: M::Wide) {
     let node = node.as_mut_ptr().cast();
     // SAFETY: a node has eight numbers, borrowed for writing.
-    unsafe { (M::Wide::load(node) + momentum.fold(force)).store(node) }
+    unsafe { (M::Wide::load(node) + momentum.add_neighbours(force)).store(node) }
 }

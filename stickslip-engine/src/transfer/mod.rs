@@ -17,7 +17,7 @@ mod group;
 mod naive;
 mod pic;
 mod rflip;
-pub mod turning;
+pub mod rotation;
 mod xpic;
 
 pub use apic::Apic;
@@ -38,7 +38,7 @@ use crate::tensor::{Matrix, Number, Symmetric, Vector};
 
 /// What a particle carries of the velocities around it from step to step.
 #[derive(Clone, Copy, Debug)]
-pub struct Carried<V, const D: usize> {
+pub struct VelocityState<V, const D: usize> {
     /// v_p [m/s]
     pub velocity: Vector<V, D>,
     /// w_p, in the plane about the third axis [rad/s].
@@ -62,14 +62,14 @@ pub struct Surroundings<'a, V: Lanes, const D: usize, B, S> {
     pub gyration: V,
 }
 
-/// How velocities go from particles to nodes and back.
+/// How velocities go from particles to nodes and back; what a rule does not say is FLIP.
 ///
 /// To add a transfer: write its file with this, name it in [`crate::scene::Transfer`], and put both on the list below.
 /// The changes that it takes of the nodes' velocities must be the transpose of what it gives to the nodes: then they do
 /// the same work on both, and the ledger knows that all else that it takes is damping.
 pub trait TransferRule {
     /// Whether particles keep their spin from step to step; else only those of rigid bodies have any.
-    const CARRIES_SPIN: bool = false;
+    const HAS_SPIN: bool = false;
     /// Columns that particles have for it: none, or the rate of strain.
     const COLUMNS: &'static [History] = &[];
     /// Whether particles take the nodes' velocities themselves, and not a share of them.
@@ -77,22 +77,30 @@ pub trait TransferRule {
     /// Whether these velocities are v(m) + dv of [`Xpic`].
     const FILTERS: bool = false;
 
-    /// G2P of the changes of the nodes' velocities.
+    /// G2P of the changes of the nodes' velocities: v_p += sum_i S_ip dv_i, and what else particles carry.
+    #[inline(always)]
     fn take_change<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start>(
         around: &Surroundings<'_, V, D, B, S>,
-        carried: &mut Carried<V, D>,
-    );
+        state: &mut VelocityState<V, D>,
+    ) {
+        state.velocity += around.group.interpolate(&around.window.change);
+    }
 
-    /// G2P of a share of the nodes' velocities themselves.
+    /// G2P of a share a of the nodes' velocities themselves, all of it where they are [`TransferRule::ALWAYS_PIC`]:
+    /// v_p = (1 - a) v_p + a sum_i S_ip v_i, and what else particles carry.
+    #[inline(always)]
     fn take_share<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start>(
         around: &Surroundings<'_, V, D, B, S>,
-        carried: &mut Carried<V, D>,
+        state: &mut VelocityState<V, D>,
         share: V,
-    );
+    ) {
+        let mean = around.group.flow(&around.window.integrated).1;
+        state.velocity = state.velocity * (V::ONE - share) + mean * share;
+    }
 
     /// |C|^2 of the rate of strain that it carries [1/s^2]: over k^2/4 and the mass it is a part of the kinetic energy.
     #[inline(always)]
-    fn strains<V: Lanes, const D: usize>(_carried: &Carried<V, D>) -> V {
+    fn strains<V: Lanes, const D: usize>(_carried: &VelocityState<V, D>) -> V {
         V::ZERO
     }
 
@@ -105,8 +113,8 @@ pub trait TransferRule {
     /// Gradient of the velocities that a particle gives to its nodes, embedded in space [1/s]; `half_step` is dt/2 in
     /// the middle of a step, else 0 [s]. Particles of rigid bodies turn, whatever the transfer.
     #[inline(always)]
-    fn gradient<V: Lanes, const D: usize>(carried: &Carried<V, D>, half_step: V) -> Matrix<V> {
-        turning::gradient::<V, D>(&carried.spin, half_step)
+    fn gradient<V: Lanes, const D: usize>(state: &VelocityState<V, D>, half_step: V) -> Matrix<V> {
+        rotation::gradient::<V, D>(&state.spin, half_step)
     }
 }
 
@@ -124,12 +132,33 @@ macro_rules! of_transfer {
         }
     };
 }
-pub(crate) use of_transfer;
 
-/// [`TransferRule::CARRIES_SPIN`]
+/// Does one thing with the rule by which particles of a transfer give and take: PIC and XPIC are FLIP with all the share
+/// of PIC that there is, and loops over particles are compiled for it once.
+macro_rules! of_particles {
+    ($transfer:expr, $rule:ident => $does:expr) => {
+        match $transfer {
+            $crate::scene::Transfer::Rflip => {
+                type $rule = $crate::transfer::Rflip;
+                $does
+            }
+            $crate::scene::Transfer::Apic => {
+                type $rule = $crate::transfer::Apic;
+                $does
+            }
+            $crate::scene::Transfer::Flip | $crate::scene::Transfer::Pic | $crate::scene::Transfer::Xpic => {
+                type $rule = $crate::transfer::Flip;
+                $does
+            }
+        }
+    };
+}
+pub(crate) use of_particles;
+
+/// [`TransferRule::HAS_SPIN`]
 #[inline(always)]
-pub fn carries_spin(transfer: Transfer) -> bool {
-    of_transfer!(transfer, Rule => Rule::CARRIES_SPIN)
+pub fn has_spin(transfer: Transfer) -> bool {
+    of_transfer!(transfer, Rule => Rule::HAS_SPIN)
 }
 
 /// [`TransferRule::COLUMNS`]

@@ -37,7 +37,7 @@
 //! ```
 //! which takes next to nothing from a body that only vibrates. The ledger's damping counts what it takes.
 
-use super::{Carried, Start, Surroundings, TransferRule, turning};
+use super::{Start, Surroundings, TransferRule, VelocityState, rotation};
 use crate::basis::Basis;
 use crate::lanes::Lanes;
 use crate::tensor::{Matrix, Number, Vector};
@@ -47,33 +47,33 @@ use crate::tensor::{Matrix, Number, Vector};
 pub struct Rflip;
 
 impl TransferRule for Rflip {
-    const CARRIES_SPIN: bool = true;
+    const HAS_SPIN: bool = true;
 
     #[inline(always)]
     fn take_change<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start>(
         around: &Surroundings<'_, V, D, B, S>,
-        carried: &mut Carried<V, D>,
+        state: &mut VelocityState<V, D>,
     ) {
         let (moments, change) = around.group.moments(&around.window.change);
-        carried.velocity += change;
-        carried.spin += turning::moment::<V, D>(&moments) * (around.cell / around.gyration);
+        state.velocity += change;
+        state.spin += rotation::moment::<V, D>(&moments) * (around.cell / around.gyration);
     }
 
     #[inline(always)]
     fn take_share<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start>(
         around: &Surroundings<'_, V, D, B, S>,
-        carried: &mut Carried<V, D>,
+        state: &mut VelocityState<V, D>,
         share: V,
     ) {
         let (gradient, mean) = around.group.flow(&around.window.integrated);
-        carried.velocity = carried.velocity * (V::ONE - share) + mean * share;
-        carried.spin = turning::toward(carried.spin, &(gradient * around.per_cell), share);
+        state.velocity = state.velocity * (V::ONE - share) + mean * share;
+        state.spin = rotation::toward(state.spin, &(gradient * around.per_cell), share);
     }
 
     #[inline(always)]
     fn settle<N: Number, const D: usize>(spin: Vector<N, 3>, gradient: &Matrix<N>, dt: N) -> Vector<N, 3> {
         let speed = if D == 2 { spin[2].abs() } else { spin.norm() };
-        turning::toward(spin, gradient, (N::of(NOISE) * speed * dt).min(N::ONE))
+        rotation::toward(spin, gradient, (N::of(NOISE) * speed * dt).min(N::ONE))
     }
 }
 

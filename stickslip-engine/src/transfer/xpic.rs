@@ -11,11 +11,8 @@
 //! S v(m) goes to the particle velocities without those that no node sees as m grows: noise goes, waves and rotation
 //! that cells resolve stay. Each order above the first costs a pass over the particles.
 
-use super::flip::Flip;
-use super::{Carried, Start, Surroundings, TransferRule};
-use crate::basis::Basis;
+use super::TransferRule;
 use crate::grid::Field;
-use crate::lanes::Lanes;
 use crate::tensor::{Real, Vector};
 
 /// See the module. What it takes instead of the nodes' velocities is made by [`Filter`].
@@ -25,23 +22,6 @@ pub struct Xpic;
 impl TransferRule for Xpic {
     const ALWAYS_PIC: bool = true;
     const FILTERS: bool = true;
-
-    #[inline(always)]
-    fn take_change<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start>(
-        around: &Surroundings<'_, V, D, B, S>,
-        carried: &mut Carried<V, D>,
-    ) {
-        Flip::take_change(around, carried);
-    }
-
-    #[inline(always)]
-    fn take_share<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start>(
-        around: &Surroundings<'_, V, D, B, S>,
-        carried: &mut Carried<V, D>,
-        share: V,
-    ) {
-        Flip::take_share(around, carried, share);
-    }
 }
 
 /// What happens at the nodes between the passes that make v(m). u_j = (1 - S+ S)^j v stands in `integrated`, where

@@ -6,7 +6,7 @@ use super::frames::Frames;
 use super::schedule::Schedule;
 use super::vtu::{NUMBER, Points, Vtu};
 use super::{Observer, PARTICLES};
-use crate::column::{ColumnDescription, DERIVED, IDENTITY, Kind, every, reserved};
+use crate::column::{ColumnDescription, DERIVED, IDENTITY, Kind, every, in_files};
 use crate::door::{ColumnSource, ParticleSnapshot, SnapshotColumn, View};
 use crate::scene::Scene;
 use std::path::Path;
@@ -97,7 +97,7 @@ pub fn read_particles(path: &Path) -> Result<ParticleSnapshot, ReadError> {
     Ok(ParticleSnapshot {
         body: file.numbers::<i32>(body)?.into_iter().map(|body| body as u32).collect(),
         number: file.numbers(number)?,
-        history: (file.names().filter(|&name| !reserved().any(|known| known == name)))
+        history: (file.names().filter(|&name| !in_files().any(|known| known == name)))
             .map(remembered)
             .collect::<Result<_, ReadError>>()?,
         ..ParticleSnapshot::of_columns(file.field("dimension")? as usize, &file)?

@@ -123,7 +123,7 @@ mod tests {
             gravity = [0, 0, -9.81]
             parameters = { speed = 2, word = "gap" }
             time.end = 1
-            outputs.measurements.time_unit = "3 / speed"
+            outputs.time_unit = "3 / speed"
 
             [space]
             dimension = "3d"

@@ -5,7 +5,9 @@
 //! [`Film`] sums up light while a shutter is open; [`OpticalBench`] holds them together:
 //!
 //! ```
-//! # use stickslip_results::{door::ParticleSnapshot, image::Image, scene::Polariscope};
+//! # use stickslip_engine::door::ParticleSnapshot;
+//! # use stickslip_results::image::Image;
+//! # use stickslip_scene::scene::Polariscope;
 //! use stickslip_results::polariscope::{ImageWindow, OpticalBench, Stage, bounds};
 //!
 //! fn picture(particles: &ParticleSnapshot, polariscope: &Polariscope) -> Option<Image> {

@@ -10,21 +10,21 @@ mod filling;
 mod fitted;
 mod inside;
 mod mesh;
+mod mirrored_shape;
 mod polygon;
 mod rings;
 mod rotation;
 mod round;
 mod shells;
 mod volume;
-mod whole;
 
 pub use bounds::Bounds;
 pub use distance::SignedDistance;
 pub use filling::{Arrangement, Filling, ParticleSite, SiteLattice, fill, sites};
 pub use fitted::{FITTED_SHAPES, fits};
 pub use mesh::{Mesh, MeshFault};
+pub use mirrored_shape::{Mirror, MirroredShape};
 pub use round::RoundPart;
-pub use whole::{Mirror, MirroredShape};
 
 use serde::Serialize;
 

@@ -32,18 +32,18 @@ pub fn respond<T: Number, L: Law<T>>(
     T::apart(Respond { law, motion, history })
 }
 
-struct Energies<'a, T: Number, L: Law<T>> {
+struct StoredAndDissipated<'a, T: Number, L: Law<T>> {
     law: &'a L,
     deformation: &'a Matrix<T>,
     stress: &'a Symmetric<T>,
     history: &'a L::History,
 }
 
-impl<T: Number, L: Law<T>> Task for Energies<'_, T, L> {
+impl<T: Number, L: Law<T>> Task for StoredAndDissipated<'_, T, L> {
     type Output = [T; 2];
     #[inline(always)]
     fn run(self) -> [T; 2] {
-        let Energies { law, deformation, stress, history } = self;
+        let StoredAndDissipated { law, deformation, stress, history } = self;
         [law.strain_energy(deformation, stress, history), law.dissipation(history)]
     }
 }
@@ -55,7 +55,7 @@ pub fn energies<T: Number, L: Law<T>>(
     (deformation, stress): (&Matrix<T>, &Symmetric<T>),
     history: &L::History,
 ) -> [T; 2] {
-    T::apart(Energies { law, deformation, stress, history })
+    T::apart(StoredAndDissipated { law, deformation, stress, history })
 }
 
 struct WaveModulus<'a, T: Number, L: Law<T>> {

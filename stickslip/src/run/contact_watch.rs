@@ -12,7 +12,7 @@ pub(super) struct ContactWatch {
     next: f64,
     /// Patches when it looked last.
     before: Vec<ContactPatch>,
-    told: BTreeSet<[usize; 2]>,
+    reported: BTreeSet<[usize; 2]>,
     lines: usize,
     forces: LargestForces,
 }
@@ -28,7 +28,7 @@ impl ContactWatch {
         ContactWatch {
             next: start,
             before: Vec::new(),
-            told: BTreeSet::new(),
+            reported: BTreeSet::new(),
             lines: 0,
             forces: LargestForces::default(),
         }
@@ -57,9 +57,9 @@ impl ContactWatch {
         });
         // Others may widen yet.
         let pair = |patch: &ContactPatch| [patch.body_a, patch.body_b];
-        let told: BTreeSet<_> =
+        let reported: BTreeSet<_> =
             found.0.iter().map(|contact| contact.bodies.each_ref().map(String::as_str)).collect();
-        self.told.extend(new.iter().map(pair).filter(|pair| told.contains(&pair.map(name))));
+        self.reported.extend(new.iter().map(pair).filter(|pair| told.contains(&pair.map(name))));
         let narrowest = found.0.first()?;
         self.lines += 1;
         let last = if self.lines == MOST_LINES { "; no more of this until the summary" } else { "" };
@@ -82,7 +82,7 @@ impl ContactWatch {
             old.is_some_and(|old| patch.area <= (1.0 + GROWTH) * old.area)
         };
         let grown: Vec<ContactPatch> = patches.iter().filter(grown).copied().collect();
-        grown.into_iter().filter(|patch| patch.area > 0.0 && !self.told.contains(&pair(patch))).collect()
+        grown.into_iter().filter(|patch| patch.area > 0.0 && !self.reported.contains(&pair(patch))).collect()
     }
 }
 
@@ -111,7 +111,7 @@ mod tests {
         assert!(grown(&contact_watch, &[1.0, 2.0]).is_empty());
         contact_watch.before = patches(&[1.0, 2.0]);
         assert_eq!(grown(&contact_watch, &[1.5, 2.0, 3.0]), [1]);
-        contact_watch.told.insert([1, 2]);
+        contact_watch.reported.insert([1, 2]);
         contact_watch.before = patches(&[1.5, 2.0, 3.0]);
         assert_eq!(grown(&contact_watch, &[1.5, 2.0, 3.0]), [0, 2]);
     }

@@ -1,7 +1,8 @@
 //! Results depend neither on the number of threads nor on what is kept from step to step, bit for bit.
 //!
 //! Set-up: soft bodies that fall on each other and on a rigid floor with friction, cut by a symmetry face, a third body
-//! glued on; in the plane and in space, for all stress updates and both bases; 200 steps on one, two and five threads,
+//! glued on; in the plane and in space, for all stress updates, bases, and a transfer of
+//! each kind, damped and relaxed as well; 200 steps on one, two and five threads,
 //! and on one with grid, lists and room to work in dropped every 23 steps.
 //!
 //! Expected: the same bits everywhere: particles, grid, contact forces, energies. No tolerance: sums are taken in an
@@ -22,13 +23,14 @@ fn outcome(scene: &str, threads: usize, take: impl Fn(&mut dyn Simulation) + Syn
         let ledger = simulation.ledger();
         assert!(ledger.friction > 0.0, "the bodies slide");
         format!(
-            "{:?} {:?} {:?} {:?} {:?} {:?}",
+            "{:?} {:?} {:?} {:?} {:?} {:?} {:?}",
             simulation.time(),
             simulation.snapshot(),
             simulation.grid_snapshot(),
             contacts,
             ledger,
-            simulation.bodies()
+            simulation.bodies(),
+            simulation.relaxation()
         )
     })
 }
@@ -124,6 +126,11 @@ fn in_the_plane() {
     assert!(metal.contains("von_mises"));
     compare("metal", &metal, 200);
     let plane = scene("plane-strain", "gimp", "modified-last");
+    let with = |time: &str| plane.replace("end = 1\n", &format!("end = 1\n{time}\n"));
+    compare("apic", &with("transfer = \"apic\"").replace("\"gimp\"", "\"spline\""), 200);
+    compare("xpic", &with("transfer = \"xpic\"\nxpic_order = 3"), 200);
+    let damped = with("relax = { residual = 1e-6 }") + "[damping]\nviscous = 2\nlocal = 0.1\n";
+    compare("damped and relaxed", &damped, 200);
     let unbounded = plane
         .replace(
             "shape.box = { min = [0, -0.2], max = [3, 0] }",

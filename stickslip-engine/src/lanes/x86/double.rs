@@ -57,7 +57,7 @@ lanes! { F64x8: __m512d as [f64; 8];
         unsafe { F64x8(_mm512_broadcast_f64x2(_mm_set_pd(b, a))) }
     }
     #[inline(always)]
-    fn fold(self, other: Self) -> Self {
+    fn add_neighbours(self, other: Self) -> Self {
         // SAFETY: values of this type exist only where the processor has the instructions.
         unsafe {
             F64x8(_mm512_add_pd(_mm512_unpacklo_pd(self.0, other.0), _mm512_unpackhi_pd(self.0, other.0)))
@@ -206,7 +206,7 @@ lanes! { F64x4: __m256d as [f64; 4];
         unsafe { F64x4(_mm256_setr_pd(a, b, a, b)) }
     }
     #[inline(always)]
-    fn fold(self, other: Self) -> Self {
+    fn add_neighbours(self, other: Self) -> Self {
         // SAFETY: values of this type exist only where the processor has the instructions.
         unsafe {
             F64x4(_mm256_add_pd(_mm256_unpacklo_pd(self.0, other.0), _mm256_unpackhi_pd(self.0, other.0)))

@@ -135,7 +135,7 @@ lanes! { F32x8<const MASKS>: __m256 as [f32; 8];
         unsafe { Self(_mm256_setr_ps(a, b, a, b, a, b, a, b)) }
     }
     #[inline(always)]
-    fn fold(self, other: Self) -> Self {
+    fn add_neighbours(self, other: Self) -> Self {
         // SAFETY: values of this type exist only where the processor has the instructions.
         unsafe {
             let even = _mm256_shuffle_ps::<0b10_00_10_00>(self.0, other.0);

@@ -11,8 +11,8 @@ use crate::particles::ColumnStart;
 use crate::step::pass::{FaultKind, Pass, Verbs, Visit};
 use crate::tensor::{Matrix, Real, Symmetric, Vector};
 use crate::transfer::{
-    Carried, Group, Momentum, ScatterTerms, Share, Start, Surroundings, TransferRule, carries_spin,
-    of_transfer,
+    Group, Momentum, ScatterTerms, Share, Start, Surroundings, TransferRule, VelocityState, has_spin,
+    of_particles,
 };
 
 /// What all particles of a tile have in common.
@@ -77,23 +77,24 @@ pub fn group<
         Group::<V, D, B, S>::new(constants.in_cells(&position) - base, half, start, members.count::<V>());
     let mut sound = Sound::EVERYTHING;
 
-    let mut carried = Carried { velocity: Vector::ZERO, spin: Vector::ZERO, strain_rate: Symmetric::ZERO };
+    let mut state =
+        VelocityState { velocity: Vector::ZERO, spin: Vector::ZERO, strain_rate: Symmetric::ZERO };
     let gyration = constants.gyration.squared(half_width);
     // What PIC and `turning` take: v^2 + k^2 w^2 before less that after, so twice the kinetic energy over the mass.
     let mut damped = V::ZERO;
-    let rotates = carries_spin(transfer);
+    let rotates = has_spin(transfer);
     let gives_momentum = scatter.is_some_and(|share| share != Share::Force);
     if smooth {
         // G2P: u = sum S_i u_i, in the place of v_p.
-        carried.velocity = group.interpolate(&visit.window.integrated);
+        state.velocity = group.interpolate(&visit.window.integrated);
     } else if update_velocity || advect || gives_momentum {
-        carried.velocity = members.vector::<V>(ColumnStart::<D>::VELOCITY);
+        state.velocity = members.vector::<V>(ColumnStart::<D>::VELOCITY);
     }
     if !smooth && (update_velocity || gives_momentum || (update_stress && rotates)) {
-        carried.spin = members.spin::<V>();
+        state.spin = members.spin::<V>();
     }
     if !smooth && (update_velocity || gives_momentum) {
-        carried.strain_rate = members.strain_rate::<V>();
+        state.strain_rate = members.strain_rate::<V>();
     }
     // G2P: v_p += sum S_i (v_i - v_i^0), or what else the transfer takes.
     if update_velocity {
@@ -104,15 +105,15 @@ pub fn group<
             per_cell: constants.per_cell,
             gyration,
         };
-        of_transfer!(transfer, Rule => {
-            Rule::take_change(&around, &mut carried);
+        of_particles!(transfer, Rule => {
+            Rule::take_change(&around, &mut state);
             if pic > T::ZERO {
-                let before = kinetic::<V, D, Rule>(&carried, gyration);
-                Rule::take_share(&around, &mut carried, V::splat(pic));
-                damped = before - kinetic::<V, D, Rule>(&carried, gyration);
+                let before = kinetic::<V, D, Rule>(&state, gyration);
+                Rule::take_share(&around, &mut state, V::splat(pic));
+                damped = before - kinetic::<V, D, Rule>(&state, gyration);
             }
         });
-        let Carried { velocity, spin, strain_rate } = &carried;
+        let VelocityState { velocity, spin, strain_rate } = &state;
         sound.require(finite(&spin.0) & finite(&velocity.0) & finite(&strain_rate.0), FaultKind::NotFinite);
     }
 
@@ -136,12 +137,11 @@ pub fn group<
         let (gradient, mean) = group.flow(&visit.window.flow);
         flow = mean;
         if rotates {
-            let spin = carried.spin;
+            let spin = state.spin;
             let gradient = gradient * constants.per_cell;
-            carried.spin =
-                of_transfer!(transfer, Rule => Rule::settle::<V, D>(spin, &gradient, V::splat(dt)));
-            damped += gyration * spin.dot(spin) - gyration * carried.spin.dot(carried.spin);
-            sound.require(finite(&carried.spin.0), FaultKind::NotFinite);
+            state.spin = of_particles!(transfer, Rule => Rule::settle::<V, D>(spin, &gradient, V::splat(dt)));
+            damped += gyration * spin.dot(spin) - gyration * state.spin.dot(state.spin);
+            sound.require(finite(&state.spin.0), FaultKind::NotFinite);
         }
         let increment = Matrix::IDENTITY + gradient * scale;
         deformation = increment * deformation;
@@ -208,7 +208,7 @@ pub fn group<
         members.give_back::<V>(ColumnStart::<D>::POSITION..ColumnStart::<D>::VELOCITY);
         let modulus =
             constants.material.wave_modulus(visit.body.thickness, (&deformation, jacobian), &history);
-        let squares = [modulus * constants.per_density, carried.velocity.dot(carried.velocity)];
+        let squares = [modulus * constants.per_density, state.velocity.dot(state.velocity)];
         if !every::<V>(no_faster(squares, V::splat(visit.found.signal))) {
             let signals = signal_speed(squares).numbers();
             for &signal in &signals.0[..V::COUNT] {
@@ -221,9 +221,9 @@ pub fn group<
     }
     // No fault: what changed goes back to memory.
     if update_velocity {
-        members.store_vector(ColumnStart::<D>::VELOCITY, &carried.velocity);
+        members.store_vector(ColumnStart::<D>::VELOCITY, &state.velocity);
         members.give_back::<V>(ColumnStart::<D>::VELOCITY..ColumnStart::<D>::SPIN);
-        members.store_strain_rate(&carried.strain_rate);
+        members.store_strain_rate(&state.strain_rate);
     }
     if (update_velocity && pic > T::ZERO) || (update_stress && rotates) {
         let energies = (damped * members.load::<V>(ColumnStart::<D>::MASS)).numbers();
@@ -232,7 +232,7 @@ pub fn group<
         }
     }
     if update_velocity || (update_stress && rotates) {
-        members.store_spin(&carried.spin);
+        members.store_spin(&state.spin);
         members.give_back::<V>(ColumnStart::<D>::SPIN..ColumnStart::<D>::MASS);
     }
     if update_stress {
@@ -249,9 +249,9 @@ pub fn group<
         if gives_momentum {
             let mass = members.load::<V>(ColumnStart::<D>::MASS);
             let half_step = V::splat(T::HALF * dt);
-            let gradient = of_transfer!(transfer, Rule => Rule::gradient::<V, D>(&carried, half_step));
+            let gradient = of_particles!(transfer, Rule => Rule::gradient::<V, D>(&state, half_step));
             load.momentum = Some(Momentum {
-                own: carried.velocity * mass,
+                own: state.velocity * mass,
                 per_cell: gradient * (mass * constants.cell),
                 mass: if share == Share::Momentum { V::ZERO } else { mass },
             });
@@ -293,11 +293,11 @@ impl Sound {
     }
 }
 
-/// v^2 + k^2 w^2 + k^2/2 |E|^2, with the square of the radius of gyration and the rate of strain that is carried.
+/// v^2 + k^2 w^2 + k^2/2 |E|^2, with the square of the radius of gyration and the rate of strain that is state.
 #[inline(always)]
-fn kinetic<V: Lanes, const D: usize, R: TransferRule>(carried: &Carried<V, D>, gyration: V) -> V {
-    let Carried { velocity, spin, .. } = carried;
-    let strains = V::HALF * R::strains(carried);
+fn kinetic<V: Lanes, const D: usize, R: TransferRule>(state: &VelocityState<V, D>, gyration: V) -> V {
+    let VelocityState { velocity, spin, .. } = state;
+    let strains = V::HALF * R::strains(state);
     gyration.times_plus(spin.dot(*spin) + strains, velocity.dot(*velocity))
 }
 

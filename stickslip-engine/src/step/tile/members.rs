@@ -32,7 +32,7 @@ struct Reads {
     /// Entries of the history.
     history: usize,
     /// Entries of what the transfer carries.
-    carried: usize,
+    transfer: usize,
 }
 
 impl Reads {
@@ -44,7 +44,11 @@ impl Reads {
             deformation: verbs.update_stress || verbs.advect,
             stress: verbs.update_stress || verbs.scatter.is_some_and(|share| share != Share::Momentum),
             history: if verbs.update_stress || verbs.advect { columns.history() } else { 0 },
-            carried: if verbs.update_velocity || gives_momentum { columns.carried().len() } else { 0 },
+            transfer: if verbs.update_velocity || gives_momentum {
+                columns.transfer_columns().len()
+            } else {
+                0
+            },
         }
     }
 
@@ -57,7 +61,7 @@ impl Reads {
             only(self.deformation, ColumnStart::<D>::DEFORMATION..ColumnStart::<D>::STRESS),
             only(self.stress, ColumnStart::<D>::STRESS..ColumnStart::<D>::START),
             ColumnStart::<D>::HISTORY..ColumnStart::<D>::HISTORY + self.history,
-            of.carried().start..of.carried().start + self.carried,
+            of.transfer_columns().start..of.transfer_columns().start + self.transfer,
         ]
     }
 }
@@ -236,7 +240,7 @@ impl<'a, T: Real, const D: usize, const WHOLE: bool> Members<'a, T, D, WHOLE> {
     #[inline(always)]
     pub fn strain_rate<V: Lanes<Real = T>>(&self) -> Symmetric<V> {
         let mut rate = Symmetric::ZERO;
-        for (entry, column) in rate.0.iter_mut().zip(self.columns.carried()) {
+        for (entry, column) in rate.0.iter_mut().zip(self.columns.transfer_columns()) {
             *entry = self.load(column);
         }
         rate
@@ -244,10 +248,10 @@ impl<'a, T: Real, const D: usize, const WHOLE: bool> Members<'a, T, D, WHOLE> {
 
     #[inline(always)]
     pub fn store_strain_rate<V: Lanes<Real = T>>(&self, rate: &Symmetric<V>) {
-        for (&entry, column) in rate.0.iter().zip(self.columns.carried()) {
+        for (&entry, column) in rate.0.iter().zip(self.columns.transfer_columns()) {
             self.store(column, entry);
         }
-        self.give_back::<V>(self.columns.carried());
+        self.give_back::<V>(self.columns.transfer_columns());
     }
 
     #[inline(always)]
@@ -400,8 +404,8 @@ impl<T: Real> Copies<T> {
                     let first = ColumnStart::<D>::HISTORY;
                     self.take_run::<V, D>(columns, run, first..first + reads.history);
                 }
-                if reads.carried > 0 {
-                    self.take_run::<V, D>(columns, run, columns.carried());
+                if reads.transfer > 0 {
+                    self.take_run::<V, D>(columns, run, columns.transfer_columns());
                 }
             }
         }

@@ -6,9 +6,7 @@ use super::read::table;
 use super::text::{Choice, Count, Text, Word};
 use super::vector::VectorInput;
 use crate::scene::error::Fault;
-use crate::scene::{
-    self, Body, BodyMotion, Dimension, Light, Overlay, Polariscope, PolariscopeField, Sensitivity,
-};
+use crate::scene::{self, Body, Dimension, Light, Overlay, Polariscope, PolariscopeField, Sensitivity};
 use std::f64::consts::PI;
 
 table! {
@@ -174,7 +172,7 @@ impl Fringes {
                 names.iter().map(|name| name.name_of(context, "the name of a body", &known)).collect()
             }
             None => {
-                let free = bodies.iter().filter(|body| matches!(body.motion, BodyMotion::Free { .. }));
+                let free = bodies.iter().filter(|body| !body.is_rigid());
                 Ok(free.map(|body| body.name.clone()).collect())
             }
         }

@@ -10,7 +10,7 @@ use crate::scene::error::Fault;
 use crate::scene::parameters::TimeDependence;
 use crate::scene::source::{DocumentNode, Value};
 use crate::scene::units::Powers;
-use crate::scene::{self, Anchor, Body, BodyMotion, Observable, Reading};
+use crate::scene::{self, Anchor, Body, Observable, Reading};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use std::borrow::Cow;
 
@@ -129,7 +129,7 @@ pub fn resolve(
     (bodies, end): (&[Body], f64),
     context: &Context,
 ) -> Result<scene::Measurements, Fault> {
-    let free = bodies.iter().filter(|body| matches!(body.motion, BodyMotion::Free { .. }));
+    let free = bodies.iter().filter(|body| !body.is_rigid());
     let bodies: Vec<&str> = free.map(|body| body.name.as_str()).collect();
     let mut probes: Vec<scene::Probe> = Vec::new();
     for probe in outputs.probes.iter().flatten() {

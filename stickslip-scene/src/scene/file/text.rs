@@ -106,6 +106,13 @@ impl Count {
     }
 }
 
+impl Count {
+    /// The fault of a number that does not belong here.
+    pub fn refused(&self, context: &Context, allowed: &str) -> Result<Fault, Fault> {
+        Ok(self.0.refused(self.0.value(context)?, allowed))
+    }
+}
+
 impl Read for Text {
     fn wanted() -> String {
         "text in quotes".to_string()

@@ -115,6 +115,9 @@ impl Time {
         }
         if let Some(order) = &self.xpic_order {
             time.xpic_order = order.value(context, 1..=20)?;
+            if time.transfer != Transfer::Xpic {
+                return Err(order.refused(context, "no order unless `transfer` is \"xpic\"")?);
+            }
         }
         if let Some(table) = &self.relax {
             let mut relaxation = Relaxation::default();

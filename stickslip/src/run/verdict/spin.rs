@@ -51,7 +51,7 @@ impl Check for SpinCheck {
     }
 
     fn advice(&self) -> &'static str {
-        "try smaller cells; compare with another stress_update"
+        "try smaller cells; time.transfer = \"rflip\" or \"apic\"; compare with another stress_update"
     }
 
     fn look(&mut self, look: &CheckInputs) -> Vec<Finding> {
