@@ -57,9 +57,9 @@ impl ContactWatch {
         });
         // Others may widen yet.
         let pair = |patch: &ContactPatch| [patch.body_a, patch.body_b];
-        let reported: BTreeSet<_> =
+        let poor: BTreeSet<_> =
             found.0.iter().map(|contact| contact.bodies.each_ref().map(String::as_str)).collect();
-        self.reported.extend(new.iter().map(pair).filter(|pair| told.contains(&pair.map(name))));
+        self.reported.extend(new.iter().map(pair).filter(|pair| poor.contains(&pair.map(name))));
         let narrowest = found.0.first()?;
         self.lines += 1;
         let last = if self.lines == MOST_LINES { "; no more of this until the summary" } else { "" };

@@ -142,7 +142,7 @@ fn a_slab_in_space() {
 }
 
 /// What a share of PIC takes is booked: the total stays while a disk that vibrates and turns comes to rest,
-/// by both transfers.
+/// by `rflip` and `flip`.
 #[test]
 fn the_books_close_with_pic() {
     for transfer in ["rflip", "flip"] {

@@ -80,7 +80,7 @@ pub fn group<
     let mut state =
         VelocityState { velocity: Vector::ZERO, spin: Vector::ZERO, strain_rate: Symmetric::ZERO };
     let gyration = constants.gyration.squared(half_width);
-    // What PIC and `turning` take: v^2 + k^2 w^2 before less that after, so twice the kinetic energy over the mass.
+    // What the transfer takes beside the work of forces: v^2 + k^2 w^2 before less that after, so twice the kinetic energy over the mass.
     let mut damped = V::ZERO;
     let rotates = has_spin(transfer);
     let gives_momentum = scatter.is_some_and(|share| share != Share::Force);
