@@ -124,6 +124,21 @@ impl<T: Real, const D: usize, B: Basis<T>> Stencil<T, D, B> {
         moments
     }
 
+    /// sum S_i (x_i - x_p) x v_i of a value at the window's nodes; in the plane about the third axis [m^2/s].
+    pub fn torque(&self, nodes: &[NodeValues<T>; WINDOW_NODES], block: [i32; D]) -> Vector<T, 3> {
+        let mut sum = Vector::ZERO;
+        self.each(block, |place, offset| {
+            let (weight, arm) = (self.at(offset).0, self.arm(offset));
+            let (mut r, mut v) = ([T::ZERO; 3], [T::ZERO; 3]);
+            for i in 0..D {
+                (r[i], v[i]) = (arm[i], nodes[place][i]);
+            }
+            let across = |i: usize, j: usize| r[i] * v[j] - r[j] * v[i];
+            sum += Vector([across(1, 2), across(2, 0), across(0, 1)]) * weight;
+        });
+        sum
+    }
+
     /// (sum v_i (x) S_i (x_i - x_p)) D^-1 with D = sum S_i (x_i - x_p) (x) (x_i - x_p), which is diagonal; for linear
     /// functions, where D may be zero, its limit L. Embedded in space [1/s].
     pub fn affine(&self, nodes: &[NodeValues<T>; WINDOW_NODES], block: [i32; D]) -> Matrix<T> {

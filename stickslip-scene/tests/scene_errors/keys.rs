@@ -28,12 +28,12 @@ fn keys() {
             (
                 "[time]\nend = \"1 s\"",
                 "",
-                "1:1: time: found nothing, the key is missing; allowed: a table with the keys end, courant, max_step, stress_update, transfer, pic_share, relax, energy_drift",
+                "1:1: time: found nothing, the key is missing; allowed: a table with the keys end, courant, max_step, stress_update, transfer, pic_share, xpic_order, relax, energy_drift",
             ),
             (
                 "[time]",
                 "[[time]]",
-                "5:1: time: found a list of 1; allowed: a table with the keys end, courant, max_step, stress_update, transfer, pic_share, relax, energy_drift",
+                "5:1: time: found a list of 1; allowed: a table with the keys end, courant, max_step, stress_update, transfer, pic_share, xpic_order, relax, energy_drift",
             ),
             (
                 "[[bodies]]",

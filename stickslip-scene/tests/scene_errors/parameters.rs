@@ -51,7 +51,7 @@ fn overrides() {
         ("colour", "4", format!("--set colour:1:1: found no parameter `colour`; allowed: a parameter of the scene {parameters}; other keys are set by their path with dots: time.end=\"1 s\"")),
         ("radius", "2 kgg", "--set radius:1:10: parameters.radius: found `kgg` after a number; allowed: a unit such as m, mm, kg, ms, MPa, deg; did you mean `kg`?".to_string()),
         ("time.end", "-1 s", "--set time.end:1:10: time.end: found \"-1 s\"; allowed: a time [s] above 0, like \"2.5 ms\"".to_string()),
-        ("time.ende", "1 s", "--set time.ende:1:1: time.ende: found unknown key `ende`; allowed: end, courant, max_step, stress_update, transfer, pic_share, relax, energy_drift; did you mean `end`?".to_string()),
+        ("time.ende", "1 s", "--set time.ende:1:1: time.ende: found unknown key `ende`; allowed: end, courant, max_step, stress_update, transfer, pic_share, xpic_order, relax, energy_drift; did you mean `end`?".to_string()),
         ("bodies[7].name", "x", "--set bodies[7].name:1:1: bodies: found number 7 of a list of 2; allowed: a number in the list, from 0".to_string()),
         ("title.x", "x", "--set title.x:1:1: title: found `.x` in \"Sphere rolling down an inclined plane ({contact})\"; allowed: a name in a table".to_string()),
     ] {
