@@ -1,4 +1,4 @@
-//! NodeDamping of the nodes' velocities: a viscous force, and Cundall's local damping.
+//! Damping of the nodes' velocities: a viscous force, and Cundall's local damping.
 //!
 //! Both act on the velocity v~ with which a body leaves the forces, walls and contacts of a step that it began with
 //! v^0. Contact forces so belong to the unbalanced force, and bodies that rest on each other are left alone.
@@ -6,7 +6,7 @@
 use crate::scene;
 use crate::tensor::{Real, Vector};
 
-/// NodeDamping at the nodes of deformable bodies.
+/// Damping at the nodes of deformable bodies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NodeDamping<T> {
     /// alpha [1/s]
@@ -32,8 +32,8 @@ impl<T: Real> NodeDamping<T> {
     /// local:    w = sign(v~) max(|v~| - lambda |v~ - v^0|, 0)        f_d = -lambda |f| sign(w),  f = m (v~ - v^0) / dt
     /// viscous:  v = w / (1 + alpha dt)                               f = -alpha m v
     /// ```
-    /// Cundall (1987), Analytical and Computational Methods in Engineering Rock Mechanics, chapter 4, for the first; the
-    /// second is proportional damping by mass (Rayleigh). Both are implicit: they take the velocity after the step, so
+    /// Cundall (1987), Analytical and Computational Methods in Engineering Rock Mechanics, chapter 4, for the first;
+    /// the second is proportional damping by mass (Rayleigh). Both are implicit: they take the velocity after the step, so
     /// no alpha dt is unstable and local damping never turns a velocity around.
     #[inline]
     pub fn damped<const D: usize>(&self, velocity: Vector<T, D>, start: Vector<T, D>, dt: T) -> Vector<T, D> {

@@ -64,8 +64,8 @@ pub trait Number:
     fn times_plus(self, factor: Self, other: Self) -> Self {
         self * factor + other
     }
-    /// Does a task in a function of its own, with the instructions that these numbers have: it is compiled once for each
-    /// kind of number, not into every loop that asks for it.
+    /// Does a task in a function of its own, with the instructions that these numbers have: it is compiled once for
+    /// each kind of number, not into every loop that asks for it.
     #[inline(never)]
     fn apart<J: Task>(task: J) -> J::Output {
         task.run()

@@ -283,8 +283,8 @@ mod tests {
         assert_eq!(contact_sums.patches()[0].area, 1.0);
     }
 
-    /// Surfaces that touch and do not push are in the sums: else the first mean with a push would begin with all that went
-    /// before.
+    /// Surfaces that touch and do not push are in the sums: else the first mean with a push would begin with all that
+    /// went before.
     #[test]
     fn surfaces_that_only_touch_are_summed() {
         let (mut sums, lattice) = (ContactSums::default(), Lattice::new(Vector::ZERO, 0.5));

@@ -92,8 +92,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 (_, Some(motion)) => motion.velocity_at(x),
                 _ => [0.0; 3],
             };
-            // Not by every transfer do particles carry rotation; those of rigid bodies give the nodes their exact velocity whatever
-            // the transfer.
+            // Only by some transfers do particles keep a spin; those of rigid bodies have theirs whatever the transfer,
+            // and give the nodes their exact velocity.
             let turning = match (&body.motion, &motion) {
                 (BodyMotion::Free { spin, .. }, _) if has_spin(scene.time.transfer) => *spin,
                 (_, Some(motion)) => motion.spin(),

@@ -7,7 +7,7 @@
 //! | the length of the step, and what happens around it | `Simulation::step` in `look.rs` |
 //! | which passes a step makes, and in which order | the recipes below |
 //! | what a pass does to a particle: velocity, F and stress, position | `tile/group.rs`, from top to bottom |
-//! | the sums over nodes of G2P and P2G | `interpolate`, `flow`, `moments`, `affine` and `scatter` of [`crate::transfer::Group`] |
+//! | the sums over nodes of G2P and P2G | `interpolate`, `flow`, `moments`, `affine`, `scatter` of [`crate::transfer`] |
 //! | the same as the equations read, one particle and node after the other | `naive.rs`, and `transfer/naive.rs` |
 //! | the stress | `respond` of a law in [`crate::material`] |
 //! | damping at a node | [`crate::damping`] |

@@ -98,9 +98,9 @@ pub trait TransferRule {
         state.velocity = state.velocity * (V::ONE - share) + mean * share;
     }
 
-    /// |C|^2 of the rate of strain that it carries [1/s^2]: over k^2/4 and the mass it is a part of the kinetic energy.
+    /// |E|^2 of the rate of strain that it keeps [1/s^2]; m k^2/4 times that belongs to the kinetic energy.
     #[inline(always)]
-    fn strains<V: Lanes, const D: usize>(_carried: &VelocityState<V, D>) -> V {
+    fn strains<V: Lanes, const D: usize>(_state: &VelocityState<V, D>) -> V {
         V::ZERO
     }
 
@@ -133,8 +133,8 @@ macro_rules! of_transfer {
     };
 }
 
-/// Does one thing with the rule by which particles of a transfer give and take: PIC and XPIC are FLIP with all the share
-/// of PIC that there is, and loops over particles are compiled for it once.
+/// Does one thing with the rule by which particles of a transfer give and take: PIC and XPIC are FLIP with all the
+/// share of PIC that there is, and loops over particles are compiled for it once.
 macro_rules! of_particles {
     ($transfer:expr, $rule:ident => $does:expr) => {
         match $transfer {

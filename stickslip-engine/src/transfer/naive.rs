@@ -68,7 +68,8 @@ impl<T: Real, const D: usize, B: Basis<T>> Stencil<T, D, B> {
     /// ```text
     /// m_i += S_i m,   p_i += S_i m (v + G (x_i - x_p))          Sulsky, Chen and Schreyer (1994) with G = 0
     /// ```
-    /// G: gradient of the velocities that a particle gives, [`super::TransferRule::gradient`] [1/s]. `mass` is what the nodes are given; 0 where they have their mass already.
+    /// G: gradient of the velocities that a particle gives, [`super::TransferRule::gradient`] [1/s]. `mass` is what the
+    /// nodes are given; 0 where they have their mass already.
     pub fn scatter_momentum(
         &self,
         window: &mut Window<T, D>,

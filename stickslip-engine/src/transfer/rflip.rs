@@ -18,7 +18,8 @@
 //! sum_p m_p (x_p x dv_p + k_p^2 dw_p) = sum_i x_i x m_i dv_i
 //! ```
 //! k_p must not change while a particle moves, or energy is made; it is that for which the nodes' moment of inertia and
-//! the particles' are the same in the mean over places, k^2 = 2 (h^2/6 + b l^2) with b = [`Basis::BOX_SPREAD`]. Rigid rotation is a state of (a) and (b): nothing is strained.
+//! the particles' are the same in the mean over places, k^2 = 2 (h^2/6 + b l^2) with
+//! b = [`Basis::BOX_SPREAD`]. Rigid rotation is a state of (a) and (b): nothing is strained.
 //!
 //! Within a step particles turn. Velocities that are scattered in its middle, at places of its start,
 //! so have the gradient

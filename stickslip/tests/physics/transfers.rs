@@ -2,13 +2,13 @@
 //!
 //! Set-up: a disk with five cells a radius, rho = 1000 and E = 1e5, that flies and spins, in plane strain.
 //!
-//! Expected: by each transfer and basis momentum is constant; energy is, when what `damping` counts is added; a spinning
-//! disk keeps its angular momentum by `rflip` and `apic`, and loses it by the others; `xpic` takes the less the higher
+//! Expected: by each transfer and basis momentum is constant; energy is, when what `damping` counts is added; a
+//! spinning disk keeps its angular momentum by `rflip` and `apic`, and loses it by the others; `xpic` takes the less the higher
 //! its order, and is `pic` at 1.
 //!
 //! The sum of energies is exact to the first order of the step, by which the energy of motion and that of strain stand
-//! apart; where strain dies away by damping within a few steps, that is as large as the strain energy so far: 4 % of all
-//! energy by `pic` and 18 % by `xpic` at the default Courant number, 0.6 % and 11 % at a quarter of it.
+//! apart; where strain dies away by damping within a few steps, that is as large as the strain energy so far: 4 % of
+//! all energy by `pic` and 18 % by `xpic` at the default Courant number, 0.6 % and 11 % at a quarter of it.
 
 use crate::trial::{distance, norm, run_to, start};
 use std::f64::consts::PI;

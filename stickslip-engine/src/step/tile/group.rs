@@ -80,7 +80,8 @@ pub fn group<
     let mut state =
         VelocityState { velocity: Vector::ZERO, spin: Vector::ZERO, strain_rate: Symmetric::ZERO };
     let gyration = constants.gyration.squared(half_width);
-    // What the transfer takes beside the work of forces: v^2 + k^2 w^2 before less that after, so twice the kinetic energy over the mass.
+    // What the transfer takes beside the work of forces: v^2 + k^2 w^2 before less that after, so twice the kinetic
+    // energy over the mass.
     let mut damped = V::ZERO;
     let rotates = has_spin(transfer);
     let gives_momentum = scatter.is_some_and(|share| share != Share::Force);
@@ -293,7 +294,7 @@ impl Sound {
     }
 }
 
-/// v^2 + k^2 w^2 + k^2/2 |E|^2, with the square of the radius of gyration and the rate of strain that is state.
+/// v^2 + k^2 w^2 + k^2/2 |E|^2, with the square of the radius of gyration and the rate of strain that its transfer keeps.
 #[inline(always)]
 fn kinetic<V: Lanes, const D: usize, R: TransferRule>(state: &VelocityState<V, D>, gyration: V) -> V {
     let VelocityState { velocity, spin, .. } = state;
