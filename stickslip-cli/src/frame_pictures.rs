@@ -157,7 +157,7 @@ fn window(
     let bounds = bounds.ok_or_else(nothing)?;
     let Some([width, height]) = size else { return Ok(ImageWindow::around(bounds, WIDTH)) };
     let height = height.saturating_sub(picture::HEADING).max(16);
-    Ok(ImageWindow::holding(bounds, [width, height]))
+    Ok(ImageWindow::fitted_into(bounds, [width, height]))
 }
 
 fn polariscope(

@@ -29,15 +29,15 @@ pub struct ShapeFunctions<N> {
     /// S(x_p - x_i) [-]; zero beyond the basis' width.
     pub weight: [N; MAX_WIDTH],
     /// What a difference between a node and the next one adds to the gradient [1/cell]; zero beyond the basis' width.
-    pub rise: [N; MAX_WIDTH - 1],
+    pub difference: [N; MAX_WIDTH - 1],
 }
 
 impl<N: Number> ShapeFunctions<N> {
     /// dS_i/dx [1/cell].
     #[inline(always)]
     pub fn slope(&self, i: usize) -> N {
-        let before = if i == 0 { N::ZERO } else { self.rise[i - 1] };
-        if i == MAX_WIDTH - 1 { before } else { before - self.rise[i] }
+        let before = if i == 0 { N::ZERO } else { self.difference[i - 1] };
+        if i == MAX_WIDTH - 1 { before } else { before - self.difference[i] }
     }
 }
 
@@ -108,7 +108,7 @@ impl<T: Real> Basis<T> for Linear {
 
     #[inline(always)]
     fn shape<N: Number>(r: N, _half: N) -> ShapeFunctions<N> {
-        ShapeFunctions { weight: [N::ONE - r, r, N::ZERO], rise: [N::ONE, N::ZERO] }
+        ShapeFunctions { weight: [N::ONE - r, r, N::ZERO], difference: [N::ONE, N::ZERO] }
     }
 }
 
@@ -153,7 +153,7 @@ impl<T: Real> Basis<T> for Gimp {
         let (falling, rising) = (near * per_width, beyond * per_width);
         let first = N::HALF * near * falling + (before - near);
         let last = N::HALF * beyond * rising;
-        ShapeFunctions { weight: [first, N::ONE - first - last, last], rise: [falling, rising] }
+        ShapeFunctions { weight: [first, N::ONE - first - last, last], difference: [falling, rising] }
     }
 }
 

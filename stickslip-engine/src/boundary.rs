@@ -64,12 +64,12 @@ impl Boundary {
     }
 
     /// Whether a node lies behind a mirror, where it only repeats the one before it.
-    pub fn mirrors<const D: usize>(&self, node: [i32; D]) -> bool {
+    pub fn is_mirrored<const D: usize>(&self, node: [i32; D]) -> bool {
         self.walls.iter().any(|wall| wall.face == Face::Symmetry && wall.depth(node) < 0)
     }
 
-    /// Whether a fixed face holds a node.
-    pub fn holds<const D: usize>(&self, node: [i32; D]) -> bool {
+    /// Whether a node lies on or behind a fixed face.
+    pub fn is_fixed<const D: usize>(&self, node: [i32; D]) -> bool {
         self.walls.iter().any(|wall| wall.face == Face::Fixed && wall.depth(node) <= 0)
     }
 
@@ -114,18 +114,7 @@ impl Boundary {
     /// Adds what was scattered behind the mirrors to the nodes before them.
     pub fn add_images<T: Real, const D: usize>(&self, field: &mut Field<T, D>, share: Share) {
         for (wall, mirrored) in self.walls.iter().zip(&self.mirrored) {
-            each_image(mirrored, field, |image, node| {
-                if matches!(share, Share::Mass | Share::Everything) {
-                    node.mass += image.mass;
-                }
-                // Nodes without mass keep the velocity that they had.
-                if share != Share::Force && image.mass > T::ZERO {
-                    node.velocity += reflect(image.velocity, wall.axis);
-                }
-                if matches!(share, Share::Force | Share::Everything) {
-                    node.force += reflect(image.force, wall.axis);
-                }
-            });
+            each_image(mirrored, field, |image, node| add_image(image, node, wall.axis, share));
         }
         for &(node, axis) in &self.on_mirror {
             field.nodes[node].velocity[axis] = T::ZERO;
@@ -142,12 +131,29 @@ impl Boundary {
             field.nodes[node].velocity[axis] = T::ZERO;
         }
         for (wall, mirrored) in self.walls.iter().zip(&self.mirrored).rev() {
-            each_image(mirrored, field, |image, node| {
-                image.start = reflect(node.start, wall.axis);
-                image.velocity = reflect(node.velocity, wall.axis);
-            });
+            each_image(mirrored, field, |image, node| repeat(image, node, wall.axis));
         }
     }
+}
+
+/// Adds what was scattered into a node behind a mirror to the one before it.
+fn add_image<T: Real, const D: usize>(image: &Node<T, D>, node: &mut Node<T, D>, axis: usize, share: Share) {
+    if matches!(share, Share::Mass | Share::Everything) {
+        node.mass += image.mass;
+    }
+    // Nodes without mass keep the velocity that they had.
+    if share != Share::Force && image.mass > T::ZERO {
+        node.velocity += reflect(image.velocity, axis);
+    }
+    if matches!(share, Share::Force | Share::Everything) {
+        node.force += reflect(image.force, axis);
+    }
+}
+
+/// Gives a node behind a mirror the velocities of the one before it.
+fn repeat<T: Real, const D: usize>(image: &mut Node<T, D>, node: &Node<T, D>, axis: usize) {
+    image.start = reflect(node.start, axis);
+    image.velocity = reflect(node.velocity, axis);
 }
 
 /// Nodes that a thread takes at a time.

@@ -3,6 +3,7 @@
 //! Both act on the velocity v~ with which a body leaves the forces, walls and contacts of a step that it began with
 //! v^0. Contact forces so belong to the unbalanced force, and bodies that rest on each other are left alone.
 
+use crate::grid::Node;
 use crate::scene;
 use crate::tensor::{Real, Vector};
 
@@ -24,6 +25,13 @@ impl<T: Real> NodeDamping<T> {
     /// Whether it does anything.
     pub fn acts(&self) -> bool {
         self.viscous > T::ZERO || self.local > T::ZERO
+    }
+
+    /// Damps the integrated velocity of a node, whose change the particles take, and says by which impulse [N s].
+    pub fn act<const D: usize>(&self, node: &mut Node<T, D>, impulse: &mut Vector<T, D>, dt: T) {
+        let damped = self.damped(node.integrated, node.start, dt);
+        *impulse = (damped - node.integrated) * node.mass;
+        node.integrated = damped;
     }
 
     /// The velocity that damping leaves a node, component by component [m/s].

@@ -2,7 +2,7 @@
 //! nor that of what it remembers.
 
 use std::path::{Path, PathBuf};
-use stickslip_scene::material::{Absent, Description, Material, SHELF};
+use stickslip_scene::material::{Absent, Description, LAWS, Material};
 use stickslip_scene::scene;
 
 /// All source files of the workspace that are no tests.
@@ -93,7 +93,7 @@ fn example(law: &Description) -> Material<f64> {
 
 #[test]
 fn every_law_gives_its_constants_back_and_is_within_their_bounds() {
-    for description in SHELF {
+    for description in LAWS {
         let material = example(description);
         assert_eq!(material.name(), description.name);
         assert_eq!(material.check(), Ok(()));

@@ -39,5 +39,5 @@ pub use benchmarks::BENCHMARKS;
 pub use failure::CaseFailure;
 pub use outcome::{Measurement, Outcome};
 pub use scheme::{KEYS, Key, Scheme, schemes};
-pub use suite::{Candidate, Entry, Finished, LawUnderTest, Run, Suite, SuiteReport, Verdict, laws};
+pub use suite::{Candidate, Finished, LawUnderTest, Run, Suite, SuiteEntry, SuiteReport, Verdict, laws};
 pub use trial::{RunRecord, Trial};

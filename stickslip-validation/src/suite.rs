@@ -52,12 +52,12 @@ pub struct SuiteReport {
     /// How much was run.
     pub tier: Tier,
     /// A benchmark and a law or scheme each, benchmark by benchmark.
-    pub entries: Vec<Entry>,
+    pub entries: Vec<SuiteEntry>,
 }
 
 /// One law or scheme in one benchmark.
 #[derive(Debug)]
-pub struct Entry {
+pub struct SuiteEntry {
     /// The benchmark.
     pub benchmark: &'static Benchmark,
     /// The law or scheme.
@@ -79,7 +79,7 @@ pub struct Run {
 #[derive(Debug)]
 pub struct Finished<'a> {
     /// Benchmark, and law or scheme.
-    pub entry: &'a Entry,
+    pub entry: &'a SuiteEntry,
     /// Resolution and result.
     pub run: &'a Run,
     /// How many cases have ended, this one included.
@@ -125,7 +125,7 @@ impl Suite {
                     let case = way.case(resolution, self.tier);
                     jobs.push(CaseJob { entry: report.entries.len(), rank, benchmark, resolution, case });
                 }
-                report.entries.push(Entry { benchmark, way, runs: Vec::new() });
+                report.entries.push(SuiteEntry { benchmark, way, runs: Vec::new() });
             }
         }
         jobs.sort_by_key(|job| job.rank);
@@ -178,7 +178,7 @@ impl Candidate {
     }
 
     /// Whether targets are asked of it, and not only figures to compare.
-    fn is_held(&self) -> bool {
+    fn is_required(&self) -> bool {
         self.is_default() || matches!(self, Candidate::Law(LawUnderTest { law: ContactLaw::Glued, .. }))
     }
 
@@ -230,7 +230,7 @@ fn side_by_side(
     });
 }
 
-impl Entry {
+impl SuiteEntry {
     /// The run that a target is judged by: at the resolution it is stated for, else the finest.
     pub fn judged(&self, target: &Target) -> Option<&Run> {
         match target.at {
@@ -254,14 +254,14 @@ impl Entry {
     /// known to miss there, or misses by more than is known. Nothing is asked of others, which are there to be
     /// compared.
     pub fn broken(&self) -> impl Iterator<Item = &'static Target> {
-        let held = self.way.is_held();
+        let required = self.way.is_required();
         let known = |target: &Target| {
             self.judged(target).is_some_and(|run| {
                 let value = run.result.as_ref().ok().and_then(|outcome| outcome.value(target.metric));
                 value.is_some_and(|value| target.is_known(value, run.resolution.cells))
             })
         };
-        let targets = self.benchmark.targets.iter().filter(move |_| held);
+        let targets = self.benchmark.targets.iter().filter(move |_| required);
         targets.filter(move |target| self.verdict(target) == Verdict::Missed && !known(target))
     }
 
@@ -407,7 +407,7 @@ mod tests {
     }
 
     #[test]
-    fn bulk_benchmarks_run_by_every_scheme_and_only_the_default_one_is_held() {
+    fn bulk_benchmarks_run_by_every_scheme_and_only_the_default_one_is_required() {
         let bulk: &'static Benchmark =
             Box::leak(Box::new(Benchmark { laws: Laws::Bulk, targets: TOO_MUCH, ..BENCHMARK }));
         let suite = Suite {

@@ -1,6 +1,6 @@
 //! Problem P6: whole runs as a user starts them, with and without outputs.
 
-use super::measure::{Order, Task};
+use super::measure::{BenchTask, Order};
 use super::problems::BenchExtent;
 use super::record::EndToEnd;
 use crate::failure::Failure;
@@ -54,7 +54,7 @@ impl WholeRun {
                         .map(|(name, value)| ((*name).to_owned(), (*value).to_owned()))
                         .collect(),
                     threads,
-                    task: Task::Run(folder.0.clone()),
+                    task: BenchTask::Run(folder.0.clone()),
                 };
                 let ran = order.measure()?;
                 times.extend(&ran.repetitions);

@@ -24,12 +24,12 @@ pub struct Order {
     /// Threads.
     pub threads: usize,
     /// What to do with it.
-    pub task: Task,
+    pub task: BenchTask,
 }
 
 /// What to do with a scene.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub enum Task {
+pub enum BenchTask {
     /// Step, and look at the clock.
     Steps(Effort),
     /// Run it from end to end, with the outputs that the scene asks for in this folder.
@@ -143,8 +143,8 @@ fn take(order: &Order) -> Result<BenchSample, Failure> {
         ..BenchSample::default()
     };
     match &order.task {
-        Task::Steps(effort) => step(&mut *simulation, *effort, &mut sample)?,
-        Task::Run(folder) => {
+        BenchTask::Steps(effort) => step(&mut *simulation, *effort, &mut sample)?,
+        BenchTask::Run(folder) => {
             let stop = Arc::new(AtomicBool::new(false));
             let options = RunOptions { out: folder.clone(), stop, threads: order.threads };
             stickslip::run::run(&loaded.scene, &mut *simulation, &options, &mut |_| {})
@@ -229,7 +229,8 @@ mod tests {
     fn steps_are_counted_and_timed() {
         let case = cases(BenchExtent::Tiny, 1).swap_remove(0);
         let effort = Effort { warm_up: 2, repetitions: 3, least: 1, steps: 4, seconds: 60.0 };
-        let order = Order { scene: case.scene, overrides: Vec::new(), threads: 1, task: Task::Steps(effort) };
+        let order =
+            Order { scene: case.scene, overrides: Vec::new(), threads: 1, task: BenchTask::Steps(effort) };
         let sample = take(&order).unwrap();
         assert_eq!((sample.bodies, sample.particles, sample.steps), (1, 512, 4));
         assert_eq!(sample.repetitions.len(), 3);

@@ -3,7 +3,7 @@
 use super::end_to_end::wholes;
 use super::goals::{Findings, goals};
 use super::limits::{self, Care};
-use super::measure::{BenchSample, Effort, Order, Task};
+use super::measure::{BenchSample, BenchTask, Effort, Order};
 use super::memory;
 use super::multiply_add::instructions;
 use super::peers::Peers;
@@ -142,7 +142,7 @@ fn order(case: &BenchCase, effort: Effort) -> Order {
         scene: case.scene.clone(),
         overrides: Vec::new(),
         threads: case.threads,
-        task: Task::Steps(effort),
+        task: BenchTask::Steps(effort),
     }
 }
 

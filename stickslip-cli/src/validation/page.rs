@@ -4,8 +4,8 @@ use super::text::short;
 use crate::page::{Cell, Column, Making, Mark, Page, Section, Table, address};
 use std::time::Duration;
 use stickslip_validation::{
-    Benchmark, Candidate, Entry, Laws, Measurement, Miss, Resolution, Run, RunRecord, SuiteReport, Target,
-    Tier, Verdict,
+    Benchmark, Candidate, Laws, Measurement, Miss, Resolution, Run, RunRecord, SuiteEntry, SuiteReport,
+    Target, Tier, Verdict,
 };
 
 /// The page; it took so long.
@@ -19,13 +19,13 @@ pub fn page(report: &SuiteReport, took: Duration) -> Page {
         .lead(format!(
             "This is {tier}. A law or scheme is judged at the finest resolution that was run, or at the one that a target names; targets at other resolutions stay open."
         ));
-    for shelf in Shelf::all(report) {
-        page = page.section(shelf.overview(report)).section(shelf.words());
+    for chapter in Chapter::all(report) {
+        page = page.section(chapter.overview(report)).section(chapter.words());
     }
     for benchmark in benchmarks(report) {
         page = page.section(section(benchmark, report));
     }
-    let due = |entry: &Entry| entry.benchmark.due(report.tier).count();
+    let due = |entry: &SuiteEntry| entry.benchmark.due(report.tier).count();
     let (all, done) = report.entries.iter().fold((0, 0), |(a, d), e| (a + due(e), d + e.runs.len()));
     if done < all {
         page = page.warning(format!(
@@ -43,24 +43,24 @@ fn benchmarks(report: &SuiteReport) -> Vec<&'static Benchmark> {
 }
 
 /// Ways to run benchmarks that stand side by side.
-struct Shelf {
+struct Chapter {
     /// What one of them is.
     kind: &'static str,
     ways: Vec<Candidate>,
 }
 
-impl Shelf {
+impl Chapter {
     /// The laws and the schemes that were chosen, as far as there are any.
-    fn all(report: &SuiteReport) -> Vec<Shelf> {
-        let mut laws = Shelf { kind: "law", ways: Vec::new() };
-        let mut schemes = Shelf { kind: "scheme", ways: Vec::new() };
+    fn all(report: &SuiteReport) -> Vec<Chapter> {
+        let mut laws = Chapter { kind: "law", ways: Vec::new() };
+        let mut schemes = Chapter { kind: "scheme", ways: Vec::new() };
         for entry in &report.entries {
-            let shelf = if matches!(entry.way, Candidate::Law(_)) { &mut laws } else { &mut schemes };
-            if !shelf.ways.contains(&entry.way) {
-                shelf.ways.push(entry.way);
+            let chapter = if matches!(entry.way, Candidate::Law(_)) { &mut laws } else { &mut schemes };
+            if !chapter.ways.contains(&entry.way) {
+                chapter.ways.push(entry.way);
             }
         }
-        [laws, schemes].into_iter().filter(|shelf| !shelf.ways.is_empty()).collect()
+        [laws, schemes].into_iter().filter(|chapter| !chapter.ways.is_empty()).collect()
     }
 
     /// How many targets each law or scheme reaches in each benchmark.
@@ -88,7 +88,7 @@ impl Shelf {
         &self,
         caption: String,
         report: &SuiteReport,
-        cell: impl Fn(Option<&Entry>) -> Cell,
+        cell: impl Fn(Option<&SuiteEntry>) -> Cell,
     ) -> Table {
         let mut columns = vec![Column::text("benchmark")];
         columns.extend(self.ways.iter().map(|way| Column::number(word(way))));
@@ -119,7 +119,7 @@ impl Shelf {
     }
 }
 
-fn entries<'a>(benchmark: &'a Benchmark, report: &'a SuiteReport) -> impl Iterator<Item = &'a Entry> {
+fn entries<'a>(benchmark: &'a Benchmark, report: &'a SuiteReport) -> impl Iterator<Item = &'a SuiteEntry> {
     report.entries.iter().filter(move |entry| entry.benchmark.name == benchmark.name)
 }
 
@@ -145,7 +145,7 @@ fn colour(judgement: Verdict) -> Mark {
     }
 }
 
-fn reached(entry: &Entry) -> Cell {
+fn reached(entry: &SuiteEntry) -> Cell {
     let verdicts: Vec<_> = entry.benchmark.targets.iter().map(|target| entry.verdict(target)).collect();
     let count = |wanted| verdicts.iter().filter(|verdict| **verdict == wanted).count();
     let (reached, missed) = (count(Verdict::Reached), count(Verdict::Missed));

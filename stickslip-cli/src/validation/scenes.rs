@@ -3,13 +3,13 @@
 use std::fs;
 use std::io;
 use std::path::Path;
-use stickslip_validation::{Entry, Run};
+use stickslip_validation::{Run, SuiteEntry};
 
 /// Writes every scene of a run to `folder/BENCHMARK/LAW_OR_SCHEME/CELLS/NAME.toml`.
 ///
 /// # Errors
 /// The folder cannot be written.
-pub fn write_scenes(entry: &Entry, run: &Run, folder: &Path) -> io::Result<()> {
+pub fn write_scenes(entry: &SuiteEntry, run: &Run, folder: &Path) -> io::Result<()> {
     let Ok(outcome) = &run.result else { return Ok(()) };
     let place =
         folder.join(entry.benchmark.name).join(entry.way.word()).join(run.resolution.cells.to_string());

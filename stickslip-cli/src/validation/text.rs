@@ -1,7 +1,7 @@
 //! The results of validation as text.
 
 use std::fmt::Write;
-use stickslip_validation::{Candidate, Entry, Finished, SuiteReport, Target, Verdict, schemes};
+use stickslip_validation::{Candidate, Finished, SuiteEntry, SuiteReport, Target, Verdict, schemes};
 
 /// One case that ended, on one line.
 pub fn line(finished: &Finished) -> String {
@@ -59,7 +59,7 @@ pub fn table(report: &SuiteReport) -> String {
     text
 }
 
-fn write_heading(entry: &Entry, text: &mut String) {
+fn write_heading(entry: &SuiteEntry, text: &mut String) {
     let benchmark = entry.benchmark;
     let cells: String = entry.runs.iter().map(|run| format!("{:>11}", run.resolution.cells)).collect();
     let title = format!("{} {} ({})", benchmark.name, benchmark.title, benchmark.measure);
@@ -68,14 +68,14 @@ fn write_heading(entry: &Entry, text: &mut String) {
 }
 
 /// Width of the column of laws or schemes.
-fn column(entry: &Entry) -> usize {
+fn column(entry: &SuiteEntry) -> usize {
     match entry.way {
         Candidate::Law(_) => 10,
         Candidate::Scheme(_) => schemes().iter().map(|scheme| scheme.word.len()).fold(10, usize::max),
     }
 }
 
-fn write_entry(entry: &Entry, text: &mut String) {
+fn write_entry(entry: &SuiteEntry, text: &mut String) {
     let width = column(entry);
     let targets = entry.benchmark.targets.iter().filter(|target| !repeated(entry, target));
     for (i, target) in targets.enumerate() {
@@ -123,13 +123,13 @@ fn write_entry(entry: &Entry, text: &mut String) {
 }
 
 /// Whether a target that is not judged asks something of a quantity that another target judges.
-fn repeated(entry: &Entry, target: &Target) -> bool {
+fn repeated(entry: &SuiteEntry, target: &Target) -> bool {
     let judges = |other: &Target| other.metric == target.metric && entry.verdict(other) != Verdict::Open;
     entry.verdict(target) == Verdict::Open && entry.benchmark.targets.iter().any(judges)
 }
 
 /// What was measured at each resolution.
-fn values<'a>(entry: &'a Entry, target: &'a Target) -> impl Iterator<Item = String> + 'a {
+fn values<'a>(entry: &'a SuiteEntry, target: &'a Target) -> impl Iterator<Item = String> + 'a {
     entry.runs.iter().map(|run| {
         let value = run.result.as_ref().ok().and_then(|outcome| outcome.value(target.metric));
         value.map_or("-".to_owned(), short)
@@ -149,7 +149,7 @@ mod tests {
         for law in laws() {
             let mut outcome = Outcome::default();
             benchmark.targets.iter().for_each(|target| outcome.measure(target.metric, 1.0));
-            let entry = Entry {
+            let entry = SuiteEntry {
                 benchmark,
                 way: Candidate::Law(law),
                 runs: vec![Run { resolution, result: Ok(outcome) }],

@@ -3,7 +3,7 @@
 //! [`Survey`] finds the nodes and asks the particles around each for the surfaces there; a law turns that and the
 //! bodies' velocities into changes of velocity, pair by pair. A *use* of contact is one such change of all velocities:
 //! of the interpolated ones, of the integrated ones, and with MUSL of those that strain particles. All uses of a step
-//! share one survey. [`Use`] says what the velocities of a use are for.
+//! share one survey. [`ContactUse`] says what the velocities of a use are for.
 
 mod around;
 mod contact_sums;
@@ -22,7 +22,7 @@ pub use contact_sums::ContactSums;
 pub use exchange::{common_normal, own_normals};
 pub use friction::{Friction, SurfaceLoad};
 pub use law::{PairLaw, Span};
-pub use pair::{Change, Pair, SurfaceEstimate, TimeStep, Use};
+pub use pair::{Change, ContactUse, Pair, SurfaceEstimate, TimeStep};
 pub use reference_map::ReferenceMap;
 pub use rules::{Rule, Rules};
 pub use solve::{Impulse, ImpulseRecord, Impulses, Solve};

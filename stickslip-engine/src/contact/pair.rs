@@ -26,13 +26,13 @@ pub struct SurfaceEstimate<T, const D: usize> {
 
 /// What the velocities of a pair are about to be used for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Use {
+pub enum ContactUse {
     /// As what forces and later contact change: interpolated velocities that strain nothing (USL, MUSL).
     Start,
     /// To strain the particles, and to displace them by the same (USF: interpolated, MUSL: interpolated once more).
     Strain,
     /// To change the particles' velocities: integrated with all forces of the step. In USL they also strain.
-    Motion,
+    VelocityChange,
 }
 
 /// A step of time, as contact needs it.
@@ -43,7 +43,7 @@ pub struct TimeStep<T> {
     /// Side of a cell [m].
     pub cell: T,
     /// What the velocities are for.
-    pub purpose: Use,
+    pub purpose: ContactUse,
 }
 
 impl<T: Real> TimeStep<T> {
@@ -96,7 +96,7 @@ impl<T: Real, const D: usize> Pair<'_, T, D> {
         let change = law.change(self, velocities);
         // Over a whole step an impulse mostly takes back what forces did to a node of little mass:
         // that strains nothing.
-        let strains = law.span() == Span::EachUse || self.step.purpose == Use::Strain;
+        let strains = law.span() == Span::EachUse || self.step.purpose == ContactUse::Strain;
         if strains { self.scaled(change) } else { change }
     }
 
@@ -163,7 +163,7 @@ pub(super) mod tests {
 
     /// A step in which contact may change velocities by `limit` [m/s] under [`rule`].
     pub fn step(limit: f64) -> TimeStep<f64> {
-        TimeStep { duration: 1.0, cell: 2.0 * limit, purpose: Use::Motion }
+        TimeStep { duration: 1.0, cell: 2.0 * limit, purpose: ContactUse::VelocityChange }
     }
 
     pub fn rule(law: ContactLaw, normal: Normal, friction: f64) -> Rule<f64> {

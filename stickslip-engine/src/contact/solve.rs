@@ -1,7 +1,7 @@
 //! From pairs to a whole node: any number of bodies, each pair by its own law.
 
 use super::law::law;
-use super::{Change, Encounter, Rules, SharedNode, Span, Survey, SurveyPart, TimeStep, Use};
+use super::{Change, ContactUse, Encounter, Rules, SharedNode, Span, Survey, SurveyPart, TimeStep};
 use crate::grid::{Disjoint, Node};
 use crate::tensor::{Real, Vector};
 use crate::threads::each;
@@ -144,26 +144,30 @@ impl<T: Real, const D: usize> Solve<'_, T, D> {
             (list.reduced, list.unsettled) = (0, 0);
         }
         each(used, 4, |i, list| {
-            let part = &parts[i];
             let given = self.given.map_or(&[][..], |given| given.of(i));
-            list.impulses.clear();
-            (list.reduced, list.unsettled) = (0, 0);
-            for site in &part.sites {
-                let given = if given.is_empty() { given } else { &given[site.encounters.clone()] };
-                let first = list.impulses.len();
-                self.site((part, site), given, list);
-                for impulse in &list.impulses[first..] {
-                    for (node, velocity) in impulse.nodes.into_iter().zip(impulse.velocity) {
-                        // SAFETY: a node of a body belongs to one site.
-                        unsafe { self.nodes.get(node) }.velocity += velocity;
-                    }
-                }
-                if record == ImpulseRecord::Dropped {
-                    list.reduced += list.impulses.iter().filter(|j| j.change.scale < T::ONE).count() as u64;
-                    list.impulses.clear();
-                }
+            self.part(&parts[i], given, list);
+            if record == ImpulseRecord::Dropped {
+                list.reduced += list.impulses.iter().filter(|j| j.change.scale < T::ONE).count() as u64;
+                list.impulses.clear();
             }
         });
+    }
+
+    /// Changes the velocities at the nodes of a part of the survey, and lists the impulses there.
+    fn part(&self, part: &SurveyPart<T, D>, given: &[Impulse<T, D>], list: &mut List<T, D>) {
+        list.impulses.clear();
+        (list.reduced, list.unsettled) = (0, 0);
+        for site in &part.sites {
+            let given = if given.is_empty() { given } else { &given[site.encounters.clone()] };
+            let first = list.impulses.len();
+            self.site((part, site), given, list);
+            for impulse in &list.impulses[first..] {
+                for (node, velocity) in impulse.nodes.into_iter().zip(impulse.velocity) {
+                    // SAFETY: a node of a body belongs to one site.
+                    unsafe { self.nodes.get(node) }.velocity += velocity;
+                }
+            }
+        }
     }
 
     /// Lists the impulses at a site.
@@ -241,7 +245,7 @@ impl<T: Real, const D: usize> Solve<'_, T, D> {
                 }
             }
         }
-        if step.purpose == Use::Motion {
+        if step.purpose == ContactUse::VelocityChange {
             for (encounter, impulse) in encounters.iter().zip(&mut *impulses) {
                 let Some(n) = encounter.facing.normal else { continue };
                 let [v, w] = encounter.sides.map(|side| velocities[side - site.sides.start]);
@@ -415,7 +419,7 @@ mod tests {
         }
         part.sites.push(SharedNode { node: [0; 3], sides: 0..n, encounters: 0..part.encounters.len() });
         let rules = Rules::listed(n, rules);
-        let step = TimeStep { duration: DURATION, cell: 1.0, purpose: Use::Motion };
+        let step = TimeStep { duration: DURATION, cell: 1.0, purpose: ContactUse::VelocityChange };
         let normals = part.encounters.iter().map(|e| e.facing.normal.expect("gradients differ")).collect();
         let velocities = |nodes: &[Node<f64, 3>]| nodes.iter().map(|node| node.velocity).collect();
         let before = velocities(&nodes);

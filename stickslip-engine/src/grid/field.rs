@@ -141,26 +141,32 @@ impl<T: Real, const D: usize> Field<T, D> {
         });
     }
 
-    /// Does something to each node that has mass and to its filtered velocity.
-    pub fn each_filtered(&mut self, f: impl Fn(&mut Node<T, D>, &mut Vector<T, D>) + Sync) {
-        let n = nodes_per_block(D);
-        self.filtered.resize(self.nodes.len(), Vector::ZERO);
-        let (nodes, filtered) = (Disjoint::new(&mut self.nodes), Disjoint::new(&mut self.filtered));
-        let present = &self.present;
-        each_range(present.len(), BLOCKS, &|blocks| {
-            for block in blocks {
-                // SAFETY: every block has nodes of its own.
-                let (nodes, filtered) = unsafe { (nodes.part(block * n, n), filtered.part(block * n, n)) };
-                let mut places = present[block];
-                while let Some(local) = next_of(&mut places) {
-                    f(&mut nodes[local], &mut filtered[local]);
-                }
-            }
-        });
-    }
-
     /// Does something to each node that has mass.
     pub fn each_present(&mut self, f: impl Fn(&mut Node<T, D>) + Sync) {
+        self.each_index(|_, node| f(node));
+    }
+
+    /// Does something to each node that has mass and to its entry of a list, which gets one for every node.
+    pub fn each_with<X: Clone + Send>(
+        &mut self,
+        (entries, empty): (&mut Vec<X>, X),
+        f: impl Fn(&mut Node<T, D>, &mut X) + Sync,
+    ) {
+        entries.resize(self.nodes.len(), empty);
+        let entries = Disjoint::new(entries);
+        // SAFETY: every node has an entry of its own.
+        self.each_index(|index, node| f(node, unsafe { entries.get(index) }));
+    }
+
+    /// Does something to each node that has mass and to its filtered velocity.
+    pub fn each_filtered(&mut self, f: impl Fn(&mut Node<T, D>, &mut Vector<T, D>) + Sync) {
+        let mut filtered = std::mem::take(&mut self.filtered);
+        self.each_with((&mut filtered, Vector::ZERO), f);
+        self.filtered = filtered;
+    }
+
+    /// Does something to each node that has mass; `f` is told its index, and each index once.
+    fn each_index(&mut self, f: impl Fn(usize, &mut Node<T, D>) + Sync) {
         let n = nodes_per_block(D);
         let (nodes, present) = (Disjoint::new(&mut self.nodes), &self.present);
         each_range(present.len(), BLOCKS, &|blocks| {
@@ -169,7 +175,7 @@ impl<T: Real, const D: usize> Field<T, D> {
                 let nodes = unsafe { nodes.part(block * n, n) };
                 let mut places = present[block];
                 while let Some(local) = next_of(&mut places) {
-                    f(&mut nodes[local]);
+                    f(block * n + local, &mut nodes[local]);
                 }
             }
         });

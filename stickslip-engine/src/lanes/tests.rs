@@ -95,10 +95,10 @@ fn every_machine_gives_the_bits_of_ieee_754_in_single_precision() {
     agree::<f32>();
 }
 
-/// Parts of a row, loaded and stored again between numbers that must stay.
-struct Parts<T>(T);
+/// PartialRow of a row, loaded and stored again between numbers that must stay.
+struct PartialRow<T>(T);
 
-impl<T: Laned> Work for Parts<T> {
+impl<T: Laned> Work for PartialRow<T> {
     type Real = T;
     type Output = ();
 
@@ -149,7 +149,7 @@ fn parts_of<V: Lanes>() {
 #[test]
 fn parts_of_a_row_are_loaded_and_stored_and_nothing_beside_them() {
     for processor in Processor::available() {
-        f64::run(processor, Parts(0.0));
-        f32::run(processor, Parts(0.0));
+        f64::run(processor, PartialRow(0.0));
+        f32::run(processor, PartialRow(0.0));
     }
 }

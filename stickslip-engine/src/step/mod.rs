@@ -4,22 +4,22 @@
 //!
 //! | what | where |
 //! |---|---|
-//! | the length of the step, and what happens around it | `Simulation::step` in `look.rs` |
+//! | the length of the step, and what happens around it | `Simulation::step` below |
 //! | which passes a step makes, and in which order | the recipes below |
 //! | what a pass does to a particle: velocity, F and stress, position | `tile/group.rs`, from top to bottom |
-//! | the sums over nodes of G2P and P2G | `interpolate`, `flow`, `moments`, `affine`, `scatter` of [`crate::transfer`] |
+//! | the sums over nodes of G2P and P2G | `interpolate`, `flow`, `moments`, `gradient`, `scatter` of [`crate::transfer`] |
 //! | the same as the equations read, one particle and node after the other | `naive.rs`, and `transfer/naive.rs` |
 //! | the stress | `respond` of a law in [`crate::material`] |
 //! | damping at a node | [`crate::damping`] |
+//! | what is booked of a step | `account.rs` |
 //! | dynamic relaxation, between two steps | `relax.rs` |
 //! | what happens at a node: v = p / m, v += dt (f / m + g) | [`crate::grid::Node`] |
 //! | contact at a node | `contact/solve.rs`, by a law of `contact/law/` |
 
+mod account;
 mod build;
 mod cpu;
-mod damp;
-mod join;
-mod look;
+mod glue;
 #[cfg(test)]
 mod naive;
 mod pass;
@@ -28,6 +28,7 @@ mod state;
 mod tile;
 mod unbounded;
 mod verbs;
+mod view;
 mod watch;
 
 pub(crate) use build::own_columns;
@@ -36,13 +37,15 @@ pub use pass::ParticleLoop;
 pub(crate) use unbounded::particles_around;
 
 use crate::basis::Basis;
+use crate::boundary::Boundary;
 use crate::clock::fastest_signal;
-use crate::door::StepError;
+use crate::door::{Simulation, StepError};
 use crate::lanes::Laned;
 use crate::scene::StressUpdate;
 use crate::transfer::Share;
 use state::{Settings, State, Workspace};
 use std::marker::PhantomData;
+use std::sync::PoisonError;
 use watch::Stopwatch;
 
 /// A simulation in `D` dimensions and precision `T`, with shape functions `B`.
@@ -80,46 +83,38 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     fn update_stress_first(&mut self, dt: T) -> Result<(), StepError> {
         self.find_active_blocks(); //                 cell lists; blocks of nodes under each body's particles
         self.particles_to_grid(Share::Mass); //       P2G: m, p
-        self.interpolated_velocities(); //            v = p / m                                     (4)
-        self.filter_velocities(); //                  v(m) of XPIC; nothing by other transfers
-        self.prescribed_velocities(); //              of rigid bodies and walls
+        self.interpolate_velocities(); //             v = p / m                                     (4)
+        self.impose_boundary_conditions(); //         of rigid bodies and walls
         self.detect_contact(dt); //                   surfaces, normals and gaps where bodies meet
-        self.join_glued_bodies(); //                  one v for bodies that glue joins
         self.contact_on_interpolated(dt); //          v~                             (5)-(13), (20)-(22)
         self.update_stress(dt)?; //                   G2P: F = (I + L dt) F, sigma = law(F); P2G: f
         self.keep_velocities(); //                    v~ moves the particles, too
         self.update_velocities(dt); //                v += dt (f / m + g)                           (3)
-        self.prescribed_velocities(); //              once more
+        self.impose_boundary_conditions(); //         once more
         self.contact_on_integrated(dt); //            v~
-        self.book_contact(dt); //                     impulses, work of friction
-        self.exchange_velocities(); //                v~ that was kept, to move by; v~ of now, for dv
-        self.measure_balance(dt); //                  unbalanced forces, for dynamic relaxation
-        self.damp(dt); //                             of v~ for dv
-        self.book_damping(); //                       its work
+        self.exchange_velocities(dt); //              v~ that was kept, to move by; v~ of now, damped, for dv
         self.update_velocities_and_positions(dt)?; // G2P: v_p += dv, x += v~ dt
-        self.move_rigid_bodies(dt)
+        self.move_rigid_bodies(dt)?; //               as prescribed
+        self.account(dt); //                          impulses, works, balance of forces
+        Ok(())
     }
 
     /// Update stress last (USL): the integrated velocities strain and move particles.
     fn update_stress_last(&mut self, dt: T) -> Result<(), StepError> {
         self.find_active_blocks(); //                 cell lists; blocks of nodes under each body's particles
         self.particles_to_grid(Share::Everything); // P2G: m, p, f = -sum V sigma grad S
-        self.interpolated_velocities(); //            v = p / m                                     (4)
-        self.filter_velocities(); //                  v(m) of XPIC; nothing by other transfers
-        self.prescribed_velocities(); //              of rigid bodies and walls
+        self.interpolate_velocities(); //             v = p / m                                     (4)
+        self.impose_boundary_conditions(); //         of rigid bodies and walls
         self.detect_contact(dt); //                   surfaces, normals and gaps where bodies meet
-        self.join_glued_bodies(); //                  one v for bodies that glue joins
         self.contact_on_interpolated(dt); //          v~, by all laws but `surface`  (5)-(13), (20)-(22)
         self.update_velocities(dt); //                v += dt (f / m + g)                           (3)
-        self.prescribed_velocities(); //              once more
+        self.impose_boundary_conditions(); //         once more
         self.contact_on_integrated(dt); //            v~
-        self.book_contact(dt); //                     impulses, work of friction
-        self.keep_velocities(); //                    v~, for dv
-        self.measure_balance(dt); //                  unbalanced forces, for dynamic relaxation
-        self.damp(dt); //                             of v~ for dv
-        self.book_damping(); //                       its work
+        self.keep_damped_velocities(dt); //           v~, for dv
         self.update_particles(dt)?; //                G2P: v_p += dv, F, sigma, x += v~ dt
-        self.move_rigid_bodies(dt)
+        self.move_rigid_bodies(dt)?; //               as prescribed
+        self.account(dt); //                          impulses, works, balance of forces
+        Ok(())
     }
 
     /// Modified update stress last (MUSL), the default: the particles' new velocities, interpolated once more, strain
@@ -127,26 +122,21 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     fn modified_update_stress_last(&mut self, dt: T) -> Result<(), StepError> {
         self.find_active_blocks(); //                 cell lists; blocks of nodes under each body's particles
         self.particles_to_grid(Share::Everything); // P2G: m, p, f = -sum V sigma grad S
-        self.interpolated_velocities(); //            v = p / m                                     (4)
-        self.filter_velocities(); //                  v(m) of XPIC; nothing by other transfers
-        self.prescribed_velocities(); //              of rigid bodies and walls
+        self.interpolate_velocities(); //             v = p / m                                     (4)
+        self.impose_boundary_conditions(); //         of rigid bodies and walls
         self.detect_contact(dt); //                   surfaces, normals and gaps where bodies meet
-        self.join_glued_bodies(); //                  one v for bodies that glue joins
         self.contact_on_interpolated(dt); //          v~, by all laws but `surface`  (5)-(13), (20)-(22)
         self.update_velocities(dt); //                v += dt (f / m + g)                           (3)
-        self.prescribed_velocities(); //              once more
+        self.impose_boundary_conditions(); //         once more
         self.contact_on_integrated(dt); //            v~
-        self.keep_velocities_and_clear_momentum(); // v~, for dv; p = 0
-        self.measure_balance(dt); //                  unbalanced forces, for dynamic relaxation
-        self.damp(dt); //                             of v~ for dv
+        self.keep_damped_velocities(dt); //           v~, for dv
         self.update_particle_velocities(dt)?; //      G2P: v_p += dv; P2G: p
-        self.interpolated_again(); //                 v = p / m, with m as before
-        self.prescribed_velocities(); //              and again
-        self.book_contact(dt); //                     impulses, work of friction
-        self.book_damping(); //                       its work
-        self.contact_on_straining(dt); //             v~, booked nowhere: no particle takes it as a change
+        self.interpolate_again(); //                  v = p / m, with m as before
+        self.impose_boundary_conditions(); //         and again
+        self.account(dt); //                          impulses, works, balance of forces: of dv, which the particles have
+        self.contact_on_straining(dt); //             v~, which no particle takes as a change
         self.update_stress_and_positions(dt)?; //     G2P: F = (I + L dt) F, sigma = law(F), x += v~ dt
-        self.move_rigid_bodies(dt)
+        self.move_rigid_bodies(dt) //                 as prescribed
     }
 
     /// Longest stable step now, courant h / max(c + |v_p|): the speed is the fastest *signal* ([`crate::clock`]) [s].
@@ -154,5 +144,28 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let signal = self.state.signal.unwrap_or_else(|| fastest_signal(&self.state.bodies));
         let step = self.settings.time.courant * self.settings.lattice.cell.f64() / signal;
         self.settings.time.max_step.map_or(step, |longest| step.min(longest))
+    }
+}
+
+impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
+    fn step(&mut self, longest: f64) -> Result<f64, StepError> {
+        *self.workspace.totals.get_mut().unwrap_or_else(PoisonError::into_inner) = None;
+        let dt = self.stable().min(longest);
+        for motion in self.state.bodies.iter_mut().filter_map(|body| body.motion.as_mut()) {
+            motion.set_time(self.state.time + 0.5 * dt);
+        }
+        // One of the pool's threads takes the whole step: handing it every loop from outside would cost more than many
+        // a loop.
+        rayon::scope(|_| self.advance(T::of(dt)))?;
+        self.count_disorder();
+        self.relax();
+        self.state.time += dt;
+        self.state.steps += 1;
+        Ok(dt)
+    }
+
+    fn rebuild_workspace(&mut self) {
+        let walls = std::mem::take(&mut self.workspace.boundary.walls);
+        self.workspace = Workspace::new(Boundary::new(walls));
     }
 }

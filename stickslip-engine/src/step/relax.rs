@@ -6,7 +6,6 @@
 //! damping.
 
 use super::Engine;
-use super::state::Workspace;
 use crate::basis::Basis;
 use crate::lanes::Laned;
 use crate::rigid::RigidMotion;
@@ -35,39 +34,21 @@ impl Default for RelaxationProgress {
     }
 }
 
-impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
-    /// Measures how far from balance the forces of this step are, over the nodes i of deformable bodies:
+impl RelaxationProgress {
+    /// Takes note of a step's forces, summed over the nodes of deformable bodies, and of the kinetic energy there:
     ///
     /// ```text
-    /// R = sum |r_i| / max(sum |f_i|, sum |r_i - f_i|),   r_i = m_i (v~_i - v_i^0) / dt
+    /// R = sum |r_i| / max(sum |f_i|, sum |r_i - f_i|)
     /// ```
-    /// r: unbalanced force, with which walls leave alone what they hold; f: force of the stress; r - f: gravity and
-    /// contact. Nodes at a fixed face count in f alone, which is there what the wall bears.
-    pub(super) fn measure_balance(&mut self, dt: T) {
-        if self.settings.time.relax.is_none() {
-            return;
-        }
-        let start = Instant::now();
-        let [unbalanced, internal, external, kinetic] = self.workspace.sum_over_nodes(
-            &self.state.bodies,
-            |Workspace { field, boundary, .. }, place, index| {
-                let node = &field.nodes[index];
-                let kinetic = 0.5 * (node.start.dot(node.start) * node.mass).f64();
-                if boundary.holds(place) {
-                    return [0.0, node.force.norm().f64(), 0.0, kinetic];
-                }
-                let unbalanced = (node.integrated - node.start) * (node.mass / dt);
-                let external = unbalanced - node.force;
-                [unbalanced.norm().f64(), node.force.norm().f64(), external.norm().f64(), kinetic]
-            },
-        );
+    /// r: unbalanced force, f: force of the stress, r - f: gravity and contact.
+    pub fn take(&mut self, [unbalanced, internal, external]: [f64; 3], kinetic: f64) {
         let applied = internal.max(external);
-        let known = &mut self.state.relaxation;
-        known.residual = if applied > 0.0 { unbalanced / applied } else { 0.0 };
-        known.kinetic = [kinetic, known.kinetic[0]];
-        self.watch.lap("relaxation", start);
+        self.residual = if applied > 0.0 { unbalanced / applied } else { 0.0 };
+        self.kinetic = [kinetic, self.kinetic[0]];
     }
+}
 
+impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// Stops the bodies where their kinetic energy has passed a peak, and says whether they are at rest.
     pub(super) fn relax(&mut self) {
         let Some(scene::Relaxation { residual }) = self.settings.time.relax else { return };

@@ -1,7 +1,7 @@
 //! What a simulation is between two steps, and what can be made anew from that.
 
+use super::account::NodeTotals;
 use super::cpu::Threads;
-use super::damp::NodeTotals;
 use super::relax::RelaxationProgress;
 use super::unbounded::Unbounded;
 use crate::body::{Body, Totals};

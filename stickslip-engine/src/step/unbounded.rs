@@ -108,7 +108,7 @@ impl<const D: usize> Unbounded<D> {
                 block_of(x) == Some(block)
                     && served(x)
                     && before_mirrors(x)
-                    && self.sites.holds(&self.shape, site)
+                    && self.sites.contains_site(&self.shape, site)
                     && self.shape.distance(site, D) > -DEPTH * self.cell
             }));
         }

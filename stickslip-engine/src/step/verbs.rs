@@ -9,27 +9,15 @@ use super::state::{Disorder, Workspace};
 use crate::basis::Basis;
 use crate::body::Body;
 use crate::clock::signal;
-use crate::contact::{Change, ImpulseRecord, Near, Solve, Span, TimeStep, Use};
+use crate::contact::{ContactUse, ImpulseRecord, Near, Solve, TimeStep};
 use crate::door::StepError;
 use crate::grid::{Blocks, Disjoint, Node, node_at, nodes_per_block};
 use crate::lanes::{Laned, Processor};
-use crate::scene::{ContactLaw, StressUpdate};
+use crate::scene::StressUpdate;
 use crate::tensor::{Matrix, Vector};
 use crate::threads::each;
-use crate::transfer::{Filter, Share, filters};
+use crate::transfer::{Share, begin_filter, end_filter, filter_once_more, filters};
 use std::time::Instant;
-
-/// The uses of contact in a step, in their order. What the velocities of each are for is [`Use`]: the interpolated ones
-/// are [`Use::Strain`] if the stress is updated first, else [`Use::Start`].
-#[derive(Clone, Copy)]
-enum Contact {
-    /// Of the interpolated velocities.
-    Interpolated,
-    /// Of the integrated velocities: [`Use::Motion`].
-    Integrated,
-    /// Of the velocities that strain and move particles, where they are interpolated anew: [`Use::Strain`].
-    Straining,
-}
 
 impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// Brings the cell lists of the particles up to date, and with them the blocks of nodes that bodies have.
@@ -151,29 +139,29 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         found.fault.map_or(Ok(()), |fault| Err(self.error(&fault)))
     }
 
-    /// v = p / m, and v^0 = v, of nodes that have mass.
-    pub(super) fn interpolated_velocities(&mut self) {
+    /// v = p / m, and v^0 = v, of nodes that have mass; with XPIC v(m) beside it, see [`crate::transfer::Xpic`].
+    pub(super) fn interpolate_velocities(&mut self) {
         let start = Instant::now();
         self.workspace.field.find_present(Node::begin);
         self.watch.lap("grid", start);
+        if filters(self.settings.transfer) {
+            self.filter_velocities();
+        }
     }
 
-    /// v(m) of the interpolated velocities by XPIC, see [`crate::transfer::Xpic`]; nothing by other transfers.
-    pub(super) fn filter_velocities(&mut self) {
-        if !filters(self.settings.transfer) {
-            return;
-        }
-        Filter(&mut self.workspace.field).begin();
+    /// v(m) of the interpolated velocities.
+    fn filter_velocities(&mut self) {
+        self.workspace.field.each_filtered(begin_filter);
         for _ in 1..self.settings.time.xpic_order {
             let verbs = Verbs { smooth: true, scatter: Some(Share::Momentum), ..Verbs::default() };
             self.run_pass("P2G", verbs, T::ZERO).expect("it changes no particle");
-            Filter(&mut self.workspace.field).next();
+            self.workspace.field.each_filtered(filter_once_more);
         }
-        Filter(&mut self.workspace.field).end();
+        self.workspace.field.each_present(end_filter);
     }
 
     /// v = p / m of the particles' new velocities.
-    pub(super) fn interpolated_again(&mut self) {
+    pub(super) fn interpolate_again(&mut self) {
         self.at_nodes("grid", Node::divide_by_mass);
     }
 
@@ -183,20 +171,25 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.at_nodes("grid", |node| node.accelerate(gravity, dt));
     }
 
-    /// Keeps the nodes' velocities, for the particles to take later: in USL those whose change they take, in USF those
-    /// that strained them and move them.
+    /// Keeps the nodes' velocities that strained the particles, to move them by.
     pub(super) fn keep_velocities(&mut self) {
         self.at_nodes("grid", Node::keep);
     }
 
-    /// Keeps the nodes' velocities, whose change the particles take, and makes room for the momentum of the second P2G.
-    pub(super) fn keep_velocities_and_clear_momentum(&mut self) {
-        self.at_nodes("grid", Node::keep_and_clear);
+    /// Keeps the nodes' velocities, whose change the particles take, and damps what it keeps. Where velocities are
+    /// interpolated again it makes room for the momentum of the second P2G.
+    pub(super) fn keep_damped_velocities(&mut self, dt: T) {
+        match self.settings.time.stress_update {
+            StressUpdate::ModifiedLast => self.at_nodes("grid", Node::keep_and_clear),
+            _ => self.at_nodes("grid", Node::keep),
+        }
+        self.damp(dt);
     }
 
-    /// Takes the velocities that were kept, and keeps those of now, whose change the particles take.
-    pub(super) fn exchange_velocities(&mut self) {
+    /// Takes the velocities that were kept, and keeps those of now, damped, whose change the particles take.
+    pub(super) fn exchange_velocities(&mut self, dt: T) {
         self.at_nodes("grid", Node::exchange);
+        self.damp(dt);
     }
 
     /// Does something to each node that has mass.
@@ -206,8 +199,20 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.watch.lap(name, start);
     }
 
-    /// Prescribed velocities of rigid bodies and walls.
-    pub(super) fn prescribed_velocities(&mut self) {
+    /// Damps the velocities whose change the particles take, see [`crate::damping`]. What mirrors repeat is damped alike.
+    fn damp(&mut self, dt: T) {
+        let damping = self.settings.damping;
+        if !damping.acts() {
+            return;
+        }
+        let start = Instant::now();
+        let Workspace { field, damping_impulses, .. } = &mut self.workspace;
+        field.each_with((damping_impulses, Vector::ZERO), |node, impulse| damping.act(node, impulse, dt));
+        self.watch.lap("damping", start);
+    }
+
+    /// Sets the velocities that rigid bodies and walls prescribe.
+    pub(super) fn impose_boundary_conditions(&mut self) {
         let start = Instant::now();
         let n = nodes_per_block(D);
         let Workspace { active, field, boundary, .. } = &mut self.workspace;
@@ -245,37 +250,36 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.watch.lap("contact detection", start);
     }
 
-    /// Contact on the interpolated velocities. If the stress is updated first, these strain the particles, and all laws
-    /// act; else only laws that judge each use of contact by itself ([`Span::EachUse`]), as the paper's do.
+    /// Contact on the interpolated velocities, once glued bodies interpolate as one. If the stress is updated first,
+    /// these velocities strain the particles, and all laws act; else only laws that judge each use of contact by itself
+    /// ([`crate::contact::Span::EachUse`]), as the paper's do.
     pub(super) fn contact_on_interpolated(&mut self, dt: T) {
-        let strains = self.settings.time.stress_update == StressUpdate::First;
-        if strains || self.settings.rules.judge_interpolated() {
-            self.apply_contact(dt, Contact::Interpolated);
+        self.join_glued_bodies();
+        if self.settings.time.stress_update == StressUpdate::First {
+            self.apply_contact(dt, (0, ContactUse::Strain));
+        } else if self.settings.rules.judge_interpolated() {
+            self.apply_contact(dt, (0, ContactUse::Start));
         }
     }
 
     /// Contact on the integrated velocities, after what it gave to the interpolated ones.
     pub(super) fn contact_on_integrated(&mut self, dt: T) {
-        self.apply_contact(dt, Contact::Integrated);
+        self.apply_contact(dt, (1, ContactUse::VelocityChange));
     }
 
     /// Contact on the velocities that strain and move the particles. It enters no sum of forces and no sum of works,
     /// for no particle takes it as a change of its velocity.
     pub(super) fn contact_on_straining(&mut self, dt: T) {
-        self.apply_contact(dt, Contact::Straining);
+        self.apply_contact(dt, (2, ContactUse::Strain));
     }
 
-    fn apply_contact(&mut self, duration: T, contact: Contact) {
+    /// The first, second or third contact of a step, and what for.
+    fn apply_contact(&mut self, duration: T, (number, purpose): (usize, ContactUse)) {
         let start = Instant::now();
-        let Workspace { impulses: [first, second, third], survey, field, boundary, .. } = &mut self.workspace;
-        let (purpose, record, given, listed) = match contact {
-            Contact::Interpolated => {
-                let strains = self.settings.time.stress_update == StressUpdate::First;
-                (if strains { Use::Strain } else { Use::Start }, ImpulseRecord::Kept, None, first)
-            }
-            Contact::Integrated => (Use::Motion, ImpulseRecord::Kept, Some(&*first), second),
-            Contact::Straining => (Use::Strain, ImpulseRecord::Dropped, None, third),
-        };
+        let Workspace { impulses, survey, field, boundary, .. } = &mut self.workspace;
+        let (before, listed) = impulses.split_at_mut(number);
+        let (given, listed) = ((number == 1).then(|| &before[0]), &mut listed[0]);
+        let record = if number == 2 { ImpulseRecord::Dropped } else { ImpulseRecord::Kept };
         let step = TimeStep { duration, cell: self.settings.lattice.cell, purpose };
         let nodes = Disjoint::new(&mut field.nodes);
         Solve { survey, rules: &self.settings.rules, nodes, step, given }.impulses(record, listed);
@@ -283,58 +287,6 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.state.contact_sums.unsettled += listed.unsettled();
         boundary.impose(field);
         self.watch.lap("contact", start);
-    }
-
-    /// Books what contact did: impulses by pair of bodies, and the work of friction.
-    pub(super) fn book_contact(&mut self, dt: T) {
-        let start = Instant::now();
-        let Workspace { impulses: [first, second, _], boundary, .. } = &self.workspace;
-        let place = (&self.settings.lattice, boundary);
-        // How long surfaces touch is counted once a step.
-        self.state.contact_sums.add(first.iter().filter(|impulse| impulse.span == Span::EachUse), place, 0.0);
-        self.state.contact_sums.add(second.iter(), place, dt.f64());
-        self.book_friction(dt);
-        self.watch.lap("contact", start);
-    }
-
-    /// Books the work of friction in this step, what its impulses took from the particles' kinetic energy,
-    /// and likewise that of bonds that give way.
-    ///
-    /// ```text
-    /// W = -sum J . (u^0 + u^1)/2,   u = v_a - v_b of the particles' velocities, interpolated before and after the step
-    /// ```
-    /// This is exact for FLIP, where particles take changes at nodes: sum_p m_p v_p . sum_i S_i dv_i = sum_i m_i dv_i .
-    /// v_i, with v_i interpolated from the v_p. The velocity of a node with next to no mass is mostly what forces do to
-    /// it within the step, and says little of how particles move. Where the step does not interpolate a second time,
-    /// u^1 = u^0.
-    fn book_friction(&mut self, dt: T) {
-        let interpolated_twice = self.settings.time.stress_update == StressUpdate::ModifiedLast;
-        let (nodes, rules) = (&self.workspace.field.nodes, &self.settings.rules);
-        let seen = |node: usize| {
-            let node = &nodes[node];
-            if interpolated_twice { (node.start + node.velocity) * T::HALF } else { node.start }
-        };
-        let [first, second, _] = &self.workspace.impulses;
-        let first = first.iter().filter(|impulse| impulse.span == Span::EachUse);
-        for impulse in first.chain(second.iter()) {
-            let [a, b] = impulse.bodies;
-            let rule = rules.rule(rules.number(a, b));
-            let Change { impulse: [on_a, _], normal, tangential, .. } = impulse.change;
-            let rubs = tangential != Vector::ZERO && rule.law != ContactLaw::Glued;
-            // A bond that holds passes work on to the strain, as a push does; one that gives way takes it.
-            let strength = rule.friction.adhesion * impulse.area * dt;
-            let pulls = strength > T::ZERO && normal >= strength * T::of(0.999);
-            if !rubs && !pulls {
-                continue;
-            }
-            let [v, w] = impulse.nodes.map(seen);
-            if rubs {
-                self.state.contact_sums.rub(impulse.bodies, -tangential.dot(v - w).f64());
-            }
-            if pulls {
-                self.state.contact_sums.adhesion -= (on_a - tangential).dot(v - w).f64();
-            }
-        }
     }
 
     /// Moves rigid bodies as prescribed.

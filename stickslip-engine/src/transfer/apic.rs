@@ -20,12 +20,11 @@
 //!
 //! C is kept as its two parts: the spin, which every particle has, and the rate of strain, a column of its own.
 
-use super::{Start, Surroundings, TransferRule, VelocityState, rotation};
-use crate::basis::Basis;
+use super::{Rflip, TransferRule, VelocityState, rotation};
 use crate::column::{Kind, STRAIN_RATE};
 use crate::lanes::Lanes;
 use crate::material::History;
-use crate::tensor::Matrix;
+use crate::tensor::{Matrix, Vector};
 
 /// See the module.
 #[derive(Clone, Copy, Debug)]
@@ -35,35 +34,27 @@ impl TransferRule for Apic {
     const HAS_SPIN: bool = true;
     const COLUMNS: &'static [History] = &[History::new(STRAIN_RATE, "1/s", Kind::Symmetric)];
     const ALWAYS_PIC: bool = true;
+    const AFFINE: bool = true;
 
     #[inline(always)]
-    fn take_change<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start>(
-        around: &Surroundings<'_, V, D, B, S>,
+    fn take_change<V: Lanes, const D: usize>(
         state: &mut VelocityState<V, D>,
+        change: Vector<V, D>,
+        (moments, scale): (&Matrix<V>, V),
     ) {
-        let (moments, change) = around.group.moments(&around.window.change);
-        state.velocity += change;
-        let scale = around.cell / around.gyration;
-        state.spin += rotation::moment::<V, D>(&moments) * scale;
+        Rflip::take_change(state, change, (moments, scale));
         state.strain_rate += moments.symmetric_part() * (scale + scale);
     }
 
     #[inline(always)]
-    fn take_share<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start>(
-        around: &Surroundings<'_, V, D, B, S>,
+    fn take_share<V: Lanes, const D: usize>(
         state: &mut VelocityState<V, D>,
+        (mean, gradient): (Vector<V, D>, &Matrix<V>),
         _share: V,
     ) {
-        let (gradient, mean) = around.group.affine(&around.window.integrated);
-        let gradient: Matrix<V> = gradient * around.per_cell;
         state.velocity = mean;
-        state.spin = rotation::toward(state.spin, &gradient, V::ONE);
+        state.spin = rotation::toward(state.spin, gradient, V::ONE);
         state.strain_rate = gradient.symmetric_part();
-    }
-
-    #[inline(always)]
-    fn strains<V: Lanes, const D: usize>(state: &VelocityState<V, D>) -> V {
-        state.strain_rate.double_dot(&state.strain_rate)
     }
 
     #[inline(always)]

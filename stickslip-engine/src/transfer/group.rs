@@ -201,13 +201,18 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
     /// G2P: h L = sum v_i (x) h grad S_i, embedded in space, and sum S_i v_i of the same velocities [m/s].
     #[inline(always)]
     pub fn flow(&self, nodes: &[NodeValues<V::Real>; WINDOW_NODES]) -> (Matrix<V>, Vector<V, D>) {
+        self.sums(nodes, &self.slopes())
+    }
+
+    #[inline(always)]
+    fn slopes(&self) -> [[V; MAX_WIDTH]; D] {
         let mut slopes = [[V::ZERO; MAX_WIDTH]; D];
         for axis in 0..D {
             for i in 0..B::WIDTH {
                 slopes[axis][i] = self.shapes[axis].slope(i);
             }
         }
-        self.sums(nodes, &slopes)
+        slopes
     }
 
     /// G2P: sum v_i (x) S_i (x_i - x_p) over h, embedded in space, and sum S_i v_i [m/s].
@@ -222,12 +227,18 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
         self.sums(nodes, &arms)
     }
 
-    /// G2P: h times the affine part of the velocities, [`Basis::affine`], embedded in space, and sum S_i v_i [m/s].
+    /// G2P: the same as [`Group::flow`], or h times the affine part of the velocities, [`Basis::affine`].
     #[inline(always)]
-    pub fn affine(&self, nodes: &[NodeValues<V::Real>; WINDOW_NODES]) -> (Matrix<V>, Vector<V, D>) {
-        let mut factors = [[V::ZERO; MAX_WIDTH]; D];
-        for axis in 0..D {
-            factors[axis] = B::affine(&self.shapes[axis], self.r[axis]);
+    pub fn gradient(
+        &self,
+        nodes: &[NodeValues<V::Real>; WINDOW_NODES],
+        affine: bool,
+    ) -> (Matrix<V>, Vector<V, D>) {
+        let mut factors = self.slopes();
+        if affine {
+            for axis in 0..D {
+                factors[axis] = B::affine(&self.shapes[axis], self.r[axis]);
+            }
         }
         self.sums(nodes, &factors)
     }
@@ -415,14 +426,15 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
         for j in 0..B::WIDTH {
             for k in 0..Self::DEPTH {
                 if i + 1 < B::WIDTH {
-                    along_x[j * Self::DEPTH + k] = (self.across(j, k) * x.rise[i]).numbers();
+                    along_x[j * Self::DEPTH + k] = (self.across(j, k) * x.difference[i]).numbers();
                 }
                 if j + 1 < B::WIDTH {
                     let weight = if D == 2 { x.weight[i] } else { x.weight[i] * z.weight[k] };
-                    along_y[j * Self::DEPTH + k] = (weight * y.rise[j]).numbers();
+                    along_y[j * Self::DEPTH + k] = (weight * y.difference[j]).numbers();
                 }
                 if k + 1 < Self::DEPTH {
-                    along_z[j * (Self::DEPTH - 1) + k] = (x.weight[i] * y.weight[j] * z.rise[k]).numbers();
+                    along_z[j * (Self::DEPTH - 1) + k] =
+                        (x.weight[i] * y.weight[j] * z.difference[k]).numbers();
                 }
             }
         }

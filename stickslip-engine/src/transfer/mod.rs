@@ -7,7 +7,7 @@
 //! |---|---|
 //! | [`Group::interpolate`] | G2P of velocities: sum S_i v_i, sum S_i dv_i |
 //! | [`Group::flow`] | G2P of the velocity gradient L, and of the velocity with it |
-//! | [`Group::moments`], [`Group::affine`] | G2P of rotation and of affine velocities |
+//! | [`Group::moments`], [`Group::gradient`] | G2P of rotation and of affine velocities |
 //! | [`Group::scatter`] | P2G of mass, momentum and force |
 
 mod apic;
@@ -27,10 +27,8 @@ pub use group::{CellGroup, Group, Momentum, Own, ScatterTerms, Start, pairs};
 pub use naive::Stencil;
 pub use pic::Pic;
 pub use rflip::Rflip;
-pub use xpic::{Filter, Xpic};
+pub use xpic::{Xpic, begin_filter, end_filter, filter_once_more};
 
-use crate::basis::Basis;
-use crate::grid::Window;
 use crate::lanes::Lanes;
 use crate::material::History;
 use crate::scene::Transfer;
@@ -48,21 +46,8 @@ pub struct VelocityState<V, const D: usize> {
     pub strain_rate: Symmetric<V>,
 }
 
-/// Particles among their nodes, when they take velocities.
-pub struct Surroundings<'a, V: Lanes, const D: usize, B, S> {
-    /// The particles.
-    pub group: &'a Group<V, D, B, S>,
-    /// The nodes.
-    pub window: &'a Window<V::Real, D>,
-    /// Side of a cell [m].
-    pub cell: V,
-    /// Inverse of it [1/m].
-    pub per_cell: V,
-    /// k^2 [m^2], see [`Rflip`].
-    pub gyration: V,
-}
-
-/// How velocities go from particles to nodes and back; what a rule does not say is FLIP.
+/// How velocities go from particles to nodes and back; what a rule does not say is FLIP. The sums over nodes, which are
+/// most of the work, are the same for all rules.
 ///
 /// To add a transfer: write its file with this, name it in [`crate::scene::Transfer`], and put both on the list below.
 /// The changes that it takes of the nodes' velocities must be the transpose of what it gives to the nodes: then they do
@@ -77,31 +62,30 @@ pub trait TransferRule {
     /// Whether these velocities are v(m) + dv of [`Xpic`].
     const FILTERS: bool = false;
 
-    /// G2P of the changes of the nodes' velocities: v_p += sum_i S_ip dv_i, and what else particles carry.
+    /// Whether they take the gradient of the nodes' velocities from their moments, [`crate::basis::Basis::affine`], and not by the
+    /// gradients of the shape functions.
+    const AFFINE: bool = false;
+
+    /// G2P of the changes of the nodes' velocities: v_p += sum_i S_ip dv_i = `change`, and what else particles carry, by
+    /// `moments` = sum_i S_ip dv_i (x) (x_i - x_p) / h and `scale` = h / k^2, see [`Rflip`].
     #[inline(always)]
-    fn take_change<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start>(
-        around: &Surroundings<'_, V, D, B, S>,
+    fn take_change<V: Lanes, const D: usize>(
         state: &mut VelocityState<V, D>,
+        change: Vector<V, D>,
+        _moments: (&Matrix<V>, V),
     ) {
-        state.velocity += around.group.interpolate(&around.window.change);
+        state.velocity += change;
     }
 
     /// G2P of a share a of the nodes' velocities themselves, all of it where they are [`TransferRule::ALWAYS_PIC`]:
-    /// v_p = (1 - a) v_p + a sum_i S_ip v_i, and what else particles carry.
+    /// v_p = (1 - a) v_p + a sum_i S_ip v_i, and what else particles carry, by the gradient of these velocities [1/s].
     #[inline(always)]
-    fn take_share<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start>(
-        around: &Surroundings<'_, V, D, B, S>,
+    fn take_share<V: Lanes, const D: usize>(
         state: &mut VelocityState<V, D>,
+        (mean, _gradient): (Vector<V, D>, &Matrix<V>),
         share: V,
     ) {
-        let mean = around.group.flow(&around.window.integrated).1;
         state.velocity = state.velocity * (V::ONE - share) + mean * share;
-    }
-
-    /// |E|^2 of the rate of strain that it keeps [1/s^2]; m k^2/4 times that belongs to the kinetic energy.
-    #[inline(always)]
-    fn strains<V: Lanes, const D: usize>(_state: &VelocityState<V, D>) -> V {
-        V::ZERO
     }
 
     /// The spin after a step in which velocities had this gradient, embedded in space [1/s]; `dt` in [s].
@@ -133,27 +117,7 @@ macro_rules! of_transfer {
     };
 }
 
-/// Does one thing with the rule by which particles of a transfer give and take: PIC and XPIC are FLIP with all the
-/// share of PIC that there is, and loops over particles are compiled for it once.
-macro_rules! of_particles {
-    ($transfer:expr, $rule:ident => $does:expr) => {
-        match $transfer {
-            $crate::scene::Transfer::Rflip => {
-                type $rule = $crate::transfer::Rflip;
-                $does
-            }
-            $crate::scene::Transfer::Apic => {
-                type $rule = $crate::transfer::Apic;
-                $does
-            }
-            $crate::scene::Transfer::Flip | $crate::scene::Transfer::Pic | $crate::scene::Transfer::Xpic => {
-                type $rule = $crate::transfer::Flip;
-                $does
-            }
-        }
-    };
-}
-pub(crate) use of_particles;
+pub(crate) use of_transfer;
 
 /// [`TransferRule::HAS_SPIN`]
 #[inline(always)]
@@ -169,6 +133,12 @@ pub fn columns(transfer: Transfer) -> &'static [History] {
 /// [`TransferRule::FILTERS`]
 pub fn filters(transfer: Transfer) -> bool {
     of_transfer!(transfer, Rule => Rule::FILTERS)
+}
+
+/// [`TransferRule::AFFINE`]
+#[inline(always)]
+pub fn is_affine(transfer: Transfer) -> bool {
+    of_transfer!(transfer, Rule => Rule::AFFINE)
 }
 
 /// The share of the nodes' velocities themselves that particles take, where a scene wants this one.

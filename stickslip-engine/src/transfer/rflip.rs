@@ -19,7 +19,7 @@
 //! ```
 //! k_p must not change while a particle moves, or energy is made; it is that for which the nodes' moment of inertia and
 //! the particles' are the same in the mean over places, k^2 = 2 (h^2/6 + b l^2) with
-//! b = [`Basis::BOX_SPREAD`]. Rigid rotation is a state of (a) and (b): nothing is strained.
+//! b = [`crate::basis::Basis::BOX_SPREAD`]. Rigid rotation is a state of (a) and (b): nothing is strained.
 //!
 //! Within a step particles turn. Velocities that are scattered in its middle, at places of its start,
 //! so have the gradient
@@ -38,8 +38,7 @@
 //! ```
 //! which takes next to nothing from a body that only vibrates. The ledger's damping counts what it takes.
 
-use super::{Start, Surroundings, TransferRule, VelocityState, rotation};
-use crate::basis::Basis;
+use super::{TransferRule, VelocityState, rotation};
 use crate::lanes::Lanes;
 use crate::tensor::{Matrix, Number, Vector};
 
@@ -51,24 +50,23 @@ impl TransferRule for Rflip {
     const HAS_SPIN: bool = true;
 
     #[inline(always)]
-    fn take_change<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start>(
-        around: &Surroundings<'_, V, D, B, S>,
+    fn take_change<V: Lanes, const D: usize>(
         state: &mut VelocityState<V, D>,
+        change: Vector<V, D>,
+        (moments, scale): (&Matrix<V>, V),
     ) {
-        let (moments, change) = around.group.moments(&around.window.change);
         state.velocity += change;
-        state.spin += rotation::moment::<V, D>(&moments) * (around.cell / around.gyration);
+        state.spin += rotation::moment::<V, D>(moments) * scale;
     }
 
     #[inline(always)]
-    fn take_share<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start>(
-        around: &Surroundings<'_, V, D, B, S>,
+    fn take_share<V: Lanes, const D: usize>(
         state: &mut VelocityState<V, D>,
+        (mean, gradient): (Vector<V, D>, &Matrix<V>),
         share: V,
     ) {
-        let (gradient, mean) = around.group.flow(&around.window.integrated);
         state.velocity = state.velocity * (V::ONE - share) + mean * share;
-        state.spin = rotation::toward(state.spin, &(gradient * around.per_cell), share);
+        state.spin = rotation::toward(state.spin, gradient, share);
     }
 
     #[inline(always)]

@@ -12,10 +12,10 @@
 //! that cells resolve stay. Each order above the first costs a pass over the particles.
 
 use super::TransferRule;
-use crate::grid::Field;
+use crate::grid::Node;
 use crate::tensor::{Real, Vector};
 
-/// See the module. What it takes instead of the nodes' velocities is made by [`Filter`].
+/// See the module. What it takes instead of the nodes' velocities is made by [`begin_filter`] and what follows it.
 #[derive(Clone, Copy, Debug)]
 pub struct Xpic;
 
@@ -24,31 +24,23 @@ impl TransferRule for Xpic {
     const FILTERS: bool = true;
 }
 
-/// What happens at the nodes between the passes that make v(m). u_j = (1 - S+ S)^j v stands in `integrated`, where
-/// every pass finds it, and m S+ S u_j comes into `velocity`.
-pub struct Filter<'a, T, const D: usize>(pub &'a mut Field<T, D>);
+/// At each node before the passes that make v(m): u_0 = v.
+///
+/// u_j = (1 - S+ S)^j v stands in `integrated`, where every pass finds it, and m S+ S u_j comes into `velocity`.
+pub fn begin_filter<T: Real, const D: usize>(node: &mut Node<T, D>, filtered: &mut Vector<T, D>) {
+    *filtered = node.velocity;
+    node.keep_and_clear();
+}
 
-impl<T: Real, const D: usize> Filter<'_, T, D> {
-    /// u_0 = v
-    pub fn begin(&mut self) {
-        self.0.each_filtered(|node, filtered| {
-            *filtered = node.velocity;
-            node.keep_and_clear();
-        });
-    }
+/// After each pass: u_j+1 = u_j - S+ S u_j, added to v(m).
+pub fn filter_once_more<T: Real, const D: usize>(node: &mut Node<T, D>, filtered: &mut Vector<T, D>) {
+    node.divide_by_mass();
+    node.integrated -= node.velocity;
+    node.velocity = Vector::ZERO;
+    *filtered += node.integrated;
+}
 
-    /// u_j+1 = u_j - S+ S u_j, added to v(m).
-    pub fn next(&mut self) {
-        self.0.each_filtered(|node, filtered| {
-            node.divide_by_mass();
-            node.integrated -= node.velocity;
-            node.velocity = Vector::ZERO;
-            *filtered += node.integrated;
-        });
-    }
-
-    /// The nodes get their velocities back.
-    pub fn end(&mut self) {
-        self.0.each_filtered(|node, _| node.velocity = node.start);
-    }
+/// After the last pass: the node gets its velocity back.
+pub fn end_filter<T: Real, const D: usize>(node: &mut Node<T, D>) {
+    node.velocity = node.start;
 }

@@ -5,7 +5,7 @@ use super::folder::OutputFolder;
 use super::points::{Points, SamplePoint};
 use super::probes::points;
 use super::schedule::Schedule;
-use super::table::{CsvTable, Entry, TableRow, columns};
+use super::table::{CellValue, CsvTable, TableRow, columns};
 use super::{ARRIVALS, Observer};
 use crate::door::View;
 use crate::scene::{Anchor, Arrival, Observable, Reading, Scene};
@@ -28,7 +28,7 @@ pub struct ArrivalRow {
 }
 
 impl TableRow for ArrivalRow {
-    fn columns(&mut self) -> Vec<(&'static str, Entry<'_>)> {
+    fn columns(&mut self) -> Vec<(&'static str, CellValue<'_>)> {
         let Self { time, quantity, threshold, reading, place, position: [x, y, z] } = self;
         columns![time, quantity, threshold, reading, place, x, y, z]
     }

@@ -3,7 +3,7 @@
 use super::file::OutputError;
 use super::folder::OutputFolder;
 use super::schedule::Schedule;
-use super::table::{CsvTable, Entry, TableRow, columns};
+use super::table::{CellValue, CsvTable, TableRow, columns};
 use super::{BODIES, Observer};
 use crate::door::{BodyState, View};
 use crate::scene::Scene;
@@ -20,7 +20,7 @@ pub struct BodyRow {
 }
 
 impl TableRow for BodyRow {
-    fn columns(&mut self) -> Vec<(&'static str, Entry<'_>)> {
+    fn columns(&mut self) -> Vec<(&'static str, CellValue<'_>)> {
         let Self { time, body, state } = self;
         let BodyState { mass, position: [x, y, z], velocity: [vx, vy, vz], spin: [wx, wy, wz], .. } = state;
         let BodyState { kinetic, strain, .. } = state;

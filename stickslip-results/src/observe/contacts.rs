@@ -3,7 +3,7 @@
 use super::file::OutputError;
 use super::folder::OutputFolder;
 use super::schedule::Schedule;
-use super::table::{CsvTable, Entry, TableRow, columns};
+use super::table::{CellValue, CsvTable, TableRow, columns};
 use super::{CONTACTS, Observer};
 use crate::door::{ContactCursor, ContactMean, ContactState, View};
 use crate::scene::Scene;
@@ -24,7 +24,7 @@ pub struct ContactRow {
 }
 
 impl TableRow for ContactRow {
-    fn columns(&mut self) -> Vec<(&'static str, Entry<'_>)> {
+    fn columns(&mut self) -> Vec<(&'static str, CellValue<'_>)> {
         let Self { time, body_a, body_b, mean } = self;
         let ContactMean { force: [fx, fy, fz], normal, tangential, nodes, position: [x, y, z], .. } = mean;
         let ContactMean { area, gap, slip, friction, .. } = mean;

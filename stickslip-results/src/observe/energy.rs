@@ -3,7 +3,7 @@
 use super::file::OutputError;
 use super::folder::OutputFolder;
 use super::schedule::Schedule;
-use super::table::{CsvTable, Entry, TableRow, columns};
+use super::table::{CellValue, CsvTable, TableRow, columns};
 use super::{ENERGY, Observer};
 use crate::door::{Ledger, View};
 use crate::scene::Scene;
@@ -18,7 +18,7 @@ pub struct EnergyRow {
 }
 
 impl TableRow for EnergyRow {
-    fn columns(&mut self) -> Vec<(&'static str, Entry<'_>)> {
+    fn columns(&mut self) -> Vec<(&'static str, CellValue<'_>)> {
         let Self { time, ledger } = self;
         let Ledger { kinetic, strain, potential, external_work, friction, adhesion, .. } = ledger;
         let Ledger {

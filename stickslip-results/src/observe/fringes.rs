@@ -3,7 +3,7 @@
 
 use super::file::{OutputError, replace};
 use super::folder::OutputFolder;
-use super::table::{CsvTable, Entry, TableRow, columns};
+use super::table::{CellValue, CsvTable, TableRow, columns};
 use super::writer::Writer;
 use super::{FRINGES, FRINGES_ANIMATION, FRINGES_TABLE, Observer};
 use crate::door::{ContactCursor, ContactState, ParticleSnapshot, View};
@@ -34,7 +34,7 @@ pub struct FringeRow {
 }
 
 impl TableRow for FringeRow {
-    fn columns(&mut self) -> Vec<(&'static str, Entry<'_>)> {
+    fn columns(&mut self) -> Vec<(&'static str, CellValue<'_>)> {
         let Self { frame, time, from, to, samples } = self;
         columns![frame, time, from, to, samples]
     }

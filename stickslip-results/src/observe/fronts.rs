@@ -3,7 +3,7 @@
 use super::file::OutputError;
 use super::folder::OutputFolder;
 use super::schedule::Schedule;
-use super::table::{CsvTable, Entry, TableRow, columns};
+use super::table::{CellValue, CsvTable, TableRow, columns};
 use super::{FRONT_SPEEDS, FRONTS, Observer};
 use crate::door::{ParticleView, View};
 use crate::scene::{Front, Scene};
@@ -50,14 +50,14 @@ pub struct FrontSpeedRow {
 }
 
 impl TableRow for FrontRow {
-    fn columns(&mut self) -> Vec<(&'static str, Entry<'_>)> {
+    fn columns(&mut self) -> Vec<(&'static str, CellValue<'_>)> {
         let Self { time, front, distance, position: [x, y, z] } = self;
         columns![time, front, distance, x, y, z]
     }
 }
 
 impl TableRow for FrontSpeedRow {
-    fn columns(&mut self) -> Vec<(&'static str, Entry<'_>)> {
+    fn columns(&mut self) -> Vec<(&'static str, CellValue<'_>)> {
         let Self { time, front, speed, error, start_time, start, end, samples } = self;
         columns![time, front, speed, error, start_time, start, end, samples]
     }

@@ -51,7 +51,7 @@ pub use recorded::{
 };
 pub use recorder::Recorder;
 pub use results::Results;
-pub use table::{Entry, TableRow};
+pub use table::{CellValue, TableRow};
 pub use vtu::Vtu;
 
 use crate::door::View;

@@ -4,7 +4,7 @@ use super::file::OutputError;
 use super::folder::OutputFolder;
 use super::points::{PointSample, Points, SamplePoint};
 use super::schedule::Schedule;
-use super::table::{CsvTable, Entry, TableRow, columns};
+use super::table::{CellValue, CsvTable, TableRow, columns};
 use super::{Observer, PROBES};
 use crate::door::View;
 use crate::scene::{Observable, Probe, Scene};
@@ -27,7 +27,7 @@ pub struct ProbeRow {
 }
 
 impl TableRow for ProbeRow {
-    fn columns(&mut self) -> Vec<(&'static str, Entry<'_>)> {
+    fn columns(&mut self) -> Vec<(&'static str, CellValue<'_>)> {
         let Self { time, probe, sample, pressure, stress_difference, von_mises } = self;
         let PointSample { position: [x, y, z], velocity: [vx, vy, vz], stress: [xx, yy, zz, xy, yz, xz] } =
             sample;

@@ -11,14 +11,14 @@ use std::path::{Path, PathBuf};
 /// A row of a table through time. The list of its columns serves writing, reading and looking up.
 pub trait TableRow: Clone + Default {
     /// Its columns in the order of the file, the time among them: name, and where the row keeps the entry.
-    fn columns(&mut self) -> Vec<(&'static str, Entry<'_>)>;
+    fn columns(&mut self) -> Vec<(&'static str, CellValue<'_>)>;
 
     /// The number in a column by the column's name; `None` for a name that is no column of numbers.
     fn number(&self, column: &str) -> Option<f64> {
         match self.clone().columns().into_iter().find(|(name, _)| *name == column)?.1 {
-            Entry::Number(number) => Some(*number),
-            Entry::Count(count) => Some(*count as f64),
-            Entry::Name(_) => None,
+            CellValue::Number(number) => Some(*number),
+            CellValue::Count(count) => Some(*count as f64),
+            CellValue::Name(_) => None,
         }
     }
 }
@@ -26,7 +26,7 @@ pub trait TableRow: Clone + Default {
 /// What a row has in a column.
 #[derive(Debug, Serialize)]
 #[serde(untagged)]
-pub enum Entry<'a> {
+pub enum CellValue<'a> {
     /// A number.
     Number(&'a mut f64),
     /// How many.
@@ -38,36 +38,36 @@ pub enum Entry<'a> {
 /// Columns that are called as the variables that borrow their entries.
 macro_rules! columns {
     ($($name:ident),*) => {
-        vec![$((stringify!($name), $crate::observe::table::Entry::from($name))),*]
+        vec![$((stringify!($name), $crate::observe::table::CellValue::from($name))),*]
     };
 }
 pub(super) use columns;
 
-impl<'a> From<&'a mut f64> for Entry<'a> {
+impl<'a> From<&'a mut f64> for CellValue<'a> {
     fn from(number: &'a mut f64) -> Self {
-        Entry::Number(number)
+        CellValue::Number(number)
     }
 }
 
-impl<'a> From<&'a mut usize> for Entry<'a> {
+impl<'a> From<&'a mut usize> for CellValue<'a> {
     fn from(count: &'a mut usize) -> Self {
-        Entry::Count(count)
+        CellValue::Count(count)
     }
 }
 
-impl<'a> From<&'a mut String> for Entry<'a> {
+impl<'a> From<&'a mut String> for CellValue<'a> {
     fn from(name: &'a mut String) -> Self {
-        Entry::Name(name)
+        CellValue::Name(name)
     }
 }
 
-impl Entry<'_> {
+impl CellValue<'_> {
     /// Takes what a file has; `None` where that is no number.
     fn take(self, text: &str) -> Option<()> {
         match self {
-            Entry::Number(number) => *number = text.parse().ok()?,
-            Entry::Count(count) => *count = text.parse().ok()?,
-            Entry::Name(name) => text.clone_into(name),
+            CellValue::Number(number) => *number = text.parse().ok()?,
+            CellValue::Count(count) => *count = text.parse().ok()?,
+            CellValue::Name(name) => text.clone_into(name),
         }
         Some(())
     }
@@ -142,7 +142,7 @@ fn encode<R: TableRow>(rows: impl IntoIterator<Item = R>, unit: Option<f64>) -> 
     for mut row in rows {
         let mut in_units = unit.map(|unit| row.number("time").expect("every row has its time") / unit);
         let entries = row.columns().into_iter().map(|(_, entry)| entry);
-        let entries: Vec<Entry> = entries.chain(in_units.as_mut().map(Entry::Number)).collect();
+        let entries: Vec<CellValue> = entries.chain(in_units.as_mut().map(CellValue::Number)).collect();
         writer.serialize(entries).expect("entries are numbers and names");
     }
     writer.into_inner().expect("a vector takes all bytes")
@@ -163,7 +163,7 @@ pub(super) fn read_rows<R: TableRow>(path: &Path) -> Result<Vec<R>, ReadError> {
         let mut reader = csv::Reader::from_reader(&bytes[..whole]);
         let header = reader.headers()?.clone();
         let mut row = R::default();
-        let place = |(name, _): (&str, Entry)| {
+        let place = |(name, _): (&str, CellValue)| {
             let missing = || ReadProblem::Layout(format!("it has no column `{name}`"));
             header.iter().position(|found| found == name).ok_or_else(missing)
         };
@@ -195,7 +195,7 @@ mod tests {
     }
 
     impl TableRow for FieldPlace {
-        fn columns(&mut self) -> Vec<(&'static str, Entry<'_>)> {
+        fn columns(&mut self) -> Vec<(&'static str, CellValue<'_>)> {
             let Self { time, body } = self;
             columns![time, body]
         }

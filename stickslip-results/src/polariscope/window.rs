@@ -20,7 +20,7 @@ impl ImageWindow {
     }
 
     /// A rectangle in the middle of an image of this size.
-    pub fn holding([low, high]: [[f64; 2]; 2], size: [usize; 2]) -> Self {
+    pub fn fitted_into([low, high]: [[f64; 2]; 2], size: [usize; 2]) -> Self {
         let pixels = size.map(|side| side as f64);
         let scale = (pixels[0] / (high[0] - low[0])).min(pixels[1] / (high[1] - low[1]));
         let end = |axis: usize, side: f64| 0.5 * (low[axis] + high[axis] + side * pixels[axis] / scale);
@@ -55,7 +55,7 @@ mod tests {
         assert_eq!((tall.size, tall.pixel([1.5, 3.0])), ([100, 300], [50.0, 0.0]));
         let [x, y] = tall.position(0, 299);
         assert!((x - 1.005).abs() < 1e-12 && (y - 0.005).abs() < 1e-12);
-        let wide = ImageWindow::holding([[1.0, 0.0], [2.0, 3.0]], [600, 300]);
+        let wide = ImageWindow::fitted_into([[1.0, 0.0], [2.0, 3.0]], [600, 300]);
         assert_eq!((wide.low, wide.high), ([-1.5, 0.0], [4.5, 3.0]));
         assert_eq!(wide.scale(), 100.0);
     }

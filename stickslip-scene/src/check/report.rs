@@ -128,7 +128,7 @@ pub fn report(scene: &Scene, footprint: &dyn Footprint) -> Result<Report, Proble
         steps: (scene.time.end / time_step * (1.0 - 1e-12)).ceil() as u64,
         machine: MachineSpeed::default(),
         wall_time: 0.0,
-        rules: rules::holding(scene, &boxes),
+        rules: rules::rule_reports(scene, &boxes),
         warnings: warnings(scene, &extents, &contacts),
         contacts,
         contacts_unknown,

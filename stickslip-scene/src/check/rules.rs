@@ -48,7 +48,7 @@ impl RuleReport {
 }
 
 /// The rules that hold between bodies of a scene, in its order, the default rule last.
-pub(super) fn holding(scene: &Scene, boxes: &[Bounds]) -> Vec<RuleReport> {
+pub(super) fn rule_reports(scene: &Scene, boxes: &[Bounds]) -> Vec<RuleReport> {
     let count = scene.bodies.len();
     let pairs: BTreeSet<[usize; 2]> = if count <= FEW {
         (0..count).flat_map(|a| (a + 1..count).map(move |b| [a, b])).collect()
@@ -277,7 +277,7 @@ mod tests {
                      { between = ['b', 'b'] }";
         let scene = scene(&three(), rules);
         let boxes = vec![Bounds::EVERYTHING; 3];
-        let found = holding(&scene, &boxes);
+        let found = rule_reports(&scene, &boxes);
         let said: Vec<_> =
             found.iter().map(|report| (report.pairs[0].join(" "), report.friction())).collect();
         let expected = [

@@ -98,12 +98,12 @@ impl SiteLattice {
     /// The sites inside a shape, one after the other [m]; `None` for a shape without bounds.
     pub fn sites_inside<'a>(&self, shape: &'a Shape) -> Option<impl Iterator<Item = [f64; 3]> + use<'a>> {
         let (bounds, lattice) = (shape.bounds(self.dimension)?, *self);
-        Some(self.sites_around(&bounds).filter(move |&site| lattice.holds(shape, site)))
+        Some(self.sites_around(&bounds).filter(move |&site| lattice.contains_site(shape, site)))
     }
 
     /// Whether a site is inside a shape; on the border but for round-off it is where [`Shape::contains`] says.
-    pub fn holds(&self, shape: &Shape, site: [f64; 3]) -> bool {
-        shape.holds(NudgedPoint::new(site, ROUND_OFF * self.spacing, self.dimension))
+    pub fn contains_site(&self, shape: &Shape, site: [f64; 3]) -> bool {
+        shape.contains_point(NudgedPoint::new(site, ROUND_OFF * self.spacing, self.dimension))
     }
 
     /// Every site in a box and up to one spacing around it, ordered by x, then y, then z [m].

@@ -35,11 +35,11 @@ impl Shape {
     /// Whether a point [m] is inside; faces are half-open, balls open. In the plane,
     /// a cylinder or a mesh holds no point.
     pub fn contains(&self, point: [f64; 3], dimension: usize) -> bool {
-        self.holds(NudgedPoint::new(point, 0.0, dimension))
+        self.contains_point(NudgedPoint::new(point, 0.0, dimension))
     }
 
     /// [`Shape::contains`] for a point that may lie on the border but for round-off.
-    pub(super) fn holds(&self, probe: NudgedPoint) -> bool {
+    pub(super) fn contains_point(&self, probe: NudgedPoint) -> bool {
         let NudgedPoint { point, nudged, margin, dimension } = probe;
         match self {
             Shape::Ball { center, radius } => {
@@ -60,13 +60,13 @@ impl Shape {
                     && (dimension == 2 || height[0] <= nudged[2] && nudged[2] < height[1])
             }
             Shape::Mesh(mesh) => dimension == 3 && mesh.contains(nudged),
-            Shape::Union(shapes) => shapes.iter().any(|shape| shape.holds(probe)),
-            Shape::Intersection(shapes) => shapes.iter().all(|shape| shape.holds(probe)),
+            Shape::Union(shapes) => shapes.iter().any(|shape| shape.contains_point(probe)),
+            Shape::Intersection(shapes) => shapes.iter().all(|shape| shape.contains_point(probe)),
             Shape::Difference(shapes) => shapes.split_first().is_some_and(|(first, others)| {
-                first.holds(probe) && !others.iter().any(|shape| shape.holds(probe))
+                first.contains_point(probe) && !others.iter().any(|shape| shape.contains_point(probe))
             }),
             Shape::Rotated { shape, center, axis, angle } => {
-                shape.holds(probe.turned_back(&Rotation::new(*center, *axis, *angle, dimension)))
+                shape.contains_point(probe.turned_back(&Rotation::new(*center, *axis, *angle, dimension)))
             }
         }
     }

@@ -92,7 +92,7 @@ impl<T> Serialize for Custom<T> {
 const MOST_LANES: usize = 8;
 
 /// The state of some particles, each in a lane, and then what a law says of it.
-struct State {
+struct LawState {
     deformation: [[f64; MOST_LANES]; 9],
     increment: [[f64; MOST_LANES]; 9],
     stress: [[f64; MOST_LANES]; 6],
@@ -126,8 +126,8 @@ fn collected<T: Number>(from: &[f64; MOST_LANES]) -> T {
     T::from_lanes(|lane| from[lane])
 }
 
-impl State {
-    const NONE: Self = State {
+impl LawState {
+    const NONE: Self = LawState {
         deformation: [[0.0; MOST_LANES]; 9],
         increment: [[0.0; MOST_LANES]; 9],
         stress: [[0.0; MOST_LANES]; 6],
@@ -197,7 +197,7 @@ impl<T: Number> Custom<T> {
     }
 
     #[inline(always)]
-    fn answer(&self, state: &mut State, question: Question) -> T {
+    fn answer(&self, state: &mut LawState, question: Question) -> T {
         state.ask(self.law, question, (T::SIDE_BY_SIDE, self.components()));
         collected(&state.answer)
     }
@@ -219,7 +219,7 @@ impl<T: Number> Law<T> for Custom<T> {
     #[inline(always)]
     fn respond(&self, motion: &Motion<T>, history: &[T; MOST_HISTORY]) -> Response<T, [T; MOST_HISTORY]> {
         let components = self.components();
-        let mut state = State::new(&motion.deformation, history, components);
+        let mut state = LawState::new(&motion.deformation, history, components);
         for i in 0..3 {
             for j in 0..3 {
                 spread(motion.increment.0[i][j], &mut state.increment[3 * i + j]);
@@ -244,27 +244,27 @@ impl<T: Number> Law<T> for Custom<T> {
         stress: &Symmetric<T>,
         history: &[T; MOST_HISTORY],
     ) -> T {
-        let mut state = State::new(deformation, history, self.components());
+        let mut state = LawState::new(deformation, history, self.components());
         state.put_stress(stress);
         self.answer(&mut state, Question::StrainEnergy)
     }
 
     #[inline(always)]
     fn dissipation(&self, history: &[T; MOST_HISTORY]) -> T {
-        let mut state = State::new(&Matrix::ZERO, history, self.components());
+        let mut state = LawState::new(&Matrix::ZERO, history, self.components());
         self.answer(&mut state, Question::Dissipation)
     }
 
     #[inline(always)]
     fn wave_modulus(&self, deformation: &Matrix<T>, jacobian: T, history: &[T; MOST_HISTORY]) -> T {
-        let mut state = State::new(deformation, history, self.components());
+        let mut state = LawState::new(deformation, history, self.components());
         spread(jacobian, &mut state.jacobian);
         self.answer(&mut state, Question::WaveModulus)
     }
 
     #[inline(always)]
     fn shear_modulus(&self, deformation: &Matrix<T>, jacobian: T, history: &[T; MOST_HISTORY]) -> T {
-        let mut state = State::new(deformation, history, self.components());
+        let mut state = LawState::new(deformation, history, self.components());
         spread(jacobian, &mut state.jacobian);
         self.answer(&mut state, Question::ShearModulus)
     }

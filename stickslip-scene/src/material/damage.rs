@@ -19,7 +19,7 @@
 //! runs at an angle to the grid is wider than a cell.
 
 use super::declaration::{
-    BadConstants, Bounds, Constant, Declared, ENERGY_PER_AREA, End, Given, POSITIVE, PRESSURE, RATIO,
+    BadConstants, AllowedRange, Constant, Declared, ENERGY_PER_AREA, End, Given, POSITIVE, PRESSURE, RATIO,
 };
 use super::{History, Isotropic, Law, Motion, NeoHookean, Response, elastic};
 use crate::column::Kind;
@@ -80,7 +80,7 @@ impl Declared for Damage<f64> {
         Constant::optional(
             STRENGTH_RATIO,
             "Strength in uniaxial compression over that in tension; 10 without it.",
-            (RATIO, Bounds { from: End::At(1.0), to: End::Free, because: "" }),
+            (RATIO, AllowedRange { from: End::At(1.0), to: End::Free, because: "" }),
             10.0,
         ),
     ]);

@@ -73,14 +73,14 @@ pub struct Quantity {
     /// What it is called in error messages about a pair.
     pub name: &'static str,
     /// Its unit.
-    pub unit: Unit,
+    pub unit: ConstantUnit,
     /// What it may be.
-    pub bounds: Bounds,
+    pub bounds: AllowedRange,
 }
 
 /// A unit.
 #[derive(Clone, Copy, Debug)]
-pub struct Unit {
+pub struct ConstantUnit {
     /// Powers of kilogram, metre and second.
     pub powers: [i8; 3],
     /// As it is written after a number; empty where there is none.
@@ -88,17 +88,17 @@ pub struct Unit {
 }
 
 /// Of a number without unit.
-pub const RATIO: Unit = Unit { powers: [0, 0, 0], symbol: "" };
+pub const RATIO: ConstantUnit = ConstantUnit { powers: [0, 0, 0], symbol: "" };
 /// Of a pressure or a modulus.
-pub const PRESSURE: Unit = Unit { powers: [1, -1, -2], symbol: "Pa" };
+pub const PRESSURE: ConstantUnit = ConstantUnit { powers: [1, -1, -2], symbol: "Pa" };
 /// Of a time.
-pub const TIME: Unit = Unit { powers: [0, 0, 1], symbol: "s" };
+pub const TIME: ConstantUnit = ConstantUnit { powers: [0, 0, 1], symbol: "s" };
 /// Of an energy per area.
-pub const ENERGY_PER_AREA: Unit = Unit { powers: [1, 0, -2], symbol: "J/m^2" };
+pub const ENERGY_PER_AREA: ConstantUnit = ConstantUnit { powers: [1, 0, -2], symbol: "J/m^2" };
 
 /// What a number may be; it is always finite.
 #[derive(Clone, Copy, Debug)]
-pub struct Bounds {
+pub struct AllowedRange {
     /// Its lower end.
     pub from: End,
     /// Its upper end.
@@ -119,19 +119,19 @@ pub enum End {
 }
 
 /// Above zero.
-pub const POSITIVE: Bounds = Bounds { from: End::Beyond(0.0), to: End::Free, because: "" };
+pub const POSITIVE: AllowedRange = AllowedRange { from: End::Beyond(0.0), to: End::Free, because: "" };
 /// Zero or above.
-pub const NOT_NEGATIVE: Bounds = Bounds { from: End::At(0.0), to: End::Free, because: "" };
+pub const NOT_NEGATIVE: AllowedRange = AllowedRange { from: End::At(0.0), to: End::Free, because: "" };
 
-impl Bounds {
+impl AllowedRange {
     /// Between two numbers, neither of which is allowed.
     pub const fn between(from: f64, to: f64) -> Self {
-        Bounds { from: End::Beyond(from), to: End::Beyond(to), because: "" }
+        AllowedRange { from: End::Beyond(from), to: End::Beyond(to), because: "" }
     }
 
     /// The same with a reason.
     pub const fn because(self, because: &'static str) -> Self {
-        Bounds { because, ..self }
+        AllowedRange { because, ..self }
     }
 
     fn hold(&self, value: f64) -> bool {
@@ -150,7 +150,7 @@ impl Bounds {
 }
 
 /// `a positive number`, `at least 0`, `above -1 and below 0.5, else the material is not stable`
-impl std::fmt::Display for Bounds {
+impl std::fmt::Display for AllowedRange {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let from = match self.from {
             End::Free => None,
@@ -185,7 +185,7 @@ impl Constant {
     pub const fn required(
         name: &'static str,
         summary: &'static str,
-        (unit, bounds): (Unit, Bounds),
+        (unit, bounds): (ConstantUnit, AllowedRange),
         example: &'static str,
     ) -> Self {
         let form = Form::Number(Quantity { name, unit, bounds });
@@ -196,7 +196,7 @@ impl Constant {
     pub const fn optional(
         name: &'static str,
         summary: &'static str,
-        (unit, bounds): (Unit, Bounds),
+        (unit, bounds): (ConstantUnit, AllowedRange),
         default: f64,
     ) -> Self {
         let form = Form::Number(Quantity { name, unit, bounds });
@@ -342,7 +342,7 @@ mod tests {
 
     #[test]
     fn bounds_say_what_they_are() {
-        let stable = Bounds::between(-1.0, 0.5).because(", else the material is not stable");
+        let stable = AllowedRange::between(-1.0, 0.5).because(", else the material is not stable");
         assert_eq!(stable.to_string(), "above -1 and below 0.5, else the material is not stable");
         assert_eq!(POSITIVE.to_string(), "a positive number");
         assert_eq!(NOT_NEGATIVE.to_string(), "at least 0");

@@ -1,8 +1,8 @@
 //! Isotropic linear elasticity: any two of its constants give the others.
 
 use super::declaration::{
-    Absent, BadConstants, Bounds, Constant, Form, Given, NOT_NEGATIVE, POSITIVE, PRESSURE, Quantity, RATIO,
-    Unit,
+    Absent, AllowedRange, BadConstants, Constant, ConstantUnit, Form, Given, NOT_NEGATIVE, POSITIVE,
+    PRESSURE, Quantity, RATIO,
 };
 use serde::Serialize;
 
@@ -15,9 +15,13 @@ pub(super) const CONSTANTS: [Constant; 5] = [
     modulus("p_wave_modulus", "Modulus of a longitudinal wave M = K + 4G/3.", (PRESSURE, POSITIVE)),
 ];
 
-const STABLE: Bounds = Bounds::between(-1.0, 0.5).because(", else the material is not stable");
+const STABLE: AllowedRange = AllowedRange::between(-1.0, 0.5).because(", else the material is not stable");
 
-const fn modulus(name: &'static str, summary: &'static str, (unit, bounds): (Unit, Bounds)) -> Constant {
+const fn modulus(
+    name: &'static str,
+    summary: &'static str,
+    (unit, bounds): (ConstantUnit, AllowedRange),
+) -> Constant {
     Constant { name, summary, form: Form::Number(Quantity { name, unit, bounds }), absent: Absent::Judged }
 }
 

@@ -12,7 +12,8 @@ mod plane_stress;
 
 pub use custom::{Custom, CustomLaw};
 pub use declaration::{
-    Absent, BadConstants, Bounds, Constant, Declared, Description, End, Form, Given, Quantity, Unit,
+    Absent, AllowedRange, BadConstants, Constant, ConstantUnit, Declared, Description, End, Form, Given,
+    Quantity,
 };
 pub use elastic::Isotropic;
 pub use history::{AtRest, Entries, History, Keep, MOST_HISTORY, Recall, history_entries};
@@ -21,7 +22,7 @@ pub use plane_stress::Thickness;
 use crate::tensor::{Matrix, Number, Real, Symmetric};
 use serde::Serialize;
 
-/// The list of laws, each by its file and its type, becomes the modules, [`Material`], [`SHELF`] and `of_law!`, which
+/// The list of laws, each by its file and its type, becomes the modules, [`Material`], [`LAWS`] and `of_law!`, which
 /// does one thing with whichever law a material has.
 macro_rules! laws {
     ($d:tt $($file:ident $law:ident;)*) => {
@@ -37,7 +38,7 @@ macro_rules! laws {
         }
 
         /// Every law that a scene file can name.
-        pub const SHELF: &[Description] = &[$(Description {
+        pub const LAWS: &[Description] = &[$(Description {
             name: stringify!($file),
             summary: <$law<f64> as Declared>::SUMMARY,
             constants: <$law<f64> as Declared>::CONSTANTS,
@@ -192,7 +193,7 @@ impl Material<f64> {
         if let Material::Custom(_) = self {
             return Ok(());
         }
-        let law = SHELF.iter().find(|law| law.name == self.name()).expect("the shelf has every law");
+        let law = LAWS.iter().find(|law| law.name == self.name()).expect("the list has every law");
         law.build(&self.given()).map(|_| ())
     }
 

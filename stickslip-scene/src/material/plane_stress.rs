@@ -29,7 +29,7 @@ const MOST_TRIALS: usize = 300;
 
 /// A stretch with its stress out of the plane.
 #[derive(Clone, Copy)]
-struct Trial<T> {
+struct TrialStretch<T> {
     /// a [-]
     stretch: T,
     /// sigma_zz [Pa]
@@ -57,12 +57,12 @@ pub(super) fn with_free_thickness<T: Real, L: Law<T>>(
     let increment = &motion.increment.0;
     let guess = one - (one - two * shear / waves) * (increment[0][0] + increment[1][1] - two);
     let mut stretch = guess.max(T::HALF).min(two);
-    let (mut before, mut too_thin, mut too_thick): (Option<Trial<T>>, Option<T>, Option<T>) =
+    let (mut before, mut too_thin, mut too_thick): (Option<TrialStretch<T>>, Option<T>, Option<T>) =
         (None, None, None);
     for count in 1..=MOST_TRIALS {
         let trial = stretched(motion, stretch);
         let response = law.respond(&trial, history);
-        let now = Trial { stretch, stress: response.stress.0[2] };
+        let now = TrialStretch { stretch, stress: response.stress.0[2] };
         if !now.stress.is_finite() {
             return None;
         }
@@ -100,7 +100,7 @@ fn stretched<T: Real>(motion: &Motion<T>, stretch: T) -> Motion<T> {
     motion
 }
 
-fn secant<T: Real>(a: Trial<T>, b: Trial<T>) -> T {
+fn secant<T: Real>(a: TrialStretch<T>, b: TrialStretch<T>) -> T {
     b.stretch - b.stress * ((b.stretch - a.stretch) / (b.stress - a.stress))
 }
 

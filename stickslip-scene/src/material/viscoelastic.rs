@@ -25,7 +25,7 @@
 //! goes to the limit. Volume strain is elastic.
 
 use super::declaration::{
-    Absent, BadConstants, Bounds, Constant, Declared, Form, Given, POSITIVE, Quantity, RATIO, TIME,
+    Absent, BadConstants, AllowedRange, Constant, Declared, Form, Given, POSITIVE, Quantity, RATIO, TIME,
 };
 use super::history::{put_symmetric, symmetric};
 use super::{History, Isotropic, Law, Motion, Response, elastic};
@@ -106,7 +106,7 @@ impl Declared for Viscoelastic<f64> {
         summary: "What of the shear modulus relaxes and how fast: pairs of share g and time tau, such as [[0.5, \"10 ms\"]].",
         form: Form::Pairs(
             [
-                Quantity { name: "share", unit: RATIO, bounds: Bounds::between(0.0, 1.0) },
+                Quantity { name: "share", unit: RATIO, bounds: AllowedRange::between(0.0, 1.0) },
                 Quantity { name: "time", unit: TIME, bounds: POSITIVE },
             ],
             MOST_TERMS,
@@ -268,7 +268,7 @@ impl<T: Number> Law<T> for Viscoelastic<T> {
 mod tests {
     use super::*;
     use crate::material::tests::{follow, hooke, motion_of, rotation, sample_gradients};
-    use crate::material::{Entries, Material, NeoHookean, SHELF, Thickness};
+    use crate::material::{Entries, Material, NeoHookean, LAWS, Thickness};
 
     const ELASTIC: Isotropic<f64> = Isotropic { bulk_modulus: 6.0, shear_modulus: 3.0 };
     const PAIRS: [[f64; 2]; 2] = [[0.5, 0.3], [0.2, 2.0]];
@@ -417,7 +417,7 @@ mod tests {
 
     #[test]
     fn constants_that_make_no_material_are_refused() {
-        let description = SHELF.iter().find(|law| law.name == "viscoelastic").expect("a law of the shelf");
+        let description = LAWS.iter().find(|law| law.name == "viscoelastic").expect("a law of the list");
         let with = |pairs: &[f64]| {
             let mut given = ELASTIC.given();
             given.put(PRONY, pairs.to_vec());

@@ -138,7 +138,7 @@ impl<T: Number> Law<T> for VonMises<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::material::SHELF;
+    use crate::material::LAWS;
     use crate::material::tests::{follow, motion_of, rotation, sample_gradients};
 
     const LAW: VonMises<f64> = VonMises {
@@ -236,7 +236,7 @@ mod tests {
 
     #[test]
     fn constants_that_make_no_material_are_refused() {
-        let law = SHELF.iter().find(|law| law.name == "von_mises").expect("a law of the shelf");
+        let law = LAWS.iter().find(|law| law.name == "von_mises").expect("a law of the list");
         let elastic = || Given::from([("bulk_modulus", 6.0), ("shear_modulus", 3.0)]);
         let with = |more: &[(&str, f64)]| {
             law.build(&more.iter().fold(elastic(), |given, &(name, value)| given.with(name, value)))

@@ -10,7 +10,7 @@ use super::{
     StressUpdate, Time, Transfer,
 };
 use crate::geometry::{Arrangement, Shape};
-use crate::material::SHELF;
+use crate::material::LAWS;
 
 /// Rows of tables in a run.
 const ROWS: f64 = 200.0;
@@ -128,8 +128,8 @@ impl NamedMaterial {
             let key = format!("materials.{name}{key}");
             Problem { key, found, allowed, help: None }
         };
-        let Some(description) = SHELF.iter().find(|description| description.name == law) else {
-            let laws: Vec<&str> = SHELF.iter().map(|description| description.name).collect();
+        let Some(description) = LAWS.iter().find(|description| description.name == law) else {
+            let laws: Vec<&str> = LAWS.iter().map(|description| description.name).collect();
             return Err(problem("", format!("no law `{law}`"), laws.join(", ")));
         };
         let names: Vec<&str> = description.constants.iter().map(|constant| constant.name).collect();

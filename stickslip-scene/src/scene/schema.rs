@@ -41,7 +41,7 @@ fn as_toml(schema: &mut Schema) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::material::SHELF;
+    use crate::material::LAWS;
 
     /// Does the value satisfy the schema? Knows the keywords that [`schema`] uses, and no others.
     fn satisfies(value: &Value, schema: &Value, root: &Value) -> bool {
@@ -126,7 +126,7 @@ mod tests {
     fn every_law_and_constant_is_in_the_schema() {
         let schema = schema();
         let table = schema.pointer("/$defs/Materials/additionalProperties/properties").unwrap();
-        for law in SHELF {
+        for law in LAWS {
             let constants = &table[law.name]["properties"];
             assert!(law.constants.iter().all(|constant| constants[constant.name]["description"].is_string()));
         }

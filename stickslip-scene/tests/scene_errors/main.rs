@@ -11,7 +11,7 @@ mod parameters;
 mod places;
 mod values;
 
-use stickslip_scene::material::SHELF;
+use stickslip_scene::material::LAWS;
 use stickslip_scene::scene;
 
 const MINIMAL: &str = include_str!("../scenes/minimal.toml");
@@ -38,7 +38,7 @@ fn edited(text: &str, from: &str, to: &str) -> String {
 }
 
 fn check(text: &str, cases: &[(&str, &str, &str)]) {
-    let laws = SHELF.iter().map(|law| law.name).collect::<Vec<_>>().join(", ");
+    let laws = LAWS.iter().map(|law| law.name).collect::<Vec<_>>().join(", ");
     let wrong: Vec<String> = cases
         .iter()
         .filter_map(|(from, to, expected)| {

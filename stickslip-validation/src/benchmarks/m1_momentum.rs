@@ -1,6 +1,6 @@
 //! M1: contact of any number of bodies at a node keeps momentum.
 
-use super::meeting::{BODIES, meet};
+use super::bodies_at_node::{BODIES, meet};
 use super::reasons::OWN_NORMALS;
 use crate::benchmark::{Allowed, Benchmark, Case, Laws, Resolution, Target};
 use crate::failure::CaseFailure;

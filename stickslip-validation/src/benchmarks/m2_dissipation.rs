@@ -1,6 +1,6 @@
 //! M2: contact gives no node energy.
 
-use super::meeting::{BODIES, BodyAtNode, meet};
+use super::bodies_at_node::{BODIES, BodyAtNode, meet};
 use super::reasons::OWN_NORMALS;
 use crate::benchmark::{Allowed, Benchmark, Case, Laws, Resolution, Target};
 use crate::failure::CaseFailure;

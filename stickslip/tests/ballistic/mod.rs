@@ -4,7 +4,7 @@ use stickslip::door::{
     BodyState, ContactPatch, ContactSum, GridSnapshot, Ledger, ParticleSnapshot, Simulation, StepError, View,
 };
 use stickslip::geometry::{Arrangement, Shape};
-use stickslip::material::SHELF;
+use stickslip::material::LAWS;
 use stickslip::scene::*;
 
 const GRAVITY: f64 = 9.81;
@@ -200,7 +200,7 @@ impl Simulation for Ballistic {
 /// The scene that [`Ballistic`] is the simulation of: one second, tables every 0.1 s, particles every 0.25 s,
 /// grid every 0.5 s.
 pub fn scene() -> Scene {
-    let law = SHELF[0].build(&[("bulk_modulus", 6e6), ("shear_modulus", 3e6)].into()).unwrap();
+    let law = LAWS[0].build(&[("bulk_modulus", 6e6), ("shear_modulus", 3e6)].into()).unwrap();
     let body = |name: &str| Body {
         name: name.into(),
         material: 0,

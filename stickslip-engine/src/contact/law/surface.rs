@@ -14,7 +14,7 @@
 
 use super::{NearParticle, PairLaw};
 use crate::body::Body;
-use crate::contact::{BodyShare, Change, Facing, LawInputs, Pair, Span, Use};
+use crate::contact::{BodyShare, Change, ContactUse, Facing, LawInputs, Pair, Span};
 use crate::tensor::{Real, Vector};
 
 /// Contact of carried surfaces.
@@ -69,14 +69,14 @@ impl<T: Real, const D: usize> PairLaw<T, D> for Surface {
         let normal = |u: Vector<T, D>| m * (u.dot(n) - u.dot(n).max(T::ZERO).min(closing));
         let across = |u: Vector<T, D>| u - n * u.dot(n);
         match pair.step.purpose {
-            Use::Motion => {
+            ContactUse::VelocityChange => {
                 let slip = across(u);
                 let Some((normal, load)) = friction.borne(normal(u), pair) else { return Change::NONE };
                 pair.exchange(-normal, -slip * (m * friction.stopped(slip.norm(), load)), n)
             }
             // The sum is judged later.
-            Use::Start => Change::NONE,
-            Use::Strain => {
+            ContactUse::Start => Change::NONE,
+            ContactUse::Strain => {
                 let [a, b] = pair.surfaces;
                 let ahead = u + (a.force * a.inverse_mass - b.force * b.inverse_mass) * pair.step.duration;
                 let wanted = normal(ahead);
@@ -125,12 +125,12 @@ mod tests {
     use crate::scene::{ContactLaw, Normal};
 
     /// Masses 1 and 3, so m* = 3/4; the first flies down at the second, one cell of 1 m a step of 1 s.
-    fn impulse(gap: f64, purpose: Use, force: f64, velocity: [f64; 2]) -> [f64; 2] {
+    fn impulse(gap: f64, purpose: ContactUse, force: f64, velocity: [f64; 2]) -> [f64; 2] {
         bonded(0.0, gap, purpose, force, velocity)
     }
 
     /// The same where an area of 1 m adheres.
-    fn bonded(adhesion: f64, gap: f64, purpose: Use, force: f64, velocity: [f64; 2]) -> [f64; 2] {
+    fn bonded(adhesion: f64, gap: f64, purpose: ContactUse, force: f64, velocity: [f64; 2]) -> [f64; 2] {
         let mut rule = rule(ContactLaw::Surface, Normal::Common, 0.5);
         rule.friction.adhesion = adhesion;
         let surfaces = [
@@ -150,10 +150,10 @@ mod tests {
 
     #[test]
     fn bodies_close_their_gap_and_no_more_and_never_pull() {
-        assert_eq!(impulse(0.5, Use::Motion, 0.0, [0.0, -0.4]), [0.0, 0.0]);
-        assert_eq!(impulse(0.5, Use::Motion, 0.0, [0.0, -0.9]), [0.0, 0.75 * 0.4]);
-        assert_eq!(impulse(-0.5, Use::Motion, 0.0, [0.0, -0.4]), [0.0, 0.75 * 0.4]);
-        assert_eq!(impulse(-0.5, Use::Motion, 0.0, [0.0, 0.4]), [0.0, 0.0]);
+        assert_eq!(impulse(0.5, ContactUse::VelocityChange, 0.0, [0.0, -0.4]), [0.0, 0.0]);
+        assert_eq!(impulse(0.5, ContactUse::VelocityChange, 0.0, [0.0, -0.9]), [0.0, 0.75 * 0.4]);
+        assert_eq!(impulse(-0.5, ContactUse::VelocityChange, 0.0, [0.0, -0.4]), [0.0, 0.75 * 0.4]);
+        assert_eq!(impulse(-0.5, ContactUse::VelocityChange, 0.0, [0.0, 0.4]), [0.0, 0.0]);
     }
 
     /// A bond stops surfaces that part, up to its strength, within a hundredth of a cell; it does not draw them
@@ -161,25 +161,37 @@ mod tests {
     #[test]
     fn a_bond_holds_what_it_bears_and_draws_nothing() {
         let bonded = |gap, purpose, speed| bonded(0.3, gap, purpose, 0.0, [0.0, speed])[1];
-        assert_eq!((bonded(0.0, Use::Motion, 0.25), bonded(0.0, Use::Motion, 2.0)), (-0.75 * 0.25, -0.3));
-        assert_eq!((bonded(0.009, Use::Motion, 0.0), bonded(0.009, Use::Motion, -0.005)), (0.0, 0.0));
-        assert_eq!(bonded(0.011, Use::Motion, 0.25), 0.0);
-        assert_eq!((bonded(0.0, Use::Strain, 0.25), bonded(0.0, Use::Strain, 2.0)), (-0.75 * 0.25, 0.0));
+        assert_eq!(
+            (bonded(0.0, ContactUse::VelocityChange, 0.25), bonded(0.0, ContactUse::VelocityChange, 2.0)),
+            (-0.75 * 0.25, -0.3)
+        );
+        assert_eq!(
+            (
+                bonded(0.009, ContactUse::VelocityChange, 0.0),
+                bonded(0.009, ContactUse::VelocityChange, -0.005)
+            ),
+            (0.0, 0.0)
+        );
+        assert_eq!(bonded(0.011, ContactUse::VelocityChange, 0.25), 0.0);
+        assert_eq!(
+            (bonded(0.0, ContactUse::Strain, 0.25), bonded(0.0, ContactUse::Strain, 2.0)),
+            (-0.75 * 0.25, 0.0)
+        );
     }
 
     #[test]
     fn friction_stops_the_slip_up_to_its_coefficient() {
-        assert_eq!(impulse(0.0, Use::Motion, 0.0, [0.25, -1.0]), [-0.75 * 0.25, 0.75]);
-        assert_eq!(impulse(0.0, Use::Motion, 0.0, [-2.0, -1.0]), [0.75 * 0.5, 0.75]);
+        assert_eq!(impulse(0.0, ContactUse::VelocityChange, 0.0, [0.25, -1.0]), [-0.75 * 0.25, 0.75]);
+        assert_eq!(impulse(0.0, ContactUse::VelocityChange, 0.0, [-2.0, -1.0]), [0.75 * 0.5, 0.75]);
     }
 
     /// The stress pushes the first body against the second: they strain together even while they part,
     /// and stick if they can.
     #[test]
     fn bodies_that_press_strain_with_one_normal_velocity() {
-        assert_eq!(impulse(0.0, Use::Strain, -1.0, [0.25, 0.5]), [-0.75 * 0.25, -0.75 * 0.5]);
-        assert_eq!(impulse(0.0, Use::Strain, -1.0, [2.0, 0.5]), [0.0, -0.75 * 0.5]);
-        assert_eq!(impulse(0.0, Use::Strain, 0.0, [0.25, 0.5]), [0.0, 0.0]);
+        assert_eq!(impulse(0.0, ContactUse::Strain, -1.0, [0.25, 0.5]), [-0.75 * 0.25, -0.75 * 0.5]);
+        assert_eq!(impulse(0.0, ContactUse::Strain, -1.0, [2.0, 0.5]), [0.0, -0.75 * 0.5]);
+        assert_eq!(impulse(0.0, ContactUse::Strain, 0.0, [0.25, 0.5]), [0.0, 0.0]);
     }
 
     #[test]

@@ -47,8 +47,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
             let r = (position[i] - seen.origin[i]) * seen.per_cell - V::splat(T::of(f64::from(cell[i])));
             shapes[i] = B::shape(r, half);
             // The node sees a particle move away as the particle sees the node move: grad at the node = -grad S(x_p).
-            for rise in &mut shapes[i].rise {
-                *rise *= seen.per_cell * -seen.sign[i];
+            for difference in &mut shapes[i].difference {
+                *difference *= seen.per_cell * -seen.sign[i];
             }
         }
         let volume: V = members.load(ColumnStart::<D>::VOLUME);

@@ -11,8 +11,8 @@ use crate::particles::ColumnStart;
 use crate::step::pass::{FaultKind, Pass, Verbs, Visit};
 use crate::tensor::{Matrix, Real, Symmetric, Vector};
 use crate::transfer::{
-    Group, Momentum, ScatterTerms, Share, Start, Surroundings, TransferRule, VelocityState, has_spin,
-    of_particles,
+    Group, Momentum, ScatterTerms, Share, Start, TransferRule, VelocityState, has_spin, is_affine,
+    of_transfer,
 };
 
 /// What all particles of a tile have in common.
@@ -85,9 +85,15 @@ pub fn group<
     let mut damped = V::ZERO;
     let rotates = has_spin(transfer);
     let gives_momentum = scatter.is_some_and(|share| share != Share::Force);
+    // G2P: sum S_i u_i, in the place of v_p, or sum S_i dv_i with its moments.
+    let (mut moments, mut change) = (Matrix::ZERO, Vector::ZERO);
+    if update_velocity && rotates {
+        (moments, change) = group.moments(&visit.window.change);
+    } else if update_velocity || smooth {
+        change = group.interpolate(if smooth { &visit.window.integrated } else { &visit.window.change });
+    }
     if smooth {
-        // G2P: u = sum S_i u_i, in the place of v_p.
-        state.velocity = group.interpolate(&visit.window.integrated);
+        state.velocity = change;
     } else if update_velocity || advect || gives_momentum {
         state.velocity = members.vector::<V>(ColumnStart::<D>::VELOCITY);
     }
@@ -97,23 +103,17 @@ pub fn group<
     if !smooth && (update_velocity || gives_momentum) {
         state.strain_rate = members.strain_rate::<V>();
     }
-    // G2P: v_p += sum S_i (v_i - v_i^0), or what else the transfer takes.
+    // v_p += sum S_i dv_i, or what else the transfer takes.
     if update_velocity {
-        let around = Surroundings {
-            group: &group,
-            window: visit.window,
-            cell: constants.cell,
-            per_cell: constants.per_cell,
-            gyration,
-        };
-        of_particles!(transfer, Rule => {
-            Rule::take_change(&around, &mut state);
-            if pic > T::ZERO {
-                let before = kinetic::<V, D, Rule>(&state, gyration);
-                Rule::take_share(&around, &mut state, V::splat(pic));
-                damped = before - kinetic::<V, D, Rule>(&state, gyration);
-            }
-        });
+        let scale = constants.cell / gyration;
+        of_transfer!(transfer, Rule => Rule::take_change(&mut state, change, (&moments, scale)));
+        if pic > T::ZERO {
+            let before = kinetic(&state, gyration);
+            let (gradient, mean) = group.gradient(&visit.window.integrated, is_affine(transfer));
+            let around = (mean, &(gradient * constants.per_cell));
+            of_transfer!(transfer, Rule => Rule::take_share(&mut state, around, V::splat(pic)));
+            damped = before - kinetic(&state, gyration);
+        }
         let VelocityState { velocity, spin, strain_rate } = &state;
         sound.require(finite(&spin.0) & finite(&velocity.0) & finite(&strain_rate.0), FaultKind::NotFinite);
     }
@@ -140,7 +140,7 @@ pub fn group<
         if rotates {
             let spin = state.spin;
             let gradient = gradient * constants.per_cell;
-            state.spin = of_particles!(transfer, Rule => Rule::settle::<V, D>(spin, &gradient, V::splat(dt)));
+            state.spin = of_transfer!(transfer, Rule => Rule::settle::<V, D>(spin, &gradient, V::splat(dt)));
             damped += gyration * spin.dot(spin) - gyration * state.spin.dot(state.spin);
             sound.require(finite(&state.spin.0), FaultKind::NotFinite);
         }
@@ -250,7 +250,7 @@ pub fn group<
         if gives_momentum {
             let mass = members.load::<V>(ColumnStart::<D>::MASS);
             let half_step = V::splat(T::HALF * dt);
-            let gradient = of_particles!(transfer, Rule => Rule::gradient::<V, D>(&state, half_step));
+            let gradient = of_transfer!(transfer, Rule => Rule::gradient::<V, D>(&state, half_step));
             load.momentum = Some(Momentum {
                 own: state.velocity * mass,
                 per_cell: gradient * (mass * constants.cell),
@@ -296,9 +296,9 @@ impl Sound {
 
 /// v^2 + k^2 w^2 + k^2/2 |E|^2, with the square of the radius of gyration and the rate of strain that its transfer keeps.
 #[inline(always)]
-fn kinetic<V: Lanes, const D: usize, R: TransferRule>(state: &VelocityState<V, D>, gyration: V) -> V {
-    let VelocityState { velocity, spin, .. } = state;
-    let strains = V::HALF * R::strains(state);
+fn kinetic<V: Lanes, const D: usize>(state: &VelocityState<V, D>, gyration: V) -> V {
+    let VelocityState { velocity, spin, strain_rate } = state;
+    let strains = V::HALF * strain_rate.double_dot(strain_rate);
     gyration.times_plus(spin.dot(*spin) + strains, velocity.dot(*velocity))
 }
 

@@ -21,10 +21,10 @@ use triangle::{Feature, closest};
 
 /// A closed surface of triangles, whose corners go round counterclockwise where they are seen from outside.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Mesh(Arc<Parts>);
+pub struct Mesh(Arc<MeshParts>);
 
 #[derive(Debug, PartialEq)]
-struct Parts {
+struct MeshParts {
     /// Where it came from, for records.
     name: String,
     /// [m]
@@ -95,7 +95,7 @@ impl Mesh {
         let around =
             |triangle: &[u32; 3]| Bounds::around(triangle.iter().map(|&corner| corners[corner as usize]));
         let boxes: Vec<_> = triangles.iter().map(around).collect();
-        let parts = Parts {
+        let parts = MeshParts {
             name: name.to_string(),
             triangles: full.collect(),
             corner_normals: corner_normals.into_iter().map(|normal| normal.0).collect(),

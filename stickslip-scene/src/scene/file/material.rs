@@ -1,9 +1,9 @@
-//! `[materials.NAME]`: density and a law from the shelf with its constants.
+//! `[materials.NAME]`: density and a law from the list with its constants.
 
 use super::Context;
 use super::quantity::{Density, QuantityInput, evaluate};
 use super::read::{Read, check_keys, field, unknown_key};
-use crate::material::{Constant, Description, Form, Given, Quantity as Wanted, SHELF};
+use crate::material::{Constant, Description, Form, Given, LAWS, Quantity as Wanted};
 use crate::scene::error::Fault;
 use crate::scene::parameters::TimeDependence;
 use crate::scene::source::{DocumentNode, Value};
@@ -24,7 +24,7 @@ impl Materials {
 
 /// One material: its density and exactly one law.
 fn material(node: &DocumentNode, context: &Context) -> Result<NamedMaterial, Fault> {
-    let laws: Vec<&str> = SHELF.iter().map(|law| law.name).collect();
+    let laws: Vec<&str> = LAWS.iter().map(|law| law.name).collect();
     let keys: Vec<&str> = std::iter::once("density").chain(laws.iter().copied()).collect();
     if node.name == "any" {
         return Err(Fault::new(&node.key, "the name `any`, which matches every body", "another name"));
@@ -34,7 +34,7 @@ fn material(node: &DocumentNode, context: &Context) -> Result<NamedMaterial, Fau
     let mut named = node
         .children()
         .iter()
-        .filter_map(|child| Some((child, SHELF.iter().find(|law| law.name == child.name)?)));
+        .filter_map(|child| Some((child, LAWS.iter().find(|law| law.name == child.name)?)));
     let Some((table, law)) = named.next() else {
         let example = "neo_hookean = { bulk_modulus = \"6 MPa\", shear_modulus = \"3 MPa\" }";
         let allowed = format!("a law ({}), like {example}", laws.join(", "));
@@ -149,7 +149,7 @@ impl JsonSchema for Materials {
         let mut density = QuantityInput::<Density>::json_schema(generator);
         density.insert("description".into(), "Mass per undeformed volume [kg/m^3].".into());
         properties.insert("density".into(), density.into());
-        for law in SHELF {
+        for law in LAWS {
             let constants: serde_json::Map<_, _> = law
                 .constants
                 .iter()
@@ -163,7 +163,7 @@ impl JsonSchema for Materials {
             });
             properties.insert(law.name.into(), table.into());
         }
-        let one: Vec<Schema> = SHELF.iter().map(|law| json_schema!({ "required": [law.name] })).collect();
+        let one: Vec<Schema> = LAWS.iter().map(|law| json_schema!({ "required": [law.name] })).collect();
         json_schema!({
             "type": "object",
             "minProperties": 1,

@@ -1,17 +1,14 @@
-//! The engine behind its door: what others may see of it, and the step that they may ask for.
+//! What others may see of the engine.
 
 use super::Engine;
 use super::relax::RelaxationProgress;
-use super::state::Workspace;
 use crate::basis::Basis;
 use crate::body::{Body, Totals};
-use crate::boundary::Boundary;
 use crate::column::{ColumnDescription, Kind};
 use crate::contact::Span;
 use crate::door::{
     BodyState, ColumnRef, ColumnSource, ContactPatch, ContactSum, GridSnapshot, Ledger, NoColumn,
-    ParticleSnapshot, ParticleView, RelaxationState, Simulation, SnapshotColumn, StepError, TracedParticle,
-    View,
+    ParticleSnapshot, ParticleView, RelaxationState, SnapshotColumn, TracedParticle, View,
 };
 use crate::grid::{node_at, nodes_per_block};
 use crate::lanes::Laned;
@@ -258,7 +255,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> View for Engine<T, D, B> {
             for local in 0..n {
                 let node = &self.workspace.field.nodes[slot * n + local];
                 let place = node_at(block, local);
-                if node.mass > T::ZERO && !self.workspace.boundary.mirrors(place) {
+                if node.mass > T::ZERO && !self.workspace.boundary.is_mirrored(place) {
                     snapshot.body.push(body);
                     snapshot.position.push(self.settings.lattice.position(place).space());
                     snapshot.mass.push(node.mass.f64());
@@ -273,28 +270,5 @@ impl<T: Laned, const D: usize, B: Basis<T>> View for Engine<T, D, B> {
 
     fn timings(&self) -> Vec<(&'static str, f64)> {
         self.watch.seconds()
-    }
-}
-
-impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
-    fn step(&mut self, longest: f64) -> Result<f64, StepError> {
-        *self.workspace.totals.get_mut().unwrap_or_else(PoisonError::into_inner) = None;
-        let dt = self.stable().min(longest);
-        for motion in self.state.bodies.iter_mut().filter_map(|body| body.motion.as_mut()) {
-            motion.set_time(self.state.time + 0.5 * dt);
-        }
-        // One of the pool's threads takes the whole step: handing it every loop from outside would cost more than many
-        // a loop.
-        rayon::scope(|_| self.advance(T::of(dt)))?;
-        self.count_disorder();
-        self.relax();
-        self.state.time += dt;
-        self.state.steps += 1;
-        Ok(dt)
-    }
-
-    fn rebuild_workspace(&mut self) {
-        let walls = std::mem::take(&mut self.workspace.boundary.walls);
-        self.workspace = Workspace::new(Boundary::new(walls));
     }
 }

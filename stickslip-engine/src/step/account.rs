@@ -1,0 +1,177 @@
+//! The verb that books what a step did: contact, the work of friction and of damping, and what forces lack to balance.
+
+use super::Engine;
+use super::state::Workspace;
+use crate::basis::Basis;
+use crate::body::Body;
+use crate::contact::{Change, Span};
+use crate::grid::{Node, next_of, node_at, nodes_per_block};
+use crate::lanes::Laned;
+use crate::scene::{ContactLaw, StressUpdate};
+use crate::tensor::{Real, Vector};
+use crate::threads::each;
+use std::time::Instant;
+
+/// Blocks that a thread takes at a time.
+const BLOCKS: usize = 16;
+
+/// Sums over nodes: unbalanced force, force of the stress and other forces [N], kinetic energy at the step's start and
+/// what damping took [J].
+pub(super) type NodeTotals = [f64; 5];
+
+impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
+    /// Books what the step did, and measures how far from balance its forces are. Nothing of it changes the step.
+    ///
+    /// Works are force times the mean of u^0 and u^1, the velocities interpolated before and after. Where the step does
+    /// not interpolate a second time, u^1 is the node's own new velocity for damping, and u^0 for friction.
+    pub(super) fn account(&mut self, dt: T) {
+        self.book_contact(dt);
+        let damps = self.settings.damping.acts();
+        if damps || self.settings.time.relax.is_some() {
+            let start = Instant::now();
+            let twice = self.interpolates_twice();
+            let [unbalanced, internal, external, kinetic, damped] = self.workspace.sum_over_nodes(
+                &self.state.bodies,
+                |Workspace { boundary, .. }, place, node| {
+                    let (node, impulse) = node;
+                    let [unbalanced, internal, external] =
+                        balance(node, impulse, dt, boundary.is_fixed(place));
+                    let kinetic = 0.5 * (node.start.dot(node.start) * node.mass).f64();
+                    [unbalanced, internal, external, kinetic, damping_work(node, impulse, twice)]
+                },
+            );
+            self.state.damping += damped;
+            self.state.relaxation.take([unbalanced, internal, external], kinetic);
+            self.watch.lap("accounts", start);
+        }
+    }
+
+    fn interpolates_twice(&self) -> bool {
+        self.settings.time.stress_update == StressUpdate::ModifiedLast
+    }
+
+    /// Books what contact did: impulses by pair of bodies, and the work of friction.
+    fn book_contact(&mut self, dt: T) {
+        let start = Instant::now();
+        let Workspace { impulses: [first, second, _], boundary, .. } = &self.workspace;
+        let place = (&self.settings.lattice, boundary);
+        // How long surfaces touch is counted once a step.
+        self.state.contact_sums.add(first.iter().filter(|impulse| impulse.span == Span::EachUse), place, 0.0);
+        self.state.contact_sums.add(second.iter(), place, dt.f64());
+        self.book_friction(dt);
+        self.watch.lap("contact", start);
+    }
+
+    /// Books the work of friction in this step, what its impulses took from the particles' kinetic energy,
+    /// and likewise that of bonds that give way.
+    ///
+    /// ```text
+    /// W = -sum J . (u^0 + u^1)/2,   u = v_a - v_b of the particles' velocities, interpolated before and after the step
+    /// ```
+    /// This is exact for FLIP, where particles take changes at nodes: sum_p m_p v_p . sum_i S_i dv_i = sum_i m_i dv_i .
+    /// v_i, with v_i interpolated from the v_p. The velocity of a node with next to no mass is mostly what forces do to
+    /// it within the step, and says little of how particles move.
+    fn book_friction(&mut self, dt: T) {
+        let twice = self.interpolates_twice();
+        let (nodes, rules) = (&self.workspace.field.nodes, &self.settings.rules);
+        let seen = |node: usize| {
+            let node = &nodes[node];
+            if twice { (node.start + node.velocity) * T::HALF } else { node.start }
+        };
+        let [first, second, _] = &self.workspace.impulses;
+        let first = first.iter().filter(|impulse| impulse.span == Span::EachUse);
+        for impulse in first.chain(second.iter()) {
+            let [a, b] = impulse.bodies;
+            let rule = rules.rule(rules.number(a, b));
+            let Change { impulse: [on_a, _], normal, tangential, .. } = impulse.change;
+            let rubs = tangential != Vector::ZERO && rule.law != ContactLaw::Glued;
+            // A bond that holds passes work on to the strain, as a push does; one that gives way takes it.
+            let strength = rule.friction.adhesion * impulse.area * dt;
+            let pulls = strength > T::ZERO && normal >= strength * T::of(0.999);
+            if !rubs && !pulls {
+                continue;
+            }
+            let [v, w] = impulse.nodes.map(seen);
+            if rubs {
+                self.state.contact_sums.rub(impulse.bodies, -tangential.dot(v - w).f64());
+            }
+            if pulls {
+                self.state.contact_sums.adhesion -= (on_a - tangential).dot(v - w).f64();
+            }
+        }
+    }
+}
+
+/// Magnitudes of the forces at a node of a deformable body that was integrated over a step [N]:
+///
+/// ```text
+/// |r|, |f|, |r - f|        r = (m (v~ - v^0) - J) / dt
+/// ```
+/// r: unbalanced force, with which walls leave alone what they hold; f: force of the stress; r - f: gravity and
+/// contact; J: impulse of damping, which is none of them. At a fixed face f alone counts, which is there what the wall
+/// bears.
+fn balance<T: Real, const D: usize>(
+    node: &Node<T, D>,
+    damping: Vector<T, D>,
+    dt: T,
+    fixed: bool,
+) -> [f64; 3] {
+    let internal = node.force.norm().f64();
+    if fixed {
+        return [0.0, internal, 0.0];
+    }
+    let unbalanced = (node.integrated - node.start) * (node.mass / dt) - damping / dt;
+    [unbalanced.norm().f64(), internal, (unbalanced - node.force).norm().f64()]
+}
+
+/// What damping took from the particles' kinetic energy by its impulse J at a node [J]:
+///
+/// ```text
+/// W = -J . (u^0 + u^1)/2
+/// ```
+/// Exact for FLIP, see the work of friction; with the node's own new velocity where it changes alike all around.
+fn damping_work<T: Real, const D: usize>(node: &Node<T, D>, impulse: Vector<T, D>, twice: bool) -> f64 {
+    let after = if twice { node.velocity } else { node.integrated };
+    -(impulse.dot(node.start + after) * T::HALF).f64()
+}
+
+impl<T: Real, const D: usize> Workspace<T, D> {
+    /// Sums over the nodes of deformable bodies that have mass and repeat no other behind a mirror. `of_node` is told
+    /// where the node is, and the impulse of damping there. Block after block, whoever took them.
+    fn sum_over_nodes(
+        &mut self,
+        bodies: &[Body<T, D>],
+        of_node: impl Fn(&Self, [i32; D], (&Node<T, D>, Vector<T, D>)) -> NodeTotals + Sync,
+    ) -> NodeTotals
+    where
+        Self: Sync,
+    {
+        let n = nodes_per_block(D);
+        let mut sums = std::mem::take(&mut self.block_sums);
+        sums.clear();
+        sums.resize(self.active.slots.len(), NodeTotals::default());
+        let workspace = &*self;
+        each(&mut sums, BLOCKS, |slot, sum| {
+            let (body, block) = workspace.active.slots[slot];
+            if bodies[body as usize].is_rigid() {
+                return;
+            }
+            let mut places = workspace.field.present[slot];
+            while let Some(local) = next_of(&mut places) {
+                let place = node_at(block, local);
+                if !workspace.boundary.is_mirrored(place) {
+                    let index = slot * n + local;
+                    let impulse = workspace.damping_impulses.get(index).copied().unwrap_or(Vector::ZERO);
+                    let found = of_node(workspace, place, (&workspace.field.nodes[index], impulse));
+                    sum.iter_mut().zip(found).for_each(|(sum, found)| *sum += found);
+                }
+            }
+        });
+        let mut total = NodeTotals::default();
+        for sum in &sums {
+            total.iter_mut().zip(sum).for_each(|(total, sum)| *total += sum);
+        }
+        self.block_sums = sums;
+        total
+    }
+}
