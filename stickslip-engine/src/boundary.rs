@@ -136,16 +136,25 @@ impl Boundary {
     }
 }
 
+impl Boundary {
+    /// Gives nodes behind mirrors the values of those before them.
+    pub fn repeat_values<T: Real>(&self, values: &mut [T]) {
+        for &(behind, before) in self.mirrored.iter().rev().flatten() {
+            values[behind] = values[before];
+        }
+    }
+}
+
 /// Adds what was scattered into a node behind a mirror to the one before it.
 fn add_image<T: Real, const D: usize>(image: &Node<T, D>, node: &mut Node<T, D>, axis: usize, share: Share) {
-    if matches!(share, Share::Mass | Share::Everything) {
+    if matches!(share, Share::Mass | Share::Everything | Share::Dilatation | Share::Pressure) {
         node.mass += image.mass;
     }
     // Nodes without mass keep the velocity that they had.
-    if share != Share::Force && image.mass > T::ZERO {
+    if share.has_momentum() && image.mass > T::ZERO {
         node.velocity += reflect(image.velocity, axis);
     }
-    if matches!(share, Share::Force | Share::Everything) {
+    if share.has_force() {
         node.force += reflect(image.force, axis);
     }
 }

@@ -223,6 +223,13 @@ impl<T: Number> Matrix<T> {
         ])
     }
 
+    /// Sum of the diagonal.
+    #[inline(always)]
+    pub fn trace(&self) -> T {
+        let m = &self.0;
+        m[0][0] + m[1][1] + m[2][2]
+    }
+
     /// A A^T
     #[inline(always)]
     pub fn times_transpose(&self) -> Symmetric<T> {

@@ -9,6 +9,7 @@ mod benchmark;
 
 // What went wrong with a run.
 mod failure;
+mod finite_elements;
 
 // How deep bodies reach into each other.
 mod penetration;

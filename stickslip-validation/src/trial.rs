@@ -210,6 +210,11 @@ impl Trial {
         self.simulation.bodies()
     }
 
+    /// Whether dynamic relaxation has brought it to rest.
+    pub fn is_at_rest(&self) -> bool {
+        self.simulation.relaxation().is_some_and(|relaxation| relaxation.at_rest)
+    }
+
     /// Energy and momentum now.
     pub fn ledger(&self) -> Ledger {
         self.simulation.ledger()

@@ -17,7 +17,7 @@ use stickslip::column::Kind;
 use stickslip::geometry::Shape;
 use stickslip::march::march;
 use stickslip::material::{CustomLaw, History, Isotropic, Material, Motion};
-use stickslip::scene::{Body, Dimension, Domain, Face, NamedMaterial, Scene};
+use stickslip::scene::{Body, Dimension, Domain, Face, NamedMaterial, Scene, VolumeChange};
 use stickslip::step;
 use stickslip::tensor::{Matrix, Symmetric};
 
@@ -107,7 +107,12 @@ fn impact(end: f64) -> Result<Scene, Box<dyn Error>> {
     domain.faces[1] = [Face::Symmetry; 2];
     scene.domain = Some(domain);
     let law = Material::custom(&SaintVenantKirchhoff);
-    let ours = scene.add_material(NamedMaterial { name: "ours".to_string(), density: DENSITY, law });
+    let ours = scene.add_material(NamedMaterial {
+        name: "ours".to_string(),
+        density: DENSITY,
+        law,
+        volume_change: VolumeChange::Own,
+    });
     let bar = Body::new("bar", ours, Shape::rectangle([-LENGTH, 0.0], [0.0, HEIGHT]));
     scene.add_body(bar.moving([SPEED, 0.0, 0.0], [0.0; 3]));
     let wall = Body::new("wall", ours, Shape::rectangle([0.0, 0.0], [4.0 * cell, HEIGHT]));

@@ -8,6 +8,7 @@ use crate::geometry::MirroredShape;
 use crate::material::{Keep, Material, Motion, Recall, Thickness};
 use crate::particles::Particles;
 use crate::rigid::RigidMotion;
+use crate::scene::VolumeChange;
 use crate::tensor::{Matrix, Number, Real, Symmetric, Vector};
 
 /// A material point.
@@ -81,6 +82,8 @@ pub struct Body<T, const D: usize> {
     pub thickness: Thickness,
     /// What its particles' own rotation weighs.
     pub gyration: Gyration<T>,
+    /// Whose change of volume its particles take.
+    pub volume_change: VolumeChange,
 }
 
 impl<T: Real, const D: usize> Body<T, D> {
@@ -108,6 +111,12 @@ impl<T: Real, const D: usize> Body<T, D> {
     pub fn wave_modulus(&self, particle: &Particle<T, D>, history: &impl Recall<T>) -> T {
         let f = &particle.deformation;
         self.material.wave_modulus(self.thickness, (f, f.det()), history)
+    }
+
+    /// Whether its particles take means of dilatation rate and pressure, see [`crate::step`]'s `average.rs`.
+    #[inline]
+    pub fn averages_volume(&self) -> bool {
+        self.volume_change == VolumeChange::Averaged && !self.is_rigid()
     }
 
     /// Whether it is rigid and moves as prescribed.

@@ -54,6 +54,19 @@ impl<T: Real, const D: usize> Node<T, D> {
         self.velocity += (self.force / self.mass + gravity) * dt;
     }
 
+    /// Sets the mass aside, for something else to be summed in its place.
+    #[inline]
+    pub fn lend_mass(&mut self, mass: &mut T) {
+        *mass = std::mem::replace(&mut self.mass, T::ZERO);
+    }
+
+    /// Takes the mass back, and leaves the sum over the mass.
+    #[inline]
+    pub fn take_mass_back(&mut self, mass: &mut T) {
+        let sum = std::mem::replace(&mut self.mass, *mass);
+        *mass = sum / self.mass;
+    }
+
     /// Keeps the velocity in `integrated`.
     #[inline]
     pub fn keep(&mut self) {
@@ -107,6 +120,9 @@ pub struct Field<T, const D: usize> {
     /// Velocities of the nodes' start as the transfer wants them, if it filters them: v(m) of
     /// [`crate::transfer::Xpic`] [m/s].
     pub filtered: Vec<Vector<T, D>>,
+    /// Means over the particles around each node, if any body's material wants them: of the dilatation rate [1/s], or of
+    /// the pressure over the density [J/kg].
+    pub means: Vec<T>,
 }
 
 impl<T: Real, const D: usize> Field<T, D> {
@@ -165,6 +181,13 @@ impl<T: Real, const D: usize> Field<T, D> {
         self.filtered = filtered;
     }
 
+    /// Does something to each node that has mass and to its mean.
+    pub fn each_mean(&mut self, f: impl Fn(&mut Node<T, D>, &mut T) + Sync) {
+        let mut means = std::mem::take(&mut self.means);
+        self.each_with((&mut means, T::ZERO), f);
+        self.means = means;
+    }
+
     /// Does something to each node that has mass; `f` is told its index, and each index once.
     fn each_index(&mut self, f: impl Fn(usize, &mut Node<T, D>) + Sync) {
         let n = nodes_per_block(D);
@@ -217,7 +240,7 @@ pub struct Window<T, const D: usize> {
     pub change: [NodeValues<T>; WINDOW_NODES],
     /// The integrated velocities [m/s].
     pub integrated: [NodeValues<T>; WINDOW_NODES],
-    /// The velocities that move and strain particles [m/s].
+    /// The velocities that move and strain particles [m/s], and in the last place [`Field::means`].
     pub flow: [NodeValues<T>; WINDOW_NODES],
     /// What was scattered so far.
     pub sums: [NodeSums<T>; WINDOW_NODES],
@@ -315,14 +338,14 @@ impl<T: Real, const D: usize> Window<T, D> {
     #[inline(always)]
     pub unsafe fn load<M: Machine<T>>(
         &mut self,
-        (field, filtered): (&Disjoint<Node<T, D>>, &[Vector<T, D>]),
+        (field, filtered, means): (&Disjoint<Node<T, D>>, &[Vector<T, D>], &[T]),
         tile: &Tile<D>,
         side: usize,
         sought: Sought,
     ) {
         for NodeRun { place, node, count } in NodeRuns::new(tile, side) {
             for k in 0..count {
-                let start = filtered.get(node + k);
+                let (start, mean) = (filtered.get(node + k), means.get(node + k));
                 // SAFETY: the caller keeps writers away from the tile's slots.
                 let node = unsafe { field.read(node + k) };
                 let place = place + k;
@@ -340,6 +363,9 @@ impl<T: Real, const D: usize> Window<T, D> {
                 }
                 if sought.flow {
                     store_vector::<M::Quad>(&mut self.flow[place], load_vector(&node.velocity));
+                }
+                if let Some(&mean) = mean {
+                    self.flow[place][NODE_VALUES - 1] = mean;
                 }
             }
         }

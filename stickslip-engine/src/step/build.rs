@@ -108,6 +108,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 whole: MirroredShape::new(&body.shape, mirrors::<D>(scene), D),
                 thickness: scene.dimension.thickness(),
                 gyration: rotation::gyration::<T, B>(cell, whole_cells),
+                volume_change: scene.materials[body.material].volume_change,
             });
         }
         let origin = scene.domain.as_ref().map_or([0.0; 3], |domain| domain.min);

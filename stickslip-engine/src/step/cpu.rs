@@ -11,6 +11,7 @@ use crate::grid::{Disjoint, Field, Window};
 use crate::lanes::Laned;
 use crate::particles::Columns;
 use crate::threads::each_range;
+use crate::transfer::Share;
 use std::marker::PhantomData;
 use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
@@ -41,7 +42,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             .resize_with(threads.max(self.workspace.threads.windows.len()), Mutex::default);
         self.workspace.threads.columns.clear();
         self.workspace.threads.columns.extend(self.state.bodies.iter_mut().map(|body| body.particles.open()));
-        let Field { nodes, filtered, .. } = &mut self.workspace.field;
+        let Field { nodes, filtered, means, .. } = &mut self.workspace.field;
         let nodes = Disjoint::new(nodes);
         let left = Disjoint::new(&mut self.workspace.left);
         let damped = Disjoint::new(&mut self.workspace.damped);
@@ -53,6 +54,10 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let visit = |index: u32, window: &mut Window<T, D>, signal: T| -> Found<T> {
             let tile = &active.tiles[index as usize];
             let body = &bodies[tile.body];
+            let averages = pass.verbs.scatter.is_some_and(Share::is_averaged);
+            if averages && !body.averages_volume() {
+                return Found { signal, ..Found::NOTHING };
+            }
             let for_rigid = Verbs { scatter: pass.verbs.scatter, ..Verbs::default() };
             let pass = &Pass { verbs: if body.is_rigid() { for_rigid } else { pass.verbs }, ..*pass };
             let mut visit = Visit {
@@ -64,6 +69,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 cells: active.cells_of(tile),
                 nodes: &nodes,
                 filtered,
+                means: if body.averages_volume() && !averages { means } else { &[] },
                 window,
                 next: active.tiles.get(index as usize + 1),
                 left: 0,

@@ -10,6 +10,7 @@
 //! | the sums over nodes of G2P and P2G | `interpolate`, `flow`, `moments`, `gradient`, `scatter` of [`crate::transfer`] |
 //! | the same as the equations read, one particle and node after the other | `naive.rs`, and `transfer/naive.rs` |
 //! | the stress | `respond` of a law in [`crate::material`] |
+//! | bodies that keep their volume | `average.rs` |
 //! | damping at a node | [`crate::damping`] |
 //! | what is booked of a step | `account.rs` |
 //! | dynamic relaxation, between two steps | `relax.rs` |
@@ -17,6 +18,7 @@
 //! | contact at a node | `contact/solve.rs`, by a law of `contact/law/` |
 
 mod account;
+mod average;
 mod build;
 mod cpu;
 mod glue;
@@ -87,6 +89,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.impose_boundary_conditions(); //         of rigid bodies and walls
         self.detect_contact(dt); //                   surfaces, normals and gaps where bodies meet
         self.contact_on_interpolated(dt); //          v~                             (5)-(13), (20)-(22)
+        self.average_dilatation(dt); //               of nearly incompressible bodies
         self.update_stress(dt)?; //                   G2P: F = (I + L dt) F, sigma = law(F); P2G: f
         self.keep_velocities(); //                    v~ moves the particles, too
         self.update_velocities(dt); //                v += dt (f / m + g)                           (3)
@@ -111,6 +114,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.impose_boundary_conditions(); //         once more
         self.contact_on_integrated(dt); //            v~
         self.keep_damped_velocities(dt); //           v~, for dv
+        self.average_dilatation(dt); //               of nearly incompressible bodies
         self.update_particles(dt)?; //                G2P: v_p += dv, F, sigma, x += v~ dt
         self.move_rigid_bodies(dt)?; //               as prescribed
         self.account(dt); //                          impulses, works, balance of forces
@@ -135,6 +139,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.impose_boundary_conditions(); //         and again
         self.account(dt); //                          impulses, works, balance of forces: of dv, which the particles have
         self.contact_on_straining(dt); //             v~, which no particle takes as a change
+        self.average_dilatation(dt); //               of nearly incompressible bodies
         self.update_stress_and_positions(dt)?; //     G2P: F = (I + L dt) F, sigma = law(F), x += v~ dt
         self.move_rigid_bodies(dt) //                 as prescribed
     }

@@ -58,18 +58,19 @@ pub struct Pass<T, const D: usize> {
 impl<T: Real, const D: usize> Pass<T, D> {
     /// What it takes from the nodes.
     pub fn sought(&self) -> Sought {
-        let Verbs { smooth, update_velocity, update_stress, advect, .. } = self.verbs;
+        let Verbs { smooth, update_velocity, update_stress, advect, scatter } = self.verbs;
         Sought {
             change: update_velocity,
             integrated: smooth || (update_velocity && self.pic > T::ZERO),
             filtered: update_velocity && filters(self.transfer),
-            flow: update_stress || advect,
+            flow: update_stress || advect || scatter == Some(Share::Dilatation),
         }
     }
 
     /// Whether it takes anything from the nodes.
     pub fn gathers(&self) -> bool {
-        self.verbs.smooth || self.verbs.update_velocity || self.verbs.update_stress || self.verbs.advect
+        let Verbs { smooth, update_velocity, update_stress, advect, scatter } = self.verbs;
+        smooth || update_velocity || update_stress || advect || scatter == Some(Share::Dilatation)
     }
 }
 
@@ -138,6 +139,8 @@ pub struct Visit<'a, T, const D: usize, B> {
     pub nodes: &'a Disjoint<'a, Node<T, D>>,
     /// Filtered velocities of the nodes, if there are any.
     pub filtered: &'a [Vector<T, D>],
+    /// Means at the nodes, if the body takes them in this pass.
+    pub means: &'a [T],
     /// The tile's nodes.
     pub window: &'a mut Window<T, D>,
     /// The tile that is likely to come next.
@@ -164,10 +167,10 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
     /// Nobody may write to the tile's nodes meanwhile.
     #[inline(always)]
     pub unsafe fn open<M: Machine<T>>(&mut self) {
-        if self.pass.gathers() {
+        if self.pass.gathers() || !self.means.is_empty() {
             // SAFETY: the caller's.
             unsafe {
-                let field = (self.nodes, self.filtered);
+                let field = (self.nodes, self.filtered, self.means);
                 self.window.load::<M>(field, self.tile, Self::REACHED, self.pass.sought());
             }
         }

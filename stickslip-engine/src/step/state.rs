@@ -91,7 +91,7 @@ impl<T, const D: usize> Workspace<T, D> {
         Workspace {
             active: ActiveBlocks::default(),
             listed: false,
-            field: Field { nodes: Vec::new(), present: Vec::new(), filtered: Vec::new() },
+            field: Field { nodes: Vec::new(), present: Vec::new(), filtered: Vec::new(), means: Vec::new() },
             boundary,
             survey: Survey::default(),
             groups: Vec::new(),

@@ -76,6 +76,17 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
 
     /// P2G: the particles' share in the nodes.
     pub(super) fn particles_to_grid(&mut self, share: Share) {
+        if share.has_force() && self.averages_volume() {
+            self.scatter(Share::Mass);
+            self.workspace.field.find_present(|_| {});
+            self.average_pressure();
+            self.scatter(Share::Force);
+        } else {
+            self.scatter(share);
+        }
+    }
+
+    pub(super) fn scatter(&mut self, share: Share) {
         let verbs = Verbs { scatter: Some(share), ..Verbs::default() };
         self.run_pass("P2G", verbs, T::ZERO).expect("a scatter changes no particle");
     }
@@ -92,8 +103,14 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
 
     /// G2P of velocity gradients, and P2G of forces:  F = (I + L dt) F,  sigma = law(F),  f = -sum V sigma grad S
     pub(super) fn update_stress(&mut self, dt: T) -> Result<(), StepError> {
-        let verbs = Verbs { update_stress: true, scatter: Some(Share::Force), ..Verbs::default() };
-        self.run_pass("stress update", verbs, dt)
+        let averages = self.averages_volume();
+        let scatter = (!averages).then_some(Share::Force);
+        self.run_pass("stress update", Verbs { update_stress: true, scatter, ..Verbs::default() }, dt)?;
+        if averages {
+            self.average_pressure();
+            self.scatter(Share::Force);
+        }
+        Ok(())
     }
 
     /// G2P:  v_p += dv,  x += v dt
@@ -115,7 +132,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.run_pass("stress update", Verbs { update_stress: true, advect: true, ..Verbs::default() }, dt)
     }
 
-    fn run_pass(&mut self, name: &'static str, verbs: Verbs, dt: T) -> Result<(), StepError> {
+    pub(super) fn run_pass(&mut self, name: &'static str, verbs: Verbs, dt: T) -> Result<(), StepError> {
         let start = Instant::now();
         let found = self.pass(&Pass {
             verbs,

@@ -198,6 +198,21 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
         Vector(sum)
     }
 
+    /// G2P: sum S_i of the last of a node's values.
+    #[inline(always)]
+    pub fn interpolate_last(&self, nodes: &[NodeValues<V::Real>; WINDOW_NODES]) -> V {
+        let mut sum = V::NOTHING;
+        for i in 0..B::WIDTH {
+            for j in 0..B::WIDTH {
+                for k in 0..Self::DEPTH {
+                    let value: V = self.start.value(nodes, Self::offset(i, j, k), NODE_VALUES - 1);
+                    sum = (self.shapes[0].weight[i] * self.across(j, k)).times_plus(value, sum);
+                }
+            }
+        }
+        sum
+    }
+
     /// G2P: h L = sum v_i (x) h grad S_i, embedded in space, and sum S_i v_i of the same velocities [m/s].
     #[inline(always)]
     pub fn flow(&self, nodes: &[NodeValues<V::Real>; WINDOW_NODES]) -> (Matrix<V>, Vector<V, D>) {

@@ -155,8 +155,32 @@ pub enum Share {
     Momentum,
     /// Force.
     Force,
+    /// Mass times the dilatation rate, in the place of the mass: see `step/average.rs`.
+    Dilatation,
+    /// Volume times the mean stress, in the place of the mass.
+    Pressure,
     /// Mass, momentum and force.
     Everything,
+}
+
+impl Share {
+    /// Whether momentum is in it.
+    #[inline(always)]
+    pub fn has_momentum(self) -> bool {
+        matches!(self, Share::Mass | Share::Momentum | Share::Everything)
+    }
+
+    /// Whether it is something of which nodes take the mean.
+    #[inline(always)]
+    pub fn is_averaged(self) -> bool {
+        matches!(self, Share::Dilatation | Share::Pressure)
+    }
+
+    /// Whether force is in it.
+    #[inline(always)]
+    pub fn has_force(self) -> bool {
+        matches!(self, Share::Force | Share::Everything)
+    }
 }
 
 /// Whole steps from 0 to below `width` along every axis: the nodes that a basis reaches from its base node.

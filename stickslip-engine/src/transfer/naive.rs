@@ -111,6 +111,13 @@ impl<T: Real, const D: usize, B: Basis<T>> Stencil<T, D, B> {
         sum
     }
 
+    /// sum S_i of the last of a node's values.
+    pub fn interpolate_last(&self, nodes: &[NodeValues<T>; WINDOW_NODES], block: [i32; D]) -> T {
+        let mut sum = T::ZERO;
+        self.each(block, |place, offset| sum += nodes[place][3] * self.at(offset).0);
+        sum
+    }
+
     /// sum v_i (x) S_i (x_i - x_p) of a value at the window's nodes, embedded in space [m^2/s].
     pub fn moments(&self, nodes: &[NodeValues<T>; WINDOW_NODES], block: [i32; D]) -> Matrix<T> {
         let mut moments = Matrix::ZERO;

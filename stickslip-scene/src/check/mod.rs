@@ -97,7 +97,7 @@ mod tests {
     pub fn neo_hookean(name: &str, factor: f64) -> NamedMaterial {
         let elastic = Isotropic { bulk_modulus: 6e6 * factor, shear_modulus: 3e6 * factor };
         let law = Material::NeoHookean(NeoHookean { elastic });
-        NamedMaterial { name: name.into(), density: 1000.0 * factor, law }
+        NamedMaterial { name: name.into(), density: 1000.0 * factor, law, volume_change: Default::default() }
     }
 
     pub fn free(name: &str, material: usize, shape: Shape) -> Body {

@@ -7,7 +7,7 @@
 use super::{
     BasisKind, Body, BodyMotion, ContactLaw, ContactRule, Damping, Dimension, Discretization, Domain,
     Expression, Face, Measurements, NamedMaterial, Normal, Outputs, Precision, Problem, Relaxation, Scene,
-    StressUpdate, Time, Transfer,
+    StressUpdate, Time, Transfer, VolumeChange,
 };
 use crate::geometry::{Arrangement, Shape};
 use crate::material::LAWS;
@@ -141,7 +141,7 @@ impl NamedMaterial {
             let constant = bad.key.map(|key| format!(".{key}")).unwrap_or_default();
             problem(&format!(".{law}{constant}"), bad.found, bad.allowed)
         })?;
-        Ok(NamedMaterial { name: name.to_string(), density, law })
+        Ok(NamedMaterial { name: name.to_string(), density, law, volume_change: VolumeChange::Own })
     }
 }
 

@@ -274,6 +274,19 @@ pub struct NamedMaterial {
     pub density: f64,
     /// The constitutive law with its constants.
     pub law: Material<f64>,
+    /// Whether its particles change their volume each by itself.
+    pub volume_change: VolumeChange,
+}
+
+/// Whose change of volume a particle takes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum VolumeChange {
+    /// Its own.
+    #[default]
+    Own,
+    /// The mean around the nodes that it reaches: cells of nearly incompressible material do not lock.
+    Averaged,
 }
 
 /// A body: a shape filled with a material, and how it moves at the start.

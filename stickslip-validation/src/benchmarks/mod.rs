@@ -25,6 +25,7 @@ mod b9_two_disks;
 mod blunted_wedge;
 mod bodies_at_node;
 mod coming_to_roll;
+mod cook;
 mod corners;
 mod die;
 mod flat_wall;
@@ -87,6 +88,7 @@ pub static BENCHMARKS: &[Benchmark] = &[
     coming_to_roll::BENCHMARK,
     spinning_to_a_stop::BENCHMARK,
     punch::BENCHMARK,
+    cook::BENCHMARK,
     b24_taylor_bar::BENCHMARK,
 ];
 

@@ -230,7 +230,12 @@ pub fn scene() -> Scene {
         },
         damping: Damping::default(),
         gravity: [0.0, -GRAVITY, 0.0],
-        materials: vec![NamedMaterial { name: "rubber".into(), density: 1000.0, law }],
+        materials: vec![NamedMaterial {
+            name: "rubber".into(),
+            density: 1000.0,
+            law,
+            volume_change: Default::default(),
+        }],
         bodies: vec![body("sphere"), body("plane")],
         contact: vec![ContactRule { friction: f64::INFINITY, ..Default::default() }],
         outputs: Outputs {

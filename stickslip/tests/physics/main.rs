@@ -21,6 +21,7 @@ mod glued_identity;
 mod many_bodies;
 mod meshes;
 mod mirror;
+mod nearly_incompressible;
 mod paths;
 mod plane_stress;
 mod plastic_flow;

@@ -129,6 +129,11 @@ fn in_the_plane() {
     let with = |time: &str| plane.replace("end = 1\n", &format!("end = 1\n{time}\n"));
     compare("apic", &with("transfer = \"apic\"").replace("\"gimp\"", "\"spline\""), 200);
     compare("xpic", &with("transfer = \"xpic\"\nxpic_order = 3"), 200);
+    let averaged = plane.replace("density = 2000,", "density = 2000, volume_change = \"averaged\",");
+    assert!(averaged.contains("averaged"));
+    for update in STRESS_UPDATES {
+        compare(&format!("averaged, {update}"), &averaged.replace("modified-last", update), 200);
+    }
     let damped = with("relax = { residual = 1e-6 }") + "[damping]\nviscous = 2\nlocal = 0.1\n";
     compare("damped and relaxed", &damped, 200);
     let unbounded = plane

@@ -51,6 +51,7 @@ fn body<const D: usize>() -> Body<f64, D> {
         whole: MirroredShape::new(&Shape::Ball { center: [0.0; 3], radius: 1.0 }, Vec::new(), D),
         thickness: Thickness::Moved,
         gyration: Gyration { cell: 0.0, share: 0.0 },
+        volume_change: Default::default(),
     }
 }
 
@@ -126,7 +127,7 @@ fn particles_of_a_cell_side_by_side_give_the_sums<const D: usize, B: Basis<f64>>
     let wall = |axis, node, inward| Wall { axis, node, inward, face: Face::Symmetry };
     let boundary = Boundary::new(vec![wall(0, 0, 1), wall(D - 1, 5, -1)]);
     let rules = Rules::listed(1, vec![rules::Rule::from(&crate::scene::ContactRule::default())]);
-    let field = Field { nodes: Vec::new(), present: Vec::new(), filtered: Vec::new() };
+    let field = Field { nodes: Vec::new(), present: Vec::new(), filtered: Vec::new(), means: Vec::new() };
     for processor in Processor::available() {
         let near = Near {
             active: &active,

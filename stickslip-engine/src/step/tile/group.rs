@@ -84,7 +84,7 @@ pub fn group<
     // energy over the mass.
     let mut damped = V::ZERO;
     let rotates = has_spin(transfer);
-    let gives_momentum = scatter.is_some_and(|share| share != Share::Force);
+    let gives_momentum = scatter.is_some_and(Share::has_momentum);
     // G2P: sum S_i u_i, in the place of v_p, or sum S_i dv_i with its moments.
     let (mut moments, mut change) = (Matrix::ZERO, Vector::ZERO);
     if update_velocity && rotates {
@@ -118,6 +118,7 @@ pub fn group<
         sound.require(finite(&spin.0) & finite(&velocity.0) & finite(&strain_rate.0), FaultKind::NotFinite);
     }
 
+    let dilates = scatter == Some(Share::Dilatation);
     let mut deformation = Matrix::ZERO;
     let mut stress = Symmetric::ZERO;
     let mut history = HistoryOfGroup::new(members);
@@ -125,18 +126,28 @@ pub fn group<
     // sum S_i v_i of the velocities that strain and move.
     let mut flow = Vector::ZERO;
     // Whether the stress gives forces to the nodes.
-    let pushes = matches!(scatter, Some(Share::Force | Share::Everything));
+    let pushes = scatter.is_some_and(Share::has_force);
     if update_stress || advect {
         deformation = members.deformation::<V>();
     }
-    if update_stress || pushes {
+    if update_stress || pushes || scatter == Some(Share::Pressure) {
         stress = members.stress::<V>();
     }
-    // G2P: L, then F = (I + L dt) F and sigma = law(F).
+    // G2P: h L, then F = (I + L dt) F and sigma = law(F).
+    let (mut gradient, mut mean) = (Matrix::ZERO, Vector::ZERO);
+    if update_stress || dilates {
+        (gradient, mean) = group.flow(&visit.window.flow);
+    }
     if update_stress {
         let scale = V::splat(dt) * constants.per_cell;
-        let (gradient, mean) = group.flow(&visit.window.flow);
         flow = mean;
+        if !visit.means.is_empty() {
+            let rate = group.interpolate_last(&visit.window.flow) * constants.cell;
+            let more = (rate - gradient.trace()) * V::of(1.0 / D as f64);
+            for i in 0..D {
+                gradient.0[i][i] += more;
+            }
+        }
         if rotates {
             let spin = state.spin;
             let gradient = gradient * constants.per_cell;
@@ -171,7 +182,7 @@ pub fn group<
         if advect {
             jacobian = deformation.det();
         }
-        if pushes {
+        if pushes || scatter == Some(Share::Pressure) {
             volume = members.load::<V>(ColumnStart::<D>::VOLUME);
         }
     }
@@ -246,6 +257,12 @@ pub fn group<
     }
     // P2G: m, m (v + G (x_i - x_p)), -V sigma grad S.
     if let Some(share) = scatter {
+        // V tr_D(sigma) / D
+        let mut pressure = V::ZERO;
+        for i in 0..D {
+            pressure += stress.0[i];
+        }
+        pressure *= volume * V::of(1.0 / D as f64);
         let mut load = ScatterTerms { momentum: None, stress: None };
         if gives_momentum {
             let mass = members.load::<V>(ColumnStart::<D>::MASS);
@@ -258,7 +275,22 @@ pub fn group<
             });
         }
         if pushes {
-            load.stress = Some(stress * (volume * constants.per_cell));
+            let mut pull = stress * (volume * constants.per_cell);
+            if !visit.means.is_empty() {
+                let mass = members.load::<V>(ColumnStart::<D>::MASS);
+                let more = mass * group.interpolate_last(&visit.window.flow) - pressure;
+                for i in 0..D {
+                    pull.0[i] += more * constants.per_cell;
+                }
+            }
+            load.stress = Some(pull);
+        }
+        if share.is_averaged() {
+            let sum = match share {
+                Share::Pressure => pressure,
+                _ => members.load::<V>(ColumnStart::<D>::MASS) * (gradient.trace() * constants.per_cell),
+            };
+            load.momentum = Some(Momentum { own: Vector::ZERO, per_cell: Matrix::ZERO, mass: sum });
         }
         group.scatter::<M>(visit.window, &load);
     }

@@ -39,10 +39,11 @@ impl Reads {
     /// Of particles with these columns.
     #[inline(always)]
     fn of<T: Real, const D: usize>(verbs: &Verbs, columns: &Columns<T, D>) -> Self {
-        let gives_momentum = verbs.scatter.is_some_and(|share| share != Share::Force);
+        let gives_momentum = verbs.scatter.is_some_and(Share::has_momentum);
         Reads {
             deformation: verbs.update_stress || verbs.advect,
-            stress: verbs.update_stress || verbs.scatter.is_some_and(|share| share != Share::Momentum),
+            stress: verbs.update_stress
+                || verbs.scatter.is_some_and(|share| share.has_force() || share == Share::Pressure),
             history: if verbs.update_stress || verbs.advect { columns.history() } else { 0 },
             transfer: if verbs.update_velocity || gives_momentum {
                 columns.transfer_columns().len()

@@ -3,14 +3,26 @@
 use super::Context;
 use super::quantity::{Density, QuantityInput, evaluate};
 use super::read::{Read, check_keys, field, unknown_key};
+use super::text::{Choice, Word};
 use crate::material::{Constant, Description, Form, Given, LAWS, Quantity as Wanted};
 use crate::scene::error::Fault;
 use crate::scene::parameters::TimeDependence;
 use crate::scene::source::{DocumentNode, Value};
 use crate::scene::units::Powers;
-use crate::scene::{NamedMaterial, Problem};
+use crate::scene::{Dimension, NamedMaterial, Problem, VolumeChange};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use std::borrow::Cow;
+
+impl Choice for VolumeChange {
+    const WORDS: &'static [(&'static str, Self, &'static str)] = &[
+        ("own", VolumeChange::Own, "Its own."),
+        (
+            "averaged",
+            VolumeChange::Averaged,
+            "The mean around its nodes, for nearly incompressible materials.",
+        ),
+    ];
+}
 
 /// The materials by name.
 pub struct Materials(Vec<DocumentNode>);
@@ -25,12 +37,20 @@ impl Materials {
 /// One material: its density and exactly one law.
 fn material(node: &DocumentNode, context: &Context) -> Result<NamedMaterial, Fault> {
     let laws: Vec<&str> = LAWS.iter().map(|law| law.name).collect();
-    let keys: Vec<&str> = std::iter::once("density").chain(laws.iter().copied()).collect();
+    let keys: Vec<&str> = ["density", "volume_change"].into_iter().chain(laws.iter().copied()).collect();
     if node.name == "any" {
         return Err(Fault::new(&node.key, "the name `any`, which matches every body", "another name"));
     }
     check_keys(node, &keys)?;
     let density = field::<QuantityInput<Density>>(node, "density")?.positive(context)?;
+    let volume_change = field::<Option<Word<VolumeChange>>>(node, "volume_change")?;
+    let volume_change = volume_change.map_or(Ok(VolumeChange::Own), |word| word.value(context))?;
+    if volume_change == VolumeChange::Averaged && context.dimension == Dimension::PlaneStress {
+        let found = "\"averaged\" in plane stress".to_string();
+        let key = format!("{}.volume_change", node.key);
+        let help = Some("a plate takes the thickness that leaves its volume free: nothing locks".to_string());
+        return Err(Problem { key, found, allowed: "\"own\"".to_string(), help }.into());
+    }
     let mut named = node
         .children()
         .iter()
@@ -55,7 +75,7 @@ fn material(node: &DocumentNode, context: &Context) -> Result<NamedMaterial, Fau
         };
         Problem { key, found, allowed: bad.allowed, help: None }
     })?;
-    Ok(NamedMaterial { name: node.name.clone(), density, law })
+    Ok(NamedMaterial { name: node.name.clone(), density, law, volume_change })
 }
 
 /// The constants of a law in SI units.
@@ -149,6 +169,12 @@ impl JsonSchema for Materials {
         let mut density = QuantityInput::<Density>::json_schema(generator);
         density.insert("description".into(), "Mass per undeformed volume [kg/m^3].".into());
         properties.insert("density".into(), density.into());
+        let mut volume_change = Word::<VolumeChange>::json_schema(generator);
+        volume_change.insert(
+            "description".into(),
+            "Whose change of volume a particle takes; its own by default.".into(),
+        );
+        properties.insert("volume_change".into(), volume_change.into());
         for law in LAWS {
             let constants: serde_json::Map<_, _> = law
                 .constants
