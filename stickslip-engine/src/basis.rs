@@ -22,7 +22,7 @@ pub struct Axis<T> {
 /// Slopes sum to zero, so what counts are differences between neighbours, and each has one factor:
 ///
 /// ```text
-/// sum f_i dS_i/dx = sum (f_{i+1} - f_i) rise_i
+/// sum f_i dS_i/dx = sum (f_{i+1} - f_i) difference_i
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct ShapeFunctions<N> {

@@ -147,7 +147,7 @@ impl Boundary {
 
 /// Adds what was scattered into a node behind a mirror to the one before it.
 fn add_image<T: Real, const D: usize>(image: &Node<T, D>, node: &mut Node<T, D>, axis: usize, share: Share) {
-    if matches!(share, Share::Mass | Share::Everything | Share::Dilatation | Share::Pressure) {
+    if matches!(share, Share::Mass | Share::Everything | Share::Dilatation | Share::MeanStress) {
         node.mass += image.mass;
     }
     // Nodes without mass keep the velocity that they had.

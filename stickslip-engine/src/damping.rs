@@ -1,11 +1,14 @@
-//! Damping of the nodes' velocities: a viscous force, and Cundall's local damping.
+//! Damping: of the nodes' velocities by a viscous force and by Cundall's local damping, and of the particles by bulk
+//! viscosity.
 //!
-//! Both act on the velocity v~ with which a body leaves the forces, walls and contacts of a step that it began with
-//! v^0. Contact forces so belong to the unbalanced force, and bodies that rest on each other are left alone.
+//! The first two act on the velocity v~ with which a body leaves the forces, walls and contacts of a step that it began
+//! with v^0. Contact forces so belong to the unbalanced force, and bodies that rest on each other are left alone.
 
+use crate::column::{BULK_VISCOSITY, Kind};
 use crate::grid::Node;
+use crate::material::History;
 use crate::scene;
-use crate::tensor::{Real, Vector};
+use crate::tensor::{Number, Real, Vector};
 
 /// Damping at the nodes of deformable bodies.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,8 +44,8 @@ impl<T: Real> NodeDamping<T> {
     /// viscous:  v = w / (1 + alpha dt)                               f = -alpha m v
     /// ```
     /// Cundall (1987), Analytical and Computational Methods in Engineering Rock Mechanics, chapter 4, for the first;
-    /// the second is proportional damping by mass (Rayleigh). Both are implicit: they take the velocity after the step, so
-    /// no alpha dt is unstable and local damping never turns a velocity around.
+    /// the second is proportional damping by mass (Rayleigh). Both are implicit: they take the velocity after the step,
+    /// so no alpha dt is unstable and local damping never turns a velocity around.
     #[inline]
     pub fn damped<const D: usize>(&self, velocity: Vector<T, D>, start: Vector<T, D>, dt: T) -> Vector<T, D> {
         let share = T::ONE / (T::ONE + self.viscous * dt);
@@ -54,12 +57,43 @@ impl<T: Real> NodeDamping<T> {
     }
 }
 
+/// Bulk viscosity: a pressure against compression, which spreads shocks over a few cells and takes the noise behind
+/// them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BulkViscosity<T> {
+    /// c_1 and c_2 [-].
+    pub coefficients: [T; 2],
+}
+
+impl<T: Real> BulkViscosity<T> {
+    /// The column that particles have for it: its pressure, with which the next forces are made.
+    pub const COLUMNS: &'static [History] = &[History::new(BULK_VISCOSITY, "Pa", Kind::Number)];
+
+    /// What a scene asks for, if it does.
+    pub fn new(scene: &scene::Damping) -> Option<Self> {
+        (scene.bulk != [0.0; 2]).then(|| BulkViscosity { coefficients: scene.bulk.map(T::of) })
+    }
+
+    /// Pressure over the density [J/kg]:
+    ///
+    /// ```text
+    /// q / rho = h d (c_1 c + c_2 h d),   d = max(-tr L, 0)
+    /// ```
+    /// Landshoff (1955), LA-1930, for the first power of d; von Neumann and Richtmyer (1950), J. Appl. Phys. 21, for
+    /// the second. `rate` is h tr L [m/s], `speed` the wave speed c [m/s].
+    #[inline(always)]
+    pub fn over_density<N: Number>([linear, quadratic]: [N; 2], rate: N, speed: N) -> N {
+        let closing = (-rate).max(N::ZERO);
+        closing * (linear * speed + quadratic * closing)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     fn damping(viscous: f64, local: f64) -> NodeDamping<f64> {
-        NodeDamping::new(&scene::Damping { viscous, local })
+        NodeDamping::new(&scene::Damping { viscous, local, ..Default::default() })
     }
 
     #[test]

@@ -91,26 +91,33 @@ pub struct Particles<T, const D: usize> {
     history: &'static [History],
     /// What its transfer carries beside the columns that all have.
     transfer: &'static [History],
+    /// What bulk viscosity needs.
+    viscosity: &'static [History],
 }
 
-/// Columns that not all bodies have: what a law remembers, and behind that what a transfer carries.
+/// Columns that not all bodies have: what a law remembers, behind that what a transfer carries, and what
+/// bulk viscosity needs.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct OwnColumns {
     /// Of the law.
     pub history: &'static [History],
     /// Of the transfer.
     pub transfer: &'static [History],
+    /// Of bulk viscosity.
+    pub viscosity: &'static [History],
 }
 
 impl OwnColumns {
     /// All of them.
     fn all(self) -> impl Iterator<Item = &'static History> {
-        self.history.iter().chain(self.transfer)
+        self.history.iter().chain(self.transfer).chain(self.viscosity)
     }
 
     /// Their entries.
     const fn entries(self, dimension: usize) -> usize {
-        history_entries(self.history, dimension) + history_entries(self.transfer, dimension)
+        history_entries(self.history, dimension)
+            + history_entries(self.transfer, dimension)
+            + history_entries(self.viscosity, dimension)
     }
 }
 
@@ -144,9 +151,9 @@ impl<T: Real, const D: usize> Particles<T, D> {
         let columns = vec![T::ZERO; stride * Self::columns_of(own)];
         ask_for_large(columns.as_ptr(), columns.len());
         let numbers = vec![0; 2 * count];
-        let OwnColumns { history, transfer } = own;
+        let OwnColumns { history, transfer, viscosity } = own;
         let mut particles =
-            Particles { len: count, columns, stride, numbers, later: false, history, transfer };
+            Particles { len: count, columns, stride, numbers, later: false, history, transfer, viscosity };
         for i in 0..count {
             let particle = f(i);
             particles.set(i, &particle);
@@ -176,10 +183,10 @@ impl<T: Real, const D: usize> Particles<T, D> {
 
     /// Its own columns.
     fn own(&self) -> OwnColumns {
-        OwnColumns { history: self.history, transfer: self.transfer }
+        OwnColumns { history: self.history, transfer: self.transfer, viscosity: self.viscosity }
     }
 
-    /// The columns that not all bodies have, of its law and of its transfer.
+    /// The columns that not all bodies have.
     pub fn own_columns(&self) -> impl Iterator<Item = ColumnDescription> {
         self.own().all().map(|own| own.column)
     }
@@ -256,8 +263,8 @@ impl<T: Real, const D: usize> Particles<T, D> {
 
     /// Takes from all particles their velocities and what else they carry of motion.
     pub fn stop(&mut self) {
-        let transfer = self.view().transfer_columns();
-        for column in (ColumnStart::<D>::VELOCITY..ColumnStart::<D>::MASS).chain(transfer) {
+        let of_motion = self.view().transfer_columns().start..self.view().viscosity_columns().end;
+        for column in (ColumnStart::<D>::VELOCITY..ColumnStart::<D>::MASS).chain(of_motion) {
             let first = self.first() + column * self.stride;
             self.columns[first..][..self.len].fill(T::ZERO);
         }
@@ -271,6 +278,7 @@ impl<T: Real, const D: usize> Particles<T, D> {
             stride: self.stride,
             history: history_entries(self.history, D),
             transfer: history_entries(self.transfer, D),
+            viscosity: history_entries(self.viscosity, D),
         }
     }
 
@@ -282,6 +290,7 @@ impl<T: Real, const D: usize> Particles<T, D> {
             stride: self.stride,
             history: history_entries(self.history, D),
             transfer: history_entries(self.transfer, D),
+            viscosity: history_entries(self.viscosity, D),
         }
     }
 
@@ -326,6 +335,8 @@ pub struct Columns<T, const D: usize> {
     history: usize,
     /// Entries of what the transfer carries.
     transfer: usize,
+    /// Entries of what bulk viscosity needs.
+    viscosity: usize,
 }
 
 // SAFETY: entries are only reached through unsafe functions, whose callers keep threads apart.
@@ -353,13 +364,20 @@ impl<T: Real, const D: usize> Columns<T, D> {
         first..first + self.transfer
     }
 
+    /// Place of the column of bulk viscosity, if there is one.
+    #[inline(always)]
+    pub fn viscosity_columns(&self) -> Range<usize> {
+        let first = self.transfer_columns().end;
+        first..first + self.viscosity
+    }
+
     /// The entry of particle `i` in a column.
     ///
     /// # Safety
     /// The column and the particle must exist, and nobody may use the entry but by this pointer.
     #[inline(always)]
     pub unsafe fn at(&self, column: usize, i: usize) -> *mut T {
-        debug_assert!(column < self.transfer_columns().end && i < self.stride, "an entry");
+        debug_assert!(column < self.viscosity_columns().end && i < self.stride, "an entry");
         // SAFETY: the caller's.
         unsafe { self.start.add(column * self.stride + i) }
     }

@@ -99,6 +99,9 @@ pub const fn same(a: &str, b: &str) -> bool {
 /// Name of the column in which a transfer carries the rate of strain.
 pub const STRAIN_RATE: &str = "strain_rate";
 
+/// Pressure of the bulk viscosity that some scenes ask for.
+pub const BULK_VISCOSITY: &str = "bulk_viscosity";
+
 /// Names of the columns that every file of particles may have.
 pub fn in_files() -> impl Iterator<Item = &'static str> {
     let every = EVERY.iter().map(|column| column.name);
@@ -107,7 +110,7 @@ pub fn in_files() -> impl Iterator<Item = &'static str> {
 
 /// Names that no column of history may have: a file would hold two columns called the same.
 pub fn reserved() -> impl Iterator<Item = &'static str> {
-    in_files().chain([STRAIN_RATE])
+    in_files().chain([STRAIN_RATE, BULK_VISCOSITY])
 }
 
 /// What a particle has in a column.

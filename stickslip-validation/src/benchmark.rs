@@ -187,7 +187,7 @@ impl Target {
     }
 
     /// Whether a measured value is good enough; what is not a number never is.
-    pub fn holds(&self, value: f64) -> bool {
+    pub fn is_met_by(&self, value: f64) -> bool {
         match self.allowed {
             Allowed::Within(tolerance) => (value - self.exact).abs() <= tolerance,
             Allowed::AtLeast(least) => value >= least,
@@ -237,13 +237,13 @@ mod tests {
         ];
         for (allowed, holds, fails) in allowed {
             let target = Target::new("x", 1.0, allowed, "a test");
-            assert!(holds.into_iter().all(|x| target.holds(x)), "{target}");
-            assert!(!fails.into_iter().any(|x| target.holds(x)), "{target}");
-            assert!(!target.holds(f64::NAN));
+            assert!(holds.into_iter().all(|x| target.is_met_by(x)), "{target}");
+            assert!(!fails.into_iter().any(|x| target.is_met_by(x)), "{target}");
+            assert!(!target.is_met_by(f64::NAN));
         }
         let [least, most] = [Allowed::AtLeast(0.9), Allowed::AtMost(0.9)]
             .map(|allowed| Target::new("x", 1.0, allowed, "a test"));
-        assert!(least.holds(0.9) && !least.holds(0.8) && !least.holds(f64::NAN));
-        assert!(most.holds(0.9) && !most.holds(1.0) && !most.holds(f64::NAN));
+        assert!(least.is_met_by(0.9) && !least.is_met_by(0.8) && !least.is_met_by(f64::NAN));
+        assert!(most.is_met_by(0.9) && !most.is_met_by(1.0) && !most.is_met_by(f64::NAN));
     }
 }

@@ -1,7 +1,7 @@
 //! Linear elasticity in plane strain by four-node elements, for answers that no formula gives.
 //!
-//! The change of volume is taken from the middle of each element, so that nearly incompressible ones do not lock (selective
-//! reduced integration: Hughes 1980, Int. J. Numer. Methods Eng. 15).
+//! The change of volume is taken from the middle of each element, so that nearly incompressible ones do not lock
+//! (selective reduced integration: Hughes 1980, Int. J. Numer. Methods Eng. 15).
 
 /// n x n elements, and what holds and loads their nodes.
 pub struct ElementGrid {

@@ -243,7 +243,7 @@ impl SuiteEntry {
     pub fn verdict(&self, target: &Target) -> Verdict {
         let Some(run) = self.judged(target) else { return Verdict::Open };
         match &run.result {
-            Ok(outcome) if outcome.value(target.metric).is_some_and(|value| target.holds(value)) => {
+            Ok(outcome) if outcome.value(target.metric).is_some_and(|value| target.is_met_by(value)) => {
                 Verdict::Reached
             }
             _ => Verdict::Missed,

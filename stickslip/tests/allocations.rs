@@ -41,7 +41,7 @@ const WORLD: &str = r#"
     space = { dimension = "3d", cell = "25 mm", particles_per_side = 2, basis = "BASIS", domain = DOMAIN }
     time = { end = "1 s", transfer = "TRANSFER" }
     DAMPING
-    materials.rubber = { density = "1000 kg/m^3", neo_hookean = { bulk_modulus = "6 MPa", shear_modulus = "3 MPa" } }
+    materials.rubber = { density = "1000 kg/m^3", volume_change = "CHANGE", neo_hookean = { bulk_modulus = "6 MPa", shear_modulus = "3 MPa" } }
     contact = [{ friction = 0.3, law = "LAW" }]
 "#;
 
@@ -57,9 +57,12 @@ fn allocations(
     [warm_up, steps]: [usize; 2],
 ) -> u64 {
     let world = WORLD.replace("BASIS", basis).replace("LAW", law).replace("DOMAIN", domain);
-    // With splines XPIC's filter and damping, which need room of their own.
-    let (transfer, damping) = if basis == "spline" { ("xpic", "damping.local = 0.2") } else { ("rflip", "") };
-    let world = world.replace("TRANSFER", transfer).replace("DAMPING", damping);
+    // With splines XPIC's filter, damping and means of the change of volume, which need room of their own.
+    let (transfer, damping, change) = match basis {
+        "spline" => ("xpic", "damping = { local = 0.2, bulk_quadratic = 1.5 }", "averaged"),
+        _ => ("rflip", "", "own"),
+    };
+    let world = world.replace("TRANSFER", transfer).replace("DAMPING", damping).replace("CHANGE", change);
     let text = format!("{world}bodies = [{bodies}]");
     let scene = stickslip::scene::parse("allocations.toml", &text, &[]).expect("a scene").scene;
     let mut simulation = stickslip::step::build(&scene).expect("a sound scene");

@@ -5,6 +5,7 @@ use crate::drawing::Scale;
 use clap::builder::{EnumValueParser, PossibleValue, TypedValueParser};
 use clap::{Arg, Command, ValueEnum};
 use std::ffi::OsStr;
+use stickslip::column::DERIVED;
 use stickslip::door::ParticleSnapshot;
 
 /// What the colour of a particle stands for.
@@ -99,8 +100,8 @@ impl ColorQuantity {
             ColorQuantity::Vx => v[0],
             ColorQuantity::Vy => v[1],
             ColorQuantity::Vz => v[2],
-            ColorQuantity::Pressure => -(s[0] + s[1] + s[2]) / 3.0,
-            ColorQuantity::VonMises => von_mises(s),
+            ColorQuantity::Pressure => derived("pressure", s),
+            ColorQuantity::VonMises => derived("von_mises", s),
             ColorQuantity::Xx => s[0],
             ColorQuantity::Yy => s[1],
             ColorQuantity::Zz => s[2],
@@ -188,11 +189,10 @@ impl ColorQuantity {
     }
 }
 
-/// sqrt(3/2 s : s) with s the deviator of the Cauchy stress [Pa].
-fn von_mises(s: &[f64; 6]) -> f64 {
-    let normal = (s[0] - s[1]).powi(2) + (s[1] - s[2]).powi(2) + (s[2] - s[0]).powi(2);
-    let shear = s[3] * s[3] + s[4] * s[4] + s[5] * s[5];
-    (0.5 * normal + 3.0 * shear).sqrt()
+/// A number that follows from the stress, as files have it.
+fn derived(name: &str, stress: &[f64; 6]) -> f64 {
+    let number = DERIVED.iter().find(|derived| derived.column.name == name);
+    number.map_or(0.0, |derived| (derived.value)(stress))
 }
 
 /// Determinant of a matrix given row by row.
@@ -214,7 +214,7 @@ mod tests {
 
     #[test]
     fn von_mises_of_uniaxial_stress_is_the_stress() {
-        assert!((von_mises(&[-4.0, 0.0, 0.0, 0.0, 0.0, 0.0]) - 4.0).abs() < 1e-12);
+        assert!((derived("von_mises", &[-4.0, 0.0, 0.0, 0.0, 0.0, 0.0]) - 4.0).abs() < 1e-12);
     }
 
     #[test]

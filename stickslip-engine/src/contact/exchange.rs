@@ -50,7 +50,7 @@ pub fn own_normals<T: Real, const D: usize>(
     let mut change = Change::NONE;
     for (i, surface) in pair.surfaces.into_iter().enumerate() {
         let other = pair.surfaces[1 - i];
-        let of_wall = if other.inverse_mass > T::ZERO { None } else { other.normal.map(|n| -n) };
+        let of_wall = if other.is_rigid() { other.normal.map(|n| -n) } else { None };
         let Some(n) = of_wall.or(surface.normal) else { continue };
         let dv = velocities[i] - center;
         let approach = dv.dot(n);
@@ -58,12 +58,12 @@ pub fn own_normals<T: Real, const D: usize>(
             continue;
         }
         let slip = dv - n * approach;
-        if surface.inverse_mass > T::ZERO {
+        if !surface.is_rigid() {
             let mass = T::ONE / surface.inverse_mass;
             let load = SurfaceLoad { mass, push: mass * approach.abs(), exposure: T::ZERO };
             let tangential = slip * -pair.rule.friction.stopped(slip.norm(), load);
             change.impulse[i] = (tangential - n * approach) * mass;
-            if i == 0 || a.inverse_mass <= T::ZERO {
+            if i == 0 || a.is_rigid() {
                 change.normal = -approach * mass;
                 change.tangential = if i == 0 { tangential * mass } else { -tangential * mass };
             }
@@ -71,7 +71,7 @@ pub fn own_normals<T: Real, const D: usize>(
     }
     // A rigid body decides nothing; the force on it is the other's reaction.
     for i in 0..2 {
-        if pair.surfaces[i].inverse_mass <= T::ZERO {
+        if pair.surfaces[i].is_rigid() {
             change.impulse[i] = -change.impulse[1 - i];
         }
     }

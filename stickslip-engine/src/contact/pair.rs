@@ -24,6 +24,14 @@ pub struct SurfaceEstimate<T, const D: usize> {
     pub place: ReferenceMap<T, D>,
 }
 
+impl<T: Real, const D: usize> SurfaceEstimate<T, D> {
+    /// Whether it is a rigid body's, which no impulse moves.
+    #[inline]
+    pub fn is_rigid(&self) -> bool {
+        self.inverse_mass <= T::ZERO
+    }
+}
+
 /// What the velocities of a pair are about to be used for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ContactUse {
@@ -128,8 +136,8 @@ impl<T: Real, const D: usize> Pair<'_, T, D> {
             .fold(T::ZERO, |max, x| max.max(x.abs()));
         // gamma h/dt
         let limit = self.rule.max_strain * self.step.cell_speed();
-        let one_body = self.rule.law == ContactLaw::Glued
-            && self.surfaces.iter().all(|side| side.inverse_mass > T::ZERO);
+        let one_body =
+            self.rule.law == ContactLaw::Glued && self.surfaces.iter().all(|side| !side.is_rigid());
         if largest <= limit || one_body {
             return change;
         }

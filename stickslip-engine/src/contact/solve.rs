@@ -214,14 +214,14 @@ impl<T: Real, const D: usize> Solve<'_, T, D> {
                 impulse.change = pair.change(free);
                 impulse.work = T::ZERO;
                 for i in 0..2 {
-                    let inverse_mass = pair.surfaces[i].inverse_mass;
-                    let new = impulse.change.impulse[i] * inverse_mass;
+                    let surface = &pair.surfaces[i];
+                    let new = impulse.change.impulse[i] * surface.inverse_mass;
                     impulse.velocity[i] = new;
                     velocities[places[i]] = free[i] + new;
                     moved = moved.max((new - old[i]).norm());
                     largest = largest.max(new.norm());
                     speed = speed.max(free[i].norm());
-                    if inverse_mass == T::ZERO {
+                    if surface.is_rigid() {
                         impulse.work += impulse.change.impulse[1 - i].dot(free[i]);
                     }
                 }

@@ -54,6 +54,11 @@ impl<T: Real, const D: usize> Node<T, D> {
         self.velocity += (self.force / self.mass + gravity) * dt;
     }
 
+    /// Takes a prescribed velocity [m/s].
+    pub fn prescribe(&mut self, velocity: [f64; 3]) {
+        self.velocity = Vector::of(velocity);
+    }
+
     /// Sets the mass aside, for something else to be summed in its place.
     #[inline]
     pub fn lend_mass(&mut self, mass: &mut T) {
@@ -120,8 +125,8 @@ pub struct Field<T, const D: usize> {
     /// Velocities of the nodes' start as the transfer wants them, if it filters them: v(m) of
     /// [`crate::transfer::Xpic`] [m/s].
     pub filtered: Vec<Vector<T, D>>,
-    /// Means over the particles around each node, if any body's material wants them: of the dilatation rate [1/s], or of
-    /// the pressure over the density [J/kg].
+    /// Means over the particles around each node, if any body's material wants them: of the dilatation rate [1/s], or
+    /// of the pressure over the density [J/kg].
     pub means: Vec<T>,
 }
 

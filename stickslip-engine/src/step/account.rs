@@ -7,7 +7,7 @@ use crate::body::Body;
 use crate::contact::{Change, Span};
 use crate::grid::{Node, next_of, node_at, nodes_per_block};
 use crate::lanes::Laned;
-use crate::scene::{ContactLaw, StressUpdate};
+use crate::scene::ContactLaw;
 use crate::tensor::{Real, Vector};
 use crate::threads::each;
 use std::time::Instant;
@@ -19,17 +19,26 @@ const BLOCKS: usize = 16;
 /// what damping took [J].
 pub(super) type NodeTotals = [f64; 5];
 
+/// How often a step interpolates velocities: after the second time u^1 is at the nodes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Interpolated {
+    /// At its start.
+    Once,
+    /// At its start, and with the particles' new velocities.
+    Twice,
+}
+
 impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// Books what the step did, and measures how far from balance its forces are. Nothing of it changes the step.
     ///
     /// Works are force times the mean of u^0 and u^1, the velocities interpolated before and after. Where the step does
     /// not interpolate a second time, u^1 is the node's own new velocity for damping, and u^0 for friction.
-    pub(super) fn account(&mut self, dt: T) {
-        self.book_contact(dt);
+    pub(super) fn account(&mut self, dt: T, interpolated: Interpolated) {
+        let twice = interpolated == Interpolated::Twice;
+        self.book_contact(dt, twice);
         let damps = self.settings.damping.acts();
         if damps || self.settings.time.relax.is_some() {
             let start = Instant::now();
-            let twice = self.interpolates_twice();
             let [unbalanced, internal, external, kinetic, damped] = self.workspace.sum_over_nodes(
                 &self.state.bodies,
                 |Workspace { boundary, .. }, place, node| {
@@ -46,19 +55,15 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         }
     }
 
-    fn interpolates_twice(&self) -> bool {
-        self.settings.time.stress_update == StressUpdate::ModifiedLast
-    }
-
     /// Books what contact did: impulses by pair of bodies, and the work of friction.
-    fn book_contact(&mut self, dt: T) {
+    fn book_contact(&mut self, dt: T, twice: bool) {
         let start = Instant::now();
         let Workspace { impulses: [first, second, _], boundary, .. } = &self.workspace;
         let place = (&self.settings.lattice, boundary);
         // How long surfaces touch is counted once a step.
         self.state.contact_sums.add(first.iter().filter(|impulse| impulse.span == Span::EachUse), place, 0.0);
         self.state.contact_sums.add(second.iter(), place, dt.f64());
-        self.book_friction(dt);
+        self.book_friction(dt, twice);
         self.watch.lap("contact", start);
     }
 
@@ -66,13 +71,12 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// and likewise that of bonds that give way.
     ///
     /// ```text
-    /// W = -sum J . (u^0 + u^1)/2,   u = v_a - v_b of the particles' velocities, interpolated before and after the step
+    /// W = -sum J . (w^0 + w^1)/2,   w = u_a - u_b of the particles' velocities, interpolated before and after the step
     /// ```
     /// This is exact for FLIP, where particles take changes at nodes: sum_p m_p v_p . sum_i S_i dv_i = sum_i m_i dv_i .
     /// v_i, with v_i interpolated from the v_p. The velocity of a node with next to no mass is mostly what forces do to
     /// it within the step, and says little of how particles move.
-    fn book_friction(&mut self, dt: T) {
-        let twice = self.interpolates_twice();
+    fn book_friction(&mut self, dt: T, twice: bool) {
         let (nodes, rules) = (&self.workspace.field.nodes, &self.settings.rules);
         let seen = |node: usize| {
             let node = &nodes[node];

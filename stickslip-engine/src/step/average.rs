@@ -1,17 +1,17 @@
 //! Bodies that keep their volume: particles take means of the dilatation rate and of the pressure.
 //!
 //! Each particle asks for a volume of its own, which is more than the nodes can give, so nearly incompressible bodies
-//! lock. Here they ask for one volume around each node, in the manner of averages over elements (B-bar: Hughes 1980, Int. J.
-//! Numer. Methods Eng. 15) and around nodes (Bonet and Burton 1998, Commun. Numer. Methods Eng. 14):
+//! lock. Here they ask for one volume around each node, in the manner of averages over elements (B-bar: Hughes 1980,
+//! Int. J. Numer. Methods Eng. 15) and around nodes (Bonet and Burton 1998, Commun. Numer. Methods Eng. 14):
 //!
 //! ```text
 //! d_p = tr L_p                     d_i = sum_p S_ip m_p d_p / m_i          L_p <- L_p + (sum_i S_ip d_i - d_p) I/D
 //! q_p = V_p tr_D(sigma_p) / D      q_i = sum_p S_ip q_p / m_i              V_p sigma_p <- V_p sigma_p
 //!                                                                                     + (m_p sum_i S_ip q_i - q_p) I
 //! ```
-//! D: dimensions, in which traces and I are taken. The second line is the transpose of the first: forces do the work that
-//! the strain takes, and the energy is that of F. Without it a ball that bounces gains energy without end. A uniform
-//! dilatation and a uniform pressure stay as they are.
+//! D: dimensions, in which traces and I are taken. The second line is the transpose of the first: forces do the work
+//! that the strain takes, and the energy is that of F. Without it a ball that bounces gains energy without end. A
+//! uniform dilatation and a uniform pressure stay as they are.
 
 use super::Engine;
 use super::pass::Verbs;
@@ -36,8 +36,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     }
 
     /// q_i
-    pub(super) fn average_pressure(&mut self) {
-        self.average(Share::Pressure, T::ZERO);
+    pub(super) fn average_mean_stress(&mut self) {
+        self.average(Share::MeanStress, T::ZERO);
     }
 
     /// Sums in the place of the mass, and then over the mass.

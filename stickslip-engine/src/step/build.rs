@@ -10,7 +10,7 @@ use crate::body::{Body, Particle};
 use crate::boundary::{Boundary, Wall};
 use crate::check;
 use crate::contact::{ContactSums, Rules};
-use crate::damping::NodeDamping;
+use crate::damping::{BulkViscosity, NodeDamping};
 use crate::door::Simulation;
 use crate::geometry::{Filling, Mirror, MirroredShape, ParticleSite, fill};
 use crate::grid::Lattice;
@@ -120,7 +120,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 gravity: Vector::of(scene.gravity),
                 transfer: scene.time.transfer,
                 pic_share: T::of(pic_share(scene.time.transfer, scene.time.pic_share)),
+                walls: walls::<D>(scene),
                 damping: NodeDamping::new(&scene.damping),
+                viscosity: BulkViscosity::new(&scene.damping),
                 rules: Rules::new(scene),
                 time: scene.time.clone(),
                 path,
@@ -190,13 +192,15 @@ fn particles<T: Real, const D: usize>(
     Particles::from_fn(filling.sites.len(), own_columns(scene, body), particle)
 }
 
-/// The columns that the particles of a body have for its law and its transfer: rigid ones none.
+/// The columns that the particles of a body have for its law, its transfer and damping: rigid ones none.
 pub fn own_columns(scene: &Scene, body: &scene::Body) -> OwnColumns {
     if body.is_rigid() {
         return OwnColumns::default();
     }
     let history = scene.materials[body.material].law.history();
-    OwnColumns { history, transfer: crate::transfer::columns(scene.time.transfer) }
+    let viscosity =
+        BulkViscosity::<f64>::new(&scene.damping).map_or(&[][..], |_| BulkViscosity::<f64>::COLUMNS);
+    OwnColumns { history, transfer: crate::transfer::columns(scene.time.transfer), viscosity }
 }
 
 /// The domain's faces that are mirrors.

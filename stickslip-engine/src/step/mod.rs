@@ -7,7 +7,7 @@
 //! | the length of the step, and what happens around it | `Simulation::step` below |
 //! | which passes a step makes, and in which order | the recipes below |
 //! | what a pass does to a particle: velocity, F and stress, position | `tile/group.rs`, from top to bottom |
-//! | the sums over nodes of G2P and P2G | `interpolate`, `flow`, `moments`, `gradient`, `scatter` of [`crate::transfer`] |
+//! | G2P's and P2G's sums over nodes | `interpolate`, `flow`, `moments`, `gradient`, `scatter` of [`crate::transfer`] |
 //! | the same as the equations read, one particle and node after the other | `naive.rs`, and `transfer/naive.rs` |
 //! | the stress | `respond` of a law in [`crate::material`] |
 //! | bodies that keep their volume | `average.rs` |
@@ -15,6 +15,7 @@
 //! | what is booked of a step | `account.rs` |
 //! | dynamic relaxation, between two steps | `relax.rs` |
 //! | what happens at a node: v = p / m, v += dt (f / m + g) | [`crate::grid::Node`] |
+//! | glue at a node | `glue.rs` |
 //! | contact at a node | `contact/solve.rs`, by a law of `contact/law/` |
 
 mod account;
@@ -41,10 +42,12 @@ pub(crate) use unbounded::particles_around;
 use crate::basis::Basis;
 use crate::boundary::Boundary;
 use crate::clock::fastest_signal;
+use crate::contact::ContactUse;
 use crate::door::{Simulation, StepError};
 use crate::lanes::Laned;
 use crate::scene::StressUpdate;
 use crate::transfer::Share;
+use account::Interpolated;
 use state::{Settings, State, Workspace};
 use std::marker::PhantomData;
 use std::sync::PoisonError;
@@ -63,14 +66,14 @@ pub struct Engine<T, const D: usize, B> {
 ///
 /// ```text
 /// v~    velocity of a node after contact and walls
-/// v^0   the interpolated velocity, before contact, walls and forces
-/// dv    change of the step that a particle takes: sum S_i (v~_i - v_i^0), with v~ integrated
+/// v^0   the interpolated velocity, before contact, walls and forces; where glue joins bodies, that of all of them
+/// dv    change of the step that a particle takes: sum S_i (v~_i - v_i^0), with v~ integrated, and damped
 /// L     sum v~_i (x) grad S_i, of the velocities that strain
 /// ```
-/// All have contact on the interpolated and on the integrated velocities, and strain and move particles by the same
-/// velocities; they differ in which velocities these are. In MUSL they are interpolated a second time, and contact acts
-/// a third time. All contact laws but one act in all of these places, as the paper's do. `surface`, the default, leaves
-/// alone interpolated velocities that strain nothing.
+/// All have contact on the interpolated and on the integrated velocities. In each, the velocities that strain particles
+/// also move them; which velocities these are differs. In MUSL they are interpolated a second time, and contact acts a
+/// third time. Walls are imposed after each contact, too. All contact laws but one act in all of these places, as the
+/// paper's do. `surface`, the default, leaves alone interpolated velocities that strain nothing.
 impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// One step of `dt`.
     fn advance(&mut self, dt: T) -> Result<(), StepError> {
@@ -83,65 +86,71 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
 
     /// Update stress first (USF): the interpolated velocities strain and move particles.
     fn update_stress_first(&mut self, dt: T) -> Result<(), StepError> {
-        self.find_active_blocks(); //                 cell lists; blocks of nodes under each body's particles
-        self.particles_to_grid(Share::Mass); //       P2G: m, p
-        self.interpolate_velocities(); //             v = p / m                                     (4)
-        self.impose_boundary_conditions(); //         of rigid bodies and walls
-        self.detect_contact(dt); //                   surfaces, normals and gaps where bodies meet
-        self.contact_on_interpolated(dt); //          v~                             (5)-(13), (20)-(22)
-        self.average_dilatation(dt); //               of nearly incompressible bodies
-        self.update_stress(dt)?; //                   G2P: F = (I + L dt) F, sigma = law(F); P2G: f
-        self.keep_velocities(); //                    v~ moves the particles, too
-        self.update_velocities(dt); //                v += dt (f / m + g)                           (3)
-        self.impose_boundary_conditions(); //         once more
-        self.contact_on_integrated(dt); //            v~
-        self.exchange_velocities(dt); //              v~ that was kept, to move by; v~ of now, damped, for dv
-        self.update_velocities_and_positions(dt)?; // G2P: v_p += dv, x += v~ dt
-        self.move_rigid_bodies(dt)?; //               as prescribed
-        self.account(dt); //                          impulses, works, balance of forces
+        self.find_active_blocks(); //                             cell lists; blocks of nodes under bodies' particles
+        self.particles_to_grid(Share::Mass); //                   P2G: m, p
+        self.interpolate_velocities(); //                         v = p / m                            (4)
+        self.impose_boundary_conditions(); //                     of rigid bodies and walls
+        self.detect_contact(None); //                             surfaces, normals and gaps where bodies meet
+        self.join_glued_bodies(); //                              one v for bodies that glue joins
+        self.contact_on_interpolated(dt, ContactUse::Strain); //  v~, and walls        (5)-(13), (20)-(22)
+        self.average_dilatation(dt); //                           of nearly incompressible bodies
+        self.update_stress(dt)?; //                               G2P: F = (I + L dt) F, sigma = law(F); P2G: f
+        self.keep_velocities(); //                                v~ moves the particles, too
+        self.update_velocities(dt); //                            v += dt (f / m + g)                  (3)
+        self.impose_boundary_conditions(); //                     once more
+        self.contact_on_integrated(dt); //                        v~, and walls
+        self.exchange_velocities(); //                            v~ that was kept, to move by; v~ of now, for dv
+        self.damp(dt); //                                         of v~ for dv
+        self.update_velocities_and_positions(dt)?; //             G2P: v_p += dv, x += v~ dt
+        self.move_rigid_bodies(dt)?; //                           as prescribed
+        self.account(dt, Interpolated::Once); //                  impulses, works, balance of forces
         Ok(())
     }
 
     /// Update stress last (USL): the integrated velocities strain and move particles.
     fn update_stress_last(&mut self, dt: T) -> Result<(), StepError> {
-        self.find_active_blocks(); //                 cell lists; blocks of nodes under each body's particles
-        self.particles_to_grid(Share::Everything); // P2G: m, p, f = -sum V sigma grad S
-        self.interpolate_velocities(); //             v = p / m                                     (4)
-        self.impose_boundary_conditions(); //         of rigid bodies and walls
-        self.detect_contact(dt); //                   surfaces, normals and gaps where bodies meet
-        self.contact_on_interpolated(dt); //          v~, by all laws but `surface`  (5)-(13), (20)-(22)
-        self.update_velocities(dt); //                v += dt (f / m + g)                           (3)
-        self.impose_boundary_conditions(); //         once more
-        self.contact_on_integrated(dt); //            v~
-        self.keep_damped_velocities(dt); //           v~, for dv
-        self.average_dilatation(dt); //               of nearly incompressible bodies
-        self.update_particles(dt)?; //                G2P: v_p += dv, F, sigma, x += v~ dt
-        self.move_rigid_bodies(dt)?; //               as prescribed
-        self.account(dt); //                          impulses, works, balance of forces
+        self.find_active_blocks(); //                             cell lists; blocks of nodes under bodies' particles
+        self.particles_to_grid(Share::Everything); //             P2G: m, p, f = -sum V sigma grad S
+        self.interpolate_velocities(); //                         v = p / m                            (4)
+        self.impose_boundary_conditions(); //                     of rigid bodies and walls
+        self.detect_contact(Some(dt)); //                         surfaces, normals and gaps where bodies meet
+        self.join_glued_bodies(); //                              one v for bodies that glue joins
+        self.contact_on_interpolated(dt, ContactUse::Start); //   by all laws but `surface`: (5)-(13), (20)-(22)
+        self.update_velocities(dt); //                            v += dt (f / m + g)                  (3)
+        self.impose_boundary_conditions(); //                     once more
+        self.contact_on_integrated(dt); //                        v~, and walls
+        self.keep_velocities(); //                                v~, for dv
+        self.damp(dt); //                                         of v~ for dv
+        self.average_dilatation(dt); //                           of nearly incompressible bodies
+        self.update_particles(dt)?; //                            G2P: v_p += dv, F, sigma, x += v~ dt
+        self.move_rigid_bodies(dt)?; //                           as prescribed
+        self.account(dt, Interpolated::Once); //                  impulses, works, balance of forces
         Ok(())
     }
 
     /// Modified update stress last (MUSL), the default: the particles' new velocities, interpolated once more, strain
-    /// and move particles.
+    /// and move particles. Works are accounted before contact acts on these, which no particle takes as a change.
     fn modified_update_stress_last(&mut self, dt: T) -> Result<(), StepError> {
-        self.find_active_blocks(); //                 cell lists; blocks of nodes under each body's particles
-        self.particles_to_grid(Share::Everything); // P2G: m, p, f = -sum V sigma grad S
-        self.interpolate_velocities(); //             v = p / m                                     (4)
-        self.impose_boundary_conditions(); //         of rigid bodies and walls
-        self.detect_contact(dt); //                   surfaces, normals and gaps where bodies meet
-        self.contact_on_interpolated(dt); //          v~, by all laws but `surface`  (5)-(13), (20)-(22)
-        self.update_velocities(dt); //                v += dt (f / m + g)                           (3)
-        self.impose_boundary_conditions(); //         once more
-        self.contact_on_integrated(dt); //            v~
-        self.keep_damped_velocities(dt); //           v~, for dv
-        self.update_particle_velocities(dt)?; //      G2P: v_p += dv; P2G: p
-        self.interpolate_again(); //                  v = p / m, with m as before
-        self.impose_boundary_conditions(); //         and again
-        self.account(dt); //                          impulses, works, balance of forces: of dv, which the particles have
-        self.contact_on_straining(dt); //             v~, which no particle takes as a change
-        self.average_dilatation(dt); //               of nearly incompressible bodies
-        self.update_stress_and_positions(dt)?; //     G2P: F = (I + L dt) F, sigma = law(F), x += v~ dt
-        self.move_rigid_bodies(dt) //                 as prescribed
+        self.find_active_blocks(); //                             cell lists; blocks of nodes under bodies' particles
+        self.particles_to_grid(Share::Everything); //             P2G: m, p, f = -sum V sigma grad S
+        self.interpolate_velocities(); //                         v = p / m                            (4)
+        self.impose_boundary_conditions(); //                     of rigid bodies and walls
+        self.detect_contact(Some(dt)); //                         surfaces, normals and gaps where bodies meet
+        self.join_glued_bodies(); //                              one v for bodies that glue joins
+        self.contact_on_interpolated(dt, ContactUse::Start); //   by all laws but `surface`: (5)-(13), (20)-(22)
+        self.update_velocities(dt); //                            v += dt (f / m + g)                  (3)
+        self.impose_boundary_conditions(); //                     once more
+        self.contact_on_integrated(dt); //                        v~, and walls
+        self.keep_velocities_and_clear_momentum(); //             v~, for dv; p = 0
+        self.damp(dt); //                                         of v~ for dv
+        self.update_particle_velocities(dt)?; //                  G2P: v_p += dv; P2G: p
+        self.interpolate_again(); //                              v = p / m, with m as before
+        self.impose_boundary_conditions(); //                     and again
+        self.account(dt, Interpolated::Twice); //                 the same, while u^1 is at the nodes
+        self.contact_on_straining(dt); //                         v~, and walls
+        self.average_dilatation(dt); //                           of nearly incompressible bodies
+        self.update_stress_and_positions(dt)?; //                 G2P: F, sigma, x += v~ dt
+        self.move_rigid_bodies(dt) //                             as prescribed
     }
 
     /// Longest stable step now, courant h / max(c + |v_p|): the speed is the fastest *signal* ([`crate::clock`]) [s].
@@ -170,7 +179,6 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
     }
 
     fn rebuild_workspace(&mut self) {
-        let walls = std::mem::take(&mut self.workspace.boundary.walls);
-        self.workspace = Workspace::new(Boundary::new(walls));
+        self.workspace = Workspace::new(Boundary::new(self.settings.walls.clone()));
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::basis::Basis;
 use crate::body::{Body, Particle};
+use crate::damping::BulkViscosity;
 use crate::grid::{Disjoint, Lattice, Node, SIDE, Sought, Tile, Window, addressable};
 use crate::lanes::{Machine, Processor};
 use crate::particles::Columns;
@@ -49,6 +50,8 @@ pub struct Pass<T, const D: usize> {
     pub transfer: Transfer,
     /// PIC share.
     pub pic: T,
+    /// Bulk viscosity.
+    pub viscosity: Option<BulkViscosity<T>>,
     /// Where the nodes are.
     pub lattice: Lattice<T, D>,
     /// Lower and upper corner of the domain [m].

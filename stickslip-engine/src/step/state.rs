@@ -5,9 +5,9 @@ use super::cpu::Threads;
 use super::relax::RelaxationProgress;
 use super::unbounded::Unbounded;
 use crate::body::{Body, Totals};
-use crate::boundary::Boundary;
+use crate::boundary::{Boundary, Wall};
 use crate::contact::{ContactSums, Impulses, Rules, Survey};
-use crate::damping::NodeDamping;
+use crate::damping::{BulkViscosity, NodeDamping};
 use crate::grid::{ActiveBlocks, Field, Lattice};
 use crate::scene::{Time, Transfer};
 use crate::tensor::Vector;
@@ -23,13 +23,17 @@ pub struct Settings<T, const D: usize> {
     pub gravity: Vector<T, D>,
     pub transfer: Transfer,
     pub pic_share: T,
+    /// Faces of the domain that are not open.
+    pub walls: Vec<Wall>,
     pub damping: NodeDamping<T>,
+    pub viscosity: Option<BulkViscosity<T>>,
     pub rules: Rules<T>,
     pub time: Time,
     pub path: ParticleLoop,
 }
 
 /// All that a copied, stored or resumed simulation needs: the same state takes the same steps, bit for bit.
+#[derive(Clone)]
 pub struct State<T, const D: usize> {
     /// Bodies with their particles, in the order in which these lie in memory: sums follow that order. Rigid ones have
     /// their motion and pose.

@@ -13,7 +13,6 @@ use crate::contact::{ContactUse, ImpulseRecord, Near, Solve, TimeStep};
 use crate::door::StepError;
 use crate::grid::{Blocks, Disjoint, Node, node_at, nodes_per_block};
 use crate::lanes::{Laned, Processor};
-use crate::scene::StressUpdate;
 use crate::tensor::{Matrix, Vector};
 use crate::threads::each;
 use crate::transfer::{Share, begin_filter, end_filter, filter_once_more, filters};
@@ -79,7 +78,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         if share.has_force() && self.averages_volume() {
             self.scatter(Share::Mass);
             self.workspace.field.find_present(|_| {});
-            self.average_pressure();
+            self.average_mean_stress();
             self.scatter(Share::Force);
         } else {
             self.scatter(share);
@@ -107,7 +106,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let scatter = (!averages).then_some(Share::Force);
         self.run_pass("stress update", Verbs { update_stress: true, scatter, ..Verbs::default() }, dt)?;
         if averages {
-            self.average_pressure();
+            self.average_mean_stress();
             self.scatter(Share::Force);
         }
         Ok(())
@@ -139,6 +138,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             dt,
             transfer: self.settings.transfer,
             pic: self.settings.pic_share,
+            viscosity: self.settings.viscosity,
             lattice: self.settings.lattice,
             domain: self.settings.domain,
         });
@@ -188,25 +188,20 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.at_nodes("grid", |node| node.accelerate(gravity, dt));
     }
 
-    /// Keeps the nodes' velocities that strained the particles, to move them by.
+    /// Keeps the nodes' velocities, for the particles to take later: in USL those whose change they take, in USF those
+    /// that strained them and move them.
     pub(super) fn keep_velocities(&mut self) {
         self.at_nodes("grid", Node::keep);
     }
 
-    /// Keeps the nodes' velocities, whose change the particles take, and damps what it keeps. Where velocities are
-    /// interpolated again it makes room for the momentum of the second P2G.
-    pub(super) fn keep_damped_velocities(&mut self, dt: T) {
-        match self.settings.time.stress_update {
-            StressUpdate::ModifiedLast => self.at_nodes("grid", Node::keep_and_clear),
-            _ => self.at_nodes("grid", Node::keep),
-        }
-        self.damp(dt);
+    /// Keeps the nodes' velocities, whose change the particles take, and makes room for the momentum of the second P2G.
+    pub(super) fn keep_velocities_and_clear_momentum(&mut self) {
+        self.at_nodes("grid", Node::keep_and_clear);
     }
 
-    /// Takes the velocities that were kept, and keeps those of now, damped, whose change the particles take.
-    pub(super) fn exchange_velocities(&mut self, dt: T) {
+    /// Takes the velocities that were kept, and keeps those of now, whose change the particles take.
+    pub(super) fn exchange_velocities(&mut self) {
         self.at_nodes("grid", Node::exchange);
-        self.damp(dt);
     }
 
     /// Does something to each node that has mass.
@@ -216,8 +211,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.watch.lap(name, start);
     }
 
-    /// Damps the velocities whose change the particles take, see [`crate::damping`]. What mirrors repeat is damped alike.
-    fn damp(&mut self, dt: T) {
+    /// Damps the velocities whose change the particles take, see [`crate::damping`]; what mirrors repeat, too.
+    pub(super) fn damp(&mut self, dt: T) {
         let damping = self.settings.damping;
         if !damping.acts() {
             return;
@@ -239,7 +234,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 let (_, block) = active.slots[slot];
                 for local in 0..n {
                     let position = self.settings.lattice.position(node_at(block, local)).space();
-                    field.nodes[slot * n + local].velocity = Vector::of(motion.velocity_at(position));
+                    field.nodes[slot * n + local].prescribe(motion.velocity_at(position));
                 }
             }
         }
@@ -247,8 +242,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.watch.lap("grid", start);
     }
 
-    /// Where bodies meet: surfaces, normals and gaps at the nodes that they share.
-    pub(super) fn detect_contact(&mut self, dt: T) {
+    /// Where bodies meet: surfaces, normals and gaps at the nodes that they share; `ahead` how long they still move
+    /// before contact acts on them [s].
+    pub(super) fn detect_contact(&mut self, ahead: Option<T>) {
         let start = Instant::now();
         let near = Near {
             active: &self.workspace.active,
@@ -257,7 +253,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             lattice: self.settings.lattice,
             boundary: &self.workspace.boundary,
             rules: &self.settings.rules,
-            ahead: (self.settings.time.stress_update != StressUpdate::First).then_some(dt),
+            ahead,
             processor: match self.settings.path {
                 ParticleLoop::Lanes(processor) => processor,
                 _ => Processor::Any,
@@ -267,15 +263,11 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.watch.lap("contact detection", start);
     }
 
-    /// Contact on the interpolated velocities, once glued bodies interpolate as one. If the stress is updated first,
-    /// these velocities strain the particles, and all laws act; else only laws that judge each use of contact by itself
-    /// ([`crate::contact::Span::EachUse`]), as the paper's do.
-    pub(super) fn contact_on_interpolated(&mut self, dt: T) {
-        self.join_glued_bodies();
-        if self.settings.time.stress_update == StressUpdate::First {
-            self.apply_contact(dt, (0, ContactUse::Strain));
-        } else if self.settings.rules.judge_interpolated() {
-            self.apply_contact(dt, (0, ContactUse::Start));
+    /// Contact on the interpolated velocities. Where these strain the particles all laws act; else only laws that judge
+    /// each use of contact by itself ([`crate::contact::Span::EachUse`]), as the paper's do.
+    pub(super) fn contact_on_interpolated(&mut self, dt: T, purpose: ContactUse) {
+        if purpose == ContactUse::Strain || self.settings.rules.judge_interpolated() {
+            self.apply_contact(dt, (0, purpose));
         }
     }
 

@@ -200,7 +200,7 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
 
     /// G2P: sum S_i of the last of a node's values.
     #[inline(always)]
-    pub fn interpolate_last(&self, nodes: &[NodeValues<V::Real>; WINDOW_NODES]) -> V {
+    pub fn interpolate_mean(&self, nodes: &[NodeValues<V::Real>; WINDOW_NODES]) -> V {
         let mut sum = V::NOTHING;
         for i in 0..B::WIDTH {
             for j in 0..B::WIDTH {

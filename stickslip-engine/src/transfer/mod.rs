@@ -62,12 +62,12 @@ pub trait TransferRule {
     /// Whether these velocities are v(m) + dv of [`Xpic`].
     const FILTERS: bool = false;
 
-    /// Whether they take the gradient of the nodes' velocities from their moments, [`crate::basis::Basis::affine`], and not by the
-    /// gradients of the shape functions.
+    /// Whether they take the gradient of the nodes' velocities from their moments, [`crate::basis::Basis::affine`], and
+    /// not by the gradients of the shape functions.
     const AFFINE: bool = false;
 
-    /// G2P of the changes of the nodes' velocities: v_p += sum_i S_ip dv_i = `change`, and what else particles carry, by
-    /// `moments` = sum_i S_ip dv_i (x) (x_i - x_p) / h and `scale` = h / k^2, see [`Rflip`].
+    /// G2P of the changes of the nodes' velocities: v_p += sum_i S_ip dv_i = `change`, and what else particles carry,
+    /// by `moments` = sum_i S_ip dv_i (x) (x_i - x_p) / h and `scale` = h / k^2, see [`Rflip`].
     #[inline(always)]
     fn take_change<V: Lanes, const D: usize>(
         state: &mut VelocityState<V, D>,
@@ -158,7 +158,7 @@ pub enum Share {
     /// Mass times the dilatation rate, in the place of the mass: see `step/average.rs`.
     Dilatation,
     /// Volume times the mean stress, in the place of the mass.
-    Pressure,
+    MeanStress,
     /// Mass, momentum and force.
     Everything,
 }
@@ -173,7 +173,7 @@ impl Share {
     /// Whether it is something of which nodes take the mean.
     #[inline(always)]
     pub fn is_averaged(self) -> bool {
-        matches!(self, Share::Dilatation | Share::Pressure)
+        matches!(self, Share::Dilatation | Share::MeanStress)
     }
 
     /// Whether force is in it.

@@ -112,7 +112,7 @@ impl<T: Real, const D: usize, B: Basis<T>> Stencil<T, D, B> {
     }
 
     /// sum S_i of the last of a node's values.
-    pub fn interpolate_last(&self, nodes: &[NodeValues<T>; WINDOW_NODES], block: [i32; D]) -> T {
+    pub fn interpolate_mean(&self, nodes: &[NodeValues<T>; WINDOW_NODES], block: [i32; D]) -> T {
         let mut sum = T::ZERO;
         self.each(block, |place, offset| sum += nodes[place][3] * self.at(offset).0);
         sum

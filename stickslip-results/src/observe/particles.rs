@@ -4,7 +4,7 @@ use super::file::{OutputError, ReadError};
 use super::folder::OutputFolder;
 use super::frames::Frames;
 use super::schedule::Schedule;
-use super::vtu::{NUMBER, Points, Vtu};
+use super::vtu::{NUMBER, PointArrays, Vtu};
 use super::{Observer, PARTICLES};
 use crate::column::{ColumnDescription, DERIVED, IDENTITY, Kind, every, in_files};
 use crate::door::{ColumnSource, ParticleSnapshot, SnapshotColumn, View};
@@ -88,7 +88,7 @@ fn add_with_derived(file: &mut Vtu, (column, values): (ColumnDescription, &[f64]
 /// # Errors
 /// The file is missing, cut short, or was written by another program.
 pub fn read_particles(path: &Path) -> Result<ParticleSnapshot, ReadError> {
-    let file = Points::open(path)?;
+    let file = PointArrays::open(path)?;
     let [body, number] = IDENTITY;
     let remembered = |name: &str| {
         let (unit, kind, values) = file.described(name)?;
@@ -104,7 +104,7 @@ pub fn read_particles(path: &Path) -> Result<ParticleSnapshot, ReadError> {
     })
 }
 
-impl ColumnSource for Points {
+impl ColumnSource for PointArrays {
     type Error = ReadError;
     fn column<const N: usize>(&self, column: &ColumnDescription) -> Result<Vec<[f64; N]>, ReadError> {
         if column.name == POSITION { self.positions() } else { self.array(column.name) }
@@ -162,7 +162,7 @@ mod tests {
         let path = folder.path().join("00000.vtu");
         let written = snapshot(3);
         encode_particles(&written, 0.25).write(&path).unwrap();
-        let file = Points::open(&path).unwrap();
+        let file = PointArrays::open(&path).unwrap();
         let names: Vec<&str> = file.names().collect();
         let expected =
             "velocity stress pressure von_mises deformation body number mass volume damage back_stress";

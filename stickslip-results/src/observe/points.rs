@@ -36,7 +36,7 @@ pub(super) struct SamplePoint {
 /// of space takes the particles that are there now; a point of the material takes those of the first sample,
 /// with their weights, for ever.
 pub(super) struct Points {
-    points: Vec<(SamplePoint, Hold)>,
+    points: Vec<(SamplePoint, TakenParticles)>,
     /// Indices of the bodies that are not rigid.
     bodies: Vec<usize>,
     radius: f64,
@@ -44,7 +44,7 @@ pub(super) struct Points {
 
 /// Which particles a point takes.
 #[derive(Clone, Debug)]
-enum Hold {
+enum TakenParticles {
     /// Those around it now.
     Around,
     /// These: number and weight, in the order of the numbers. The point lies at their mean position and this beside it
@@ -68,7 +68,7 @@ impl Points {
             if point.fixed_in == Anchor::Material && point.body.is_none() {
                 point.body = nearest(point.at);
             }
-            (point, Hold::Around)
+            (point, TakenParticles::Around)
         });
         Points { points: points.collect(), bodies, radius: RADIUS * scene.discretization.cell }
     }
@@ -100,14 +100,19 @@ impl Points {
         for (i, mut weights) in found.into_iter().enumerate() {
             let Some(mean) = samples[i].filter(|_| self.binds(i)) else { continue };
             weights.sort_unstable_by_key(|(number, _)| *number);
-            let (point, hold) = &mut self.points[i];
-            *hold = Hold::These { weights, beside: std::array::from_fn(|k| point.at[k] - mean.position[k]) };
+            let (point, taken) = &mut self.points[i];
+            *taken = TakenParticles::These {
+                weights,
+                beside: std::array::from_fn(|k| point.at[k] - mean.position[k]),
+            };
         }
-        let place = |(sample, (point, hold)): (Option<PointSample>, &(SamplePoint, Hold))| {
+        let place = |(sample, (point, taken)): (Option<PointSample>, &(SamplePoint, TakenParticles))| {
             let mut sample = sample?;
-            sample.position = match hold {
-                Hold::Around => point.at,
-                Hold::These { beside, .. } => std::array::from_fn(|k| sample.position[k] + beside[k]),
+            sample.position = match taken {
+                TakenParticles::Around => point.at,
+                TakenParticles::These { beside, .. } => {
+                    std::array::from_fn(|k| sample.position[k] + beside[k])
+                }
             };
             Some(sample)
         };
@@ -116,15 +121,17 @@ impl Points {
 
     /// Whether a point of the material has no particles yet.
     fn binds(&self, i: usize) -> bool {
-        let (point, hold) = &self.points[i];
-        point.fixed_in == Anchor::Material && matches!(hold, Hold::Around)
+        let (point, taken) = &self.points[i];
+        point.fixed_in == Anchor::Material && matches!(taken, TakenParticles::Around)
     }
 
     /// m w, zero for most particles.
     fn weight(&self, i: usize, particle: &ParticleView) -> f64 {
         match &self.points[i] {
-            (point, Hold::Around) => particle.mass * wendland(&point.at, &particle.position, self.radius),
-            (_, Hold::These { weights, .. }) => {
+            (point, TakenParticles::Around) => {
+                particle.mass * wendland(&point.at, &particle.position, self.radius)
+            }
+            (_, TakenParticles::These { weights, .. }) => {
                 let (Some(first), Some(last)) = (weights.first(), weights.last()) else { return 0.0 };
                 if particle.number < first.0 || particle.number > last.0 {
                     return 0.0;

@@ -76,7 +76,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_errors_are_those_that_benchmarks_measured() {
+    fn the_estimate_goes_through_what_benchmarks_measured() {
         for (points, of) in [
             (STRESS, (|errors| errors.stress) as fn(Errors) -> f64),
             (REBOUND, |errors| errors.rebound),

@@ -3,7 +3,8 @@
 use super::table::short;
 use crate::column::ColumnDescription;
 use crate::scene::{
-    BodyMotion, Damping, Dimension, Domain, Expression, Face, NamedMaterial, Problem, Relaxation, Scene,
+    BodyMotion, Damping, Dimension, Domain, Expression, Face, MOST_BULK, NamedMaterial, Problem, Relaxation,
+    Scene,
 };
 
 /// Walls may miss the nodes of the grid by this share of a cell.
@@ -40,12 +41,20 @@ pub(super) fn check(scene: &Scene) -> Result<(), Problem> {
 
 /// Damping takes energy and never gives any; a residual of 1 is a body on which forces act unopposed.
 fn check_damping(scene: &Scene) -> Result<(), Problem> {
-    let Damping { viscous, local } = scene.damping;
+    let Damping { viscous, local, bulk } = scene.damping;
     if !(viscous >= 0.0 && viscous.is_finite()) {
         return Err(problem("damping.viscous", format!("{viscous} 1/s"), "a finite number, at least 0"));
     }
     if !(0.0..1.0).contains(&local) {
         return Err(problem("damping.local", format!("{local}"), "a number from 0 to below 1"));
+    }
+    for (key, (coefficient, most)) in
+        ["bulk_linear", "bulk_quadratic"].into_iter().zip(bulk.into_iter().zip(MOST_BULK))
+    {
+        if !(0.0..=most).contains(&coefficient) {
+            let allowed = format!("a number from 0 to {most}");
+            return Err(problem(&format!("damping.{key}"), format!("{coefficient}"), &allowed));
+        }
     }
     match scene.time.relax {
         Some(Relaxation { residual }) if !(residual > 0.0 && residual < 1.0) => {
@@ -189,6 +198,7 @@ mod tests {
         assert_eq!(key_of(|s| s.time.end = f64::INFINITY), "time.end");
         assert_eq!(key_of(|s| s.damping.viscous = f64::NAN), "damping.viscous");
         assert_eq!(key_of(|s| s.damping.local = 1.0), "damping.local");
+        assert_eq!(key_of(|s| s.damping.bulk[1] = -1.0), "damping.bulk_quadratic");
         let never = Relaxation { residual: 0.0 };
         assert_eq!(key_of(|s| s.time.relax = Some(never)), "time.relax.residual");
         assert_eq!(key_of(|s| s.bodies.clear()), "bodies");

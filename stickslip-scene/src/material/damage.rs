@@ -2,24 +2,24 @@
 //! of which a crack takes what it can no longer carry.
 //!
 //! ```text
-//! sigma = (1 - d) (dev(sigma_0) + p_0(max(J, 1)) I) + p_0(min(J, 1)) I        sigma_0, p_0: neo-Hookean; a closed crack bears pressure
+//! sigma = (1 - d) (dev(sigma_0) + p_0(max(J, 1)) I) + p_0(min(J, 1)) I        sigma_0, p_0: neo-Hookean
 //! d     = 1 - k_0/k exp(-(k - k_0)/k_f),   k = max(k_0, largest e so far)     k_0 = f_t/E
-//! e     = (r - 1)/(2 r (1 - 2 nu)) I_1 + 1/(2 r) sqrt(((r - 1)/(1 - 2 nu) I_1)^2 + 12 r/(1 + nu)^2 J_2)     de Vree et al. (1995)
+//! e     = (r - 1)/(2 r (1 - 2 nu)) I_1 + 1/(2 r) sqrt(((r - 1)/(1 - 2 nu) I_1)^2 + 12 r/(1 + nu)^2 J_2)
 //! I_1   = J - 1,   J_2 = 1/8 dev(b_) : dev(b_),   b_ = J^(-2/3) F F^T
 //! k_f   = G_f/(h f_t) - k_0/2                                                 h: the cell, Bazant and Oh (1983)
 //! D     = Y dd,   Y = W_dev + W_vol(max(J, 1))                                dissipated per undeformed volume
 //! ```
 //!
-//! The equivalent strain e is the strain of a bar in tension, and a bar in compression bears r times as much. A crack
-//! is as wide as a cell, so what a bar of it dissipates, f_t k_0/2 + f_t k_f, is the fracture energy over the cell,
-//! whatever the cell (crack band). Where the cell is above 2 E G_f/f_t^2 no softening is slow enough for that: the bar
-//! would snap back, and the scene is refused.
+//! A closed crack bears pressure. The equivalent strain e (de Vree et al. 1995) is the strain of a bar in tension, and
+//! a bar in compression bears r times as much. A crack is as wide as a cell, so what a bar of it dissipates,
+//! f_t k_0/2 + f_t k_f, is the fracture energy over the cell, whatever the cell (crack band). Where the cell is above
+//! 2 E G_f/f_t^2 no softening is slow enough for that: the bar would snap back, and the scene is refused.
 //!
 //! Damage never heals, and ends a millionth below one. It follows strain at once and knows no direction; a crack that
 //! runs at an angle to the grid is wider than a cell.
 
 use super::declaration::{
-    BadConstants, AllowedRange, Constant, Declared, ENERGY_PER_AREA, End, Given, POSITIVE, PRESSURE, RATIO,
+    AllowedRange, BadConstants, Constant, Declared, ENERGY_PER_AREA, End, Given, POSITIVE, PRESSURE, RATIO,
 };
 use super::{History, Isotropic, Law, Motion, NeoHookean, Response, elastic};
 use crate::column::Kind;

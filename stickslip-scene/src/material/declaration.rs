@@ -134,7 +134,7 @@ impl AllowedRange {
         AllowedRange { because, ..self }
     }
 
-    fn hold(&self, value: f64) -> bool {
+    fn contains(&self, value: f64) -> bool {
         let from = match self.from {
             End::Free => true,
             End::At(least) => value >= least,
@@ -234,7 +234,7 @@ impl Constant {
             return Err(self.bad(format!("{} pairs", values.len() / 2), format!("1 to {most} pairs")));
         }
         for (&value, quantity) in values.iter().zip(self.quantities().iter().cycle()) {
-            if !quantity.bounds.hold(value) {
+            if !quantity.bounds.contains(value) {
                 let found = format!("{value} {}", quantity.unit.symbol).trim_end().to_string();
                 return Err(match self.form {
                     Form::Number(_) => self.bad(found, quantity.bounds.to_string()),
@@ -347,8 +347,11 @@ mod tests {
         assert_eq!(POSITIVE.to_string(), "a positive number");
         assert_eq!(NOT_NEGATIVE.to_string(), "at least 0");
         assert!(
-            stable.hold(0.4999) && !stable.hold(0.5) && !stable.hold(-1.0) && !POSITIVE.hold(f64::INFINITY)
+            stable.contains(0.4999)
+                && !stable.contains(0.5)
+                && !stable.contains(-1.0)
+                && !POSITIVE.contains(f64::INFINITY)
         );
-        assert!(NOT_NEGATIVE.hold(0.0) && !NOT_NEGATIVE.hold(f64::NAN));
+        assert!(NOT_NEGATIVE.contains(0.0) && !NOT_NEGATIVE.contains(f64::NAN));
     }
 }

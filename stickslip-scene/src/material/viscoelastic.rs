@@ -6,7 +6,7 @@
 //! sigma = K/2 (J - 1/J) I + G/J dev(F_ A F_^T),     F_ = J^(-1/3) F,   A = (1 - sum g_i) I + sum g_i A_i
 //! tau_i dA_i/dt = C_^-1 - A_i,                      C_ = F_^T F_,      A_i = I - 2 E_i
 //! W     = U(J) + G/2 ((1 - sum g_i) (tr C_ - 3) + sum g_i (tr(C_ A_i) - ln det A_i - 3))
-//! D     = sum G g_i/(2 tau_i) (tr X_i + tr X_i^-1 - 6) >= 0,   X_i = C_ A_i          dissipated per undeformed volume and time
+//! D     = sum G g_i/(2 tau_i) (tr X_i + tr X_i^-1 - 6) >= 0,   X_i = C_ A_i          dissipated per volume and time
 //! ```
 //!
 //! What a branch remembers is its viscous strain E_i in the undeformed body, so a rotation leaves it alone. Its
@@ -25,7 +25,7 @@
 //! goes to the limit. Volume strain is elastic.
 
 use super::declaration::{
-    Absent, BadConstants, AllowedRange, Constant, Declared, Form, Given, POSITIVE, Quantity, RATIO, TIME,
+    Absent, AllowedRange, BadConstants, Constant, Declared, Form, Given, POSITIVE, Quantity, RATIO, TIME,
 };
 use super::history::{put_symmetric, symmetric};
 use super::{History, Isotropic, Law, Motion, Response, elastic};
@@ -268,7 +268,7 @@ impl<T: Number> Law<T> for Viscoelastic<T> {
 mod tests {
     use super::*;
     use crate::material::tests::{follow, hooke, motion_of, rotation, sample_gradients};
-    use crate::material::{Entries, Material, NeoHookean, LAWS, Thickness};
+    use crate::material::{Entries, LAWS, Material, NeoHookean, Thickness};
 
     const ELASTIC: Isotropic<f64> = Isotropic { bulk_modulus: 6.0, shear_modulus: 3.0 };
     const PAIRS: [[f64; 2]; 2] = [[0.5, 0.3], [0.2, 2.0]];

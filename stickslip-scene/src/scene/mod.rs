@@ -233,7 +233,13 @@ pub struct Damping {
     /// Part lambda of the unbalanced force at a node that acts against its velocity, f_d = -lambda |f| sign(v)
     /// (Cundall 1987): from 0 to below 1 [-].
     pub local: f64,
+    /// Bulk viscosity, where material is compressed: its coefficients c_1 and c_2 of the first and second power of the
+    /// rate (Landshoff 1955; von Neumann and Richtmyer 1950) [-].
+    pub bulk: [f64; 2],
 }
+
+/// Most that the coefficients of bulk viscosity may be: beyond, the stable step would be shorter than waves ask for.
+pub const MOST_BULK: [f64; 2] = [1.0, 10.0];
 
 /// When in the step strain and stress are computed (Bardenhagen 2002; Nairn 2003).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]

@@ -7,6 +7,7 @@ mod trial;
 
 mod body_at_rest;
 mod brazilian_disk;
+mod bulk_viscosity;
 mod colliding_disks;
 mod columns;
 mod custom_law;

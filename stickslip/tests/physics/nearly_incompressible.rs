@@ -1,8 +1,8 @@
 //! Bodies that take means of the change of volume keep what a body must keep.
 //!
-//! Source: `stickslip-engine/src/step/average.rs`: means of a uniform field are that field, pressure takes the transpose
-//! of what strain takes, and all forces at the nodes still sum to zero. That it cures locking is held by the benchmark
-//! `punch`.
+//! Source: `stickslip-engine/src/step/average.rs`: means of a uniform field are that field, pressure takes the
+//! transpose of what strain takes, and all forces at the nodes still sum to zero. That it cures locking is held by the
+//! benchmark `punch`.
 //!
 //! Set-up: nearly incompressible rubber (nu = 0.499, c = 13 of the shear waves' speed). A block between mirrors,
 //! squeezed uniformly by a rigid plate; two disks and two balls that spin and meet off centre.
@@ -10,8 +10,8 @@
 //! Expected: the plate's force after a slow push is that without means to 2e-3, and both are M e to 1 %. Momentum to
 //! 1e-12 of one body's, angular momentum to 2 % of its size without friction (measured 1.1 %; own volumes 1.5 %). No
 //! energy comes from nowhere through the impact and 20 periods of vibration after it: at most 1 % (measured 2e-5); with
-//! means of the strain alone, and not of the pressure, it grows by half. What the impact takes at four cells a radius is
-//! at most 8 % more than with own volumes (measured 10 % for 6 % by USF and MUSL, 23 % for 33 % by USL).
+//! means of the strain alone, and not of the pressure, it grows by half. What the impact takes at four cells a radius
+//! is at most 8 % more than with own volumes (measured 10 % for 6 % by USF and MUSL, 23 % for 33 % by USL).
 
 use crate::trial::{STRESS_UPDATES, distance, run_to, start};
 use stickslip::door::ContactCursor;

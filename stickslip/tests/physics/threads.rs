@@ -134,7 +134,8 @@ fn in_the_plane() {
     for update in STRESS_UPDATES {
         compare(&format!("averaged, {update}"), &averaged.replace("modified-last", update), 200);
     }
-    let damped = with("relax = { residual = 1e-6 }") + "[damping]\nviscous = 2\nlocal = 0.1\n";
+    let damped = with("relax = { residual = 1e-6 }")
+        + "[damping]\nviscous = 2\nlocal = 0.1\nbulk_linear = 0.1\nbulk_quadratic = 1.5\n";
     compare("damped and relaxed", &damped, 200);
     let unbounded = plane
         .replace(

@@ -3,8 +3,8 @@
 //! Set-up: a disk with five cells a radius, rho = 1000 and E = 1e5, that flies and spins, in plane strain.
 //!
 //! Expected: by each transfer and basis momentum is constant; energy is, when what `damping` counts is added; a
-//! spinning disk keeps its angular momentum by `rflip` and `apic`, and loses it by the others; `xpic` takes the less the higher
-//! its order, and is `pic` at 1.
+//! spinning disk keeps its angular momentum by `rflip` and `apic`, and loses it by the others; `xpic` takes the less
+//! the higher its order, and is `pic` at 1.
 //!
 //! The sum of energies is exact to the first order of the step, by which the energy of motion and that of strain stand
 //! apart; where strain dies away by damping within a few steps, that is as large as the strain energy so far: 4 % of

@@ -20,7 +20,8 @@ use crate::tensor::{Real, Vector};
 pub enum Span {
     /// Each use of contact by itself, as the paper does.
     EachUse,
-    /// The whole of it, in the use for [`crate::contact::ContactUse::VelocityChange`]; impulses on velocities that strain are no part.
+    /// The whole of it, in the use for [`crate::contact::ContactUse::VelocityChange`]; impulses on velocities that
+    /// strain are no part.
     WholeStep,
 }
 

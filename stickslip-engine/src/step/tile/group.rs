@@ -5,6 +5,7 @@ use super::thickness::free_thickness;
 use crate::basis::Basis;
 use crate::body::Gyration;
 use crate::clock::{no_faster, signal_speed};
+use crate::damping::BulkViscosity;
 use crate::lanes::{Laned, Lanes, Machine};
 use crate::material::{Material, Motion, Thickness};
 use crate::particles::ColumnStart;
@@ -47,12 +48,12 @@ pub fn splat<V: Lanes, const D: usize>(vector: &Vector<V::Real, D>) -> Vector<V,
 
 /// Takes a group through a pass and says which particles did not leave their cells.
 ///
-/// This is all that is ever done to a particle, written once for any number of lanes. Particles have base nodes and
-/// places of these in the window.
+/// This is all that is ever done to a particle, written once for any number of lanes. `base` has the particles' base
+/// nodes, `start` these nodes' places in the window.
 ///
 /// # Errors
-/// A particle has a fault. Of several particles nothing is changed, and which fault it is does not say. A single one
-/// keeps what was found out of it, to be looked at, and the first fault is told.
+/// A particle has a fault. Of several lanes nothing is stored, and the fault may be any of theirs. A single lane stores
+/// what a report shows of it, and the fault is its first.
 #[inline(always)]
 pub fn group<
     T: Laned,
@@ -68,7 +69,7 @@ pub fn group<
     members: &Members<'_, T, D, WHOLE>,
     (base, start): (Vector<V, D>, S),
 ) -> Result<u32, FaultKind> {
-    let Pass { verbs, dt, transfer, pic, .. } = *visit.pass;
+    let Pass { verbs, dt, transfer, pic, viscosity, .. } = *visit.pass;
     let Verbs { smooth, update_velocity, update_stress, advect, scatter } = verbs;
     let position = members.vector::<V>(ColumnStart::<D>::POSITION);
     let half_width = members.load::<V>(ColumnStart::<D>::HALF_WIDTH);
@@ -79,7 +80,7 @@ pub fn group<
 
     let mut state =
         VelocityState { velocity: Vector::ZERO, spin: Vector::ZERO, strain_rate: Symmetric::ZERO };
-    let gyration = constants.gyration.squared(half_width);
+    let gyration_squared = constants.gyration.squared(half_width);
     // What the transfer takes beside the work of forces: v^2 + k^2 w^2 before less that after, so twice the kinetic
     // energy over the mass.
     let mut damped = V::ZERO;
@@ -105,14 +106,14 @@ pub fn group<
     }
     // v_p += sum S_i dv_i, or what else the transfer takes.
     if update_velocity {
-        let scale = constants.cell / gyration;
+        let scale = constants.cell / gyration_squared;
         of_transfer!(transfer, Rule => Rule::take_change(&mut state, change, (&moments, scale)));
         if pic > T::ZERO {
-            let before = kinetic(&state, gyration);
+            let before = kinetic(&state, gyration_squared);
             let (gradient, mean) = group.gradient(&visit.window.integrated, is_affine(transfer));
             let around = (mean, &(gradient * constants.per_cell));
             of_transfer!(transfer, Rule => Rule::take_share(&mut state, around, V::splat(pic)));
-            damped = before - kinetic(&state, gyration);
+            damped = before - kinetic(&state, gyration_squared);
         }
         let VelocityState { velocity, spin, strain_rate } = &state;
         sound.require(finite(&spin.0) & finite(&velocity.0) & finite(&strain_rate.0), FaultKind::NotFinite);
@@ -130,8 +131,12 @@ pub fn group<
     if update_stress || advect {
         deformation = members.deformation::<V>();
     }
-    if update_stress || pushes || scatter == Some(Share::Pressure) {
+    if update_stress || pushes || scatter == Some(Share::MeanStress) {
         stress = members.stress::<V>();
+    }
+    let mut bulk = V::ZERO;
+    if viscosity.is_some() && (update_stress || pushes) {
+        bulk = members.viscosity::<V>();
     }
     // G2P: h L, then F = (I + L dt) F and sigma = law(F).
     let (mut gradient, mut mean) = (Matrix::ZERO, Vector::ZERO);
@@ -142,7 +147,7 @@ pub fn group<
         let scale = V::splat(dt) * constants.per_cell;
         flow = mean;
         if !visit.means.is_empty() {
-            let rate = group.interpolate_last(&visit.window.flow) * constants.cell;
+            let rate = group.interpolate_mean(&visit.window.flow) * constants.cell;
             let more = (rate - gradient.trace()) * V::of(1.0 / D as f64);
             for i in 0..D {
                 gradient.0[i][i] += more;
@@ -152,7 +157,7 @@ pub fn group<
             let spin = state.spin;
             let gradient = gradient * constants.per_cell;
             state.spin = of_transfer!(transfer, Rule => Rule::settle::<V, D>(spin, &gradient, V::splat(dt)));
-            damped += gyration * spin.dot(spin) - gyration * state.spin.dot(state.spin);
+            damped += gyration_squared * spin.dot(spin) - gyration_squared * state.spin.dot(state.spin);
             sound.require(finite(&state.spin.0), FaultKind::NotFinite);
         }
         let increment = Matrix::IDENTITY + gradient * scale;
@@ -164,7 +169,7 @@ pub fn group<
         if V::COUNT == 1
             && let Some(kind) = sound.fault::<V>()
         {
-            members.store_picture((&deformation, volume), kind);
+            members.store_for_report((&deformation, volume), kind);
             return Err(kind);
         }
         let motion = Motion { deformation, jacobian, increment, stress, dt: V::splat(dt) };
@@ -176,13 +181,23 @@ pub fn group<
             stress = constants.material.respond(&motion, &mut history);
         }
         history.changed = true;
+        if let Some(BulkViscosity { coefficients }) = viscosity {
+            let modulus =
+                constants.material.wave_modulus(visit.body.thickness, (&deformation, jacobian), &history);
+            let (speed, rate) = ((modulus * constants.per_density).sqrt(), gradient.trace());
+            let over_density = BulkViscosity::<T>::over_density(coefficients.map(V::splat), rate, speed);
+            // The forces of this step were made with the one before, those of the next are made with this one.
+            let before = bulk * constants.per_density;
+            bulk = over_density / (constants.per_density * jacobian);
+            damped -= (before * jacobian + over_density) * (rate * scale);
+        }
         sound.require(finite(&stress.0), FaultKind::NotFinite);
         volume = members.load::<V>(ColumnStart::<D>::MASS) * constants.per_density * jacobian;
     } else {
         if advect {
             jacobian = deformation.det();
         }
-        if pushes || scatter == Some(Share::Pressure) {
+        if pushes || scatter == Some(Share::MeanStress) {
             volume = members.load::<V>(ColumnStart::<D>::VOLUME);
         }
     }
@@ -237,7 +252,7 @@ pub fn group<
         members.give_back::<V>(ColumnStart::<D>::VELOCITY..ColumnStart::<D>::SPIN);
         members.store_strain_rate(&state.strain_rate);
     }
-    if (update_velocity && pic > T::ZERO) || (update_stress && rotates) {
+    if (update_velocity && pic > T::ZERO) || (update_stress && (rotates || viscosity.is_some())) {
         let energies = (damped * members.load::<V>(ColumnStart::<D>::MASS)).numbers();
         for &energy in &energies.0[..members.count::<V>().min(V::COUNT)] {
             visit.damped += 0.5 * energy.f64();
@@ -251,6 +266,7 @@ pub fn group<
         members.store_deformation(&deformation);
         members.store_stress(&stress);
         members.give_back::<V>(ColumnStart::<D>::DEFORMATION..ColumnStart::<D>::START);
+        members.store_viscosity(bulk);
         members.store(ColumnStart::<D>::VOLUME, volume);
         members.give_back::<V>(ColumnStart::<D>::VOLUME..ColumnStart::<D>::VOLUME + 1);
         history.store::<V>();
@@ -258,11 +274,11 @@ pub fn group<
     // P2G: m, m (v + G (x_i - x_p)), -V sigma grad S.
     if let Some(share) = scatter {
         // V tr_D(sigma) / D
-        let mut pressure = V::ZERO;
+        let mut mean_stress = V::ZERO;
         for i in 0..D {
-            pressure += stress.0[i];
+            mean_stress += stress.0[i];
         }
-        pressure *= volume * V::of(1.0 / D as f64);
+        mean_stress *= volume * V::of(1.0 / D as f64);
         let mut load = ScatterTerms { momentum: None, stress: None };
         if gives_momentum {
             let mass = members.load::<V>(ColumnStart::<D>::MASS);
@@ -276,9 +292,14 @@ pub fn group<
         }
         if pushes {
             let mut pull = stress * (volume * constants.per_cell);
+            if viscosity.is_some() {
+                for i in 0..D {
+                    pull.0[i] -= bulk * (volume * constants.per_cell);
+                }
+            }
             if !visit.means.is_empty() {
                 let mass = members.load::<V>(ColumnStart::<D>::MASS);
-                let more = mass * group.interpolate_last(&visit.window.flow) - pressure;
+                let more = mass * group.interpolate_mean(&visit.window.flow) - mean_stress;
                 for i in 0..D {
                     pull.0[i] += more * constants.per_cell;
                 }
@@ -287,7 +308,7 @@ pub fn group<
         }
         if share.is_averaged() {
             let sum = match share {
-                Share::Pressure => pressure,
+                Share::MeanStress => mean_stress,
                 _ => members.load::<V>(ColumnStart::<D>::MASS) * (gradient.trace() * constants.per_cell),
             };
             load.momentum = Some(Momentum { own: Vector::ZERO, per_cell: Matrix::ZERO, mass: sum });
@@ -326,7 +347,8 @@ impl Sound {
     }
 }
 
-/// v^2 + k^2 w^2 + k^2/2 |E|^2, with the square of the radius of gyration and the rate of strain that its transfer keeps.
+/// v^2 + k^2 w^2 + k^2/2 |E|^2, with the square of the radius of gyration and the rate of strain that its transfer
+/// keeps.
 #[inline(always)]
 fn kinetic<V: Lanes, const D: usize>(state: &VelocityState<V, D>, gyration: V) -> V {
     let VelocityState { velocity, spin, strain_rate } = state;

@@ -33,6 +33,8 @@ struct Reads {
     history: usize,
     /// Entries of what the transfer carries.
     transfer: usize,
+    /// Entries of what bulk viscosity needs.
+    viscosity: usize,
 }
 
 impl Reads {
@@ -43,10 +45,15 @@ impl Reads {
         Reads {
             deformation: verbs.update_stress || verbs.advect,
             stress: verbs.update_stress
-                || verbs.scatter.is_some_and(|share| share.has_force() || share == Share::Pressure),
+                || verbs.scatter.is_some_and(|share| share.has_force() || share == Share::MeanStress),
             history: if verbs.update_stress || verbs.advect { columns.history() } else { 0 },
             transfer: if verbs.update_velocity || gives_momentum {
                 columns.transfer_columns().len()
+            } else {
+                0
+            },
+            viscosity: if verbs.update_stress || verbs.scatter.is_some_and(Share::has_force) {
+                columns.viscosity_columns().len()
             } else {
                 0
             },
@@ -55,7 +62,7 @@ impl Reads {
 
     /// All columns that are read.
     #[inline(always)]
-    fn columns<T: Real, const D: usize>(self, of: &Columns<T, D>) -> [Range<usize>; 5] {
+    fn columns<T: Real, const D: usize>(self, of: &Columns<T, D>) -> [Range<usize>; 6] {
         let only = |read: bool, columns: Range<usize>| if read { columns } else { 0..0 };
         [
             0..ColumnStart::<D>::DEFORMATION,
@@ -63,6 +70,7 @@ impl Reads {
             only(self.stress, ColumnStart::<D>::STRESS..ColumnStart::<D>::START),
             ColumnStart::<D>::HISTORY..ColumnStart::<D>::HISTORY + self.history,
             of.transfer_columns().start..of.transfer_columns().start + self.transfer,
+            of.viscosity_columns().start..of.viscosity_columns().start + self.viscosity,
         ]
     }
 }
@@ -126,7 +134,7 @@ impl ParticleRuns {
 }
 
 /// Columns of a particle in space.
-const MOST_COLUMNS: usize = ColumnStart::<3>::HISTORY + MOST_HISTORY + stress_entries(3);
+const MOST_COLUMNS: usize = ColumnStart::<3>::HISTORY + MOST_HISTORY + stress_entries(3) + 1;
 
 impl<'a, T: Real, const D: usize, const WHOLE: bool> Members<'a, T, D, WHOLE> {
     /// Particles that lie side by side.
@@ -255,6 +263,24 @@ impl<'a, T: Real, const D: usize, const WHOLE: bool> Members<'a, T, D, WHOLE> {
         self.give_back::<V>(self.columns.transfer_columns());
     }
 
+    /// Pressure of the bulk viscosity [Pa]; zero if there is none.
+    #[inline(always)]
+    pub fn viscosity<V: Lanes<Real = T>>(&self) -> V {
+        let mut pressure = V::ZERO;
+        for column in self.columns.viscosity_columns() {
+            pressure = self.load(column);
+        }
+        pressure
+    }
+
+    #[inline(always)]
+    pub fn store_viscosity<V: Lanes<Real = T>>(&self, pressure: V) {
+        for column in self.columns.viscosity_columns() {
+            self.store(column, pressure);
+        }
+        self.give_back::<V>(self.columns.viscosity_columns());
+    }
+
     #[inline(always)]
     pub fn deformation<V: Lanes<Real = T>>(&self) -> Matrix<V> {
         let mut f = Matrix::ZERO;
@@ -291,7 +317,11 @@ impl<'a, T: Real, const D: usize, const WHOLE: bool> Members<'a, T, D, WHOLE> {
 impl<T: Real, const D: usize, const WHOLE: bool> Members<'_, T, D, WHOLE> {
     /// Keeps of a particle with a fault what a picture of it shows: F and volume, if these are numbers.
     #[inline(always)]
-    pub fn store_picture<V: Lanes<Real = T>>(&self, (deformation, volume): (&Matrix<V>, V), kind: FaultKind) {
+    pub fn store_for_report<V: Lanes<Real = T>>(
+        &self,
+        (deformation, volume): (&Matrix<V>, V),
+        kind: FaultKind,
+    ) {
         if kind == FaultKind::Inverted {
             self.store_deformation(deformation);
             self.store(ColumnStart::<D>::VOLUME, volume);
@@ -407,6 +437,9 @@ impl<T: Real> Copies<T> {
                 }
                 if reads.transfer > 0 {
                     self.take_run::<V, D>(columns, run, columns.transfer_columns());
+                }
+                if reads.viscosity > 0 {
+                    self.take_run::<V, D>(columns, run, columns.viscosity_columns());
                 }
             }
         }

@@ -12,7 +12,7 @@
 mod read;
 mod write;
 
-pub(super) use read::Points;
+pub(super) use read::PointArrays;
 pub use write::Vtu;
 pub(super) use write::{NUMBER, VECTOR};
 

@@ -12,7 +12,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// An opened file of points.
-pub(in crate::observe) struct Points {
+pub(in crate::observe) struct PointArrays {
     path: PathBuf,
     bytes: Vec<u8>,
     /// Where the appended data starts.
@@ -35,11 +35,11 @@ struct ArrayPlace {
     unit: String,
 }
 
-impl Points {
+impl PointArrays {
     /// Opens a file and reads what it holds; arrays are unpacked when asked for.
     pub(in crate::observe) fn open(path: &Path) -> Result<Self, ReadError> {
         let bytes = fs::read(path).map_err(|error| ReadProblem::Io(error).at(path))?;
-        let mut points = Points {
+        let mut points = PointArrays {
             path: path.to_path_buf(),
             bytes: Vec::new(),
             appended: 0,

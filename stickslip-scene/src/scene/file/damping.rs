@@ -4,6 +4,7 @@ use super::Context;
 use super::quantity::{Measure, QuantityInput, Ratio};
 use super::read::table;
 use crate::scene;
+use crate::scene::MOST_BULK;
 use crate::scene::error::Fault;
 use crate::scene::units::Powers;
 
@@ -33,6 +34,15 @@ table! {
         /// component: f_d = -lambda |f| sign(v) (Cundall 1987). Forces in balance are left alone.
         #[schemars(extend("default" = 0))]
         local: Option<QuantityInput<Ratio>>,
+        /// Bulk viscosity c_1, 0 to 1, of the first power of the rate of compression: a pressure
+        /// rho h c_1 c d, with the wave speed c and d = max(-tr L, 0) (Landshoff 1955). 0.06 is usual: it takes the
+        /// noise behind a shock.
+        #[schemars(extend("default" = 0))]
+        bulk_linear: Option<QuantityInput<Ratio>>,
+        /// Bulk viscosity c_2, 0 to 10, of its second power: a pressure rho h^2 c_2 d^2 (von Neumann and Richtmyer
+        /// 1950). 1.5 is usual: it spreads a strong shock over a few cells.
+        #[schemars(extend("default" = 0))]
+        bulk_quadratic: Option<QuantityInput<Ratio>>,
     }
 }
 
@@ -46,6 +56,14 @@ impl Damping {
         if let Some(share) = &self.local {
             let allowed = "a number from 0 to below 1";
             damping.local = share.checked(context, allowed, |value| (0.0..1.0).contains(&value))?;
+        }
+        let bulk = [(&self.bulk_linear, MOST_BULK[0]), (&self.bulk_quadratic, MOST_BULK[1])];
+        for (written, (coefficient, most)) in bulk.into_iter().enumerate() {
+            if let Some(coefficient) = coefficient {
+                let allowed = format!("a number from 0 to {most}");
+                damping.bulk[written] =
+                    coefficient.checked(context, &allowed, |value| (0.0..=most).contains(&value))?;
+            }
         }
         Ok(damping)
     }
