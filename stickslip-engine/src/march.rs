@@ -1,4 +1,5 @@
-//! Steps to a time: the one loop that runs, validation, measurements of speed and tests share.
+//! Steps to a time: the one loop of runs, examples and tests; validation and measurements of speed take its steps one by
+//! one ([`March`]).
 
 use crate::door::{Simulation, StepError};
 use std::ops::ControlFlow;
@@ -87,6 +88,15 @@ impl March {
     }
 }
 
+/// How a march ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MarchEnd {
+    /// At its time, or at the state at rest that dynamic relaxation looks for.
+    Arrived,
+    /// `look` broke it off before that.
+    BrokenOff,
+}
+
 /// Steps a simulation to a time [s] and shows it after each step, with the step's length [s], until `look` breaks off.
 ///
 /// # Errors
@@ -95,12 +105,12 @@ pub fn march(
     simulation: &mut dyn Simulation,
     until: f64,
     mut look: impl FnMut(&mut dyn Simulation, f64) -> ControlFlow<()>,
-) -> Result<(), MarchError> {
+) -> Result<MarchEnd, MarchError> {
     let mut way = March::to(until);
     while let Some(step) = way.step(simulation)? {
-        if look(simulation, step).is_break() {
-            break;
+        if look(simulation, step).is_break() && !way.is_done(simulation) {
+            return Ok(MarchEnd::BrokenOff);
         }
     }
-    Ok(())
+    Ok(MarchEnd::Arrived)
 }

@@ -13,11 +13,12 @@ pub use summary::{ReferenceResult, Summary};
 pub use widest::{WidestContact, WidestContacts};
 
 use crate::door::Simulation;
-use crate::march::March;
+use crate::march::{MarchEnd, march};
 use crate::observe::{Manifest, Observer, OutputFolder, Recorder, Status};
 use crate::scene::Scene;
 use clock::RunClock;
 use contact_watch::ContactWatch;
+use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -116,23 +117,31 @@ struct Watched<'a> {
 impl Watched<'_> {
     fn to(mut self, end: f64, progress: &mut dyn FnMut(&Progress)) -> Result<Status, RunError> {
         self.recorder.record_present(self.simulation)?;
-        let mut way = March::to(end);
-        let mut reports = self.clock.reports();
-        let mut notes = self.verdict.look(self.scene, self.simulation);
-        let status = loop {
-            if way.is_done(self.simulation) {
-                break Status::Finished;
-            }
-            if self.options.stop.load(Ordering::Relaxed) {
-                break Status::Interrupted;
-            }
-            self.step(&mut way)?;
-            self.recorder.record_due(self.simulation)?;
-            notes.extend(self.contact_watch.look(self.scene, self.simulation));
-            notes.extend(self.verdict.look(self.scene, self.simulation));
-            if reports.due() || !notes.is_empty() {
-                let notes = std::mem::take(&mut notes);
-                progress(&Progress { notes, ..self.clock.progress(self.simulation, end) });
+        let Watched { scene, simulation, recorder, verdict, contact_watch, options, clock } = &mut self;
+        let mut reports = clock.reports();
+        let mut notes = verdict.look(scene, *simulation);
+        let mut recorded = Ok(());
+        let stop = || options.stop.load(Ordering::Relaxed);
+        let way = match stop() {
+            true => Ok(MarchEnd::BrokenOff),
+            false => march(*simulation, end, |simulation, _| {
+                recorded = recorder.record_due(simulation);
+                notes.extend(contact_watch.look(scene, simulation));
+                notes.extend(verdict.look(scene, simulation));
+                if reports.due() || !notes.is_empty() {
+                    let notes = std::mem::take(&mut notes);
+                    progress(&Progress { notes, ..clock.progress(simulation, end) });
+                }
+                if recorded.is_err() || stop() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            }),
+        };
+        recorded?;
+        let status = match way {
+            Ok(MarchEnd::Arrived) => Status::Finished,
+            Ok(MarchEnd::BrokenOff) => Status::Interrupted,
+            Err(error) => {
+                let recorded = recorder.record_failure(*simulation).and_then(|()| recorder.conclude());
+                return Err(RunError::Step { error, unsaved: recorded.err() });
             }
         };
         notes.extend(self.verdict.conclude(self.scene, self.simulation));
@@ -140,14 +149,5 @@ impl Watched<'_> {
         self.recorder.conclude()?;
         progress(&Progress { notes, ..self.clock.progress(self.simulation, end) });
         Ok(status)
-    }
-
-    /// Takes a step and returns its length, if the end is not reached [s].
-    fn step(&mut self, way: &mut March) -> Result<Option<f64>, RunError> {
-        way.step(self.simulation).map_err(|error| {
-            let recorder = &mut self.recorder;
-            let recorded = recorder.record_failure(self.simulation).and_then(|()| recorder.conclude());
-            RunError::Step { error, unsaved: recorded.err() }
-        })
     }
 }
