@@ -56,7 +56,7 @@ fn values_out_of_range() {
             (
                 "[time]",
                 "[damping]\nglobal = 1\n[time]",
-                "6:1: damping.global: found unknown key `global`; allowed: viscous, local; did you mean `local`?",
+                "6:1: damping.global: found unknown key `global`; allowed: viscous, local, bulk_linear, bulk_quadratic; did you mean `local`?",
             ),
             (
                 "\"1 s\"",
