@@ -134,9 +134,7 @@ impl Boundary {
             each_image(mirrored, field, |image, node| repeat(image, node, wall.axis));
         }
     }
-}
 
-impl Boundary {
     /// Gives nodes behind mirrors the values of those before them.
     pub fn repeat_values<T: Real>(&self, values: &mut [T]) {
         for &(behind, before) in self.mirrored.iter().rev().flatten() {
@@ -147,7 +145,7 @@ impl Boundary {
 
 /// Adds what was scattered into a node behind a mirror to the one before it.
 fn add_image<T: Real, const D: usize>(image: &Node<T, D>, node: &mut Node<T, D>, axis: usize, share: Share) {
-    if matches!(share, Share::Mass | Share::Everything | Share::Dilatation | Share::MeanStress) {
+    if share.has_mass() {
         node.mass += image.mass;
     }
     // Nodes without mass keep the velocity that they had.

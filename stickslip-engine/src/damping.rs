@@ -57,6 +57,13 @@ impl<T: Real> NodeDamping<T> {
     }
 }
 
+/// The columns that particles have for bulk viscosity: its pressure, with which the next forces are made, if a scene
+/// asks for it.
+pub fn viscosity_columns(scene: &scene::Damping) -> &'static [History] {
+    const PRESSURE: &[History] = &[History::new(BULK_VISCOSITY, "Pa", Kind::Number)];
+    if scene.bulk == [0.0; 2] { &[] } else { PRESSURE }
+}
+
 /// Bulk viscosity: a pressure against compression, which spreads shocks over a few cells and takes the noise behind
 /// them.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,9 +73,6 @@ pub struct BulkViscosity<T> {
 }
 
 impl<T: Real> BulkViscosity<T> {
-    /// The column that particles have for it: its pressure, with which the next forces are made.
-    pub const COLUMNS: &'static [History] = &[History::new(BULK_VISCOSITY, "Pa", Kind::Number)];
-
     /// What a scene asks for, if it does.
     pub fn new(scene: &scene::Damping) -> Option<Self> {
         (scene.bulk != [0.0; 2]).then(|| BulkViscosity { coefficients: scene.bulk.map(T::of) })

@@ -1,5 +1,5 @@
-//! Steps to a time: the one loop of runs, examples and tests; validation and measurements of speed take its steps one by
-//! one ([`March`]).
+//! Steps to a time: the one loop of runs, examples and tests; validation and measurements of speed take its steps one
+//! by one ([`March`]).
 
 use crate::door::{Simulation, StepError};
 use std::ops::ControlFlow;

@@ -95,7 +95,7 @@ fn every_machine_gives_the_bits_of_ieee_754_in_single_precision() {
     agree::<f32>();
 }
 
-/// PartialRow of a row, loaded and stored again between numbers that must stay.
+/// Parts of a row, loaded and stored again between numbers that must stay.
 struct PartialRow<T>(T);
 
 impl<T: Laned> Work for PartialRow<T> {

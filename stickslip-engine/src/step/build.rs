@@ -10,7 +10,7 @@ use crate::body::{Body, Particle};
 use crate::boundary::{Boundary, Wall};
 use crate::check;
 use crate::contact::{ContactSums, Rules};
-use crate::damping::{BulkViscosity, NodeDamping};
+use crate::damping::{BulkViscosity, NodeDamping, viscosity_columns};
 use crate::door::Simulation;
 use crate::geometry::{Filling, Mirror, MirroredShape, ParticleSite, fill};
 use crate::grid::Lattice;
@@ -198,8 +198,7 @@ pub fn own_columns(scene: &Scene, body: &scene::Body) -> OwnColumns {
         return OwnColumns::default();
     }
     let history = scene.materials[body.material].law.history();
-    let viscosity =
-        BulkViscosity::<f64>::new(&scene.damping).map_or(&[][..], |_| BulkViscosity::<f64>::COLUMNS);
+    let viscosity = viscosity_columns(&scene.damping);
     OwnColumns { history, transfer: crate::transfer::columns(scene.time.transfer), viscosity }
 }
 

@@ -252,8 +252,7 @@ fn skew<T: Real>(spin: &Vector<T, 3>) -> Matrix<T> {
 ///
 /// Set-up: a soft ball and a stone that flows, which fly into each other and into a rigid floor before a symmetry face,
 /// with friction, gravity and a share of PIC; in the plane and in space, all bases, stress updates and
-/// transfers; the stone with means of the change of volume, too, and bulk
-/// viscosity.
+/// transfers; the stone with means of the change of volume, too, and bulk viscosity.
 ///
 /// Expected: after 40 steps positions agree within 1e-10 of the bodies' size, velocities within 1e-9 of their speed:
 /// sums are taken in another order, and a stiff law turns round-off of strain into forces.

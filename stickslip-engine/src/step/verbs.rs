@@ -85,6 +85,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         }
     }
 
+    /// The pass that gives a share to the nodes.
     pub(super) fn scatter(&mut self, share: Share) {
         let verbs = Verbs { scatter: Some(share), ..Verbs::default() };
         self.run_pass("P2G", verbs, T::ZERO).expect("a scatter changes no particle");

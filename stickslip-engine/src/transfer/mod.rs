@@ -164,6 +164,12 @@ pub enum Share {
 }
 
 impl Share {
+    /// Whether mass is in it, or what is summed in its place.
+    #[inline(always)]
+    pub fn has_mass(self) -> bool {
+        matches!(self, Share::Mass | Share::Everything) || self.is_averaged()
+    }
+
     /// Whether momentum is in it.
     #[inline(always)]
     pub fn has_momentum(self) -> bool {

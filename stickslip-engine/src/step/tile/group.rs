@@ -273,12 +273,6 @@ pub fn group<
     }
     // P2G: m, m (v + G (x_i - x_p)), -V sigma grad S.
     if let Some(share) = scatter {
-        // V tr_D(sigma) / D
-        let mut mean_stress = V::ZERO;
-        for i in 0..D {
-            mean_stress += stress.0[i];
-        }
-        mean_stress *= volume * V::of(1.0 / D as f64);
         let mut load = ScatterTerms { momentum: None, stress: None };
         if gives_momentum {
             let mass = members.load::<V>(ColumnStart::<D>::MASS);
@@ -299,7 +293,8 @@ pub fn group<
             }
             if !visit.means.is_empty() {
                 let mass = members.load::<V>(ColumnStart::<D>::MASS);
-                let more = mass * group.interpolate_mean(&visit.window.flow) - mean_stress;
+                let more =
+                    mass * group.interpolate_mean(&visit.window.flow) - mean_stress::<V, D>(&stress, volume);
                 for i in 0..D {
                     pull.0[i] += more * constants.per_cell;
                 }
@@ -308,7 +303,7 @@ pub fn group<
         }
         if share.is_averaged() {
             let sum = match share {
-                Share::MeanStress => mean_stress,
+                Share::MeanStress => mean_stress::<V, D>(&stress, volume),
                 _ => members.load::<V>(ColumnStart::<D>::MASS) * (gradient.trace() * constants.per_cell),
             };
             load.momentum = Some(Momentum { own: Vector::ZERO, per_cell: Matrix::ZERO, mass: sum });
@@ -316,6 +311,16 @@ pub fn group<
         group.scatter::<M>(visit.window, &load);
     }
     Ok(inside)
+}
+
+/// V tr_D(sigma) / D [J]
+#[inline(always)]
+fn mean_stress<V: Lanes, const D: usize>(stress: &Symmetric<V>, volume: V) -> V {
+    let mut sum = V::ZERO;
+    for i in 0..D {
+        sum += stress.0[i];
+    }
+    sum * (volume * V::of(1.0 / D as f64))
 }
 
 /// Which particles of a group have no fault.
