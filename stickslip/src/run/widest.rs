@@ -2,7 +2,7 @@
 
 use crate::check::{ContactResolution, Errors};
 use crate::door::{ContactPatch, View};
-use crate::scene::Scene;
+use crate::scene::{ContactLaw, Scene};
 use std::collections::HashMap;
 use std::fmt::{self, Display, Formatter};
 
@@ -82,13 +82,18 @@ const NAMED: usize = 3;
 const GRAZING: f64 = 0.05;
 
 impl WidestContacts {
+    /// Glued bodies are one: how wide they touch says nothing.
     pub(super) fn new(scene: &Scene, touched: &[Touched]) -> Self {
+        let glued = |touched: &Touched| {
+            let rule = scene.contact_rule_between(touched.patch.body_a, touched.patch.body_b);
+            rule.is_some_and(|rule| scene.contact[rule].law == ContactLaw::Glued)
+        };
         let largest = |of: fn(&Touched) -> f64| touched.iter().map(of).fold(0.0, f64::max);
         let most = [largest(|touched| touched.patch.impulse), largest(|touched| touched.force)];
         let all: f64 = touched.iter().map(|touched| touched.patch.impulse).sum();
         let part = |of: f64, whole: f64| if whole > 0.0 { of / whole } else { 1.0 };
         let mut contacts: Vec<_> = (touched.iter())
-            .filter(|touched| touched.patch.area > 0.0)
+            .filter(|touched| touched.patch.area > 0.0 && !glued(touched))
             .map(|Touched { patch, force }| {
                 let half_width = patch.half_width;
                 let cells = half_width / scene.discretization.cell;

@@ -35,3 +35,4 @@ mod struck_bar;
 mod threads;
 mod transfers;
 mod unbounded_bodies;
+mod vibration;

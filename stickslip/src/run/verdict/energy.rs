@@ -15,18 +15,51 @@ pub(super) struct EnergyBalance {
 }
 
 impl EnergyBalance {
-    pub(super) fn update(&mut self, now: &Ledger) {
+    /// Takes note of how large energies are.
+    pub(super) fn weigh(&mut self, now: &Ledger) {
         let first = self.first.get_or_insert_with(|| now.clone());
         let heat = now.friction + now.adhesion + now.plastic + now.damping;
         // The zero of the potential energy is arbitrary.
         let fallen = (now.potential - first.potential).abs();
         self.scale = self.scale.max(now.kinetic + now.strain).max(heat).max(fallen);
-        self.drift = now.total - first.total;
+    }
+
+    /// The drift now.
+    pub(super) fn update(&mut self, now: &Ledger) {
+        self.weigh(now);
+        self.drift = self.first.as_ref().map_or(0.0, |first| now.total - first.total);
     }
 
     /// Drift over scale [-].
     pub(super) fn relative(&self) -> f64 {
         if self.scale > 0.0 { self.drift / self.scale } else { 0.0 }
+    }
+}
+
+/// When energies are weighed between two looks. Looks come in step with what swings as often as they do or a multiple
+/// of it, and would see all of it at the same instant of its swing, where there may be next to no energy.
+#[derive(Clone, Debug, Default)]
+pub(super) struct WeighingTimes {
+    next: u64,
+    count: u64,
+}
+
+/// Steps between two weighings, at least: a sum over all particles is then nothing beside the steps.
+const STEPS: u64 = 200;
+/// By how much they differ in length: by parts of this that never repeat.
+const SCATTER: f64 = 150.0;
+/// The golden ratio's, whose multiples fill up the numbers from 0 to 1 most evenly.
+const GOLDEN: f64 = 0.618_033_988_749_895;
+
+impl WeighingTimes {
+    /// Whether it is time after so many steps.
+    pub(super) fn come(&mut self, steps: u64) -> bool {
+        if steps < self.next {
+            return false;
+        }
+        self.count += 1;
+        self.next = steps + STEPS + (SCATTER * (self.count as f64 * GOLDEN).fract()) as u64;
+        true
     }
 }
 
@@ -56,5 +89,22 @@ impl Check for EnergyCheck {
             100.0 * bound
         );
         vec![Finding { body: None, position: None, worst: drift, message }]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What swings with a period of any number of steps is seen near its peak.
+    #[test]
+    fn energies_are_weighed_at_all_instants_of_a_swing() {
+        for period in 100..400 {
+            let mut times = WeighingTimes::default();
+            let swing = |step: u64| (std::f64::consts::PI * step as f64 / f64::from(period)).sin().powi(2);
+            let seen = (0..100 * period as u64).filter(|&step| times.come(step)).map(swing);
+            let most = seen.fold(0.0, f64::max);
+            assert!(most > 0.9, "{period}: {most}");
+        }
     }
 }

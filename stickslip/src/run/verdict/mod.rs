@@ -3,6 +3,7 @@
 mod crossing;
 mod energy;
 mod neighbours;
+mod noise;
 mod precision;
 mod relaxation;
 mod speed;
@@ -13,13 +14,14 @@ mod tearing;
 use crate::door::{BodyState, Ledger, TracedParticle, View};
 use crate::observe::RunWarning;
 use crate::scene::Scene;
-use energy::EnergyBalance;
+use energy::{EnergyBalance, WeighingTimes};
 use neighbours::Neighbours;
 
 /// Every check of a run.
 fn checks() -> Vec<Box<dyn Check>> {
     vec![
         Box::new(energy::EnergyCheck),
+        Box::new(noise::NoiseCheck),
         Box::new(spin::SpinCheck::default()),
         Box::new(strain::StrainCheck::default()),
         Box::new(tearing::TearingCheck::default()),
@@ -94,6 +96,7 @@ struct Finding {
 pub(super) struct RunChecks {
     checks: Vec<Box<dyn Check>>,
     balance: EnergyBalance,
+    weighing: WeighingTimes,
     neighbours: Vec<Neighbours>,
     interval: f64,
     next_time: f64,
@@ -115,6 +118,7 @@ impl RunChecks {
         RunChecks {
             checks: checks(),
             balance: EnergyBalance::default(),
+            weighing: WeighingTimes::default(),
             neighbours: neighbours::of_bodies(scene, simulation),
             interval: scene.outputs.tables.max(scene.time.end / LOOKS),
             next_time: simulation.time(),
@@ -126,6 +130,9 @@ impl RunChecks {
 
     /// What is new, if it is time to look.
     pub(super) fn look(&mut self, scene: &Scene, simulation: &dyn View) -> Vec<String> {
+        if self.weighing.come(simulation.steps()) {
+            self.balance.weigh(&simulation.ledger());
+        }
         if simulation.time() < self.next_time || simulation.steps() < self.next_step {
             return Vec::new();
         }

@@ -1,0 +1,42 @@
+//! Energy that became noise and was damped, though the scene asks for no damping.
+
+use super::{Check, CheckInputs, Finding};
+use crate::scene::{Damping, Scene, Transfer};
+
+/// Holds what damping took against the bound on the drift of energy. `rflip` takes noise from particles' own rotation;
+/// what it takes came from motion that the grid did not carry on, so the ledger closes and the swing is gone.
+pub(super) struct NoiseCheck;
+
+impl Check for NoiseCheck {
+    fn kind(&self) -> &'static str {
+        "noise"
+    }
+
+    fn advice(&self) -> &'static str {
+        "what bends, twists or spins loses its motion to it: try space.basis = \"spline\", smaller cells, smaller \
+         deflections; see the column `damping` of energy.csv"
+    }
+
+    fn look(&mut self, look: &CheckInputs) -> Vec<Finding> {
+        let (damping, scale) = (look.ledger.damping, look.balance.scale);
+        let part = damping / scale;
+        if asks_for_damping(look.scene) || part.is_nan() || part.abs() <= look.scene.time.energy_drift {
+            return Vec::new();
+        }
+        let message = format!(
+            "energy becomes noise: damping, which the scene does not ask for, {} {:.2e} J, {:.1} % of the most that \
+             there was",
+            if damping > 0.0 { "took" } else { "gave" },
+            damping.abs(),
+            100.0 * part.abs()
+        );
+        vec![Finding { body: None, position: None, worst: part, message }]
+    }
+}
+
+/// Whether what damping takes is what the scene wants.
+fn asks_for_damping(scene: &Scene) -> bool {
+    let time = &scene.time;
+    let takes_all = matches!(time.transfer, Transfer::Pic | Transfer::Apic | Transfer::Xpic);
+    takes_all || time.pic_share > 0.0 || time.relax.is_some() || scene.damping != Damping::default()
+}
