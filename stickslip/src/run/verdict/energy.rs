@@ -1,6 +1,6 @@
 //! Energy that came from nowhere or went there.
 
-use super::{Check, CheckInputs, Finding};
+use super::{Check, CheckInputs, Finding, STEPS};
 use crate::door::Ledger;
 
 /// The total of the ledger against its start, over the largest energy so far that moved, was stored, was set free by
@@ -44,9 +44,7 @@ pub(super) struct WeighingTimes {
     count: u64,
 }
 
-/// Steps between two weighings, at least: a sum over all particles is then nothing beside the steps.
-const STEPS: u64 = 200;
-/// By how much they differ in length: by parts of this that never repeat.
+/// By how much more than [`STEPS`] two weighings are apart: by parts of this that never repeat.
 const SCATTER: f64 = 150.0;
 /// The golden ratio's, whose multiples fill up the numbers from 0 to 1 most evenly.
 const GOLDEN: f64 = 0.618_033_988_749_895;

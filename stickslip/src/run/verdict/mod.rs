@@ -13,7 +13,7 @@ mod tearing;
 
 use crate::door::{BodyState, Ledger, TracedParticle, View};
 use crate::observe::RunWarning;
-use crate::scene::Scene;
+use crate::scene::{Damping, Scene};
 use energy::{EnergyBalance, WeighingTimes};
 use neighbours::Neighbours;
 
@@ -107,7 +107,7 @@ pub(super) struct RunChecks {
 
 /// Looks in a run, at most.
 const LOOKS: f64 = 200.0;
-/// Steps between two looks, at least: what a look costs is then nothing beside them.
+/// Steps between two looks, or two weighings of energies, at least: what these cost is then nothing beside the steps.
 const STEPS: u64 = 200;
 /// Lines in a run: beyond, the summary tells.
 const MOST_LINES: usize = 6;
@@ -219,6 +219,11 @@ const EARLY: f64 = 1e-6;
 /// A warning as it is printed.
 pub(super) fn line(warning: &RunWarning) -> String {
     format!("{}; {}", warning.message, warning.advice)
+}
+
+/// Whether the scene wants forces of damping, or to be brought to rest.
+fn asks_for_damping(scene: &Scene) -> bool {
+    scene.damping != Damping::default() || scene.time.relax.is_some()
 }
 
 #[inline]

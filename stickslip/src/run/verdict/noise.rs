@@ -1,7 +1,7 @@
 //! Energy that became noise and was damped, though the scene asks for no damping.
 
-use super::{Check, CheckInputs, Finding};
-use crate::scene::{Damping, Scene, Transfer};
+use super::{Check, CheckInputs, Finding, asks_for_damping};
+use crate::transfer::pic_share;
 
 /// Holds what damping took against the bound on the drift of energy. `rflip` takes noise from particles' own rotation;
 /// what it takes came from motion that the grid did not carry on, so the ledger closes and the swing is gone.
@@ -20,7 +20,10 @@ impl Check for NoiseCheck {
     fn look(&mut self, look: &CheckInputs) -> Vec<Finding> {
         let (damping, scale) = (look.ledger.damping, look.balance.scale);
         let part = damping / scale;
-        if asks_for_damping(look.scene) || part.is_nan() || part.abs() <= look.scene.time.energy_drift {
+        let time = &look.scene.time;
+        let takes_velocities = pic_share(time.transfer, time.pic_share) > 0.0;
+        let wanted = takes_velocities || asks_for_damping(look.scene);
+        if wanted || part.is_nan() || part.abs() <= time.energy_drift {
             return Vec::new();
         }
         let message = format!(
@@ -32,11 +35,4 @@ impl Check for NoiseCheck {
         );
         vec![Finding { body: None, position: None, worst: part, message }]
     }
-}
-
-/// Whether what damping takes is what the scene wants.
-fn asks_for_damping(scene: &Scene) -> bool {
-    let time = &scene.time;
-    let takes_all = matches!(time.transfer, Transfer::Pic | Transfer::Apic | Transfer::Xpic);
-    takes_all || time.pic_share > 0.0 || time.relax.is_some() || scene.damping != Damping::default()
 }

@@ -1,8 +1,8 @@
 //! Angular momentum lost or gained where no torque acts.
 
-use super::{Check, CheckInputs, Finding, minus, norm};
+use super::{Check, CheckInputs, Finding, asks_for_damping, minus, norm};
 use crate::door::BodyState;
-use crate::scene::{Damping, Face, Scene};
+use crate::scene::{Face, Scene};
 use crate::tensor::cross;
 use std::collections::BTreeSet;
 
@@ -55,7 +55,8 @@ impl Check for SpinCheck {
     }
 
     fn look(&mut self, look: &CheckInputs) -> Vec<Finding> {
-        if damped(look.scene) {
+        // Damping slows turning bodies down, as it should.
+        if asks_for_damping(look.scene) {
             return Vec::new();
         }
         if !self.begun {
@@ -84,11 +85,6 @@ impl SpinCheck {
             self.together = Some(Together { angular_momentum: look.ledger.angular_momentum, scale: 0.0 });
         }
     }
-}
-
-/// Damping slows turning bodies down, as it should.
-fn damped(scene: &Scene) -> bool {
-    scene.damping != Damping::default() || scene.time.relax.is_some()
 }
 
 /// Nothing outside the bodies acts on them.
