@@ -149,8 +149,19 @@ fn every_key_and_word_of_scene_files_is_explained() {
     let (mut keys, mut words) = (BTreeSet::new(), BTreeSet::new());
     collect(&schema, &mut keys, &mut words);
     let text = chapter("02-scene-file.md");
-    let tables =
-        ["space", "time", "damping", "materials", "bodies", "contact", "outputs", "references", "parameters"];
+    let tables = [
+        "space",
+        "time",
+        "damping",
+        "materials",
+        "bodies",
+        "supports",
+        "loads",
+        "contact",
+        "outputs",
+        "references",
+        "parameters",
+    ];
     for key in keys {
         let measured = ["probes", "arrivals", "fronts"].contains(&key.as_str())
             && text.contains(&format!("[[outputs.{key}]]"));

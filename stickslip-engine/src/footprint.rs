@@ -1,6 +1,6 @@
 //! What a scene costs in memory.
 
-use crate::check::{Footprint, lattice};
+use crate::check::Footprint;
 use crate::geometry::Bounds;
 use crate::grid::Node;
 use crate::particles::Particles;
@@ -36,7 +36,7 @@ fn memory<T: Real, const D: usize>(scene: &Scene, particles: &[usize]) -> f64 {
     let node = size_of::<Node<T, D>>() as f64;
     let of_body = |(body, &count): (&crate::scene::Body, &usize)| {
         let own = own_columns(scene, body);
-        let per_cell = (scene.discretization.cell / lattice(scene, body).spacing).powi(D as i32);
+        let per_cell = (scene.discretization.cell / scene.lattice(body).spacing).powi(D as i32);
         let themselves = Particles::<T, D>::bytes_of(count, own) + ORDER_BYTES * count;
         themselves as f64 + node * NODES_PER_CELL * count as f64 / per_cell
     };

@@ -2,7 +2,7 @@
 //!
 //! It reads no files and writes none. The rooms below are in reading order: each uses only rooms above it.
 
-pub use stickslip_scene::{check, column, geometry, material, number, rigid, scene, tensor};
+pub use stickslip_scene::{check, column, geometry, material, number, part, rigid, scene, tensor};
 
 // Several numbers in a register, on whatever the processor has.
 pub mod lanes;
@@ -36,6 +36,9 @@ pub mod clock;
 
 // Damping of the nodes' velocities.
 pub mod damping;
+
+// What holds, presses, pulls or drives parts of bodies.
+pub mod load;
 
 // A running simulation with dimension and precision erased.
 pub mod door;

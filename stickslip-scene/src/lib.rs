@@ -23,5 +23,8 @@ pub mod scene;
 // Prescribed motion of rigid bodies.
 pub mod rigid;
 
+// Parts of bodies on which loads act.
+pub mod part;
+
 // What is wrong or doubtful with a scene, before it runs.
 pub mod check;

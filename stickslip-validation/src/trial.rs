@@ -4,7 +4,7 @@ use crate::failure::CaseFailure;
 use crate::penetration::penetration;
 use std::time::Instant;
 use stickslip::door::{
-    BodyState, ContactCursor, ContactState, GridSnapshot, Ledger, ParticleSnapshot, Simulation,
+    BodyState, ContactCursor, ContactState, GridSnapshot, Ledger, LoadState, ParticleSnapshot, Simulation,
 };
 use stickslip::march::March;
 use stickslip::scene::{Face, Scene};
@@ -229,6 +229,11 @@ impl Trial {
     /// after the last step that of the whole run.
     pub fn energy_drift(&self) -> f64 {
         self.record.energy_drift
+    }
+
+    /// What supports and loads did since the start.
+    pub fn loads(&self) -> Vec<LoadState> {
+        self.simulation.loads()
     }
 
     /// The particles now.

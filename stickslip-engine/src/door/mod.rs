@@ -34,6 +34,10 @@ pub trait View {
     /// What contact did since the start, per pair of bodies whose surfaces ever touched, ordered by pair; a
     /// [`ContactCursor`] makes means of it.
     fn contact_sums(&self) -> Vec<ContactSum>;
+    /// What loads and supports did since the start, in the order of the scene.
+    fn loads(&self) -> Vec<LoadState> {
+        Vec::new()
+    }
     /// The widest contact of each pair of bodies since the start, ordered by pair.
     fn patches(&self) -> Vec<ContactPatch>;
     /// All particles now, ordered by body and then by the particle's number in its body.
@@ -114,7 +118,7 @@ pub struct Ledger {
     pub strain: f64,
     /// Potential energy in gravity, zero at the origin [J].
     pub potential: f64,
-    /// Work done on the bodies by prescribed motion [J].
+    /// Work done on the bodies by prescribed motion, loads and supports [J].
     pub external_work: f64,
     /// Dissipated by friction, cohesion and viscosity of contacts [J].
     pub friction: f64,
@@ -136,6 +140,17 @@ pub struct Ledger {
     /// Nodes of three bodies and more where contact was still changing velocities when it was cut short,
     /// since the start.
     pub unsettled_nodes: u64,
+}
+
+/// What a load or a support did. Impulse and work are sums since the start: differences are what it did in between.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LoadState {
+    /// Impulse on the body [N s].
+    pub impulse: [f64; 3],
+    /// Work on the body [J].
+    pub work: f64,
+    /// How far its part is from where it was at the start, the mean over the part [m].
+    pub displacement: [f64; 3],
 }
 
 /// How far dynamic relaxation has come.

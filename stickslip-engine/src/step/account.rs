@@ -111,9 +111,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
 /// ```text
 /// |r|, |f|, |r - f|        r = (m (v~ - v^0) - J) / dt
 /// ```
-/// r: unbalanced force, with which walls leave alone what they hold; f: force of the stress; r - f: gravity and
-/// contact; J: impulse of damping, which is none of them. At a fixed face f alone counts, which is there what the wall
-/// bears.
+/// r: unbalanced force, with which walls leave alone what they hold; f: force of the stress; r - f: gravity, loads
+/// and contact; J: impulse of damping, which is none of them. At a fixed face f alone counts, which is there what the
+/// wall bears.
 fn balance<T: Real, const D: usize>(
     node: &Node<T, D>,
     damping: Vector<T, D>,

@@ -15,6 +15,7 @@ use crate::door::Simulation;
 use crate::geometry::{Filling, Mirror, MirroredShape, ParticleSite, fill};
 use crate::grid::Lattice;
 use crate::lanes::{Laned, Processor};
+use crate::load::{LoadPoints, LoadSums};
 use crate::material::{BadConstants, Material};
 use crate::particles::{OwnColumns, Particles};
 use crate::rigid::RigidMotion;
@@ -71,7 +72,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let mut bodies = Vec::new();
         let mut unbounded = Vec::new();
         for body in &scene.bodies {
-            let sites = check::lattice(scene, body);
+            let sites = scene.lattice(body);
             let filled = fill(&body.shape, &sites, body.particles);
             let center = filled.as_ref().map_or(body.shape.anchor(sites.dimension), Filling::center);
             let filling = filled.unwrap_or_else(|| {
@@ -124,6 +125,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 damping: NodeDamping::new(&scene.damping),
                 viscosity: BulkViscosity::new(&scene.damping),
                 rules: Rules::new(scene),
+                loads: scene.loads.iter().map(|load| LoadPoints::new(scene, load)).collect(),
                 time: scene.time.clone(),
                 path,
             },
@@ -132,6 +134,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 disorder,
                 unbounded,
                 contact_sums: ContactSums::default(),
+                loads: vec![LoadSums::default(); scene.loads.len()],
                 damping: 0.0,
                 relaxation: RelaxationProgress::default(),
                 signal: None,

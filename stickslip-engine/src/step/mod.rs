@@ -15,6 +15,7 @@
 //! | what is booked of a step | `account.rs` |
 //! | dynamic relaxation, between two steps | `relax.rs` |
 //! | what happens at a node: v = p / m, v += dt (f / m + g) | [`crate::grid::Node`] |
+//! | loads and supports at a node | `loads.rs` |
 //! | glue at a node | `glue.rs` |
 //! | contact at a node | `contact/solve.rs`, by a law of `contact/law/` |
 
@@ -23,6 +24,7 @@ mod average;
 mod build;
 mod cpu;
 mod glue;
+mod loads;
 #[cfg(test)]
 mod naive;
 mod pass;
@@ -92,11 +94,16 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.impose_boundary_conditions(); //                     of rigid bodies and walls
         self.detect_contact(None); //                             surfaces, normals and gaps where bodies meet
         self.join_glued_bodies(); //                              one v for bodies that glue joins
+        self.feel_loads(dt, None); //                             supports, on points of bodies
+        self.hold_supported_nodes(); //                           v~, where they act
         self.contact_on_interpolated(dt, ContactUse::Strain); //  v~, and walls        (5)-(13), (20)-(22)
         self.average_dilatation(dt); //                           of nearly incompressible bodies
         self.update_stress(dt)?; //                               G2P: F = (I + L dt) F, sigma = law(F); P2G: f
         self.keep_velocities(); //                                v~ moves the particles, too
+        self.release_supported_nodes(); //                        v as it was
         self.update_velocities(dt); //                            v += dt (f / m + g)                  (3)
+        self.feel_loads(dt, Some(dt)); //                         supports and loads, on points of bodies
+        self.apply_loads(dt); //                                  v += dt F / m
         self.impose_boundary_conditions(); //                     once more
         self.contact_on_integrated(dt); //                        v~, and walls
         self.exchange_velocities(); //                            v~ that was kept, to move by; v~ of now, for dv
@@ -104,6 +111,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.update_velocities_and_positions(dt)?; //             G2P: v_p += dv, x += v~ dt
         self.move_rigid_bodies(dt)?; //                           as prescribed
         self.account(dt, Interpolated::Once); //                  impulses, works, balance of forces
+        self.account_loads(dt); //                                forces and works of supports and loads
         Ok(())
     }
 
@@ -117,6 +125,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.join_glued_bodies(); //                              one v for bodies that glue joins
         self.contact_on_interpolated(dt, ContactUse::Start); //   by all laws but `surface`: (5)-(13), (20)-(22)
         self.update_velocities(dt); //                            v += dt (f / m + g)                  (3)
+        self.feel_loads(dt, None); //                             supports and loads, on points of bodies
+        self.apply_loads(dt); //                                  v += dt F / m
         self.impose_boundary_conditions(); //                     once more
         self.contact_on_integrated(dt); //                        v~, and walls
         self.keep_velocities(); //                                v~, for dv
@@ -125,6 +135,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.update_particles(dt)?; //                            G2P: v_p += dv, F, sigma, x += v~ dt
         self.move_rigid_bodies(dt)?; //                           as prescribed
         self.account(dt, Interpolated::Once); //                  impulses, works, balance of forces
+        self.account_loads(dt); //                                forces and works of supports and loads
         Ok(())
     }
 
@@ -139,6 +150,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.join_glued_bodies(); //                              one v for bodies that glue joins
         self.contact_on_interpolated(dt, ContactUse::Start); //   by all laws but `surface`: (5)-(13), (20)-(22)
         self.update_velocities(dt); //                            v += dt (f / m + g)                  (3)
+        self.feel_loads(dt, None); //                             supports and loads, on points of bodies
+        self.apply_loads(dt); //                                  v += dt F / m
         self.impose_boundary_conditions(); //                     once more
         self.contact_on_integrated(dt); //                        v~, and walls
         self.keep_velocities_and_clear_momentum(); //             v~, for dv; p = 0
@@ -147,9 +160,11 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.interpolate_again(); //                              v = p / m, with m as before
         self.impose_boundary_conditions(); //                     and again
         self.account(dt, Interpolated::Twice); //                 the same, while u^1 is at the nodes
+        self.hold_supported_nodes(); //                           v~, where supports act
         self.contact_on_straining(dt); //                         v~, and walls
         self.average_dilatation(dt); //                           of nearly incompressible bodies
         self.update_stress_and_positions(dt)?; //                 G2P: F, sigma, x += v~ dt
+        self.account_loads(dt); //                                forces and works
         self.move_rigid_bodies(dt) //                             as prescribed
     }
 

@@ -40,7 +40,7 @@ impl RelaxationProgress {
     /// ```text
     /// R = sum |r_i| / max(sum |f_i|, sum |r_i - f_i|)
     /// ```
-    /// r: unbalanced force, f: force of the stress, r - f: gravity and contact.
+    /// r: unbalanced force, f: force of the stress, r - f: gravity, loads and contact.
     pub fn take(&mut self, [unbalanced, internal, external]: [f64; 3], kinetic: f64) {
         let applied = internal.max(external);
         self.residual = if applied > 0.0 { unbalanced / applied } else { 0.0 };
@@ -61,7 +61,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let driven = |motion: &RigidMotion| moved(motion.velocity()) || moved(motion.spin());
         let mut motions = self.state.bodies.iter().filter_map(|body| body.motion.as_ref());
         let balanced = self.state.relaxation.residual <= residual;
-        self.state.relaxation.at_rest = balanced && !motions.any(driven) && {
+        let (time, dt) = (self.state.time, self.stable());
+        let still = self.settings.loads.iter().all(|load| load.is_still(time, dt, self.settings.time.end));
+        self.state.relaxation.at_rest = balanced && still && !motions.any(driven) && {
             let [kinetic, strain] = self.energies();
             kinetic <= residual * residual * strain
         };

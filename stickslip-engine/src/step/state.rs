@@ -2,6 +2,7 @@
 
 use super::account::NodeTotals;
 use super::cpu::Threads;
+use super::loads::LoadRoom;
 use super::relax::RelaxationProgress;
 use super::unbounded::Unbounded;
 use crate::body::{Body, Totals};
@@ -9,6 +10,7 @@ use crate::boundary::{Boundary, Wall};
 use crate::contact::{ContactSums, Impulses, Rules, Survey};
 use crate::damping::{BulkViscosity, NodeDamping};
 use crate::grid::{ActiveBlocks, Field, Lattice};
+use crate::load::{LoadPoints, LoadSums};
 use crate::scene::{Time, Transfer};
 use crate::tensor::Vector;
 use std::sync::{Arc, Mutex};
@@ -28,6 +30,8 @@ pub struct Settings<T, const D: usize> {
     pub damping: NodeDamping<T>,
     pub viscosity: Option<BulkViscosity<T>>,
     pub rules: Rules<T>,
+    /// Supports and loads with their points.
+    pub loads: Vec<LoadPoints>,
     pub time: Time,
     pub path: ParticleLoop,
 }
@@ -44,6 +48,8 @@ pub struct State<T, const D: usize> {
     pub unbounded: Vec<Unbounded<D>>,
     /// What contact did, pair by pair, and works since the start.
     pub contact_sums: ContactSums,
+    /// What loads did since the start.
+    pub loads: Vec<LoadSums>,
     /// What damping took since the start [J].
     pub damping: f64,
     /// How far dynamic relaxation has come.
@@ -79,6 +85,8 @@ pub struct Workspace<T, const D: usize> {
     pub moved: Vec<u32>,
     /// What the last pass took from the kinetic energy of each tile's particles [J].
     pub damped: Vec<f64>,
+    /// Room for loads and supports.
+    pub loads: LoadRoom<T, D>,
     /// Impulses of damping at the nodes in the last step, where there is damping [N s].
     pub damping_impulses: Vec<Vector<T, D>>,
     /// Room for sums over the nodes of each block.
@@ -103,6 +111,7 @@ impl<T, const D: usize> Workspace<T, D> {
             left: Vec::new(),
             moved: Vec::new(),
             damped: Vec::new(),
+            loads: LoadRoom::default(),
             damping_impulses: Vec::new(),
             block_sums: Vec::new(),
             totals: Mutex::new(None),

@@ -10,7 +10,6 @@ use super::pass::home;
 use super::state::Disorder;
 use crate::basis::Basis;
 use crate::body::Particle;
-use crate::check;
 use crate::geometry::{Bounds, Mirror, Shape, SiteLattice};
 use crate::grid::{Blocks, SIDE, addressable, locate};
 use crate::lanes::Laned;
@@ -145,7 +144,7 @@ const REACH: f64 = 1.5;
 fn count<const D: usize>(scene: &Scene, body: usize, boxes: &[Bounds]) -> usize {
     let cell = scene.discretization.cell;
     let shape = scene.bodies[body].shape.clone();
-    let sites = check::lattice(scene, &scene.bodies[body]);
+    let sites = scene.lattice(&scene.bodies[body]);
     let still = || [0.0; 3].map(Expression::Constant);
     let pose = RigidMotion::new(shape.anchor(D), still(), still()).pose();
     let mirrors = mirrors::<D>(scene);

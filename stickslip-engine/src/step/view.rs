@@ -1,17 +1,19 @@
 //! What others may see of the engine.
 
 use super::Engine;
+use super::loads;
 use super::relax::RelaxationProgress;
 use crate::basis::Basis;
 use crate::body::{Body, Totals};
 use crate::column::{ColumnDescription, Kind};
 use crate::contact::Span;
 use crate::door::{
-    BodyState, ColumnRef, ColumnSource, ContactPatch, ContactSum, GridSnapshot, Ledger, NoColumn,
+    BodyState, ColumnRef, ColumnSource, ContactPatch, ContactSum, GridSnapshot, Ledger, LoadState, NoColumn,
     ParticleSnapshot, ParticleView, RelaxationState, SnapshotColumn, TracedParticle, View,
 };
 use crate::grid::{node_at, nodes_per_block};
 use crate::lanes::Laned;
+use crate::load::{LoadPoints, LoadSums};
 use crate::tensor::Real;
 use crate::threads::by_parts;
 use rayon::prelude::*;
@@ -146,7 +148,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> View for Engine<T, D, B> {
     fn ledger(&self) -> Ledger {
         let mut ledger = Ledger {
             friction: self.state.contact_sums.friction,
-            external_work: self.state.contact_sums.work,
+            external_work: self.state.contact_sums.work + loads::work(&self.state.loads),
             adhesion: self.state.contact_sums.adhesion,
             damping: self.state.damping,
             scaled_impulses: self.state.contact_sums.scaled,
@@ -181,6 +183,15 @@ impl<T: Laned, const D: usize, B: Basis<T>> View for Engine<T, D, B> {
 
     fn contact_sums(&self) -> Vec<ContactSum> {
         self.state.contact_sums.sums()
+    }
+
+    fn loads(&self) -> Vec<LoadState> {
+        let state = |(load, sums): (&LoadPoints, &LoadSums)| LoadState {
+            impulse: sums.impulse,
+            work: sums.work,
+            displacement: self.load_displacement(load),
+        };
+        self.settings.loads.iter().zip(&self.state.loads).map(state).collect()
     }
 
     fn patches(&self) -> Vec<ContactPatch> {

@@ -4,7 +4,7 @@ use super::file::part_of;
 use super::manifest::Manifest;
 use super::{
     ARRIVALS, BODIES, CONTACTS, ENERGY, FRINGES, FRINGES_ANIMATION, FRINGES_TABLE, FRONT_SPEEDS, FRONTS,
-    GRID, PARTICLES, PROBES,
+    GRID, LOADS, PARTICLES, PROBES,
 };
 use miette::Diagnostic;
 use std::fs;
@@ -12,10 +12,11 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 /// Files that a run may leave in its folder.
-const FILES: [&str; 12] = [
+const FILES: [&str; 13] = [
     BODIES,
     ENERGY,
     CONTACTS,
+    LOADS,
     PROBES,
     ARRIVALS,
     FRONTS,

@@ -10,6 +10,7 @@ use super::folder::OutputFolder;
 use super::fringes::FringesObserver;
 use super::fronts::FrontsObserver;
 use super::grid::GridObserver;
+use super::loads::LoadsObserver;
 use super::particles::ParticlesObserver;
 use super::probes::ProbesObserver;
 use crate::door::View;
@@ -37,6 +38,9 @@ impl<'a> Recorder<'a> {
             Box::new(EnergyObserver::create(scene, folder)?),
             Box::new(ContactsObserver::create(scene, folder)?),
         ];
+        if !scene.loads.is_empty() {
+            observers.push(Box::new(LoadsObserver::create(scene, folder)?));
+        }
         let wanted = &scene.outputs.measurements;
         if !wanted.probes.is_empty() {
             observers.push(Box::new(ProbesObserver::create(scene, folder)?));

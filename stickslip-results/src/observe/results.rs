@@ -8,12 +8,15 @@ use super::file::{ReadError, ReadProblem};
 use super::frames::{Frame, read_frames};
 use super::fringes::FringeRow;
 use super::fronts::{FrontRow, FrontSpeedRow};
+use super::loads::LoadRow;
 use super::manifest::Manifest;
 use super::particles::read_particles;
 use super::probes::ProbeRow;
 use super::recorded::RecordedScene;
 use super::table::{TableRow, read_rows};
-use super::{ARRIVALS, BODIES, CONTACTS, ENERGY, FRINGES_TABLE, FRONT_SPEEDS, FRONTS, PARTICLES, PROBES};
+use super::{
+    ARRIVALS, BODIES, CONTACTS, ENERGY, FRINGES_TABLE, FRONT_SPEEDS, FRONTS, LOADS, PARTICLES, PROBES,
+};
 use crate::door::ParticleSnapshot;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
@@ -92,6 +95,14 @@ impl Results {
     /// The file is missing or damaged.
     pub fn contacts_table(&self) -> Result<Vec<ContactRow>, ReadError> {
         read_rows(&self.folder.join(CONTACTS))
+    }
+
+    /// `loads.csv`: at each time but the first a row for each support and load; none if the scene has none.
+    ///
+    /// # Errors
+    /// The file is damaged.
+    pub fn loads_table(&self) -> Result<Vec<LoadRow>, ReadError> {
+        self.measured(LOADS)
     }
 
     /// `fringes.csv`: a row for each frame of the scene's camera; none if it has none.

@@ -1,7 +1,6 @@
 //! Bodies as their particles show them: how many, how large, and whether the domain holds them.
 
 use super::table::short;
-use super::{lattice, per_side};
 use crate::geometry::{self, Bounds, ParticleSite, Shape};
 use crate::scene::{Problem, Scene};
 use rayon::prelude::*;
@@ -52,7 +51,7 @@ pub(super) fn measure(scene: &Scene) -> Result<Vec<FillingExtent>, Problem> {
 
 fn measure_body(scene: &Scene, i: usize) -> Result<FillingExtent, Problem> {
     let body = &scene.bodies[i];
-    let lattice = lattice(scene, body);
+    let lattice = scene.lattice(body);
     // Only rigid bodies may be without bounds; those have particles where others come near.
     let Some(bounds) = body.shape.bounds(lattice.dimension) else {
         return Ok(FillingExtent::unbounded(body.shape.anchor(lattice.dimension)));
@@ -113,7 +112,7 @@ fn measure_body(scene: &Scene, i: usize) -> Result<FillingExtent, Problem> {
 
 fn no_particles(scene: &Scene, i: usize, bounds: &Bounds) -> Problem {
     let body = &scene.bodies[i];
-    let lattice = lattice(scene, body);
+    let lattice = scene.lattice(body);
     let thickness = smallest_extent(&body.shape, lattice.dimension);
     let (found, help) = if bounds.is_empty() {
         (
@@ -126,7 +125,7 @@ fn no_particles(scene: &Scene, i: usize, bounds: &Bounds) -> Problem {
             body.name, lattice.spacing
         );
         // Two particles through the thickness.
-        let cell = 0.5 * thickness * per_side(scene, body);
+        let cell = 0.5 * thickness * scene.per_side(body);
         (found, format!("take cells of at most {cell:.3e} m, or a larger shape"))
     };
     Problem {
@@ -156,7 +155,7 @@ pub(super) fn smallest_extent(shape: &Shape, dimension: usize) -> f64 {
 pub(super) fn check_domain(scene: &Scene, extents: &[FillingExtent]) -> Result<(), Problem> {
     let Some(domain) = &scene.domain else { return Ok(()) };
     for (i, extent) in extents.iter().enumerate().filter(|(_, extent)| extent.bounds.is_finite()) {
-        let lattice = lattice(scene, &scene.bodies[i]);
+        let lattice = scene.lattice(&scene.bodies[i]);
         for k in 0..lattice.dimension {
             let sides = [
                 (extent.bounds.min[k], extent.centers.min[k], domain.min[k], -1.0, "below its lower"),

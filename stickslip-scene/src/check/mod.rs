@@ -8,6 +8,7 @@ mod bodies;
 mod contact;
 mod flat;
 mod hertz;
+mod loads;
 mod locking;
 mod measurements;
 mod memory;
@@ -27,47 +28,33 @@ mod warning;
 pub use accuracy::Errors;
 pub use contact::{ContactEstimate, ContactResolution};
 pub use hertz::{Hertz, HertzPatch};
+pub use loads::LoadReport;
 pub use memory::Footprint;
 pub use report::{BodyReport, MachineSpeed, MaterialReport, Report, report};
 pub use rules::RuleReport;
 pub use warning::Warning;
 
-use crate::geometry::SiteLattice;
-use crate::scene::{Body, Problem, Scene};
+use crate::scene::{Problem, Scene};
 
 /// Finds what is wrong with a scene and takes its geometry to see.
 ///
 /// # Errors
 /// The first of: settings that allow no step, a material that is not stable, a domain whose walls miss the grid, motion
 /// out of the plane, a shape that is not one or holds no particle, a body that deforms and is unbounded, a body outside
-/// the domain, two bodies in one place.
+/// the domain, two bodies in one place, a load on nothing.
 pub fn problems(scene: &Scene) -> Result<(), Problem> {
     examine(scene).map(|_| ())
 }
 
-/// Finds what is wrong, and returns each body's filling in numbers.
-fn examine(scene: &Scene) -> Result<Vec<bodies::FillingExtent>, Problem> {
+/// Finds what is wrong, and returns each body's filling in numbers and where loads act.
+fn examine(scene: &Scene) -> Result<(Vec<bodies::FillingExtent>, Vec<LoadReport>), Problem> {
     settings::check(scene)?;
     shapes::check(scene)?;
     measurements::check(scene)?;
     let extents = bodies::measure(scene)?;
     bodies::check_domain(scene, &extents)?;
     overlap::check(scene, &extents)?;
-    Ok(extents)
-}
-
-/// The particle sites of a body: every cell of the scene's grid divided into equal parts.
-pub fn lattice(scene: &Scene, body: &Body) -> SiteLattice {
-    SiteLattice {
-        origin: scene.domain.as_ref().map_or([0.0; 3], |domain| domain.min),
-        spacing: scene.discretization.cell / per_side(scene, body),
-        dimension: scene.dimension.axes(),
-    }
-}
-
-/// Particles of a body along each side of a cell.
-fn per_side(scene: &Scene, body: &Body) -> f64 {
-    body.particles_per_side.unwrap_or(scene.discretization.particles_per_side) as f64
+    Ok((extents, loads::check(scene)?))
 }
 
 #[cfg(test)]

@@ -1,7 +1,6 @@
 //! Two bodies in one place.
 
 use super::bodies::FillingExtent;
-use super::lattice;
 use super::neighbours::pairs_within;
 use super::penetration::deepest;
 use super::warning::Warning;
@@ -77,7 +76,7 @@ pub(super) fn warning(scene: &Scene) -> Option<Warning> {
 /// The problem with a pair of bodies, if they share sites.
 fn shared(scene: &Scene, extents: &[FillingExtent], [a, b]: [usize; 2]) -> Option<Problem> {
     let (first, second) = (&scene.bodies[a], &scene.bodies[b]);
-    let mut lattices = [first, second].map(|body| lattice(scene, body));
+    let mut lattices = [first, second].map(|body| scene.lattice(body));
     lattices.sort_by(|a, b| a.spacing.total_cmp(&b.spacing));
     let dimension = lattices[0].dimension;
     let depth = |point: [f64; 3]| {

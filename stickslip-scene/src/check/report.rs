@@ -2,11 +2,12 @@
 
 use super::bodies::{FillingExtent, smallest_extent};
 use super::contact::{ContactEstimate, ContactResolution, Estimates, estimates, starting_velocity};
+use super::loads::LoadReport;
 use super::memory::Footprint;
 use super::rules::RuleReport;
 use super::table::short;
 use super::warning::{Warning, and_more};
-use super::{examine, lattice, locking, memory, overlap, per_side, rigid_pairs, rules, thickness};
+use super::{examine, locking, memory, overlap, rigid_pairs, rules, thickness};
 use crate::geometry::Bounds;
 use crate::scene::{Body, BodyMotion, Dimension, Problem, Scene, Source};
 use crate::tensor::Vector;
@@ -60,6 +61,8 @@ pub struct Report {
     pub wall_time: f64,
     /// Which contact rules hold, and between which bodies.
     pub rules: Vec<RuleReport>,
+    /// Where supports and loads act.
+    pub loads: Vec<LoadReport>,
     /// Whether contacts are resolved, the narrowest first.
     pub contacts: Vec<ContactEstimate>,
     /// Names of pairs that are near each other, or in a contact rule, and whose shapes tell no estimate.
@@ -101,7 +104,7 @@ pub struct MaterialReport {
 /// # Errors
 /// As [`super::problems`].
 pub fn report(scene: &Scene, footprint: &dyn Footprint) -> Result<Report, Problem> {
-    let extents = examine(scene)?;
+    let (extents, loads) = examine(scene)?;
     let near_others = |body| memory::particles_near_others(footprint, (scene, &extents), body);
     let counts: Vec<_> =
         (extents.iter().enumerate()).map(|(body, extent)| extent.particles + near_others(body)).collect();
@@ -128,6 +131,7 @@ pub fn report(scene: &Scene, footprint: &dyn Footprint) -> Result<Report, Proble
         steps: (scene.time.end / time_step * (1.0 - 1e-12)).ceil() as u64,
         machine: MachineSpeed::default(),
         wall_time: 0.0,
+        loads,
         rules: rules::rule_reports(scene, &boxes),
         warnings: warnings(scene, &extents, &contacts),
         contacts,
@@ -226,7 +230,7 @@ fn time_step(scene: &Scene, extents: &[FillingExtent]) -> f64 {
 
 /// Particles of a rigid body two deep fill what contact asks of it; bodies that deform need more, see [`thickness`].
 fn thin_rigid_bodies(scene: &Scene) -> Option<Warning> {
-    let needed = |body: &Body| 2.0 * lattice(scene, body).spacing * (1.0 - 1e-9);
+    let needed = |body: &Body| 2.0 * scene.lattice(body).spacing * (1.0 - 1e-9);
     let thickness = |body: usize| smallest_extent(&scene.bodies[body].shape, scene.dimension.axes());
     let is_thin =
         |&body: &usize| scene.bodies[body].is_rigid() && thickness(body) < needed(&scene.bodies[body]);
@@ -234,7 +238,7 @@ fn thin_rigid_bodies(scene: &Scene) -> Option<Warning> {
     let first = thin.next()?;
     let body = &scene.bodies[first];
     let named = and_more(&format!("`{}` ({} m)", body.name, short(thickness(first))), thin.count());
-    let cell = short(0.5 * thickness(first) * per_side(scene, body));
+    let cell = short(0.5 * thickness(first) * scene.per_side(body));
     Some(Warning::about(
         format!("bodies[{first}].shape"),
         format!("thinner than two particles: {named}; cells of at most {cell} m give it two"),

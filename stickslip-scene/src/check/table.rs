@@ -1,6 +1,7 @@
 //! The report as a table for the terminal.
 
 use super::contact::{ContactEstimate, ContactResolution};
+use super::loads::LoadReport;
 use super::report::{BodyReport, Report};
 use super::rules::RuleReport;
 use crate::scene::ContactLaw;
@@ -45,6 +46,7 @@ impl Display for Report {
             "wall time    {} (at {rate} million particle-steps/s a core, {cores} core{plural})",
             duration(self.wall_time)
         )?;
+        self.write_loads(f)?;
         self.write_rules(f)?;
         self.write_contacts(f)?;
         self.write_unknown(f)?;
@@ -78,6 +80,22 @@ impl Report {
         match self.bodies.len().saturating_sub(BODIES) {
             0 => writeln!(f),
             more => writeln!(f, "... and {more} more\n"),
+        }
+    }
+
+    fn write_loads(&self, f: &mut Formatter<'_>) -> Result {
+        if self.loads.is_empty() {
+            return Ok(());
+        }
+        let width = column(self.loads.iter().take(BODIES).map(|load| &load.name), "support or load");
+        let body = column(self.loads.iter().take(BODIES).map(|load| &load.body), "on body");
+        writeln!(f, "\n{:width$}  {:body$}  part", "support or load", "on body")?;
+        for LoadReport { name, body: on, points, measure, unit } in self.loads.iter().take(BODIES) {
+            writeln!(f, "{name:width$}  {on:body$}  {} {unit}, {points} points", short(*measure))?;
+        }
+        match self.loads.len().saturating_sub(BODIES) {
+            0 => Ok(()),
+            more => writeln!(f, "... and {more} more"),
         }
     }
 

@@ -1,6 +1,5 @@
 //! Bodies too thin for the grid: a cell bends more stiffly than the material in it.
 
-use super::lattice;
 use super::table::short;
 use super::warning::{Warning, and_more};
 use crate::geometry::{self, Mirror, MirroredShape};
@@ -46,7 +45,7 @@ fn thickness(scene: &Scene, body: usize, enough: f64) -> Option<f64> {
     let (axes, cell) = (scene.dimension.axes(), scene.discretization.cell);
     let shape = &scene.bodies[body].shape;
     let whole = MirroredShape::new(shape, continuing_faces(scene), axes);
-    let sites = geometry::sites(shape, &lattice(scene, &scene.bodies[body]), scene.bodies[body].particles)?;
+    let sites = geometry::sites(shape, &scene.lattice(&scene.bodies[body]), scene.bodies[body].particles)?;
     let (mut deepest, mut depth) = (Vec::new(), 0.0);
     for site in sites {
         let here = -whole.level(site.position).distance;

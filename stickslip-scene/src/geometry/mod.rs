@@ -16,6 +16,7 @@ mod rings;
 mod rotation;
 mod round;
 mod shells;
+mod surface;
 mod volume;
 
 pub use bounds::Bounds;
@@ -25,6 +26,7 @@ pub use fitted::{FITTED_SHAPES, fits};
 pub use mesh::{Mesh, MeshFault};
 pub use mirrored_shape::{Mirror, MirroredShape};
 pub use round::RoundPart;
+pub use surface::SurfacePoint;
 
 use serde::Serialize;
 

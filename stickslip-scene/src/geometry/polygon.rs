@@ -5,6 +5,16 @@ fn edges(points: &[[f64; 2]]) -> impl Iterator<Item = ([f64; 2], [f64; 2])> {
     points.iter().zip(points.iter().cycle().skip(1)).map(|(&a, &b)| (a, b))
 }
 
+/// Each edge with its outward unit normal; an edge without length has none to speak of.
+pub(super) fn sides(points: &[[f64; 2]]) -> impl Iterator<Item = ([f64; 2], [f64; 2], [f64; 2])> {
+    let turn = if signed_area(points) < 0.0 { -1.0 } else { 1.0 };
+    edges(points).map(move |(a, b)| {
+        let [x, y] = [b[0] - a[0], b[1] - a[1]];
+        let length = turn * x.hypot(y);
+        (a, b, [y / length, -x / length])
+    })
+}
+
 /// Whether a point is inside by the even-odd rule: a ray to the right crosses the border an odd number of times.
 ///
 /// An edge holds its lower end and not its upper one, and a point on an edge is to the right of it. An edge is always

@@ -35,6 +35,7 @@ impl Scene {
             gravity: [0.0; 3],
             materials: Vec::new(),
             bodies: Vec::new(),
+            loads: Vec::new(),
             contact: Vec::new(),
             outputs: Outputs::of_run(end),
             references: Vec::new(),

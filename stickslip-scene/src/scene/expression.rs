@@ -3,16 +3,63 @@
 use super::formula::{DEEPEST, Function};
 use serde::{Serialize, Serializer};
 
-/// A number that may depend on time: `"5 m/s * min(t / 1 ms, 1)"`, compiled.
+/// A number that may depend on time, and in loads on place: `"5 m/s * min(t / 1 ms, 1)"`, compiled.
 ///
-/// The only free variable is `t`, the simulated time in seconds; parameters and units are already resolved to SI.
-/// Serialised, it is the number or the text of the formula.
+/// Free variables are `t`, the simulated time in seconds, and where a place is known `x` to `z` and `x0` to `z0` in
+/// metres; parameters and units are already resolved to SI. Serialised, it is the number, the text of the formula, or
+/// the table.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Expression {
-    /// The same number at every time.
+    /// The same number always.
     Constant(f64),
-    /// A formula with `t` in it.
+    /// A formula with `t` or a place in it.
     Formula(Box<Program>),
+    /// Values at times.
+    Table(TimeTable),
+}
+
+/// Names of the coordinates that formulas of place know: of a point now, and of the same point at the start.
+pub(super) const PLACE: [&str; 6] = ["x", "y", "z", "x0", "y0", "z0"];
+
+/// What the free variables of formulas stand for.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Moment {
+    /// Simulated time [s].
+    pub time: f64,
+    /// Where a point is [m].
+    pub place: [f64; 3],
+    /// Where it was at the start [m].
+    pub start: [f64; 3],
+}
+
+/// Values at times, straight lines in between, and before the first and after the last time the value there.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TimeTable {
+    /// Times [s], ascending, each with its value in SI units.
+    table: Vec<[f64; 2]>,
+}
+
+impl TimeTable {
+    /// The table of these times [s] and values; `None` where there is no row, or a time is not after the one before.
+    pub fn new(table: Vec<[f64; 2]>) -> Option<Self> {
+        let ascends = table.windows(2).all(|pair| pair[0][0] < pair[1][0]);
+        (ascends && !table.is_empty()).then_some(TimeTable { table })
+    }
+
+    /// The last time [s].
+    pub fn end(&self) -> f64 {
+        self.table.last().map_or(0.0, |[time, _]| *time)
+    }
+
+    /// The value at time `t` [s].
+    pub fn at(&self, t: f64) -> f64 {
+        let after = self.table.partition_point(|[time, _]| *time <= t);
+        match (after.checked_sub(1).map(|before| self.table[before]), self.table.get(after)) {
+            (Some([start, from]), Some([end, to])) => from + (to - from) * ((t - start) / (end - start)),
+            (Some([_, value]), None) | (None, Some(&[_, value])) => value,
+            (None, None) => f64::NAN,
+        }
+    }
 }
 
 /// A formula as instructions for a stack of numbers.
@@ -27,6 +74,8 @@ pub struct Program {
 pub(super) enum Instruction {
     Push(f64),
     Time,
+    /// A coordinate of [`PLACE`].
+    Place(usize),
     Negate,
     Add,
     Subtract,
@@ -43,11 +92,17 @@ pub(super) enum Instruction {
 }
 
 impl Expression {
-    /// The value at time `t` [s], in SI units.
+    /// The value at time `t` [s] of an expression without place, in SI units.
     pub fn at(&self, t: f64) -> f64 {
+        self.at_moment(&Moment { time: t, ..Moment::default() })
+    }
+
+    /// The value at a time and a place, in SI units.
+    pub fn at_moment(&self, moment: &Moment) -> f64 {
         match self {
             Expression::Constant(value) => *value,
-            Expression::Formula(program) => run(&program.code, t),
+            Expression::Formula(program) => run(&program.code, moment),
+            Expression::Table(table) => table.at(moment.time),
         }
     }
 
@@ -65,6 +120,7 @@ impl Serialize for Expression {
         match self {
             Expression::Constant(value) => serializer.serialize_f64(*value),
             Expression::Formula(program) => serializer.serialize_str(&program.text),
+            Expression::Table(table) => table.serialize(serializer),
         }
     }
 }
@@ -93,15 +149,17 @@ impl Stack {
     }
 }
 
-/// The number that well-formed code leaves on the stack at time `t` [s].
-pub(super) fn run(code: &[Instruction], t: f64) -> f64 {
+/// The number that well-formed code leaves on the stack at a moment.
+pub(super) fn run(code: &[Instruction], moment: &Moment) -> f64 {
     let mut stack = Stack { numbers: [0.0; HIGHEST], height: 0 };
     for instruction in code {
         let mut pop = || stack.pop();
         let truth = |is: bool| if is { 1.0 } else { 0.0 };
         let value = match *instruction {
             Instruction::Push(value) => value,
-            Instruction::Time => t,
+            Instruction::Time => moment.time,
+            Instruction::Place(which) if which < 3 => moment.place[which],
+            Instruction::Place(which) => moment.start[which - 3],
             Instruction::Negate => -pop(),
             Instruction::Call(function) if function.arguments() == 1 => function.of(pop(), 0.0),
             Instruction::Choose => {

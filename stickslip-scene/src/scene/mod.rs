@@ -10,6 +10,7 @@ mod file;
 mod formula;
 mod fringes;
 mod load;
+mod loads;
 mod measurements;
 mod overrides;
 mod parameters;
@@ -20,15 +21,16 @@ mod suggestion;
 mod units;
 
 pub use error::{Mistake, SceneError};
-pub use expression::{Expression, Program};
+pub use expression::{Expression, Moment, Program, TimeTable};
 pub use fringes::{Fringes, Light, Overlay, Polariscope, PolariscopeField, Sensitivity};
 pub use load::{Loaded, load, parse};
+pub use loads::{Action, Dashpot, Extent, Load, Part, RIGID, Support, SupportMotion};
 pub use measurements::{Anchor, Arrival, Front, Measurements, Observable, Probe, Reading, TimeUnit};
 pub use problem::Problem;
 pub use schema::schema;
 pub use source::Source;
 
-use crate::geometry::{Arrangement, Shape};
+use crate::geometry::{Arrangement, Shape, SiteLattice};
 use crate::material::{Material, Thickness};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -60,6 +62,8 @@ pub struct Scene {
     pub materials: Vec<NamedMaterial>,
     /// The bodies, in the order of the file.
     pub bodies: Vec<Body>,
+    /// What holds, presses, pulls or drives parts of bodies from outside: supports, then loads.
+    pub loads: Vec<Load>,
     /// Contact rules; the first that matches a pair holds, see [`Scene::contact_between`].
     pub contact: Vec<ContactRule>,
     /// What is written, and how often.
@@ -236,6 +240,15 @@ pub struct Damping {
     /// Bulk viscosity, where material is compressed: its coefficients c_1 and c_2 of the first and second power of the
     /// rate (Landshoff 1955; von Neumann and Richtmyer 1950) [-].
     pub bulk: [f64; 2],
+}
+
+impl Damping {
+    /// What a scene has that names none: nothing, and a little local damping where it looks for the state at rest.
+    /// There velocities of single particles, which no node sees, would stop the bodies again and again before they have
+    /// moved.
+    pub fn of(relax: Option<Relaxation>) -> Self {
+        Damping { local: if relax.is_some() { 0.05 } else { 0.0 }, ..Damping::default() }
+    }
 }
 
 /// Most that the coefficients of bulk viscosity may be: beyond, the stable step would be shorter than waves ask for.
@@ -444,6 +457,20 @@ impl Body {
 }
 
 impl Scene {
+    /// The particle sites of a body: every cell of the scene's grid divided into equal parts.
+    pub fn lattice(&self, body: &Body) -> SiteLattice {
+        SiteLattice {
+            origin: self.domain.as_ref().map_or([0.0; 3], |domain| domain.min),
+            spacing: self.discretization.cell / self.per_side(body),
+            dimension: self.dimension.axes(),
+        }
+    }
+
+    /// Particles of a body along each side of a cell.
+    pub(crate) fn per_side(&self, body: &Body) -> f64 {
+        body.particles_per_side.unwrap_or(self.discretization.particles_per_side) as f64
+    }
+
     /// The rule for two bodies, given by index: the first in the file that matches, else the default rule.
     pub fn contact_between(&self, a: usize, b: usize) -> ContactRule {
         self.contact_rule_between(a, b).map(|rule| self.contact[rule].clone()).unwrap_or_default()

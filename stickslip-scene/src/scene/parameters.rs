@@ -2,7 +2,7 @@
 
 use super::Parameter;
 use super::error::Fault;
-use super::expression::Expression;
+use super::expression::{Expression, PLACE};
 use super::formula::{self, Formula, FormulaError, FormulaNumber, Meaning, Names, NumberKind};
 use super::source::{DocumentNode, Source, Value};
 use super::suggestion::did_you_mean;
@@ -18,14 +18,18 @@ pub(super) struct Parameters<'s> {
     pending: RefCell<Vec<&'s str>>,
 }
 
-/// May a formula use `t`?
+/// What a formula may depend on beside parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum TimeDependence {
+pub(super) enum Dependence {
+    /// Nothing.
     Constant,
-    InTime,
+    /// The time, `t`.
+    Time,
+    /// The time, and the place: now `x`, `y` and `z`, at the start `x0`, `y0` and `z0`.
+    TimeAndPlace,
 }
 
-struct Scope<'a, 's>(&'a Parameters<'s>, TimeDependence);
+struct Scope<'a, 's>(&'a Parameters<'s>, Dependence);
 
 impl<'s> Parameters<'s> {
     /// The parameters `nodes` of `source`.
@@ -83,7 +87,7 @@ impl<'s> Parameters<'s> {
     pub fn formula(
         &self,
         node: &DocumentNode,
-        variation: TimeDependence,
+        variation: Dependence,
         allowed: &str,
     ) -> Result<Formula, Fault> {
         match &node.value {
@@ -155,7 +159,7 @@ impl<'s> Parameters<'s> {
             return Some(known.clone());
         }
         let quantity = self.guarded(node, || {
-            let formula = self.formula(node, TimeDependence::Constant, "a number")?;
+            let formula = self.formula(node, Dependence::Constant, "a number")?;
             let kind = if formula.kind == NumberKind::Number { NumberKind::Any } else { formula.kind };
             Ok(FormulaNumber { value: formula.expression.at(0.0), kind })
         });
@@ -187,13 +191,20 @@ impl<'s> Parameters<'s> {
 
 impl Names for Scope<'_, '_> {
     fn meaning(&self, name: &str) -> Meaning {
-        if name == "t" && self.1 == TimeDependence::InTime {
+        if name == "t" && self.1 != Dependence::Constant {
             return Meaning::Time;
         }
-        match self.0.quantity(name) {
-            Some(Ok(quantity)) => Meaning::Value(quantity),
-            Some(Err(fault)) => Meaning::Wrong(fault),
-            None => Meaning::Unknown,
+        let coordinate = PLACE.iter().position(|other| *other == name);
+        let coordinate = coordinate.filter(|_| self.1 == Dependence::TimeAndPlace);
+        match (self.0.quantity(name), coordinate) {
+            (Some(_), Some(_)) => {
+                let found = format!("the name `{name}`, which is a place in formulas of loads");
+                Meaning::Wrong(Fault::new(&format!("parameters.{name}"), found, "another name"))
+            }
+            (None, Some(coordinate)) => Meaning::Place(coordinate),
+            (Some(Ok(quantity)), None) => Meaning::Value(quantity),
+            (Some(Err(fault)), None) => Meaning::Wrong(fault),
+            (None, None) => Meaning::Unknown,
         }
     }
 

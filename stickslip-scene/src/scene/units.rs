@@ -31,6 +31,7 @@ impl From<[i8; 3]> for Powers {
 
 impl Powers {
     pub const NONE: Powers = Powers([0.0; 3]);
+    pub const LENGTH: Powers = Powers([0.0, 1.0, 0.0]);
     pub const TIME: Powers = Powers([0.0, 0.0, 1.0]);
 
     /// Powers of a product with the other factor raised to `exponent`.
@@ -85,7 +86,8 @@ const NAMED: &[([i8; 3], &str, &str)] = &[
     ([1, -1, -2], "a pressure", "Pa"),
     ([-1, 1, 2], "a compliance", "1/Pa"),
     ([1, 1, -2], "a force", "N"),
-    ([1, 0, -2], "an energy per area", "J/m^2"),
+    ([1, 0, -2], "a stiffness or an energy per area", "N/m"),
+    ([1, 0, -1], "a force per velocity", "N*s/m"),
     ([1, 2, -2], "an energy", "J"),
     ([1, 2, -3], "a power", "W"),
 ];
@@ -103,7 +105,8 @@ const EXAMPLES: &[([i8; 3], &str)] = &[
     ([1, -1, -2], "6 MPa"),
     ([-1, 1, 2], "4e-12 m^2/N"),
     ([1, 1, -2], "10 N"),
-    ([1, 0, -2], "100 J/m^2"),
+    ([1, 0, -2], "100 N/m"),
+    ([1, 0, -1], "10 N*s/m"),
     ([1, 2, -2], "10 J"),
 ];
 

@@ -125,7 +125,7 @@ fn types_and_units() {
             (
                 "\"1 s\"",
                 "\"2 * t\"",
-                "6:12: time.end: found `t`, the time; allowed: a formula without time: only prescribed motion and references vary in time",
+                "6:12: time.end: found `t`, the time; allowed: a formula without time: only prescribed motion, loads and references vary in time",
             ),
             (
                 "\"1 s\"",

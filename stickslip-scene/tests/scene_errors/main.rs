@@ -5,6 +5,7 @@
 
 mod bodies;
 mod keys;
+mod loads;
 mod meshes;
 mod outputs;
 mod parameters;

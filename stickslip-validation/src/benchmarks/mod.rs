@@ -11,6 +11,7 @@ mod b1_incline;
 mod b20_spinning_disk;
 mod b21_cantilever;
 mod b21_large_deflection;
+mod b21_loaded;
 mod b24_taylor_bar;
 mod b29_stack;
 mod b2_backspin;
@@ -31,6 +32,7 @@ mod die;
 mod flat_wall;
 mod groove;
 mod identity;
+mod lame;
 mod m1_momentum;
 mod m2_dissipation;
 mod m3_registration;
@@ -79,6 +81,8 @@ pub static BENCHMARKS: &[Benchmark] = &[
     spinning_ring::BENCHMARK,
     b21_cantilever::BENCHMARK,
     b21_large_deflection::BENCHMARK,
+    b21_loaded::BENCHMARK,
+    lame::BENCHMARK,
     b30_hanging_bar::BENCHMARK,
     b31_held_strip::BENCHMARK,
     b32_free_spin::BENCHMARK,

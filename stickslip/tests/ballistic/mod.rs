@@ -237,6 +237,7 @@ pub fn scene() -> Scene {
             volume_change: Default::default(),
         }],
         bodies: vec![body("sphere"), body("plane")],
+        loads: Vec::new(),
         contact: vec![ContactRule { friction: f64::INFINITY, ..Default::default() }],
         outputs: Outputs {
             tables: 0.1,

@@ -113,6 +113,11 @@ impl Mesh {
         self.0.triangles.len()
     }
 
+    /// The corners of each triangle [m].
+    pub fn triangle_corners(&self) -> impl Iterator<Item = [[f64; 3]; 3]> {
+        self.0.triangles.iter().map(|triangle| self.corners(triangle))
+    }
+
     /// The smallest box around it.
     pub fn bounds(&self) -> Bounds {
         self.0.bounds

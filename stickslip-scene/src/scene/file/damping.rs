@@ -4,9 +4,9 @@ use super::Context;
 use super::quantity::{Measure, QuantityInput, Ratio};
 use super::read::table;
 use crate::scene;
-use crate::scene::MOST_BULK;
 use crate::scene::error::Fault;
 use crate::scene::units::Powers;
+use crate::scene::{MOST_BULK, Relaxation};
 
 /// In one over seconds.
 pub struct Rate;
@@ -24,15 +24,16 @@ impl Measure for Rate {
 }
 
 table! {
-    /// What slows deformable bodies down beside contact and materials; by default nothing.
+    /// What slows deformable bodies down beside contact and materials; by default nothing, with `time.relax` a little
+    /// local damping.
     Damping {
         /// Rate alpha [1/s] of a force f = -alpha m v at every node, relative to the grid at rest (mass-proportional
         /// Rayleigh damping): a free body loses its velocity as exp(-alpha t).
         #[schemars(extend("default" = 0))]
         viscous: Option<QuantityInput<Rate>>,
         /// Part lambda, 0 to below 1, of the unbalanced force at a node that acts against its velocity, component by
-        /// component: f_d = -lambda |f| sign(v) (Cundall 1987). Forces in balance are left alone.
-        #[schemars(extend("default" = 0))]
+        /// component: f_d = -lambda |f| sign(v) (Cundall 1987). Forces in balance are left alone. By default 0, with
+        /// `time.relax` 0.05.
         local: Option<QuantityInput<Ratio>>,
         /// Bulk viscosity c_1, 0 to 1, of the first power of the rate of compression: a pressure
         /// rho h c_1 c d, with the wave speed c and d = max(-tr L, 0) (Landshoff 1955). 0.06 is usual: it takes the
@@ -47,9 +48,9 @@ table! {
 }
 
 impl Damping {
-    /// Damping in SI units.
-    pub fn resolve(&self, context: &Context) -> Result<scene::Damping, Fault> {
-        let mut damping = scene::Damping::default();
+    /// Damping in SI units, of a scene that looks for a state at rest or does not.
+    pub fn resolve(&self, context: &Context, relax: Option<Relaxation>) -> Result<scene::Damping, Fault> {
+        let mut damping = scene::Damping::of(relax);
         if let Some(rate) = &self.viscous {
             damping.viscous = rate.checked(context, "a rate [1/s] from 0 on", |value| value >= 0.0)?;
         }

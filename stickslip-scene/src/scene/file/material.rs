@@ -6,7 +6,7 @@ use super::read::{Read, check_keys, field, unknown_key};
 use super::text::{Choice, Word};
 use crate::material::{Constant, Description, Form, Given, LAWS, Quantity as Wanted};
 use crate::scene::error::Fault;
-use crate::scene::parameters::TimeDependence;
+use crate::scene::parameters::Dependence;
 use crate::scene::source::{DocumentNode, Value};
 use crate::scene::units::Powers;
 use crate::scene::{Dimension, NamedMaterial, Problem, VolumeChange};
@@ -103,7 +103,7 @@ fn number(node: &DocumentNode, wanted: &Wanted, context: &Context) -> Result<f64
         true => powers.name(),
         false => format!("{}, like \"{}\"", powers.name(), powers.example()),
     };
-    Ok(evaluate(node, powers, &allowed, (context, TimeDependence::Constant))?.at(0.0))
+    Ok(evaluate(node, powers, &allowed, (context, Dependence::Constant))?.at(0.0))
 }
 
 /// The numbers of a list of pairs, one after the other.

@@ -7,7 +7,7 @@ use super::read::{Read, table};
 use super::text::{Choice, Text, Word};
 use super::vector::VectorInput;
 use crate::scene::error::Fault;
-use crate::scene::parameters::TimeDependence;
+use crate::scene::parameters::Dependence;
 use crate::scene::source::{DocumentNode, Value};
 use crate::scene::units::Powers;
 use crate::scene::{self, Anchor, Body, Observable, Reading};
@@ -243,7 +243,7 @@ impl Threshold {
     fn value(&self, quantity: Observable, context: &Context) -> Result<f64, Fault> {
         let powers = Powers::from(quantity.powers());
         let allowed = format!("{} other than 0, like \"{}\"", powers.name(), powers.example());
-        let value = evaluate(&self.0, powers, &allowed, (context, TimeDependence::Constant))?.at(0.0);
+        let value = evaluate(&self.0, powers, &allowed, (context, Dependence::Constant))?.at(0.0);
         if value != 0.0 && value.is_finite() { Ok(value) } else { Err(self.0.fault(allowed)) }
     }
 }

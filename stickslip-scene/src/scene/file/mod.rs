@@ -5,6 +5,7 @@ mod body;
 mod contact;
 mod damping;
 mod fringes;
+mod loads;
 mod material;
 mod measurements;
 mod mesh;
@@ -56,12 +57,16 @@ table! {
         space: space::Space,
         /// Duration and time step.
         time: time::Time,
-        /// What slows the bodies down beside contact and materials; by default nothing.
+        /// What slows the bodies down beside contact and materials; by default nothing, with `time.relax` a little.
         damping: Option<damping::Damping>,
         /// The materials by name.
         materials: material::Materials,
         /// The bodies: [[bodies]].
         bodies: Vec<body::Body>,
+        /// What holds parts of bodies, or drives them: [[supports]].
+        supports: Option<Vec<loads::Support>>,
+        /// What pushes or pulls parts of bodies: [[loads]].
+        loads: Option<Vec<loads::Load>>,
         /// Rules for how bodies touch: [[contact]]. The first that matches a pair holds; a pair that none matches has
         /// the surface law without friction.
         contact: Option<Vec<contact::Contact>>,
@@ -93,6 +98,8 @@ pub(super) fn resolve(source: &Source) -> Result<Scene, Fault> {
     let bodies = body::resolve(&file.bodies, &materials, context)?;
     let contact =
         contact::resolve(file.contact.as_deref().unwrap_or_default(), (&bodies, &materials), context)?;
+    let (supports, loads) = (file.supports.unwrap_or_default(), file.loads.unwrap_or_default());
+    let loads = loads::resolve(&supports, &loads, (&bodies, context))?;
     let stem = source.name().rsplit(['/', '\\']).next().unwrap_or_default().trim_end_matches(".toml");
     Ok(Scene {
         title: file.title.as_ref().map_or_else(|| Ok(stem.to_string()), |title| title.value(context))?,
@@ -102,13 +109,17 @@ pub(super) fn resolve(source: &Source) -> Result<Scene, Fault> {
         precision: file.space.precision(context)?,
         discretization: file.space.discretization(context)?,
         domain: file.space.domain(context)?,
-        damping: file.damping.map_or(Ok(Damping::default()), |damping| damping.resolve(context))?,
+        damping: match file.damping {
+            Some(damping) => damping.resolve(context, time.relax)?,
+            None => Damping::of(time.relax),
+        },
         gravity: file.gravity.map_or(Ok([0.0; 3]), |gravity| gravity.value(context))?,
         outputs: outputs::resolve(file.outputs.as_ref(), (&bodies, time.end), context)?,
         references: outputs::references(file.references.as_deref().unwrap_or_default(), &bodies, context)?,
         time,
         materials,
         bodies,
+        loads,
         contact,
     })
 }

@@ -7,7 +7,7 @@ use super::quantity::{Duration, QuantityInput, evaluate};
 use super::read::{Read, table};
 use super::text::Text;
 use crate::scene::error::Fault;
-use crate::scene::parameters::TimeDependence;
+use crate::scene::parameters::Dependence;
 use crate::scene::source::{DocumentNode, Value};
 use crate::scene::units::Powers;
 use crate::scene::{self, Body};
@@ -126,7 +126,7 @@ pub fn references(
             QUANTITIES.iter().find(|(name, _)| *name == quantity).expect("name_of found it in names");
         let powers = Powers::from(*powers);
         let allowed = format!("{}, like \"{}\"", powers.name(), powers.example());
-        let value = evaluate(&reference.value.0, powers, &allowed, (context, TimeDependence::InTime))?;
+        let value = evaluate(&reference.value.0, powers, &allowed, (context, Dependence::Time))?;
         Ok(scene::Reference { body, quantity, value, label: reference.label.value(context)? })
     };
     references.iter().map(resolve).collect()

@@ -4,7 +4,7 @@ use super::Context;
 use super::read::Read;
 use crate::scene::Expression;
 use crate::scene::error::Fault;
-use crate::scene::parameters::TimeDependence;
+use crate::scene::parameters::Dependence;
 use crate::scene::source::{DocumentNode, Value};
 use crate::scene::units::Powers;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
@@ -51,6 +51,12 @@ measures! {
     Pressure = [1, -1, -2];
     /// In pascals per metre per second.
     SurfaceViscosity = [1, -2, -1];
+    /// In newtons.
+    Force = [1, 1, -2];
+    /// In newtons per metre.
+    Stiffness = [1, 0, -2];
+    /// In newtons per metre per second.
+    ForceOverVelocity = [1, 0, -1];
     /// In one over pascals.
     Compliance = [-1, 1, 2];
 }
@@ -90,19 +96,15 @@ impl<M: Measure> QuantityInput<M> {
 
     /// Its value in SI units, perhaps infinite.
     pub fn extended(&self, context: &Context) -> Result<f64, Fault> {
-        let expression = evaluate(
-            &self.node,
-            Powers::from(M::POWERS),
-            &Self::wanted(),
-            (context, TimeDependence::Constant),
-        )?;
+        let expression =
+            evaluate(&self.node, Powers::from(M::POWERS), &Self::wanted(), (context, Dependence::Constant))?;
         let value = expression.at(0.0);
         if value.is_nan() { Err(self.refused(value, Self::wanted())) } else { Ok(value) }
     }
 
     /// Its value as a function of time.
     pub fn over_time(&self, context: &Context) -> Result<Expression, Fault> {
-        evaluate(&self.node, Powers::from(M::POWERS), &Self::wanted(), (context, TimeDependence::InTime))
+        evaluate(&self.node, Powers::from(M::POWERS), &Self::wanted(), (context, Dependence::Time))
     }
 
     /// Its value, above zero.
@@ -148,7 +150,7 @@ pub fn evaluate(
     node: &DocumentNode,
     wanted: Powers,
     allowed: &str,
-    (context, variation): (&Context, TimeDependence),
+    (context, variation): (&Context, Dependence),
 ) -> Result<Expression, Fault> {
     let formula = context.parameters.formula(node, variation, allowed)?;
     if formula.kind.fits(wanted) {

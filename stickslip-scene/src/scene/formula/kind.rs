@@ -11,7 +11,7 @@ pub enum NumberKind {
     Any,
     /// Of this dimension by the units written.
     Known(Powers),
-    /// Of this dimension because `t` is a time; no unit is written.
+    /// Of this dimension because `t` is a time and `x` a length; no unit is written.
     Timed(Powers),
     /// Not a number but yes or no.
     Truth,

@@ -5,7 +5,8 @@
 //! - a plain number in a formula is a pure number: `2 * radius` is a length; alone, or in a sum, it is in SI units;
 //! - a parameter that is a plain number is in whatever SI unit fits where it is used (`g = 9.81`), so products with it
 //!   fit anywhere;
-//! - `t` is a time, but a formula in which no unit is written at all (`"3 * t + 5 * t^2"`) is in SI units.
+//! - `t` is a time, `x`, `y`, `z`, `x0`, `y0` and `z0` are lengths, but a formula in which no unit is written at all
+//!   (`"3 * t + 5 * t^2"`) is in SI units.
 
 mod call;
 mod function;
@@ -33,6 +34,8 @@ pub(super) struct FormulaNumber {
 pub(super) enum Meaning {
     /// The simulated time.
     Time,
+    /// A coordinate, by its number in [`super::expression::PLACE`].
+    Place(usize),
     /// A number.
     Value(FormulaNumber),
     /// A parameter that is wrong itself.

@@ -5,7 +5,7 @@
 
 use super::token::{self, Token};
 use super::{Formula, FormulaError, FormulaNumber, Meaning, Misread, Names, NumberKind, reserved};
-use crate::scene::expression::{Expression, Instruction, run};
+use crate::scene::expression::{Expression, Instruction, Moment, run};
 use crate::scene::suggestion::did_you_mean;
 use crate::scene::units::{Powers, Unit};
 use std::ops::Range;
@@ -145,13 +145,11 @@ impl<'a> Parser<'a> {
         match self.names.meaning(name) {
             Meaning::Value(quantity) => Ok(self.push(quantity, span)),
             Meaning::Wrong(fault) => Err(FormulaError::Parameter(fault)),
-            Meaning::Time => {
-                let start = self.code.len();
-                self.code.push(Instruction::Time);
-                Ok(ParsedPart { kind: NumberKind::Timed(Powers::TIME), value: None, start, span })
-            }
+            Meaning::Time => Ok(self.variable(Instruction::Time, Powers::TIME, span)),
+            Meaning::Place(which) => Ok(self.variable(Instruction::Place(which), Powers::LENGTH, span)),
             Meaning::Unknown if name == "t" => {
-                let allowed = "a formula without time: only prescribed motion and references vary in time";
+                let allowed =
+                    "a formula without time: only prescribed motion, loads and references vary in time";
                 fail(span, "`t`, the time", allowed, None)
             }
             Meaning::Unknown => {
@@ -229,6 +227,11 @@ impl<'a> Parser<'a> {
         Ok((kind, a.value.and(b.value)))
     }
 
+    fn variable(&mut self, instruction: Instruction, powers: Powers, span: Range<usize>) -> ParsedPart {
+        self.code.push(instruction);
+        ParsedPart { kind: NumberKind::Timed(powers), value: None, start: self.code.len() - 1, span }
+    }
+
     fn push(&mut self, quantity: FormulaNumber, span: Range<usize>) -> ParsedPart {
         self.code.push(Instruction::Push(quantity.value));
         ParsedPart { kind: quantity.kind, value: Some(quantity.value), start: self.code.len() - 1, span }
@@ -239,7 +242,7 @@ impl<'a> Parser<'a> {
         if part.value.is_none() {
             return part;
         }
-        let value = run(&self.code[part.start..], 0.0);
+        let value = run(&self.code[part.start..], &Moment::default());
         self.code.truncate(part.start);
         self.code.push(Instruction::Push(value));
         ParsedPart { value: Some(value), ..part }

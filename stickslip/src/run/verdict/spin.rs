@@ -80,7 +80,8 @@ impl SpinCheck {
             let state = &look.bodies[body];
             Alone { body, velocity: state.velocity, angular_momentum: own(state), time }
         };
-        self.alone = look.free().map(alone).collect();
+        let pushed = |&body: &usize| look.scene.loads.iter().any(|load| load.body == body);
+        self.alone = look.free().filter(|body| !pushed(body)).map(alone).collect();
         if look.bodies.len() > 1 && isolated(look.scene) {
             self.together = Some(Together { angular_momentum: look.ledger.angular_momentum, scale: 0.0 });
         }
@@ -91,6 +92,7 @@ impl SpinCheck {
 fn isolated(scene: &Scene) -> bool {
     let faces = scene.domain.iter().flat_map(|domain| domain.faces).flatten();
     scene.gravity == [0.0; 3]
+        && scene.loads.is_empty()
         && scene.bodies.iter().all(|body| !body.is_rigid())
         && faces.into_iter().all(|face| face == Face::Open)
 }

@@ -1,0 +1,280 @@
+//! Loads and supports: what acts on points of bodies from outside, and how the nodes feel it.
+//!
+//! A load acts on points that particles carry along ([`crate::part`]). A point moves with the nodes by
+//!
+//! ```text
+//! x_s = x_p + r,   r = F_p (X_s - X_p)         dx_s/dt = sum_i N_i v_i,   N_i = S_i(x_p) + grad S_i(x_p) . r
+//! ```
+//! because particles move by sum S_i v_i and F by sum v_i (x) grad S_i. A force f at the point is N_i f at the nodes,
+//! the transpose of that, so that it does the same work on both.
+
+use crate::basis::Basis;
+use crate::body::Particle;
+use crate::grid::Lattice;
+use crate::part::{self, PartPoint};
+use crate::scene::{Action, Dashpot, Expression, Extent, Load, Moment, RIGID, Scene, SupportMotion};
+use crate::tensor::{Real, Vector};
+use crate::transfer::offsets;
+
+/// A load or a support with the points on which it acts.
+#[derive(Clone, Debug)]
+pub struct LoadPoints {
+    /// What it does.
+    pub action: Action,
+    /// Index of its body.
+    pub body: usize,
+    /// The points.
+    pub points: Vec<PartPoint>,
+    /// Area of all of them, or volume [m^2 or m^3].
+    pub measure: f64,
+    /// Stiffness along axes that are held, per area or volume [Pa/m or Pa/m^2].
+    stiffness: f64,
+    /// Dashpot along and across the surface's normal likewise [Pa s/m or Pa s/m^2].
+    dashpot: [f64; 2],
+    /// How far inside the surface the points lie [m].
+    inset: f64,
+}
+
+/// What a load did since the start.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LoadSums {
+    /// Impulse on the body [N s].
+    pub impulse: [f64; 3],
+    /// Work on the body [J].
+    pub work: f64,
+    /// How far a support of prescribed velocity has moved [m].
+    pub driven: [f64; 3],
+}
+
+/// What acts on a point in a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PointForce<T, const D: usize> {
+    /// Force at the start of the step [N].
+    pub force: Vector<T, D>,
+    /// By how much its impulse falls in the step, over the change of the velocity: dt (dt k + c) [kg].
+    pub inertia: Vector<T, D>,
+    /// Stiffness k of a support [N/m].
+    pub spring: Vector<T, D>,
+    /// Velocity that a support prescribes [m/s].
+    pub speed: Vector<T, D>,
+}
+
+impl<T: Real, const D: usize> Default for PointForce<T, D> {
+    fn default() -> Self {
+        let nothing = Vector::ZERO;
+        PointForce { force: nothing, inertia: nothing, spring: nothing, speed: nothing }
+    }
+}
+
+/// A point now.
+#[derive(Clone, Copy, Debug)]
+pub struct CarriedPoint<'a, T, const D: usize> {
+    /// The point at the start.
+    pub point: &'a PartPoint,
+    /// The particle that carries it.
+    pub particle: &'a Particle<T, D>,
+    /// Its velocity [m/s].
+    pub velocity: Vector<T, D>,
+}
+
+impl LoadPoints {
+    /// A load of a scene with its points.
+    ///
+    /// A rigid support has springs of, per area,
+    ///
+    /// ```text
+    /// k = RIGID M / (C^2 h)          M: wave modulus, C: Courant number, h: cell
+    /// ```
+    /// which give way as much as a layer of the body of thickness M/k does. They act half as deep inside the surface,
+    /// which takes as much from how far the body gives way: N . K^-1 . N of its stiffness K falls by 2 d/E as N moves
+    /// inward by d.
+    pub fn new(scene: &Scene, load: &Load) -> Self {
+        let mut points = part::points(scene, load);
+        let measure = points.iter().map(|point| point.measure).sum::<f64>();
+        let (mut stiffness, mut dashpot, mut inset) = (0.0, [0.0; 2], 0.0);
+        if let Action::Support(support) = &load.action {
+            if support.is_rigid() {
+                let material = &scene.materials[scene.bodies[load.body].material];
+                let modulus = material.law.wave_modulus_at_rest(scene.dimension.thickness());
+                let depth = if load.part.on == Extent::Volume { 2 } else { 1 };
+                let stiffest = RIGID / scene.time.courant.powi(2);
+                stiffness = stiffest * modulus / scene.discretization.cell.powi(depth);
+                inset = 0.5 * scene.discretization.cell / stiffest;
+            } else {
+                stiffness = support.stiffness.unwrap_or(0.0) / measure;
+            }
+            dashpot = match support.dashpot {
+                None => [0.0; 2],
+                Some(Dashpot::Whole(whole)) => [whole / measure; 2],
+                Some(Dashpot::Absorbing) => {
+                    let material = &scene.materials[scene.bodies[load.body].material];
+                    let modulus = material.law.wave_modulus_at_rest(scene.dimension.thickness());
+                    [modulus, material.law.elastic().shear_modulus]
+                        .map(|modulus| (modulus * material.density).sqrt())
+                }
+            };
+        }
+        for point in &mut points {
+            (0..3).for_each(|i| point.arm[i] -= inset * point.normal[i]);
+        }
+        LoadPoints {
+            action: load.action.clone(),
+            body: load.body,
+            points,
+            measure,
+            stiffness,
+            dashpot,
+            inset,
+        }
+    }
+
+    /// Whether its dashpot differs along and across the surface's normal.
+    fn resists_waves(&self) -> bool {
+        self.dashpot[0] != self.dashpot[1]
+    }
+
+    /// Where a point was at the start [m].
+    pub fn start(&self, point: &PartPoint) -> [f64; 3] {
+        std::array::from_fn(|i| point.position[i] - self.inset * point.normal[i])
+    }
+
+    /// What acts on one of its points in a step of `dt` from `time` on, while it is where it is at `now` [s].
+    pub fn at<T: Real, const D: usize>(
+        &self,
+        carried: CarriedPoint<T, D>,
+        (time, now, dt): (f64, f64, f64),
+        sums: &LoadSums,
+    ) -> PointForce<T, D> {
+        let CarriedPoint { point, particle, velocity } = carried;
+        let place = (particle.position + arm::<T, D>(particle, point)).space();
+        // Forces are those of the middle of the step, displacements those of now.
+        let moment = |time: f64| Moment { time, place, start: point.position };
+        let vector = |value: &[Expression; 3], factor: f64| {
+            Vector::of([0, 1, 2].map(|i| factor * value[i].at_moment(&moment(time + 0.5 * dt))))
+        };
+        let of = |force| PointForce { force, ..PointForce::default() };
+        match &self.action {
+            Action::Force(force) => of(vector(force, point.measure / self.measure)),
+            Action::Traction(traction) => of(vector(traction, point.measure)),
+            Action::Acceleration(acceleration) => of(vector(acceleration, particle.mass.f64())),
+            Action::Pressure(pressure) => {
+                let normal = deformed_area(particle, point);
+                let pressure = pressure.at_moment(&moment(time + 0.5 * dt));
+                of(Vector::of(normal.map(|area| -pressure * area)))
+            }
+            Action::Support(support) => {
+                let mut felt = PointForce::default();
+                let start = self.start(point);
+                // As places of particles round, so that a body at rest in its place is there.
+                let start = Vector::<T, D>::from_fn(|i| T::of(start[i] - point.arm[i]) + T::of(point.arm[i]));
+                let place = particle.position + arm::<T, D>(particle, point);
+                let normal = self.resists_waves().then(|| direction(deformed_area(particle, point)));
+                let mut slips = [0.0; 3];
+                for i in 0..D {
+                    let Some(motion) = &support.motion[i] else { continue };
+                    let (displacement, speed) = match motion {
+                        SupportMotion::Displacement(displacement) => {
+                            let at = |time: f64| displacement.at_moment(&moment(time));
+                            (at(now), (at(time + dt) - at(time)) / dt)
+                        }
+                        SupportMotion::Velocity(velocity) => (sums.driven[i], velocity.at(time + 0.5 * dt)),
+                    };
+                    let k = self.stiffness * point.measure;
+                    let away = (place[i] - start[i]).f64() - displacement;
+                    slips[i] = velocity[i].f64() - speed;
+                    felt.force[i] = T::of(-k * away);
+                    felt.spring[i] = T::of(k);
+                    felt.speed[i] = T::of(speed);
+                    felt.inertia[i] = T::of(dt * dt * k);
+                }
+                // c = c_T I + (c_L - c_T) n (x) n; the inertia is the sum of a row, see the step's `loads.rs`.
+                let [along, across] = self.dashpot.map(|dashpot| dashpot * point.measure);
+                let n = normal.unwrap_or([0.0; 3]);
+                let through = (0..D).map(|i| n[i] * slips[i]).sum::<f64>();
+                for i in (0..D).filter(|&i| support.motion[i].is_some()) {
+                    let row = (0..D).map(|j| (n[i] * n[j]).abs()).sum::<f64>();
+                    felt.force[i] -= T::of(across * slips[i] + (along - across) * through * n[i]);
+                    felt.inertia[i] += T::of(dt * (across + (along - across) * row));
+                }
+                felt
+            }
+        }
+    }
+
+    /// Whether what it prescribes stays as it is: whether nothing of it changes within the step from `time` on, nor
+    /// until `end` [s].
+    pub fn is_still(&self, time: f64, dt: f64, end: f64) -> bool {
+        let Some(point) = self.points.first() else { return true };
+        let at = |value: &Expression, time: f64| {
+            value.at_moment(&Moment { time, place: point.position, start: point.position })
+        };
+        let constant = |value: &Expression| match value {
+            Expression::Constant(_) => true,
+            Expression::Table(table) => table.end() <= time,
+            Expression::Formula(_) => {
+                at(value, time) == at(value, time + dt) && at(value, time) == at(value, end)
+            }
+        };
+        match &self.action {
+            Action::Force(values) | Action::Traction(values) | Action::Acceleration(values) => {
+                values.iter().all(constant)
+            }
+            Action::Pressure(value) => constant(value),
+            Action::Support(support) => support.motion.iter().flatten().all(|motion| match motion {
+                SupportMotion::Displacement(displacement) => constant(displacement),
+                SupportMotion::Velocity(velocity) => constant(velocity) && at(velocity, time) == 0.0,
+            }),
+        }
+    }
+
+    /// Moves what prescribes a velocity through a step.
+    pub fn drive(&self, (time, dt): (f64, f64), sums: &mut LoadSums) {
+        let Action::Support(support) = &self.action else { return };
+        for (driven, motion) in sums.driven.iter_mut().zip(&support.motion) {
+            if let Some(SupportMotion::Velocity(velocity)) = motion {
+                *driven += dt * velocity.at(time + 0.5 * dt);
+            }
+        }
+    }
+}
+
+/// F (X_s - X_p) [m]
+pub fn arm<T: Real, const D: usize>(particle: &Particle<T, D>, point: &PartPoint) -> Vector<T, D> {
+    let f = &particle.deformation.0;
+    Vector::from_fn(|i| (0..3).fold(T::ZERO, |sum, j| sum + f[i][j] * T::of(point.arm[j])))
+}
+
+/// Its direction; zero where it has none.
+fn direction(area: [f64; 3]) -> [f64; 3] {
+    Vector(area).direction().map_or([0.0; 3], |direction| direction.0)
+}
+
+/// J F^-T N dA [m^2]
+fn deformed_area<T: Real, const D: usize>(particle: &Particle<T, D>, point: &PartPoint) -> [f64; 3] {
+    let (jacobian, inverse) = (particle.deformation.det().f64(), particle.deformation.inverse());
+    [0, 1, 2].map(|i| {
+        let sum = (0..3).map(|j| inverse.0[j][i].f64() * point.normal[j]).sum::<f64>();
+        jacobian * sum * point.measure
+    })
+}
+
+/// The nodes that move a point, each with its S_i and N_i [-].
+pub fn nodes_of<T: Real, const D: usize, B: Basis<T>>(
+    lattice: &Lattice<T, D>,
+    particle: &Particle<T, D>,
+    point: &PartPoint,
+) -> impl Iterator<Item = ([i32; D], [T; 2])> + use<T, D, B> {
+    let x = lattice.cells(particle.position);
+    let half = lattice.half(particle.half_width);
+    let axes: [_; D] = std::array::from_fn(|i| B::axis(x[i], half));
+    let arm = arm::<T, D>(particle, point) * lattice.per_cell;
+    offsets::<D>(B::WIDTH).map(move |offset| {
+        let weight = |i: usize| axes[i].shape.weight[offset[i]];
+        let except =
+            |skip: usize| (0..D).filter(|&i| i != skip).fold(T::ONE, |product, i| product * weight(i));
+        let beside = |i: usize| except(i) * axes[i].shape.slope(offset[i]) * arm[i];
+        let own = (0..D).fold(T::ONE, |product, i| product * weight(i));
+        let node = std::array::from_fn(|i| axes[i].base + offset[i] as i32);
+        (node, [own, (0..D).fold(own, |sum, i| sum + beside(i))])
+    })
+}

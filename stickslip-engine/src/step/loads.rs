@@ -1,0 +1,354 @@
+//! Loads and supports at the nodes.
+//!
+//! Nodes take the forces of the points that they move, see [`crate::load`]. A support's force falls while its part
+//! moves within the step, which the nodes feel as inertia along axes that are held:
+//!
+//! ```text
+//! v_i += dt (f_i + m_i g + F_i) / (m_i + M_i)       F_i = sum_s N_is f_s,   M_i = sum_s |N_is| dt (dt k_s + c_s)
+//! ```
+//! M_i is the sum of a row of the springs' matrix, and no smaller than the matrix: however stiff a support, the step
+//! stays stable and as long as it was. What M_i keeps from the node is the support's doing, and is booked as its force.
+
+use super::Engine;
+use crate::basis::Basis;
+use crate::boundary::{Boundary, reflect};
+use crate::grid::{ActiveBlocks, Node};
+use crate::lanes::Laned;
+use crate::load::{CarriedPoint, LoadPoints, LoadSums, PointForce, arm, nodes_of};
+use crate::scene::Face;
+use crate::tensor::{Real, Vector};
+use crate::threads::each;
+use std::time::Instant;
+
+/// Points that a thread takes at a time.
+const POINTS: usize = 32;
+/// No node.
+const NOWHERE: u32 = u32::MAX;
+
+/// Room for loads in a step.
+#[derive(Clone, Debug)]
+pub struct LoadRoom<T, const D: usize> {
+    /// Place in memory of the particles of each body with loads, by number.
+    places: Vec<Vec<u32>>,
+    /// Load and point of each of all points, one load after the other.
+    numbers: Vec<[u32; 2]>,
+    /// The points likewise.
+    points: Vec<LoadedPoint<T, D>>,
+    /// What each node takes, for all nodes; those that no load reaches have nothing.
+    nodes: Vec<NodeLoad<T, D>>,
+    /// Nodes that loads reach.
+    reached: Vec<u32>,
+    /// Whether forces were taken where the step ends.
+    late: bool,
+}
+
+/// A point of a load in a step.
+#[derive(Clone, Debug)]
+struct LoadedPoint<T, const D: usize> {
+    felt: PointForce<T, D>,
+    /// Where it was when the step began [m].
+    before: Vector<T, D>,
+    nodes: Vec<LoadedNode<T>>,
+}
+
+/// A node that moves a point.
+#[derive(Clone, Copy, Debug)]
+struct LoadedNode<T> {
+    index: u32,
+    /// Axes along which the node is a mirror image, a bit each.
+    mirrored: u32,
+    /// N_i [-]
+    weight: T,
+}
+
+/// What a node takes from loads.
+#[derive(Clone, Copy, Debug)]
+struct NodeLoad<T, const D: usize> {
+    reached: bool,
+    /// F_i [N]
+    force: Vector<T, D>,
+    /// M_i [kg]
+    inertia: Vector<T, D>,
+    /// Its part of springs, sum_s |N_is| dt^2 k_s [kg].
+    held_by: Vector<T, D>,
+    /// What that moves with, sum_s |N_is| dt^2 k_s v*_s [kg m/s].
+    momentum: Vector<T, D>,
+    /// Acceleration [m/s^2]: M_i times this is what supports keep from the node.
+    acceleration: Vector<T, D>,
+    /// What supports took from the velocity when they held it [m/s].
+    held: Vector<T, D>,
+}
+
+impl<T: Real, const D: usize> Default for NodeLoad<T, D> {
+    fn default() -> Self {
+        let nothing = Vector::ZERO;
+        NodeLoad {
+            reached: false,
+            force: nothing,
+            inertia: nothing,
+            held_by: nothing,
+            momentum: nothing,
+            acceleration: nothing,
+            held: nothing,
+        }
+    }
+}
+
+impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
+    /// What loads and supports do to points of bodies, and which nodes feel it. Where particles have strained but still
+    /// move, `ahead` is how long [s].
+    pub(super) fn feel_loads(&mut self, dt: T, ahead: Option<T>) {
+        if self.settings.loads.is_empty() {
+            return;
+        }
+        let start = Instant::now();
+        self.find_loaded_particles();
+        self.load_points(dt, ahead);
+        if ahead.is_none() {
+            let time = (self.state.time, dt.f64());
+            let loads = self.settings.loads.iter().zip(&mut self.state.loads);
+            loads.for_each(|(load, sums)| load.drive(time, sums));
+        }
+        let (room, field) = (&mut self.workspace.loads, &mut self.workspace.field);
+        room.nodes.resize(field.nodes.len(), NodeLoad::default());
+        for point in &room.points {
+            for &LoadedNode { index, mirrored, weight } in &point.nodes {
+                let node = &mut room.nodes[index as usize];
+                if !std::mem::replace(&mut node.reached, true) {
+                    room.reached.push(index);
+                }
+                node.force += mirror(point.felt.force, mirrored) * weight;
+                // No less than nothing, where straight lines beyond a particle's reach have turned negative.
+                let springs = point.felt.spring * (dt * dt * weight.abs());
+                node.inertia += point.felt.inertia * weight.abs();
+                node.held_by += springs;
+                let speed = mirror(point.felt.speed, mirrored);
+                node.momentum += Vector::from_fn(|i| springs[i] * speed[i]);
+            }
+        }
+        self.watch.lap("loads", start);
+    }
+
+    /// Loads and supports change the velocities that the forces of the stress and gravity gave to the nodes.
+    pub(super) fn apply_loads(&mut self, dt: T) {
+        let (room, field) = (&mut self.workspace.loads, &mut self.workspace.field);
+        let gravity = self.settings.gravity;
+        for &index in &room.reached {
+            room.nodes[index as usize].accelerate(&mut field.nodes[index as usize], gravity, dt);
+        }
+    }
+
+    /// Supports hold the velocities that strain and move the particles as they hold those that are integrated: what
+    /// acts on one and not on the other feeds noise with energy.
+    pub(super) fn hold_supported_nodes(&mut self) {
+        let (room, field) = (&mut self.workspace.loads, &mut self.workspace.field);
+        for &index in &room.reached {
+            room.nodes[index as usize].hold(&mut field.nodes[index as usize]);
+        }
+    }
+
+    /// Gives nodes the velocities back that they had before supports held them.
+    pub(super) fn release_supported_nodes(&mut self) {
+        let (room, field) = (&self.workspace.loads, &mut self.workspace.field);
+        for &index in &room.reached {
+            field.nodes[index as usize].velocity += room.nodes[index as usize].held;
+        }
+    }
+
+    /// Where the particles that carry points lie in memory.
+    fn find_loaded_particles(&mut self) {
+        let (places, bodies) = (&mut self.workspace.loads.places, &self.state.bodies);
+        places.resize_with(bodies.len(), Vec::new);
+        for load in &self.settings.loads {
+            let (numbers, places) = (bodies[load.body].particles.numbers(), &mut places[load.body]);
+            let lies = |number: usize| {
+                places.get(number).is_some_and(|&place| numbers[place as usize] as usize == number)
+            };
+            if !load.points.iter().all(|point| lies(point.particle)) {
+                places.resize(numbers.len(), 0);
+                for (place, &number) in numbers.iter().enumerate() {
+                    places[number as usize] = place as u32;
+                }
+            }
+        }
+    }
+
+    /// What acts on each point, and which nodes feel it.
+    fn load_points(&mut self, dt: T, ahead: Option<T>) {
+        let room = &mut self.workspace.loads;
+        let loads = &self.settings.loads;
+        room.begin(loads);
+        room.late = ahead.is_some();
+        let numbers = &room.numbers;
+        let (places, bodies, sums) = (&room.places, &self.state.bodies, &self.state.loads);
+        let (active, boundary, lattice) =
+            (&self.workspace.active, &self.workspace.boundary, &self.settings.lattice);
+        let nodes = &self.workspace.field.nodes;
+        let time = self.state.time;
+        let time = (time, time + ahead.map_or(0.0, |ahead| ahead.f64()), dt.f64());
+        each(&mut room.points, POINTS, |i, loaded| {
+            let [number, point] = numbers[i].map(|number| number as usize);
+            let (load, point) = (&loads[number], &loads[number].points[point]);
+            let body = &bodies[load.body];
+            let mut particle = body.particles.get(places[load.body][point.particle] as usize);
+            loaded.nodes.clear();
+            let (mut velocity, mut moves) = (Vector::ZERO, Vector::ZERO);
+            for (node, [own, weight]) in nodes_of::<T, D, B>(lattice, &particle, point) {
+                let (index, mirrored) = find(active, boundary, (load.body, node));
+                if index != NOWHERE && nodes[index as usize].mass > T::ZERO {
+                    velocity += mirror(nodes[index as usize].start, mirrored) * weight;
+                    moves += mirror(nodes[index as usize].integrated, mirrored) * own;
+                    loaded.nodes.push(LoadedNode { index, mirrored, weight });
+                }
+            }
+            match ahead {
+                None => loaded.before = particle.position + arm::<T, D>(&particle, point),
+                Some(ahead) => particle.position += moves * ahead,
+            }
+            let carried = CarriedPoint { point, particle: &particle, velocity };
+            loaded.felt = load.at(carried, time, &sums[number]);
+        });
+    }
+
+    /// Books what loads did in this step, once particles have moved: forces, and their work along the points' way.
+    ///
+    /// ```text
+    /// W = sum_s (f_s -+ k_s (du_s - v*_s dt)/2) . du_s - sum_i |N_is| dt^2 k_s a_i . v*_s dt
+    /// ```
+    /// du_s: change of the place of a point; f_s with what a dashpot's force falls by in the step; the last sum is over
+    /// what springs keep from nodes while they move.
+    /// Minus where f_s was taken before the points moved, plus where it was taken after. For springs this is exactly
+    /// what they lose. Points move as nodes strain, with velocities of the middle of the step: the ledger swings a
+    /// little in each step, and does not drift.
+    pub(super) fn account_loads(&mut self, dt: T) {
+        if self.settings.loads.is_empty() {
+            return;
+        }
+        let start = Instant::now();
+        let room = &self.workspace.loads;
+        let half = if room.late { T::HALF } else { -T::HALF };
+        let mut points = room.points.iter();
+        for (load, sums) in self.settings.loads.iter().zip(&mut self.state.loads) {
+            let body = &self.state.bodies[load.body];
+            for (point, loaded) in load.points.iter().zip(points.by_ref()) {
+                let LoadedPoint { felt, before, nodes } = loaded;
+                let particle = body.particles.get(room.places[load.body][point.particle] as usize);
+                let way = particle.position + arm::<T, D>(&particle, point) - *before;
+                let mut force = felt.force;
+                for &LoadedNode { index, mirrored, weight } in nodes {
+                    let acceleration = mirror(room.nodes[index as usize].acceleration, mirrored);
+                    let mut given = felt.force * weight;
+                    for i in 0..D {
+                        let share = weight.abs() * acceleration[i];
+                        let springs = felt.spring[i] * share * dt * dt;
+                        given[i] -= felt.inertia[i] * share;
+                        force[i] -= felt.inertia[i] * share - springs;
+                        sums.work -= (springs * felt.speed[i] * dt).f64();
+                    }
+                    let given = given.space();
+                    (0..3).for_each(|i| sums.impulse[i] += given[i] * dt.f64());
+                }
+                for i in 0..D {
+                    let closer = way[i] - felt.speed[i] * dt;
+                    sums.work += ((force[i] + felt.spring[i] * closer * half) * way[i]).f64();
+                }
+            }
+        }
+        self.watch.lap("loads", start);
+    }
+
+    /// How far the points of a load are from where they were, the mean over them [m].
+    pub(super) fn load_displacement(&self, load: &LoadPoints) -> [f64; 3] {
+        let particles = &self.state.bodies[load.body].particles;
+        let mut wanted: Vec<_> = load.points.iter().map(|point| (point.particle as u32, point)).collect();
+        wanted.sort_by_key(|(number, _)| *number);
+        let mut sum = [0.0; 3];
+        for (place, number) in particles.numbers().iter().enumerate() {
+            let first = wanted.partition_point(|(wanted, _)| wanted < number);
+            let here = wanted[first..].iter().take_while(|(wanted, _)| wanted == number);
+            for (_, point) in here {
+                let particle = particles.get(place);
+                let now = (particle.position + arm::<T, D>(&particle, point)).space();
+                (0..D).for_each(|i| sum[i] += point.measure * (now[i] - load.start(point)[i]));
+            }
+        }
+        sum.map(|sum| sum / load.measure)
+    }
+}
+
+impl<T, const D: usize> Default for LoadRoom<T, D> {
+    fn default() -> Self {
+        let (places, numbers, points) = (Vec::new(), Vec::new(), Vec::new());
+        LoadRoom { places, numbers, points, nodes: Vec::new(), reached: Vec::new(), late: false }
+    }
+}
+
+impl<T: Real, const D: usize> LoadRoom<T, D> {
+    /// Forgets the last step, and has room for all points.
+    fn begin(&mut self, loads: &[LoadPoints]) {
+        for index in self.reached.drain(..) {
+            if let Some(node) = self.nodes.get_mut(index as usize) {
+                *node = NodeLoad::default();
+            }
+        }
+        let count = loads.iter().map(|load| load.points.len()).sum();
+        if self.points.len() != count {
+            let numbers =
+                |(i, load): (usize, &LoadPoints)| (0..load.points.len()).map(move |p| [i as u32, p as u32]);
+            self.numbers = loads.iter().enumerate().flat_map(numbers).collect();
+            self.points.resize(
+                count,
+                LoadedPoint { felt: PointForce::default(), before: Vector::ZERO, nodes: Vec::new() },
+            );
+        }
+    }
+}
+
+impl<T: Real, const D: usize> NodeLoad<T, D> {
+    /// Gives the node what it takes, and gives back what it takes no more of other forces.
+    fn accelerate(&mut self, node: &mut Node<T, D>, gravity: Vector<T, D>, dt: T) {
+        for i in 0..D {
+            let other = node.force[i] + node.mass * gravity[i];
+            let acceleration = (other + self.force[i]) / (node.mass + self.inertia[i]);
+            node.velocity[i] += (acceleration - other / node.mass) * dt;
+            self.acceleration[i] = acceleration;
+        }
+    }
+
+    /// Gives the node the velocity that it and the inertia of springs have together.
+    fn hold(&mut self, node: &mut Node<T, D>) {
+        let before = node.velocity;
+        for i in 0..D {
+            let momentum = node.mass * node.velocity[i] + self.momentum[i];
+            node.velocity[i] = momentum / (node.mass + self.held_by[i]);
+        }
+        self.held = before - node.velocity;
+    }
+}
+
+/// The field's index of a body's node, for one behind mirrors that of its image before them, and the axes along which
+/// it is one.
+fn find<const D: usize>(
+    active: &ActiveBlocks<D>,
+    boundary: &Boundary,
+    (body, mut node): (usize, [i32; D]),
+) -> (u32, u32) {
+    let mut mirrored = 0;
+    for wall in boundary.walls.iter().filter(|wall| wall.face == Face::Symmetry) {
+        if wall.depth(node) < 0 {
+            node = wall.image(node);
+            mirrored ^= 1 << wall.axis;
+        }
+    }
+    (active.node_index(body, node).map_or(NOWHERE, |index| index as u32), mirrored)
+}
+
+/// A vector's image across axes, a bit each.
+fn mirror<T: Real, const D: usize>(v: Vector<T, D>, axes: u32) -> Vector<T, D> {
+    (0..D).filter(|axis| axes >> axis & 1 == 1).fold(v, reflect)
+}
+
+/// Work of all loads since the start [J].
+pub(super) fn work(loads: &[LoadSums]) -> f64 {
+    loads.iter().map(|sums| sums.work).sum()
+}

@@ -1,0 +1,92 @@
+//! Loads and supports, on something that is there.
+
+use crate::part;
+use crate::scene::{Action, Dashpot, Extent, Load, Moment, Problem, Scene};
+use rayon::prelude::*;
+use serde::Serialize;
+
+/// Where a load or a support acts.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LoadReport {
+    /// Its name.
+    pub name: String,
+    /// Name of its body.
+    pub body: String,
+    /// Points on which it acts.
+    pub points: usize,
+    /// Their area [m^2], of a volume its volume [m^3]; in the plane per metre of depth.
+    pub measure: f64,
+    /// Unit of that.
+    pub unit: &'static str,
+}
+
+/// Where each acts, in the order of the scene.
+///
+/// # Errors
+/// A load on a body that is not there or is rigid, or on a part where its body has nothing; one that needs a surface or
+/// a volume on the other; a value that is no number at the start.
+pub(super) fn check(scene: &Scene) -> Result<Vec<LoadReport>, Problem> {
+    let (mut supports, mut loads) = (0, 0);
+    let mut keys = Vec::new();
+    for load in &scene.loads {
+        let (kind, number) =
+            if load.is_support() { ("supports", &mut supports) } else { ("loads", &mut loads) };
+        keys.push(format!("{kind}[{number}]"));
+        *number += 1;
+    }
+    // Collected before the first problem is taken, so that it is the first in the scene and not the first in time.
+    let all: Vec<_> = scene.loads.par_iter().zip(&keys).map(|(load, key)| report(scene, load, key)).collect();
+    all.into_iter().collect()
+}
+
+fn report(scene: &Scene, load: &Load, key: &str) -> Result<LoadReport, Problem> {
+    let problem = |part: &str, found: String, allowed: &str| Problem {
+        key: format!("{key}.{part}"),
+        found,
+        allowed: allowed.to_string(),
+        help: None,
+    };
+    let Some(body) = scene.bodies.get(load.body).filter(|body| !body.is_rigid()) else {
+        let found = scene
+            .bodies
+            .get(load.body)
+            .map_or("no body".to_string(), |body| format!("rigid `{}`", body.name));
+        return Err(problem("body", found, "a body that deforms"));
+    };
+    let on_volume = load.part.on == Extent::Volume;
+    let per_area = match &load.action {
+        Action::Pressure(_) | Action::Traction(_) => true,
+        Action::Support(support) => support.dashpot == Some(Dashpot::Absorbing),
+        Action::Force(_) | Action::Acceleration(_) => false,
+    };
+    if on_volume && per_area {
+        return Err(problem("on", "a volume".to_string(), "a surface: a volume has no area"));
+    }
+    if !on_volume && matches!(load.action, Action::Acceleration(_)) {
+        return Err(problem("on", "a surface".to_string(), "a volume: a surface has no mass"));
+    }
+    let points = part::points(scene, load);
+    let Some(first) = points.first() else {
+        let part = if load.part.within.is_some() { "within" } else { "on" };
+        let nothing = problem(part, format!("no part of body `{}`", body.name), "a part that the body has");
+        return Err(Problem {
+            help: Some("places are those of the undeformed body at the start".into()),
+            ..nothing
+        });
+    };
+    let start = Moment { time: 0.0, place: first.position, start: first.position };
+    if let Some(value) =
+        load.action.values().map(|value| value.at_moment(&start)).find(|value| !value.is_finite())
+    {
+        let found = format!("{value} at t = 0, x = {:?} m", first.position);
+        return Err(Problem { key: key.to_string(), ..problem("", found, "values that are numbers") });
+    }
+    let axes = scene.dimension.axes() - usize::from(!on_volume);
+    Ok(LoadReport {
+        name: load.name.clone(),
+        body: body.name.clone(),
+        points: points.len(),
+        measure: points.iter().map(|point| point.measure).sum(),
+        unit: ["m", "m", "m^2", "m^3"][axes],
+    })
+}

@@ -1,0 +1,102 @@
+//! Parts of bodies on which loads act, as points that particles carry along.
+
+use crate::geometry::{Arrangement, ParticleSite, Shape, sites};
+use crate::scene::{Extent, Face, Load, Scene};
+use rstar::{AABB, PointDistance, RTree, RTreeObject};
+
+/// A point of a part, and the particle that carries it.
+///
+/// ```text
+/// x_s = x_p + F_p (X_s - X_p)          n da = J F_p^-T N dA          (Nanson)
+/// ```
+/// Where a lattice of particles has stairs, points are on the stairs: they lie in their particles' cubes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PartPoint {
+    /// Number of the particle in its body, the nearest one.
+    pub particle: usize,
+    /// Where the point is at the start, X_s [m].
+    pub position: [f64; 3],
+    /// From the particle to the point, X_s - X_p [m].
+    pub arm: [f64; 3],
+    /// Outward unit normal N of the undeformed surface; zero within a volume.
+    pub normal: [f64; 3],
+    /// Undeformed area that it stands for [m^2], within a volume its volume [m^3]; in the plane per metre of depth.
+    pub measure: f64,
+}
+
+/// How far beneath a surface a shape is asked whether it holds a piece of it, over the spacing.
+const INWARD: f64 = 1e-4;
+
+/// Over the cell: nearer to a mirror, a surface lies on it, and is none of the whole body.
+const ON_MIRROR: f64 = 1e-6;
+
+/// Whether a point lies on a face of the domain that is a mirror.
+fn on_mirror(scene: &Scene, point: [f64; 3]) -> bool {
+    let near = ON_MIRROR * scene.discretization.cell;
+    scene.domain.iter().any(|domain| {
+        let on = |axis: usize, side: usize| {
+            let at = if side == 0 { domain.min[axis] } else { domain.max[axis] };
+            domain.faces[axis][side] == Face::Symmetry && (point[axis] - at).abs() < near
+        };
+        (0..scene.dimension.axes()).any(|axis| on(axis, 0) || on(axis, 1))
+    })
+}
+
+/// A particle in a tree of places.
+struct Leaf(usize, ParticleSite);
+
+impl RTreeObject for Leaf {
+    type Envelope = AABB<[f64; 3]>;
+
+    fn envelope(&self) -> Self::Envelope {
+        AABB::from_point(self.1.position)
+    }
+}
+
+impl PointDistance for Leaf {
+    fn distance_2(&self, point: &[f64; 3]) -> f64 {
+        self.1.position.iter().zip(point).map(|(a, b)| (a - b) * (a - b)).sum()
+    }
+}
+
+/// The points of the part on which a load acts; none where the body has nothing there.
+pub fn points(scene: &Scene, load: &Load) -> Vec<PartPoint> {
+    let body = &scene.bodies[load.body];
+    let lattice = scene.lattice(body);
+    let dimension = lattice.dimension;
+    let Some(particles) = sites(&body.shape, &lattice, body.particles) else { return Vec::new() };
+    let inside = |point: [f64; 3]| {
+        load.part.within.as_ref().is_none_or(|shape: &Shape| shape.contains(point, dimension))
+    };
+    if load.part.on == Extent::Volume {
+        let point = |(particle, site): (usize, ParticleSite)| PartPoint {
+            particle,
+            position: site.position,
+            arm: [0.0; 3],
+            normal: [0.0; 3],
+            measure: site.volume,
+        };
+        let within =
+            |site: [f64; 3]| load.part.within.as_ref().is_none_or(|shape| lattice.contains_site(shape, site));
+        return particles.enumerate().map(point).filter(|point| within(point.position)).collect();
+    }
+    let Some(bounds) = body.shape.bounds(dimension) else { return Vec::new() };
+    let leaves = particles.enumerate().map(|(i, site)| Leaf(i, site)).collect();
+    let tree = RTree::bulk_load(leaves);
+    let surface = body.shape.surface(lattice.spacing, dimension, &bounds);
+    let chosen = surface.into_iter().filter(|point| {
+        // What lies on the border of the shape is in it where the body beneath is.
+        let beneath = std::array::from_fn(|k| point.position[k] - INWARD * lattice.spacing * point.normal[k]);
+        load.part.on.has(point.normal) && inside(beneath) && !on_mirror(scene, point.position)
+    });
+    chosen
+        .filter_map(|point| {
+            let Leaf(particle, site) = tree.nearest_neighbor(point.position)?;
+            // Fitted particles follow the surface; those of a lattice have their cubes' stairs.
+            let reach = if body.particles == Arrangement::Lattice { site.half_width } else { f64::INFINITY };
+            let arm = std::array::from_fn(|k| (point.position[k] - site.position[k]).clamp(-reach, reach));
+            let position = std::array::from_fn(|k| site.position[k] + arm[k]);
+            Some(PartPoint { particle: *particle, position, arm, normal: point.normal, measure: point.area })
+        })
+        .collect()
+}

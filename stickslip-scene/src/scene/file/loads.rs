@@ -1,0 +1,590 @@
+//! `[[supports]]` and `[[loads]]`: what holds, presses, pulls or drives parts of bodies from outside.
+
+use super::Context;
+use super::quantity::{
+    Acceleration, Duration, Force, ForceOverVelocity, Length, Measure, Pressure, QuantityInput, Stiffness,
+    Velocity, evaluate,
+};
+use super::read::{Read, table};
+use super::shape::ShapeInput;
+use super::text::{Choice, Text, Word};
+use crate::scene::error::Fault;
+use crate::scene::parameters::Dependence;
+use crate::scene::source::{DocumentNode, Value};
+use crate::scene::units::Powers;
+use crate::scene::{self, Action, Body, Dashpot, Expression, Extent, Part, SupportMotion, TimeTable};
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use std::borrow::Cow;
+use std::marker::PhantomData;
+
+table! {
+    /// What holds a part of a body, or drives it; without displacement and velocity it holds it where it is.
+    Support {
+        /// Its name in loads.csv; by default "support 1", "support 2" ...
+        name: Option<Text>,
+        /// Name of the body, one that deforms.
+        body: Text,
+        /// Where on the body: its surface, a face of it, or all its particles.
+        #[schemars(extend("default" = "surface"))]
+        on: Option<Word<Extent>>,
+        /// Only what lies in this shape at the start: within.ball = { center = [0, 0], radius = 1 }.
+        within: Option<ShapeInput>,
+        /// How far the part is from where it was at the start [m]; "free" along axes along which it is not held.
+        displacement: Option<PartlyFree<Length>>,
+        /// How fast the part moves [m/s]; "free" along axes along which it is not held.
+        velocity: Option<PartlyFree<Velocity>>,
+        /// Makes a spring of it: force over displacement, of all of the part [N/m]; by default as good as rigid.
+        stiffness: Option<QuantityInput<Stiffness>>,
+        /// Makes a dashpot of it: force over velocity, of all of the part [N s/m]; or "absorbing", which takes up the
+        /// waves that come to a surface. By default none.
+        dashpot: Option<DashpotInput>,
+    }
+}
+
+table! {
+    /// What pushes or pulls a part of a body: one of force, traction, pressure and acceleration.
+    Load {
+        /// Its name in loads.csv; by default "load 1", "load 2" ...
+        name: Option<Text>,
+        /// Name of the body, one that deforms.
+        body: Text,
+        /// Where on the body: its surface, a face of it, or all its particles; by default the surface, for an
+        /// acceleration all particles.
+        on: Option<Word<Extent>>,
+        /// Only what lies in this shape at the start: within.ball = { center = [0, 0], radius = 1 }.
+        within: Option<ShapeInput>,
+        /// Force, shared out evenly over the part [N]; in the plane per metre of depth.
+        force: Option<VaryingVector<Force>>,
+        /// Force per undeformed area [Pa].
+        traction: Option<VaryingVector<Pressure>>,
+        /// Force per deformed area against the outward normal, which it follows [Pa].
+        pressure: Option<Varying<Pressure>>,
+        /// Force per mass [m/s^2].
+        acceleration: Option<VaryingVector<Acceleration>>,
+    }
+}
+
+impl Choice for Extent {
+    const WORDS: &'static [(&'static str, Self, &'static str)] = &[
+        ("surface", Extent::Surface, "All of its surface."),
+        ("x_min", Extent::Face { axis: 0, upper: false }, "Its surface that faces -x, within 45 degrees."),
+        ("x_max", Extent::Face { axis: 0, upper: true }, "Its surface that faces x, within 45 degrees."),
+        ("y_min", Extent::Face { axis: 1, upper: false }, "Its surface that faces -y, within 45 degrees."),
+        ("y_max", Extent::Face { axis: 1, upper: true }, "Its surface that faces y, within 45 degrees."),
+        (
+            "z_min",
+            Extent::Face { axis: 2, upper: false },
+            "Its surface that faces -z; three dimensions only.",
+        ),
+        ("z_max", Extent::Face { axis: 2, upper: true }, "Its surface that faces z; three dimensions only."),
+        ("volume", Extent::Volume, "All of its particles."),
+    ];
+}
+
+/// A quantity that may vary in time and place: a number, a formula of `t` and of `x`, `y`, `z` now and `x0`, `y0`, `z0`
+/// at the start, or a table.
+pub struct Varying<M> {
+    node: DocumentNode,
+    measure: PhantomData<M>,
+}
+
+/// A vector of quantities that may vary.
+pub struct VaryingVector<M> {
+    node: DocumentNode,
+    parts: Vec<Varying<M>>,
+}
+
+/// A vector of quantities that may vary, or of the word "free".
+pub struct PartlyFree<M>(VaryingVector<M>);
+
+/// A dashpot's number, or the word "absorbing".
+pub struct DashpotInput(QuantityInput<ForceOverVelocity>);
+
+impl DashpotInput {
+    fn absorbs(&self) -> bool {
+        matches!(&self.0.node().value, Value::Text(text) if text == "absorbing")
+    }
+}
+
+impl Read for DashpotInput {
+    fn wanted() -> String {
+        format!("{}, or \"absorbing\"", QuantityInput::<ForceOverVelocity>::wanted())
+    }
+
+    fn read(node: &DocumentNode) -> Result<Self, Fault> {
+        match node.value {
+            Value::Number(_) | Value::Text(_) => Ok(DashpotInput(QuantityInput::new(node))),
+            _ => Err(node.fault(Self::wanted())),
+        }
+    }
+}
+
+impl JsonSchema for DashpotInput {
+    fn schema_name() -> Cow<'static, str> {
+        "Dashpot".into()
+    }
+
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        QuantityInput::<ForceOverVelocity>::json_schema(generator)
+    }
+}
+
+/// The supports, and then the loads, in the order of the file.
+pub fn resolve(
+    supports: &[Support],
+    loads: &[Load],
+    (bodies, context): (&[Body], &Context),
+) -> Result<Vec<scene::Load>, Fault> {
+    let mut resolved: Vec<scene::Load> = Vec::new();
+    for (i, support) in supports.iter().enumerate() {
+        let action = Action::Support(support.resolve(context)?);
+        let place = Place {
+            name: &support.name,
+            body: &support.body,
+            on: &support.on,
+            within: &support.within,
+            kind: ("support", i),
+        };
+        resolved.push(place.load(action, (bodies, &resolved), context)?);
+    }
+    for (i, load) in loads.iter().enumerate() {
+        let action = load.action(context, i)?;
+        let place = Place {
+            name: &load.name,
+            body: &load.body,
+            on: &load.on,
+            within: &load.within,
+            kind: ("load", i),
+        };
+        resolved.push(place.load(action, (bodies, &resolved), context)?);
+    }
+    Ok(resolved)
+}
+
+/// What loads and supports have in common.
+struct Place<'a> {
+    name: &'a Option<Text>,
+    body: &'a Text,
+    on: &'a Option<Word<Extent>>,
+    within: &'a Option<ShapeInput>,
+    /// What it is, and its number among those.
+    kind: (&'static str, usize),
+}
+
+impl Place<'_> {
+    fn load(
+        &self,
+        action: Action,
+        (bodies, others): (&[Body], &[scene::Load]),
+        context: &Context,
+    ) -> Result<scene::Load, Fault> {
+        let (kind, number) = self.kind;
+        let name = match self.name {
+            None => {
+                let name = format!("{kind} {}", number + 1);
+                if others.iter().any(|other| other.name == name) {
+                    let found = format!("the name `{name}`, which another has");
+                    return Err(Fault::new(&format!("{kind}s[{number}]"), found, "a `name` of its own"));
+                }
+                name
+            }
+            Some(text) => {
+                let name = text.value(context)?;
+                text.unlike(&name, others.iter().map(|other| other.name.as_str()))?;
+                name
+            }
+        };
+        let deform: Vec<&str> =
+            bodies.iter().filter(|body| !body.is_rigid()).map(|body| body.name.as_str()).collect();
+        let body_name = self.body.name_of(context, "the name of a body that deforms", &deform)?;
+        let body = bodies.iter().position(|body| body.name == body_name).expect("name_of found it");
+        let load = scene::Load::new(&name, body, action);
+        let mut on = load.part.on;
+        if let Some(word) = self.on {
+            on = word.value(context)?;
+            if context.dimension.is_plane() && matches!(on, Extent::Face { axis: 2, .. }) {
+                return Err(word.refused(context, "another face, as the scene is plane"));
+            }
+            let no_area = matches!(load.action, Action::Pressure(_) | Action::Traction(_));
+            let absorbs = matches!(
+                &load.action,
+                Action::Support(scene::Support { dashpot: Some(Dashpot::Absorbing), .. })
+            );
+            let no_area = no_area || absorbs;
+            if on == Extent::Volume && no_area {
+                return Err(word.refused(context, "a surface: a volume has no area"));
+            }
+            if on != Extent::Volume && matches!(load.action, Action::Acceleration(_)) {
+                return Err(word.refused(context, "\"volume\": a surface has no mass"));
+            }
+        }
+        let within = self.within.as_ref().map(|shape| shape.resolve(context)).transpose()?;
+        Ok(scene::Load { part: Part { on, within }, ..load })
+    }
+}
+
+impl Support {
+    fn resolve(&self, context: &Context) -> Result<scene::Support, Fault> {
+        if let (Some(_), Some(velocity)) = (&self.displacement, &self.velocity) {
+            let node = &velocity.0.node;
+            return Err(Fault::new(&node.key, "`velocity` beside `displacement`", "one of the two")
+                .at(node.name_span.clone()));
+        }
+        let mut support = scene::Support::fixed();
+        if let Some(displacement) = &self.displacement {
+            support.motion =
+                displacement.resolve(context, SupportMotion::Displacement, Dependence::TimeAndPlace)?;
+        }
+        if let Some(velocity) = &self.velocity {
+            support.motion = velocity.resolve(context, SupportMotion::Velocity, Dependence::Time)?;
+        }
+        support.stiffness =
+            self.stiffness.as_ref().map(|stiffness| positive(stiffness, context)).transpose()?;
+        support.dashpot = match &self.dashpot {
+            None => None,
+            Some(dashpot) if dashpot.absorbs() => Some(Dashpot::Absorbing),
+            Some(DashpotInput(number)) => Some(Dashpot::Whole(positive(number, context)?)),
+        };
+        Ok(support)
+    }
+}
+
+impl Load {
+    fn action(&self, context: &Context, number: usize) -> Result<Action, Fault> {
+        let vary = Dependence::TimeAndPlace;
+        let nodes = [
+            self.force.as_ref().map(|input| &input.node),
+            self.traction.as_ref().map(|input| &input.node),
+            self.pressure.as_ref().map(|input| &input.node),
+            self.acceleration.as_ref().map(|input| &input.node),
+        ];
+        let allowed = "one of force, traction, pressure and acceleration";
+        if let Some(second) = nodes.into_iter().flatten().nth(1) {
+            let found = format!("`{}` beside another", second.name);
+            return Err(Fault::new(&second.key, found, allowed).at(second.name_span.clone()));
+        }
+        match (&self.force, &self.traction, &self.pressure, &self.acceleration) {
+            (Some(force), ..) => Ok(Action::Force(force.resolve(context, vary)?)),
+            (_, Some(traction), ..) => Ok(Action::Traction(traction.resolve(context, vary)?)),
+            (_, _, Some(pressure), _) => Ok(Action::Pressure(pressure.resolve(context, vary)?)),
+            (_, _, _, Some(acceleration)) => Ok(Action::Acceleration(acceleration.resolve(context, vary)?)),
+            _ => Err(Fault::new(&format!("loads[{number}]"), "a load that does nothing", allowed)),
+        }
+    }
+}
+
+/// What a number or formula says. A force in the plane is one per metre of depth, and may be written as that: in N or
+/// in N/m; so for whatever is a force over something else.
+fn per_depth<M: Measure>(
+    node: &DocumentNode,
+    (context, dependence): (&Context, Dependence),
+) -> Result<Expression, Fault> {
+    let wanted = QuantityInput::<M>::wanted();
+    let whole = Powers::from(M::POWERS);
+    let found = evaluate(node, whole, &wanted, (context, dependence)).and_then(finite(node, &wanted));
+    let is_force = [Force::POWERS, Stiffness::POWERS, ForceOverVelocity::POWERS].contains(&M::POWERS);
+    if found.is_ok() || !(is_force && context.dimension.is_plane()) {
+        return found;
+    }
+    let part = whole.times(Powers::LENGTH, -1.0);
+    let allowed = format!("{wanted}, or as much per metre of depth, {}", part.name());
+    evaluate(node, part, &allowed, (context, dependence)).and_then(finite(node, &allowed))
+}
+
+/// Refuses a constant that is not finite.
+fn finite<'a>(
+    node: &'a DocumentNode,
+    allowed: &'a str,
+) -> impl Fn(Expression) -> Result<Expression, Fault> + 'a {
+    move |value| match value {
+        Expression::Constant(constant) if !constant.is_finite() => Err(node.fault(allowed)),
+        value => Ok(value),
+    }
+}
+
+/// A stiffness or a dashpot.
+fn positive<M: Measure>(input: &QuantityInput<M>, context: &Context) -> Result<f64, Fault> {
+    let value = per_depth::<M>(input.node(), (context, Dependence::Constant))?.at(0.0);
+    let allowed = || format!("{} above 0, like \"{}\"", M::name(), M::example());
+    if value > 0.0 && value.is_finite() { Ok(value) } else { Err(input.refused(value, allowed())) }
+}
+
+impl<M: Measure> Varying<M> {
+    fn resolve(&self, context: &Context, dependence: Dependence) -> Result<Expression, Fault> {
+        match &self.node.value {
+            Value::Table(_) => {
+                Ok(Expression::Table(TableInput::read(&self.node)?.resolve::<M>(&self.node, context)?))
+            }
+            _ => per_depth::<M>(&self.node, (context, dependence)),
+        }
+    }
+
+    fn is_free(&self) -> bool {
+        matches!(&self.node.value, Value::Text(text) if text.trim() == "free")
+    }
+}
+
+impl<M: Measure> VaryingVector<M> {
+    fn resolve(&self, context: &Context, dependence: Dependence) -> Result<[Expression; 3], Fault> {
+        self.sized(context)?;
+        let mut resolved = [0.0; 3].map(Expression::Constant);
+        for (part, resolved) in self.parts.iter().zip(&mut resolved) {
+            *resolved = part.resolve(context, dependence)?;
+        }
+        Ok(resolved)
+    }
+
+    fn sized(&self, context: &Context) -> Result<(), Fault> {
+        match (self.parts.len(), context.dimension.axes()) {
+            (found, wanted) if found == wanted => Ok(()),
+            (_, 2) => Err(self.node.fault("2 numbers, as the scene is plane: [x, y]")),
+            _ => Err(self.node.fault("3 numbers, as the scene is 3d: [x, y, z]")),
+        }
+    }
+}
+
+impl<M: Measure> PartlyFree<M> {
+    fn resolve(
+        &self,
+        context: &Context,
+        motion: fn(Expression) -> SupportMotion,
+        dependence: Dependence,
+    ) -> Result<[Option<SupportMotion>; 3], Fault> {
+        let PartlyFree(vector) = self;
+        vector.sized(context)?;
+        let mut resolved = [None, None, None];
+        for (part, resolved) in vector.parts.iter().zip(&mut resolved) {
+            if !part.is_free() {
+                *resolved = Some(motion(part.resolve(context, dependence)?));
+            }
+        }
+        if resolved.iter().all(Option::is_none) {
+            return Err(vector
+                .node
+                .fault("a number along one axis at least: a part that is free needs no support"));
+        }
+        Ok(resolved)
+    }
+}
+
+table! {
+    /// Values at times: straight lines in between; before and after, the first and the last value.
+    TableInput {
+        /// Rows of a time and a value, times ascending: [["0 s", 0], ["1 ms", "3 kN"]].
+        table: Option<Rows>,
+        /// A file of them instead, text with a time and a value in SI units on each line: "0.001, 3000". The first line
+        /// may name the columns; a relative path starts at the folder of the scene file.
+        csv: Option<Text>,
+    }
+}
+
+/// Rows of a table.
+pub struct Rows(DocumentNode, Vec<[DocumentNode; 2]>);
+
+impl TableInput {
+    fn resolve<M: Measure>(&self, node: &DocumentNode, context: &Context) -> Result<TimeTable, Fault> {
+        match (&self.table, &self.csv) {
+            (Some(rows), None) => rows.resolve::<M>(context),
+            (None, Some(file)) => read_csv(file, context),
+            _ => Err(node.fault("one of the keys table and csv")),
+        }
+    }
+}
+
+impl Rows {
+    fn resolve<M: Measure>(&self, context: &Context) -> Result<TimeTable, Fault> {
+        let Rows(node, rows) = self;
+        let mut table: Vec<[f64; 2]> = Vec::new();
+        for [time, value] in rows {
+            let time_input = QuantityInput::<Duration>::new(time);
+            let at = time_input.value(context)?;
+            if let Some([before, _]) = table.last().filter(|[before, _]| *before >= at) {
+                return Err(
+                    time_input.refused(at, format!("a time after {before} s, that of the row before"))
+                );
+            }
+            let value_input = QuantityInput::<M>::new(value);
+            let value = per_depth::<M>(value, (context, Dependence::Constant))?.at(0.0);
+            if !value.is_finite() {
+                return Err(value_input.refused(value, QuantityInput::<M>::wanted()));
+            }
+            table.push([at, value]);
+        }
+        TimeTable::new(table).ok_or_else(|| node.fault(Rows::wanted()))
+    }
+}
+
+fn begins_as_number(field: &str) -> bool {
+    field.starts_with(|first: char| first.is_ascii_digit() || "+-.".contains(first))
+}
+
+/// Bytes that a file of a table may have.
+const LARGEST_TABLE: u64 = 1 << 26;
+
+/// A table from a file.
+fn read_csv(file: &Text, context: &Context) -> Result<TimeTable, Fault> {
+    let name = file.value(context)?;
+    let path = context.folder.join(&name);
+    let unread = |why: String| {
+        let help = format!("{}: {why}; a relative path starts at the scene's folder", path.display());
+        file.refused(&name, "a file that can be read").help(Some(help))
+    };
+    let about = std::fs::metadata(&path).map_err(|reason| unread(reason.to_string()))?;
+    if !about.is_file() || about.len() > LARGEST_TABLE {
+        return Err(unread(format!("it is no file of at most {LARGEST_TABLE} bytes")));
+    }
+    let bytes = std::fs::read(&path).map_err(|reason| unread(reason.to_string()))?;
+    let mut format = csv::ReaderBuilder::new();
+    format.has_headers(false).flexible(true).trim(csv::Trim::All);
+    let mut table: Vec<[f64; 2]> = Vec::new();
+    // What some programs put before text.
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes);
+    for (line, record) in format.from_reader(bytes).records().enumerate() {
+        let wrong = |found: String, allowed: &str| {
+            let mut fault = file.refused(&name, allowed);
+            fault.problem.found = format!("in row {} of {name}: {found}", line + 1);
+            fault
+        };
+        let record = record.map_err(|reason| wrong(reason.to_string(), "text"))?;
+        let number =
+            |column: usize| record.get(column)?.parse().ok().filter(|number: &f64| number.is_finite());
+        match [number(0), number(1)] {
+            [Some(time), Some(value)] => {
+                if table.last().is_some_and(|[before, _]| *before >= time) {
+                    return Err(wrong(format!("the time {time} s"), "a time after that of the row before"));
+                }
+                table.push([time, value]);
+            }
+            _ if line == 0 && record.iter().all(|field| !begins_as_number(field)) => {}
+            _ => {
+                let found = record.iter().collect::<Vec<_>>().join(", ");
+                return Err(wrong(format!("`{found}`"), "a time and a value, numbers in SI units"));
+            }
+        }
+    }
+    TimeTable::new(table)
+        .ok_or_else(|| file.refused(&name, "a file with at least one row of a time and a value"))
+}
+
+impl Read for Rows {
+    fn wanted() -> String {
+        "a list of rows, each a time and a value: [[\"0 s\", 0], [\"1 ms\", 5]]".to_string()
+    }
+
+    fn read(node: &DocumentNode) -> Result<Self, Fault> {
+        let Value::List(rows) = &node.value else { return Err(node.fault(Self::wanted())) };
+        let pair = |row: &DocumentNode| match &row.value {
+            Value::List(pair) => match &pair[..] {
+                [time, value] => Ok([time.clone(), value.clone()]),
+                _ => Err(row.fault("a time and a value")),
+            },
+            _ => Err(row.fault("a time and a value")),
+        };
+        Ok(Rows(node.clone(), rows.iter().map(pair).collect::<Result<_, _>>()?))
+    }
+}
+
+impl JsonSchema for Rows {
+    fn schema_name() -> Cow<'static, str> {
+        "Rows".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        let number = json_schema!({ "type": ["number", "string"] });
+        let row = json_schema!({ "type": "array", "items": number, "minItems": 2, "maxItems": 2 });
+        json_schema!({ "type": "array", "items": row, "minItems": 1 })
+    }
+}
+
+impl<M: Measure> Read for Varying<M> {
+    fn wanted() -> String {
+        format!("{}, a formula, {{ table = ... }} or {{ csv = ... }}", QuantityInput::<M>::wanted())
+    }
+
+    fn read(node: &DocumentNode) -> Result<Self, Fault> {
+        match node.value {
+            Value::Number(_) | Value::Text(_) | Value::Table(_) => {
+                Ok(Varying { node: node.clone(), measure: PhantomData })
+            }
+            _ => Err(node.fault(Self::wanted())),
+        }
+    }
+}
+
+impl<M: Measure> Read for VaryingVector<M> {
+    fn wanted() -> String {
+        format!("a list such as [0, \"{}\", 0], two in the plane", M::example())
+    }
+
+    fn read(node: &DocumentNode) -> Result<Self, Fault> {
+        match &node.value {
+            Value::List(items) => {
+                let parts = items.iter().map(Varying::read).collect::<Result<_, _>>()?;
+                Ok(VaryingVector { node: node.clone(), parts })
+            }
+            _ => Err(node.fault(Self::wanted())),
+        }
+    }
+}
+
+impl<M: Measure> Read for PartlyFree<M> {
+    fn wanted() -> String {
+        format!("a list such as [0, \"{}\", \"free\"], two in the plane", M::example())
+    }
+
+    fn read(node: &DocumentNode) -> Result<Self, Fault> {
+        match node.value {
+            Value::List(_) => VaryingVector::read(node).map(PartlyFree),
+            _ => Err(node.fault(Self::wanted())),
+        }
+    }
+}
+
+impl<M: Measure> JsonSchema for Varying<M> {
+    fn schema_name() -> Cow<'static, str> {
+        format!("Varying_{}", Powers::from(M::POWERS).symbol()).into()
+    }
+
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let (number, table) =
+            (QuantityInput::<M>::json_schema(generator), generator.subschema_for::<TableInput>());
+        json_schema!({ "anyOf": [number, table] })
+    }
+}
+
+impl<M: Measure> JsonSchema for VaryingVector<M> {
+    fn schema_name() -> Cow<'static, str> {
+        format!("VaryingVector_{}", Powers::from(M::POWERS).symbol()).into()
+    }
+
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let part = Varying::<M>::json_schema(generator);
+        json_schema!({ "type": "array", "items": part, "minItems": 2, "maxItems": 3 })
+    }
+}
+
+impl<M: Measure> JsonSchema for PartlyFree<M> {
+    fn schema_name() -> Cow<'static, str> {
+        format!("PartlyFree_{}", Powers::from(M::POWERS).symbol()).into()
+    }
+
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        VaryingVector::<M>::json_schema(generator)
+    }
+}
