@@ -1,7 +1,9 @@
 //! Loads and supports, on something that is there.
 
+use super::table::short;
+use super::warning::Warning;
 use crate::part;
-use crate::scene::{Action, Dashpot, Extent, Load, Moment, Problem, Scene};
+use crate::scene::{Action, Dashpot, Extent, Load, Moment, Problem, Scene, SupportMotion};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -18,6 +20,8 @@ pub struct LoadReport {
     pub measure: f64,
     /// Unit of that.
     pub unit: &'static str,
+    /// How far a support is away from its part when the run begins, at most [m].
+    pub jumps: f64,
 }
 
 /// Where each acts, in the order of the scene.
@@ -37,6 +41,39 @@ pub(super) fn check(scene: &Scene) -> Result<Vec<LoadReport>, Problem> {
     // Collected before the first problem is taken, so that it is the first in the scene and not the first in time.
     let all: Vec<_> = scene.loads.par_iter().zip(&keys).map(|(load, key)| report(scene, load, key)).collect();
     all.into_iter().collect()
+}
+
+/// How far the displacement of a support is from none at the start, at most over its points [m].
+fn jump(action: &Action, points: impl Iterator<Item = [f64; 3]>) -> f64 {
+    let Action::Support(support) = action else { return 0.0 };
+    let at = |place: [f64; 3]| {
+        let start = Moment { time: 0.0, place, start: place };
+        let away = support.motion.iter().flatten().map(|motion| match motion {
+            SupportMotion::Displacement(displacement) => displacement.at_moment(&start),
+            SupportMotion::Velocity(_) => 0.0,
+        });
+        away.map(|away| away * away).sum::<f64>().sqrt()
+    };
+    points.map(at).fold(0.0, f64::max)
+}
+
+/// A support that jumps: over the cell, this is more than what springs of supports give way by under any sound load.
+const JUMP: f64 = 1e-3;
+
+/// Supports that are not where their parts are when the run begins.
+pub(super) fn warning(scene: &Scene, loads: &[LoadReport]) -> Option<Warning> {
+    let far = |load: &&LoadReport| load.jumps > JUMP * scene.discretization.cell;
+    let farthest = loads.iter().filter(far).max_by(|a, b| a.jumps.total_cmp(&b.jumps))?;
+    Some(Warning::about(
+        "supports",
+        format!(
+            "`{}` begins {} m away from its part of `{}`, which it pulls there at once: energies of the blow, and what \
+             the step makes of it, stay in the ledger; let it grow from 0, such as by \" * min(t / 10 ms, 1)\"",
+            farthest.name,
+            short(farthest.jumps),
+            farthest.body
+        ),
+    ))
 }
 
 fn report(scene: &Scene, load: &Load, key: &str) -> Result<LoadReport, Problem> {
@@ -70,7 +107,10 @@ fn report(scene: &Scene, load: &Load, key: &str) -> Result<LoadReport, Problem> 
         let part = if load.part.within.is_some() { "within" } else { "on" };
         let nothing = problem(part, format!("no part of body `{}`", body.name), "a part that the body has");
         return Err(Problem {
-            help: Some("places are those of the undeformed body at the start".into()),
+            help: Some(format!(
+                "places are those of the undeformed body at the start, with a point every {} m or so",
+                short(scene.lattice(body).spacing)
+            )),
             ..nothing
         });
     };
@@ -81,6 +121,7 @@ fn report(scene: &Scene, load: &Load, key: &str) -> Result<LoadReport, Problem> 
         let found = format!("{value} at t = 0, x = {:?} m", first.position);
         return Err(Problem { key: key.to_string(), ..problem("", found, "values that are numbers") });
     }
+    let jumps = jump(&load.action, points.iter().map(|point| point.position));
     let axes = scene.dimension.axes() - usize::from(!on_volume);
     Ok(LoadReport {
         name: load.name.clone(),
@@ -88,5 +129,6 @@ fn report(scene: &Scene, load: &Load, key: &str) -> Result<LoadReport, Problem> 
         points: points.len(),
         measure: points.iter().map(|point| point.measure).sum(),
         unit: ["m", "m", "m^2", "m^3"][axes],
+        jumps,
     })
 }

@@ -2,7 +2,7 @@
 
 use super::bodies::{FillingExtent, smallest_extent};
 use super::contact::{ContactEstimate, ContactResolution, Estimates, estimates, starting_velocity};
-use super::loads::LoadReport;
+use super::loads::{self, LoadReport};
 use super::memory::Footprint;
 use super::rules::RuleReport;
 use super::table::short;
@@ -131,9 +131,9 @@ pub fn report(scene: &Scene, footprint: &dyn Footprint) -> Result<Report, Proble
         steps: (scene.time.end / time_step * (1.0 - 1e-12)).ceil() as u64,
         machine: MachineSpeed::default(),
         wall_time: 0.0,
-        loads,
         rules: rules::rule_reports(scene, &boxes),
-        warnings: warnings(scene, &extents, &contacts),
+        warnings: warnings(scene, (&extents, &loads), &contacts),
+        loads,
         contacts,
         contacts_unknown,
     };
@@ -162,11 +162,16 @@ impl Report {
 }
 
 /// What is doubtful with a scene: first what it says, then what the grid makes of it.
-fn warnings(scene: &Scene, extents: &[FillingExtent], contacts: &[ContactEstimate]) -> Vec<Warning> {
+fn warnings(
+    scene: &Scene,
+    (extents, loads): (&[FillingExtent], &[LoadReport]),
+    contacts: &[ContactEstimate],
+) -> Vec<Warning> {
     (rules::idle(scene))
         .chain(overlap::warning(scene))
         .chain(rigid_pairs::warning(scene, extents))
         .chain(locking::warning(scene))
+        .chain(loads::warning(scene, loads))
         .chain(thin_rigid_bodies(scene))
         .chain(thickness::warning(scene))
         .chain(narrow_contacts(contacts))

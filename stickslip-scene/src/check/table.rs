@@ -90,7 +90,7 @@ impl Report {
         let width = column(self.loads.iter().take(BODIES).map(|load| &load.name), "support or load");
         let body = column(self.loads.iter().take(BODIES).map(|load| &load.body), "on body");
         writeln!(f, "\n{:width$}  {:body$}  part", "support or load", "on body")?;
-        for LoadReport { name, body: on, points, measure, unit } in self.loads.iter().take(BODIES) {
+        for LoadReport { name, body: on, points, measure, unit, .. } in self.loads.iter().take(BODIES) {
             writeln!(f, "{name:width$}  {on:body$}  {} {unit}, {points} points", short(*measure))?;
         }
         match self.loads.len().saturating_sub(BODIES) {

@@ -128,10 +128,13 @@ fn a_table_from_a_file() {
     for (csv, found) in [
         (
             "0, 0\n1, nan\n",
-            "in row 2 of push.csv: `1, nan`; allowed: a time and a value, numbers in SI units",
+            "in row 2 of push.csv: `1, nan`; allowed: a time and a value, numbers in SI units with a comma",
         ),
         ("0, 0\n0, 1\n", "in row 2 of push.csv: the time 0 s; allowed: a time after that of the row before"),
-        ("0 s, 1\n", "in row 1 of push.csv: `0 s, 1`; allowed: a time and a value, numbers in SI units"),
+        (
+            "0 s, 1\n",
+            "in row 1 of push.csv: `0 s, 1`; allowed: a time and a value, numbers in SI units with a comma",
+        ),
         ("time, force\n", "found \"push.csv\"; allowed: a file with at least one row of a time and a value"),
     ] {
         let error = load(csv).expect_err(found).to_string();
@@ -152,4 +155,37 @@ fn a_load_on_nothing() {
         (problem.key.as_str(), problem.found.as_str()),
         ("supports[0].within", "no part of body `block`")
     );
+}
+
+#[test]
+fn a_support_that_jumps_is_told() {
+    let warnings = |displacement: &str| {
+        let text = LOADED.replace("[0, \"free\"]", displacement);
+        let scene = scene::parse("a.toml", &text, &[]).unwrap_or_else(|error| panic!("{error}")).scene;
+        let report = checks::report(&scene, &NoMemory).unwrap_or_else(|problem| panic!("{problem:?}"));
+        report
+            .warnings
+            .iter()
+            .filter(|warning| warning.key == "supports")
+            .map(ToString::to_string)
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(warnings("[\"1 cm * min(t / 1 ms, 1)\", \"free\"]"), Vec::<String>::new());
+    let told = warnings("[\"3 cm + 1 cm * y0 / 1 m\", \"free\"]");
+    assert!(
+        told.len() == 1 && told[0].contains("`clamp` begins 0.03975 m away from its part of `block`"),
+        "{told:?}"
+    );
+}
+
+/// An engine that takes no memory.
+struct NoMemory;
+
+impl checks::Footprint for NoMemory {
+    fn particles_around(&self, _: &scene::Scene, _: usize, _: &[stickslip_scene::geometry::Bounds]) -> usize {
+        0
+    }
+    fn memory(&self, _: &scene::Scene, _: &[usize]) -> f64 {
+        0.0
+    }
 }

@@ -7,6 +7,7 @@ mod b12_sphere_impact;
 mod b13_disk;
 mod b13_sphere;
 mod b14_partial_slip;
+mod b17_manufactured;
 mod b1_incline;
 mod b20_spinning_disk;
 mod b21_cantilever;
@@ -77,6 +78,7 @@ pub static BENCHMARKS: &[Benchmark] = &[
     b13_disk::BENCHMARK,
     b14_partial_slip::BENCHMARK,
     b29_stack::BENCHMARK,
+    b17_manufactured::BENCHMARK,
     b20_spinning_disk::BENCHMARK,
     spinning_ring::BENCHMARK,
     b21_cantilever::BENCHMARK,

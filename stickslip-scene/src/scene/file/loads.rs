@@ -462,7 +462,10 @@ fn read_csv(file: &Text, context: &Context) -> Result<TimeTable, Fault> {
             _ if line == 0 && record.iter().all(|field| !begins_as_number(field)) => {}
             _ => {
                 let found = record.iter().collect::<Vec<_>>().join(", ");
-                return Err(wrong(format!("`{found}`"), "a time and a value, numbers in SI units"));
+                return Err(wrong(
+                    format!("`{found}`"),
+                    "a time and a value, numbers in SI units with a comma between them",
+                ));
             }
         }
     }

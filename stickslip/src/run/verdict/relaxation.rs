@@ -11,7 +11,8 @@ impl Check for RelaxationCheck {
     }
 
     fn advice(&self) -> &'static str {
-        "try a later time.end, a larger time.relax.residual, damping.local beside it"
+        "try damping.local = 0.3 where there were thousands of peaks, a later time.end, a larger time.relax.residual; \
+         what nothing holds never comes to rest"
     }
 
     fn look(&mut self, look: &CheckInputs) -> Vec<Finding> {
