@@ -14,8 +14,12 @@ pub enum Failure {
     Run(Report),
     /// The run ended, and so many of its warnings count as a failure.
     Doubtful(usize),
+    /// A run that was made again did not end in the same bits.
+    Differs,
     /// The user stopped it; everything written is valid.
     Interrupted,
+    /// It took as long as it was given, by `--max-time`; everything written is valid.
+    OutOfTime,
 }
 
 impl Failure {
@@ -32,12 +36,21 @@ impl Failure {
         Failure::Run(Report::new(error))
     }
 
-    /// 2 for input, 1 for a run, 3 for results that are doubtful, 130 for Ctrl-C.
+    /// The same where the run is over: its input was sound, or it would not have begun.
+    pub fn after_the_run(self) -> Self {
+        match self {
+            Failure::Input(report) => Failure::Run(report),
+            other => other,
+        }
+    }
+
+    /// 2 for input, 1 for a run, 3 for results that are doubtful, 4 for a run out of its time, 130 for Ctrl-C.
     pub fn exit_code(&self) -> ExitCode {
         ExitCode::from(match self {
             Failure::Input(_) => 2,
             Failure::Run(_) => 1,
-            Failure::Doubtful(_) => 3,
+            Failure::Doubtful(_) | Failure::Differs => 3,
+            Failure::OutOfTime => 4,
             Failure::Interrupted => Self::INTERRUPTED,
         })
     }
@@ -46,7 +59,8 @@ impl Failure {
     pub fn print(&self) {
         match self {
             Failure::Interrupted => eprintln!("interrupted; everything written is valid"),
-            Failure::Doubtful(_) => eprintln!("error: {self}"),
+            Failure::OutOfTime => eprintln!("out of time; everything written is valid"),
+            Failure::Doubtful(_) | Failure::Differs => eprintln!("error: {self}"),
             Failure::Input(report) | Failure::Run(report) => {
                 let mut text = String::new();
                 let drawn = std::io::stderr().is_terminal()
@@ -66,6 +80,8 @@ impl std::fmt::Display for Failure {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
         match self {
             Failure::Interrupted => f.write_str("interrupted"),
+            Failure::OutOfTime => f.write_str("out of time"),
+            Failure::Differs => f.write_str("the run did not end in the same bits"),
             Failure::Doubtful(1) => f.write_str("the results are doubtful: 1 warning, with --strict"),
             Failure::Doubtful(count) => {
                 write!(f, "the results are doubtful: {count} warnings, with --strict")

@@ -5,6 +5,7 @@ mod chart;
 mod commands;
 mod drawing;
 mod failure;
+mod files;
 mod frame_pictures;
 mod free_memory;
 mod illustration;

@@ -29,6 +29,9 @@ impl Display {
 
     /// Shows the present state.
     pub fn show(&self, progress: &Progress) {
+        for line in &progress.news {
+            self.bar.as_ref().map_or_else(|| eprintln!("{line}"), |bar| bar.println(line));
+        }
         for note in &progress.notes {
             let line = format!("t = {:.4e} s: warning: {note}", progress.time);
             self.bar.as_ref().map_or_else(|| eprintln!("{line}"), |bar| bar.println(&line));
@@ -143,6 +146,7 @@ mod tests {
             particles: 1000,
             particle_steps_per_second: 2.5e6,
             eta: 200.0,
+            news: Vec::new(),
             notes: Vec::new(),
         };
         let expected = "t = 0.5000 of 2 s, step 321, 2.5 M particle-steps/s, 3 min 20 s left";

@@ -15,6 +15,7 @@ use crate::part::{self, PartPoint};
 use crate::scene::{Action, Dashpot, Expression, Extent, Load, Moment, RIGID, Scene, SupportMotion};
 use crate::tensor::{Real, Vector};
 use crate::transfer::offsets;
+use serde::{Deserialize, Serialize};
 
 /// A load or a support with the points on which it acts.
 #[derive(Clone, Debug)]
@@ -36,7 +37,7 @@ pub struct LoadPoints {
 }
 
 /// What a load did since the start.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct LoadSums {
     /// Impulse on the body [N s].
     pub impulse: [f64; 3],
@@ -133,9 +134,9 @@ impl LoadPoints {
         self.dashpot[0] != self.dashpot[1]
     }
 
-    /// Where a point was at the start [m].
+    /// Where a point was at the start of the run [m].
     pub fn start(&self, point: &PartPoint) -> [f64; 3] {
-        std::array::from_fn(|i| point.position[i] - self.inset * point.normal[i])
+        std::array::from_fn(|i| point.position[i] - self.inset * point.normal[i] + point.moved[i])
     }
 
     /// What acts on one of its points in a step of `dt` from `time` on, while it is where it is at `now` [s].

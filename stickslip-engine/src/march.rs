@@ -50,6 +50,28 @@ impl March {
         March { until, last: 0.0 }
     }
 
+    /// To a time [s], after a step of this length [s].
+    pub fn from(last: f64, until: f64) -> Self {
+        March { until, last }
+    }
+
+    /// Takes steps and shows the simulation after each, with the step's length [s], until `look` breaks off.
+    ///
+    /// # Errors
+    /// See [`MarchError`].
+    pub fn go(
+        mut self,
+        simulation: &mut dyn Simulation,
+        mut look: impl FnMut(&mut dyn Simulation, f64) -> ControlFlow<()>,
+    ) -> Result<MarchEnd, MarchError> {
+        while let Some(step) = self.step(simulation)? {
+            if look(simulation, step).is_break() && !self.is_done(simulation) {
+                return Ok(MarchEnd::BrokenOff);
+            }
+        }
+        Ok(MarchEnd::Arrived)
+    }
+
     /// Whether the end is reached, or the state at rest that dynamic relaxation looks for.
     pub fn is_done(&self, simulation: &dyn Simulation) -> bool {
         let at_rest = simulation.relaxation().is_some_and(|relaxation| relaxation.at_rest);
@@ -104,13 +126,7 @@ pub enum MarchEnd {
 pub fn march(
     simulation: &mut dyn Simulation,
     until: f64,
-    mut look: impl FnMut(&mut dyn Simulation, f64) -> ControlFlow<()>,
+    look: impl FnMut(&mut dyn Simulation, f64) -> ControlFlow<()>,
 ) -> Result<MarchEnd, MarchError> {
-    let mut way = March::to(until);
-    while let Some(step) = way.step(simulation)? {
-        if look(simulation, step).is_break() && !way.is_done(simulation) {
-            return Ok(MarchEnd::BrokenOff);
-        }
-    }
-    Ok(MarchEnd::Arrived)
+    March::to(until).go(simulation, look)
 }

@@ -182,7 +182,7 @@ impl<T: Real, const D: usize> Particles<T, D> {
     }
 
     /// Its own columns.
-    fn own(&self) -> OwnColumns {
+    pub fn own(&self) -> OwnColumns {
         OwnColumns { history: self.history, transfer: self.transfer, viscosity: self.viscosity }
     }
 
@@ -206,10 +206,20 @@ impl<T: Real, const D: usize> Particles<T, D> {
         let (first, column) = self.described().find(|(_, column)| column.name == name)?;
         let mut components = [None; MOST_COMPONENTS];
         for entry in 0..column.kind.entries(D) {
-            let line = &self.columns[self.first() + (first + entry) * self.stride..][..self.len];
-            components[column.kind.place(D, entry)] = Some(line);
+            components[column.kind.place(D, entry)] = Some(self.line(first + entry));
         }
         Some((column, components))
+    }
+
+    /// An entry of a column by its place, of all particles in the order of memory.
+    pub fn line(&self, entry: usize) -> &[T] {
+        &self.columns[self.first() + entry * self.stride..][..self.len]
+    }
+
+    /// The same, to be written.
+    pub fn line_mut(&mut self, entry: usize) -> &mut [T] {
+        let first = self.first() + entry * self.stride;
+        &mut self.columns[first..][..self.len]
     }
 
     /// None at all.

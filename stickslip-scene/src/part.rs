@@ -16,6 +16,8 @@ pub struct PartPoint {
     pub particle: usize,
     /// Where the point is at the start, X_s [m].
     pub position: [f64; 3],
+    /// How far it is from there where the run begins, if its body begins as another run left it [m].
+    pub moved: [f64; 3],
     /// From the particle to the point, X_s - X_p [m].
     pub arm: [f64; 3],
     /// Outward unit normal N of the undeformed surface; zero within a volume.
@@ -70,6 +72,7 @@ pub fn points(scene: &Scene, load: &Load) -> Vec<PartPoint> {
     };
     if load.part.on == Extent::Volume {
         let point = |(particle, site): (usize, ParticleSite)| PartPoint {
+            moved: [0.0; 3],
             particle,
             position: site.position,
             arm: [0.0; 3],
@@ -96,7 +99,14 @@ pub fn points(scene: &Scene, load: &Load) -> Vec<PartPoint> {
             let reach = if body.particles == Arrangement::Lattice { site.half_width } else { f64::INFINITY };
             let arm = std::array::from_fn(|k| (point.position[k] - site.position[k]).clamp(-reach, reach));
             let position = std::array::from_fn(|k| site.position[k] + arm[k]);
-            Some(PartPoint { particle: *particle, position, arm, normal: point.normal, measure: point.area })
+            Some(PartPoint {
+                particle: *particle,
+                position,
+                moved: [0.0; 3],
+                arm,
+                normal: point.normal,
+                measure: point.area,
+            })
         })
         .collect()
 }

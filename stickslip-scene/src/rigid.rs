@@ -2,6 +2,7 @@
 
 use crate::scene::{BodyMotion, Expression};
 use crate::tensor::{Matrix, cross};
+use serde::{Deserialize, Serialize};
 
 /// How a rigid body moves, and where it is.
 #[derive(Clone, Debug)]
@@ -18,6 +19,28 @@ pub struct RigidMotion {
     now: [f64; 3],
     /// Angular velocity in this step [rad/s].
     turning: [f64; 3],
+}
+
+/// What of a rigid body's motion changes from step to step.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RigidState {
+    start: [f64; 3],
+    center: [f64; 3],
+    orientation: Matrix<f64>,
+    velocity: [f64; 3],
+    spin: [f64; 3],
+}
+
+impl RigidState {
+    /// Where it was before anything moved [m].
+    pub fn start(&self) -> [f64; 3] {
+        self.start
+    }
+
+    /// Whether it is somewhere else than it was then.
+    pub fn has_moved(&self) -> bool {
+        self.center != self.start || self.orientation != Matrix::IDENTITY
+    }
 }
 
 impl RigidMotion {
@@ -80,6 +103,18 @@ impl RigidMotion {
         Pose { start: self.start, center: self.center, orientation: self.orientation }
     }
 
+    /// Where it is and how it moves.
+    pub fn state(&self) -> RigidState {
+        let RigidMotion { start, center, orientation, now, turning, .. } = *self;
+        RigidState { start, center, orientation, velocity: now, spin: turning }
+    }
+
+    /// Goes on from there.
+    pub fn restore(&mut self, state: &RigidState) {
+        (self.center, self.orientation) = (state.center, state.orientation);
+        (self.now, self.turning) = (state.velocity, state.spin);
+    }
+
     /// Velocity of the centre now [m/s].
     pub fn velocity(&self) -> [f64; 3] {
         self.now
@@ -92,7 +127,7 @@ impl RigidMotion {
 }
 
 /// Where a rigid body is: x = c + Q (X - c_0).
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Pose {
     start: [f64; 3],
     center: [f64; 3],

@@ -5,6 +5,7 @@
 //! [`Vector::space`].
 
 pub use crate::number::{Number, Real};
+use serde::{Deserialize, Serialize};
 use std::iter::Sum;
 use std::ops::{Add, AddAssign, Div, Index, IndexMut, Mul, Neg, Sub, SubAssign};
 
@@ -155,7 +156,7 @@ pub fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
 }
 
 /// A 3 x 3 matrix, row by row.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Matrix<T>(pub [[T; 3]; 3]);
 
 impl<T: Number> Default for Matrix<T> {

@@ -16,8 +16,6 @@
 //! three cells; the probe that rides with the material moves with it, the other stays.
 
 use std::path::Path;
-use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
 use stickslip::observe::{ArrivalRow, ProbeRow, Results};
 use stickslip::run::RunOptions;
 use stickslip::scene::Scene;
@@ -89,7 +87,7 @@ fn bar() -> String {
 
 fn run_to(out: &Path, scene: &Scene) -> Results {
     let mut simulation = step::build(scene).unwrap();
-    let options = RunOptions { out: out.to_path_buf(), stop: Arc::new(AtomicBool::new(false)), threads: 1 };
+    let options = RunOptions { threads: 1, ..RunOptions::new(out) };
     run::run(scene, &mut *simulation, &options, &mut |_| {}).unwrap();
     Results::open(out).unwrap()
 }

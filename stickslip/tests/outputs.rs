@@ -9,8 +9,7 @@ use ballistic::{Ballistic, scene};
 use std::fs;
 use std::path::Path;
 use std::process::Command;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::Ordering;
 use stickslip::door::{ParticleSnapshot, StepError, View};
 use stickslip::image::Image;
 use stickslip::march::MarchError;
@@ -19,7 +18,7 @@ use stickslip::run::{RunError, RunOptions, Summary, run};
 use stickslip::scene::{Fringes, Light, Overlay, Polariscope, PolariscopeField, Sensitivity};
 
 fn options(out: &Path) -> RunOptions {
-    RunOptions { out: out.to_path_buf(), stop: Arc::new(AtomicBool::new(false)), threads: 2 }
+    RunOptions { threads: 2, ..RunOptions::new(out) }
 }
 
 fn run_to(out: &Path, simulation: &mut Ballistic) -> Result<Summary, RunError> {

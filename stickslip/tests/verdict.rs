@@ -167,7 +167,7 @@ fn judge(text: &str, simulation: &mut dyn Simulation) -> (Vec<String>, Vec<RunWa
     let scene: Scene = scene::parse("puppet.toml", text, &[]).unwrap().scene;
     let out = tempfile::tempdir().unwrap();
     let stop = Arc::new(AtomicBool::new(false));
-    let options = RunOptions { out: out.path().join("results"), stop, threads: 1 };
+    let options = RunOptions { stop, threads: 1, ..RunOptions::new(out.path().join("results")) };
     let mut notes = Vec::new();
     let mut progress = |progress: &run::Progress| notes.extend(progress.notes.clone());
     let summary = run::run(&scene, simulation, &options, &mut progress).unwrap();

@@ -7,8 +7,6 @@ use serde::{Deserialize, Serialize};
 use std::io::{Read, Write};
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
-use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 use stickslip::door::Simulation;
 use stickslip::march::March;
@@ -145,8 +143,7 @@ fn take(order: &Order) -> Result<BenchSample, Failure> {
     match &order.task {
         BenchTask::Steps(effort) => step(&mut *simulation, *effort, &mut sample)?,
         BenchTask::Run(folder) => {
-            let stop = Arc::new(AtomicBool::new(false));
-            let options = RunOptions { out: folder.clone(), stop, threads: order.threads };
+            let options = RunOptions { threads: order.threads, ..RunOptions::new(folder) };
             stickslip::run::run(&loaded.scene, &mut *simulation, &options, &mut |_| {})
                 .map_err(Failure::run)?;
             sample.steps = simulation.steps();

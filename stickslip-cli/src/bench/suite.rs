@@ -10,6 +10,7 @@ use super::peers::Peers;
 use super::problems::{BenchCase, BenchExtent, cases};
 use super::record::{BenchRecord, Computer, Measured, Skipped};
 use crate::failure::Failure;
+use crate::files;
 use miette::miette;
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -170,7 +171,7 @@ pub fn write_scenes(suite: &BenchSuite, folder: &Path) -> Result<usize, Failure>
     let mut written = 0;
     for case in suite.cases().filter(|case| case.threads == 1) {
         let name = case.label().replace(", ", "_").replace(' ', "_") + ".toml";
-        std::fs::write(folder.join(name), &case.scene).map_err(cannot)?;
+        files::write_scene(&folder.join(name), &case.scene).map_err(cannot)?;
         written += 1;
     }
     Ok(written)

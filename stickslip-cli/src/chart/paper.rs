@@ -2,10 +2,12 @@
 
 use super::{Chart, Curve, Panel};
 use crate::drawing::{Canvas, DrawError, Prefix, axis_prefix, label, register_font, save};
+use crate::files;
 use plotters::coord::Shift;
 use plotters::element::DashedPathElement;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
+use std::io::Write;
 use std::path::Path;
 
 const INK: RGBColor = RGBColor(50, 54, 60);
@@ -23,7 +25,8 @@ const FEW: usize = 12;
 /// The file cannot be written, or no panel has a curve.
 pub fn draw(chart: &Chart, path: &Path, size: [usize; 2]) -> Result<(), DrawError> {
     if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("svg")) {
-        return std::fs::write(path, svg(chart, size)?)
+        let text = svg(chart, size)?;
+        return files::write(path, files::SVG, |file| file.write_all(text.as_bytes()))
             .map_err(|source| DrawError::Write { path: path.to_path_buf(), source });
     }
     something(chart)?;

@@ -3,8 +3,10 @@
 use super::say;
 use crate::bench::{BenchExtent, BenchSuite, PROBLEMS, Peers, answer, write_scenes};
 use crate::failure::Failure;
+use crate::files;
 use clap::Args;
 use miette::miette;
+use std::io::Write;
 use std::path::PathBuf;
 
 /// Measure this machine's limits, and how near the program comes to them.
@@ -87,7 +89,7 @@ impl Arguments {
         say(&record.to_string())?;
         let Some(file) = self.json else { return Ok(()) };
         let text = serde_json::to_string_pretty(&record).expect("a record is plain data") + "\n";
-        std::fs::write(&file, text)
+        files::write(&file, files::JSON, |file| file.write_all(text.as_bytes()))
             .map_err(|error| Failure::Input(miette!("cannot write {}: {error}", file.display())))?;
         say(&format!("{} is written", file.display()))
     }

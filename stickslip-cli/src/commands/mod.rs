@@ -8,6 +8,7 @@ mod new;
 mod plot;
 mod render;
 mod reproduce;
+mod resume;
 mod run;
 mod schema;
 mod sweep;
@@ -22,14 +23,15 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use stickslip::check::Report;
-use stickslip::observe::Results;
-use stickslip::scene::{Loaded, SceneError};
+use stickslip::observe::{Checkpoint, Results};
+use stickslip::scene::{Body, BodyMotion, Loaded, SceneError};
 
 /// Many deformable bodies in frictional contact, by the material point method.
 #[derive(Debug, Parser)]
 #[command(name = "stickslip", version, arg_required_else_help = true)]
 pub enum Command {
     Run(run::Arguments),
+    Resume(resume::Arguments),
     Sweep(sweep::Arguments),
     Check(check::Arguments),
     New(new::Arguments),
@@ -47,6 +49,7 @@ impl Command {
     pub fn execute(self) -> Result<(), Failure> {
         match self {
             Command::Run(arguments) => arguments.execute(),
+            Command::Resume(arguments) => arguments.execute(),
             Command::Sweep(arguments) => arguments.execute(),
             Command::Check(arguments) => arguments.execute(),
             Command::New(arguments) => arguments.execute(),
@@ -88,6 +91,65 @@ fn open(folder: &Path) -> Result<Results, Failure> {
     Results::open(folder).map_err(Failure::input)
 }
 
+/// Says from where a scene begins, if from another run: to be asked before the run.
+///
+/// # Errors
+/// The checkpoint cannot be read.
+fn beginning(loaded: &Loaded) -> Result<Option<String>, Failure> {
+    let scene = &loaded.scene;
+    let Some(start) = &scene.start else { return Ok(None) };
+    let (checkpoint, path) = stickslip::run::beginning_of(start).map_err(Failure::input)?;
+    let there: Vec<&str> = checkpoint.state.bodies.iter().map(|body| body.name.as_str()).collect();
+    let here: Vec<&str> = scene.bodies.iter().map(|body| body.name.as_str()).collect();
+    let only = |of: &[&str], not_of: &[&str]| {
+        let names: Vec<_> =
+            of.iter().filter(|name| !not_of.contains(name)).map(|name| format!("`{name}`")).collect();
+        (!names.is_empty()).then(|| match names.len() {
+            ..=8 => names.join(", "),
+            more => format!("{} and {} more", names[..8].join(", "), more - 8),
+        })
+    };
+    let count = here.iter().filter(|name| there.contains(name)).count();
+    let time = checkpoint.state.time;
+    let mut text =
+        format!("{count} of {} bodies begin as they were at t = {time} s in {}", here.len(), path.display());
+    if let Some(new) = only(&here, &there) {
+        text += &format!("\n  new         {new}");
+    }
+    if let Some(left_out) = only(&there, &here) {
+        text += &format!("\n  left out    {left_out}");
+    }
+    if let Some(newest) =
+        start.from.is_dir().then(|| Checkpoint::list(&start.from).ok()?.into_iter().next()).flatten()
+        && newest != path
+    {
+        text += &format!("\n  warning     {} is damaged, and an earlier one is taken", newest.display());
+    }
+    let moves = |body: &&Body| match &body.motion {
+        BodyMotion::Free { velocity, spin } => [velocity, spin].iter().any(|of| **of != [0.0; 3]),
+        BodyMotion::Rigid { .. } => false,
+    };
+    for body in scene.bodies.iter().filter(|body| there.contains(&body.name.as_str())).filter(moves) {
+        text += &format!(
+            "\n  warning     `{}` begins with the velocities it had there, not with its own",
+            body.name
+        );
+    }
+    Ok(Some(text))
+}
+
+/// Refuses a time [s] before the first or after the last of those that are recorded.
+fn recorded(time: f64, times: impl Iterator<Item = f64>) -> Result<(), Failure> {
+    let [first, last] =
+        times.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], t| [low.min(t), high.max(t)]);
+    // Times are typed as they are read, with fewer digits.
+    let margin = 1e-3 * (last - first);
+    if first <= last && !(first - margin..=last + margin).contains(&time) {
+        return Err(Failure::Input(miette!("--time: found {time} s; allowed: {first} s to {last} s")));
+    }
+    Ok(())
+}
+
 /// Writes to standard output. Whoever reads it may have had enough (`stickslip schema | head`): that is no failure.
 fn say(text: &str) -> Result<(), Failure> {
     match writeln!(std::io::stdout(), "{}", text.trim_end()) {
@@ -98,10 +160,12 @@ fn say(text: &str) -> Result<(), Failure> {
     }
 }
 
-/// A flag that the first Ctrl-C sets; the second ends the program at once.
+/// A flag that is set by the first Ctrl-C, by SIGTERM, and by SIGHUP unless `nohup` has it ignored. The second Ctrl-C ends
+/// the program at once.
 fn stop_on_interrupt() -> Result<Arc<AtomicBool>, Failure> {
     let stop = Arc::new(AtomicBool::new(false));
     let flag = Arc::clone(&stop);
+    outlive_file_limits();
     let installed = ctrlc::set_handler(move || {
         if flag.swap(true, Ordering::Relaxed) {
             std::process::exit(i32::from(Failure::INTERRUPTED));
@@ -109,7 +173,28 @@ fn stop_on_interrupt() -> Result<Arc<AtomicBool>, Failure> {
         eprintln!("\nstopping after this step; Ctrl-C again ends at once");
     });
     installed.map_err(|error| Failure::Run(miette!("cannot watch for Ctrl-C: {error}")))?;
+    #[cfg(unix)]
+    for signal in [libc::SIGTERM, libc::SIGHUP].into_iter().filter(|&signal| !is_ignored(signal)) {
+        let watched = signal_hook::flag::register(signal, Arc::clone(&stop));
+        watched.map_err(|error| Failure::Run(miette!("cannot watch for signals: {error}")))?;
+    }
     Ok(stop)
+}
+
+/// Whether whoever started the program wants it to ignore a signal, where the system says so.
+#[cfg(unix)]
+fn is_ignored(signal: i32) -> bool {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    let ignored = ignored.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
+    ignored.is_some_and(|mask| mask >> (signal - 1) & 1 == 1)
+}
+
+/// Lets a write beyond the longest file that the user may have fail as any other, where the system would end the program.
+fn outlive_file_limits() {
+    // Nobody asks the flag: that the signal has a handler is enough.
+    #[cfg(unix)]
+    let _ = signal_hook::flag::register(libc::SIGXFSZ, Arc::default());
 }
 
 #[cfg(test)]

@@ -1,11 +1,10 @@
 //! `stickslip network DIR`: who presses on whom, as a graph.
 
-use super::{open, say};
+use super::{open, recorded, say};
+use crate::drawing::DrawError;
 use crate::failure::Failure;
+use crate::files;
 use clap::Args;
-use miette::miette;
-use std::fs::File;
-use std::io::BufWriter;
 use std::path::PathBuf;
 use stickslip::observe::Network;
 
@@ -27,10 +26,13 @@ pub struct Arguments {
 impl Arguments {
     pub fn execute(self) -> Result<(), Failure> {
         let results = open(&self.folder)?;
+        if let Some(time) = self.time {
+            recorded(time, results.bodies_table().map_err(Failure::input)?.iter().map(|row| row.time))?;
+        }
         let network = Network::read(&results, self.time).map_err(Failure::input)?;
         let out = self.out.unwrap_or_else(|| self.folder.join("network.graphml"));
-        let failed = |error| Failure::Run(miette!("cannot write {}: {error}", out.display()));
-        network.write(BufWriter::new(File::create(&out).map_err(failed)?)).map_err(failed)?;
+        files::write(&out, files::XML, |file| network.write(file))
+            .map_err(|source| Failure::from(DrawError::Write { path: out.clone(), source }))?;
         say(&format!(
             "{} is written: {} bodies, {} contacts, {:.2} on a body that touches, t = {} s",
             out.display(),

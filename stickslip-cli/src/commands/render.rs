@@ -1,16 +1,16 @@
 //! `stickslip render DIR`: pictures of snapshots.
 
 use super::fringes::FringeArguments;
-use super::{open, say};
+use super::{open, recorded, say};
 use crate::drawing::{DrawError, save};
 use crate::failure::Failure;
+use crate::files;
 use crate::frame_pictures::FramePictures;
 use crate::illustration::{Album, PictureChoice, Pictures, snapshots};
 use crate::picture::{ColorQuantity, QuantityParser, Viewpoint};
 use clap::Args;
 use miette::miette;
-use std::fs::File;
-use std::io::{self, BufWriter, Write};
+use std::io;
 use std::path::PathBuf;
 use stickslip::image::write_animation;
 use stickslip::observe::{FRAMES_PER_SECOND, Frame, Results};
@@ -182,10 +182,10 @@ impl Arguments {
             let missing = || Failure::Input(miette!("--frame: found {number}; allowed: 0 to {last}"));
             return frames.get(number).ok_or_else(missing);
         }
-        let time = self.time.unwrap_or(f64::INFINITY);
+        let Some(time) = self.time else { return Ok(&frames[last]) };
+        recorded(time, frames.iter().map(|frame| frame.time))?;
         let nearer = |a: &&Frame, b: &&Frame| (a.time - time).abs().total_cmp(&(b.time - time).abs());
-        let nearest = if time.is_finite() { frames.iter().min_by(nearer) } else { frames.last() };
-        Ok(nearest.expect("there is at least one snapshot"))
+        Ok(frames.iter().min_by(nearer).expect("there is at least one snapshot"))
     }
 
     fn draw_all(&self, pictures: &dyn Pictures, frames: &[Frame]) -> Result<(), Failure> {
@@ -208,11 +208,8 @@ impl Arguments {
                 io::Error::other("a picture is missing")
             })
         });
-        let written = File::create(&out).and_then(|file| {
-            let mut file = BufWriter::new(file);
-            write_animation(images, self.rate.unwrap_or(FRAMES_PER_SECOND), &mut file)?;
-            file.flush()
-        });
+        let rate = self.rate.unwrap_or(FRAMES_PER_SECOND);
+        let written = files::write(&out, files::PNG, |file| write_animation(images, rate, file));
         match (written, failure) {
             (_, Some(failure)) => Err(failure),
             (Err(source), None) => Err(DrawError::Write { path: out, source }.into()),

@@ -1,22 +1,34 @@
 //! `stickslip run SCENE`: from a scene file to numbers, a chart and a picture.
 
-use super::{assignment, load, report, say, stop_on_interrupt};
+use super::{assignment, beginning, load, report, say, stop_on_interrupt};
 use crate::failure::Failure;
+use crate::free_memory::free_memory;
 use crate::illustration::illustrate;
 use crate::progress::Display;
+use bytesize::ByteSize;
 use clap::Args;
-use miette::IntoDiagnostic;
+use miette::{IntoDiagnostic, miette};
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
-use stickslip::observe::{ArrivalRow, FrontSpeedRow, Results, Status};
-use stickslip::run::{RunError, RunOptions};
-use stickslip::scene::Scene;
+use std::time::Duration;
+use stickslip::door::Simulation;
+use stickslip::observe::{
+    ArrivalRow, Checkpoint, FrontSpeedRow, Manifest, OutputFolder, Results, SceneSource, Status,
+};
+use stickslip::run::{Checkpointing, Progress, RunError, RunOptions, Summary};
+use stickslip::scene::{Loaded, Scene};
 
 /// Run a scene and write its results.
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// Scene file.
-    scene: PathBuf,
+    #[arg(required_unless_present = "again")]
+    scene: Option<PathBuf>,
+
+    /// Run the scene of a folder of results again, beside it, and say whether it ends in the same bits; exit code 3 if
+    /// not.
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["scene", "parameters"])]
+    again: Option<PathBuf>,
 
     /// Folder for the results; the name of the scene with `.results`, in this folder, without this.
     #[arg(long, value_name = "DIR")]
@@ -26,13 +38,68 @@ pub struct Arguments {
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = assignment)]
     parameters: Vec<(String, String)>,
 
+    /// Begin anew in a folder whose run was killed or ran out of time, and could go on.
+    #[arg(long)]
+    overwrite: bool,
+
+    #[command(flatten)]
+    how: How,
+}
+
+/// Refuses a folder with a run that nobody asked to stop, and that can go on.
+fn unfinished(folder: &Path) -> Result<(), Failure> {
+    let Ok(before) = Manifest::read(folder) else { return Ok(()) };
+    let stopped = matches!(before.status, Status::Running | Status::OutOfTime);
+    let checkpoints = Checkpoint::list(folder).map_err(Failure::input)?;
+    // One that is under way is told of as that.
+    let newest = checkpoints.first().filter(|_| stopped && OutputFolder::reopen(folder).is_ok());
+    let Some(newest) = newest else { return Ok(()) };
+    let folder = folder.display();
+    Err(Failure::Input(miette!(
+        help = format!("`stickslip resume {folder}` goes on with it; --overwrite begins anew"),
+        "{folder} holds a run that has not ended, with a checkpoint: {}",
+        newest.display()
+    )))
+}
+
+/// How a run is made, new or taken up.
+#[derive(Debug, Args)]
+pub(super) struct How {
     /// Threads; as many as there are processors without this.
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
 
+    /// Wall time between checkpoints, from which `stickslip resume` goes on: "10min", "1h 30min"; "never" leaves out the
+    /// one at the end, too.
+    #[arg(long, value_name = "TIME", default_value = "10min", value_parser = wall_time)]
+    checkpoint_every: WallTime,
+
+    /// Stop after this wall time, with a checkpoint and exit code 4: "8h", or "never".
+    #[arg(long, value_name = "TIME", default_value = "never", value_parser = wall_time)]
+    max_time: WallTime,
+
+    /// Memory that the run may take, as `stickslip check` estimates it, such as "40 GB"; what is free without this.
+    #[arg(long, value_name = "SIZE")]
+    max_memory: Option<ByteSize>,
+
     /// Exit with code 3 if the summary warns that results are doubtful.
     #[arg(long)]
     strict: bool,
+}
+
+/// A wall time; without one, never.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct WallTime(Option<Duration>);
+
+fn wall_time(text: &str) -> Result<WallTime, String> {
+    if text.trim() == "never" {
+        return Ok(WallTime(None));
+    }
+    let time =
+        text.trim().parse::<jiff::SignedDuration>().ok().and_then(|time| Duration::try_from(time).ok());
+    let time = time.filter(|time| !time.is_zero());
+    time.map(|time| WallTime(Some(time)))
+        .ok_or("allowed: a time above zero, such as 10min or 1h 30min, or never".into())
 }
 
 /// Where the results go if the user does not say.
@@ -43,6 +110,15 @@ pub fn default_folder(scene: &Path, kind: &str) -> PathBuf {
 }
 
 #[test]
+fn wall_times_are_above_zero_or_never() {
+    assert_eq!(wall_time("1h 30min"), Ok(WallTime(Some(Duration::from_secs(5400)))));
+    assert_eq!(wall_time("never"), Ok(WallTime(None)));
+    for wrong in ["0s", "-3min", "10", "soon", ""] {
+        assert!(wall_time(wrong).is_err(), "{wrong}");
+    }
+}
+
+#[test]
 fn results_go_beside_the_user_not_beside_the_scene() {
     let folder = default_folder(Path::new("scenes/paper/inclined_plane_no_slip.toml"), "results");
     assert_eq!(folder, PathBuf::from("inclined_plane_no_slip.results"));
@@ -50,23 +126,129 @@ fn results_go_beside_the_user_not_beside_the_scene() {
 
 impl Arguments {
     pub fn execute(self) -> Result<(), Failure> {
-        let loaded = load(&self.scene, &self.parameters).map_err(Failure::input)?;
+        let before = self.again.as_deref().map(Repeated::of).transpose()?;
+        let (scene, set) = match (&before, self.scene) {
+            (Some(before), _) => (before.source.path.clone(), before.source.set.clone()),
+            (None, scene) => (scene.unwrap_or_default(), self.parameters),
+        };
+        let mut loaded = load(&scene, &set).map_err(Failure::input)?;
+        let usual = match &before {
+            Some(before) => before.folder(),
+            None => default_folder(&scene, "results"),
+        };
+        let out = self.out.unwrap_or(usual);
+        let path = std::path::absolute(&scene).into_diagnostic().map_err(Failure::Run)?;
+        let source = SceneSource { path, set, until: None };
+        if let Some(before) = &before {
+            before.check(&mut loaded.scene)?;
+        }
+        if let Some(beginning) = beginning(&loaded)? {
+            eprintln!("{beginning}");
+        }
+        if !self.overwrite {
+            unfinished(&out)?;
+        }
+        self.how.make(&loaded, (source, out.clone()), |scene, simulation, options, progress| {
+            stickslip::run::run(scene, simulation, options, progress)
+        })?;
+        before.map_or(Ok(()), |before| before.compare(&out))
+    }
+}
+
+/// A run that is made again, to see whether it ends in the same bits.
+struct Repeated {
+    results: PathBuf,
+    source: SceneSource,
+    manifest: Manifest,
+    /// Of its last state.
+    sum: String,
+}
+
+impl Repeated {
+    fn of(results: &Path) -> Result<Self, Failure> {
+        let manifest = Manifest::read(results).map_err(Failure::input)?;
+        let lacks = |what: &str| Failure::Input(miette!("{} does not say {what}", results.display()));
+        let source = manifest.source.clone().ok_or_else(|| lacks("which scene file it came from"))?;
+        let sum = manifest.state_sum.clone();
+        let sum =
+            sum.ok_or_else(|| lacks("in which bits it ended: it did not end, or made no checkpoints"))?;
+        Ok(Repeated { results: results.to_path_buf(), source, manifest, sum })
+    }
+
+    /// `DIR.again`
+    fn folder(&self) -> PathBuf {
+        let mut name = self.results.components().as_path().as_os_str().to_owned();
+        name.push(".again");
+        PathBuf::from(name)
+    }
+
+    /// Gives the scene the end that the run had, and refuses one that is not that of the run any more.
+    fn check(&self, scene: &mut Scene) -> Result<(), Failure> {
+        scene.time.end = self.manifest.performance.time;
+        let now = Manifest::record(scene);
+        stickslip::run::same_physics(&self.results, &self.manifest.scene, &now).map_err(Failure::input)
+    }
+
+    fn compare(&self, out: &Path) -> Result<(), Failure> {
+        let now = Manifest::read(out).map_err(Failure::input)?;
+        if now.state_sum.as_ref() == Some(&self.sum) {
+            return say(&format!("the same bits as {}: {}", self.results.display(), self.sum));
+        }
+        let (steps, before) = (now.performance.steps, self.manifest.performance.steps);
+        say(&format!("other bits than {}, after {steps} steps and {before}", self.results.display()))?;
+        if now.version != self.manifest.version {
+            say(&format!("  version {} made it, and this is {}", self.manifest.version, now.version))?;
+        }
+        Err(Failure::Differs)
+    }
+}
+
+/// A run, new or taken up.
+type Make =
+    fn(&Scene, &mut dyn Simulation, &RunOptions, &mut dyn FnMut(&Progress)) -> Result<Summary, RunError>;
+
+impl How {
+    /// Makes a run of a scene in a folder, from the warnings before it to the pictures behind it.
+    pub(super) fn make(
+        &self,
+        loaded: &Loaded,
+        (source, out): (SceneSource, PathBuf),
+        make: Make,
+    ) -> Result<(), Failure> {
         let scene = &loaded.scene;
         let threads = use_threads(self.threads)?;
-        for warning in report(&loaded)?.warnings {
+        let report = report(loaded)?;
+        let limit = self.max_memory.map_or_else(free_memory, |limit| limit.as_u64() as f64);
+        if report.memory > limit {
+            let size = |bytes: f64| ByteSize(bytes as u64).display().si();
+            return Err(Failure::Input(miette!(
+                help = "take larger cells, fewer particles, or a larger machine; --max-memory allows more or less",
+                "the run needs about {}, and may take {}",
+                size(report.memory),
+                size(limit)
+            )));
+        }
+        for warning in report.warnings {
             eprintln!("warning: {warning}");
         }
         let mut simulation =
             stickslip::step::build(scene).map_err(|problem| Failure::input(loaded.source.locate(problem)))?;
-        let out = self.out.clone().unwrap_or_else(|| default_folder(&self.scene, "results"));
-        let options = RunOptions { out: out.clone(), stop: stop_on_interrupt()?, threads };
+        let WallTime(every) = self.checkpoint_every;
+        let at_end = every.is_some() || self.max_time.0.is_some() || scene.outputs.checkpoints.is_some();
+        let options = RunOptions {
+            stop: stop_on_interrupt()?,
+            threads,
+            source: Some(source),
+            checkpoints: Checkpointing { every, at_end, ..Checkpointing::default() },
+            max_time: self.max_time.0,
+            ..RunOptions::new(&out)
+        };
         let display = Display::new(scene.time.end, std::io::stderr().is_terminal());
-        let outcome =
-            stickslip::run::run(scene, &mut *simulation, &options, &mut |progress| display.show(progress));
+        let outcome = make(scene, &mut *simulation, &options, &mut |progress| display.show(progress));
         display.finish();
         let summary = match outcome {
             Ok(summary) => summary,
-            Err(error @ RunError::Folder(_)) => return Err(Failure::input(error)),
+            Err(error @ (RunError::Folder(_) | RunError::Resume(_))) => return Err(Failure::input(error)),
             Err(error) => {
                 // The failure is the news; a picture of it is welcome but must not hide it.
                 let _ = illustrate(&out);
@@ -74,19 +256,23 @@ impl Arguments {
             }
         };
         say(&format!("{}\n{summary}{}", scene.title, measured(&out, scene)?))?;
-        let drawn = illustrate(&out)?;
+        let drawn = illustrate(&out).map_err(Failure::after_the_run)?;
         say(&format!("results in {}/: {drawn}", out.display()))?;
-        match summary.warnings.len() {
-            _ if summary.status == Status::Interrupted => Err(Failure::Interrupted),
-            warnings @ 1.. if self.strict => Err(Failure::Doubtful(warnings)),
+        if summary.status != Status::Finished && at_end {
+            say(&format!("go on with: stickslip resume {}", out.display()))?;
+        }
+        match (summary.status, summary.warnings.len()) {
+            (Status::Interrupted, _) => Err(Failure::Interrupted),
+            (Status::OutOfTime, _) => Err(Failure::OutOfTime),
+            (_, warnings @ 1..) if self.strict => Err(Failure::Doubtful(warnings)),
             _ => Ok(()),
         }
     }
 }
 
-/// A line for each arrival and each front's speed; a threshold that was not passed has none.
+/// A line for each arrival, each front's speed and each probe that saw nothing; a threshold that was not passed has none.
 fn measured(folder: &Path, scene: &Scene) -> Result<String, Failure> {
-    let results = Results::open(folder).map_err(Failure::input)?;
+    let results = Results::open(folder).map_err(Failure::run)?;
     let unit = scene.outputs.measurements.unit();
     let arrival = |row: &ArrivalRow| {
         let units = unit.map_or(String::new(), |unit| format!(", {:.4} time units", row.time / unit));
@@ -97,9 +283,14 @@ fn measured(folder: &Path, scene: &Scene) -> Result<String, Failure> {
         let FrontSpeedRow { front, speed, error, .. } = row;
         format!("  front      {front}: {speed:.6} m/s by fit, standard error {error:.2}\n")
     };
-    let arrivals = results.arrivals_table().map_err(Failure::input)?;
-    let speeds = results.front_speeds_table().map_err(Failure::input)?;
-    Ok(arrivals.iter().map(arrival).chain(speeds.iter().map(speed)).collect())
+    let arrivals = results.arrivals_table().map_err(Failure::run)?;
+    let speeds = results.front_speeds_table().map_err(Failure::run)?;
+    let probed = results.probes_table().map_err(Failure::run)?;
+    let probes = scene.outputs.measurements.probes.iter();
+    let idle = probes.filter(|probe| probed.iter().all(|row| row.probe != probe.name));
+    let idle =
+        idle.map(|probe| format!("  warning    no material ever came to the probe `{}`\n", probe.name));
+    Ok(arrivals.iter().map(arrival).chain(speeds.iter().map(speed)).chain(idle).collect())
 }
 
 /// Makes the threads of the run, and says how many there are.

@@ -2,6 +2,7 @@
 
 use super::say;
 use crate::failure::Failure;
+use crate::files;
 use crate::validation::{broken, line, page, table, write_scenes};
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
@@ -108,6 +109,7 @@ impl Arguments {
         // A folder that cannot be written shall be known before the work, not after it.
         fs::create_dir_all(&self.out).map_err(|error| unwritable(&self.out, &error))?;
         let (begin, file, scenes) = (Instant::now(), self.out.join("index.html"), self.out.join("scenes"));
+        files::replaceable(&file, files::PAGE).map_err(|error| unwritable(&file, &error))?;
         let mut written: Result<(), Failure> = Ok(());
         let report = suite.run(&mut |finished, report| {
             eprintln!("{}", line(finished));

@@ -1,11 +1,10 @@
 //! An image that is drawn larger than it is saved: averaging smooths every edge, whoever drew it.
 
 use super::{DrawError, Rgb};
+use crate::files;
 use plotters::coord::Shift;
 use plotters::prelude::{BitMapBackend, DrawingArea, FontStyle, IntoDrawingArea};
 use rayon::prelude::*;
-use std::fs::File;
-use std::io::{BufWriter, Write};
 use std::path::Path;
 use std::sync::Once;
 use stickslip::image::Image;
@@ -75,12 +74,8 @@ impl Canvas {
 /// # Errors
 /// The file cannot be written.
 pub fn save(image: &Image, path: &Path) -> Result<(), DrawError> {
-    let written = File::create(path).and_then(|file| {
-        let mut file = BufWriter::new(file);
-        image.write_png(&mut file)?;
-        file.flush()
-    });
-    written.map_err(|source| DrawError::Write { path: path.to_path_buf(), source })
+    files::write(path, files::PNG, |file| image.write_png(file))
+        .map_err(|source| DrawError::Write { path: path.to_path_buf(), source })
 }
 
 /// Makes the embedded DejaVu Sans known as `sans-serif`, so that no font need be installed.

@@ -95,7 +95,7 @@ impl JobRunner {
     fn run(&self, job: &Job, threads: usize, board: &Board) -> Result<Results, String> {
         let lane = board.start(&job.name);
         let folder = self.path(job);
-        let options = RunOptions { out: folder.clone(), stop: Arc::clone(&self.stop), threads };
+        let options = RunOptions { stop: Arc::clone(&self.stop), threads, ..RunOptions::new(&folder) };
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         let outcome = pool.map_err(|error| error.to_string()).and_then(|pool| {
             pool.install(|| {

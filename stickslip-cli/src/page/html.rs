@@ -10,6 +10,8 @@ const STYLE: &str = include_str!("style.css");
 pub(super) fn page(page: &Page) -> Markup {
     html! {
         (DOCTYPE)
+        // By which the program knows its pages, see `crate::files`.
+        (PreEscaped("<!-- Stickslip -->"))
         html lang="en" {
             head {
                 meta charset="utf-8";

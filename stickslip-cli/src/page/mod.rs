@@ -13,7 +13,9 @@ pub use making::Making;
 pub use table::{Cell, Column, Mark, Table};
 
 use crate::drawing::DrawError;
+use crate::files;
 use maud::{Markup, Render};
+use std::io::Write;
 use std::path::Path;
 
 /// A report.
@@ -87,7 +89,7 @@ impl Page {
     /// # Errors
     /// The file cannot be written.
     pub fn write(&self, path: &Path) -> Result<(), DrawError> {
-        std::fs::write(path, self.html())
+        files::write(path, files::PAGE, |file| file.write_all(self.html().as_bytes()))
             .map_err(|source| DrawError::Write { path: path.to_path_buf(), source })
     }
 }

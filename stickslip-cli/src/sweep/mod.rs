@@ -84,7 +84,7 @@ impl Crew {
             let mut simulation = stickslip::step::build(&loaded.scene)
                 .map_err(|problem| loaded.source.locate(problem).to_string())?;
             let options =
-                RunOptions { out: out.to_path_buf(), stop: Arc::clone(&self.stop), threads: self.threads };
+                RunOptions { stop: Arc::clone(&self.stop), threads: self.threads, ..RunOptions::new(out) };
             let mut progress = |progress: &stickslip::run::Progress| {
                 let _ = sender.send(News::Progress(number, progress.time / progress.end));
             };

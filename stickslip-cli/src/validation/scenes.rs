@@ -1,5 +1,6 @@
 //! The scenes of validation as files that `stickslip run` takes.
 
+use crate::files;
 use std::fs;
 use std::io;
 use std::path::Path;
@@ -14,5 +15,8 @@ pub fn write_scenes(entry: &SuiteEntry, run: &Run, folder: &Path) -> io::Result<
     let place =
         folder.join(entry.benchmark.name).join(entry.way.word()).join(run.resolution.cells.to_string());
     fs::create_dir_all(&place)?;
-    outcome.scenes.iter().try_for_each(|(name, text)| fs::write(place.join(format!("{name}.toml")), text))
+    outcome
+        .scenes
+        .iter()
+        .try_for_each(|(name, text)| files::write_scene(&place.join(format!("{name}.toml")), text))
 }

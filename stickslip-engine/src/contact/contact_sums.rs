@@ -6,10 +6,11 @@ use crate::boundary::Boundary;
 use crate::door::{ContactPatch, ContactSum};
 use crate::grid::Lattice;
 use crate::tensor::Real;
+use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 use std::hash::{BuildHasherDefault, Hasher};
 
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 struct ImpulseSums {
     /// On the second body [N s].
     impulse: [f64; 3],
@@ -31,7 +32,7 @@ struct ImpulseSums {
 }
 
 /// What a pair is like in one use of contact.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 struct Touching {
     /// For how long [s].
     duration: f64,
@@ -49,11 +50,12 @@ struct Touching {
 const CLOSE: f64 = 0.01;
 
 /// Impulses and works of contact since the start, by pair.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct ContactSums {
     /// Pairs that ever touched, in the order in which they first did.
     pairs: Vec<TouchedPair>,
     /// Where each of them stands.
+    #[serde(skip)]
     places: HashMap<[usize; 2], usize, BuildHasherDefault<Mixer>>,
     /// Those that are part of a use.
     present: Vec<usize>,
@@ -71,7 +73,7 @@ pub struct ContactSums {
 }
 
 /// Two bodies that touched.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 struct TouchedPair {
     bodies: [usize; 2],
     sum: ImpulseSums,
@@ -122,6 +124,20 @@ impl ImpulseSums {
 }
 
 impl ContactSums {
+    /// Sums that were saved, with where each pair stands.
+    pub fn indexed(mut self) -> Self {
+        self.places = self.pairs.iter().enumerate().map(|(place, pair)| (pair.bodies, place)).collect();
+        self
+    }
+
+    /// Whether all bodies that they name are among so many.
+    pub fn are_of(&self, bodies: usize) -> bool {
+        self.pairs.iter().all(|pair| {
+            let largest = pair.largest.iter().all(|patch| [patch.body_a, patch.body_b] == pair.bodies);
+            pair.bodies[0] < pair.bodies[1] && pair.bodies[1] < bodies && largest
+        }) && self.present.iter().all(|&place| place < self.pairs.len())
+    }
+
     /// Adds the impulses of one use of contact; surfaces count as touching for `duration` [s].
     pub fn add<'a, T: Real, const D: usize>(
         &mut self,

@@ -10,10 +10,11 @@
 //! that is the h^2/4. A ring reads as what is wider, a circle of its area:
 //! the moments of a ring do not tell how narrow it is.
 
+use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
 /// Shares of a contact's area and where they lie.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub(super) struct Spread {
     /// [m^2]
     pub area: f64,

@@ -4,12 +4,16 @@
 //! plane scenes have zeros in the third component.
 
 mod column;
+mod saved;
 mod snapshot;
 
 pub use column::{ColumnRef, NoColumn};
+pub(crate) use saved::SavedUnbounded;
+pub use saved::{RestoreError, SavedBody, SavedColumn, SavedState};
 pub use snapshot::{ColumnSource, ParticleSnapshot, SnapshotColumn};
 
 use crate::column::ColumnDescription;
+use crate::scene::StartVelocities;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 
@@ -87,6 +91,25 @@ pub trait Simulation: View + Send {
     /// Drops all that can be made anew from the state between two steps: grid, lists, room to work in. The next step
     /// makes it anew, with the same bits as without.
     fn rebuild_workspace(&mut self) {}
+    /// The state as data, to be taken up by another simulation of the same scene; `None` of one that has none.
+    fn save(&self) -> Option<SavedState> {
+        None
+    }
+    /// Lets bodies begin as those of the same name were in the state of another run, before the first step. The others
+    /// begin as they are.
+    ///
+    /// # Errors
+    /// A body of the same name is another one there; then nothing is changed.
+    fn begin_from(&mut self, _state: &SavedState, _velocities: StartVelocities) -> Result<(), RestoreError> {
+        Err(RestoreError("this simulation takes up none".to_string()))
+    }
+    /// Takes up a state, and goes on from there.
+    ///
+    /// # Errors
+    /// It is the state of another scene; then nothing is changed.
+    fn restore(&mut self, _state: SavedState) -> Result<(), RestoreError> {
+        Err(RestoreError("this simulation takes up none".to_string()))
+    }
 }
 
 /// One body at one time.
@@ -110,7 +133,7 @@ pub struct BodyState {
 }
 
 /// Energy and momentum of everything. Dissipated and supplied energies are summed from the start.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Ledger {
     /// Kinetic energy of the particles [J].
     pub kinetic: f64,
@@ -143,7 +166,7 @@ pub struct Ledger {
 }
 
 /// What a load or a support did. Impulse and work are sums since the start: differences are what it did in between.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct LoadState {
     /// Impulse on the body [N s].
     pub impulse: [f64; 3],
@@ -167,7 +190,7 @@ pub struct RelaxationState {
 }
 
 /// What contact did to two bodies since the start. Sums over time and nodes: differences are what it did in between.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ContactSum {
     /// Indices of the bodies, the smaller first.
     pub bodies: [usize; 2],
@@ -194,7 +217,7 @@ pub struct ContactSum {
 }
 
 /// A reader's place in time among the contacts. Each reader has its own, and none disturbs another.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct ContactCursor {
     since: f64,
     /// Sums at that time, by pair.
@@ -283,7 +306,7 @@ pub struct ContactMean {
 }
 
 /// The widest contact of two bodies so far.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ContactPatch {
     /// Index of the first body; smaller than `body_b`.
     pub body_a: usize,
@@ -330,7 +353,7 @@ pub struct TracedParticle {
 }
 
 /// Grid nodes with mass as columns of equal length; a node that two bodies share stands there twice.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct GridSnapshot {
     /// 2 or 3.
     pub dimension: usize,
@@ -348,6 +371,15 @@ pub struct GridSnapshot {
     pub force: Vec<[f64; 3]>,
     /// Change of the body's momentum by contact in the step [N s].
     pub contact_impulse: Vec<[f64; 3]>,
+}
+
+impl GridSnapshot {
+    /// Whether all columns have one length.
+    pub fn is_even(&self) -> bool {
+        let GridSnapshot { body, position, mass, velocity, force, contact_impulse, .. } = self;
+        let lengths = [position.len(), mass.len(), velocity.len(), force.len(), contact_impulse.len()];
+        lengths.iter().all(|&length| length == body.len())
+    }
 }
 
 /// A step that went wrong.
@@ -371,8 +403,14 @@ pub enum StepError {
         determinant: f64,
     },
     /// A particle left the domain.
-    #[error("particle {number} of body `{body}` left the domain at {} m, t = {time:.6e} s", place(position))]
+    #[error(
+        "particle {number} of body `{body}` left {} at {} m, t = {time:.6e} s",
+        if *bounded { "the domain" } else { "all that the grid can number" },
+        place(position)
+    )]
     Escaped {
+        /// Whether the scene has a domain.
+        bounded: bool,
         /// Name of the body.
         body: String,
         /// Number of the particle in its body.
@@ -427,7 +465,11 @@ impl StepError {
             StepError::Inverted { .. } => {
                 "try a smaller time.courant, more cells, the gimp basis, or a stiffer material; look at the last frame"
             }
-            StepError::Escaped { .. } => {
+            StepError::Escaped { bounded: false, .. } => {
+                "it is millions of cells from the origin: look at the last frame for what threw it there, end the run \
+                 earlier, or give the scene a domain"
+            }
+            StepError::Escaped { bounded: true, .. } => {
                 "make the domain larger, end the run earlier, or put a face in the way"
             }
             StepError::NoThickness { .. } => {
@@ -447,7 +489,8 @@ mod tests {
     #[test]
     fn a_particle_that_left_is_named_with_its_place() {
         let position = [0.1503039572985548, -2.0, 1.23456e-7];
-        let error = StepError::Escaped { body: "disk".into(), number: 7, position, time: 0.25 };
+        let error =
+            StepError::Escaped { bounded: true, body: "disk".into(), number: 7, position, time: 0.25 };
         let expected =
             "particle 7 of body `disk` left the domain at (0.1503, -2, 0.00000012346) m, t = 2.500000e-1 s";
         assert_eq!(error.to_string(), expected);

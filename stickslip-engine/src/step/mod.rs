@@ -29,6 +29,7 @@ mod loads;
 mod naive;
 mod pass;
 mod relax;
+mod saving;
 mod state;
 mod tile;
 mod unbounded;
@@ -39,15 +40,17 @@ mod watch;
 pub(crate) use build::own_columns;
 pub use build::{build, build_on};
 pub use pass::ParticleLoop;
+pub(crate) use relax::RelaxationProgress;
+pub(crate) use state::Disorder;
 pub(crate) use unbounded::particles_around;
 
 use crate::basis::Basis;
 use crate::boundary::Boundary;
 use crate::clock::fastest_signal;
 use crate::contact::ContactUse;
-use crate::door::{Simulation, StepError};
+use crate::door::{RestoreError, SavedState, Simulation, StepError};
 use crate::lanes::Laned;
-use crate::scene::StressUpdate;
+use crate::scene::{StartVelocities, StressUpdate};
 use crate::transfer::Share;
 use account::Interpolated;
 use state::{Settings, State, Workspace};
@@ -195,5 +198,21 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
 
     fn rebuild_workspace(&mut self) {
         self.workspace = Workspace::new(Boundary::new(self.settings.walls.clone()));
+    }
+
+    fn save(&self) -> Option<SavedState> {
+        Some(self.saved())
+    }
+
+    fn begin_from(&mut self, state: &SavedState, velocities: StartVelocities) -> Result<(), RestoreError> {
+        self.carry_over(state, velocities)?;
+        self.rebuild_workspace();
+        Ok(())
+    }
+
+    fn restore(&mut self, state: SavedState) -> Result<(), RestoreError> {
+        self.take_up(state)?;
+        self.rebuild_workspace();
+        Ok(())
     }
 }

@@ -11,11 +11,12 @@ use crate::lanes::Laned;
 use crate::rigid::RigidMotion;
 use crate::scene;
 use crate::threads::each;
+use serde::{Deserialize, Serialize};
 use std::sync::PoisonError;
 use std::time::Instant;
 
 /// How far the bodies are from rest.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct RelaxationProgress {
     /// Unbalanced forces at the nodes over those that act there, in the last step [-].
     pub residual: f64,

@@ -13,6 +13,7 @@ use crate::grid::{ActiveBlocks, Field, Lattice};
 use crate::load::{LoadPoints, LoadSums};
 use crate::scene::{Time, Transfer};
 use crate::tensor::Vector;
+use serde::{Deserialize, Serialize};
 use std::sync::{Arc, Mutex};
 
 use super::pass::ParticleLoop;
@@ -121,7 +122,7 @@ impl<T, const D: usize> Workspace<T, D> {
 }
 
 /// How far the order of a body's particles in memory is from that in which tiles visit them.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Disorder {
     /// Particles that changed their cell since they were last sorted.
     moved: usize,

@@ -367,7 +367,13 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 time,
                 determinant: particle.deformation.det().f64(),
             },
-            FaultKind::Escaped => StepError::Escaped { body: name, number, position, time },
+            FaultKind::Escaped => StepError::Escaped {
+                bounded: self.settings.domain.is_some(),
+                body: name,
+                number,
+                position,
+                time,
+            },
             FaultKind::NoThickness => StepError::NoThickness { body: name, number, position, time },
             FaultKind::NotFinite => StepError::NotFinite { body: name, number, position, time },
         }

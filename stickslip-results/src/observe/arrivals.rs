@@ -2,6 +2,7 @@
 
 use super::file::OutputError;
 use super::folder::OutputFolder;
+use super::memory::Memory;
 use super::points::{Points, SamplePoint};
 use super::probes::points;
 use super::schedule::Schedule;
@@ -9,9 +10,10 @@ use super::table::{CellValue, CsvTable, TableRow, columns};
 use super::{ARRIVALS, Observer};
 use crate::door::View;
 use crate::scene::{Anchor, Arrival, Observable, Reading, Scene};
+use serde::{Deserialize, Serialize};
 
 /// A threshold that was passed; the columns of `arrivals.csv`. A threshold that was not passed has no row.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ArrivalRow {
     /// Simulated time at which it was passed, on a straight line between the samples before and after [s].
     pub time: f64,
@@ -38,27 +40,35 @@ impl TableRow for ArrivalRow {
 pub(super) struct ArrivalsObserver {
     scene: Scene,
     awaited: Option<ArrivalWatches>,
+    /// All that was ever awaited, as rows without time and place.
+    known: Vec<ArrivalRow>,
+    /// Whether what is awaited comes from a checkpoint, and the scene may want other things.
+    taken_up: bool,
     schedule: Schedule,
     table: CsvTable<ArrivalRow>,
 }
 
 /// What has not arrived yet, and the points to look at.
+#[derive(Serialize, Deserialize)]
 struct ArrivalWatches {
     watches: Vec<ArrivalWatch>,
     points: Points,
 }
 
 /// One quantity at one place, until it arrives.
+#[derive(Serialize, Deserialize)]
 struct ArrivalWatch {
     quantity: Observable,
     source: ArrivalSource,
     crossing: ThresholdCrossing,
+    /// Whether it is awaited only since the run went on: nobody knows when what has come by then came.
+    late: bool,
     /// The row, but for time and place.
     row: ArrivalRow,
 }
 
 /// Where a watch looks.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 enum ArrivalSource {
     /// The point with this index.
     Point(usize),
@@ -69,7 +79,7 @@ enum ArrivalSource {
 }
 
 /// Notices when a value first passes a threshold.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct ThresholdCrossing {
     threshold: f64,
     before: Option<[f64; 2]>,
@@ -106,6 +116,8 @@ impl ArrivalsObserver {
         Ok(ArrivalsObserver {
             scene: scene.clone(),
             awaited: None,
+            known: Vec::new(),
+            taken_up: false,
             schedule: Schedule::every(wanted.samples),
             table: CsvTable::create(folder.join(ARRIVALS), wanted.unit())?,
         })
@@ -115,14 +127,23 @@ impl ArrivalsObserver {
 impl Observer for ArrivalsObserver {
     fn next(&self) -> f64 {
         match &self.awaited {
-            Some(awaited) if awaited.watches.is_empty() => f64::INFINITY,
+            Some(awaited) if awaited.watches.is_empty() && !self.taken_up => f64::INFINITY,
             _ => self.schedule.next(),
         }
     }
 
     fn observe(&mut self, view: &dyn View) -> Result<(), OutputError> {
-        let awaited = self.awaited.get_or_insert_with(|| ArrivalWatches::new(&self.scene, view));
-        let rows = awaited.arrived(view);
+        if self.awaited.is_none() || self.taken_up {
+            let wanted = ArrivalWatches::new(&self.scene, view);
+            let rows: Vec<ArrivalRow> = wanted.watches.iter().map(|watch| watch.row.clone()).collect();
+            self.awaited = Some(match self.awaited.take() {
+                Some(before) => before.changed_to(wanted, &self.known),
+                None => wanted,
+            });
+            self.known.extend(rows);
+            self.taken_up = false;
+        }
+        let rows = self.awaited.as_mut().map_or_else(Vec::new, |awaited| awaited.arrived(view));
         self.table.append(rows)?;
         self.schedule.recorded(view.time());
         Ok(())
@@ -130,6 +151,23 @@ impl Observer for ArrivalsObserver {
 
     fn conclude(&mut self) -> Result<(), OutputError> {
         self.table.finish()
+    }
+
+    fn remember(&mut self, _: &dyn View, memory: &mut Memory) -> Result<(), OutputError> {
+        memory.keep("known", &mut self.known)?;
+        let known = memory.keep("awaited", &mut self.awaited)?;
+        if memory.is_taking_up() {
+            self.taken_up = true;
+            // Of what was not awaited nobody knows whether it has come.
+            let nothing = || ArrivalWatches { watches: Vec::new(), points: Points::new(&self.scene, []) };
+            self.awaited = self.awaited.take().filter(|_| known).or_else(|| Some(nothing()));
+        }
+        if memory.is_taking_up() && !self.awaited.iter().all(|awaited| awaited.fits(self.scene.bodies.len()))
+        {
+            return Err(memory.wrong("awaited", "it names bodies or points that there are not"));
+        }
+        self.schedule.remember(memory)?;
+        self.table.remember(memory)
     }
 }
 
@@ -162,6 +200,28 @@ impl ArrivalWatches {
         ArrivalWatches { watches, points: Points::new(scene, points) }
     }
 
+    /// Whether all bodies and points that it names are there.
+    fn fits(&self, bodies: usize) -> bool {
+        self.points.fit(bodies)
+            && self.watches.iter().all(|watch| match watch.source {
+                ArrivalSource::Point(point) => point < self.points.len(),
+                ArrivalSource::Any(body) | ArrivalSource::Mean(body) => body < bodies,
+            })
+    }
+
+    /// What is wanted now: of what was awaited that which still is, as far as it has come, and what is new, which must
+    /// first be short of its threshold.
+    fn changed_to(mut self, wanted: ArrivalWatches, known: &[ArrivalRow]) -> Self {
+        self.watches.retain(|watch| wanted.watches.iter().any(|wanted| wanted.row == watch.row));
+        for mut watch in wanted.watches.into_iter().filter(|watch| !known.contains(&watch.row)) {
+            if let ArrivalSource::Point(point) = &mut watch.source {
+                *point = self.points.add(&wanted.points, *point);
+            }
+            self.watches.push(ArrivalWatch { late: true, ..watch });
+        }
+        self
+    }
+
     /// What arrived since the last look, in the order of time; it is watched no longer.
     fn arrived(&mut self, view: &dyn View) -> Vec<ArrivalRow> {
         let samples = self.points.sample(view);
@@ -173,8 +233,12 @@ impl ArrivalWatches {
                 ArrivalSource::Any(body) => furthest(view, body, watch),
                 ArrivalSource::Mean(body) => mean(view, body, watch),
             };
+            let late = std::mem::take(&mut watch.late);
             let Some((value, position)) = seen else { return true };
             let passed = watch.crossing.at(view.time(), value);
+            if late {
+                return passed.is_none();
+            }
             rows.extend(passed.map(|time| ArrivalRow { time, position, ..watch.row.clone() }));
             passed.is_none()
         });
@@ -193,7 +257,7 @@ impl ArrivalWatch {
             place: place.to_string(),
             ..ArrivalRow::default()
         };
-        ArrivalWatch { quantity, source, crossing: ThresholdCrossing::of(threshold), row }
+        ArrivalWatch { quantity, source, crossing: ThresholdCrossing::of(threshold), late: false, row }
     }
 
     fn value(&self, velocity: &[f64; 3], stress: &[f64; 6]) -> f64 {

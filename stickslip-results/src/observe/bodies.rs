@@ -2,6 +2,7 @@
 
 use super::file::OutputError;
 use super::folder::OutputFolder;
+use super::memory::Memory;
 use super::schedule::Schedule;
 use super::table::{CellValue, CsvTable, TableRow, columns};
 use super::{BODIES, Observer};
@@ -60,5 +61,10 @@ impl Observer for BodiesObserver {
 
     fn conclude(&mut self) -> Result<(), OutputError> {
         self.table.finish()
+    }
+
+    fn remember(&mut self, _: &dyn View, memory: &mut Memory) -> Result<(), OutputError> {
+        self.schedule.remember(memory)?;
+        self.table.remember(memory)
     }
 }

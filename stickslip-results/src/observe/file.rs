@@ -26,10 +26,11 @@ impl OutputError {
 fn remedy(error: &io::Error) -> &'static str {
     match error.kind() {
         io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
-            "free some space, or ask for outputs less often; everything written before can be read"
+            "free some space, or ask for outputs less often; everything written before can be read, and `stickslip resume` goes \
+             on from the last checkpoint, if there is one"
         }
         io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => {
-            "give a folder that you may write to with --out"
+            "give a folder that you may write to"
         }
         _ => "everything written before can be read",
     }
@@ -93,6 +94,60 @@ pub(super) fn replace(
         let _ = fs::remove_file(&part);
         OutputError { path: path.to_path_buf(), source }
     })
+}
+
+/// The same, flushed to the disk before it is renamed, and its name after that: for what must outlive a power cut.
+///
+/// # Errors
+/// As [`replace`].
+pub(super) fn replace_for_good(
+    path: &Path,
+    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<(), OutputError> {
+    let part = part_of(path);
+    let written = File::create(&part).and_then(|file| {
+        let mut file = BufWriter::with_capacity(1 << 18, file);
+        write(&mut file)?;
+        file.into_inner().map_err(io::IntoInnerError::into_error)?.sync_all()
+    });
+    written.and_then(|()| fs::rename(&part, path)).map_err(|source| {
+        let _ = fs::remove_file(&part);
+        OutputError { path: path.to_path_buf(), source }
+    })?;
+    path.parent().map_or(Ok(()), secure)
+}
+
+/// Waits until a file or a folder is on the disk.
+///
+/// # Errors
+/// The disk refuses.
+pub(super) fn secure(path: &Path) -> Result<(), OutputError> {
+    File::open(path).and_then(|file| file.sync_all()).map_err(OutputError::at(path))
+}
+
+/// Whether there is a file that holds something.
+///
+/// # Errors
+/// There is none, or it is empty.
+pub(super) fn is_there(path: &Path) -> Result<(), OutputError> {
+    match fs::metadata(path).map_err(OutputError::at(path))?.len() {
+        0 => Err(OutputError::at(path)(io::Error::new(io::ErrorKind::InvalidData, "it is empty"))),
+        _ => Ok(()),
+    }
+}
+
+/// Removes files one after the other until one is not there.
+///
+/// # Errors
+/// One cannot be removed.
+pub(super) fn remove_from(paths: impl Iterator<Item = PathBuf>) -> Result<(), OutputError> {
+    for path in paths {
+        match fs::remove_file(&path) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => break,
+            other => other.map_err(OutputError::at(&path))?,
+        }
+    }
+    Ok(())
 }
 
 /// The name under which [`replace`] writes before it renames.

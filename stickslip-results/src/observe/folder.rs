@@ -1,15 +1,18 @@
 //! The folder that a run writes to: made, or cleared of the results of an earlier run, and of nothing else.
 
+use super::checkpoint::is_checkpoint;
 use super::file::part_of;
 use super::manifest::Manifest;
 use super::{
-    ARRIVALS, BODIES, CONTACTS, ENERGY, FRINGES, FRINGES_ANIMATION, FRINGES_TABLE, FRONT_SPEEDS, FRONTS,
-    GRID, LOADS, PARTICLES, PROBES,
+    ARRIVALS, BODIES, CHECKPOINTS, CONTACTS, ENERGY, FRINGES, FRINGES_ANIMATION, FRINGES_TABLE, FRONT_SPEEDS,
+    FRONTS, GRID, LOADS, PARTICLES, PROBES,
 };
 use miette::Diagnostic;
-use std::fs;
+use std::ffi::OsString;
+use std::fs::{self, File, TryLockError};
 use std::io;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Files that a run may leave in its folder.
 const FILES: [&str; 13] = [
@@ -28,12 +31,17 @@ const FILES: [&str; 13] = [
     Manifest::FILE,
 ];
 /// Folders of snapshots that a run may leave in its folder.
-const SNAPSHOTS: [&str; 3] = [PARTICLES, GRID, FRINGES];
+const SNAPSHOTS: [&str; 4] = [PARTICLES, GRID, FRINGES, CHECKPOINTS];
+
+/// Where results of an earlier run stay until the next has its first record.
+const PREVIOUS: &str = "previous";
 
 /// A folder that is ready to take the results of a run.
 #[derive(Clone, Debug)]
 pub struct OutputFolder {
     path: PathBuf,
+    /// Open and locked while somebody holds the folder, where the system locks folders.
+    _lock: Arc<Option<File>>,
 }
 
 /// A folder that cannot take the results of a run: the user's choice, to be mended before the run starts.
@@ -48,9 +56,16 @@ pub enum FolderError {
         /// One of the files.
         found: String,
     },
+    /// Another run writes to it.
+    #[error("another run is writing to {}", path.display())]
+    #[diagnostic(help("wait until it has ended, or write to another folder"))]
+    InUse {
+        /// The folder.
+        path: PathBuf,
+    },
     /// It cannot be made, read or written.
     #[error("cannot write results to {}: {source}", path.display())]
-    #[diagnostic(help("give a folder that you may write to with --out"))]
+    #[diagnostic(help("give a folder that you may write to"))]
     Unusable {
         /// The folder, or the file in it that stands in the way.
         path: PathBuf,
@@ -60,9 +75,10 @@ pub enum FolderError {
 }
 
 impl OutputFolder {
-    /// Makes the folder, or clears it of the results of an earlier run.
+    /// Makes the folder, or puts the results of an earlier run in it aside, into the folder `previous`, until
+    /// [`OutputFolder::begun`].
     ///
-    /// A folder counts as one of ours if it is empty or holds a [`Manifest`]. Only files that a run writes are removed:
+    /// A folder counts as one of ours if it is empty or holds a [`Manifest`]. Only files that a run writes are moved:
     /// notes, plots and pictures beside them stay.
     ///
     /// # Errors
@@ -70,18 +86,49 @@ impl OutputFolder {
     pub fn prepare(path: &Path) -> Result<Self, FolderError> {
         let unusable = |source| FolderError::Unusable { path: path.to_path_buf(), source };
         fs::create_dir_all(path).map_err(unusable)?;
+        let lock = lock(path)?;
         let mut entries = fs::read_dir(path).map_err(unusable)?;
         if let Some(entry) = entries.next().transpose().map_err(unusable)?
             && Manifest::read(path).is_err()
+            && Manifest::read(&path.join(PREVIOUS)).is_err()
         {
             let found = entry.file_name().to_string_lossy().into_owned();
             return Err(FolderError::Foreign { path: path.to_path_buf(), found });
         }
-        // Asked for before anything is removed: a folder that cannot be written keeps its old results.
-        let trial = path.join(".stickslip");
-        fs::write(&trial, []).and_then(|()| fs::remove_file(&trial)).map_err(unusable)?;
-        clear(path)?;
-        Ok(OutputFolder { path: path.to_path_buf() })
+        // Asked for before anything is moved: a folder that cannot be written keeps its old results.
+        try_to_write(path).map_err(unusable)?;
+        put_aside(path)?;
+        Ok(OutputFolder { path: path.to_path_buf(), _lock: Arc::new(lock) })
+    }
+
+    /// Whether the results of an earlier run are put aside.
+    pub fn has_previous(&self) -> bool {
+        self.path.join(PREVIOUS).exists()
+    }
+
+    /// Removes the results of an earlier run: there are others now.
+    ///
+    /// # Errors
+    /// They cannot be removed.
+    pub fn begun(&self) -> Result<(), FolderError> {
+        let previous = self.path.join(PREVIOUS);
+        clear(&previous)?;
+        match fs::remove_dir(&previous) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
+            other => other.map_err(|source| FolderError::Unusable { path: previous, source }),
+        }
+    }
+
+    /// The folder of a run that goes on: everything in it stays.
+    ///
+    /// # Errors
+    /// Another run writes to it, or it cannot be read.
+    pub fn reopen(path: &Path) -> Result<Self, FolderError> {
+        let unusable = |source| FolderError::Unusable { path: path.to_path_buf(), source };
+        fs::read_dir(path).map_err(unusable)?;
+        let lock = lock(path)?;
+        try_to_write(path).map_err(unusable)?;
+        Ok(OutputFolder { path: path.to_path_buf(), _lock: Arc::new(lock) })
     }
 
     /// Where a file of this folder lies.
@@ -93,6 +140,53 @@ impl OutputFolder {
     pub fn path(&self) -> &Path {
         &self.path
     }
+}
+
+fn try_to_write(path: &Path) -> io::Result<()> {
+    let trial = path.join(".stickslip");
+    fs::write(&trial, []).and_then(|()| fs::remove_file(&trial))
+}
+
+/// Locks a folder against other runs, until what is returned is dropped or the process ends, however it ends. Systems
+/// that lock no folders give nothing.
+fn lock(path: &Path) -> Result<Option<File>, FolderError> {
+    let Ok(folder) = File::open(path) else { return Ok(None) };
+    match folder.try_lock() {
+        Ok(()) => Ok(Some(folder)),
+        Err(TryLockError::WouldBlock) => Err(FolderError::InUse { path: path.to_path_buf() }),
+        Err(TryLockError::Error(_)) => Ok(None),
+    }
+}
+
+/// Moves results into the folder `previous`. If there are results in it already, those outside are of a run that never
+/// came as far as its first record, and are removed.
+fn put_aside(path: &Path) -> Result<(), FolderError> {
+    let previous = path.join(PREVIOUS);
+    if Manifest::read(&previous).is_ok() || Manifest::read(path).is_err() {
+        return clear(path);
+    }
+    let to = |source| FolderError::Unusable { path: previous.clone(), source };
+    clear(&previous)?;
+    fs::create_dir_all(&previous).map_err(to)?;
+    for folder in SNAPSHOTS {
+        let snapshots = snapshots(&path.join(folder))?;
+        if !snapshots.is_empty() {
+            fs::create_dir_all(previous.join(folder)).map_err(to)?;
+        }
+        for name in snapshots {
+            fs::rename(path.join(folder).join(&name), previous.join(folder).join(&name)).map_err(to)?;
+        }
+        remove_empty(&path.join(folder))?;
+    }
+    // As in `clear`, the manifest goes last.
+    for name in FILES {
+        match fs::rename(path.join(name), previous.join(name)) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => {}
+            other => other.map_err(to)?,
+        }
+        remove(&part_of(&path.join(name)))?;
+    }
+    Ok(())
 }
 
 fn clear(path: &Path) -> Result<(), FolderError> {
@@ -108,28 +202,38 @@ fn clear(path: &Path) -> Result<(), FolderError> {
 }
 
 fn clear_snapshots(path: &Path) -> Result<(), FolderError> {
+    snapshots(path)?.into_iter().try_for_each(|name| remove(&path.join(name)))?;
+    remove_empty(path)
+}
+
+/// The names of the snapshots in a folder; none where there is no folder.
+fn snapshots(path: &Path) -> Result<Vec<OsString>, FolderError> {
     let unusable = |source| FolderError::Unusable { path: path.to_path_buf(), source };
     let entries = match fs::read_dir(path) {
-        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
         other => other.map_err(unusable)?,
     };
-    for entry in entries {
-        let name = entry.map_err(unusable)?.file_name();
-        if is_snapshot(&name.to_string_lossy()) {
-            remove(&path.join(name))?;
-        }
-    }
+    let names: io::Result<Vec<_>> = entries.map(|entry| Ok(entry?.file_name())).collect();
+    let ours = |name: &OsString| is_snapshot(&name.to_string_lossy());
+    Ok(names.map_err(unusable)?.into_iter().filter(ours).collect())
+}
+
+/// Removes a folder that holds nothing.
+fn remove_empty(path: &Path) -> Result<(), FolderError> {
     match fs::remove_dir(path) {
-        Err(error) if error.kind() == io::ErrorKind::DirectoryNotEmpty => Ok(()),
-        other => other.map_err(unusable),
+        Err(error) if matches!(error.kind(), io::ErrorKind::DirectoryNotEmpty | io::ErrorKind::NotFound) => {
+            Ok(())
+        }
+        other => other.map_err(|source| FolderError::Unusable { path: path.to_path_buf(), source }),
     }
 }
 
-/// `00012.vtu` or `00012.png`, or the same not yet renamed.
+/// `00012.vtu`, `00012.png`, a checkpoint, or the same not yet renamed.
 fn is_snapshot(name: &str) -> bool {
-    let name = name.strip_suffix(".part").unwrap_or(name);
-    (name.strip_suffix(".vtu").or_else(|| name.strip_suffix(".png")))
-        .is_some_and(|number| number.len() >= 5 && number.bytes().all(|b| b.is_ascii_digit()))
+    let name = name.strip_suffix(".part").or_else(|| name.strip_suffix(".damaged")).unwrap_or(name);
+    let numbered = (name.strip_suffix(".vtu").or_else(|| name.strip_suffix(".png")))
+        .is_some_and(|number| number.len() >= 5 && number.bytes().all(|b| b.is_ascii_digit()));
+    numbered || is_checkpoint(name)
 }
 
 fn remove(path: &Path) -> Result<(), FolderError> {
@@ -154,6 +258,35 @@ mod tests {
     }
 
     #[test]
+    fn earlier_results_stay_until_there_are_others() {
+        let folder = tempfile::tempdir().unwrap();
+        let [out, inside] = ["", "previous"].map(|name| folder.path().join(name));
+        let full: Vec<(String, String)> =
+            (["bodies.csv", "particles/00000.vtu", "checkpoints/0000000012.checkpoint"])
+                .map(|name| (name.to_string(), format!("{name} of the first run")))
+                .into();
+        let exist = |place: &Path| {
+            full.iter().all(|(name, text)| fs::read_to_string(place.join(name)).ok().as_ref() == Some(text))
+        };
+        for name in ["particles", "checkpoints"] {
+            fs::create_dir(out.join(name)).unwrap();
+        }
+        full.iter().for_each(|(name, text)| fs::write(out.join(name), text).unwrap());
+        fs::write(out.join("notes.txt"), "mine").unwrap();
+        let scene = crate::scene::Scene::new(crate::scene::Dimension::Space, 1.0, 1.0);
+        let folder = OutputFolder { path: out.clone(), _lock: Arc::new(None) };
+        Manifest::new(&scene, Default::default()).write(&folder).unwrap();
+        drop(OutputFolder::prepare(&out).unwrap());
+        assert!(exist(&inside) && !out.join("bodies.csv").exists() && out.join("notes.txt").exists());
+        // A run that ends before its first record takes nothing away.
+        fs::write(out.join("bodies.csv"), "half of the second run").unwrap();
+        let folder = OutputFolder::prepare(&out).unwrap();
+        assert!(exist(&inside) && !out.join("bodies.csv").exists() && folder.has_previous());
+        folder.begun().unwrap();
+        assert!(!folder.has_previous() && out.join("notes.txt").exists());
+    }
+
+    #[test]
     fn a_json_file_of_another_program_does_not_make_a_folder_ours() {
         let folder = tempfile::tempdir().unwrap();
         fs::write(folder.path().join("run.json"), r#"{"program": "another", "version": "1"}"#).unwrap();
@@ -173,7 +306,7 @@ mod tests {
     #[test]
     fn snapshots_are_known_by_name() {
         assert!(is_snapshot("00000.vtu") && is_snapshot("123456.vtu") && is_snapshot("00003.vtu.part"));
-        assert!(is_snapshot("00004.png"));
+        assert!(is_snapshot("00004.png") && is_snapshot("0000000012.checkpoint.part"));
         assert!(!is_snapshot("mine.vtu") && !is_snapshot("1.vtu") && !is_snapshot("00000.vtp"));
     }
 }

@@ -1,7 +1,8 @@
 //! Snapshots through time: numbered `.vtu` files, and the `.pvd` file that tells ParaView their times.
 
-use super::file::{OutputError, ReadError, ReadProblem, replace};
+use super::file::{OutputError, ReadError, ReadProblem, is_there, remove_from, replace, secure};
 use super::folder::OutputFolder;
+use super::memory::Memory;
 use super::vtu::Vtu;
 use super::writer::Writer;
 use super::xml::attribute;
@@ -26,12 +27,15 @@ pub(super) struct Frames {
 }
 
 impl Frames {
-    /// An empty series: `name.pvd`, and files in the folder `name`.
+    /// A series, `name.pvd` and files in the folder `name`: empty, or what is there of a run that goes on.
     pub(super) fn create(folder: &OutputFolder, name: &'static str) -> Result<Self, OutputError> {
         let path = folder.join(name);
         fs::create_dir_all(&path).map_err(OutputError::at(&path))?;
-        let series = Series { folder: folder.clone(), name, times: Vec::new() };
-        series.write_collection()?;
+        let series = Series { folder: folder.clone(), name, times: Vec::new(), secured: 0 };
+        // That of a run that goes on stays until it is cut.
+        if !series.collection().exists() {
+            series.write_collection()?;
+        }
         Ok(Frames { writer: Writer::start(series).map_err(OutputError::at(&path))? })
     }
 
@@ -49,6 +53,28 @@ impl Frames {
         self.writer.hand_over(bytes, move |series| series.push(time, &encode()));
     }
 
+    /// Keeps which snapshots there are, or takes away those that were made later.
+    ///
+    /// # Errors
+    /// The disk is full or refuses; a snapshot is missing.
+    pub(super) fn remember(&mut self, memory: &mut Memory) -> Result<(), OutputError> {
+        // What the checkpoint does not know was not there.
+        let mut times = match memory.is_taking_up() {
+            true => Vec::new(),
+            false => self.writer.ask(|series| {
+                series.secure()?;
+                Ok(series.times.clone())
+            })?,
+        };
+        memory.keep("times", &mut times)?;
+        let in_earnest = memory.is_in_earnest();
+        if memory.is_taking_up() {
+            self.writer.ask(move |series| series.cut(times, in_earnest))
+        } else {
+            Ok(())
+        }
+    }
+
     /// Waits until everything is written.
     ///
     /// # Errors
@@ -63,12 +89,15 @@ struct Series {
     folder: OutputFolder,
     name: &'static str,
     times: Vec<f64>,
+    /// How many of them are known to be on the disk.
+    secured: usize,
 }
 
 impl Series {
     /// Adds a snapshot; after an error the series is as it was.
     fn push(&mut self, time: f64, snapshot: &Vtu) -> Result<(), OutputError> {
         if self.times.last() == Some(&time) {
+            self.secured = self.secured.min(self.times.len() - 1);
             return snapshot.write(&self.path(self.times.len() - 1));
         }
         let path = self.path(self.times.len());
@@ -81,6 +110,32 @@ impl Series {
         })
     }
 
+    /// Waits until all of it is on the disk.
+    fn secure(&mut self) -> Result<(), OutputError> {
+        for path in (self.secured..self.times.len()).map(|number| self.path(number)) {
+            secure(&path)?;
+        }
+        self.secured = self.times.len();
+        secure(&self.collection())?;
+        secure(&self.folder.join(self.name))
+    }
+
+    /// Takes away all but the snapshots at these times.
+    fn cut(&mut self, times: Vec<f64>, in_earnest: bool) -> Result<(), OutputError> {
+        (0..times.len()).try_for_each(|number| is_there(&self.path(number)))?;
+        if !in_earnest {
+            return Ok(());
+        }
+        self.times = times;
+        self.secured = self.secured.min(self.times.len());
+        remove_from((self.times.len()..).map(|number| self.path(number)))?;
+        self.write_collection()
+    }
+
+    fn collection(&self) -> PathBuf {
+        self.folder.join(&format!("{}.pvd", self.name))
+    }
+
     fn path(&self, number: usize) -> PathBuf {
         self.folder.join(&self.file(number))
     }
@@ -90,7 +145,7 @@ impl Series {
     }
 
     fn write_collection(&self) -> Result<(), OutputError> {
-        replace(&self.folder.join(&format!("{}.pvd", self.name)), |xml| {
+        replace(&self.collection(), |xml| {
             writeln!(xml, "<?xml version=\"1.0\"?>")?;
             writeln!(xml, "<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">")?;
             writeln!(xml, "<Collection>")?;

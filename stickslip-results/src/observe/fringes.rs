@@ -1,8 +1,9 @@
 //! `fringes/` and `fringes.png`: photoelastic fringes as a camera behind a polariscope sees them,
 //! frame by frame and as an animation.
 
-use super::file::{OutputError, replace};
+use super::file::{OutputError, is_there, remove_from, replace, secure};
 use super::folder::OutputFolder;
+use super::memory::Memory;
 use super::table::{CellValue, CsvTable, TableRow, columns};
 use super::writer::Writer;
 use super::{FRINGES, FRINGES_ANIMATION, FRINGES_TABLE, Observer};
@@ -11,6 +12,7 @@ use crate::image::{Image, write_animation};
 use crate::polariscope::{Film, ImageWindow, Link, OpticalBench, Push, Stage, bounds, draw_links, links};
 use crate::scene::{self, Overlay, Scene};
 use rayon::{ThreadPool, ThreadPoolBuilder};
+use serde::{Deserialize, Serialize};
 use std::fs;
 use std::num::NonZero;
 use std::path::PathBuf;
@@ -43,7 +45,7 @@ impl TableRow for FringeRow {
 /// Writes `fringes.csv`, the frames in `fringes/`, and at the end `fringes.png`, all by a thread of its own.
 pub(super) struct FringesObserver {
     shutter: Shutter,
-    overlay: Overlay,
+    camera: scene::Fringes,
     /// Whether there was a first look.
     looked: bool,
     contacts: ContactCursor,
@@ -57,6 +59,8 @@ struct FringeWriter {
     folder: OutputFolder,
     table: CsvTable<FringeRow>,
     frames: Vec<PathBuf>,
+    /// How many of them are known to be on the disk.
+    secured: usize,
     /// From the first look on.
     view: Option<Photograph>,
     /// Largest force between two bodies so far [N].
@@ -145,6 +149,7 @@ impl FringesObserver {
             folder: folder.clone(),
             table: CsvTable::create(folder.join(FRINGES_TABLE), scene.outputs.measurements.unit())?,
             frames: Vec::new(),
+            secured: 0,
             view: None,
             largest: 0.0,
             hands: idle_processors(),
@@ -152,7 +157,7 @@ impl FringesObserver {
         };
         Ok(FringesObserver {
             shutter: Shutter::new(camera),
-            overlay: camera.overlay,
+            camera: camera.clone(),
             looked: false,
             contacts: ContactCursor::default(),
             writer: Writer::start(writer).map_err(OutputError::at(&path))?,
@@ -207,7 +212,7 @@ impl FringeWriter {
         draw_links(&mut image, &view.bench.stage().window, (&view.links, self.largest));
         let times = std::mem::take(&mut view.times);
         view.film = view.bench.film();
-        let path = self.folder.join(&format!("{FRINGES}/{:05}.png", self.frames.len()));
+        let path = self.frame(self.frames.len());
         replace(&path, |file| image.write_png(file))?;
         self.table.append([FringeRow {
             frame: self.frames.len(),
@@ -232,6 +237,67 @@ impl FringeWriter {
     }
 }
 
+/// What a resumed run needs of pictures: how many there are, and what has fallen on the film of the next.
+#[derive(Serialize, Deserialize)]
+struct SavedFringes {
+    frames: usize,
+    table: u64,
+    largest: f64,
+    view: Option<(ImageWindow, Film, Vec<f64>, Vec<Link>)>,
+}
+
+impl FringeWriter {
+    fn save(&mut self) -> Result<SavedFringes, OutputError> {
+        self.frames[self.secured..].iter().try_for_each(|path| secure(path))?;
+        self.secured = self.frames.len();
+        secure(&self.folder.join(FRINGES))?;
+        let view = self.view.as_ref().map(|view| {
+            let Photograph { bench, film, times, links } = view;
+            (bench.stage().window, film.clone(), times.clone(), links.clone())
+        });
+        Ok(SavedFringes {
+            frames: self.frames.len(),
+            table: self.table.length()?,
+            largest: self.largest,
+            view,
+        })
+    }
+
+    /// No pictures yet.
+    fn nothing(&self) -> SavedFringes {
+        SavedFringes { frames: 0, table: self.table.header(), largest: 0.0, view: None }
+    }
+
+    /// Goes on from there, or only looks whether it could, if not in earnest; false if the film is another camera's.
+    fn take_up(&mut self, saved: SavedFringes, in_earnest: bool) -> Result<bool, OutputError> {
+        let of_camera = |(window, film, ..): &(ImageWindow, Film, Vec<f64>, Vec<Link>)| {
+            let [width, height] = window.size;
+            width == self.camera.width && height <= 8 * width && film.fits(window.size)
+        };
+        if !saved.view.iter().all(of_camera) {
+            return Ok(false);
+        }
+        (0..saved.frames).try_for_each(|number| is_there(&self.frame(number)))?;
+        self.table.cut(saved.table, in_earnest)?;
+        if !in_earnest {
+            return Ok(true);
+        }
+        self.frames = (0..saved.frames).map(|number| self.frame(number)).collect();
+        self.secured = self.secured.min(saved.frames);
+        self.largest = saved.largest;
+        self.view = saved.view.map(|(window, film, times, links)| {
+            let stage = Stage { window, specimens: self.specimens.clone() };
+            Photograph { bench: OpticalBench::new(&self.camera.polariscope, stage), film, times, links }
+        });
+        remove_from((saved.frames..).map(|number| self.frame(number)))?;
+        Ok(true)
+    }
+
+    fn frame(&self, number: usize) -> PathBuf {
+        self.folder.join(&format!("{FRINGES}/{number:05}.png"))
+    }
+}
+
 impl Observer for FringesObserver {
     fn next(&self) -> f64 {
         // The first look, at the start, says where the bodies are.
@@ -245,7 +311,7 @@ impl Observer for FringesObserver {
         }
         self.writer.make_room()?;
         let particles = view.snapshot();
-        let pushes = (due && self.overlay == Overlay::ForceChains).then(|| {
+        let pushes = (due && self.camera.overlay == Overlay::ForceChains).then(|| {
             let push = |contact: ContactState| Push {
                 bodies: [contact.body_a, contact.body_b],
                 force: contact.mean.normal,
@@ -261,6 +327,26 @@ impl Observer for FringesObserver {
     fn conclude(&mut self) -> Result<(), OutputError> {
         self.writer.hand_over(0, FringeWriter::conclude);
         self.writer.finish()
+    }
+
+    fn remember(&mut self, _: &dyn View, memory: &mut Memory) -> Result<(), OutputError> {
+        let Shutter { frame, sample, .. } = &mut self.shutter;
+        memory.keep("frame", frame)?;
+        memory.keep("sample", sample)?;
+        memory.keep("looked", &mut self.looked)?;
+        memory.keep("contacts", &mut self.contacts)?;
+        // What the checkpoint does not know was not there.
+        let mut saved = match memory.is_taking_up() {
+            true => self.writer.ask(|writer| Ok(writer.nothing()))?,
+            false => self.writer.ask(FringeWriter::save)?,
+        };
+        memory.keep("film", &mut saved)?;
+        if !memory.is_taking_up() {
+            return Ok(());
+        }
+        let in_earnest = memory.is_in_earnest();
+        let fits = self.writer.ask(move |writer| writer.take_up(saved, in_earnest))?;
+        if fits { Ok(()) } else { Err(memory.wrong("film", "it does not fit the camera of the scene")) }
     }
 }
 

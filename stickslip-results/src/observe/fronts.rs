@@ -2,6 +2,7 @@
 
 use super::file::OutputError;
 use super::folder::OutputFolder;
+use super::memory::Memory;
 use super::schedule::Schedule;
 use super::table::{CellValue, CsvTable, TableRow, columns};
 use super::{FRONT_SPEEDS, FRONTS, Observer};
@@ -116,6 +117,20 @@ impl Observer for FrontsObserver {
         self.speeds.append(rows)?;
         self.speeds.finish()?;
         self.table.finish()
+    }
+
+    fn remember(&mut self, _: &dyn View, memory: &mut Memory) -> Result<(), OutputError> {
+        let of_track = |track: &Track| (track.front.clone(), track.furthest.clone());
+        let mut kept: Vec<_> = self.tracks.iter().map(of_track).collect();
+        memory.keep("tracks", &mut kept)?;
+        for track in &mut self.tracks {
+            if let Some((_, furthest)) = kept.iter().find(|(front, _)| *front == track.front) {
+                track.furthest.clone_from(furthest);
+            }
+        }
+        self.schedule.remember(memory)?;
+        memory.part("speeds", |memory| self.speeds.remember(memory))?;
+        self.table.remember(memory)
     }
 }
 

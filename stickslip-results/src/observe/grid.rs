@@ -3,6 +3,7 @@
 use super::file::OutputError;
 use super::folder::OutputFolder;
 use super::frames::Frames;
+use super::memory::Memory;
 use super::schedule::Schedule;
 use super::vtu::{NUMBER, VECTOR, Vtu};
 use super::{GRID, Observer};
@@ -15,11 +16,27 @@ const NODE_BYTES: usize = 13 * size_of::<f64>() + size_of::<u32>();
 pub(super) struct GridObserver {
     schedule: Schedule,
     frames: Frames,
+    /// Steps taken at the checkpoint from which the run went on, and the grid there, which nobody can make anew.
+    taken_up: Option<(u64, GridSnapshot)>,
 }
 
 impl GridObserver {
     pub(super) fn create(interval: f64, folder: &OutputFolder) -> Result<Self, OutputError> {
-        Ok(GridObserver { schedule: Schedule::every(interval), frames: Frames::create(folder, GRID)? })
+        Ok(GridObserver {
+            schedule: Schedule::every(interval),
+            frames: Frames::create(folder, GRID)?,
+            taken_up: None,
+        })
+    }
+}
+
+impl GridObserver {
+    /// The grid of the last step.
+    fn grid(&self, view: &dyn View) -> GridSnapshot {
+        match &self.taken_up {
+            Some((steps, grid)) if *steps == view.steps() => grid.clone(),
+            _ => view.grid_snapshot(),
+        }
     }
 }
 
@@ -31,7 +48,7 @@ impl Observer for GridObserver {
     fn observe(&mut self, view: &dyn View) -> Result<(), OutputError> {
         let time = view.time();
         self.frames.make_room()?;
-        let snapshot = view.grid_snapshot();
+        let snapshot = self.grid(view);
         let bytes = NODE_BYTES * snapshot.mass.len();
         self.frames.push(time, bytes, move || encode_grid(&snapshot, time));
         self.schedule.recorded(time);
@@ -40,6 +57,16 @@ impl Observer for GridObserver {
 
     fn conclude(&mut self) -> Result<(), OutputError> {
         self.frames.finish()
+    }
+
+    fn remember(&mut self, view: &dyn View, memory: &mut Memory) -> Result<(), OutputError> {
+        let mut grid = (!memory.is_taking_up()).then(|| (view.steps(), self.grid(view)));
+        memory.keep("grid", &mut grid)?;
+        if memory.is_taking_up() {
+            self.taken_up = grid.filter(|(_, grid)| grid.is_even());
+        }
+        self.schedule.remember(memory)?;
+        self.frames.remember(memory)
     }
 
     fn replaces(&self) -> bool {

@@ -2,6 +2,7 @@
 
 use super::file::OutputError;
 use super::folder::OutputFolder;
+use super::memory::Memory;
 use super::schedule::Schedule;
 use super::table::{CellValue, CsvTable, TableRow, columns};
 use super::{LOADS, Observer};
@@ -76,5 +77,12 @@ impl Observer for LoadsObserver {
 
     fn conclude(&mut self) -> Result<(), OutputError> {
         self.table.finish()
+    }
+
+    fn remember(&mut self, _: &dyn View, memory: &mut Memory) -> Result<(), OutputError> {
+        memory.keep("before", &mut self.before)?;
+        self.before.1.resize(self.names.len(), LoadState::default());
+        self.schedule.remember(memory)?;
+        self.table.remember(memory)
     }
 }

@@ -1,12 +1,12 @@
 //! `run.json`: what was run, by which program, how it went and how long it took.
 
-use super::file::{OutputError, ReadError, ReadProblem, replace};
+use super::file::{OutputError, ReadError, ReadProblem, replace_for_good};
 use super::folder::OutputFolder;
 use crate::door::RelaxationState;
 use crate::scene::Scene;
 use serde::{Deserialize, Serialize};
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The record of a run. It is there from the first moment of the run, so that a folder of results is known as one.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -32,14 +32,36 @@ pub struct Manifest {
     /// How far dynamic relaxation came, if the scene asks for it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub relaxation: Option<RelaxationState>,
+    /// Simulated times at which it was taken up from a checkpoint [s].
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub resumed: Vec<f64>,
+    /// SHA-256 of the particles at the end, if a checkpoint was made of it, see [`super::state_sum`]: the same for any
+    /// number of threads and however often the run was interrupted.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub state_sum: Option<String>,
     /// What is wrong with its results, in the order in which it was found.
     #[serde(default)]
     pub warnings: Vec<RunWarning>,
     /// Known answers, to be held against `bodies.csv`.
     pub references: Vec<ReferenceCurve>,
+    /// Where the scene came from, if from a file.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub source: Option<SceneSource>,
     /// The scene as run, in SI units, parameters resolved; numbers that are infinite stand as `null`.
     /// [`Results::scene`](super::Results::scene) reads it.
     pub scene: serde_json::Value,
+}
+
+/// A scene file with what was set on the command line.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct SceneSource {
+    /// The file.
+    pub path: PathBuf,
+    /// Parameters and keys that have other values than in the file: name and value.
+    pub set: Vec<(String, String)>,
+    /// To where the run goes on, if not to the end of the scene, as the user wrote it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub until: Option<String>,
 }
 
 /// How a run stands.
@@ -52,6 +74,8 @@ pub enum Status {
     Finished,
     /// The user stopped it.
     Interrupted,
+    /// It took as long as it was given.
+    OutOfTime,
     /// It could not go on.
     Failed,
 }
@@ -138,10 +162,18 @@ impl Manifest {
             bodies: scene.bodies.iter().map(|body| body.name.clone()).collect(),
             performance,
             relaxation: None,
+            resumed: Vec::new(),
+            state_sum: None,
             warnings: Vec::new(),
             references: reference_curves(scene),
-            scene: serde_json::to_value(scene).expect("a scene is plain data whose keys are text"),
+            source: None,
+            scene: Self::record(scene),
         }
+    }
+
+    /// A scene as the record has it.
+    pub fn record(scene: &Scene) -> serde_json::Value {
+        serde_json::to_value(scene).expect("a scene is plain data whose keys are text")
     }
 
     /// Writes the record into the folder of the run.
@@ -149,7 +181,7 @@ impl Manifest {
     /// # Errors
     /// The disk is full or refuses; then the old record stays.
     pub fn write(&self, folder: &OutputFolder) -> Result<(), OutputError> {
-        replace(&folder.join(Self::FILE), |file| {
+        replace_for_good(&folder.join(Self::FILE), |file| {
             serde_json::to_writer_pretty(&mut *file, self)?;
             writeln!(file)
         })

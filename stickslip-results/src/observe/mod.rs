@@ -9,6 +9,7 @@
 
 mod arrivals;
 mod bodies;
+mod checkpoint;
 mod contacts;
 mod energy;
 mod file;
@@ -19,6 +20,7 @@ mod fronts;
 mod grid;
 mod loads;
 mod manifest;
+mod memory;
 mod network;
 mod particles;
 mod points;
@@ -34,6 +36,7 @@ mod xml;
 
 pub use arrivals::ArrivalRow;
 pub use bodies::BodyRow;
+pub use checkpoint::{Checkpoint, state_sum};
 pub use contacts::ContactRow;
 pub use energy::EnergyRow;
 pub use file::{OutputError, ReadError, ReadProblem};
@@ -43,7 +46,8 @@ pub use fringes::{FRAMES_PER_SECOND, FringeRow};
 pub use fronts::{FrontRow, FrontSpeedRow};
 pub use grid::encode_grid;
 pub use loads::LoadRow;
-pub use manifest::{Manifest, Performance, ReferenceCurve, RunWarning, Status, Timing};
+pub use manifest::{Manifest, Performance, ReferenceCurve, RunWarning, SceneSource, Status, Timing};
+pub use memory::Memory;
 pub use network::Network;
 pub use particles::{encode_particles, read_particles};
 pub use points::PointSample;
@@ -55,9 +59,12 @@ pub use recorder::Recorder;
 pub use results::Results;
 pub use table::{CellValue, TableRow};
 pub use vtu::Vtu;
+pub use writer::Writer;
 
 use crate::door::View;
 
+/// Folder of checkpoints in that of a run.
+const CHECKPOINTS: &str = "checkpoints";
 const BODIES: &str = "bodies.csv";
 const ENERGY: &str = "energy.csv";
 const CONTACTS: &str = "contacts.csv";
@@ -92,6 +99,15 @@ pub trait Observer {
         Ok(())
     }
 
+    /// Keeps what it needs to go on in a resumed run, or takes that up, see [`Memory`]. When it keeps, all that was
+    /// handed over is on the disk on return; when it takes up, what was written after the checkpoint is cut off.
+    ///
+    /// # Errors
+    /// The disk is full or refuses; a file is not as it was at the checkpoint.
+    fn remember(&mut self, _view: &dyn View, _memory: &mut Memory) -> Result<(), OutputError> {
+        Ok(())
+    }
+
     /// Whether a second record at the same time takes the place of the first, as for snapshots; tables would repeat a
     /// row.
     fn replaces(&self) -> bool {
@@ -110,6 +126,10 @@ impl<O: Observer + ?Sized> Observer for &mut O {
 
     fn conclude(&mut self) -> Result<(), OutputError> {
         (**self).conclude()
+    }
+
+    fn remember(&mut self, view: &dyn View, memory: &mut Memory) -> Result<(), OutputError> {
+        (**self).remember(view, memory)
     }
 
     fn replaces(&self) -> bool {

@@ -3,6 +3,7 @@
 use super::file::{OutputError, ReadError};
 use super::folder::OutputFolder;
 use super::frames::Frames;
+use super::memory::Memory;
 use super::schedule::Schedule;
 use super::vtu::{NUMBER, PointArrays, Vtu};
 use super::{Observer, PARTICLES};
@@ -41,6 +42,11 @@ impl Observer for ParticlesObserver {
 
     fn conclude(&mut self) -> Result<(), OutputError> {
         self.frames.finish()
+    }
+
+    fn remember(&mut self, _: &dyn View, memory: &mut Memory) -> Result<(), OutputError> {
+        self.schedule.remember(memory)?;
+        self.frames.remember(memory)
     }
 
     fn replaces(&self) -> bool {

@@ -1,7 +1,10 @@
 //! Points at which the material is sampled, by a smooth mean over the particles around.
 
+use super::file::OutputError;
+use super::memory::Memory;
 use crate::door::{ParticleView, View};
 use crate::scene::{Anchor, Scene};
+use serde::{Deserialize, Serialize};
 
 /// Motion and stress of the material at a point.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -15,7 +18,7 @@ pub struct PointSample {
 }
 
 /// A point to sample.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct SamplePoint {
     /// Where it is at the start [m].
     pub at: [f64; 3],
@@ -35,6 +38,7 @@ pub(super) struct SamplePoint {
 /// particles; it smears a sharp front over about a cell, and within a cell of a surface it leans to the inside. A point
 /// of space takes the particles that are there now; a point of the material takes those of the first sample,
 /// with their weights, for ever.
+#[derive(Serialize, Deserialize)]
 pub(super) struct Points {
     points: Vec<(SamplePoint, TakenParticles)>,
     /// Indices of the bodies that are not rigid.
@@ -43,7 +47,7 @@ pub(super) struct Points {
 }
 
 /// Which particles a point takes.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 enum TakenParticles {
     /// Those around it now.
     Around,
@@ -117,6 +121,35 @@ impl Points {
             Some(sample)
         };
         samples.into_iter().zip(&self.points).map(place).collect()
+    }
+
+    /// How many.
+    pub(super) fn len(&self) -> usize {
+        self.points.len()
+    }
+
+    /// Whether all bodies that they name are there.
+    pub(super) fn fit(&self, bodies: usize) -> bool {
+        let named = self.points.iter().filter_map(|(point, _)| point.body);
+        named.chain(self.bodies.iter().copied()).all(|body| body < bodies)
+    }
+
+    /// Adds one of other points, and says which it is now.
+    pub(super) fn add(&mut self, others: &Points, point: usize) -> usize {
+        self.points.push(others.points[point].clone());
+        self.points.len() - 1
+    }
+
+    /// Keeps which particles points take; points that are as they were take them up.
+    pub(super) fn remember(&mut self, memory: &mut Memory) -> Result<(), OutputError> {
+        let mut kept = self.points.clone();
+        memory.keep("points", &mut kept)?;
+        for (point, taken) in &mut self.points {
+            if let Some((_, known)) = kept.iter().find(|(known, _)| known == point) {
+                *taken = known.clone();
+            }
+        }
+        Ok(())
     }
 
     /// Whether a point of the material has no particles yet.

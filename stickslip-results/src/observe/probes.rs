@@ -2,6 +2,7 @@
 
 use super::file::OutputError;
 use super::folder::OutputFolder;
+use super::memory::Memory;
 use super::points::{PointSample, Points, SamplePoint};
 use super::schedule::Schedule;
 use super::table::{CellValue, CsvTable, TableRow, columns};
@@ -115,5 +116,11 @@ impl Observer for ProbesObserver {
 
     fn conclude(&mut self) -> Result<(), OutputError> {
         self.table.finish()
+    }
+
+    fn remember(&mut self, _: &dyn View, memory: &mut Memory) -> Result<(), OutputError> {
+        self.points.remember(memory)?;
+        self.schedule.remember(memory)?;
+        self.table.remember(memory)
     }
 }

@@ -1,18 +1,19 @@
 //! All observers of a run, asked at the right times.
 
-use super::Observer;
 use super::arrivals::ArrivalsObserver;
 use super::bodies::BodiesObserver;
 use super::contacts::ContactsObserver;
 use super::energy::EnergyObserver;
-use super::file::OutputError;
+use super::file::{OutputError, is_there};
 use super::folder::OutputFolder;
 use super::fringes::FringesObserver;
 use super::fronts::FrontsObserver;
 use super::grid::GridObserver;
 use super::loads::LoadsObserver;
+use super::memory::Memory;
 use super::particles::ParticlesObserver;
 use super::probes::ProbesObserver;
+use super::{ARRIVALS, BODIES, CONTACTS, ENERGY, FRINGES, FRONTS, GRID, LOADS, Observer, PARTICLES, PROBES};
 use crate::door::View;
 use crate::scene::Scene;
 
@@ -22,6 +23,8 @@ pub struct Recorder<'a> {
 }
 
 struct Scheduled<'a> {
+    /// Under which it remembers.
+    name: String,
     observer: Box<dyn Observer + 'a>,
     /// Time of its last record [s].
     last: Option<f64>,
@@ -33,40 +36,70 @@ impl<'a> Recorder<'a> {
     /// # Errors
     /// A file cannot be made.
     pub fn new(scene: &Scene, folder: &OutputFolder) -> Result<Self, OutputError> {
-        let mut observers: Vec<Box<dyn Observer + 'a>> = vec![
-            Box::new(BodiesObserver::create(scene, folder)?),
-            Box::new(EnergyObserver::create(scene, folder)?),
-            Box::new(ContactsObserver::create(scene, folder)?),
-        ];
+        let mut recorder = Recorder { scheduled: Vec::new() };
+        recorder.schedule(BODIES, BodiesObserver::create(scene, folder)?);
+        recorder.schedule(ENERGY, EnergyObserver::create(scene, folder)?);
+        recorder.schedule(CONTACTS, ContactsObserver::create(scene, folder)?);
         if !scene.loads.is_empty() {
-            observers.push(Box::new(LoadsObserver::create(scene, folder)?));
+            recorder.schedule(LOADS, LoadsObserver::create(scene, folder)?);
         }
         let wanted = &scene.outputs.measurements;
         if !wanted.probes.is_empty() {
-            observers.push(Box::new(ProbesObserver::create(scene, folder)?));
+            recorder.schedule(PROBES, ProbesObserver::create(scene, folder)?);
         }
         if !wanted.arrivals.is_empty() {
-            observers.push(Box::new(ArrivalsObserver::create(scene, folder)?));
+            recorder.schedule(ARRIVALS, ArrivalsObserver::create(scene, folder)?);
         }
         if !wanted.fronts.is_empty() {
-            observers.push(Box::new(FrontsObserver::create(scene, folder)?));
+            recorder.schedule(FRONTS, FrontsObserver::create(scene, folder)?);
         }
         if scene.outputs.particles.is_some() || !scene.outputs.particles_at.is_empty() {
-            observers.push(Box::new(ParticlesObserver::create(scene, folder)?));
+            recorder.schedule(PARTICLES, ParticlesObserver::create(scene, folder)?);
         }
         if let Some(interval) = scene.outputs.grid {
-            observers.push(Box::new(GridObserver::create(interval, folder)?));
+            recorder.schedule(GRID, GridObserver::create(interval, folder)?);
         }
         if let Some(camera) = &scene.outputs.fringes {
-            observers.push(Box::new(FringesObserver::create((scene, camera), folder)?));
+            recorder.schedule(FRINGES, FringesObserver::create((scene, camera), folder)?);
         }
-        let scheduled = observers.into_iter().map(|observer| Scheduled { observer, last: None }).collect();
-        Ok(Recorder { scheduled })
+        Ok(recorder)
+    }
+
+    /// Looks whether the tables that a checkpoint knows are there: before they are opened, which would make them.
+    ///
+    /// # Errors
+    /// One is not.
+    pub fn find(folder: &OutputFolder, memory: &Memory) -> Result<(), OutputError> {
+        let tables = [BODIES, ENERGY, CONTACTS, LOADS, PROBES, ARRIVALS, FRONTS];
+        for path in
+            tables.iter().filter(|name| memory.has(&format!("{name}/length"))).map(|name| folder.join(name))
+        {
+            is_there(&path)?;
+        }
+        Ok(())
     }
 
     /// Adds an observer, to be asked after those of the scene.
     pub fn add(&mut self, observer: impl Observer + 'a) {
-        self.scheduled.push(Scheduled { observer: Box::new(observer), last: None });
+        let name = format!("added {}", self.scheduled.len());
+        self.schedule(&name, observer);
+    }
+
+    fn schedule(&mut self, name: &str, observer: impl Observer + 'a) {
+        self.scheduled.push(Scheduled { name: name.to_string(), observer: Box::new(observer), last: None });
+    }
+
+    /// Lets every output keep what it needs to go on, or take that up, see [`Observer::remember`].
+    ///
+    /// # Errors
+    /// A file cannot be written, or is not as it was.
+    pub fn remember(&mut self, view: &dyn View, memory: &mut Memory) -> Result<(), OutputError> {
+        self.scheduled.iter_mut().try_for_each(|Scheduled { name, observer, last }| {
+            memory.part(name, |memory| {
+                memory.keep("last", last)?;
+                observer.remember(view, memory)
+            })
+        })
     }
 
     /// Records what is due: to be called after each step.

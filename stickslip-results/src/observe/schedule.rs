@@ -1,5 +1,8 @@
 //! When an output is due.
 
+use super::file::OutputError;
+use super::memory::Memory;
+
 /// Whole multiples of an interval of simulated time, and single times besides.
 ///
 /// The run does not shorten steps for outputs: a record is made after the first step that reaches a multiple, and
@@ -9,6 +12,8 @@
 pub(super) struct Schedule {
     interval: f64,
     next: f64,
+    /// Time of the last record [s].
+    last: Option<f64>,
     /// Single times still to come, ascending.
     single: Vec<f64>,
 }
@@ -20,7 +25,7 @@ const EARLY: f64 = 1e-6;
 impl Schedule {
     /// Due at once, then at multiples of `interval` [s].
     pub(super) fn every(interval: f64) -> Self {
-        Schedule { interval, next: f64::NEG_INFINITY, single: Vec::new() }
+        Schedule { interval, next: f64::NEG_INFINITY, last: None, single: Vec::new() }
     }
 
     /// Due at these times besides, which ascend [s].
@@ -39,6 +44,17 @@ impl Schedule {
         let multiple = (time / self.interval + EARLY).floor() + 1.0;
         self.next = if self.interval > 0.0 { (multiple - EARLY) * self.interval } else { time };
         self.single.retain(|single| single * (1.0 - EARLY) > time);
+        self.last = Some(time);
+    }
+
+    /// Keeps when the last record was made, or goes on from there.
+    pub(super) fn remember(&mut self, memory: &mut Memory) -> Result<(), OutputError> {
+        let mut last = self.last;
+        memory.keep("recorded", &mut last)?;
+        if let Some(time) = last.filter(|_| memory.is_taking_up()) {
+            self.recorded(time);
+        }
+        Ok(())
     }
 }
 

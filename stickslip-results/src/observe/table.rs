@@ -1,10 +1,11 @@
 //! Tables in CSV: a header, then whole rows only, whatever stops the run.
 
 use super::file::{OutputError, ReadError, ReadProblem};
+use super::memory::Memory;
 use super::writer::Writer;
 use serde::Serialize;
 use std::fs::{self, File};
-use std::io::{self, Write};
+use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::marker::PhantomData;
 use std::path::{Path, PathBuf};
 
@@ -80,6 +81,8 @@ pub(super) const TIME_UNITS: &str = "time_units";
 /// A thread of its own writes it.
 pub(super) struct CsvTable<R> {
     writer: Writer<Sheet>,
+    /// Bytes of the header.
+    header: u64,
     /// Length of the scene's unit of time [s].
     unit: Option<f64>,
     row: PhantomData<R>,
@@ -94,14 +97,54 @@ struct Sheet {
 }
 
 impl<R: TableRow> CsvTable<R> {
-    /// A table with its header and no rows yet.
+    /// A table with its header; one that is there already, of a run that goes on, keeps its rows.
     pub(super) fn create(path: PathBuf, unit: Option<f64>) -> Result<Self, OutputError> {
-        let file = File::create(&path).map_err(OutputError::at(&path))?;
-        let mut sheet = Sheet { path: path.clone(), file, length: 0 };
         let mut row = R::default();
         let names = row.columns().into_iter().map(|(name, _)| name).chain(unit.map(|_| TIME_UNITS));
-        sheet.write((names.collect::<Vec<_>>().join(",") + "\n").as_bytes())?;
-        Ok(CsvTable { writer: Writer::start(sheet).map_err(OutputError::at(&path))?, unit, row: PhantomData })
+        let header = names.collect::<Vec<_>>().join(",") + "\n";
+        let sheet = Sheet::open(&path, &header)?;
+        let header = header.len() as u64;
+        Ok(CsvTable {
+            writer: Writer::start(sheet).map_err(OutputError::at(&path))?,
+            header,
+            unit,
+            row: PhantomData,
+        })
+    }
+
+    /// Keeps how long it is, or cuts off what was written later.
+    ///
+    /// # Errors
+    /// The disk is full or refuses; the table is shorter than it was.
+    pub(super) fn remember(&mut self, memory: &mut Memory) -> Result<(), OutputError> {
+        // What the checkpoint does not know was not there.
+        let mut length = if memory.is_taking_up() { self.header } else { self.length()? };
+        memory.keep("length", &mut length)?;
+        if memory.is_taking_up() { self.cut(length, memory.is_in_earnest()) } else { Ok(()) }
+    }
+
+    /// Bytes of its header, which it has without rows.
+    pub(super) fn header(&self) -> u64 {
+        self.header
+    }
+
+    /// Bytes that it has on the disk, with all that was appended.
+    ///
+    /// # Errors
+    /// The disk is full or refuses.
+    pub(super) fn length(&mut self) -> Result<u64, OutputError> {
+        self.writer.ask(|sheet| {
+            sheet.file.sync_data().map_err(OutputError::at(&sheet.path))?;
+            Ok(sheet.length)
+        })
+    }
+
+    /// Cuts off what is beyond a length, or only looks whether it could, if not in earnest.
+    ///
+    /// # Errors
+    /// The disk refuses; the table is shorter than that.
+    pub(super) fn cut(&mut self, length: u64, in_earnest: bool) -> Result<(), OutputError> {
+        self.writer.ask(move |sheet| sheet.cut(length, in_earnest))
     }
 
     /// Adds rows. They are complete when they are in the file, which is soon.
@@ -125,6 +168,47 @@ impl<R: TableRow> CsvTable<R> {
 }
 
 impl Sheet {
+    /// The file of a table, with its header if it is new.
+    fn open(path: &Path, header: &str) -> Result<Self, OutputError> {
+        let at = OutputError::at;
+        let mut file = File::options()
+            .read(true)
+            .write(true)
+            .create(true)
+            .truncate(false)
+            .open(path)
+            .map_err(at(path))?;
+        let length = file.metadata().map_err(at(path))?.len();
+        let mut sheet = Sheet { path: path.to_path_buf(), length, file: file.try_clone().map_err(at(path))? };
+        if length == 0 {
+            sheet.write(header.as_bytes())?;
+            return Ok(sheet);
+        }
+        let mut found = vec![0; header.len()];
+        let same = file.read_exact(&mut found).is_ok() && found == header.as_bytes();
+        if !same {
+            let other = io::Error::new(io::ErrorKind::InvalidData, "it is a table with other columns");
+            return Err(OutputError { path: path.to_path_buf(), source: other });
+        }
+        sheet.file.seek(SeekFrom::End(0)).map_err(at(path))?;
+        Ok(sheet)
+    }
+
+    fn cut(&mut self, length: u64, in_earnest: bool) -> Result<(), OutputError> {
+        if length > self.length {
+            let short = format!("it has {} bytes where the checkpoint has {length}", self.length);
+            let source = io::Error::new(io::ErrorKind::InvalidData, short);
+            return Err(OutputError { path: self.path.clone(), source });
+        }
+        if !in_earnest {
+            return Ok(());
+        }
+        let cut = self.file.set_len(length).and_then(|()| self.file.seek(SeekFrom::End(0)));
+        cut.map_err(OutputError::at(&self.path))?;
+        self.length = length;
+        Ok(())
+    }
+
     fn write(&mut self, bytes: &[u8]) -> Result<(), OutputError> {
         if let Err(source) = self.file.write_all(bytes) {
             // Cutting off the half of a row that went in; the write's own error is the one to report.
@@ -257,8 +341,12 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("table.csv");
         let sheet = Sheet { path: path.clone(), file: File::create("/dev/full").unwrap(), length: 0 };
-        let mut table =
-            CsvTable::<FieldPlace> { writer: Writer::start(sheet).unwrap(), unit: None, row: PhantomData };
+        let mut table = CsvTable::<FieldPlace> {
+            writer: Writer::start(sheet).unwrap(),
+            header: 0,
+            unit: None,
+            row: PhantomData,
+        };
         let error = table.append([row(0.5, "a")]).and_then(|()| table.finish()).unwrap_err();
         assert_eq!((error.path, error.source.kind()), (path, io::ErrorKind::StorageFull));
     }

@@ -12,7 +12,7 @@ const ROOM: usize = 64 << 20;
 /// Writes what it is handed, in that order, on a thread of its own that owns the files `F`.
 ///
 /// The first error ends it: it is returned by the next call, and nothing that was handed over later is written.
-pub(super) struct Writer<F> {
+pub struct Writer<F> {
     tasks: Option<Sender<(usize, WriterTask<F>)>>,
     done: Receiver<(usize, Result<(), OutputError>)>,
     /// Bytes handed over and not yet written.
@@ -27,7 +27,7 @@ impl<F: Send + 'static> Writer<F> {
     ///
     /// # Errors
     /// The system gives no thread.
-    pub(super) fn start(mut files: F) -> io::Result<Self> {
+    pub fn start(mut files: F) -> io::Result<Self> {
         let (tasks, handed_over) = channel::<(usize, WriterTask<F>)>();
         let (report, done) = channel();
         let thread = Builder::new().name("writer".to_string()).spawn(move || {
@@ -48,12 +48,12 @@ impl<F: Send + 'static> Writer<F> {
     ///
     /// # Errors
     /// Something that was handed over before could not be written.
-    pub(super) fn make_room(&mut self) -> Result<(), OutputError> {
+    pub fn make_room(&mut self) -> Result<(), OutputError> {
         self.wait_until(|waiting| waiting < ROOM)
     }
 
     /// Hands over what is to be written, and how many bytes it keeps in memory until then.
-    pub(super) fn hand_over(
+    pub fn hand_over(
         &mut self,
         bytes: usize,
         task: impl FnOnce(&mut F) -> Result<(), OutputError> + Send + 'static,
@@ -65,11 +65,31 @@ impl<F: Send + 'static> Writer<F> {
         }
     }
 
+    /// Waits until everything is written, and asks the thread about its files.
+    ///
+    /// # Errors
+    /// Something could not be written, or the question has no answer.
+    pub fn ask<R: Send + 'static>(
+        &mut self,
+        question: impl FnOnce(&mut F) -> Result<R, OutputError> + Send + 'static,
+    ) -> Result<R, OutputError> {
+        let (answer, answered) = channel();
+        self.hand_over(0, move |files| {
+            // Who asked waits for it.
+            let _ = answer.send(question(files)?);
+            Ok(())
+        });
+        answered.recv().map_err(|_| {
+            let ended = || OutputError { path: "writer".into(), source: io::ErrorKind::BrokenPipe.into() };
+            self.wait_until(|_| false).err().unwrap_or_else(ended)
+        })
+    }
+
     /// Waits until everything is written.
     ///
     /// # Errors
     /// Something could not be written.
-    pub(super) fn finish(&mut self) -> Result<(), OutputError> {
+    pub fn finish(&mut self) -> Result<(), OutputError> {
         self.tasks = None;
         let result = self.wait_until(|_| false);
         self.end();
@@ -153,6 +173,18 @@ mod tests {
         writer.hand_over(1, note(2));
         writer.finish().unwrap();
         assert_eq!(*log.lock().unwrap(), [0]);
+    }
+
+    #[test]
+    fn an_answer_comes_after_all_that_was_handed_over_and_errors_take_its_place() {
+        let (mut writer, _) = writer();
+        writer.hand_over(1, note(3));
+        assert_eq!(writer.ask(|log| Ok(log.lock().unwrap().clone())).unwrap(), [3]);
+        writer.hand_over(1, |_| Err(full()));
+        let error = writer.ask(|log| Ok(log.lock().unwrap().clone())).unwrap_err();
+        assert_eq!(error.source.kind(), io::ErrorKind::StorageFull);
+        let (mut writer, _) = self::writer();
+        assert!(writer.ask(|_| Err::<(), _>(full())).is_err());
     }
 
     #[test]

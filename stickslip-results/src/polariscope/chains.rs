@@ -4,6 +4,7 @@ use super::ImageWindow;
 use super::cloud::{Cloud, clouds};
 use crate::door::ParticleSnapshot;
 use crate::image::Image;
+use serde::{Deserialize, Serialize};
 
 /// Two bodies that press on each other.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,7 +16,7 @@ pub struct Push {
 }
 
 /// A line from the centre of a body to a contact.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Link {
     /// Centre of mass [m].
     pub center: [f64; 2],

@@ -3,9 +3,10 @@
 use super::color::Screen;
 use super::optics::LinearRgb;
 use crate::image::Image;
+use serde::{Deserialize, Serialize};
 
 /// Light on each pixel, linear, summed over exposures.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Film {
     size: [usize; 2],
     light: Vec<[f32; 3]>,
@@ -16,6 +17,11 @@ impl Film {
     /// Film of this width and height in pixels.
     pub fn new(size: [usize; 2]) -> Self {
         Film { size, light: vec![[0.0; 3]; size[0] * size[1]], exposures: 0 }
+    }
+
+    /// Whether it has this width and height in pixels, and light on each.
+    pub fn fits(&self, size: [usize; 2]) -> bool {
+        self.size == size && size[0].checked_mul(size[1]) == Some(self.light.len())
     }
 
     /// Times that light fell on it.

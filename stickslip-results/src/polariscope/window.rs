@@ -1,7 +1,9 @@
 //! The part of the plane that an image shows.
 
+use serde::{Deserialize, Serialize};
+
 /// A rectangle of the plane, and the pixels of its image.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ImageWindow {
     /// Lower left corner [m].
     pub low: [f64; 2],

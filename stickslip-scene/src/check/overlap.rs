@@ -33,6 +33,9 @@ const SEVEN_DIGITS: f64 = 2e-7;
 /// Bodies that overlap by less than their particles see, from the distances to their exact surfaces; those of a pair
 /// that is glued or left alone may.
 pub(super) fn warning(scene: &Scene) -> Option<Warning> {
+    if scene.start.is_some() {
+        return None;
+    }
     let (cell, axes) = (scene.discretization.cell, scene.dimension.axes());
     let inside = scene.domain.as_ref().map_or(Bounds::EVERYTHING, |domain| {
         let upper = |k: usize| if k < axes { [domain.min[k], domain.max[k]] } else { [0.0; 2] };

@@ -31,6 +31,7 @@ impl Scene {
             discretization: Discretization::new(cell),
             domain: None,
             time: Time::until(end),
+            start: None,
             damping: Damping::default(),
             gravity: [0.0; 3],
             materials: Vec::new(),
@@ -102,6 +103,7 @@ impl Outputs {
             particles_at: Vec::new(),
             grid: None,
             fringes: None,
+            checkpoints: None,
             measurements: Measurements::of_run(end),
         }
     }

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 /// Measurements of waves.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Measurements {
     /// What non-dimensional time counts in; `None` leaves time in seconds only.
     pub time_unit: Option<TimeUnit>,
@@ -27,7 +27,7 @@ pub struct TimeUnit {
 }
 
 /// A point at which velocity and stress are recorded.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Probe {
     /// Its name, unique among the probes.
     pub name: String,
@@ -40,7 +40,7 @@ pub struct Probe {
 }
 
 /// What a probe stays with.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Anchor {
     /// A point of space, through which material may move.
@@ -50,7 +50,7 @@ pub enum Anchor {
 }
 
 /// A number at a point of the material, from velocity and stress.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Observable {
     /// Velocity along x [m/s].
@@ -82,7 +82,7 @@ pub enum Observable {
 }
 
 /// The first time at which a quantity passes a threshold, at probes and in bodies.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Arrival {
     /// The quantity.
     pub quantity: Observable,
@@ -97,7 +97,7 @@ pub struct Arrival {
 }
 
 /// What stands for a body when one number is asked of it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Reading {
     /// The material at its centre of mass at the start.
@@ -109,7 +109,7 @@ pub enum Reading {
 }
 
 /// The furthest point, along a direction, at which a quantity is at a threshold or beyond.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Front {
     /// Its name, unique among the fronts.
     pub name: String,

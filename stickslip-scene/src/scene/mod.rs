@@ -34,6 +34,7 @@ use crate::geometry::{Arrangement, Shape, SiteLattice};
 use crate::material::{Material, Thickness};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 
 /// Everything that a run needs, resolved to SI units.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -54,6 +55,8 @@ pub struct Scene {
     pub domain: Option<Domain>,
     /// Time and how it is stepped.
     pub time: Time,
+    /// From where bodies begin, if not as their shapes are filled.
+    pub start: Option<Start>,
     /// What slows the bodies down beside contact and materials.
     pub damping: Damping,
     /// Acceleration of every body [m/s^2].
@@ -70,6 +73,25 @@ pub struct Scene {
     pub outputs: Outputs,
     /// Known answers that plots and summaries hold the run against.
     pub references: Vec<Reference>,
+}
+
+/// The state of another run, from which bodies of the same names begin.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Start {
+    /// Its folder of results, or a checkpoint.
+    pub from: PathBuf,
+    /// What becomes of the velocities there.
+    pub velocities: StartVelocities,
+}
+
+/// What becomes of velocities where bodies begin as another run left them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum StartVelocities {
+    /// They go on.
+    Kept,
+    /// The bodies begin at rest.
+    Zero,
 }
 
 /// A named parameter of a scene file as it was used.
@@ -425,6 +447,8 @@ pub struct Outputs {
     pub grid: Option<f64>,
     /// Photoelastic fringes.
     pub fringes: Option<Fringes>,
+    /// Checkpoints, from which a run can go on.
+    pub checkpoints: Option<f64>,
     /// Probes, arrivals and fronts.
     pub measurements: Measurements,
 }

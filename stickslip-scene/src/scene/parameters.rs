@@ -6,7 +6,7 @@ use super::expression::{Expression, PLACE};
 use super::formula::{self, Formula, FormulaError, FormulaNumber, Meaning, Names, NumberKind};
 use super::source::{DocumentNode, Source, Value};
 use super::suggestion::did_you_mean;
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 
 /// The parameters of a scene, evaluated when they are first asked for.
@@ -16,7 +16,16 @@ pub(super) struct Parameters<'s> {
     evaluated: RefCell<BTreeMap<&'s str, Result<FormulaNumber, Fault>>>,
     /// Parameters that are being evaluated, to notice circles.
     pending: RefCell<Vec<&'s str>>,
+    /// Parameters that were put into the present text.
+    put: Cell<usize>,
 }
+
+/// Parameters that may wait for each other.
+const LONGEST_CHAIN: usize = 64;
+/// Parameters that may be put into one text, those in the texts of others among them.
+const MOST_PUT: usize = 10_000;
+/// Bytes that a text may have.
+const LONGEST_TEXT: usize = 1 << 16;
 
 /// What a formula may depend on beside parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -57,7 +66,13 @@ impl<'s> Parameters<'s> {
                 return Err(node.fault("a number, or a formula or a word in quotes"));
             }
         }
-        Ok(Parameters { source, nodes, evaluated: RefCell::default(), pending: RefCell::default() })
+        Ok(Parameters {
+            source,
+            nodes,
+            evaluated: RefCell::default(),
+            pending: RefCell::default(),
+            put: Cell::new(0),
+        })
     }
 
     /// Every parameter with its value in this run. A text that has no value as a formula is a word.
@@ -116,6 +131,12 @@ impl<'s> Parameters<'s> {
             Value::Number(number) => return Ok(number.to_string()),
             _ => return Err(node.fault("text in quotes")),
         };
+        if self.pending.borrow().is_empty() {
+            self.put.set(0);
+        }
+        let too_long = || {
+            Fault::new(&node.key, "text that grows without end", "parameters that put less into each other")
+        };
         let mut result = String::new();
         let mut at = 0;
         while let Some(brace) = text[at..].find('{') {
@@ -134,6 +155,10 @@ impl<'s> Parameters<'s> {
                     .at(self.source.inside(node, open..text.len())));
             };
             let name = rest[..length].trim();
+            self.put.set(self.put.get() + 1);
+            if self.put.get() > MOST_PUT || result.len() > LONGEST_TEXT {
+                return Err(too_long().at(self.source.inside(node, open..open + length + 2)));
+            }
             result.push_str(&self.word(name).unwrap_or_else(|| {
                 let allowed = format!("a parameter ({})", self.names().join(", "));
                 Err(Fault::new(&node.key, format!("unknown parameter `{name}`"), allowed)
@@ -143,7 +168,14 @@ impl<'s> Parameters<'s> {
             at = open + length + 2;
         }
         result.push_str(&text[at..]);
-        Ok(result)
+        match result.chars().find(|letter| letter.is_control()) {
+            Some(letter) => {
+                let found = format!("text with the control character {letter:?}");
+                Err(Fault::new(&node.key, found, "text of letters, digits, signs and spaces")
+                    .at(node.span.clone()))
+            }
+            None => Ok(result),
+        }
     }
 
     /// The parameter as text, if there is one of that name.
@@ -177,6 +209,13 @@ impl<'s> Parameters<'s> {
             let circle = self.pending.borrow()[first..].join(" -> ");
             let allowed = "parameters that do not need each other in a circle";
             return Err(Fault::new(&node.key, format!("the circle {circle} -> {}", node.name), allowed));
+        }
+        if self.pending.borrow().len() >= LONGEST_CHAIN {
+            let found = format!("a chain of more than {LONGEST_CHAIN} parameters that wait for each other");
+            let fault = Fault::new(&node.key, found, "shorter chains");
+            return Err(fault
+                .help(Some("put those that others need first".to_string()))
+                .at(node.name_span.clone()));
         }
         self.pending.borrow_mut().push(&node.name);
         let result = evaluate();

@@ -1,7 +1,8 @@
 //! Wall time of a run: how fast it goes and how long it will take.
 
 use crate::door::View;
-use crate::observe::{Performance, Timing};
+use crate::observe::{Memory, OutputError, Performance, Timing};
+use serde::{Deserialize, Serialize};
 use std::time::{Duration, Instant};
 
 /// How far a run has come.
@@ -19,6 +20,8 @@ pub struct Progress {
     pub particle_steps_per_second: f64,
     /// Wall time left at the present pace [s]; infinite while there is no pace yet.
     pub eta: f64,
+    /// What happens now, which is no cause for worry.
+    pub news: Vec<String>,
     /// What the user should know now and need not ask for: contact that is not resolved, results that are doubtful.
     pub notes: Vec<String>,
 }
@@ -39,11 +42,38 @@ pub(super) struct RunClock {
     threads: usize,
     first_time: f64,
     first_step: u64,
+    /// What was done before this was taken up.
+    before: Work,
+}
+
+/// Steps taken, the wall time that they took, and that of each verb [s].
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+struct Work {
+    steps: u64,
+    wall_time: f64,
+    timings: Vec<Timing>,
 }
 
 impl RunClock {
     pub(super) fn start(view: &dyn View, threads: usize) -> Self {
-        RunClock { start: Instant::now(), threads, first_time: view.time(), first_step: view.steps() }
+        RunClock {
+            start: Instant::now(),
+            threads,
+            first_time: view.time(),
+            first_step: view.steps(),
+            before: Work::default(),
+        }
+    }
+
+    /// Keeps what was done so far, or counts from there.
+    pub(super) fn remember(&mut self, view: &dyn View, memory: &mut Memory) -> Result<(), OutputError> {
+        let Performance { wall_time, timings, .. } = self.performance(view);
+        let mut work = Work { steps: self.before.steps + view.steps() - self.first_step, wall_time, timings };
+        memory.keep("work", &mut work)?;
+        if memory.is_taking_up() {
+            self.before = work;
+        }
+        Ok(())
     }
 
     pub(super) fn progress(&self, view: &dyn View, end: f64) -> Progress {
@@ -55,15 +85,20 @@ impl RunClock {
             end,
             steps: view.steps(),
             particles: view.particles(),
-            particle_steps_per_second: self.rate(view, wall),
+            particle_steps_per_second: self.rate(view, self.before.wall_time + wall),
             eta: if done > 0.0 { wall * (end - time) / done } else { f64::INFINITY },
+            news: Vec::new(),
             notes: Vec::new(),
         }
     }
 
     pub(super) fn performance(&self, view: &dyn View) -> Performance {
-        let wall_time = self.start.elapsed().as_secs_f64();
-        let timing = |(verb, seconds): (&str, f64)| Timing { verb: verb.to_string(), seconds };
+        let wall_time = self.before.wall_time + self.start.elapsed().as_secs_f64();
+        let earlier = |verb: &str| self.before.timings.iter().find(|timing| timing.verb == verb);
+        let timing = |(verb, seconds): (&str, f64)| {
+            let seconds = seconds + earlier(verb).map_or(0.0, |timing| timing.seconds);
+            Timing { verb: verb.to_string(), seconds }
+        };
         Performance {
             threads: self.threads,
             particles: view.particles(),
@@ -76,7 +111,7 @@ impl RunClock {
     }
 
     fn rate(&self, view: &dyn View, wall: f64) -> f64 {
-        let steps = view.steps() - self.first_step;
+        let steps = self.before.steps + view.steps() - self.first_step;
         if steps > 0 && wall > 0.0 { steps as f64 * view.particles() as f64 / wall } else { 0.0 }
     }
 

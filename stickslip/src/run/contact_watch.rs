@@ -4,10 +4,12 @@ use super::widest::{LargestForces, WidestContacts};
 use crate::check::ContactResolution;
 use crate::door::{ContactPatch, View};
 use crate::scene::Scene;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 
 /// Looks at the widest contact of each pair as often as tables are written, and tells once of each pair that bears a
 /// part of the force.
+#[derive(Serialize, Deserialize)]
 pub(super) struct ContactWatch {
     next: f64,
     /// Patches when it looked last.

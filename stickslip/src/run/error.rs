@@ -1,5 +1,6 @@
 //! What can end a run before its time.
 
+use super::ResumeError;
 use crate::march::MarchError;
 use crate::observe::{FolderError, OutputError};
 use miette::Diagnostic;
@@ -11,6 +12,11 @@ pub enum RunError {
     #[error(transparent)]
     #[diagnostic(transparent)]
     Folder(#[from] FolderError),
+
+    /// There is nothing to go on from, or not with this scene; nothing was changed.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Resume(#[from] ResumeError),
 
     /// A step failed. The state in which it failed is the last record of every output.
     #[error("{error}{}", unsaved.as_ref().map(|error| format!(" (and its last frame is lost: {error})")).unwrap_or_default())]

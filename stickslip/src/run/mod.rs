@@ -1,5 +1,6 @@
 //! The loop: step, observe, stop.
 
+mod checkpoints;
 mod clock;
 mod contact_watch;
 mod error;
@@ -7,21 +8,27 @@ mod summary;
 mod verdict;
 mod widest;
 
+pub use checkpoints::{Checkpointing, ResumeError, same_physics};
 pub use clock::Progress;
 pub use error::RunError;
 pub use summary::{ReferenceResult, Summary};
 pub use widest::{WidestContact, WidestContacts};
 
-use crate::door::Simulation;
-use crate::march::{MarchEnd, march};
-use crate::observe::{Manifest, Observer, OutputFolder, Recorder, Status};
-use crate::scene::Scene;
+use crate::door::{Ledger, Simulation, View};
+use crate::march::{March, MarchEnd};
+use crate::observe::{
+    Checkpoint, Manifest, Memory, Observer, OutputError, OutputFolder, ReadError, Recorder, SceneSource,
+    Status, state_sum,
+};
+use crate::scene::{Scene, Start};
+use checkpoints::Checkpoints;
 use clock::RunClock;
 use contact_watch::ContactWatch;
 use std::ops::ControlFlow;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
 use summary::Energies;
 use verdict::RunChecks;
 
@@ -34,13 +41,26 @@ pub struct RunOptions {
     pub stop: Arc<AtomicBool>,
     /// Threads that the simulation uses, for the record.
     pub threads: usize,
+    /// Where the scene came from, for the record.
+    pub source: Option<SceneSource>,
+    /// When checkpoints are written, from which [`resume`] goes on.
+    pub checkpoints: Checkpointing,
+    /// Wall time after which the run stops with a checkpoint; as long as it takes without it.
+    pub max_time: Option<Duration>,
 }
 
 impl RunOptions {
     /// A run that nobody stops, on all processors.
     pub fn new(out: impl Into<PathBuf>) -> Self {
         let threads = std::thread::available_parallelism().map_or(1, usize::from);
-        RunOptions { out: out.into(), stop: Arc::default(), threads }
+        RunOptions {
+            out: out.into(),
+            stop: Arc::default(),
+            threads,
+            source: None,
+            checkpoints: Checkpointing::default(),
+            max_time: None,
+        }
     }
 }
 
@@ -75,32 +95,191 @@ pub fn run_with(
     observers: &mut [&mut dyn Observer],
     progress: &mut dyn FnMut(&Progress),
 ) -> Result<Summary, RunError> {
+    if let Some(start) = &scene.start {
+        // Its results would be put aside, and removed.
+        if is_within(&start.from, &options.out) {
+            return Err(ResumeError::Itself { path: start.from.clone() }.into());
+        }
+        begin(scene, simulation)?;
+    }
     let folder = OutputFolder::prepare(&options.out)?;
-    let clock = RunClock::start(simulation, options.threads);
-    let mut manifest = Manifest::new(scene, clock.performance(simulation));
-    manifest.write(&folder)?;
-    let start = simulation.ledger();
+    drive(scene, simulation, (options, folder), (observers, Beginning::default()), progress)
+}
 
-    let mut verdict = RunChecks::new(scene, simulation);
-    let mut contact_watch = ContactWatch::new(simulation.time());
-    let outcome = Recorder::new(scene, &folder).map_err(RunError::from).and_then(|mut recorder| {
+/// Lets bodies begin as another run left them, if the scene asks for it and no step is taken yet.
+///
+/// # Errors
+/// The other run cannot be read, or has other bodies of these names; then nothing is changed.
+pub fn begin(scene: &Scene, simulation: &mut dyn Simulation) -> Result<(), ResumeError> {
+    let Some(start) = scene.start.as_ref().filter(|_| simulation.steps() == 0) else { return Ok(()) };
+    let (checkpoint, path) = beginning_of(start)?;
+    let begun = simulation.begin_from(&checkpoint.state, start.velocities);
+    begun.map_err(|problem| ResumeError::Begin { path, problem })
+}
+
+/// Whether a path is a folder or lies in it, as far as both are there.
+fn is_within(path: &Path, folder: &Path) -> bool {
+    let [path, folder] = [path, folder].map(|path| path.canonicalize().ok());
+    path.zip(folder).is_some_and(|(path, folder)| path.starts_with(folder))
+}
+
+/// The checkpoint from which a scene begins, and where it lies.
+///
+/// # Errors
+/// It cannot be read.
+pub fn beginning_of(start: &Start) -> Result<(Checkpoint, PathBuf), ReadError> {
+    match start.from.is_file() {
+        true => Ok((Checkpoint::read(&start.from)?, start.from.clone())),
+        false => Checkpoint::newest(&start.from).map(|(checkpoint, path, _)| (checkpoint, path)),
+    }
+}
+
+/// Takes up a run where its newest checkpoint left it, and goes on to the end of `scene`, which may have other outputs
+/// and another end than the run had. `simulation` is a new one of the scene. The outputs end bit for bit as those of a run
+/// that was never interrupted; what was written after the checkpoint is cut off and written anew.
+///
+/// # Errors
+/// As [`run`]; [`ResumeError`] where there is nothing to go on from, or the scene is another one: then nothing is
+/// changed.
+pub fn resume(
+    scene: &Scene,
+    simulation: &mut dyn Simulation,
+    options: &RunOptions,
+    progress: &mut dyn FnMut(&Progress),
+) -> Result<Summary, RunError> {
+    let folder = OutputFolder::reopen(&options.out)?;
+    // A power cut may have taken the record; the checkpoint holds the scene, too.
+    let before = Manifest::read(&options.out);
+    if Checkpoint::list(&options.out).map_err(ResumeError::from)?.is_empty() {
+        before.map_err(ResumeError::from)?;
+        return Err(ResumeError::None { path: options.out.clone() }.into());
+    }
+    let (mut checkpoint, path, damaged) = Checkpoint::newest(&options.out).map_err(ResumeError::from)?;
+    same_physics(&path, &checkpoint.scene(), &Manifest::record(scene))?;
+    let time = checkpoint.state.time;
+    if time > scene.time.end {
+        return Err(ResumeError::Past { time, end: scene.time.end }.into());
+    }
+    let memory = checkpoint.memory(&path);
+    let mut notes: Vec<String> =
+        damaged.iter().map(|error| format!("{error}; an earlier checkpoint is taken")).collect();
+    let version = env!("CARGO_PKG_VERSION");
+    if checkpoint.program != version {
+        let program = &checkpoint.program;
+        notes.push(format!("version {program} began the run, and version {version} goes on with it"));
+    }
+    let restored = simulation.restore(checkpoint.state);
+    restored.map_err(|problem| ResumeError::Other { path: path.clone(), problem })?;
+    let mut resumed = before.map_or_else(|_| Vec::new(), |before| before.resumed);
+    resumed.push(time);
+    let damaged = damaged.into_iter().map(|error| error.path).collect();
+    let (steps, end, from) = (simulation.steps(), scene.time.end, path.display());
+    let news = vec![format!("goes on at t = {time} s, step {steps}, to t = {end} s, from {from}")];
+    let beginning = Beginning { memory: Some(memory), resumed, damaged, news, notes };
+    drive(scene, simulation, (options, folder), (&mut [], beginning), progress)
+}
+
+/// From where a run begins.
+#[derive(Default)]
+struct Beginning {
+    /// What was remembered at the checkpoint, if it goes on from one.
+    memory: Option<Memory>,
+    /// Times at which it was taken up, the last of them now [s].
+    resumed: Vec<f64>,
+    /// Newer checkpoints, which cannot be read.
+    damaged: Vec<PathBuf>,
+    /// Where it goes on.
+    news: Vec<String>,
+    /// What the user should know of the checkpoints.
+    notes: Vec<String>,
+}
+
+fn drive(
+    scene: &Scene,
+    simulation: &mut dyn Simulation,
+    (options, folder): (&RunOptions, OutputFolder),
+    (observers, mut beginning): (&mut [&mut dyn Observer], Beginning),
+    progress: &mut dyn FnMut(&Progress),
+) -> Result<Summary, RunError> {
+    let mut kept = Kept {
+        clock: RunClock::start(simulation, options.threads),
+        start: simulation.ledger(),
+        verdict: RunChecks::new(scene, simulation),
+        contact_watch: ContactWatch::new(simulation.time()),
+        last_step: 0.0,
+    };
+    if let Some(memory) = &mut beginning.memory {
+        kept.remember(simulation, memory).map_err(ResumeError::Misfit)?;
+        Recorder::find(&folder, memory).map_err(ResumeError::Misfit)?;
+    }
+    let mut manifest = Manifest::new(scene, kept.clock.performance(simulation));
+    manifest.source.clone_from(&options.source);
+    manifest.resumed = std::mem::take(&mut beginning.resumed);
+    if beginning.memory.is_none() {
+        manifest.write(&folder)?;
+    }
+    let recorder = Recorder::new(scene, &folder).map_err(RunError::from).and_then(|mut recorder| {
         observers.iter_mut().for_each(|observer| recorder.add(&mut **observer));
-        let (verdict, contact_watch) = (&mut verdict, &mut contact_watch);
-        let watched = Watched { scene, simulation, recorder, verdict, contact_watch, options, clock: &clock };
-        watched.to(scene.time.end, progress)
+        if let Some(memory) = &mut beginning.memory {
+            recorder.remember(simulation, memory).map_err(ResumeError::Misfit)?;
+        }
+        Ok(recorder)
+    });
+    if beginning.memory.is_some() {
+        // Only now is anything changed.
+        match recorder {
+            Err(RunError::Output(error)) => return Err(ResumeError::Misfit(error).into()),
+            Err(error) => return Err(error),
+            Ok(_) => {}
+        }
+        beginning.damaged.iter().try_for_each(|path| Checkpoint::put_away(path))?;
+        manifest.write(&folder)?;
+        let news = std::mem::take(&mut beginning.news);
+        progress(&Progress { news, ..kept.clock.progress(simulation, scene.time.end) });
+    }
+    let outcome = recorder.and_then(|recorder| {
+        let record = (scene, manifest.scene.clone());
+        let checkpoints = Checkpoints::new(record, &folder, &options.checkpoints, simulation)?;
+        let memory = beginning.memory.take();
+        let (simulation, kept, folder) = (&mut *simulation, &mut kept, &folder);
+        let watched = Watched { scene, simulation, recorder, kept, options, folder, checkpoints, memory };
+        watched.to(scene.time.end, beginning.notes, progress)
     });
 
-    manifest.performance = clock.performance(simulation);
-    manifest.status = *outcome.as_ref().unwrap_or(&Status::Failed);
+    manifest.performance = kept.clock.performance(simulation);
+    manifest.status = outcome.as_ref().map_or(Status::Failed, |(status, _)| *status);
+    manifest.state_sum = outcome.as_ref().ok().and_then(|(_, sum)| sum.clone());
     manifest.relaxation = simulation.relaxation();
-    manifest.warnings = verdict.warnings().to_vec();
+    manifest.warnings = kept.verdict.warnings().to_vec();
     manifest.error = outcome.as_ref().err().map(RunError::to_string);
     let saved = manifest.write(&folder);
     outcome?;
     saved?;
-    let contacts = contact_watch.widest(scene, simulation);
-    let energies = Energies { start, scale: verdict.energy_scale() };
+    let contacts = kept.contact_watch.widest(scene, simulation);
+    let energies = Energies { start: kept.start, scale: kept.verdict.energy_scale() };
     Ok(Summary::new(scene, simulation, energies, (manifest, contacts)))
+}
+
+/// What a run remembers beside the state of the simulation and its outputs.
+struct Kept {
+    clock: RunClock,
+    /// Energy and momentum at the start.
+    start: Ledger,
+    verdict: RunChecks,
+    contact_watch: ContactWatch,
+    /// Length of the last step [s].
+    last_step: f64,
+}
+
+impl Kept {
+    fn remember(&mut self, view: &dyn View, memory: &mut Memory) -> Result<(), OutputError> {
+        memory.keep("start", &mut self.start)?;
+        memory.keep("last_step", &mut self.last_step)?;
+        self.last_step = if self.last_step.is_finite() { self.last_step.max(0.0) } else { 0.0 };
+        memory.keep("contact_watch", &mut self.contact_watch)?;
+        memory.part("clock", |memory| self.clock.remember(view, memory))?;
+        memory.part("verdict", |memory| self.verdict.remember(memory))
+    }
 }
 
 /// A run under way.
@@ -108,46 +287,99 @@ struct Watched<'a> {
     scene: &'a Scene,
     simulation: &'a mut dyn Simulation,
     recorder: Recorder<'a>,
-    verdict: &'a mut RunChecks,
-    contact_watch: &'a mut ContactWatch,
+    kept: &'a mut Kept,
     options: &'a RunOptions,
-    clock: &'a RunClock,
+    folder: &'a OutputFolder,
+    checkpoints: Checkpoints,
+    /// What was remembered at the checkpoint from which the run goes on.
+    memory: Option<Memory>,
 }
 
 impl Watched<'_> {
-    fn to(mut self, end: f64, progress: &mut dyn FnMut(&Progress)) -> Result<Status, RunError> {
-        self.recorder.record_present(self.simulation)?;
-        let Watched { scene, simulation, recorder, verdict, contact_watch, options, clock } = &mut self;
-        let mut reports = clock.reports();
-        let mut notes = verdict.look(scene, *simulation);
+    fn to(
+        mut self,
+        end: f64,
+        mut notes: Vec<String>,
+        progress: &mut dyn FnMut(&Progress),
+    ) -> Result<(Status, Option<String>), RunError> {
+        let Watched { scene, simulation, recorder, kept, options, folder, checkpoints, memory } = &mut self;
+        match memory {
+            Some(memory) => {
+                memory.take_up();
+                recorder.remember(*simulation, memory)?;
+            }
+            None => {
+                recorder.record_present(*simulation)?;
+                notes.extend(kept.verdict.look(scene, *simulation));
+                if folder.has_previous() {
+                    // Keeping waits until the first records are on the disk.
+                    recorder.remember(*simulation, &mut Memory::keeping(folder.path()))?;
+                    folder.begun()?;
+                }
+            }
+        }
+        let mut reports = kept.clock.reports();
         let mut recorded = Ok(());
-        let stop = || options.stop.load(Ordering::Relaxed);
+        let begun = Instant::now();
+        let late = || options.max_time.is_some_and(|longest| begun.elapsed() >= longest);
+        let stop = || options.stop.load(Ordering::Relaxed) || late();
         let way = match stop() {
             true => Ok(MarchEnd::BrokenOff),
-            false => march(*simulation, end, |simulation, _| {
+            false => March::from(kept.last_step, end).go(*simulation, |simulation, step| {
+                kept.last_step = step;
                 recorded = recorder.record_due(simulation);
-                notes.extend(contact_watch.look(scene, simulation));
-                notes.extend(verdict.look(scene, simulation));
+                notes.extend(kept.contact_watch.look(scene, simulation));
+                notes.extend(kept.verdict.look(scene, simulation));
                 if reports.due() || !notes.is_empty() {
                     let notes = std::mem::take(&mut notes);
-                    progress(&Progress { notes, ..clock.progress(simulation, end) });
+                    progress(&Progress { notes, ..kept.clock.progress(simulation, end) });
                 }
+                if recorded.is_ok() && checkpoints.due(simulation) {
+                    recorded = save(simulation, (recorder, kept, checkpoints), memory.as_ref());
+                }
+                notes.extend(
+                    checkpoints.trouble().map(|error| kept.verdict.note_checkpoint(&error, simulation)),
+                );
                 if recorded.is_err() || stop() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
             }),
         };
         recorded?;
         let status = match way {
             Ok(MarchEnd::Arrived) => Status::Finished,
-            Ok(MarchEnd::BrokenOff) => Status::Interrupted,
+            Ok(MarchEnd::BrokenOff) if options.stop.load(Ordering::Relaxed) => Status::Interrupted,
+            Ok(MarchEnd::BrokenOff) => Status::OutOfTime,
             Err(error) => {
                 let recorded = recorder.record_failure(*simulation).and_then(|()| recorder.conclude());
                 return Err(RunError::Step { error, unsaved: recorded.err() });
             }
         };
-        notes.extend(self.verdict.conclude(self.scene, self.simulation));
-        self.recorder.record_present(self.simulation)?;
-        self.recorder.conclude()?;
-        progress(&Progress { notes, ..self.clock.progress(self.simulation, end) });
-        Ok(status)
+        let mut sum = None;
+        if options.checkpoints.at_end {
+            // Before what is recorded at an end only: a run that goes on has none there.
+            save(*simulation, (recorder, kept, checkpoints), memory.as_ref())?;
+            sum = simulation.save().map(|state| state_sum(&state));
+        }
+        notes.extend(kept.verdict.conclude(scene, *simulation));
+        recorder.record_present(*simulation)?;
+        recorder.conclude()?;
+        checkpoints.finish();
+        notes.extend(checkpoints.trouble().map(|error| kept.verdict.note_checkpoint(&error, *simulation)));
+        progress(&Progress { notes, ..kept.clock.progress(*simulation, end) });
+        Ok((status, sum))
     }
+}
+
+/// Writes a checkpoint of the present moment.
+fn save(
+    simulation: &dyn Simulation,
+    (recorder, kept, checkpoints): (&mut Recorder, &mut Kept, &mut Checkpoints),
+    before: Option<&Memory>,
+) -> Result<(), OutputError> {
+    let path = checkpoints.path(simulation);
+    let mut memory =
+        before.map_or_else(|| Memory::keeping(&path), |before| Memory::keeping_beside(&path, before));
+    kept.remember(simulation, &mut memory)?;
+    recorder.remember(simulation, &mut memory)?;
+    checkpoints.save(simulation, memory);
+    Ok(())
 }

@@ -113,7 +113,11 @@ impl Display for Summary {
     fn fmt(&self, f: &mut Formatter) -> fmt::Result {
         let Performance { time, steps, particles, wall_time, particle_steps_per_second, .. } =
             self.performance;
-        let ended = if self.status == Status::Interrupted { "interrupted" } else { "finished" };
+        let ended = match self.status {
+            Status::Interrupted => "interrupted",
+            Status::OutOfTime => "stopped, as it took as long as it was given,",
+            Status::Running | Status::Finished | Status::Failed => "finished",
+        };
         writeln!(f, "{ended} at t = {time:.6} s after {steps} steps of {particles} particles")?;
         writeln!(f, "  wall time  {wall_time:.1} s, {particle_steps_per_second:.3e} particle-steps/s")?;
         self.write_timings(f)?;

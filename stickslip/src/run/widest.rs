@@ -3,6 +3,7 @@
 use crate::check::{ContactResolution, Errors};
 use crate::door::{ContactPatch, View};
 use crate::scene::{ContactLaw, Scene};
+use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 use std::fmt::{self, Display, Formatter};
 
@@ -39,7 +40,7 @@ pub(super) struct Touched {
 ///
 /// A mean over less than the longest time between two looks counts as one over that time: the run's last look may come
 /// a step after the one before, and no mean of that is a force.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(super) struct LargestForces {
     /// Time of the last look [s].
     time: f64,

@@ -237,6 +237,7 @@ pub fn scene() -> Scene {
             volume_change: Default::default(),
         }],
         bodies: vec![body("sphere"), body("plane")],
+        start: None,
         loads: Vec::new(),
         contact: vec![ContactRule { friction: f64::INFINITY, ..Default::default() }],
         outputs: Outputs {
@@ -245,6 +246,7 @@ pub fn scene() -> Scene {
             particles_at: Vec::new(),
             grid: Some(0.5),
             fringes: None,
+            checkpoints: None,
             measurements: Measurements::default(),
         },
         references: vec![Reference {

@@ -3,7 +3,7 @@
 //! Set-up: soft bodies that fall on each other and on a rigid floor with friction, cut by a symmetry face, a third body
 //! glued on; in the plane and in space, for all stress updates, bases, and a transfer of
 //! each kind, damped and relaxed as well; 200 steps on one, two and five threads,
-//! and on one with grid, lists and room to work in dropped every 23 steps.
+//! and on one with grid, lists and room to work in dropped every 23 steps, and with steps that are taken back.
 //!
 //! Expected: the same bits everywhere: particles, grid, contact forces, energies. No tolerance: sums are taken in an
 //! order that does not depend on who takes them, and follow from the state alone.
@@ -51,6 +51,17 @@ fn compare(name: &str, scene: &str, steps: usize) {
         }
     };
     assert!(outcome(scene, 1, rebuilding) == one, "{name}: with its workspace made anew it differs");
+    let going_back = |simulation: &mut dyn Simulation| {
+        for step in 0..steps {
+            if step % 67 == 11 {
+                let saved = simulation.save().expect("the engine can be saved");
+                take_steps(simulation, 5);
+                simulation.restore(saved).expect("it is its own state");
+            }
+            take_steps(simulation, 1);
+        }
+    };
+    assert!(outcome(scene, 1, going_back) == one, "{name}: from a state that was saved it differs");
 }
 
 fn scene(dimension: &str, basis: &str, update: &str) -> String {

@@ -90,14 +90,21 @@ impl Choice for Overlay {
 
 /// Instants in an exposure where the scene does not say.
 const SAMPLES: usize = 8;
+/// Frames that the run of a scene may ask for.
+const MOST_FRAMES: f64 = 1e6;
 /// Width of frames where the scene does not say [pixels].
 const WIDTH: usize = 1280;
 
 impl Fringes {
     /// The camera and its optics.
-    pub fn resolve(&self, bodies: &[Body], context: &Context) -> Result<scene::Fringes, Fault> {
+    pub fn resolve(&self, (bodies, end): (&[Body], f64), context: &Context) -> Result<scene::Fringes, Fault> {
         let exposure = at_least_zero(self.exposure.as_ref(), context)?;
         let interval = self.interval.positive(context)?;
+        if interval < end / MOST_FRAMES {
+            let least =
+                format!("at least {:e} s: a run has at most {MOST_FRAMES:e} frames", end / MOST_FRAMES);
+            return Err(self.interval.refused(interval, least));
+        }
         if let Some(quantity) = self.exposure.as_ref().filter(|_| exposure > interval) {
             return Err(quantity.refused(exposure, format!("at most the interval, {interval} s")));
         }

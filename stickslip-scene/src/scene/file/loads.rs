@@ -1,6 +1,7 @@
 //! `[[supports]]` and `[[loads]]`: what holds, presses, pulls or drives parts of bodies from outside.
 
 use super::Context;
+use super::files::read_file;
 use super::quantity::{
     Acceleration, Duration, Force, ForceOverVelocity, Length, Measure, Pressure, QuantityInput, Stiffness,
     Velocity, evaluate,
@@ -429,15 +430,7 @@ const LARGEST_TABLE: u64 = 1 << 26;
 fn read_csv(file: &Text, context: &Context) -> Result<TimeTable, Fault> {
     let name = file.value(context)?;
     let path = context.folder.join(&name);
-    let unread = |why: String| {
-        let help = format!("{}: {why}; a relative path starts at the scene's folder", path.display());
-        file.refused(&name, "a file that can be read").help(Some(help))
-    };
-    let about = std::fs::metadata(&path).map_err(|reason| unread(reason.to_string()))?;
-    if !about.is_file() || about.len() > LARGEST_TABLE {
-        return Err(unread(format!("it is no file of at most {LARGEST_TABLE} bytes")));
-    }
-    let bytes = std::fs::read(&path).map_err(|reason| unread(reason.to_string()))?;
+    let bytes = read_file(file, (&name, &path), LARGEST_TABLE)?;
     let mut format = csv::ReaderBuilder::new();
     format.has_headers(false).flexible(true).trim(csv::Trim::All);
     let mut table: Vec<[f64; 2]> = Vec::new();

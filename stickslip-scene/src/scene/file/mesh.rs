@@ -1,6 +1,7 @@
 //! Shapes from files: `shape.mesh = { file = "gear.stl", scale = "1 mm" }`.
 
 use super::Context;
+use super::files::read_file;
 use super::quantity::{Length, QuantityInput};
 use super::read::table;
 use super::text::Text;
@@ -21,6 +22,9 @@ table! {
         translation: Option<VectorInput<Length>>,
     }
 }
+
+/// Bytes that a file of a mesh may have.
+const LARGEST_MESH: u64 = 1 << 32;
 
 /// Corners of triangles in the units of their file.
 type Triangles = Vec<[[f64; 3]; 3]>;
@@ -49,14 +53,13 @@ impl Mesh {
             Some("obj") => obj,
             _ => return Err(self.file.refused(&name, "a file of triangles that ends in .stl or .obj")),
         };
-        let bytes = std::fs::read(&path).map_err(|reason| {
-            let fault = self.file.refused(&name, "a file that can be read");
-            fault.help(Some(format!(
-                "{}: {reason}; a relative path starts at the scene's folder",
-                path.display()
-            )))
-        })?;
+        let bytes = read_file(&self.file, (&name, &path), LARGEST_MESH)?;
         let solid = read(&bytes).and_then(|triangles| {
+            if let Some(corner) =
+                triangles.iter().flatten().find(|corner| corner.iter().any(|x| !x.is_finite()))
+            {
+                return Err(Unread::Garbled(format!("a corner at {corner:?}, which is no place")));
+            }
             let placed = |x: [f64; 3]| std::array::from_fn(|k| scale * x[k] + translation[k]);
             // Faults are told in the units of the file.
             geometry::Mesh::new(&name, triangles.iter().copied()).map_err(Unread::Fault)?;

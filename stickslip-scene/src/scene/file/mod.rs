@@ -4,6 +4,7 @@
 mod body;
 mod contact;
 mod damping;
+mod files;
 mod fringes;
 mod loads;
 mod material;
@@ -14,6 +15,7 @@ mod quantity;
 mod read;
 mod shape;
 mod space;
+mod start;
 mod text;
 mod time;
 mod vector;
@@ -57,6 +59,8 @@ table! {
         space: space::Space,
         /// Duration and time step.
         time: time::Time,
+        /// From where bodies begin, if not as their shapes are filled.
+        start: Option<start::Start>,
         /// What slows the bodies down beside contact and materials; by default nothing, with `time.relax` a little.
         damping: Option<damping::Damping>,
         /// The materials by name.
@@ -103,7 +107,7 @@ pub(super) fn resolve(source: &Source) -> Result<Scene, Fault> {
     let stem = source.name().rsplit(['/', '\\']).next().unwrap_or_default().trim_end_matches(".toml");
     Ok(Scene {
         title: file.title.as_ref().map_or_else(|| Ok(stem.to_string()), |title| title.value(context))?,
-        about: file.about.as_ref().map_or(String::new(), |about| about.as_written().trim().to_string()),
+        about: file.about.as_ref().map_or(String::new(), Text::as_prose),
         parameters: values,
         dimension: context.dimension,
         precision: file.space.precision(context)?,
@@ -113,6 +117,7 @@ pub(super) fn resolve(source: &Source) -> Result<Scene, Fault> {
             Some(damping) => damping.resolve(context, time.relax)?,
             None => Damping::of(time.relax),
         },
+        start: file.start.map(|start| start.resolve(context)).transpose()?,
         gravity: file.gravity.map_or(Ok([0.0; 3]), |gravity| gravity.value(context))?,
         outputs: outputs::resolve(file.outputs.as_ref(), (&bodies, time.end), context)?,
         references: outputs::references(file.references.as_deref().unwrap_or_default(), &bodies, context)?,

@@ -28,6 +28,10 @@ table! {
         grid: Option<Interval>,
         /// Pictures of photoelastic fringes, and an animation of them: a camera behind a virtual polariscope.
         fringes: Option<Fringes>,
+        /// Interval between checkpoints, from which `stickslip resume` goes on [s], or "never"; beside those that
+        /// `stickslip run` makes by wall time, and at the end.
+        #[schemars(extend("default" = "never"))]
+        checkpoints: Option<Interval>,
         /// What non-dimensional time counts in, such as "diameter / c_L" [s]; tables then have a column `time_units`.
         time_unit: Option<QuantityInput<Duration>>,
         /// Interval between samples of probes, arrivals and fronts [s], or "step" for every step;
@@ -104,8 +108,11 @@ pub fn resolve(
     if let Some(interval) = &outputs.grid {
         resolved.grid = interval.value(context)?;
     }
+    if let Some(interval) = &outputs.checkpoints {
+        resolved.checkpoints = interval.value(context)?;
+    }
     if let Some(fringes) = &outputs.fringes {
-        resolved.fringes = Some(fringes.resolve(bodies, context)?);
+        resolved.fringes = Some(fringes.resolve((bodies, end), context)?);
     }
     resolved.measurements = measurements::resolve(outputs, (bodies, end), context)?;
     Ok(resolved)

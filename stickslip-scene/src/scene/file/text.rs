@@ -43,6 +43,12 @@ impl Text {
         }
     }
 
+    /// Prose of any number of lines, as it stands in the file but for what steers terminals.
+    pub fn as_prose(&self) -> String {
+        let seen = |letter: &char| !letter.is_control() || matches!(letter, '\n' | '\t');
+        self.as_written().trim().chars().filter(seen).collect()
+    }
+
     /// The text, which must be the name of something; `what` says of what, `known` are those that there are.
     pub fn name_of(&self, context: &Context, what: &str, known: &[&str]) -> Result<String, Fault> {
         let name = self.value(context)?;

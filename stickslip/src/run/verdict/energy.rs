@@ -2,10 +2,11 @@
 
 use super::{Check, CheckInputs, Finding, STEPS};
 use crate::door::Ledger;
+use serde::{Deserialize, Serialize};
 
 /// The total of the ledger against its start, over the largest energy so far that moved, was stored, was set free by
 /// falling or turned to heat.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(super) struct EnergyBalance {
     first: Option<Ledger>,
     /// Energy gained since the start, lost if negative [J].
@@ -38,7 +39,7 @@ impl EnergyBalance {
 
 /// When energies are weighed between two looks. Looks come in step with what swings as often as they do or a multiple
 /// of it, and would see all of it at the same instant of its swing, where there may be next to no energy.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(super) struct WeighingTimes {
     next: u64,
     count: u64,

@@ -12,7 +12,7 @@ mod strain;
 mod tearing;
 
 use crate::door::{BodyState, Ledger, TracedParticle, View};
-use crate::observe::RunWarning;
+use crate::observe::{Memory, OutputError, RunWarning};
 use crate::scene::{Damping, Scene};
 use energy::{EnergyBalance, WeighingTimes};
 use neighbours::Neighbours;
@@ -42,6 +42,11 @@ trait Check {
 
     /// What is wrong now.
     fn look(&mut self, look: &CheckInputs) -> Vec<Finding>;
+
+    /// Keeps what it knows of the run so far, or takes that up.
+    fn remember(&mut self, _memory: &mut Memory) -> Result<(), OutputError> {
+        Ok(())
+    }
 }
 
 /// What a check sees.
@@ -109,6 +114,8 @@ pub(super) struct RunChecks {
 const LOOKS: f64 = 200.0;
 /// Steps between two looks, or two weighings of energies, at least: what these cost is then nothing beside the steps.
 const STEPS: u64 = 200;
+/// Kind of the warning of checkpoints that could not be written.
+const CHECKPOINT: &str = "checkpoint";
 /// Lines in a run: beyond, the summary tells.
 const MOST_LINES: usize = 6;
 
@@ -126,6 +133,20 @@ impl RunChecks {
             warnings: Vec::new(),
             lines: 0,
         }
+    }
+
+    /// Keeps what is known of the run so far, or takes that up.
+    pub(super) fn remember(&mut self, memory: &mut Memory) -> Result<(), OutputError> {
+        memory.keep("balance", &mut self.balance)?;
+        memory.keep("weighing", &mut self.weighing)?;
+        memory.keep("next_time", &mut self.next_time)?;
+        memory.keep("next_step", &mut self.next_step)?;
+        memory.keep("warnings", &mut self.warnings)?;
+        memory.keep("lines", &mut self.lines)?;
+        self.lines = self.lines.min(MOST_LINES);
+        self.checks
+            .iter_mut()
+            .try_for_each(|check| memory.part(check.kind(), |memory| check.remember(memory)))
     }
 
     /// What is new, if it is time to look.
@@ -200,6 +221,25 @@ impl RunChecks {
             *line += "; no more of this until the summary";
         }
         lines
+    }
+
+    /// Takes note of a checkpoint that could not be written, and says what there is to say.
+    pub(super) fn note_checkpoint(&mut self, error: &OutputError, view: &dyn View) -> String {
+        let message = format!("no checkpoint: {error}");
+        match self.warnings.iter_mut().find(|warning| warning.kind == CHECKPOINT) {
+            Some(known) => (known.count, known.message) = (known.count + 1, message.clone()),
+            None => self.warnings.push(RunWarning {
+                kind: CHECKPOINT.to_owned(),
+                message: message.clone(),
+                advice: "free some space; the next one is tried in its time".to_owned(),
+                body: None,
+                position: None,
+                time: view.time(),
+                count: 1,
+                worst: 1.0,
+            }),
+        }
+        message
     }
 
     /// The largest energy that drifts are held against [J].

@@ -15,7 +15,7 @@ pub(super) struct Neighbours {
     place: Vec<u32>,
 }
 
-/// Particles in all bodies whose neighbours are chosen; in a body at least [`FEWEST`] of them.
+/// Particles in all bodies that deform whose neighbours are chosen; in a body at least [`FEWEST`] of them.
 const MOST: usize = 500;
 const FEWEST: usize = 24;
 /// Neighbours are so near, in distances of particles: on a lattice, those across edges and faces of a particle's box.
@@ -25,7 +25,9 @@ const NONE: u32 = u32::MAX;
 
 /// Neighbours in each body; none in a rigid one.
 pub(super) fn of_bodies(scene: &Scene, view: &dyn View) -> Vec<Neighbours> {
-    let all = view.particles();
+    // Rigid ones do not count: without bounds they have others all the time.
+    let of_body = |i: usize| view.column(i, "start").map_or(0, |start| start.len());
+    let all = (0..scene.bodies.len()).filter(|&i| !scene.bodies[i].is_rigid()).map(of_body).sum();
     (scene.bodies.iter().enumerate())
         .map(|(i, body)| if body.is_rigid() { Neighbours::default() } else { Neighbours::new(view, i, all) })
         .collect()

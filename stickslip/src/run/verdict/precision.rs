@@ -1,6 +1,7 @@
 //! Steps that are lost in the rounding of positions.
 
 use super::{Check, CheckInputs, Finding, norm};
+use crate::observe::{Memory, OutputError};
 use crate::scene;
 
 /// Adds up the way of bodies whose steps are about as short as the spacing of numbers where they are.
@@ -65,5 +66,11 @@ impl Check for PrecisionCheck {
             }
         }
         findings
+    }
+
+    fn remember(&mut self, memory: &mut Memory) -> Result<(), OutputError> {
+        memory.keep("doubtful", &mut self.doubtful)?;
+        memory.keep("time", &mut self.time)?;
+        Ok(())
     }
 }

@@ -2,8 +2,10 @@
 
 use super::{Check, CheckInputs, Finding, asks_for_damping, minus, norm};
 use crate::door::BodyState;
+use crate::observe::{Memory, OutputError};
 use crate::scene::{Face, Scene};
 use crate::tensor::cross;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 
 /// Holds angular momentum against its start: of each body that nothing but gravity has touched, about its own centre of
@@ -16,6 +18,7 @@ pub(super) struct SpinCheck {
 }
 
 /// A body that nothing has touched yet.
+#[derive(Serialize, Deserialize)]
 struct Alone {
     body: usize,
     /// At the start.
@@ -25,6 +28,7 @@ struct Alone {
 }
 
 /// Bodies that only act on each other.
+#[derive(Serialize, Deserialize)]
 struct Together {
     angular_momentum: [f64; 3],
     /// Sum of the bodies' own angular momenta and of the moments of their momenta about the centre of all, each counted
@@ -65,10 +69,19 @@ impl Check for SpinCheck {
         }
         let touched: BTreeSet<usize> =
             look.simulation.patches().iter().flat_map(|patch| [patch.body_a, patch.body_b]).collect();
-        self.alone.retain(|alone| !touched.contains(&alone.body) && alone.unpushed(look));
+        self.alone.retain(|alone| {
+            alone.body < look.bodies.len() && !touched.contains(&alone.body) && alone.unpushed(look)
+        });
         let mut findings: Vec<_> = self.alone.iter().filter_map(|alone| alone.look(look)).collect();
         findings.extend(self.together.as_mut().and_then(|together| together.look(look)));
         findings
+    }
+
+    fn remember(&mut self, memory: &mut Memory) -> Result<(), OutputError> {
+        memory.keep("alone", &mut self.alone)?;
+        memory.keep("together", &mut self.together)?;
+        memory.keep("begun", &mut self.begun)?;
+        Ok(())
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::neighbours::Neighbours;
 use super::{Check, CheckInputs, Finding, minus, norm, place};
+use crate::observe::{Memory, OutputError};
 use std::collections::BTreeMap;
 
 /// Holds the distances of neighbours against those that their deformation gradients give.
@@ -18,12 +19,12 @@ use std::collections::BTreeMap;
 #[derive(Default)]
 pub(super) struct StrainCheck {
     bodies: Vec<Stretch>,
+    /// Largest root mean square of e so far, body by body [-].
+    largest: Vec<f64>,
 }
 
 /// How far a body was stretched, and which of its pairs belong together.
 struct Stretch {
-    /// Largest root mean square of e so far [-].
-    largest: f64,
     /// Group of each pair: its region and direction.
     group: Vec<u32>,
     /// Groups.
@@ -63,7 +64,13 @@ impl Check for StrainCheck {
             let side = REGION * look.scene.discretization.cell;
             self.bodies = look.neighbours.iter().map(|neighbours| Stretch::new(neighbours, side)).collect();
         }
-        look.free().filter_map(|body| self.bodies[body].look(look, body)).collect()
+        self.largest.resize(self.bodies.len(), 0.0);
+        look.free().filter_map(|body| self.bodies[body].look(look, body, &mut self.largest[body])).collect()
+    }
+
+    fn remember(&mut self, memory: &mut Memory) -> Result<(), OutputError> {
+        memory.keep("largest", &mut self.largest)?;
+        Ok(())
     }
 }
 
@@ -77,10 +84,10 @@ impl Stretch {
             *known.entry((region, direction(minus(to, from)))).or_insert(next)
         };
         let group = neighbours.pairs.iter().map(group).collect();
-        Stretch { largest: 0.0, group, groups: known.len() }
+        Stretch { group, groups: known.len() }
     }
 
-    fn look(&mut self, look: &CheckInputs, body: usize) -> Option<Finding> {
+    fn look(&self, look: &CheckInputs, body: usize, largest: &mut f64) -> Option<Finding> {
         let (Neighbours { start, pairs, .. }, now) = (&look.neighbours[body], &look.particles[body]);
         let mut squares = 0.0;
         let mut sums = vec![PairSums::default(); self.groups];
@@ -100,9 +107,9 @@ impl Stretch {
             sum.squares += difference * difference;
             sum.particle = p;
         }
-        self.largest = self.largest.max((squares / pairs.len().max(1) as f64).sqrt());
+        *largest = largest.max((squares / pairs.len().max(1) as f64).sqrt());
         let (off, worst) = shared(&sums)?;
-        let share = off / self.largest.max(LEAST_STRETCH);
+        let share = off / largest.max(LEAST_STRETCH);
         let trusted = look.scene.materials[look.scene.bodies[body].material].law.trusts_deformation();
         let bound = if trusted { BOUND } else { BOUND_OF_FLOW };
         if share.is_nan() || share <= bound {

@@ -2,6 +2,7 @@
 
 use super::{Check, CheckInputs, Finding, minus, place};
 use crate::door::TracedParticle;
+use crate::observe::{Memory, OutputError};
 use crate::scene::BasisKind;
 
 /// Looks for neighbours that no longer share a node of the grid.
@@ -39,6 +40,11 @@ impl Check for TearingCheck {
             Some(Finding { body: Some(body), position: Some(position), worst: tear.share, message })
         };
         look.free().filter_map(of_body).collect()
+    }
+
+    fn remember(&mut self, memory: &mut Memory) -> Result<(), OutputError> {
+        memory.keep("first", &mut self.first)?;
+        Ok(())
     }
 }
 

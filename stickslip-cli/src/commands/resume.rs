@@ -1,0 +1,75 @@
+//! `stickslip resume DIR`: go on with a run from its newest checkpoint.
+
+use super::load;
+use super::run::How;
+use crate::failure::Failure;
+use clap::Args;
+use miette::{IntoDiagnostic, miette};
+use std::path::PathBuf;
+use stickslip::observe::{Manifest, SceneSource};
+
+/// Go on with a run: one that was stopped or killed, or a finished one to a later end.
+///
+/// The results of a run that was stopped end bit for bit as those of one that was not. A finished run ended its last step
+/// exactly at its end, and has that step beyond those of a run that went further at once.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// Folder of results that `stickslip run` wrote.
+    results: PathBuf,
+
+    /// Simulated time to go on to, such as "4 s"; without this, the one that was named last, or the end of the scene.
+    #[arg(long, value_name = "TIME")]
+    until: Option<String>,
+
+    /// Scene file, with other outputs or another end; the one that was run, where it lay, without this.
+    #[arg(long, value_name = "FILE")]
+    scene: Option<PathBuf>,
+
+    #[command(flatten)]
+    how: How,
+}
+
+impl Arguments {
+    pub fn execute(self) -> Result<(), Failure> {
+        // Whoever names the scene does not need the record, which a power cut may have taken.
+        let before = Manifest::read(&self.results);
+        let (path, set, mut until) = match (self.scene, before) {
+            (Some(path), before) => {
+                let path = std::path::absolute(path).into_diagnostic().map_err(Failure::Run)?;
+                (
+                    path,
+                    before.ok().and_then(|before| before.source).map_or_else(Vec::new, |source| source.set),
+                    None,
+                )
+            }
+            (None, Err(error)) => return Err(Failure::input(error)),
+            (None, Ok(before)) => match before.source {
+                Some(SceneSource { path, set, until }) => (path, set, until),
+                None => {
+                    return Err(Failure::Input(miette!(
+                        help = "name the scene file with --scene",
+                        "{} does not say which scene file it came from",
+                        self.results.display()
+                    )));
+                }
+            },
+        };
+        until = self.until.or(until);
+        if !path.exists() {
+            return Err(Failure::Input(miette!(
+                help = "name it with --scene",
+                "the scene file {} is not there",
+                path.display()
+            )));
+        }
+        let mut loaded = load(&path, &set).map_err(Failure::input)?;
+        if let Some(until) = &until {
+            // Set after the file is read: intervals that follow from the end stay as they are.
+            let with_end: Vec<_> =
+                set.iter().cloned().chain([("time.end".to_string(), until.clone())]).collect();
+            loaded.scene.time.end = load(&path, &with_end).map_err(Failure::input)?.scene.time.end;
+        }
+        let source = SceneSource { path, set, until };
+        self.how.make(&loaded, (source, self.results), stickslip::run::resume)
+    }
+}

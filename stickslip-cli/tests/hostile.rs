@@ -1,0 +1,197 @@
+//! What nobody means to do and somebody does: each ends with a sentence and an exit code, and takes nothing away.
+
+mod stickslip;
+
+use std::fs;
+use std::process::Stdio;
+use std::time::{Duration, Instant};
+use stickslip::{Ran, Workplace, new_scene};
+
+/// The new scene, coarse and short.
+const QUICK: [&str; 4] = ["--set", "cells_per_radius=4", "--set", "time.end=20 ms"];
+
+fn workplace() -> Workplace {
+    let workplace = Workplace::new();
+    workplace.write("scene.toml", &new_scene());
+    workplace
+}
+
+fn run(workplace: &Workplace, more: &[&str]) -> Ran {
+    workplace.run(&[&["run", "scene.toml"][..], &QUICK, more].concat())
+}
+
+fn refused(ran: &Ran, why: &str) {
+    assert_eq!(ran.code, Some(2), "{}{}", ran.stdout, ran.stderr);
+    assert!(ran.stderr.contains(why), "{why}: {}", ran.stderr);
+    assert!(!ran.stderr.contains("panicked"), "{}", ran.stderr);
+}
+
+/// A scene with this title and these parameters, checked within ten seconds.
+fn check_with(title: &str, parameters: &str) -> Ran {
+    let workplace = Workplace::new();
+    let scene = new_scene();
+    let written = scene.lines().find(|line| line.starts_with("title = ")).unwrap();
+    let scene = scene.replace(written, &format!("title = \"{title}\""));
+    workplace
+        .write("scene.toml", &scene.replacen("[parameters]\n", &format!("[parameters]\n{parameters}"), 1));
+    let begun = Instant::now();
+    let ran = workplace.run(&["check", "scene.toml"]);
+    assert!(begun.elapsed() < Duration::from_secs(10), "it took {:?}", begun.elapsed());
+    ran
+}
+
+#[test]
+fn parameters_that_wait_for_each_other_without_end_are_refused() {
+    let chain = |order: &mut dyn Iterator<Item = usize>| -> String {
+        order.map(|i| format!("p{i} = \"p{} + 1\"\n", i + 1)).collect::<String>() + "p3000 = 1\n"
+    };
+    refused(&check_with("t", &chain(&mut (0..3000))), "wait for each other");
+    // In the other order nobody waits.
+    let forward = "p3000 = 1\n".to_string() + &chain(&mut (0..3000).rev()).replace("p3000 = 1\n", "");
+    let ran = check_with("t", &forward);
+    assert_eq!(ran.code, Some(0), "{}", ran.stderr);
+    for first in ["x", ""] {
+        let doubled = |i: usize| format!("w{i} = \"{{w{0}}}{{w{0}}}\"\n", i - 1);
+        let doubled: String = (1..=40).rev().map(doubled).collect();
+        refused(&check_with("{w40}", &format!("{doubled}w0 = \"{first}\"\n")), "grows without end");
+    }
+}
+
+#[test]
+fn control_characters_do_not_reach_files_and_terminals() {
+    let workplace = Workplace::new();
+    workplace.write("scene.toml", &new_scene().replace("name = \"disk\"", "name = \"di\\u001b[31msk\""));
+    let ran = workplace.run(&["check", "scene.toml"]);
+    refused(&ran, "control character");
+    assert!(!ran.stderr.contains('\u{1b}'), "{:?}", ran.stderr);
+}
+
+#[test]
+#[cfg(unix)]
+fn a_pipe_in_the_place_of_a_mesh_is_refused_and_not_waited_for() {
+    let workplace = Workplace::new();
+    assert!(workplace.command(&[]).arg("--version").stdout(Stdio::null()).status().unwrap().success());
+    let pipe = workplace.path("pipe.stl");
+    assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    let solid = |file: &str| {
+        format!(
+            "[space]\ndimension = \"3d\"\ncell = 0.1\n[time]\nend = 1\n[materials.m]\ndensity = 1\n\
+             neo_hookean = {{ young_modulus = 1, poisson_ratio = 0.3 }}\n[[bodies]]\nname = \"a\"\nmaterial = \"m\"\n\
+             shape.mesh = {{ file = \"{file}\" }}\n"
+        )
+    };
+    workplace.write("scene.toml", &solid("pipe.stl"));
+    refused(&workplace.run(&["check", "scene.toml"]), "no file");
+    workplace.write("nan.obj", "v 0 0 0\nv 1 0 nan\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+    workplace.write("scene.toml", &solid("nan.obj"));
+    refused(&workplace.run(&["check", "scene.toml"]), "which is no place");
+}
+
+#[test]
+fn a_million_frames_are_the_most() {
+    let workplace = workplace();
+    let fringes = "\n[outputs.fringes]\ninterval = 1e-300\nstress_parameter = 1\n";
+    workplace.write("scene.toml", &(new_scene() + fringes));
+    refused(&workplace.run(&["check", "scene.toml"]), "at most 1e6 frames");
+}
+
+#[test]
+fn times_that_were_not_recorded_are_refused() {
+    let workplace = workplace();
+    assert_eq!(run(&workplace, &[]).code, Some(0));
+    for command in ["render", "network"] {
+        for time in ["1e300", "nan", "inf", "-1"] {
+            refused(&workplace.run(&[command, "scene.results", "--time", time]), "allowed: 0 s to 0.02 s");
+        }
+        assert_eq!(workplace.run(&[command, "scene.results", "--time", "0.02"]).code, Some(0));
+    }
+}
+
+#[test]
+fn files_of_others_are_not_replaced() {
+    let workplace = workplace();
+    assert_eq!(run(&workplace, &[]).code, Some(0));
+    for name in ["thesis.graphml", "thesis.png", "thesis.svg", "index.html", "picture_00000.png"] {
+        workplace.write(name, "years of work");
+    }
+    for arguments in [
+        &["network", "scene.results", "--out", "thesis.graphml"][..],
+        &["render", "scene.results", "--out", "thesis.png"],
+        &["render", "scene.results", "--animate", "--out", "thesis.png"],
+        &["render", "scene.results", "--all", "--out", "."],
+        &["plot", "scene.results", "--out", "thesis.svg"],
+        &["validate", "B21-loaded", "--out", "."],
+    ] {
+        let ran = workplace.run(arguments);
+        assert_eq!(ran.code, Some(2), "{arguments:?}: {}", ran.stderr);
+        assert!(ran.stderr.contains("it is there already"), "{arguments:?}: {}", ran.stderr);
+    }
+    for name in ["thesis.graphml", "thesis.png", "thesis.svg", "index.html", "picture_00000.png"] {
+        assert_eq!(fs::read_to_string(workplace.path(name)).unwrap(), "years of work", "{name}");
+    }
+    // Its own it replaces.
+    for _ in 0..2 {
+        workplace.succeed(&["network", "scene.results", "--out", "own.graphml"]);
+        workplace.succeed(&["plot", "scene.results", "--out", "own.svg"]);
+    }
+}
+
+#[test]
+fn a_run_that_needs_more_memory_than_it_may_take_is_refused() {
+    let workplace = workplace();
+    let ran = run(&workplace, &["--max-memory", "10 kB"]);
+    refused(&ran, "may take 10.0 kB");
+    assert!(!workplace.path("scene.results").exists());
+    assert_eq!(run(&workplace, &["--max-memory", "1 GiB"]).code, Some(0));
+    refused(&run(&workplace, &["--max-memory", "much"]), "--max-memory");
+}
+
+#[test]
+fn two_runs_into_one_folder_are_told_apart() {
+    let workplace = workplace();
+    let mut first = (workplace.command(&["run", "scene.toml", "--set", "time.end=0.9"]))
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let begun = Instant::now();
+    while !workplace.path("scene.results/energy.csv").exists() {
+        assert!(begun.elapsed() < Duration::from_secs(60));
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    refused(&run(&workplace, &[]), "another run is writing to scene.results");
+    first.kill().unwrap();
+    first.wait().unwrap();
+    assert_eq!(run(&workplace, &[]).code, Some(0), "the lock goes with whoever had it");
+}
+
+/// A limit on the length of files, which the system enforces by a signal that ends a program.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_limit_on_the_length_of_files_is_an_error_like_a_full_disk() {
+    let workplace = workplace();
+    let program = workplace.command(&[]).get_program().to_owned();
+    let line = format!("ulimit -f 40; exec '{}' run scene.toml", program.to_str().unwrap());
+    let mut shell = std::process::Command::new("bash");
+    let output = shell.args(["-c", &line]).current_dir(workplace.path("")).output().unwrap();
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(1), "{told}");
+    assert!(told.contains("cannot write scene.results"), "{told}");
+    let record: serde_json::Value =
+        serde_json::from_slice(&fs::read(workplace.path("scene.results/run.json")).unwrap()).unwrap();
+    assert_eq!(record["status"], "failed");
+}
+
+#[test]
+fn a_probe_that_sees_nothing_is_told() {
+    let workplace = workplace();
+    let probe = "\n[[outputs.probes]]\nname = \"lonely\"\nat = [\"-2 * radius\", \"3.5 * radius\"]\nfixed_in = \"space\"\n";
+    workplace.write("scene.toml", &(new_scene() + probe));
+    let ran = run(&workplace, &[]);
+    assert!(
+        ran.stdout.contains("no material ever came to the probe `lonely`"),
+        "{}{}",
+        ran.stdout,
+        ran.stderr
+    );
+}

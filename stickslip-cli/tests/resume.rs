@@ -1,0 +1,277 @@
+//! `stickslip resume` as a user goes on: after a kill, a signal, a limit of time, and to a later end.
+
+mod stickslip;
+
+use std::fs;
+use std::path::Path;
+use std::process::{Child, Stdio};
+use std::time::{Duration, Instant};
+use stickslip::{Workplace, new_scene};
+
+/// The new scene, so long that there is time to kill it.
+const SETTINGS: [&str; 4] = ["--set", "time.end=0.9", "--set", "outputs.checkpoints=0.01"];
+/// Cells in a radius of its disk.
+const COARSE: &str = "cells_per_radius=4";
+const FINE: &str = "cells_per_radius=14";
+
+/// Numbers whose order nobody knows, the same in every run of the tests (Marsaglia 2003, xorshift).
+struct Numbers(u64);
+
+impl Numbers {
+    /// From 0 to 1.
+    fn next(&mut self) -> f64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        self.0 as f64 / u64::MAX as f64
+    }
+}
+
+fn record(folder: &Path) -> serde_json::Value {
+    serde_json::from_slice(&fs::read(folder.join("run.json")).unwrap()).unwrap()
+}
+
+/// The tables and the sum of the last state.
+fn outcome(folder: &Path) -> (Vec<String>, serde_json::Value) {
+    let tables = ["bodies.csv", "energy.csv", "contacts.csv"];
+    let tables = tables.map(|name| fs::read_to_string(folder.join(name)).unwrap());
+    (tables.to_vec(), record(folder)["state_sum"].clone())
+}
+
+fn has_checkpoint(folder: &Path) -> bool {
+    fs::read_dir(folder.join("checkpoints")).is_ok_and(|entries| {
+        entries.flatten().any(|entry| entry.path().extension().is_some_and(|ending| ending == "checkpoint"))
+    })
+}
+
+/// The run of the scene in a folder, or its resumption if there is something to go on from.
+fn spawn(workplace: &Workplace, (folder, cells): (&str, &str), threads: usize) -> Child {
+    let threads = threads.to_string();
+    let arguments = match has_checkpoint(&workplace.path(folder)) {
+        true => vec!["resume", folder, "--threads", &threads],
+        false => {
+            [&["run", "scene.toml", "--out", folder, "--threads", &threads, "--set", cells][..], &SETTINGS]
+                .concat()
+        }
+    };
+    workplace.command(&arguments).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap()
+}
+
+/// Kills a run and what goes on from it, so often, at any instant; then lets it end, and holds it against one that
+/// nobody killed.
+fn chaos(kills: usize, cells: &str) {
+    let workplace = Workplace::new();
+    workplace.write("scene.toml", &new_scene());
+    let begun = Instant::now();
+    workplace.succeed(&[&["run", "scene.toml", "--out", "whole", "--set", cells][..], &SETTINGS].concat());
+    let longest = begun.elapsed();
+    let mut numbers = Numbers(0x9e37_79b9_7f4a_7c15);
+    for kill in 0..kills {
+        let mut child = spawn(&workplace, ("parts", cells), 1 + kill % 2);
+        std::thread::sleep(longest.mul_f64(3.0 / kills as f64 * numbers.next()) + Duration::from_millis(30));
+        child.kill().unwrap();
+        child.wait().unwrap();
+    }
+    assert!(spawn(&workplace, ("parts", cells), 2).wait().unwrap().success());
+    assert!(!record(&workplace.path("parts"))["resumed"].as_array().unwrap().is_empty());
+    assert!(outcome(&workplace.path("whole")) == outcome(&workplace.path("parts")));
+}
+
+#[test]
+fn a_run_that_is_killed_again_and_again_ends_as_one_that_is_not() {
+    chaos(10, COARSE);
+}
+
+#[test]
+#[ignore = "slow"]
+fn a_run_that_is_killed_two_hundred_times_ends_as_one_that_is_not() {
+    chaos(200, FINE);
+}
+
+/// Whether the tests run under `nohup`, whose children ignore hangups, too.
+fn hangups_are_ignored() -> bool {
+    let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).is_some_and(|mask| mask & 1 == 1)
+}
+
+#[test]
+#[cfg(unix)]
+fn a_run_that_is_asked_to_end_leaves_a_checkpoint_and_goes_on() {
+    for signal in ["TERM", "HUP", "INT"] {
+        if signal == "HUP" && hangups_are_ignored() {
+            continue;
+        }
+        let workplace = Workplace::new();
+        workplace.write("scene.toml", &new_scene());
+        let child = spawn(&workplace, ("out", COARSE), 1);
+        let out = workplace.path("out");
+        let since = Instant::now();
+        while !has_checkpoint(&out) {
+            assert!(since.elapsed() < Duration::from_secs(60), "{signal}: no checkpoint");
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        let pid = child.id().to_string();
+        assert!(std::process::Command::new("kill").args(["-s", signal, &pid]).status().unwrap().success());
+        assert_eq!(child.wait_with_output().unwrap().status.code(), Some(130), "{signal}");
+        assert_eq!(record(&out)["status"], "interrupted", "{signal}");
+        assert!(out.join("picture.png").exists(), "{signal}");
+        // To the end is too long for a test; the results of what was done are whole.
+        workplace.succeed(&["check", "scene.toml"]);
+        let limited = workplace.run(&["resume", "out", "--max-time", "100ms"]);
+        assert_eq!(limited.code, Some(4), "{}", limited.stderr);
+        assert!(limited.stdout.contains("go on with: stickslip resume out"), "{}", limited.stdout);
+        assert_eq!(record(&out)["status"], "out_of_time");
+    }
+}
+
+/// As `nohup` starts it: a terminal that closes does not end it.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_run_that_is_to_ignore_hangups_does() {
+    let workplace = Workplace::new();
+    workplace.write("scene.toml", &new_scene());
+    let program = workplace.command(&[]).get_program().to_str().unwrap().to_owned();
+    let line =
+        format!("trap '' HUP; exec '{program}' run scene.toml --out out --set time.end=0.1 --set {COARSE}");
+    let mut shell = std::process::Command::new("sh");
+    shell.args(["-c", &line]).current_dir(workplace.path("")).stdout(Stdio::null()).stderr(Stdio::null());
+    let mut child = shell.spawn().unwrap();
+    let since = Instant::now();
+    while !workplace.path("out/energy.csv").exists() {
+        assert!(since.elapsed() < Duration::from_secs(60));
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    let pid = child.id().to_string();
+    let _ = std::process::Command::new("kill").args(["-s", "HUP", &pid]).status();
+    assert!(child.wait().unwrap().success());
+    assert_eq!(record(&workplace.path("out"))["status"], "finished");
+}
+
+#[test]
+fn a_later_end_is_remembered_until_another_is_named() {
+    let workplace = Workplace::new();
+    workplace.write("scene.toml", &new_scene());
+    workplace.succeed(&["run", "scene.toml", "--set", COARSE, "--set", "time.end=0.02"]);
+    let stopped = workplace.run(&["resume", "scene.results", "--until", "0.9 s", "--max-time", "20ms"]);
+    assert_eq!(stopped.code, Some(4), "{}", stopped.stderr);
+    let again = workplace.run(&["resume", "scene.results", "--max-time", "20ms"]);
+    assert_eq!(again.code, Some(4), "{}", again.stderr);
+    let nearer = workplace.run(&["resume", "scene.results", "--until", "0.3 s"]);
+    assert_eq!(nearer.code, Some(0), "{}", nearer.stderr);
+    assert!(nearer.stdout.contains("finished at t = 0.300000 s"), "{}", nearer.stdout);
+}
+
+#[test]
+fn a_run_that_can_go_on_is_not_begun_anew_by_mistake() {
+    let workplace = Workplace::new();
+    workplace.write("scene.toml", &new_scene());
+    let again = ["run", "scene.toml", "--set", COARSE, "--set", "time.end=0.9", "--max-time", "20ms"];
+    assert_eq!(workplace.run(&again).code, Some(4));
+    let refused = workplace.run(&again);
+    assert_eq!(refused.code, Some(2));
+    assert!(refused.stderr.contains("stickslip resume scene.results"), "{}", refused.stderr);
+    assert_eq!(workplace.run(&["resume", "scene.results", "--max-time", "20ms"]).code, Some(4));
+    assert_eq!(workplace.run(&[&again[..], &["--overwrite"]].concat()).code, Some(4));
+}
+
+/// From the scene of a run that settled: what is new and what is left out is told before the run.
+#[test]
+fn check_says_what_begins_from_another_run_and_refuses_what_the_run_would() {
+    let workplace = Workplace::new();
+    workplace.write("scene.toml", &new_scene());
+    workplace.succeed(&["run", "scene.toml", "--set", COARSE, "--set", "time.end=0.05", "--out", "first"]);
+    let start = "\n[start]\nfrom = \"first\"\n";
+    workplace.write("second.toml", &(new_scene() + start));
+    let report = workplace.succeed(&["check", "second.toml", "--set", COARSE]);
+    assert!(
+        report.contains("2 of 2 bodies begin as they were at t = 0.05 s in first/checkpoints"),
+        "{report}"
+    );
+    let renamed = new_scene().replace("\"bar\"", "\"rod\"") + start;
+    workplace.write("second.toml", &renamed);
+    let report = workplace.succeed(&["check", "second.toml", "--set", COARSE]);
+    assert!(report.contains("new         `rod`") && report.contains("left out    `bar`"), "{report}");
+    let finer = workplace.run(&["check", "second.toml", "--set", "cells_per_radius=5"]);
+    assert_eq!(finer.code, Some(2), "{}", finer.stdout);
+    assert!(finer.stderr.contains("cannot begin from first"), "{}", finer.stderr);
+    let ran = workplace.run(&["run", "second.toml", "--set", COARSE, "--set", "time.end=0.01"]);
+    assert_eq!(ran.code, Some(0), "{}", ran.stderr);
+    assert!(ran.stderr.contains("1 of 2 bodies begin"), "{}", ran.stderr);
+}
+
+#[test]
+fn a_run_without_checkpoints_has_nothing_to_go_on_from() {
+    let workplace = Workplace::new();
+    workplace.write("scene.toml", &new_scene());
+    let settings = ["--set", COARSE, "--set", "time.end=0.02", "--checkpoint-every", "never"];
+    workplace.succeed(&[&["run", "scene.toml"][..], &settings].concat());
+    let ran = workplace.run(&["resume", "scene.results", "--until", "0.04"]);
+    assert_eq!(ran.code, Some(2));
+    assert!(ran.stderr.contains("ended before its first checkpoint"), "{}", ran.stderr);
+    let foreign = workplace.run(&["resume", "."]);
+    assert_eq!(foreign.code, Some(2));
+    assert!(foreign.stderr.contains("run.json"), "{}", foreign.stderr);
+}
+
+#[test]
+fn a_run_that_is_made_again_ends_in_the_same_bits_or_says_that_it_does_not() {
+    let workplace = Workplace::new();
+    workplace.write("scene.toml", &new_scene());
+    workplace.succeed(&["run", "scene.toml", "--set", COARSE, "--set", "time.end=0.05", "--threads", "1"]);
+    let again = workplace.succeed(&["run", "--again", "scene.results", "--threads", "2"]);
+    let sum = record(&workplace.path("scene.results"))["state_sum"].as_str().unwrap().to_owned();
+    assert!(again.contains(&format!("the same bits as scene.results: {sum}")), "{again}");
+    assert_eq!(record(&workplace.path("scene.results.again"))["state_sum"], sum);
+
+    // A record of other bits, as another version of the program may have made.
+    let path = workplace.path("scene.results/run.json");
+    let text = fs::read_to_string(&path).unwrap();
+    fs::write(&path, text.replace(&sum, &sum.replace(['0', '1', '2', '3'], "f"))).unwrap();
+    let differs = workplace.run(&["run", "--again", "scene.results", "--out", "third"]);
+    assert_eq!(differs.code, Some(3));
+    assert!(differs.stdout.contains("other bits than scene.results"), "{}", differs.stdout);
+    workplace.write("scene.toml", &new_scene().replace("friction = 0.3\n", "friction = 0.4\n"));
+    let text = fs::read_to_string(workplace.path("scene.toml")).unwrap();
+    assert!(text != new_scene(), "the scene has such a line");
+    let changed = workplace.run(&["run", "--again", "scene.results"]);
+    assert_eq!(changed.code, Some(2), "{}", changed.stderr);
+    assert!(changed.stderr.contains("was made with another scene"), "{}", changed.stderr);
+    assert_eq!(workplace.run(&["run"]).code, Some(2));
+}
+
+#[test]
+fn a_finished_run_goes_on_to_a_later_end() {
+    let workplace = Workplace::new();
+    workplace.write("scene.toml", &new_scene());
+    let settings = ["--set", "cells_per_radius=4", "--set", "time.end=20 ms"];
+    workplace.succeed(&[&["run", "scene.toml"][..], &settings].concat());
+    let rows = || fs::read_to_string(workplace.path("scene.results/energy.csv")).unwrap().lines().count();
+    let before = rows();
+    let summary = workplace.succeed(&["resume", "scene.results", "--until", "0.04 s"]);
+    assert!(summary.contains("t = 0.040000 s"), "{summary}");
+    assert!(rows() > before + 8, "{} rows after {before}", rows());
+
+    let past = workplace.run(&["resume", "scene.results", "--until", "10 ms"]);
+    assert_eq!(past.code, Some(2));
+    assert!(past.stderr.contains("past its new end"), "{}", past.stderr);
+    let wrong = workplace.run(&["resume", "scene.results", "--until", "soon"]);
+    assert_eq!(wrong.code, Some(2));
+    assert!(wrong.stderr.contains("soon"), "{}", wrong.stderr);
+    let nothing = workplace.run(&["resume", "elsewhere"]);
+    assert_eq!(nothing.code, Some(2));
+
+    // A scene that was changed since is told by its key, and one that has gone by its name.
+    let scene = new_scene();
+    workplace
+        .write("scene.toml", &scene.replacen("density = ", "density = 2 * ", 1).replace("2 * \"", "\"2 * "));
+    let changed = workplace.run(&["resume", "scene.results", "--until", "50 ms"]);
+    assert_eq!(changed.code, Some(2), "{}", changed.stderr);
+    assert!(changed.stderr.contains("density") || changed.stderr.contains("materials"), "{}", changed.stderr);
+    fs::remove_file(workplace.path("scene.toml")).unwrap();
+    let gone = workplace.run(&["resume", "scene.results", "--until", "50 ms"]);
+    assert_eq!(gone.code, Some(2));
+    assert!(gone.stderr.contains("scene.toml"), "{}", gone.stderr);
+    workplace.write("moved.toml", &scene);
+    workplace.succeed(&["resume", "scene.results", "--until", "50 ms", "--scene", "moved.toml"]);
+}

@@ -1,0 +1,68 @@
+//! The state of a simulation as data: what a checkpoint holds of it.
+
+use crate::contact::ContactSums;
+use crate::load::LoadSums;
+use crate::rigid::{Pose, RigidState};
+use crate::step::{Disorder, RelaxationProgress};
+use serde::{Deserialize, Serialize};
+
+/// All that a simulation is between two steps, whatever its dimension and precision. A simulation of the same scene that
+/// takes it up takes the same steps, bit for bit.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct SavedState {
+    /// Simulated time [s].
+    pub time: f64,
+    /// Steps taken.
+    pub steps: u64,
+    /// The bodies in the order of the scene.
+    pub bodies: Vec<SavedBody>,
+    /// Fastest signal [m/s]; unknown before the first step.
+    pub(crate) signal: Option<f64>,
+    /// Energy that damping took [J].
+    pub(crate) damping: f64,
+    pub(crate) relaxation: RelaxationProgress,
+    pub(crate) loads: Vec<LoadSums>,
+    pub(crate) contact_sums: ContactSums,
+    pub(crate) unbounded: Vec<SavedUnbounded>,
+    /// Of each load, how far its points were from their places where the run began; none if they were there.
+    pub(crate) moved: Vec<Vec<[f64; 3]>>,
+}
+
+/// A body between two steps.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct SavedBody {
+    /// Its name in the scene.
+    pub name: String,
+    /// Each particle's number in its body, in the order of memory, which sums follow.
+    pub numbers: Vec<u32>,
+    /// What its particles have.
+    pub columns: Vec<SavedColumn>,
+    /// Where it is and how it moves, if it is rigid.
+    pub(crate) motion: Option<RigidState>,
+    pub(crate) disorder: Disorder,
+}
+
+/// A column of particles.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct SavedColumn {
+    /// Its name, see [`crate::column::EVERY`] and the laws' histories.
+    pub name: String,
+    /// Bytes of a number: 4 or 8.
+    pub width: usize,
+    /// Its entries that the motion leaves free, one behind the other: each the numbers of all particles in the order of
+    /// memory, little-endian, IEEE 754.
+    #[serde(with = "serde_bytes")]
+    pub bytes: Vec<u8>,
+}
+
+/// Where a rigid body without bounds has particles.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) struct SavedUnbounded {
+    pub served: Vec<Vec<i32>>,
+    pub pose: Option<Pose>,
+}
+
+/// A state that belongs to another scene than the simulation that should take it up.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct RestoreError(pub(crate) String);

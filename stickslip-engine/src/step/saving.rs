@@ -1,0 +1,397 @@
+//! The state as data, and back.
+
+use super::Engine;
+use super::build::spin;
+use super::state::{Disorder, State};
+use super::unbounded::Unbounded;
+use crate::basis::Basis;
+use crate::body::{Body, Particle};
+use crate::door::{RestoreError, SavedBody, SavedColumn, SavedState, SavedUnbounded};
+use crate::lanes::Laned;
+use crate::load::{LoadPoints, arm};
+use crate::particles::{ColumnStart, Particles};
+use crate::scene::{ContactLaw, StartVelocities, Transfer};
+use crate::tensor::{Matrix, Real, Symmetric, Vector};
+use crate::transfer::columns as columns_of;
+use std::sync::Mutex;
+
+impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
+    /// The state as data.
+    pub(super) fn saved(&self) -> SavedState {
+        let State { time, steps, signal, damping, relaxation, .. } = self.state;
+        let bodies = self.state.bodies.iter().zip(&self.state.disorder);
+        SavedState {
+            time,
+            steps,
+            bodies: bodies
+                .map(|(body, &disorder)| SavedBody {
+                    name: body.name.clone(),
+                    numbers: body.particles.numbers().to_vec(),
+                    columns: columns(&body.particles),
+                    motion: body.motion.as_ref().map(|motion| motion.state()),
+                    disorder,
+                })
+                .collect(),
+            signal,
+            damping,
+            relaxation,
+            loads: self.state.loads.clone(),
+            contact_sums: self.state.contact_sums.clone(),
+            unbounded: self.state.unbounded.iter().map(Unbounded::saved).collect(),
+            moved: self.settings.loads.iter().map(moved).collect(),
+        }
+    }
+
+    /// Takes up a state of the same scene.
+    ///
+    /// # Errors
+    /// It is of another scene; then nothing is changed.
+    pub(super) fn take_up(&mut self, saved: SavedState) -> Result<(), RestoreError> {
+        let state = &mut self.state;
+        let [found, wanted] = [saved.bodies.len(), state.bodies.len()];
+        if found != wanted {
+            return Err(RestoreError(format!("it has {found} bodies, and the scene {wanted}")));
+        }
+        if saved.loads.len() != state.loads.len() || saved.unbounded.len() != state.unbounded.len() {
+            return Err(RestoreError(
+                "it has other supports, loads or bodies without bounds than the scene".into(),
+            ));
+        }
+        let numbers = [saved.time, saved.damping, saved.signal.unwrap_or(1.0)];
+        if !numbers.iter().all(|x| x.is_finite()) || saved.time < 0.0 || !saved.contact_sums.are_of(wanted) {
+            return Err(RestoreError("it has numbers that no run has".to_string()));
+        }
+        for (body, saved) in state.bodies.iter().zip(&saved.bodies) {
+            if body.motion.is_some() != saved.motion.is_some() {
+                return Err(RestoreError(format!("body `{}` is rigid in one of the two only", body.name)));
+            }
+        }
+        let without_bounds = |i: usize| state.unbounded.iter().any(|unbounded| unbounded.body == i);
+        let restored = (saved.bodies.iter().zip(&state.bodies).enumerate())
+            .map(|(i, (saved, body))| particles(saved, body, without_bounds(i)));
+        let restored: Vec<Particles<T, D>> = restored.collect::<Result<_, _>>()?;
+
+        for ((body, saved), particles) in state.bodies.iter_mut().zip(&saved.bodies).zip(restored) {
+            body.particles = particles;
+            if let (Some(motion), Some(saved)) = (&mut body.motion, &saved.motion) {
+                motion.restore(saved);
+            }
+        }
+        state.disorder = saved.bodies.iter().map(|body| body.disorder).collect();
+        state
+            .unbounded
+            .iter_mut()
+            .zip(&saved.unbounded)
+            .for_each(|(unbounded, saved)| unbounded.take_up(saved));
+        for (load, moved) in self.settings.loads.iter_mut().zip(saved.moved) {
+            load.points.iter_mut().zip(moved).for_each(|(point, moved)| point.moved = moved);
+        }
+        state.contact_sums = saved.contact_sums.indexed();
+        (state.loads, state.damping, state.relaxation) = (saved.loads, saved.damping, saved.relaxation);
+        (state.signal, state.time, state.steps) = (saved.signal, saved.time, saved.steps);
+        Ok(())
+    }
+}
+
+impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
+    /// Lets bodies begin as those of the same name were in another run.
+    ///
+    /// # Errors
+    /// One of them is another body there; then nothing is changed.
+    pub(super) fn carry_over(
+        &mut self,
+        saved: &SavedState,
+        velocities: StartVelocities,
+    ) -> Result<(), RestoreError> {
+        let state = &self.state;
+        let of_body = |body: &Body<T, D>| saved.bodies.iter().find(|saved| saved.name == body.name);
+        let carried = state.bodies.iter().enumerate().map(|(i, body)| {
+            let without_bounds = state.unbounded.iter().any(|unbounded| unbounded.body == i);
+            let begin = |saved| begun(saved, body, (without_bounds, velocities));
+            of_body(body).map(begin).transpose()
+        });
+        let carried: Vec<Option<Body<T, D>>> = carried.collect::<Result<_, _>>()?;
+        if carried.iter().all(Option::is_none) {
+            return Err(RestoreError("it has no body with the name of one of the scene".to_string()));
+        }
+        self.find_overlap(&carried)?;
+        for (i, body) in carried.into_iter().enumerate() {
+            let Some(body) = body else { continue };
+            self.state.disorder[i] = Disorder::any(body.particles.len());
+            self.state.bodies[i] = body;
+        }
+        for load in &mut self.settings.loads {
+            let particles = &self.state.bodies[load.body].particles;
+            let mut places = vec![0; particles.len()];
+            particles
+                .numbers()
+                .iter()
+                .enumerate()
+                .for_each(|(place, &number)| places[number as usize] = place);
+            for i in 0..load.points.len() {
+                let (particle, start) =
+                    (particles.get(places[load.points[i].particle]), load.start(&load.points[i]));
+                let now = (particle.position + arm::<T, D>(&particle, &load.points[i])).space();
+                // Round-off is no way.
+                let near = f64::from(f32::EPSILON) * self.settings.lattice.cell.f64();
+                let way: [f64; 3] = std::array::from_fn(|k| if k < D { now[k] - start[k] } else { 0.0 });
+                load.points[i].moved = way.map(|way| if way.abs() < near { 0.0 } else { way });
+            }
+        }
+        (self.state.signal, self.workspace.totals) = (None, Mutex::default());
+        Ok(())
+    }
+}
+
+impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
+    /// Refuses particles that begin deeper in another body than half their distance, where that is new or rigid and its
+    /// surface is known.
+    fn find_overlap(&self, carried: &[Option<Body<T, D>>]) -> Result<(), RestoreError> {
+        let bodies: Vec<&Body<T, D>> = carried
+            .iter()
+            .zip(&self.state.bodies)
+            .map(|(carried, fresh)| carried.as_ref().unwrap_or(fresh))
+            .collect();
+        let pairs = (0..bodies.len()).flat_map(|a| (0..bodies.len()).map(move |b| [a, b]));
+        for [a, b] in pairs.filter(|&[a, b]| a != b && (carried[a].is_none() || carried[b].is_none())) {
+            let (holder, other) = (bodies[a], bodies[b]);
+            let rule = self.settings.rules.rule(self.settings.rules.number(a, b));
+            let known = holder.is_rigid() || carried[a].is_none();
+            if !known || other.is_rigid() || matches!(rule.law, ContactLaw::None | ContactLaw::Glued) {
+                continue;
+            }
+            let place = |x: [f64; 3]| holder.motion.as_ref().map_or(x, |motion| motion.pose().start(x));
+            let inside = |particle: &Particle<T, D>| {
+                let x = particle.position.space();
+                (holder.whole.level(place(x)).distance < -particle.half_width.f64()).then_some(x)
+            };
+            let inside: Vec<[f64; 3]> =
+                other.particles.iter().filter_map(|particle| inside(&particle)).collect();
+            if let Some(near) = inside.first() {
+                let (holder, other, count) = (&holder.name, &other.name, inside.len());
+                let near: Vec<String> = near[..D].iter().map(|x| format!("{x:.4}")).collect();
+                let near = near.join(", ");
+                return Err(RestoreError(format!(
+                    "`{holder}` overlaps `{other}` in {count} particles near ({near}) m"
+                )));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Every way between particles and grid.
+const TRANSFERS: [Transfer; 5] =
+    [Transfer::Rflip, Transfer::Flip, Transfer::Apic, Transfer::Xpic, Transfer::Pic];
+
+/// A body as one of the same name was in another run.
+fn begun<T: Real, const D: usize>(
+    saved: &SavedBody,
+    fresh: &Body<T, D>,
+    (without_bounds, velocities): (bool, StartVelocities),
+) -> Result<Body<T, D>, RestoreError> {
+    let off = |what: &str| RestoreError(format!("body `{}` {what}", fresh.name));
+    let mut body = fresh.clone();
+    match (&mut body.motion, &saved.motion) {
+        // Without bounds and where it was drawn: where it is drawn now.
+        (Some(_), Some(saved)) if without_bounds && !saved.has_moved() => return Ok(body),
+        (Some(motion), Some(saved)) => {
+            let near = |[a, b]: [f64; 2]| (a - b).abs() <= NEAR;
+            if without_bounds && !(0..3).all(|i| near([saved.start()[i], motion.state().start()[i]])) {
+                return Err(off("has moved in it, and its shape is another in the scene"));
+            }
+            motion.restore(saved);
+            motion.set_time(0.0);
+        }
+        (Some(_), None) => return Err(off("is rigid in the scene, and deformed in it")),
+        (None, _) => {}
+    }
+    if without_bounds {
+        return Ok(body);
+    }
+    let count = saved.numbers.len();
+    if count != fresh.particles.len() {
+        let [count, wanted] = [count, fresh.particles.len()];
+        return Err(off(&format!(
+            "has {wanted} particles in the scene, and {count} in it: its shape or its filling is another"
+        )));
+    }
+    let places = places(saved).ok_or_else(|| off("has particles that are numbered twice"))?;
+    let density = body.density;
+    // What carries velocities follows from the transfer, and may be another.
+    let of_motion =
+        |name: &str| TRANSFERS.iter().any(|&way| columns_of(way).iter().any(|own| own.column.name == name));
+    let known = |name: &str| fresh.particles.described().any(|(_, column)| column.name == name);
+    let forgotten = saved.columns.iter().find(|saved| {
+        let remembers = saved.bytes.iter().any(|&byte| byte != 0);
+        remembers && !known(&saved.name) && !of_motion(&saved.name)
+    });
+    if let Some(column) = forgotten {
+        let name = &column.name;
+        return Err(off(&format!(
+            "has `{name}` in it, which its material in the scene does not remember: what flowed or broke would spring back"
+        )));
+    }
+    for (first, column) in fresh.particles.described() {
+        let Some(saved) = saved.columns.iter().find(|saved| saved.name == column.name) else { continue };
+        let entries = column.kind.entries(D);
+        if saved.bytes.len() != entries * count * saved.width {
+            return Err(off(&format!("has another kind of column `{}` in it", column.name)));
+        }
+        let values: Vec<T> = saved.numbers().collect();
+        for (k, values) in (0..entries).zip(values.chunks(count.max(1))) {
+            let numbers = fresh.particles.numbers();
+            let line = body.particles.line_mut(first + k);
+            line.iter_mut().zip(numbers).for_each(|(x, &number)| *x = values[places[number as usize]]);
+        }
+    }
+    if !same_start(&body.particles, &fresh.particles, NEAR) {
+        return Err(off("began elsewhere than it does in the scene: its shape or its filling is another"));
+    }
+    for i in 0..body.particles.len() {
+        let mut particle = body.particles.get(i);
+        // Of another density: m = rho V / J.
+        let mass = density * particle.volume / particle.deformation.det();
+        if (mass - particle.mass).abs() > T::of(1e-5) * mass {
+            particle.mass = mass;
+        }
+        if let Some(motion) = &body.motion {
+            particle.velocity = Vector::of(motion.velocity_at(particle.position.space()));
+            particle.spin = spin::<T, D>(motion.spin());
+        }
+        body.particles.set(i, &particle);
+    }
+    if velocities == StartVelocities::Zero && body.motion.is_none() {
+        body.particles.stop();
+    }
+    Ok(body)
+}
+
+/// Where each particle stands in what was saved, by its number; none if two have one number.
+fn places(saved: &SavedBody) -> Option<Vec<usize>> {
+    let mut places = vec![usize::MAX; saved.numbers.len()];
+    for (place, &number) in saved.numbers.iter().enumerate() {
+        let known = places.get_mut(number as usize).filter(|known| **known == usize::MAX)?;
+        *known = place;
+    }
+    Some(places)
+}
+
+impl SavedColumn {
+    /// Its numbers, one entry behind the other.
+    fn numbers<T: Real>(&self) -> impl Iterator<Item = T> {
+        self.bytes.chunks_exact(self.width.max(1)).map(|bytes| match *bytes {
+            [a, b, c, d] => T::of(f64::from(f32::from_le_bytes([a, b, c, d]))),
+            [a, b, c, d, e, f, g, h] => T::of(f64::from_le_bytes([a, b, c, d, e, f, g, h])),
+            _ => T::ZERO,
+        })
+    }
+}
+
+/// How far the points of a load were from their places where the run began; none if they were there.
+fn moved(load: &LoadPoints) -> Vec<[f64; 3]> {
+    let moved = load.points.iter().map(|point| point.moved);
+    if moved.clone().all(|way| way == [0.0; 3]) { Vec::new() } else { moved.collect() }
+}
+
+impl<const D: usize> Unbounded<D> {
+    fn saved(&self) -> SavedUnbounded {
+        SavedUnbounded { served: self.served.iter().map(|block| block.to_vec()).collect(), pose: self.pose }
+    }
+
+    fn take_up(&mut self, saved: &SavedUnbounded) {
+        let block = |block: &Vec<i32>| std::array::from_fn(|k| block.get(k).copied().unwrap_or_default());
+        (self.served, self.pose) = (saved.served.iter().map(block).collect(), saved.pose);
+    }
+}
+
+fn columns<T: Real, const D: usize>(particles: &Particles<T, D>) -> Vec<SavedColumn> {
+    let saved = particles.described().map(|(first, column)| {
+        let entries = first..first + column.kind.entries(D);
+        let mut bytes = Vec::with_capacity(entries.len() * particles.len() * size_of::<T>());
+        for line in entries.map(|entry| particles.line(entry)) {
+            match size_of::<T>() {
+                4 => bytes.extend(line.iter().flat_map(|x| (x.f64() as f32).to_le_bytes())),
+                _ => bytes.extend(line.iter().flat_map(|x| x.f64().to_le_bytes())),
+            }
+        }
+        SavedColumn { name: column.name.to_string(), width: size_of::<T>(), bytes }
+    });
+    saved.collect()
+}
+
+/// The particles of a body as they were saved. Those of a body without bounds may be any number.
+fn particles<T: Real, const D: usize>(
+    saved: &SavedBody,
+    body: &Body<T, D>,
+    without_bounds: bool,
+) -> Result<Particles<T, D>, RestoreError> {
+    let off = |what: String| RestoreError(format!("body `{}` {what}", body.name));
+    let fresh = &body.particles;
+    let count = saved.numbers.len();
+    if saved.name != body.name {
+        return Err(off(format!("stands where it has `{}`", saved.name)));
+    }
+    if !without_bounds && count != fresh.len() {
+        return Err(off(format!("has {} particles in the scene, and {count} in it", fresh.len())));
+    }
+    places(saved).ok_or_else(|| off("has particles that are numbered twice".into()))?;
+    let blank = |i: usize| Particle {
+        position: Vector::ZERO,
+        velocity: Vector::ZERO,
+        spin: Vector::ZERO,
+        mass: T::ZERO,
+        volume: T::ZERO,
+        half_width: T::ZERO,
+        deformation: Matrix::IDENTITY,
+        stress: Symmetric::ZERO,
+        number: saved.numbers[i],
+    };
+    let mut particles = Particles::from_fn(count, fresh.own(), blank);
+    if saved.columns.len() != fresh.described().count() {
+        return Err(off("has other columns of particles in it than in the scene".into()));
+    }
+    for ((first, column), saved) in fresh.described().zip(&saved.columns) {
+        let entries = column.kind.entries(D);
+        let fits = saved.name == column.name
+            && saved.width == size_of::<T>()
+            && saved.bytes.len() == entries * count * saved.width;
+        if !fits {
+            let (found, wanted) = (&saved.name, column.name);
+            return Err(off(format!(
+                "has the column `{found}` in it, of another size than `{wanted}` in the scene"
+            )));
+        }
+        let mut numbers = saved.numbers();
+        for entry in first..first + entries {
+            particles.line_mut(entry).iter_mut().zip(&mut numbers).for_each(|(x, saved)| *x = saved);
+        }
+    }
+    if !without_bounds && !same_start(&particles, fresh, 0.0) {
+        return Err(off("began elsewhere than it does in the scene".into()));
+    }
+    Ok(particles)
+}
+
+/// Places that differ by this share of half a particle's width are one: a grid that begins elsewhere rounds otherwise.
+const NEAR: f64 = 1e-3;
+
+/// Whether particles began where others are that have not moved, number by number, to a share of their half-widths.
+fn same_start<T: Real, const D: usize>(
+    particles: &Particles<T, D>,
+    fresh: &Particles<T, D>,
+    near: f64,
+) -> bool {
+    let first = ColumnStart::<D>::START;
+    (first..first + D).all(|entry| {
+        let mut start = vec![[T::ZERO; 2]; fresh.len()];
+        let widths = fresh.line(ColumnStart::<D>::HALF_WIDTH);
+        for ((&number, &x), &width) in fresh.numbers().iter().zip(fresh.line(entry)).zip(widths) {
+            start[number as usize] = [x, T::of(near) * width];
+        }
+        (particles.numbers().iter().zip(particles.line(entry))).all(|(&number, &x)| {
+            let [start, near] = start[number as usize];
+            (start - x).abs() <= near
+        })
+    })
+}

@@ -1,0 +1,254 @@
+//! Checkpoints: all that a run needs to go on, in a file that is whole or not there.
+//!
+//! ```text
+//! "stickslip checkpoint", a zero, the version of the format as u32, little-endian
+//! a map in MessagePack: program, scene, state, memory
+//! SHA-256 of all bytes before it
+//! ```
+
+use super::CHECKPOINTS;
+use super::file::{OutputError, ReadError, ReadProblem, part_of};
+use super::folder::OutputFolder;
+use super::memory::{Memory, Values};
+use crate::door::SavedState;
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+/// A moment of a run from which it can go on.
+#[derive(Debug, Serialize, Deserialize)]
+pub struct Checkpoint {
+    /// Version of the program that wrote it.
+    pub program: String,
+    /// The scene as run, as `run.json` has it.
+    scene: String,
+    /// The simulation.
+    pub state: SavedState,
+    /// How far outputs and checks have come.
+    memory: Values,
+}
+
+/// The beginning of every checkpoint.
+const MAGIC: &[u8; 21] = b"stickslip checkpoint\0";
+/// The version of the format that is written; older ones are read.
+const VERSION: u32 = 1;
+/// Bytes of a sum.
+const SUM: usize = 32;
+
+impl Checkpoint {
+    /// A moment of the run of a scene.
+    pub fn new(scene: &serde_json::Value, state: SavedState, memory: Memory) -> Self {
+        Checkpoint {
+            program: env!("CARGO_PKG_VERSION").to_string(),
+            scene: scene.to_string(),
+            state,
+            memory: memory.into_values(),
+        }
+    }
+
+    /// Where a checkpoint after so many steps lies in the folder of a run.
+    pub fn path(folder: &Path, steps: u64) -> PathBuf {
+        folder.join(CHECKPOINTS).join(format!("{steps:010}.checkpoint"))
+    }
+
+    /// The scene as run.
+    pub fn scene(&self) -> serde_json::Value {
+        serde_json::from_str(&self.scene).unwrap_or_default()
+    }
+
+    /// What was kept of outputs and checks.
+    pub fn memory(&mut self, path: &Path) -> Memory {
+        Memory::of(std::mem::take(&mut self.memory), path)
+    }
+
+    /// Writes it: beside its place first, flushed to the disk, then renamed into place, so that whatever happens there
+    /// is the whole of it or nothing.
+    ///
+    /// # Errors
+    /// The disk is full or refuses; then nothing is left of it.
+    pub fn write(&self, path: &Path) -> Result<(), OutputError> {
+        let part = part_of(path);
+        let write = || -> io::Result<()> {
+            let mut file =
+                Summed { file: BufWriter::with_capacity(1 << 20, File::create(&part)?), sum: Sha256::new() };
+            file.write_all(MAGIC)?;
+            file.write_all(&VERSION.to_le_bytes())?;
+            let mut encoder = rmp_serde::Serializer::new(&mut file).with_struct_map();
+            self.serialize(&mut encoder).map_err(io_error)?;
+            let Summed { mut file, sum } = file;
+            file.write_all(&sum.finalize())?;
+            file.into_inner().map_err(io::IntoInnerError::into_error)?.sync_all()?;
+            fs::rename(&part, path)?;
+            // The name is on the disk once the folder is.
+            path.parent().map_or(Ok(()), |folder| File::open(folder)?.sync_all())
+        };
+        write().map_err(|source| {
+            let _ = fs::remove_file(&part);
+            OutputError { path: path.to_path_buf(), source }
+        })
+    }
+
+    /// Reads one.
+    ///
+    /// # Errors
+    /// It is missing, damaged, of a later version, or no checkpoint.
+    pub fn read(path: &Path) -> Result<Self, ReadError> {
+        let read = || -> Result<Checkpoint, ReadProblem> {
+            let layout = |what: &str| ReadProblem::Layout(what.to_string());
+            let bytes = fs::read(path)?;
+            let head = MAGIC.len() + size_of::<u32>();
+            if bytes.len() < head + SUM || !bytes.starts_with(MAGIC) {
+                return Err(layout("it is no checkpoint of stickslip"));
+            }
+            let (content, sum) = bytes.split_at(bytes.len() - SUM);
+            if Sha256::digest(content)[..] != *sum {
+                return Err(layout("it is damaged: its bytes do not add up to its sum"));
+            }
+            let version = content[MAGIC.len()..head].try_into().map(u32::from_le_bytes).unwrap_or_default();
+            if version != VERSION {
+                let found = format!("it is of version {version} of the format; this program reads {VERSION}");
+                return Err(ReadProblem::Layout(found));
+            }
+            rmp_serde::from_slice(&content[head..])
+                .map_err(|error| layout(&format!("it is damaged: {error}")))
+        };
+        read().map_err(|problem| problem.at(path))
+    }
+
+    /// The checkpoints in the folder of a run, the newest first.
+    ///
+    /// # Errors
+    /// The folder cannot be read.
+    pub fn list(folder: &Path) -> Result<Vec<PathBuf>, ReadError> {
+        let path = folder.join(CHECKPOINTS);
+        let entries = match fs::read_dir(&path) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
+            other => other.map_err(|error| ReadProblem::from(error).at(&path))?,
+        };
+        let files = entries.flatten().filter(|entry| entry.file_type().is_ok_and(|kind| kind.is_file()));
+        let names = files.filter_map(|entry| entry.file_name().into_string().ok());
+        let mut names: Vec<String> = names.filter(|name| is_checkpoint(name)).collect();
+        names.sort_unstable_by_key(|name| std::cmp::Reverse((name.len(), name.clone())));
+        Ok(names.into_iter().map(|name| path.join(name)).collect())
+    }
+
+    /// The newest checkpoint in the folder of a run that can be read, where it lies, and why newer ones cannot.
+    ///
+    /// # Errors
+    /// There is none, or none can be read.
+    pub fn newest(folder: &Path) -> Result<(Self, PathBuf, Vec<ReadError>), ReadError> {
+        let mut damaged = Vec::new();
+        for path in Self::list(folder)? {
+            match Self::read(&path) {
+                Ok(checkpoint) => return Ok((checkpoint, path, damaged)),
+                Err(error) => damaged.push(error),
+            }
+        }
+        let none =
+            || ReadProblem::Layout("there is no checkpoint in it".to_string()).at(&folder.join(CHECKPOINTS));
+        Err(damaged.into_iter().next().unwrap_or_else(none))
+    }
+
+    /// Makes the folder for the checkpoints of a run, and clears it of what was left half-written.
+    ///
+    /// # Errors
+    /// The disk refuses.
+    pub fn prepare(folder: &OutputFolder) -> Result<(), OutputError> {
+        let path = folder.join(CHECKPOINTS);
+        match fs::create_dir(&path) {
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
+            other => other.map_err(OutputError::at(&path))?,
+        }
+        for entry in fs::read_dir(&path).map_err(OutputError::at(&path))?.flatten() {
+            if entry
+                .file_name()
+                .to_str()
+                .and_then(|name| name.strip_suffix(".part"))
+                .is_some_and(is_checkpoint)
+            {
+                fs::remove_file(entry.path()).map_err(OutputError::at(&entry.path()))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Puts a checkpoint that cannot be read out of the way of others: its name gets `.damaged` appended.
+    ///
+    /// # Errors
+    /// The disk refuses.
+    pub fn put_away(path: &Path) -> Result<(), OutputError> {
+        let mut name = path.as_os_str().to_owned();
+        name.push(".damaged");
+        fs::rename(path, name).map_err(OutputError::at(path))
+    }
+
+    /// Removes all but the newest checkpoints of a run.
+    ///
+    /// # Errors
+    /// One cannot be removed.
+    pub fn keep_newest(folder: &Path, count: usize) -> Result<(), OutputError> {
+        let all = Self::list(folder)
+            .map_err(|error| OutputError { path: error.path, source: io_error(error.problem) })?;
+        all.iter().skip(count).try_for_each(|path| fs::remove_file(path).map_err(OutputError::at(path)))
+    }
+}
+
+/// `0000012345.checkpoint`.
+pub(super) fn is_checkpoint(name: &str) -> bool {
+    let digits = name.strip_suffix(".checkpoint");
+    digits.is_some_and(|digits| digits.len() >= 10 && digits.bytes().all(|byte| byte.is_ascii_digit()))
+}
+
+/// A SHA-256 of the particles of a state, in hexadecimal: of each body its particles' numbers in ascending order, and each
+/// entry of each column in that order, then time and steps. Where particles lie in memory does not enter.
+pub fn state_sum(state: &SavedState) -> String {
+    let mut sum = Sha256::new();
+    for body in &state.bodies {
+        sum.update(body.name.as_bytes());
+        let mut order: Vec<u32> = (0..body.numbers.len() as u32).collect();
+        order.sort_unstable_by_key(|&place| body.numbers[place as usize]);
+        for column in &body.columns {
+            sum.update(column.name.as_bytes());
+            for line in column.bytes.chunks_exact((column.width * order.len()).max(1)) {
+                order
+                    .iter()
+                    .for_each(|&place| sum.update(&line[place as usize * column.width..][..column.width]));
+            }
+        }
+    }
+    sum.update(state.time.to_le_bytes());
+    sum.update(state.steps.to_le_bytes());
+    sum.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// A file and the sum of what was written to it.
+struct Summed<W> {
+    file: W,
+    sum: Sha256,
+}
+
+impl<W: Write> Write for Summed<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let written = self.file.write(bytes)?;
+        self.sum.update(&bytes[..written]);
+        Ok(written)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
+}
+
+/// An error of the encoder; what the disk says stands in it.
+fn io_error(error: impl std::error::Error + Send + Sync + 'static) -> io::Error {
+    let mut cause: Option<&(dyn std::error::Error + 'static)> = Some(&error);
+    while let Some(this) = cause {
+        if let Some(io) = this.downcast_ref::<io::Error>() {
+            return io.raw_os_error().map_or_else(|| io.kind().into(), io::Error::from_raw_os_error);
+        }
+        cause = this.source();
+    }
+    io::Error::other(error.to_string())
+}

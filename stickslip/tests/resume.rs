@@ -1,0 +1,588 @@
+//! Runs that go on: bit for bit as if nothing had happened, or not at all, and then with the reason.
+//!
+//! Set-up: two disks, one viscoelastic and one that flows, fall on each other and on a rigid floor without bounds, with
+//! friction, a support, a load, a driven rigid paddle, and every kind of output; in the plane in both precisions, and
+//! balls in space with relaxation.
+//!
+//! Expected: every file of an interrupted run, but the times in its record and its checkpoints, has the bytes of one that
+//! was never interrupted.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::Ordering;
+use std::time::Duration;
+use stickslip::observe::{Checkpoint, FolderError, Manifest, OutputError, Status};
+use stickslip::run::{
+    Checkpointing, Progress, ResumeError, RunError, RunOptions, Summary, resume, run, run_with,
+};
+use stickslip::scene::{Scene, parse};
+
+const PLANE: &str = r#"
+gravity = [0, -9.81]
+[space]
+dimension = "plane-strain"
+cell = 0.1
+precision = "double"
+[time]
+end = 0.4
+[materials.slow]
+density = 1000
+viscoelastic = { bulk_modulus = 2e5, shear_modulus = 5e4, prony = [[0.4, 0.05]] }
+[materials.clay]
+density = 1000
+von_mises = { young_modulus = 2e5, poisson_ratio = 0.3, yield_stress = 2e3 }
+[[bodies]]
+name = "low"
+material = "slow"
+shape.ball = { center = [0, 0.5], radius = 0.5 }
+[[bodies]]
+name = "high"
+material = "clay"
+shape.ball = { center = [0.2, 1.52], radius = 0.5 }
+velocity = [0, -2]
+spin = 3
+[[bodies]]
+name = "floor"
+material = "slow"
+shape.half_space = { point = [0, -0.01], normal = [0, 1] }
+rigid = {}
+[[bodies]]
+name = "paddle"
+material = "slow"
+shape.box = { min = [-0.9, 0.3], max = [-0.6, 0.6] }
+rigid = { velocity = ["0.6 * sin(20 * t)", 0], spin = "2 * t" }
+[[contact]]
+between = ["any", "any"]
+friction = 0.3
+[[supports]]
+name = "hook"
+body = "high"
+within.ball = { center = [0.2, 2.0], radius = 0.15 }
+stiffness = 2e3
+[[loads]]
+name = "wind"
+body = "low"
+acceleration = ["3 * sin(50 * t)", 0]
+[outputs]
+tables = 0.004
+particles = 0.03
+particles_at = [0.1, 0.155]
+grid = 0.06
+samples = 0.002
+time_unit = 0.01
+checkpoints = 0.02
+[outputs.fringes]
+interval = 0.03
+exposure = 0.02
+samples = 5
+stress_parameter = 4e3
+width = 90
+overlay = "force-chains"
+bodies = ["low", "high"]
+[[outputs.probes]]
+name = "heart"
+at = [0.2, 1.5]
+fixed_in = "material"
+[[outputs.probes]]
+name = "place"
+at = [0.1, 0.4]
+fixed_in = "space"
+[[outputs.arrivals]]
+quantity = "speed"
+threshold = 0.2
+bodies = ["low", "high"]
+[[outputs.arrivals]]
+quantity = "von_mises"
+threshold = 3e3
+reading = "any"
+bodies = ["low"]
+[[outputs.fronts]]
+name = "wave"
+quantity = "von_mises"
+threshold = 1e3
+from = [0, 1]
+direction = [0, -1]
+bodies = ["low"]
+"#;
+
+const SPACE: &str = r#"
+gravity = [0, 0, -9.81]
+[space]
+dimension = "3d"
+cell = 0.25
+basis = "spline"
+domain = { min = [-1, -1, 0], max = [1, 1, 3], z_min = "fixed", y_min = "symmetry" }
+[time]
+end = 1.6
+relax = { residual = 1e-2 }
+transfer = "apic"
+[materials.rubber]
+density = 1000
+neo_hookean = { young_modulus = 1e5, poisson_ratio = 0.3 }
+[[bodies]]
+name = "low"
+material = "rubber"
+shape.ball = { center = [0, 0, 0.5], radius = 0.5 }
+[[bodies]]
+name = "high"
+material = "rubber"
+shape.ball = { center = [0, 0, 1.5], radius = 0.5 }
+[[contact]]
+between = ["any", "any"]
+friction = 0.3
+[outputs]
+tables = 0.01
+particles = 0.05
+checkpoints = 0.05
+"#;
+
+fn scene(text: &str) -> Scene {
+    parse("scene.toml", text, &[]).unwrap_or_else(|error| panic!("{error}")).scene
+}
+
+fn options(out: &Path) -> RunOptions {
+    let checkpoints = Checkpointing { at_end: true, ..Checkpointing::default() };
+    RunOptions { threads: 1, checkpoints, ..RunOptions::new(out) }
+}
+
+fn start(scene: &Scene, out: &Path) -> Result<Summary, RunError> {
+    run(scene, &mut *stickslip::step::build(scene).unwrap(), &options(out), &mut |_| {})
+}
+
+fn go_on(scene: &Scene, out: &Path) -> Result<Summary, RunError> {
+    resume(scene, &mut *stickslip::step::build(scene).unwrap(), &options(out), &mut |_| {})
+}
+
+/// Asks the run to stop after so many steps.
+struct StopAfter(u64, RunOptions);
+
+impl stickslip::observe::Observer for StopAfter {
+    fn next(&self) -> f64 {
+        0.0
+    }
+
+    fn observe(&mut self, view: &dyn stickslip::door::View) -> Result<(), OutputError> {
+        if view.steps() >= self.0 {
+            self.1.stop.store(true, Ordering::Relaxed);
+        }
+        Ok(())
+    }
+}
+
+/// Runs a scene and stops it after so many steps.
+fn start_and_stop(scene: &Scene, out: &Path, steps: u64) -> Summary {
+    let options = options(out);
+    let mut stop = StopAfter(steps, options.clone());
+    let mut simulation = stickslip::step::build(scene).unwrap();
+    run_with(scene, &mut *simulation, &options, &mut [&mut stop], &mut |_| {}).unwrap()
+}
+
+/// Every file of a run but its record and its checkpoints, by name.
+fn files(out: &Path) -> Vec<(PathBuf, Vec<u8>)> {
+    let mut found = Vec::new();
+    let mut folders = vec![out.to_path_buf()];
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(folder).unwrap().map(Result::unwrap) {
+            let (path, name) = (entry.path(), entry.file_name().into_string().unwrap());
+            match path.is_dir() {
+                true if name != "checkpoints" => folders.push(path),
+                false if name != Manifest::FILE => {
+                    found.push((path.strip_prefix(out).unwrap().to_path_buf(), fs::read(&path).unwrap()));
+                }
+                _ => {}
+            }
+        }
+    }
+    found.sort();
+    found
+}
+
+fn assert_same_run(expected: &Path, found: &Path) {
+    let (expected_files, found_files) = (files(expected), files(found));
+    let names = |files: &[(PathBuf, Vec<u8>)]| files.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>();
+    assert_eq!(names(&expected_files), names(&found_files));
+    for ((name, expected), (_, found)) in expected_files.iter().zip(&found_files) {
+        assert!(expected == found, "{} differs", name.display());
+    }
+    let [expected, found] = [expected, found].map(|out| Manifest::read(out).unwrap());
+    assert!(expected.state_sum.is_some());
+    assert_eq!(expected.state_sum, found.state_sum);
+    assert_eq!((expected.warnings, expected.status), (found.warnings, found.status));
+    assert_eq!(expected.performance.steps, found.performance.steps);
+    assert_eq!(expected.relaxation, found.relaxation);
+}
+
+#[test]
+fn a_stopped_run_goes_on_bit_for_bit() {
+    let single = PLANE.replace("double", "single");
+    for (text, first) in [(PLANE, 1), (PLANE, 97), (&single, 40), (SPACE, 30)] {
+        let scene = scene(text);
+        let folder = tempfile::tempdir().unwrap();
+        let [whole, parts] = ["whole", "parts"].map(|name| folder.path().join(name));
+        let expected = start(&scene, &whole).unwrap();
+        assert!(expected.performance.steps > 150, "{expected}");
+        let mut found = start_and_stop(&scene, &parts, first);
+        assert_eq!((found.status, found.performance.steps), (Status::Interrupted, first));
+        while found.status != Status::Finished {
+            let brief = RunOptions { max_time: Some(Duration::from_millis(30)), ..options(&parts) };
+            let mut simulation = stickslip::step::build(&scene).unwrap();
+            found = resume(&scene, &mut *simulation, &brief, &mut |_| {}).unwrap();
+        }
+        assert_same_run(&whole, &parts);
+        assert_eq!(
+            (found.start, found.end, found.energy_scale),
+            (expected.start, expected.end, expected.energy_scale)
+        );
+        assert_eq!(found.contacts, expected.contacts);
+        assert!(!Manifest::read(&parts).unwrap().resumed.is_empty());
+        // Once more from its end: there is nothing left to do, and nothing changes.
+        go_on(&scene, &parts).unwrap();
+        assert_same_run(&whole, &parts);
+    }
+}
+
+#[test]
+fn a_finished_run_goes_on_to_a_later_end() {
+    let mut scene = scene(PLANE);
+    let out = tempfile::tempdir().unwrap();
+    scene.time.end = 0.1;
+    let first = start(&scene, out.path()).unwrap();
+    let rows = |name: &str| fs::read_to_string(out.path().join(name)).unwrap();
+    let before = rows("energy.csv");
+    scene.time.end = 0.2;
+    scene.outputs.tables = 0.002;
+    let second = go_on(&scene, out.path()).unwrap();
+    assert!(second.performance.steps > first.performance.steps && second.performance.time == 0.2);
+    let after = rows("energy.csv");
+    // The row at the first end stands there only if it was due.
+    let whole: Vec<&str> = before.lines().collect();
+    assert!(after.starts_with(&whole[..whole.len() - 1].join("\n")));
+    let times: Vec<f64> =
+        after.lines().skip(1).map(|row| row.split(',').next().unwrap().parse().unwrap()).collect();
+    assert!(times.windows(2).all(|pair| pair[0] < pair[1]), "no row is lost or doubled");
+    assert!(times.len() > 65, "rows come at the new interval: {}", times.len());
+    assert_eq!(*times.last().unwrap(), 0.2);
+    scene.time.end = 0.15;
+    let past = go_on(&scene, out.path()).unwrap_err();
+    assert!(matches!(past, RunError::Resume(ResumeError::Past { .. })), "{past}");
+}
+
+#[test]
+fn another_scene_is_refused_and_nothing_is_changed() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    start_and_stop(&scene(PLANE), &out, 60);
+    let before = (files(&out), Manifest::read(&out).unwrap());
+    for (from, to, key) in [
+        ("yield_stress = 2e3", "yield_stress = 3e3", "materials[1].law"),
+        ("friction = 0.3", "friction = 0.4", "contact[0].friction"),
+        ("cell = 0.1", "cell = 0.05", "discretization.cell"),
+        ("time_unit = 0.01", "time_unit = 0.02", "outputs.time_unit"),
+        ("width = 90", "width = 80", "outputs.fringes"),
+        ("stiffness = 2e3", "stiffness = 3e3", "loads"),
+    ] {
+        let error = go_on(&scene(&PLANE.replace(from, to)), &out).unwrap_err();
+        let RunError::Resume(ResumeError::Changed { key: found, .. }) = &error else {
+            panic!("{to}: {error}")
+        };
+        assert!(found.starts_with(key), "{found} for {key}");
+        assert_eq!((files(&out), Manifest::read(&out).unwrap()), before, "{to}");
+    }
+    let empty = folder.path().join("empty");
+    fs::create_dir(&empty).unwrap();
+    assert!(matches!(go_on(&scene(PLANE), &empty), Err(RunError::Resume(ResumeError::Unread(_)))));
+}
+
+#[test]
+fn a_damaged_checkpoint_is_told_of_and_the_one_before_is_taken() {
+    let scene = scene(PLANE);
+    let folder = tempfile::tempdir().unwrap();
+    let [whole, parts] = ["whole", "parts"].map(|name| folder.path().join(name));
+    start(&scene, &whole).unwrap();
+    start_and_stop(&scene, &parts, 120);
+    let all = Checkpoint::list(&parts).unwrap();
+    assert_eq!(all.len(), 2, "the newest are kept: {all:?}");
+    let bytes = fs::read(&all[0]).unwrap();
+    let mut told = Vec::new();
+    let mut flipped = bytes.clone();
+    flipped[bytes.len() / 2] ^= 4;
+    for damage in [&flipped[..], &bytes[..bytes.len() / 2], &[]] {
+        fs::write(&all[0], damage).unwrap();
+        assert!(Checkpoint::read(&all[0]).is_err());
+    }
+    let mut progress = |progress: &Progress| told.extend(progress.notes.clone());
+    resume(&scene, &mut *stickslip::step::build(&scene).unwrap(), &options(&parts), &mut progress).unwrap();
+    assert!(told[0].contains(all[0].file_name().unwrap().to_str().unwrap()), "{told:?}");
+    assert_same_run(&whole, &parts);
+
+    // It is out of the way, and does not count among those that are kept.
+    assert!(!all[0].exists() || Checkpoint::read(&all[0]).is_ok());
+    assert!(Checkpoint::list(&parts).unwrap().iter().all(|path| Checkpoint::read(path).is_ok()));
+
+    for path in Checkpoint::list(&parts).unwrap() {
+        fs::write(path, "stickslip checkpoint\0no more than that, and too short to be one").unwrap();
+    }
+    let error = go_on(&scene, &parts).unwrap_err();
+    assert!(error.to_string().contains(".checkpoint") && error.to_string().contains("damaged"), "{error}");
+}
+
+/// Of a table that was edited, and of a snapshot that was removed: nothing is changed.
+#[test]
+fn outputs_that_are_not_as_they_were_are_named() {
+    let scene = scene(PLANE);
+    let out = tempfile::tempdir().unwrap();
+    start_and_stop(&scene, out.path(), 100);
+    for (name, keep, why) in [("bodies.csv", 3, "bytes where"), ("particles/00000.vtu", usize::MAX, "empty")]
+    {
+        let path = out.path().join(name);
+        let kept = fs::read(&path).unwrap();
+        fs::write(&path, &kept[..kept.len() / keep]).unwrap();
+        let before = (files(out.path()), Manifest::read(out.path()).unwrap());
+        let error = go_on(&scene, out.path()).unwrap_err();
+        assert!(matches!(error, RunError::Resume(ResumeError::Misfit(_))), "{error}");
+        let file = name.rsplit('/').next().unwrap();
+        assert!(error.to_string().contains(file) && error.to_string().contains(why), "{error}");
+        assert!(
+            (files(out.path()), Manifest::read(out.path()).unwrap()) == before,
+            "{name}: something changed"
+        );
+        fs::write(&path, kept).unwrap();
+    }
+    go_on(&scene, out.path()).unwrap();
+}
+
+#[test]
+fn outputs_that_are_left_out_for_a_while_come_back_as_they_were() {
+    let folder = tempfile::tempdir().unwrap();
+    let [whole, parts] = ["whole", "parts"].map(|name| folder.path().join(name));
+    let mut full = scene(PLANE);
+    start(&full, &whole).unwrap();
+    start_and_stop(&full, &parts, 80);
+    let mut bare = full.clone();
+    (bare.outputs.particles, bare.outputs.grid, bare.outputs.fringes) = (None, None, None);
+    bare.outputs.particles_at.clear();
+    bare.outputs.measurements.arrivals.clear();
+    bare.time.end = 0.3;
+    go_on(&bare, &parts).unwrap();
+    full.time.end = 0.4;
+    go_on(&full, &parts).unwrap();
+    let frames = |out: &Path| stickslip::observe::Results::open(out).unwrap().frames().len();
+    assert!(frames(&parts) > 8 && frames(&parts) < frames(&whole), "{}", frames(&parts));
+    let [first, second] = [&whole, &parts].map(|out| fs::read(out.join("particles/00003.vtu")).unwrap());
+    assert!(first == second, "earlier snapshots are as they were");
+    assert_eq!(fs::read(whole.join("arrivals.csv")).unwrap(), fs::read(parts.join("arrivals.csv")).unwrap());
+    let table = fs::read_to_string(parts.join("fringes.csv")).unwrap();
+    let numbers: Vec<usize> =
+        table.lines().skip(1).map(|row| row.split(',').next().unwrap().parse().unwrap()).collect();
+    assert_eq!(numbers, (0..numbers.len()).collect::<Vec<_>>());
+}
+
+/// Outputs that the checkpoint does not know begin there, also where a run that had them was killed before its own.
+#[test]
+fn outputs_that_the_checkpoint_does_not_know_begin_there() {
+    let folder = tempfile::tempdir().unwrap();
+    let parts = folder.path().join("parts");
+    let full = scene(PLANE);
+    let mut bare = full.clone();
+    (bare.outputs.particles, bare.outputs.grid, bare.outputs.fringes) = (None, None, None);
+    bare.outputs.particles_at.clear();
+    (bare.outputs.measurements.probes, bare.outputs.measurements.arrivals) = (Vec::new(), Vec::new());
+    start_and_stop(&bare, &parts, 80);
+    let kept: Vec<(PathBuf, Vec<u8>)> = Checkpoint::list(&parts)
+        .unwrap()
+        .into_iter()
+        .map(|path| (path.clone(), fs::read(path).unwrap()))
+        .collect();
+    let mut outcomes = Vec::new();
+    for _ in 0..2 {
+        // As if killed before the first checkpoint of what had the outputs.
+        for path in Checkpoint::list(&parts).unwrap() {
+            fs::remove_file(path).unwrap();
+        }
+        kept.iter().for_each(|(path, bytes)| fs::write(path, bytes).unwrap());
+        go_on(&full, &parts).unwrap();
+        outcomes.push(files(&parts));
+    }
+    assert!(outcomes[0] == outcomes[1]);
+    let arrivals = fs::read_to_string(parts.join("arrivals.csv")).unwrap();
+    let begun = Manifest::read(&parts).unwrap().resumed[0];
+    let times = arrivals.lines().skip(1).map(|row| row.split(',').next().unwrap().parse::<f64>().unwrap());
+    assert!(times.clone().all(|time| time > begun + 0.002), "what had come has no row: {arrivals}");
+}
+
+/// Of a table with other columns, and of one that is gone: the record of a finished run stays.
+#[test]
+fn a_resumption_that_fails_changes_nothing() {
+    let scene = scene(PLANE);
+    let out = tempfile::tempdir().unwrap();
+    start(&scene, out.path()).unwrap();
+    let before = (files(out.path()), Manifest::read(out.path()).unwrap());
+    let table = out.path().join("contacts.csv");
+    let text = fs::read_to_string(&table).unwrap();
+    for (broken, why) in [(Some(text.replace("normal", "normel")), "other columns"), (None, "No such file")] {
+        match broken {
+            Some(broken) => fs::write(&table, broken).unwrap(),
+            None => fs::remove_file(&table).unwrap(),
+        }
+        let error = go_on(&scene, out.path()).unwrap_err();
+        assert!(matches!(error, RunError::Resume(ResumeError::Misfit(_))), "{error}");
+        assert!(error.to_string().contains(why) && error.to_string().contains("contacts.csv"), "{error}");
+        fs::write(&table, &text).unwrap();
+        assert!((files(out.path()), Manifest::read(out.path()).unwrap()) == before, "{why}");
+    }
+    // A snapshot that is to be made again may be gone.
+    let frames = stickslip::observe::Results::open(out.path()).unwrap().frames().to_vec();
+    fs::remove_file(&frames.last().unwrap().path).unwrap();
+    go_on(&scene, out.path()).unwrap();
+    assert!(files(out.path()) == before.0);
+}
+
+/// What was passed before the run went on has no row: nobody knows when.
+#[test]
+fn an_arrival_that_is_new_must_come_and_others_do_not_come_again() {
+    let mut scene = scene(PLANE);
+    let out = tempfile::tempdir().unwrap();
+    start_and_stop(&scene, out.path(), 120);
+    let rows = || fs::read_to_string(out.path().join("arrivals.csv")).unwrap().lines().count();
+    let before = rows();
+    assert!(before >= 3, "{before}");
+    let arrivals = &mut scene.outputs.measurements.arrivals;
+    let passed = stickslip::scene::Arrival { threshold: 1e-3, ..arrivals[0].clone() };
+    arrivals.push(passed);
+    scene.time.end = 0.26;
+    go_on(&scene, out.path()).unwrap();
+    let text = fs::read_to_string(out.path().join("arrivals.csv")).unwrap();
+    assert!(!text.contains(",0.001,"), "{text}");
+    let mut keys: Vec<String> = text.lines().map(|row| row.split(',').skip(1).take(4).collect()).collect();
+    keys.sort();
+    let count = keys.len();
+    keys.dedup();
+    assert_eq!(keys.len(), count, "{text}");
+}
+
+/// Numbers of bodies and lengths that no run has are refused, not used.
+#[test]
+fn a_state_that_is_none_is_refused() {
+    let scene = scene(PLANE);
+    let mut simulation = stickslip::step::build(&scene).unwrap();
+    for _ in 0..60 {
+        simulation.step(1.0).unwrap();
+    }
+    let saved = serde_json::to_value(simulation.save().unwrap()).unwrap();
+    let mut fresh = stickslip::step::build(&scene).unwrap();
+    let mut refused = |pointer: &str, value: serde_json::Value| {
+        let mut changed = saved.clone();
+        *changed.pointer_mut(pointer).unwrap_or_else(|| panic!("{pointer}")) = value;
+        let state = serde_json::from_value(changed).unwrap();
+        assert!(fresh.restore(state).is_err(), "{pointer}");
+    };
+    refused("/contact_sums/pairs/0/bodies", serde_json::json!([98, 99]));
+    refused("/contact_sums/pairs/0/largest/body_b", serde_json::json!(77));
+    refused("/bodies/3/motion", serde_json::json!(null));
+    refused("/bodies/0/numbers/0", serde_json::json!(100_000));
+    refused("/bodies/0/numbers", serde_json::json!([0, 1, 2]));
+    refused("/bodies/0/columns/0/bytes", serde_json::json!([0, 1, 2]));
+    refused("/bodies/0/columns", serde_json::json!([]));
+    refused("/bodies/0/columns/0/width", serde_json::json!(0));
+    refused("/time", serde_json::json!(-1.0));
+    refused("/loads", serde_json::json!([]));
+    fresh.restore(serde_json::from_value(saved).unwrap()).unwrap();
+    assert_eq!(fresh.snapshot(), simulation.snapshot());
+}
+
+/// A frame meets a device that is full, then there is space again.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_run_that_met_a_full_disk_goes_on_once_there_is_space() {
+    let scene = scene(PLANE);
+    let folder = tempfile::tempdir().unwrap();
+    let [whole, parts] = ["whole", "parts"].map(|name| folder.path().join(name));
+    start(&scene, &whole).unwrap();
+    let part = parts.join("particles/00005.vtu.part");
+    let mut full = FullDisk { part: part.clone(), after: 60 };
+    let mut simulation = stickslip::step::build(&scene).unwrap();
+    let error =
+        run_with(&scene, &mut *simulation, &options(&parts), &mut [&mut full], &mut |_| {}).unwrap_err();
+    assert!(matches!(error, RunError::Output(_)) && error.to_string().contains("00005.vtu"), "{error}");
+    let _ = fs::remove_file(&part);
+    go_on(&scene, &parts).unwrap();
+    assert_same_run(&whole, &parts);
+}
+
+/// A checkpoint that cannot be written costs the run nothing but a warning.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_checkpoint_that_finds_no_space_is_told_of_and_the_run_goes_on() {
+    let mut scene = scene(PLANE);
+    // None is due at the end but the last.
+    scene.outputs.checkpoints = Some(0.07);
+    let folder = tempfile::tempdir().unwrap();
+    let [whole, parts] = ["whole", "parts"].map(|name| folder.path().join(name));
+    let expected = start(&scene, &whole).unwrap();
+    let steps = expected.performance.steps;
+    let part = Checkpoint::path(&parts, steps).with_extension("checkpoint.part");
+    let mut full = FullDisk { part: part.clone(), after: steps - 5 };
+    let mut simulation = stickslip::step::build(&scene).unwrap();
+    let found = run_with(&scene, &mut *simulation, &options(&parts), &mut [&mut full], &mut |_| {}).unwrap();
+    assert_eq!(found.status, Status::Finished);
+    let warning = found.warnings.iter().find(|warning| warning.kind == "checkpoint").expect("it is told");
+    assert!(warning.message.contains(".checkpoint") && warning.message.contains("space"), "{warning:?}");
+    assert_eq!(files(&whole), files(&parts));
+    assert!(!part.exists() && !Checkpoint::list(&parts).unwrap().is_empty());
+    go_on(&scene, &parts).unwrap();
+    assert_same_run(&whole, &parts);
+}
+
+/// Puts a device that is full in the place of a file to come.
+#[cfg(target_os = "linux")]
+struct FullDisk {
+    part: PathBuf,
+    after: u64,
+}
+
+#[cfg(target_os = "linux")]
+impl stickslip::observe::Observer for FullDisk {
+    fn next(&self) -> f64 {
+        0.0
+    }
+
+    fn observe(&mut self, view: &dyn stickslip::door::View) -> Result<(), OutputError> {
+        if view.steps() >= self.after && !self.part.is_symlink() {
+            fs::create_dir_all(self.part.parent().unwrap()).unwrap();
+            std::os::unix::fs::symlink("/dev/full", &self.part).unwrap();
+        }
+        Ok(())
+    }
+}
+
+#[test]
+fn two_runs_do_not_share_a_folder() {
+    let scene = scene(PLANE);
+    let out = tempfile::tempdir().unwrap();
+    let mut inner = None;
+    let mut progress = |_: &Progress| {
+        inner.get_or_insert_with(|| start(&scene, out.path()));
+    };
+    run(&scene, &mut *stickslip::step::build(&scene).unwrap(), &options(out.path()), &mut progress).unwrap();
+    let error = inner.unwrap().unwrap_err();
+    assert!(matches!(error, RunError::Folder(FolderError::InUse { .. })), "{error}");
+    start(&scene, out.path()).unwrap();
+}
+
+#[test]
+fn a_run_stops_when_its_time_is_up_and_goes_on() {
+    let scene = scene(PLANE);
+    let folder = tempfile::tempdir().unwrap();
+    let [whole, parts] = ["whole", "parts"].map(|name| folder.path().join(name));
+    start(&scene, &whole).unwrap();
+    let short = RunOptions { max_time: Some(Duration::from_millis(1)), ..options(&parts) };
+    let mut summary =
+        run(&scene, &mut *stickslip::step::build(&scene).unwrap(), &short, &mut |_| {}).unwrap();
+    assert_eq!(summary.status, Status::OutOfTime);
+    for _ in 0..3 {
+        summary = resume(&scene, &mut *stickslip::step::build(&scene).unwrap(), &short, &mut |_| {}).unwrap();
+    }
+    assert!(summary.performance.steps >= 4, "each takes a step at least");
+    go_on(&scene, &parts).unwrap();
+    assert_same_run(&whole, &parts);
+}

@@ -1,0 +1,281 @@
+//! Scenes that begin as another run left its bodies.
+//!
+//! Set-up: disks of two materials settle in a box with a gate, in the plane; then, from their checkpoint, scenes with the
+//! gate removed, a plunger added, other materials and loads.
+//!
+//! Expected: particles begin where they were, to the bit, and go on from there as if nothing had happened where nothing
+//! is new.
+
+use std::path::Path;
+use stickslip::door::{ParticleSnapshot, Simulation};
+use stickslip::observe::Results;
+use stickslip::run::{Checkpointing, ResumeError, RunError, RunOptions, Summary, resume, run};
+use stickslip::scene::{Scene, StartVelocities, parse};
+
+const PACKING: &str = r#"
+gravity = [0, -9.81]
+[space]
+dimension = "plane-strain"
+cell = 0.1
+[time]
+end = 0.3
+[materials.rubber]
+density = 1000
+viscoelastic = { young_modulus = 3e5, poisson_ratio = 0.3, prony = [[0.4, 0.05]] }
+[materials.clay]
+density = 1000
+von_mises = { young_modulus = 3e5, poisson_ratio = 0.3, yield_stress = 2e3 }
+[[bodies]]
+name = "low"
+material = "clay"
+shape.ball = { center = [0, 0.5], radius = 0.5 }
+[[bodies]]
+name = "high"
+material = "rubber"
+shape.ball = { center = [0.1, 1.55], radius = 0.5 }
+[[bodies]]
+name = "floor"
+material = "rubber"
+shape.half_space = { point = [0, 0], normal = [0, 1] }
+rigid = {}
+[[bodies]]
+name = "gate"
+material = "rubber"
+shape.box = { min = [0.6, 0.2], max = [0.8, 2.2] }
+rigid = { velocity = ["-0.1 * t", 0] }
+[[contact]]
+between = ["any", "any"]
+friction = 0.4
+"#;
+
+fn scene(text: &str) -> Scene {
+    parse("scene.toml", text, &[]).unwrap_or_else(|error| panic!("{error}")).scene
+}
+
+/// The same with a table that says where bodies begin.
+fn from(text: &str, folder: &Path, more: &str) -> Scene {
+    scene(&format!("{text}\n[start]\nfrom = {:?}\n{more}", folder.to_str().unwrap()))
+}
+
+fn options(out: &Path) -> RunOptions {
+    RunOptions {
+        checkpoints: Checkpointing { at_end: true, ..Checkpointing::default() },
+        ..RunOptions::new(out)
+    }
+}
+
+fn make(scene: &Scene, out: &Path) -> Result<(Summary, Box<dyn Simulation>), RunError> {
+    let mut simulation = stickslip::step::build(scene).unwrap();
+    let summary = run(scene, &mut *simulation, &options(out), &mut |_| {})?;
+    Ok((summary, simulation))
+}
+
+fn frame(out: &Path, number: usize) -> ParticleSnapshot {
+    let results = Results::open(out).unwrap();
+    results.particles(&results.frames()[number]).unwrap()
+}
+
+fn last(out: &Path) -> ParticleSnapshot {
+    frame(out, Results::open(out).unwrap().frames().len() - 1)
+}
+
+/// Places, deformations and stresses of a body, by number.
+fn of_body(particles: &ParticleSnapshot, body: u32) -> Vec<([f64; 3], [f64; 9], [f64; 6])> {
+    let here = (0..particles.body.len()).filter(|&i| particles.body[i] == body);
+    here.map(|i| (particles.position[i], particles.deformation[i], particles.stress[i])).collect()
+}
+
+fn without(text: &str, name: &str) -> String {
+    let parts: Vec<&str> = text.split("[[bodies]]\n").collect();
+    let kept = parts.iter().filter(|part| !part.contains(&format!("name = \"{name}\"")));
+    let text = kept.copied().collect::<Vec<_>>().join("[[bodies]]\n");
+    if text.contains("[[contact]]") {
+        text
+    } else {
+        text + "[[contact]]\nbetween = [\"any\", \"any\"]\nfriction = 0.4\n"
+    }
+}
+
+#[test]
+fn bodies_begin_where_they_were_beside_new_ones_and_without_others() {
+    let folder = tempfile::tempdir().unwrap();
+    let [packing, press] = ["packing", "press"].map(|name| folder.path().join(name));
+    make(&scene(PACKING), &packing).unwrap();
+    let plunger = "[[bodies]]\nname = \"plunger\"\nmaterial = \"rubber\"\nrigid = { velocity = [0, -1] }\n\
+                   shape.box = { min = [-0.5, 2.4], max = [0.7, 2.7] }\n[[contact]]";
+    let text = without(PACKING, "gate")
+        .replace("[[contact]]", plunger)
+        .replace("yield_stress = 2e3", "yield_stress = 1e4");
+    make(&from(&text, &packing, ""), &press).unwrap();
+    let (before, after) = (last(&packing), frame(&press, 0));
+    for body in [0, 1] {
+        assert!(of_body(&before, body) == of_body(&after, body), "body {body}");
+    }
+    assert_eq!(before.velocity[..50], after.velocity[..50]);
+    let moved = |particles: &ParticleSnapshot| particles.position[5][0] - particles.position[0][0];
+    assert!(moved(&last(&press)) != moved(&before));
+    let columns =
+        |particles: &ParticleSnapshot| particles.history.iter().map(|c| c.name.clone()).collect::<Vec<_>>();
+    assert_eq!(columns(&before), columns(&after));
+    assert!(before.history.iter().zip(&after.history).all(|(a, b)| a.values[..100] == b.values[..100]));
+}
+
+/// But for the length of single steps: the fastest signal is looked for anew, and formulas of time begin anew.
+#[test]
+fn what_begins_from_a_run_goes_on_as_the_run_does() {
+    let text = PACKING.replace("\"-0.1 * t\"", "0");
+    let folder = tempfile::tempdir().unwrap();
+    let [packing, again] = ["packing", "again"].map(|name| folder.path().join(name));
+    let mut scene = scene(&text);
+    make(&scene, &packing).unwrap();
+    let (mut second, _) = (from(&text, &packing, ""), ());
+    second.time.end = 0.1;
+    make(&second, &again).unwrap();
+    scene.time.end = 0.4;
+    resume(&scene, &mut *stickslip::step::build(&scene).unwrap(), &options(&packing), &mut |_| {}).unwrap();
+    let (expected, found) = (last(&packing), last(&again));
+    let bodies = |particles: &ParticleSnapshot| [0, 1].map(|body| of_body(particles, body)).concat();
+    for ((a, f, _), (b, g, _)) in bodies(&expected).iter().zip(&bodies(&found)) {
+        assert!(a.iter().zip(b).chain(f.iter().zip(g)).all(|(a, b)| (a - b).abs() < 1e-9), "{a:?} {b:?}");
+    }
+}
+
+#[test]
+fn bodies_may_begin_at_rest_and_with_another_density() {
+    let folder = tempfile::tempdir().unwrap();
+    let [packing, rest] = ["packing", "rest"].map(|name| folder.path().join(name));
+    make(&scene(PACKING), &packing).unwrap();
+    let text = PACKING.replacen("density = 1000", "density = 3000", 1);
+    make(&from(&text, &packing, "velocities = \"zero\""), &rest).unwrap();
+    let (before, after) = (last(&packing), frame(&rest, 0));
+    for i in 0..after.body.len() {
+        match after.body[i] {
+            0 => assert_eq!((after.velocity[i], after.mass[i]), ([0.0; 3], before.mass[i])),
+            1 => {
+                assert_eq!(after.velocity[i], [0.0; 3]);
+                assert!((after.mass[i] / before.mass[i] - 3.0).abs() < 1e-9);
+            }
+            _ => {}
+        }
+    }
+    assert_eq!(from(PACKING, &packing, "").start.unwrap().velocities, StartVelocities::Kept);
+}
+
+/// A fixed support holds bodies where they are now, and a run that began so goes on, with its packing gone.
+#[test]
+fn supports_hold_what_begins_from_a_run_where_it_is() {
+    let folder = tempfile::tempdir().unwrap();
+    let [packing, whole, parts] = ["packing", "whole", "parts"].map(|name| folder.path().join(name));
+    make(&scene(PACKING), &packing).unwrap();
+    let held = PACKING.replace("end = 0.3", "end = 0.05")
+        + "[[supports]]\nname = \"hold\"\nbody = \"high\"\non = \"volume\"\n";
+    let held = from(&held, &packing, "velocities = \"zero\"");
+    make(&held, &whole).unwrap();
+    let rows = Results::open(&whole).unwrap().loads_table().unwrap();
+    let (first, last_row) = (&rows[0], rows.last().unwrap());
+    assert!(
+        first.displacement.iter().chain(&last_row.displacement).all(|u| u.abs() < 0.02),
+        "{first:?} {last_row:?}"
+    );
+    let shift = |i: usize| (frame(&whole, 0).position[i][1] - last(&whole).position[i][1]).abs();
+    let high = frame(&whole, 0).body.iter().position(|&body| body == 1).unwrap();
+    assert!((high..high + 100).all(|i| shift(i) < 0.03), "it stays");
+
+    let brief = RunOptions { max_time: Some(std::time::Duration::from_millis(5)), ..options(&parts) };
+    run(&held, &mut *stickslip::step::build(&held).unwrap(), &brief, &mut |_| {}).unwrap();
+    std::fs::remove_dir_all(&packing).unwrap();
+    resume(&held, &mut *stickslip::step::build(&held).unwrap(), &options(&parts), &mut |_| {}).unwrap();
+    assert!(last(&whole) == last(&parts));
+}
+
+/// By where bodies begin, not by where they are drawn: a plunger may stand where a disk was, and not where one is.
+#[test]
+fn bodies_may_not_begin_in_each_other() {
+    let folder = tempfile::tempdir().unwrap();
+    let [packing, press] = ["packing", "press"].map(|name| folder.path().join(name));
+    make(&scene(PACKING), &packing).unwrap();
+    let settled = last(&packing);
+    let top = settled.position.iter().zip(&settled.body).filter(|(_, body)| **body < 2);
+    let top = top.map(|(x, _)| x[1]).fold(0.0, f64::max);
+    let plunger = |low: f64| {
+        let box_ = format!("min = [-0.3, {low}], max = [0.5, {}]", low + 0.3);
+        let body = format!(
+            "[[bodies]]\nname = \"plunger\"\nmaterial = \"rubber\"\nrigid = {{}}\nshape.box = {{ {box_} }}\n"
+        );
+        from(&PACKING.replacen("[[contact]]", &(body + "[[contact]]"), 1), &packing, "")
+    };
+    let above = top + 0.06;
+    assert!(above < 2.05, "where the packing was drawn: {above}");
+    make(&plunger(above), &press).unwrap();
+    let Err(error) = make(&plunger(top - 0.3), &press) else { panic!("it stands in the disk") };
+    assert!(error.to_string().contains("`plunger` overlaps `high` in"), "{error}");
+}
+
+/// A grid that begins elsewhere rounds places otherwise; and results may not go where the packing lies.
+#[test]
+fn a_domain_may_be_new_and_the_folder_must_be() {
+    let folder = tempfile::tempdir().unwrap();
+    let [packing, wide] = ["packing", "wide"].map(|name| folder.path().join(name));
+    make(&scene(PACKING), &packing).unwrap();
+    let text =
+        PACKING.replacen("cell = 0.1", "cell = 0.1\ndomain = { min = [-5.3, -5.1], max = [5.3, 5.1] }", 1);
+    make(&from(&text, &packing, ""), &wide).unwrap();
+    let Err(error) = make(&from(PACKING, &packing, ""), &packing) else { panic!("it is its own packing") };
+    assert!(matches!(error, RunError::Resume(ResumeError::Itself { .. })), "{error}");
+    assert!(!last(&packing).body.is_empty(), "it is still there");
+}
+
+/// What flowed would spring back with a law that does not know of it; and a floor stands where it is drawn.
+#[test]
+fn plastic_strain_is_not_forgotten_and_a_floor_may_be_elsewhere() {
+    let folder = tempfile::tempdir().unwrap();
+    let [packing, next] = ["packing", "next"].map(|name| folder.path().join(name));
+    make(&scene(PACKING), &packing).unwrap();
+    let elastic = PACKING.replace(
+        "von_mises = { young_modulus = 3e5, poisson_ratio = 0.3, yield_stress = 2e3 }",
+        "neo_hookean = { young_modulus = 3e5, poisson_ratio = 0.3 }",
+    );
+    let Err(error) = make(&from(&elastic, &packing, ""), &next) else { panic!("it flowed") };
+    assert!(
+        error.to_string().contains("does not remember") && error.to_string().contains("`low`"),
+        "{error}"
+    );
+    let lower = PACKING
+        .replace("point = [0, 0], normal", "point = [0, -0.2], normal")
+        .replace("end = 0.3", "end = 0.1");
+    make(&from(&lower, &packing, "velocities = \"zero\""), &next).unwrap();
+    let [first, end] = [frame(&next, 0), last(&next)];
+    let low = |particles: &ParticleSnapshot| {
+        let of_low = (0..particles.body.len()).filter(|&i| particles.body[i] == 0);
+        of_low.map(|i| particles.position[i][1]).fold(f64::INFINITY, f64::min)
+    };
+    // g t^2 / 2 is 0.049 m.
+    assert!(low(&first) - low(&end) > 0.03, "it falls: {} {}", low(&first), low(&end));
+}
+
+#[test]
+fn a_body_of_another_shape_is_refused_and_nothing_is_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let [packing, other] = ["packing", "other"].map(|name| folder.path().join(name));
+    make(&scene(PACKING), &packing).unwrap();
+    for (from_text, to, why) in [
+        (
+            "center = [0.1, 1.55], radius = 0.5",
+            "center = [0.1, 1.55], radius = 0.4",
+            "particles in the scene",
+        ),
+        ("center = [0.1, 1.55]", "center = [0.1, 1.65]", "began elsewhere"),
+        ("cell = 0.1", "cell = 0.05", "particles in the scene"),
+    ] {
+        let Err(error) = make(&from(&PACKING.replace(from_text, to), &packing, ""), &other) else {
+            panic!("{to}")
+        };
+        assert!(matches!(error, RunError::Resume(ResumeError::Begin { .. })), "{error}");
+        assert!(error.to_string().contains(why), "{error}");
+        assert!(!other.exists());
+    }
+    let Err(error) = make(&from(PACKING, &folder.path().join("nowhere"), ""), &other) else {
+        panic!("nothing there")
+    };
+    assert!(error.to_string().contains("nowhere"), "{error}");
+}
