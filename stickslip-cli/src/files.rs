@@ -1,8 +1,9 @@
 //! Files beside the results of a run: whole or not there, and never in the place of what is somebody else's.
 
 use std::fs::{self, File};
-use std::io::{self, BufWriter, Read, Write};
-use std::path::{Path, PathBuf};
+use std::io::{self, Read, Write};
+use std::path::Path;
+use stickslip::observe::replace;
 
 /// How files of a kind begin.
 #[derive(Clone, Copy, Debug)]
@@ -34,21 +35,10 @@ pub const JSON: Kind<'static> = Kind { name: "JSON", starts: &[b"{"] };
 pub fn write(
     path: &Path,
     kind: Kind,
-    write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
+    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> io::Result<()> {
     replaceable(path, kind)?;
-    let mut part = path.as_os_str().to_owned();
-    part.push(".part");
-    let part = PathBuf::from(part);
-    let written = File::create(&part).and_then(|file| {
-        let mut file = BufWriter::new(file);
-        write(&mut file)?;
-        file.flush()
-    });
-    written.and_then(|()| fs::rename(&part, path)).inspect_err(|_| {
-        // The first error is the one to report.
-        let _ = fs::remove_file(&part);
-    })
+    replace(path, write).map_err(|error| error.source)
 }
 
 /// Writes a scene; one that is there already is replaced.

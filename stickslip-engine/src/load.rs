@@ -147,7 +147,7 @@ impl LoadPoints {
         sums: &LoadSums,
     ) -> PointForce<T, D> {
         let CarriedPoint { point, particle, velocity } = carried;
-        let place = (particle.position + arm::<T, D>(particle, point)).space();
+        let place = place_of(particle, point).space();
         // Forces are those of the middle of the step, displacements those of now.
         let moment = |time: f64| Moment { time, place, start: point.position };
         let vector = |value: &[Expression; 3], factor: f64| {
@@ -168,7 +168,7 @@ impl LoadPoints {
                 let start = self.start(point);
                 // As places of particles round, so that a body at rest in its place is there.
                 let start = Vector::<T, D>::from_fn(|i| T::of(start[i] - point.arm[i]) + T::of(point.arm[i]));
-                let place = particle.position + arm::<T, D>(particle, point);
+                let place = place_of(particle, point);
                 let normal = self.resists_waves().then(|| direction(deformed_area(particle, point)));
                 let mut slips = [0.0; 3];
                 for i in 0..D {
@@ -239,8 +239,13 @@ impl LoadPoints {
     }
 }
 
+/// Where a point is now, x_p + F (X_s - X_p) [m].
+pub fn place_of<T: Real, const D: usize>(particle: &Particle<T, D>, point: &PartPoint) -> Vector<T, D> {
+    particle.position + arm(particle, point)
+}
+
 /// F (X_s - X_p) [m]
-pub fn arm<T: Real, const D: usize>(particle: &Particle<T, D>, point: &PartPoint) -> Vector<T, D> {
+fn arm<T: Real, const D: usize>(particle: &Particle<T, D>, point: &PartPoint) -> Vector<T, D> {
     let f = &particle.deformation.0;
     Vector::from_fn(|i| (0..3).fold(T::ZERO, |sum, j| sum + f[i][j] * T::of(point.arm[j])))
 }

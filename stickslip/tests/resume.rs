@@ -4,8 +4,8 @@
 //! friction, a support, a load, a driven rigid paddle, and every kind of output; in the plane in both precisions, and
 //! balls in space with relaxation.
 //!
-//! Expected: every file of an interrupted run, but the times in its record and its checkpoints, has the bytes of one that
-//! was never interrupted.
+//! Expected: every file of an interrupted run, but the times in its record and its checkpoints, has the bytes of one
+//! that was never interrupted.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,7 +1,7 @@
 //! Scenes that begin as another run left its bodies.
 //!
-//! Set-up: disks of two materials settle in a box with a gate, in the plane; then, from their checkpoint, scenes with the
-//! gate removed, a plunger added, other materials and loads.
+//! Set-up: disks of two materials settle in a box with a gate, in the plane; then, from their checkpoint, scenes with
+//! the gate removed, a plunger added, other materials and loads.
 //!
 //! Expected: particles begin where they were, to the bit, and go on from there as if nothing had happened where nothing
 //! is new.

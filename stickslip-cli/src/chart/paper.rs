@@ -7,7 +7,6 @@ use plotters::coord::Shift;
 use plotters::element::DashedPathElement;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
-use std::io::Write;
 use std::path::Path;
 
 const INK: RGBColor = RGBColor(50, 54, 60);

@@ -6,7 +6,6 @@ use crate::failure::Failure;
 use crate::files;
 use clap::Args;
 use miette::miette;
-use std::io::Write;
 use std::path::PathBuf;
 
 /// Measure this machine's limits, and how near the program comes to them.

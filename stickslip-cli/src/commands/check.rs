@@ -1,6 +1,6 @@
 //! `stickslip check SCENE`: what a run would be, without running it.
 
-use super::{assignment, beginning, load, report, say};
+use super::{assignment, load, report, say};
 use crate::failure::Failure;
 use clap::Args;
 use std::path::PathBuf;
@@ -20,11 +20,13 @@ impl Arguments {
     pub fn execute(self) -> Result<(), Failure> {
         let loaded = load(&self.scene, &self.parameters).map_err(Failure::input)?;
         say(&report(&loaded)?.to_string())?;
-        let Some(beginning) = beginning(&loaded)? else { return Ok(()) };
+        if loaded.scene.start.is_none() {
+            return Ok(());
+        }
         // As the run will begin, so that what it would refuse is refused here.
         let built = stickslip::step::build(&loaded.scene);
         let mut simulation = built.map_err(|problem| Failure::input(loaded.source.locate(problem)))?;
-        stickslip::run::begin(&loaded.scene, &mut *simulation).map_err(Failure::input)?;
-        say(&format!("\n{beginning}"))
+        let carried = stickslip::run::begin(&loaded.scene, &mut *simulation).map_err(Failure::input)?;
+        carried.map_or(Ok(()), |carried| say(&format!("\n{carried}")))
     }
 }

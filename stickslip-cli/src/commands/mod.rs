@@ -23,8 +23,8 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use stickslip::check::Report;
-use stickslip::observe::{Checkpoint, Results};
-use stickslip::scene::{Body, BodyMotion, Loaded, SceneError};
+use stickslip::observe::Results;
+use stickslip::scene::{Loaded, SceneError};
 
 /// Many deformable bodies in frictional contact, by the material point method.
 #[derive(Debug, Parser)]
@@ -91,53 +91,6 @@ fn open(folder: &Path) -> Result<Results, Failure> {
     Results::open(folder).map_err(Failure::input)
 }
 
-/// Says from where a scene begins, if from another run: to be asked before the run.
-///
-/// # Errors
-/// The checkpoint cannot be read.
-fn beginning(loaded: &Loaded) -> Result<Option<String>, Failure> {
-    let scene = &loaded.scene;
-    let Some(start) = &scene.start else { return Ok(None) };
-    let (checkpoint, path) = stickslip::run::beginning_of(start).map_err(Failure::input)?;
-    let there: Vec<&str> = checkpoint.state.bodies.iter().map(|body| body.name.as_str()).collect();
-    let here: Vec<&str> = scene.bodies.iter().map(|body| body.name.as_str()).collect();
-    let only = |of: &[&str], not_of: &[&str]| {
-        let names: Vec<_> =
-            of.iter().filter(|name| !not_of.contains(name)).map(|name| format!("`{name}`")).collect();
-        (!names.is_empty()).then(|| match names.len() {
-            ..=8 => names.join(", "),
-            more => format!("{} and {} more", names[..8].join(", "), more - 8),
-        })
-    };
-    let count = here.iter().filter(|name| there.contains(name)).count();
-    let time = checkpoint.state.time;
-    let mut text =
-        format!("{count} of {} bodies begin as they were at t = {time} s in {}", here.len(), path.display());
-    if let Some(new) = only(&here, &there) {
-        text += &format!("\n  new         {new}");
-    }
-    if let Some(left_out) = only(&there, &here) {
-        text += &format!("\n  left out    {left_out}");
-    }
-    if let Some(newest) =
-        start.from.is_dir().then(|| Checkpoint::list(&start.from).ok()?.into_iter().next()).flatten()
-        && newest != path
-    {
-        text += &format!("\n  warning     {} is damaged, and an earlier one is taken", newest.display());
-    }
-    let moves = |body: &&Body| match &body.motion {
-        BodyMotion::Free { velocity, spin } => [velocity, spin].iter().any(|of| **of != [0.0; 3]),
-        BodyMotion::Rigid { .. } => false,
-    };
-    for body in scene.bodies.iter().filter(|body| there.contains(&body.name.as_str())).filter(moves) {
-        text += &format!(
-            "\n  warning     `{}` begins with the velocities it had there, not with its own",
-            body.name
-        );
-    }
-    Ok(Some(text))
-}
-
 /// Refuses a time [s] before the first or after the last of those that are recorded.
 fn recorded(time: f64, times: impl Iterator<Item = f64>) -> Result<(), Failure> {
     let [first, last] =
@@ -160,8 +113,8 @@ fn say(text: &str) -> Result<(), Failure> {
     }
 }
 
-/// A flag that is set by the first Ctrl-C, by SIGTERM, and by SIGHUP unless `nohup` has it ignored. The second Ctrl-C ends
-/// the program at once.
+/// A flag that is set by the first Ctrl-C, by SIGTERM, and by SIGHUP unless `nohup` has it ignored. The second Ctrl-C
+/// ends the program at once.
 fn stop_on_interrupt() -> Result<Arc<AtomicBool>, Failure> {
     let stop = Arc::new(AtomicBool::new(false));
     let flag = Arc::clone(&stop);
@@ -190,7 +143,8 @@ fn is_ignored(signal: i32) -> bool {
     ignored.is_some_and(|mask| mask >> (signal - 1) & 1 == 1)
 }
 
-/// Lets a write beyond the longest file that the user may have fail as any other, where the system would end the program.
+/// Lets a write beyond the longest file that the user may have fail as any other, where the system would end the
+/// program.
 fn outlive_file_limits() {
     // Nobody asks the flag: that the signal has a handler is enough.
     #[cfg(unix)]

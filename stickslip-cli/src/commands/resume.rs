@@ -10,8 +10,8 @@ use stickslip::observe::{Manifest, SceneSource};
 
 /// Go on with a run: one that was stopped or killed, or a finished one to a later end.
 ///
-/// The results of a run that was stopped end bit for bit as those of one that was not. A finished run ended its last step
-/// exactly at its end, and has that step beyond those of a run that went further at once.
+/// The results of a run that was stopped end bit for bit as those of one that was not. A finished run ended its last
+/// step exactly at its end, and has that step beyond those of a run that went further at once.
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// Folder of results that `stickslip run` wrote.

@@ -1,6 +1,6 @@
 //! `stickslip run SCENE`: from a scene file to numbers, a chart and a picture.
 
-use super::{assignment, beginning, load, report, say, stop_on_interrupt};
+use super::{assignment, load, report, say, stop_on_interrupt};
 use crate::failure::Failure;
 use crate::free_memory::free_memory;
 use crate::illustration::illustrate;
@@ -69,8 +69,8 @@ pub(super) struct How {
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
 
-    /// Wall time between checkpoints, from which `stickslip resume` goes on: "10min", "1h 30min"; "never" leaves out the
-    /// one at the end, too.
+    /// Wall time between checkpoints, from which `stickslip resume` goes on: "10min", "1h 30min"; "never" leaves out
+    /// the one at the end, too.
     #[arg(long, value_name = "TIME", default_value = "10min", value_parser = wall_time)]
     checkpoint_every: WallTime,
 
@@ -141,9 +141,6 @@ impl Arguments {
         let source = SceneSource { path, set, until: None };
         if let Some(before) = &before {
             before.check(&mut loaded.scene)?;
-        }
-        if let Some(beginning) = beginning(&loaded)? {
-            eprintln!("{beginning}");
         }
         if !self.overwrite {
             unfinished(&out)?;
@@ -270,7 +267,8 @@ impl How {
     }
 }
 
-/// A line for each arrival, each front's speed and each probe that saw nothing; a threshold that was not passed has none.
+/// A line for each arrival, each front's speed and each probe that saw nothing; a threshold that was not passed has
+/// none.
 fn measured(folder: &Path, scene: &Scene) -> Result<String, Failure> {
     let results = Results::open(folder).map_err(Failure::run)?;
     let unit = scene.outputs.measurements.unit();

@@ -15,7 +15,6 @@ pub use table::{Cell, Column, Mark, Table};
 use crate::drawing::DrawError;
 use crate::files;
 use maud::{Markup, Render};
-use std::io::Write;
 use std::path::Path;
 
 /// A report.

@@ -5,7 +5,8 @@ use miette::miette;
 use serde::{Deserialize, Serialize};
 use std::fs;
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::Path;
+use stickslip::observe::replace;
 
 /// What was swept.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -158,8 +159,7 @@ pub fn read(folder: &Path) -> Result<Sweep, Failure> {
 
 /// Under another name first: a reader sees the old file or the new one.
 fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let part: PathBuf = path.with_extension("part");
-    fs::write(&part, bytes).and_then(|()| fs::rename(&part, path))
+    replace(path, |file| file.write_all(bytes)).map_err(|error| error.source)
 }
 
 #[cfg(test)]

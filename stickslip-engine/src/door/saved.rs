@@ -6,8 +6,8 @@ use crate::rigid::{Pose, RigidState};
 use crate::step::{Disorder, RelaxationProgress};
 use serde::{Deserialize, Serialize};
 
-/// All that a simulation is between two steps, whatever its dimension and precision. A simulation of the same scene that
-/// takes it up takes the same steps, bit for bit.
+/// All that a simulation is between two steps, whatever its dimension and precision. A simulation of the same scene
+/// that takes it up takes the same steps, bit for bit.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct SavedState {
     /// Simulated time [s].

@@ -14,7 +14,7 @@ use crate::basis::Basis;
 use crate::boundary::{Boundary, reflect};
 use crate::grid::{ActiveBlocks, Node};
 use crate::lanes::Laned;
-use crate::load::{CarriedPoint, LoadPoints, LoadSums, PointForce, arm, nodes_of};
+use crate::load::{CarriedPoint, LoadPoints, LoadSums, PointForce, nodes_of, place_of};
 use crate::scene::Face;
 use crate::tensor::{Real, Vector};
 use crate::threads::each;
@@ -202,7 +202,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 }
             }
             match ahead {
-                None => loaded.before = particle.position + arm::<T, D>(&particle, point),
+                None => loaded.before = place_of(&particle, point),
                 Some(ahead) => particle.position += moves * ahead,
             }
             let carried = CarriedPoint { point, particle: &particle, velocity };
@@ -233,7 +233,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             for (point, loaded) in load.points.iter().zip(points.by_ref()) {
                 let LoadedPoint { felt, before, nodes } = loaded;
                 let particle = body.particles.get(room.places[load.body][point.particle] as usize);
-                let way = particle.position + arm::<T, D>(&particle, point) - *before;
+                let way = place_of(&particle, point) - *before;
                 let mut force = felt.force;
                 for &LoadedNode { index, mirrored, weight } in nodes {
                     let acceleration = mirror(room.nodes[index as usize].acceleration, mirrored);
@@ -268,7 +268,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             let here = wanted[first..].iter().take_while(|(wanted, _)| wanted == number);
             for (_, point) in here {
                 let particle = particles.get(place);
-                let now = (particle.position + arm::<T, D>(&particle, point)).space();
+                let now = place_of(&particle, point).space();
                 (0..D).for_each(|i| sum[i] += point.measure * (now[i] - load.start(point)[i]));
             }
         }

@@ -8,11 +8,12 @@ use crate::basis::Basis;
 use crate::body::{Body, Particle};
 use crate::door::{RestoreError, SavedBody, SavedColumn, SavedState, SavedUnbounded};
 use crate::lanes::Laned;
-use crate::load::{LoadPoints, arm};
+use crate::load::{LoadPoints, place_of};
 use crate::particles::{ColumnStart, Particles};
 use crate::scene::{ContactLaw, StartVelocities, Transfer};
 use crate::tensor::{Matrix, Real, Symmetric, Vector};
 use crate::transfer::columns as columns_of;
+use std::collections::HashMap;
 use std::sync::Mutex;
 
 impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
@@ -91,9 +92,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         (state.signal, state.time, state.steps) = (saved.signal, saved.time, saved.steps);
         Ok(())
     }
-}
 
-impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// Lets bodies begin as those of the same name were in another run.
     ///
     /// # Errors
@@ -104,11 +103,12 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         velocities: StartVelocities,
     ) -> Result<(), RestoreError> {
         let state = &self.state;
-        let of_body = |body: &Body<T, D>| saved.bodies.iter().find(|saved| saved.name == body.name);
+        let named: HashMap<&str, &SavedBody> =
+            saved.bodies.iter().map(|saved| (saved.name.as_str(), saved)).collect();
         let carried = state.bodies.iter().enumerate().map(|(i, body)| {
             let without_bounds = state.unbounded.iter().any(|unbounded| unbounded.body == i);
             let begin = |saved| begun(saved, body, (without_bounds, velocities));
-            of_body(body).map(begin).transpose()
+            named.get(body.name.as_str()).map(|saved| begin(saved)).transpose()
         });
         let carried: Vec<Option<Body<T, D>>> = carried.collect::<Result<_, _>>()?;
         if carried.iter().all(Option::is_none) {
@@ -120,20 +120,17 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             self.state.disorder[i] = Disorder::any(body.particles.len());
             self.state.bodies[i] = body;
         }
+        // Round-off is no way.
+        let near = f64::from(f32::EPSILON) * self.settings.lattice.cell.f64();
         for load in &mut self.settings.loads {
             let particles = &self.state.bodies[load.body].particles;
-            let mut places = vec![0; particles.len()];
-            particles
-                .numbers()
-                .iter()
-                .enumerate()
-                .for_each(|(place, &number)| places[number as usize] = place);
+            let places = places(particles.numbers()).expect("each particle has a number of its own");
             for i in 0..load.points.len() {
-                let (particle, start) =
-                    (particles.get(places[load.points[i].particle]), load.start(&load.points[i]));
-                let now = (particle.position + arm::<T, D>(&particle, &load.points[i])).space();
-                // Round-off is no way.
-                let near = f64::from(f32::EPSILON) * self.settings.lattice.cell.f64();
+                let point = &load.points[i];
+                let (now, start) = (
+                    place_of::<T, D>(&particles.get(places[point.particle]), point).space(),
+                    load.start(point),
+                );
                 let way: [f64; 3] = std::array::from_fn(|k| if k < D { now[k] - start[k] } else { 0.0 });
                 load.points[i].moved = way.map(|way| if way.abs() < near { 0.0 } else { way });
             }
@@ -141,39 +138,37 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         (self.state.signal, self.workspace.totals) = (None, Mutex::default());
         Ok(())
     }
-}
 
-impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// Refuses particles that begin deeper in another body than half their distance, where that is new or rigid and its
     /// surface is known.
     fn find_overlap(&self, carried: &[Option<Body<T, D>>]) -> Result<(), RestoreError> {
-        let bodies: Vec<&Body<T, D>> = carried
-            .iter()
-            .zip(&self.state.bodies)
-            .map(|(carried, fresh)| carried.as_ref().unwrap_or(fresh))
-            .collect();
-        let pairs = (0..bodies.len()).flat_map(|a| (0..bodies.len()).map(move |b| [a, b]));
-        for [a, b] in pairs.filter(|&[a, b]| a != b && (carried[a].is_none() || carried[b].is_none())) {
-            let (holder, other) = (bodies[a], bodies[b]);
-            let rule = self.settings.rules.rule(self.settings.rules.number(a, b));
-            let known = holder.is_rigid() || carried[a].is_none();
-            if !known || other.is_rigid() || matches!(rule.law, ContactLaw::None | ContactLaw::Glued) {
-                continue;
-            }
-            let place = |x: [f64; 3]| holder.motion.as_ref().map_or(x, |motion| motion.pose().start(x));
-            let inside = |particle: &Particle<T, D>| {
-                let x = particle.position.space();
-                (holder.whole.level(place(x)).distance < -particle.half_width.f64()).then_some(x)
+        let body = |i: usize| carried[i].as_ref().unwrap_or(&self.state.bodies[i]);
+        let known = |&a: &usize| body(a).is_rigid() || carried[a].is_none();
+        for a in (0..carried.len()).filter(known) {
+            let holder = body(a);
+            let level = |x: [f64; 3]| {
+                let start = holder.motion.as_ref().map_or(x, |motion| motion.pose().start(x));
+                holder.whole.level(start).distance
             };
-            let inside: Vec<[f64; 3]> =
-                other.particles.iter().filter_map(|particle| inside(&particle)).collect();
-            if let Some(near) = inside.first() {
-                let (holder, other, count) = (&holder.name, &other.name, inside.len());
-                let near: Vec<String> = near[..D].iter().map(|x| format!("{x:.4}")).collect();
-                let near = near.join(", ");
-                return Err(RestoreError(format!(
-                    "`{holder}` overlaps `{other}` in {count} particles near ({near}) m"
-                )));
+            let together = |&b: &usize| carried[a].is_some() && carried[b].is_some();
+            for b in (0..carried.len()).filter(|b| a != *b && !body(*b).is_rigid() && !together(b)) {
+                let rule = self.settings.rules.rule(self.settings.rules.number(a, b));
+                if matches!(rule.law, ContactLaw::None | ContactLaw::Glued) {
+                    continue;
+                }
+                let inside = body(b).particles.iter().filter_map(|particle| {
+                    let x = particle.position.space();
+                    (level(x) < -particle.half_width.f64()).then_some(x)
+                });
+                let inside: Vec<[f64; 3]> = inside.collect();
+                if let Some(near) = inside.first() {
+                    let (holder, other, count) = (&holder.name, &body(b).name, inside.len());
+                    let near: Vec<String> = near[..D].iter().map(|x| format!("{x:.4}")).collect();
+                    return Err(RestoreError(format!(
+                        "`{holder}` overlaps `{other}` in {count} particles near ({}) m",
+                        near.join(", ")
+                    )));
+                }
             }
         }
         Ok(())
@@ -216,7 +211,7 @@ fn begun<T: Real, const D: usize>(
             "has {wanted} particles in the scene, and {count} in it: its shape or its filling is another"
         )));
     }
-    let places = places(saved).ok_or_else(|| off("has particles that are numbered twice"))?;
+    let places = places(&saved.numbers).ok_or_else(|| off("has particles that are numbered twice"))?;
     let density = body.density;
     // What carries velocities follows from the transfer, and may be another.
     let of_motion =
@@ -229,7 +224,8 @@ fn begun<T: Real, const D: usize>(
     if let Some(column) = forgotten {
         let name = &column.name;
         return Err(off(&format!(
-            "has `{name}` in it, which its material in the scene does not remember: what flowed or broke would spring back"
+            "has `{name}` in it, which its material in the scene does not remember: what flowed or broke would spring \
+             back"
         )));
     }
     for (first, column) in fresh.particles.described() {
@@ -267,10 +263,10 @@ fn begun<T: Real, const D: usize>(
     Ok(body)
 }
 
-/// Where each particle stands in what was saved, by its number; none if two have one number.
-fn places(saved: &SavedBody) -> Option<Vec<usize>> {
-    let mut places = vec![usize::MAX; saved.numbers.len()];
-    for (place, &number) in saved.numbers.iter().enumerate() {
+/// Where each particle stands among these numbers, by its own; none if two have one number.
+fn places(numbers: &[u32]) -> Option<Vec<usize>> {
+    let mut places = vec![usize::MAX; numbers.len()];
+    for (place, &number) in numbers.iter().enumerate() {
         let known = places.get_mut(number as usize).filter(|known| **known == usize::MAX)?;
         *known = place;
     }
@@ -335,7 +331,7 @@ fn particles<T: Real, const D: usize>(
     if !without_bounds && count != fresh.len() {
         return Err(off(format!("has {} particles in the scene, and {count} in it", fresh.len())));
     }
-    places(saved).ok_or_else(|| off("has particles that are numbered twice".into()))?;
+    places(&saved.numbers).ok_or_else(|| off("has particles that are numbered twice".into()))?;
     let blank = |i: usize| Particle {
         position: Vector::ZERO,
         velocity: Vector::ZERO,

@@ -7,14 +7,14 @@
 //! ```
 
 use super::CHECKPOINTS;
-use super::file::{OutputError, ReadError, ReadProblem, part_of};
+use super::file::{OutputError, ReadError, ReadProblem, replace_for_good};
 use super::folder::OutputFolder;
 use super::memory::{Memory, Values};
 use crate::door::SavedState;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
-use std::fs::{self, File};
-use std::io::{self, BufWriter, Write};
+use std::fs;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 /// A moment of a run from which it can go on.
@@ -69,24 +69,14 @@ impl Checkpoint {
     /// # Errors
     /// The disk is full or refuses; then nothing is left of it.
     pub fn write(&self, path: &Path) -> Result<(), OutputError> {
-        let part = part_of(path);
-        let write = || -> io::Result<()> {
-            let mut file =
-                Summed { file: BufWriter::with_capacity(1 << 20, File::create(&part)?), sum: Sha256::new() };
-            file.write_all(MAGIC)?;
-            file.write_all(&VERSION.to_le_bytes())?;
-            let mut encoder = rmp_serde::Serializer::new(&mut file).with_struct_map();
+        replace_for_good(path, |file| {
+            let mut summed = Summed { file, sum: Sha256::new() };
+            summed.write_all(MAGIC)?;
+            summed.write_all(&VERSION.to_le_bytes())?;
+            let mut encoder = rmp_serde::Serializer::new(&mut summed).with_struct_map();
             self.serialize(&mut encoder).map_err(io_error)?;
-            let Summed { mut file, sum } = file;
-            file.write_all(&sum.finalize())?;
-            file.into_inner().map_err(io::IntoInnerError::into_error)?.sync_all()?;
-            fs::rename(&part, path)?;
-            // The name is on the disk once the folder is.
-            path.parent().map_or(Ok(()), |folder| File::open(folder)?.sync_all())
-        };
-        write().map_err(|source| {
-            let _ = fs::remove_file(&part);
-            OutputError { path: path.to_path_buf(), source }
+            let Summed { file, sum } = summed;
+            file.write_all(&sum.finalize())
         })
     }
 
@@ -201,8 +191,8 @@ pub(super) fn is_checkpoint(name: &str) -> bool {
     digits.is_some_and(|digits| digits.len() >= 10 && digits.bytes().all(|byte| byte.is_ascii_digit()))
 }
 
-/// A SHA-256 of the particles of a state, in hexadecimal: of each body its particles' numbers in ascending order, and each
-/// entry of each column in that order, then time and steps. Where particles lie in memory does not enter.
+/// A SHA-256 of the particles of a state, in hexadecimal: of each body its particles' numbers in ascending order, and
+/// each entry of each column in that order, then time and steps. Where particles lie in memory does not enter.
 pub fn state_sum(state: &SavedState) -> String {
     let mut sum = Sha256::new();
     for body in &state.bodies {

@@ -26,8 +26,8 @@ impl OutputError {
 fn remedy(error: &io::Error) -> &'static str {
     match error.kind() {
         io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
-            "free some space, or ask for outputs less often; everything written before can be read, and `stickslip resume` goes \
-             on from the last checkpoint, if there is one"
+            "free some space, or ask for outputs less often; everything written before can be read, and \
+             `stickslip resume` goes on from the last checkpoint, if there is one"
         }
         io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => {
             "give a folder that you may write to"
@@ -79,21 +79,8 @@ impl ReadProblem {
 ///
 /// # Errors
 /// The disk is full or refuses; then the old file is untouched and nothing half-written is left.
-pub(super) fn replace(
-    path: &Path,
-    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
-) -> Result<(), OutputError> {
-    let part = part_of(path);
-    let written = File::create(&part).and_then(|file| {
-        let mut file = BufWriter::with_capacity(1 << 18, file);
-        write(&mut file)?;
-        file.flush()
-    });
-    written.and_then(|()| fs::rename(&part, path)).map_err(|source| {
-        // The first error is the one to report; a part that cannot be removed either is cleared by the next run.
-        let _ = fs::remove_file(&part);
-        OutputError { path: path.to_path_buf(), source }
-    })
+pub fn replace(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), OutputError> {
+    put(path, false, write)
 }
 
 /// The same, flushed to the disk before it is renamed, and its name after that: for what must outlive a power cut.
@@ -104,17 +91,27 @@ pub(super) fn replace_for_good(
     path: &Path,
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> Result<(), OutputError> {
+    put(path, true, write)?;
+    path.parent().map_or(Ok(()), secure)
+}
+
+fn put(
+    path: &Path,
+    flushed: bool,
+    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<(), OutputError> {
     let part = part_of(path);
     let written = File::create(&part).and_then(|file| {
         let mut file = BufWriter::with_capacity(1 << 18, file);
         write(&mut file)?;
-        file.into_inner().map_err(io::IntoInnerError::into_error)?.sync_all()
+        let file = file.into_inner().map_err(io::IntoInnerError::into_error)?;
+        if flushed { file.sync_all() } else { Ok(()) }
     });
     written.and_then(|()| fs::rename(&part, path)).map_err(|source| {
+        // The first error is the one to report; a part that cannot be removed either is cleared by the next run.
         let _ = fs::remove_file(&part);
         OutputError { path: path.to_path_buf(), source }
-    })?;
-    path.parent().map_or(Ok(()), secure)
+    })
 }
 
 /// Waits until a file or a folder is on the disk.

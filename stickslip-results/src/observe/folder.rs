@@ -113,10 +113,7 @@ impl OutputFolder {
     pub fn begun(&self) -> Result<(), FolderError> {
         let previous = self.path.join(PREVIOUS);
         clear(&previous)?;
-        match fs::remove_dir(&previous) {
-            Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
-            other => other.map_err(|source| FolderError::Unusable { path: previous, source }),
-        }
+        remove_empty(&previous)
     }
 
     /// The folder of a run that goes on: everything in it stays.

@@ -45,7 +45,7 @@ impl TableRow for FringeRow {
 /// Writes `fringes.csv`, the frames in `fringes/`, and at the end `fringes.png`, all by a thread of its own.
 pub(super) struct FringesObserver {
     shutter: Shutter,
-    camera: scene::Fringes,
+    overlay: Overlay,
     /// Whether there was a first look.
     looked: bool,
     contacts: ContactCursor,
@@ -157,7 +157,7 @@ impl FringesObserver {
         };
         Ok(FringesObserver {
             shutter: Shutter::new(camera),
-            camera: camera.clone(),
+            overlay: camera.overlay,
             looked: false,
             contacts: ContactCursor::default(),
             writer: Writer::start(writer).map_err(OutputError::at(&path))?,
@@ -311,7 +311,7 @@ impl Observer for FringesObserver {
         }
         self.writer.make_room()?;
         let particles = view.snapshot();
-        let pushes = (due && self.camera.overlay == Overlay::ForceChains).then(|| {
+        let pushes = (due && self.overlay == Overlay::ForceChains).then(|| {
             let push = |contact: ContactState| Push {
                 bodies: [contact.body_a, contact.body_b],
                 force: contact.mean.normal,

@@ -39,7 +39,7 @@ pub use bodies::BodyRow;
 pub use checkpoint::{Checkpoint, state_sum};
 pub use contacts::ContactRow;
 pub use energy::EnergyRow;
-pub use file::{OutputError, ReadError, ReadProblem};
+pub use file::{OutputError, ReadError, ReadProblem, replace};
 pub use folder::{FolderError, OutputFolder};
 pub use frames::Frame;
 pub use fringes::{FRAMES_PER_SECOND, FringeRow};
@@ -57,6 +57,7 @@ pub use recorded::{
 };
 pub use recorder::Recorder;
 pub use results::Results;
+pub use schedule::Schedule;
 pub use table::{CellValue, TableRow};
 pub use vtu::Vtu;
 pub use writer::Writer;

@@ -9,7 +9,7 @@ use super::memory::Memory;
 /// carries the time at which it was made. Multiples that a step jumps over are skipped. An interval of zero asks for
 /// every step, an infinite one for none but the first.
 #[derive(Clone, Debug)]
-pub(super) struct Schedule {
+pub struct Schedule {
     interval: f64,
     next: f64,
     /// Time of the last record [s].
@@ -24,7 +24,7 @@ const EARLY: f64 = 1e-6;
 
 impl Schedule {
     /// Due at once, then at multiples of `interval` [s].
-    pub(super) fn every(interval: f64) -> Self {
+    pub fn every(interval: f64) -> Self {
         Schedule { interval, next: f64::NEG_INFINITY, last: None, single: Vec::new() }
     }
 
@@ -34,13 +34,13 @@ impl Schedule {
     }
 
     /// The time from which the next record is due [s].
-    pub(super) fn next(&self) -> f64 {
+    pub fn next(&self) -> f64 {
         let single = self.single.first().map_or(f64::INFINITY, |time| time * (1.0 - EARLY));
         self.next.min(single)
     }
 
     /// Notes that a record was made at `time` [s].
-    pub(super) fn recorded(&mut self, time: f64) {
+    pub fn recorded(&mut self, time: f64) {
         let multiple = (time / self.interval + EARLY).floor() + 1.0;
         self.next = if self.interval > 0.0 { (multiple - EARLY) * self.interval } else { time };
         self.single.retain(|single| single * (1.0 - EARLY) > time);

@@ -171,7 +171,7 @@ impl Sheet {
     /// The file of a table, with its header if it is new.
     fn open(path: &Path, header: &str) -> Result<Self, OutputError> {
         let at = OutputError::at;
-        let mut file = File::options()
+        let file = File::options()
             .read(true)
             .write(true)
             .create(true)
@@ -179,13 +179,13 @@ impl Sheet {
             .open(path)
             .map_err(at(path))?;
         let length = file.metadata().map_err(at(path))?.len();
-        let mut sheet = Sheet { path: path.to_path_buf(), length, file: file.try_clone().map_err(at(path))? };
+        let mut sheet = Sheet { path: path.to_path_buf(), file, length };
         if length == 0 {
             sheet.write(header.as_bytes())?;
             return Ok(sheet);
         }
         let mut found = vec![0; header.len()];
-        let same = file.read_exact(&mut found).is_ok() && found == header.as_bytes();
+        let same = sheet.file.read_exact(&mut found).is_ok() && found == header.as_bytes();
         if !same {
             let other = io::Error::new(io::ErrorKind::InvalidData, "it is a table with other columns");
             return Err(OutputError { path: path.to_path_buf(), source: other });

@@ -102,8 +102,8 @@ pub enum SupportMotion {
 }
 
 /// Stiffness of a rigid support in units of its part's mass over the square of the longest step: it gives way as much
-/// as C^2 / RIGID of a cell does, a tenth with the Courant number C = 0.4. Between stiffer ones and single nodes more of
-/// what a sudden stop sets free goes to and fro: 22 % of the energy with 4, 3 % with this [-].
+/// as C^2 / RIGID of a cell does, a tenth with the Courant number C = 0.4. Between stiffer ones and single nodes more
+/// of what a sudden stop sets free goes to and fro: 22 % of the energy with 4, 3 % with this [-].
 pub const RIGID: f64 = 1.6;
 
 impl Load {

@@ -1,7 +1,7 @@
 //! Checkpoints of a run: when they are written, and whether one fits a scene.
 
 use crate::door::{RestoreError, Simulation, View};
-use crate::observe::{Checkpoint, Memory, OutputError, OutputFolder, ReadError, Writer};
+use crate::observe::{Checkpoint, Memory, OutputError, OutputFolder, ReadError, Schedule, Writer};
 use crate::scene::Scene;
 use miette::Diagnostic;
 use serde_json::Value;
@@ -48,8 +48,8 @@ pub enum ResumeError {
     /// The scene is another one than that of the run, in more than its outputs and its end.
     #[error("{} was made with another scene: {key} was {then}, and is {now}", path.display())]
     #[diagnostic(help(
-        "a run goes on with other outputs, but of the same fringes and unit of time, another end and other threads only; run the changed scene anew, or put back \
-         what was changed"
+        "a run goes on with other outputs, but of the same fringes and unit of time, another end and other threads \
+         only; run the changed scene anew, or put back what was changed"
     ))]
     Changed {
         /// The checkpoint.
@@ -75,7 +75,8 @@ pub enum ResumeError {
     /// The scene begins from another run, whose bodies are not those of the scene.
     #[error("the scene cannot begin from {}: {problem}", path.display())]
     #[diagnostic(help(
-        "a body begins from one that has its name, its shape, its particles and the same cells; only material, contact, loads and the other bodies may be new"
+        "a body begins from one that has its name, its shape, its particles and the same cells; only material, \
+         contact, loads and the other bodies may be new"
     ))]
     Begin {
         /// The checkpoint.
@@ -101,15 +102,11 @@ pub enum ResumeError {
     },
 }
 
-/// Part of the interval by which a checkpoint may come early, as tables may.
-const EARLY: f64 = 1e-6;
-
 /// Writes the checkpoints of a run, by a thread of its own, one at a time.
 pub(super) struct Checkpoints {
     options: Checkpointing,
-    /// Simulated time from one to the next [s], and the time from which the next is due.
-    interval: f64,
-    next: f64,
+    /// In simulated time.
+    schedule: Schedule,
     last: Instant,
     folder: OutputFolder,
     scene: Value,
@@ -130,8 +127,7 @@ impl Checkpoints {
             Writer::start(()).map_err(|source| OutputError { path: folder.path().to_path_buf(), source })?;
         let mut checkpoints = Checkpoints {
             options: options.clone(),
-            interval: scene.outputs.checkpoints.unwrap_or(f64::INFINITY),
-            next: f64::INFINITY,
+            schedule: Schedule::every(scene.outputs.checkpoints.unwrap_or(f64::INFINITY)),
             last: Instant::now(),
             folder: folder.clone(),
             scene: record,
@@ -145,7 +141,8 @@ impl Checkpoints {
 
     /// Whether it is time for one.
     pub(super) fn due(&self, view: &dyn View) -> bool {
-        view.time() >= self.next || self.options.every.is_some_and(|every| self.last.elapsed() >= every)
+        view.time() >= self.schedule.next()
+            || self.options.every.is_some_and(|every| self.last.elapsed() >= every)
     }
 
     /// Where the next one will lie.
@@ -155,25 +152,26 @@ impl Checkpoints {
 
     /// Saves the present state, and what is remembered beside it. Of a simulation that cannot be saved there is none.
     /// One that cannot be written does not end the run, see [`Checkpoints::trouble`].
-    pub(super) fn save(&mut self, simulation: &dyn Simulation, memory: Memory) {
+    pub(super) fn save(&mut self, simulation: &dyn Simulation, memory: Memory) -> Option<Arc<Checkpoint>> {
         // One at a time: each is a copy of the state in memory.
         self.finish();
         self.made(simulation.time());
-        let Some(state) = simulation.save() else { return };
         let path = self.path(simulation);
-        let checkpoint = Checkpoint::new(&self.scene, state, memory);
+        let checkpoint = Arc::new(Checkpoint::new(&self.scene, simulation.save()?, memory));
+        let written = Arc::clone(&checkpoint);
         let (folder, keep) = (self.folder.clone(), self.options.keep.max(1));
         let (trouble, first) = (Arc::clone(&self.trouble), !std::mem::replace(&mut self.prepared, true));
         self.writer.hand_over(0, move |()| {
             let prepared = if first { Checkpoint::prepare(&folder) } else { Ok(()) };
-            let written = prepared
-                .and_then(|()| checkpoint.write(&path))
+            let done = prepared
+                .and_then(|()| written.write(&path))
                 .and_then(|()| Checkpoint::keep_newest(folder.path(), keep));
-            if let Err(error) = written {
+            if let Err(error) = done {
                 *trouble.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
             }
             Ok(())
         });
+        Some(checkpoint)
     }
 
     /// Waits until the last one is on the disk.
@@ -189,9 +187,7 @@ impl Checkpoints {
 
     fn made(&mut self, time: f64) {
         self.last = Instant::now();
-        let multiple = (time / self.interval + EARLY).floor() + 1.0;
-        self.next =
-            if self.interval.is_finite() { (multiple - EARLY) * self.interval } else { f64::INFINITY };
+        self.schedule.recorded(time);
     }
 }
 
@@ -199,7 +195,8 @@ impl Checkpoints {
 const FREE: &[&str] =
     &["title", "about", "parameters", "outputs", "references", "start.from", "time.end", "time.energy_drift"];
 
-/// Holds the scene of a run in `path` against another, both as `run.json` has them ([`crate::observe::Manifest::record`]).
+/// Holds the scene of a run in `path` against another, both as `run.json` has them
+/// ([`crate::observe::Manifest::record`]).
 ///
 /// # Errors
 /// They differ in more than outputs and end.
@@ -219,7 +216,8 @@ pub fn same_physics(path: &std::path::Path, then: &Value, now: &Value) -> Result
     Err(ResumeError::Changed { path: path.to_path_buf(), key, then: short(then), now: short(now) })
 }
 
-/// What may not change although the outputs around it may: a column counts in the unit of time, and film has light on it.
+/// What may not change although the outputs around it may: a column counts in the unit of time, and film has light on
+/// it.
 const FIXED: [(&str, &str); 2] =
     [("/outputs/measurements/time_unit", "outputs.time_unit"), ("/outputs/fringes", "outputs.fringes")];
 

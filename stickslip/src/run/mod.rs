@@ -4,6 +4,7 @@ mod checkpoints;
 mod clock;
 mod contact_watch;
 mod error;
+mod start;
 mod summary;
 mod verdict;
 mod widest;
@@ -11,16 +12,17 @@ mod widest;
 pub use checkpoints::{Checkpointing, ResumeError, same_physics};
 pub use clock::Progress;
 pub use error::RunError;
+pub use start::{CarriedBodies, begin};
 pub use summary::{ReferenceResult, Summary};
 pub use widest::{WidestContact, WidestContacts};
 
 use crate::door::{Ledger, Simulation, View};
 use crate::march::{March, MarchEnd};
 use crate::observe::{
-    Checkpoint, Manifest, Memory, Observer, OutputError, OutputFolder, ReadError, Recorder, SceneSource,
-    Status, state_sum,
+    Checkpoint, Manifest, Memory, Observer, OutputError, OutputFolder, Recorder, SceneSource, Status,
+    state_sum,
 };
-use crate::scene::{Scene, Start};
+use crate::scene::Scene;
 use checkpoints::Checkpoints;
 use clock::RunClock;
 use contact_watch::ContactWatch;
@@ -95,26 +97,14 @@ pub fn run_with(
     observers: &mut [&mut dyn Observer],
     progress: &mut dyn FnMut(&Progress),
 ) -> Result<Summary, RunError> {
-    if let Some(start) = &scene.start {
-        // Its results would be put aside, and removed.
-        if is_within(&start.from, &options.out) {
-            return Err(ResumeError::Itself { path: start.from.clone() }.into());
-        }
-        begin(scene, simulation)?;
+    // Its results would be put aside, and removed.
+    if let Some(start) = scene.start.as_ref().filter(|start| is_within(&start.from, &options.out)) {
+        return Err(ResumeError::Itself { path: start.from.clone() }.into());
     }
+    let news = begin(scene, simulation)?.iter().map(CarriedBodies::to_string).collect();
     let folder = OutputFolder::prepare(&options.out)?;
-    drive(scene, simulation, (options, folder), (observers, Beginning::default()), progress)
-}
-
-/// Lets bodies begin as another run left them, if the scene asks for it and no step is taken yet.
-///
-/// # Errors
-/// The other run cannot be read, or has other bodies of these names; then nothing is changed.
-pub fn begin(scene: &Scene, simulation: &mut dyn Simulation) -> Result<(), ResumeError> {
-    let Some(start) = scene.start.as_ref().filter(|_| simulation.steps() == 0) else { return Ok(()) };
-    let (checkpoint, path) = beginning_of(start)?;
-    let begun = simulation.begin_from(&checkpoint.state, start.velocities);
-    begun.map_err(|problem| ResumeError::Begin { path, problem })
+    let beginning = Beginning { news, ..Beginning::default() };
+    drive(scene, simulation, (options, folder), (observers, beginning), progress)
 }
 
 /// Whether a path is a folder or lies in it, as far as both are there.
@@ -123,20 +113,9 @@ fn is_within(path: &Path, folder: &Path) -> bool {
     path.zip(folder).is_some_and(|(path, folder)| path.starts_with(folder))
 }
 
-/// The checkpoint from which a scene begins, and where it lies.
-///
-/// # Errors
-/// It cannot be read.
-pub fn beginning_of(start: &Start) -> Result<(Checkpoint, PathBuf), ReadError> {
-    match start.from.is_file() {
-        true => Ok((Checkpoint::read(&start.from)?, start.from.clone())),
-        false => Checkpoint::newest(&start.from).map(|(checkpoint, path, _)| (checkpoint, path)),
-    }
-}
-
 /// Takes up a run where its newest checkpoint left it, and goes on to the end of `scene`, which may have other outputs
-/// and another end than the run had. `simulation` is a new one of the scene. The outputs end bit for bit as those of a run
-/// that was never interrupted; what was written after the checkpoint is cut off and written anew.
+/// and another end than the run had. `simulation` is a new one of the scene. The outputs end bit for bit as those of a
+/// run that was never interrupted; what was written after the checkpoint is cut off and written anew.
 ///
 /// # Errors
 /// As [`run`]; [`ResumeError`] where there is nothing to go on from, or the scene is another one: then nothing is
@@ -188,7 +167,7 @@ struct Beginning {
     resumed: Vec<f64>,
     /// Newer checkpoints, which cannot be read.
     damaged: Vec<PathBuf>,
-    /// Where it goes on.
+    /// From where.
     news: Vec<String>,
     /// What the user should know of the checkpoints.
     notes: Vec<String>,
@@ -234,6 +213,8 @@ fn drive(
         }
         beginning.damaged.iter().try_for_each(|path| Checkpoint::put_away(path))?;
         manifest.write(&folder)?;
+    }
+    if !beginning.news.is_empty() {
         let news = std::mem::take(&mut beginning.news);
         progress(&Progress { news, ..kept.clock.progress(simulation, scene.time.end) });
     }
@@ -335,7 +316,7 @@ impl Watched<'_> {
                     progress(&Progress { notes, ..kept.clock.progress(simulation, end) });
                 }
                 if recorded.is_ok() && checkpoints.due(simulation) {
-                    recorded = save(simulation, (recorder, kept, checkpoints), memory.as_ref());
+                    recorded = save(simulation, (recorder, kept, checkpoints), memory.as_ref()).map(drop);
                 }
                 notes.extend(
                     checkpoints.trouble().map(|error| kept.verdict.note_checkpoint(&error, simulation)),
@@ -356,8 +337,8 @@ impl Watched<'_> {
         let mut sum = None;
         if options.checkpoints.at_end {
             // Before what is recorded at an end only: a run that goes on has none there.
-            save(*simulation, (recorder, kept, checkpoints), memory.as_ref())?;
-            sum = simulation.save().map(|state| state_sum(&state));
+            let saved = save(*simulation, (recorder, kept, checkpoints), memory.as_ref())?;
+            sum = saved.map(|checkpoint| state_sum(&checkpoint.state));
         }
         notes.extend(kept.verdict.conclude(scene, *simulation));
         recorder.record_present(*simulation)?;
@@ -369,17 +350,16 @@ impl Watched<'_> {
     }
 }
 
-/// Writes a checkpoint of the present moment.
+/// Has a checkpoint of the present moment written, and shows it; none of a simulation that cannot be saved.
 fn save(
     simulation: &dyn Simulation,
     (recorder, kept, checkpoints): (&mut Recorder, &mut Kept, &mut Checkpoints),
     before: Option<&Memory>,
-) -> Result<(), OutputError> {
+) -> Result<Option<Arc<Checkpoint>>, OutputError> {
     let path = checkpoints.path(simulation);
     let mut memory =
         before.map_or_else(|| Memory::keeping(&path), |before| Memory::keeping_beside(&path, before));
     kept.remember(simulation, &mut memory)?;
     recorder.remember(simulation, &mut memory)?;
-    checkpoints.save(simulation, memory);
-    Ok(())
+    Ok(checkpoints.save(simulation, memory))
 }

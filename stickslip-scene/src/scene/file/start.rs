@@ -10,10 +10,10 @@ use crate::scene::error::Fault;
 table! {
     /// Bodies begin as another run left them: a settled packing is made once, and used in many runs.
     Start {
-        /// Folder of results, whose newest checkpoint is taken, or a file of a checkpoint; a relative path starts at the
-        /// folder of the scene file. Each body of the scene that has the name of one there begins with its particles:
-        /// places, deformation, stress, and what their law remembers. It must have the shape that it has there, and be
-        /// filled as it is there; material, loads and contact may be others.
+        /// Folder of results, whose newest checkpoint is taken, or a file of a checkpoint; a relative path starts at
+        /// the folder of the scene file. Each body of the scene that has the name of one there begins with its
+        /// particles: places, deformation, stress, and what their law remembers. It must have the shape that it has
+        /// there, and be filled as it is there; material, loads and contact may be others.
         from: Text,
         /// What becomes of their velocities.
         #[schemars(extend("default" = "kept"))]

@@ -1,0 +1,97 @@
+//! Scenes whose bodies begin as another run left them.
+
+use super::ResumeError;
+use crate::door::Simulation;
+use crate::observe::{Checkpoint, ReadError};
+use crate::scene::{BodyMotion, Scene, Start};
+use std::collections::HashSet;
+use std::fmt::{self, Display, Formatter};
+use std::path::PathBuf;
+
+/// Which bodies of a scene begin as another run left them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CarriedBodies {
+    /// The checkpoint from which they come.
+    pub from: PathBuf,
+    /// Simulated time there [s].
+    pub time: f64,
+    /// How many bodies begin so, and how many the scene has.
+    pub count: [usize; 2],
+    /// Names of those of the scene that are not there, and begin as their shapes are filled.
+    pub new: Vec<String>,
+    /// Names of those there that the scene does not have.
+    pub left_out: Vec<String>,
+    /// Newer checkpoints there, which cannot be read.
+    pub damaged: Vec<PathBuf>,
+    /// Names of those whose velocities in the scene are passed over.
+    pub passed_over: Vec<String>,
+}
+
+/// Lets bodies begin as another run left them, if the scene asks for it and no step is taken yet.
+///
+/// # Errors
+/// The other run cannot be read, or has other bodies of these names; then nothing is changed.
+pub fn begin(scene: &Scene, simulation: &mut dyn Simulation) -> Result<Option<CarriedBodies>, ResumeError> {
+    let Some(start) = scene.start.as_ref().filter(|_| simulation.steps() == 0) else { return Ok(None) };
+    let (checkpoint, from, damaged) = checkpoint_of(start)?;
+    let begun = simulation.begin_from(&checkpoint.state, start.velocities);
+    begun.map_err(|problem| ResumeError::Begin { path: from.clone(), problem })?;
+
+    let there: HashSet<&str> = checkpoint.state.bodies.iter().map(|body| body.name.as_str()).collect();
+    let here: HashSet<&str> = scene.bodies.iter().map(|body| body.name.as_str()).collect();
+    let (carried, new): (Vec<_>, Vec<_>) =
+        scene.bodies.iter().partition(|body| there.contains(body.name.as_str()));
+    let moves = |motion: &BodyMotion| match motion {
+        BodyMotion::Free { velocity, spin } => [velocity, spin].iter().any(|of| **of != [0.0; 3]),
+        BodyMotion::Rigid { .. } => false,
+    };
+    let left_out = checkpoint.state.bodies.iter().filter(|body| !here.contains(body.name.as_str()));
+    Ok(Some(CarriedBodies {
+        from,
+        time: checkpoint.state.time,
+        count: [carried.len(), scene.bodies.len()],
+        new: new.iter().map(|body| body.name.clone()).collect(),
+        left_out: left_out.map(|body| body.name.clone()).collect(),
+        damaged: damaged.into_iter().map(|error| error.path).collect(),
+        passed_over: carried
+            .iter()
+            .filter(|body| moves(&body.motion))
+            .map(|body| body.name.clone())
+            .collect(),
+    }))
+}
+
+/// The checkpoint from which a scene begins, where it lies, and why newer ones cannot be read.
+fn checkpoint_of(start: &Start) -> Result<(Checkpoint, PathBuf, Vec<ReadError>), ReadError> {
+    match start.from.is_file() {
+        true => Ok((Checkpoint::read(&start.from)?, start.from.clone(), Vec::new())),
+        false => Checkpoint::newest(&start.from),
+    }
+}
+
+/// Names that are listed; beyond, how many more.
+const LISTED: usize = 8;
+
+impl Display for CarriedBodies {
+    fn fmt(&self, f: &mut Formatter) -> fmt::Result {
+        let [count, all] = self.count;
+        let (time, from) = (self.time, self.from.display());
+        write!(f, "{count} of {all} bodies begin as they were at t = {time} s in {from}")?;
+        for (what, names) in [("new", &self.new), ("left out", &self.left_out)] {
+            if !names.is_empty() {
+                let listed: Vec<String> = names.iter().take(LISTED).map(|name| format!("`{name}`")).collect();
+                write!(f, "\n  {what:<12}{}", listed.join(", "))?;
+            }
+            if names.len() > LISTED {
+                write!(f, " and {} more", names.len() - LISTED)?;
+            }
+        }
+        if let Some(newest) = self.damaged.first() {
+            write!(f, "\n  warning     {} is damaged, and an earlier one is taken", newest.display())?;
+        }
+        for name in &self.passed_over {
+            write!(f, "\n  warning     `{name}` begins with the velocities it had there, not with its own")?;
+        }
+        Ok(())
+    }
+}
