@@ -11,6 +11,9 @@ pub mod tensor;
 // Shapes: inside(x), bounds; filling them with particles.
 pub mod geometry;
 
+// Grains in a container, at random and without overlap.
+pub mod packing;
+
 // What a column of particles holds: name, unit, components.
 pub mod column;
 

@@ -31,6 +31,7 @@ pub struct Arguments {
 
 impl Arguments {
     pub fn execute(self) -> Result<(), Failure> {
+        self.how.use_threads()?;
         // Whoever names the scene does not need the record, which a power cut may have taken.
         let before = Manifest::read(&self.results);
         let (path, set, mut until) = match (self.scene, before) {

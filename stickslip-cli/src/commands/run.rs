@@ -126,6 +126,7 @@ fn results_go_beside_the_user_not_beside_the_scene() {
 
 impl Arguments {
     pub fn execute(self) -> Result<(), Failure> {
+        self.how.use_threads()?;
         let before = self.again.as_deref().map(Repeated::of).transpose()?;
         let (scene, set) = match (&before, self.scene) {
             (Some(before), _) => (before.source.path.clone(), before.source.set.clone()),
@@ -205,6 +206,12 @@ type Make =
     fn(&Scene, &mut dyn Simulation, &RunOptions, &mut dyn FnMut(&Progress)) -> Result<Summary, RunError>;
 
 impl How {
+    /// Makes the threads of the run; before the scene is read, which already takes some.
+    pub(super) fn use_threads(&self) -> Result<(), Failure> {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(self.threads.map_or(0, usize::from));
+        pool.build_global().into_diagnostic().map_err(Failure::Run)
+    }
+
     /// Makes a run of a scene in a folder, from the warnings before it to the pictures behind it.
     pub(super) fn make(
         &self,
@@ -213,7 +220,7 @@ impl How {
         make: Make,
     ) -> Result<(), Failure> {
         let scene = &loaded.scene;
-        let threads = use_threads(self.threads)?;
+        let threads = rayon::current_num_threads();
         let report = report(loaded)?;
         let limit = self.max_memory.map_or_else(free_memory, |limit| limit.as_u64() as f64);
         if report.memory > limit {
@@ -289,11 +296,4 @@ fn measured(folder: &Path, scene: &Scene) -> Result<String, Failure> {
     let idle =
         idle.map(|probe| format!("  warning    no material ever came to the probe `{}`\n", probe.name));
     Ok(arrivals.iter().map(arrival).chain(speeds.iter().map(speed)).chain(idle).collect())
-}
-
-/// Makes the threads of the run, and says how many there are.
-fn use_threads(threads: Option<u16>) -> Result<usize, Failure> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.map_or(0, usize::from));
-    pool.build_global().into_diagnostic().map_err(Failure::Run)?;
-    Ok(rayon::current_num_threads())
 }

@@ -2,9 +2,8 @@
 
 use super::Friction;
 use super::law::{Span, law};
-use crate::scene::{ContactLaw, ContactRule, Normal, Scene};
+use crate::scene::{ContactLaw, ContactRule, Normal, RuleNames, Scene};
 use crate::tensor::Real;
-use std::collections::HashMap;
 
 /// A contact rule in the precision of the engine.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,60 +35,44 @@ impl<T: Real> From<&ContactRule> for Rule<T> {
 pub struct Rules<T> {
     /// The scene's rules in their order, and the rule for all other pairs.
     rules: Vec<Rule<T>>,
-    /// Each body's names that rules mention: its own, its material's, and `ANY`.
-    names: Vec<[Option<u32>; 3]>,
-    /// The first rule that mentions two names.
-    first: HashMap<[u32; 2], usize>,
-    /// The rule for two bodies of which rules mention no name.
-    plain: usize,
+    /// Which bodies they name.
+    names: RuleNames,
+    /// The rule for two classes of bodies, the classes of the first body in rows.
+    by_class: Vec<usize>,
 }
 
-/// Stands for every body.
-const ANY: u32 = 0;
+/// Of so many classes of bodies, all pairs are listed.
+const FEW: usize = 256;
 
 impl<T: Real> Rules<T> {
     /// The rules of a scene.
     pub fn new(scene: &Scene) -> Self {
-        let mut numbers = HashMap::new();
-        let mut first = HashMap::new();
-        for (index, rule) in scene.contact.iter().enumerate() {
-            let [a, b] = rule.between.each_ref().map(|name| match name {
-                Some(name) => {
-                    let next = numbers.len() as u32 + 1;
-                    *numbers.entry(name.as_str()).or_insert(next)
-                }
-                None => ANY,
-            });
-            first.entry([a, b]).or_insert(index);
-            first.entry([b, a]).or_insert(index);
-        }
-        let number = |name: &str| numbers.get(name).copied();
-        let names = (scene.bodies.iter())
-            .map(|body| [number(&body.name), number(&scene.materials[body.material].name), Some(ANY)])
-            .collect();
         let default = ContactRule::default();
-        let rules: Vec<_> = scene.contact.iter().chain([&default]).map(Rule::from).collect();
-        let plain = first.get(&[ANY; 2]).copied().unwrap_or(rules.len() - 1);
-        Rules { rules, names, first, plain }
+        let rules = scene.contact.iter().chain([&default]).map(Rule::from).collect();
+        Rules::named(RuleNames::new(scene), rules)
+    }
+
+    fn named(names: RuleNames, rules: Vec<Rule<T>>) -> Self {
+        let classes = names.classes();
+        let few = if classes <= FEW { classes } else { 0 };
+        let pairs = (0..few).flat_map(|a| (0..few).map(move |b| [a, b]));
+        let by_class = pairs.map(|[a, b]| names.rule(a, b).unwrap_or(rules.len() - 1)).collect();
+        Rules { rules, names, by_class }
     }
 
     /// Rules to be asked for by their numbers; the first holds between all bodies.
     #[cfg(test)]
     pub fn listed(bodies: usize, rules: Vec<Rule<T>>) -> Self {
-        let first = HashMap::from([([ANY, ANY], 0)]);
-        Rules { rules, names: vec![[None, None, Some(ANY)]; bodies], first, plain: 0 }
+        Rules::named(RuleNames::alike(bodies), rules)
     }
 
     /// Number of the rule for two bodies: the first in the scene that matches, else the last.
     pub fn number(&self, a: usize, b: usize) -> usize {
-        if [a, b].iter().all(|&body| self.names[body] == [None, None, Some(ANY)]) {
-            return self.plain;
+        let ([a, b], classes) = ([a, b].map(|body| self.names.class(body)), self.names.classes());
+        match self.by_class.get(a * classes + b) {
+            Some(&rule) => rule,
+            None => self.names.rule(a, b).unwrap_or(self.rules.len() - 1),
         }
-        let pairs = self.names[a]
-            .iter()
-            .flatten()
-            .flat_map(|&x| self.names[b].iter().flatten().map(move |&y| [x, y]));
-        pairs.filter_map(|pair| self.first.get(&pair)).min().copied().unwrap_or(self.rules.len() - 1)
     }
 
     /// Whether a law holds for any pair that there may be.

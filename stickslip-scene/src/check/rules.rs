@@ -3,9 +3,9 @@
 use super::neighbours::pairs_within;
 use super::warning::Warning;
 use crate::geometry::Bounds;
-use crate::scene::{ContactLaw, ContactRule, Scene};
+use crate::scene::{ContactLaw, ContactRule, RuleNames, Scene};
 use serde::Serialize;
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Scenes of so few bodies show all their pairs; others those that are near each other at the start or that a rule
 /// names.
@@ -78,84 +78,44 @@ pub(super) fn named_pairs(scene: &Scene) -> BTreeSet<[usize; 2]> {
     scene.contact.iter().filter_map(pair).collect()
 }
 
-/// Bodies that no rule tells from each other.
-struct BodyClass {
-    /// Numbers of their names in [`RulesByName::numbers`], of the body and of the material, and that of "any".
-    names: [Option<usize>; 3],
+/// How many bodies there are that no rule tells from each other.
+#[derive(Clone, Copy, Default)]
+struct BodyCount {
     deforming: usize,
     rigid: usize,
 }
 
-/// Rules by the names that they mention.
-struct RulesByName<'a> {
+/// Rules, and how many bodies they mean.
+struct CountedRules<'a> {
     scene: &'a Scene,
-    kinds: Vec<BodyClass>,
-    /// Numbers of the names that rules mention; "any" is 0.
-    numbers: HashMap<&'a str, usize>,
-    /// The first rule that mentions two names.
-    first: HashMap<[usize; 2], usize>,
+    names: RuleNames,
+    /// Of each class of bodies.
+    counts: Vec<BodyCount>,
 }
 
-/// Stands for every body.
-const ANY: usize = 0;
-
-impl<'a> RulesByName<'a> {
+impl<'a> CountedRules<'a> {
     fn new(scene: &'a Scene) -> Self {
-        let mut rules =
-            RulesByName { scene, kinds: Vec::new(), numbers: HashMap::new(), first: HashMap::new() };
-        for name in scene.contact.iter().flat_map(|rule| rule.between.iter().flatten()) {
-            let next = rules.numbers.len() + 1;
-            rules.numbers.entry(name).or_insert(next);
-        }
-        for rule in 0..scene.contact.len() {
-            let [a, b] = rules.sides(rule);
-            rules.first.entry([a, b]).or_insert(rule);
-            rules.first.entry([b, a]).or_insert(rule);
-        }
-        let mut places = HashMap::new();
+        let names = RuleNames::new(scene);
+        let mut counts = vec![BodyCount::default(); names.classes()];
         for (i, body) in scene.bodies.iter().enumerate() {
-            let number = |name: &String| rules.numbers.get(name.as_str()).copied();
-            let names = [number(&body.name), number(&scene.materials[body.material].name), Some(ANY)];
-            let place = *places.entry(names).or_insert_with(|| {
-                rules.kinds.push(BodyClass { names, deforming: 0, rigid: 0 });
-                rules.kinds.len() - 1
-            });
-            let kind = &mut rules.kinds[place];
-            *(if scene.bodies[i].is_rigid() { &mut kind.rigid } else { &mut kind.deforming }) += 1;
+            let count = &mut counts[names.class(i)];
+            *(if body.is_rigid() { &mut count.rigid } else { &mut count.deforming }) += 1;
         }
-        rules
-    }
-
-    /// Numbers of the two names of a rule.
-    fn sides(&self, rule: usize) -> [usize; 2] {
-        let between = &self.scene.contact[rule].between;
-        between.each_ref().map(|name| name.as_ref().map_or(ANY, |name| self.numbers[name.as_str()]))
-    }
-
-    /// The kinds that a name means.
-    fn of(&self, name: usize) -> impl Iterator<Item = usize> {
-        (0..self.kinds.len()).filter(move |&kind| self.kinds[kind].names.contains(&Some(name)))
-    }
-
-    /// The first rule for two kinds.
-    fn between(&self, a: usize, b: usize) -> Option<usize> {
-        let [a, b] = [a, b].map(|kind| self.kinds[kind].names.into_iter().flatten());
-        let pairs = a.flat_map(|x| b.clone().map(move |y| [x, y]));
-        pairs.filter_map(|pair| self.first.get(&pair)).min().copied()
+        CountedRules { scene, names, counts }
     }
 
     /// Why a rule never holds, if it does not.
     fn idle(&self, rule: usize) -> Option<String> {
-        let [first, second] = self.sides(rule);
+        let [first, second] = self.names.sides(rule);
         let (mut before, mut all_rigid) = (BTreeSet::new(), false);
-        for a in self.of(first) {
-            for b in self.of(second) {
-                let [p, q] = [a, b].map(|kind| &self.kinds[kind]);
+        for a in first.clone() {
+            for b in second.clone() {
+                let [p, q] = [a, b].map(|class| self.counts[class]);
                 let (bodies, rigid) = (p.deforming + p.rigid, p.deforming + q.deforming == 0);
                 if a == b && bodies < 2 {
                     continue;
                 }
-                match self.between(a, b) {
+                match self.names.rule(a, b) {
                     _ if rigid => all_rigid = true,
                     Some(holds) if holds < rule => drop(before.insert(holds)),
                     _ => return None,
@@ -182,8 +142,9 @@ impl<'a> RulesByName<'a> {
                 pair(rule)
             ));
         }
-        let names = self.scene.contact[rule].between.iter().flatten();
-        let without = names.filter(|name| self.of(self.numbers[name.as_str()]).next().is_none());
+        let names = self.scene.contact[rule].between.iter().zip([first, second]);
+        let without =
+            names.filter_map(|(name, mut classes)| name.as_ref().filter(|_| classes.next().is_none()));
         let without: BTreeSet<_> = without.map(|name| format!("no body is of `{name}`")).collect();
         let why = match without.len() {
             0 => "it names one body twice, and a body is in no contact with itself".to_string(),
@@ -195,7 +156,7 @@ impl<'a> RulesByName<'a> {
 
 /// Rules that hold for no pair of bodies, and why.
 pub(super) fn idle(scene: &Scene) -> impl Iterator<Item = Warning> {
-    let rules = RulesByName::new(scene);
+    let rules = CountedRules::new(scene);
     (0..scene.contact.len())
         .filter_map(move |rule| Some(Warning::about(format!("contact[{rule}]"), rules.idle(rule)?)))
 }

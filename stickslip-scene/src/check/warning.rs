@@ -23,8 +23,9 @@ impl Warning {
 
     /// The same with the place of its key in the file.
     pub fn placed(self, source: &Source) -> Self {
-        let place = (!self.key.is_empty()).then(|| source.place(&self.key));
-        Warning { place, ..self }
+        let key = source.written(&self.key);
+        let place = (!key.is_empty()).then(|| source.place(&key));
+        Warning { key, place, ..self }
     }
 }
 

@@ -62,6 +62,11 @@ impl Bounds {
         std::array::from_fn(|k| (self.max[k] - self.min[k]).max(0.0))
     }
 
+    /// Its middle [m].
+    pub fn middle(&self) -> [f64; 3] {
+        std::array::from_fn(|k| 0.5 * (self.min[k] + self.max[k]))
+    }
+
     /// Its corners.
     pub fn corners(&self) -> impl Iterator<Item = [f64; 3]> {
         let sides = [self.min, self.max];
@@ -98,9 +103,7 @@ impl Shape {
             Shape::Rotated { shape, center, axis, angle } => {
                 Rotation::new(*center, *axis, *angle, dimension).forward(shape.anchor(dimension))
             }
-            shape => shape
-                .bounds(dimension)
-                .map_or([0.0; 3], |bounds| std::array::from_fn(|k| 0.5 * (bounds.min[k] + bounds.max[k]))),
+            shape => shape.bounds(dimension).map_or([0.0; 3], |bounds| bounds.middle()),
         }
     }
 

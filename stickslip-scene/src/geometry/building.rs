@@ -48,4 +48,32 @@ impl Shape {
     pub fn without(self, other: Shape) -> Self {
         Shape::Difference(vec![self, other])
     }
+
+    /// The shape made `factor` times as large, and moved so that the point `from` [m] comes to lie at `to` [m].
+    pub fn copied(&self, factor: f64, from: [f64; 3], to: [f64; 3]) -> Shape {
+        let point = |x: [f64; 3]| -> [f64; 3] { std::array::from_fn(|k| to[k] + factor * (x[k] - from[k])) };
+        let all = |shapes: &[Shape]| shapes.iter().map(|shape| shape.copied(factor, from, to)).collect();
+        match self {
+            Shape::Ball { center, radius } => Shape::Ball { center: point(*center), radius: factor * radius },
+            Shape::Box { min, max } => Shape::Box { min: point(*min), max: point(*max) },
+            Shape::Cylinder { start, end, radius } => {
+                Shape::Cylinder { start: point(*start), end: point(*end), radius: factor * radius }
+            }
+            Shape::HalfSpace { point: on, normal } => Shape::HalfSpace { point: point(*on), normal: *normal },
+            Shape::Polygon { points, height } => {
+                let moved = |x: f64, k: usize| to[k] + factor * (x - from[k]);
+                Shape::Polygon {
+                    points: points.iter().map(|&[x, y]| [moved(x, 0), moved(y, 1)]).collect(),
+                    height: height.map(|z| moved(z, 2)),
+                }
+            }
+            Shape::Mesh(mesh) => Shape::Mesh(mesh.copied(point)),
+            Shape::Union(shapes) => Shape::Union(all(shapes)),
+            Shape::Intersection(shapes) => Shape::Intersection(all(shapes)),
+            Shape::Difference(shapes) => Shape::Difference(all(shapes)),
+            Shape::Rotated { shape, center, axis, angle } => {
+                shape.copied(factor, from, to).rotated(point(*center), *axis, *angle)
+            }
+        }
+    }
 }

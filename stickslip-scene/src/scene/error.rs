@@ -116,6 +116,13 @@ impl Fault {
         self
     }
 
+    /// The same with more advice.
+    pub fn remark(mut self, text: &str) -> Self {
+        let help = self.problem.help.take();
+        self.problem.help = Some(help.map_or(text.to_string(), |help| format!("{help}; {text}")));
+        self
+    }
+
     /// The same at other bytes.
     pub fn at(mut self, span: Range<usize>) -> Self {
         self.span = Some(span);

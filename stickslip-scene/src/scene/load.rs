@@ -37,8 +37,9 @@ pub fn load(path: &Path, overrides: &[(String, String)]) -> Result<Loaded, Scene
 /// # Errors
 /// The first mistake, with file, line, column, key, what was found, what is allowed and a suggestion.
 pub fn parse(name: &str, text: &str, overrides: &[(String, String)]) -> Result<Loaded, SceneError> {
-    let source = Source::read(name, text, overrides)?;
-    let scene = file::resolve(&source).map_err(|fault| source.show(fault))?;
+    let mut source = Source::read(name, text, overrides)?;
+    let (scene, declared) = file::resolve(&source).map_err(|fault| source.show(fault))?;
+    source.declare(declared);
     Ok(Loaded { scene, source })
 }
 

@@ -12,6 +12,7 @@ mod fringes;
 mod load;
 mod loads;
 mod measurements;
+mod name_pattern;
 mod overrides;
 mod parameters;
 mod problem;
@@ -26,6 +27,7 @@ pub use fringes::{Fringes, Light, Overlay, Polariscope, PolariscopeField, Sensit
 pub use load::{Loaded, load, parse};
 pub use loads::{Action, Dashpot, Extent, Load, Part, RIGID, Support, SupportMotion};
 pub use measurements::{Anchor, Arrival, Front, Measurements, Observable, Probe, Reading, TimeUnit};
+pub use name_pattern::{RuleNames, is_pattern, matches_name};
 pub use problem::Problem;
 pub use schema::schema;
 pub use source::Source;
@@ -370,7 +372,8 @@ pub enum BodyMotion {
 /// How two bodies touch.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ContactRule {
-    /// The pairs it holds for: each entry is the name of a body or of a material; `None` matches every body.
+    /// The pairs it holds for: each entry is the name of bodies or of a material, or a pattern of names, in which `*`
+    /// is any letters; `None` matches every body.
     pub between: [Option<String>; 2],
     /// The contact law.
     pub law: ContactLaw,
@@ -505,7 +508,7 @@ impl Scene {
         let matches = |filter: &Option<String>, body: usize| {
             filter.as_ref().is_none_or(|name| {
                 let body = &self.bodies[body];
-                *name == body.name || *name == self.materials[body.material].name
+                [&body.name, &self.materials[body.material].name].iter().any(|own| matches_name(name, own))
             })
         };
         self.contact.iter().position(|rule| {

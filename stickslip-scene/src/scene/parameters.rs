@@ -6,6 +6,7 @@ use super::expression::{Expression, PLACE};
 use super::formula::{self, Formula, FormulaError, FormulaNumber, Meaning, Names, NumberKind};
 use super::source::{DocumentNode, Source, Value};
 use super::suggestion::did_you_mean;
+use super::units::Powers;
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 
@@ -18,6 +19,8 @@ pub(super) struct Parameters<'s> {
     pending: RefCell<Vec<&'s str>>,
     /// Parameters that were put into the present text.
     put: Cell<usize>,
+    /// The indices of what is repeated, with their present values.
+    indices: RefCell<Vec<(String, usize)>>,
 }
 
 /// Parameters that may wait for each other.
@@ -47,21 +50,7 @@ impl<'s> Parameters<'s> {
     /// Names that no formula can use; values that are neither number nor text.
     pub fn new(source: &'s Source, nodes: &'s [DocumentNode]) -> Result<Self, Fault> {
         for node in nodes {
-            let name = &node.name;
-            let plain = name.starts_with(|first: char| first.is_alphabetic() || first == '_')
-                && name.chars().all(|letter| letter.is_alphanumeric() || letter == '_');
-            let fault = |found: String, allowed: &str| {
-                Err(Fault::new(&node.key, found, allowed).at(node.name_span.clone()))
-            };
-            if !plain {
-                return fault(
-                    format!("the name `{name}`"),
-                    "letters, digits and _, not beginning with a digit",
-                );
-            }
-            if formula::reserved().any(|word| word == name) {
-                return fault(format!("the name `{name}`, which formulas use already"), "another name");
-            }
+            check_name(node)?;
             if !matches!(node.value, Value::Number(_) | Value::Text(_)) {
                 return Err(node.fault("a number, or a formula or a word in quotes"));
             }
@@ -72,7 +61,47 @@ impl<'s> Parameters<'s> {
             evaluated: RefCell::default(),
             pending: RefCell::default(),
             put: Cell::new(0),
+            indices: RefCell::default(),
         })
+    }
+
+    /// Does `each` with an index at 0, 1 ... below `count`.
+    ///
+    /// # Errors
+    /// A name that no formula can use or that something else has, and whatever `each` finds.
+    pub fn with_index(
+        &self,
+        node: &DocumentNode,
+        count: usize,
+        each: &mut dyn FnMut() -> Result<(), Fault>,
+    ) -> Result<(), Fault> {
+        check_name(node)?;
+        let name = node.name.as_str();
+        if self.names().iter().any(|other| other == name) {
+            let found = format!("the index `{name}`, which is the name of a parameter or of another index");
+            return Err(Fault::new(&node.key, found, "another name").at(node.name_span.clone()));
+        }
+        for value in 0..count {
+            self.indices.borrow_mut().push((name.to_string(), value));
+            let done = each();
+            self.indices.borrow_mut().pop();
+            done?;
+        }
+        Ok(())
+    }
+
+    /// A fault with the present values of the indices.
+    pub fn at_indices(&self, fault: Fault) -> Fault {
+        let values: Vec<_> =
+            self.indices.borrow().iter().map(|(name, value)| format!("{name} = {value}")).collect();
+        if values.is_empty() { fault } else { fault.remark(&format!("this is with {}", values.join(", "))) }
+    }
+
+    /// The present value of an index; parameters, which are the same everywhere, have none.
+    fn index(&self, name: &str) -> Option<usize> {
+        let outside = self.pending.borrow().is_empty();
+        let indices = self.indices.borrow();
+        indices.iter().filter(|_| outside).find(|(other, _)| *other == name).map(|(_, value)| *value)
     }
 
     /// Every parameter with its value in this run. A text that has no value as a formula is a word.
@@ -159,12 +188,8 @@ impl<'s> Parameters<'s> {
             if self.put.get() > MOST_PUT || result.len() > LONGEST_TEXT {
                 return Err(too_long().at(self.source.inside(node, open..open + length + 2)));
             }
-            result.push_str(&self.word(name).unwrap_or_else(|| {
-                let allowed = format!("a parameter ({})", self.names().join(", "));
-                Err(Fault::new(&node.key, format!("unknown parameter `{name}`"), allowed)
-                    .help(did_you_mean(name, self.names()))
-                    .at(self.source.inside(node, open..open + length + 2)))
-            })?);
+            let shift = open + 1 + rest[..length].len() - rest[..length].trim_start().len();
+            result.push_str(&self.word(name).unwrap_or_else(|| self.number_as_text(node, name, shift))?);
             at = open + length + 2;
         }
         result.push_str(&text[at..]);
@@ -176,6 +201,29 @@ impl<'s> Parameters<'s> {
             }
             None => Ok(result),
         }
+    }
+
+    /// What a formula in braces gives, `{i + 1}`: a number without a unit; `shift` is where it begins in the text.
+    fn number_as_text(&self, node: &DocumentNode, text: &str, shift: usize) -> Result<String, Fault> {
+        let place = self.source.inside(node, shift..shift + text.len());
+        if is_plain(text) && self.index(text).is_none() {
+            let allowed = format!("a parameter ({})", self.names().join(", "));
+            return Err(Fault::new(&node.key, format!("unknown parameter `{text}`"), allowed)
+                .help(did_you_mean(text, self.names().iter().map(String::as_str)))
+                .at(self.source.inside(node, shift - 1..shift + text.len() + 1)));
+        }
+        let formula =
+            formula::compile(text, &Scope(self, Dependence::Constant)).map_err(|error| match error {
+                FormulaError::Parameter(fault) => fault,
+                FormulaError::Here(misread) => {
+                    Fault::new(&node.key, misread.found, misread.allowed).help(misread.help).at(place.clone())
+                }
+            })?;
+        let value = formula.expression.at(0.0);
+        if formula.kind.fits(Powers::NONE) && value.is_finite() {
+            return Ok(value.to_string());
+        }
+        Err(Fault::new(&node.key, format!("`{text}`"), "a number without a unit in braces").at(place))
     }
 
     /// The parameter as text, if there is one of that name.
@@ -223,8 +271,11 @@ impl<'s> Parameters<'s> {
         result
     }
 
-    fn names(&self) -> Vec<&'s str> {
-        self.nodes.iter().map(|node| node.name.as_str()).collect()
+    /// Names of the parameters, and of the indices where they have values.
+    fn names(&self) -> Vec<String> {
+        let indices = self.indices.borrow();
+        let parameters = self.nodes.iter().map(|node| node.name.clone());
+        parameters.chain(indices.iter().map(|(name, _)| name.clone())).collect()
     }
 }
 
@@ -232,6 +283,9 @@ impl Names for Scope<'_, '_> {
     fn meaning(&self, name: &str) -> Meaning {
         if name == "t" && self.1 != Dependence::Constant {
             return Meaning::Time;
+        }
+        if let Some(value) = self.0.index(name) {
+            return Meaning::Value(FormulaNumber { value: value as f64, kind: NumberKind::Number });
         }
         let coordinate = PLACE.iter().position(|other| *other == name);
         let coordinate = coordinate.filter(|_| self.1 == Dependence::TimeAndPlace);
@@ -248,8 +302,28 @@ impl Names for Scope<'_, '_> {
     }
 
     fn all(&self) -> Vec<String> {
-        self.0.names().into_iter().map(str::to_string).collect()
+        self.0.names()
     }
+}
+
+/// Whether a formula can use a name.
+fn is_plain(name: &str) -> bool {
+    name.starts_with(|first: char| first.is_alphabetic() || first == '_')
+        && name.chars().all(|letter| letter.is_alphanumeric() || letter == '_')
+}
+
+/// Refuses the name of a key that is to be used in formulas, if they cannot.
+fn check_name(node: &DocumentNode) -> Result<(), Fault> {
+    let name = &node.name;
+    let fault =
+        |found: String, allowed: &str| Err(Fault::new(&node.key, found, allowed).at(node.name_span.clone()));
+    if !is_plain(name) {
+        return fault(format!("the name `{name}`"), "letters, digits and _, not beginning with a digit");
+    }
+    if formula::reserved().any(|word| word == name) {
+        return fault(format!("the name `{name}`, which formulas use already"), "another name");
+    }
+    Ok(())
 }
 
 /// `gap`, `modified-last`

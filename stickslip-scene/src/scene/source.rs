@@ -2,6 +2,7 @@
 
 use super::error::{Fault, Mistake, SceneError};
 use super::{Problem, overrides};
+use std::collections::BTreeMap;
 use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -12,7 +13,12 @@ pub struct Source {
     /// The file, then each override: all in one range of byte positions, one after the other.
     documents: Vec<Document>,
     root: DocumentNode,
+    declared: Declared,
 }
+
+/// Lists of the scene by their keys, and of each entry the table of the file that stands for it: one table may stand
+/// for many entries.
+pub(super) type Declared = BTreeMap<&'static str, Vec<String>>;
 
 #[derive(Clone, Debug)]
 struct Document {
@@ -61,7 +67,7 @@ impl Source {
             span: 0..0,
             value: Value::Table(vec![]),
         };
-        let mut source = Source { documents: vec![document], root: empty };
+        let mut source = Source { documents: vec![document], root: empty, declared: Declared::new() };
         let table = DeTable::parse(text).map_err(|error| source.show(syntax_fault(text, &error)))?;
         source.root.value = table_value(table.get_ref(), "", 0);
         for (name, value) in overrides {
@@ -78,10 +84,26 @@ impl Source {
 
     /// The error for a problem, at its key or the nearest key around it that exists.
     pub fn locate(&self, problem: Problem) -> SceneError {
-        self.show(problem.into())
+        self.show(Problem { key: self.written(&problem.key), ..problem }.into())
     }
 
-    /// File, line and column of a key, or of the nearest key around it that exists: `scene.toml:49:1`.
+    /// Says which tables of the file stand for the entries of lists.
+    pub(super) fn declare(&mut self, declared: Declared) {
+        self.declared = declared;
+    }
+
+    /// The key in the file of a key of the scene: of body 17, which a table stands for that is repeated, `bodies[2]`.
+    pub fn written(&self, key: &str) -> String {
+        let entry = || {
+            let (list, rest) = key.split_once('[')?;
+            let (number, rest) = rest.split_once(']')?;
+            let table = self.declared.get(list)?.get(number.parse::<usize>().ok()?)?;
+            Some(format!("{table}{rest}"))
+        };
+        entry().unwrap_or_else(|| key.to_string())
+    }
+
+    /// File, line and column of a key of the file, or of the nearest key around it that exists: `scene.toml:49:1`.
     pub fn place(&self, key: &str) -> String {
         let (document, start, _) = self.within(&self.span_of(key));
         let [line, column] = document.line_and_column(start);

@@ -6,6 +6,7 @@
 mod bodies;
 mod keys;
 mod loads;
+mod many;
 mod meshes;
 mod outputs;
 mod parameters;

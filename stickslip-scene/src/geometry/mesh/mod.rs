@@ -200,6 +200,11 @@ impl Mesh {
         self.moved(|corner| rotation.forward(corner)).expect("a turn leaves a closed surface closed")
     }
 
+    /// The mesh after a change of size and place that `point` makes of each of its corners.
+    pub(super) fn copied(&self, point: impl Fn([f64; 3]) -> [f64; 3]) -> Mesh {
+        self.moved(point).expect("a copy of a closed surface is closed")
+    }
+
     /// The mesh with its image behind a mirror on which some of its triangles lie: those are no surface.
     /// `None` where none does.
     pub(super) fn continued(&self, mirror: &Mirror) -> Option<Mesh> {

@@ -3,18 +3,23 @@
 use super::Context;
 use super::quantity::Velocity;
 use super::read::table;
+use super::repeat::Repeat;
 use super::shape::ShapeInput;
 use super::text::{Choice, Count, Text, Word};
 use super::vector::{SpinInput, VectorInput};
 use crate::geometry::Arrangement;
 use crate::scene::error::Fault;
-use crate::scene::{self, BodyMotion, Expression, NamedMaterial};
+use crate::scene::{self, BodyMotion, Expression, NamedMaterial, is_pattern};
+use std::collections::HashSet;
 
 table! {
     /// A body: a shape filled with a material, and how it moves at the start.
     Body {
         /// Its name, unique in the scene.
         name: Text,
+        /// Makes many of it: indices, and how many values each has, such as { i = 10, j = 5 }. Formulas use them by
+        /// name, text in braces: "grain {i}". By default one.
+        repeat: Option<Repeat>,
         /// Name of its material.
         material: Text,
         /// Where it is at the start: shape.ball = { center = [0, 0, 1], radius = 1 }.
@@ -54,42 +59,82 @@ impl Choice for Arrangement {
     ];
 }
 
-/// The bodies in the order of the file.
-pub fn resolve(
-    bodies: &[Body],
-    materials: &[NamedMaterial],
-    context: &Context,
-) -> Result<Vec<scene::Body>, Fault> {
-    if bodies.is_empty() {
-        return Err(Fault::new("bodies", "no body", "at least one [[bodies]]"));
+/// Bodies, and where in the file each is declared.
+#[derive(Default)]
+pub struct Bodies {
+    pub all: Vec<scene::Body>,
+    /// Of each, its table in the file: `bodies[3]`.
+    pub declared: Vec<String>,
+    names: HashSet<String>,
+}
+
+impl Bodies {
+    /// Takes one more.
+    ///
+    /// # Errors
+    /// A name that it cannot have.
+    pub fn add(&mut self, body: scene::Body, name: &Text, declared: &str) -> Result<(), Fault> {
+        if body.name == "any" || body.name.trim().is_empty() {
+            return Err(name.refused(&body.name, "a name; `any` matches every body"));
+        }
+        if is_pattern(&body.name) {
+            let allowed = "a name without `*`, which is any letters where bodies are named";
+            return Err(name.refused(&body.name, allowed));
+        }
+        if !self.names.insert(body.name.clone()) {
+            return Err(name.refused(&body.name, "a name that no other body has"));
+        }
+        self.all.push(body);
+        self.declared.push(declared.to_string());
+        Ok(())
     }
-    let names: Vec<&str> = materials.iter().map(|material| material.name.as_str()).collect();
-    let mut resolved: Vec<scene::Body> = Vec::new();
-    for body in bodies {
-        let name = body.name.value(context)?;
-        if name == "any" || name.is_empty() {
-            return Err(body.name.refused(&name, "a name; `any` matches every body"));
-        }
-        if resolved.iter().any(|other| other.name == name) {
-            return Err(body.name.refused(&name, "a name that no other body has"));
-        }
-        let material = body.material.name_of(context, "the name of a material", &names)?;
-        let material = names.iter().position(|name| *name == material).expect("name_of found it in names");
-        let mut whole = scene::Body::new(&name, material, body.shape.resolve(context)?);
-        if let Some(word) = &body.particles {
-            whole.particles = word.value(context)?;
-        }
-        if let Some(count) = &body.particles_per_side {
-            whole.particles_per_side = Some(count.value(context, 1..=8)?);
-        }
-        whole.motion = body.motion(context)?;
-        resolved.push(whole);
+}
+
+/// The bodies in the order of the file.
+pub fn resolve(bodies: &[Body], materials: &[NamedMaterial], context: &Context) -> Result<Bodies, Fault> {
+    let mut resolved = Bodies::default();
+    for (i, body) in bodies.iter().enumerate() {
+        let declared = format!("bodies[{i}]");
+        Repeat::each(body.repeat.as_ref(), context, || {
+            resolved.add(body.resolve(materials, context)?, &body.name, &declared)
+        })?;
     }
     Ok(resolved)
 }
 
+/// The number of the material that a text names.
+pub fn material_of(text: &Text, materials: &[NamedMaterial], context: &Context) -> Result<usize, Fault> {
+    let names: Vec<&str> = materials.iter().map(|material| material.name.as_str()).collect();
+    let material = text.name_of(context, "the name of a material", &names)?;
+    Ok(names.iter().position(|name| *name == material).expect("name_of found it in names"))
+}
+
 impl Body {
-    fn motion(&self, context: &Context) -> Result<BodyMotion, Fault> {
+    fn resolve(&self, materials: &[NamedMaterial], context: &Context) -> Result<scene::Body, Fault> {
+        let material = material_of(&self.material, materials, context)?;
+        let mut body = scene::Body::new(&self.name.value(context)?, material, self.shape.resolve(context)?);
+        if let Some(word) = &self.particles {
+            body.particles = word.value(context)?;
+        }
+        if let Some(count) = &self.particles_per_side {
+            body.particles_per_side = Some(count.value(context, 1..=8)?);
+        }
+        let keys = BodyKeys { velocity: &self.velocity, spin: &self.spin, rigid: &self.rigid };
+        body.motion = keys.motion(context)?;
+        Ok(body)
+    }
+}
+
+/// The keys that say how a body moves.
+pub struct BodyKeys<'a> {
+    pub velocity: &'a Option<VectorInput<Velocity>>,
+    pub spin: &'a Option<SpinInput>,
+    pub rigid: &'a Option<Rigid>,
+}
+
+impl BodyKeys<'_> {
+    /// How it moves.
+    pub fn motion(&self, context: &Context) -> Result<BodyMotion, Fault> {
         let Some(rigid) = &self.rigid else {
             return Ok(BodyMotion::Free {
                 velocity: self.velocity.as_ref().map_or(Ok([0.0; 3]), |velocity| velocity.value(context))?,

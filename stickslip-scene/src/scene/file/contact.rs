@@ -8,11 +8,13 @@ use crate::scene::error::Fault;
 use crate::scene::source::{DocumentNode, Value};
 use crate::scene::{Body, ContactLaw, ContactRule, NamedMaterial, Normal};
 use schemars::JsonSchema;
+use std::collections::HashSet;
 
 table! {
     /// How bodies touch.
     Contact {
-        /// The pair it holds for: two names of bodies or materials; "any", the default for both, matches every body.
+        /// The pair it holds for: two names of bodies or materials, or patterns in which `*` is any letters, such as
+        /// "grain*"; "any", the default for both, matches every body.
         between: Option<NamePair>,
         /// When the bodies push on each other.
         #[schemars(extend("default" = ContactRule::default().law))]
@@ -99,13 +101,10 @@ pub fn resolve(
     (bodies, materials): (&[Body], &[NamedMaterial]),
     context: &Context,
 ) -> Result<Vec<ContactRule>, Fault> {
-    let mut names: Vec<&str> = bodies.iter().map(|body| body.name.as_str()).collect();
-    for material in materials {
-        if !names.contains(&material.name.as_str()) {
-            names.push(&material.name);
-        }
-    }
-    names.push("any");
+    let own: HashSet<&str> = bodies.iter().map(|body| body.name.as_str()).collect();
+    let others = materials.iter().map(|material| material.name.as_str()).filter(|name| !own.contains(name));
+    let names: Vec<&str> =
+        bodies.iter().map(|body| body.name.as_str()).chain(others).chain(["any"]).collect();
     rules.iter().map(|rule| rule.resolve(&names, context)).collect()
 }
 
@@ -116,7 +115,7 @@ impl Contact {
         let mut between = default.between;
         if let Some(NamePair(pair)) = &self.between {
             for (side, text) in between.iter_mut().zip(pair) {
-                let name = text.name_of(context, "the name of a body or a material, or any", names)?;
+                let (name, _) = text.names_of(context, "the name of a body or a material, or any", names)?;
                 *side = (name != "any").then_some(name);
             }
         }

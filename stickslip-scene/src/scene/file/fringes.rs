@@ -3,7 +3,7 @@
 use super::Context;
 use super::quantity::{Angle, Compliance, Duration, Length, Pressure, QuantityInput};
 use super::read::table;
-use super::text::{Choice, Count, Text, Word};
+use super::text::{Choice, Count, Text, Word, names_in};
 use super::vector::VectorInput;
 use crate::scene::error::Fault;
 use crate::scene::{self, Body, Dimension, Light, Overlay, Polariscope, PolariscopeField, Sensitivity};
@@ -175,9 +175,7 @@ impl Fringes {
             Some(names) if names.is_empty() => {
                 Err(self.interval.node().fault("fringes with one body or more in bodies"))
             }
-            Some(names) => {
-                names.iter().map(|name| name.name_of(context, "the name of a body", &known)).collect()
-            }
+            Some(names) => names_in(names, ("the name of a body", &known), context),
             None => {
                 let free = bodies.iter().filter(|body| !body.is_rigid());
                 Ok(free.map(|body| body.name.clone()).collect())

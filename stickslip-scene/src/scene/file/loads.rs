@@ -7,15 +7,19 @@ use super::quantity::{
     Velocity, evaluate,
 };
 use super::read::{Read, table};
+use super::repeat::Repeat;
 use super::shape::ShapeInput;
 use super::text::{Choice, Text, Word};
 use crate::scene::error::Fault;
 use crate::scene::parameters::Dependence;
 use crate::scene::source::{DocumentNode, Value};
 use crate::scene::units::Powers;
-use crate::scene::{self, Action, Body, Dashpot, Expression, Extent, Part, SupportMotion, TimeTable};
+use crate::scene::{
+    self, Action, Body, Dashpot, Expression, Extent, Part, SupportMotion, TimeTable, is_pattern,
+};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use std::borrow::Cow;
+use std::collections::HashSet;
 use std::marker::PhantomData;
 
 table! {
@@ -23,7 +27,10 @@ table! {
     Support {
         /// Its name in loads.csv; by default "support 1", "support 2" ...
         name: Option<Text>,
-        /// Name of the body, one that deforms.
+        /// Makes many of it: indices, and how many values each has, as of [[bodies]]. By default one.
+        repeat: Option<Repeat>,
+        /// Name of the body, one that deforms; a pattern in which `*` is any letters, such as "grain*", makes one on
+        /// each body that matches.
         body: Text,
         /// Where on the body: its surface, a face of it, or all its particles.
         #[schemars(extend("default" = "surface"))]
@@ -47,7 +54,10 @@ table! {
     Load {
         /// Its name in loads.csv; by default "load 1", "load 2" ...
         name: Option<Text>,
-        /// Name of the body, one that deforms.
+        /// Makes many of it: indices, and how many values each has, as of [[bodies]]. By default one.
+        repeat: Option<Repeat>,
+        /// Name of the body, one that deforms; a pattern in which `*` is any letters, such as "grain*", makes one on
+        /// each body that matches.
         body: Text,
         /// Where on the body: its surface, a face of it, or all its particles; by default the surface, for an
         /// acceleration all particles.
@@ -134,34 +144,60 @@ impl JsonSchema for DashpotInput {
     }
 }
 
+/// Loads and supports, and where in the file each is declared.
+#[derive(Default)]
+pub struct Loads {
+    /// The supports, and then the loads.
+    pub all: Vec<scene::Load>,
+    /// Of each support, its table in the file: `supports[3]`.
+    pub declared_supports: Vec<String>,
+    /// Of each load.
+    pub declared_loads: Vec<String>,
+    names: HashSet<String>,
+}
+
 /// The supports, and then the loads, in the order of the file.
 pub fn resolve(
     supports: &[Support],
     loads: &[Load],
     (bodies, context): (&[Body], &Context),
-) -> Result<Vec<scene::Load>, Fault> {
-    let mut resolved: Vec<scene::Load> = Vec::new();
+) -> Result<Loads, Fault> {
+    let mut resolved = Loads::default();
     for (i, support) in supports.iter().enumerate() {
-        let action = Action::Support(support.resolve(context)?);
-        let place = Place {
-            name: &support.name,
-            body: &support.body,
-            on: &support.on,
-            within: &support.within,
-            kind: ("support", i),
-        };
-        resolved.push(place.load(action, (bodies, &resolved), context)?);
+        Repeat::each(support.repeat.as_ref(), context, || {
+            let action = Action::Support(support.resolve(context)?);
+            let place = Place {
+                name: &support.name,
+                body: &support.body,
+                on: &support.on,
+                within: &support.within,
+                kind: "support",
+                table: i,
+            };
+            let number = resolved.declared_supports.len();
+            let made = place.loads((action, number), (bodies, &mut resolved.names), context)?;
+            resolved.declared_supports.extend(made.iter().map(|_| format!("supports[{i}]")));
+            resolved.all.extend(made);
+            Ok(())
+        })?;
     }
     for (i, load) in loads.iter().enumerate() {
-        let action = load.action(context, i)?;
-        let place = Place {
-            name: &load.name,
-            body: &load.body,
-            on: &load.on,
-            within: &load.within,
-            kind: ("load", i),
-        };
-        resolved.push(place.load(action, (bodies, &resolved), context)?);
+        Repeat::each(load.repeat.as_ref(), context, || {
+            let action = load.action(context, i)?;
+            let place = Place {
+                name: &load.name,
+                body: &load.body,
+                on: &load.on,
+                within: &load.within,
+                kind: "load",
+                table: i,
+            };
+            let number = resolved.declared_loads.len();
+            let made = place.loads((action, number), (bodies, &mut resolved.names), context)?;
+            resolved.declared_loads.extend(made.iter().map(|_| format!("loads[{i}]")));
+            resolved.all.extend(made);
+            Ok(())
+        })?;
     }
     Ok(resolved)
 }
@@ -172,38 +208,53 @@ struct Place<'a> {
     body: &'a Text,
     on: &'a Option<Word<Extent>>,
     within: &'a Option<ShapeInput>,
-    /// What it is, and its number among those.
-    kind: (&'static str, usize),
+    kind: &'static str,
+    /// Number of its table among those of its kind.
+    table: usize,
 }
 
 impl Place<'_> {
+    /// One on each body that it names; `number` counts those before it.
+    fn loads(
+        &self,
+        (action, number): (Action, usize),
+        (bodies, taken): (&[Body], &mut HashSet<String>),
+        context: &Context,
+    ) -> Result<Vec<scene::Load>, Fault> {
+        let deform: Vec<usize> = (0..bodies.len()).filter(|&body| !bodies[body].is_rigid()).collect();
+        let names: Vec<&str> = deform.iter().map(|&body| bodies[body].name.as_str()).collect();
+        let (body_name, found) = self.body.names_of(context, "the name of a body that deforms", &names)?;
+        let mut loads = Vec::new();
+        for (k, &found) in found.iter().enumerate() {
+            let mut name = match self.name {
+                Some(text) => text.value(context)?,
+                None if is_pattern(&body_name) => self.kind.to_string(),
+                None => format!("{} {}", self.kind, number + k + 1),
+            };
+            if is_pattern(&body_name) {
+                name = format!("{name} on {}", names[found]);
+            }
+            if name.trim().is_empty() || !taken.insert(name.clone()) {
+                let allowed = "a name that no other load or support has";
+                let named = |text: &Text| text.refused(&name, allowed);
+                let unnamed = || {
+                    let found = format!("the name `{name}`, which another has");
+                    Fault::new(&format!("{}s[{}]", self.kind, self.table), found, "a `name` of its own")
+                };
+                return Err(self.name.as_ref().map_or_else(unnamed, named));
+            }
+            loads.push(self.load((&name, deform[found]), action.clone(), context)?);
+        }
+        Ok(loads)
+    }
+
     fn load(
         &self,
+        (name, body): (&str, usize),
         action: Action,
-        (bodies, others): (&[Body], &[scene::Load]),
         context: &Context,
     ) -> Result<scene::Load, Fault> {
-        let (kind, number) = self.kind;
-        let name = match self.name {
-            None => {
-                let name = format!("{kind} {}", number + 1);
-                if others.iter().any(|other| other.name == name) {
-                    let found = format!("the name `{name}`, which another has");
-                    return Err(Fault::new(&format!("{kind}s[{number}]"), found, "a `name` of its own"));
-                }
-                name
-            }
-            Some(text) => {
-                let name = text.value(context)?;
-                text.unlike(&name, others.iter().map(|other| other.name.as_str()))?;
-                name
-            }
-        };
-        let deform: Vec<&str> =
-            bodies.iter().filter(|body| !body.is_rigid()).map(|body| body.name.as_str()).collect();
-        let body_name = self.body.name_of(context, "the name of a body that deforms", &deform)?;
-        let body = bodies.iter().position(|body| body.name == body_name).expect("name_of found it");
-        let load = scene::Load::new(&name, body, action);
+        let load = scene::Load::new(name, body, action);
         let mut on = load.part.on;
         if let Some(word) = self.on {
             on = word.value(context)?;

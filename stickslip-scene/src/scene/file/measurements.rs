@@ -4,7 +4,8 @@ use super::Context;
 use super::outputs::Outputs;
 use super::quantity::{Duration, Length, QuantityInput, Ratio, evaluate};
 use super::read::{Read, table};
-use super::text::{Choice, Text, Word};
+use super::repeat::Repeat;
+use super::text::{Choice, Text, Word, names_in};
 use super::vector::VectorInput;
 use crate::scene::error::Fault;
 use crate::scene::parameters::Dependence;
@@ -13,12 +14,15 @@ use crate::scene::units::Powers;
 use crate::scene::{self, Anchor, Body, Observable, Reading};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use std::borrow::Cow;
+use std::collections::HashSet;
 
 table! {
     /// A point at which velocity and stress are recorded.
     Probe {
         /// Its name.
         name: Text,
+        /// Makes many of it: indices, and how many values each has, as of [[bodies]]. By default one.
+        repeat: Option<Repeat>,
         /// Where it is at the start [m].
         at: VectorInput<Length>,
         /// Name of the body that it looks at; by default whichever is there.
@@ -131,22 +135,22 @@ pub fn resolve(
 ) -> Result<scene::Measurements, Fault> {
     let free = bodies.iter().filter(|body| !body.is_rigid());
     let bodies: Vec<&str> = free.map(|body| body.name.as_str()).collect();
-    let mut probes: Vec<scene::Probe> = Vec::new();
+    let (mut probes, mut taken): (Vec<scene::Probe>, _) = (Vec::new(), HashSet::new());
     for probe in outputs.probes.iter().flatten() {
-        let resolved = probe.resolve(&bodies, context)?;
-        probe.name.unlike(&resolved.name, probes.iter().map(|probe| probe.name.as_str()))?;
-        probes.push(resolved);
+        Repeat::each(probe.repeat.as_ref(), context, || {
+            let resolved = probe.resolve((&bodies, &mut taken), context)?;
+            probes.push(resolved);
+            Ok(())
+        })?;
     }
     let names: Vec<&str> = probes.iter().map(|probe| probe.name.as_str()).collect();
     let arrivals = outputs.arrivals.iter().flatten();
     let arrivals =
         arrivals.map(|arrival| arrival.resolve((&names, &bodies), context)).collect::<Result<_, _>>()?;
-    let mut fronts: Vec<scene::Front> = Vec::new();
-    for front in outputs.fronts.iter().flatten() {
-        let resolved = front.resolve(&bodies, context)?;
-        front.name.unlike(&resolved.name, fronts.iter().map(|front| front.name.as_str()))?;
-        fronts.push(resolved);
-    }
+    let mut taken = HashSet::new();
+    let fronts = outputs.fronts.iter().flatten();
+    let fronts =
+        fronts.map(|front| front.resolve((&bodies, &mut taken), context)).collect::<Result<_, _>>()?;
     let time_unit = outputs.time_unit.as_ref().map(|unit| time_unit(unit, context)).transpose()?;
     let samples = match &outputs.samples {
         None => scene::Measurements::of_run(end).samples,
@@ -165,19 +169,18 @@ fn time_unit(unit: &QuantityInput<Duration>, context: &Context) -> Result<scene:
     Ok(scene::TimeUnit { seconds, name })
 }
 
-/// Names in a list, each of which must be known.
-fn names(list: &[Text], (what, known): (&str, &[&str]), context: &Context) -> Result<Vec<String>, Fault> {
-    list.iter().map(|name| name.name_of(context, what, known)).collect()
-}
-
 const A_BODY: &str = "the name of a body that is not rigid";
 
 impl Probe {
-    fn resolve(&self, bodies: &[&str], context: &Context) -> Result<scene::Probe, Fault> {
+    fn resolve(
+        &self,
+        (bodies, taken): (&[&str], &mut HashSet<String>),
+        context: &Context,
+    ) -> Result<scene::Probe, Fault> {
         let body = self.body.as_ref().map(|name| name.name_of(context, A_BODY, bodies)).transpose()?;
         let fixed_in = self.fixed_in.as_ref();
         Ok(scene::Probe {
-            name: self.name.value(context)?,
+            name: self.name.new_name(context, taken)?,
             at: self.at.value(context)?,
             body,
             fixed_in: fixed_in.map_or(Ok(Anchor::Space), |word| word.value(context))?,
@@ -193,11 +196,11 @@ impl Arrival {
     ) -> Result<scene::Arrival, Fault> {
         let quantity = self.quantity.value(context)?;
         let at = match (&self.probes, &self.bodies) {
-            (Some(list), _) => names(list, ("the name of a probe", probes), context)?,
+            (Some(list), _) => names_in(list, ("the name of a probe", probes), context)?,
             (None, Some(_)) => Vec::new(),
             (None, None) => probes.iter().map(|name| name.to_string()).collect(),
         };
-        let bodies = names(self.bodies.as_deref().unwrap_or_default(), (A_BODY, bodies), context)?;
+        let bodies = names_in(self.bodies.as_deref().unwrap_or_default(), (A_BODY, bodies), context)?;
         if at.is_empty() && bodies.is_empty() {
             let mut fault =
                 self.quantity.node().fault("probes or bodies to watch: probes = [...], bodies = [...]");
@@ -216,7 +219,11 @@ impl Arrival {
 }
 
 impl Front {
-    fn resolve(&self, bodies: &[&str], context: &Context) -> Result<scene::Front, Fault> {
+    fn resolve(
+        &self,
+        (bodies, taken): (&[&str], &mut HashSet<String>),
+        context: &Context,
+    ) -> Result<scene::Front, Fault> {
         let quantity = self.quantity.value(context)?;
         let direction = self.direction.value(context)?;
         let length = direction.iter().map(|d| d * d).sum::<f64>().sqrt();
@@ -224,14 +231,14 @@ impl Front {
             return Err(self.direction.node().fault("a direction that is not zero, such as [1, 0]"));
         }
         Ok(scene::Front {
-            name: self.name.value(context)?,
+            name: self.name.new_name(context, taken)?,
             quantity,
             threshold: self.threshold.value(quantity, context)?,
             from: self.from.value(context)?,
             direction: direction.map(|d| d / length),
             within: self.within.as_ref().map(|width| width.positive(context)).transpose()?,
             bodies: match &self.bodies {
-                Some(list) => names(list, (A_BODY, bodies), context)?,
+                Some(list) => names_in(list, (A_BODY, bodies), context)?,
                 None => bodies.iter().map(|name| name.to_string()).collect(),
             },
             fit: self.fit.as_ref().map(|way| way.value(context)).transpose()?,

@@ -11,8 +11,10 @@ mod material;
 mod measurements;
 mod mesh;
 mod outputs;
+mod packing;
 mod quantity;
 mod read;
+mod repeat;
 mod shape;
 mod space;
 mod start;
@@ -22,7 +24,7 @@ mod vector;
 
 use super::error::Fault;
 use super::parameters::Parameters;
-use super::source::{DocumentNode, Source, Value};
+use super::source::{Declared, DocumentNode, Source, Value};
 use super::{Damping, Dimension, Scene};
 use quantity::Acceleration;
 use read::{Read, table};
@@ -65,8 +67,10 @@ table! {
         damping: Option<damping::Damping>,
         /// The materials by name.
         materials: material::Materials,
-        /// The bodies: [[bodies]].
-        bodies: Vec<body::Body>,
+        /// The bodies: [[bodies]]. There must be one at least, here or in a packing.
+        bodies: Option<Vec<body::Body>>,
+        /// Many bodies at once, at random places in a container: [[packings]].
+        packings: Option<Vec<packing::Packing>>,
         /// What holds parts of bodies, or drives them: [[supports]].
         supports: Option<Vec<loads::Support>>,
         /// What pushes or pulls parts of bodies: [[loads]].
@@ -84,11 +88,11 @@ table! {
 /// Named parameters: [`Parameters`] reads them.
 pub struct ParameterTable(Vec<DocumentNode>);
 
-/// The scene that a source describes.
+/// The scene that a source describes, and where in the file what it lists is declared.
 ///
 /// # Errors
 /// The first mistake found.
-pub(super) fn resolve(source: &Source) -> Result<Scene, Fault> {
+pub(super) fn resolve(source: &Source) -> Result<(Scene, Declared), Fault> {
     let file = File::read(source.root())?;
     let parameters = Parameters::new(source, file.parameters.as_ref().map_or(&[], |table| &table.0))?;
     let values = parameters.resolved()?;
@@ -99,13 +103,25 @@ pub(super) fn resolve(source: &Source) -> Result<Scene, Fault> {
 
     let time = file.time.resolve(context)?;
     let materials = file.materials.resolve(context)?;
-    let bodies = body::resolve(&file.bodies, &materials, context)?;
+    let mut bodies = body::resolve(file.bodies.as_deref().unwrap_or_default(), &materials, context)?;
+    for (i, packing) in file.packings.iter().flatten().enumerate() {
+        packing.add_to(&mut bodies, (&materials, &format!("packings[{i}]")), context)?;
+    }
+    if bodies.all.is_empty() {
+        return Err(Fault::new("bodies", "no body", "at least one [[bodies]], or [[packings]]"));
+    }
+    let body::Bodies { all: bodies, declared, .. } = bodies;
     let contact =
         contact::resolve(file.contact.as_deref().unwrap_or_default(), (&bodies, &materials), context)?;
     let (supports, loads) = (file.supports.unwrap_or_default(), file.loads.unwrap_or_default());
     let loads = loads::resolve(&supports, &loads, (&bodies, context))?;
+    let declared = Declared::from([
+        ("bodies", declared),
+        ("supports", loads.declared_supports),
+        ("loads", loads.declared_loads),
+    ]);
     let stem = source.name().rsplit(['/', '\\']).next().unwrap_or_default().trim_end_matches(".toml");
-    Ok(Scene {
+    let scene = Scene {
         title: file.title.as_ref().map_or_else(|| Ok(stem.to_string()), |title| title.value(context))?,
         about: file.about.as_ref().map_or(String::new(), Text::as_prose),
         parameters: values,
@@ -124,9 +140,10 @@ pub(super) fn resolve(source: &Source) -> Result<Scene, Fault> {
         time,
         materials,
         bodies,
-        loads,
+        loads: loads.all,
         contact,
-    })
+    };
+    Ok((scene, declared))
 }
 
 impl Read for ParameterTable {

@@ -6,10 +6,15 @@ use super::read::Read;
 use crate::scene::error::Fault;
 use crate::scene::source::{DocumentNode, Value};
 use crate::scene::suggestion::{did_you_mean, listed};
+use crate::scene::{is_pattern, matches_name};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use std::borrow::Cow;
+use std::collections::HashSet;
 use std::marker::PhantomData;
 use std::ops::RangeInclusive;
+
+/// Names that a message lists.
+const MOST_LISTED: usize = 12;
 
 /// Text, with parameters in braces.
 pub struct Text(DocumentNode);
@@ -55,17 +60,48 @@ impl Text {
         if known.contains(&name.as_str()) {
             return Ok(name);
         }
-        let quoted: Vec<String> = known.iter().map(|name| format!("{name:?}")).collect();
-        let allowed = format!("{what} ({})", quoted.join(", "));
-        Err(self.refused(&name, allowed).help(did_you_mean(&name, known.iter().copied())))
+        Err(self.unknown(&name, what, known))
     }
 
-    /// Refuses a name that is empty or among those that are `taken`.
-    pub fn unlike<'n>(&self, name: &str, mut taken: impl Iterator<Item = &'n str>) -> Result<(), Fault> {
-        if name.trim().is_empty() || taken.any(|other| other == name) {
-            return Err(self.refused(name, "a name that no other in the list has"));
+    /// The text, which must be the name of something or a pattern that some names match, and the places of those.
+    pub fn names_of(
+        &self,
+        context: &Context,
+        what: &str,
+        known: &[&str],
+    ) -> Result<(String, Vec<usize>), Fault> {
+        let name = self.value(context)?;
+        let found: Vec<usize> = (0..known.len()).filter(|&i| matches_name(&name, known[i])).collect();
+        if found.is_empty() { Err(self.unknown(&name, what, known)) } else { Ok((name, found)) }
+    }
+
+    /// The fault of a name that is not known.
+    fn unknown(&self, name: &str, what: &str, known: &[&str]) -> Fault {
+        let mut quoted: Vec<String> =
+            known.iter().take(MOST_LISTED).map(|name| format!("{name:?}")).collect();
+        if known.len() > MOST_LISTED {
+            quoted.push(format!("and {} more", known.len() - MOST_LISTED));
         }
-        Ok(())
+        let allowed = format!("{what} ({})", quoted.join(", "));
+        let help = match is_pattern(name) {
+            true => Some("in a pattern, `*` is any letters: none of these names match it".to_string()),
+            false => did_you_mean(name, known.iter().copied()),
+        };
+        self.refused(name, allowed).help(help)
+    }
+
+    /// A name of something new, which is not empty and none of those that are `taken`, and is now.
+    pub fn new_name(&self, context: &Context, taken: &mut HashSet<String>) -> Result<String, Fault> {
+        let name = self.value(context)?;
+        if is_pattern(&name) {
+            return Err(
+                self.refused(&name, "a name without `*`, which is any letters where bodies are named")
+            );
+        }
+        if name.trim().is_empty() || !taken.insert(name.clone()) {
+            return Err(self.refused(&name, "a name that no other in the list has"));
+        }
+        Ok(name)
     }
 
     /// The fault of a text that is not allowed.
@@ -77,6 +113,20 @@ impl Text {
         };
         fault
     }
+}
+
+/// Names that a list gives, each of which must be known or a pattern of some that are; each once.
+pub fn names_in(
+    list: &[Text],
+    (what, known): (&str, &[&str]),
+    context: &Context,
+) -> Result<Vec<String>, Fault> {
+    let (mut names, mut seen) = (Vec::new(), HashSet::new());
+    for text in list {
+        let (_, found) = text.names_of(context, what, known)?;
+        names.extend(found.into_iter().filter(|&i| seen.insert(i)).map(|i| known[i].to_string()));
+    }
+    Ok(names)
 }
 
 impl<C: Choice> Word<C> {

@@ -1,0 +1,259 @@
+//! Down the energy of overlaps, by the fast inertial relaxation engine (FIRE; Bitzek et al. 2006, Phys. Rev. Lett. 97,
+//! 170201): grains roll down, faster the longer they go down, and stop where they go up.
+
+use super::Packing;
+use super::grain::{Grain, GrainShape, Push};
+use super::neighbours::near;
+use super::walls::{Wall, walls};
+use rand::RngExt;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::StandardNormal;
+use rayon::prelude::*;
+use std::f64::consts::PI;
+
+/// Grains on their way.
+pub struct Descent<'a> {
+    packing: &'a Packing<'a>,
+    shape: &'a GrainShape<'a>,
+    walls: Vec<Wall>,
+    pub grains: Vec<Grain>,
+    near: Vec<Vec<u32>>,
+    /// Where they were when the neighbours were found.
+    listed: Vec<[f64; 3]>,
+    /// How far they may go until those are found anew [m].
+    skin: f64,
+    /// Force of an overlap over its depth, of so many points.
+    stiffness: f64,
+    random: ChaCha8Rng,
+    /// Whether the balls that hold the grains stand for them.
+    as_balls: bool,
+}
+
+/// How much larger grains are on the way, over their radius.
+const EXTRA: f64 = 1e-3;
+
+/// A grain resists turning as a ball does: moment of inertia over mass and radius squared.
+const INERTIA: f64 = 0.4;
+
+/// Steps without which nothing gets better that count as jammed.
+const PATIENCE: usize = 3000;
+
+/// How grains grow, and the steps between.
+const GROWTH: f64 = 0.03;
+const GROWTH_STEPS: usize = 100;
+
+/// Steps without which nothing gets better after which grains are shaken, and by how much of their radius and of a
+/// radian.
+const STALL: usize = 150;
+const SHAKE: f64 = 0.1;
+
+/// Grains times steps.
+const MOST_WORK: usize = 400_000_000;
+
+/// Velocities: of the middles, and of the surfaces by turning.
+#[derive(Clone, Copy, Default)]
+struct Motion([f64; 6]);
+
+impl<'a> Descent<'a> {
+    pub fn new(
+        packing: &'a Packing<'a>,
+        shape: &'a GrainShape<'a>,
+        grains: Vec<Grain>,
+        random: ChaCha8Rng,
+    ) -> Self {
+        let largest = grains.iter().map(|grain| grain.scale).fold(0.0, f64::max);
+        let skin = 0.3 * shape.radius * largest;
+        let stiffness = if shape.points.is_empty() { 1.0 } else { 0.25 };
+        let walls = walls(packing.container, packing.dimension);
+        let mut descent = Descent {
+            packing,
+            shape,
+            walls,
+            grains,
+            near: Vec::new(),
+            listed: Vec::new(),
+            skin,
+            stiffness,
+            random,
+            as_balls: false,
+        };
+        descent.list();
+        descent
+    }
+
+    fn list(&mut self) {
+        self.listed = self.grains.iter().map(|grain| grain.position).collect();
+        let reach = 1.0 + 2.0 * EXTRA + 0.02;
+        let radii: Vec<f64> =
+            self.grains.iter().map(|grain| reach * grain.scale * self.shape.radius).collect();
+        let margin = 2.0 * self.skin + self.packing.gap;
+        self.near = near(&self.listed, &radii, margin, self.packing.dimension);
+    }
+
+    /// By how much jammed grains must be smaller to find room, in steps of a hundredth [-].
+    pub fn shrunk(&mut self) -> f64 {
+        let mut factor = 1.0;
+        while factor > 0.5 {
+            factor *= 0.99;
+            self.grains.iter_mut().for_each(|grain| grain.scale *= 0.99);
+            if self.run(2 * PATIENCE) {
+                break;
+            }
+        }
+        factor
+    }
+
+    /// Until nothing overlaps; whether that came to be. Grains that are not balls begin small, and as the balls that
+    /// hold them: those find places apart, and then the grains grow to their size, so that no two are ever so deep in
+    /// each other that no direction leads out. `room` is the volume of the container.
+    pub fn settle(&mut self, room: f64) -> bool {
+        let sizes: Vec<f64> = self.grains.iter().map(|grain| grain.scale).collect();
+        if !self.shape.points.is_empty() {
+            let (power, unit) = if self.packing.dimension == 2 { (2, PI) } else { (3, 4.0 / 3.0 * PI) };
+            let balls: f64 = sizes.iter().map(|size| unit * (size * self.shape.radius).powi(power)).sum();
+            let dilute = [0.5, 0.3][self.packing.dimension - 2];
+            let mut size = (dilute * room / balls).powf(1.0 / f64::from(power)).min(1.0);
+            self.as_balls = true;
+            self.resize(&sizes, size);
+            self.run(2 * PATIENCE);
+            self.as_balls = false;
+            while size < 1.0 {
+                self.run(GROWTH_STEPS);
+                size = (size * (1.0 + GROWTH)).min(1.0);
+                self.resize(&sizes, size);
+            }
+        }
+        self.run((MOST_WORK / self.grains.len().max(1)).clamp(2 * PATIENCE, 20 * PATIENCE))
+    }
+
+    fn resize(&mut self, sizes: &[f64], factor: f64) {
+        self.grains.iter_mut().zip(sizes).for_each(|(grain, size)| grain.scale = factor * size);
+    }
+
+    /// Takes at most so many steps until nothing overlaps; whether that came to be.
+    fn run(&mut self, most: usize) -> bool {
+        let longest: f64 = if self.shape.points.is_empty() { 0.35 } else { 0.15 };
+        // Walls have corners, at which the energy has no slope: steps that shrink there without end would stay there.
+        let shortest = 0.25 * longest;
+        let (mut step, mut share, mut downhill) = (shortest, 0.1, 0);
+        let mut motions = vec![Motion::default(); self.grains.len()];
+        let (mut best, mut since) = (f64::INFINITY, 0);
+        for _ in 0..most {
+            let pushes = self.pushes();
+            let excess = pushes.iter().map(|push| push.excess).fold(f64::NEG_INFINITY, f64::max);
+            if excess <= 0.0 {
+                return true;
+            }
+            since = if excess < 0.99 * best { 0 } else { since + 1 };
+            best = best.min(excess);
+            if since > PATIENCE {
+                return false;
+            }
+            if since % STALL == STALL - 1 && !self.shape.points.is_empty() {
+                self.shake(&pushes);
+                motions.fill(Motion::default());
+                continue;
+            }
+            let forces: Vec<Motion> =
+                pushes.iter().zip(&self.grains).map(|(push, grain)| self.force(push, grain)).collect();
+            let dot = |a: &[Motion], b: &[Motion]| -> f64 {
+                a.iter().zip(b).map(|(a, b)| a.0.iter().zip(&b.0).map(|(a, b)| a * b).sum::<f64>()).sum()
+            };
+            if dot(&forces, &motions) > 0.0 {
+                downhill += 1;
+                if downhill > 5 {
+                    step = longest.min(1.1 * step);
+                    share *= 0.99;
+                }
+                let turn =
+                    share * (dot(&motions, &motions) / dot(&forces, &forces).max(f64::MIN_POSITIVE)).sqrt();
+                for (motion, force) in motions.iter_mut().zip(&forces) {
+                    for k in 0..6 {
+                        motion.0[k] = (1.0 - share) * motion.0[k] + turn * force.0[k];
+                    }
+                }
+            } else {
+                (step, share, downhill) = (shortest.max(0.5 * step), 0.1, 0);
+                motions.fill(Motion::default());
+            }
+            for (motion, force) in motions.iter_mut().zip(&forces) {
+                for k in 0..6 {
+                    motion.0[k] += step * force.0[k];
+                }
+            }
+            self.advance(&motions, step);
+        }
+        false
+    }
+
+    /// Moves and turns grains that overlap by chance: corners that hook into each other go down to no way out.
+    fn shake(&mut self, pushes: &[Push]) {
+        let flat = self.packing.dimension == 2;
+        for (grain, _) in self.grains.iter_mut().zip(pushes).filter(|(_, push)| push.excess > 0.0) {
+            let mut chance = || SHAKE * self.random.sample::<f64, _>(StandardNormal);
+            let by = [chance(), chance(), if flat { 0.0 } else { chance() }];
+            let turn = if flat { [0.0, 0.0, chance()] } else { [chance(), chance(), chance()] };
+            let radius = self.shape.radius * grain.scale;
+            grain.position = std::array::from_fn(|k| grain.position[k] + radius * by[k]);
+            if self.packing.turned {
+                grain.turn(turn);
+            }
+        }
+        self.list();
+    }
+
+    /// What acts on each grain; summed for each by itself, in the order of its neighbours, so that the sums are the
+    /// same for any number of threads.
+    fn pushes(&self) -> Vec<Push> {
+        let gap = self.packing.gap;
+        let ball = self.shape.ball();
+        let shape = if self.as_balls { &ball } else { self.shape };
+        let on = |i: usize| {
+            let grain = &self.grains[i];
+            let mut push = Push::NONE;
+            for wall in &self.walls {
+                push.join(shape.held(grain, wall, gap, EXTRA));
+            }
+            for &j in &self.near[i] {
+                push.join(shape.push((grain, &self.grains[j as usize]), gap, EXTRA));
+            }
+            push
+        };
+        (0..self.grains.len()).into_par_iter().with_min_len(64).map(on).collect()
+    }
+
+    fn force(&self, push: &Push, grain: &Grain) -> Motion {
+        let radius = self.shape.radius * grain.scale;
+        let [fx, fy, fz] = push.force.map(|f| self.stiffness * f);
+        let turns = !self.shape.points.is_empty() && self.packing.turned;
+        let [mx, my, mz] =
+            push.moment.map(|m| if turns { self.stiffness * m / (INERTIA * radius) } else { 0.0 });
+        match self.packing.dimension {
+            2 => Motion([fx, fy, 0.0, 0.0, 0.0, mz]),
+            _ => Motion([fx, fy, fz, mx, my, mz]),
+        }
+    }
+
+    fn advance(&mut self, motions: &[Motion], step: f64) {
+        let mut far = false;
+        for (i, (grain, Motion([x, y, z, turn @ ..]))) in self.grains.iter_mut().zip(motions).enumerate() {
+            let radius = self.shape.radius * grain.scale;
+            let most = 0.2 * radius;
+            // No grain leaps over another.
+            let shorten = |by: [f64; 3]| {
+                let length = by.iter().map(|x| x * x).sum::<f64>().sqrt() * step;
+                by.map(|x| x * step * if length > most { most / length } else { 1.0 })
+            };
+            let by = shorten([*x, *y, *z]);
+            grain.position = std::array::from_fn(|k| grain.position[k] + by[k]);
+            if turn.iter().any(|turn| *turn != 0.0) {
+                grain.turn(shorten(*turn).map(|arc| arc / radius));
+            }
+            let gone: f64 = (0..3).map(|k| (grain.position[k] - self.listed[i][k]).powi(2)).sum();
+            far |= gone > self.skin * self.skin;
+        }
+        if far {
+            self.list();
+        }
+    }
+}

@@ -1,0 +1,170 @@
+use super::*;
+use proptest::prelude::*;
+
+fn cube(side: f64) -> Shape {
+    Shape::cuboid([0.0; 3], [side; 3])
+}
+
+/// A request for a part of the container's volume.
+fn request<'a>(container: &'a Shape, grain: &'a Shape, fraction: f64, dimension: usize) -> Packing<'a> {
+    Packing {
+        container,
+        grain,
+        sizes: Sizes::Uniform(0.8, 1.2),
+        amount: Amount::Fraction(fraction),
+        turned: !matches!(grain, Shape::Ball { .. }),
+        gap: 0.0,
+        seed: 1,
+        dimension,
+    }
+}
+
+/// Grains in place as shapes.
+fn shapes(packing: &Packing, placements: &[Placement]) -> Vec<Shape> {
+    placements.iter().map(|placement| placement.shape(packing.grain, packing.dimension)).collect()
+}
+
+/// How deep balls are in each other and in the walls of a box, at most, over their radius [-].
+fn overlap_of_balls(packing: &Packing, placements: &[Placement]) -> f64 {
+    let balls: Vec<_> = shapes(packing, placements)
+        .into_iter()
+        .map(|shape| match shape {
+            Shape::Ball { center, radius } => (center, radius),
+            other => panic!("{other:?}"),
+        })
+        .collect();
+    let mut deepest = f64::NEG_INFINITY;
+    for (i, (a, r)) in balls.iter().enumerate() {
+        deepest = deepest.max((packing.container.distance(*a, packing.dimension) + r + packing.gap) / r);
+        for (b, s) in &balls[..i] {
+            let apart = (0..packing.dimension).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt();
+            deepest = deepest.max((r + s + packing.gap - apart) / r.min(*s));
+        }
+    }
+    deepest
+}
+
+#[test]
+fn balls_fill_the_part_of_a_box_that_is_asked_for_and_none_overlaps() {
+    let ball = Shape::ball([3.0, 2.0, 1.0], 0.05);
+    for (dimension, fraction, gap) in [(2, 0.5, 0.0), (2, 0.77, 0.0), (3, 0.3, 0.01), (3, 0.56, 0.0)] {
+        let container = cube(1.0);
+        let packing = Packing { gap, ..request(&container, &ball, fraction, dimension) };
+        let placements = packing.place().expect("room");
+        let volume = |shape: &Shape| shape.volume(dimension).expect("balls have one");
+        let filled: f64 = shapes(&packing, &placements).iter().map(volume).sum();
+        assert!((filled / fraction - 1.0).abs() < 1e-12, "{filled} for {fraction} in {dimension} dimensions");
+        let overlap = overlap_of_balls(&packing, &placements);
+        assert!(overlap <= 1e-12, "{overlap:e} of a radius, {dimension} dimensions");
+        // All sizes changed by less than half of one grain's share.
+        let range = placements.iter().fold([f64::MAX, 0.0], |[a, b], p| [p.scale.min(a), p.scale.max(b)]);
+        assert!(range[0] > 0.75 && range[1] < 1.25, "{range:?}");
+    }
+}
+
+#[test]
+fn the_same_seed_gives_the_same_packing_for_any_number_of_threads() {
+    let (container, stone) = (cube(0.3), cube(0.05));
+    let packing = request(&container, &stone, 0.5, 2);
+    let with = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+        pool.install(|| packing.place()).expect("room")
+    };
+    assert_eq!(with(1), with(3));
+    assert_ne!(with(1), Packing { seed: 2, ..packing.clone() }.place().expect("room"));
+}
+
+#[test]
+fn grains_of_any_shape_keep_apart_and_inside() {
+    let wedge = Shape::Polygon { points: vec![[0.0, 0.0], [0.06, 0.0], [0.0, 0.05]], height: [0.0, 0.04] };
+    let can = Shape::Cylinder { start: [0.0; 3], end: [0.0, 0.0, 0.06], radius: 0.02 };
+    let funnel = Shape::Polygon {
+        points: vec![[-0.2, 0.3], [0.2, 0.3], [0.1, -0.1], [-0.1, -0.1]],
+        height: [0.0, 0.2],
+    };
+    let cases = [
+        (cube(0.5), wedge.clone(), 0.55, 2),
+        (funnel.clone(), cube(0.05), 0.55, 2),
+        (cube(0.25), wedge, 0.25, 3),
+        (cube(0.25), can, 0.3, 3),
+        (funnel, cube(0.05), 0.25, 3),
+    ];
+    for (container, grain, fraction, dimension) in cases {
+        let packing = request(&container, &grain, fraction, dimension);
+        let placements = packing.place().unwrap_or_else(|problem| panic!("{grain:?}: {problem:?}"));
+        let placed = shapes(&packing, &placements);
+        assert!(placed.len() > 5, "{} of {grain:?}", placed.len());
+        // By points of their surfaces that the packing does not use, five times as many along each line.
+        let bounds = container.bounds(dimension).expect("bounds");
+        let spacing = 0.0016 * if dimension == 2 { 0.5 } else { 1.0 };
+        for (i, a) in placed.iter().enumerate() {
+            for point in a.surface(spacing, dimension, &bounds.grown(1.0)) {
+                assert!(container.distance(point.position, dimension) < 1e-9, "{grain:?} {i} is inside");
+                for (j, b) in placed.iter().enumerate().filter(|(j, _)| *j != i) {
+                    let depth = -b.distance(point.position, dimension);
+                    assert!(
+                        depth < 1e-9,
+                        "{dimension} dimensions: {i} is {depth:e} m deep in {j}, {a:?} {b:?}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_packing_that_cannot_be_says_what_there_is_room_for() {
+    let (container, ball) = (cube(1.0), Shape::ball([0.0; 3], 0.1));
+    let Err(NoPacking::Jammed { asked, room }) = request(&container, &ball, 0.7, 3).place() else {
+        panic!("balls jam near 0.64, earlier beside walls")
+    };
+    assert!((asked - 0.7).abs() < 1e-12 && (0.45..0.64).contains(&room), "{asked} {room}");
+    // What it says has room.
+    assert!(request(&container, &ball, 0.95 * room, 3).place().is_ok());
+    let many = Packing { sizes: Sizes::One(1e-5), ..request(&container, &ball, 0.5, 3) };
+    assert!(matches!(many.place(), Err(NoPacking::TooMany(_))));
+    let everywhere = Shape::half_space([0.0; 3], [0.0, 0.0, 1.0]);
+    assert_eq!(request(&everywhere, &ball, 0.5, 3).place(), Err(NoPacking::Container));
+    assert_eq!(request(&container, &everywhere, 0.5, 3).place(), Err(NoPacking::Grain));
+}
+
+#[test]
+fn shares_are_those_of_numbers_or_of_volumes() {
+    let mut random = ChaCha8Rng::seed_from_u64(7);
+    let shares = vec![[1.0, 0.5], [2.0, 0.5]];
+    let [numbers, volumes] = [Sizes::Numbers(shares.clone()), Sizes::Volumes(shares)];
+    let small = |sizes: Sizes, random: &mut ChaCha8Rng| {
+        (0..20_000).filter(|_| sizes.draw(3, random) == 1.0).count() as f64 / 20_000.0
+    };
+    assert!((small(numbers, &mut random) - 0.5).abs() < 0.01);
+    assert!((small(volumes, &mut random) - 8.0 / 9.0).abs() < 0.01);
+    let normal = Sizes::Normal(1.0, 0.1);
+    let drawn: Vec<f64> = (0..20_000).map(|_| normal.draw(3, &mut random)).collect();
+    let mean = drawn.iter().sum::<f64>() / drawn.len() as f64;
+    assert!((mean - 1.0).abs() < 3e-3 && drawn.iter().all(|size| (0.7..=1.3).contains(size)), "{mean}");
+}
+
+proptest! {
+    #[test]
+    fn a_placement_turns_a_shape_as_its_rotation_does(q in prop::array::uniform4(-1.0..1.0f64), half in any::<bool>()) {
+        let length = q.iter().map(|x| x * x).sum::<f64>().sqrt();
+        prop_assume!(length > 0.1);
+        let [mut w, x, y, z] = q.map(|q| q / length);
+        // Half turns have no sine.
+        if half {
+            w = 0.0;
+        }
+        let norm = (w * w + x * x + y * y + z * z).sqrt();
+        prop_assume!(norm > 0.1);
+        let orientation = turn_of([w, x, y, z].map(|q| q / norm));
+        let grain = Grain { scale: 2.0, position: [5.0, 6.0, 7.0], orientation };
+        let ball = Shape::ball([1.0, 0.0, 0.0], 0.1).or(Shape::ball([-1.0, 0.0, 0.3], 0.1));
+        let placed = grain.placement().shape(&ball, 3);
+        let middle = [0.0, 0.0, 0.15];
+        let arm = [1.0 - middle[0], 0.0 - middle[1], 0.0 - middle[2]];
+        let rows = orientation.0;
+        let at: [f64; 3] =
+            std::array::from_fn(|i| grain.position[i] + 2.0 * (0..3).map(|j| rows[i][j] * arm[j]).sum::<f64>());
+        prop_assert!((placed.distance(at, 3) + 0.2).abs() < 1e-9, "{}", placed.distance(at, 3));
+    }
+}

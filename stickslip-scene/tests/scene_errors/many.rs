@@ -1,0 +1,220 @@
+//! Tables that stand for many: `repeat`, patterns of names, and packings.
+
+use crate::{check, message};
+use stickslip_scene::geometry::Shape;
+use stickslip_scene::scene::{self, Scene};
+
+const MANY: &str = r#"
+space = { dimension = "plane-strain", cell = "1 mm" }
+time.end = 1
+parameters.r = "5 mm"
+
+[materials.clay]
+density = 1000
+neo_hookean = { young_modulus = "1 MPa", poisson_ratio = 0.3 }
+
+[[bodies]]
+name = "disk {i} of row {j + 1}"
+repeat = { j = 3, i = "3 - j" }
+material = "clay"
+shape.ball = { center = ["(2 * i + j) * r", "sqrt(3) * j * r"], radius = "r" }
+velocity = ["i * 1 m/s", 0]
+
+[[bodies]]
+name = "floor"
+material = "clay"
+shape.box = { min = ["-1 cm", "-2 cm"], max = ["4 cm", "-5 mm"] }
+
+[[packings]]
+name = "grain"
+material = "clay"
+shape.ball = { center = [0, 0], radius = "1 mm" }
+sizes = { uniform = [0.9, 1.1] }
+within.box = { min = ["-1 cm", "3 cm"], max = ["3 cm", "5 cm"] }
+solid_fraction = 0.7
+
+[[supports]]
+body = "disk * of row 1"
+within.ball = { center = ["2 cm", 0], radius = "2.5 cm" }
+
+[[contact]]
+between = ["grain *", "disk *"]
+friction = 0.4
+
+[[contact]]
+between = ["grain *", "grain *"]
+friction = 0.2
+
+[[outputs.probes]]
+name = "at {k}"
+repeat.k = 4
+at = ["k * 1 cm", "4 cm"]
+
+[[outputs.arrivals]]
+quantity = "speed"
+threshold = 1
+bodies = ["disk 0 *"]
+"#;
+
+fn scene() -> Scene {
+    scene::parse("a.toml", MANY, &[]).unwrap_or_else(|error| panic!("{error}")).scene
+}
+
+#[test]
+fn a_table_stands_for_many_with_indices_in_its_formulas_and_names() {
+    let scene = scene();
+    let names: Vec<&str> = scene.bodies.iter().map(|body| body.name.as_str()).take(7).collect();
+    let expected =
+        ["disk 0 of row 1", "disk 1 of row 1", "disk 2 of row 1", "disk 0 of row 2", "disk 1 of row 2"];
+    assert_eq!(names[..5], expected);
+    assert_eq!(names[5..], ["disk 0 of row 3", "floor"]);
+    let Shape::Ball { center, radius } = scene.bodies[4].shape else { panic!("a disk") };
+    assert!(
+        (center[0] - 0.015).abs() < 1e-15 && (center[1] - 3.0_f64.sqrt() * 0.005).abs() < 1e-15,
+        "{center:?}"
+    );
+    assert_eq!(radius, 0.005);
+    let probes: Vec<_> =
+        scene.outputs.measurements.probes.iter().map(|probe| (&*probe.name, probe.at[0])).collect();
+    assert_eq!(probes, [("at 0", 0.0), ("at 1", 0.01), ("at 2", 0.02), ("at 3", 0.03)]);
+}
+
+#[test]
+fn patterns_of_names_stand_for_all_bodies_that_match() {
+    let scene = scene();
+    let supports: Vec<_> = scene.loads.iter().map(|load| load.name.as_str()).collect();
+    let on = ["0", "1", "2"].map(|i| format!("support on disk {i} of row 1"));
+    assert_eq!(supports, on);
+    assert_eq!(
+        scene.outputs.measurements.arrivals[0].bodies,
+        [0, 3, 5].map(|i| scene.bodies[i].name.clone())
+    );
+    let [disk, floor, grain, last] = [0, 6, 7, scene.bodies.len() - 1];
+    assert!(scene.bodies[grain].name == "grain 1" && scene.bodies[last].name.starts_with("grain "));
+    for (a, b, friction) in [(disk, grain, 0.4), (grain, last, 0.2), (grain, floor, 0.0), (disk, floor, 0.0)]
+    {
+        assert_eq!(scene.contact_between(a, b).friction, friction, "{a} {b}");
+        assert_eq!(scene.contact_between(b, a).friction, friction, "{b} {a}");
+    }
+}
+
+#[test]
+fn a_packing_fills_its_container_as_asked() {
+    let scene = scene();
+    let grains = scene.bodies.iter().filter(|body| body.name.starts_with("grain "));
+    let area: f64 = grains.map(|body| body.shape.volume(2).expect("a disk")).sum();
+    assert!((area / (0.04 * 0.02) - 0.7).abs() < 1e-12, "{area}");
+}
+
+#[test]
+fn problems_found_later_are_shown_at_the_table_that_stands_for_many() {
+    let text = MANY.replace("max = [\"4 cm\", \"-5 mm\"]", "max = [\"4 cm\", \"1 mm\"]");
+    let loaded = scene::parse("a.toml", &text, &[]).unwrap_or_else(|error| panic!("{error}"));
+    let problem =
+        stickslip_scene::check::problems(&loaded.scene).expect_err("the floor reaches into the first row");
+    assert_eq!(problem.key, "bodies[6].shape");
+    let shown = loaded.source.locate(problem).to_string();
+    assert!(
+        shown.starts_with("a.toml:20:1: bodies[1].shape: found `floor` overlaps `disk 0 of row 1`"),
+        "{shown}"
+    );
+    assert_eq!(loaded.source.written("bodies[9].shape.ball"), "packings[0].shape.ball");
+    assert_eq!(loaded.source.written("supports[2].within"), "supports[0].within");
+}
+
+#[test]
+fn mistakes() {
+    check(
+        MANY,
+        &[
+            (
+                "repeat = { j = 3, i = \"3 - j\" }",
+                "repeat = { j = 2.5 }",
+                "12:16: bodies[0].repeat.j: found 2.5; allowed: a whole number from 0 on, of at most 1000000 repetitions in all",
+            ),
+            (
+                "j = 3, i",
+                "j = 5, i",
+                "12:23: bodies[0].repeat.i: found \"3 - j\", which is -1; allowed: a whole number from 0 on, of at most 1000000 repetitions in all; this is with j = 4",
+            ),
+            (
+                "repeat = { j = 3, i = \"3 - j\" }",
+                "repeat = {}",
+                "12:1: bodies[0].repeat: found a table; allowed: a table of indices and how many values they have: { i = 10, j = 5 }",
+            ),
+            (
+                "repeat.k = 4",
+                "repeat.r = 4",
+                "44:8: outputs.probes[0].repeat.r: found the index `r`, which is the name of a parameter or of another index; allowed: another name",
+            ),
+            (
+                "repeat.k = 4",
+                "repeat.sin = 4",
+                "44:8: outputs.probes[0].repeat.sin: found the name `sin`, which formulas use already; allowed: another name",
+            ),
+            (
+                "disk {i} of row {j + 1}",
+                "disk of row {j + 1}",
+                "11:8: bodies[0].name: found \"disk of row {j + 1}\", which is \"disk of row 1\"; allowed: a name that no other body has; this is with j = 0, i = 1",
+            ),
+            (
+                "{j + 1}",
+                "{l + 1}",
+                "11:26: bodies[0].name: found unknown name `l`; allowed: a parameter (r, j, i), pi or inf; this is with j = 0, i = 0",
+            ),
+            (
+                "name = \"floor\"",
+                "name = \"floor*\"",
+                "18:8: bodies[1].name: found \"floor*\"; allowed: a name without `*`, which is any letters where bodies are named",
+            ),
+            (
+                "between = [\"grain *\", \"disk *\"]",
+                "between = [\"grian *\", \"disk *\"]",
+                "35:12: contact[0].between[0]: found \"grian *\"; allowed: the name of a body or a material, or any (\"disk 0 of row 1\", \"disk 1 of row 1\", \"disk 2 of row 1\", \"disk 0 of row 2\", \"disk 1 of row 2\", \"disk 0 of row 3\", \"floor\", \"grain 1\", \"grain 2\", \"grain 3\", \"grain 4\", \"grain 5\", and 174 more); in a pattern, `*` is any letters: none of these names match it",
+            ),
+            (
+                "solid_fraction = 0.7",
+                "solid_fraction = 1.2",
+                "28:18: packings[0].solid_fraction: found 1.2; allowed: a number above 0 and below 1",
+            ),
+            (
+                "solid_fraction = 0.7",
+                "",
+                "22:1: packings[0]: found a packing of no number of grains; allowed: one of count and solid_fraction",
+            ),
+            (
+                "solid_fraction = 0.7",
+                "solid_fraction = 0.7\ncount = 9",
+                "28:1: packings[0].solid_fraction: found `solid_fraction` beside `count`; allowed: one of count and solid_fraction",
+            ),
+            (
+                "sizes = { uniform = [0.9, 1.1] }",
+                "sizes = { uniform = [1.1, 0.9] }",
+                "26:21: packings[0].sizes.uniform: found [1.1, 0.9]; allowed: the smallest size first",
+            ),
+            (
+                "sizes = { uniform = [0.9, 1.1] }",
+                "sizes = { normal = [1, 0.4] }",
+                "26:20: packings[0].sizes.normal: found [1, 0.4]; allowed: sizes above 0, the largest at most 20 times the smallest; these are from -0.200 to 2.200",
+            ),
+            (
+                "sizes = { uniform = [0.9, 1.1] }",
+                "sizes = { uniforn = [0.9, 1.1] }",
+                "26:11: packings[0].sizes.uniforn: found unknown key `uniforn`; allowed: uniform, normal, lognormal, numbers, volumes; did you mean `uniform`?",
+            ),
+            (
+                "within.box = { min = [\"-1 cm\", \"3 cm\"], max = [\"3 cm\", \"5 cm\"] }",
+                "within.half_space = { point = [0, 0], normal = [0, 1] }",
+                "27:1: packings[0].within: found a shape without bounds, or in which almost nothing is; allowed: a container",
+            ),
+            (
+                "radius = \"1 mm\" }\nsizes",
+                "radius = \"1 um\" }\nsizes",
+                "22:1: packings[0]: found about 1.8e8 grains; allowed: at most 1000000; are the units of the grain and the container right?",
+            ),
+        ],
+    );
+    let dense = message(&MANY.replace("solid_fraction = 0.7", "solid_fraction = 0.9"));
+    let start = "a.toml:28:18: packings[0].solid_fraction: found grains that fill 0.900 of the container, and jam; allowed: about 0.";
+    assert!(dense.starts_with(start) && dense.contains("fewer or smaller grains"), "{dense}");
+}
