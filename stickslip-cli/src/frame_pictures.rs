@@ -2,6 +2,7 @@
 
 use crate::failure::Failure;
 use crate::illustration::Pictures;
+use crate::illustration::needs_whole_snapshots;
 use crate::picture::{self, Setting};
 use miette::miette;
 use std::f64::consts::PI;
@@ -59,6 +60,7 @@ impl<'a> FramePictures<'a> {
     /// # Errors
     /// There are no snapshots or they cannot be read, or the user names a body that is not there.
     pub fn open(results: &'a Results, frames: &[Frame], choice: &FringeChoice) -> Result<Self, Failure> {
+        needs_whole_snapshots(results)?;
         let scene = results.scene().map_err(Failure::input)?;
         let camera = scene.outputs.fringes.as_ref();
         let specimens = specimens(&scene, choice)?;

@@ -46,6 +46,17 @@ impl Default for PictureChoice {
     }
 }
 
+/// Refuses results whose snapshots leave out what pictures show.
+pub fn needs_whole_snapshots(results: &Results) -> Result<(), Failure> {
+    if results.has_whole_snapshots() {
+        return Ok(());
+    }
+    Err(Failure::Input(miette!(
+        help = "run the scene without outputs.snapshots.every and outputs.snapshots.columns",
+        "the snapshots do not hold every particle with all that pictures need"
+    )))
+}
+
 /// The snapshots of a run, ready to be drawn.
 #[derive(Clone)]
 pub struct Album<'a> {
@@ -65,6 +76,7 @@ impl<'a> Album<'a> {
     /// user wants a mirror.
     pub fn open(results: &'a Results, choice: PictureChoice) -> Result<Self, Failure> {
         let first = snapshots(results)?.first().expect("there is at least one");
+        needs_whole_snapshots(results)?;
         let setting = Setting::of(&results.scene().map_err(Failure::input)?);
         let mirror = mirror(&setting, &choice)?;
         let first = results.particles(first).map_err(Failure::input)?;
@@ -159,9 +171,12 @@ pub fn illustrate(folder: &Path) -> Result<String, Failure> {
         Err(error) => return Err(error.into()),
     }
     if let Some(last) = results.frames().last() {
-        let picture = Album::open(&results, PictureChoice::default())?.picture(last)?;
-        save(&picture, &folder.join("picture.png"))?;
-        drawn.extend(["particles.pvd", "picture.png"]);
+        drawn.push("particles.pvd");
+        if results.has_whole_snapshots() {
+            let picture = Album::open(&results, PictureChoice::default())?.picture(last)?;
+            save(&picture, &folder.join("picture.png"))?;
+            drawn.push("picture.png");
+        }
     }
     if folder.join("fringes.png").exists() {
         drawn.push("fringes.png");

@@ -7,7 +7,6 @@ mod drawing;
 mod failure;
 mod files;
 mod frame_pictures;
-mod free_memory;
 mod illustration;
 mod jobs;
 mod page;

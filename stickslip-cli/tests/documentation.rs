@@ -157,6 +157,7 @@ fn every_key_and_word_of_scene_files_is_explained() {
         "damping",
         "materials",
         "bodies",
+        "packings",
         "supports",
         "loads",
         "contact",

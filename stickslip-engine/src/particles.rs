@@ -1,7 +1,7 @@
 //! Particles of one body as columns, so that a processor can take several at a time; seen from outside, they are rows.
 
 use crate::body::Particle;
-use crate::column::{ColumnDescription, EVERY, Kind, same};
+use crate::column::{ColumnDescription, EVERY, Kind, NUMBER, same};
 use crate::grid::Disjoint;
 use crate::material::{History, Keep, Recall, history_entries};
 use crate::pages::ask_for_large;
@@ -119,6 +119,36 @@ impl OwnColumns {
             + history_entries(self.transfer, dimension)
             + history_entries(self.viscosity, dimension)
     }
+}
+
+/// Where a column of a body's particles lies in memory, for those who look there without asking again, such as arrays
+/// of Python. Between two steps it stays there, and after a step or another state it is there again once the simulation
+/// has [settled](crate::door::Simulation::settle).
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ColumnPlace {
+    /// Name, unit and components.
+    pub column: ColumnDescription,
+    /// Address of the first particle's first entry, with its provenance exposed; the next particle follows it.
+    pub address: usize,
+    /// What a number is.
+    pub format: NumberFormat,
+    /// From an entry to the next [bytes].
+    pub stride: usize,
+    /// Which component in space each entry is: those that the motion leaves free, the others are zero.
+    pub components: Vec<usize>,
+    /// Particles.
+    pub len: usize,
+}
+
+/// What a number is in memory.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NumberFormat {
+    /// `f32`
+    Single,
+    /// `f64`
+    Double,
+    /// `u32`
+    Count,
 }
 
 /// Components in space that a column has at most.
@@ -315,6 +345,49 @@ impl<T: Real, const D: usize> Particles<T, D> {
         }
         move_over(&mut self.numbers, self.later, order);
         self.later = !self.later;
+    }
+
+    /// Moves columns and numbers back to where they lay before anything was sorted. The order of the particles stays.
+    pub fn settle(&mut self) {
+        if self.later {
+            self.columns.copy_within(self.stride.., 0);
+            self.numbers.copy_within(self.len.., 0);
+            self.later = false;
+        }
+    }
+
+    /// Becomes other particles, in the memory that is there if they take as much.
+    pub fn become_others(&mut self, others: Self) {
+        if [others.columns.len(), others.len] != [self.columns.len(), self.len] {
+            *self = others;
+            return;
+        }
+        let Particles { columns, numbers, .. } = self;
+        columns.copy_from_slice(&others.columns);
+        numbers.copy_from_slice(&others.numbers);
+        let (columns, numbers) = (std::mem::take(columns), std::mem::take(numbers));
+        *self = Particles { columns, numbers, ..others };
+    }
+
+    /// Where a column lies as long as nothing is sorted, and after it once they are settled; `number` is one, too.
+    pub fn column_place(&self, name: &str) -> Option<ColumnPlace> {
+        let len = self.len;
+        // From the vectors' own pointers: those of a slice would not outlive what writes through the vector.
+        if name == NUMBER.name {
+            let address = self.numbers.as_ptr().wrapping_add(self.first_number()).expose_provenance();
+            let (format, components) = (NumberFormat::Count, vec![0]);
+            return Some(ColumnPlace { column: NUMBER, address, format, stride: 0, components, len });
+        }
+        let (first, column) = self.described().find(|(_, column)| column.name == name)?;
+        let start = self.columns.as_ptr().wrapping_add(self.first() + first * self.stride);
+        Some(ColumnPlace {
+            column,
+            address: start.expose_provenance(),
+            format: if size_of::<T>() == 4 { NumberFormat::Single } else { NumberFormat::Double },
+            stride: self.stride * size_of::<T>(),
+            components: (0..column.kind.entries(D)).map(|entry| column.kind.place(D, entry)).collect(),
+            len,
+        })
     }
 }
 
@@ -533,6 +606,12 @@ mod tests {
             particles.permute(&order);
             expected = order.iter().map(|&i| expected[i as usize]).collect();
             assert_eq!(particles.numbers(), expected);
+            if step == 7 {
+                // Moved back, they are what they were.
+                let before: Vec<_> = particles.iter().collect();
+                particles.settle();
+                assert!(!particles.later && particles.iter().eq(before.iter().copied()));
+            }
             for (found, &i) in particles.iter().zip(&expected) {
                 assert_eq!(found, particle(i as usize));
             }
@@ -574,6 +653,33 @@ mod tests {
         sorted_again_and_again::<2>(100, HISTORY);
         sorted_again_and_again::<3>(100, HISTORY);
         sorted_again_and_again::<3>(0, &[]);
+    }
+
+    #[test]
+    fn others_are_taken_up_where_particles_are() {
+        let of = |count: usize, x: f64| {
+            Particles::<f64, 2>::from_fn(count, own(HISTORY), |i| Particle {
+                position: Vector::from_fn(|k| x + (i + k) as f64),
+                velocity: Vector::ZERO,
+                spin: Vector::ZERO,
+                mass: x,
+                volume: x,
+                half_width: x,
+                deformation: Matrix::IDENTITY,
+                stress: Symmetric::ZERO,
+                number: i as u32,
+            })
+        };
+        let mut particles = of(50, 1.0);
+        let place = particles.column_place("mass").unwrap();
+        let order: Vec<u32> = (0..50).rev().collect();
+        particles.permute(&order);
+        assert_ne!(particles.column_place("mass").unwrap(), place);
+        particles.become_others(of(50, 2.0));
+        assert!(particles.iter().eq(of(50, 2.0).iter()));
+        assert_eq!(particles.column_place("mass").unwrap(), place);
+        particles.become_others(of(51, 3.0));
+        assert!(particles.iter().eq(of(51, 3.0).iter()));
     }
 
     #[test]

@@ -33,7 +33,10 @@ pub const EVERY: [ColumnDescription; 9] = [
 ];
 
 /// Whose a particle is, and which: columns of whole numbers in snapshots and files.
-pub const IDENTITY: [&str; 2] = ["body", "number"];
+pub const IDENTITY: [&str; 2] = ["body", NUMBER.name];
+
+/// Number of a particle in its body, from the filling; it never changes.
+pub const NUMBER: ColumnDescription = described("number", "", Kind::Number);
 
 /// A number that follows from a column of every particle. No particle carries it; files have it for whoever looks.
 #[derive(Clone, Copy, Debug)]
@@ -106,6 +109,15 @@ pub const BULK_VISCOSITY: &str = "bulk_viscosity";
 pub fn in_files() -> impl Iterator<Item = &'static str> {
     let every = EVERY.iter().map(|column| column.name);
     every.chain(IDENTITY).chain(DERIVED.iter().map(|derived| derived.column.name))
+}
+
+/// Names of those of them that a file may do without, and of what transfers and bulk viscosity carry.
+pub fn optional_in_files() -> impl Iterator<Item = &'static str> {
+    // What the engine keeps for itself is in no file.
+    let kept = ["position", "spin", "half_width", "start"];
+    in_files()
+        .chain([STRAIN_RATE, BULK_VISCOSITY])
+        .filter(move |name| !kept.contains(name) && !IDENTITY.contains(name))
 }
 
 /// Names that no column of history may have: a file would hold two columns called the same.

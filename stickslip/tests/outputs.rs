@@ -381,3 +381,45 @@ fn a_camera_leaves_its_frames_a_table_and_an_animation() {
     run(&scene, &mut Ballistic::new(0.1), &options(out.path()), &mut |_| {}).unwrap();
     assert!(names_in(out.path()).iter().all(|name| !name.starts_with("fringes")));
 }
+
+#[test]
+fn snapshots_hold_what_is_asked_for() {
+    let text = r#"
+        space = { dimension = "plane-strain", cell = 0.1 }
+        time.end = 0.01
+        materials.clay = { density = 1, neo_hookean = { young_modulus = 1, poisson_ratio = 0.3 } }
+        [[bodies]]
+        name = "disk {i}"
+        repeat.i = 3
+        material = "clay"
+        shape.ball = { center = ["i * 2", 0], radius = 0.5 }
+        velocity = [1, 0]
+        [outputs.snapshots]
+        bodies = ["disk 0", "disk 2"]
+        every = 3
+    "#;
+    let run = |set: &[(&str, &str)]| {
+        let set: Vec<_> = set.iter().map(|(key, value)| (key.to_string(), value.to_string())).collect();
+        let scene = stickslip::scene::parse("disks.toml", text, &set).expect("a scene").scene;
+        let folder = tempfile::tempdir().unwrap();
+        let mut simulation = stickslip::step::build(&scene).unwrap();
+        let options = RunOptions::new(folder.path());
+        stickslip::run::run(&scene, &mut *simulation, &options, &mut |_| {}).unwrap();
+        let results = Results::open(folder.path()).unwrap();
+        let last = results.frames().last().expect("a snapshot at the end").clone();
+        (results.particles(&last), results.has_whole_snapshots(), simulation.snapshot())
+    };
+    let (found, whole, all) = run(&[]);
+    let found = found.unwrap();
+    assert!(!whole && !found.number.is_empty());
+    let rows = (0..all.number.len()).filter(|&i| all.body[i] != 1 && all.number[i] % 3 == 0);
+    let rows: Vec<usize> = rows.collect();
+    assert_eq!(found.number, rows.iter().map(|&i| all.number[i]).collect::<Vec<_>>());
+    let single = rows.iter().map(|&i| all.position[i].map(|x| f64::from(x as f32)));
+    assert_eq!(found.position, single.collect::<Vec<_>>());
+    assert!(run(&[("outputs.snapshots.every", "1")]).1);
+    let (found, _, all) = run(&[("outputs.snapshots.precision", "double")]);
+    assert_eq!(found.unwrap().stress, rows.iter().map(|&i| all.stress[i]).collect::<Vec<_>>());
+    let (found, whole, _) = run(&[("outputs.snapshots.columns", "[\"velocity\"]")]);
+    assert!(!whole && found.unwrap_err().to_string().contains("stress"));
+}

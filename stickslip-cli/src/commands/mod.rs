@@ -15,14 +15,13 @@ mod sweep;
 mod validate;
 
 use crate::failure::Failure;
-use crate::free_memory::free_memory;
 use clap::Parser;
 use miette::miette;
 use std::io::Write;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use stickslip::check::Report;
+use stickslip::check::{Report, free_memory};
 use stickslip::observe::Results;
 use stickslip::scene::{Loaded, SceneError};
 

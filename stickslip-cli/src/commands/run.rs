@@ -2,7 +2,6 @@
 
 use super::{assignment, load, report, say, stop_on_interrupt};
 use crate::failure::Failure;
-use crate::free_memory::free_memory;
 use crate::illustration::illustrate;
 use crate::progress::Display;
 use bytesize::ByteSize;
@@ -11,6 +10,7 @@ use miette::{IntoDiagnostic, miette};
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
+use stickslip::check::free_memory;
 use stickslip::door::Simulation;
 use stickslip::observe::{
     ArrivalRow, Checkpoint, FrontSpeedRow, Manifest, OutputFolder, Results, SceneSource, Status,

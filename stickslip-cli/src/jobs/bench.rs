@@ -1,7 +1,7 @@
 //! Which job is done when, and by how many threads.
 
-use crate::free_memory::free_memory;
 use std::sync::{Condvar, Mutex, MutexGuard};
+use stickslip::check::free_memory;
 
 /// What a job needs.
 #[derive(Clone, Copy, Debug, PartialEq)]

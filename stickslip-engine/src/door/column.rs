@@ -76,6 +76,49 @@ impl std::fmt::Debug for ColumnRef<'_> {
     }
 }
 
+/// Values that a column of particles cannot take; then nothing is changed.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum WriteError {
+    /// There is no such column.
+    #[error(transparent)]
+    Unknown(#[from] NoColumn),
+    /// It follows from others, or the engine relies on it.
+    #[error("found `{name}`, which only steps write to; allowed: {}", WRITABLE.join(", "))]
+    Fixed {
+        /// The column.
+        name: String,
+    },
+    /// The body moves as the scene prescribes.
+    #[error("body `{body}` is rigid and moves as the scene prescribes; allowed: bodies that deform")]
+    Rigid {
+        /// Name of the body.
+        body: String,
+    },
+    /// Other numbers than the particles have.
+    #[error("found {found} values; allowed: {wanted}, {entries} for each particle")]
+    Count {
+        /// How many were found.
+        found: usize,
+        /// How many are wanted.
+        wanted: usize,
+        /// Entries of a particle.
+        entries: usize,
+    },
+    /// A value that no particle may have.
+    #[error("found {value} for the particle at {place} in memory; allowed: {allowed}")]
+    Value {
+        /// Where the particle is in the order of memory.
+        place: usize,
+        /// What was found.
+        value: f64,
+        /// What is allowed.
+        allowed: &'static str,
+    },
+}
+
+/// Columns that others than steps may write to, by [`super::Simulation::write`].
+pub const WRITABLE: [&str; 3] = ["velocity", "spin", "mass"];
+
 /// A column that particles do not have.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("found a column `{name}`, which the particles of the body do not have; allowed: {}", known.join(", "))]

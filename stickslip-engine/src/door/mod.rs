@@ -7,7 +7,8 @@ mod column;
 mod saved;
 mod snapshot;
 
-pub use column::{ColumnRef, NoColumn};
+pub use crate::particles::{ColumnPlace, NumberFormat};
+pub use column::{ColumnRef, NoColumn, WRITABLE, WriteError};
 pub(crate) use saved::SavedUnbounded;
 pub use saved::{RestoreError, SavedBody, SavedColumn, SavedState};
 pub use snapshot::{ColumnSource, ParticleSnapshot, SnapshotColumn};
@@ -71,6 +72,11 @@ pub trait View {
     fn column(&self, body: usize, name: &str) -> Result<ColumnRef<'_>, NoColumn> {
         Err(NoColumn::among(&self.columns(body), name))
     }
+    /// Where a column of a body's particles lies in memory; `number` is one. None if the particles have no such column,
+    /// and of a rigid body without bounds, which gets other particles as bodies come near.
+    fn column_place(&self, _body: usize, _name: &str) -> Option<ColumnPlace> {
+        None
+    }
     /// The particles of a body whose numbers are `wanted`, in no order that means anything.
     fn trace(&self, _body: usize, _wanted: &(dyn Fn(u32) -> bool + Sync)) -> Vec<TracedParticle> {
         Vec::new()
@@ -91,6 +97,19 @@ pub trait Simulation: View + Send {
     /// Drops all that can be made anew from the state between two steps: grid, lists, room to work in. The next step
     /// makes it anew, with the same bits as without.
     fn rebuild_workspace(&mut self) {}
+    /// Moves the columns of all particles to where they lay at first: steps that sort particles move them. What they
+    /// hold, and in which order, stays.
+    fn settle(&mut self) {}
+    /// Gives the particles of a body other values in a column: the entries that the motion leaves free of one particle
+    /// after the other, in the order of memory. [`WRITABLE`] names the columns. The next step is as long as is stable
+    /// with them.
+    ///
+    /// # Errors
+    /// There is no such column, or it is not writable; too many values or too few; one that is not finite, and a mass
+    /// that is not above zero. Then nothing is changed.
+    fn write(&mut self, body: usize, name: &str, _values: &[f64]) -> Result<(), WriteError> {
+        Err(NoColumn::among(&self.columns(body), name).into())
+    }
     /// The state as data, to be taken up by another simulation of the same scene; `None` of one that has none.
     fn save(&self) -> Option<SavedState> {
         None
@@ -113,7 +132,7 @@ pub trait Simulation: View + Send {
 }
 
 /// One body at one time.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct BodyState {
     /// Mass; zero for a rigid body without bounds [kg].
     pub mass: f64,

@@ -65,6 +65,19 @@ macro_rules! snapshot {
                 [$((described::<$values>(stringify!($name)), self.$name.flat()),)*].into_iter()
             }
 
+            /// The particles for which a body and a number are wanted.
+            pub fn only(&self, wanted: impl Fn(u32, u32) -> bool) -> Self {
+                let rows = 0..self.number.len();
+                let rows: Vec<usize> = rows.filter(|&i| wanted(self.body[i], self.number[i])).collect();
+                ParticleSnapshot {
+                    dimension: self.dimension,
+                    body: rows.iter().map(|&i| self.body[i]).collect(),
+                    number: rows.iter().map(|&i| self.number[i]).collect(),
+                    $($name: rows.iter().map(|&i| self.$name[i]).collect(),)*
+                    history: self.history.iter().map(|column| column.only(&rows)).collect(),
+                }
+            }
+
             /// The columns of every particle from where they are, with neither bodies and numbers nor history.
             ///
             /// # Errors
@@ -133,6 +146,13 @@ pub struct SnapshotColumn {
 }
 
 impl SnapshotColumn {
+    fn only(&self, rows: &[usize]) -> Self {
+        let count = self.kind.components();
+        let values =
+            rows.iter().flat_map(|&row| self.values[row * count..][..count].iter().copied()).collect();
+        SnapshotColumn { name: self.name.clone(), unit: self.unit.clone(), kind: self.kind, values }
+    }
+
     /// One number for a particle: a number itself, the length of a vector, and of a tensor the root of the sum of its
     /// squared entries (Frobenius).
     pub fn magnitude(&self, particle: usize) -> f64 {

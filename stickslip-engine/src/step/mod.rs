@@ -36,6 +36,7 @@ mod unbounded;
 mod verbs;
 mod view;
 mod watch;
+mod writing;
 
 pub(crate) use build::own_columns;
 pub use build::{build, build_on};
@@ -48,9 +49,10 @@ use crate::basis::Basis;
 use crate::boundary::Boundary;
 use crate::clock::fastest_signal;
 use crate::contact::ContactUse;
-use crate::door::{RestoreError, SavedState, Simulation, StepError};
+use crate::door::{RestoreError, SavedState, Simulation, StepError, WriteError};
 use crate::lanes::Laned;
 use crate::scene::{StartVelocities, StressUpdate};
+use crate::threads::each;
 use crate::transfer::Share;
 use account::Interpolated;
 use state::{Settings, State, Workspace};
@@ -198,6 +200,14 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
 
     fn rebuild_workspace(&mut self) {
         self.workspace = Workspace::new(Boundary::new(self.settings.walls.clone()));
+    }
+
+    fn settle(&mut self) {
+        each(&mut self.state.bodies, 1, |_, body| body.particles.settle());
+    }
+
+    fn write(&mut self, body: usize, name: &str, values: &[f64]) -> Result<(), WriteError> {
+        self.put(body, name, values)
     }
 
     fn save(&self) -> Option<SavedState> {

@@ -73,7 +73,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let restored: Vec<Particles<T, D>> = restored.collect::<Result<_, _>>()?;
 
         for ((body, saved), particles) in state.bodies.iter_mut().zip(&saved.bodies).zip(restored) {
-            body.particles = particles;
+            body.particles.become_others(particles);
             if let (Some(motion), Some(saved)) = (&mut body.motion, &saved.motion) {
                 motion.restore(saved);
             }
@@ -118,7 +118,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         for (i, body) in carried.into_iter().enumerate() {
             let Some(body) = body else { continue };
             self.state.disorder[i] = Disorder::any(body.particles.len());
-            self.state.bodies[i] = body;
+            let here = &mut self.state.bodies[i];
+            here.motion = body.motion;
+            here.particles.become_others(body.particles);
         }
         // Round-off is no way.
         let near = f64::from(f32::EPSILON) * self.settings.lattice.cell.f64();

@@ -8,8 +8,9 @@ use crate::body::{Body, Totals};
 use crate::column::{ColumnDescription, Kind};
 use crate::contact::Span;
 use crate::door::{
-    BodyState, ColumnRef, ColumnSource, ContactPatch, ContactSum, GridSnapshot, Ledger, LoadState, NoColumn,
-    ParticleSnapshot, ParticleView, RelaxationState, SnapshotColumn, TracedParticle, View,
+    BodyState, ColumnPlace, ColumnRef, ColumnSource, ContactPatch, ContactSum, GridSnapshot, Ledger,
+    LoadState, NoColumn, ParticleSnapshot, ParticleView, RelaxationState, SnapshotColumn, TracedParticle,
+    View,
 };
 use crate::grid::{node_at, nodes_per_block};
 use crate::lanes::Laned;
@@ -232,6 +233,14 @@ impl<T: Laned, const D: usize, B: Basis<T>> View for Engine<T, D, B> {
         let at =
             move |row: usize, component: usize| components[component].map_or(0.0, |line| line[row].f64());
         Ok(ColumnRef::new(described, particles.numbers(), at))
+    }
+
+    fn column_place(&self, body: usize, name: &str) -> Option<ColumnPlace> {
+        if self.without_bounds(body).is_some() {
+            None
+        } else {
+            self.state.bodies[body].particles.column_place(name)
+        }
     }
 
     fn trace(&self, body: usize, wanted: &(dyn Fn(u32) -> bool + Sync)) -> Vec<TracedParticle> {

@@ -92,7 +92,11 @@ pub(super) fn replace_for_good(
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> Result<(), OutputError> {
     put(path, true, write)?;
-    path.parent().map_or(Ok(()), secure)
+    match path.parent() {
+        // A name alone lies in the folder where the program runs.
+        Some(folder) if folder.as_os_str().is_empty() => secure(Path::new(".")),
+        folder => folder.map_or(Ok(()), secure),
+    }
 }
 
 fn put(

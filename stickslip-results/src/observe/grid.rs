@@ -8,6 +8,7 @@ use super::schedule::Schedule;
 use super::vtu::{NUMBER, VECTOR, Vtu};
 use super::{GRID, Observer};
 use crate::door::{GridSnapshot, View};
+use crate::scene::{Precision, Scene};
 
 /// Bytes of a node in a snapshot: 13 numbers and a whole one.
 const NODE_BYTES: usize = 13 * size_of::<f64>() + size_of::<u32>();
@@ -16,15 +17,18 @@ const NODE_BYTES: usize = 13 * size_of::<f64>() + size_of::<u32>();
 pub(super) struct GridObserver {
     schedule: Schedule,
     frames: Frames,
+    /// Of what files hold.
+    precision: Precision,
     /// Steps taken at the checkpoint from which the run went on, and the grid there, which nobody can make anew.
     taken_up: Option<(u64, GridSnapshot)>,
 }
 
 impl GridObserver {
-    pub(super) fn create(interval: f64, folder: &OutputFolder) -> Result<Self, OutputError> {
+    pub(super) fn create(scene: &Scene, folder: &OutputFolder) -> Result<Self, OutputError> {
         Ok(GridObserver {
-            schedule: Schedule::every(interval),
+            schedule: Schedule::every(scene.outputs.grid.unwrap_or(f64::INFINITY)),
             frames: Frames::create(folder, GRID)?,
+            precision: scene.outputs.snapshots.precision,
             taken_up: None,
         })
     }
@@ -50,7 +54,8 @@ impl Observer for GridObserver {
         self.frames.make_room()?;
         let snapshot = self.grid(view);
         let bytes = NODE_BYTES * snapshot.mass.len();
-        self.frames.push(time, bytes, move || encode_grid(&snapshot, time));
+        let precision = self.precision;
+        self.frames.push(time, bytes, move || encode_grid(&snapshot, time, precision));
         self.schedule.recorded(time);
         Ok(())
     }
@@ -78,15 +83,15 @@ impl Observer for GridObserver {
 ///
 /// Node by node and body by body: `mass` [kg], `velocity` [m/s], internal `force` [N], `contact_impulse` [N s] and the
 /// index of the `body`; the side of a `cell` [m] holds for the whole file.
-pub fn encode_grid(snapshot: &GridSnapshot, time: f64) -> Vtu {
+pub fn encode_grid(snapshot: &GridSnapshot, time: f64, precision: Precision) -> Vtu {
     let body: Vec<i32> = snapshot.body.iter().map(|&body| body as i32).collect();
-    let mut file = Vtu::new(time, &snapshot.position);
+    let mut file = Vtu::new(time, &snapshot.position, precision);
     file.field("dimension", snapshot.dimension as f64);
     file.field("cell", snapshot.cell);
-    file.point_data("mass", NUMBER, &snapshot.mass);
-    file.point_data("velocity", VECTOR, snapshot.velocity.as_flattened());
-    file.point_data("force", VECTOR, snapshot.force.as_flattened());
-    file.point_data("contact_impulse", VECTOR, snapshot.contact_impulse.as_flattened());
-    file.point_data("body", NUMBER, &body);
+    file.real("mass", NUMBER, &snapshot.mass);
+    file.real("velocity", VECTOR, snapshot.velocity.as_flattened());
+    file.real("force", VECTOR, snapshot.force.as_flattened());
+    file.real("contact_impulse", VECTOR, snapshot.contact_impulse.as_flattened());
+    file.whole("body", &body);
     file
 }

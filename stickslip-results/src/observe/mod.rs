@@ -49,7 +49,7 @@ pub use loads::LoadRow;
 pub use manifest::{Manifest, Performance, ReferenceCurve, RunWarning, SceneSource, Status, Timing};
 pub use memory::Memory;
 pub use network::Network;
-pub use particles::{encode_particles, read_particles};
+pub use particles::{FileColumns, encode_particles, read_columns, read_particles};
 pub use points::PointSample;
 pub use probes::ProbeRow;
 pub use recorded::{

@@ -5,24 +5,33 @@ use super::folder::OutputFolder;
 use super::frames::Frames;
 use super::memory::Memory;
 use super::schedule::Schedule;
-use super::vtu::{NUMBER, PointArrays, Vtu};
+use super::vtu::{PointArrays, Vtu};
 use super::{Observer, PARTICLES};
-use crate::column::{ColumnDescription, DERIVED, IDENTITY, Kind, every, in_files};
+use crate::column::{ColumnDescription, DERIVED, EVERY, IDENTITY, Kind, every, in_files};
 use crate::door::{ColumnSource, ParticleSnapshot, SnapshotColumn, View};
-use crate::scene::Scene;
+use crate::scene::{Body, Scene, SnapshotContent};
+use std::collections::HashSet;
 use std::path::Path;
+use std::sync::Arc;
 
 /// Writes `particles.pvd` and `particles/`.
 pub(super) struct ParticlesObserver {
     schedule: Schedule,
     frames: Frames,
+    content: Arc<SnapshotContent>,
+    /// Of each body, whether its particles are written.
+    bodies: Vec<bool>,
 }
 
 impl ParticlesObserver {
     pub(super) fn create(scene: &Scene, folder: &OutputFolder) -> Result<Self, OutputError> {
         let interval = scene.outputs.particles.unwrap_or(f64::INFINITY);
         let schedule = Schedule::every(interval).and_at(&scene.outputs.particles_at);
-        Ok(ParticlesObserver { schedule, frames: Frames::create(folder, PARTICLES)? })
+        let content = Arc::new(scene.outputs.snapshots.clone());
+        let wanted: Option<HashSet<&String>> = content.bodies.as_ref().map(|names| names.iter().collect());
+        let is_wanted = |body: &Body| wanted.as_ref().is_none_or(|names| names.contains(&body.name));
+        let bodies = scene.bodies.iter().map(is_wanted).collect();
+        Ok(ParticlesObserver { schedule, frames: Frames::create(folder, PARTICLES)?, content, bodies })
     }
 }
 
@@ -34,8 +43,15 @@ impl Observer for ParticlesObserver {
     fn observe(&mut self, view: &dyn View) -> Result<(), OutputError> {
         let time = view.time();
         self.frames.make_room()?;
+        let every = self.content.every as u32;
         let snapshot = view.snapshot();
-        self.frames.push(time, snapshot.bytes(), move || encode_particles(&snapshot, time));
+        let all = every == 1 && self.bodies.iter().all(|wanted| *wanted);
+        let snapshot = match all {
+            true => snapshot,
+            false => snapshot.only(|body, number| self.bodies[body as usize] && number % every == 0),
+        };
+        let content = self.content.clone();
+        self.frames.push(time, snapshot.bytes(), move || encode_particles(&snapshot, time, &content));
         self.schedule.recorded(time);
         Ok(())
     }
@@ -58,21 +74,33 @@ impl Observer for ParticlesObserver {
 ///
 /// It holds the columns of the snapshot, and behind each those of [`DERIVED`] that follow from it; first vectors and
 /// tensors, then whose each particle is, then numbers, then history. What a reader cannot know, the units of history,
-/// the file says.
-pub fn encode_particles(snapshot: &ParticleSnapshot, time: f64) -> Vtu {
-    let mut file = Vtu::new(time, &snapshot.position);
+/// the file says. Of the `content` the precision and the columns count here.
+pub fn encode_particles(snapshot: &ParticleSnapshot, time: f64, content: &SnapshotContent) -> Vtu {
+    let mut file = Vtu::new(time, &snapshot.position, content.precision);
     file.field("dimension", snapshot.dimension as f64);
+    let add = |file: &mut Vtu, (name, unit): (&str, &str), kind: Kind, values: &[f64]| {
+        if content.columns.as_ref().is_none_or(|wanted| wanted.iter().any(|wanted| wanted == name)) {
+            file.described((name, unit), kind, values);
+        }
+    };
+    let add_with_derived = |file: &mut Vtu, (column, values): (ColumnDescription, &[f64])| {
+        add(file, (column.name, ""), column.kind, values);
+        for derived in DERIVED.iter().filter(|derived| derived.from == column.name) {
+            let values: Vec<f64> = values.chunks(column.kind.components()).map(derived.value).collect();
+            add(file, (derived.column.name, ""), derived.column.kind, &values);
+        }
+    };
     // The positions are the points themselves.
     let of_every = || snapshot.columns().filter(|(column, _)| column.name != POSITION);
     let is_number = |(column, _): &(ColumnDescription, &[f64])| column.kind == Kind::Number;
     of_every().filter(|column| !is_number(column)).for_each(|column| add_with_derived(&mut file, column));
     let [body, number] = IDENTITY;
     let bodies: Vec<i32> = snapshot.body.iter().map(|&body| body as i32).collect();
-    file.point_data(body, NUMBER, &bodies);
-    file.point_data(number, NUMBER, &snapshot.number);
+    file.whole(body, &bodies);
+    file.whole(number, &snapshot.number);
     of_every().filter(is_number).for_each(|column| add_with_derived(&mut file, column));
     for SnapshotColumn { name, unit, kind, values } in &snapshot.history {
-        file.described((name, unit), *kind, values);
+        add(&mut file, (name, unit), *kind, values);
     }
     file
 }
@@ -80,19 +108,10 @@ pub fn encode_particles(snapshot: &ParticleSnapshot, time: f64) -> Vtu {
 /// The column that a file has as its points.
 const POSITION: &str = every("position").name;
 
-/// Adds a column and what follows from it.
-fn add_with_derived(file: &mut Vtu, (column, values): (ColumnDescription, &[f64])) {
-    file.described((column.name, ""), column.kind, values);
-    for derived in DERIVED.iter().filter(|derived| derived.from == column.name) {
-        let values: Vec<f64> = values.chunks(column.kind.components()).map(derived.value).collect();
-        file.described((derived.column.name, ""), derived.column.kind, &values);
-    }
-}
-
-/// The particles in a file that [`encode_particles`] made, bit for bit.
+/// The particles in a file that [`encode_particles`] made with all columns: in double precision bit for bit.
 ///
 /// # Errors
-/// The file is missing, cut short, or was written by another program.
+/// The file is missing, cut short, or was written by another program or without a column.
 pub fn read_particles(path: &Path) -> Result<ParticleSnapshot, ReadError> {
     let file = PointArrays::open(path)?;
     let [body, number] = IDENTITY;
@@ -101,8 +120,8 @@ pub fn read_particles(path: &Path) -> Result<ParticleSnapshot, ReadError> {
         Ok(SnapshotColumn { name: name.to_string(), unit, kind, values })
     };
     Ok(ParticleSnapshot {
-        body: file.numbers::<i32>(body)?.into_iter().map(|body| body as u32).collect(),
-        number: file.numbers(number)?,
+        body: file.whole::<i32>(body)?.into_iter().map(|body| body as u32).collect(),
+        number: file.whole(number)?,
         history: (file.names().filter(|&name| !in_files().any(|known| known == name)))
             .map(remembered)
             .collect::<Result<_, ReadError>>()?,
@@ -110,16 +129,54 @@ pub fn read_particles(path: &Path) -> Result<ParticleSnapshot, ReadError> {
     })
 }
 
+/// All that a file of particles holds: places, body and number, and each column that it has, with its unit.
+///
+/// # Errors
+/// The file is missing, cut short, or was written by another program.
+pub fn read_columns(path: &Path) -> Result<FileColumns, ReadError> {
+    let file = PointArrays::open(path)?;
+    let [body, number] = IDENTITY;
+    let described = |name: &str| {
+        let (unit, kind, values) = file.described(name)?;
+        let known = EVERY.iter().chain(DERIVED.iter().map(|derived| &derived.column));
+        let unit =
+            known.into_iter().find(|known| known.name == name).map_or(unit, |known| known.unit.to_string());
+        Ok(SnapshotColumn { name: name.to_string(), unit, kind, values })
+    };
+    Ok(FileColumns {
+        position: file.positions()?,
+        body: file.whole::<i32>(body)?.into_iter().map(|body| body as u32).collect(),
+        number: file.whole(number)?,
+        columns: (file.names().filter(|name| !IDENTITY.contains(name)))
+            .map(described)
+            .collect::<Result<_, ReadError>>()?,
+    })
+}
+
+/// What a file of particles holds, a value for each particle.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FileColumns {
+    /// Where they are [m].
+    pub position: Vec<[f64; 3]>,
+    /// Whose they are: the body's place in the scene.
+    pub body: Vec<u32>,
+    /// Their numbers in their bodies.
+    pub number: Vec<u32>,
+    /// The other columns, in the order of the file.
+    pub columns: Vec<SnapshotColumn>,
+}
+
 impl ColumnSource for PointArrays {
     type Error = ReadError;
     fn column<const N: usize>(&self, column: &ColumnDescription) -> Result<Vec<[f64; N]>, ReadError> {
-        if column.name == POSITION { self.positions() } else { self.array(column.name) }
+        if column.name == POSITION { self.positions() } else { self.reals(column.name) }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::Precision;
     use std::fs;
 
     /// Enough particles for several blocks of every array, with values that use all their bits.
@@ -150,6 +207,40 @@ mod tests {
         }
     }
 
+    fn double() -> SnapshotContent {
+        SnapshotContent { precision: Precision::Double, ..SnapshotContent::default() }
+    }
+
+    #[test]
+    fn a_file_holds_the_columns_that_are_asked_for_in_single_precision() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("00000.vtu");
+        let written = snapshot(30_001);
+        let columns = ["pressure", "velocity", "damage"].map(str::to_string).to_vec();
+        let content = SnapshotContent { columns: Some(columns), ..SnapshotContent::default() };
+        encode_particles(&written, 0.25, &content).write(&path).unwrap();
+        let file = PointArrays::open(&path).unwrap();
+        assert_eq!(file.names().collect::<Vec<_>>().join(" "), "velocity pressure body number damage");
+        let close = |found: f64, expected: f64| found == f64::from(expected as f32);
+        let velocity = file.reals::<3>("velocity").unwrap();
+        assert!(velocity.iter().zip(&written.velocity).all(|(a, b)| (0..3).all(|k| close(a[k], b[k]))));
+        assert_eq!(file.whole::<u32>("number").unwrap(), written.number);
+        let error = read_particles(&path).unwrap_err().to_string();
+        assert!(error.contains("stress"), "{error}");
+        let held = read_columns(&path).unwrap();
+        assert_eq!((held.number.len(), held.position.len(), &held.body), (30_001, 30_001, &written.body));
+        let names = held.columns.iter().map(|column| (column.name.as_str(), column.unit.as_str()));
+        assert_eq!(names.collect::<Vec<_>>(), [("velocity", "m/s"), ("pressure", "Pa"), ("damage", "")]);
+        // Each third particle of odd bodies.
+        let some = written.only(|body, number| body % 2 == 1 && number % 3 == 0);
+        assert!(some.number.len() > 3000 && some.body.iter().all(|body| body % 2 == 1));
+        for (i, number) in some.number.iter().enumerate().step_by(100) {
+            let row = written.number.iter().position(|other| other == number).unwrap();
+            assert_eq!((some.stress[i], some.mass[i]), (written.stress[row], written.mass[row]));
+            assert_eq!(some.history[1].values[6 * i..][..6], written.history[1].values[6 * row..][..6]);
+        }
+    }
+
     #[test]
     fn particles_come_back_bit_for_bit() {
         let folder = tempfile::tempdir().unwrap();
@@ -157,7 +248,7 @@ mod tests {
         // 16384 numbers of eight bytes fill a block exactly; the others leave a partial block, one block, or none.
         for particles in [0, 1, 1000, 16384, 40001] {
             let written = snapshot(particles);
-            encode_particles(&written, 0.25).write(&path).unwrap();
+            encode_particles(&written, 0.25, &double()).write(&path).unwrap();
             assert_eq!(read_particles(&path).unwrap(), written, "{particles} particles");
         }
     }
@@ -167,18 +258,19 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("00000.vtu");
         let written = snapshot(3);
-        encode_particles(&written, 0.25).write(&path).unwrap();
+        encode_particles(&written, 0.25, &double()).write(&path).unwrap();
         let file = PointArrays::open(&path).unwrap();
         let names: Vec<&str> = file.names().collect();
         let expected =
             "velocity stress pressure von_mises deformation body number mass volume damage back_stress";
         assert_eq!(names.join(" "), expected);
         // Of a stress x (1, 2, 3; -1, 1/2, 0): s = x (-1, 0, 1; -1, 1/2, 0), s : s = 2 x^2 (1 + 1 + 1/4).
-        let (pressure, von_mises) = (file.numbers("pressure").unwrap(), file.numbers("von_mises").unwrap());
+        let (pressure, von_mises) =
+            (file.reals::<1>("pressure").unwrap(), file.reals::<1>("von_mises").unwrap());
         for (i, &[x, ..]) in written.stress.iter().enumerate() {
             let expected: [f64; 2] = [-2.0 * x, x.abs() * 6.75_f64.sqrt()];
             let off = |found: f64, expected: f64| (found / expected - 1.0).abs();
-            assert!(off(pressure[i], expected[0]) < 1e-14 && off(von_mises[i], expected[1]) < 1e-14);
+            assert!(off(pressure[i][0], expected[0]) < 1e-14 && off(von_mises[i][0], expected[1]) < 1e-14);
         }
         assert_eq!(written.bytes(), 3 * (23 * 8 + 2 * 4 + 7 * 8));
     }
@@ -187,7 +279,7 @@ mod tests {
     fn a_file_cut_anywhere_is_an_error_that_names_it() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("00007.vtu");
-        encode_particles(&snapshot(500), 0.25).write(&path).unwrap();
+        encode_particles(&snapshot(500), 0.25, &double()).write(&path).unwrap();
         let whole = fs::read(&path).unwrap();
         let end = whole.len() - "\n</AppendedData>\n</VTKFile>\n".len();
         for length in (0..end).step_by(97) {

@@ -56,8 +56,8 @@ impl<'a> Recorder<'a> {
         if scene.outputs.particles.is_some() || !scene.outputs.particles_at.is_empty() {
             recorder.schedule(PARTICLES, ParticlesObserver::create(scene, folder)?);
         }
-        if let Some(interval) = scene.outputs.grid {
-            recorder.schedule(GRID, GridObserver::create(interval, folder)?);
+        if scene.outputs.grid.is_some() {
+            recorder.schedule(GRID, GridObserver::create(scene, folder)?);
         }
         if let Some(camera) = &scene.outputs.fringes {
             recorder.schedule(FRINGES, FringesObserver::create((scene, camera), folder)?);

@@ -17,6 +17,7 @@ use super::table::{TableRow, read_rows};
 use super::{
     ARRIVALS, BODIES, CONTACTS, ENERGY, FRINGES_TABLE, FRONT_SPEEDS, FRONTS, LOADS, PARTICLES, PROBES,
 };
+use crate::column::every;
 use crate::door::ParticleSnapshot;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
@@ -63,6 +64,18 @@ impl Results {
     /// Snapshots of particles in the order of time; none if the scene asked for none.
     pub fn frames(&self) -> &[Frame] {
         &self.frames
+    }
+
+    /// Whether snapshots hold every particle of their bodies with all columns that pictures, fringes and
+    /// [`Results::particles`] need.
+    pub fn has_whole_snapshots(&self) -> bool {
+        let asked = |key: &str| self.manifest.scene.pointer(&format!("/outputs/snapshots/{key}"));
+        if asked("every").and_then(|every| every.as_u64()).is_some_and(|every| every > 1) {
+            return false;
+        }
+        let Some(columns) = asked("columns").and_then(|columns| columns.as_array()) else { return true };
+        let has = |name: &str| name == every("position").name || columns.iter().any(|column| column == name);
+        ParticleSnapshot::default().columns().all(|(column, _)| has(column.name))
     }
 
     /// The particles of a snapshot.

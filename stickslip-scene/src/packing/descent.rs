@@ -36,7 +36,7 @@ const EXTRA: f64 = 1e-3;
 const INERTIA: f64 = 0.4;
 
 /// Steps without which nothing gets better that count as jammed.
-const PATIENCE: usize = 3000;
+const PATIENCE: usize = 2000;
 
 /// How grains grow, and the steps between.
 const GROWTH: f64 = 0.03;
@@ -47,7 +47,7 @@ const GROWTH_STEPS: usize = 100;
 const STALL: usize = 150;
 const SHAKE: f64 = 0.1;
 
-/// Grains times steps.
+/// Grains times steps, those with points of their surfaces by half as many times as these are.
 const MOST_WORK: usize = 400_000_000;
 
 /// Velocities: of the middles, and of the surfaces by turning.
@@ -83,24 +83,31 @@ impl<'a> Descent<'a> {
 
     fn list(&mut self) {
         self.listed = self.grains.iter().map(|grain| grain.position).collect();
-        let reach = 1.0 + 2.0 * EXTRA + 0.02;
+        let reach = 1.0 + EXTRA + self.shape.apart();
         let radii: Vec<f64> =
             self.grains.iter().map(|grain| reach * grain.scale * self.shape.radius).collect();
         let margin = 2.0 * self.skin + self.packing.gap;
         self.near = near(&self.listed, &radii, margin, self.packing.dimension);
     }
 
-    /// By how much jammed grains must be smaller to find room, in steps of a hundredth [-].
+    /// By how much jammed grains must be smaller to find room, about [-].
     pub fn shrunk(&mut self) -> f64 {
+        let step = 0.98;
         let mut factor = 1.0;
         while factor > 0.5 {
-            factor *= 0.99;
-            self.grains.iter_mut().for_each(|grain| grain.scale *= 0.99);
-            if self.run(2 * PATIENCE) {
+            factor *= step;
+            self.grains.iter_mut().for_each(|grain| grain.scale *= step);
+            if self.run(self.most_steps().min(PATIENCE)) {
                 break;
             }
         }
         factor
+    }
+
+    /// Steps that it may take: fewer where each has more to do.
+    fn most_steps(&self) -> usize {
+        let work = self.grains.len().max(1) * (1 + self.shape.points.len() / 2);
+        (MOST_WORK / work).clamp(PATIENCE, 20 * PATIENCE)
     }
 
     /// Until nothing overlaps; whether that came to be. Grains that are not balls begin small, and as the balls that
@@ -112,10 +119,10 @@ impl<'a> Descent<'a> {
             let (power, unit) = if self.packing.dimension == 2 { (2, PI) } else { (3, 4.0 / 3.0 * PI) };
             let balls: f64 = sizes.iter().map(|size| unit * (size * self.shape.radius).powi(power)).sum();
             let dilute = [0.5, 0.3][self.packing.dimension - 2];
-            let mut size = (dilute * room / balls).powf(1.0 / f64::from(power)).min(1.0);
+            let mut size = libm::pow(dilute * room / balls, 1.0 / f64::from(power)).min(1.0);
             self.as_balls = true;
             self.resize(&sizes, size);
-            self.run(2 * PATIENCE);
+            self.run(PATIENCE);
             self.as_balls = false;
             while size < 1.0 {
                 self.run(GROWTH_STEPS);
@@ -123,11 +130,13 @@ impl<'a> Descent<'a> {
                 self.resize(&sizes, size);
             }
         }
-        self.run((MOST_WORK / self.grains.len().max(1)).clamp(2 * PATIENCE, 20 * PATIENCE))
+        self.run(self.most_steps())
     }
 
     fn resize(&mut self, sizes: &[f64], factor: f64) {
         self.grains.iter_mut().zip(sizes).for_each(|(grain, size)| grain.scale = factor * size);
+        // Whose surfaces are near each other follows from their sizes.
+        self.list();
     }
 
     /// Takes at most so many steps until nothing overlaps; whether that came to be.

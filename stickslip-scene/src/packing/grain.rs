@@ -64,12 +64,20 @@ pub struct GrainShape<'a> {
     pub points: Vec<[f64; 3]>,
     /// Distances on a lattice, where the shape is slow to ask.
     lattice: Option<LevelLattice>,
+    /// How far grains keep apart for what lies between the points of their surfaces, over their radius [-].
+    between: f64,
     dimension: usize,
 }
 
 /// How far grains that are not balls stay apart for what lies between the points of their surfaces, over their radius,
 /// in the plane and in space: two edges at right angles are in each other by half the distance of their points at most.
 const BETWEEN: [f64; 2] = [0.01, 0.05];
+
+/// The same of grains that are several shapes combined, whose edges are not all known.
+const BETWEEN_PARTS: [f64; 2] = [0.1, 0.15];
+
+/// How near to the surface points of an edge lie on it, over the size: those of a part may lie in another one.
+const ON_SURFACE: f64 = 1e-6;
 
 /// Points of a surface along the radius.
 const POINTS: [f64; 2] = [12.0, 5.0];
@@ -124,6 +132,7 @@ impl<'a> GrainShape<'a> {
                 radius: *radius,
                 points: Vec::new(),
                 lattice: None,
+                between: 0.0,
                 dimension,
             });
         }
@@ -135,20 +144,23 @@ impl<'a> GrainShape<'a> {
             .map(|point| about(point.position))
             .collect();
         let along = 0.5 * size / ALONG_EDGES;
-        points.extend(edges(shape, dimension).into_iter().flat_map(|edge| on_edge(edge, along)).map(about));
+        let on_surface = |&x: &[f64; 3]| shape.distance(x, dimension).abs() < ON_SURFACE * size;
+        let on_edges = edges(shape, dimension).into_iter().flat_map(|edge| on_edge(edge, along));
+        points.extend(on_edges.filter(on_surface).map(about));
         let radius = points.iter().map(|&point| Vector(point).norm()).fold(0.0, f64::max);
         let lattice = has_mesh(shape).then(|| LevelLattice::new(shape, middle, radius));
-        (radius > 0.0).then_some(GrainShape { shape, middle, radius, points, lattice, dimension })
+        let between = if is_combined(shape) { BETWEEN_PARTS } else { BETWEEN }[dimension - 2];
+        (radius > 0.0).then_some(GrainShape { shape, middle, radius, points, lattice, between, dimension })
     }
 
     /// The ball that holds it, in its stead.
     pub fn ball(&self) -> GrainShape<'a> {
-        GrainShape { points: Vec::new(), lattice: None, ..*self }
+        GrainShape { points: Vec::new(), lattice: None, between: 0.0, ..*self }
     }
 
     /// How far grains keep apart, over their radius, beside the gap.
-    fn apart(&self) -> f64 {
-        if self.points.is_empty() { 0.0 } else { BETWEEN[self.dimension - 2] }
+    pub fn apart(&self) -> f64 {
+        self.between
     }
 
     /// What `other` and its surface do to `grain`, which are to be `gap` [m] apart, and on the way `extra` of their
@@ -256,8 +268,18 @@ fn edges(shape: &Shape, dimension: usize) -> Vec<[[f64; 3]; 2]> {
             let turned = |corner| Shape::turned_point(corner, (*center, *axis, *angle), dimension);
             edges(shape, dimension).into_iter().map(|edge| edge.map(turned)).collect()
         }
-        // Of shapes combined, edges may lie outside.
-        _ => Vec::new(),
+        Shape::Union(shapes) | Shape::Intersection(shapes) | Shape::Difference(shapes) => {
+            shapes.iter().flat_map(|shape| edges(shape, dimension)).collect()
+        }
+        Shape::Ball { .. } | Shape::Cylinder { .. } | Shape::HalfSpace { .. } => Vec::new(),
+    }
+}
+
+fn is_combined(shape: &Shape) -> bool {
+    match shape {
+        Shape::Union(_) | Shape::Intersection(_) | Shape::Difference(_) => true,
+        Shape::Rotated { shape, .. } => is_combined(shape),
+        _ => false,
     }
 }
 
@@ -318,6 +340,8 @@ impl LevelLattice {
     /// Linear between the points along each axis, as is its gradient.
     fn level(&self, x: [f64; 3]) -> SignedDistance {
         let along = x.map(|x| ((x - self.lower) / self.spacing).clamp(0.0, (SIDE - 1) as f64 - 1e-9));
+        // From beyond the lattice, at least the way to it.
+        let beyond: [f64; 3] = std::array::from_fn(|k| x[k] - self.lower - self.spacing * along[k]);
         let cell = along.map(|x| x as usize);
         let part: [f64; 3] = std::array::from_fn(|k| along[k] - cell[k] as f64);
         let (mut distance, mut gradient) = (0.0, [0.0; 3]);
@@ -334,6 +358,6 @@ impl LevelLattice {
             }
         }
         let gradient = Vector(gradient).direction().map_or([0.0; 3], |direction| direction.0);
-        SignedDistance { distance, gradient }
+        SignedDistance { distance: distance + Vector(beyond).norm(), gradient }
     }
 }

@@ -87,8 +87,12 @@ pub enum NoPacking {
     Grain,
     /// The container has no bounds, or nothing is inside.
     Container,
+    /// The container lies so far from the origin that places there have no digits left for a grain.
+    Far,
     /// More grains than [`MOST_GRAINS`].
     TooMany(f64),
+    /// Their volume over that of the container, with half of the gap around each, is at least 1 [-].
+    Overfull(f64),
     /// They jam: part of the container that was asked for, and about as much as has room [-].
     Jammed {
         /// Asked for.
@@ -97,6 +101,9 @@ pub enum NoPacking {
         room: f64,
     },
 }
+
+/// Distance from the origin over the radius of the smallest grain.
+const MOST_RADII: f64 = 1e8;
 
 /// Grains of a packing.
 pub const MOST_GRAINS: usize = 1_000_000;
@@ -112,12 +119,19 @@ impl Packing<'_> {
         let room = measure(self.container, self.dimension).ok_or(NoPacking::Container)?;
         let volume = measure(self.grain, self.dimension).ok_or(NoPacking::Grain)?;
         let shape = GrainShape::new(self.grain, self.dimension).ok_or(NoPacking::Grain)?;
+        let far = bounds.corners().flatten().fold(0.0, |far: f64, x| far.max(x.abs()));
+        if far > MOST_RADII * shape.radius * self.sizes.range()[0] {
+            return Err(NoPacking::Far);
+        }
         let mut random = ChaCha8Rng::seed_from_u64(self.seed);
         let scales = self.scales(room / volume, &mut random)?;
         let power = self.dimension as i32;
         let asked = scales.iter().map(|scale| scale.powi(power)).sum::<f64>() * volume / room;
-        if asked >= 1.0 {
-            return Err(NoPacking::Jammed { asked, room: 1.0 });
+        // Half of the gap belongs to each grain.
+        let with_gap = |scale: &f64| (scale + 0.5 * self.gap / shape.radius).powi(power);
+        let filled = scales.iter().map(with_gap).sum::<f64>() * volume / room;
+        if !(asked < 1.0 && filled < 1.0 && asked.is_finite()) {
+            return Err(NoPacking::Overfull(filled));
         }
         let mut grains = Vec::with_capacity(scales.len());
         for scale in scales {
@@ -154,7 +168,7 @@ impl Packing<'_> {
                     scales.pop();
                     sum -= last;
                 }
-                let factor = (wanted / sum).powf(1.0 / self.dimension as f64);
+                let factor = libm::pow(wanted / sum, 1.0 / self.dimension as f64);
                 Ok(scales.into_iter().map(|scale| scale * factor).collect())
             }
         }

@@ -2,7 +2,7 @@
 
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
-use rand_distr::{Distribution, LogNormal, Normal};
+use rand_distr::StandardNormal;
 
 /// Sizes of grains over that of the grain that is given [-].
 #[derive(Clone, Debug, PartialEq)]
@@ -31,16 +31,8 @@ impl Sizes {
         match self {
             Sizes::One(size) => *size,
             Sizes::Uniform(low, high) => low + (high - low) * random.random::<f64>(),
-            Sizes::Normal(mean, deviation) => {
-                let within = |size: &f64| (size - mean).abs() <= TAIL * deviation;
-                let normal = Normal::new(*mean, *deviation).expect("deviations are checked");
-                draw_until(normal, within, random)
-            }
-            Sizes::LogNormal(median, deviation) => {
-                let within = |size: &f64| libm::log(size / median).abs() <= TAIL * deviation;
-                let normal = LogNormal::new(libm::log(*median), *deviation).expect("deviations are checked");
-                draw_until(normal, within, random)
-            }
+            Sizes::Normal(mean, deviation) => mean + deviation * within_tail(random),
+            Sizes::LogNormal(median, deviation) => median * libm::exp(deviation * within_tail(random)),
             Sizes::Numbers(shares) => pick(shares, |share| share[1], random),
             Sizes::Volumes(shares) => {
                 pick(shares, |share| share[1] / share[0].powi(dimension as i32), random)
@@ -62,11 +54,12 @@ impl Sizes {
     }
 }
 
-fn draw_until(sizes: impl Distribution<f64>, within: impl Fn(&f64) -> bool, random: &mut ChaCha8Rng) -> f64 {
+/// A number of the standard normal distribution, drawn again in its tails.
+fn within_tail(random: &mut ChaCha8Rng) -> f64 {
     loop {
-        let size = sizes.sample(random);
-        if within(&size) {
-            return size;
+        let drawn: f64 = random.sample(StandardNormal);
+        if drawn.abs() <= TAIL {
+            return drawn;
         }
     }
 }

@@ -64,8 +64,9 @@ fn balls_fill_the_part_of_a_box_that_is_asked_for_and_none_overlaps() {
 
 #[test]
 fn the_same_seed_gives_the_same_packing_for_any_number_of_threads() {
-    let (container, stone) = (cube(0.3), cube(0.05));
-    let packing = request(&container, &stone, 0.5, 2);
+    // So many that several threads have work.
+    let (container, stone) = (cube(0.3), Shape::ball([0.0; 3], 0.005));
+    let packing = request(&container, &stone, 0.7, 2);
     let with = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
         pool.install(|| packing.place()).expect("room")
@@ -112,6 +113,53 @@ fn grains_of_any_shape_keep_apart_and_inside() {
     }
 }
 
+/// Needles reach far beyond the distances at which grains of their width are neighbours.
+#[test]
+fn needles_that_grow_keep_apart() {
+    let (container, needle) = (cube(0.04), Shape::rectangle([0.0, 0.0], [0.02, 0.001]));
+    for seed in [2, 34, 105, 7, 8] {
+        let packing = Packing {
+            seed,
+            amount: Amount::Count(8),
+            sizes: Sizes::One(1.0),
+            ..request(&container, &needle, 0.1, 2)
+        };
+        let placed = shapes(&packing, &packing.place().expect("room"));
+        for (i, a) in placed.iter().enumerate() {
+            for point in a.surface(2e-4, 2, &container.bounds(2).expect("bounds")) {
+                let others = placed.iter().enumerate().filter(|(j, _)| *j != i);
+                let nearest =
+                    others.map(|(_, b)| b.distance(point.position, 2)).fold(f64::INFINITY, f64::min);
+                assert!(nearest > 0.0, "seed {seed}: {nearest:e} m");
+            }
+        }
+    }
+}
+
+#[test]
+fn combined_grains_keep_apart() {
+    let arm = |min: [f64; 3], max: [f64; 3]| Shape::cuboid(min, max);
+    let cross = Shape::Union(vec![
+        arm([-0.03, -0.006, -0.006], [0.03, 0.006, 0.006]),
+        arm([-0.006, -0.03, -0.006], [0.006, 0.03, 0.006]),
+        arm([-0.006, -0.006, -0.03], [0.006, 0.006, 0.03]),
+    ]);
+    let container = cube(0.2);
+    for dimension in [2, 3] {
+        let fraction = if dimension == 2 { 0.3 } else { 0.06 };
+        let packing = request(&container, &cross, fraction, dimension);
+        let placed = shapes(&packing, &packing.place().expect("room"));
+        assert!(placed.len() > 4, "{}", placed.len());
+        for (i, a) in placed.iter().enumerate() {
+            for point in a.surface(0.002, dimension, &container.bounds(dimension).expect("bounds")) {
+                for (_, b) in placed.iter().enumerate().filter(|(j, _)| *j != i) {
+                    assert!(b.distance(point.position, dimension) > 0.0, "{dimension} dimensions");
+                }
+            }
+        }
+    }
+}
+
 #[test]
 fn a_packing_that_cannot_be_says_what_there_is_room_for() {
     let (container, ball) = (cube(1.0), Shape::ball([0.0; 3], 0.1));
@@ -123,6 +171,10 @@ fn a_packing_that_cannot_be_says_what_there_is_room_for() {
     assert!(request(&container, &ball, 0.95 * room, 3).place().is_ok());
     let many = Packing { sizes: Sizes::One(1e-5), ..request(&container, &ball, 0.5, 3) };
     assert!(matches!(many.place(), Err(NoPacking::TooMany(_))));
+    let apart = Packing { gap: 1.0, ..request(&container, &ball, 0.3, 3) };
+    assert!(matches!(apart.place(), Err(NoPacking::Overfull(_))));
+    let far = Shape::cuboid([1e14, 0.0, 0.0], [1e14 + 1.0, 1.0, 1.0]);
+    assert_eq!(request(&far, &ball, 0.3, 3).place(), Err(NoPacking::Far));
     let everywhere = Shape::half_space([0.0; 3], [0.0, 0.0, 1.0]);
     assert_eq!(request(&everywhere, &ball, 0.5, 3).place(), Err(NoPacking::Container));
     assert_eq!(request(&container, &everywhere, 0.5, 3).place(), Err(NoPacking::Grain));
@@ -138,6 +190,8 @@ fn shares_are_those_of_numbers_or_of_volumes() {
     };
     assert!((small(numbers, &mut random) - 0.5).abs() < 0.01);
     assert!((small(volumes, &mut random) - 8.0 / 9.0).abs() < 0.01);
+    // Of next to no deviation.
+    assert!((Sizes::LogNormal(3.0, 1e-18).draw(3, &mut random) - 3.0).abs() < 1e-9);
     let normal = Sizes::Normal(1.0, 0.1);
     let drawn: Vec<f64> = (0..20_000).map(|_| normal.draw(3, &mut random)).collect();
     let mean = drawn.iter().sum::<f64>() / drawn.len() as f64;

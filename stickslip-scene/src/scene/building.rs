@@ -7,7 +7,7 @@
 use super::{
     BasisKind, Body, BodyMotion, ContactLaw, ContactRule, Damping, Dimension, Discretization, Domain,
     Expression, Face, Measurements, NamedMaterial, Normal, Outputs, Precision, Problem, Relaxation, Scene,
-    StressUpdate, Time, Transfer, VolumeChange,
+    SnapshotContent, StressUpdate, Time, Transfer, VolumeChange,
 };
 use crate::geometry::{Arrangement, Shape};
 use crate::material::LAWS;
@@ -101,6 +101,7 @@ impl Outputs {
             tables: end / ROWS,
             particles: Some(end / SNAPSHOTS),
             particles_at: Vec::new(),
+            snapshots: SnapshotContent::default(),
             grid: None,
             fringes: None,
             checkpoints: None,

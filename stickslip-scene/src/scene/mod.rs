@@ -446,6 +446,8 @@ pub struct Outputs {
     pub particles: Option<f64>,
     /// Times of further snapshots of the particles, ascending [s].
     pub particles_at: Vec<f64>,
+    /// What snapshots hold.
+    pub snapshots: SnapshotContent,
     /// Grid nodes for ParaView.
     pub grid: Option<f64>,
     /// Photoelastic fringes.
@@ -454,6 +456,25 @@ pub struct Outputs {
     pub checkpoints: Option<f64>,
     /// Probes, arrivals and fronts.
     pub measurements: Measurements,
+}
+
+/// What snapshots of particles and grid hold.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SnapshotContent {
+    /// Number format of what files hold, whatever the run computes with.
+    pub precision: Precision,
+    /// Names of the columns of particles beside their positions, body and number; `None`: all.
+    pub columns: Option<Vec<String>>,
+    /// Names of the bodies whose particles they hold; `None`: all.
+    pub bodies: Option<Vec<String>>,
+    /// Of each body, the particles whose number is a multiple of this.
+    pub every: usize,
+}
+
+impl Default for SnapshotContent {
+    fn default() -> Self {
+        SnapshotContent { precision: Precision::Single, columns: None, bodies: None, every: 1 }
+    }
 }
 
 /// A known answer for one quantity of one body.

@@ -284,11 +284,15 @@ impl Names for Scope<'_, '_> {
         if name == "t" && self.1 != Dependence::Constant {
             return Meaning::Time;
         }
-        if let Some(value) = self.0.index(name) {
-            return Meaning::Value(FormulaNumber { value: value as f64, kind: NumberKind::Number });
-        }
         let coordinate = PLACE.iter().position(|other| *other == name);
         let coordinate = coordinate.filter(|_| self.1 == Dependence::TimeAndPlace);
+        if let Some(value) = self.0.index(name) {
+            if coordinate.is_some() {
+                let found = format!("the index `{name}`, which is a place in formulas of loads");
+                return Meaning::Wrong(Fault::new("", found, "another name"));
+            }
+            return Meaning::Value(FormulaNumber { value: value as f64, kind: NumberKind::Number });
+        }
         match (self.0.quantity(name), coordinate) {
             (Some(_), Some(_)) => {
                 let found = format!("the name `{name}`, which is a place in formulas of loads");

@@ -120,6 +120,7 @@ fn problems_found_later_are_shown_at_the_table_that_stands_for_many() {
     );
     assert_eq!(loaded.source.written("bodies[9].shape.ball"), "packings[0].shape.ball");
     assert_eq!(loaded.source.written("supports[2].within"), "supports[0].within");
+    assert_eq!(loaded.source.written("outputs.probes[3].at"), "outputs.probes[0].at");
 }
 
 #[test]
@@ -141,6 +142,11 @@ fn mistakes() {
                 "repeat = { j = 3, i = \"3 - j\" }",
                 "repeat = {}",
                 "12:1: bodies[0].repeat: found a table; allowed: a table of indices and how many values they have: { i = 10, j = 5 }",
+            ),
+            (
+                "repeat = { j = 3, i = \"3 - j\" }",
+                "repeat = { j = 1000000, i = 1000000, k = 0 }",
+                "12:29: bodies[0].repeat.i: found 1000000; allowed: a whole number from 0 on, of at most 1000000 repetitions in all; this is with j = 0",
             ),
             (
                 "repeat.k = 4",
@@ -168,6 +174,21 @@ fn mistakes() {
                 "18:8: bodies[1].name: found \"floor*\"; allowed: a name without `*`, which is any letters where bodies are named",
             ),
             (
+                "body = \"disk * of row 1\"",
+                "body = \"grain\"",
+                "31:8: supports[0].body: found \"grain\"; allowed: the name of a body that deforms (\"disk 0 of row 1\", \"disk 1 of row 1\", \"disk 2 of row 1\", \"disk 0 of row 2\", \"disk 1 of row 2\", \"disk 0 of row 3\", \"floor\", \"grain 1\", \"grain 2\", \"grain 3\", \"grain 4\", \"grain 5\", and 172 more); `grain *` is all whose names begin so",
+            ),
+            (
+                "solid_fraction = 0.7",
+                "count = 900",
+                "28:9: packings[0].count: found grains of 3.538 times the volume of the container; allowed: less than about 0.6 of it in space, 0.8 in the plane; fewer or smaller grains, or a larger container; are the units right?",
+            ),
+            (
+                "sizes = { uniform = [0.9, 1.1] }",
+                "sizes = { numbers = [0.8, 1.2] }",
+                "26:22: packings[0].sizes.numbers[0]: found 0.8; allowed: a size and its share, such as [1.5, 0.3]",
+            ),
+            (
                 "between = [\"grain *\", \"disk *\"]",
                 "between = [\"grian *\", \"disk *\"]",
                 "35:12: contact[0].between[0]: found \"grian *\"; allowed: the name of a body or a material, or any (\"disk 0 of row 1\", \"disk 1 of row 1\", \"disk 2 of row 1\", \"disk 0 of row 2\", \"disk 1 of row 2\", \"disk 0 of row 3\", \"floor\", \"grain 1\", \"grain 2\", \"grain 3\", \"grain 4\", \"grain 5\", and 174 more); in a pattern, `*` is any letters: none of these names match it",
@@ -180,7 +201,7 @@ fn mistakes() {
             (
                 "solid_fraction = 0.7",
                 "",
-                "22:1: packings[0]: found a packing of no number of grains; allowed: one of count and solid_fraction",
+                "22:1: packings[0]: found neither `count` nor `solid_fraction`; allowed: one of count and solid_fraction",
             ),
             (
                 "solid_fraction = 0.7",
@@ -195,7 +216,7 @@ fn mistakes() {
             (
                 "sizes = { uniform = [0.9, 1.1] }",
                 "sizes = { normal = [1, 0.4] }",
-                "26:20: packings[0].sizes.normal: found [1, 0.4]; allowed: sizes above 0, the largest at most 20 times the smallest; these are from -0.200 to 2.200",
+                "26:20: packings[0].sizes.normal: found [1, 0.4]; allowed: sizes above 0, the largest at most 10 times the smallest; these are from -0.200 to 2.200",
             ),
             (
                 "sizes = { uniform = [0.9, 1.1] }",
@@ -213,6 +234,21 @@ fn mistakes() {
                 "22:1: packings[0]: found about 1.8e8 grains; allowed: at most 1000000; are the units of the grain and the container right?",
             ),
         ],
+    );
+    let content = |keys: &str| message(&format!("{MANY}\n[outputs.snapshots]\n{keys}\n"));
+    assert_eq!(
+        content("columns = [\"velocity\", \"stres\"]"),
+        "a.toml:53:24: outputs.snapshots.columns[1]: found \"stres\"; allowed: a column of particles (\"velocity\", \
+         \"mass\", \"volume\", \"deformation\", \"stress\", \"pressure\", \"von_mises\", \"strain_rate\", \
+         \"bulk_viscosity\"); did you mean `stress`?"
+    );
+    assert_eq!(
+        content("every = 0"),
+        "a.toml:53:9: outputs.snapshots.every: found 0; allowed: a whole number from 1 to 1000000"
+    );
+    assert_eq!(
+        content("precision = \"half\""),
+        "a.toml:53:13: outputs.snapshots.precision: found \"half\"; allowed: \"double\" or \"single\""
     );
     let dense = message(&MANY.replace("solid_fraction = 0.7", "solid_fraction = 0.9"));
     let start = "a.toml:28:18: packings[0].solid_fraction: found grains that fill 0.900 of the container, and jam; allowed: about 0.";

@@ -244,6 +244,7 @@ pub fn scene() -> Scene {
             tables: 0.1,
             particles: Some(0.25),
             particles_at: Vec::new(),
+            snapshots: SnapshotContent { precision: Precision::Double, ..Default::default() },
             grid: Some(0.5),
             fringes: None,
             checkpoints: None,

@@ -4,8 +4,11 @@
 //! space and in the plane, in double and single precision.
 //!
 //! Expected: by its name each column of a body is that of the snapshot, bit for bit; what the plane does not leave free
-//! is zero; a name that is unknown is refused with those that are known.
+//! is zero; a name that is unknown is refused with those that are known. Where a column lies in memory it is again after
+//! every step and every state that is taken up, once the simulation has settled, and there it has the same values. What
+//! is written is read back, moves the body as it should, and is refused where it cannot be.
 
+use stickslip::door::{NumberFormat, Simulation, WriteError};
 use stickslip::{scene, step};
 
 fn balls(dimension: &str, precision: &str) -> String {
@@ -75,5 +78,115 @@ fn columns_are_those_of_the_snapshot_in_any_dimension_and_precision() {
             said.starts_with("found a column `strian`") && said.ends_with("start, plastic_strain"),
             "{said}"
         );
+    }
+}
+
+/// What lies at the place of a column: the numbers of each particle in the order of memory.
+fn at_place(simulation: &dyn Simulation, body: usize, name: &str) -> Vec<Vec<f64>> {
+    let place = simulation.column_place(body, name).unwrap();
+    let number = |particle: usize, entry: usize| {
+        let address = place.address + entry * place.stride;
+        // SAFETY: the simulation is borrowed, and its columns are as long as the place says.
+        unsafe {
+            match place.format {
+                NumberFormat::Single => {
+                    f64::from(*std::ptr::with_exposed_provenance::<f32>(address).add(particle))
+                }
+                NumberFormat::Double => *std::ptr::with_exposed_provenance::<f64>(address).add(particle),
+                NumberFormat::Count => {
+                    f64::from(*std::ptr::with_exposed_provenance::<u32>(address).add(particle))
+                }
+            }
+        }
+    };
+    let row = |particle: usize| (0..place.components.len()).map(|entry| number(particle, entry)).collect();
+    (0..place.len).map(row).collect()
+}
+
+#[test]
+fn columns_stay_where_they_are_once_settled() {
+    for (dimension, precision) in [("3d", "single"), ("plane-strain", "double")] {
+        let text = balls(dimension, precision);
+        let scene = scene::parse("columns.toml", &text, &[]).unwrap_or_else(|e| panic!("{e:?}")).scene;
+        let [mut simulation, mut other] = [(); 2].map(|()| step::build(&scene).unwrap());
+        let names = ["position", "stress", "plastic_strain", "number"];
+        let places = names.map(|name| simulation.column_place(1, name));
+        let (mut moved, mut saved) = (0, None);
+        for number in 0..40 {
+            simulation.step(f64::INFINITY).unwrap();
+            other.step(f64::INFINITY).unwrap();
+            moved += usize::from(names.map(|name| simulation.column_place(1, name)) != places);
+            simulation.settle();
+            assert_eq!(names.map(|name| simulation.column_place(1, name)), places, "{number}");
+            if number == 20 {
+                saved = simulation.save();
+            }
+        }
+        assert!(moved > 0, "particles were sorted");
+        assert_eq!(simulation.snapshot(), other.snapshot(), "to settle changes no bit");
+
+        let numbers = at_place(&*simulation, 1, "number");
+        let stress = simulation.column(1, "stress").unwrap().by_number::<6>();
+        let components = simulation.column_place(1, "stress").unwrap().components;
+        for (number, found) in numbers.iter().zip(at_place(&*simulation, 1, "stress")) {
+            let expected = components.iter().map(|&k| stress[number[0] as usize][k]);
+            assert!(found.into_iter().eq(expected), "{dimension} {precision}");
+        }
+        simulation.restore(saved.unwrap()).unwrap();
+        assert_eq!(names.map(|name| simulation.column_place(1, name)), places);
+        assert_eq!(simulation.column_place(1, "strian"), None);
+    }
+}
+
+#[test]
+fn what_is_written_moves_bodies_and_nonsense_is_refused() {
+    for (dimension, entries) in [("3d", 3), ("plane-strain", 2)] {
+        let text = balls(dimension, "single")
+            + "[[bodies]]\nname = \"wall\"\nmaterial = \"metal\"\nrigid = {}\nshape.box = { min = MIN, max = MAX }";
+        let corner = |x: f64| format!("[{}]", vec![(x - 5.0).to_string(); entries].join(", "));
+        let text = text.replace("MIN", &corner(0.0)).replace("MAX", &corner(0.2));
+        let scene = scene::parse("columns.toml", &text, &[]).unwrap_or_else(|e| panic!("{e:?}")).scene;
+        let mut simulation = step::build(&scene).unwrap();
+        (0..10).for_each(|_| _ = simulation.step(f64::INFINITY).unwrap());
+        let (before, step) = (simulation.bodies(), simulation.stable_step());
+        let count = simulation.column(0, "mass").unwrap().len();
+
+        let velocities: Vec<f64> = (0..count * entries).map(|i| [40.0, -30.0, 0.0][i % entries]).collect();
+        simulation.write(0, "velocity", &velocities).unwrap();
+        simulation.write(0, "mass", &vec![0.5; count]).unwrap();
+        let now = &simulation.bodies()[0];
+        let off = |found: f64, expected: f64| (found - expected).abs() > 1e-6 * expected.abs();
+        assert!(!off(now.mass, 0.5 * count as f64) && !off(now.velocity[0], 40.0), "{now:?}");
+        assert!(simulation.stable_step() < 0.9 * step, "faster particles ask for shorter steps");
+        let dt = simulation.step(f64::INFINITY).unwrap();
+        let way = simulation.bodies()[0].position[1] - before[0].position[1];
+        assert!((way / (-30.0 * dt) - 1.0).abs() < 0.01, "{way}");
+
+        let mut refused = |body: usize, name: &str, values: &[f64], expected: &str| {
+            let before = simulation.snapshot();
+            let error = simulation.write(body, name, values).unwrap_err();
+            assert!(error.to_string().contains(expected), "{error}");
+            assert_eq!(simulation.snapshot(), before);
+            error
+        };
+        let some = vec![1.0; count];
+        refused(0, "masss", &some, "allowed: position, velocity,");
+        let fixed = refused(0, "volume", &some, "allowed: velocity, spin, mass");
+        assert_eq!(fixed, WriteError::Fixed { name: "volume".into() });
+        refused(2, "mass", &some, "body `wall` is rigid");
+        refused(0, "mass", &some[1..], &format!("found {} values; allowed: {count}, 1 for each", count - 1));
+        for bad in [f64::NAN, f64::INFINITY, 1e300, 0.0, -1.0, 1e-300] {
+            let mut values = some.clone();
+            values[3] = bad;
+            refused(
+                0,
+                "mass",
+                &values,
+                "for the particle at 3 in memory; allowed: finite numbers above zero",
+            );
+        }
+        let mut values = vec![0.0; entries * count];
+        values[2 * entries + 1] = f64::NAN;
+        refused(0, "velocity", &values, "found NaN for the particle at 2 in memory");
     }
 }

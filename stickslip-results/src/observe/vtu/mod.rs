@@ -1,4 +1,4 @@
-//! VTK's file of points in XML (`.vtu`), with appended raw data in blocks compressed by LZ4.
+//! VTK's file of points in XML (`.vtu`), with appended raw data in blocks compressed by zlib.
 //!
 //! Layout of the data of one array, all little-endian (VTK file formats, "Appended data" and "Compression"):
 //!
@@ -6,8 +6,8 @@
 //! u64 blocks, u64 bytes of a full block, u64 bytes of a partial last block (0: none),
 //! u64 compressed bytes of each block, the blocks
 //! ```
-//! Blocks are independent; one that does not shrink stands in it as a single run of literals.
-//! Numbers keep all their bits: reading a file gives exactly what was written.
+//! Blocks are independent. Numbers have the format that the file is made with; in double precision they keep all their
+//! bits, and reading gives exactly what was written.
 
 mod read;
 mod write;
@@ -43,4 +43,4 @@ macro_rules! scalar {
         }
     )*};
 }
-scalar!(f64: "Float64", i32: "Int32", u32: "UInt32", i64: "Int64", u64: "UInt64", u8: "UInt8");
+scalar!(f64: "Float64", f32: "Float32", i32: "Int32", u32: "UInt32", i64: "Int64", u64: "UInt64", u8: "UInt8");

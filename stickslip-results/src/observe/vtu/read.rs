@@ -4,11 +4,13 @@ use super::{BLOCK, Scalar};
 use crate::column::Kind;
 use crate::observe::file::{ReadError, ReadProblem};
 use crate::observe::xml::attribute;
+use flate2::read::ZlibDecoder;
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::fs;
+use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
 /// An opened file of points.
@@ -67,7 +69,7 @@ impl PointArrays {
         loop {
             match reader.read_event()? {
                 Event::Start(tag) if tag.name().0 == "VTKFile" => {
-                    expect(&tag, "compressor", "vtkLZ4DataCompressor")?;
+                    expect(&tag, "compressor", "vtkZLibDataCompressor")?;
                     expect(&tag, "header_type", "UInt64")?;
                 }
                 Event::Start(tag) if tag.name().0 == "Piece" => {
@@ -122,31 +124,41 @@ impl PointArrays {
         let none = || missing(&format!("array `{name}`")).at(&self.path);
         let ArrayPlace { unit, components, .. } = self.arrays.get(name).ok_or_else(none)?;
         let (kind, values) = match components {
-            1 => (Kind::Number, self.numbers(name)?),
-            3 => (Kind::Vector, self.array::<f64, 3>(name)?.into_flattened()),
-            6 => (Kind::Symmetric, self.array::<f64, 6>(name)?.into_flattened()),
-            9 => (Kind::Tensor, self.array::<f64, 9>(name)?.into_flattened()),
+            1 => (Kind::Number, self.reals::<1>(name)?.into_flattened()),
+            3 => (Kind::Vector, self.reals::<3>(name)?.into_flattened()),
+            6 => (Kind::Symmetric, self.reals::<6>(name)?.into_flattened()),
+            9 => (Kind::Tensor, self.reals::<9>(name)?.into_flattened()),
             _ => return Err(none()),
         };
         Ok((unit.clone(), kind, values))
     }
 
-    /// An array with one number for each point.
-    pub(in crate::observe) fn numbers<T: Scalar>(&self, name: &str) -> Result<Vec<T>, ReadError> {
-        Ok(self.array::<T, 1>(name)?.into_flattened())
+    /// An array with one whole number for each point.
+    pub(in crate::observe) fn whole<T: Scalar>(&self, name: &str) -> Result<Vec<T>, ReadError> {
+        let array = self.unpack::<T, 1>(name, self.arrays.get(name));
+        Ok(array.map_err(|problem| problem.at(&self.path))?.into_flattened())
     }
 
-    /// An array with `N` numbers for each point.
-    pub(in crate::observe) fn array<T: Scalar, const N: usize>(
-        &self,
-        name: &str,
-    ) -> Result<Vec<[T; N]>, ReadError> {
-        self.unpack(name, self.arrays.get(name)).map_err(|problem| problem.at(&self.path))
+    /// An array with `N` numbers for each point, whatever the file's precision.
+    pub(in crate::observe) fn reals<const N: usize>(&self, name: &str) -> Result<Vec<[f64; N]>, ReadError> {
+        self.widened(name, self.arrays.get(name)).map_err(|problem| problem.at(&self.path))
     }
 
     /// Where the points are.
-    pub(in crate::observe) fn positions<T: Scalar, const N: usize>(&self) -> Result<Vec<[T; N]>, ReadError> {
-        self.unpack("points", self.positions.as_ref()).map_err(|problem| problem.at(&self.path))
+    pub(in crate::observe) fn positions<const N: usize>(&self) -> Result<Vec<[f64; N]>, ReadError> {
+        self.widened("points", self.positions.as_ref()).map_err(|problem| problem.at(&self.path))
+    }
+
+    fn widened<const N: usize>(
+        &self,
+        name: &str,
+        place: Option<&ArrayPlace>,
+    ) -> Result<Vec<[f64; N]>, ReadProblem> {
+        if place.is_some_and(|place| place.kind == f32::NAME) {
+            let short = self.unpack::<f32, N>(name, place)?;
+            return Ok(short.into_iter().map(|values| values.map(f64::from)).collect());
+        }
+        self.unpack(name, place)
     }
 
     fn unpack<T: Scalar, const N: usize>(
@@ -167,7 +179,9 @@ impl PointArrays {
         let unpacked: Option<Vec<Vec<T>>> = blocks
             .into_par_iter()
             .map(|(packed, size)| {
-                let bytes = lz4_flex::block::decompress(packed, size).ok()?;
+                let mut bytes = Vec::with_capacity(size);
+                // A block that says too much is none of ours.
+                ZlibDecoder::new(packed).take(size as u64 + 1).read_to_end(&mut bytes).ok()?;
                 (bytes.len() == size).then(|| T::read(&bytes))
             })
             .collect();

@@ -3,8 +3,13 @@
 use super::{BLOCK, Scalar};
 use crate::column::Kind;
 use crate::observe::file::{OutputError, replace};
+use crate::scene::Precision;
+use flate2::Compression;
+use flate2::write::ZlibEncoder;
+use rayon::prelude::*;
 use std::borrow::Cow;
 use std::fmt::Write as _;
+use std::io::Write as _;
 use std::path::Path;
 
 /// VTK's number of a cell that is a single point.
@@ -12,6 +17,7 @@ const VTK_VERTEX: u8 = 1;
 
 /// A file of points, encoded and ready to be written: it borrows nothing, so that another thread may write it.
 pub struct Vtu {
+    precision: Precision,
     points: usize,
     fields: Vec<(&'static str, f64)>,
     geometry: Vec<Array>,
@@ -32,6 +38,20 @@ struct Array {
 impl Array {
     fn new<T: Scalar>(name: &'static str, components: &'static [&'static str], values: &[T]) -> Self {
         Array { name: name.into(), unit: String::new(), kind: T::NAME, components, bytes: compress(values) }
+    }
+
+    fn real(
+        name: &'static str,
+        components: &'static [&'static str],
+        (values, precision): (&[f64], Precision),
+    ) -> Self {
+        match precision {
+            Precision::Double => Array::new(name, components, values),
+            Precision::Single => {
+                let short: Vec<f32> = values.iter().map(|&value| value as f32).collect();
+                Array::new(name, components, &short)
+            }
+        }
     }
 }
 
@@ -56,13 +76,14 @@ const TENSOR: &[&str] = &["XX", "XY", "XZ", "YX", "YY", "YZ", "ZX", "ZY", "ZZ"];
 
 impl Vtu {
     /// Points at a time [s], each a cell of its own, so that ParaView can threshold and select them one by one.
-    pub(in crate::observe) fn new(time: f64, positions: &[[f64; 3]]) -> Self {
+    pub(in crate::observe) fn new(time: f64, positions: &[[f64; 3]], precision: Precision) -> Self {
         let numbers: Vec<i64> = (0..positions.len() as i64).collect();
         let ends: Vec<i64> = (1..=positions.len() as i64).collect();
         Vtu {
+            precision,
             points: positions.len(),
             fields: vec![("TimeValue", time)],
-            geometry: vec![Array::new("points", VECTOR, positions.as_flattened())],
+            geometry: vec![Array::real("points", VECTOR, (positions.as_flattened(), precision))],
             cells: vec![
                 Array::new("connectivity", NUMBER, &numbers),
                 Array::new("offsets", NUMBER, &ends),
@@ -77,25 +98,26 @@ impl Vtu {
         self.fields.push((name, value));
     }
 
-    /// Adds an array with a value of so many components for each point.
-    pub(in crate::observe) fn point_data<T: Scalar>(
+    /// Adds an array with a whole number for each point.
+    pub(in crate::observe) fn whole<T: Scalar>(&mut self, name: &'static str, values: &[T]) {
+        assert_eq!(values.len(), self.points, "`{name}` has a value for each point");
+        self.point_data.push(Array::new(name, NUMBER, values));
+    }
+
+    /// Adds an array with a value of so many components for each point, in the file's precision.
+    pub(in crate::observe) fn real(
         &mut self,
         name: &'static str,
         components: &'static [&'static str],
-        values: &[T],
+        values: &[f64],
     ) {
         assert_eq!(values.len(), self.points * components.len(), "`{name}` has a value for each point");
-        self.point_data.push(Array::new(name, components, values));
+        self.point_data.push(Array::real(name, components, (values, self.precision)));
     }
 
     /// Adds an array that is described: its name, its unit and what each point has.
-    pub(in crate::observe) fn described<T: Scalar>(
-        &mut self,
-        (name, unit): (&str, &str),
-        kind: Kind,
-        values: &[T],
-    ) {
-        self.point_data(ANY, components(kind), values);
+    pub(in crate::observe) fn described(&mut self, (name, unit): (&str, &str), kind: Kind, values: &[f64]) {
+        self.real(ANY, components(kind), values);
         let array = self.point_data.last_mut().expect("it was just added");
         (array.name, array.unit) = (Cow::Owned(name.to_string()), unit.to_string());
     }
@@ -121,7 +143,7 @@ impl Vtu {
         let mut xml = String::from(concat!(
             "<?xml version=\"1.0\"?>\n",
             "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\" ",
-            "compressor=\"vtkLZ4DataCompressor\">\n<UnstructuredGrid>\n<FieldData>\n",
+            "compressor=\"vtkZLibDataCompressor\">\n<UnstructuredGrid>\n<FieldData>\n",
         ));
         for (name, value) in &self.fields {
             xml += &format!(
@@ -167,7 +189,7 @@ impl Array {
 
 fn compress<T: Scalar>(values: &[T]) -> Vec<u8> {
     let blocks: Vec<Vec<u8>> = values
-        .chunks(BLOCK / size_of::<T>())
+        .par_chunks(BLOCK / size_of::<T>())
         .map(|chunk| {
             let mut bytes = Vec::with_capacity(size_of_val(chunk));
             T::write(chunk, &mut bytes);
@@ -182,62 +204,10 @@ fn compress<T: Scalar>(values: &[T]) -> Vec<u8> {
     bytes
 }
 
-/// Bytes of a sample, and how many of them tell whether a block is worth compressing.
-const SAMPLE: usize = 1 << 11;
-const SAMPLES: usize = 4;
-/// A block is worth compressing if its samples shrink below this share.
-const WORTH: f64 = 0.9;
+/// How hard to look for what repeats: numbers that use all their bits repeat next to nothing, however long one looks.
+const EFFORT: Compression = Compression::fast();
 
-/// A block in the format of LZ4: compressed, or as it is where that would take time and save next to nothing, as for
-/// most numbers that use all their bits.
 fn block(bytes: &[u8]) -> Vec<u8> {
-    let samples = || bytes.chunks(SAMPLE).step_by(bytes.len().div_ceil(SAMPLE * SAMPLES).max(1));
-    let before: usize = samples().map(<[u8]>::len).sum();
-    let after: usize = samples().map(|sample| lz4_flex::block::compress(sample).len()).sum();
-    if (after as f64) < WORTH * before as f64 { lz4_flex::block::compress(bytes) } else { literals(bytes) }
-}
-
-/// Bytes as one run of literals: LZ4's format for a block that nothing was found to repeat in.
-///
-/// ```text
-/// token (high half: 15, or the length if that is less), 255 ... 255, rest of the length - 15, the bytes
-/// ```
-fn literals(bytes: &[u8]) -> Vec<u8> {
-    let length = bytes.len();
-    let mut packed = Vec::with_capacity(length + length / 255 + 2);
-    packed.push((length.min(15) as u8) << 4);
-    if let Some(more) = length.checked_sub(15) {
-        packed.resize(packed.len() + more / 255, 255);
-        packed.push((more % 255) as u8);
-    }
-    packed.extend_from_slice(bytes);
-    packed
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn literals_of_any_length_are_a_block_of_lz4() {
-        for length in [0, 1, 14, 15, 16, 269, 270, 271, 525, BLOCK] {
-            let bytes: Vec<u8> = (0..length).map(|i| (i * i / 7) as u8).collect();
-            let packed = literals(&bytes);
-            assert_eq!(lz4_flex::block::decompress(&packed, length).unwrap(), bytes, "{length} bytes");
-        }
-    }
-
-    #[test]
-    fn what_repeats_is_compressed_and_what_does_not_is_left() {
-        let constant = vec![7_u8; BLOCK];
-        assert!(block(&constant).len() < BLOCK / 100);
-        let mut state = 1_u64;
-        let random: Vec<u8> = (0..BLOCK)
-            .map(|_| {
-                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-                (state >> 56) as u8
-            })
-            .collect();
-        assert!(block(&random) == literals(&random));
-    }
+    let mut packed = ZlibEncoder::new(Vec::with_capacity(bytes.len()), EFFORT);
+    packed.write_all(bytes).and_then(|()| packed.finish()).expect("memory takes all bytes")
 }

@@ -127,19 +127,21 @@ impl Choice for Observable {
     ];
 }
 
-/// What is measured in a run of length `end` [s].
+/// What is measured in a run of length `end` [s], and of each probe its table in the file.
 pub fn resolve(
     outputs: &Outputs,
     (bodies, end): (&[Body], f64),
     context: &Context,
-) -> Result<scene::Measurements, Fault> {
+) -> Result<(scene::Measurements, Vec<String>), Fault> {
     let free = bodies.iter().filter(|body| !body.is_rigid());
     let bodies: Vec<&str> = free.map(|body| body.name.as_str()).collect();
     let (mut probes, mut taken): (Vec<scene::Probe>, _) = (Vec::new(), HashSet::new());
-    for probe in outputs.probes.iter().flatten() {
+    let mut declared = Vec::new();
+    for (i, probe) in outputs.probes.iter().flatten().enumerate() {
         Repeat::each(probe.repeat.as_ref(), context, || {
             let resolved = probe.resolve((&bodies, &mut taken), context)?;
             probes.push(resolved);
+            declared.push(format!("outputs.probes[{i}]"));
             Ok(())
         })?;
     }
@@ -157,7 +159,7 @@ pub fn resolve(
         Some(Sampling::EveryStep) => 0.0,
         Some(Sampling::Every(interval)) => interval.positive(context)?,
     };
-    Ok(scene::Measurements { time_unit, samples, probes, arrivals, fronts })
+    Ok((scene::Measurements { time_unit, samples, probes, arrivals, fronts }, declared))
 }
 
 fn time_unit(unit: &QuantityInput<Duration>, context: &Context) -> Result<scene::TimeUnit, Fault> {

@@ -115,8 +115,11 @@ pub(super) fn resolve(source: &Source) -> Result<(Scene, Declared), Fault> {
         contact::resolve(file.contact.as_deref().unwrap_or_default(), (&bodies, &materials), context)?;
     let (supports, loads) = (file.supports.unwrap_or_default(), file.loads.unwrap_or_default());
     let loads = loads::resolve(&supports, &loads, (&bodies, context))?;
+    let known = (&bodies[..], &materials[..], time.end);
+    let (outputs, declared_probes) = outputs::resolve(file.outputs.as_ref(), known, context)?;
     let declared = Declared::from([
         ("bodies", declared),
+        ("outputs.probes", declared_probes),
         ("supports", loads.declared_supports),
         ("loads", loads.declared_loads),
     ]);
@@ -135,7 +138,7 @@ pub(super) fn resolve(source: &Source) -> Result<(Scene, Declared), Fault> {
         },
         start: file.start.map(|start| start.resolve(context)).transpose()?,
         gravity: file.gravity.map_or(Ok([0.0; 3]), |gravity| gravity.value(context))?,
-        outputs: outputs::resolve(file.outputs.as_ref(), (&bodies, time.end), context)?,
+        outputs,
         references: outputs::references(file.references.as_deref().unwrap_or_default(), &bodies, context)?,
         time,
         materials,

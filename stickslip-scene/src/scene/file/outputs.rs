@@ -5,12 +5,13 @@ use super::fringes::Fringes;
 use super::measurements::{self, Arrival, Front, Probe, Sampling};
 use super::quantity::{Duration, QuantityInput, evaluate};
 use super::read::{Read, table};
-use super::text::Text;
+use super::text::{Count, Text, Word, names_in};
+use crate::column;
 use crate::scene::error::Fault;
 use crate::scene::parameters::Dependence;
 use crate::scene::source::{DocumentNode, Value};
 use crate::scene::units::Powers;
-use crate::scene::{self, Body};
+use crate::scene::{self, Body, NamedMaterial, Precision, SnapshotContent};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use std::borrow::Cow;
 
@@ -23,6 +24,8 @@ table! {
         particles: Option<Interval>,
         /// Times of further snapshots of the particles [s].
         particles_at: Option<Vec<QuantityInput<Duration>>>,
+        /// What snapshots hold; by default all columns of all particles, in single precision.
+        snapshots: Option<Snapshots>,
         /// Interval between snapshots of the grid for ParaView [s], or "never".
         #[schemars(extend("default" = "never"))]
         grid: Option<Interval>,
@@ -43,6 +46,24 @@ table! {
         arrivals: Option<Vec<Arrival>>,
         /// Fronts whose position and speed are recorded: [[outputs.fronts]].
         fronts: Option<Vec<Front>>,
+    }
+}
+
+table! {
+    /// What snapshots of the particles, and of the grid, hold.
+    Snapshots {
+        /// Number format of files, whatever the run computes with.
+        #[schemars(extend("default" = "single"))]
+        precision: Option<Word<Precision>>,
+        /// Columns of the particles beside positions, body and number: velocity, stress, pressure, von_mises,
+        /// deformation, mass, volume, and what laws remember; by default all. Pictures, and fringes of a finished run,
+        /// need the first of these but for pressure and von_mises.
+        columns: Option<Vec<Text>>,
+        /// Names of the bodies whose particles they hold, or patterns in which `*` is any letters; by default all.
+        bodies: Option<Vec<Text>>,
+        /// Of each body only each so many-th particle; then there are no pictures, and no fringes of a finished run.
+        #[schemars(extend("default" = 1))]
+        every: Option<Count>,
     }
 }
 
@@ -87,14 +108,14 @@ const QUANTITIES: &[(&str, [i8; 3])] = &[
     ("strain", [1, 2, -2]),
 ];
 
-/// What is written in a run of length `end` [s].
+/// What is written in a run of length `end` [s], and of each probe its table in the file.
 pub fn resolve(
     outputs: Option<&Outputs>,
-    (bodies, end): (&[Body], f64),
+    (bodies, materials, end): (&[Body], &[NamedMaterial], f64),
     context: &Context,
-) -> Result<scene::Outputs, Fault> {
+) -> Result<(scene::Outputs, Vec<String>), Fault> {
     let mut resolved = scene::Outputs::of_run(end);
-    let Some(outputs) = outputs else { return Ok(resolved) };
+    let Some(outputs) = outputs else { return Ok((resolved, Vec::new())) };
     if let Some(interval) = &outputs.tables {
         resolved.tables = interval.positive(context)?;
     }
@@ -105,6 +126,9 @@ pub fn resolve(
         resolved.particles_at.push(time.positive(context)?);
     }
     resolved.particles_at.sort_by(f64::total_cmp);
+    if let Some(snapshots) = &outputs.snapshots {
+        resolved.snapshots = snapshots.resolve((bodies, materials), context)?;
+    }
     if let Some(interval) = &outputs.grid {
         resolved.grid = interval.value(context)?;
     }
@@ -114,9 +138,43 @@ pub fn resolve(
     if let Some(fringes) = &outputs.fringes {
         resolved.fringes = Some(fringes.resolve((bodies, end), context)?);
     }
-    resolved.measurements = measurements::resolve(outputs, (bodies, end), context)?;
-    Ok(resolved)
+    let (measurements, declared) = measurements::resolve(outputs, (bodies, end), context)?;
+    resolved.measurements = measurements;
+    Ok((resolved, declared))
 }
+
+impl Snapshots {
+    fn resolve(
+        &self,
+        (bodies, materials): (&[Body], &[NamedMaterial]),
+        context: &Context,
+    ) -> Result<SnapshotContent, Fault> {
+        let mut content = SnapshotContent::default();
+        if let Some(precision) = &self.precision {
+            content.precision = precision.value(context)?;
+        }
+        if let Some(columns) = &self.columns {
+            let mut known: Vec<&str> = column::optional_in_files().collect();
+            for history in materials.iter().flat_map(|material| material.law.history()) {
+                if !known.contains(&history.column.name) {
+                    known.push(history.column.name);
+                }
+            }
+            content.columns = Some(names_in(columns, ("a column of particles", &known), context)?);
+        }
+        if let Some(names) = &self.bodies {
+            let known: Vec<&str> = bodies.iter().map(|body| body.name.as_str()).collect();
+            content.bodies = Some(names_in(names, ("the name of a body", &known), context)?);
+        }
+        if let Some(every) = &self.every {
+            content.every = every.value(context, 1..=MOST_EVERY)?;
+        }
+        Ok(content)
+    }
+}
+
+/// Particles of which a snapshot holds one, at most.
+const MOST_EVERY: usize = 1_000_000;
 
 /// The known answers.
 pub fn references(

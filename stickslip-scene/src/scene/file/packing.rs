@@ -133,12 +133,13 @@ impl Packing {
                 Err(Fault::new(&node.key, "`solid_fraction` beside `count`", allowed)
                     .at(node.name_span.clone()))
             }
-            (None, None) => Err(Fault::new(declared, "a packing of no number of grains", allowed)),
+            (None, None) => Err(Fault::new(declared, "neither `count` nor `solid_fraction`", allowed)),
         }
     }
 
     fn fault(&self, problem: NoPacking, declared: &str) -> Fault {
         let key = |key: &str| format!("{declared}.{key}");
+        let at = if self.count.is_some() { "count" } else { "solid_fraction" };
         match problem {
             NoPacking::Grain => {
                 Fault::new(&key("shape"), "a shape without bounds, or in which nothing is", "a grain")
@@ -153,8 +154,23 @@ impl Packing {
                 Fault::new(declared, format!("about {count:.1e} grains"), format!("at most {MOST_GRAINS}"))
                     .help(Some(help))
             }
+            NoPacking::Far => {
+                let help = "are the units right?".to_string();
+                Fault::new(
+                    &key("within"),
+                    "a container more than 1e8 grains from the origin",
+                    "one that is nearer",
+                )
+                .help(Some(help))
+            }
+            NoPacking::Overfull(ratio) => {
+                let gap = if self.gap.is_some() { ", with half of the gap around each" } else { "" };
+                let found = format!("grains of {ratio:.3} times the volume of the container{gap}");
+                let allowed = "less than about 0.6 of it in space, 0.8 in the plane";
+                let help = "fewer or smaller grains, or a larger container; are the units right?".to_string();
+                Fault::new(&key(at), found, allowed).help(Some(help))
+            }
             NoPacking::Jammed { asked, room } => {
-                let at = if self.count.is_some() { "count" } else { "solid_fraction" };
                 let found = format!("grains that fill {asked:.3} of the container, and jam");
                 Fault::new(&key(at), found, format!("about {room:.2} of it for these shapes")).help(Some(
                     "fewer or smaller grains, more sizes of them, or a larger container".to_string(),
@@ -169,20 +185,21 @@ impl SizesInput {
         let number = |node: &DocumentNode| QuantityInput::<Ratio>::new(node).positive(context);
         let Value::Table(children) = &self.0.value else { return Ok(Sizes::One(number(&self.0)?)) };
         let [kind] = &children[..] else { return Err(self.0.fault(Self::wanted())) };
-        let pair = |node: &DocumentNode| match node.children() {
+        let pair = |node: &DocumentNode, allowed: &str| match node.children() {
             [a, b] => Ok([number(a)?, number(b)?]),
-            _ => Err(node.fault("two numbers: [0.8, 1.2]")),
+            _ => Err(node.fault(allowed)),
         };
+        let share = |node: &DocumentNode| pair(node, "a size and its share, such as [1.5, 0.3]");
         let sizes = match kind.name.as_str() {
             "numbers" | "volumes" => {
-                let shares = kind.children().iter().map(pair).collect::<Result<Vec<_>, _>>()?;
+                let shares = kind.children().iter().map(share).collect::<Result<Vec<_>, _>>()?;
                 if shares.is_empty() {
                     return Err(kind.fault("a list of sizes and shares: [[1, 0.7], [1.5, 0.3]]"));
                 }
                 if kind.name == "numbers" { Sizes::Numbers(shares) } else { Sizes::Volumes(shares) }
             }
             "uniform" | "normal" | "lognormal" => {
-                let [a, b] = pair(kind)?;
+                let [a, b] = pair(kind, "two numbers: [0.8, 1.2]")?;
                 match kind.name.as_str() {
                     "uniform" if a > b => return Err(kind.fault("the smallest size first")),
                     "uniform" => Sizes::Uniform(a, b),
@@ -203,7 +220,7 @@ impl SizesInput {
 }
 
 /// The largest size over the smallest.
-const MOST_RATIO: f64 = 20.0;
+const MOST_RATIO: f64 = 10.0;
 
 impl Read for SizesInput {
     fn wanted() -> String {

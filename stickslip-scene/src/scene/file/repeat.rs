@@ -36,7 +36,6 @@ impl Repeat {
         (left, each): (&mut usize, &mut dyn FnMut() -> Result<(), Fault>),
     ) -> Result<(), Fault> {
         let Some((index, inner)) = indices.split_first() else {
-            *left -= 1;
             return each().map_err(|fault| context.parameters.at_indices(fault));
         };
         let count = QuantityInput::<Ratio>::new(index);
@@ -44,9 +43,13 @@ impl Repeat {
         let whole = |value: f64| value.fract() == 0.0 && value >= 0.0 && value <= *left as f64;
         let count = count.checked(context, &allowed, whole);
         let count = count.map_err(|fault| context.parameters.at_indices(fault))? as usize;
-        context.parameters.with_index(index, count, &mut || match *left {
-            0 => Err(index.fault(&*allowed)),
-            _ => Self::over(inner, context, (left, each)),
+        // Turns count whether or not anything comes of them.
+        context.parameters.with_index(index, count, &mut || match left.checked_sub(1) {
+            None => Err(index.fault(&*allowed)),
+            Some(fewer) => {
+                *left = fewer;
+                Self::over(inner, context, (left, each))
+            }
         })
     }
 }

@@ -60,7 +60,9 @@ impl Text {
         if known.contains(&name.as_str()) {
             return Ok(name);
         }
-        Err(self.unknown(&name, what, known))
+        let one = is_pattern(&name).then(|| "one name is wanted here, no pattern".to_string());
+        let fault = self.unknown(&name, what, known);
+        Err(if one.is_some() { fault.help(one) } else { fault })
     }
 
     /// The text, which must be the name of something or a pattern that some names match, and the places of those.
@@ -83,8 +85,12 @@ impl Text {
             quoted.push(format!("and {} more", known.len() - MOST_LISTED));
         }
         let allowed = format!("{what} ({})", quoted.join(", "));
+        let begins = |other: &&str| other.strip_prefix(name).is_some_and(|rest| rest.starts_with(' '));
         let help = match is_pattern(name) {
             true => Some("in a pattern, `*` is any letters: none of these names match it".to_string()),
+            false if known.iter().filter(|other| begins(other)).count() > 1 => {
+                Some(format!("`{name} *` is all whose names begin so"))
+            }
             false => did_you_mean(name, known.iter().copied()),
         };
         self.refused(name, allowed).help(help)

@@ -55,6 +55,11 @@ impl Parser<'_> {
                 self.code.push(Instruction::Call(function));
                 Ok(self.folded(ParsedPart { kind: NumberKind::Number, value, start, span }))
             }
+            (Some(function @ Function::Mod), [a, b]) => {
+                let (kind, value) = self.agree(a, b)?;
+                self.code.push(Instruction::Call(function));
+                Ok(self.folded(ParsedPart { kind, value, start, span }))
+            }
             (Some(function), [part]) if function.arguments() == 1 => {
                 let kind = result(function, part)?;
                 self.code.push(Instruction::Call(function));

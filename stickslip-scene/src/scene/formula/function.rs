@@ -17,6 +17,7 @@ pub enum Function {
     Abs,
     Min,
     Max,
+    Mod,
     Floor,
     Ceil,
 }
@@ -37,6 +38,7 @@ impl Function {
         ("abs", Function::Abs),
         ("min", Function::Min),
         ("max", Function::Max),
+        ("mod", Function::Mod),
         ("floor", Function::Floor),
         ("ceil", Function::Ceil),
     ];
@@ -48,7 +50,7 @@ impl Function {
 
     /// How many numbers it takes; `min` and `max` take more as well.
     pub fn arguments(self) -> usize {
-        if matches!(self, Function::Atan2 | Function::Min | Function::Max) { 2 } else { 1 }
+        if matches!(self, Function::Atan2 | Function::Min | Function::Max | Function::Mod) { 2 } else { 1 }
     }
 
     /// Its value; functions of one number ignore `b`. Angles are in radians.
@@ -67,6 +69,8 @@ impl Function {
             Function::Abs => a.abs(),
             Function::Min => a.min(b),
             Function::Max => a.max(b),
+            // a - b floor(a / b): between 0 and b
+            Function::Mod => a - b * libm::floor(a / b),
             Function::Floor => libm::floor(a),
             Function::Ceil => libm::ceil(a),
         }

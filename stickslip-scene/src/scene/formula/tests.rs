@@ -93,6 +93,8 @@ fn units_stand_after_numbers() {
         ("sqrt(radius * 2 m)", 2.0, length),
         ("(3 m)^2 / radius", 4.5, length),
         ("10 m/s^2 * sin(30 deg)", 10.0 * (std::f64::consts::PI / 6.0).sin(), [0, 1, -2]),
+        ("mod(7 m, 2 m)", 1.0, [0, 1, 0]),
+        ("mod(-1, 3)", 2.0, [0, 0, 0]),
         ("(2 m) * m", 6.0, [0, 5, 0]), // `m` alone is the parameter, of whatever dimension fits
         ("2 m", 2.0, length),
     ] {

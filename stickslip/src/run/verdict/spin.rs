@@ -44,6 +44,8 @@ const TURNS: f64 = 0.01;
 /// The same over the energy of the motion on the whole: below, the turning is round-off, or a push that is no more than
 /// [`PUSHED`].
 const ROUNDING: f64 = 1e-4;
+/// Moment of a body's momentum over arm times momentum: below, bodies meet head on, and the moment is round-off.
+const HEAD_ON: f64 = 1e-3;
 /// Change of the velocity that gravity does not explain, over the speed of the particles: something else pushed.
 const PUSHED: f64 = 1e-4;
 /// Cells to a face that does something: nearer, a body may feel it.
@@ -161,7 +163,13 @@ impl Together {
             let relative = minus(state.velocity, velocity).map(|v| state.mass * v);
             norm(own(state)) + norm(cross(minus(state.position, center), relative))
         };
-        self.scale = self.scale.max(look.bodies.iter().map(size).sum());
+        // Of bodies that meet head on, arm and momentum have no moment but that of round-off.
+        let most = |state: &BodyState| {
+            let relative = minus(state.velocity, velocity).map(|v| state.mass * v);
+            HEAD_ON * norm(minus(state.position, center)) * norm(relative)
+        };
+        let sizes = look.bodies.iter().map(|state| size(state).max(most(state)));
+        self.scale = self.scale.max(sizes.sum());
         let change = norm(minus(look.ledger.angular_momentum, self.angular_momentum)) / self.scale;
         if change.is_nan() || change <= BOUND {
             return None;

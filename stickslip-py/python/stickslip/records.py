@@ -1,0 +1,148 @@
+"""Records and tables: what simulations and results say, in SI units."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from html import escape
+from typing import Any
+
+import numpy as np
+
+
+class Record(Mapping[str, Any]):
+    """Named values: `record.kinetic` and `record["kinetic"]` are the same. Rows of numbers are arrays."""
+
+    def __init__(self, values: Mapping[str, Any]) -> None:
+        self._values = {name: _kept(value) for name, value in values.items()}
+
+    @classmethod
+    def from_json(cls, text: str) -> Record:
+        """From what the compiled half gives."""
+        return cls(json.loads(text))
+
+    def __getitem__(self, name: str) -> Any:
+        return self._values[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._values)
+
+    def __len__(self) -> int:
+        return len(self._values)
+
+    def __getattr__(self, name: str) -> Any:
+        values = self.__dict__.get("_values", {})
+        if name in values:
+            return values[name]
+        raise AttributeError(f"found no `{name}`; allowed: {', '.join(values)}")
+
+    def __dir__(self) -> Iterable[str]:
+        return [*super().__dir__(), *self._values]
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({', '.join(f'{name}={value!r}' for name, value in self._values.items())})"
+
+
+def _kept(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        return Record(value)
+    if isinstance(value, list):
+        numbers = value and all(isinstance(entry, (int, float)) and not isinstance(entry, bool) for entry in value)
+        return np.array(value, dtype=float) if numbers else [_kept(entry) for entry in value]
+    return value
+
+
+def matches(pattern: str, name: str) -> bool:
+    """Whether a name is that of a pattern, in which each `*` is any letters, or none: as in scene files."""
+    return re.fullmatch(".*".join(map(re.escape, pattern.split("*"))), name) is not None
+
+
+class Table(np.ndarray):
+    """A structured array: `table["x"]` is a column, `table[3]` a row.
+
+    `table.where(body="ball")` are the rows with that body; `table.to_pandas()` and `table.to_polars()` are frames.
+    """
+
+    @classmethod
+    def of(cls, array: np.ndarray) -> Table:
+        """A structured array as a table; nothing is copied."""
+        return array.view(cls)
+
+    @classmethod
+    def of_columns(cls, columns: Mapping[str, Sequence[str]]) -> Table:
+        """A table of columns of text, as files have them: numbers where all entries are numbers."""
+        parsed = {name: _numbers(column) for name, column in columns.items()}
+        array = np.empty(
+            max(map(len, parsed.values()), default=0), [(name, column.dtype) for name, column in parsed.items()]
+        )
+        for name, column in parsed.items():
+            array[name] = column
+        return cls.of(array)
+
+    def where(self, **equal: Any) -> Table:
+        """The rows whose columns have these values: `contacts.where(body_a="ball")`; in text `*` is any letters."""
+        rows = np.ones(len(self), dtype=bool)
+        for name, value in equal.items():
+            column = np.asarray(self[name])
+            if isinstance(value, str) and "*" in value:
+                fits = {entry: matches(value, str(entry)) for entry in np.unique(column)}
+                rows &= np.array([fits[entry] for entry in column], dtype=bool)
+            else:
+                rows &= column == value
+        return self[rows].view(Table)
+
+    def columns(self) -> dict[str, np.ndarray]:
+        """Columns by their names. One of several numbers a row is several: `force_x`, `force_y`, `force_z`."""
+        found: dict[str, np.ndarray] = {}
+        for name in self.dtype.names or ():
+            column = np.asarray(self[name])
+            if column.ndim == 1:
+                found[name] = column
+                continue
+            endings = "xyz" if column.shape[1] == 3 else "abcdefghi"
+            found.update({f"{name}_{ending}": column[:, i] for i, ending in zip(range(column.shape[1]), endings)})
+        return found
+
+    def to_pandas(self) -> Any:
+        """A `pandas.DataFrame`; needs pandas."""
+        return _needed("pandas").DataFrame(self.columns())
+
+    def to_polars(self) -> Any:
+        """A `polars.DataFrame`; needs polars."""
+        return _needed("polars").DataFrame(self.columns())
+
+    def _repr_html_(self) -> str | None:
+        if self.dtype.names is None or self.ndim != 1:
+            return None
+        columns = self.columns()
+        head = "".join(f"<th>{escape(name)}</th>" for name in columns)
+        shown = min(len(self), SHOWN)
+        cells = ("".join(f"<td>{escape(_cell(column[i]))}</td>" for column in columns.values()) for i in range(shown))
+        rows = "".join(f"<tr>{row}</tr>" for row in cells)
+        rest = f"<p>{len(self) - shown} more rows</p>" if len(self) > shown else ""
+        return f"<table><tr>{head}</tr>{rows}</table>{rest}"
+
+
+SHOWN = 20
+"""Rows of a table that a notebook shows."""
+
+
+def _cell(value: Any) -> str:
+    return f"{value:.6g}" if isinstance(value, np.floating) else str(value)
+
+
+def _numbers(column: Sequence[str]) -> np.ndarray:
+    try:
+        return np.array(column, dtype=float)
+    except ValueError:
+        return np.array(column, dtype=str)
+
+
+def _needed(package: str) -> Any:
+    import importlib
+
+    try:
+        return importlib.import_module(package)
+    except ImportError as error:
+        raise ImportError(f"this needs {package}, which is not installed: pip install {package}") from error

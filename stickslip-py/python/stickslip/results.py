@@ -1,0 +1,181 @@
+"""Results of runs: tables through time, snapshots of the particles, charts."""
+
+from __future__ import annotations
+
+import base64
+import csv
+import os
+from collections.abc import Iterator, Mapping
+from html import escape
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from . import _core
+from .errors import ResultsError
+from .records import Record, Table
+from .running import _record
+
+
+class Frame(Mapping[str, np.ndarray]):
+    """The particles at a time, by columns: `frame["stress"]`.
+
+    Rows are ordered by body and then by the particle's number. `position`, `velocity` (n, 3) [m, m/s], `stress` (n, 6)
+    as xx yy zz xy yz xz, tension positive, `pressure`, `von_mises` [Pa], `deformation` (n, 3, 3), `mass` [kg], `volume`
+    [m^3], `body` (index), `number`, and what the laws remember. `units` has the units, `time` the time [s].
+    """
+
+    def __init__(
+        self, time: float, columns: Mapping[str, np.ndarray], units: Mapping[str, str], names: list[str]
+    ) -> None:
+        self.time, self.units, self._columns, self._names = time, dict(units), dict(columns), names
+
+    def body(self, name: str) -> Frame:
+        """The particles of one body."""
+        if name not in self._names:
+            raise KeyError(f"found a body `{name}`, which the run does not have; allowed: {', '.join(self._names)}")
+        rows = self._columns["body"] == self._names.index(name)
+        return Frame(self.time, {key: column[rows] for key, column in self._columns.items()}, self.units, self._names)
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        if name not in self._columns:
+            raise KeyError(
+                f"found a column `{name}`, which the snapshot does not have; allowed: {', '.join(self._columns)}"
+            )
+        return self._columns[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._columns)
+
+    def __len__(self) -> int:
+        return len(self._columns)
+
+    def __repr__(self) -> str:
+        return f"<Frame t = {self.time:g} s: {len(self['body'])} particles, {', '.join(self)}>"
+
+
+class Results:
+    """What a run left in a folder, finished or not.
+
+    `results.bodies` is bodies.csv, and so for every table there: `energy`, `contacts`, `loads`, `probes`, `arrivals`,
+    `fronts`, `front_speeds`, `fringes` (chapter 7 of the book names their columns). Tables and snapshots are read when
+    they are asked for.
+    """
+
+    def __init__(self, folder: str | os.PathLike[str]) -> None:
+        self.folder = Path(folder)
+        self._frames = _core.frames(self.folder)
+        self.record = Record(_record(self.folder))
+        """`run.json`: status, warnings, performance, the scene as run."""
+
+    @property
+    def status(self) -> str:
+        """How the run stands: "running", "finished", "interrupted", "out_of_time" or "failed"."""
+        return str(self.record.status)
+
+    @property
+    def warnings(self) -> list[Record]:
+        """What makes the results doubtful."""
+        return list(self.record.warnings)
+
+    @property
+    def names(self) -> list[str]:
+        """Names of the bodies, in the order of the numbers in snapshots."""
+        return list(self.record.bodies)
+
+    @property
+    def tables(self) -> list[str]:
+        """Names of the tables that there are."""
+        return sorted(path.stem for path in self.folder.glob("*.csv"))
+
+    @property
+    def times(self) -> np.ndarray:
+        """Times of the snapshots [s]."""
+        return np.array([time for time, _ in self._frames], dtype=float)
+
+    def table(self, name: str) -> Table:
+        """The table of this name. A last row that is cut short is left out: a run may be writing it."""
+        if name not in self.tables:
+            raise AttributeError(f"found no table `{name}` in {self.folder}; allowed: {', '.join(self.tables)}")
+        with open(self.folder / f"{name}.csv", encoding="utf-8", newline="") as file:
+            whole = (line for line in file if line.endswith("\n"))
+            head, *rows = list(csv.reader(whole)) or [[]]
+        columns = zip(*rows) if rows else ([] for _ in head)
+        return Table.of_columns(dict(zip(head, map(list, columns))))
+
+    def frame(self, number: int) -> Frame:
+        """The snapshot of this number, from 0; -1 is the last."""
+        if not -len(self._frames) <= number < len(self._frames):
+            raise IndexError(f"found snapshot {number}; allowed: 0 to {len(self._frames) - 1}")
+        time, path = self._frames[number]
+        columns, units = {}, {}
+        for name, (unit, count, values) in _core.read_frame(path).items():
+            shape = {1: (-1,), 9: (-1, 3, 3)}.get(count, (-1, count))
+            columns[name], units[name] = values.reshape(shape), unit
+        return Frame(time, columns, units, self.names)
+
+    def plot(self, body: str, quantity: str, ax: Any = None) -> Any:
+        """A chart of a column of bodies.csv through time, with its known answer if the scene has one.
+
+        Needs matplotlib; draws on `ax` if it is given, and returns the axes.
+        """
+        bodies = self.bodies
+        if body not in self.names:
+            raise ValueError(f"found a body `{body}`; allowed: {', '.join(self.names)}")
+        quantities = [name for name in bodies.dtype.names or () if name not in ("time", "body")]
+        if quantity not in quantities:
+            raise ValueError(f"found a column `{quantity}`; allowed: {', '.join(quantities)}")
+        if ax is None:
+            try:
+                import matplotlib.pyplot
+            except ImportError as error:
+                raise ImportError("charts need matplotlib, which is not installed: pip install matplotlib") from error
+            ax = matplotlib.pyplot.figure().add_subplot()
+        rows = bodies.where(body=body)
+        ax.plot(rows["time"], rows[quantity], label=f"{body} {quantity}")
+        for reference in self.record.references:
+            if (reference.body, reference.quantity) == (body, quantity):
+                points = np.array(reference.points)
+                ax.plot(points[:, 0], points[:, 1], "--", label=reference.label)
+        ax.set_xlabel("time [s]")
+        ax.set_ylabel(f"{quantity} [{UNITS[quantity]}]" if quantity in UNITS else quantity)
+        ax.set_title(self.record.title)
+        ax.legend()
+        return ax
+
+    def __getattr__(self, name: str) -> Table:
+        if name.startswith("_") or "folder" not in self.__dict__:
+            raise AttributeError(name)
+        return self.table(name)
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *self.tables]
+
+    def __repr__(self) -> str:
+        reached = self.record.performance
+        return (
+            f"<Results {self.record.title!r}: {self.status} at t = {reached.time:g} s, {reached.steps} steps, "
+            f"{len(self._frames)} snapshots, {len(self.warnings)} warnings>"
+        )
+
+    def _repr_html_(self) -> str:
+        picture = self.folder / "picture.png"
+        drawn = ""
+        if picture.exists():
+            drawn = f'<br><img src="data:image/png;base64,{base64.b64encode(picture.read_bytes()).decode()}">'
+        warned = "".join(f"<li>{escape(warning.message)}</li>" for warning in self.warnings)
+        return f"<code>{escape(repr(self))}</code><br>tables: {', '.join(self.tables)}<ul>{warned}</ul>{drawn}"
+
+
+UNITS = {
+    "mass": "kg",
+    "kinetic": "J",
+    "strain": "J",
+    **{axis: "m" for axis in "xyz"},
+    **{f"v{axis}": "m/s" for axis in "xyz"},
+    **{f"w{axis}": "rad/s" for axis in "xyz"},
+}
+"""Units of the columns of bodies.csv."""
+
+__all__ = ["Frame", "Results", "ResultsError"]

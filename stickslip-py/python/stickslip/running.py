@@ -1,0 +1,146 @@
+"""Runs that leave results, as those of the command."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Callable, Mapping
+from html import escape
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from . import _core
+from .errors import ResultsError, RunError
+from .progress import Progress, shown
+from .records import Record
+
+if TYPE_CHECKING:
+    from .simulation import Simulation
+
+
+class Summary(Record):
+    """What a run came to: `print(summary)`, or its values.
+
+    `status` is "finished", "interrupted" or "out_of_time"; `warnings` lists what makes the results doubtful, `start`
+    and `end` are ledgers, `energy_drift` is in J, `references` compares with known answers, `performance` has the time
+    that was reached [s], steps and wall times. `folder` is where the results are.
+    """
+
+    folder: Path
+    text: str
+
+    def __init__(self, folder: Path, said: str, values: Mapping[str, Any]) -> None:
+        super().__init__(values)
+        self.folder, self.text = folder, said
+
+    def __str__(self) -> str:
+        return self.text
+
+    def _repr_html_(self) -> str:
+        return f"<pre>{escape(self.text)}</pre>"
+
+
+def way_to(until: float, every: float | None, callback: Callable[[], Any] | None, show: Progress | None) -> _core.Way:
+    """Steps to a time [s], with a function that is called after each step or every so often [s]."""
+    every = 0.0 if every is None else float(every)
+    if not every >= 0.0:
+        raise ValueError(f"found every={every}; allowed: a time from 0 [s], or None for every step")
+    return {"until": float(until), "every": every, "callback": callback, "show": show}
+
+
+def carry_out(
+    simulation: Simulation,
+    out: str | os.PathLike[str],
+    *,
+    until: float | None = None,
+    every: float | None = None,
+    callback: Callable[[], Any] | None = None,
+    progress: bool = False,
+    checkpoint_every: float | None = 600.0,
+    max_time: float | None = None,
+    overwrite: bool = False,
+) -> Summary:
+    """A run of a simulation from where it is, with results in the folder `out`."""
+    folder = Path(out)
+    if not overwrite:
+        _refuse_unfinished(folder)
+    (path, given), text = simulation.scene._source(folder)
+    request: _core.RunRequest = {
+        "out": folder,
+        "resumed": False,
+        "source": (path, given, None if until is None else repr(float(until))),
+        "text": text,
+        "checkpoint_every": checkpoint_every,
+        "max_time": max_time,
+    }
+    with shown(progress) as show:
+        way = way_to(simulation.end if until is None else until, every, callback, show)
+        said, values = _core.run(simulation.engine, way, request)
+    return Summary(folder, said, Record.from_json(values))
+
+
+def resume(
+    folder: str | os.PathLike[str],
+    until: float | str | None = None,
+    *,
+    scene: str | os.PathLike[str] | None = None,
+    threads: int | None = None,
+    progress: bool = False,
+    checkpoint_every: float | None = 600.0,
+    max_time: float | None = None,
+) -> Summary:
+    """Goes on with the run in a folder from its newest checkpoint, as `stickslip resume` does.
+
+    It goes on to `until` [s], else to what was named last, else to the end of the scene. The scene is read again from
+    where it was, or from the file `scene`. A run that was stopped ends in the same bits as one that was not.
+    """
+    folder = Path(folder)
+    before = _record(folder)
+    source = before.get("source") or {}
+    if scene is None and not source:
+        raise RunError(f"{folder} does not say which scene file it came from; name it with scene", help="name the file")
+    path = Path(source["path"] if scene is None else scene).absolute()
+    given = [(name, value) for name, value in source.get("set", [])]
+    named = (source.get("until") if scene is None else None) if until is None else until
+    named = named if named is None or isinstance(named, str) else repr(float(named))
+    try:
+        words = path.read_text(encoding="utf-8")
+    except OSError as error:
+        raise RunError(
+            f"{path}: {error.strerror}; name the scene file with scene", help="name it with scene"
+        ) from error
+    read = _core.ReadScene(str(path), words, given)
+    # Set after the file is read: intervals that follow from the end stay as they are.
+    end = read.end if named is None else _core.ReadScene(str(path), words, [*given, ("time.end", named)]).end
+    request: _core.RunRequest = {
+        "out": folder,
+        "resumed": True,
+        "source": (path, given, named),
+        "text": None,
+        "checkpoint_every": checkpoint_every,
+        "max_time": max_time,
+    }
+    with shown(progress) as show:
+        said, values = _core.run(read.simulation(threads), way_to(end, None, None, show), request)
+    return Summary(folder, said, Record.from_json(values))
+
+
+def _record(folder: Path) -> dict[str, Any]:
+    """`run.json` of a folder."""
+    try:
+        return dict(json.loads((folder / "run.json").read_text(encoding="utf-8")))
+    except (OSError, ValueError) as error:
+        advice = "give the folder of a run, complete and unchanged"
+        raise ResultsError(f"cannot read {folder / 'run.json'}: {error}; {advice}", help=advice) from error
+
+
+def _refuse_unfinished(folder: Path) -> None:
+    """Refuses a folder with a run that nobody asked to stop, and that can go on."""
+    try:
+        status = _record(folder).get("status")
+    except ResultsError:
+        return
+    newest = max(folder.glob("checkpoints/*.checkpoint"), default=None)
+    if status in ("running", "out_of_time") and newest is not None:
+        advice = f"stickslip.resume({str(folder)!r}) goes on with it; overwrite=True begins anew"
+        raise RunError(f"{folder} holds a run that has not ended, with a checkpoint: {newest}; {advice}", help=advice)

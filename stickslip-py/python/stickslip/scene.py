@@ -1,0 +1,363 @@
+"""Scenes: what a user asks for, by the words of scene files."""
+
+from __future__ import annotations
+
+import copy
+import keyword
+import os
+import warnings
+from collections.abc import Callable, Mapping
+from html import escape
+from pathlib import Path
+from typing import Any, overload
+
+from . import _core
+from .document import plain, written, written_value
+from .errors import RunError, SceneError, StickslipWarning
+from .records import Record
+from .running import Summary, carry_out
+from .simulation import Simulation
+
+IN_PYTHON = "<scene in Python>"
+"""What stands for the file of a scene that has none."""
+
+
+class Report(Record):
+    """What a run will be, as `stickslip check` says: `print(report)`, or its values, such as `report.particles`."""
+
+    text: str
+
+    def __init__(self, said: str, values: Mapping[str, Any]) -> None:
+        super().__init__(values)
+        self.text = said
+
+    def __str__(self) -> str:
+        return self.text
+
+    def _repr_html_(self) -> str:
+        return f"<pre>{escape(self.text)}</pre>"
+
+
+class _Load:
+    """`Scene.load(path)` reads a file; `scene.load(body, ...)` adds a load, as `scene.support` adds a support."""
+
+    @overload
+    def __get__(self, scene: None, kind: type[Scene]) -> Callable[..., Scene]: ...
+    @overload
+    def __get__(self, scene: Scene, kind: type[Scene]) -> Callable[..., Scene]: ...
+    def __get__(self, scene: Scene | None, kind: type[Scene]) -> Callable[..., Scene]:
+        return kind._from_file if scene is None else scene._add_load
+
+
+class Scene:
+    """A scene: bodies, materials, how they touch, what holds and loads them, time, and outputs.
+
+    Its methods take the keys of the scene file (chapter 2 of the book) as keywords: numbers in SI units, or text with a
+    unit or a formula (`"0.5 mm"`, `"radius / 8"`); vectors are sequences of two numbers in the plane, of three in
+    space. A key that is a word of Python gets an underscore behind it: `from_`. All methods that add something return
+    the scene. What is wrong is said by `check`, `simulation`, `run` and `save`, as `SceneError`.
+
+    `document` is the scene as nested dictionaries and lists, as the file has it; it may be changed at will.
+    """
+
+    document: dict[str, Any]
+
+    def __init__(
+        self,
+        dimension: str,
+        cell: Any,
+        *,
+        title: str | None = None,
+        about: str | None = None,
+        gravity: Any = None,
+        parameters: Mapping[str, Any] | None = None,
+        **space: Any,
+    ) -> None:
+        """`dimension` is "plane-strain", "plane-stress" or "3d", `cell` the side of a grid cell [m].
+
+        `gravity` is the acceleration of every body [m/s^2]; `parameters` are names of your own for numbers and words;
+        `space` are further keys of `[space]`, such as `basis`, `precision` and `particles_per_side`.
+        """
+        top = {"title": title, "about": about, "gravity": gravity, "parameters": parameters}
+        table = {"dimension": dimension, "cell": cell, **_keys(space)}
+        self.document = plain({**top, "space": table})
+        self._file: tuple[Path, str] | None = None
+        self._loaded: dict[str, Any] | None = None
+        self._set: list[tuple[str, str]] = []
+
+    load = _Load()
+
+    @classmethod
+    def _from_file(cls, path: str | os.PathLike[str], /, **parameters: Any) -> Scene:
+        """Reads a scene file; keywords replace parameters, as `--set` does.
+
+        `Scene.load("backspin.toml", cells_per_radius=4)`; other keys by their path, in a dictionary:
+        `Scene.load("backspin.toml", **{"time.end": "0.5 s"})`.
+        """
+        given = [(name, written_value(plain(value, name))) for name, value in parameters.items()]
+        words = _core.ReadScene.load(path, given).text
+        scene = cls.__new__(cls)
+        scene.document = _core.document(words)
+        scene._file, scene._loaded, scene._set = (Path(path).absolute(), words), copy.deepcopy(scene.document), []
+        return scene.set(**parameters)
+
+    def set(self, **values: Any) -> Scene:
+        """Gives parameters other values, and other keys by their path.
+
+        `scene.set(friction=0.2)`, `scene.set(**{"bodies[0].velocity": (1, 0)})`
+        """
+        given = [(name, plain(value, name)) for name, value in values.items()]
+        known = self.document.get("parameters", {})
+        for name, value in given:
+            if "." not in name and "[" not in name and name not in known:
+                choices = ", ".join(known) or "there are none"
+                problem = f"found no parameter `{name}`; allowed: a parameter of the scene ({choices})"
+                advice = 'other keys are set by their path with dots: {"time.end": "1 s"}'
+                raise SceneError(f"{problem}; {advice}", key=name, allowed=choices, help=advice)
+        before = self._is_loaded()
+        for name, value in given:
+            _put(self.document, name if "." in name or "[" in name else f"parameters.{name}", value)
+        if before:
+            # The file as it is, with what was set: mistakes are shown in its own lines.
+            self._set += [(name, written_value(value)) for name, value in given]
+            self._loaded = copy.deepcopy(self.document)
+        return self
+
+    def parameter(self, **values: Any) -> Scene:
+        """Names of your own for numbers, formulas and words: `scene.parameter(radius="5 cm")`."""
+        return self._update("parameters", values)
+
+    def material(self, name: str, **keys: Any) -> Scene:
+        """A material: `density` [kg/m^3], and a law with its constants, such as `neo_hookean=dict(...)`."""
+        return self._update("materials", {name: _keys(keys)})
+
+    def body(self, name: str, **keys: Any) -> Scene:
+        """A body: `material`, `shape` (`ss.ball` ...), `velocity` [m/s], `spin` [rad/s], `rigid=dict(...)` ..."""
+        return self._append("bodies", {"name": name, **keys})
+
+    def packing(self, name: str, **keys: Any) -> Scene:
+        """Bodies `name` 1, 2 ... at random places: `material`, `shape`, `within`, `count` or `solid_fraction`, `sizes`."""
+        return self._append("packings", {"name": name, **keys})
+
+    def contact(self, between: Any = None, **keys: Any) -> Scene:
+        """A contact rule: `between` names two bodies or materials, `friction`, `law` ... The first that fits holds."""
+        return self._append("contact", {"between": between, **keys})
+
+    def support(self, body: str, **keys: Any) -> Scene:
+        """What holds or drives a part of a body: `on`, `within`, `displacement` [m], `velocity`, `stiffness` ..."""
+        return self._append("supports", {"body": body, **keys})
+
+    def _add_load(self, body: str, **keys: Any) -> Scene:
+        """What presses or pulls a part of a body: `on`, `within`, and `force` [N], `traction` or `pressure` [Pa] ..."""
+        return self._append("loads", {"body": body, **keys})
+
+    def domain(self, min: Any, max: Any, **faces: Any) -> Scene:
+        """A box that holds all material: its corners [m], and what its faces do (`x_min="symmetry"` ...)."""
+        self.document.setdefault("space", {})["domain"] = plain({"min": min, "max": max, **faces}, "space.domain")
+        return self
+
+    def time(self, **keys: Any) -> Scene:
+        """`end` of the run [s], `courant`, `max_step` [s], `transfer`, `relax` ..."""
+        return self._update("time", keys)
+
+    def start(self, folder: str | os.PathLike[str], **keys: Any) -> Scene:
+        """Bodies begin as the run in `folder`, or a checkpoint, left those of the same names."""
+        return self._update("start", {"from": folder, **keys})
+
+    def damping(self, **keys: Any) -> Scene:
+        """`viscous` [1/s], `local`, `bulk_linear`, `bulk_quadratic`."""
+        return self._update("damping", keys)
+
+    def outputs(self, **keys: Any) -> Scene:
+        """What runs write: intervals of `tables`, `particles`, `grid`, `samples`, `checkpoints` [s], `fringes` ..."""
+        return self._update("outputs", keys)
+
+    def probe(self, name: str, at: Any, **keys: Any) -> Scene:
+        """A point at which velocity and stress are recorded: `at` [m], `body`, `fixed_in`."""
+        return self._measure("probes", {"name": name, "at": at, **keys})
+
+    def arrival(self, quantity: str, threshold: Any, **keys: Any) -> Scene:
+        """A threshold whose first passing is recorded: `probes`, `bodies`, `reading`."""
+        return self._measure("arrivals", {"quantity": quantity, "threshold": threshold, **keys})
+
+    def front(self, name: str, **keys: Any) -> Scene:
+        """A front whose way is recorded: `quantity`, `threshold`, `from_`, `direction` ..."""
+        return self._measure("fronts", {"name": name, **keys})
+
+    def reference(self, body: str, quantity: str, value: Any, label: str) -> Scene:
+        """A known answer for a column of bodies.csv, as a formula of `t`; charts and summaries compare with it."""
+        entry = {"body": body, "quantity": quantity, "value": value, "label": label}
+        return self._append("references", entry)
+
+    def text(self) -> str:
+        """The scene as the text of a scene file: the file's own, comments and all, if nothing was changed."""
+        if self._file is not None and not self._set and self._is_loaded():
+            return self._file[1]
+        return written(self.document)
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes a scene file, from which `Scene.load` and `stickslip run` read the same scene.
+
+        Paths of meshes and tables are written so that they lead from there to where they led.
+        """
+        path = Path(path)
+        self._read()
+        moved = _moved(self.document, self._folder(), path.absolute().parent)
+        path.write_text(self.text() if moved == self.document else written(moved), encoding="utf-8")
+
+    def check(self) -> Report:
+        """What is wrong or doubtful, and what the run will be, as `stickslip check` says.
+
+        Raises `SceneError` if there can be no run.
+        """
+        said, values = self._read().check()
+        return Report(said, Record.from_json(values))
+
+    def simulation(self, threads: int | None = None) -> Simulation:
+        """The simulation of this scene at time 0, by so many threads or by all processors; the bits are the same."""
+        return Simulation(self._read().simulation(threads), copy.deepcopy(self))
+
+    def run(
+        self,
+        out: str | os.PathLike[str] | None = None,
+        *,
+        threads: int | None = None,
+        progress: bool = False,
+        checkpoint_every: float | None = 600.0,
+        max_time: float | None = None,
+        max_memory: float | None = None,
+        overwrite: bool = False,
+    ) -> Summary:
+        """Runs the scene to its end as `stickslip run` does, in the same bits, and leaves results in a folder.
+
+        Without `out` the folder is NAME.results here, NAME being that of the file, or `scene`. `checkpoint_every` is
+        the wall time between checkpoints [s], None for none at all; `max_time` ends the run with one after so much wall
+        time [s]; `max_memory` is what it may take [bytes], without it what is free. `overwrite` begins anew where a run
+        was killed that could go on. What is doubtful before the run is warned of (`StickslipWarning`); what was found
+        doubtful during it is in `Summary.warnings`.
+        """
+        name = "scene" if self._file is None else self._file[0].stem
+        report = self.check()
+        limit = _core.free_memory() if max_memory is None else max_memory
+        if report.memory > limit:
+            needs = f"the run needs about {report.memory:.2g} bytes, and may take {limit:.2g}"
+            advice = "take larger cells, fewer particles, or a larger machine; max_memory allows more or less"
+            raise RunError(f"{needs}; {advice}", help=advice)
+        for warning in report.warnings:
+            about = ": ".join(part for part in (warning.place, warning.key, warning.text) if part)
+            warnings.warn(about, StickslipWarning, stacklevel=2)
+        return carry_out(
+            self.simulation(threads),
+            f"{name}.results" if out is None else out,
+            progress=progress,
+            checkpoint_every=checkpoint_every,
+            max_time=max_time,
+            overwrite=overwrite,
+        )
+
+    def _source(self, out: Path) -> tuple[tuple[Path, list[tuple[str, str]]], str | None]:
+        """Where a run in the folder `out` comes from: file and what was set, and the text of a scene without a file."""
+        if self._file is not None and self._is_loaded():
+            return (self._file[0], list(self._set)), None
+        moved = _moved(self.document, self._folder(), out.absolute())
+        return (out.absolute() / "scene.toml", []), written(moved)
+
+    def _read(self, *further: tuple[str, str]) -> _core.ReadScene:
+        """The scene as the one reader of scenes has it, with what is set besides."""
+        if self._file is not None and self._is_loaded():
+            return _core.ReadScene(_shown(self._file[0]), self._file[1], [*self._set, *further])
+        name = IN_PYTHON
+        if self._file is not None:
+            # Lines are those of the text in Python.
+            name = _shown(self._file[0].with_name(f"<{self._file[0].name} in Python>"))
+        return _core.ReadScene(name, written(self.document), list(further))
+
+    def _seconds(self, time: float | str) -> float:
+        """A time [s]; text may have a unit or be a formula of the scene's parameters, as `time.end` of a file."""
+        return self._read(("time.end", written_value(time))).end if isinstance(time, str) else float(time)
+
+    def _is_loaded(self) -> bool:
+        """Whether it is what its file and `set` say."""
+        return self._loaded is not None and self._loaded == self.document
+
+    def _folder(self) -> Path:
+        """Where relative paths start."""
+        return Path.cwd() if self._file is None else self._file[0].parent
+
+    def _update(self, table: str, keys: Mapping[str, Any]) -> Scene:
+        self.document.setdefault(table, {}).update(plain(_keys(keys), table))
+        return self
+
+    def _append(self, table: str, keys: Mapping[str, Any]) -> Scene:
+        entries = self.document.setdefault(table, [])
+        entries.append(plain(_keys(keys), f"{table}[{len(entries)}]"))
+        return self
+
+    def _measure(self, table: str, keys: Mapping[str, Any]) -> Scene:
+        entries = self.document.setdefault("outputs", {}).setdefault(table, [])
+        entries.append(plain(_keys(keys), f"outputs.{table}[{len(entries)}]"))
+        return self
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Scene) and plain(self.document) == plain(other.document)
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __str__(self) -> str:
+        return self.text()
+
+    def __repr__(self) -> str:
+        space, bodies = self.document.get("space", {}), self.document.get("bodies", [])
+        title = self.document.get("title") or (self._file[0].stem if self._file else "scene")
+        return f"<Scene {title!r}: {len(bodies)} bodies, {space.get('dimension')}, cells of {space.get('cell')}>"
+
+    def _repr_html_(self) -> str:
+        return f"<pre>{escape(self.text())}</pre>"
+
+
+def _keys(keys: Mapping[str, Any]) -> dict[str, Any]:
+    """`from_` is `from`: a word of Python has an underscore behind it."""
+
+    def word(name: str) -> str:
+        return name[:-1] if name.endswith("_") and keyword.iskeyword(name[:-1]) else name
+
+    return {word(name): value for name, value in keys.items()}
+
+
+def _shown(path: Path) -> str:
+    """A path as a user would write it from here."""
+    return str(path.relative_to(Path.cwd())) if path.is_relative_to(Path.cwd()) else str(path)
+
+
+def _put(document: dict[str, Any], path: str, value: Any) -> None:
+    """Puts a value at a path: `time.end`, `bodies[0].velocity`."""
+    place: Any = document
+    steps: list[Any] = []
+    for word in path.split("."):
+        name, *numbers = word.split("[")
+        steps += [name, *(int(number.rstrip("]")) for number in numbers)]
+    try:
+        for step in steps[:-1]:
+            place = place.setdefault(step, {}) if isinstance(place, dict) else place[step]
+        place[steps[-1]] = value
+    except (IndexError, TypeError, AttributeError) as error:
+        raise SceneError(
+            f"found the key `{path}`, which the scene has no place for; allowed: names in tables, numbers "
+            "from 0 in lists",
+            key=path,
+        ) from error
+
+
+FILES = {"file", "csv", "from"}
+"""Keys whose text is a path that starts at the folder of the scene file."""
+
+
+def _moved(value: Any, old: Path, new: Path, name: str = "") -> Any:
+    """A document whose relative paths lead from another folder to where they led."""
+    if isinstance(value, dict):
+        return {name: _moved(entry, old, new, name) for name, entry in value.items()}
+    if isinstance(value, list):
+        return [_moved(entry, old, new) for entry in value]
+    if name in FILES and isinstance(value, str) and not Path(value).is_absolute() and old.resolve() != new.resolve():
+        return os.path.relpath(old / value, new)
+    return value

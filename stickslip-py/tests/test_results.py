@@ -1,0 +1,245 @@
+"""Runs from Python are those of the command, and what they leave is read back."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+import types
+import warnings
+
+import numpy as np
+import pytest
+import stickslip as ss
+from conftest import REPOSITORY, flying, rings, settling
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory) -> ss.Results:
+    """Of the rings, with their end as a callback saw it."""
+    folder = tmp_path_factory.mktemp("rings")
+    scene = rings().outputs(tables="1 ms", particles="2 ms", snapshots=dict(precision="double"))
+    sim = scene.reference("left", "vx", "2 m/s", "before they meet").simulation()
+    times = []
+    summary = sim.run(out=folder / "results", every=1e-3, callback=lambda sim: times.append(sim.time))
+    found = ss.Results(folder / "results")
+    found.__dict__.update(sim=sim, summary=summary, seen=times)
+    return found
+
+
+def test_a_run_leaves_its_tables(results):
+    assert results.status == "finished" and repr(results).startswith("<Results 'rings': finished at t = 0.01 s")
+    assert {"bodies", "energy", "contacts"} <= set(results.tables)
+    bodies = results.bodies
+    assert bodies.dtype["time"] == float and bodies.dtype["body"].kind == "U"
+    left = bodies.where(body="left")
+    assert left["time"].tolist() == results.seen == results.energy["time"].tolist()
+    assert left["vx"][-1] == results.sim.bodies["left"].state.velocity[0]
+    assert results.energy["total"][-1] == results.sim.ledger().total
+    assert set(results.contacts["body_a"]) == {"left"}
+    with pytest.raises(AttributeError, match="found no table `bodeis` in .*; allowed: bodies, contacts, energy"):
+        results.bodeis
+    assert "bodies" in dir(results)
+
+
+def test_a_row_that_is_cut_short_is_left_out(results, tmp_path):
+    for name in ("run.json", "bodies.csv"):
+        (tmp_path / name).write_bytes((results.folder / name).read_bytes())
+    whole = ss.Results(tmp_path).bodies
+    with open(tmp_path / "bodies.csv", "a") as file:
+        file.write("0.5,lef")
+    assert np.array_equal(ss.Results(tmp_path).bodies, whole)
+    (tmp_path / "bodies.csv").write_text("time,body,x\n")
+    assert len(ss.Results(tmp_path).bodies["x"]) == 0
+
+
+def test_snapshots_with_some_columns_of_some_bodies_are_read(tmp_path):
+    scene = rings().outputs(snapshots=dict(columns=["velocity", "pressure"], bodies=["r*"], every=2))
+    sim = scene.simulation()
+    sim.run(until="1 ms", out=tmp_path / "results")
+    frame = ss.Results(tmp_path / "results").frame(-1)
+    assert set(frame) == {"position", "velocity", "pressure", "body", "number"} and set(frame["body"]) == {1}
+    right = sim.bodies["right"]
+    assert np.array_equal(frame["number"], np.arange(0, len(right), 2)) and frame.units["pressure"] == "Pa"
+    assert np.array_equal(frame["velocity"], right.by_number("velocity")[::2].astype(np.float32))
+
+
+def test_snapshots_are_the_particles(results):
+    assert len(results.times) == 6 and results.times[-1] == 0.01
+    frame = results.frame(-1)
+    assert np.array_equal(results.frame(5)["stress"], frame["stress"])
+    for name in ("left", "right"):
+        part, body = frame.body(name), results.sim.bodies[name]
+        for column in ("position", "velocity", "stress", "deformation", "mass", "volume", "number"):
+            assert np.array_equal(part[column], body.by_number(column)), column
+    assert frame["pressure"] == pytest.approx(-frame["stress"][:, :3].sum(axis=1) / 3, rel=1e-12)
+    assert frame.units["pressure"] == "Pa" and frame.time == 0.01 and len(frame) == len(list(frame))
+    with pytest.raises(KeyError, match="found a column `presure`.*allowed: body, number, position"):
+        frame["presure"]
+    with pytest.raises(KeyError, match="found a body `ring`"):
+        frame.body("ring")
+    with pytest.raises(IndexError, match="found snapshot 6; allowed: 0 to 5"):
+        results.frame(6)
+
+
+def test_the_summary_is_that_of_the_command(results):
+    summary = results.summary
+    assert summary.status == "finished" and summary.performance.time == 0.01
+    assert summary.energy_drift == pytest.approx(summary.end.total - summary.start.total)
+    assert str(summary).startswith("finished at t = 0.010000 s after ") and "  energy " in str(summary)
+    (reference,) = summary.references
+    assert reference.exact == 2.0 and reference.value == results.bodies.where(body="left")["vx"][-1]
+    assert summary.folder == results.folder and "<pre>" in summary._repr_html_()
+
+
+def test_frames_of_pandas_and_polars_have_all_columns(results, monkeypatch):
+    made = []
+    fake = types.SimpleNamespace(DataFrame=made.append)
+    contacts = results.sim.contacts()
+    for name in ("pandas", "polars"):
+        monkeypatch.setitem(sys.modules, name, None)
+        with pytest.raises(ImportError, match=f"pip install {name}"):
+            getattr(results.energy, f"to_{name}")()
+        monkeypatch.setitem(sys.modules, name, fake)
+        getattr(results.energy, f"to_{name}")()
+        getattr(contacts, f"to_{name}")()
+    assert list(made[0]) == list(results.energy.dtype.names) and np.array_equal(made[0]["px"], results.energy["px"])
+    assert {"bodies_a", "bodies_b", "force_x", "force_y", "force_z", "normal"} <= set(made[1])
+
+
+def test_a_chart_has_the_run_and_its_known_answer(results, monkeypatch):
+    drawn, said = [], []
+    axes = types.SimpleNamespace(
+        plot=lambda x, y, *style, label: drawn.append((np.asarray(x), np.asarray(y), label)),
+        set_xlabel=said.append,
+        set_ylabel=said.append,
+        set_title=said.append,
+        legend=lambda: None,
+    )
+    assert results.plot("left", "vx", ax=axes) is axes
+    (times, speeds, label), (_, known, answer) = drawn
+    assert np.array_equal(speeds, results.bodies.where(body="left")["vx"]) and label == "left vx"
+    assert set(known) == {2.0} and answer == "before they meet"
+    assert said == ["time [s]", "vx [m/s]", "rings"]
+    with pytest.raises(ValueError, match="found a column `vxx`; allowed: mass, x, y"):
+        results.plot("left", "vxx", ax=axes)
+    with pytest.raises(ValueError, match="found a body `ring`; allowed: left, right"):
+        results.plot("ring", "vx", ax=axes)
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    monkeypatch.setitem(sys.modules, "matplotlib.pyplot", None)
+    with pytest.raises(ImportError, match="charts need matplotlib"):
+        results.plot("left", "vx")
+
+
+def test_notebooks_show_tables_and_results(results):
+    shown = results.bodies._repr_html_()
+    assert shown.startswith("<table><tr><th>time</th><th>body</th>") and "2 more rows" in shown
+    assert results.bodies["x"]._repr_html_() is None
+    assert "finished at t = 0.01 s" in results._repr_html_() and "<img" not in results._repr_html_()
+
+
+def test_the_bits_are_those_of_the_command(command, tmp_path, monkeypatch):
+    """By state_sum, a SHA-256 of all particles: a file with another parameter, and a scene that has no file."""
+    monkeypatch.chdir(tmp_path)
+    path = REPOSITORY / "scenes/paper/backspin.toml"
+    given = {"cells_per_radius": 2, "time.end": "20 ms"}
+    scene = ss.Scene.load(path, **given)
+    with warnings.catch_warnings(record=True) as warned:
+        warnings.simplefilter("always")
+        scene.run(out="python.results")
+    assert any("backspin.toml:56:1: bodies[1].shape: thinner than" in str(warning.message) for warning in warned)
+    own = rings()
+    own.save("rings.toml")
+    own.run(out="rings.python", threads=1)
+    sets = [word for name, value in given.items() for word in ("--set", f"{name}={value}")]
+    for arguments in ([path, "--out", "command.results", *sets], ["rings.toml", "--out", "rings.command"]):
+        subprocess.run([command, "run", *arguments], check=True, capture_output=True)
+    sums = {}
+    for name in ("python.results", "command.results", "rings.python", "rings.command"):
+        record = json.loads((tmp_path / name / "run.json").read_text())
+        sums[name] = record["state_sum"]
+        if name.startswith(("python", "command")):
+            assert record["source"]["path"] == str(path) and dict(record["source"]["set"])["cells_per_radius"] == "2"
+    assert sums["python.results"] == sums["command.results"] and sums["rings.python"] == sums["rings.command"]
+    tables = [(tmp_path / name / "bodies.csv").read_bytes() for name in ("rings.python", "rings.command")]
+    assert tables[0] == tables[1]
+    # The command goes on with what Python began, and Python with what the command did.
+    subprocess.run([command, "resume", "rings.python", "--until", "12 ms"], check=True, capture_output=True)
+    ss.resume("rings.command", until=0.012, threads=1)
+    sums = [
+        json.loads((tmp_path / name / "run.json").read_text())["state_sum"]
+        for name in ("rings.python", "rings.command")
+    ]
+    assert sums[0] == sums[1]
+
+
+def test_a_simulation_that_is_stepped_by_hand_has_the_bits_of_a_run(tmp_path):
+    run, walked = rings().simulation(), rings().simulation()
+    position = walked.bodies["left"].position
+    run.run(out=tmp_path / "results", checkpoint_every=None)
+    walked.run()
+    assert np.array_equal(run.bodies["left"].by_number("position"), walked.bodies["left"].by_number("position"))
+    assert np.array_equal(position, run.bodies["left"].position)
+    assert not list((tmp_path / "results").glob("checkpoints/*"))
+
+
+def test_a_run_begins_from_another(tmp_path):
+    with pytest.warns(ss.StickslipWarning):
+        settling().outputs(snapshots=dict(precision="double")).run(out=tmp_path / "packing")
+    scene = settling().start(tmp_path / "packing", velocities="zero")
+    assert "2 of 2 bodies begin as they were at t = 0.02 s" in str(scene.check())
+    sim = scene.simulation()
+    last = ss.Results(tmp_path / "packing").frame(-1).body("disk")
+    assert sim.time == 0.0 and np.array_equal(sim.bodies["disk"].by_number("position"), last["position"])
+    assert not sim.bodies["disk"].velocity.any()
+    # What is changed before the first step stays, though a run begins.
+    sim.bodies["disk"].set("velocity", (0.0, 1.0))
+    sim.run(until=1e-4, out=tmp_path / "on")
+    assert ss.Results(tmp_path / "on").bodies.where(body="disk")["vy"][0] == pytest.approx(1.0)
+
+
+def test_runs_refuse_what_the_command_refuses(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    scene = flying()
+    with pytest.raises(ss.RunError, match="the run needs about .* bytes, and may take 1e.03; take larger cells"):
+        scene.run(max_memory=1e3)
+    (tmp_path / "notes").mkdir()
+    (tmp_path / "notes" / "diary.txt").write_text("mine")
+    with pytest.raises(ss.RunError, match="holds files that are not the results of a run, such as `diary.txt`"):
+        scene.run(out="notes")
+    with pytest.raises(ss.ResultsError, match="cannot read .*run.json"):
+        ss.Results("notes")
+    with pytest.raises(ss.ResultsError, match="cannot read .*run.json"):
+        ss.resume("notes")
+    with pytest.raises(ValueError, match="found 0 s of wall time"):
+        scene.run(max_time=0)
+    long = flying().time(end=1e4)
+    assert long.run(max_time=0.3).status == "out_of_time", "in scene.results"
+    with pytest.raises(ss.RunError, match=r"has not ended, with a checkpoint: .*overwrite=True begins anew"):
+        scene.run()
+    assert scene.run(overwrite=True).status == "finished"
+    with pytest.raises(ss.StepError, match="left the domain") as caught:
+        flying().domain((-1, -1), (0.5, 1)).time(end=1).run(out="failed")
+    assert caught.value.body == "ball" and ss.Results("failed").status == "failed"
+    with pytest.raises(ValueError, match="max_time without out"):
+        scene.simulation().run(max_time=1.0)
+
+
+def test_an_exception_in_a_callback_ends_a_run_with_results_that_can_be_read(tmp_path):
+    def stop(sim):
+        if sim.time > 0.1:
+            raise LookupError("enough")
+
+    with pytest.raises(LookupError, match="enough"):
+        flying().simulation().run(out=tmp_path / "results", callback=stop)
+    assert ss.Results(tmp_path / "results").status == "interrupted"
+    assert ss.resume(tmp_path / "results").status == "finished", "and goes on from scene.toml beside it"
+
+
+def test_progress_is_shown_when_asked_for(tmp_path, capfd, monkeypatch):
+    monkeypatch.setattr("stickslip.progress.BETWEEN_LINES", 0.0)
+    flying("3d").run(out=tmp_path / "shown", progress=True)
+    shown = capfd.readouterr().err
+    assert "t = 2.0000e-01 of 2.0000e-01 s, step " in shown and "particle-steps/s" in shown
+    flying().run(out=tmp_path / "quiet")
+    assert capfd.readouterr().err == ""

@@ -1,0 +1,217 @@
+"""Scenes in Python say what scene files say, and what is wrong with them is told in the same words."""
+
+from __future__ import annotations
+
+import copy
+import json
+import pickle
+import subprocess
+
+import numpy as np
+import pytest
+import stickslip as ss
+from conftest import REPOSITORY, flying, rings, settling
+from stickslip import _core
+from stickslip.document import plain, written
+
+FILES = sorted(path for path in (REPOSITORY / "scenes").rglob("*.toml") if "[[bodies]]" in path.read_text())
+
+
+def record(scene: ss.Scene) -> dict:
+    """The scene as run.json has it, without what a title is by default."""
+    read = json.loads(scene._read().record())
+    return {key: value for key, value in read.items() if key != "title"}
+
+
+def test_values_come_back_as_they_were_written():
+    numbers = [0.1 + 0.2, 1e16, -1e-300, 5e-324, 1.7976931348623157e308, float("inf"), 3, -0.0, 2**62]
+    texts = ['a "quoted" \\ word', "tab\tline\nfeed", "\x7f\x01", "ü µ 漢", "", "'''", '"""', "two\nlines", "a\r\nb"]
+    document = {
+        "title": texts[0],
+        "about": "several\nlines\n",
+        "space": {"numbers": numbers, "truth": [True, False], "empty": {}, "none": [], "a key": {"b.c": [[1], [{}]]}},
+        "materials": {"x y": {"law": {"k": 1.5}}, "z": {"density": 1}},
+        "bodies": [{"texts": texts}, {"shape": {"union": [{"ball": {"radius": 1.0}}, {"box": {"min": [0, 1]}}]}}],
+        "outputs": {"probes": [{"name": "a"}, {"name": "b"}], "fringes": {"light": "white"}, "tables": 0.1},
+    }
+    back = _core.document(written(document))
+    assert back == document
+    assert list(back) == ["title", "about", *list(document)[2:]] and list(back["materials"]) == ["x y", "z"]
+    assert str(back["space"]["numbers"]) == str(numbers), "signs of zeros and kinds of numbers, too"
+
+
+def test_arrays_tuples_and_numbers_of_numpy_are_taken():
+    given = {"a": np.array([[1.0, 2.0]]), "b": (np.float32(0.5), np.int64(3), np.bool_(True)), "c": None}
+    assert plain(given) == {"a": [[1.0, 2.0]], "b": [0.5, 3, True]}
+    with pytest.raises(TypeError, match=r"bodies\[0\].velocity\[1\]: found a object; allowed: numbers"):
+        ss.Scene("3d", 1).body("a", velocity=(0, object()))
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
+def test_scene_files_come_and_go(path, tmp_path):
+    loaded = ss.Scene.load(path)
+    assert loaded.text() == path.read_text()
+    # Changed and changed back, it is written anew, without the comments, and says the same.
+    rewritten = ss.Scene.load(path)
+    rewritten._loaded = None
+    assert rewritten.text() != loaded.text() and record(rewritten) == record(loaded)
+    rewritten.save(tmp_path / "copy.toml")
+    elsewhere = record(ss.Scene.load(tmp_path / "copy.toml"))
+    assert elsewhere["bodies"][0]["name"] == loaded.document["bodies"][0]["name"]
+    if not any(key in path.read_text() for key in ("file =", "csv =")):
+        assert elsewhere == record(loaded)
+
+
+def test_keywords_replace_parameters_as_set_does():
+    path = REPOSITORY / "scenes/paper/backspin.toml"
+    scene = ss.Scene.load(path, cells_per_radius=4, contact="gap", **{"time.end": "500 ms", "bodies[0].spin[1]": 2.5})
+    given = [("cells_per_radius", "4"), ("contact", "gap"), ("time.end", "500 ms"), ("bodies[0].spin[1]", "2.5")]
+    expected = json.loads(_core.ReadScene(str(path), path.read_text(), given).record())
+    assert json.loads(scene._read().record()) == expected
+    assert expected["discretization"]["cell"] == 0.25 and expected["time"]["end"] == 0.5
+    # And where the file itself is out of the game.
+    scene.outputs(tables="1 ms")
+    changed = record(scene)
+    assert changed["outputs"].pop("tables") == 1e-3 and expected["outputs"].pop("tables") == 5e-3
+    assert {**expected, "title": None} == {**changed, "title": None}
+
+
+def test_an_unknown_parameter_is_refused():
+    path = REPOSITORY / "scenes/paper/backspin.toml"
+    with pytest.raises(ss.SceneError, match="no parameter `cells_per_radios`.*did you mean `cells_per_radius`"):
+        ss.Scene.load(path, cells_per_radios=4)
+    with pytest.raises(
+        ss.SceneError, match=r"no parameter `end`; allowed: a parameter of the scene \(there are none\)"
+    ):
+        flying().set(end=3)
+    with pytest.raises(ss.SceneError, match=r"found the key `bodies\[7\].velocity`"):
+        flying().set(**{"bodies[7].velocity": (0, 0)})
+
+
+def test_a_mistake_has_its_line_and_its_advice(tmp_path):
+    scene = flying().body("other", material="rubber", shape={"ball": {"center": (2, 0), "radios": 1}})
+    with pytest.raises(ss.SceneError) as caught:
+        scene.simulation()
+    error = caught.value
+    line = scene.text().splitlines()[error.line - 1]
+    assert line[error.column - 1 :].startswith("radios")
+    assert (error.key, error.file) == ("bodies[1].shape.ball.radios", "<scene in Python>")
+    assert error.found == "unknown key `radios`" and error.allowed == "center, radius"
+    assert error.help == "did you mean `radius`?"
+    said = str(error).splitlines()
+    expected = "found unknown key `radios`; allowed: center, radius; did you mean `radius`?"
+    assert said[0] == f"<scene in Python>:{error.line}:{error.column}: {error.key}: {expected}"
+    number, shown = said[1].split(" | ", 1)
+    assert (int(number), shown) == (error.line, line)
+    assert said[2].split(" | ", 1)[1] == " " * (error.column - 1) + "^^^^^^"
+    assert isinstance(error, ValueError) and str(pickle.loads(pickle.dumps(error))) == str(error)
+
+    # Of a file: its own line, though something was set; the same words as the command's.
+    file = tmp_path / "scene.toml"
+    file.write_text("# a comment\n\n" + flying().text().replace("density = 1000", 'density = "1 kg"'))
+    with pytest.raises(ss.SceneError, match="density: found") as caught:
+        ss.Scene.load(file, **{"time.end": 0.1})
+    assert caught.value.file == str(file)
+    assert file.read_text().splitlines()[caught.value.line - 1] == 'density = "1 kg"'
+    with pytest.raises(ss.SceneError, match="scenes.toml: No such file.*; did you mean `scene.toml`"):
+        ss.Scene.load(tmp_path / "scenes.toml")
+    file.write_text("a = = 1")
+    with pytest.raises(ss.SceneError, match="scene.toml:1:5: found .*\n     1 | a = = 1\n"):
+        ss.Scene.load(file)
+
+
+def test_what_the_command_says_is_what_is_raised(command, tmp_path):
+    text = flying().text().replace("cell =", "cells =")
+    (tmp_path / "scene.toml").write_text(text)
+    ran = subprocess.run([command, "check", "scene.toml"], cwd=tmp_path, capture_output=True, text=True)
+    with pytest.raises(ss.SceneError) as caught:
+        ss.Scene.load(tmp_path / "scene.toml")
+    assert ran.stderr.splitlines()[0] in str(caught.value)
+
+
+def test_check_is_the_report_of_the_command(command, tmp_path):
+    scene = settling()
+    report = scene.check()
+    assert report.particles > 0 and report["memory"] > 0.0 and "not resolved" in report.warnings[0].text
+    scene.save(tmp_path / "scene.toml")
+    ran = subprocess.run([command, "check", "scene.toml"], cwd=tmp_path, capture_output=True, text=True)
+    assert ran.stdout.splitlines()[1:] == str(report).rstrip().splitlines()[1:], "all but the title"
+    with pytest.raises(ss.SceneError, match="overlap"):
+        settling().body("too much", material="rubber", shape=ss.disk((0, 0.1), 0.1)).check()
+
+
+def test_every_table_of_the_language_has_its_method(tmp_path):
+    scene = ss.Scene("plane-strain", "1 cm", about="all", gravity=(0, "-9.81 m/s^2"), particles_per_side=2)
+    scene.parameter(radius="5 cm").domain(("-20 cm", -0.2), (0.2, 0.2), x_min="symmetry")
+    scene.material("rubber", density=1000, neo_hookean=dict(young_modulus=1e6, poisson_ratio=0.3))
+    corner = ss.rotated(ss.polygon([(0.1, 0.1), (0.15, 0.1), (0.1, 0.15)]), (0.1, 0.1), "5 deg")
+    scene.body("disk", material="rubber", shape=ss.difference(ss.disk((0, 0), "radius"), ss.disk((0, 0), "2 cm")))
+    scene.body("corner", material="rubber", shape=ss.union(corner, ss.box((0.12, 0), (0.15, 0.03))))
+    scene.body(
+        "half", material="rubber", shape=ss.intersection(ss.disk((-0.1, 0.1), 0.03), ss.half_space((-0.1, 0.1), (0, 1)))
+    )
+    scene.contact(("disk", "corner"), friction=0.3).contact(friction="inf")
+    scene.support("disk", on="x_min").load("disk", on="x_max", force=(0, 1))
+    scene.time(end="1 ms", courant=0.3).damping(viscous=1)
+    scene.outputs(tables="0.1 ms").probe("p", at=(0.03, 0)).arrival("speed", "1 mm/s", probes=["p"])
+    scene.front("f", quantity="speed", threshold="1 mm/s", from_=(0, 0), direction=(1, 0), bodies=["disk"])
+    scene.reference("disk", "x", "0 m/s * t", "at rest")
+    found = record(scene)
+    assert [load["name"] for load in found["loads"]] == ["support 1", "load 1"]
+    assert [len(found[key]) for key in ("bodies", "contact", "references")] == [3, 2, 1]
+    measured = found["outputs"]["measurements"]
+    assert [len(measured[key]) for key in ("probes", "arrivals", "fronts")] == [1, 1, 1]
+    assert measured["fronts"][0]["from"] == [0.0, 0.0, 0.0]
+    assert found["time"]["courant"] == 0.3 and found["damping"]["viscous"] == 1.0
+    assert found["domain"]["faces"][0] == ["symmetry", "open"]
+    space = ss.Scene("3d", 0.1).material("rubber", **scene.document["materials"]["rubber"]).time(end=1)
+    space.body("rod", material="rubber", shape=ss.cylinder((0, 0, 0), (1, 0, 0), 0.3))
+    assert record(space)["bodies"][0]["name"] == "rod"
+
+
+def test_meshes_are_found_from_where_a_scene_is_saved(tmp_path, monkeypatch):
+    source = REPOSITORY / "scenes/shapes/hoop.toml"
+    scene = ss.Scene.load(source)
+    scene.outputs(tables=0.1)
+    (tmp_path / "far").mkdir()
+    scene.save(tmp_path / "far" / "hoop.toml")
+    [here, there] = [found.check() for found in (scene, ss.Scene.load(tmp_path / "far" / "hoop.toml"))]
+    assert there.particles == here.particles > 0
+    # A scene that has no file looks from the current folder.
+    free = ss.Scene("3d", 0.1).material("rubber", **next(iter(scene.document["materials"].values()))).time(end=1)
+    free.body("hoop", material="rubber", shape=ss.mesh("hoop.obj"))
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(ss.SceneError, match="hoop.obj"):
+        free.check()
+    monkeypatch.chdir(source.parent)
+    assert free.check().particles > 0
+
+
+def test_scenes_are_copied_pickled_compared_and_shown():
+    scene = ss.Scene.load(REPOSITORY / "scenes/paper/backspin.toml", cells_per_radius=4)
+    for twin in (pickle.loads(pickle.dumps(scene)), copy.deepcopy(scene)):
+        assert twin == scene and twin._read().record() == scene._read().record()
+        twin.time(end=2)
+        assert twin != scene and scene.document["time"]["end"] == "1 s"
+    assert repr(rings()) == "<Scene 'rings': 2 bodies, plane-strain, cells of 4 mm>"
+    assert "&quot;plane-strain&quot;" in rings()._repr_html_() and rings()._repr_html_().startswith("<pre>")
+    assert "<pre>" in rings().check()._repr_html_()
+
+
+def test_packings_repeats_and_patterns_are_words_like_others():
+    scene = ss.Scene(dimension="plane-strain", cell="1 mm")
+    scene.material("clay", density=1000, neo_hookean=dict(young_modulus="1 MPa", poisson_ratio=0.3))
+    box = ss.box((0, 0), (0.05, 0.03))
+    sizes = dict(uniform=(0.8, 1.2))
+    scene.packing("grain", material="clay", shape=ss.disk((0, 0), 0.002), within=box, solid_fraction=0.7, sizes=sizes)
+    scene.body("post {i}", repeat=dict(i=3), material="clay", shape=ss.disk(("i * 2 cm", "-1 cm"), "4 mm"))
+    scene.contact(("grain *", "post *"), friction=0.3).time(end=1)
+    read = record(scene)
+    grains = [body for body in read["bodies"] if body["name"].startswith("grain ")]
+    area = sum(np.pi * body["shape"]["ball"]["radius"] ** 2 for body in grains)
+    assert area / (0.05 * 0.03) == pytest.approx(0.7, rel=1e-12)
+    assert [body["name"] for body in read["bodies"][:3]] == ["post 0", "post 1", "post 2"]
+    scene.document["packings"][0]["solid_fraction"] = 0.95
+    with pytest.raises(ss.SceneError) as caught:
+        scene.check()
+    assert caught.value.key == "packings[0].solid_fraction" and "jam" in caught.value.found
