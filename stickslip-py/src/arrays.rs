@@ -36,11 +36,11 @@ fn over<'py, T: Element>(place: &ColumnPlace, memory: Bound<'py, PyAny>) -> Boun
     let first = std::ptr::with_exposed_provenance::<T>(place.address);
     let entries = place.components.len();
     // SAFETY: the engine allocated the column, of numbers of this format, so long and so far apart, and exposed its
-    // provenance. It keeps that memory as long as it lives and gives it to nothing else: bodies whose particles come and
-    // go have no places. `memory` owns the simulation, and the array owns `memory`. Every number there is initialised,
-    // and any bits are a number. The engine writes there while a step is taken, without the interpreter's lock: who
-    // reads in another thread meanwhile may get numbers of two moments, as of any array that threads share, and the
-    // package says so. No reference to the memory outlives this function.
+    // provenance. It keeps that memory as long as it lives and gives it to nothing else: bodies whose particles come
+    // and go have no places. `memory` owns the simulation, and the array owns `memory`. Every number there is
+    // initialised, and any bits are a number. The engine writes there while a step is taken, without the interpreter's
+    // lock: who reads in another thread meanwhile may get numbers of two moments, as of any array that threads share,
+    // and the package says so. No reference to the memory outlives this function.
     unsafe {
         if place.column.kind == Kind::Number {
             let view = ArrayView1::from_shape_ptr(place.len, first);

@@ -33,7 +33,7 @@ mod _core {
     #[pymodule_export]
     use crate::results::{frames, read_frame};
     #[pymodule_export]
-    use crate::run::{run, walk};
+    use crate::run::{run, unfinished, walk};
     #[pymodule_export]
     use crate::scene::{ReadScene, document, free_memory};
 

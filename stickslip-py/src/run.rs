@@ -221,6 +221,12 @@ pub fn run(
     outcome.map(|summary| described(&summary)).map_err(|error| errors::of_run(py, &error))
 }
 
+/// The newest checkpoint of a run that nobody asked to stop, and that can go on.
+#[pyfunction]
+pub fn unfinished(py: Python<'_>, folder: PathBuf) -> PyResult<Option<PathBuf>> {
+    stickslip::run::unfinished(&folder).map_err(|error| errors::of_file(py, "ResultsError", &error))
+}
+
 fn seconds(seconds: f64) -> PyResult<Duration> {
     let wrong = || format!("found {seconds} s of wall time; allowed: seconds above zero, or None");
     let duration = Duration::try_from_secs_f64(seconds).ok().filter(|duration| !duration.is_zero());

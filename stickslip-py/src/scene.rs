@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use std::ops::Range;
 use std::path::PathBuf;
-use stickslip::observe::Manifest;
+use stickslip::observe::{Manifest, SceneSource};
 use stickslip::scene::{Loaded, Scene};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -37,6 +37,18 @@ impl ReadScene {
     #[staticmethod]
     fn load(py: Python<'_>, path: PathBuf, set: Vec<(String, String)>) -> PyResult<Self> {
         let loaded = py.detach(|| stickslip::scene::load(&path, &set));
+        loaded.map(|loaded| ReadScene { loaded }).map_err(|error| errors::of_scene(py, error))
+    }
+
+    /// Reads the scene of a run again: its file, what was set, and to where it goes on.
+    #[staticmethod]
+    fn again(
+        py: Python<'_>,
+        path: PathBuf,
+        set: Vec<(String, String)>,
+        until: Option<String>,
+    ) -> PyResult<Self> {
+        let loaded = py.detach(|| SceneSource { path, set, until }.load());
         loaded.map(|loaded| ReadScene { loaded }).map_err(|error| errors::of_scene(py, error))
     }
 

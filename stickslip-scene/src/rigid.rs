@@ -75,11 +75,9 @@ impl RigidMotion {
         std::array::from_fn(|i| self.now[i] + turn[i])
     }
 
-    /// The rotation of a step of `dt`: Q = (I - W dt/2)^-1 (I + W dt/2), exactly orthogonal.
+    /// The rotation of a step of `dt`.
     pub fn rotation(&self, dt: f64) -> Matrix<f64> {
-        let [x, y, z] = self.turning;
-        let half_spin = Matrix([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]]) * (0.5 * dt);
-        (Matrix::IDENTITY - half_spin).inverse() * (Matrix::IDENTITY + half_spin)
+        Matrix::rotation_by(self.turning.map(|w| w * dt))
     }
 
     /// Where a step of `dt` with this rotation takes a point.
@@ -138,8 +136,7 @@ pub struct Pose {
 impl Pose {
     /// A direction in the body as it is now.
     pub fn turned(&self, direction: [f64; 3]) -> [f64; 3] {
-        let turn = &self.orientation.0;
-        std::array::from_fn(|i| (0..3).map(|j| turn[i][j] * direction[j]).sum())
+        self.orientation.times(direction)
     }
 
     /// Where a point of the body is now that was at `place` at the start [m].

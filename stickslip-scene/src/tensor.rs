@@ -270,6 +270,21 @@ impl<T: Number> Mul for Matrix<T> {
     }
 }
 
+impl Matrix<f64> {
+    /// The rotation about an axis by an angle, given as their product w [rad], right up to w^3:
+    /// Q = (I - W/2)^-1 (I + W/2) with W x = w x x, exactly orthogonal (Cayley).
+    pub fn rotation_by([x, y, z]: [f64; 3]) -> Self {
+        let half = Matrix([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]]) * 0.5;
+        (Matrix::IDENTITY - half).inverse() * (Matrix::IDENTITY + half)
+    }
+
+    /// A x
+    #[inline(always)]
+    pub fn times(&self, x: [f64; 3]) -> [f64; 3] {
+        std::array::from_fn(|i| (0..3).map(|j| self.0[i][j] * x[j]).sum())
+    }
+}
+
 impl<T: Number> Mul<T> for Matrix<T> {
     type Output = Self;
     #[inline(always)]

@@ -1,6 +1,5 @@
 //! `stickslip resume DIR`: go on with a run from its newest checkpoint.
 
-use super::load;
 use super::run::How;
 use crate::failure::Failure;
 use clap::Args;
@@ -63,14 +62,8 @@ impl Arguments {
                 path.display()
             )));
         }
-        let mut loaded = load(&path, &set).map_err(Failure::input)?;
-        if let Some(until) = &until {
-            // Set after the file is read: intervals that follow from the end stay as they are.
-            let with_end: Vec<_> =
-                set.iter().cloned().chain([("time.end".to_string(), until.clone())]).collect();
-            loaded.scene.time.end = load(&path, &with_end).map_err(Failure::input)?.scene.time.end;
-        }
         let source = SceneSource { path, set, until };
+        let loaded = source.load().map_err(Failure::input)?;
         self.how.make(&loaded, (source, self.results), stickslip::run::resume)
     }
 }

@@ -12,9 +12,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 use stickslip::check::free_memory;
 use stickslip::door::Simulation;
-use stickslip::observe::{
-    ArrivalRow, Checkpoint, FrontSpeedRow, Manifest, OutputFolder, Results, SceneSource, Status,
-};
+use stickslip::observe::{ArrivalRow, FrontSpeedRow, Manifest, Results, SceneSource, Status};
 use stickslip::run::{Checkpointing, Progress, RunError, RunOptions, Summary};
 use stickslip::scene::{Loaded, Scene};
 
@@ -48,12 +46,7 @@ pub struct Arguments {
 
 /// Refuses a folder with a run that nobody asked to stop, and that can go on.
 fn unfinished(folder: &Path) -> Result<(), Failure> {
-    let Ok(before) = Manifest::read(folder) else { return Ok(()) };
-    let stopped = matches!(before.status, Status::Running | Status::OutOfTime);
-    let checkpoints = Checkpoint::list(folder).map_err(Failure::input)?;
-    // One that is under way is told of as that.
-    let newest = checkpoints.first().filter(|_| stopped && OutputFolder::reopen(folder).is_ok());
-    let Some(newest) = newest else { return Ok(()) };
+    let Some(newest) = stickslip::run::unfinished(folder).map_err(Failure::input)? else { return Ok(()) };
     let folder = folder.display();
     Err(Failure::Input(miette!(
         help = format!("`stickslip resume {folder}` goes on with it; --overwrite begins anew"),

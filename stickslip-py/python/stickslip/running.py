@@ -103,15 +103,9 @@ def resume(
     given = [(name, value) for name, value in source.get("set", [])]
     named = (source.get("until") if scene is None else None) if until is None else until
     named = named if named is None or isinstance(named, str) else repr(float(named))
-    try:
-        words = path.read_text(encoding="utf-8")
-    except OSError as error:
-        raise RunError(
-            f"{path}: {error.strerror}; name the scene file with scene", help="name it with scene"
-        ) from error
-    read = _core.ReadScene(str(path), words, given)
-    # Set after the file is read: intervals that follow from the end stay as they are.
-    end = read.end if named is None else _core.ReadScene(str(path), words, [*given, ("time.end", named)]).end
+    if not path.exists():
+        raise RunError(f"the scene file {path} is not there; name it with scene", help="name it with scene")
+    read = _core.ReadScene.again(path, given, named)
     request: _core.RunRequest = {
         "out": folder,
         "resumed": True,
@@ -121,7 +115,7 @@ def resume(
         "max_time": max_time,
     }
     with shown(progress) as show:
-        said, values = _core.run(read.simulation(threads), way_to(end, None, None, show), request)
+        said, values = _core.run(read.simulation(threads), way_to(read.end, None, None, show), request)
     return Summary(folder, said, Record.from_json(values))
 
 
@@ -136,11 +130,7 @@ def _record(folder: Path) -> dict[str, Any]:
 
 def _refuse_unfinished(folder: Path) -> None:
     """Refuses a folder with a run that nobody asked to stop, and that can go on."""
-    try:
-        status = _record(folder).get("status")
-    except ResultsError:
-        return
-    newest = max(folder.glob("checkpoints/*.checkpoint"), default=None)
-    if status in ("running", "out_of_time") and newest is not None:
+    newest = _core.unfinished(folder)
+    if newest is not None:
         advice = f"stickslip.resume({str(folder)!r}) goes on with it; overwrite=True begins anew"
         raise RunError(f"{folder} holds a run that has not ended, with a checkpoint: {newest}; {advice}", help=advice)

@@ -136,7 +136,7 @@ class Scene:
         return self._append("bodies", {"name": name, **keys})
 
     def packing(self, name: str, **keys: Any) -> Scene:
-        """Bodies `name` 1, 2 ... at random places: `material`, `shape`, `within`, `count` or `solid_fraction`, `sizes`."""
+        """Bodies `name` 1, 2 ... at random places: `material`, `shape`, `within`, `count` or `solid_fraction` ..."""
         return self._append("packings", {"name": name, **keys})
 
     def contact(self, between: Any = None, **keys: Any) -> Scene:
@@ -210,12 +210,11 @@ class Scene:
 
         Raises `SceneError` if there can be no run.
         """
-        said, values = self._read().check()
-        return Report(said, Record.from_json(values))
+        return _report(self._read())
 
     def simulation(self, threads: int | None = None) -> Simulation:
         """The simulation of this scene at time 0, by so many threads or by all processors; the bits are the same."""
-        return Simulation(self._read().simulation(threads), copy.deepcopy(self))
+        return self._simulation(self._read(), threads)
 
     def run(
         self,
@@ -237,7 +236,8 @@ class Scene:
         doubtful during it is in `Summary.warnings`.
         """
         name = "scene" if self._file is None else self._file[0].stem
-        report = self.check()
+        read = self._read()
+        report = _report(read)
         limit = _core.free_memory() if max_memory is None else max_memory
         if report.memory > limit:
             needs = f"the run needs about {report.memory:.2g} bytes, and may take {limit:.2g}"
@@ -247,13 +247,16 @@ class Scene:
             about = ": ".join(part for part in (warning.place, warning.key, warning.text) if part)
             warnings.warn(about, StickslipWarning, stacklevel=2)
         return carry_out(
-            self.simulation(threads),
+            self._simulation(read, threads),
             f"{name}.results" if out is None else out,
             progress=progress,
             checkpoint_every=checkpoint_every,
             max_time=max_time,
             overwrite=overwrite,
         )
+
+    def _simulation(self, read: _core.ReadScene, threads: int | None) -> Simulation:
+        return Simulation(read.simulation(threads), copy.deepcopy(self))
 
     def _source(self, out: Path) -> tuple[tuple[Path, list[tuple[str, str]]], str | None]:
         """Where a run in the folder `out` comes from: file and what was set, and the text of a scene without a file."""
@@ -313,6 +316,11 @@ class Scene:
 
     def _repr_html_(self) -> str:
         return f"<pre>{escape(self.text())}</pre>"
+
+
+def _report(read: _core.ReadScene) -> Report:
+    said, values = read.check()
+    return Report(said, Record.from_json(values))
 
 
 def _keys(keys: Mapping[str, Any]) -> dict[str, Any]:

@@ -136,7 +136,7 @@ class Bodies(Mapping[str, Body]):
         self._bodies = {name: Body(engine, index, name) for index, name in enumerate(engine.names)}
 
     def matching(self, pattern: str) -> list[Body]:
-        """The bodies whose names match, in the order of the scene; `*` is any letters: `sim.bodies.matching("grain *")`."""
+        """The bodies whose names match, in the order of the scene: `matching("grain *")`; `*` is any letters."""
         return [body for name, body in self._bodies.items() if matches(pattern, name)]
 
     def __getitem__(self, name: str) -> Body:

@@ -3,7 +3,7 @@
 use super::file::{OutputError, ReadError, ReadProblem, replace_for_good};
 use super::folder::OutputFolder;
 use crate::door::RelaxationState;
-use crate::scene::Scene;
+use crate::scene::{Loaded, Scene, SceneError, load};
 use serde::{Deserialize, Serialize};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -62,6 +62,23 @@ pub struct SceneSource {
     /// To where the run goes on, if not to the end of the scene, as the user wrote it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub until: Option<String>,
+}
+
+impl SceneSource {
+    /// Reads the scene again, to be run to where `until` says.
+    ///
+    /// # Errors
+    /// As [`load`].
+    pub fn load(&self) -> Result<Loaded, SceneError> {
+        let mut loaded = load(&self.path, &self.set)?;
+        if let Some(until) = &self.until {
+            // Set after the file is read: intervals that follow from the end stay as they are.
+            let with_end: Vec<_> =
+                self.set.iter().cloned().chain([("time.end".to_string(), until.clone())]).collect();
+            loaded.scene.time.end = load(&self.path, &with_end)?.scene.time.end;
+        }
+        Ok(loaded)
+    }
 }
 
 /// How a run stands.

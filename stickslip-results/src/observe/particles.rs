@@ -78,16 +78,16 @@ impl Observer for ParticlesObserver {
 pub fn encode_particles(snapshot: &ParticleSnapshot, time: f64, content: &SnapshotContent) -> Vtu {
     let mut file = Vtu::new(time, &snapshot.position, content.precision);
     file.field("dimension", snapshot.dimension as f64);
-    let add = |file: &mut Vtu, (name, unit): (&str, &str), kind: Kind, values: &[f64]| {
-        if content.columns.as_ref().is_none_or(|wanted| wanted.iter().any(|wanted| wanted == name)) {
-            file.described((name, unit), kind, values);
-        }
-    };
+    let wanted =
+        |name: &str| content.columns.as_ref().is_none_or(|wanted| wanted.iter().any(|wanted| wanted == name));
     let add_with_derived = |file: &mut Vtu, (column, values): (ColumnDescription, &[f64])| {
-        add(file, (column.name, ""), column.kind, values);
-        for derived in DERIVED.iter().filter(|derived| derived.from == column.name) {
+        if wanted(column.name) {
+            file.described((column.name, ""), column.kind, values);
+        }
+        let derived = DERIVED.iter().filter(|derived| derived.from == column.name);
+        for derived in derived.filter(|derived| wanted(derived.column.name)) {
             let values: Vec<f64> = values.chunks(column.kind.components()).map(derived.value).collect();
-            add(file, (derived.column.name, ""), derived.column.kind, &values);
+            file.described((derived.column.name, ""), derived.column.kind, &values);
         }
     };
     // The positions are the points themselves.
@@ -99,8 +99,10 @@ pub fn encode_particles(snapshot: &ParticleSnapshot, time: f64, content: &Snapsh
     file.whole(body, &bodies);
     file.whole(number, &snapshot.number);
     of_every().filter(is_number).for_each(|column| add_with_derived(&mut file, column));
-    for SnapshotColumn { name, unit, kind, values } in &snapshot.history {
-        add(&mut file, (name, unit), *kind, values);
+    for SnapshotColumn { name, unit, kind, values } in
+        snapshot.history.iter().filter(|column| wanted(&column.name))
+    {
+        file.described((name, unit), *kind, values);
     }
     file
 }

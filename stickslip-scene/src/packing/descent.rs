@@ -5,11 +5,11 @@ use super::Packing;
 use super::grain::{Grain, GrainShape, Push};
 use super::neighbours::near;
 use super::walls::{Wall, walls};
+use crate::geometry::Shape;
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
 use rayon::prelude::*;
-use std::f64::consts::PI;
 
 /// Grains on their way.
 pub struct Descent<'a> {
@@ -37,6 +37,9 @@ const INERTIA: f64 = 0.4;
 
 /// Steps without which nothing gets better that count as jammed.
 const PATIENCE: usize = 2000;
+
+/// Part of the container that the balls fill by which grains begin, in the plane and in space.
+const DILUTE: [f64; 2] = [0.5, 0.3];
 
 /// How grains grow, and the steps between.
 const GROWTH: f64 = 0.03;
@@ -116,10 +119,10 @@ impl<'a> Descent<'a> {
     pub fn settle(&mut self, room: f64) -> bool {
         let sizes: Vec<f64> = self.grains.iter().map(|grain| grain.scale).collect();
         if !self.shape.points.is_empty() {
-            let (power, unit) = if self.packing.dimension == 2 { (2, PI) } else { (3, 4.0 / 3.0 * PI) };
-            let balls: f64 = sizes.iter().map(|size| unit * (size * self.shape.radius).powi(power)).sum();
-            let dilute = [0.5, 0.3][self.packing.dimension - 2];
-            let mut size = libm::pow(dilute * room / balls, 1.0 / f64::from(power)).min(1.0);
+            let dimension = self.packing.dimension;
+            let ball = |size: &f64| Shape::ball([0.0; 3], size * self.shape.radius).volume(dimension);
+            let balls: f64 = sizes.iter().filter_map(ball).sum();
+            let mut size = libm::pow(DILUTE[dimension - 2] * room / balls, 1.0 / dimension as f64).min(1.0);
             self.as_balls = true;
             self.resize(&sizes, size);
             self.run(PATIENCE);

@@ -29,20 +29,17 @@ impl Grain {
 
     /// Turns it on about its middle, by a vector along the axis with the angle as its length [rad].
     pub fn turn(&mut self, by: [f64; 3]) {
-        let [x, y, z] = by;
-        let half = Matrix([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]]) * 0.5;
-        self.orientation = (Matrix::IDENTITY - half).inverse() * (Matrix::IDENTITY + half) * self.orientation;
+        self.orientation = Matrix::rotation_by(by) * self.orientation;
     }
 
     /// A direction of the undeformed grain as it is now.
     fn forward(&self, direction: [f64; 3]) -> [f64; 3] {
-        let rows = &self.orientation.0;
-        std::array::from_fn(|i| (0..3).map(|j| rows[i][j] * direction[j]).sum())
+        self.orientation.times(direction)
     }
 
+    /// A direction of the grain as it is now, before it was turned.
     fn back(&self, direction: [f64; 3]) -> [f64; 3] {
-        let rows = &self.orientation.0;
-        std::array::from_fn(|j| (0..3).map(|i| rows[i][j] * direction[i]).sum())
+        self.orientation.transpose().times(direction)
     }
 }
 

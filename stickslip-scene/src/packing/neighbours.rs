@@ -1,4 +1,5 @@
-//! Grains that are near each other.
+//! Grains that are near each other, by cells of a grid: they are found anew hundreds of times, and are of like sizes.
+//! Bodies of a scene, of any sizes, are paired once, by a tree (`check/neighbours`).
 
 use std::collections::HashMap;
 

@@ -115,14 +115,19 @@ mod tests {
             let ball = Shape::ball([0.3; 3], 0.5);
             for dimension in [2, 3] {
                 let mut shapes = vec![
-                    cube.clone(), convex.clone(), hollow.clone(), cube.clone().without(ball.clone()), convex.clone().and(ball.clone()),
+                    cube.clone(),
+                    convex.clone(),
+                    hollow.clone(),
+                    cube.clone().without(ball.clone()),
+                    convex.clone().and(ball.clone()),
                     cube.clone().rotated([0.1; 3], [0.0, 0.0, 1.0], angle),
                 ];
                 if dimension == 3 {
                     shapes.push(can.clone());
                 }
                 for shape in shapes {
-                    let inside = walls(&shape, dimension).iter().all(|wall| wall.level(point, dimension).distance < 0.0);
+                    let beyond = |wall: &Wall| wall.level(point, dimension).distance >= 0.0;
+                    let inside = !walls(&shape, dimension).iter().any(beyond);
                     prop_assert_eq!(inside, shape.contains(point, dimension), "{:?}", shape);
                 }
             }

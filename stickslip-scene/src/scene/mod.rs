@@ -27,7 +27,7 @@ pub use fringes::{Fringes, Light, Overlay, Polariscope, PolariscopeField, Sensit
 pub use load::{Loaded, load, parse};
 pub use loads::{Action, Dashpot, Extent, Load, Part, RIGID, Support, SupportMotion};
 pub use measurements::{Anchor, Arrival, Front, Measurements, Observable, Probe, Reading, TimeUnit};
-pub use name_pattern::{RuleNames, is_pattern, matches_name};
+pub use name_pattern::{NamePattern, RuleNames, is_pattern};
 pub use problem::Problem;
 pub use schema::schema;
 pub use source::Source;
@@ -529,7 +529,8 @@ impl Scene {
         let matches = |filter: &Option<String>, body: usize| {
             filter.as_ref().is_none_or(|name| {
                 let body = &self.bodies[body];
-                [&body.name, &self.materials[body.material].name].iter().any(|own| matches_name(name, own))
+                let pattern = NamePattern::new(name);
+                pattern.matches(&body.name) || pattern.matches(&self.materials[body.material].name)
             })
         };
         self.contact.iter().position(|rule| {

@@ -9,10 +9,24 @@ pub fn is_pattern(name: &str) -> bool {
     name.contains('*')
 }
 
-/// Whether a name is that which is `wanted`, or matches it, in which each `*` is any letters, or none.
-pub fn matches_name(wanted: &str, name: &str) -> bool {
-    // Of the two signs that the library knows, the other is one that no name has.
-    wanted == name || is_pattern(wanted) && WildMatchPattern::<'*', '\0'>::new(wanted).matches(name)
+/// Names that are the one which is wanted, or match it.
+#[derive(Clone, Debug)]
+pub struct NamePattern<'a> {
+    wanted: &'a str,
+    /// Each `*` is any letters, or none; of the two signs that the library knows, the other is one that no name has.
+    pattern: Option<WildMatchPattern<'*', '\0'>>,
+}
+
+impl<'a> NamePattern<'a> {
+    /// Of a name or a pattern.
+    pub fn new(wanted: &'a str) -> Self {
+        NamePattern { wanted, pattern: is_pattern(wanted).then(|| WildMatchPattern::new(wanted)) }
+    }
+
+    /// Whether it stands for a name.
+    pub fn matches(&self, name: &str) -> bool {
+        self.wanted == name || self.pattern.as_ref().is_some_and(|pattern| pattern.matches(name))
+    }
 }
 
 /// Which bodies the names in contact rules mean. Space and time follow the rules and the bodies, never their pairs.
@@ -45,19 +59,15 @@ impl RuleNames {
             first.entry([a, b]).or_insert(index);
             first.entry([b, a]).or_insert(index);
         }
-        let patterns: Vec<(&str, usize)> = numbers
-            .iter()
-            .filter(|(name, _)| is_pattern(name))
-            .map(|(&name, &number)| (name, number))
-            .collect();
+        let patterns = numbers.iter().filter(|(name, _)| is_pattern(name));
+        let patterns: Vec<_> = patterns.map(|(name, number)| (NamePattern::new(name), number)).collect();
         let mut places: HashMap<Vec<usize>, usize> = HashMap::new();
         let class = scene.bodies.iter().map(|body| {
             let own = [&body.name, &scene.materials[body.material].name];
             let mut names = vec![ANY];
             names.extend(own.iter().filter_map(|name| numbers.get(name.as_str())));
-            let meant =
-                patterns.iter().filter(|(pattern, _)| own.iter().any(|name| matches_name(pattern, name)));
-            names.extend(meant.map(|(_, number)| number));
+            let meant = patterns.iter().filter(|(pattern, _)| own.iter().any(|name| pattern.matches(name)));
+            names.extend(meant.map(|(_, number)| *number));
             names.sort_unstable();
             names.dedup();
             let next = places.len();

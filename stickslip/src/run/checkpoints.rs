@@ -1,11 +1,13 @@
 //! Checkpoints of a run: when they are written, and whether one fits a scene.
 
 use crate::door::{RestoreError, Simulation, View};
-use crate::observe::{Checkpoint, Memory, OutputError, OutputFolder, ReadError, Schedule, Writer};
+use crate::observe::{
+    Checkpoint, Manifest, Memory, OutputError, OutputFolder, ReadError, Schedule, Status, Writer,
+};
 use crate::scene::Scene;
 use miette::Diagnostic;
 use serde_json::Value;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -191,6 +193,18 @@ impl Checkpoints {
     }
 }
 
+/// The newest checkpoint in a folder with a run that nobody asked to stop, and that can go on: none where there is no
+/// such run, or one is under way.
+///
+/// # Errors
+/// The folder cannot be read.
+pub fn unfinished(folder: &Path) -> Result<Option<PathBuf>, ReadError> {
+    let Ok(before) = Manifest::read(folder) else { return Ok(None) };
+    let stopped = matches!(before.status, Status::Running | Status::OutOfTime);
+    let newest = Checkpoint::list(folder)?.into_iter().next();
+    Ok(newest.filter(|_| stopped && OutputFolder::reopen(folder).is_ok()))
+}
+
 /// What of a scene may change where a run goes on.
 const FREE: &[&str] =
     &["title", "about", "parameters", "outputs", "references", "start.from", "time.end", "time.energy_drift"];
@@ -200,7 +214,7 @@ const FREE: &[&str] =
 ///
 /// # Errors
 /// They differ in more than outputs and end.
-pub fn same_physics(path: &std::path::Path, then: &Value, now: &Value) -> Result<(), ResumeError> {
+pub fn same_physics(path: &Path, then: &Value, now: &Value) -> Result<(), ResumeError> {
     let fixed = FIXED.iter().find_map(|(pointer, key)| {
         let [then, now] = [then, now].map(|scene| scene.pointer(pointer).filter(|value| !value.is_null()));
         let same = then == now || (*key == "outputs.fringes" && (then.is_none() || now.is_none()));

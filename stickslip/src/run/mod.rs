@@ -9,7 +9,7 @@ mod summary;
 mod verdict;
 mod widest;
 
-pub use checkpoints::{Checkpointing, ResumeError, same_physics};
+pub use checkpoints::{Checkpointing, ResumeError, same_physics, unfinished};
 pub use clock::Progress;
 pub use error::RunError;
 pub use start::{CarriedBodies, begin};

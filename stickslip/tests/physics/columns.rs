@@ -4,9 +4,9 @@
 //! space and in the plane, in double and single precision.
 //!
 //! Expected: by its name each column of a body is that of the snapshot, bit for bit; what the plane does not leave free
-//! is zero; a name that is unknown is refused with those that are known. Where a column lies in memory it is again after
-//! every step and every state that is taken up, once the simulation has settled, and there it has the same values. What
-//! is written is read back, moves the body as it should, and is refused where it cannot be.
+//! is zero; a name that is unknown is refused with those that are known. Where a column lies in memory it is again
+//! after every step and every state that is taken up, once the simulation has settled, and there it has the same
+//! values. What is written is read back, moves the body as it should, and is refused where it cannot be.
 
 use stickslip::door::{NumberFormat, Simulation, WriteError};
 use stickslip::{scene, step};

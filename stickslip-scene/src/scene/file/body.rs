@@ -9,7 +9,7 @@ use super::text::{Choice, Count, Text, Word};
 use super::vector::{SpinInput, VectorInput};
 use crate::geometry::Arrangement;
 use crate::scene::error::Fault;
-use crate::scene::{self, BodyMotion, Expression, NamedMaterial, is_pattern};
+use crate::scene::{self, BodyMotion, Expression, NamedMaterial};
 use std::collections::HashSet;
 
 table! {
@@ -77,10 +77,7 @@ impl Bodies {
         if body.name == "any" || body.name.trim().is_empty() {
             return Err(name.refused(&body.name, "a name; `any` matches every body"));
         }
-        if is_pattern(&body.name) {
-            let allowed = "a name without `*`, which is any letters where bodies are named";
-            return Err(name.refused(&body.name, allowed));
-        }
+        name.is_no_pattern(&body.name)?;
         if !self.names.insert(body.name.clone()) {
             return Err(name.refused(&body.name, "a name that no other body has"));
         }

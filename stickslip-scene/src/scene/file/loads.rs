@@ -153,7 +153,6 @@ pub struct Loads {
     pub declared_supports: Vec<String>,
     /// Of each load.
     pub declared_loads: Vec<String>,
-    names: HashSet<String>,
 }
 
 /// The supports, and then the loads, in the order of the file.
@@ -162,44 +161,44 @@ pub fn resolve(
     loads: &[Load],
     (bodies, context): (&[Body], &Context),
 ) -> Result<Loads, Fault> {
+    let (bodies, mut taken) = (DeformingBodies::of(bodies), HashSet::new());
     let mut resolved = Loads::default();
-    for (i, support) in supports.iter().enumerate() {
+    for (table, support) in supports.iter().enumerate() {
+        let Support { name, body, on, within, .. } = support;
+        let place = Place { name, body, on, within, kind: "support", table };
+        let mut add = |action| place.add(action, (&bodies, &mut taken), (&mut resolved.all, context));
         Repeat::each(support.repeat.as_ref(), context, || {
-            let action = Action::Support(support.resolve(context)?);
-            let place = Place {
-                name: &support.name,
-                body: &support.body,
-                on: &support.on,
-                within: &support.within,
-                kind: "support",
-                table: i,
-            };
-            let number = resolved.declared_supports.len();
-            let made = place.loads((action, number), (bodies, &mut resolved.names), context)?;
-            resolved.declared_supports.extend(made.iter().map(|_| format!("supports[{i}]")));
-            resolved.all.extend(made);
+            let made = add((Action::Support(support.resolve(context)?), resolved.declared_supports.len()))?;
+            resolved.declared_supports.extend(vec![format!("supports[{table}]"); made]);
             Ok(())
         })?;
     }
-    for (i, load) in loads.iter().enumerate() {
+    for (table, load) in loads.iter().enumerate() {
+        let Load { name, body, on, within, .. } = load;
+        let place = Place { name, body, on, within, kind: "load", table };
+        let mut add = |action| place.add(action, (&bodies, &mut taken), (&mut resolved.all, context));
         Repeat::each(load.repeat.as_ref(), context, || {
-            let action = load.action(context, i)?;
-            let place = Place {
-                name: &load.name,
-                body: &load.body,
-                on: &load.on,
-                within: &load.within,
-                kind: "load",
-                table: i,
-            };
-            let number = resolved.declared_loads.len();
-            let made = place.loads((action, number), (bodies, &mut resolved.names), context)?;
-            resolved.declared_loads.extend(made.iter().map(|_| format!("loads[{i}]")));
-            resolved.all.extend(made);
+            let made = add((load.action(context, table)?, resolved.declared_loads.len()))?;
+            resolved.declared_loads.extend(vec![format!("loads[{table}]"); made]);
             Ok(())
         })?;
     }
     Ok(resolved)
+}
+
+/// The bodies that loads may act on.
+struct DeformingBodies<'a> {
+    names: Vec<&'a str>,
+    /// Their places in the scene.
+    places: Vec<usize>,
+}
+
+impl<'a> DeformingBodies<'a> {
+    fn of(bodies: &'a [Body]) -> Self {
+        let deform = bodies.iter().enumerate().filter(|(_, body)| !body.is_rigid());
+        let (places, names) = deform.map(|(place, body)| (place, body.name.as_str())).unzip();
+        DeformingBodies { names, places }
+    }
 }
 
 /// What loads and supports have in common.
@@ -214,17 +213,15 @@ struct Place<'a> {
 }
 
 impl Place<'_> {
-    /// One on each body that it names; `number` counts those before it.
-    fn loads(
+    /// One on each body that it names, and how many these are; `number` counts those before it.
+    fn add(
         &self,
         (action, number): (Action, usize),
-        (bodies, taken): (&[Body], &mut HashSet<String>),
-        context: &Context,
-    ) -> Result<Vec<scene::Load>, Fault> {
-        let deform: Vec<usize> = (0..bodies.len()).filter(|&body| !bodies[body].is_rigid()).collect();
-        let names: Vec<&str> = deform.iter().map(|&body| bodies[body].name.as_str()).collect();
-        let (body_name, found) = self.body.names_of(context, "the name of a body that deforms", &names)?;
-        let mut loads = Vec::new();
+        (bodies, taken): (&DeformingBodies, &mut HashSet<String>),
+        (loads, context): (&mut Vec<scene::Load>, &Context),
+    ) -> Result<usize, Fault> {
+        let what = "the name of a body that deforms";
+        let (body_name, found) = self.body.names_of(context, what, &bodies.names)?;
         for (k, &found) in found.iter().enumerate() {
             let mut name = match self.name {
                 Some(text) => text.value(context)?,
@@ -232,7 +229,7 @@ impl Place<'_> {
                 None => format!("{} {}", self.kind, number + k + 1),
             };
             if is_pattern(&body_name) {
-                name = format!("{name} on {}", names[found]);
+                name = format!("{name} on {}", bodies.names[found]);
             }
             if name.trim().is_empty() || !taken.insert(name.clone()) {
                 let allowed = "a name that no other load or support has";
@@ -243,9 +240,9 @@ impl Place<'_> {
                 };
                 return Err(self.name.as_ref().map_or_else(unnamed, named));
             }
-            loads.push(self.load((&name, deform[found]), action.clone(), context)?);
+            loads.push(self.load((&name, bodies.places[found]), action.clone(), context)?);
         }
-        Ok(loads)
+        Ok(found.len())
     }
 
     fn load(

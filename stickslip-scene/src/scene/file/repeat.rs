@@ -24,8 +24,9 @@ impl Repeat {
         context: &Context,
         mut each: impl FnMut() -> Result<(), Fault>,
     ) -> Result<(), Fault> {
+        let mut left = MOST;
         match repeat {
-            Some(Repeat(indices)) => Self::over(indices, context, (&mut MOST.clone(), &mut each)),
+            Some(Repeat(indices)) => Self::over(indices, context, (&mut left, &mut each)),
             None => each(),
         }
     }

@@ -6,7 +6,7 @@ use super::read::Read;
 use crate::scene::error::Fault;
 use crate::scene::source::{DocumentNode, Value};
 use crate::scene::suggestion::{did_you_mean, listed};
-use crate::scene::{is_pattern, matches_name};
+use crate::scene::{NamePattern, is_pattern};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use std::borrow::Cow;
 use std::collections::HashSet;
@@ -73,7 +73,8 @@ impl Text {
         known: &[&str],
     ) -> Result<(String, Vec<usize>), Fault> {
         let name = self.value(context)?;
-        let found: Vec<usize> = (0..known.len()).filter(|&i| matches_name(&name, known[i])).collect();
+        let pattern = NamePattern::new(&name);
+        let found: Vec<usize> = (0..known.len()).filter(|&i| pattern.matches(known[i])).collect();
         if found.is_empty() { Err(self.unknown(&name, what, known)) } else { Ok((name, found)) }
     }
 
@@ -99,15 +100,17 @@ impl Text {
     /// A name of something new, which is not empty and none of those that are `taken`, and is now.
     pub fn new_name(&self, context: &Context, taken: &mut HashSet<String>) -> Result<String, Fault> {
         let name = self.value(context)?;
-        if is_pattern(&name) {
-            return Err(
-                self.refused(&name, "a name without `*`, which is any letters where bodies are named")
-            );
-        }
+        self.is_no_pattern(&name)?;
         if name.trim().is_empty() || !taken.insert(name.clone()) {
             return Err(self.refused(&name, "a name that no other in the list has"));
         }
         Ok(name)
+    }
+
+    /// Refuses a new name that would stand for others.
+    pub fn is_no_pattern(&self, name: &str) -> Result<(), Fault> {
+        let allowed = "a name without `*`, which is any letters where bodies are named";
+        if is_pattern(name) { Err(self.refused(name, allowed)) } else { Ok(()) }
     }
 
     /// The fault of a text that is not allowed.
