@@ -30,14 +30,15 @@ pub fn no_faster<V: Lanes>([wave, speed]: [V; 2], most: V) -> u32 {
     rest.at_least(V::ZERO) & (rest * rest).at_least((product + product) + (product + product))
 }
 
-/// [`signal_speed`] of a particle [m/s].
-pub fn signal<T: Real, const D: usize>(
+/// [`signal_speed`] of a particle [m/s]; of a rigid body's its speed: no wave runs there.
+fn signal<T: Real, const D: usize>(
     body: &Body<T, D>,
     particle: &Particle<T, D>,
     history: &impl Recall<T>,
 ) -> T {
     let velocity = particle.velocity;
-    signal_speed([body.wave_modulus(particle, history) / body.density, velocity.dot(velocity)])
+    let wave = if body.is_rigid() { T::ZERO } else { body.wave_modulus(particle, history) / body.density };
+    signal_speed([wave, velocity.dot(velocity)])
 }
 
 /// The fastest [`signal`] of all particles [m/s].

@@ -9,9 +9,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard};
 use stickslip::column::ColumnDescription;
 use stickslip::door::{
-    BodyState, ColumnPlace, ColumnRef, ContactPatch, ContactSum, GridSnapshot, Ledger, LoadState, NoColumn,
-    ParticleSnapshot, ParticleView, RelaxationState, RestoreError, SavedState, Simulation, StepError,
-    TracedParticle, View, WriteError,
+    BodyState, ColumnPlace, ColumnRef, ContactPatch, ContactSum, GridSnapshot, JointState, Ledger, LoadState,
+    NoColumn, ParticleSnapshot, ParticleView, RelaxationState, RestoreError, SavedState, Simulation,
+    StepError, TracedParticle, View, WriteError,
 };
 use stickslip::scene::StartVelocities;
 
@@ -154,6 +154,10 @@ impl View for Handle {
 
     fn loads(&self) -> Vec<LoadState> {
         self.0.ask(|simulation| simulation.loads())
+    }
+
+    fn joints(&self) -> Vec<JointState> {
+        self.0.ask(|simulation| simulation.joints())
     }
 
     fn patches(&self) -> Vec<ContactPatch> {

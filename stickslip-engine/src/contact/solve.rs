@@ -1,7 +1,9 @@
 //! From pairs to a whole node: any number of bodies, each pair by its own law.
 
 use super::law::law;
-use super::{Change, ContactUse, Encounter, Rules, SharedNode, Span, Survey, SurveyPart, TimeStep};
+use super::{
+    BodyShare, Change, ContactUse, Encounter, Rules, SharedNode, Span, Survey, SurveyPart, TimeStep,
+};
 use crate::grid::{Disjoint, Node};
 use crate::tensor::{Real, Vector};
 use crate::threads::each;
@@ -100,8 +102,8 @@ impl<T, const D: usize> Impulses<T, D> {
         self.parts.iter().map(|list| list.unsettled).sum()
     }
 
-    /// Those of a part; none if nothing was solved yet.
-    fn of(&self, part: usize) -> &[Impulse<T, D>] {
+    /// Those of a part and in its order of encounters; none if nothing was solved yet.
+    pub fn of(&self, part: usize) -> &[Impulse<T, D>] {
         self.parts.get(part).map_or(&[], |list| &list.impulses)
     }
 }
@@ -118,6 +120,8 @@ pub struct Solve<'a, T, const D: usize> {
     pub step: TimeStep<T>,
     /// What an earlier use of contact in this step did.
     pub given: Option<&'a Impulses<T, D>>,
+    /// Of each body, whether it is rigid and free; empty where none is.
+    pub free: &'a [bool],
 }
 
 /// What becomes of the impulses of a use.
@@ -144,8 +148,8 @@ impl<T: Real, const D: usize> Solve<'_, T, D> {
             (list.reduced, list.unsettled) = (0, 0);
         }
         each(used, 4, |i, list| {
-            let given = self.given.map_or(&[][..], |given| given.of(i));
-            self.part(&parts[i], given, list);
+            self.part((i, &parts[i]), list);
+            self.apply_part(list);
             if record == ImpulseRecord::Dropped {
                 list.reduced += list.impulses.iter().filter(|j| j.change.scale < T::ONE).count() as u64;
                 list.impulses.clear();
@@ -153,21 +157,50 @@ impl<T: Real, const D: usize> Solve<'_, T, D> {
         });
     }
 
-    /// Changes the velocities at the nodes of a part of the survey, and lists the impulses there.
-    fn part(&self, part: &SurveyPart<T, D>, given: &[Impulse<T, D>], list: &mut List<T, D>) {
+    /// Lists the impulses of the parts of the survey that are `wanted`, by their numbers, and changes no velocity.
+    pub fn list(&self, wanted: impl Fn(usize) -> bool + Sync, listed: &mut Impulses<T, D>) {
+        let parts = self.survey.parts();
+        listed.parts.resize_with(parts.len().max(listed.parts.len()), List::default);
+        let (used, unused) = listed.parts.split_at_mut(parts.len());
+        for list in unused {
+            list.impulses.clear();
+            (list.reduced, list.unsettled) = (0, 0);
+        }
+        each(used, 4, |i, list| {
+            if wanted(i) {
+                self.part((i, &parts[i]), list);
+            }
+        });
+    }
+
+    /// Changes the velocities by impulses that were listed.
+    pub fn apply(&self, listed: &mut Impulses<T, D>) {
+        each(&mut listed.parts[..self.survey.parts().len()], 4, |_, list| self.apply_part(list));
+    }
+
+    fn apply_part(&self, list: &List<T, D>) {
+        for impulse in &list.impulses {
+            for (node, velocity) in impulse.nodes.into_iter().zip(impulse.velocity) {
+                // SAFETY: a node of a body belongs to one site.
+                unsafe { self.nodes.get(node) }.velocity += velocity;
+            }
+        }
+    }
+
+    /// Lists the impulses in a part of the survey.
+    fn part(&self, (number, part): (usize, &SurveyPart<T, D>), list: &mut List<T, D>) {
+        let given = self.given.map_or(&[][..], |given| given.of(number));
         list.impulses.clear();
         (list.reduced, list.unsettled) = (0, 0);
         for site in &part.sites {
             let given = if given.is_empty() { given } else { &given[site.encounters.clone()] };
-            let first = list.impulses.len();
             self.site((part, site), given, list);
-            for impulse in &list.impulses[first..] {
-                for (node, velocity) in impulse.nodes.into_iter().zip(impulse.velocity) {
-                    // SAFETY: a node of a body belongs to one site.
-                    unsafe { self.nodes.get(node) }.velocity += velocity;
-                }
-            }
         }
+    }
+
+    /// Whether a body moves as prescribed.
+    fn is_prescribed(&self, side: &BodyShare<T, D>) -> bool {
+        side.surface.is_rigid() && !self.free.get(side.body).copied().unwrap_or(false)
     }
 
     /// Lists the impulses at a site.
@@ -221,7 +254,7 @@ impl<T: Real, const D: usize> Solve<'_, T, D> {
                     moved = moved.max((new - old[i]).norm());
                     largest = largest.max(new.norm());
                     speed = speed.max(free[i].norm());
-                    if surface.is_rigid() {
+                    if self.is_prescribed(&part.sides[encounter.sides[i]]) {
                         impulse.work += impulse.change.impulse[1 - i].dot(free[i]);
                     }
                 }
@@ -425,8 +458,14 @@ mod tests {
         let before = velocities(&nodes);
         let mut impulses = Impulses::default();
         let survey = Survey::of(vec![part]);
-        let solve =
-            Solve { survey: &survey, rules: &rules, nodes: Disjoint::new(&mut nodes), step, given: None };
+        let solve = Solve {
+            survey: &survey,
+            rules: &rules,
+            nodes: Disjoint::new(&mut nodes),
+            step,
+            given: None,
+            free: &[],
+        };
         solve.impulses(ImpulseRecord::Kept, &mut impulses);
         let after = velocities(&nodes);
         let masses = state.iter().map(|body| body.0).collect();

@@ -86,6 +86,13 @@ pub struct SurveyPart<T, const D: usize> {
     pub encounters: Vec<Encounter<T, D>>,
 }
 
+impl<T: Copy, const D: usize> Encounter<T, D> {
+    /// Common normal from the first to the second, if there is one [-].
+    pub fn normal(&self) -> Option<Vector<T, D>> {
+        self.facing.normal
+    }
+}
+
 impl<T, const D: usize> Default for SurveyPart<T, D> {
     fn default() -> Self {
         SurveyPart { sites: Vec::new(), sides: Vec::new(), encounters: Vec::new() }

@@ -43,6 +43,10 @@ pub trait View {
     fn loads(&self) -> Vec<LoadState> {
         Vec::new()
     }
+    /// What joints did since the start, in the order of the scene.
+    fn joints(&self) -> Vec<JointState> {
+        Vec::new()
+    }
     /// The widest contact of each pair of bodies since the start, ordered by pair.
     fn patches(&self) -> Vec<ContactPatch>;
     /// All particles now, ordered by body and then by the particle's number in its body.
@@ -193,6 +197,22 @@ pub struct LoadState {
     pub work: f64,
     /// How far its part is from where it was at the start, the mean over the part [m].
     pub displacement: [f64; 3],
+}
+
+/// What a joint did on the body that it holds. Impulses and work are sums since the start: differences are what it did
+/// in between.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct JointState {
+    /// Impulse [N s].
+    pub impulse: [f64; 3],
+    /// Impulse of moments about the joint's point, of sliders and welds about the body's centre [N m s].
+    pub moment: [f64; 3],
+    /// Angle of a hinge [rad], way of a slider, change of a spring's length since the start [m].
+    pub way: f64,
+    /// Its rate [rad/s, m/s].
+    pub speed: f64,
+    /// Work on free bodies [J].
+    pub work: f64,
 }
 
 /// How far dynamic relaxation has come.

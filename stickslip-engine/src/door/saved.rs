@@ -3,7 +3,7 @@
 use crate::contact::ContactSums;
 use crate::load::LoadSums;
 use crate::rigid::{Pose, RigidState};
-use crate::step::{Disorder, RelaxationProgress};
+use crate::step::{Disorder, JointSums, RelaxationProgress};
 use serde::{Deserialize, Serialize};
 
 /// All that a simulation is between two steps, whatever its dimension and precision. A simulation of the same scene
@@ -26,6 +26,8 @@ pub struct SavedState {
     pub(crate) unbounded: Vec<SavedUnbounded>,
     /// Of each load, how far its points were from their places where the run began; none if they were there.
     pub(crate) moved: Vec<Vec<[f64; 3]>>,
+    #[serde(default)]
+    pub(crate) joints: Vec<JointSums>,
 }
 
 /// A body between two steps.

@@ -1,5 +1,6 @@
 //! From a scene to a simulation.
 
+use super::mechanism::JointSums;
 use super::relax::RelaxationProgress;
 use super::state::{Disorder, Settings, State, Workspace};
 use super::unbounded::Unbounded;
@@ -18,7 +19,7 @@ use crate::lanes::{Laned, Processor};
 use crate::load::{LoadPoints, LoadSums};
 use crate::material::{BadConstants, Material};
 use crate::particles::{OwnColumns, Particles};
-use crate::rigid::RigidMotion;
+use crate::rigid::{MassProperties, RigidMotion, longest_step};
 use crate::scene::{self, BasisKind, BodyMotion, Dimension, Face, NamedMaterial, Precision, Problem, Scene};
 use crate::tensor::{Matrix, Real, Symmetric, Vector, cross};
 use crate::transfer::{has_spin, pic_share, rotation};
@@ -87,7 +88,11 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 });
                 Filling { sites: Vec::new() }
             });
-            let motion = RigidMotion::prescribed(&body.motion, center);
+            let free = body.as_free_rigid().and_then(|free| {
+                let properties = MassProperties::of(scene, body, free)?;
+                Some(RigidMotion::free(&properties, free.velocity, free.spin))
+            });
+            let motion = free.or_else(|| RigidMotion::prescribed(&body.motion, center));
             let velocity = |x| match (&body.motion, &motion) {
                 (BodyMotion::Free { velocity, spin }, _) => about(center, *velocity, *spin, x),
                 (_, Some(motion)) => motion.velocity_at(x),
@@ -126,6 +131,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 viscosity: BulkViscosity::new(&scene.damping),
                 rules: Rules::new(scene),
                 loads: scene.loads.iter().map(|load| LoadPoints::new(scene, load)).collect(),
+                joints: scene.joints.clone(),
+                free: free_bodies(scene),
+                longest_rigid: longest_step(scene),
                 time: scene.time.clone(),
                 path,
             },
@@ -135,6 +143,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 unbounded,
                 contact_sums: ContactSums::default(),
                 loads: vec![LoadSums::default(); scene.loads.len()],
+                joints: vec![JointSums::default(); scene.joints.len()],
                 damping: 0.0,
                 relaxation: RelaxationProgress::default(),
                 signal: None,
@@ -146,6 +155,12 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             basis: PhantomData,
         })
     }
+}
+
+/// Of each body, whether it is rigid and free; empty where none is.
+fn free_bodies(scene: &Scene) -> Vec<bool> {
+    let free: Vec<bool> = scene.bodies.iter().map(|body| body.as_free_rigid().is_some()).collect();
+    if free.contains(&true) { free } else { Vec::new() }
 }
 
 /// The law of a body, for the scene's cells and in the precision of the engine.

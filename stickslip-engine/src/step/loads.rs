@@ -193,7 +193,10 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             let mut particle = body.particles.get(places[load.body][point.particle] as usize);
             loaded.nodes.clear();
             let (mut velocity, mut moves) = (Vector::ZERO, Vector::ZERO);
-            for (node, [own, weight]) in nodes_of::<T, D, B>(lattice, &particle, point) {
+            // A rigid body feels the force itself, see `mechanism/`.
+            let moved_by_nodes = !body.is_rigid();
+            let nodes_near = || nodes_of::<T, D, B>(lattice, &particle, point);
+            for (node, [own, weight]) in moved_by_nodes.then(nodes_near).into_iter().flatten() {
                 let (index, mirrored) = find(active, boundary, (load.body, node));
                 if index != NOWHERE && nodes[index as usize].mass > T::ZERO {
                     velocity += mirror(nodes[index as usize].start, mirrored) * weight;
@@ -235,6 +238,10 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 let particle = body.particles.get(room.places[load.body][point.particle] as usize);
                 let way = place_of(&particle, point) - *before;
                 let mut force = felt.force;
+                if body.is_rigid() {
+                    let given = force.space();
+                    (0..3).for_each(|i| sums.impulse[i] += given[i] * dt.f64());
+                }
                 for &LoadedNode { index, mirrored, weight } in nodes {
                     let acceleration = mirror(room.nodes[index as usize].acceleration, mirrored);
                     let mut given = felt.force * weight;
@@ -284,6 +291,18 @@ impl<T, const D: usize> Default for LoadRoom<T, D> {
 }
 
 impl<T: Real, const D: usize> LoadRoom<T, D> {
+    /// Of each point on one of some bodies: the body, the force on it and where that acts [N, m].
+    pub fn forces_on<'a>(
+        &'a self,
+        loads: &'a [LoadPoints],
+        wanted: impl Fn(usize) -> bool + 'a,
+    ) -> impl Iterator<Item = (usize, [f64; 3], [f64; 3])> + 'a {
+        let felt = self.numbers.iter().zip(&self.points);
+        felt.map(|(&[load, _], point)| (loads[load as usize].body, point))
+            .filter(move |(body, _)| wanted(*body))
+            .map(|(body, point)| (body, point.felt.force.space(), point.before.space()))
+    }
+
     /// Forgets the last step, and has room for all points.
     fn begin(&mut self, loads: &[LoadPoints]) {
         for index in self.reached.drain(..) {

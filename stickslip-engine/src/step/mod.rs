@@ -16,6 +16,7 @@
 //! | dynamic relaxation, between two steps | `relax.rs` |
 //! | what happens at a node: v = p / m, v += dt (f / m + g) | [`crate::grid::Node`] |
 //! | loads and supports at a node | `loads.rs` |
+//! | free rigid bodies, and joints between them | `mechanism/` |
 //! | glue at a node | `glue.rs` |
 //! | contact at a node | `contact/solve.rs`, by a law of `contact/law/` |
 
@@ -25,6 +26,7 @@ mod build;
 mod cpu;
 mod glue;
 mod loads;
+mod mechanism;
 #[cfg(test)]
 mod naive;
 mod pass;
@@ -40,6 +42,7 @@ mod writing;
 
 pub(crate) use build::own_columns;
 pub use build::{build, build_on};
+pub(crate) use mechanism::JointSums;
 pub use pass::ParticleLoop;
 pub(crate) use relax::RelaxationProgress;
 pub(crate) use state::Disorder;
@@ -94,6 +97,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// Update stress first (USF): the interpolated velocities strain and move particles.
     fn update_stress_first(&mut self, dt: T) -> Result<(), StepError> {
         self.find_active_blocks(); //                             cell lists; blocks of nodes under bodies' particles
+        self.find_free_bodies(); //                               rigid ones that forces move, and their joints
         self.particles_to_grid(Share::Mass); //                   P2G: m, p
         self.interpolate_velocities(); //                         v = p / m                            (4)
         self.impose_boundary_conditions(); //                     of rigid bodies and walls
@@ -109,12 +113,14 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.update_velocities(dt); //                            v += dt (f / m + g)                  (3)
         self.feel_loads(dt, Some(dt)); //                         supports and loads, on points of bodies
         self.apply_loads(dt); //                                  v += dt F / m
+        self.push_free_bodies(dt); //                             rigid ones: v += dt (F / m + g)
         self.impose_boundary_conditions(); //                     once more
         self.contact_on_integrated(dt); //                        v~, and walls
         self.exchange_velocities(); //                            v~ that was kept, to move by; v~ of now, for dv
         self.damp(dt); //                                         of v~ for dv
         self.update_velocities_and_positions(dt)?; //             G2P: v_p += dv, x += v~ dt
-        self.move_rigid_bodies(dt)?; //                           as prescribed
+        self.move_rigid_bodies(dt)?; //                           as prescribed, free ones by their velocities
+        self.account_joints(dt); //                               forces and works of joints
         self.account(dt, Interpolated::Once); //                  impulses, works, balance of forces
         self.account_loads(dt); //                                forces and works of supports and loads
         Ok(())
@@ -123,6 +129,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// Update stress last (USL): the integrated velocities strain and move particles.
     fn update_stress_last(&mut self, dt: T) -> Result<(), StepError> {
         self.find_active_blocks(); //                             cell lists; blocks of nodes under bodies' particles
+        self.find_free_bodies(); //                               rigid ones that forces move, and their joints
         self.particles_to_grid(Share::Everything); //             P2G: m, p, f = -sum V sigma grad S
         self.interpolate_velocities(); //                         v = p / m                            (4)
         self.impose_boundary_conditions(); //                     of rigid bodies and walls
@@ -132,13 +139,15 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.update_velocities(dt); //                            v += dt (f / m + g)                  (3)
         self.feel_loads(dt, None); //                             supports and loads, on points of bodies
         self.apply_loads(dt); //                                  v += dt F / m
+        self.push_free_bodies(dt); //                             rigid ones: v += dt (F / m + g)
         self.impose_boundary_conditions(); //                     once more
         self.contact_on_integrated(dt); //                        v~, and walls
         self.keep_velocities(); //                                v~, for dv
         self.damp(dt); //                                         of v~ for dv
         self.average_dilatation(dt); //                           of nearly incompressible bodies
         self.update_particles(dt)?; //                            G2P: v_p += dv, F, sigma, x += v~ dt
-        self.move_rigid_bodies(dt)?; //                           as prescribed
+        self.move_rigid_bodies(dt)?; //                           as prescribed, free ones by their velocities
+        self.account_joints(dt); //                               forces and works of joints
         self.account(dt, Interpolated::Once); //                  impulses, works, balance of forces
         self.account_loads(dt); //                                forces and works of supports and loads
         Ok(())
@@ -148,6 +157,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// and move particles. Works are accounted before contact acts on these, which no particle takes as a change.
     fn modified_update_stress_last(&mut self, dt: T) -> Result<(), StepError> {
         self.find_active_blocks(); //                             cell lists; blocks of nodes under bodies' particles
+        self.find_free_bodies(); //                               rigid ones that forces move, and their joints
         self.particles_to_grid(Share::Everything); //             P2G: m, p, f = -sum V sigma grad S
         self.interpolate_velocities(); //                         v = p / m                            (4)
         self.impose_boundary_conditions(); //                     of rigid bodies and walls
@@ -157,6 +167,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.update_velocities(dt); //                            v += dt (f / m + g)                  (3)
         self.feel_loads(dt, None); //                             supports and loads, on points of bodies
         self.apply_loads(dt); //                                  v += dt F / m
+        self.push_free_bodies(dt); //                             rigid ones: v += dt (F / m + g)
         self.impose_boundary_conditions(); //                     once more
         self.contact_on_integrated(dt); //                        v~, and walls
         self.keep_velocities_and_clear_momentum(); //             v~, for dv; p = 0
@@ -169,14 +180,17 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.contact_on_straining(dt); //                         v~, and walls
         self.average_dilatation(dt); //                           of nearly incompressible bodies
         self.update_stress_and_positions(dt)?; //                 G2P: F, sigma, x += v~ dt
-        self.account_loads(dt); //                                forces and works
-        self.move_rigid_bodies(dt) //                             as prescribed
+        self.move_rigid_bodies(dt)?; //                           as prescribed, free ones by their velocities
+        self.account_joints(dt); //                               forces and works of joints
+        self.account_loads(dt); //                                forces and works of supports and loads
+        Ok(())
     }
 
     /// Longest stable step now, courant h / max(c + |v_p|): the speed is the fastest *signal* ([`crate::clock`]) [s].
     fn stable(&self) -> f64 {
         let signal = self.state.signal.unwrap_or_else(|| fastest_signal(&self.state.bodies));
         let step = self.settings.time.courant * self.settings.lattice.cell.f64() / signal;
+        let step = step.min(self.settings.longest_rigid);
         self.settings.time.max_step.map_or(step, |longest| step.min(longest))
     }
 }

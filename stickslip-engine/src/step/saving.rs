@@ -40,6 +40,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             contact_sums: self.state.contact_sums.clone(),
             unbounded: self.state.unbounded.iter().map(Unbounded::saved).collect(),
             moved: self.settings.loads.iter().map(moved).collect(),
+            joints: self.state.joints.clone(),
         }
     }
 
@@ -58,6 +59,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 "it has other supports, loads or bodies without bounds than the scene".into(),
             ));
         }
+        if saved.joints.len() != state.joints.len() {
+            return Err(RestoreError("it has other joints than the scene".into()));
+        }
         let numbers = [saved.time, saved.damping, saved.signal.unwrap_or(1.0)];
         if !numbers.iter().all(|x| x.is_finite()) || saved.time < 0.0 || !saved.contact_sums.are_of(wanted) {
             return Err(RestoreError("it has numbers that no run has".to_string()));
@@ -65,6 +69,10 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         for (body, saved) in state.bodies.iter().zip(&saved.bodies) {
             if body.motion.is_some() != saved.motion.is_some() {
                 return Err(RestoreError(format!("body `{}` is rigid in one of the two only", body.name)));
+            }
+            let motions = body.motion.as_ref().zip(saved.motion.as_ref());
+            if motions.is_some_and(|(motion, saved)| !motion.is_like(saved)) {
+                return Err(RestoreError(format!("body `{}` is free in one of the two only", body.name)));
             }
         }
         let without_bounds = |i: usize| state.unbounded.iter().any(|unbounded| unbounded.body == i);
@@ -88,7 +96,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             load.points.iter_mut().zip(moved).for_each(|(point, moved)| point.moved = moved);
         }
         state.contact_sums = saved.contact_sums.indexed();
-        (state.loads, state.damping, state.relaxation) = (saved.loads, saved.damping, saved.relaxation);
+        (state.loads, state.joints) = (saved.loads, saved.joints);
+        (state.damping, state.relaxation) = (saved.damping, saved.relaxation);
         (state.signal, state.time, state.steps) = (saved.signal, saved.time, saved.steps);
         Ok(())
     }
@@ -197,8 +206,14 @@ fn begun<T: Real, const D: usize>(
             if without_bounds && !(0..3).all(|i| near([saved.start()[i], motion.state().start()[i]])) {
                 return Err(off("has moved in it, and its shape is another in the scene"));
             }
+            if !motion.is_like(saved) {
+                return Err(off("is free in one of the two, and moves as prescribed in the other"));
+            }
             motion.restore(saved);
             motion.set_time(0.0);
+            if velocities == StartVelocities::Zero {
+                motion.stop();
+            }
         }
         (Some(_), None) => return Err(off("is rigid in the scene, and deformed in it")),
         (None, _) => {}

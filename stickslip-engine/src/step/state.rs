@@ -3,6 +3,7 @@
 use super::account::NodeTotals;
 use super::cpu::Threads;
 use super::loads::LoadRoom;
+use super::mechanism::{JointSums, Mechanism};
 use super::relax::RelaxationProgress;
 use super::unbounded::Unbounded;
 use crate::body::{Body, Totals};
@@ -11,7 +12,7 @@ use crate::contact::{ContactSums, Impulses, Rules, Survey};
 use crate::damping::{BulkViscosity, NodeDamping};
 use crate::grid::{ActiveBlocks, Field, Lattice};
 use crate::load::{LoadPoints, LoadSums};
-use crate::scene::{Time, Transfer};
+use crate::scene::{Joint, Time, Transfer};
 use crate::tensor::Vector;
 use serde::{Deserialize, Serialize};
 use std::sync::{Arc, Mutex};
@@ -33,6 +34,12 @@ pub struct Settings<T, const D: usize> {
     pub rules: Rules<T>,
     /// Supports and loads with their points.
     pub loads: Vec<LoadPoints>,
+    /// What joins rigid bodies.
+    pub joints: Vec<Joint>,
+    /// Of each body, whether it is rigid and free; empty where none is.
+    pub free: Vec<bool>,
+    /// The longest step that rigid bodies allow [s].
+    pub longest_rigid: f64,
     pub time: Time,
     pub path: ParticleLoop,
 }
@@ -51,6 +58,8 @@ pub struct State<T, const D: usize> {
     pub contact_sums: ContactSums,
     /// What loads did since the start.
     pub loads: Vec<LoadSums>,
+    /// What joints did since the start.
+    pub joints: Vec<JointSums>,
     /// What damping took since the start [J].
     pub damping: f64,
     /// How far dynamic relaxation has come.
@@ -88,6 +97,8 @@ pub struct Workspace<T, const D: usize> {
     pub damped: Vec<f64>,
     /// Room for loads and supports.
     pub loads: LoadRoom<T, D>,
+    /// Free rigid bodies in a step.
+    pub mechanism: Mechanism,
     /// Impulses of damping at the nodes in the last step, where there is damping [N s].
     pub damping_impulses: Vec<Vector<T, D>>,
     /// Room for sums over the nodes of each block.
@@ -113,6 +124,7 @@ impl<T, const D: usize> Workspace<T, D> {
             moved: Vec::new(),
             damped: Vec::new(),
             loads: LoadRoom::default(),
+            mechanism: Mechanism::default(),
             damping_impulses: Vec::new(),
             block_sums: Vec::new(),
             totals: Mutex::new(None),

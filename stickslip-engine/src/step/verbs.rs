@@ -4,11 +4,12 @@
 
 use super::Engine;
 use super::build::spin;
+use super::mechanism::Coupling;
 use super::pass::{FaultKind, Found, ParticleFault, ParticleLoop, Pass, Verbs, escaped, home};
 use super::state::{Disorder, Workspace};
 use crate::basis::Basis;
 use crate::body::Body;
-use crate::clock::signal;
+use crate::clock::signal_speed;
 use crate::contact::{ContactUse, ImpulseRecord, Near, Solve, TimeStep};
 use crate::door::StepError;
 use crate::grid::{Blocks, Disjoint, Node, node_at, nodes_per_block};
@@ -286,20 +287,30 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// The first, second or third contact of a step, and what for.
     fn apply_contact(&mut self, duration: T, (number, purpose): (usize, ContactUse)) {
         let start = Instant::now();
-        let Workspace { impulses, survey, field, boundary, .. } = &mut self.workspace;
+        let Workspace { impulses, survey, field, boundary, mechanism, .. } = &mut self.workspace;
         let (before, listed) = impulses.split_at_mut(number);
         let (given, listed) = ((number == 1).then(|| &before[0]), &mut listed[0]);
-        let record = if number == 2 { ImpulseRecord::Dropped } else { ImpulseRecord::Kept };
         let step = TimeStep { duration, cell: self.settings.lattice.cell, purpose };
         let nodes = Disjoint::new(&mut field.nodes);
-        Solve { survey, rules: &self.settings.rules, nodes, step, given }.impulses(record, listed);
+        let (rules, free) = (&self.settings.rules, &self.settings.free[..]);
+        let solve = Solve { survey, rules, nodes, step, given, free };
+        match number {
+            2 => solve.impulses(ImpulseRecord::Dropped, listed),
+            _ if mechanism.bodies.is_empty() => solve.impulses(ImpulseRecord::Kept, listed),
+            _ => {
+                let joints = if number == 1 { &self.settings.joints[..] } else { &[] };
+                let coupling = Coupling { solve, lattice: &self.settings.lattice, joints };
+                let settled = coupling.settle(&mut self.state.bodies, mechanism, listed);
+                self.state.contact_sums.unsettled += u64::from(!settled);
+            }
+        }
         self.state.contact_sums.scaled += listed.reduced();
         self.state.contact_sums.unsettled += listed.unsettled();
         boundary.impose(field);
         self.watch.lap("contact", start);
     }
 
-    /// Moves rigid bodies as prescribed.
+    /// Moves rigid bodies by the velocities that they have.
     pub(super) fn move_rigid_bodies(&mut self, dt: T) -> Result<(), StepError> {
         let start = Instant::now();
         let mut found = Found { signal: T::of(self.state.signal.unwrap_or(0.0)), ..Found::NOTHING };
@@ -337,9 +348,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                         != before,
                 );
                 let fault = kind.map(|kind| ParticleFault { body: i, particle: p, kind });
-                // SAFETY: the particles are borrowed here alone.
-                let history = unsafe { body.particles.view().history_of(p) };
-                found = found.and(Found { fault, signal: signal(body, &particle, &history) });
+                // No wave runs in a rigid body.
+                let speed = particle.velocity.dot(particle.velocity);
+                found = found.and(Found { fault, signal: signal_speed([T::ZERO, speed]) });
             }
             motion.advance(&rotation, dt);
             body.motion = Some(motion);

@@ -2,20 +2,22 @@
 
 use super::Engine;
 use super::loads;
+use super::mechanism::JointSums;
 use super::relax::RelaxationProgress;
 use crate::basis::Basis;
 use crate::body::{Body, Totals};
 use crate::column::{ColumnDescription, Kind};
 use crate::contact::Span;
 use crate::door::{
-    BodyState, ColumnPlace, ColumnRef, ColumnSource, ContactPatch, ContactSum, GridSnapshot, Ledger,
-    LoadState, NoColumn, ParticleSnapshot, ParticleView, RelaxationState, SnapshotColumn, TracedParticle,
-    View,
+    BodyState, ColumnPlace, ColumnRef, ColumnSource, ContactPatch, ContactSum, GridSnapshot, JointState,
+    Ledger, LoadState, NoColumn, ParticleSnapshot, ParticleView, RelaxationState, SnapshotColumn,
+    TracedParticle, View,
 };
 use crate::grid::{node_at, nodes_per_block};
 use crate::lanes::Laned;
 use crate::load::{LoadPoints, LoadSums};
-use crate::tensor::Real;
+use crate::rigid::RigidMotion;
+use crate::tensor::{Real, cross};
 use crate::threads::by_parts;
 use rayon::prelude::*;
 use std::convert::Infallible;
@@ -132,6 +134,19 @@ impl<T: Laned, const D: usize, B: Basis<T>> View for Engine<T, D, B> {
                         strain: 0.0,
                     };
                 }
+                if let Some(free) = body.motion.as_ref().and_then(RigidMotion::as_free) {
+                    let motion = body.motion.as_ref().expect("it is rigid");
+                    let orbit = cross(motion.center, free.state.momentum);
+                    return BodyState {
+                        mass: free.mass,
+                        position: motion.center,
+                        velocity: motion.velocity(),
+                        spin: motion.spin(),
+                        angular_momentum: add(orbit, free.state.angular_momentum),
+                        kinetic: free.kinetic(),
+                        strain: 0.0,
+                    };
+                }
                 let totals = &all[i];
                 BodyState {
                     mass: totals.mass,
@@ -149,7 +164,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> View for Engine<T, D, B> {
     fn ledger(&self) -> Ledger {
         let mut ledger = Ledger {
             friction: self.state.contact_sums.friction,
-            external_work: self.state.contact_sums.work + loads::work(&self.state.loads),
+            external_work: self.state.contact_sums.work
+                + loads::work(&self.state.loads)
+                + self.state.joints.iter().map(|joint| joint.work).sum::<f64>(),
             adhesion: self.state.contact_sums.adhesion,
             damping: self.state.damping,
             scaled_impulses: self.state.contact_sums.scaled,
@@ -158,6 +175,14 @@ impl<T: Laned, const D: usize, B: Basis<T>> View for Engine<T, D, B> {
         };
         let gravity = self.settings.gravity.space();
         let all = self.totals();
+        for motion in self.state.bodies.iter().filter_map(|body| body.motion.as_ref()) {
+            let Some(free) = motion.as_free() else { continue };
+            ledger.kinetic += free.kinetic();
+            ledger.potential -= free.mass * dot(gravity, motion.center);
+            ledger.momentum = add(ledger.momentum, free.state.momentum);
+            let orbit = cross(motion.center, free.state.momentum);
+            ledger.angular_momentum = add(ledger.angular_momentum, add(orbit, free.state.angular_momentum));
+        }
         for (_, totals) in self.state.bodies.iter().zip(&*all).filter(|(body, _)| !body.is_rigid()) {
             ledger.kinetic += totals.kinetic;
             ledger.strain += totals.strain;
@@ -193,6 +218,17 @@ impl<T: Laned, const D: usize, B: Basis<T>> View for Engine<T, D, B> {
             displacement: self.load_displacement(load),
         };
         self.settings.loads.iter().zip(&self.state.loads).map(state).collect()
+    }
+
+    fn joints(&self) -> Vec<JointState> {
+        let state = |sums: &JointSums| JointState {
+            impulse: sums.impulse,
+            moment: sums.moment,
+            way: sums.way,
+            speed: sums.speed,
+            work: sums.work,
+        };
+        self.state.joints.iter().map(state).collect()
     }
 
     fn patches(&self) -> Vec<ContactPatch> {

@@ -5,7 +5,7 @@ use super::file::part_of;
 use super::manifest::Manifest;
 use super::{
     ARRIVALS, BODIES, CHECKPOINTS, CONTACTS, ENERGY, FRINGES, FRINGES_ANIMATION, FRINGES_TABLE, FRONT_SPEEDS,
-    FRONTS, GRID, LOADS, PARTICLES, PROBES,
+    FRONTS, GRID, JOINTS, LOADS, PARTICLES, PROBES,
 };
 use miette::Diagnostic;
 use std::ffi::OsString;
@@ -15,11 +15,12 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Files that a run may leave in its folder.
-const FILES: [&str; 13] = [
+const FILES: [&str; 14] = [
     BODIES,
     ENERGY,
     CONTACTS,
     LOADS,
+    JOINTS,
     PROBES,
     ARRIVALS,
     FRONTS,

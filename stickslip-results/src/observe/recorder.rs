@@ -9,11 +9,14 @@ use super::folder::OutputFolder;
 use super::fringes::FringesObserver;
 use super::fronts::FrontsObserver;
 use super::grid::GridObserver;
+use super::joints::JointsObserver;
 use super::loads::LoadsObserver;
 use super::memory::Memory;
 use super::particles::ParticlesObserver;
 use super::probes::ProbesObserver;
-use super::{ARRIVALS, BODIES, CONTACTS, ENERGY, FRINGES, FRONTS, GRID, LOADS, Observer, PARTICLES, PROBES};
+use super::{
+    ARRIVALS, BODIES, CONTACTS, ENERGY, FRINGES, FRONTS, GRID, JOINTS, LOADS, Observer, PARTICLES, PROBES,
+};
 use crate::door::View;
 use crate::scene::Scene;
 
@@ -43,6 +46,9 @@ impl<'a> Recorder<'a> {
         if !scene.loads.is_empty() {
             recorder.schedule(LOADS, LoadsObserver::create(scene, folder)?);
         }
+        if !scene.joints.is_empty() {
+            recorder.schedule(JOINTS, JointsObserver::create(scene, folder)?);
+        }
         let wanted = &scene.outputs.measurements;
         if !wanted.probes.is_empty() {
             recorder.schedule(PROBES, ProbesObserver::create(scene, folder)?);
@@ -70,7 +76,7 @@ impl<'a> Recorder<'a> {
     /// # Errors
     /// One is not.
     pub fn find(folder: &OutputFolder, memory: &Memory) -> Result<(), OutputError> {
-        let tables = [BODIES, ENERGY, CONTACTS, LOADS, PROBES, ARRIVALS, FRONTS];
+        let tables = [BODIES, ENERGY, CONTACTS, LOADS, JOINTS, PROBES, ARRIVALS, FRONTS];
         for path in
             tables.iter().filter(|name| memory.has(&format!("{name}/length"))).map(|name| folder.join(name))
         {

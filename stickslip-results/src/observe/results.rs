@@ -8,6 +8,7 @@ use super::file::{ReadError, ReadProblem};
 use super::frames::{Frame, read_frames};
 use super::fringes::FringeRow;
 use super::fronts::{FrontRow, FrontSpeedRow};
+use super::joints::JointRow;
 use super::loads::LoadRow;
 use super::manifest::Manifest;
 use super::particles::read_particles;
@@ -15,7 +16,7 @@ use super::probes::ProbeRow;
 use super::recorded::RecordedScene;
 use super::table::{TableRow, read_rows};
 use super::{
-    ARRIVALS, BODIES, CONTACTS, ENERGY, FRINGES_TABLE, FRONT_SPEEDS, FRONTS, LOADS, PARTICLES, PROBES,
+    ARRIVALS, BODIES, CONTACTS, ENERGY, FRINGES_TABLE, FRONT_SPEEDS, FRONTS, JOINTS, LOADS, PARTICLES, PROBES,
 };
 use crate::column::every;
 use crate::door::ParticleSnapshot;
@@ -108,6 +109,14 @@ impl Results {
     /// The file is missing or damaged.
     pub fn contacts_table(&self) -> Result<Vec<ContactRow>, ReadError> {
         read_rows(&self.folder.join(CONTACTS))
+    }
+
+    /// The rows of `joints.csv`.
+    ///
+    /// # Errors
+    /// The table is missing or damaged.
+    pub fn joints_table(&self) -> Result<Vec<JointRow>, ReadError> {
+        self.measured(JOINTS)
     }
 
     /// `loads.csv`: at each time but the first a row for each support and load; none if the scene has none.

@@ -127,17 +127,17 @@ struct Pressing {
 impl Pressing {
     fn new(scene: &Scene, pair: [usize; 2], direction: Vector<f64, 3>, masses: [f64; 2]) -> Self {
         let bodies = pair.map(|i| &scene.bodies[i]);
-        let rigid = bodies.map(Body::is_rigid);
+        let held = bodies.map(Body::is_prescribed);
         let gravity = Vector(scene.gravity);
         // The one above rests on the other; gravity along the surface presses nothing, but for round-off.
         let along = direction.dot(gravity);
         let above = usize::from(along < 0.0);
-        let presses = along.abs() > SAME * gravity.norm() && !rigid[above];
+        let presses = along.abs() > SAME * gravity.norm() && !held[above];
         let load = if presses { masses[above] * along.abs() } else { 0.0 };
         let velocities = bodies.map(|body| Vector(starting_velocity(body)));
         let closing = direction.dot(velocities[0] - velocities[1]);
         let approach = if closing > SAME * (velocities[0] - velocities[1]).norm() { closing } else { 0.0 };
-        let inverse_masses = [0, 1].map(|i| if rigid[i] { 0.0 } else { 1.0 / masses[i] });
+        let inverse_masses = [0, 1].map(|i| if held[i] { 0.0 } else { 1.0 / masses[i] });
         Pressing { load, approach, reduced_mass: 1.0 / (inverse_masses[0] + inverse_masses[1]) }
     }
 
@@ -186,6 +186,7 @@ pub(super) fn starting_velocity(body: &Body) -> [f64; 3] {
     match &body.motion {
         BodyMotion::Free { velocity, .. } => *velocity,
         BodyMotion::Rigid { velocity, .. } => velocity.each_ref().map(|v| v.at(0.0)),
+        BodyMotion::FreeRigid(free) => free.velocity,
     }
 }
 

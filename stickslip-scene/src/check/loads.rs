@@ -83,7 +83,10 @@ fn report(scene: &Scene, load: &Load, key: &str) -> Result<LoadReport, Problem> 
         allowed: allowed.to_string(),
         help: None,
     };
-    let Some(body) = scene.bodies.get(load.body).filter(|body| !body.is_rigid()) else {
+    let Some(body) = scene.bodies.get(load.body).filter(|body| match load.is_support() {
+        true => !body.is_rigid(),
+        false => !body.is_prescribed(),
+    }) else {
         let found = scene
             .bodies
             .get(load.body)

@@ -8,6 +8,7 @@ mod bodies;
 mod contact;
 mod flat;
 mod hertz;
+mod joints;
 mod loads;
 mod locking;
 mod measurements;
@@ -41,7 +42,7 @@ use crate::scene::{Problem, Scene};
 /// # Errors
 /// The first of: settings that allow no step, a material that is not stable, a domain whose walls miss the grid, motion
 /// out of the plane, a shape that is not one or holds no particle, a body that deforms and is unbounded, a body outside
-/// the domain, two bodies in one place, a load on nothing.
+/// the domain, two bodies in one place, a free rigid body without an end, a joint far from its bodies, a load on nothing.
 pub fn problems(scene: &Scene) -> Result<(), Problem> {
     examine(scene).map(|_| ())
 }
@@ -57,6 +58,7 @@ fn examine(scene: &Scene) -> Result<(Vec<bodies::FillingExtent>, Vec<LoadReport>
     if scene.start.is_none() {
         overlap::check(scene, &extents)?;
     }
+    joints::check(scene, &extents)?;
     Ok((extents, loads::check(scene)?))
 }
 

@@ -9,6 +9,7 @@ use super::table::short;
 use super::warning::{Warning, and_more};
 use super::{examine, locking, memory, overlap, rigid_pairs, rules, thickness};
 use crate::geometry::Bounds;
+use crate::rigid::longest_step;
 use crate::scene::{Body, BodyMotion, Dimension, Problem, Scene, Source};
 use crate::tensor::Vector;
 use serde::Serialize;
@@ -78,7 +79,7 @@ pub struct BodyReport {
     pub name: String,
     /// Name of its material.
     pub material: String,
-    /// It moves as prescribed.
+    /// It does not deform.
     pub rigid: bool,
     /// Number of particles; of a rigid body without bounds an estimate, of those around bodies that deform.
     pub particles: usize,
@@ -223,13 +224,14 @@ fn time_step(scene: &Scene, extents: &[FillingExtent]) -> f64 {
                 (scene.materials[body.material].wave_speed(scene.dimension.thickness()), *spin)
             }
             BodyMotion::Rigid { spin, .. } => (0.0, spin.each_ref().map(|s| s.at(0.0))),
+            BodyMotion::FreeRigid(free) => (0.0, free.spin),
         };
         let reach = half_diagonal(extent, extents);
         wave + Vector(starting_velocity(body)).norm() + Vector(spin).norm() * reach
     };
     let fastest = scene.bodies.iter().zip(extents).map(signal).fold(0.0, f64::max);
     let step = scene.time.courant * scene.discretization.cell / fastest;
-    let step = step.min(scene.time.max_step.unwrap_or(f64::INFINITY));
+    let step = step.min(scene.time.max_step.unwrap_or(f64::INFINITY)).min(longest_step(scene));
     if step.is_finite() { step } else { scene.time.end }
 }
 

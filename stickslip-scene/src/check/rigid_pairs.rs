@@ -83,7 +83,7 @@ pub(super) fn warning(scene: &Scene, extents: &[FillingExtent]) -> Option<Warnin
 fn together(scene: &Scene, pair: [usize; 2]) -> bool {
     let motions = pair.map(|body| match &scene.bodies[body].motion {
         BodyMotion::Rigid { velocity, spin } => Some((velocity, spin)),
-        BodyMotion::Free { .. } => None,
+        BodyMotion::Free { .. } | BodyMotion::FreeRigid(_) => None,
     });
     let [Some((v, spin)), Some((w, turn))] = motions else { return false };
     let still = |spin: &[Expression; 3]| spin.iter().all(|s| *s == Expression::Constant(0.0));

@@ -3,8 +3,8 @@
 use super::table::short;
 use crate::column::ColumnDescription;
 use crate::scene::{
-    BodyMotion, Damping, Dimension, Domain, Expression, Face, MOST_BULK, NamedMaterial, Problem, Relaxation,
-    Scene,
+    BodyMotion, Damping, Dimension, Domain, Expression, Face, FreeRigid, MOST_BULK, NamedMaterial, Problem,
+    Relaxation, Scene,
 };
 
 /// Walls may miss the nodes of the grid by this share of a cell.
@@ -167,6 +167,9 @@ fn check_plane(scene: &Scene) -> Result<(), Problem> {
             BodyMotion::Rigid { velocity, spin } => {
                 let zero = Expression::Constant(0.0);
                 (velocity[2] != zero, spin[0] != zero || spin[1] != zero)
+            }
+            BodyMotion::FreeRigid(FreeRigid { velocity, spin, .. }) => {
+                (velocity[2] != 0.0, spin[0] != 0.0 || spin[1] != 0.0)
             }
         };
         still("velocity", "a velocity along z", !moves)?;

@@ -11,6 +11,7 @@ mod fitted;
 mod inside;
 mod mesh;
 mod mirrored_shape;
+mod moments;
 mod polygon;
 mod rings;
 mod rotation;
@@ -25,6 +26,7 @@ pub use filling::{Arrangement, Filling, ParticleSite, SiteLattice, fill, sites};
 pub use fitted::{FITTED_SHAPES, fits};
 pub use mesh::{Mesh, MeshFault};
 pub use mirrored_shape::{Mirror, MirroredShape};
+pub use moments::ShapeMoments;
 pub use round::RoundPart;
 pub use surface::SurfacePoint;
 

@@ -6,8 +6,8 @@
 
 use super::{
     BasisKind, Body, BodyMotion, ContactLaw, ContactRule, Damping, Dimension, Discretization, Domain,
-    Expression, Face, Measurements, NamedMaterial, Normal, Outputs, Precision, Problem, Relaxation, Scene,
-    SnapshotContent, StressUpdate, Time, Transfer, VolumeChange,
+    Expression, Face, FreeRigid, Measurements, NamedMaterial, Normal, Outputs, Precision, Problem,
+    Relaxation, Scene, SnapshotContent, StressUpdate, Time, Transfer, VolumeChange,
 };
 use crate::geometry::{Arrangement, Shape};
 use crate::material::LAWS;
@@ -37,6 +37,7 @@ impl Scene {
             materials: Vec::new(),
             bodies: Vec::new(),
             loads: Vec::new(),
+            joints: Vec::new(),
             contact: Vec::new(),
             outputs: Outputs::of_run(end),
             references: Vec::new(),
@@ -178,6 +179,14 @@ impl Body {
     pub fn rigid(self, velocity: [f64; 3], spin: [f64; 3]) -> Self {
         let [velocity, spin] = [velocity, spin].map(|vector| vector.map(Expression::Constant));
         Body { motion: BodyMotion::Rigid { velocity, spin }, ..self }
+    }
+}
+
+impl Body {
+    /// The same body, rigid, moved by forces from this velocity of its centre [m/s] and this angular velocity [rad/s]
+    /// on.
+    pub fn free_rigid(self, velocity: [f64; 3], spin: [f64; 3]) -> Self {
+        Body { motion: BodyMotion::FreeRigid(FreeRigid { velocity, spin, ..FreeRigid::default() }), ..self }
     }
 }
 

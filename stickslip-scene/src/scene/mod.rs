@@ -9,6 +9,7 @@ mod expression;
 mod file;
 mod formula;
 mod fringes;
+mod joints;
 mod load;
 mod loads;
 mod measurements;
@@ -24,6 +25,7 @@ mod units;
 pub use error::{Mistake, SceneError};
 pub use expression::{Expression, Moment, Program, TimeTable};
 pub use fringes::{Fringes, Light, Overlay, Polariscope, PolariscopeField, Sensitivity};
+pub use joints::{Joint, JointKind, Motor};
 pub use load::{Loaded, load, parse};
 pub use loads::{Action, Dashpot, Extent, Load, Part, RIGID, Support, SupportMotion};
 pub use measurements::{Anchor, Arrival, Front, Measurements, Observable, Probe, Reading, TimeUnit};
@@ -69,6 +71,8 @@ pub struct Scene {
     pub bodies: Vec<Body>,
     /// What holds, presses, pulls or drives parts of bodies from outside: supports, then loads.
     pub loads: Vec<Load>,
+    /// What joins rigid bodies to each other and to the ground.
+    pub joints: Vec<Joint>,
     /// Contact rules; the first that matches a pair holds, see [`Scene::contact_between`].
     pub contact: Vec<ContactRule>,
     /// What is written, and how often.
@@ -367,6 +371,21 @@ pub enum BodyMotion {
         /// Angular velocity about its centre of mass at time t [rad/s].
         spin: [Expression; 3],
     },
+    /// It is rigid and moves under forces, from this start.
+    FreeRigid(FreeRigid),
+}
+
+/// A rigid body that forces move.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct FreeRigid {
+    /// Velocity of its centre of mass at the start [m/s].
+    pub velocity: [f64; 3],
+    /// Angular velocity about its centre of mass at the start [rad/s].
+    pub spin: [f64; 3],
+    /// Its mass, if not that of its shape and its material's density [kg], in the plane per metre of depth.
+    pub mass: Option<f64>,
+    /// Moments of inertia about the three axes through its centre at the start, if not those of its shape [kg m^2].
+    pub inertia: Option<[f64; 3]>,
 }
 
 /// How two bodies touch.
@@ -498,8 +517,21 @@ impl NamedMaterial {
 }
 
 impl Body {
-    /// Whether it is rigid and moves as prescribed.
+    /// Whether it is rigid: it moves as prescribed, or it is free.
     pub fn is_rigid(&self) -> bool {
+        matches!(self.motion, BodyMotion::Rigid { .. } | BodyMotion::FreeRigid(_))
+    }
+
+    /// How it starts as a rigid body that forces move, if it is one.
+    pub fn as_free_rigid(&self) -> Option<&FreeRigid> {
+        match &self.motion {
+            BodyMotion::FreeRigid(free) => Some(free),
+            BodyMotion::Free { .. } | BodyMotion::Rigid { .. } => None,
+        }
+    }
+
+    /// Whether it is rigid and moves as prescribed, whatever pushes it.
+    pub fn is_prescribed(&self) -> bool {
         matches!(self.motion, BodyMotion::Rigid { .. })
     }
 }

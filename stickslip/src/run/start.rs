@@ -43,6 +43,7 @@ pub fn begin(scene: &Scene, simulation: &mut dyn Simulation) -> Result<Option<Ca
         scene.bodies.iter().partition(|body| there.contains(body.name.as_str()));
     let moves = |motion: &BodyMotion| match motion {
         BodyMotion::Free { velocity, spin } => [velocity, spin].iter().any(|of| **of != [0.0; 3]),
+        BodyMotion::FreeRigid(free) => [free.velocity, free.spin].iter().any(|of| *of != [0.0; 3]),
         BodyMotion::Rigid { .. } => false,
     };
     let left_out = checkpoint.state.bodies.iter().filter(|body| !here.contains(body.name.as_str()));

@@ -239,6 +239,7 @@ pub fn scene() -> Scene {
         bodies: vec![body("sphere"), body("plane")],
         start: None,
         loads: Vec::new(),
+        joints: Vec::new(),
         contact: vec![ContactRule { friction: f64::INFINITY, ..Default::default() }],
         outputs: Outputs {
             tables: 0.1,

@@ -17,6 +17,7 @@ mod exact_surfaces;
 mod failing_steps;
 mod fracture;
 mod free_body;
+mod free_rigid;
 mod friction;
 mod glued_identity;
 mod loads;

@@ -1,15 +1,18 @@
 //! `[[bodies]]`: shape, material, and how a body moves.
 
 use super::Context;
-use super::quantity::Velocity;
-use super::read::table;
+use super::loads::positive;
+use super::quantity::{Mass, MomentOfInertia, QuantityInput, Velocity};
+use super::read::{Read, table};
 use super::repeat::Repeat;
 use super::shape::ShapeInput;
 use super::text::{Choice, Count, Text, Word};
 use super::vector::{SpinInput, VectorInput};
 use crate::geometry::Arrangement;
 use crate::scene::error::Fault;
-use crate::scene::{self, BodyMotion, Expression, NamedMaterial};
+use crate::scene::source::{DocumentNode, Value};
+use crate::scene::{self, BodyMotion, Expression, FreeRigid, NamedMaterial};
+use schemars::JsonSchema;
 use std::collections::HashSet;
 
 table! {
@@ -33,18 +36,68 @@ table! {
         velocity: Option<VectorInput<Velocity>>,
         /// Angular velocity about its centre of mass at the start [rad/s]; in the plane one number. By default none.
         spin: Option<SpinInput>,
-        /// Makes the body rigid and prescribes its motion; excludes velocity and spin.
+        /// Makes the body rigid: its motion is prescribed, or with rigid.free forces move it.
         rigid: Option<Rigid>,
     }
 }
 
 table! {
-    /// Prescribed motion of a rigid body. Formulas may use `t`, the time; {} is a body at rest.
+    /// A rigid body. Its motion is prescribed, by formulas that may use `t`, the time; {} is a body at rest. Or it is
+    /// free.
     Rigid {
+        /// Contact, gravity, loads and joints move it: rigid = { free = {} }. It begins with the velocity and the spin of
+        /// the body. By default its motion is prescribed.
+        free: Option<FreeInput>,
         /// Velocity of its centre of mass [m/s]: ["0.1 m/s * min(t / 1 ms, 1)", 0, 0]. By default none.
         velocity: Option<VectorInput<Velocity>>,
         /// Angular velocity about its centre of mass [rad/s]; in the plane one number. By default none.
         spin: Option<SpinInput>,
+    }
+}
+
+table! {
+    /// A rigid body that forces move. In the plane mass and inertia are per metre of depth.
+    FreeInput {
+        /// Its mass [kg]; by default that of its shape, by the density of its material.
+        mass: Option<QuantityInput<Mass>>,
+        /// Moments of inertia through its centre of mass, about the three axes, which must be principal ones; in the
+        /// plane one number [kg m^2]. By default those of its shape.
+        inertia: Option<InertiaInput>,
+    }
+}
+
+/// Moments of inertia: a vector, in the plane a number.
+#[derive(JsonSchema)]
+#[schemars(transparent)]
+pub struct InertiaInput(#[schemars(with = "VectorInput<MomentOfInertia>")] DocumentNode);
+
+impl Read for InertiaInput {
+    fn wanted() -> String {
+        "a list such as [\"1 kg m^2\", \"1 kg m^2\", \"2 kg m^2\"], one number in the plane".to_string()
+    }
+
+    fn read(node: &DocumentNode) -> Result<Self, Fault> {
+        match node.value {
+            Value::Number(_) | Value::Text(_) | Value::List(_) => Ok(InertiaInput(node.clone())),
+            _ => Err(node.fault(Self::wanted())),
+        }
+    }
+}
+
+impl InertiaInput {
+    fn value(&self, context: &Context) -> Result<[f64; 3], Fault> {
+        let one = |node: &DocumentNode| positive::<MomentOfInertia>(&QuantityInput::read(node)?, context);
+        match (&self.0.value, context.dimension.is_plane()) {
+            (Value::List(_), true) => Err(self.0.fault("one number, as the scene is plane")),
+            (Value::List(parts), false) if parts.len() == 3 => {
+                let [x, y, z] = [one(&parts[0])?, one(&parts[1])?, one(&parts[2])?];
+                let solid = 2.0 * x.max(y).max(z) <= (x + y + z) * (1.0 + 1e-9);
+                let allowed = "moments of a solid body: none larger than the two others together";
+                if solid { Ok([x, y, z]) } else { Err(self.0.fault(allowed)) }
+            }
+            (_, false) => Err(self.0.fault("3 numbers, as the scene is 3d")),
+            (_, true) => Ok([one(&self.0)?; 3]),
+        }
     }
 }
 
@@ -139,6 +192,21 @@ impl BodyKeys<'_> {
             });
         };
         let start = self.velocity.as_ref().map(VectorInput::node).or(self.spin.as_ref().map(SpinInput::node));
+        if let Some(free) = &rigid.free {
+            let inner =
+                rigid.velocity.as_ref().map(VectorInput::node).or(rigid.spin.as_ref().map(SpinInput::node));
+            if let Some(node) = inner {
+                let found = format!("`{}` prescribed to a free body", node.name);
+                let allowed = format!("the {} at the start as the body's own key, beside `rigid`", node.name);
+                return Err(Fault::new(&node.key, found, allowed).at(node.name_span.clone()));
+            }
+            return Ok(BodyMotion::FreeRigid(FreeRigid {
+                velocity: self.velocity.as_ref().map_or(Ok([0.0; 3]), |velocity| velocity.value(context))?,
+                spin: self.spin.as_ref().map_or(Ok([0.0; 3]), |spin| spin.value(context))?,
+                mass: free.mass.as_ref().map(|mass| positive(mass, context)).transpose()?,
+                inertia: free.inertia.as_ref().map(|inertia| inertia.value(context)).transpose()?,
+            }));
+        }
         if let Some(node) = start {
             let found = format!("`{}` of a rigid body", node.name);
             let allowed = format!("its motion in rigid = {{ {} = ... }}", node.name);

@@ -56,8 +56,8 @@ table! {
         name: Option<Text>,
         /// Makes many of it: indices, and how many values each has, as of [[bodies]]. By default one.
         repeat: Option<Repeat>,
-        /// Name of the body, one that deforms; a pattern in which `*` is any letters, such as "grain*", makes one on
-        /// each body that matches.
+        /// Name of the body, one that deforms or is rigid and free; a pattern in which `*` is any letters, such as
+        /// "grain*", makes one on each body that matches.
         body: Text,
         /// Where on the body: its surface, a face of it, or all its particles; by default the surface, for an
         /// acceleration all particles.
@@ -161,12 +161,18 @@ pub fn resolve(
     loads: &[Load],
     (bodies, context): (&[Body], &Context),
 ) -> Result<Loads, Fault> {
-    let (bodies, mut taken) = (DeformingBodies::of(bodies), HashSet::new());
+    let mut taken = HashSet::new();
+    let [held, loaded] = [
+        LoadableBodies::of(bodies, "the name of a body that deforms", |body| !body.is_rigid()),
+        LoadableBodies::of(bodies, "the name of a body that deforms or is free", |body| {
+            !body.is_prescribed()
+        }),
+    ];
     let mut resolved = Loads::default();
     for (table, support) in supports.iter().enumerate() {
         let Support { name, body, on, within, .. } = support;
         let place = Place { name, body, on, within, kind: "support", table };
-        let mut add = |action| place.add(action, (&bodies, &mut taken), (&mut resolved.all, context));
+        let mut add = |action| place.add(action, (&held, &mut taken), (&mut resolved.all, context));
         Repeat::each(support.repeat.as_ref(), context, || {
             let made = add((Action::Support(support.resolve(context)?), resolved.declared_supports.len()))?;
             resolved.declared_supports.extend(vec![format!("supports[{table}]"); made]);
@@ -176,7 +182,7 @@ pub fn resolve(
     for (table, load) in loads.iter().enumerate() {
         let Load { name, body, on, within, .. } = load;
         let place = Place { name, body, on, within, kind: "load", table };
-        let mut add = |action| place.add(action, (&bodies, &mut taken), (&mut resolved.all, context));
+        let mut add = |action| place.add(action, (&loaded, &mut taken), (&mut resolved.all, context));
         Repeat::each(load.repeat.as_ref(), context, || {
             let made = add((load.action(context, table)?, resolved.declared_loads.len()))?;
             resolved.declared_loads.extend(vec![format!("loads[{table}]"); made]);
@@ -187,17 +193,19 @@ pub fn resolve(
 }
 
 /// The bodies that loads may act on.
-struct DeformingBodies<'a> {
+struct LoadableBodies<'a> {
+    /// What these are.
+    what: &'static str,
     names: Vec<&'a str>,
     /// Their places in the scene.
     places: Vec<usize>,
 }
 
-impl<'a> DeformingBodies<'a> {
-    fn of(bodies: &'a [Body]) -> Self {
-        let deform = bodies.iter().enumerate().filter(|(_, body)| !body.is_rigid());
-        let (places, names) = deform.map(|(place, body)| (place, body.name.as_str())).unzip();
-        DeformingBodies { names, places }
+impl<'a> LoadableBodies<'a> {
+    fn of(bodies: &'a [Body], what: &'static str, suits: impl Fn(&Body) -> bool) -> Self {
+        let suitable = bodies.iter().enumerate().filter(|(_, body)| suits(body));
+        let (places, names) = suitable.map(|(place, body)| (place, body.name.as_str())).unzip();
+        LoadableBodies { what, names, places }
     }
 }
 
@@ -217,11 +225,10 @@ impl Place<'_> {
     fn add(
         &self,
         (action, number): (Action, usize),
-        (bodies, taken): (&DeformingBodies, &mut HashSet<String>),
+        (bodies, taken): (&LoadableBodies, &mut HashSet<String>),
         (loads, context): (&mut Vec<scene::Load>, &Context),
     ) -> Result<usize, Fault> {
-        let what = "the name of a body that deforms";
-        let (body_name, found) = self.body.names_of(context, what, &bodies.names)?;
+        let (body_name, found) = self.body.names_of(context, bodies.what, &bodies.names)?;
         for (k, &found) in found.iter().enumerate() {
             let mut name = match self.name {
                 Some(text) => text.value(context)?,
@@ -327,16 +334,16 @@ impl Load {
 }
 
 /// What a number or formula says. A force in the plane is one per metre of depth, and may be written as that: in N or
-/// in N/m; so for whatever is a force over something else.
-fn per_depth<M: Measure>(
+/// in N/m; so for masses, and for whatever is a force times or over something else.
+pub fn per_depth<M: Measure>(
     node: &DocumentNode,
     (context, dependence): (&Context, Dependence),
 ) -> Result<Expression, Fault> {
     let wanted = QuantityInput::<M>::wanted();
     let whole = Powers::from(M::POWERS);
     let found = evaluate(node, whole, &wanted, (context, dependence)).and_then(finite(node, &wanted));
-    let is_force = [Force::POWERS, Stiffness::POWERS, ForceOverVelocity::POWERS].contains(&M::POWERS);
-    if found.is_ok() || !(is_force && context.dimension.is_plane()) {
+    // All that has the unit of mass in it, and no pressure.
+    if found.is_ok() || M::POWERS == Pressure::POWERS || M::POWERS[0] == 0 || !context.dimension.is_plane() {
         return found;
     }
     let part = whole.times(Powers::LENGTH, -1.0);
@@ -355,8 +362,8 @@ fn finite<'a>(
     }
 }
 
-/// A stiffness or a dashpot.
-fn positive<M: Measure>(input: &QuantityInput<M>, context: &Context) -> Result<f64, Fault> {
+/// A number above zero, such as a stiffness; in the plane as [`per_depth`] reads it.
+pub fn positive<M: Measure>(input: &QuantityInput<M>, context: &Context) -> Result<f64, Fault> {
     let value = per_depth::<M>(input.node(), (context, Dependence::Constant))?.at(0.0);
     let allowed = || format!("{} above 0, like \"{}\"", M::name(), M::example());
     if value > 0.0 && value.is_finite() { Ok(value) } else { Err(input.refused(value, allowed())) }

@@ -6,6 +6,7 @@ mod contact;
 mod damping;
 mod files;
 mod fringes;
+mod joints;
 mod loads;
 mod material;
 mod measurements;
@@ -75,6 +76,8 @@ table! {
         supports: Option<Vec<loads::Support>>,
         /// What pushes or pulls parts of bodies: [[loads]].
         loads: Option<Vec<loads::Load>>,
+        /// What joins free rigid bodies to each other and to the ground: [[joints]].
+        joints: Option<Vec<joints::Joint>>,
         /// Rules for how bodies touch: [[contact]]. The first that matches a pair holds; a pair that none matches has
         /// the surface law without friction.
         contact: Option<Vec<contact::Contact>>,
@@ -115,6 +118,7 @@ pub(super) fn resolve(source: &Source) -> Result<(Scene, Declared), Fault> {
         contact::resolve(file.contact.as_deref().unwrap_or_default(), (&bodies, &materials), context)?;
     let (supports, loads) = (file.supports.unwrap_or_default(), file.loads.unwrap_or_default());
     let loads = loads::resolve(&supports, &loads, (&bodies, context))?;
+    let joints = joints::resolve(file.joints.as_deref().unwrap_or_default(), (&bodies, context))?;
     let known = (&bodies[..], &materials[..], time.end);
     let (outputs, declared_probes) = outputs::resolve(file.outputs.as_ref(), known, context)?;
     let declared = Declared::from([
@@ -122,6 +126,7 @@ pub(super) fn resolve(source: &Source) -> Result<(Scene, Declared), Fault> {
         ("outputs.probes", declared_probes),
         ("supports", loads.declared_supports),
         ("loads", loads.declared_loads),
+        ("joints", joints.declared),
     ]);
     let stem = source.name().rsplit(['/', '\\']).next().unwrap_or_default().trim_end_matches(".toml");
     let scene = Scene {
@@ -144,6 +149,7 @@ pub(super) fn resolve(source: &Source) -> Result<(Scene, Declared), Fault> {
         materials,
         bodies,
         loads: loads.all,
+        joints: joints.all,
         contact,
     };
     Ok((scene, declared))

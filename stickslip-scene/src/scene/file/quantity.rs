@@ -57,6 +57,14 @@ measures! {
     Stiffness = [1, 0, -2];
     /// In newtons per metre per second.
     ForceOverVelocity = [1, 0, -1];
+    /// In newton metres.
+    Moment = [1, 2, -2];
+    /// In newton metres per radian per second.
+    MomentOverSpin = [1, 2, -1];
+    /// In kilograms.
+    Mass = [1, 0, 0];
+    /// In kilograms times square metres.
+    MomentOfInertia = [1, 2, 0];
     /// In one over pascals.
     Compliance = [-1, 1, 2];
 }

@@ -1,4 +1,10 @@
-//! Rigid bodies with prescribed motion.
+//! Rigid bodies: those whose motion is prescribed, and free ones, which forces move.
+
+mod free;
+mod longest_step;
+
+pub use free::{FreeMotion, FreeState, MassProperties};
+pub use longest_step::longest_step;
 
 use crate::scene::{BodyMotion, Expression};
 use crate::tensor::{Matrix, cross};
@@ -13,12 +19,21 @@ pub struct RigidMotion {
     start: [f64; 3],
     /// How it has turned since then.
     orientation: Matrix<f64>,
-    velocity: [Expression; 3],
-    spin: [Expression; 3],
+    /// What moves it.
+    drive: Drive,
     /// Velocity of the centre in this step [m/s].
     now: [f64; 3],
     /// Angular velocity in this step [rad/s].
     turning: [f64; 3],
+}
+
+/// What moves a rigid body.
+#[derive(Clone, Debug)]
+enum Drive {
+    /// Formulas of velocity and angular velocity.
+    Prescribed { velocity: [Expression; 3], spin: [Expression; 3] },
+    /// Its inertia and what acts on it.
+    Free(FreeMotion),
 }
 
 /// What of a rigid body's motion changes from step to step.
@@ -29,6 +44,9 @@ pub struct RigidState {
     orientation: Matrix<f64>,
     velocity: [f64; 3],
     spin: [f64; 3],
+    /// Momenta of a free one.
+    #[serde(default)]
+    free: Option<FreeState>,
 }
 
 impl RigidState {
@@ -44,10 +62,10 @@ impl RigidState {
 }
 
 impl RigidMotion {
-    /// The prescribed motion of a body whose centre is at `center` [m]; `None` if it is not rigid.
+    /// The prescribed motion of a body whose centre is at `center` [m]; `None` if none is prescribed.
     pub fn prescribed(motion: &BodyMotion, center: [f64; 3]) -> Option<Self> {
         match motion {
-            BodyMotion::Free { .. } => None,
+            BodyMotion::Free { .. } | BodyMotion::FreeRigid(_) => None,
             BodyMotion::Rigid { velocity, spin } => {
                 Some(RigidMotion::new(center, velocity.clone(), spin.clone()))
             }
@@ -56,17 +74,53 @@ impl RigidMotion {
 
     /// A body at rest at `center` until its first step.
     pub fn new(center: [f64; 3], velocity: [Expression; 3], spin: [Expression; 3]) -> Self {
-        let (start, orientation) = (center, Matrix::IDENTITY);
-        let mut motion =
-            RigidMotion { center, start, orientation, velocity, spin, now: [0.0; 3], turning: [0.0; 3] };
+        let mut motion = RigidMotion {
+            center,
+            start: center,
+            orientation: Matrix::IDENTITY,
+            drive: Drive::Prescribed { velocity, spin },
+            now: [0.0; 3],
+            turning: [0.0; 3],
+        };
         motion.set_time(0.0);
         motion
     }
 
-    /// Takes the velocities of time `t` [s].
+    /// A free body with this velocity [m/s] and angular velocity [rad/s] at the start.
+    pub fn free(properties: &MassProperties, velocity: [f64; 3], spin: [f64; 3]) -> Self {
+        let center = properties.center;
+        RigidMotion {
+            center,
+            start: center,
+            orientation: Matrix::IDENTITY,
+            drive: Drive::Free(FreeMotion::new(properties, velocity, spin)),
+            now: velocity,
+            turning: spin,
+        }
+    }
+
+    /// Takes the velocities that are prescribed at time `t` [s]; a free body keeps its own.
     pub fn set_time(&mut self, t: f64) {
-        self.now = std::array::from_fn(|i| self.velocity[i].at(t));
-        self.turning = std::array::from_fn(|i| self.spin[i].at(t));
+        if let Drive::Prescribed { velocity, spin } = &self.drive {
+            self.now = std::array::from_fn(|i| velocity[i].at(t));
+            self.turning = std::array::from_fn(|i| spin[i].at(t));
+        }
+    }
+
+    /// Its momenta and inertia, if it is free.
+    pub fn as_free(&self) -> Option<&FreeMotion> {
+        match &self.drive {
+            Drive::Free(free) => Some(free),
+            Drive::Prescribed { .. } => None,
+        }
+    }
+
+    /// Gives a free body these momenta [kg m/s, kg m^2/s], and the velocities that it has with them in a step of `dt`.
+    pub fn set_momenta(&mut self, [momentum, angular_momentum]: [[f64; 3]; 2], dt: f64) {
+        if let Drive::Free(free) = &mut self.drive {
+            (free.state.momentum, free.state.angular_momentum) = (momentum, angular_momentum);
+            (self.now, self.turning) = (free.velocity(), free.spin(dt));
+        }
     }
 
     /// v + w x (x - c) [m/s]
@@ -93,7 +147,20 @@ impl RigidMotion {
         for i in 0..3 {
             self.center[i] += self.now[i] * dt;
         }
-        self.orientation = *rotation * self.orientation;
+        self.orientation = match &mut self.drive {
+            Drive::Prescribed { .. } => *rotation * self.orientation,
+            Drive::Free(free) => {
+                free.turn(self.turning, dt);
+                free.orientation()
+            }
+        };
+    }
+
+    /// Where it will be after a step of `dt` with the velocities that it has.
+    pub fn next_pose(&self, dt: f64) -> Pose {
+        let mut next = self.clone();
+        next.advance(&self.rotation(dt), dt);
+        next.pose()
     }
 
     /// Where the body is now.
@@ -104,13 +171,27 @@ impl RigidMotion {
     /// Where it is and how it moves.
     pub fn state(&self) -> RigidState {
         let RigidMotion { start, center, orientation, now, turning, .. } = *self;
-        RigidState { start, center, orientation, velocity: now, spin: turning }
+        let free = self.as_free().map(|free| free.state);
+        RigidState { start, center, orientation, velocity: now, spin: turning, free }
+    }
+
+    /// Whether a state is that of a body which moves in the same way: both free, or both prescribed.
+    pub fn is_like(&self, state: &RigidState) -> bool {
+        self.as_free().is_some() == state.free.is_some()
     }
 
     /// Goes on from there.
     pub fn restore(&mut self, state: &RigidState) {
         (self.center, self.orientation) = (state.center, state.orientation);
         (self.now, self.turning) = (state.velocity, state.spin);
+        if let (Drive::Free(free), Some(saved)) = (&mut self.drive, state.free) {
+            free.state = saved;
+        }
+    }
+
+    /// Brings it to rest where it is.
+    pub fn stop(&mut self) {
+        self.set_momenta([[0.0; 3]; 2], 0.0);
     }
 
     /// Velocity of the centre now [m/s].
@@ -137,6 +218,11 @@ impl Pose {
     /// A direction in the body as it is now.
     pub fn turned(&self, direction: [f64; 3]) -> [f64; 3] {
         self.orientation.times(direction)
+    }
+
+    /// Where the centre was at the start [m].
+    pub fn begun(&self) -> [f64; 3] {
+        self.start
     }
 
     /// Where a point of the body is now that was at `place` at the start [m].

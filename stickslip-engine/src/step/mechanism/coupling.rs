@@ -1,0 +1,263 @@
+//! Velocities of free rigid bodies, impulses of contact and those of joints, found together.
+
+use super::joint::poses;
+use super::row::{Row, solve};
+use super::six::{self, Six, SixFactor, SixMatrix, at, join};
+use super::{FreeBody, Mechanism};
+use crate::body::Body;
+use crate::contact::{Impulses, Solve, Span};
+use crate::grid::Lattice;
+use crate::scene::Joint;
+use crate::tensor::{Real, Vector};
+
+/// A use of contact in which free rigid bodies take part.
+///
+/// Contact is solved against rigid bodies of given velocities V, over and over, and V is bettered by Newton's method:
+///
+/// ```text
+/// (M + A) dV = p* - p + J(V) + G^T l,    g/dt + G dV = 0,    p <- p + M dV,    V = V(p)
+/// ```
+/// p: momenta, p*: those without contact; A = sum m g g^T over the nodes in contact, with their mass m and the direction
+/// g along which the deformable body follows the rigid one: the normal, and where it sticks all directions. As long as
+/// no node begins or ends to touch or to slip, one round is exact.
+pub struct Coupling<'a, T, const D: usize> {
+    /// Contact at the nodes.
+    pub solve: Solve<'a, T, D>,
+    /// Where nodes are.
+    pub lattice: &'a Lattice<T, D>,
+    /// The joints that hold in this use.
+    pub joints: &'a [Joint],
+}
+
+/// Rounds at most.
+const MAX_ROUNDS: usize = 60;
+/// From this round on a node in contact counts as one that sticks: velocities then come closer in each round.
+const SURE: usize = 12;
+/// Rounds end where velocities change by less than this part of themselves.
+const TOLERANCE: f64 = 1e-13;
+/// The same in units of the last place of the numbers that nodes have, and of places.
+const ROUND_OFF: f64 = 8.0;
+/// A node sticks whose tangential impulse stops this part of its slip.
+const STICKING: f64 = 0.999;
+
+/// A node of a free body that contact may push.
+struct TouchedNode {
+    /// Place of the body in the mechanism, and index of the node in the field.
+    body: usize,
+    index: usize,
+    /// From the body's centre to the node [m].
+    arm: [f64; 3],
+}
+
+impl<T: Real, const D: usize> Coupling<'_, T, D> {
+    /// Finds the velocities of free bodies and the impulses at the nodes, lists these and applies both; says whether
+    /// velocities came to rest.
+    pub fn settle(
+        &self,
+        bodies: &mut [Body<T, D>],
+        mechanism: &mut Mechanism,
+        listed: &mut Impulses<T, D>,
+    ) -> bool {
+        let dt = self.solve.step.duration.f64();
+        for free in &mut mechanism.bodies {
+            let state = bodies[free.index].motion.as_ref().and_then(|motion| motion.as_free());
+            let state = state.expect("it is free").state;
+            free.target = join(state.momentum, state.angular_momentum);
+            free.momenta = free.target;
+        }
+        let (touched, parts) = self.touched(bodies, &mechanism.bodies);
+        self.find_rows(mechanism, dt);
+        let count = mechanism.bodies.len();
+        let mut settled = false;
+        for round in 0..MAX_ROUNDS {
+            self.move_nodes(bodies, (&mechanism.bodies, &touched));
+            self.solve.list(|part| round == 0 || parts[part], listed);
+            let (impulses, nodes) = self.sum((&parts, listed), (bodies, &mechanism.bodies), round >= SURE);
+            let factors: Vec<SixFactor> = nodes.iter().map(SixMatrix::factor).collect();
+            let mut changes: Vec<Six> = (0..count)
+                .map(|i| {
+                    let FreeBody { target, momenta, .. } = &mechanism.bodies[i];
+                    let missing = std::array::from_fn(|k| target[k] - momenta[k] + impulses[i][k]);
+                    factors[i].solve(&missing)
+                })
+                .collect();
+            self.find_off(bodies, mechanism, dt);
+            mechanism.rows.iter_mut().for_each(|row| row.respond(&factors));
+            let joints_settled = solve(&mut mechanism.rows, &mut changes);
+            let (mut moved, mut speed, mut far) = (0.0_f64, 0.0_f64, 0.0_f64);
+            for (free, change) in mechanism.bodies.iter_mut().zip(&changes) {
+                let gained = free.inertia.times(change);
+                six::add(&mut free.momenta, 1.0, &gained);
+                let motion = bodies[free.index].motion.as_mut().expect("it is rigid");
+                motion.set_momenta(six::parts(free.momenta), dt);
+                let size = |six: &Six| {
+                    let [v, w] = six::parts(*six).map(|part| Vector(part).norm());
+                    v + w * free.radius
+                };
+                moved = moved.max(size(change));
+                far = far.max(free.radius + Vector(motion.center).norm());
+                speed = speed.max(size(&join(motion.velocity(), motion.spin()))).max(size(&free.start));
+            }
+            let tolerance = TOLERANCE.max(ROUND_OFF * T::EPSILON.f64());
+            // Joints see places, which are no nearer than round-off.
+            let round_off = if self.joints.is_empty() { 0.0 } else { ROUND_OFF * f64::EPSILON * far / dt };
+            if moved <= tolerance * speed + round_off {
+                settled = joints_settled;
+                break;
+            }
+        }
+        self.finish(bodies, mechanism, (&parts, listed));
+        self.move_nodes(bodies, (&mechanism.bodies, &touched));
+        self.solve.apply(listed);
+        settled
+    }
+
+    /// Nodes of free bodies where others are, and which parts of the survey have any.
+    fn touched(&self, bodies: &[Body<T, D>], free: &[FreeBody]) -> (Vec<TouchedNode>, Vec<bool>) {
+        let (mut touched, mut parts) = (Vec::new(), Vec::new());
+        for part in self.solve.survey.parts() {
+            let before = touched.len();
+            for site in &part.sites {
+                for side in &part.sides[site.sides.clone()] {
+                    let Ok(body) = free.binary_search_by_key(&side.body, |free| free.index) else { continue };
+                    let arm = arm(self.lattice, site.node, &bodies[side.body]);
+                    touched.push(TouchedNode { body, index: side.index, arm });
+                }
+            }
+            parts.push(touched.len() > before);
+        }
+        (touched, parts)
+    }
+
+    /// Gives nodes the velocities that free bodies have there.
+    fn move_nodes(&self, bodies: &[Body<T, D>], (free, touched): (&[FreeBody], &[TouchedNode])) {
+        for node in touched {
+            let motion = bodies[free[node.body].index].motion.as_ref().expect("it is rigid");
+            let velocities = join(motion.velocity(), motion.spin());
+            // SAFETY: nobody else looks at the nodes meanwhile.
+            unsafe { self.solve.nodes.get(node.index) }.prescribe(super::velocity_at(&velocities, node.arm));
+        }
+    }
+
+    /// Impulses of contact on the free bodies, and M + A of each.
+    fn sum(
+        &self,
+        (parts, listed): (&[bool], &Impulses<T, D>),
+        (bodies, free): (&[Body<T, D>], &[FreeBody]),
+        sure: bool,
+    ) -> (Vec<Six>, Vec<SixMatrix>) {
+        let mut impulses = vec![[0.0; 6]; free.len()];
+        let mut matrices: Vec<SixMatrix> = free.iter().map(|free| free.inertia).collect();
+        for (number, part) in self.solve.survey.parts().iter().enumerate().filter(|(i, _)| parts[*i]) {
+            for (impulse, encounter) in listed.of(number).iter().zip(&part.encounters) {
+                if !self.counts(impulse.span) {
+                    continue;
+                }
+                for side in 0..2 {
+                    let index = impulse.bodies[side];
+                    let Ok(body) = free.binary_search_by_key(&index, |free| free.index) else { continue };
+                    let given = impulse.change.impulse[side].space();
+                    if given == [0.0; 3] {
+                        continue;
+                    }
+                    let arm = arm(self.lattice, impulse.node, &bodies[index]);
+                    six::add(&mut impulses[body], 1.0, &at(arm, given));
+                    let other = &part.sides[encounter.sides[1 - side]].surface;
+                    if other.is_rigid() {
+                        continue;
+                    }
+                    let mass = 1.0 / other.inverse_mass.f64();
+                    let slip = self.slip(impulse.nodes, encounter.normal());
+                    let held = mass * slip * STICKING;
+                    let sticks = sure || impulse.change.tangential.norm().f64() >= held;
+                    match encounter.normal().filter(|_| !sticks) {
+                        Some(n) => matrices[body].add(mass, &at(arm, n.space())),
+                        None => (0..D).for_each(|k| {
+                            let axis = std::array::from_fn(|i| f64::from(u8::from(i == k)));
+                            matrices[body].add(mass, &at(arm, axis));
+                        }),
+                    }
+                }
+            }
+        }
+        (impulses, matrices)
+    }
+
+    /// How fast two bodies slip at their nodes before contact [m/s].
+    fn slip(&self, nodes: [usize; 2], normal: Option<Vector<T, D>>) -> f64 {
+        // SAFETY: nobody else looks at the nodes meanwhile.
+        let [v, w] = nodes.map(|node| unsafe { self.solve.nodes.get(node) }.velocity);
+        let u = v - w;
+        normal.map_or(0.0, |n| (u - n * u.dot(n)).norm().f64())
+    }
+
+    /// Whether impulses of a law are part of this use: those that judge the whole step are judged by its second use.
+    fn counts(&self, span: Span) -> bool {
+        span == Span::EachUse || self.solve.given.is_some()
+    }
+
+    /// What the joints hold in this step.
+    fn find_rows(&self, mechanism: &mut Mechanism, dt: f64) {
+        let Mechanism { bodies, links, rows, .. } = mechanism;
+        rows.clear();
+        for (number, joint) in self.joints.iter().enumerate() {
+            let slot = |body: usize| bodies.binary_search_by_key(&body, |free| free.index).ok();
+            let held = [slot(joint.body), joint.to.and_then(slot)];
+            links[number].rows((number, joint), (held, D, dt), rows);
+        }
+    }
+
+    /// How far the equations are from holding with the velocities found so far.
+    fn find_off(&self, bodies: &[Body<T, D>], mechanism: &mut Mechanism, dt: f64) {
+        let motion = |body: usize| bodies[body].motion.as_ref().expect("joints hold rigid bodies");
+        let mut rows = mechanism.rows.iter_mut().peekable();
+        for (number, joint) in self.joints.iter().enumerate() {
+            if rows.peek().is_none_or(|row: &&mut Row| row.joint != number) {
+                continue;
+            }
+            let after = poses(joint, |body| motion(body).next_pose(dt));
+            let velocities = [Some(joint.body), joint.to]
+                .map(|body| body.map_or([0.0; 6], |body| join(motion(body).velocity(), motion(body).spin())));
+            let center = motion(joint.body).pose().begun();
+            let time = mechanism.time;
+            let off = mechanism.links[number].off(joint, (after, velocities, center), (D, time, dt));
+            while let Some(row) = rows.next_if(|row| row.joint == number) {
+                row.off = off[row.number];
+            }
+        }
+    }
+
+    /// Gives the bodies exactly the momenta that contact and joints gave them.
+    fn finish(
+        &self,
+        bodies: &mut [Body<T, D>],
+        mechanism: &mut Mechanism,
+        (parts, listed): (&[bool], &Impulses<T, D>),
+    ) {
+        let dt = self.solve.step.duration.f64();
+        let (impulses, _) = self.sum((parts, listed), (bodies, &mechanism.bodies), true);
+        for (free, impulse) in mechanism.bodies.iter_mut().zip(&impulses) {
+            free.momenta = free.target;
+            six::add(&mut free.momenta, 1.0, impulse);
+        }
+        for row in &mechanism.rows {
+            for side in 0..2 {
+                if let Some(body) = row.bodies[side] {
+                    six::add(&mut mechanism.bodies[body].momenta, row.impulse, &row.directions[side]);
+                }
+            }
+            mechanism.links[row.joint].take(row);
+        }
+        for free in &mechanism.bodies {
+            let motion = bodies[free.index].motion.as_mut().expect("it is rigid");
+            motion.set_momenta(six::parts(free.momenta), dt);
+        }
+    }
+}
+
+/// From a rigid body's centre to a node [m].
+fn arm<T: Real, const D: usize>(lattice: &Lattice<T, D>, node: [i32; D], body: &Body<T, D>) -> [f64; 3] {
+    let center = body.motion.as_ref().expect("it is rigid").center;
+    let place = lattice.position(node).space();
+    std::array::from_fn(|i| if i < D { place[i] - center[i] } else { 0.0 })
+}

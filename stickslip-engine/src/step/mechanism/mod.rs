@@ -1,0 +1,164 @@
+//! Free rigid bodies, and joints between them.
+//!
+//! A free rigid body has six numbers, its momenta. Contact acts on it at the nodes, where it has one velocity for all of
+//! them, v + w x r. Its new velocities and all impulses are found together ([`Coupling`]):
+//!
+//! ```text
+//! M (V - V^n) = dt F + J(V) + G^T l,     g(x(V)) = 0
+//! ```
+//! V: velocities of all free bodies after the step, M: their inertia, F: gravity, loads and what joints push with,
+//! J(V): impulses of contact with deformable bodies, as their laws give them against a rigid body that moves with V,
+//! g = 0: what joints hold, at the end of the step, with their impulses l along the rows of G (SHAKE: Ryckaert, Ciccotti
+//! and Berendsen 1977). So contact with a light body is as stable as with a heavy one, momentum is exchanged to
+//! round-off, and joints do not drift.
+
+mod coupling;
+mod joint;
+mod row;
+mod six;
+
+pub use coupling::Coupling;
+pub use joint::JointSums;
+
+use super::Engine;
+use crate::basis::Basis;
+use crate::lanes::Laned;
+use crate::rigid::RigidMotion;
+use crate::tensor::{Vector, cross};
+use joint::Link;
+use row::Row;
+use six::{Six, SixMatrix, join};
+use std::time::Instant;
+
+/// Free rigid bodies and joints in a step.
+#[derive(Clone, Debug, Default)]
+pub struct Mechanism {
+    /// The free bodies, in the order of the scene.
+    pub bodies: Vec<FreeBody>,
+    /// The joints, in the order of the scene.
+    links: Vec<Link>,
+    /// Room for what joints hold.
+    rows: Vec<Row>,
+    /// When the step began [s].
+    time: f64,
+}
+
+/// A free rigid body in a step.
+#[derive(Clone, Debug)]
+pub struct FreeBody {
+    /// Index of the body.
+    pub index: usize,
+    /// Velocities at the start of the step.
+    start: Six,
+    /// Momenta with all forces but those of contact and of what joints hold.
+    target: Six,
+    /// Momenta as found so far.
+    momenta: Six,
+    /// Inertia at the start of the step.
+    inertia: SixMatrix,
+    /// How far its points are from its centre, by its inertia [m]: speeds of turning count with this.
+    radius: f64,
+}
+
+impl FreeBody {
+    fn new(index: usize, motion: &RigidMotion) -> Option<Self> {
+        let free = motion.as_free()?;
+        let momenta = join(free.state.momentum, free.state.angular_momentum);
+        let inertia = free.inertia();
+        Some(FreeBody {
+            index,
+            start: join(motion.velocity(), motion.spin()),
+            target: momenta,
+            momenta,
+            inertia: SixMatrix::inertia(free.mass, &inertia),
+            radius: (inertia.trace() / free.mass).sqrt(),
+        })
+    }
+}
+
+impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
+    /// Takes up the free bodies as they are, before the step's first contact.
+    pub(super) fn find_free_bodies(&mut self) {
+        if self.settings.free.is_empty() {
+            return;
+        }
+        let bodies = &self.state.bodies;
+        let of = |index: usize| FreeBody::new(index, bodies[index].motion.as_ref()?);
+        let mechanism = &mut self.workspace.mechanism;
+        mechanism.time = self.state.time;
+        mechanism.bodies.clear();
+        mechanism.bodies.extend((0..bodies.len()).filter_map(of));
+        mechanism.links.clear();
+        mechanism.links.extend(self.settings.joints.iter().map(|joint| Link::new(joint, bodies)));
+    }
+
+    /// Gravity, loads and what joints push with change the momenta of free rigid bodies.
+    pub(super) fn push_free_bodies(&mut self, dt: T) {
+        let mechanism = &mut self.workspace.mechanism;
+        if mechanism.bodies.is_empty() {
+            return;
+        }
+        let start = Instant::now();
+        let (dt, time) = (dt.f64(), self.state.time);
+        let (free, bodies) = (&self.settings.free, &mut self.state.bodies);
+        let mut impulses = vec![[0.0; 6]; mechanism.bodies.len()];
+        let slot = |body: usize| mechanism.bodies.binary_search_by_key(&body, |free| free.index).ok();
+        if !self.settings.loads.is_empty() {
+            let forces = self.workspace.loads.forces_on(&self.settings.loads, |body| free[body]);
+            for (body, force, place) in forces {
+                let (Some(slot), Some(motion)) = (slot(body), &bodies[body].motion) else { continue };
+                let arm = (Vector(place) - Vector(motion.center)).0;
+                six::add(&mut impulses[slot], dt, &six::at(arm, force));
+            }
+        }
+        for (i, joint) in self.settings.joints.iter().enumerate() {
+            let sums = &self.state.joints[i];
+            let pushes = mechanism.links[i].push(joint, bodies, (time, dt), sums.way);
+            for (body, push) in [Some(joint.body), joint.to].into_iter().zip(pushes) {
+                if let Some(slot) = body.and_then(slot) {
+                    six::add(&mut impulses[slot], 1.0, &push);
+                }
+            }
+        }
+        let gravity = self.settings.gravity.space();
+        for (free, impulse) in mechanism.bodies.iter_mut().zip(&impulses) {
+            let motion = bodies[free.index].motion.as_mut().expect("free bodies are rigid");
+            // After contact on the interpolated velocities, if there was any.
+            let state = motion.as_free().expect("it is free").state;
+            free.target = join(state.momentum, state.angular_momentum);
+            let weight = free.inertia.times(&join(gravity, [0.0; 3]));
+            six::add(&mut free.target, dt, &weight);
+            six::add(&mut free.target, 1.0, impulse);
+            free.momenta = free.target;
+            motion.set_momenta(six::parts(free.target), dt);
+        }
+        self.watch.lap("mechanism", start);
+    }
+
+    /// Books what joints did in the step, once velocities are known.
+    pub(super) fn account_joints(&mut self, dt: T) {
+        let mechanism = &self.workspace.mechanism;
+        if mechanism.links.is_empty() {
+            return;
+        }
+        let bodies = &self.state.bodies;
+        for (i, joint) in self.settings.joints.iter().enumerate() {
+            let (link, sums) = (&mechanism.links[i], &mut self.state.joints[i]);
+            link.book(sums, |side| {
+                let body = [Some(joint.body), joint.to][side]?;
+                let slot = mechanism.bodies.binary_search_by_key(&body, |free| free.index).ok()?;
+                let motion = bodies[body].motion.as_ref()?;
+                let after = join(motion.velocity(), motion.spin());
+                Some(std::array::from_fn(|k| 0.5 * (mechanism.bodies[slot].start[k] + after[k])))
+            });
+            sums.measure(joint, bodies, dt.f64());
+        }
+    }
+}
+
+/// Velocity of a rigid body at a point [m/s].
+fn velocity_at(velocities: &Six, arm: [f64; 3]) -> [f64; 3] {
+    let [v, w] = six::parts(*velocities);
+    let turn = cross(w, arm);
+    std::array::from_fn(|i| v[i] + turn[i])
+}

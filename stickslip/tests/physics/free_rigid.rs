@@ -1,0 +1,397 @@
+//! Free rigid bodies move as mechanics says, alone, on joints and in contact.
+//!
+//! Source: rigid-body mechanics. Period of a physical pendulum of amplitude a: T = 4 sqrt(I / (m g s)) K(sin(a/2)), with
+//! the complete elliptic integral K by the arithmetic-geometric mean.
+//!
+//! Set-up: rods, disks and balls that are rigid and free; hinges, sliders, balls, welds and springs between them and the
+//! ground; contact with blocks of rubber and with stiff floors, in the plane and in space.
+//!
+//! Expected: the period within 1e-4; joints that hold to 1e-9 of the size and do not drift; momentum and angular
+//! momentum with a body that deforms to round-off; the energy of a free mechanism within 1e-4; accelerations down and
+//! up slopes within 0.5 % and 1 %; works of motors within 1e-3 of the energies; a body a thousand times lighter than
+//! what it strikes leaves as it should; the same bits for any number of threads and from a saved state.
+
+use crate::trial::{distance, run_to, start, take_steps};
+use rayon::ThreadPoolBuilder;
+use std::f64::consts::PI;
+use stickslip::door::Simulation;
+
+const STEEL: &str =
+    "materials.steel = { density = 7800, neo_hookean = { young_modulus = 2e11, poisson_ratio = 0.3 } }";
+const GEL: &str =
+    "materials.gel = { density = 1000, neo_hookean = { young_modulus = 1e6, poisson_ratio = 0.3 } }";
+
+/// K(k) by the arithmetic-geometric mean.
+fn elliptic(k: f64) -> f64 {
+    let (mut a, mut b) = (1.0_f64, (1.0 - k * k).sqrt());
+    while (a - b).abs() > 1e-15 {
+        (a, b) = (0.5 * (a + b), (a * b).sqrt());
+    }
+    PI / (a + b)
+}
+
+fn pendulum(end: f64) -> String {
+    format!(
+        r#"
+        gravity = [0, -9.81]
+        space = {{ dimension = "plane-strain", cell = 0.1 }}
+        time = {{ end = {end}, max_step = 1e-3 }}
+        {STEEL}
+        [[bodies]]
+        name = "rod"
+        material = "steel"
+        rigid.free = {{}}
+        [bodies.shape.rotated]
+        center = [0, 0]
+        angle = 1
+        shape.box = {{ min = [-0.1, -1], max = [0.1, 0] }}
+        [[joints]]
+        body = "rod"
+        hinge.point = [0, 0]
+        "#
+    )
+}
+
+#[test]
+fn a_pendulum_swings_with_its_period_and_keeps_its_energy() {
+    let mut simulation = start(&pendulum(40.0));
+    // I about the hinge over m s: (0.2^2 + 1)/12 + 1/4, over 1/2.
+    let inertia = ((0.04 + 1.0) / 12.0 + 0.25) / 0.5;
+    let period = 4.0 * (inertia / 9.81_f64).sqrt() * elliptic((0.5_f64).sin());
+    let energy = simulation.ledger().total;
+    let (mut crossings, mut before) = (Vec::new(), simulation.joints()[0].way);
+    let (mut time, mut swing, mut loosest) = (0.0, 0.0_f64, 0.0_f64);
+    run_to(&mut *simulation, 40.0, |s| {
+        // The angle from the start is -1 where the rod hangs.
+        let now = s.joints()[0].way + 1.0;
+        if before > 0.0 && now <= 0.0 {
+            crossings.push(time + (s.time() - time) * before / (before - now));
+        }
+        (before, time) = (now, s.time());
+        let ledger = s.ledger();
+        swing = swing.max((ledger.total / energy - 1.0).abs());
+        let center = s.bodies()[0].position;
+        loosest = loosest.max((distance(center, [0.0; 3]) - 0.5).abs());
+    });
+    let found = (crossings[crossings.len() - 1] - crossings[0]) / (crossings.len() - 1) as f64;
+    println!(
+        "period {found:.6} s, off {:.1e} over {} swings; energy within {swing:.1e}, hinge within {loosest:.1e} m",
+        found / period - 1.0,
+        crossings.len()
+    );
+    assert!((found / period - 1.0).abs() < 1e-4, "{found} {period}");
+    assert!(crossings.len() > 15 && loosest < 1e-9);
+    // Positions and velocities are half a step apart.
+    assert!(swing < 5e-3, "{swing}");
+    let after = simulation.ledger().total;
+    assert!((after / energy - 1.0).abs() < 5e-3, "{after} {energy}");
+}
+
+/// A brick on a hinge askew to its axes, a ball joint, and a weld, in space: nothing parts, and what turns keeps its
+/// energy.
+#[test]
+fn a_mechanism_in_space_holds_together() {
+    let scene = format!(
+        r#"
+        gravity = [0, 0, -9.81]
+        space = {{ dimension = "3d", cell = 0.1 }}
+        time = {{ end = 4, max_step = 5e-4 }}
+        {STEEL}
+        [[bodies]]
+        name = "crank"
+        material = "steel"
+        shape.box = {{ min = [0, -0.1, -0.1], max = [0.6, 0.1, 0.1] }}
+        rigid.free = {{}}
+        [[bodies]]
+        name = "arm"
+        material = "steel"
+        shape.box = {{ min = [0.6, -0.1, -0.1], max = [0.8, 0.1, 0.7] }}
+        rigid.free = {{}}
+        [[bodies]]
+        name = "bob"
+        material = "steel"
+        shape.ball = {{ center = [1.1, 0, 0.7], radius = 0.15 }}
+        rigid.free = {{}}
+        [[joints]]
+        name = "bearing"
+        body = "crank"
+        hinge = {{ point = [0, 0, 0], axis = [0.3, 1, 0.2] }}
+        [[joints]]
+        name = "socket"
+        body = "arm"
+        to = "crank"
+        ball.point = [0.6, 0, 0]
+        [[joints]]
+        name = "glue"
+        body = "bob"
+        to = "arm"
+        weld = {{}}
+        "#
+    );
+    let mut simulation = start(&scene);
+    let (energy, before) = (simulation.ledger(), simulation.bodies());
+    let apart = distance(before[1].position, before[2].position);
+    let (mut loosest, mut swing, mut fastest) = (0.0_f64, 0.0_f64, 0.0_f64);
+    run_to(&mut *simulation, 4.0, |s| {
+        let bodies = s.bodies();
+        loosest = loosest.max((distance(bodies[0].position, [0.0; 3]) - 0.3).abs());
+        loosest = loosest.max((distance(bodies[1].position, bodies[2].position) - apart).abs());
+        let ledger = s.ledger();
+        fastest = fastest.max(ledger.kinetic);
+        swing = swing.max((ledger.total - energy.total).abs());
+    });
+    println!(
+        "joints within {loosest:.1e} m, energy within {:.1e} of the largest kinetic one",
+        swing / fastest
+    );
+    assert!(loosest < 1e-8 && swing < 5e-3 * fastest && fastest > 100.0, "{loosest} {swing} {fastest}");
+}
+
+/// A rigid disk that spins flies into a block of gel in empty space, off its middle: what one gets, the other loses.
+#[test]
+fn momentum_is_exchanged_with_a_body_that_deforms() {
+    for law in ["surface", "gap", "traction", "glued"] {
+        for update in ["first", "last", "modified-last"] {
+            let scene = format!(
+                r#"
+                space = {{ dimension = "plane-strain", cell = 0.05 }}
+                time = {{ end = 0.2, stress_update = "{update}" }}
+                {GEL}
+                [[bodies]]
+                name = "disk"
+                material = "gel"
+                shape.ball = {{ center = [-0.26, 0.3], radius = 0.25 }}
+                velocity = [2, 0]
+                spin = 5
+                rigid.free = {{}}
+                [[bodies]]
+                name = "block"
+                material = "gel"
+                shape.box = {{ min = [0, 0], max = [0.5, 0.5] }}
+                [[contact]]
+                law = "{law}"
+                normal = "common"
+                friction = 0.4
+                "#
+            );
+            let mut simulation = start(&scene);
+            let before = simulation.ledger();
+            run_to(&mut *simulation, 0.05, |_| {});
+            let (after, bodies) = (simulation.ledger(), simulation.bodies());
+            let lost = distance(before.momentum, after.momentum) / before.momentum[0];
+            let turned = (after.angular_momentum[2] - before.angular_momentum[2]).abs()
+                / before.angular_momentum[2].abs();
+            let drift = (after.total - before.total) / before.kinetic;
+            println!("{law}, {update}: momentum {lost:.1e}, angular {turned:.1e}, energy {drift:.1e}");
+            assert!(lost < 1e-12, "{law}, {update}: {lost}");
+            assert!(bodies[1].velocity[0] > 0.1, "{law}, {update}: it was not hit: {bodies:?}");
+            if law == "surface" {
+                assert!(turned < 1e-3 && drift.abs() < 0.03, "{update}: {turned} {drift}");
+            }
+        }
+    }
+}
+
+/// A disk a thousand times lighter than the nodes that it strikes, and one a thousand times heavier: contact stays
+/// calm, and a light one leaves no faster than it came.
+#[test]
+fn light_and_heavy_bodies_are_struck_alike() {
+    for mass in [1e-2, 1e5] {
+        let scene = format!(
+            r#"
+            space = {{ dimension = "plane-strain", cell = 0.05 }}
+            time.end = 0.2
+            {GEL}
+            [[bodies]]
+            name = "disk"
+            material = "gel"
+            shape.ball = {{ center = [-0.26, 0.25], radius = 0.25 }}
+            velocity = [1, 0]
+            rigid.free.mass = {mass}
+            [[bodies]]
+            name = "block"
+            material = "gel"
+            shape.box = {{ min = [0, 0], max = [0.5, 0.5] }}
+            "#
+        );
+        let mut simulation = start(&scene);
+        let before = simulation.ledger();
+        run_to(&mut *simulation, 0.06, |_| {});
+        let (after, bodies) = (simulation.ledger(), simulation.bodies());
+        let speed = bodies[0].velocity[0];
+        println!("mass {mass}: speed {speed:.4} m/s, {} nodes unsettled", after.unsettled_nodes);
+        assert_eq!(after.unsettled_nodes, 0);
+        assert!(distance(before.momentum, after.momentum) < 1e-11 * before.momentum[0]);
+        let wanted = if mass < 1.0 { -1.0..0.01 } else { 0.99..1.0 };
+        assert!(wanted.contains(&speed), "mass {mass}: {speed}");
+    }
+}
+
+fn rolling(update: &str) -> String {
+    format!(
+        r#"
+        gravity = ["9.81 * sin(0.3)", "-9.81 * cos(0.3)"]
+        [space]
+        dimension = "plane-strain"
+        cell = 0.1
+        domain = {{ min = [-1, -1], max = [5, 3], y_min = "fixed" }}
+        [time]
+        end = 1
+        stress_update = "{update}"
+        [materials]
+        stone = {{ density = 1000, neo_hookean = {{ young_modulus = 1e9, poisson_ratio = 0.2 }} }}
+        [[bodies]]
+        name = "floor"
+        material = "stone"
+        shape.box = {{ min = [-1, -1], max = [5, 0] }}
+        [[bodies]]
+        name = "disk"
+        material = "stone"
+        shape.ball = {{ center = [0, 0.8], radius = 0.8 }}
+        rigid.free = {{}}
+        [[contact]]
+        friction = 0.6
+        "#
+    )
+}
+
+/// A disk rolls down a slope with 2/3 of g sin(theta).
+#[test]
+fn a_rigid_disk_rolls_on_a_floor_that_deforms() {
+    let mut simulation = start(&rolling("modified-last"));
+    run_to(&mut *simulation, 1.0, |_| {});
+    let disk = simulation.bodies()[1].clone();
+    let exact = 0.5 * (2.0 / 3.0) * 9.81 * 0.3_f64.sin();
+    println!(
+        "rolled {:.5} m, exact {exact:.5} m; w R / v {:.5}",
+        disk.position[0],
+        -disk.spin[2] * 0.8 / disk.velocity[0]
+    );
+    assert!((disk.position[0] / exact - 1.0).abs() < 5e-3, "{disk:?}");
+    assert!((-disk.spin[2] * 0.8 / disk.velocity[0] - 1.0).abs() < 5e-3, "{disk:?}");
+}
+
+/// A motor on an axle drives a carriage on a slider; its work is the energy that both have.
+#[test]
+fn motors_do_the_work_that_bodies_gain() {
+    let scene = format!(
+        r#"
+        space = {{ dimension = "plane-strain", cell = 0.1 }}
+        gravity = [0, -9.81]
+        time = {{ end = 2, max_step = 1e-3 }}
+        {GEL}
+        [[bodies]]
+        name = "carriage"
+        material = "gel"
+        shape.box = {{ min = [-0.5, -0.2], max = [0.5, 0.2] }}
+        rigid.free = {{}}
+        [[bodies]]
+        name = "wheel"
+        material = "gel"
+        shape.ball = {{ center = [0, 0], radius = 0.4 }}
+        rigid.free = {{}}
+        [[joints]]
+        name = "rail"
+        body = "carriage"
+        slider = {{ axis = [3, 4], force = "5 kN", dashpot = "10 N s/m" }}
+        [[joints]]
+        name = "motor"
+        body = "wheel"
+        to = "carriage"
+        hinge = {{ point = [0, 0], torque = "30 N m" }}
+        [[joints]]
+        name = "brake"
+        body = "wheel"
+        to = "carriage"
+        hinge = {{ point = [0, 0], speed = "20 rad/s", limit = "10 N m" }}
+        "#
+    );
+    let mut simulation = start(&scene);
+    let before = simulation.ledger();
+    run_to(&mut *simulation, 1.5, |_| {});
+    let (after, bodies, joints) = (simulation.ledger(), simulation.bodies(), simulation.joints());
+    let drift = (after.total - before.total) / after.kinetic;
+    let [mass, wheel] = [bodies[0].mass, bodies[1].mass];
+    // The carriage and the wheel along the rail: m a = F - c v - m g 4/5.
+    let (m, rate) = (mass + wheel, 10.0 / (mass + wheel));
+    let steady = (5000.0 - m * 9.81 * 0.8) / 10.0;
+    let exact = steady * (1.0 - (-rate * 1.5_f64).exp());
+    let speed = bodies[0].velocity[0] * 0.6 + bodies[0].velocity[1] * 0.8;
+    // The wheel: the torque and the brake's limit, until it reaches its speed.
+    let spin = (40.0 * 1.5 / (0.5 * wheel * 0.16)).min(20.0);
+    println!(
+        "speed {speed:.5} m/s ({exact:.5}), spin {:.4} ({spin:.4}), drift {drift:.1e}, {joints:?}",
+        bodies[1].spin[2]
+    );
+    assert!((speed / exact - 1.0).abs() < 2e-3, "{speed} {exact}");
+    assert!((bodies[1].spin[2] / spin - 1.0).abs() < 2e-3);
+    assert!(bodies[0].spin[2].abs() < 1e-9 && drift.abs() < 1e-3, "{drift}");
+    let off = bodies[0].position[0] * 0.8 - bodies[0].position[1] * 0.6;
+    assert!(off.abs() < 1e-9, "the carriage left its rail by {off} m");
+}
+
+/// Two masses on a spring swing with sqrt(k / m*), and a dashpot damps them.
+#[test]
+fn a_spring_between_bodies_has_its_period() {
+    let scene = format!(
+        r#"
+        space = {{ dimension = "plane-strain", cell = 0.1 }}
+        time = {{ end = 4, max_step = 1e-3 }}
+        {GEL}
+        [[bodies]]
+        name = "left"
+        material = "gel"
+        shape.box = {{ min = [-0.7, -0.1], max = [-0.5, 0.1] }}
+        rigid.free.mass = 3
+        [[bodies]]
+        name = "right"
+        material = "gel"
+        shape.box = {{ min = [0.5, -0.1], max = [0.7, 0.1] }}
+        rigid.free.mass = 1
+        [[joints]]
+        body = "right"
+        to = "left"
+        spring = {{ from = [0.5, 0], to = [-0.5, 0], stiffness = 75, length = 0.8 }}
+        "#
+    );
+    let mut simulation = start(&scene);
+    let period = 2.0 * PI * (0.75_f64 / 75.0).sqrt();
+    run_to(&mut *simulation, 3.25 * period, |_| {});
+    let joint = simulation.joints()[0];
+    println!("a quarter past three periods: {:.6} m of -0.2 m, rate {:.4} m/s", joint.way, joint.speed);
+    assert!((joint.way + 0.2).abs() < 2e-3, "{joint:?}");
+    let momentum = simulation.ledger().momentum[0];
+    assert!(momentum.abs() < 1e-12, "{momentum}");
+}
+
+/// The same bits on one, two and five threads, with the workspace dropped, and from a saved state.
+#[test]
+fn results_depend_on_no_thread_and_on_no_pause() {
+    let outcome = |threads: usize, take: fn(&mut dyn Simulation)| {
+        let pool = ThreadPoolBuilder::new().num_threads(threads).build().expect("threads can be started");
+        pool.install(|| {
+            let mut simulation = start(&rolling("last"));
+            take(&mut *simulation);
+            format!("{:?} {:?} {:?}", simulation.snapshot(), simulation.bodies(), simulation.ledger())
+        })
+    };
+    let plain = |simulation: &mut dyn Simulation| take_steps(simulation, 60);
+    let one = outcome(1, plain);
+    for threads in [2, 5] {
+        assert!(outcome(threads, plain) == one, "{threads} threads differ from one");
+    }
+    let paused = |simulation: &mut dyn Simulation| {
+        for step in 0..60 {
+            if step % 17 == 3 {
+                let saved = simulation.save().expect("the engine can be saved");
+                take_steps(simulation, 3);
+                simulation.restore(saved).expect("it is its own state");
+            }
+            if step % 13 == 5 {
+                simulation.rebuild_workspace();
+            }
+            take_steps(simulation, 1);
+        }
+    };
+    assert!(outcome(1, paused) == one, "a saved state takes other steps");
+}
