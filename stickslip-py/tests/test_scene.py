@@ -169,6 +169,27 @@ def test_every_table_of_the_language_has_its_method(tmp_path):
     assert record(space)["bodies"][0]["name"] == "rod"
 
 
+def test_every_shape_of_the_language_has_its_function():
+    scene = ss.Scene("3d", 0.1).material("rubber", density=1, neo_hookean=dict(young_modulus=1, poisson_ratio=0.3))
+    shapes = [
+        ss.cone((0, 0, 0), (0, 0, 1), 0.5),
+        ss.ring((0, 0, 0), 0.3, 0.5, (0, 0, 1), "20 cm"),
+        ss.capsule((0, 0, 0), (1, 0, 0), 0.3),
+        ss.rounded_box((0, 0, 0), (1, 1, 1), 0.1),
+        ss.ellipsoid((0, 0, 0), (0.5, 0.4, 0.3)),
+        ss.superquadric((0, 0, 0), (0.5, 0.4, 0.3), 4, 3),
+        ss.torus((0, 0, 0), (0, 0, 1), 0.5, 0.2),
+    ]
+    for i, shape in enumerate(shapes):
+        scene.body(f"body {i}", material="rubber", shape=shape)
+    kinds = [next(iter(body["shape"])) for body in record(scene.time(end=1))["bodies"]]
+    assert kinds == ["revolved", "revolved", "capsule", "rounded-box", "ellipsoid", "superquadric", "torus"]
+    plane = ss.Scene("plane-strain", 0.1).material("rubber", **scene.document["materials"]["rubber"]).time(end=1)
+    plane.body("ring", material="rubber", shape=ss.ring((0, 0), 0.3, 0.5))
+    plane.body("egg", material="rubber", shape=ss.ellipsoid((2, 0), (0.3, 0.5)))
+    assert [next(iter(body["shape"])) for body in record(plane)["bodies"]] == ["difference", "ellipsoid"]
+
+
 def test_meshes_are_found_from_where_a_scene_is_saved(tmp_path, monkeypatch):
     source = REPOSITORY / "scenes/shapes/hoop.toml"
     scene = ss.Scene.load(source)

@@ -23,7 +23,26 @@ from .records import Record, Table
 from .results import Frame, Results
 from .running import Summary, resume
 from .scene import Report, Scene
-from .shapes import ball, box, cylinder, difference, disk, half_space, intersection, mesh, polygon, rotated, union
+from .shapes import (
+    ball,
+    box,
+    capsule,
+    cone,
+    cylinder,
+    difference,
+    disk,
+    ellipsoid,
+    half_space,
+    intersection,
+    mesh,
+    polygon,
+    ring,
+    rotated,
+    rounded_box,
+    superquadric,
+    torus,
+    union,
+)
 from .simulation import Bodies, Body, Column, Simulation
 
 __version__: str = _core.VERSION
@@ -48,14 +67,21 @@ __all__ = [
     "Table",
     "ball",
     "box",
+    "capsule",
+    "cone",
     "cylinder",
     "difference",
     "disk",
+    "ellipsoid",
     "half_space",
     "intersection",
     "mesh",
     "polygon",
     "resume",
+    "ring",
     "rotated",
+    "rounded_box",
+    "superquadric",
+    "torus",
     "union",
 ]

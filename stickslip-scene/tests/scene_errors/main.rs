@@ -11,6 +11,7 @@ mod meshes;
 mod outputs;
 mod parameters;
 mod places;
+mod shapes;
 mod values;
 
 use stickslip_scene::material::LAWS;

@@ -16,6 +16,7 @@ mod quantity;
 mod read;
 mod repeat;
 mod shape;
+mod solid;
 mod space;
 mod start;
 mod text;

@@ -4,6 +4,7 @@ use super::Context;
 use super::mesh::Mesh;
 use super::quantity::{Angle, Length, QuantityInput, Ratio};
 use super::read::{Read, table};
+use super::solid::{Capsule, Cone, Ellipsoid, Ring, RoundedBox, Superquadric, Torus};
 use super::space::corners;
 use super::vector::VectorInput;
 use crate::geometry;
@@ -24,6 +25,20 @@ pub enum ShapeInput {
     Box(Cuboid),
     /// A solid cylinder; three dimensions only.
     Cylinder(Cylinder),
+    /// A cone, whole or truncated; three dimensions only.
+    Cone(Cone),
+    /// A disk with a hole in its middle; in three dimensions a cylinder with a bore.
+    Ring(Ring),
+    /// A cylinder with half a ball on each end; in the plane, a rectangle with half a disk on each end.
+    Capsule(Capsule),
+    /// A box with rounded edges and corners; in the plane, a rectangle with rounded corners.
+    RoundedBox(RoundedBox),
+    /// An ellipsoid with axes along those of space; in the plane, an ellipse.
+    Ellipsoid(Ellipsoid),
+    /// A superquadric, between ellipsoid, cylinder and box; in the plane, a superellipse.
+    Superquadric(Superquadric),
+    /// A torus: a round tube around an axis; three dimensions only.
+    Torus(Torus),
     /// All points behind a plane; unbounded: it cuts other shapes, or is a rigid body.
     HalfSpace(HalfSpace),
     /// A polygon in the plane of x and y; in three dimensions a prism over it.
@@ -45,6 +60,13 @@ const KINDS: &[&str] = &[
     "ball",
     "box",
     "cylinder",
+    "cone",
+    "ring",
+    "capsule",
+    "rounded_box",
+    "ellipsoid",
+    "superquadric",
+    "torus",
     "half_space",
     "polygon",
     "mesh",
@@ -142,6 +164,13 @@ impl ShapeInput {
                 geometry::Shape::Box { min, max }
             }
             ShapeInput::Cylinder(cylinder) => cylinder.resolve(context)?,
+            ShapeInput::Cone(cone) => cone.resolve(context)?,
+            ShapeInput::Ring(ring) => ring.resolve(context)?,
+            ShapeInput::Capsule(capsule) => capsule.resolve(context)?,
+            ShapeInput::RoundedBox(cuboid) => cuboid.resolve(context)?,
+            ShapeInput::Ellipsoid(ellipsoid) => ellipsoid.resolve(context)?,
+            ShapeInput::Superquadric(superquadric) => superquadric.resolve(context)?,
+            ShapeInput::Torus(torus) => torus.resolve(context)?,
             ShapeInput::HalfSpace(half) => geometry::Shape::HalfSpace {
                 point: half.point.value(context)?,
                 normal: direction(&half.normal, context)?,
@@ -225,7 +254,7 @@ impl Rotated {
 }
 
 /// A vector that is not zero.
-fn direction(vector: &VectorInput<Ratio>, context: &Context) -> Result<[f64; 3], Fault> {
+pub(super) fn direction(vector: &VectorInput<Ratio>, context: &Context) -> Result<[f64; 3], Fault> {
     let value = vector.value(context)?;
     if value == [0.0; 3] { Err(vector.node().fault("a direction, not zero")) } else { Ok(value) }
 }
@@ -252,6 +281,13 @@ impl Read for ShapeInput {
             "ball" => ShapeInput::Ball(Ball::read(child)?),
             "box" => ShapeInput::Box(Cuboid::read(child)?),
             "cylinder" => ShapeInput::Cylinder(Cylinder::read(child)?),
+            "cone" => ShapeInput::Cone(Cone::read(child)?),
+            "ring" => ShapeInput::Ring(Ring::read(child)?),
+            "capsule" => ShapeInput::Capsule(Capsule::read(child)?),
+            "rounded_box" => ShapeInput::RoundedBox(RoundedBox::read(child)?),
+            "ellipsoid" => ShapeInput::Ellipsoid(Ellipsoid::read(child)?),
+            "superquadric" => ShapeInput::Superquadric(Superquadric::read(child)?),
+            "torus" => ShapeInput::Torus(Torus::read(child)?),
             "half_space" => ShapeInput::HalfSpace(HalfSpace::read(child)?),
             "polygon" => ShapeInput::Polygon(Polygon::read(child)?),
             "mesh" => ShapeInput::Mesh(Mesh::read(child)?),
