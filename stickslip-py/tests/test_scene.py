@@ -179,11 +179,15 @@ def test_every_shape_of_the_language_has_its_function():
         ss.ellipsoid((0, 0, 0), (0.5, 0.4, 0.3)),
         ss.superquadric((0, 0, 0), (0.5, 0.4, 0.3), 4, 3),
         ss.torus((0, 0, 0), (0, 0, 1), 0.5, 0.2),
+        ss.spline([(0, 0), (1, 0), (0, 1)], (0, 1)),
+        ss.revolved((0, 0, 0), (0, 0, 1), polygon=[(0, 0), (1, 0), (0, 1)]),
+        ss.revolved((0, 0, 0), (0, 0, 1), spline=[(0, 0), (1, 1), (0, 2)]),
     ]
     for i, shape in enumerate(shapes):
         scene.body(f"body {i}", material="rubber", shape=shape)
     kinds = [next(iter(body["shape"])) for body in record(scene.time(end=1))["bodies"]]
-    assert kinds == ["revolved", "revolved", "capsule", "rounded-box", "ellipsoid", "superquadric", "torus"]
+    solids = ["revolved", "revolved", "capsule", "rounded-box", "ellipsoid", "superquadric", "torus"]
+    assert kinds == [*solids, "polygon", "revolved", "revolved"]
     plane = ss.Scene("plane-strain", 0.1).material("rubber", **scene.document["materials"]["rubber"]).time(end=1)
     plane.body("ring", material="rubber", shape=ss.ring((0, 0), 0.3, 0.5))
     plane.body("egg", material="rubber", shape=ss.ellipsoid((2, 0), (0.3, 0.5)))

@@ -77,6 +77,19 @@ def polygon(points: Any, height: Any = None) -> Shape:
     return {"polygon": {"points": points, "height": height}}
 
 
+def spline(points: Any, height: Any = None) -> Shape:
+    """What a smooth closed curve through points holds, in the plane of x and y; in space a prism as of `polygon`."""
+    return {"spline": {"points": points, "height": height}}
+
+
+def revolved(center: Any, axis: Any, polygon: Any = None, spline: Any = None) -> Shape:
+    """What an outline sweeps around an axis: corners of a polygon, or points of a smooth curve; space only.
+
+    Each is its distance from the axis and its place along it from the centre.
+    """
+    return {"revolved": {"polygon": polygon, "spline": spline, "center": center, "axis": axis}}
+
+
 def mesh(file: Any, scale: Any = None, translation: Any = None) -> Shape:
     """A closed surface of triangles in an STL or OBJ file; `scale` is the length of the file's unit, by default 1 m."""
     return {"mesh": {"file": file, "scale": scale, "translation": translation}}

@@ -18,6 +18,7 @@ mod rings;
 mod rotation;
 mod round;
 mod shells;
+pub mod spline;
 mod surface;
 mod volume;
 mod zero_level;

@@ -74,3 +74,37 @@ fn solids_that_are_none() {
         ),
     ]);
 }
+
+#[test]
+fn outlines_that_are_none() {
+    wrong(&[
+        (
+            "spline = { points = [[0, 0], [1, 0], [1, 0], [0, 1]], height = [0, 1] }",
+            "44: bodies[0].shape.spline.points[2]: found [1, 0]; allowed: another point than the one before it",
+        ),
+        (
+            "spline = { points = [[0, 0], [1, 0], [0, 1]] }",
+            "7: bodies[0].shape.spline.height: found nothing, the key is missing; allowed: lower and upper z: [0, \"1 m\"]",
+        ),
+        (
+            "revolved = { center = [0, 0, 0], axis = [0, 0, 1] }",
+            "7: bodies[0].shape.revolved.polygon: found neither `polygon` nor `spline`; allowed: one of polygon and spline",
+        ),
+        (
+            "revolved = { polygon = [[0, 0], [-1, 0], [0, 1]], center = [0, 0, 0], axis = [0, 0, 1] }",
+            "40: bodies[0].shape.revolved.polygon[1][0]: found -1; allowed: a distance from the axis [m] from 0 on",
+        ),
+        (
+            "revolved = { polygon = [[1, 0], [2, 0], [3, 0]], center = [0, 0, 0], axis = [0, 0, 1] }",
+            "30: bodies[0].shape.revolved.polygon: found [[1, 0], [2, 0], [3, 0]]; allowed: corners round an area",
+        ),
+        (
+            "revolved = { spline = [[0.01, 0], [1, 0], [0.01, 1]], center = [0, 0, 0], axis = [0, 0, 1] }",
+            "29: bodies[0].shape.revolved.spline: found a curve beyond the axis, ",
+        ),
+    ]);
+    wrong_in_the_plane(&[(
+        "revolved = { polygon = [[1, 0], [2, 0], [2, 1]], center = [0, 0], axis = [0, 1] }",
+        "65: bodies[0].shape.revolved.center: found [0, 0]; allowed: shapes other than one that is revolved, as the scene is plane",
+    )]);
+}

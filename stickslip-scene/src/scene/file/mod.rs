@@ -10,6 +10,7 @@ mod loads;
 mod material;
 mod measurements;
 mod mesh;
+mod outline;
 mod outputs;
 mod packing;
 mod quantity;

@@ -2,6 +2,7 @@
 
 use super::Context;
 use super::mesh::Mesh;
+use super::outline::{Polygon, Revolved, Spline};
 use super::quantity::{Angle, Length, QuantityInput, Ratio};
 use super::read::{Read, table};
 use super::solid::{Capsule, Cone, Ellipsoid, Ring, RoundedBox, Superquadric, Torus};
@@ -43,6 +44,10 @@ pub enum ShapeInput {
     HalfSpace(HalfSpace),
     /// A polygon in the plane of x and y; in three dimensions a prism over it.
     Polygon(Polygon),
+    /// What a smooth closed curve through points holds, in the plane of x and y; in three dimensions a prism over it.
+    Spline(Spline),
+    /// What a polygon or a curve sweeps that is turned around an axis; three dimensions only.
+    Revolved(Revolved),
     /// What a closed surface of triangles holds, read from a file; three dimensions only.
     Mesh(Mesh),
     /// Points in any of the shapes.
@@ -69,6 +74,8 @@ const KINDS: &[&str] = &[
     "torus",
     "half_space",
     "polygon",
+    "spline",
+    "revolved",
     "mesh",
     "union",
     "intersection",
@@ -119,16 +126,6 @@ table! {
 }
 
 table! {
-    /// A polygon in the plane of x and y; in three dimensions a prism over it.
-    Polygon {
-        /// Corners in order, [[0, 0], [1, 0], [0, 1]] [m]; the last joins the first.
-        points: CornersInput,
-        /// Lower and upper z of the prism, [0, "1 m"]; three dimensions only.
-        height: Option<VectorInput<Length>>,
-    }
-}
-
-table! {
     /// A shape turned about a point.
     Rotated {
         /// The shape before it is turned.
@@ -141,12 +138,6 @@ table! {
         angle: QuantityInput<Angle>,
     }
 }
-
-/// Corners of a polygon, with the place of their list.
-#[derive(JsonSchema)]
-#[schemars(transparent)]
-#[schemars(rename = "Corners")]
-pub struct CornersInput(Vec<VectorInput<Length>>, #[schemars(skip)] DocumentNode);
 
 impl ShapeInput {
     /// The shape in SI units.
@@ -176,6 +167,8 @@ impl ShapeInput {
                 normal: direction(&half.normal, context)?,
             },
             ShapeInput::Polygon(polygon) => polygon.resolve(context)?,
+            ShapeInput::Spline(spline) => spline.resolve(context)?,
+            ShapeInput::Revolved(revolved) => revolved.resolve(context)?,
             ShapeInput::Mesh(mesh) => geometry::Shape::Mesh(mesh.resolve(context)?),
             ShapeInput::Union(shapes) => geometry::Shape::Union(all(shapes)?),
             ShapeInput::Intersection(shapes) => geometry::Shape::Intersection(all(shapes)?),
@@ -195,35 +188,6 @@ impl Cylinder {
             return Err(self.end.node().fault("another point than start"));
         }
         Ok(geometry::Shape::Cylinder { start, end, radius: self.radius.positive(context)? })
-    }
-}
-
-impl Polygon {
-    fn resolve(&self, context: &Context) -> Result<geometry::Shape, Fault> {
-        let points = self.points.0.iter().map(|point| point.pair(context)).collect::<Result<Vec<_>, _>>()?;
-        if points.len() < 3 {
-            return Err(self.points.1.fault("at least 3 corners"));
-        }
-        let height = match (&self.height, context.dimension) {
-            (None, plane) if plane.is_plane() => [0.0, 0.0],
-            (Some(height), Dimension::Space) => {
-                let [lower, upper] = height.pair(context)?;
-                if lower >= upper {
-                    return Err(height.part(1).refused(upper, format!("more than the lower end, {lower} m")));
-                }
-                [lower, upper]
-            }
-            (Some(height), _) => {
-                return Err(height.node().fault("no height, as the scene is plane"));
-            }
-            (None, _) => {
-                let key = self.points.1.key.replace("points", "height");
-                let fault =
-                    Fault::new(&key, "nothing, the key is missing", "lower and upper z: [0, \"1 m\"]");
-                return Err(fault);
-            }
-        };
-        Ok(geometry::Shape::Polygon { points, height })
     }
 }
 
@@ -290,6 +254,8 @@ impl Read for ShapeInput {
             "torus" => ShapeInput::Torus(Torus::read(child)?),
             "half_space" => ShapeInput::HalfSpace(HalfSpace::read(child)?),
             "polygon" => ShapeInput::Polygon(Polygon::read(child)?),
+            "spline" => ShapeInput::Spline(Spline::read(child)?),
+            "revolved" => ShapeInput::Revolved(Revolved::read(child)?),
             "mesh" => ShapeInput::Mesh(Mesh::read(child)?),
             "union" => ShapeInput::Union(several(child, 1)?),
             "intersection" => ShapeInput::Intersection(several(child, 1)?),
@@ -311,17 +277,4 @@ fn several(node: &DocumentNode, least: usize) -> Result<Vec<ShapeInput>, Fault> 
         return Err(node.fault(format!("a list of at least {least}")));
     }
     Ok(shapes)
-}
-
-impl Read for CornersInput {
-    fn wanted() -> String {
-        "a list of corners: [[0, 0], [1, 0], [0, 1]]".to_string()
-    }
-
-    fn read(node: &DocumentNode) -> Result<Self, Fault> {
-        match node.value {
-            Value::List(_) => Ok(CornersInput(Vec::read(node)?, node.clone())),
-            _ => Err(node.fault(Self::wanted())),
-        }
-    }
 }
