@@ -91,7 +91,7 @@ def revolved(center: Any, axis: Any, polygon: Any = None, spline: Any = None) ->
 
 
 def mesh(file: Any, scale: Any = None, translation: Any = None) -> Shape:
-    """A closed surface of triangles in an STL or OBJ file; `scale` is the length of the file's unit, by default 1 m."""
+    """A closed surface of triangles in an STL, OBJ or PLY file; `scale` is its unit of length, by default 1 m."""
     return {"mesh": {"file": file, "scale": scale, "translation": translation}}
 
 

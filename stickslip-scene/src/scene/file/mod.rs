@@ -13,6 +13,7 @@ mod mesh;
 mod outline;
 mod outputs;
 mod packing;
+mod ply;
 mod quantity;
 mod read;
 mod repeat;
