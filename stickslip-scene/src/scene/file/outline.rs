@@ -102,7 +102,7 @@ impl Revolved {
             Some(_) => spline::closed(&outline),
         };
         if let Some([rho, z]) = points.iter().find(|point| point[0] < 0.0) {
-            let found = format!("a curve beyond the axis, {} m at {z} m along it", -rho);
+            let found = format!("a curve beyond the axis, {:.4} m at {z:.4} m along it", -rho);
             let help =
                 "more points near the axis; a curve from the axis to the axis begins and ends with one on it";
             return Err(Fault::new(&corners.1.key, found, "a curve on one side of the axis")
