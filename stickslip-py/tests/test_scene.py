@@ -5,7 +5,9 @@ from __future__ import annotations
 import copy
 import json
 import pickle
+import struct
 import subprocess
+import zlib
 
 import numpy as np
 import pytest
@@ -192,6 +194,22 @@ def test_every_shape_of_the_language_has_its_function():
     plane.body("ring", material="rubber", shape=ss.ring((0, 0), 0.3, 0.5))
     plane.body("egg", material="rubber", shape=ss.ellipsoid((2, 0), (0.3, 0.5)))
     assert [next(iter(body["shape"])) for body in record(plane)["bodies"]] == ["difference", "ellipsoid"]
+
+
+def test_an_image_makes_bodies_of_its_labels(tmp_path, monkeypatch):
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+    # Two squares of 6 x 6 pixels, labels 3 and 7: a grey image of 8 bits.
+    rows = [b"\0" + bytes([3] * 6 + [0] * 4 + [7] * 6) for _ in range(6)]
+    header = struct.pack(">IIBBBBB", 16, 6, 8, 0, 0, 0, 0)
+    data = chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(b"".join(rows))) + chunk(b"IEND", b"")
+    (tmp_path / "labels.png").write_bytes(b"\x89PNG\r\n\x1a\n" + data)
+    monkeypatch.chdir(tmp_path)
+    scene = ss.Scene("plane-strain", "1 mm").time(end=1)
+    scene.material("sand", density=1, neo_hookean=dict(young_modulus=1, poisson_ratio=0.3))
+    scene.image("grain", "labels.png", pixel="1 mm", material="sand")
+    assert [body["name"] for body in record(scene)["bodies"]] == ["grain 3", "grain 7"]
 
 
 def test_meshes_are_found_from_where_a_scene_is_saved(tmp_path, monkeypatch):

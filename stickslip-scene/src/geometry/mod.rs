@@ -9,6 +9,7 @@ mod curved;
 mod distance;
 mod filling;
 mod fitted;
+mod image;
 mod inside;
 mod mesh;
 mod mirrored_shape;
@@ -28,6 +29,7 @@ pub use curved::{Capsule, Curved, Ellipsoid, MOST_EXPONENT, RoundedBox, Superqua
 pub use distance::SignedDistance;
 pub use filling::{Arrangement, Filling, ParticleSite, SiteLattice, fill, sites};
 pub use fitted::{FITTED_SHAPES, fits};
+pub use image::{ImagePart, Pixels, Solids, Spread, image_parts};
 pub use mesh::{Mesh, MeshFault};
 pub use mirrored_shape::{Mirror, MirroredShape};
 pub use revolved::Revolved;

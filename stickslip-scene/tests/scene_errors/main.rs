@@ -4,6 +4,7 @@
 //! of all materials' laws.
 
 mod bodies;
+mod images;
 mod keys;
 mod loads;
 mod many;

@@ -19,6 +19,7 @@ mod fracture;
 mod free_body;
 mod friction;
 mod glued_identity;
+mod images;
 mod loads;
 mod many_bodies;
 mod meshes;

@@ -13,7 +13,7 @@ pub use superquadric::{MOST_EXPONENT, Superquadric};
 pub use torus::Torus;
 
 use super::distance::SignedDistance;
-use super::{Bounds, Shape};
+use super::{Bounds, ImagePart, Shape};
 use serde::Serialize;
 
 /// A shape with a curved surface.
@@ -30,6 +30,8 @@ pub enum Curved {
     Torus(Torus),
     /// A box with rounded edges and corners.
     RoundedBox(RoundedBox),
+    /// A part of an image.
+    Image(ImagePart),
 }
 
 /// What such a shape says of itself. In the plane, only the first two coordinates count.
@@ -54,6 +56,7 @@ impl Curved {
             Curved::Capsule(solid) => solid,
             Curved::Torus(solid) => solid,
             Curved::RoundedBox(solid) => solid,
+            Curved::Image(solid) => solid,
         }
     }
 
@@ -65,6 +68,7 @@ impl Curved {
             Curved::Capsule(_) => "capsule",
             Curved::Torus(_) => "torus",
             Curved::RoundedBox(_) => "rounded_box",
+            Curved::Image(_) => "image",
         }
     }
 
