@@ -60,7 +60,7 @@ impl Shape {
         Shape::Revolved(Revolved { points, center, axis })
     }
 
-    /// A truncated cone between the centres of its ends, with the radius of each, one of which may be 0 [m]; space only.
+    /// A cone between the centres of its ends, with the radius of each, one of which may be 0 [m]; space only.
     pub fn cone(start: [f64; 3], end: [f64; 3], [start_radius, end_radius]: [f64; 2]) -> Self {
         let axis: [f64; 3] = std::array::from_fn(|k| end[k] - start[k]);
         let length = Vector(axis).norm();

@@ -180,15 +180,14 @@ pub(super) mod tests {
         for (shape, dimension) in all.iter().flat_map(|shape| [(shape, 2), (shape, 3)]) {
             let Some(exact) = shape.volume(dimension) else { continue };
             let bounds = shape.bounds(dimension).expect("bounded");
-            let (mut volume, mut sum) = (0.0, [0.0; 3]);
+            let (mut volume, mut sum) = (0.0, Vector([0.0; 3]));
             for piece in shape.surface(0.04, dimension, &bounds) {
-                for k in 0..3 {
-                    sum[k] += piece.area * piece.normal[k];
-                    volume += piece.area * piece.normal[k] * piece.position[k] / dimension as f64;
-                }
+                let area = Vector(piece.normal) * piece.area;
+                sum += area;
+                volume += area.dot(Vector(piece.position)) / dimension as f64;
             }
             assert!((volume / exact - 1.0).abs() < 4e-3, "{shape:?} in {dimension}: {volume} for {exact}");
-            assert!(sum.iter().all(|s| s.abs() < 1e-9), "{shape:?} in {dimension}: {sum:?}");
+            assert!(sum.norm() < 1e-9, "{shape:?} in {dimension}: {sum:?}");
         }
     }
 }

@@ -212,7 +212,7 @@ impl Solid for Superquadric {
         Bounds { min, max }
     }
 
-    /// 2 a b c e1 e2 B(e1 / 2 + 1, e1) B(e2 / 2, e2 / 2) with the beta function B, in the plane a b e2 B(e2 / 2, e2 / 2);
+    /// 2 a b c e1 e2 B(e1 / 2 + 1, e1) B(e2 / 2, e2 / 2), in the plane a b e2 B(e2 / 2, e2 / 2), by the beta function;
     /// Jaklic, Leonardis and Solina (2000), Segmentation and Recovery of Superquadrics, section 2.3.
     fn volume(&self, dimension: usize) -> Option<f64> {
         let beta = |x: f64, y: f64| libm::exp(libm::lgamma(x) + libm::lgamma(y) - libm::lgamma(x + y));

@@ -13,8 +13,8 @@ use std::sync::Arc;
 /// ```text
 /// d(x) = sum over pixels of c_i B(x - x_i),   B: cubic B-splines,   normal = grad d / |grad d|
 /// ```
-/// The normal has no steps. Distances are good to a part of a pixel as far as the field goes, some pixels around the part;
-/// beyond it they are too long by a few hundredths. A copy shares the field.
+/// The normal has no steps. Distances are good to a part of a pixel as far as the field goes, some pixels around the
+/// part; beyond it they are too long by a few hundredths. A copy shares the field.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ImagePart {
     name: Arc<str>,

@@ -67,8 +67,8 @@ const MOST: Spread = Spread { parts: 100_000, pixels: 1 << 31 };
 ///
 /// A part of labels has its surface at first half-way between its pixels and others, a part of greys where they are the
 /// threshold, linear between pixels. Stairs there are smoothed: of labels, what is shorter than some ten pixels, of
-/// greys than some five; round parts keep their size. Then parts are moved back from each other wherever two would hold one
-/// point. `first` is the middle of the first pixel and `pixel` the side of one [m].
+/// greys than some five; round parts keep their size. Then parts are moved back from each other wherever two would hold
+/// one point. `first` is the middle of the first pixel and `pixel` the side of one [m].
 ///
 /// # Errors
 /// More parts than can be bodies, or parts that are all over the image.
@@ -168,13 +168,13 @@ impl Lattice {
     /// them.
     fn closed(mut self) -> Self {
         let strides = self.strides();
-        for axis in 0..self.dimension() {
+        for (axis, stride) in strides.into_iter().enumerate().take(self.dimension()) {
             for number in 0..self.values.len() {
-                let at = number / strides[axis] % self.counts[axis];
+                let at = number / stride % self.counts[axis];
                 let known = |other: usize| Some(self.values[other]).filter(|&value| value != f32::MAX);
                 if self.values[number] == f32::MAX {
-                    let before = if at > 0 { known(number - strides[axis]) } else { None };
-                    let after = if at + 1 < self.counts[axis] { known(number + strides[axis]) } else { None };
+                    let before = if at > 0 { known(number - stride) } else { None };
+                    let after = if at + 1 < self.counts[axis] { known(number + stride) } else { None };
                     if let Some(value) = before.or(after) {
                         self.values[number] = value.abs().max(f32::MIN_POSITIVE);
                     }
