@@ -158,6 +158,7 @@ fn every_key_and_word_of_scene_files_is_explained() {
         "materials",
         "bodies",
         "packings",
+        "images",
         "supports",
         "loads",
         "contact",

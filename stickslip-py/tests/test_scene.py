@@ -5,7 +5,9 @@ from __future__ import annotations
 import copy
 import json
 import pickle
+import struct
 import subprocess
+import zlib
 
 import numpy as np
 import pytest
@@ -167,6 +169,47 @@ def test_every_table_of_the_language_has_its_method(tmp_path):
     space = ss.Scene("3d", 0.1).material("rubber", **scene.document["materials"]["rubber"]).time(end=1)
     space.body("rod", material="rubber", shape=ss.cylinder((0, 0, 0), (1, 0, 0), 0.3))
     assert record(space)["bodies"][0]["name"] == "rod"
+
+
+def test_every_shape_of_the_language_has_its_function():
+    scene = ss.Scene("3d", 0.1).material("rubber", density=1, neo_hookean=dict(young_modulus=1, poisson_ratio=0.3))
+    shapes = [
+        ss.cone((0, 0, 0), (0, 0, 1), 0.5),
+        ss.ring((0, 0, 0), 0.3, 0.5, (0, 0, 1), "20 cm"),
+        ss.capsule((0, 0, 0), (1, 0, 0), 0.3),
+        ss.rounded_box((0, 0, 0), (1, 1, 1), 0.1),
+        ss.ellipsoid((0, 0, 0), (0.5, 0.4, 0.3)),
+        ss.superquadric((0, 0, 0), (0.5, 0.4, 0.3), 4, 3),
+        ss.torus((0, 0, 0), (0, 0, 1), 0.5, 0.2),
+        ss.spline([(0, 0), (1, 0), (0, 1)], (0, 1)),
+        ss.revolved((0, 0, 0), (0, 0, 1), polygon=[(0, 0), (1, 0), (0, 1)]),
+        ss.revolved((0, 0, 0), (0, 0, 1), spline=[(0, 0), (1, 1), (0, 2)]),
+    ]
+    for i, shape in enumerate(shapes):
+        scene.body(f"body {i}", material="rubber", shape=shape)
+    kinds = [next(iter(body["shape"])) for body in record(scene.time(end=1))["bodies"]]
+    solids = ["revolved", "revolved", "capsule", "rounded-box", "ellipsoid", "superquadric", "torus"]
+    assert kinds == [*solids, "polygon", "revolved", "revolved"]
+    plane = ss.Scene("plane-strain", 0.1).material("rubber", **scene.document["materials"]["rubber"]).time(end=1)
+    plane.body("ring", material="rubber", shape=ss.ring((0, 0), 0.3, 0.5))
+    plane.body("egg", material="rubber", shape=ss.ellipsoid((2, 0), (0.3, 0.5)))
+    assert [next(iter(body["shape"])) for body in record(plane)["bodies"]] == ["difference", "ellipsoid"]
+
+
+def test_an_image_makes_bodies_of_its_labels(tmp_path, monkeypatch):
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+    # Two squares of 6 x 6 pixels, labels 3 and 7: a grey image of 8 bits.
+    rows = [b"\0" + bytes([3] * 6 + [0] * 4 + [7] * 6) for _ in range(6)]
+    header = struct.pack(">IIBBBBB", 16, 6, 8, 0, 0, 0, 0)
+    data = chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(b"".join(rows))) + chunk(b"IEND", b"")
+    (tmp_path / "labels.png").write_bytes(b"\x89PNG\r\n\x1a\n" + data)
+    monkeypatch.chdir(tmp_path)
+    scene = ss.Scene("plane-strain", "1 mm").time(end=1)
+    scene.material("sand", density=1, neo_hookean=dict(young_modulus=1, poisson_ratio=0.3))
+    scene.image("grain", "labels.png", pixel="1 mm", material="sand")
+    assert [body["name"] for body in record(scene)["bodies"]] == ["grain 3", "grain 7"]
 
 
 def test_meshes_are_found_from_where_a_scene_is_saved(tmp_path, monkeypatch):

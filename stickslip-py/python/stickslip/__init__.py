@@ -23,7 +23,28 @@ from .records import Record, Table
 from .results import Frame, Results
 from .running import Summary, resume
 from .scene import Report, Scene
-from .shapes import ball, box, cylinder, difference, disk, half_space, intersection, mesh, polygon, rotated, union
+from .shapes import (
+    ball,
+    box,
+    capsule,
+    cone,
+    cylinder,
+    difference,
+    disk,
+    ellipsoid,
+    half_space,
+    intersection,
+    mesh,
+    polygon,
+    revolved,
+    ring,
+    rotated,
+    rounded_box,
+    spline,
+    superquadric,
+    torus,
+    union,
+)
 from .simulation import Bodies, Body, Column, Simulation
 
 __version__: str = _core.VERSION
@@ -48,14 +69,23 @@ __all__ = [
     "Table",
     "ball",
     "box",
+    "capsule",
+    "cone",
     "cylinder",
     "difference",
     "disk",
+    "ellipsoid",
     "half_space",
     "intersection",
     "mesh",
     "polygon",
     "resume",
+    "revolved",
+    "ring",
     "rotated",
+    "rounded_box",
+    "spline",
+    "superquadric",
+    "torus",
     "union",
 ]

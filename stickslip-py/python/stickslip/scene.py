@@ -139,6 +139,10 @@ class Scene:
         """Bodies `name` 1, 2 ... at random places: `material`, `shape`, `within`, `count` or `solid_fraction` ..."""
         return self._append("packings", {"name": name, **keys})
 
+    def image(self, name: str, file: str | os.PathLike[str], **keys: Any) -> Scene:
+        """Bodies `name` 1, 2 ... from the labels of an image: `pixel` [m], `material`, or with `threshold` its greys."""
+        return self._append("images", {"name": name, "file": file, **keys})
+
     def contact(self, between: Any = None, **keys: Any) -> Scene:
         """A contact rule: `between` names two bodies or materials, `friction`, `law` ... The first that fits holds."""
         return self._append("contact", {"between": between, **keys})

@@ -92,6 +92,22 @@ fn check_shape(shape: &Shape, key: &str, dimension: usize) -> Result<(), Problem
         Shape::Mesh(_) => {
             require(dimension == 3, "mesh", "a mesh in a plane scene".into(), "a ball, box or polygon")
         }
+        Shape::Revolved(revolved) => {
+            require(
+                dimension == 3,
+                "revolved",
+                "a shape of revolution in a plane scene".into(),
+                "a polygon",
+            )?;
+            let fault = revolved.fault();
+            fault.map_or(Ok(()), |(part, found, allowed)| {
+                require(false, &format!("revolved.{part}"), found, allowed)
+            })
+        }
+        Shape::Curved(curved) => curved.fault(dimension).map_or(Ok(()), |(part, found, allowed)| {
+            let part = [curved.word(), part].join(".");
+            require(false, part.trim_end_matches('.'), found, allowed)
+        }),
         Shape::Union(shapes) => check_all(shapes, &format!("{key}.union"), dimension),
         Shape::Intersection(shapes) => check_all(shapes, &format!("{key}.intersection"), dimension),
         Shape::Difference(shapes) => check_all(shapes, &format!("{key}.difference"), dimension),

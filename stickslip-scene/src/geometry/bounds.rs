@@ -145,6 +145,12 @@ impl Shape {
             ),
             Shape::Mesh(_) if dimension == 2 => Bounds::EMPTY,
             Shape::Mesh(mesh) => mesh.bounds(),
+            Shape::Revolved(_) if dimension == 2 => Bounds::EMPTY,
+            Shape::Revolved(revolved) => revolved.bounds(),
+            Shape::Curved(curved) => match curved.solid().bounds(dimension) {
+                nowhere if nowhere.is_empty() => Bounds::EMPTY,
+                bounds => flat(bounds),
+            },
             Shape::Union(shapes) => shapes
                 .iter()
                 .map(|shape| shape.reach(dimension))

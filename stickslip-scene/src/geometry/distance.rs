@@ -15,9 +15,10 @@ pub struct SignedDistance {
 
 impl SignedDistance {
     /// Far outside of everything.
-    const NOWHERE: SignedDistance = SignedDistance { distance: f64::INFINITY, gradient: [0.0; 3] };
+    pub(super) const NOWHERE: SignedDistance = SignedDistance { distance: f64::INFINITY, gradient: [0.0; 3] };
     /// Deep inside of everything.
-    const EVERYWHERE: SignedDistance = SignedDistance { distance: f64::NEG_INFINITY, gradient: [0.0; 3] };
+    pub(super) const EVERYWHERE: SignedDistance =
+        SignedDistance { distance: f64::NEG_INFINITY, gradient: [0.0; 3] };
 
     fn new(distance: f64, gradient: [f64; 3]) -> Self {
         SignedDistance { distance, gradient }
@@ -39,7 +40,7 @@ impl SignedDistance {
     }
 
     /// Of the part that is in both of two solids with faces at right angles, exactly.
-    fn square(self, other: SignedDistance) -> SignedDistance {
+    pub(super) fn square(self, other: SignedDistance) -> SignedDistance {
         if self.distance <= 0.0 || other.distance <= 0.0 {
             return self.intersected(other);
         }
@@ -67,7 +68,8 @@ impl Shape {
     /// Signed distance from a point to the shape's surface and its gradient.
     ///
     /// Exact for simple and turned shapes; of shapes combined, the sign is exact and the magnitude is at most the true
-    /// one: `min` over a union, `max` over an intersection. In the plane, a cylinder or a mesh is infinitely far away.
+    /// one: `min` over a union, `max` over an intersection. In the plane, what is of space
+    /// only is infinitely far away.
     pub fn level(&self, point: [f64; 3], dimension: usize) -> SignedDistance {
         match self {
             Shape::Ball { center, radius } => {
@@ -102,6 +104,9 @@ impl Shape {
             }
             Shape::Mesh(_) if dimension == 2 => SignedDistance::NOWHERE,
             Shape::Mesh(mesh) => mesh.level(point),
+            Shape::Revolved(_) if dimension == 2 => SignedDistance::NOWHERE,
+            Shape::Revolved(revolved) => revolved.level(point),
+            Shape::Curved(curved) => curved.solid().level(point, dimension),
             Shape::Union(shapes) => shapes
                 .iter()
                 .map(|shape| shape.level(point, dimension))
@@ -142,7 +147,7 @@ impl Shape {
 }
 
 /// What lies between two faces across an axis.
-fn slab(axis: usize, [low, high]: [f64; 2], x: f64) -> SignedDistance {
+pub(super) fn slab(axis: usize, [low, high]: [f64; 2], x: f64) -> SignedDistance {
     let (distance, sign) = if low - x > x - high { (low - x, -1.0) } else { (x - high, 1.0) };
     let mut gradient = [0.0; 3];
     gradient[axis] = sign;

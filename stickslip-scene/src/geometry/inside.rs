@@ -32,8 +32,8 @@ impl NudgedPoint {
 }
 
 impl Shape {
-    /// Whether a point [m] is inside; faces are half-open, balls open. In the plane,
-    /// a cylinder or a mesh holds no point.
+    /// Whether a point [m] is inside; faces are half-open, balls and other curved shapes open. In the plane, what is of
+    /// space only holds no point.
     pub fn contains(&self, point: [f64; 3], dimension: usize) -> bool {
         self.contains_point(NudgedPoint::new(point, 0.0, dimension))
     }
@@ -60,6 +60,8 @@ impl Shape {
                     && (dimension == 2 || height[0] <= nudged[2] && nudged[2] < height[1])
             }
             Shape::Mesh(mesh) => dimension == 3 && mesh.contains(nudged),
+            Shape::Revolved(revolved) => dimension == 3 && revolved.contains(point, nudged, margin),
+            Shape::Curved(curved) => curved.solid().level(point, dimension).distance < -margin,
             Shape::Union(shapes) => shapes.iter().any(|shape| shape.contains_point(probe)),
             Shape::Intersection(shapes) => shapes.iter().all(|shape| shape.contains_point(probe)),
             Shape::Difference(shapes) => shapes.split_first().is_some_and(|(first, others)| {
@@ -84,6 +86,8 @@ pub(super) fn along_and_across(point: [f64; 3], start: [f64; 3], end: [f64; 3]) 
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
+    use crate::geometry::curved::tests::any_curved;
+    use crate::geometry::revolved::tests::any_revolved;
     use proptest::prelude::*;
 
     fn simple_shape() -> impl Strategy<Value = Shape> {
@@ -105,12 +109,15 @@ pub(super) mod tests {
 
     /// Shapes of every kind, some of them turned.
     pub fn any_shape() -> impl Strategy<Value = Shape> {
-        (simple_shape(), prop::array::uniform3(0.1..1.0f64), prop_oneof![Just(0.0), -3.0..3.0f64]).prop_map(
-            |(shape, axis, angle)| match angle {
+        (
+            prop_oneof![simple_shape(), any_curved(), any_revolved()],
+            prop::array::uniform3(0.1..1.0f64),
+            prop_oneof![Just(0.0), -3.0..3.0f64],
+        )
+            .prop_map(|(shape, axis, angle)| match angle {
                 0.0 => shape,
                 _ => Shape::Rotated { shape: std::boxed::Box::new(shape), center: [0.1; 3], axis, angle },
-            },
-        )
+            })
     }
 
     proptest! {

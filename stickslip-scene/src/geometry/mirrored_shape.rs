@@ -26,8 +26,9 @@ pub struct MirroredShape {
 impl MirroredShape {
     /// A shape before mirrors.
     ///
-    /// Faces on a mirror are left out of half-spaces, boxes, cylinders, polygons and meshes, also where these are
-    /// combined; of shapes that are turned about another axis than the mirror's only out of half-spaces and meshes.
+    /// Faces on a mirror are left out of half-spaces, boxes, cylinders, polygons, revolved ones too, and meshes, also
+    /// where these are combined; of shapes that are turned about another axis than the mirror's only out of half-spaces
+    /// and meshes.
     pub fn new(shape: &Shape, mirrors: Vec<Mirror>, dimension: usize) -> Self {
         let shape = mirrors.iter().fold(shape.clone(), |shape, mirror| continued(shape, mirror, dimension));
         MirroredShape { shape, mirrors, dimension }
@@ -50,7 +51,7 @@ impl MirroredShape {
 /// Round-off in where a face lies, relative to the larger of 1 m and its distance from the origin.
 const ROUND_OFF: f64 = 1e-9;
 
-fn on(mirror: &Mirror, x: f64) -> bool {
+pub(super) fn on(mirror: &Mirror, x: f64) -> bool {
     (x - mirror.position).abs() <= ROUND_OFF * mirror.position.abs().max(1.0)
 }
 
@@ -110,7 +111,8 @@ fn continued(shape: Shape, mirror: &Mirror, dimension: usize) -> Shape {
             let [start, end] = [[start, end], [end, start]].map(|ends| beyond(ends, mirror));
             Shape::Cylinder { start, end, radius }
         }
-        Shape::Ball { .. } => shape,
+        Shape::Revolved(revolved) => Shape::Revolved(revolved.continued(mirror)),
+        Shape::Ball { .. } | Shape::Curved(_) => shape,
     }
 }
 
@@ -142,7 +144,7 @@ fn beyond([mut end, other]: [[f64; 3]; 2], mirror: &Mirror) -> [f64; 3] {
 }
 
 /// A polygon whose edges on the mirror are moved far behind it.
-fn drawn_out(points: &[[f64; 2]], mirror: &Mirror) -> Vec<[f64; 2]> {
+pub(super) fn drawn_out(points: &[[f64; 2]], mirror: &Mirror) -> Vec<[f64; 2]> {
     let Mirror { axis, position, inward } = *mirror;
     let size = points.iter().flatten().fold(1.0, |size: f64, x| size.max((x - position).abs()));
     let behind = |mut point: [f64; 2]| {

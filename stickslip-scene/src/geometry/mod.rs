@@ -5,28 +5,36 @@
 
 mod bounds;
 mod building;
+mod curved;
 mod distance;
 mod filling;
 mod fitted;
+mod image;
 mod inside;
 mod mesh;
 mod mirrored_shape;
 mod moments;
 mod polygon;
+mod revolved;
 mod rings;
 mod rotation;
 mod round;
 mod shells;
+pub mod spline;
 mod surface;
 mod volume;
+mod zero_level;
 
 pub use bounds::Bounds;
+pub use curved::{Capsule, Curved, Ellipsoid, MOST_EXPONENT, RoundedBox, Superquadric, Torus};
 pub use distance::SignedDistance;
 pub use filling::{Arrangement, Filling, ParticleSite, SiteLattice, fill, sites};
 pub use fitted::{FITTED_SHAPES, fits};
+pub use image::{ImagePart, Pixels, Solids, Spread, image_parts};
 pub use mesh::{Mesh, MeshFault};
 pub use mirrored_shape::{Mirror, MirroredShape};
 pub use moments::ShapeMoments;
+pub use revolved::Revolved;
 pub use round::RoundPart;
 pub use surface::SurfacePoint;
 
@@ -75,6 +83,8 @@ pub enum Shape {
     },
     /// What a closed surface of triangles holds; three dimensions only.
     Mesh(Mesh),
+    /// What a closed polygon in a half-plane sweeps as that turns around its edge; three dimensions only.
+    Revolved(Revolved),
     /// Points in any of the shapes.
     Union(Vec<Shape>),
     /// Points in all of the shapes.
@@ -92,4 +102,7 @@ pub enum Shape {
         /// Angle, right-handed about the axis [rad].
         angle: f64,
     },
+    /// A shape with a curved surface.
+    #[serde(untagged)]
+    Curved(Curved),
 }

@@ -35,9 +35,18 @@ pub(super) fn contains(points: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
 const ON_BORDER: f64 = 1e-9;
 
 /// Distance to the border [m], negative inside, and its gradient.
-pub(super) fn distance(points: &[[f64; 2]], [x, y]: [f64; 2]) -> (f64, [f64; 2]) {
+pub(super) fn distance(points: &[[f64; 2]], point: [f64; 2]) -> (f64, [f64; 2]) {
+    distance_to_some(points, point, |_, _| true)
+}
+
+/// As [`distance`], to those edges of the border that count.
+pub(super) fn distance_to_some(
+    points: &[[f64; 2]],
+    [x, y]: [f64; 2],
+    counts: impl Fn([f64; 2], [f64; 2]) -> bool,
+) -> (f64, [f64; 2]) {
     let (mut nearest, mut arm, mut along_edge) = (f64::INFINITY, [0.0; 2], [0.0; 2]);
-    for (a, b) in edges(points) {
+    for (a, b) in edges(points).filter(|&(a, b)| counts(a, b)) {
         let (edge, from) = ([b[0] - a[0], b[1] - a[1]], [x - a[0], y - a[1]]);
         let squared = edge[0] * edge[0] + edge[1] * edge[1];
         let along = if squared > 0.0 {

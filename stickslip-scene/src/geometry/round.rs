@@ -36,7 +36,12 @@ impl Shape {
                 let center = std::array::from_fn(|k| start[k] + 0.5 * axis[k]);
                 vec![RoundPart { center, radius: *radius, hollow: false, axis: Some(axis) }]
             }
-            Shape::Box { .. } | Shape::HalfSpace { .. } | Shape::Polygon { .. } | Shape::Mesh(_) => vec![],
+            Shape::Box { .. }
+            | Shape::HalfSpace { .. }
+            | Shape::Polygon { .. }
+            | Shape::Mesh(_)
+            | Shape::Revolved(_)
+            | Shape::Curved(_) => vec![],
             Shape::Union(shapes) | Shape::Intersection(shapes) => {
                 shapes.iter().flat_map(|shape| shape.round_parts(dimension)).collect()
             }

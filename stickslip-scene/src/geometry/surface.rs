@@ -3,7 +3,7 @@
 use super::filling::parts;
 use super::rings::sectors;
 use super::rotation::Rotation;
-use super::{Bounds, Shape, polygon};
+use super::{Bounds, Shape, polygon, zero_level};
 use crate::tensor::{Vector, cross};
 use std::f64::consts::PI;
 
@@ -25,8 +25,8 @@ impl Shape {
     /// Points of the shape's surface, each for a piece of at most about `spacing` across [m]. Areas of simple shapes
     /// are exact; where shapes cut each other, a piece is there or not as its point is.
     ///
-    /// What is nowhere near `bounds` is left out: planes without end are covered only there. In the plane a cylinder
-    /// and a mesh have no surface.
+    /// What is nowhere near `bounds` is left out: planes without end are covered only there. In the plane, what is of
+    /// space only has no surface.
     pub fn surface(&self, spacing: f64, dimension: usize, bounds: &Bounds) -> Vec<SurfacePoint> {
         match self {
             Shape::Ball { center, radius } if dimension == 2 => circle(*center, *radius, spacing),
@@ -36,12 +36,22 @@ impl Shape {
                 let near = Bounds { min: *min, max: *max }.intersected(&bounds.grown(2.0 * spacing));
                 if near.is_empty() { Vec::new() } else { cuboid((near.min, near.max), spacing, dimension) }
             }
-            Shape::Cylinder { .. } | Shape::Mesh(_) if dimension == 2 => Vec::new(),
+            Shape::Cylinder { .. } | Shape::Mesh(_) | Shape::Revolved(_) if dimension == 2 => Vec::new(),
             Shape::Cylinder { start, end, radius } => cylinder(*start, *end, *radius, spacing),
             Shape::HalfSpace { point, normal } => plane(*point, *normal, spacing, (dimension, bounds)),
             Shape::Polygon { points, height } => prism(points, *height, spacing, dimension),
             Shape::Mesh(mesh) => {
                 mesh.triangle_corners().flat_map(|corners| triangle(corners, spacing)).collect()
+            }
+            Shape::Revolved(revolved) => revolved.surface(spacing),
+            Shape::Curved(curved) => {
+                let solid = curved.solid();
+                zero_level::pieces(
+                    &|x| solid.level(x, dimension),
+                    &solid.bounds(dimension),
+                    spacing,
+                    dimension,
+                )
             }
             Shape::Union(shapes) | Shape::Intersection(shapes) | Shape::Difference(shapes) => {
                 self.seams((shapes, spacing), dimension, bounds)
@@ -106,7 +116,7 @@ fn unit(a: [f64; 3]) -> [f64; 3] {
 }
 
 /// Middles of equal parts of an interval, none longer than `spacing`, and the length of a part.
-fn middles([from, to]: [f64; 2], spacing: f64) -> (impl Iterator<Item = f64> + Clone, f64) {
+pub(super) fn middles([from, to]: [f64; 2], spacing: f64) -> (impl Iterator<Item = f64> + Clone, f64) {
     let count = parts(to - from, spacing);
     let part = (to - from) / count as f64;
     ((0..count).map(move |i| from + (i as f64 + 0.5) * part), part)
@@ -114,7 +124,7 @@ fn middles([from, to]: [f64; 2], spacing: f64) -> (impl Iterator<Item = f64> + C
 
 /// Middles of equal parts of a full turn, and the angle of a part: as many in each quarter, so that planes through the
 /// centre along the axes cut none.
-fn turn(spacing: f64) -> (impl Iterator<Item = f64> + Clone, f64) {
+pub(super) fn turn(spacing: f64) -> (impl Iterator<Item = f64> + Clone, f64) {
     let quarter = parts(0.5 * PI, spacing);
     middles([0.0, 2.0 * PI], 0.5 * PI / quarter as f64)
 }
@@ -179,7 +189,7 @@ fn cuboid((min, max): ([f64; 3], [f64; 3]), spacing: f64, dimension: usize) -> V
 }
 
 /// Two directions at right angles to a unit vector and to each other.
-fn frame(axis: [f64; 3]) -> [[f64; 3]; 2] {
+pub(super) fn frame(axis: [f64; 3]) -> [[f64; 3]; 2] {
     let least = (0..3).min_by(|&i, &j| axis[i].abs().total_cmp(&axis[j].abs())).unwrap_or(0);
     let mut other = [0.0; 3];
     other[least] = 1.0;

@@ -23,6 +23,9 @@ impl Shape {
             }
             Shape::Mesh(_) if dimension == 2 => None,
             Shape::Mesh(mesh) => Some(mesh.volume()),
+            Shape::Revolved(_) if dimension == 2 => None,
+            Shape::Revolved(revolved) => Some(revolved.volume()),
+            Shape::Curved(curved) => curved.solid().volume(dimension),
             Shape::Rotated { shape, .. } => shape.volume(dimension),
             Shape::HalfSpace { .. } | Shape::Union(_) | Shape::Intersection(_) | Shape::Difference(_) => None,
         }

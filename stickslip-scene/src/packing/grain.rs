@@ -2,7 +2,7 @@
 
 use super::Placement;
 use super::walls::Wall;
-use crate::geometry::{Shape, SignedDistance};
+use crate::geometry::{Curved, Shape, SignedDistance};
 use crate::tensor::{Matrix, Vector, cross};
 use std::f64::consts::TAU;
 
@@ -145,7 +145,7 @@ impl<'a> GrainShape<'a> {
         let on_edges = edges(shape, dimension).into_iter().flat_map(|edge| on_edge(edge, along));
         points.extend(on_edges.filter(on_surface).map(about));
         let radius = points.iter().map(|&point| Vector(point).norm()).fold(0.0, f64::max);
-        let lattice = has_mesh(shape).then(|| LevelLattice::new(shape, middle, radius));
+        let lattice = is_slow(shape, dimension).then(|| LevelLattice::new(shape, middle, radius));
         let between = if is_combined(shape) { BETWEEN_PARTS } else { BETWEEN }[dimension - 2];
         (radius > 0.0).then_some(GrainShape { shape, middle, radius, points, lattice, between, dimension })
     }
@@ -268,7 +268,14 @@ fn edges(shape: &Shape, dimension: usize) -> Vec<[[f64; 3]; 2]> {
         Shape::Union(shapes) | Shape::Intersection(shapes) | Shape::Difference(shapes) => {
             shapes.iter().flat_map(|shape| edges(shape, dimension)).collect()
         }
-        Shape::Ball { .. } | Shape::Cylinder { .. } | Shape::HalfSpace { .. } => Vec::new(),
+        Shape::Revolved(revolved) if dimension == 3 => {
+            revolved.rims(RIM).into_iter().map(|point| [point; 2]).collect()
+        }
+        Shape::Ball { .. }
+        | Shape::Cylinder { .. }
+        | Shape::HalfSpace { .. }
+        | Shape::Revolved(_)
+        | Shape::Curved(_) => Vec::new(),
     }
 }
 
@@ -300,12 +307,14 @@ fn on_edge([from, to]: [[f64; 3]; 2], spacing: f64) -> impl Iterator<Item = [f64
     (0..count).map(move |i| std::array::from_fn(|k| from[k] + way[k] * (i as f64 / count as f64)))
 }
 
-fn has_mesh(shape: &Shape) -> bool {
+/// In the plane, what takes a lattice of space is never.
+fn is_slow(shape: &Shape, dimension: usize) -> bool {
+    let is_slow = |shape: &Shape| is_slow(shape, dimension);
     match shape {
-        Shape::Mesh(_) => true,
-        Shape::Rotated { shape, .. } => has_mesh(shape),
+        Shape::Mesh(_) | Shape::Revolved(_) | Shape::Curved(Curved::Superquadric(_)) => dimension == 3,
+        Shape::Rotated { shape, .. } => is_slow(shape),
         Shape::Union(shapes) | Shape::Intersection(shapes) | Shape::Difference(shapes) => {
-            shapes.iter().any(has_mesh)
+            shapes.iter().any(is_slow)
         }
         _ => false,
     }

@@ -71,6 +71,8 @@ pub fn walls(shape: &Shape, dimension: usize) -> Vec<Wall> {
         | Shape::Cylinder { .. }
         | Shape::HalfSpace { .. }
         | Shape::Mesh(_)
+        | Shape::Revolved(_)
+        | Shape::Curved(_)
         | Shape::Union(_) => {
             vec![Wall { shape: shape.clone(), out_of: false }]
         }

@@ -53,7 +53,7 @@ fn keys() {
             (
                 "shape.ball",
                 "shape.bal",
-                "15:7: bodies[0].shape.bal: found unknown shape `bal`; allowed: ball, box, cylinder, half_space, polygon, mesh, union, intersection, difference, rotated; did you mean `ball`?",
+                "15:7: bodies[0].shape.bal: found unknown shape `bal`; allowed: ball, box, cylinder, cone, ring, capsule, rounded_box, ellipsoid, superquadric, torus, half_space, polygon, spline, revolved, mesh, union, intersection, difference, rotated; did you mean `ball`?",
             ),
             (
                 "shape.ball =",

@@ -4,6 +4,7 @@
 //! of all materials' laws.
 
 mod bodies;
+mod images;
 mod keys;
 mod loads;
 mod many;
@@ -11,6 +12,7 @@ mod meshes;
 mod outputs;
 mod parameters;
 mod places;
+mod shapes;
 mod values;
 
 use stickslip_scene::material::LAWS;

@@ -35,7 +35,7 @@ fn what_is_no_mesh_is_told_with_line_key_and_place() {
         (
             "part.step",
             Some(String::new()),
-            "found \"part.step\"; allowed: a file of triangles that ends in .stl or .obj",
+            "found \"part.step\"; allowed: a file of triangles that ends in .stl, .obj or .ply",
         ),
         (
             "empty.obj",
@@ -43,6 +43,11 @@ fn what_is_no_mesh_is_told_with_line_key_and_place() {
             "found in empty.obj: no triangle; allowed: a closed surface of triangles that face outward",
         ),
         ("words.stl", Some("solid x\nfacet normal 0 0 zero\n".to_string()), "found in words.stl: no STL: "),
+        (
+            "words.ply",
+            Some("ply\nformat ascii 1.0\nelement\n".to_string()),
+            "found in words.ply: no PLY: a header with `element`",
+        ),
         (
             "open.obj",
             Some(of(&[a, b, c])),

@@ -20,6 +20,7 @@ mod free_body;
 mod free_rigid;
 mod friction;
 mod glued_identity;
+mod images;
 mod loads;
 mod many_bodies;
 mod meshes;

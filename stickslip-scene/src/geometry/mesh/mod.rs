@@ -17,7 +17,8 @@ use serde::{Serialize, Serializer};
 use std::collections::HashMap;
 use std::sync::Arc;
 use tree::Tree;
-use triangle::{Feature, closest};
+use triangle::Feature;
+pub(super) use triangle::closest;
 
 /// A closed surface of triangles, whose corners go round counterclockwise where they are seen from outside.
 #[derive(Clone, Debug, PartialEq)]

@@ -14,7 +14,7 @@ use std::path::Path;
 table! {
     /// What a closed surface of triangles holds, read from a file; three dimensions only.
     Mesh {
-        /// An STL file (text or binary) or an OBJ file; a relative path starts at the folder of the scene file.
+        /// An STL or PLY file (text or binary) or an OBJ file; a relative path starts at the folder of the scene file.
         file: Text,
         /// Length of the file's unit [m]: "1 mm". By default 1 m.
         scale: Option<QuantityInput<Length>>,
@@ -51,7 +51,8 @@ impl Mesh {
         let read = match kind.to_str() {
             Some("stl") => stl,
             Some("obj") => obj,
-            _ => return Err(self.file.refused(&name, "a file of triangles that ends in .stl or .obj")),
+            Some("ply") => ply,
+            _ => return Err(self.file.refused(&name, "a file of triangles that ends in .stl, .obj or .ply")),
         };
         let bytes = read_file(&self.file, (&name, &path), LARGEST_MESH)?;
         let solid = read(&bytes).and_then(|triangles| {
@@ -68,7 +69,7 @@ impl Mesh {
         });
         solid.map_err(|unread| {
             let (found, help) = match &unread {
-                Unread::Garbled(found) => (found.clone(), "write it anew, as STL or OBJ"),
+                Unread::Garbled(found) => (found.clone(), "write it anew, as STL, OBJ or PLY"),
                 Unread::Fault(fault) => (fault.to_string(), fault.advice()),
             };
             let mut fault = self.file.refused(&name, "a closed surface of triangles that face outward");
@@ -95,6 +96,11 @@ fn stl(bytes: &[u8]) -> Result<Triangles, Unread> {
     let corners = |triangle: stl_io::Triangle| triangle.vertices.map(|corner| corner.0.map(f64::from));
     let triangles = stl_io::create_stl_reader(&mut bytes).map_err(garbled)?;
     triangles.map(|triangle| triangle.map(corners).map_err(garbled)).collect()
+}
+
+/// The triangles of a PLY file; polygons are cut into fans.
+fn ply(bytes: &[u8]) -> Result<Triangles, Unread> {
+    super::ply::triangles(bytes).map_err(|reason| Unread::Garbled(format!("no PLY: {reason}")))
 }
 
 /// The triangles of an OBJ file, of all its objects; polygons are cut into fans.

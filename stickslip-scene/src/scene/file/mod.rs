@@ -6,17 +6,22 @@ mod contact;
 mod damping;
 mod files;
 mod fringes;
+mod image;
 mod joints;
 mod loads;
 mod material;
 mod measurements;
 mod mesh;
+mod outline;
 mod outputs;
 mod packing;
+mod pixels;
+mod ply;
 mod quantity;
 mod read;
 mod repeat;
 mod shape;
+mod solid;
 mod space;
 mod start;
 mod text;
@@ -68,10 +73,12 @@ table! {
         damping: Option<damping::Damping>,
         /// The materials by name.
         materials: material::Materials,
-        /// The bodies: [[bodies]]. There must be one at least, here or in a packing.
+        /// The bodies: [[bodies]]. There must be one at least, here, in a packing or in an image.
         bodies: Option<Vec<body::Body>>,
         /// Many bodies at once, at random places in a container: [[packings]].
         packings: Option<Vec<packing::Packing>>,
+        /// Bodies from an image, a body of each label or bright part: [[images]].
+        images: Option<Vec<image::Image>>,
         /// What holds parts of bodies, or drives them: [[supports]].
         supports: Option<Vec<loads::Support>>,
         /// What pushes or pulls parts of bodies: [[loads]].
@@ -110,8 +117,11 @@ pub(super) fn resolve(source: &Source) -> Result<(Scene, Declared), Fault> {
     for (i, packing) in file.packings.iter().flatten().enumerate() {
         packing.add_to(&mut bodies, (&materials, &format!("packings[{i}]")), context)?;
     }
+    for (i, image) in file.images.iter().flatten().enumerate() {
+        image.add_to(&mut bodies, (&materials, &format!("images[{i}]")), context)?;
+    }
     if bodies.all.is_empty() {
-        return Err(Fault::new("bodies", "no body", "at least one [[bodies]], or [[packings]]"));
+        return Err(Fault::new("bodies", "no body", "at least one [[bodies]], [[packings]] or [[images]]"));
     }
     let body::Bodies { all: bodies, declared, .. } = bodies;
     let contact =

@@ -2,8 +2,10 @@
 
 use super::Context;
 use super::mesh::Mesh;
+use super::outline::{Polygon, Revolved, Spline};
 use super::quantity::{Angle, Length, QuantityInput, Ratio};
 use super::read::{Read, table};
+use super::solid::{Capsule, Cone, Ellipsoid, Ring, RoundedBox, Superquadric, Torus};
 use super::space::corners;
 use super::vector::VectorInput;
 use crate::geometry;
@@ -24,10 +26,28 @@ pub enum ShapeInput {
     Box(Cuboid),
     /// A solid cylinder; three dimensions only.
     Cylinder(Cylinder),
+    /// A cone, whole or truncated; three dimensions only.
+    Cone(Cone),
+    /// A disk with a hole in its middle; in three dimensions a cylinder with a bore.
+    Ring(Ring),
+    /// A cylinder with half a ball on each end; in the plane, a rectangle with half a disk on each end.
+    Capsule(Capsule),
+    /// A box with rounded edges and corners; in the plane, a rectangle with rounded corners.
+    RoundedBox(RoundedBox),
+    /// An ellipsoid with axes along those of space; in the plane, an ellipse.
+    Ellipsoid(Ellipsoid),
+    /// A superquadric, between ellipsoid, cylinder and box; in the plane, a superellipse.
+    Superquadric(Superquadric),
+    /// A torus: a round tube around an axis; three dimensions only.
+    Torus(Torus),
     /// All points behind a plane; unbounded: it cuts other shapes, or is a rigid body.
     HalfSpace(HalfSpace),
     /// A polygon in the plane of x and y; in three dimensions a prism over it.
     Polygon(Polygon),
+    /// What a smooth closed curve through points holds, in the plane of x and y; in three dimensions a prism over it.
+    Spline(Spline),
+    /// What a polygon or a curve sweeps that is turned around an axis; three dimensions only.
+    Revolved(Revolved),
     /// What a closed surface of triangles holds, read from a file; three dimensions only.
     Mesh(Mesh),
     /// Points in any of the shapes.
@@ -45,8 +65,17 @@ const KINDS: &[&str] = &[
     "ball",
     "box",
     "cylinder",
+    "cone",
+    "ring",
+    "capsule",
+    "rounded_box",
+    "ellipsoid",
+    "superquadric",
+    "torus",
     "half_space",
     "polygon",
+    "spline",
+    "revolved",
     "mesh",
     "union",
     "intersection",
@@ -97,16 +126,6 @@ table! {
 }
 
 table! {
-    /// A polygon in the plane of x and y; in three dimensions a prism over it.
-    Polygon {
-        /// Corners in order, [[0, 0], [1, 0], [0, 1]] [m]; the last joins the first.
-        points: CornersInput,
-        /// Lower and upper z of the prism, [0, "1 m"]; three dimensions only.
-        height: Option<VectorInput<Length>>,
-    }
-}
-
-table! {
     /// A shape turned about a point.
     Rotated {
         /// The shape before it is turned.
@@ -119,12 +138,6 @@ table! {
         angle: QuantityInput<Angle>,
     }
 }
-
-/// Corners of a polygon, with the place of their list.
-#[derive(JsonSchema)]
-#[schemars(transparent)]
-#[schemars(rename = "Corners")]
-pub struct CornersInput(Vec<VectorInput<Length>>, #[schemars(skip)] DocumentNode);
 
 impl ShapeInput {
     /// The shape in SI units.
@@ -142,11 +155,20 @@ impl ShapeInput {
                 geometry::Shape::Box { min, max }
             }
             ShapeInput::Cylinder(cylinder) => cylinder.resolve(context)?,
+            ShapeInput::Cone(cone) => cone.resolve(context)?,
+            ShapeInput::Ring(ring) => ring.resolve(context)?,
+            ShapeInput::Capsule(capsule) => capsule.resolve(context)?,
+            ShapeInput::RoundedBox(cuboid) => cuboid.resolve(context)?,
+            ShapeInput::Ellipsoid(ellipsoid) => ellipsoid.resolve(context)?,
+            ShapeInput::Superquadric(superquadric) => superquadric.resolve(context)?,
+            ShapeInput::Torus(torus) => torus.resolve(context)?,
             ShapeInput::HalfSpace(half) => geometry::Shape::HalfSpace {
                 point: half.point.value(context)?,
                 normal: direction(&half.normal, context)?,
             },
             ShapeInput::Polygon(polygon) => polygon.resolve(context)?,
+            ShapeInput::Spline(spline) => spline.resolve(context)?,
+            ShapeInput::Revolved(revolved) => revolved.resolve(context)?,
             ShapeInput::Mesh(mesh) => geometry::Shape::Mesh(mesh.resolve(context)?),
             ShapeInput::Union(shapes) => geometry::Shape::Union(all(shapes)?),
             ShapeInput::Intersection(shapes) => geometry::Shape::Intersection(all(shapes)?),
@@ -166,35 +188,6 @@ impl Cylinder {
             return Err(self.end.node().fault("another point than start"));
         }
         Ok(geometry::Shape::Cylinder { start, end, radius: self.radius.positive(context)? })
-    }
-}
-
-impl Polygon {
-    fn resolve(&self, context: &Context) -> Result<geometry::Shape, Fault> {
-        let points = self.points.0.iter().map(|point| point.pair(context)).collect::<Result<Vec<_>, _>>()?;
-        if points.len() < 3 {
-            return Err(self.points.1.fault("at least 3 corners"));
-        }
-        let height = match (&self.height, context.dimension) {
-            (None, plane) if plane.is_plane() => [0.0, 0.0],
-            (Some(height), Dimension::Space) => {
-                let [lower, upper] = height.pair(context)?;
-                if lower >= upper {
-                    return Err(height.part(1).refused(upper, format!("more than the lower end, {lower} m")));
-                }
-                [lower, upper]
-            }
-            (Some(height), _) => {
-                return Err(height.node().fault("no height, as the scene is plane"));
-            }
-            (None, _) => {
-                let key = self.points.1.key.replace("points", "height");
-                let fault =
-                    Fault::new(&key, "nothing, the key is missing", "lower and upper z: [0, \"1 m\"]");
-                return Err(fault);
-            }
-        };
-        Ok(geometry::Shape::Polygon { points, height })
     }
 }
 
@@ -225,7 +218,7 @@ impl Rotated {
 }
 
 /// A vector that is not zero.
-fn direction(vector: &VectorInput<Ratio>, context: &Context) -> Result<[f64; 3], Fault> {
+pub(super) fn direction(vector: &VectorInput<Ratio>, context: &Context) -> Result<[f64; 3], Fault> {
     let value = vector.value(context)?;
     if value == [0.0; 3] { Err(vector.node().fault("a direction, not zero")) } else { Ok(value) }
 }
@@ -252,8 +245,17 @@ impl Read for ShapeInput {
             "ball" => ShapeInput::Ball(Ball::read(child)?),
             "box" => ShapeInput::Box(Cuboid::read(child)?),
             "cylinder" => ShapeInput::Cylinder(Cylinder::read(child)?),
+            "cone" => ShapeInput::Cone(Cone::read(child)?),
+            "ring" => ShapeInput::Ring(Ring::read(child)?),
+            "capsule" => ShapeInput::Capsule(Capsule::read(child)?),
+            "rounded_box" => ShapeInput::RoundedBox(RoundedBox::read(child)?),
+            "ellipsoid" => ShapeInput::Ellipsoid(Ellipsoid::read(child)?),
+            "superquadric" => ShapeInput::Superquadric(Superquadric::read(child)?),
+            "torus" => ShapeInput::Torus(Torus::read(child)?),
             "half_space" => ShapeInput::HalfSpace(HalfSpace::read(child)?),
             "polygon" => ShapeInput::Polygon(Polygon::read(child)?),
+            "spline" => ShapeInput::Spline(Spline::read(child)?),
+            "revolved" => ShapeInput::Revolved(Revolved::read(child)?),
             "mesh" => ShapeInput::Mesh(Mesh::read(child)?),
             "union" => ShapeInput::Union(several(child, 1)?),
             "intersection" => ShapeInput::Intersection(several(child, 1)?),
@@ -275,17 +277,4 @@ fn several(node: &DocumentNode, least: usize) -> Result<Vec<ShapeInput>, Fault> 
         return Err(node.fault(format!("a list of at least {least}")));
     }
     Ok(shapes)
-}
-
-impl Read for CornersInput {
-    fn wanted() -> String {
-        "a list of corners: [[0, 0], [1, 0], [0, 1]]".to_string()
-    }
-
-    fn read(node: &DocumentNode) -> Result<Self, Fault> {
-        match node.value {
-            Value::List(_) => Ok(CornersInput(Vec::read(node)?, node.clone())),
-            _ => Err(node.fault(Self::wanted())),
-        }
-    }
 }

@@ -1,0 +1,110 @@
+//! Shapes that are none.
+
+use crate::{MINIMAL, check, edited};
+
+/// Each mistake in a shape of a scene in space, with the message that it must give after the place and the shape's key.
+fn wrong(cases: &[(&str, &str)]) {
+    let shape = MINIMAL.lines().find(|line| line.starts_with("shape")).expect("a body has a shape");
+    for (written, expected) in cases {
+        check(MINIMAL, &[(shape, &format!("shape.{written}"), &format!("15:{expected}"))]);
+    }
+}
+
+/// The same in the plane.
+fn wrong_in_the_plane(cases: &[(&str, &str)]) {
+    let plane = edited(MINIMAL, "3d", "plane-strain");
+    let shape = plane.lines().find(|line| line.starts_with("shape")).expect("a body has a shape");
+    for (written, expected) in cases {
+        check(&plane, &[(shape, &format!("shape.{written}"), &format!("15:{expected}"))]);
+    }
+}
+
+#[test]
+fn solids_that_are_none() {
+    wrong(&[
+        (
+            "ellipsoid = { center = [0, 0, 0], semi_axes = [1, 0, 1] }",
+            "53: bodies[0].shape.ellipsoid.semi_axes: found 0 m; allowed: a finite number above 0",
+        ),
+        (
+            "superquadric = { center = [0, 0, 0], semi_axes = [1, 1, 1], exponent = 1.5 }",
+            "78: bodies[0].shape.superquadric.exponent: found 1.5; allowed: a number from 2 to 20",
+        ),
+        (
+            "capsule = { start = [0, 0, 0], end = [1, 0, 0], radius = 0 }",
+            "64: bodies[0].shape.capsule.radius: found 0; allowed: a length [m] above 0, like \"0.4 m\"",
+        ),
+        (
+            "torus = { center = [0, 0, 0], axis = [0, 0, 1], radius = 1, tube_radius = \"1 m\" }",
+            "81: bodies[0].shape.torus.tube_radius: found 1 m; allowed: less than the torus's radius",
+        ),
+        (
+            "torus = { center = [0, 0, 0], axis = [0, 0, 0], radius = 1, tube_radius = 0.2 }",
+            "44: bodies[0].shape.torus.axis: found [0.0, 0.0, 0.0]; allowed: a vector of some length",
+        ),
+        (
+            "cone = { start = [0, 0, 0], end = [0, 0, 1], start_radius = -1 }",
+            "67: bodies[0].shape.cone.start_radius: found -1; allowed: a length [m] from 0 on",
+        ),
+        (
+            "cone = { start = [0, 0, 0], end = [0, 0, 0], start_radius = 1 }",
+            "41: bodies[0].shape.cone.end: found [0, 0, 0]; allowed: another point than start",
+        ),
+        (
+            "rounded_box = { min = [0, 0, 0], max = [1, 1, 1], rounding = \"60 cm\" }",
+            "68: bodies[0].shape.rounded_box.rounding: found 0.6 m; allowed: at most half of the shortest side",
+        ),
+        (
+            "ring = { center = [0, 0, 0], inner_radius = 1, outer_radius = 0.5 }",
+            "69: bodies[0].shape.ring.outer_radius: found 0.5; allowed: more than the inner radius, 1 m",
+        ),
+        (
+            "ring = { center = [0, 0, 0], inner_radius = 0.5, outer_radius = 1, axis = [0, 0, 1] }",
+            "7: bodies[0].shape.ring.width: found nothing, the key is missing; allowed: the extent along the axis, like \"1 m\"",
+        ),
+    ]);
+    wrong_in_the_plane(&[
+        (
+            "torus = { center = [0, 0], axis = [0, 1], radius = 1, tube_radius = 0.2 }",
+            "26: bodies[0].shape.torus.center: found [0, 0]; allowed: shapes other than a torus, as the scene is plane",
+        ),
+        (
+            "ring = { center = [0, 0], inner_radius = 0.5, outer_radius = 1, width = 1 }",
+            "79: bodies[0].shape.ring.width: found 1; allowed: no width, as the scene is plane",
+        ),
+    ]);
+}
+
+#[test]
+fn outlines_that_are_none() {
+    wrong(&[
+        (
+            "spline = { points = [[0, 0], [1, 0], [1, 0], [0, 1]], height = [0, 1] }",
+            "44: bodies[0].shape.spline.points[2]: found [1, 0]; allowed: another point than the one before it",
+        ),
+        (
+            "spline = { points = [[0, 0], [1, 0], [0, 1]] }",
+            "7: bodies[0].shape.spline.height: found nothing, the key is missing; allowed: lower and upper z: [0, \"1 m\"]",
+        ),
+        (
+            "revolved = { center = [0, 0, 0], axis = [0, 0, 1] }",
+            "7: bodies[0].shape.revolved.polygon: found neither `polygon` nor `spline`; allowed: one of polygon and spline",
+        ),
+        (
+            "revolved = { polygon = [[0, 0], [-1, 0], [0, 1]], center = [0, 0, 0], axis = [0, 0, 1] }",
+            "40: bodies[0].shape.revolved.polygon[1][0]: found -1; allowed: a distance from the axis [m] from 0 on",
+        ),
+        (
+            "revolved = { polygon = [[1, 0], [2, 0], [3, 0]], center = [0, 0, 0], axis = [0, 0, 1] }",
+            "30: bodies[0].shape.revolved.polygon: found [[1, 0], [2, 0], [3, 0]]; allowed: corners round an area",
+        ),
+        (
+            "revolved = { spline = [[0.01, 0], [1, 0], [0.01, 1]], center = [0, 0, 0], axis = [0, 0, 1] }",
+            "29: bodies[0].shape.revolved.spline: found a curve beyond the axis, 0.0033 m at 0.9935 m along it; allowed: a curve on one side of the axis; more points near the axis; a curve from the axis to the axis begins and ends with one on it",
+        ),
+    ]);
+    wrong_in_the_plane(&[(
+        "revolved = { polygon = [[1, 0], [2, 0], [2, 1]], center = [0, 0], axis = [0, 1] }",
+        "65: bodies[0].shape.revolved.center: found [0, 0]; allowed: shapes other than one that is revolved, as the scene is plane",
+    )]);
+}
