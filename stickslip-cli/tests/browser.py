@@ -17,7 +17,8 @@ def browser(profile, flags=("disable-gpu", "window-size=1280,900")):
         options.add_argument(f"--{flag}")
     options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
     # Named by hand, so that selenium looks for no driver on the network.
-    driver = next(path for path in map(pathlib.Path, ["/usr/bin/chromedriver", "/usr/local/bin/chromedriver"]) if path.exists())
+    places = map(pathlib.Path, ["/usr/bin/chromedriver", "/usr/local/bin/chromedriver"])
+    driver = next(path for path in places if path.exists())
     return webdriver.Chrome(options=options, service=Service(str(driver)))
 
 

@@ -32,7 +32,8 @@ return { inked: inked / pixels.length, colors: colors.size };
 
 def settled(driver):
     """Waits until the picture stands still, and looks at it."""
-    driver.execute_async_script("setTimeout(() => requestAnimationFrame(() => requestAnimationFrame(arguments[0])), 400)")
+    driver.execute_async_script(
+        "const done = arguments[0]; setTimeout(() => requestAnimationFrame(() => requestAnimationFrame(done)), 400)")
     return driver.execute_script(LOOK)
 
 
@@ -95,6 +96,13 @@ def use(driver, address, screenshot):
     told["without_bodies"] = settled(driver)
     find("all").click()
     told["with_bodies"] = settled(driver)
+    draw = Select(find("draw"))
+    if draw.options[1].is_enabled():
+        draw.select_by_value("surfaces")
+        wait.until(lambda d: d.execute_script("return stickslip.skins.isOn"))
+        told["surfaces"] = settled(driver)
+        draw.select_by_value("particles")
+        wait.until(lambda d: not d.execute_script("return stickslip.skins.isOn"))
     cut = driver.find_element("css selector", "#cuts input[aria-label='x to']")
     driver.execute_script("arguments[0].value = 500; arguments[0].oninput()", cut)
     told["cut"] = settled(driver)

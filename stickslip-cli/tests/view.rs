@@ -104,6 +104,11 @@ fn what_is_in_the_folder_is_served_and_nothing_else() {
     for quantity in ["pressure", "velocity", "velocity.x", "stress.xy", "deformation.volume_ratio"] {
         assert_eq!(server.get(&format!("/column/5/{quantity}")).body.len(), 16 + 4 * word(4), "{quantity}");
     }
+    let skins = server.get("/skins").body;
+    let corners = u32::from_le_bytes(skins[4..8].try_into().unwrap()) as usize;
+    assert!(skins.starts_with(b"SSK1") && corners > 50);
+    assert_eq!(server.get("/skins/5").body.len(), 12 * corners);
+    assert_eq!(server.get("/skins/5/pressure").body.len(), 16 + 4 * corners);
     let history = server.json("/particle/0/7/velocity");
     assert_eq!(
         (history["time"].as_array().unwrap().len(), history["value"].as_array().unwrap().len()),
@@ -210,6 +215,11 @@ fn a_reader_plays_colours_picks_and_cuts_in_a_browser() {
     assert_works(&told, &server.address);
     assert_eq!(told["played_to"], 5);
     assert_eq!(told["fringes"], true, "the scene is plane");
+    let seen = |state: &str| told[state]["inked"].as_f64().unwrap();
+    assert!(
+        (seen("surfaces") / seen("with_bodies") - 1.0).abs() < 0.1,
+        "surfaces cover what particles do: {told}"
+    );
 
     workplace.succeed(&["view", "scene.results", "--html", "seen.html"]);
     let address = format!("file://{}", workplace.path("seen.html").display());

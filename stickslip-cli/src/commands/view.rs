@@ -11,6 +11,7 @@ use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use stickslip::observe::SceneSource;
 use stickslip::run::RunOptions;
 use stickslip::scene::Loaded;
 use tempfile::TempDir;
@@ -138,7 +139,9 @@ impl Arguments {
         let folder = tempfile::tempdir().into_diagnostic().map_err(Failure::Run)?;
         let simulation = stickslip::step::build(&scene);
         let mut simulation = simulation.map_err(|problem| Failure::input(source.locate(problem)))?;
-        let options = RunOptions::new(folder.path());
+        let path = std::path::absolute(&self.what).into_diagnostic().map_err(Failure::Run)?;
+        let source = SceneSource { path, set: self.parameters.clone(), until: None };
+        let options = RunOptions { source: Some(source), ..RunOptions::new(folder.path()) };
         stickslip::run::run(&scene, simulation.as_mut(), &options, &mut |_| {}).map_err(Failure::input)?;
         Ok(folder)
     }

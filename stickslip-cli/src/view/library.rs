@@ -7,6 +7,7 @@ use super::places::places;
 use super::quantity::Quantity;
 use super::quarters::Quarters;
 use super::route::Route;
+use super::skins::{NoSkins, Skins};
 use super::tables::{Stamp, Tables, stamp};
 use crate::frame_pictures::{FramePictures, FringeChoice};
 use crate::illustration::Pictures;
@@ -28,6 +29,7 @@ pub struct Library {
     /// Frames that were asked for last.
     open: Mutex<VecDeque<(PathBuf, Stamp, Arc<OpenFrame>)>>,
     quarters: OnceLock<Quarters>,
+    skins: OnceLock<Skins>,
     /// What draws fringes, and for how many frames it was made.
     fringes: Mutex<Option<(usize, Arc<FramePictures>)>>,
 }
@@ -61,6 +63,15 @@ impl From<ReadError> for Refusal {
     }
 }
 
+impl From<NoSkins> for Refusal {
+    fn from(error: NoSkins) -> Self {
+        match error {
+            NoSkins::Unknown(_) => Refusal::Missing(error.to_string()),
+            NoSkins::Unread(error) => error.into(),
+        }
+    }
+}
+
 impl Library {
     /// The answers from a folder of results; of its frames only an excerpt, if there is one.
     ///
@@ -74,6 +85,7 @@ impl Library {
             tables: Tables::of(folder),
             open: Mutex::default(),
             quarters: OnceLock::new(),
+            skins: OnceLock::new(),
             fringes: Mutex::default(),
         })
     }
@@ -143,6 +155,19 @@ impl Library {
                 let values = frame.ordered(&quantity_of(&frame, quantity)?.values(&frame.file)?);
                 Ok(Content::binary(column(&values)))
             }
+            Route::Skins => {
+                let skins = self.skins(&results)?;
+                Ok(Content::binary(skins.triangles(self.quarters(&results)?)))
+            }
+            Route::SkinsIn(frame) => {
+                let skins = self.skins(&results)?;
+                Ok(Content::binary(skins.corners(&*self.opened(&self.frame(*frame)?)?)?))
+            }
+            Route::SkinColumn(frame, quantity) => {
+                let skins = self.skins(&results)?;
+                let frame = self.opened(&self.frame(*frame)?)?;
+                Ok(Content::binary(column(&skins.column(&frame, quantity_of(&frame, quantity)?)?)))
+            }
             Route::Particle(body, number, quantity) => self.history(*body, *number, quantity),
             Route::Fringes(frame) => self.fringes(&results, *frame),
         }
@@ -180,6 +205,16 @@ impl Library {
         let first = self.opened(first)?;
         let quarters = Quarters::of(&first, &results.scene()?, results.manifest().dimension)?;
         Ok(self.quarters.get_or_init(|| quarters))
+    }
+
+    fn skins(&self, results: &Results) -> Result<&Skins, Refusal> {
+        if let Some(skins) = self.skins.get() {
+            return Ok(skins);
+        }
+        let first = results.frames().first();
+        let first = first.ok_or_else(|| Refusal::Missing("there is no frame yet".to_owned()))?;
+        let skins = Skins::of(results, (&*self.opened(first)?, first.time))?;
+        Ok(self.skins.get_or_init(|| skins))
     }
 
     /// A quantity at a particle through the frames that have it.

@@ -1,7 +1,8 @@
 //! The viewer: a page for a browser, and what it asks for while it is looked at.
 //!
 //! The page is the same whether it is served from a port of this machine or is one file to be sent: it asks for
-//! [`Route`]s, and a [`Library`] has the answers. [`serve`] gives them one by one, [`single_file`] writes them all down.
+//! [`Route`]s, and a [`Library`] has the answers. [`serve`] gives them one by one, [`single_file`] writes
+//! them all down.
 
 mod exposed;
 mod index;
@@ -14,6 +15,7 @@ mod quarters;
 mod route;
 mod server;
 mod single_file;
+mod skins;
 mod tables;
 
 pub use library::Library;

@@ -11,7 +11,7 @@ use std::io::{self, Write};
 const FRAME: &str = include_str!("page/index.html");
 const STYLES: [&str; 2] = [include_str!("vendor/uplot.css"), include_str!("page/style.css")];
 /// Modules by the names under which they import each other.
-const MODULES: [(&str, &str); 13] = [
+const MODULES: [(&str, &str); 14] = [
     ("three", include_str!("vendor/three.js")),
     ("uplot", include_str!("vendor/uplot.js")),
     ("stickslip/source", include_str!("page/source.js")),
@@ -19,6 +19,7 @@ const MODULES: [(&str, &str); 13] = [
     ("stickslip/colors", include_str!("page/colors.js")),
     ("stickslip/stage", include_str!("page/stage.js")),
     ("stickslip/cloud", include_str!("page/cloud.js")),
+    ("stickslip/skins", include_str!("page/skins.js")),
     ("stickslip/picking", include_str!("page/picking.js")),
     ("stickslip/forces", include_str!("page/forces.js")),
     ("stickslip/panel", include_str!("page/panel.js")),

@@ -3,7 +3,8 @@
 use super::open_frame::OpenFrame;
 use stickslip::observe::{ReadError, RecordedScene};
 
-/// For each body that is round, by the number of a particle whether it is paler; told by where it was in the first frame.
+/// For each body that is round, by the number of a particle whether it is paler: told by where it was in the first
+/// frame.
 #[derive(Clone, Debug, Default)]
 pub struct Quarters(Vec<Option<Vec<bool>>>);
 

@@ -18,6 +18,12 @@ pub enum Route {
     Frame(usize),
     /// Values of a quantity at the particles of a frame.
     Column(usize, String),
+    /// Triangles of the bodies' surfaces.
+    Skins,
+    /// Places of their corners in a frame.
+    SkinsIn(usize),
+    /// Values of a quantity at their corners in a frame.
+    SkinColumn(usize, String),
     /// Forces between bodies at the time of a frame.
     Contacts(usize),
     /// A frame in polarised light.
@@ -41,6 +47,9 @@ impl FromStr for Route {
             ["energy"] => Route::Energy,
             ["frame", frame] => Route::Frame(number(frame)?),
             ["column", frame, quantity] => Route::Column(number(frame)?, quantity.to_owned()),
+            ["skins"] => Route::Skins,
+            ["skins", frame] => Route::SkinsIn(number(frame)?),
+            ["skins", frame, quantity] => Route::SkinColumn(number(frame)?, quantity.to_owned()),
             ["contacts", frame] => Route::Contacts(number(frame)?),
             ["fringes", frame] => Route::Fringes(number(frame)?),
             ["body", body] => Route::Body(number(body)?),
@@ -61,6 +70,9 @@ impl fmt::Display for Route {
             Route::Energy => f.write_str("/energy"),
             Route::Frame(frame) => write!(f, "/frame/{frame}"),
             Route::Column(frame, quantity) => write!(f, "/column/{frame}/{quantity}"),
+            Route::Skins => f.write_str("/skins"),
+            Route::SkinsIn(frame) => write!(f, "/skins/{frame}"),
+            Route::SkinColumn(frame, quantity) => write!(f, "/skins/{frame}/{quantity}"),
             Route::Contacts(frame) => write!(f, "/contacts/{frame}"),
             Route::Fringes(frame) => write!(f, "/fringes/{frame}"),
             Route::Body(body) => write!(f, "/body/{body}"),
@@ -83,6 +95,9 @@ mod tests {
             Route::Frame(3),
             Route::Column(0, "stress.xy".to_owned()),
             Route::Contacts(12),
+            Route::Skins,
+            Route::SkinsIn(2),
+            Route::SkinColumn(2, "damage".to_owned()),
             Route::Fringes(1),
             Route::Body(7),
             Route::Particle(2, 90, "pressure".to_owned()),

@@ -69,7 +69,8 @@ impl Tables {
         Ok(columns(&rows))
     }
 
-    /// Forces between bodies in the row of `contacts.csv` whose mean holds a time [s], and the largest of all times [N].
+    /// Forces between bodies in the row of `contacts.csv` whose mean holds a time [s], and the largest of all times
+    /// [N].
     ///
     /// # Errors
     /// The table is missing or damaged.

@@ -5,14 +5,27 @@ import { number, scaled } from "stickslip/colors";
 
 const HEIGHT = 150; // pixels
 const COLORS = ["#1f5fa8", "#c0562b", "#2f8555", "#7d4f9e", "#b08a1e", "#9c1c3c", "#4a5560", "#258a94", "#000000"];
-const ENERGIES = ["kinetic", "strain", "potential", "friction", "adhesion", "plastic", "damping", "external_work", "total"];
-const MOMENTA = [["px", "py", "pz"], ["lx", "ly", "lz"]];
+const ENERGIES = [
+    "kinetic",
+    "strain",
+    "potential",
+    "friction",
+    "adhesion",
+    "plastic",
+    "damping",
+    "external_work",
+    "total",
+];
+const MOMENTA = [
+    ["px", "py", "pz"],
+    ["lx", "ly", "lz"],
+];
 // What a body has through time, in groups that share an axis.
 export const OF_BODY = {
-    "velocity": ["m/s", "vx", "vy", "vz"],
-    "position": ["m", "x", "y", "z"],
-    "spin": ["rad/s", "wx", "wy", "wz"],
-    "energy": ["J", "kinetic", "strain"],
+    velocity: ["m/s", "vx", "vy", "vz"],
+    position: ["m", "x", "y", "z"],
+    spin: ["rad/s", "wx", "wy", "wz"],
+    energy: ["J", "kinetic", "strain"],
 };
 
 export class Charts {
@@ -27,10 +40,22 @@ export class Charts {
 
     energy(table) {
         const moving = ENERGIES.filter((name) => table[name]?.some((value) => value !== 0));
-        this.#put("energy", "Energy", "J", table.time, moving.map((name) => [name.replace("_", " "), table[name]]));
+        this.#put(
+            "energy",
+            "Energy",
+            "J",
+            table.time,
+            moving.map((name) => [name.replace("_", " "), table[name]]),
+        );
         const [linear, angular] = MOMENTA;
         const shown = this.dimension === 2 ? linear.slice(0, 2) : linear;
-        this.#put("momentum", "Momentum", "kg m/s", table.time, shown.map((name) => [name, table[name]]));
+        this.#put(
+            "momentum",
+            "Momentum",
+            "kg m/s",
+            table.time,
+            shown.map((name) => [name, table[name]]),
+        );
         this.angular = angular;
     }
 
@@ -39,7 +64,14 @@ export class Charts {
         const [unit, ...columns] = OF_BODY[group];
         const moving = columns.filter((column) => table[column]?.some((value) => value !== 0));
         const chosen = moving.length > 0 ? moving : columns.slice(0, 1);
-        this.#put("history", name, unit, table.time, chosen.map((column) => [column, table[column]]), group);
+        this.#put(
+            "history",
+            name,
+            unit,
+            table.time,
+            chosen.map((column) => [column, table[column]]),
+            group,
+        );
     }
 
     particle(name, { time, value }, quantity) {
@@ -77,10 +109,28 @@ export class Charts {
             cursor: { points: { show: false }, drag: { x: false, y: false } },
             scales: { x: { time: false } },
             axes: [
-                { size: 26, font: "11px system-ui", values: (_, ticks) => ticks.map((value) => number(value)), grid: { stroke: "#eceef1" } },
-                { size: 52, font: "11px system-ui", values: (_, ticks) => ticks.map((value) => number(value)), grid: { stroke: "#eceef1" } },
+                {
+                    size: 26,
+                    font: "11px system-ui",
+                    values: (_, ticks) => ticks.map((value) => number(value)),
+                    grid: { stroke: "#eceef1" },
+                },
+                {
+                    size: 52,
+                    font: "11px system-ui",
+                    values: (_, ticks) => ticks.map((value) => number(value)),
+                    grid: { stroke: "#eceef1" },
+                },
             ],
-            series: [{}, ...series.map(([label], i) => ({ label, stroke: COLORS[i % COLORS.length], width: 1.5, points: { show: time.length < 3 } }))],
+            series: [
+                {},
+                ...series.map(([label], i) => ({
+                    label,
+                    stroke: COLORS[i % COLORS.length],
+                    width: 1.5,
+                    points: { show: time.length < 3 },
+                })),
+            ],
             hooks: { draw: [(plot) => this.#line(plot)] },
         };
         const data = [time, ...series.map(([, values]) => values.map((value) => value / scale.factor))];

@@ -1,11 +1,22 @@
-// Particles as points: balls in space, squares in the plane, drawn by the graphics processor or what stands in for it.
+// Particles as points: balls in space, squares in the plane, drawn by the graphics processor or in its place.
 //
-// Which ones are drawn is a list of their numbers, made anew when a frame, a cut or a choice of bodies changes. In space
-// it holds those at the surface of their bodies, and beside a cut those inside. It goes through the particles in eight
-// passes of every eighth, so that its first part is an even selection: the one that is drawn while things move, where
-// all of them would take too long.
+// Which ones are drawn is a list of their numbers, made anew when a frame, a cut or a choice of bodies changes. In
+// space it holds those at the surface of their bodies, and beside a cut those inside. It goes through the particles in
+// eight passes of every eighth, so that its first part is an even selection: the one that is drawn while things move,
+// where all of them would take too long.
 
-import { BufferAttribute, BufferGeometry, DataTexture, DynamicDrawUsage, LinearFilter, Points, RGBAFormat, ShaderMaterial, Vector2, Vector3 } from "three";
+import {
+    BufferAttribute,
+    BufferGeometry,
+    DataTexture,
+    DynamicDrawUsage,
+    LinearFilter,
+    Points,
+    RGBAFormat,
+    ShaderMaterial,
+    Vector2,
+    Vector3,
+} from "three";
 
 const PASSES = [0, 4, 2, 6, 1, 5, 3, 7];
 // Balls of this many sides across let no light through a face of a lattice, nor do squares that are turned.
@@ -33,7 +44,8 @@ const VERTEX = `
         gl_Position = projectionMatrix * viewMatrix * vec4(x, 1.0);
         width = swell * side * projectionMatrix[1][1] * pixels / gl_Position.w;
         gl_PointSize = side > 0.0 ? max(width, 1.5) : 0.0;
-        float share = bodies ? (value + 0.5) / 256.0 : clamp((value - range.x) / (range.y - range.x), 0.0, 1.0) * 0.996 + 0.002;
+        float share = clamp((value - range.x) / (range.y - range.x), 0.0, 1.0) * 0.996 + 0.002;
+        if (bodies) share = (value + 0.5) / 256.0;
         tint = texture2D(colors, vec2(share, 0.5)).rgb;
         if (bodies && pale) tint = mix(tint, vec3(1.0), 0.45);
         if (!(value - value == 0.0)) tint = vec3(0.6);
@@ -63,9 +75,15 @@ export class Cloud {
             vertexShader: VERTEX,
             fragmentShader: FRAGMENT,
             uniforms: {
-                low: { value: new Vector3() }, extent: { value: new Vector3() }, largest: { value: 0 }, swell: { value: 1 },
-                pixels: { value: 1 }, range: { value: new Vector2(0, 1) }, bodies: { value: true },
-                plane: { value: stage.plane }, colors: { value: this.texture },
+                low: { value: new Vector3() },
+                extent: { value: new Vector3() },
+                largest: { value: 0 },
+                swell: { value: 1 },
+                pixels: { value: 1 },
+                range: { value: new Vector2(0, 1) },
+                bodies: { value: true },
+                plane: { value: stage.plane },
+                colors: { value: this.texture },
             },
         });
         this.points = new Points(new BufferGeometry(), this.material);
@@ -101,8 +119,9 @@ export class Cloud {
         this.points.geometry.setAttribute(name, new BufferAttribute(array, components).setUsage(DynamicDrawUsage));
     }
 
-    // Chooses what is drawn: `shown(body)` says whether a body is, `cuts` between which values of each axis.
-    choose(shown, cuts) {
+    // Chooses what is in sight: `shown(body)` says whether a body is, `cuts` between which values of an axis. Of that,
+    // bodies for which `drawn(body)` does not hold are drawn by others.
+    choose(shown, cuts, drawn = () => true) {
         const { places, stage } = this;
         if (!places) return;
         const { count, data } = places;
@@ -137,14 +156,22 @@ export class Cloud {
         const list = this.list.length === total ? this.list : new Uint32Array(total);
         let at = 0;
         for (const pass of PASSES) for (let i = pass; i < count; i += 8) if (visible[i]) list[at++] = i;
+        this.list = list;
+        const others = places.runs.filter(({ body }) => !drawn(body));
+        for (const { start, end } of others) visible.fill(0, start, end);
+        this.#draw(others.length > 0 ? list.filter((i) => visible[i]) : list);
+    }
+
+    // Draws the particles of a list.
+    #draw(list) {
         const index = this.points.geometry.getIndex();
-        if (index && this.list === list) {
+        if (index && index.array === list) {
             index.needsUpdate = true;
         } else {
             if (index) this.points.geometry = renewed(this.points.geometry, "index");
             this.points.geometry.setIndex(new BufferAttribute(list, 1).setUsage(DynamicDrawUsage));
         }
-        this.list = list;
+        this.total = list.length;
     }
 
     color(pixels, range, bodies) {
@@ -157,13 +184,13 @@ export class Cloud {
 
     // Before each picture: how much of the list is drawn.
     prepare({ moving, since }) {
-        const { stage, list } = this;
-        if (moving && list.length > FEW && since < 2000) {
+        const { stage, total = 0 } = this;
+        if (moving && total > FEW && since < 2000) {
             if (since > SLOW) this.share = Math.max(this.share / 2, LEAST_SHARE);
             else if (since < FAST) this.share = Math.min(this.share * 1.25, 1);
         }
-        const share = moving && list.length > FEW ? this.share : 1;
-        this.drawn = Math.ceil(share * list.length);
+        const share = moving && total > FEW ? this.share : 1;
+        this.drawn = Math.ceil(share * total);
         this.points.geometry.setDrawRange(0, this.drawn);
         const uniforms = this.material.uniforms;
         // Fewer ones cover as much.
@@ -176,9 +203,14 @@ export class Cloud {
 function renewed(geometry, without) {
     const fresh = new BufferGeometry();
     for (const [name, attribute] of Object.entries(geometry.attributes)) {
-        if (name !== without) fresh.setAttribute(name, new BufferAttribute(attribute.array, attribute.itemSize).setUsage(DynamicDrawUsage));
+        if (name !== without)
+            fresh.setAttribute(
+                name,
+                new BufferAttribute(attribute.array, attribute.itemSize).setUsage(DynamicDrawUsage),
+            );
     }
-    if (without !== "index" && geometry.getIndex()) fresh.setIndex(new BufferAttribute(geometry.getIndex().array, 1).setUsage(DynamicDrawUsage));
+    if (without !== "index" && geometry.getIndex())
+        fresh.setIndex(new BufferAttribute(geometry.getIndex().array, 1).setUsage(DynamicDrawUsage));
     geometry.dispose();
     return fresh;
 }

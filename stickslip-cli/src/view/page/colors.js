@@ -1,6 +1,14 @@
 // Colours of values and of bodies, and numbers as a reader wants them.
 
-const PREFIXES = [[1e9, "G"], [1e6, "M"], [1e3, "k"], [1, ""], [1e-3, "m"], [1e-6, "µ"], [1e-9, "n"]];
+const PREFIXES = [
+    [1e9, "G"],
+    [1e6, "M"],
+    [1e3, "k"],
+    [1, ""],
+    [1e-3, "m"],
+    [1e-6, "µ"],
+    [1e-9, "n"],
+];
 
 // The prefix of a unit in which numbers up to `size` read well: its factor, and the unit with it.
 export function scaled(unit, size) {
@@ -14,7 +22,10 @@ export function number(value, digits = 4) {
     if (value === 0) return "0";
     const size = Math.abs(value);
     const text = size >= 1e5 || size < 1e-3 ? value.toExponential(digits - 1) : value.toPrecision(digits);
-    return text.replace(/(\.\d*?)0+($|e)/, "$1$2").replace(/\.($|e)/, "$1").replace("e+", "e");
+    return text
+        .replace(/(\.\d*?)0+($|e)/, "$1$2")
+        .replace(/\.($|e)/, "$1")
+        .replace("e+", "e");
 }
 
 export function withUnit(value, unit) {

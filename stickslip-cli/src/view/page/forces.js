@@ -36,7 +36,11 @@ export class Forces {
                 for (const body of [a, b]) {
                     // The middle of a wall is nowhere near the force.
                     if (rigid[body] || !centers.has(body)) continue;
-                    links.push({ from: local(centers.get(body)), to: local(at), width: Math.sqrt(share) * WIDEST * size });
+                    links.push({
+                        from: local(centers.get(body)),
+                        to: local(at),
+                        width: Math.sqrt(share) * WIDEST * size,
+                    });
                 }
             }
             this.#add(this.shaft, links, 0x9c1c3c);

@@ -69,7 +69,8 @@ export class Places {
         this.means = new Map();
         for (const { body, start, end } of this.runs) {
             const sums = [0, 0, 0];
-            for (let i = start; i < end; i++) for (let axis = 0; axis < 3; axis++) sums[axis] += this.data[4 * i + axis];
+            for (let i = start; i < end; i++)
+                for (let axis = 0; axis < 3; axis++) sums[axis] += this.data[4 * i + axis];
             const mean = (sum, axis) => this.low[axis] + (this.extent[axis] * sum) / (65535 * (end - start));
             this.means.set(body, sums.map(mean));
         }

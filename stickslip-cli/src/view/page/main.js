@@ -8,6 +8,7 @@ import { Forces } from "stickslip/forces";
 import { Frames } from "stickslip/frames";
 import { ColorPanel, CutPanel } from "stickslip/panel";
 import { pick } from "stickslip/picking";
+import { Skins } from "stickslip/skins";
 import { Source } from "stickslip/source";
 import { Stage } from "stickslip/stage";
 
@@ -22,6 +23,7 @@ let index = await source.json("/index").catch(fail);
 const stage = new Stage(byId("canvas"), index, (motion) => cloud.prepare(motion));
 const cloud = new Cloud(stage);
 const forces = new Forces(stage);
+const skins = new Skins(stage, source, cloud.material.uniforms);
 const panel = new ColorPanel(index, {
     onQuantity: () => show(state.frame),
     onLook: () => recolor(),
@@ -46,6 +48,7 @@ function describe() {
     byId("status").textContent = word ?? "";
     byId("time").max = Math.max(index.times.length - 1, 0);
     byId("follow-switch").hidden = !(source.isLive && index.status === "running");
+    byId("draw").lastElementChild.disabled = !source.has("/skins");
     byId("fringes-switch").hidden = !(index.fringes && source.has("/fringes/0"));
 }
 
@@ -60,7 +63,8 @@ function values(frame, places) {
     if (quantity) return frames.column(frame, quantity.id);
     if (!places.bodyColors) {
         places.bodyColors = new Float32Array(places.count);
-        for (const { body, start, end } of places.runs) places.bodyColors.fill(body % index.body_colors.length, start, end);
+        for (const { body, start, end } of places.runs)
+            places.bodyColors.fill(body % index.body_colors.length, start, end);
     }
     return undefined;
 }
@@ -71,7 +75,10 @@ async function show(frame) {
     state.frame = frame;
     const { quantity } = panel;
     try {
-        const [places, column] = await Promise.all([frames.places(frame), quantity && frames.column(frame, quantity.id)]);
+        const [places, column] = await Promise.all([
+            frames.places(frame),
+            quantity && frames.column(frame, quantity.id),
+        ]);
         if (state.frame !== frame || panel.quantity !== quantity) return;
         draw(frame, places, column);
     } catch (error) {
@@ -86,8 +93,9 @@ function draw(frame, places, column) {
     if (first) begin(places);
     if (!column) values(frame, places);
     cloud.show(places, column ? column.values : places.bodyColors);
-    if (other) cloud.choose((body) => bodies.isShown(body), cuts.cuts);
+    if (other) choosePieces();
     recolor();
+    showSurfaces();
     byId("time").value = frame;
     byId("clock").textContent = `${withUnit(index.times[frame], "s")}   ${frame + 1} of ${index.times.length}`;
     byId("message").textContent = places.count === 0 ? "this frame has no particles" : "";
@@ -126,14 +134,49 @@ function recolor() {
         cloud.color(pixels, look.range, false);
     } else {
         const pixels = new Uint8Array(4 * 256).fill(255);
-        index.body_colors.forEach((color, i) => pixels.set(color.map((part) => 255 * part), 4 * i));
+        index.body_colors.forEach((color, i) =>
+            pixels.set(
+                color.map((part) => 255 * part),
+                4 * i,
+            ),
+        );
         cloud.color(pixels, [0, 1], true);
     }
     stage.ask();
 }
 
+function choosePieces() {
+    const shown = (body) => bodies.isShown(body);
+    skins.choose(shown, cuts.cuts);
+    cloud.choose(shown, cuts.cuts, (body) => !(skins.isOn && skins.bodies.has(body)));
+}
+
+// Bodies as surfaces, where the reader wants that and they are known.
+async function showSurfaces() {
+    if (byId("draw").value === "particles") {
+        if (!skins.isOn) return;
+        skins.hide();
+        choosePieces();
+        stage.ask();
+        return;
+    }
+    const { shown } = state;
+    const { quantity } = panel;
+    const wasOn = skins.isOn;
+    try {
+        if (!skins.triangles) byId("no-surfaces").textContent = "making surfaces ...";
+        await skins.load(index.body_colors.length);
+        await skins.show(shown, quantity?.id);
+        byId("no-surfaces").textContent = "";
+        if (!wasOn) choosePieces();
+    } catch (error) {
+        byId("draw").value = "particles";
+        byId("no-surfaces").textContent = error.message;
+    }
+}
+
 function choose(moving) {
-    cloud.choose((body) => bodies.isShown(body), cuts.cuts);
+    choosePieces();
     showForces();
     if (moving) stage.move();
     else stage.ask();
@@ -152,8 +195,9 @@ async function showForces() {
     if (state.shown !== shown) return;
     const choice = { chains, arrows, shown: (body) => bodies.isShown(body), rigid: index.rigid, size: box.size };
     forces.show(told, places, choice);
-    byId("force-scale").textContent = told.error?.message ??
-        `${told.contacts.length} contacts; the widest is ${withUnit(told.largest, index.dimension === 2 ? "N/m" : "N")}, the largest of the run`;
+    const unit = index.dimension === 2 ? "N/m" : "N";
+    byId("force-scale").textContent =
+        told.error?.message ?? `${told.contacts.length} contacts; largest of the run: ${withUnit(told.largest, unit)}`;
     stage.ask();
 }
 
@@ -198,7 +242,8 @@ function tellPicked() {
         return button;
     });
     ofParticle.onclick = () => lookAtParticle(body, particle);
-    ofParticle.disabled = !panel.quantity || !(source.isLive || index.times.every((_, frame) => source.has(`/frame/${frame}`)));
+    ofParticle.disabled =
+        !panel.quantity || !(source.isLive || index.times.every((_, frame) => source.has(`/frame/${frame}`)));
     ofParticle.title = panel.quantity ? "" : "choose a colour other than body first";
     ofBody.onclick = () => lookAtBody(body);
     const buttons = document.createElement("div");
@@ -278,7 +323,9 @@ async function play() {
         const due = performance.now() + 1000 / Number(byId("rate").value);
         const next = state.frame + 1;
         if (next >= index.times.length) break;
-        await Promise.all([frames.places(next), panel.quantity && frames.column(next, panel.quantity.id)]).catch(() => {});
+        await Promise.all([frames.places(next), panel.quantity && frames.column(next, panel.quantity.id)]).catch(
+            () => {},
+        );
         await new Promise((resolve) => setTimeout(resolve, Math.max(0, due - performance.now())));
         if (!state.playing || state.frame !== next - 1) continue;
         stage.move();
@@ -308,7 +355,8 @@ async function follow() {
                 delete byId("message").dataset.lost;
             }
             if (known !== "" && known !== JSON.stringify(mark)) await refresh();
-            else if (known === "" && (pulse.frames !== index.times.length || pulse.status !== index.status)) await refresh();
+            else if (known === "" && (pulse.frames !== index.times.length || pulse.status !== index.status))
+                await refresh();
             known = JSON.stringify(mark);
         } catch {
             byId("message").textContent = "the server has ended; `stickslip view` shows the results again";
@@ -335,7 +383,10 @@ async function refresh() {
 }
 
 function showEnergy() {
-    source.json("/energy").then((table) => table.time && charts.energy(table), () => {});
+    source.json("/energy").then(
+        (table) => table.time && charts.energy(table),
+        () => {},
+    );
 }
 
 byId("time").oninput = () => {
@@ -348,6 +399,7 @@ byId("back").onclick = () => show(state.frame - 1);
 byId("forth").onclick = () => show(state.frame + 1);
 byId("fit").onclick = () => state.places && stage.fit(...bounds(state.places));
 byId("chains").onchange = byId("arrows").onchange = () => showForces();
+byId("draw").onchange = () => showSurfaces();
 byId("show-fringes").onchange = () => showFringes();
 byId("show-charts").onchange = () => (byId("charts").hidden = !byId("show-charts").checked);
 byId("save").onclick = () => {
@@ -393,7 +445,10 @@ async function measure(seconds) {
     let [pictures, end] = [0, performance.now() + 1000 * seconds];
     const start = performance.now();
     while (performance.now() < end) {
-        camera.position.sub(controls.target).applyAxisAngle(stage.up, stage.plane ? 0 : 0.02).add(controls.target);
+        camera.position
+            .sub(controls.target)
+            .applyAxisAngle(stage.up, stage.plane ? 0 : 0.02)
+            .add(controls.target);
         if (stage.plane) camera.position.x += 1e-3 * state.box.size * Math.sin(pictures);
         if (!stage.plane) camera.lookAt(controls.target);
         stage.move();
@@ -410,6 +465,8 @@ async function measure(seconds) {
 describe();
 showEnergy();
 if (index.times.length > 0) await show(index.status === "running" ? index.times.length - 1 : 0);
-else byId("message").textContent = index.status === "running" ? "waiting for the first frame ..." : "the run wrote no snapshots of particles";
+else
+    byId("message").textContent =
+        index.status === "running" ? "waiting for the first frame ..." : "the run wrote no snapshots of particles";
 follow();
-window.stickslip = { state, source, frames, cloud, show, play, stop, pickAt, measure, index: () => index };
+window.stickslip = { state, source, frames, cloud, skins, show, play, stop, pickAt, measure, index: () => index };

@@ -66,7 +66,8 @@ export class ColorPanel {
         seen[0] = Math.min(seen[0], column.low);
         seen[1] = Math.max(seen[1], column.high);
         this.seen.set(quantity.id, seen);
-        let range = this.mode === "typed" ? ["low", "high"].map((id) => Number(byId(id).value.replace(",", "."))) : undefined;
+        let range =
+            this.mode === "typed" ? ["low", "high"].map((id) => Number(byId(id).value.replace(",", "."))) : undefined;
         if (!range || !(range[1] > range[0])) {
             if (range) byId("range").value = "seen";
             range = around(this.mode === "frame" ? [column.low, column.high] : seen, quantity.middle);
@@ -85,7 +86,8 @@ export class ColorPanel {
         const context = canvas.getContext("2d");
         const image = context.createImageData(16, 256);
         for (let y = 0; y < 256; y++) {
-            for (let x = 0; x < 16; x++) image.data.set(pixels.subarray(4 * (255 - y), 4 * (255 - y) + 4), 4 * (16 * y + x));
+            for (let x = 0; x < 16; x++)
+                image.data.set(pixels.subarray(4 * (255 - y), 4 * (255 - y) + 4), 4 * (16 * y + x));
         }
         context.putImageData(image, 0, 0);
         const marks = ticks(low / scale.factor, high / scale.factor).map((value) => {

@@ -1,6 +1,15 @@
 // Camera, controls and the moment of drawing: a picture is made when something has changed, and at no other time.
 
-import { AmbientLight, DirectionalLight, OrbitControls, OrthographicCamera, PerspectiveCamera, Scene, Vector3, WebGLRenderer } from "three";
+import {
+    AmbientLight,
+    DirectionalLight,
+    OrbitControls,
+    OrthographicCamera,
+    PerspectiveCamera,
+    Scene,
+    Vector3,
+    WebGLRenderer,
+} from "three";
 
 const SETTLED = 160; // ms without motion, after which the picture is drawn in full
 const VIEW_ANGLE = 28; // degrees
