@@ -80,8 +80,11 @@ def use(driver, address, screenshot):
     wait.until(lambda d: d.find_elements("css selector", "figure[data-chart=history]"))
     button = next(b for b in find("picked").find_elements("tag name", "button") if b.text == "Particle through time")
     button.click()
-    wait.until(lambda d: "particle" in d.find_element("css selector", "figure[data-chart=history] figcaption").text)
-    told["charts"] = [caption.text for caption in driver.find_elements("css selector", "#charts figcaption")]
+    # At once, for charts are made anew.
+    captions = lambda: driver.execute_script(
+        "return [...document.querySelectorAll('#charts figcaption')].map(caption => caption.textContent)")
+    wait.until(lambda _: "particle" in captions()[-1])
+    told["charts"] = captions()
 
     find("chains").click()
     find("arrows").click()

@@ -55,12 +55,6 @@ const DULL: [&str; 2] = ["mass", "volume"];
 
 impl Arguments {
     pub fn execute(self) -> Result<(), Failure> {
-        // Before anything long, and so that a scene's folder goes when the user has seen enough.
-        let stop = Arc::new(AtomicBool::new(false));
-        let flag = Arc::clone(&stop);
-        ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed))
-            .into_diagnostic()
-            .map_err(Failure::Run)?;
         let made = if self.what.is_file() { Some(self.start()?) } else { None };
         if made.is_none() && !self.parameters.is_empty() {
             return Err(Failure::Input(miette!(
@@ -73,11 +67,14 @@ impl Arguments {
         let library = Library::open(folder, excerpt).map_err(Failure::input)?;
         match &self.html {
             Some(out) => self.write(&library, out),
-            None => self.serve(&library, &stop),
+            None => self.serve(&library),
         }
     }
 
-    fn serve(&self, library: &Library, stop: &AtomicBool) -> Result<(), Failure> {
+    fn serve(&self, library: &Library) -> Result<(), Failure> {
+        // So that a scene's folder goes when the user has seen enough.
+        let stop = Arc::new(AtomicBool::new(false));
+        end_on_signals(&stop).into_diagnostic().map_err(Failure::Run)?;
         let serving = serve(self.port);
         let serving =
             serving.map_err(|error| Failure::Input(miette!("--port: found {}: {error}", self.port)))?;
@@ -86,7 +83,7 @@ impl Arguments {
             // The address stands above.
             let _ = opener::open_browser(serving.address());
         }
-        serving.answer(library, stop);
+        serving.answer(library, &stop);
         Ok(())
     }
 
@@ -145,6 +142,17 @@ impl Arguments {
         stickslip::run::run(&scene, simulation.as_mut(), &options, &mut |_| {}).map_err(Failure::input)?;
         Ok(folder)
     }
+}
+
+/// Sets the flag at Ctrl-C, and where the program is asked to end.
+fn end_on_signals(stop: &Arc<AtomicBool>) -> Result<(), ctrlc::Error> {
+    let flag = Arc::clone(stop);
+    ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed))?;
+    #[cfg(unix)]
+    for signal in [libc::SIGTERM, libc::SIGHUP] {
+        signal_hook::flag::register(signal, Arc::clone(stop)).map_err(ctrlc::Error::System)?;
+    }
+    Ok(())
 }
 
 /// So many of `count` things, evenly spread from the first to the last.

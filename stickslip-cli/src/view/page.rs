@@ -11,7 +11,7 @@ use std::io::{self, Write};
 const FRAME: &str = include_str!("page/index.html");
 const STYLES: [&str; 2] = [include_str!("vendor/uplot.css"), include_str!("page/style.css")];
 /// Modules by the names under which they import each other.
-const MODULES: [(&str, &str); 14] = [
+const MODULES: [(&str, &str); 16] = [
     ("three", include_str!("vendor/three.js")),
     ("uplot", include_str!("vendor/uplot.js")),
     ("stickslip/source", include_str!("page/source.js")),
@@ -25,6 +25,8 @@ const MODULES: [(&str, &str); 14] = [
     ("stickslip/panel", include_str!("page/panel.js")),
     ("stickslip/bodies", include_str!("page/bodies.js")),
     ("stickslip/charts", include_str!("page/charts.js")),
+    ("stickslip/looking", include_str!("page/looking.js")),
+    ("stickslip/measuring", include_str!("page/measuring.js")),
     ("stickslip/main", include_str!("page/main.js")),
 ];
 

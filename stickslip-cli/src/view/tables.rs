@@ -4,7 +4,7 @@ use serde_json::{Map, Value, json};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 use std::time::SystemTime;
-use stickslip::observe::{BodyRow, CellValue, ContactRow, ReadError, Results, TableRow};
+use stickslip::observe::{BodyRow, CellValue, ContactRow, EnergyRow, ReadError, Results, TableRow};
 
 /// Rows of a chart; a longer table is thinned.
 const MOST_ROWS: usize = 2000;
@@ -12,6 +12,7 @@ const MOST_ROWS: usize = 2000;
 /// The tables of a folder of results.
 pub struct Tables {
     folder: PathBuf,
+    energy: Kept<Vec<EnergyRow>>,
     bodies: Kept<Vec<BodyRow>>,
     contacts: Kept<Vec<ContactRow>>,
 }
@@ -30,7 +31,12 @@ pub fn stamp(path: &Path) -> Stamp {
 impl Tables {
     /// Those of a folder; nothing is read yet.
     pub fn of(folder: &Path) -> Self {
-        Tables { folder: folder.to_path_buf(), bodies: Mutex::default(), contacts: Mutex::default() }
+        Tables {
+            folder: folder.to_path_buf(),
+            energy: Mutex::default(),
+            bodies: Mutex::default(),
+            contacts: Mutex::default(),
+        }
     }
 
     fn kept<T>(
@@ -56,7 +62,8 @@ impl Tables {
     /// # Errors
     /// The table is missing or damaged; so for the others.
     pub fn energy(&self, results: &Results) -> Result<Value, ReadError> {
-        Ok(columns(&results.energy_table()?))
+        let table = self.kept("energy.csv", &self.energy, || results.energy_table())?;
+        Ok(columns(&table))
     }
 
     /// The rows of a body in `bodies.csv`, each column by its name.
@@ -76,7 +83,9 @@ impl Tables {
     /// The table is missing or damaged.
     pub fn contacts(&self, results: &Results, time: f64) -> Result<Value, ReadError> {
         let table = self.kept("contacts.csv", &self.contacts, || results.contacts_table())?;
-        let later = table.iter().map(|row| row.time).find(|row| *row >= time);
+        // Pairs without a force have no row, so the times of rows are not all that there are.
+        let times = self.kept("energy.csv", &self.energy, || results.energy_table())?;
+        let later = times.iter().map(|row| row.time).find(|row| *row >= time);
         let places: std::collections::HashMap<&str, usize> =
             results.body_names().iter().enumerate().map(|(i, name)| (name.as_str(), i)).collect();
         let rows = table.iter().filter(|row| Some(row.time) == later);
@@ -116,7 +125,6 @@ fn columns<R: TableRow>(rows: &[R]) -> Value {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use stickslip::observe::EnergyRow;
 
     #[test]
     fn a_long_table_is_thinned_and_keeps_its_end() {

@@ -93,6 +93,8 @@ export class Charts {
             this.box.append(element);
             figure = { element };
             this.figures.set(id, figure);
+            // The others make room for it.
+            this.#resize();
         }
         figure.plot?.destroy();
         figure.element.replaceChildren();

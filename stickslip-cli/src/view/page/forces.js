@@ -2,8 +2,8 @@
 
 import { CylinderGeometry, Group, InstancedMesh, Matrix4, MeshBasicMaterial, Quaternion, Vector3 } from "three";
 
-// Of the largest force in the run, as a share of the frame's mean body or of the box.
-const [WIDEST, LONGEST] = [0.011, 0.12];
+// Half the width of the widest chain and the length of the longest arrow, as shares of the diagonal of everything.
+const [WIDEST, LONGEST] = [0.008, 0.12];
 const WEAKEST = 0.004;
 const UP = new Vector3(0, 1, 0);
 

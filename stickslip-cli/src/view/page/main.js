@@ -3,11 +3,12 @@
 import { BodyList } from "stickslip/bodies";
 import { Charts } from "stickslip/charts";
 import { Cloud } from "stickslip/cloud";
-import { mapPixels, number, withUnit } from "stickslip/colors";
+import { mapPixels, withUnit } from "stickslip/colors";
 import { Forces } from "stickslip/forces";
 import { Frames } from "stickslip/frames";
 import { ColorPanel, CutPanel } from "stickslip/panel";
-import { pick } from "stickslip/picking";
+import { Looking } from "stickslip/looking";
+import { measure } from "stickslip/measuring";
 import { Skins } from "stickslip/skins";
 import { Source } from "stickslip/source";
 import { Stage } from "stickslip/stage";
@@ -30,9 +31,11 @@ const panel = new ColorPanel(index, {
     has: (id) => source.has(`/column/0/${id}`),
 });
 const cuts = new CutPanel(index.dimension, () => choose(true));
-const bodies = new BodyList(index, { onChange: () => choose(false), onChoose: (body) => lookAtBody(body) });
+const bodies = new BodyList(index, { onChange: () => choose(false), onChoose: (body) => looking.atBody(body) });
 const charts = new Charts(byId("charts"), { onTime: (time) => show(nearest(time)), dimension: index.dimension });
-const state = { frame: 0, shown: -1, playing: false, picked: undefined, group: "velocity", pictures: 0 };
+const state = { frame: 0, shown: -1, playing: false, pictures: 0 };
+
+const looking = new Looking({ state, source, frames, cloud, bodies, charts, panel }, () => index);
 
 function fail(error) {
     byId("message").textContent = error.message ?? String(error);
@@ -103,7 +106,7 @@ function draw(frame, places, column) {
     state.pictures += 1;
     showForces();
     showFringes();
-    tellPicked();
+    looking.tell();
     for (let ahead = 1; ahead <= AHEAD; ahead++) fetchAhead(frame + ahead);
 }
 
@@ -205,112 +208,6 @@ function showFringes() {
     const wanted = byId("show-fringes").checked;
     byId("fringes").hidden = !wanted;
     if (wanted) byId("fringes").firstElementChild.src = `/fringes/${state.shown}`;
-}
-
-// A body or a particle that the reader looks at, and what it has now.
-function tellPicked() {
-    const box = byId("picked");
-    box.hidden = !state.picked;
-    if (!state.picked) return;
-    const { body, number: particle } = state.picked;
-    const heading = document.createElement("h3");
-    heading.textContent = index.bodies[body];
-    const list = document.createElement("dl");
-    const row = (name, value) => {
-        const [term, definition] = [document.createElement("dt"), document.createElement("dd")];
-        [term.textContent, definition.textContent] = [name, value];
-        list.append(term, definition);
-    };
-    const place = state.places.find(body, particle);
-    row("particle", String(particle));
-    if (place < 0) {
-        row("", "not in this frame");
-    } else {
-        const x = state.places.position(place).slice(0, index.dimension);
-        row("position", `${x.map((value) => number(value, 5)).join(", ")} m`);
-        if (state.column) row(panel.quantity.label, withUnit(state.column.values[place], panel.quantity.unit));
-        if (state.places.sidesKnown) row("size", withUnit(state.places.side(place), "m"));
-    }
-    const close = document.createElement("button");
-    close.className = "close";
-    close.textContent = "×";
-    close.title = "Close (Esc)";
-    close.onclick = () => unpick();
-    const [ofParticle, ofBody] = ["Particle through time", "Body through time"].map((text) => {
-        const button = document.createElement("button");
-        button.textContent = text;
-        return button;
-    });
-    ofParticle.onclick = () => lookAtParticle(body, particle);
-    ofParticle.disabled =
-        !panel.quantity || !(source.isLive || index.times.every((_, frame) => source.has(`/frame/${frame}`)));
-    ofParticle.title = panel.quantity ? "" : "choose a colour other than body first";
-    ofBody.onclick = () => lookAtBody(body);
-    const buttons = document.createElement("div");
-    buttons.className = "row";
-    buttons.append(ofBody, ofParticle);
-    box.replaceChildren(heading, close, list, buttons);
-}
-
-function unpick() {
-    state.picked = undefined;
-    bodies.choose(-1);
-    tellPicked();
-}
-
-function pickAt(x, y) {
-    const particle = pick(cloud, x, y);
-    if (particle < 0) {
-        unpick();
-        return undefined;
-    }
-    const { body } = state.places.run(particle);
-    state.picked = { body, number: state.places.number(particle) };
-    bodies.choose(body);
-    tellPicked();
-    lookAtBody(body);
-    return state.picked;
-}
-
-async function lookAtBody(body) {
-    bodies.choose(body);
-    try {
-        const table = await source.json(`/body/${body}`);
-        state.looked = { body, table };
-        charts.onGroup = (group) => {
-            state.group = group;
-            charts.body(index.bodies[body], table, group);
-        };
-        charts.body(index.bodies[body], table, state.group);
-    } catch (error) {
-        byId("message").textContent = error.message;
-    }
-}
-
-async function lookAtParticle(body, particle) {
-    const { quantity } = panel;
-    if (!quantity) return;
-    byId("message").textContent = "reading all frames ...";
-    try {
-        const history = source.isLive
-            ? await source.json(`/particle/${body}/${particle}/${quantity.id}`)
-            : await throughEmbedded(body, particle, quantity.id);
-        byId("message").textContent = "";
-        charts.particle(`${index.bodies[body]}, particle ${particle}`, history, quantity);
-    } catch (error) {
-        byId("message").textContent = error.message;
-    }
-}
-
-async function throughEmbedded(body, particle, id) {
-    const history = { time: [], value: [] };
-    for (let frame = 0; frame < index.times.length; frame++) {
-        const place = (await frames.places(frame)).find(body, particle);
-        if (place < 0) continue;
-        history.time.push(index.times[frame]);
-        history.value.push((await frames.column(frame, id)).values[place]);
-    }
-    return history;
 }
 
 // Playing: the next frame when it is due and there.
@@ -419,7 +316,7 @@ let pressed;
 byId("canvas").addEventListener("pointerdown", (event) => (pressed = [event.offsetX, event.offsetY]));
 byId("canvas").addEventListener("pointerup", (event) => {
     if (event.button === 0 && pressed && Math.hypot(event.offsetX - pressed[0], event.offsetY - pressed[1]) < 4) {
-        pickAt(event.offsetX, event.offsetY);
+        looking.pickAt(event.offsetX, event.offsetY);
     }
 });
 
@@ -431,36 +328,13 @@ document.addEventListener("keydown", (event) => {
         ArrowRight: () => show(state.frame + 1),
         Home: () => show(0),
         End: () => show(index.times.length - 1),
-        Escape: () => unpick(),
+        Escape: () => looking.drop(),
         f: () => byId("fit").click(),
     };
     if (!keys[event.key] || event.ctrlKey || event.metaKey) return;
     event.preventDefault();
     keys[event.key]();
 });
-
-// Pictures a second while the eye goes around, as the reader would feel it, and the time of one picture in full [ms].
-async function measure(seconds) {
-    const { camera, controls } = stage;
-    let [pictures, end] = [0, performance.now() + 1000 * seconds];
-    const start = performance.now();
-    while (performance.now() < end) {
-        camera.position
-            .sub(controls.target)
-            .applyAxisAngle(stage.up, stage.plane ? 0 : 0.02)
-            .add(controls.target);
-        if (stage.plane) camera.position.x += 1e-3 * state.box.size * Math.sin(pictures);
-        if (!stage.plane) camera.lookAt(controls.target);
-        stage.move();
-        await new Promise((resolve) => requestAnimationFrame(resolve));
-        pictures += 1;
-    }
-    const moving = pictures / ((performance.now() - start) / 1000);
-    const drawnMoving = cloud.drawn;
-    cloud.prepare({ moving: false, since: 0 });
-    const full = [stage.timed(), stage.timed(), stage.timed()].sort((a, b) => a - b)[1];
-    return { moving, drawnMoving, full, drawn: cloud.drawn, particles: state.places.count };
-}
 
 describe();
 showEnergy();
@@ -469,4 +343,17 @@ else
     byId("message").textContent =
         index.status === "running" ? "waiting for the first frame ..." : "the run wrote no snapshots of particles";
 follow();
-window.stickslip = { state, source, frames, cloud, skins, show, play, stop, pickAt, measure, index: () => index };
+const pickAt = (x, y) => looking.pickAt(x, y);
+window.stickslip = {
+    state,
+    source,
+    frames,
+    cloud,
+    skins,
+    show,
+    play,
+    stop,
+    pickAt,
+    measure: (seconds) => measure({ stage, cloud, state }, seconds),
+    index: () => index,
+};
