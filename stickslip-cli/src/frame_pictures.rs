@@ -13,7 +13,7 @@ use stickslip::polariscope::{self, ImageWindow, OpticalBench, Push, Stage};
 use stickslip::scene::{Fringes, Light, Overlay, Polariscope, PolariscopeField, Sensitivity};
 
 /// What the user wants of fringes; what is missing is as in the scene's `outputs.fringes`, or else usual.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct FringeChoice {
     /// How much stress makes a fringe; without it and without a scene's, four fringes are in sight.
     pub sensitivity: Option<Sensitivity>,
@@ -36,8 +36,8 @@ pub struct FringeChoice {
 }
 
 /// The fringes of a run, ready to be drawn: with one window and one scale for all pictures.
-pub struct FramePictures<'a> {
-    results: &'a Results,
+pub struct FramePictures {
+    results: Results,
     setting: Setting,
     bench: OpticalBench,
     polariscope: Polariscope,
@@ -54,12 +54,12 @@ const FRINGES: f64 = 4.0;
 /// Snapshots that are looked at to find out.
 const LOOKS: usize = 8;
 
-impl<'a> FramePictures<'a> {
+impl FramePictures {
     /// Gets ready for pictures of some snapshots of a run.
     ///
     /// # Errors
     /// There are no snapshots or they cannot be read, or the user names a body that is not there.
-    pub fn open(results: &'a Results, frames: &[Frame], choice: &FringeChoice) -> Result<Self, Failure> {
+    pub fn open(results: &Results, frames: &[Frame], choice: &FringeChoice) -> Result<Self, Failure> {
         needs_whole_snapshots(results)?;
         let scene = results.scene().map_err(Failure::input)?;
         let camera = scene.outputs.fringes.as_ref();
@@ -79,7 +79,7 @@ impl<'a> FramePictures<'a> {
         };
         let polariscope = polariscope(choice, camera, (&snapshots, &stage));
         Ok(FramePictures {
-            results,
+            results: results.clone(),
             setting: Setting::of(&scene),
             bench: OpticalBench::new(&polariscope, stage),
             polariscope,
@@ -112,7 +112,7 @@ impl<'a> FramePictures<'a> {
     }
 }
 
-impl Pictures for FramePictures<'_> {
+impl Pictures for FramePictures {
     fn picture(&self, frame: &Frame) -> Result<Image, Failure> {
         let mut film = self.bench.film();
         let particles = self.results.particles(frame).map_err(Failure::input)?;

@@ -15,6 +15,7 @@ mod progress;
 mod reproduce;
 mod sweep;
 mod validation;
+mod view;
 
 use clap::Parser;
 use std::process::ExitCode;

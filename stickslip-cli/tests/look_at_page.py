@@ -10,9 +10,9 @@ import sys
 import tempfile
 import time
 
-from selenium import webdriver
-from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.support.ui import WebDriverWait
+
+from browser import browser, requests
 
 FIND = """
 const seen = element => { const box = element.getBoundingClientRect(); return [box.width, box.height]; };
@@ -43,28 +43,6 @@ link.click();
 const target = document.getElementById(link.getAttribute('href').slice(1));
 return target !== null && location.hash === link.getAttribute('href') && target.getBoundingClientRect().height > 0;
 """
-
-
-def browser(profile):
-    """Chromium without a window and without a word to the network of its own."""
-    options = webdriver.ChromeOptions()
-    for flag in [
-        "headless", "no-sandbox", "disable-gpu", "disable-quic", "no-first-run", "disable-background-networking",
-        "disable-component-update", "disable-sync", "disable-dev-shm-usage", "window-size=1280,900",
-        f"user-data-dir={profile}",
-    ]:
-        options.add_argument(f"--{flag}")
-    options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
-    # Named by hand, so that selenium looks for no driver on the network.
-    driver = next(path for path in map(pathlib.Path, ["/usr/bin/chromedriver", "/usr/local/bin/chromedriver"]) if path.exists())
-    return webdriver.Chrome(options=options, service=Service(str(driver)))
-
-
-def requests(driver):
-    """Addresses that the page asked for, itself apart."""
-    events = [json.loads(entry["message"])["message"] for entry in driver.get_log("performance")]
-    sent = [event["params"]["request"]["url"] for event in events if event["method"] == "Network.requestWillBeSent"]
-    return [address for address in sent if not address.startswith(("data:", "file:"))]
 
 
 def watch(animation):

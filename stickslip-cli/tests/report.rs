@@ -12,18 +12,7 @@ use stickslip::{Workplace, new_scene};
 
 /// What the browser finds on a page; `None` where there is no browser and nobody requires one.
 fn look_at(page: &Path) -> Option<Value> {
-    let named = std::env::var("STICKSLIP_PYTHON").ok();
-    let python = named.clone().unwrap_or_else(|| "python3".to_owned());
-    let has = |program: &str, arguments: &[&str]| {
-        Command::new(program).args(arguments).output().is_ok_and(|output| output.status.success())
-    };
-    let find = "import importlib.util as i, sys; sys.exit(i.find_spec('selenium') is None)";
-    if !has(&python, &["-c", find]) || !has("chromedriver", &["--version"]) {
-        let required = named.is_some() || std::env::var_os("CI").is_some();
-        assert!(!required, "the packages chromium, chromium-driver, and selenium for {python} are needed");
-        eprintln!("skipped: chromedriver, or the package `selenium` for {python}, is not there");
-        return None;
-    }
+    let python = stickslip::python_with_browser()?;
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/look_at_page.py");
     let output = Command::new(&python).arg(script).arg(page).output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));

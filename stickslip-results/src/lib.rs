@@ -3,13 +3,16 @@
 //! The rooms below are in reading order: each uses only rooms above it.
 
 use stickslip_engine::door;
-use stickslip_scene::{column, scene};
+use stickslip_scene::{column, geometry, scene};
 
 // RGB images: PNG files and animations.
 pub mod image;
 
 // A virtual polariscope: fringes of the stress in a snapshot.
 pub mod polariscope;
+
+// Surfaces of bodies, as triangles that their particles carry along.
+pub mod surface;
 
 // One file a kind of output; results read back.
 pub mod observe;

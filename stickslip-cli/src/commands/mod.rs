@@ -13,6 +13,7 @@ mod run;
 mod schema;
 mod sweep;
 mod validate;
+mod view;
 
 use crate::failure::Failure;
 use clap::Parser;
@@ -41,6 +42,7 @@ pub enum Command {
     Schema(schema::Arguments),
     Bench(bench::Arguments),
     Validate(validate::Arguments),
+    View(view::Arguments),
 }
 
 impl Command {
@@ -59,6 +61,7 @@ impl Command {
             Command::Schema(arguments) => arguments.execute(),
             Command::Bench(arguments) => arguments.execute(),
             Command::Validate(arguments) => arguments.execute(),
+            Command::View(arguments) => arguments.execute(),
         }
     }
 }

@@ -14,7 +14,7 @@ mod surface;
 
 pub use camera::Viewpoint;
 pub use grains::{Quarters, quarters};
-pub use quantity::{ColorQuantity, QuantityParser};
+pub use quantity::{ColorQuantity, QuantityParser, determinant};
 pub use setting::{Setting, SymmetryPlane};
 
 use crate::drawing::{Canvas, DrawError, Rgb, SAMPLES, Scale, body_color};

@@ -59,3 +59,21 @@ pub fn new_scene() -> String {
     workplace.succeed(&["new"]);
     std::fs::read_to_string(workplace.path("scene.toml")).unwrap()
 }
+
+/// A Python that can drive a browser: `STICKSLIP_PYTHON`, else `python3`. `None` where there is no browser and nobody
+/// requires one; `./check` installs both.
+pub fn python_with_browser() -> Option<String> {
+    let named = std::env::var("STICKSLIP_PYTHON").ok();
+    let python = named.clone().unwrap_or_else(|| "python3".to_owned());
+    let has = |program: &str, arguments: &[&str]| {
+        Command::new(program).args(arguments).output().is_ok_and(|output| output.status.success())
+    };
+    let find = "import importlib.util as i, sys; sys.exit(i.find_spec('selenium') is None)";
+    if !has(&python, &["-c", find]) || !has("chromedriver", &["--version"]) {
+        let required = named.is_some() || std::env::var_os("CI").is_some();
+        assert!(!required, "the packages chromium, chromium-driver, and selenium for {python} are needed");
+        eprintln!("skipped: chromedriver, or the package `selenium` for {python}, is not there");
+        return None;
+    }
+    Some(python)
+}

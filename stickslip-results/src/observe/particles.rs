@@ -4,10 +4,11 @@ use super::file::{OutputError, ReadError};
 use super::folder::OutputFolder;
 use super::frames::Frames;
 use super::memory::Memory;
+use super::particle_file::ParticleFile;
 use super::schedule::Schedule;
 use super::vtu::{PointArrays, Vtu};
 use super::{Observer, PARTICLES};
-use crate::column::{ColumnDescription, DERIVED, EVERY, IDENTITY, Kind, every, in_files};
+use crate::column::{ColumnDescription, DERIVED, IDENTITY, Kind, every, in_files};
 use crate::door::{ColumnSource, ParticleSnapshot, SnapshotColumn, View};
 use crate::scene::{Body, Scene, SnapshotContent};
 use std::collections::HashSet;
@@ -136,22 +137,12 @@ pub fn read_particles(path: &Path) -> Result<ParticleSnapshot, ReadError> {
 /// # Errors
 /// The file is missing, cut short, or was written by another program.
 pub fn read_columns(path: &Path) -> Result<FileColumns, ReadError> {
-    let file = PointArrays::open(path)?;
-    let [body, number] = IDENTITY;
-    let described = |name: &str| {
-        let (unit, kind, values) = file.described(name)?;
-        let known = EVERY.iter().chain(DERIVED.iter().map(|derived| &derived.column));
-        let unit =
-            known.into_iter().find(|known| known.name == name).map_or(unit, |known| known.unit.to_string());
-        Ok(SnapshotColumn { name: name.to_string(), unit, kind, values })
-    };
+    let file = ParticleFile::open(path)?;
     Ok(FileColumns {
         position: file.positions()?,
-        body: file.whole::<i32>(body)?.into_iter().map(|body| body as u32).collect(),
-        number: file.whole(number)?,
-        columns: (file.names().filter(|name| !IDENTITY.contains(name)))
-            .map(described)
-            .collect::<Result<_, ReadError>>()?,
+        body: file.bodies()?,
+        number: file.numbers()?,
+        columns: file.columns().map(|column| file.column(column)).collect::<Result<_, ReadError>>()?,
     })
 }
 

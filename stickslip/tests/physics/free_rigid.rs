@@ -155,14 +155,14 @@ fn momentum_is_exchanged_with_a_body_that_deforms() {
             let scene = format!(
                 r#"
                 space = {{ dimension = "plane-strain", cell = 0.05 }}
-                time = {{ end = 0.2, stress_update = "{update}" }}
+                time = {{ end = 2, stress_update = "{update}" }}
                 {GEL}
                 [[bodies]]
                 name = "disk"
                 material = "gel"
                 shape.ball = {{ center = [-0.26, 0.3], radius = 0.25 }}
-                velocity = [2, 0]
-                spin = 5
+                velocity = [0.2, 0]
+                spin = 0.5
                 rigid.free = {{}}
                 [[bodies]]
                 name = "block"
@@ -176,7 +176,7 @@ fn momentum_is_exchanged_with_a_body_that_deforms() {
             );
             let mut simulation = start(&scene);
             let before = simulation.ledger();
-            run_to(&mut *simulation, 0.05, |_| {});
+            run_to(&mut *simulation, 0.3, |_| {});
             let (after, bodies) = (simulation.ledger(), simulation.bodies());
             let lost = distance(before.momentum, after.momentum) / before.momentum[0];
             let turned = (after.angular_momentum[2] - before.angular_momentum[2]).abs()
@@ -184,7 +184,7 @@ fn momentum_is_exchanged_with_a_body_that_deforms() {
             let drift = (after.total - before.total) / before.kinetic;
             println!("{law}, {update}: momentum {lost:.1e}, angular {turned:.1e}, energy {drift:.1e}");
             assert!(lost < 1e-12, "{law}, {update}: {lost}");
-            assert!(bodies[1].velocity[0] > 0.1, "{law}, {update}: it was not hit: {bodies:?}");
+            assert!(bodies[1].velocity[0] > 0.01, "{law}, {update}: it was not hit: {bodies:?}");
             if law == "surface" {
                 assert!(turned < 1e-3 && drift.abs() < 0.03, "{update}: {turned} {drift}");
             }
@@ -233,13 +233,13 @@ fn rolling(update: &str) -> String {
         gravity = ["9.81 * sin(0.3)", "-9.81 * cos(0.3)"]
         [space]
         dimension = "plane-strain"
-        cell = 0.1
+        cell = 0.05
         domain = {{ min = [-1, -1], max = [5, 3], y_min = "fixed" }}
         [time]
         end = 1
         stress_update = "{update}"
         [materials]
-        stone = {{ density = 1000, neo_hookean = {{ young_modulus = 1e9, poisson_ratio = 0.2 }} }}
+        stone = {{ density = 1000, neo_hookean = {{ young_modulus = 2e6, poisson_ratio = 0.2 }} }}
         [[bodies]]
         name = "floor"
         material = "stone"

@@ -119,18 +119,35 @@ impl PointArrays {
         self.names.iter().map(String::as_str)
     }
 
+    /// How many points there are.
+    pub(in crate::observe) fn count(&self) -> usize {
+        self.count
+    }
+
+    /// Unit of an array and what each point has in it; `None` if there is no such array of real numbers.
+    pub(in crate::observe) fn description(&self, name: &str) -> Option<(&str, Kind)> {
+        let ArrayPlace { unit, components, .. } = self.arrays.get(name)?;
+        let kind = match components {
+            1 => Kind::Number,
+            3 => Kind::Vector,
+            6 => Kind::Symmetric,
+            9 => Kind::Tensor,
+            _ => return None,
+        };
+        Some((unit, kind))
+    }
+
     /// An array as it describes itself: its unit, what each point has, and the values of one point after the other.
     pub(in crate::observe) fn described(&self, name: &str) -> Result<(String, Kind, Vec<f64>), ReadError> {
         let none = || missing(&format!("array `{name}`")).at(&self.path);
-        let ArrayPlace { unit, components, .. } = self.arrays.get(name).ok_or_else(none)?;
-        let (kind, values) = match components {
-            1 => (Kind::Number, self.reals::<1>(name)?.into_flattened()),
-            3 => (Kind::Vector, self.reals::<3>(name)?.into_flattened()),
-            6 => (Kind::Symmetric, self.reals::<6>(name)?.into_flattened()),
-            9 => (Kind::Tensor, self.reals::<9>(name)?.into_flattened()),
-            _ => return Err(none()),
+        let (unit, kind) = self.description(name).ok_or_else(none)?;
+        let values = match kind {
+            Kind::Number => self.reals::<1>(name)?.into_flattened(),
+            Kind::Vector | Kind::Rotation => self.reals::<3>(name)?.into_flattened(),
+            Kind::Symmetric => self.reals::<6>(name)?.into_flattened(),
+            Kind::Tensor => self.reals::<9>(name)?.into_flattened(),
         };
-        Ok((unit.clone(), kind, values))
+        Ok((unit.to_string(), kind, values))
     }
 
     /// An array with one whole number for each point.

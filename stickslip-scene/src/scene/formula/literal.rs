@@ -1,6 +1,6 @@
 //! The unit after a number: `6 MPa`, `9.81 m/s^2`.
 //!
-//! A unit goes on over `*`, `/` and `^` as long as names of units follow. Where such a name is also a parameter, spaces
+//! A unit goes on over spaces, `*`, `/` and `^` as long as names of units follow; it may start with `1/`. Where such a name is also a parameter, spaces
 //! decide or nobody does: `2 kg/m` is a unit, `2 kg / m` is refused.
 
 use super::parser::{Parsed, Parser, fail};
@@ -14,6 +14,9 @@ const LARGEST_POWER: f64 = 9.0;
 impl Parser<'_> {
     /// Reads what stands for the unit after a number that ends at `end`; returns where the unit ends.
     pub(super) fn unit(&mut self, end: usize) -> Parsed<(Option<Unit>, usize)> {
+        // `10 1/s`: a unit that starts with its division
+        let divides = self.divides();
+        self.next += 2 * usize::from(divides);
         let (Token::Name(name), span) = self.peek() else { return Ok((None, end)) };
         let Some(first) = Unit::named(name).filter(|_| !self.calls()) else {
             let known = self.names.all();
@@ -31,13 +34,18 @@ impl Parser<'_> {
         };
         self.next += 1;
         let (power, mut end) = self.unit_power(span.end)?;
-        let mut unit = Unit::ONE.times(first, power);
-        while let Token::Symbol(symbol @ ("*" | "/")) = self.peek().0 {
-            let Some((Token::Name(name), span)) = self.words.get(self.next + 1).cloned() else { break };
-            let calls = self.words.get(self.next + 2).is_some_and(|(token, _)| *token == Token::Symbol("("));
+        let mut unit = Unit::ONE.times(first, if divides { -power } else { power });
+        loop {
+            // Units side by side are a product: `N s/m`.
+            let (symbol, at) = match self.peek().0 {
+                Token::Symbol(symbol @ ("*" | "/")) => (symbol, self.next + 1),
+                _ => ("*", self.next),
+            };
+            let Some((Token::Name(name), span)) = self.words.get(at).cloned() else { break };
+            let calls = self.words.get(at + 1).is_some_and(|(token, _)| *token == Token::Symbol("("));
             let Some(factor) = Unit::named(name).filter(|_| !calls) else { break };
             // `kg/m^3` written tightly is a unit even beside a parameter `m`
-            let tight = span.start == end + 1;
+            let tight = at > self.next && span.start == end + 1;
             if !tight && self.names.all().iter().any(|known| known == name) {
                 let found = format!("`{symbol} {name}`, where `{name}` is both a unit and a parameter");
                 let help = format!(
@@ -46,7 +54,7 @@ impl Parser<'_> {
                 );
                 return fail(span, found, "a name with one meaning", Some(help));
             }
-            self.next += 2;
+            self.next = at + 1;
             let (power, last) = self.unit_power(span.end)?;
             unit = unit.times(factor, if symbol == "*" { power } else { -power });
             end = last;
@@ -74,6 +82,13 @@ impl Parser<'_> {
                 Some("for a power of the quantity put it in brackets: `(2 m)^n`".to_string()),
             ),
         }
+    }
+
+    /// Do `1 /` and a unit come next?
+    fn divides(&self) -> bool {
+        let ahead = |n: usize| self.words.get(self.next + n).map(|(token, _)| token.clone());
+        let unit = matches!(ahead(2), Some(Token::Name(name)) if Unit::named(name).is_some());
+        unit && ahead(0) == Some(Token::Number(1.0)) && ahead(1) == Some(Token::Symbol("/"))
     }
 
     /// Is the next word a name with a bracket after it?

@@ -49,9 +49,6 @@ impl<'a> Parser<'a> {
         let (token, span) = self.peek();
         if token != Token::End {
             let help = match token {
-                Token::Name(name) if Unit::named(name).is_some() => {
-                    Some("units are joined by * and /: `1 kg*m/s^2`".to_string())
-                }
                 Token::Name(_) | Token::Number(_) | Token::Symbol("(") => {
                     Some("a product needs its `*`".to_string())
                 }

@@ -97,6 +97,9 @@ fn units_stand_after_numbers() {
         ("mod(-1, 3)", 2.0, [0, 0, 0]),
         ("(2 m) * m", 6.0, [0, 5, 0]), // `m` alone is the parameter, of whatever dimension fits
         ("2 m", 2.0, length),
+        ("10 N s/m", 10.0, [1, 0, -1]),
+        ("10 1/s", 10.0, [0, 0, -1]),
+        ("3 1/m^2", 3.0, [0, -2, 0]),
     ] {
         let formula = read(text);
         assert_eq!(formula.expression.at(0.5), expected, "{text}");
@@ -135,7 +138,7 @@ fn mistakes_are_shown_where_they_are() {
         ("", "", "the end of the formula", ""),
         ("1 +", "", "the end of the formula", ""),
         ("1 2", "2", "`2`", "a product needs its `*`"),
-        ("1 kg m", "m", "`m`", "units are joined by * and /: `1 kg*m/s^2`"),
+        ("1 kg m", "m", "`* m`, where `m` is both a unit and a parameter", "for the unit leave out the spaces"),
         ("{radius}", "{", "`{`", "braces are for parameters in text; a formula names them as they are"),
         ("sin(1, 2)", "sin(1, 2)", "`sin` of 2", ""),
         ("if(1, 2, 3)", "1", "a plain number", ""),

@@ -1,0 +1,359 @@
+// The page: what is chosen, and what follows from that.
+
+import { BodyList } from "stickslip/bodies";
+import { Charts } from "stickslip/charts";
+import { Cloud } from "stickslip/cloud";
+import { mapPixels, withUnit } from "stickslip/colors";
+import { Forces } from "stickslip/forces";
+import { Frames } from "stickslip/frames";
+import { ColorPanel, CutPanel } from "stickslip/panel";
+import { Looking } from "stickslip/looking";
+import { measure } from "stickslip/measuring";
+import { Skins } from "stickslip/skins";
+import { Source } from "stickslip/source";
+import { Stage } from "stickslip/stage";
+
+const byId = (id) => document.getElementById(id);
+const POLL = 1000; // ms
+const AHEAD = 2; // frames that are fetched before they are shown
+const STATUS = { running: "running", interrupted: "interrupted", out_of_time: "out of time", failed: "failed" };
+
+const source = new Source();
+const frames = new Frames(source);
+let index = await source.json("/index").catch(fail);
+const stage = new Stage(byId("canvas"), index, (motion) => cloud.prepare(motion));
+const cloud = new Cloud(stage);
+const forces = new Forces(stage);
+const skins = new Skins(stage, source, cloud.material.uniforms);
+const panel = new ColorPanel(index, {
+    onQuantity: () => show(state.frame),
+    onLook: () => recolor(),
+    has: (id) => source.has(`/column/0/${id}`),
+});
+const cuts = new CutPanel(index.dimension, () => choose(true));
+const bodies = new BodyList(index, { onChange: () => choose(false), onChoose: (body) => looking.atBody(body) });
+const charts = new Charts(byId("charts"), { onTime: (time) => show(nearest(time)), dimension: index.dimension });
+const state = { frame: 0, shown: -1, playing: false, pictures: 0 };
+
+const looking = new Looking({ state, source, frames, cloud, bodies, charts, panel }, () => index);
+
+function fail(error) {
+    byId("message").textContent = error.message ?? String(error);
+    throw error;
+}
+
+function describe() {
+    byId("title").textContent = index.title;
+    document.title = `${index.title} - Stickslip`;
+    const word = STATUS[index.status];
+    byId("status").hidden = !word;
+    byId("status").className = index.status === "failed" ? "bad" : "";
+    byId("status").textContent = word ?? "";
+    byId("time").max = Math.max(index.times.length - 1, 0);
+    byId("follow-switch").hidden = !(source.isLive && index.status === "running");
+    byId("draw").lastElementChild.disabled = !source.has("/skins");
+    byId("fringes-switch").hidden = !(index.fringes && source.has("/fringes/0"));
+}
+
+function nearest(time) {
+    const off = (frame) => Math.abs(index.times[frame] - time);
+    return index.times.reduce((best, _, frame) => (off(frame) < off(best) ? frame : best), 0);
+}
+
+// What the colours of a frame stand for: a column, or the bodies themselves.
+function values(frame, places) {
+    const { quantity } = panel;
+    if (quantity) return frames.column(frame, quantity.id);
+    if (!places.bodyColors) {
+        places.bodyColors = new Float32Array(places.count);
+        for (const { body, start, end } of places.runs)
+            places.bodyColors.fill(body % index.body_colors.length, start, end);
+    }
+    return undefined;
+}
+
+// Shows a frame. If another one is wanted before it is there, that one is shown instead.
+async function show(frame) {
+    if (!(frame >= 0 && frame < index.times.length)) return;
+    state.frame = frame;
+    const { quantity } = panel;
+    try {
+        const [places, column] = await Promise.all([
+            frames.places(frame),
+            quantity && frames.column(frame, quantity.id),
+        ]);
+        if (state.frame !== frame || panel.quantity !== quantity) return;
+        draw(frame, places, column);
+    } catch (error) {
+        byId("message").textContent = error.message;
+    }
+}
+
+function draw(frame, places, column) {
+    const first = state.shown < 0;
+    const other = state.places !== places;
+    Object.assign(state, { shown: frame, places, column });
+    if (first) begin(places);
+    if (!column) values(frame, places);
+    cloud.show(places, column ? column.values : places.bodyColors);
+    if (other) choosePieces();
+    recolor();
+    showSurfaces();
+    byId("time").value = frame;
+    byId("clock").textContent = `${withUnit(index.times[frame], "s")}   ${frame + 1} of ${index.times.length}`;
+    byId("message").textContent = places.count === 0 ? "this frame has no particles" : "";
+    charts.at(index.times[frame]);
+    state.pictures += 1;
+    showForces();
+    showFringes();
+    looking.tell();
+    for (let ahead = 1; ahead <= AHEAD; ahead++) fetchAhead(frame + ahead);
+}
+
+// With the first frame it is known where everything is.
+function begin(places) {
+    const margin = 0.5 * places.largest;
+    const low = places.low.map((value) => value - margin);
+    const high = places.low.map((value, axis) => value + places.extent[axis] + margin);
+    stage.origin = low.map((value, axis) => 0.5 * (value + high[axis]));
+    state.box = { low, high, size: Math.hypot(...low.map((value, axis) => high[axis] - value)) };
+    cuts.box = state.box;
+    stage.fit(low, high);
+}
+
+function fetchAhead(frame) {
+    if (frame >= index.times.length) return;
+    const { quantity } = panel;
+    frames.places(frame).catch(() => {});
+    if (quantity) frames.column(frame, quantity.id).catch(() => {});
+}
+
+function recolor() {
+    const { column } = state;
+    const look = panel.look(column);
+    if (look && column) {
+        const pixels = mapPixels(look.colors);
+        panel.bar(pixels, look);
+        cloud.color(pixels, look.range, false);
+    } else {
+        const pixels = new Uint8Array(4 * 256).fill(255);
+        index.body_colors.forEach((color, i) =>
+            pixels.set(
+                color.map((part) => 255 * part),
+                4 * i,
+            ),
+        );
+        cloud.color(pixels, [0, 1], true);
+    }
+    stage.ask();
+}
+
+function choosePieces() {
+    const shown = (body) => bodies.isShown(body);
+    skins.choose(shown, cuts.cuts);
+    cloud.choose(shown, cuts.cuts, (body) => !(skins.isOn && skins.bodies.has(body)));
+}
+
+// Bodies as surfaces, where the reader wants that and they are known.
+async function showSurfaces() {
+    if (byId("draw").value === "particles") {
+        if (!skins.isOn) return;
+        skins.hide();
+        choosePieces();
+        stage.ask();
+        return;
+    }
+    const { shown } = state;
+    const { quantity } = panel;
+    const wasOn = skins.isOn;
+    try {
+        if (!skins.triangles) byId("no-surfaces").textContent = "making surfaces ...";
+        await skins.load(index.body_colors.length);
+        await skins.show(shown, quantity?.id);
+        byId("no-surfaces").textContent = "";
+        if (!wasOn) choosePieces();
+    } catch (error) {
+        byId("draw").value = "particles";
+        byId("no-surfaces").textContent = error.message;
+    }
+}
+
+function choose(moving) {
+    choosePieces();
+    showForces();
+    if (moving) stage.move();
+    else stage.ask();
+}
+
+async function showForces() {
+    const [chains, arrows] = ["chains", "arrows"].map((id) => byId(id).checked);
+    byId("force-scale").textContent = "";
+    if (!chains && !arrows) {
+        forces.clear();
+        stage.ask();
+        return;
+    }
+    const { shown, places, box } = state;
+    const told = await source.json(`/contacts/${shown}`).catch((error) => ({ contacts: [], largest: 0, error }));
+    if (state.shown !== shown) return;
+    const choice = { chains, arrows, shown: (body) => bodies.isShown(body), rigid: index.rigid, size: box.size };
+    forces.show(told, places, choice);
+    const unit = index.dimension === 2 ? "N/m" : "N";
+    byId("force-scale").textContent =
+        told.error?.message ?? `${told.contacts.length} contacts; largest of the run: ${withUnit(told.largest, unit)}`;
+    stage.ask();
+}
+
+function showFringes() {
+    const wanted = byId("show-fringes").checked;
+    byId("fringes").hidden = !wanted;
+    if (wanted) byId("fringes").firstElementChild.src = `/fringes/${state.shown}`;
+}
+
+// Playing: the next frame when it is due and there.
+async function play() {
+    if (state.playing || index.times.length < 2) return;
+    state.playing = true;
+    byId("play").textContent = "❚❚";
+    if (state.frame >= index.times.length - 1) await show(0);
+    while (state.playing) {
+        const due = performance.now() + 1000 / Number(byId("rate").value);
+        const next = state.frame + 1;
+        if (next >= index.times.length) break;
+        await Promise.all([frames.places(next), panel.quantity && frames.column(next, panel.quantity.id)]).catch(
+            () => {},
+        );
+        await new Promise((resolve) => setTimeout(resolve, Math.max(0, due - performance.now())));
+        if (!state.playing || state.frame !== next - 1) continue;
+        stage.move();
+        await show(next);
+        // The picture is drawn before the next one is made.
+        await new Promise((resolve) => requestAnimationFrame(resolve));
+    }
+    stop();
+}
+
+function stop() {
+    state.playing = false;
+    byId("play").textContent = "▶";
+    stage.ask();
+}
+
+// A run that goes on: what is new is asked for each second.
+async function follow() {
+    let known = "";
+    while (source.isLive) {
+        await new Promise((resolve) => setTimeout(resolve, POLL));
+        try {
+            const pulse = await source.json("/pulse");
+            const { time, ...mark } = pulse;
+            if (byId("message").dataset.lost) {
+                byId("message").textContent = "";
+                delete byId("message").dataset.lost;
+            }
+            if (known !== "" && known !== JSON.stringify(mark)) await refresh();
+            else if (known === "" && (pulse.frames !== index.times.length || pulse.status !== index.status))
+                await refresh();
+            known = JSON.stringify(mark);
+        } catch {
+            byId("message").textContent = "the server has ended; `stickslip view` shows the results again";
+            byId("message").dataset.lost = "yes";
+        }
+    }
+}
+
+async function refresh() {
+    const before = index;
+    index = await source.json("/index");
+    // A run that began anew has other frames under the same numbers.
+    const anew = before.times.some((time, frame) => index.times[frame] !== time);
+    if (anew) frames.forget();
+    panel.take(index);
+    bodies.take(index);
+    describe();
+    showEnergy();
+    const wasLast = state.frame >= before.times.length - 1;
+    if (index.times.length === 0) return;
+    if (state.shown < 0 || anew) await show(index.times.length - 1);
+    else if (wasLast && byId("follow").checked && !state.playing) await show(index.times.length - 1);
+    else draw(state.shown, state.places, state.column);
+}
+
+function showEnergy() {
+    source.json("/energy").then(
+        (table) => table.time && charts.energy(table),
+        () => {},
+    );
+}
+
+byId("time").oninput = () => {
+    stage.move();
+    show(Number(byId("time").value));
+};
+byId("play").onclick = () => (state.playing ? stop() : play());
+byId("first").onclick = () => show(0);
+byId("back").onclick = () => show(state.frame - 1);
+byId("forth").onclick = () => show(state.frame + 1);
+byId("fit").onclick = () => state.places && stage.fit(...bounds(state.places));
+byId("chains").onchange = byId("arrows").onchange = () => showForces();
+byId("draw").onchange = () => showSurfaces();
+byId("show-fringes").onchange = () => showFringes();
+byId("show-charts").onchange = () => (byId("charts").hidden = !byId("show-charts").checked);
+byId("save").onclick = () => {
+    const link = document.createElement("a");
+    stage.timed();
+    link.href = byId("canvas").toDataURL("image/png");
+    link.download = `${index.title}.png`;
+    link.click();
+};
+
+function bounds(places) {
+    return [places.low, places.low.map((value, axis) => value + places.extent[axis])];
+}
+
+// A click that is no drag picks.
+let pressed;
+byId("canvas").addEventListener("pointerdown", (event) => (pressed = [event.offsetX, event.offsetY]));
+byId("canvas").addEventListener("pointerup", (event) => {
+    if (event.button === 0 && pressed && Math.hypot(event.offsetX - pressed[0], event.offsetY - pressed[1]) < 4) {
+        looking.pickAt(event.offsetX, event.offsetY);
+    }
+});
+
+document.addEventListener("keydown", (event) => {
+    if (["INPUT", "SELECT", "BUTTON"].includes(event.target.tagName) && event.target.type !== "checkbox") return;
+    const keys = {
+        " ": () => byId("play").click(),
+        ArrowLeft: () => show(state.frame - 1),
+        ArrowRight: () => show(state.frame + 1),
+        Home: () => show(0),
+        End: () => show(index.times.length - 1),
+        Escape: () => looking.drop(),
+        f: () => byId("fit").click(),
+    };
+    if (!keys[event.key] || event.ctrlKey || event.metaKey) return;
+    event.preventDefault();
+    keys[event.key]();
+});
+
+describe();
+showEnergy();
+if (index.times.length > 0) await show(index.status === "running" ? index.times.length - 1 : 0);
+else
+    byId("message").textContent =
+        index.status === "running" ? "waiting for the first frame ..." : "the run wrote no snapshots of particles";
+follow();
+const pickAt = (x, y) => looking.pickAt(x, y);
+window.stickslip = {
+    state,
+    source,
+    frames,
+    cloud,
+    skins,
+    show,
+    play,
+    stop,
+    pickAt,
+    measure: (seconds) => measure({ stage, cloud, state }, seconds),
+    index: () => index,
+};
