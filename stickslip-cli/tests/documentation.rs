@@ -161,6 +161,7 @@ fn every_key_and_word_of_scene_files_is_explained() {
         "images",
         "supports",
         "loads",
+        "joints",
         "contact",
         "outputs",
         "references",

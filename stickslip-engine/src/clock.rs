@@ -31,7 +31,7 @@ pub fn no_faster<V: Lanes>([wave, speed]: [V; 2], most: V) -> u32 {
 }
 
 /// [`signal_speed`] of a particle [m/s]; of a rigid body's its speed: no wave runs there.
-fn signal<T: Real, const D: usize>(
+pub fn signal<T: Real, const D: usize>(
     body: &Body<T, D>,
     particle: &Particle<T, D>,
     history: &impl Recall<T>,

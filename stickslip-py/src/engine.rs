@@ -132,6 +132,13 @@ impl Engine {
         json(&names.zip(states).collect::<Vec<_>>())
     }
 
+    /// What joints did, with their names.
+    fn joints(&self, py: Python<'_>) -> String {
+        let names = self.scene.joints.iter().map(|joint| joint.name.as_str());
+        let states = py.detach(|| self.handle().joints());
+        json(&names.zip(states).collect::<Vec<_>>())
+    }
+
     /// Contacts since they were asked for before, or since the start.
     fn contacts(&self, py: Python<'_>) -> String {
         let found = py.detach(|| self.contacts_since());

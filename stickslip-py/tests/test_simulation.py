@@ -201,6 +201,19 @@ def test_supports_and_loads_say_what_they_did():
     assert scene.time(relax={}).simulation().relaxation.peaks == 0
 
 
+def test_joints_say_what_they_did():
+    scene = ss.Scene("plane-strain", 0.1, gravity=(0, -9.81))
+    scene.material("steel", density=1000, neo_hookean=dict(young_modulus=1e6, poisson_ratio=0.3))
+    scene.body("wheel", material="steel", shape=ss.disk((0, 0), 0.2), rigid=dict(free=dict(mass=50, inertia=1)))
+    scene.joint("wheel", name="axle", hinge=dict(point=(0, 0), torque="2 N m"))
+    sim = scene.time(end=0.5).simulation()
+    sim.run(until=0.5)
+    axle = sim.joints()["axle"]
+    assert axle.impulse == pytest.approx([0.0, 50 * 9.81 * 0.5, 0.0], rel=1e-9, abs=1e-9)
+    assert (axle.speed, axle.work) == pytest.approx((1.0, 0.5), rel=1e-3)
+    assert axle.way == pytest.approx(0.25, rel=3e-3)
+
+
 def test_callbacks_come_at_multiples_and_may_look_and_write():
     sim = flying().simulation()
     seen = []

@@ -5,10 +5,25 @@ use super::spread::Spread;
 use crate::boundary::Boundary;
 use crate::door::{ContactPatch, ContactSum};
 use crate::grid::Lattice;
-use crate::tensor::Real;
+use crate::tensor::{Real, Vector};
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 use std::hash::{BuildHasherDefault, Hasher};
+
+/// What two rigid bodies did to each other at a point in a step.
+#[derive(Clone, Copy, Debug)]
+pub struct RigidTouch {
+    /// Indices of the bodies, the smaller first.
+    pub bodies: [usize; 2],
+    /// Impulse on the first along the normal [N s].
+    pub push: [f64; 3],
+    /// Impulse on the first across the normal [N s].
+    pub rub: [f64; 3],
+    /// Where [m].
+    pub place: [f64; 3],
+    /// Work of friction [J].
+    pub friction: f64,
+}
 
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 struct ImpulseSums {
@@ -209,6 +224,28 @@ impl ContactSums {
                 *largest = Some(ContactPatch { body_a, body_b, area, half_width, impulse: 0.0 });
             }
         }
+    }
+
+    /// Adds what two rigid bodies did to each other at a point in a step of `duration` [s]; points have no area.
+    pub fn touch(&mut self, touch: &RigidTouch, duration: f64) {
+        let RigidTouch { bodies, push, rub, place, friction, .. } = touch;
+        let pair = self.place(*bodies);
+        let sum = &mut self.pairs[pair].sum;
+        if sum.last_use != self.uses {
+            sum.close(self.uses);
+            sum.last.duration = duration;
+        }
+        sum.last.nodes += 1;
+        let (push, rub) = (Vector(*push), Vector(*rub));
+        let magnitude = (push + rub).norm();
+        sum.magnitude += magnitude;
+        sum.normal += push.norm();
+        for i in 0..3 {
+            sum.tangential[i] += rub.0[i];
+            sum.impulse[i] -= push.0[i] + rub.0[i];
+            sum.moment[i] += magnitude * place[i];
+        }
+        self.rub(*bodies, *friction);
     }
 
     /// Adds work that friction took from two bodies [J].

@@ -18,7 +18,7 @@ mod spread;
 mod surroundings;
 mod survey;
 
-pub use contact_sums::ContactSums;
+pub use contact_sums::{ContactSums, RigidTouch};
 pub use exchange::{common_normal, own_normals};
 pub use friction::{Friction, SurfaceLoad};
 pub use law::{PairLaw, Span};

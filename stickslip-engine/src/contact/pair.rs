@@ -175,7 +175,7 @@ pub(super) mod tests {
     }
 
     pub fn rule(law: ContactLaw, normal: Normal, friction: f64) -> Rule<f64> {
-        Rule { law, normal, friction: Friction::coulomb(friction), max_strain: 0.5 }
+        Rule { law, normal, friction: Friction::coulomb(friction), max_strain: 0.5, restitution: 0.0 }
     }
 
     /// The lighter body's velocity changes by 6 m/s; eqs. (20)-(22) allow the limit along an axis,

@@ -16,6 +16,8 @@ pub struct Rule<T> {
     pub friction: Friction<T>,
     /// Largest strain of a cell by contact in one step, the paper's gamma.
     pub max_strain: T,
+    /// Coefficient of restitution between rigid bodies.
+    pub restitution: f64,
 }
 
 impl<T: Real> From<&ContactRule> for Rule<T> {
@@ -25,6 +27,7 @@ impl<T: Real> From<&ContactRule> for Rule<T> {
             normal: rule.normal,
             friction: Friction::from(rule),
             max_strain: T::of(rule.max_strain),
+            restitution: rule.restitution,
         }
     }
 }

@@ -447,7 +447,7 @@ mod tests {
                     area: 1.0,
                 });
                 let friction = Friction::coulomb(friction);
-                rules.push(Rule { law, normal: Normal::Common, friction, max_strain: 1.0 });
+                rules.push(Rule { law, normal: Normal::Common, friction, max_strain: 1.0, restitution: 0.0 });
             }
         }
         part.sites.push(SharedNode { node: [0; 3], sides: 0..n, encounters: 0..part.encounters.len() });

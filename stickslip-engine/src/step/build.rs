@@ -1,6 +1,6 @@
 //! From a scene to a simulation.
 
-use super::mechanism::JointSums;
+use super::mechanism::{JointSums, RigidSurfaces};
 use super::relax::RelaxationProgress;
 use super::state::{Disorder, Settings, State, Workspace};
 use super::unbounded::Unbounded;
@@ -132,6 +132,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 rules: Rules::new(scene),
                 loads: scene.loads.iter().map(|load| LoadPoints::new(scene, load)).collect(),
                 joints: scene.joints.clone(),
+                surfaces: RigidSurfaces::new(scene),
                 free: free_bodies(scene),
                 longest_rigid: longest_step(scene),
                 time: scene.time.clone(),

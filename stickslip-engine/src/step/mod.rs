@@ -120,7 +120,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.damp(dt); //                                         of v~ for dv
         self.update_velocities_and_positions(dt)?; //             G2P: v_p += dv, x += v~ dt
         self.move_rigid_bodies(dt)?; //                           as prescribed, free ones by their velocities
-        self.account_joints(dt); //                               forces and works of joints
+        self.account_mechanism(dt); //                            forces and works of joints
         self.account(dt, Interpolated::Once); //                  impulses, works, balance of forces
         self.account_loads(dt); //                                forces and works of supports and loads
         Ok(())
@@ -147,7 +147,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.average_dilatation(dt); //                           of nearly incompressible bodies
         self.update_particles(dt)?; //                            G2P: v_p += dv, F, sigma, x += v~ dt
         self.move_rigid_bodies(dt)?; //                           as prescribed, free ones by their velocities
-        self.account_joints(dt); //                               forces and works of joints
+        self.account_mechanism(dt); //                            forces and works of joints
         self.account(dt, Interpolated::Once); //                  impulses, works, balance of forces
         self.account_loads(dt); //                                forces and works of supports and loads
         Ok(())
@@ -181,7 +181,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.average_dilatation(dt); //                           of nearly incompressible bodies
         self.update_stress_and_positions(dt)?; //                 G2P: F, sigma, x += v~ dt
         self.move_rigid_bodies(dt)?; //                           as prescribed, free ones by their velocities
-        self.account_joints(dt); //                               forces and works of joints
+        self.account_mechanism(dt); //                            forces and works of joints
         self.account_loads(dt); //                                forces and works of supports and loads
         Ok(())
     }

@@ -3,7 +3,7 @@
 use super::account::NodeTotals;
 use super::cpu::Threads;
 use super::loads::LoadRoom;
-use super::mechanism::{JointSums, Mechanism};
+use super::mechanism::{JointSums, Mechanism, RigidSurfaces};
 use super::relax::RelaxationProgress;
 use super::unbounded::Unbounded;
 use crate::body::{Body, Totals};
@@ -36,6 +36,8 @@ pub struct Settings<T, const D: usize> {
     pub loads: Vec<LoadPoints>,
     /// What joins rigid bodies.
     pub joints: Vec<Joint>,
+    /// Surfaces of rigid bodies that may touch each other.
+    pub surfaces: RigidSurfaces,
     /// Of each body, whether it is rigid and free; empty where none is.
     pub free: Vec<bool>,
     /// The longest step that rigid bodies allow [s].

@@ -298,8 +298,11 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             2 => solve.impulses(ImpulseRecord::Dropped, listed),
             _ if mechanism.bodies.is_empty() => solve.impulses(ImpulseRecord::Kept, listed),
             _ => {
-                let joints = if number == 1 { &self.settings.joints[..] } else { &[] };
-                let coupling = Coupling { solve, lattice: &self.settings.lattice, joints };
+                let (joints, surfaces) = match number {
+                    1 => (&self.settings.joints[..], Some(&self.settings.surfaces)),
+                    _ => (&[][..], None),
+                };
+                let coupling = Coupling { solve, lattice: &self.settings.lattice, joints, surfaces };
                 let settled = coupling.settle(&mut self.state.bodies, mechanism, listed);
                 self.state.contact_sums.unsettled += u64::from(!settled);
             }

@@ -155,6 +155,10 @@ class Scene:
         """What presses or pulls a part of a body: `on`, `within`, and `force` [N], `traction` or `pressure` [Pa] ..."""
         return self._append("loads", {"body": body, **keys})
 
+    def joint(self, body: str, **keys: Any) -> Scene:
+        """What joins a free rigid body to another, `to`, or the ground: `hinge=dict(point=...)`, `slider`, `ball` ..."""
+        return self._append("joints", {"body": body, **keys})
+
     def domain(self, min: Any, max: Any, **faces: Any) -> Scene:
         """A box that holds all material: its corners [m], and what its faces do (`x_min="symmetry"` ...)."""
         self.document.setdefault("space", {})["domain"] = plain({"min": min, "max": max, **faces}, "space.domain")

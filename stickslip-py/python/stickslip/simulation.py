@@ -283,6 +283,13 @@ class Simulation:
         """
         return {name: Record(state) for name, state in json.loads(self.engine.loads())}
 
+    def joints(self) -> dict[str, Record]:
+        """What joints did since the start on the bodies that they hold, by their names.
+
+        impulse [N s], moment: its sum over time [N m s], way: angle [rad] or length [m], speed: its rate, work [J].
+        """
+        return {name: Record(state) for name, state in json.loads(self.engine.joints())}
+
     @property
     def relaxation(self) -> Record | None:
         """How far dynamic relaxation is: residual, peaks, at_rest; None where the scene asks for none."""

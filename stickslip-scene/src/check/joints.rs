@@ -1,9 +1,10 @@
 //! Free rigid bodies and joints: what they need.
 
 use super::bodies::FillingExtent;
+use super::neighbours::pairs_within;
 use super::table::short;
 use crate::rigid::MassProperties;
-use crate::scene::{Face, JointKind, Problem, Scene};
+use crate::scene::{ContactLaw, Face, JointKind, Problem, Scene};
 use crate::tensor::Vector;
 
 /// A joint holds a body at points this far from it at most, over the size of the larger of its bodies: a bob on a thread
@@ -11,7 +12,7 @@ use crate::tensor::Vector;
 const FARTHEST: f64 = 100.0;
 
 /// # Errors
-/// A free rigid body without bounds or through a mirror, or a joint far from its bodies.
+/// A free rigid body without bounds or through a mirror, a joint far from its bodies, or glue between rigid bodies.
 pub(super) fn check(scene: &Scene, extents: &[FillingExtent]) -> Result<(), Problem> {
     for (i, body) in scene.bodies.iter().enumerate() {
         let Some(free) = body.as_free_rigid() else { continue };
@@ -57,6 +58,29 @@ pub(super) fn check(scene: &Scene, extents: &[FillingExtent]) -> Result<(), Prob
                 found: format!("a point {} m away from a body that it holds", short(farthest)),
                 allowed: format!("a point no farther than {FARTHEST} times their size, {} m", short(size)),
                 help: Some("lengths without a unit are metres".to_string()),
+            });
+        }
+    }
+    glued(scene, extents)
+}
+
+/// # Errors
+/// Glue between rigid bodies.
+fn glued(scene: &Scene, extents: &[FillingExtent]) -> Result<(), Problem> {
+    if scene.bodies.iter().all(|body| body.as_free_rigid().is_none()) {
+        return Ok(());
+    }
+    let boxes: Vec<_> = extents.iter().map(|extent| extent.bounds).collect();
+    for [a, b] in pairs_within(&boxes, scene.discretization.cell) {
+        let rigid = [a, b].iter().all(|&body| scene.bodies[body].is_rigid());
+        let Some(rule) = scene.contact_rule_between(a, b) else { continue };
+        if rigid && scene.may_touch([a, b]) && scene.contact[rule].law == ContactLaw::Glued {
+            let [a, b] = [a, b].map(|body| &scene.bodies[body].name);
+            return Err(Problem {
+                key: format!("contact[{rule}].law"),
+                found: format!("\"glued\" between the rigid bodies `{a}` and `{b}`"),
+                allowed: "another law, and a weld where one of them is free".to_string(),
+                help: Some(format!("[[joints]] with body = {b:?}, to = {a:?}, weld = {{}}")),
             });
         }
     }

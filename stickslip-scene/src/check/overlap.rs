@@ -11,14 +11,15 @@ use rayon::prelude::*;
 /// A particle this share of the spacing inside a body is inside beyond round-off; touching bodies stay allowed.
 const ROUND_OFF: f64 = 1e-6;
 
-/// Refuses particle sites that lie inside two bodies.
+/// Refuses particle sites that lie inside two bodies, but for those that a joint holds together.
 ///
 /// Bodies that overlap by more than a lattice resolves share sites of it. If each has its own, the coarser one may see
 /// what lies between the sites of the finer one.
 pub(super) fn check(scene: &Scene, extents: &[FillingExtent]) -> Result<(), Problem> {
     let boxes: Vec<_> = extents.iter().map(|extent| extent.bounds).collect();
     let pairs = pairs_within(&boxes, 0.0);
-    match pairs.par_iter().find_map_first(|&pair| shared(scene, extents, pair)) {
+    let joined = |[a, b]: [usize; 2]| scene.are_joined(a, b);
+    match pairs.par_iter().find_map_first(|&pair| shared(scene, extents, pair).filter(|_| !joined(pair))) {
         Some(problem) => Err(problem),
         None => Ok(()),
     }

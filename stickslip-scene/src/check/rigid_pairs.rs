@@ -71,8 +71,8 @@ pub(super) fn warning(scene: &Scene, extents: &[FillingExtent]) -> Option<Warnin
     Some(Warning::about(
         format!("bodies[{}].rigid", first.pair[1]),
         format!(
-            "{} overlap {when}, near ({}) m: rigid bodies do not push on each other, they pass; \
-             let one of them deform, or change its path (looked at {LOOKS} times)",
+            "{} overlap {when}, near ({}) m: they pass, for their motion is prescribed; \
+             let one of them be free or deform, or change its path (looked at {LOOKS} times)",
             and_more(&format!("the rigid bodies `{a}` and `{b}`"), met.len() - 1),
             place.join(", ")
         ),

@@ -56,7 +56,7 @@ pub(super) fn rule_reports(scene: &Scene, boxes: &[Bounds]) -> Vec<RuleReport> {
         pairs_within(boxes, scene.discretization.cell).into_iter().chain(named_pairs(scene)).collect()
     };
     let mut reports: BTreeMap<usize, RuleReport> = BTreeMap::new();
-    for [a, b] in pairs.into_iter().filter(|pair| !pair.iter().all(|&body| scene.bodies[body].is_rigid())) {
+    for [a, b] in pairs.into_iter().filter(|&pair| scene.may_touch(pair)) {
         let rule = scene.contact_rule_between(a, b);
         let report = reports.entry(rule.unwrap_or(usize::MAX)).or_insert_with(|| {
             let ContactRule { law, friction, kinetic_friction, friction_given, .. } =
@@ -82,7 +82,15 @@ pub(super) fn named_pairs(scene: &Scene) -> BTreeSet<[usize; 2]> {
 #[derive(Clone, Copy, Default)]
 struct BodyCount {
     deforming: usize,
-    rigid: usize,
+    /// Rigid ones that forces move, and those that move as prescribed.
+    free: usize,
+    prescribed: usize,
+}
+
+impl BodyCount {
+    fn all(self) -> usize {
+        self.deforming + self.free + self.prescribed
+    }
 }
 
 /// Rules, and how many bodies they mean.
@@ -99,9 +107,25 @@ impl<'a> CountedRules<'a> {
         let mut counts = vec![BodyCount::default(); names.classes()];
         for (i, body) in scene.bodies.iter().enumerate() {
             let count = &mut counts[names.class(i)];
-            *(if body.is_rigid() { &mut count.rigid } else { &mut count.deforming }) += 1;
+            *(match body {
+                body if body.is_prescribed() => &mut count.prescribed,
+                body if body.is_rigid() => &mut count.free,
+                _ => &mut count.deforming,
+            }) += 1;
         }
         CountedRules { scene, names, counts }
+    }
+
+    /// Why a rule's restitution does not act, if it does not.
+    fn dead_restitution(&self, rule: usize) -> Option<String> {
+        let [first, second] = self.names.sides(rule);
+        let meet = |a: BodyCount, b: BodyCount| a.free * (b.free + b.prescribed) + a.prescribed * b.free > 0;
+        let acts = first.clone().any(|a| second.clone().any(|b| meet(self.counts[a], self.counts[b])));
+        (self.scene.contact[rule].restitution > 0.0 && !acts).then(|| {
+            "does not act: it is that of rigid bodies of which one is free, and the rule names none; bodies that deform \
+             bounce as their material does"
+                .to_string()
+        })
     }
 
     /// Why a rule never holds, if it does not.
@@ -111,8 +135,8 @@ impl<'a> CountedRules<'a> {
         for a in first.clone() {
             for b in second.clone() {
                 let [p, q] = [a, b].map(|class| self.counts[class]);
-                let (bodies, rigid) = (p.deforming + p.rigid, p.deforming + q.deforming == 0);
-                if a == b && bodies < 2 {
+                let rigid = p.all() + q.all() == p.prescribed + q.prescribed;
+                if a == b && p.all() < 2 {
                     continue;
                 }
                 match self.names.rule(a, b) {
@@ -138,7 +162,7 @@ impl<'a> CountedRules<'a> {
         }
         if all_rigid {
             return Some(format!(
-                "never acts: [{}] matches rigid bodies only, and rigid bodies do not push on each other",
+                "never acts: [{}] matches rigid bodies with prescribed motion only, and these do not push on each other",
                 pair(rule)
             ));
         }
@@ -157,8 +181,12 @@ impl<'a> CountedRules<'a> {
 /// Rules that hold for no pair of bodies, and why.
 pub(super) fn idle(scene: &Scene) -> impl Iterator<Item = Warning> {
     let rules = CountedRules::new(scene);
-    (0..scene.contact.len())
-        .filter_map(move |rule| Some(Warning::about(format!("contact[{rule}]"), rules.idle(rule)?)))
+    (0..scene.contact.len()).filter_map(move |rule| {
+        let never = rules.idle(rule).map(|why| Warning::about(format!("contact[{rule}]"), why));
+        never.or_else(|| {
+            Some(Warning::about(format!("contact[{rule}].restitution"), rules.dead_restitution(rule)?))
+        })
+    })
 }
 
 #[cfg(test)]
@@ -230,6 +258,17 @@ mod tests {
             found[0].starts_with("contact[0]: never acts: [\"b\", \"c\"] matches rigid bodies"),
             "{found:?}"
         );
+    }
+
+    #[test]
+    fn restitution_is_that_of_free_rigid_bodies() {
+        let stiff = |name: &str, x: f64, free: &str| {
+            ball(name, "iron", x).replace("} },", &format!("}}, rigid = {{ {free} }} }},"))
+        };
+        let bodies = ball("a", "clay", 0.0) + &stiff("b", 4.0, "") + &stiff("c", 8.0, "free = {}");
+        let rules = "{ between = ['b', 'c'], restitution = 0.5 }, { between = ['a', 'c'], restitution = 0.5 }";
+        let found = warnings(&bodies, rules);
+        assert!(found.len() == 1 && found[0].starts_with("contact[1].restitution: does not act"), "{found:?}");
     }
 
     #[test]

@@ -228,6 +228,7 @@ impl ContactRule {
             viscosity: 0.0,
             normal,
             max_strain: 0.5,
+            restitution: 0.0,
         }
     }
 

@@ -87,6 +87,13 @@ impl Default for Motor {
     }
 }
 
+impl Joint {
+    /// Whether it leaves bodies less than all motion against each other; springs leave it.
+    pub fn holds(&self) -> bool {
+        !matches!(self.kind, JointKind::Spring { .. })
+    }
+}
+
 impl JointKind {
     /// Its name in reports.
     pub fn name(&self) -> &'static str {

@@ -418,6 +418,9 @@ pub struct ContactRule {
     pub normal: Normal,
     /// Largest strain of a cell by contact in one step, the paper's gamma: 0 to 1.
     pub max_strain: f64,
+    /// Coefficient of restitution between rigid bodies of which one is free: the speed at which they part over that at
+    /// which they met, 0 to 1.
+    pub restitution: f64,
 }
 
 /// When bodies that share a grid node push on each other.
@@ -549,6 +552,20 @@ impl Scene {
     /// Particles of a body along each side of a cell.
     pub(crate) fn per_side(&self, body: &Body) -> f64 {
         body.particles_per_side.unwrap_or(self.discretization.particles_per_side) as f64
+    }
+
+    /// Whether a joint holds two rigid bodies together, which then do not touch each other; springs do not hold.
+    pub fn are_joined(&self, a: usize, b: usize) -> bool {
+        self.joints.iter().any(|joint| {
+            let pair = [(a, b), (b, a)].iter().any(|&(a, b)| joint.body == a && joint.to == Some(b));
+            pair && joint.holds()
+        })
+    }
+
+    /// Whether contact can act between two bodies: not between prescribed ones, nor between those that a joint holds.
+    pub fn may_touch(&self, [a, b]: [usize; 2]) -> bool {
+        let both = |is: fn(&Body) -> bool| is(&self.bodies[a]) && is(&self.bodies[b]);
+        !both(Body::is_prescribed) && !(both(Body::is_rigid) && self.are_joined(a, b))
     }
 
     /// The rule for two bodies, given by index: the first in the file that matches, else the default rule.

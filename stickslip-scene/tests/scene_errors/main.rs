@@ -5,6 +5,7 @@
 
 mod bodies;
 mod images;
+mod joints;
 mod keys;
 mod loads;
 mod many;

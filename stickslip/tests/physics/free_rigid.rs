@@ -35,7 +35,7 @@ fn pendulum(end: f64) -> String {
         r#"
         gravity = [0, -9.81]
         space = {{ dimension = "plane-strain", cell = 0.1 }}
-        time = {{ end = {end}, max_step = 1e-3 }}
+        time = {{ end = {end}, max_step = 1e-4 }}
         {STEEL}
         [[bodies]]
         name = "rod"
@@ -154,7 +154,7 @@ fn momentum_is_exchanged_with_a_body_that_deforms() {
         for update in ["first", "last", "modified-last"] {
             let scene = format!(
                 r#"
-                space = {{ dimension = "plane-strain", cell = 0.05 }}
+                space = {{ dimension = "plane-strain", cell = 0.025 }}
                 time = {{ end = 2, stress_update = "{update}" }}
                 {GEL}
                 [[bodies]]
@@ -186,8 +186,9 @@ fn momentum_is_exchanged_with_a_body_that_deforms() {
             assert!(lost < 1e-12, "{law}, {update}: {lost}");
             assert!(bodies[1].velocity[0] > 0.01, "{law}, {update}: it was not hit: {bodies:?}");
             if law == "surface" {
-                assert!(turned < 1e-3 && drift.abs() < 0.03, "{update}: {turned} {drift}");
+                assert!(turned < 1e-4 && (-0.04..0.0).contains(&drift), "{update}: {turned} {drift}");
             }
+
         }
     }
 }
@@ -239,7 +240,7 @@ fn rolling(update: &str) -> String {
         end = 1
         stress_update = "{update}"
         [materials]
-        stone = {{ density = 1000, neo_hookean = {{ young_modulus = 2e6, poisson_ratio = 0.2 }} }}
+        stone = {{ density = 1000, neo_hookean = {{ young_modulus = 2e7, poisson_ratio = 0.2 }} }}
         [[bodies]]
         name = "floor"
         material = "stone"
@@ -255,20 +256,21 @@ fn rolling(update: &str) -> String {
     )
 }
 
-/// A disk rolls down a slope with 2/3 of g sin(theta).
+/// A rigid disk rolls down a slope with 2/3 of g sin(theta). The floor is stiff enough to give way by 2 mm and soft
+/// enough for the touch to be as wide as a cell: on a stiffer one the disk hops from node to node.
 #[test]
 fn a_rigid_disk_rolls_on_a_floor_that_deforms() {
     let mut simulation = start(&rolling("modified-last"));
-    run_to(&mut *simulation, 1.0, |_| {});
-    let disk = simulation.bodies()[1].clone();
+    let (mut turned, mut time) = (0.0, 0.0);
+    run_to(&mut *simulation, 1.0, |view| {
+        turned -= view.bodies()[1].spin[2] * (view.time() - time);
+        time = view.time();
+    });
+    let rolled = simulation.bodies()[1].position[0];
     let exact = 0.5 * (2.0 / 3.0) * 9.81 * 0.3_f64.sin();
-    println!(
-        "rolled {:.5} m, exact {exact:.5} m; w R / v {:.5}",
-        disk.position[0],
-        -disk.spin[2] * 0.8 / disk.velocity[0]
-    );
-    assert!((disk.position[0] / exact - 1.0).abs() < 5e-3, "{disk:?}");
-    assert!((-disk.spin[2] * 0.8 / disk.velocity[0] - 1.0).abs() < 5e-3, "{disk:?}");
+    println!("rolled {rolled:.5} m, exact {exact:.5} m; turned {:.5} m", turned * 0.8);
+    assert!((rolled / exact - 1.0).abs() < 5e-3, "{rolled} {exact}");
+    assert!((turned * 0.8 / rolled - 1.0).abs() < 1e-2, "{turned} {rolled}");
 }
 
 /// A motor on an axle drives a carriage on a slider; its work is the energy that both have.
@@ -278,7 +280,7 @@ fn motors_do_the_work_that_bodies_gain() {
         r#"
         space = {{ dimension = "plane-strain", cell = 0.1 }}
         gravity = [0, -9.81]
-        time = {{ end = 2, max_step = 1e-3 }}
+        time = {{ end = 2, max_step = 1e-4 }}
         {GEL}
         [[bodies]]
         name = "carriage"
@@ -288,7 +290,7 @@ fn motors_do_the_work_that_bodies_gain() {
         [[bodies]]
         name = "wheel"
         material = "gel"
-        shape.ball = {{ center = [0, 0], radius = 0.4 }}
+        shape.ball = {{ center = [0, 0.7], radius = 0.4 }}
         rigid.free = {{}}
         [[joints]]
         name = "rail"
@@ -298,12 +300,12 @@ fn motors_do_the_work_that_bodies_gain() {
         name = "motor"
         body = "wheel"
         to = "carriage"
-        hinge = {{ point = [0, 0], torque = "30 N m" }}
+        hinge = {{ point = [0, 0.7], torque = "30 N m" }}
         [[joints]]
         name = "brake"
         body = "wheel"
         to = "carriage"
-        hinge = {{ point = [0, 0], speed = "20 rad/s", limit = "10 N m" }}
+        hinge = {{ point = [0, 0.7], speed = "20 rad/s", limit = "10 N m" }}
         "#
     );
     let mut simulation = start(&scene);
@@ -336,7 +338,7 @@ fn a_spring_between_bodies_has_its_period() {
     let scene = format!(
         r#"
         space = {{ dimension = "plane-strain", cell = 0.1 }}
-        time = {{ end = 4, max_step = 1e-3 }}
+        time = {{ end = 4, max_step = 1e-4 }}
         {GEL}
         [[bodies]]
         name = "left"
@@ -394,4 +396,190 @@ fn results_depend_on_no_thread_and_on_no_pause() {
         }
     };
     assert!(outcome(1, paused) == one, "a saved state takes other steps");
+}
+
+fn rigid_scene(dimension: &str, gravity: &str, [end, step]: [f64; 2], rest: &str) -> String {
+    format!(
+        r#"
+        space = {{ dimension = "{dimension}", cell = 0.1 }}
+        gravity = {gravity}
+        time = {{ end = {end}, max_step = {step} }}
+        {GEL}
+        {rest}
+        "#
+    )
+}
+
+/// B1 and B2 for a rigid ball on a rigid slope: it rolls with 5/7 g sin(theta) where friction lets it, else it slides
+/// with g (sin(theta) - mu cos(theta)) and its spin grows with 5/2 mu g cos(theta) / R.
+#[test]
+fn a_rigid_ball_rolls_and_slides_down_a_rigid_slope() {
+    let theta = 0.5_f64;
+    for (friction, dimension) in [(0.5, "3d"), (0.1, "3d"), (0.5, "plane-strain"), (0.05, "plane-strain")] {
+        let (third, place) = if dimension == "3d" { (", 0", "[0, 0.3, 0]") } else { ("", "[0, 0.3]") };
+        let gravity = format!("[{}, {}{third}]", 9.81 * theta.sin(), -9.81 * theta.cos());
+        let rest = format!(
+            r#"
+            bodies = [
+                {{ name = "slope", material = "gel", rigid = {{}},
+                   shape.half_space = {{ point = [0, 0{third}], normal = [0, 1{third}] }} }},
+                {{ name = "ball", material = "gel", rigid = {{ free = {{}} }},
+                   shape.ball = {{ center = {place}, radius = 0.3 }} }},
+            ]
+            contact = [{{ friction = {friction} }}]
+            "#
+        );
+        let mut simulation = start(&rigid_scene(dimension, &gravity, [1.0, 1e-3], &rest));
+        let before = simulation.ledger();
+        run_to(&mut *simulation, 1.0, |_| {});
+        let (after, ball) = (simulation.ledger(), simulation.bodies()[1].clone());
+        let share = if dimension == "3d" { 0.4 } else { 0.5 };
+        let (sin, cos) = (theta.sin(), theta.cos());
+        let rolls = friction * cos * (1.0 + share) >= share * sin;
+        let (pull, turning) = match rolls {
+            true => (sin / (1.0 + share), sin / (1.0 + share)),
+            false => (sin - friction * cos, friction * cos / share),
+        };
+        let [speed, rolled] = [ball.velocity[0] / (9.81 * pull), -ball.spin[2] * 0.3 / (9.81 * turning)];
+        let drift = (after.total - before.total) / after.kinetic;
+        println!(
+            "{dimension}, mu = {friction}: v {speed:.8}, w R {rolled:.8} of the exact ones, drift {drift:.1e}, off {:.1e} m",
+            ball.position[1] - 0.3
+        );
+        assert!((speed - 1.0).abs() < 1e-6 && (rolled - 1.0).abs() < 1e-6);
+        assert!((ball.position[1] - 0.3).abs() < 1e-9 && drift.abs() < 3e-3);
+        assert!((ball.position[0] / (0.5 * 9.81 * pull) - 1.0).abs() < 2e-3);
+    }
+}
+
+/// Two free bodies in oblique impact: momentum to round-off, and they part with the restitution of the rule.
+#[test]
+fn rigid_bodies_bounce_with_the_restitution_of_their_rule() {
+    for (dimension, shape) in [
+        ("plane-strain", "box = { min = [1, -0.2], max = [1.5, 0.4] }"),
+        ("3d", "box = { min = [1, -0.2, -0.3], max = [1.5, 0.4, 0.2] }"),
+        ("3d", "ball = { center = [1.2, 0.1, -0.05], radius = 0.25 }"),
+    ] {
+        for restitution in [0.0, 0.6, 1.0] {
+            let third = if dimension == "3d" { ", 0" } else { "" };
+            let rest = format!(
+                r#"
+                bodies = [
+                    {{ name = "ball", material = "gel", rigid = {{ free = {{}} }}, velocity = [2, 0.1{third}],
+                       shape.ball = {{ center = [0, 0{third}], radius = 0.3 }} }},
+                    {{ name = "other", material = "gel", rigid = {{ free = {{}} }}, velocity = [-1, 0{third}],
+                       shape.{shape} }},
+                ]
+                contact = [{{ restitution = {restitution}, friction = 0.2 }}]
+                "#
+            );
+            let mut simulation = start(&rigid_scene(dimension, &format!("[0, 0{third}]"), [0.6, 1e-3], &rest));
+            let before = simulation.ledger();
+            let mut sums = Vec::new();
+            run_to(&mut *simulation, 0.6, |view| sums = view.contact_sums());
+            let after = simulation.ledger();
+            let lost = distance(before.momentum, after.momentum) / before.momentum[0];
+            let turned = distance(before.angular_momentum, after.angular_momentum) / before.momentum[0];
+            let drift = (after.total - before.total) / before.kinetic;
+            let kept = (after.kinetic + after.friction) / before.kinetic;
+            println!(
+                "{shape}, e = {restitution}: momentum {lost:.1e}, angular {turned:.1e}, energy kept {kept:.4}, drift {drift:.1e}, {:?}",
+                sums[0].impulse
+            );
+            assert!(lost < 1e-13 && turned < 1e-3 && drift.abs() < 1e-12);
+            assert!(sums[0].magnitude > 1.0);
+            match restitution {
+                1.0 => assert!((kept - 1.0).abs() < 1e-9),
+                _ => assert!(after.damping > 0.01 * before.kinetic),
+            }
+        }
+    }
+}
+
+/// Balls that hit a wall straight on come back with exactly e times their speed, and one that bounces on a floor without
+/// loss comes back to its height for hundreds of times.
+#[test]
+fn a_ball_bounces_as_high_as_it_should() {
+    for restitution in [1.0, 0.5] {
+        let rest = format!(
+            r#"
+            bodies = [
+                {{ name = "floor", material = "gel", rigid = {{}},
+                   shape.half_space = {{ point = [0, 0], normal = [0, 1] }} }},
+                {{ name = "ball", material = "gel", rigid = {{ free = {{}} }},
+                   shape.ball = {{ center = [0, 1.3], radius = 0.3 }} }},
+            ]
+            contact = [{{ restitution = {restitution} }}]
+            "#
+        );
+        let mut simulation = start(&rigid_scene("plane-strain", "[0, -9.81]", [200.0, 1e-3], &rest));
+        let (mut highest, mut second) = (0.0_f64, 0.0_f64);
+        let period = 2.0 * (2.0_f64 / 9.81).sqrt();
+        let end = if restitution == 1.0 { 100.0 * period } else { 5.0 };
+        run_to(&mut *simulation, end, |view| {
+            let height = view.bodies()[1].position[1] - 0.3;
+            if view.time() > end - 1.01 * period {
+                highest = highest.max(height);
+            }
+            if view.time() > 0.55 * period && view.time() < 0.95 * period {
+                second = second.max(height);
+            }
+            assert!(height > -1e-9, "{height} at {}", view.time());
+        });
+        println!("e = {restitution}: {highest:.6} m high at the end, {second:.6} m after one bounce");
+        match restitution {
+            1.0 => assert!((highest - 1.0).abs() < 5e-3),
+            _ => assert!((second - 0.25).abs() < 5e-3 && highest < 1e-6),
+        }
+    }
+}
+
+/// A box slides on a slope and stops where friction says, a stack of boxes stands still, and a box that is tipped past
+/// its edge falls.
+#[test]
+fn boxes_slide_stand_and_tip() {
+    let boxes = |gravity: &str, more: &str| {
+        let rest = format!(
+            r#"
+            bodies = [
+                {{ name = "floor", material = "gel", rigid = {{}},
+                   shape.half_space = {{ point = [0, 0, 0], normal = [0, 1, 0] }} }},
+                {more}
+            ]
+            contact = [{{ friction = 0.3 }}]
+            "#
+        );
+        rigid_scene("3d", gravity, [2.0, 1e-3], &rest)
+    };
+    let cube = |name: &str, y: f64, velocity: f64| {
+        format!(
+            "{{ name = \"{name}\", material = \"gel\", rigid = {{ free = {{}} }}, velocity = [{velocity}, 0, 0],
+               shape.box = {{ min = [0, {y}, 0], max = [0.4, {}, 0.4] }} }},",
+            y + 0.4
+        )
+    };
+    // v^2 / (2 mu g)
+    let mut simulation = start(&boxes("[0, -9.81, 0]", &cube("cube", 0.0, 2.0)));
+    run_to(&mut *simulation, 1.0, |_| {});
+    let slid = simulation.bodies()[1].position[0] - 0.2;
+    let exact = 4.0 / (2.0 * 0.3 * 9.81);
+    println!("slid {slid:.5} m, exact {exact:.5} m, turned {:?}", simulation.bodies()[1].spin);
+    assert!((slid / exact - 1.0).abs() < 3e-3);
+    // Three on each other, on a slope that friction holds.
+    let stack: String = (0..3).map(|i| cube(&format!("cube {i}"), 0.4 * f64::from(i), 0.0)).collect();
+    let mut simulation = start(&boxes("[1.5, -9.7, 0.5]", &stack));
+    run_to(&mut *simulation, 1.0, |_| {});
+    let bodies = simulation.bodies();
+    println!("the stack: {:?}, unsettled {}", bodies[3], simulation.ledger().unsettled_nodes);
+    for (i, body) in bodies[1..].iter().enumerate() {
+        let start = [0.2, 0.2 + 0.4 * i as f64, 0.2];
+        assert!(distance(body.position, start) < 1e-6, "{body:?}");
+    }
+    assert_eq!(simulation.ledger().unsettled_nodes, 0);
+    // Tower of three on a slope steeper than its base over its height: it tips.
+    let mut simulation = start(&boxes("[2.8, -9.4, 0]", &stack));
+    run_to(&mut *simulation, 1.0, |_| {});
+    let moved = simulation.bodies()[3].position[0] - 0.2;
+    println!("the steep stack: {moved:.4} m");
+    assert!(moved > 0.0);
 }

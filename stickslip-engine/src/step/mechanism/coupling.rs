@@ -1,13 +1,15 @@
 //! Velocities of free rigid bodies, impulses of contact and those of joints, found together.
 
 use super::joint::poses;
-use super::row::{Row, solve};
+use super::row::{JointRow, Row, solve};
+use super::surfaces::RigidSurfaces;
 use super::six::{self, Six, SixFactor, SixMatrix, at, join};
-use super::{FreeBody, Mechanism};
+use super::{FreeBody, Mechanism, slot};
 use crate::body::Body;
 use crate::contact::{Impulses, Solve, Span};
 use crate::grid::Lattice;
 use crate::scene::Joint;
+use super::touch::Touch;
 use crate::tensor::{Real, Vector};
 
 /// A use of contact in which free rigid bodies take part.
@@ -25,8 +27,9 @@ pub struct Coupling<'a, T, const D: usize> {
     pub solve: Solve<'a, T, D>,
     /// Where nodes are.
     pub lattice: &'a Lattice<T, D>,
-    /// The joints that hold in this use.
+    /// The joints that hold in this use, and whether rigid bodies push on each other in it.
     pub joints: &'a [Joint],
+    pub surfaces: Option<&'a RigidSurfaces>,
 }
 
 /// Rounds at most.
@@ -67,6 +70,7 @@ impl<T: Real, const D: usize> Coupling<'_, T, D> {
         }
         let (touched, parts) = self.touched(bodies, &mechanism.bodies);
         self.find_rows(mechanism, dt);
+        self.find_touches(bodies, mechanism, dt);
         let count = mechanism.bodies.len();
         let mut settled = false;
         for round in 0..MAX_ROUNDS {
@@ -82,8 +86,9 @@ impl<T: Real, const D: usize> Coupling<'_, T, D> {
                 })
                 .collect();
             self.find_off(bodies, mechanism, dt);
-            mechanism.rows.iter_mut().for_each(|row| row.respond(&factors));
-            let joints_settled = solve(&mut mechanism.rows, &mut changes);
+            mechanism.rows.iter_mut().for_each(|held| held.row.respond(&factors));
+            mechanism.touches.iter_mut().flat_map(Touch::rows_mut).for_each(|row| row.respond(&factors));
+            let held = solve(&mut mechanism.rows, &mut mechanism.touches, &mut changes);
             let (mut moved, mut speed, mut far) = (0.0_f64, 0.0_f64, 0.0_f64);
             for (free, change) in mechanism.bodies.iter_mut().zip(&changes) {
                 let gained = free.inertia.times(change);
@@ -100,9 +105,9 @@ impl<T: Real, const D: usize> Coupling<'_, T, D> {
             }
             let tolerance = TOLERANCE.max(ROUND_OFF * T::EPSILON.f64());
             // Joints see places, which are no nearer than round-off.
-            let round_off = if self.joints.is_empty() { 0.0 } else { ROUND_OFF * f64::EPSILON * far / dt };
+            let round_off = if self.joints.is_empty() && mechanism.touches.is_empty() { 0.0 } else { ROUND_OFF * f64::EPSILON * far / dt };
             if moved <= tolerance * speed + round_off {
-                settled = joints_settled;
+                settled = held;
                 break;
             }
         }
@@ -201,8 +206,7 @@ impl<T: Real, const D: usize> Coupling<'_, T, D> {
         let Mechanism { bodies, links, rows, .. } = mechanism;
         rows.clear();
         for (number, joint) in self.joints.iter().enumerate() {
-            let slot = |body: usize| bodies.binary_search_by_key(&body, |free| free.index).ok();
-            let held = [slot(joint.body), joint.to.and_then(slot)];
+            let held = [slot(bodies, joint.body), joint.to.and_then(|to| slot(bodies, to))];
             links[number].rows((number, joint), (held, D, dt), rows);
         }
     }
@@ -212,7 +216,7 @@ impl<T: Real, const D: usize> Coupling<'_, T, D> {
         let motion = |body: usize| bodies[body].motion.as_ref().expect("joints hold rigid bodies");
         let mut rows = mechanism.rows.iter_mut().peekable();
         for (number, joint) in self.joints.iter().enumerate() {
-            if rows.peek().is_none_or(|row: &&mut Row| row.joint != number) {
+            if rows.peek().is_none_or(|held: &&mut JointRow| held.joint != number) {
                 continue;
             }
             let after = poses(joint, |body| motion(body).next_pose(dt));
@@ -221,9 +225,38 @@ impl<T: Real, const D: usize> Coupling<'_, T, D> {
             let center = motion(joint.body).pose().begun();
             let time = mechanism.time;
             let off = mechanism.links[number].off(joint, (after, velocities, center), (D, time, dt));
-            while let Some(row) = rows.next_if(|row| row.joint == number) {
-                row.off = off[row.number];
+            while let Some(held) = rows.next_if(|held| held.joint == number) {
+                held.row.off = off[held.number];
             }
+        }
+        for touch in &mut mechanism.touches {
+            let pair = touch.contact.bodies.map(motion);
+            let velocities = pair.map(|motion| join(motion.velocity(), motion.spin()));
+            let along = |row: &Row| {
+                six::dot(&row.directions[0], &velocities[0]) + six::dot(&row.directions[1], &velocities[1])
+            };
+            touch.normal.off = along(&touch.normal) - touch.parting;
+            for row in &mut touch.tangents {
+                row.off = along(row);
+            }
+        }
+    }
+
+    /// Where rigid bodies touch in this step.
+    fn find_touches(&self, bodies: &[Body<T, D>], mechanism: &mut Mechanism, dt: f64) {
+        mechanism.touches.clear();
+        let Some(surfaces) = self.surfaces else { return };
+        let rules = self.solve.rules;
+        for contact in surfaces.contacts(bodies, rules, dt) {
+            let motions = contact.bodies.map(|body| bodies[body].motion.as_ref().expect("it is rigid"));
+            let slots = contact.bodies.map(|body| mechanism.slot(body));
+            let start = [0, 1].map(|side| match slots[side] {
+                Some(slot) => mechanism.bodies[slot].start,
+                None => join(motions[side].velocity(), motions[side].spin()),
+            });
+            let [a, b] = contact.bodies;
+            let (rule, centers) = (rules.rule(rules.number(a, b)), motions.map(|motion| motion.center));
+            mechanism.touches.push(Touch::new(contact, rule, (slots, centers, start), (D, dt)));
         }
     }
 
@@ -240,13 +273,17 @@ impl<T: Real, const D: usize> Coupling<'_, T, D> {
             free.momenta = free.target;
             six::add(&mut free.momenta, 1.0, impulse);
         }
-        for row in &mechanism.rows {
+        let Mechanism { bodies: free, links, rows, touches, .. } = &mut *mechanism;
+        let all = rows.iter().map(|held| &held.row).chain(touches.iter().flat_map(Touch::rows));
+        for row in all {
             for side in 0..2 {
                 if let Some(body) = row.bodies[side] {
-                    six::add(&mut mechanism.bodies[body].momenta, row.impulse, &row.directions[side]);
+                    six::add(&mut free[body].momenta, row.impulse, &row.directions[side]);
                 }
             }
-            mechanism.links[row.joint].take(row);
+        }
+        for held in rows {
+            links[held.joint].take(&held.row);
         }
         for free in &mechanism.bodies {
             let motion = bodies[free.index].motion.as_mut().expect("it is rigid");

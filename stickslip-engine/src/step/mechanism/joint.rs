@@ -1,6 +1,6 @@
 //! What a joint pushes with and what it holds.
 
-use super::row::Row;
+use super::row::{JointRow, Row};
 use super::six::{Six, at, join};
 use super::velocity_at;
 use crate::body::Body;
@@ -58,7 +58,7 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
 }
 
 /// Two unit vectors across a unit vector and each other.
-fn across(axis: [f64; 3]) -> [[f64; 3]; 2] {
+pub fn across(axis: [f64; 3]) -> [[f64; 3]; 2] {
     let least = (0..3).min_by(|&i, &j| axis[i].abs().total_cmp(&axis[j].abs())).unwrap_or(0);
     let other = std::array::from_fn(|i| f64::from(u8::from(i == least)));
     let first = Vector(cross(axis, other)).direction().expect("they are not parallel").0;
@@ -186,11 +186,12 @@ impl Link {
         &self,
         (number, joint): (usize, &Joint),
         (bodies, dimension, dt): ([Option<usize>; 2], usize, f64),
-        rows: &mut Vec<Row>,
+        rows: &mut Vec<JointRow>,
     ) {
         let mut count = 0;
         let mut hold = |directions: [Six; 2], limit: f64| {
-            rows.push(Row::new((number, count), bodies, (directions, limit)));
+            let row = Row::new(bodies, directions);
+            rows.push(JointRow { joint: number, number: count, row, limit });
             count += 1;
         };
         for direction in self.held(joint, dimension) {

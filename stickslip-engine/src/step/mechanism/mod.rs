@@ -16,9 +16,12 @@ mod coupling;
 mod joint;
 mod row;
 mod six;
+mod surfaces;
+mod touch;
 
 pub use coupling::Coupling;
 pub use joint::JointSums;
+pub use surfaces::RigidSurfaces;
 
 use super::Engine;
 use crate::basis::Basis;
@@ -26,8 +29,9 @@ use crate::lanes::Laned;
 use crate::rigid::RigidMotion;
 use crate::tensor::{Vector, cross};
 use joint::Link;
-use row::Row;
+use row::{JointRow, Row};
 use six::{Six, SixMatrix, join};
+use touch::Touch;
 use std::time::Instant;
 
 /// Free rigid bodies and joints in a step.
@@ -38,7 +42,9 @@ pub struct Mechanism {
     /// The joints, in the order of the scene.
     links: Vec<Link>,
     /// Room for what joints hold.
-    rows: Vec<Row>,
+    rows: Vec<JointRow>,
+    /// Where rigid bodies touch each other.
+    touches: Vec<Touch>,
     /// When the step began [s].
     time: f64,
 }
@@ -58,6 +64,18 @@ pub struct FreeBody {
     inertia: SixMatrix,
     /// How far its points are from its centre, by its inertia [m]: speeds of turning count with this.
     radius: f64,
+}
+
+/// The place of a body among the free ones.
+fn slot(bodies: &[FreeBody], body: usize) -> Option<usize> {
+    bodies.binary_search_by_key(&body, |free| free.index).ok()
+}
+
+impl Mechanism {
+    /// The place of a body among the free ones.
+    fn slot(&self, body: usize) -> Option<usize> {
+        slot(&self.bodies, body)
+    }
 }
 
 impl FreeBody {
@@ -102,7 +120,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let (dt, time) = (dt.f64(), self.state.time);
         let (free, bodies) = (&self.settings.free, &mut self.state.bodies);
         let mut impulses = vec![[0.0; 6]; mechanism.bodies.len()];
-        let slot = |body: usize| mechanism.bodies.binary_search_by_key(&body, |free| free.index).ok();
+        let slot = |body: usize| slot(&mechanism.bodies, body);
         if !self.settings.loads.is_empty() {
             let forces = self.workspace.loads.forces_on(&self.settings.loads, |body| free[body]);
             for (body, force, place) in forces {
@@ -135,21 +153,42 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.watch.lap("mechanism", start);
     }
 
-    /// Books what joints did in the step, once velocities are known.
-    pub(super) fn account_joints(&mut self, dt: T) {
+    /// Books what joints and the contacts of rigid bodies did in the step, once velocities are known. Works are those of
+    /// impulses on the mean of the velocities before and after, which is what they change of the kinetic energy.
+    pub(super) fn account_mechanism(&mut self, dt: T) {
         let mechanism = &self.workspace.mechanism;
-        if mechanism.links.is_empty() {
+        if mechanism.bodies.is_empty() {
             return;
         }
         let bodies = &self.state.bodies;
+        let mean = |body: usize| {
+            let motion = bodies[body].motion.as_ref().expect("joints and these contacts are of rigid bodies");
+            let after = join(motion.velocity(), motion.spin());
+            match mechanism.slot(body) {
+                Some(slot) => std::array::from_fn(|k| 0.5 * (mechanism.bodies[slot].start[k] + after[k])),
+                None => after,
+            }
+        };
+        let mut work = 0.0;
+        for touch in mechanism.touches.iter().filter(|touch| touch.normal.impulse > 0.0) {
+            let means = touch.contact.bodies.map(mean);
+            let works = |row: &Row| [0, 1].map(|side| row.impulse * six::dot(&row.directions[side], &means[side]));
+            let lost = |row: &Row| -works(row).iter().sum::<f64>();
+            let rubbed: f64 = touch.tangents.iter().map(lost).sum();
+            self.state.damping += lost(&touch.normal);
+            // What prescribed bodies put in.
+            for row in touch.rows() {
+                let prescribed = (0..2).filter(|side| row.bodies[*side].is_none());
+                work -= prescribed.map(|side| works(row)[side]).sum::<f64>();
+            }
+            self.state.contact_sums.touch(&touch.sum(rubbed), dt.f64());
+        }
+        self.state.contact_sums.work += work;
         for (i, joint) in self.settings.joints.iter().enumerate() {
             let (link, sums) = (&mechanism.links[i], &mut self.state.joints[i]);
             link.book(sums, |side| {
                 let body = [Some(joint.body), joint.to][side]?;
-                let slot = mechanism.bodies.binary_search_by_key(&body, |free| free.index).ok()?;
-                let motion = bodies[body].motion.as_ref()?;
-                let after = join(motion.velocity(), motion.spin());
-                Some(std::array::from_fn(|k| 0.5 * (mechanism.bodies[slot].start[k] + after[k])))
+                mechanism.slot(body).map(|_| mean(body))
             });
             sums.measure(joint, bodies, dt.f64());
         }

@@ -1,22 +1,18 @@
-//! One equation that a joint holds, and how all of them are solved.
+//! One equation that a joint or a contact holds, and how all of them are solved.
 
 use super::six::{self, Six, SixFactor};
+use super::touch::Touch;
 
-/// One equation that a joint holds in a step: along it, two bodies have no velocity against each other that leads away
-/// from where the joint wants them.
+/// One equation in a step: along it, two bodies have no velocity against each other that leads away from where a joint
+/// wants them, or toward each other where they touch.
 #[derive(Clone, Copy, Debug)]
 pub struct Row {
-    /// Number of the joint, and of the equation in it.
-    pub joint: usize,
-    pub number: usize,
     /// Places of the free bodies in the mechanism; `None`: what no impulse moves.
     pub bodies: [Option<usize>; 2],
     /// What an impulse along it does to each body per unit; its velocity along it is this times the velocities.
     pub directions: [Six; 2],
     /// Impulse so far [N s, N m s].
     pub impulse: f64,
-    /// The largest impulse.
-    pub limit: f64,
     /// Velocity along it that is too much, as found so far [m/s, rad/s].
     pub off: f64,
     /// What an impulse of one changes of the bodies' velocities.
@@ -25,23 +21,20 @@ pub struct Row {
     yields: f64,
 }
 
+/// An equation that a joint holds.
+#[derive(Clone, Copy, Debug)]
+pub struct JointRow {
+    /// Number of the joint, and of the equation in it.
+    pub joint: usize,
+    pub number: usize,
+    pub row: Row,
+    /// The largest impulse.
+    pub limit: f64,
+}
+
 impl Row {
-    pub fn new(
-        (joint, number): (usize, usize),
-        bodies: [Option<usize>; 2],
-        (directions, limit): ([Six; 2], f64),
-    ) -> Self {
-        Row {
-            joint,
-            number,
-            bodies,
-            directions,
-            impulse: 0.0,
-            limit,
-            off: 0.0,
-            response: [[0.0; 6]; 2],
-            yields: 0.0,
-        }
+    pub fn new(bodies: [Option<usize>; 2], directions: [Six; 2]) -> Self {
+        Row { bodies, directions, impulse: 0.0, off: 0.0, response: [[0.0; 6]; 2], yields: 0.0 }
     }
 
     /// Takes the inertia of the bodies, by the factors of their matrices.
@@ -67,6 +60,29 @@ impl Row {
             }
         }
     }
+
+    /// The impulse that leaves no velocity along it, were it the only equation; so much yields count for one.
+    fn wanted(&self, changes: &[Six], yields: f64) -> f64 {
+        self.impulse - (self.off + self.along(changes)) / yields
+    }
+}
+
+/// What a sweep over all equations changed.
+#[derive(Default)]
+struct Sweep {
+    /// The largest change of a velocity, and the largest velocity that an impulse makes.
+    moved: f64,
+    largest: f64,
+}
+
+impl Sweep {
+    fn set(&mut self, row: &mut Row, impulse: f64, changes: &mut [Six]) {
+        let change = impulse - row.impulse;
+        row.impulse = impulse;
+        row.give(change, changes);
+        self.moved = self.moved.max((change * row.yields).abs());
+        self.largest = self.largest.max((impulse * row.yields).abs()).max(row.off.abs());
+    }
 }
 
 /// Sweeps over all equations at most.
@@ -75,22 +91,33 @@ const MAX_SWEEPS: usize = 2000;
 const TOLERANCE: f64 = 1e-14;
 
 /// Finds the impulses with which all equations hold, and adds what they change to the bodies' changes of velocity
-/// (projected Gauss-Seidel); says whether they came to rest.
-pub fn solve(rows: &mut [Row], changes: &mut [Six]) -> bool {
-    for row in rows.iter() {
+/// (projected Gauss-Seidel; friction on the disc of De Saxce and Feng 1998); says whether they came to rest.
+pub fn solve(held: &mut [JointRow], touches: &mut [Touch], changes: &mut [Six]) -> bool {
+    for row in held.iter().map(|held| &held.row).chain(touches.iter().flat_map(Touch::rows)) {
         row.give(row.impulse, changes);
     }
     for _ in 0..MAX_SWEEPS {
-        let (mut moved, mut largest) = (0.0_f64, 0.0_f64);
-        for row in rows.iter_mut().filter(|row| row.yields > 0.0) {
-            let before = row.impulse;
-            let wanted = before - (row.off + row.along(changes)) / row.yields;
-            row.impulse = wanted.clamp(-row.limit, row.limit);
-            row.give(row.impulse - before, changes);
-            moved = moved.max(((row.impulse - before) * row.yields).abs());
-            largest = largest.max((row.impulse * row.yields).abs()).max(row.off.abs());
+        let mut sweep = Sweep::default();
+        for JointRow { row, limit, .. } in held.iter_mut().filter(|held| held.row.yields > 0.0) {
+            let wanted = row.wanted(changes, row.yields).clamp(-*limit, *limit);
+            sweep.set(row, wanted, changes);
         }
-        if moved <= TOLERANCE * largest {
+        for touch in touches.iter_mut().filter(|touch| touch.normal.yields > 0.0) {
+            let push = touch.normal.wanted(changes, touch.normal.yields).max(0.0);
+            sweep.set(&mut touch.normal, push, changes);
+            let strength = touch.strength();
+            let yields = touch.tangents.iter().map(|row| row.yields).fold(0.0, f64::max);
+            if touch.friction == 0.0 || yields == 0.0 {
+                continue;
+            }
+            let wanted = [0, 1].map(|i| touch.tangents.get(i).map_or(0.0, |row| row.wanted(changes, yields)));
+            let size = wanted[0].hypot(wanted[1]);
+            let scale = if size > strength { strength / size } else { 1.0 };
+            for (row, wanted) in touch.tangents.iter_mut().zip(wanted) {
+                sweep.set(row, scale * wanted, changes);
+            }
+        }
+        if sweep.moved <= TOLERANCE * sweep.largest {
             return true;
         }
     }

@@ -43,6 +43,9 @@ table! {
         /// Largest strain of a cell by contact in one step, the paper's gamma, above 0 and up to 1.
         #[schemars(extend("default" = ContactRule::default().max_strain))]
         max_strain: Option<QuantityInput<Ratio>>,
+        /// Speed at which rigid bodies part over the speed at which they met, 0 to 1; where one of them is free.
+        #[schemars(extend("default" = 0))]
+        restitution: Option<QuantityInput<Ratio>>,
     }
 }
 
@@ -154,6 +157,9 @@ impl Contact {
             viscosity: bond(&self.viscosity, normal, context)?,
             normal,
             max_strain,
+            restitution: self.restitution.as_ref().map_or(Ok(0.0), |restitution| {
+                restitution.checked(context, "a number from 0 to 1", |value| (0.0..=1.0).contains(&value))
+            })?,
         })
     }
 }

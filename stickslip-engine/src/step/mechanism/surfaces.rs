@@ -1,0 +1,314 @@
+//! Where the exact surfaces of rigid bodies are near each other.
+
+use crate::body::Body;
+use crate::contact::Rules;
+use crate::geometry::{Bounds, SignedDistance};
+use crate::rigid::{Pose, RigidMotion};
+use crate::scene::{ContactLaw, Scene};
+use crate::tensor::{Real, Vector, cross};
+use std::collections::HashSet;
+
+/// Points on the surface of a body are this part of its size apart at most.
+const FINEST: f64 = 1.0 / 12.0;
+/// How far apart two surfaces may be for the next step to matter, over what they can approach each other in a step.
+const AHEAD: f64 = 1.5;
+/// Points whose distances differ by less than this touch alike, over the distance between points.
+const ALIKE: f64 = 1e-3;
+/// The cosine of the angle within which normals are those of one flat contact.
+const FLAT: f64 = 0.9998;
+/// Steps of the search for the nearest point at most, and where it ends, over the distance between points.
+const MAX_STEPS: usize = 40;
+const FOUND: f64 = 1e-9;
+
+/// A rigid body's surface, as points on the shape at the start.
+#[derive(Clone, Debug)]
+struct RigidSurface {
+    body: usize,
+    points: Vec<[f64; 3]>,
+    /// A ball around the body where it is at the start; without bounds the radius is infinite.
+    center: [f64; 3],
+    reach: f64,
+    /// How far apart the points are [m].
+    spacing: f64,
+}
+
+/// The surfaces of all rigid bodies that may touch others of them.
+#[derive(Clone, Debug, Default)]
+pub struct RigidSurfaces {
+    all: Vec<RigidSurface>,
+    /// Bodies that a joint holds together do not touch each other.
+    joined: HashSet<[usize; 2]>,
+    dimension: usize,
+}
+
+/// A place where two rigid bodies touch, or may in this step.
+#[derive(Clone, Copy, Debug)]
+pub struct RigidContact {
+    /// Indices of the bodies, the smaller first.
+    pub bodies: [usize; 2],
+    /// Where [m].
+    pub place: [f64; 3],
+    /// Unit normal from the second body to the first.
+    pub normal: [f64; 3],
+    /// Distance between the surfaces, negative where they overlap [m].
+    pub gap: f64,
+}
+
+impl RigidSurfaces {
+    /// The surfaces of a scene; none where no rigid body is free.
+    pub fn new(scene: &Scene) -> Self {
+        if scene.bodies.iter().all(|body| body.as_free_rigid().is_none()) {
+            return RigidSurfaces::default();
+        }
+        let axes = scene.dimension.axes();
+        let surface = |(index, body): (usize, &crate::scene::Body)| {
+            let spacing = scene.lattice(body).spacing;
+            let Some(bounds) = body.shape.bounds(axes).filter(Bounds::is_finite) else {
+                let unbounded = RigidSurface {
+                    body: index,
+                    points: Vec::new(),
+                    center: [0.0; 3],
+                    reach: f64::INFINITY,
+                    spacing,
+                };
+                return unbounded;
+            };
+            let size = bounds.size()[..axes].iter().copied().fold(f64::INFINITY, f64::min);
+            let spacing = spacing.min(FINEST * size);
+            let points = body.shape.surface(spacing, axes, &bounds);
+            let center: [f64; 3] = std::array::from_fn(|k| 0.5 * (bounds.min[k] + bounds.max[k]));
+            let points: Vec<_> = points.into_iter().map(|point| point.position).collect();
+            let far = |point: &[f64; 3]| (Vector(*point) - Vector(center)).norm();
+            let reach = points.iter().map(far).fold(0.0, f64::max) + spacing;
+            RigidSurface { body: index, points, center, reach, spacing }
+        };
+        let rigid = scene.bodies.iter().enumerate().filter(|(_, body)| body.is_rigid());
+        let joined = (scene.joints.iter().filter(|joint| joint.holds()))
+            .filter_map(|joint| Some([joint.body.min(joint.to?), joint.body.max(joint.to?)]))
+            .collect();
+        RigidSurfaces { all: rigid.map(surface).collect(), joined, dimension: axes }
+    }
+
+    /// Where free rigid bodies touch other rigid bodies or may within a step, ordered by pair.
+    ///
+    /// Each point of a body's surface that is near another body is moved along its own surface, by no more than points
+    /// are apart, to where it is nearest to the other one. Of a flat contact the points at its rim stay, which carry any
+    /// force and moment that all of them can.
+    pub fn contacts<T: Real, const D: usize>(
+        &self,
+        bodies: &[Body<T, D>],
+        rules: &Rules<T>,
+        dt: f64,
+    ) -> Vec<RigidContact> {
+        let placed: Vec<PlacedSurface<T, D>> =
+            self.all.iter().map(|surface| PlacedSurface::new(surface, &bodies[surface.body])).collect();
+        // Along x, then by the balls around them.
+        let mut order: Vec<usize> = (0..placed.len()).collect();
+        let lower = |i: usize| placed[i].center[0] - placed[i].reach - placed[i].way(dt);
+        order.sort_by(|&i, &j| lower(i).total_cmp(&lower(j)));
+        let mut found = Vec::new();
+        for (rank, &i) in order.iter().enumerate() {
+            let upper = placed[i].center[0] + placed[i].reach + placed[i].way(dt);
+            for &j in order[rank + 1..].iter().take_while(|&&j| lower(j) <= upper) {
+                let pair = [&placed[i.min(j)], &placed[i.max(j)]];
+                let [a, b] = pair.map(|placed| placed.surface.body);
+                let free = pair.iter().any(|placed| placed.motion.as_free().is_some());
+                let acts = || rules.rule(rules.number(a, b)).law != ContactLaw::None;
+                if free && !self.joined.contains(&[a, b]) && acts() {
+                    self.between(pair, dt, &mut found);
+                }
+            }
+        }
+        // The sort is stable: contacts of a pair stay in the order in which they were found.
+        found.sort_by_key(|contact| contact.bodies);
+        found
+    }
+
+    fn between<T, const D: usize>(
+        &self,
+        pair: [&PlacedSurface<T, D>; 2],
+        dt: f64,
+        found: &mut Vec<RigidContact>,
+    ) {
+        let [a, b] = pair;
+        let away = (Vector(a.center) - Vector(b.center)).norm();
+        let margin = AHEAD * (a.way(dt) + b.way(dt));
+        let far = |one: &PlacedSurface<T, D>, other: &PlacedSurface<T, D>| {
+            other.reach.is_infinite() && one.reach.is_finite() && {
+                let level = other.level(one.center);
+                level.distance > one.reach + margin
+            }
+        };
+        if away > a.reach + b.reach + margin || far(a, b) || far(b, a) {
+            return;
+        }
+        let bodies = pair.map(|placed| placed.surface.body);
+        let mut near = Vec::new();
+        for (one, other, sign) in [(a, b, 1.0), (b, a, -1.0)] {
+            for &point in &one.surface.points {
+                let place = one.pose.now(point);
+                if (Vector(place) - Vector(other.center)).norm() > other.reach + margin + one.surface.spacing {
+                    continue;
+                }
+                if other.level(place).distance > margin + one.surface.spacing {
+                    continue;
+                }
+                let (place, level) = one.nearest(place, other);
+                let Some(normal) = Vector(level.gradient).direction() else { continue };
+                if level.distance <= margin {
+                    let normal = normal.0.map(|n| sign * n);
+                    near.push(RigidContact { bodies, place, normal, gap: level.distance });
+                }
+            }
+        }
+        let alike = ALIKE * a.surface.spacing.min(b.surface.spacing);
+        reduce(near, alike, self.dimension, found);
+    }
+}
+
+/// A surface where its body is now.
+struct PlacedSurface<'a, T, const D: usize> {
+    surface: &'a RigidSurface,
+    body: &'a Body<T, D>,
+    motion: &'a RigidMotion,
+    pose: Pose,
+    center: [f64; 3],
+    reach: f64,
+}
+
+impl<'a, T, const D: usize> PlacedSurface<'a, T, D> {
+    fn new(surface: &'a RigidSurface, body: &'a Body<T, D>) -> Self {
+        let motion = body.motion.as_ref().expect("it is rigid");
+        let pose = motion.pose();
+        PlacedSurface { surface, body, motion, pose, center: pose.now(surface.center), reach: surface.reach }
+    }
+
+    /// The longest way of its points in a step [m].
+    fn way(&self, dt: f64) -> f64 {
+        let speed = Vector(self.motion.velocity()).norm();
+        let turn = Vector(self.motion.spin()).norm();
+        let off = (Vector(self.center) - Vector(self.motion.center)).norm();
+        let reach = if self.reach.is_finite() { self.reach + off } else { 0.0 };
+        // What gravity and pushes add in a step is less than what a point is apart from the next.
+        dt * (speed + turn * reach) + ALIKE * self.surface.spacing
+    }
+
+    /// Signed distance to its surface where it is now.
+    fn level(&self, place: [f64; 3]) -> SignedDistance {
+        let level = self.body.whole.level(self.pose.start(place));
+        SignedDistance { gradient: self.pose.turned(level.gradient), ..level }
+    }
+
+    /// The point of its surface next to `place`.
+    fn onto(&self, mut place: Vector<f64, 3>) -> Vector<f64, 3> {
+        for _ in 0..3 {
+            let level = self.level(place.0);
+            if !level.distance.is_finite() {
+                break;
+            }
+            place = place - Vector(level.gradient) * level.distance;
+        }
+        place
+    }
+
+    /// From a point of its surface along it to where it is nearest to `other`, by no more than points are apart: where
+    /// the gradient of the distance has no part along the surface (steepest descent, Barzilai and Borwein 1988).
+    fn nearest(&self, place: [f64; 3], other: &PlacedSurface<T, D>) -> ([f64; 3], SignedDistance) {
+        let (first, spacing) = (Vector(place), self.surface.spacing);
+        let mut at = first;
+        let mut level = other.level(at.0);
+        let mut step = spacing;
+        let along = |at: Vector<f64, 3>, level: &SignedDistance| {
+            let (normal, slope) = (Vector(self.level(at.0).gradient), Vector(level.gradient));
+            slope - normal * slope.dot(normal)
+        };
+        let mut slope = along(at, &level);
+        for _ in 0..MAX_STEPS {
+            if slope.norm() * step < FOUND * spacing {
+                break;
+            }
+            let mut to = at - slope * step;
+            let off = to - first;
+            if off.norm() > spacing {
+                to = first + off * (spacing / off.norm());
+            }
+            let to = self.onto(to);
+            let there = other.level(to.0);
+            if there.distance >= level.distance {
+                step *= 0.25;
+                continue;
+            }
+            let moved = to - at;
+            let turned = along(to, &there);
+            let change = turned - slope;
+            let curved = moved.dot(change);
+            step = if curved > 0.0 { moved.dot(moved) / curved } else { spacing };
+            (at, level, slope) = (to, there, turned);
+            if moved.norm() < FOUND * spacing {
+                break;
+            }
+        }
+        (at.0, level)
+    }
+}
+
+/// Keeps of contacts with one normal the nearest one and those at the rim, of what touches and of what may touch soon.
+fn reduce(mut near: Vec<RigidContact>, alike: f64, dimension: usize, kept: &mut Vec<RigidContact>) {
+    while let Some(deepest) = near.iter().min_by(|a, b| a.gap.total_cmp(&b.gap)).copied() {
+        let flat = |contact: &RigidContact| Vector(contact.normal).dot(Vector(deepest.normal)) > FLAT;
+        let (group, rest): (Vec<_>, Vec<_>) = near.into_iter().partition(flat);
+        near = rest;
+        let (touching, apart): (Vec<_>, Vec<_>) =
+            group.into_iter().partition(|contact| contact.gap <= deepest.gap.max(0.0) + alike);
+        let tangents = tangents(deepest.normal, dimension);
+        let mut chosen = vec![deepest];
+        for set in [&touching, &apart] {
+            for direction in around(&tangents) {
+                let far = |contact: &&RigidContact| Vector(contact.place).dot(Vector(direction));
+                let Some(extreme) = set.iter().max_by(|a, b| far(a).total_cmp(&far(b))) else { continue };
+                let same = |contact: &RigidContact| {
+                    (Vector(contact.place) - Vector(extreme.place)).norm() <= alike
+                };
+                if !chosen.iter().any(same) {
+                    chosen.push(*extreme);
+                }
+            }
+        }
+        kept.extend(chosen);
+    }
+}
+
+/// Unit vectors along a contact: one in the plane, two in space.
+pub fn tangents(normal: [f64; 3], dimension: usize) -> Vec<[f64; 3]> {
+    if dimension == 2 {
+        return vec![[-normal[1], normal[0], 0.0]];
+    }
+    super::joint::across(normal).to_vec()
+}
+
+/// Directions all around a contact.
+fn around(tangents: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    match tangents {
+        [t] => vec![*t, t.map(|t| -t)],
+        [s, t] => (0..8)
+            .map(|i| {
+                let angle = std::f64::consts::FRAC_PI_4 * f64::from(i);
+                let (sin, cos) = (libm::sin(angle), libm::cos(angle));
+                std::array::from_fn(|k| cos * s[k] + sin * t[k])
+            })
+            .collect(),
+        _ => Vec::new(),
+    }
+}
+
+impl RigidContact {
+    /// Velocity of the first body against the second there [m/s].
+    pub fn relative(&self, velocities: [&super::Six; 2], centers: [[f64; 3]; 2]) -> [f64; 3] {
+        let [v, w] = [0, 1].map(|side| {
+            let [v, spin] = super::six::parts(*velocities[side]);
+            let arm = (Vector(self.place) - Vector(centers[side])).0;
+            Vector(v) + Vector(cross(spin, arm))
+        });
+        (v - w).0
+    }
+}

@@ -1,0 +1,88 @@
+//! Contact of rigid bodies with each other: pushes and friction that are found together with joints.
+
+use super::row::Row;
+use super::six::{Six, at};
+use super::surfaces::{RigidContact, tangents};
+use crate::contact::{RigidTouch, Rule};
+use crate::tensor::{Real, Vector};
+
+/// Part of an overlap that a step takes away.
+const RECOVERY: f64 = 0.2;
+
+/// A contact between two rigid bodies in a step. With the velocities v after the step, along its normal n and across,
+///
+/// ```text
+/// n.v >= w,   l_n >= 0,   l_n (n.v - w) = 0,        |l_t| <= mu l_n, against the slip where they slip
+/// ```
+/// w = -gap / dt: the surfaces do not overlap after the step; where they would, and approach each other at the speed
+/// v^n, w = e v^n with the coefficient of restitution e (Newton; Moreau 1988).
+#[derive(Clone, Debug)]
+pub struct Touch {
+    pub contact: RigidContact,
+    /// Along the normal, and across it.
+    pub normal: Row,
+    pub tangents: Vec<Row>,
+    /// Coefficient of friction in this step.
+    pub friction: f64,
+    /// Speed along the normal at which they part, w [m/s].
+    pub parting: f64,
+}
+
+impl Touch {
+    /// A contact of bodies with these centres, places in the mechanism, and velocities at the start of the step.
+    pub fn new<T: Real>(
+        contact: RigidContact,
+        rule: &Rule<T>,
+        (slots, centers, start): ([Option<usize>; 2], [[f64; 3]; 2], [Six; 2]),
+        (dimension, dt): (usize, f64),
+    ) -> Self {
+        let row = |direction: [f64; 3]| {
+            let arm = |side: usize| (Vector(contact.place) - Vector(centers[side])).0;
+            Row::new(slots, [at(arm(0), direction), at(arm(1), direction.map(|x| -x))])
+        };
+        let relative = Vector(contact.relative([&start[0], &start[1]], centers));
+        let approach = -relative.dot(Vector(contact.normal));
+        let slip = (relative + Vector(contact.normal) * approach).norm();
+        let bounces = approach * dt > contact.gap && approach > 0.0 && rule.restitution > 0.0;
+        let parting = if bounces {
+            rule.restitution * approach
+        } else if contact.gap > 0.0 {
+            -contact.gap / dt
+        } else {
+            -RECOVERY * contact.gap / dt
+        };
+        Touch {
+            contact,
+            normal: row(contact.normal),
+            tangents: tangents(contact.normal, dimension).into_iter().map(row).collect(),
+            friction: rule.friction.coefficient(T::of(slip)).f64(),
+            parting,
+        }
+    }
+
+    /// Its equations.
+    pub fn rows(&self) -> impl Iterator<Item = &Row> {
+        std::iter::once(&self.normal).chain(&self.tangents)
+    }
+
+    /// Its equations, to change.
+    pub fn rows_mut(&mut self) -> impl Iterator<Item = &mut Row> {
+        std::iter::once(&mut self.normal).chain(&mut self.tangents)
+    }
+
+    /// What it did in the step, with the work that friction took [J].
+    pub fn sum(&self, friction: f64) -> RigidTouch {
+        let push = Vector(self.contact.normal) * self.normal.impulse;
+        let rub = self.tangents.iter().fold(Vector([0.0; 3]), |sum, row| {
+            sum + Vector(super::six::parts(row.directions[0])[0]) * row.impulse
+        });
+        let RigidContact { bodies, place, .. } = self.contact;
+        let (push, rub) = (push.0, rub.0);
+        RigidTouch { bodies, push, rub, place, friction }
+    }
+
+    /// The largest impulse of friction now; one of infinite friction sticks where it is pressed.
+    pub fn strength(&self) -> f64 {
+        if self.normal.impulse > 0.0 { self.friction * self.normal.impulse } else { 0.0 }
+    }
+}
