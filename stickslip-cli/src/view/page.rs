@@ -11,7 +11,7 @@ use std::io::{self, Write};
 const FRAME: &str = include_str!("page/index.html");
 const STYLES: [&str; 2] = [include_str!("vendor/uplot.css"), include_str!("page/style.css")];
 /// Modules by the names under which they import each other.
-const MODULES: [(&str, &str); 16] = [
+const MODULES: [(&str, &str); 19] = [
     ("three", include_str!("vendor/three.js")),
     ("uplot", include_str!("vendor/uplot.js")),
     ("stickslip/source", include_str!("page/source.js")),
@@ -27,6 +27,9 @@ const MODULES: [(&str, &str); 16] = [
     ("stickslip/charts", include_str!("page/charts.js")),
     ("stickslip/looking", include_str!("page/looking.js")),
     ("stickslip/measuring", include_str!("page/measuring.js")),
+    ("stickslip/overlay", include_str!("page/overlay.js")),
+    ("stickslip/playing", include_str!("page/playing.js")),
+    ("stickslip/saving", include_str!("page/saving.js")),
     ("stickslip/main", include_str!("page/main.js")),
 ];
 

@@ -6,9 +6,12 @@ import { Cloud } from "stickslip/cloud";
 import { mapPixels, withUnit } from "stickslip/colors";
 import { Forces } from "stickslip/forces";
 import { Frames } from "stickslip/frames";
-import { ColorPanel, CutPanel } from "stickslip/panel";
 import { Looking } from "stickslip/looking";
 import { measure } from "stickslip/measuring";
+import { Overlay } from "stickslip/overlay";
+import { ColorPanel, CutPanel } from "stickslip/panel";
+import { Playing } from "stickslip/playing";
+import { picture } from "stickslip/saving";
 import { Skins } from "stickslip/skins";
 import { Source } from "stickslip/source";
 import { Stage } from "stickslip/stage";
@@ -21,7 +24,10 @@ const STATUS = { running: "running", interrupted: "interrupted", out_of_time: "o
 const source = new Source();
 const frames = new Frames(source);
 let index = await source.json("/index").catch(fail);
-const stage = new Stage(byId("canvas"), index, (motion) => cloud.prepare(motion));
+const stage = new Stage(byId("canvas"), index, (motion) => {
+    cloud.prepare(motion);
+    overlay.draw();
+});
 const cloud = new Cloud(stage);
 const forces = new Forces(stage);
 const skins = new Skins(stage, source, cloud.material.uniforms);
@@ -33,9 +39,10 @@ const panel = new ColorPanel(index, {
 const cuts = new CutPanel(index.dimension, () => choose(true));
 const bodies = new BodyList(index, { onChange: () => choose(false), onChoose: (body) => looking.atBody(body) });
 const charts = new Charts(byId("charts"), { onTime: (time) => show(nearest(time)), dimension: index.dimension });
-const state = { frame: 0, shown: -1, playing: false, pictures: 0 };
-
-const looking = new Looking({ state, source, frames, cloud, bodies, charts, panel }, () => index);
+const state = { frame: 0, shown: -1, pictures: 0 };
+const looking = new Looking({ state, source, frames, cloud, bodies, charts, panel, stage }, () => index);
+const overlay = new Overlay(byId("overlay"), stage, () => looking.place());
+const playing = new Playing(state, { stage, show, fetch: fetchFrame, count: () => index.times.length });
 
 function fail(error) {
     byId("message").textContent = error.message ?? String(error);
@@ -52,6 +59,7 @@ function describe() {
     byId("time").max = Math.max(index.times.length - 1, 0);
     byId("follow-switch").hidden = !(source.isLive && index.status === "running");
     byId("draw").lastElementChild.disabled = !source.has("/skins");
+    byId("sides").hidden = index.dimension === 2;
     byId("fringes-switch").hidden = !(index.fringes && source.has("/fringes/0"));
 }
 
@@ -78,10 +86,7 @@ async function show(frame) {
     state.frame = frame;
     const { quantity } = panel;
     try {
-        const [places, column] = await Promise.all([
-            frames.places(frame),
-            quantity && frames.column(frame, quantity.id),
-        ]);
+        const [places, column] = await fetchFrame(frame);
         if (state.frame !== frame || panel.quantity !== quantity) return;
         draw(frame, places, column);
     } catch (error) {
@@ -118,14 +123,16 @@ function begin(places) {
     stage.origin = low.map((value, axis) => 0.5 * (value + high[axis]));
     state.box = { low, high, size: Math.hypot(...low.map((value, axis) => high[axis] - value)) };
     cuts.box = state.box;
-    stage.fit(low, high);
+    stage.fit(low, high, "oblique");
+}
+
+function fetchFrame(frame) {
+    const { quantity } = panel;
+    return Promise.all([frames.places(frame), quantity && frames.column(frame, quantity.id)]);
 }
 
 function fetchAhead(frame) {
-    if (frame >= index.times.length) return;
-    const { quantity } = panel;
-    frames.places(frame).catch(() => {});
-    if (quantity) frames.column(frame, quantity.id).catch(() => {});
+    if (frame < index.times.length) fetchFrame(frame).catch(() => {});
 }
 
 function recolor() {
@@ -200,7 +207,8 @@ async function showForces() {
     forces.show(told, places, choice);
     const unit = index.dimension === 2 ? "N/m" : "N";
     byId("force-scale").textContent =
-        told.error?.message ?? `${told.contacts.length} contacts; largest of the run: ${withUnit(told.largest, unit)}`;
+        told.error?.message ??
+        `${told.contacts.length} contacts; the widest and longest stand for ${withUnit(told.largest, unit)}`;
     stage.ask();
 }
 
@@ -208,35 +216,6 @@ function showFringes() {
     const wanted = byId("show-fringes").checked;
     byId("fringes").hidden = !wanted;
     if (wanted) byId("fringes").firstElementChild.src = `/fringes/${state.shown}`;
-}
-
-// Playing: the next frame when it is due and there.
-async function play() {
-    if (state.playing || index.times.length < 2) return;
-    state.playing = true;
-    byId("play").textContent = "❚❚";
-    if (state.frame >= index.times.length - 1) await show(0);
-    while (state.playing) {
-        const due = performance.now() + 1000 / Number(byId("rate").value);
-        const next = state.frame + 1;
-        if (next >= index.times.length) break;
-        await Promise.all([frames.places(next), panel.quantity && frames.column(next, panel.quantity.id)]).catch(
-            () => {},
-        );
-        await new Promise((resolve) => setTimeout(resolve, Math.max(0, due - performance.now())));
-        if (!state.playing || state.frame !== next - 1) continue;
-        stage.move();
-        await show(next);
-        // The picture is drawn before the next one is made.
-        await new Promise((resolve) => requestAnimationFrame(resolve));
-    }
-    stop();
-}
-
-function stop() {
-    state.playing = false;
-    byId("play").textContent = "▶";
-    stage.ask();
 }
 
 // A run that goes on: what is new is asked for each second.
@@ -290,11 +269,12 @@ byId("time").oninput = () => {
     stage.move();
     show(Number(byId("time").value));
 };
-byId("play").onclick = () => (state.playing ? stop() : play());
 byId("first").onclick = () => show(0);
 byId("back").onclick = () => show(state.frame - 1);
 byId("forth").onclick = () => show(state.frame + 1);
 byId("fit").onclick = () => state.places && stage.fit(...bounds(state.places));
+for (const button of byId("sides").querySelectorAll("button"))
+    button.onclick = () => state.places && stage.fit(...bounds(state.places), button.value);
 byId("chains").onchange = byId("arrows").onchange = () => showForces();
 byId("draw").onchange = () => showSurfaces();
 byId("show-fringes").onchange = () => showFringes();
@@ -302,7 +282,8 @@ byId("show-charts").onchange = () => (byId("charts").hidden = !byId("show-charts
 byId("save").onclick = () => {
     const link = document.createElement("a");
     stage.timed();
-    link.href = byId("canvas").toDataURL("image/png");
+    overlay.draw();
+    link.href = picture([byId("canvas"), byId("overlay")], byId("colorbar"));
     link.download = `${index.title}.png`;
     link.click();
 };
@@ -343,7 +324,6 @@ else
     byId("message").textContent =
         index.status === "running" ? "waiting for the first frame ..." : "the run wrote no snapshots of particles";
 follow();
-const pickAt = (x, y) => looking.pickAt(x, y);
 window.stickslip = {
     state,
     source,
@@ -351,9 +331,8 @@ window.stickslip = {
     cloud,
     skins,
     show,
-    play,
-    stop,
-    pickAt,
+    play: () => playing.start(),
+    pickAt: (x, y) => looking.pickAt(x, y),
     measure: (seconds) => measure({ stage, cloud, state }, seconds),
     index: () => index,
 };
