@@ -87,6 +87,7 @@ fn what_is_in_the_folder_is_served_and_nothing_else() {
     assert_eq!(page.code, 200);
     assert!(page.body.starts_with(b"<!DOCTYPE html><!-- Stickslip -->"));
     assert!(page.head.contains("Content-Security-Policy: default-src 'none'"), "{}", page.head);
+    assert!(page.head.contains("Connection: close"), "connections that stay open keep others waiting");
 
     let index = server.json("/index");
     assert_eq!((index["times"].as_array().unwrap().len(), index["bodies"].as_array().unwrap().len()), (6, 2));

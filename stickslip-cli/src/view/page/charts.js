@@ -5,7 +5,7 @@ import { number, scaled, withUnit } from "stickslip/colors";
 
 const HEIGHT = 164; // pixels
 const FONT = "11px system-ui";
-const COLORS = ["#1f5fa8", "#c0562b", "#2f8555", "#7d4f9e", "#b08a1e", "#9c1c3c", "#4a5560", "#258a94", "#000000"];
+const COLORS = ["#1f5fa8", "#c0562b", "#2f8555", "#7d4f9e", "#b08a1e", "#9c1c3c", "#c2699a", "#258a94", "#000000"];
 const ENERGIES = [
     "kinetic",
     "strain",
@@ -45,7 +45,7 @@ export class Charts {
             "Energy",
             "J",
             table.time,
-            moving.map((name) => [name.replace("_", " "), table[name]]),
+            moving.map((name) => [name.replace("_", " "), table[name], COLORS[ENERGIES.indexOf(name)]]),
         );
         const shown = this.dimension === 2 ? MOMENTA.slice(0, 2) : MOMENTA;
         this.#put(
@@ -118,10 +118,10 @@ export class Charts {
             ],
             series: [
                 {},
-                ...series.map(([label], i) => ({
+                ...series.map(([label, , color], i) => ({
                     label,
                     show: !figure.hidden.has(label),
-                    stroke: COLORS[i % COLORS.length],
+                    stroke: color ?? COLORS[i % COLORS.length],
                     width: 1.5,
                     points: { show: time.length < 3 },
                 })),

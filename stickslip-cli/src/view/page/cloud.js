@@ -138,7 +138,7 @@ export class Cloud {
         if (cut || !stage.plane) {
             for (let i = 0; i < count; i++) {
                 if (visible[i] === 0) continue;
-                let seen = stage.plane || (data[4 * i + 3] & 2) !== 0;
+                const seen = stage.plane || (data[4 * i + 3] & 2) !== 0;
                 let filling = false;
                 for (let axis = 0; cut && axis < 3; axis++) {
                     const x = data[4 * i + axis];
@@ -149,8 +149,8 @@ export class Cloud {
                     }
                     if (x < inner || x > outer) filling = true;
                 }
-                if (visible[i] !== 0 && filling && !stage.plane) visible[i] = FILLING;
-                else if (!seen) visible[i] = 0;
+                if (visible[i] === 0 || (stage.plane && seen)) continue;
+                visible[i] = filling ? FILLING : Number(seen);
             }
         }
         let total = 0;

@@ -26,7 +26,7 @@ const frames = new Frames(source);
 let index = await source.json("/index").catch(fail);
 const stage = new Stage(byId("canvas"), index, (motion) => {
     cloud.prepare(motion);
-    overlay.draw();
+    if (state.shown >= 0) overlay.draw();
 });
 const cloud = new Cloud(stage);
 const forces = new Forces(stage);
@@ -163,6 +163,7 @@ function choosePieces() {
 
 // Bodies as surfaces, where the reader wants that and they are known.
 async function showSurfaces() {
+    if (state.shown < 0) return;
     if (byId("draw").value === "particles") {
         if (!skins.isOn) return;
         skins.hide();
@@ -195,6 +196,7 @@ function choose(moving) {
 async function showForces() {
     const [chains, arrows] = ["chains", "arrows"].map((id) => byId(id).checked);
     byId("force-scale").textContent = "";
+    if (state.shown < 0) return;
     if (!chains && !arrows) {
         forces.clear();
         stage.ask();
@@ -208,12 +210,12 @@ async function showForces() {
     const unit = index.dimension === 2 ? "N/m" : "N";
     byId("force-scale").textContent =
         told.error?.message ??
-        `${told.contacts.length} contacts; the widest and longest stand for ${withUnit(told.largest, unit)}`;
+        `contacts: ${told.contacts.length}; the widest and longest stand for ${withUnit(told.largest, unit)}`;
     stage.ask();
 }
 
 function showFringes() {
-    const wanted = byId("show-fringes").checked;
+    const wanted = byId("show-fringes").checked && state.shown >= 0;
     byId("fringes").hidden = !wanted;
     if (wanted) byId("fringes").firstElementChild.src = `/fringes/${state.shown}`;
 }
@@ -258,11 +260,13 @@ async function refresh() {
     else draw(state.shown, state.places, state.column);
 }
 
-function showEnergy() {
-    source.json("/energy").then(
-        (table) => table.time && charts.energy(table),
-        () => {},
-    );
+// Energies need no word where there are none.
+async function showEnergy() {
+    const table = await source.json("/energy").catch(() => ({}));
+    if (!(table.time?.length > 1)) return;
+    charts.energy(table);
+    if (index.status !== "running") return;
+    byId("status").textContent = `running: ${withUnit(table.time.at(-1), "s")} of ${withUnit(index.end, "s")}`;
 }
 
 byId("time").oninput = () => {
@@ -318,6 +322,7 @@ document.addEventListener("keydown", (event) => {
 });
 
 describe();
+recolor();
 showEnergy();
 if (index.times.length > 0) await show(index.status === "running" ? index.times.length - 1 : 0);
 else
