@@ -117,6 +117,11 @@ def use(driver, address, screenshot):
     find("arrows").click()
     wait.until(lambda _: "contacts" in find("force-scale").text)
     told["forces"] = find("force-scale").text
+    if find("velocities").is_enabled():
+        find("velocities").click()
+        wait.until(lambda _: find("velocity-scale").text)
+        told["velocities"] = find("velocity-scale").text
+        find("velocities").click()
     if find("show-fringes").is_displayed():
         find("show-fringes").click()
         wait.until(lambda d: d.execute_script("return document.querySelector('#fringes img').naturalWidth > 0"))

@@ -245,6 +245,7 @@ fn a_reader_plays_colours_picks_and_cuts_in_a_browser() {
     let Some(told) = use_viewer(&server.address) else { return };
     assert_works(&told, &server.address);
     assert_eq!(told["played_to"], 5);
+    assert!(told["velocities"].as_str().unwrap().contains("m/s"), "{told}");
     assert_eq!(told["fringes"], true, "the scene is plane");
     assert_surfaces(&told);
 

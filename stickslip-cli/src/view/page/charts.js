@@ -79,7 +79,7 @@ export class Charts {
     // The time that the picture shows.
     at(time) {
         this.time = time;
-        for (const { plot } of this.figures.values()) plot?.redraw(false);
+        for (const { plot, now } of this.figures.values()) if (plot) this.#mark(plot, now);
     }
 
     // `onGroup(group)` is called when the reader wants another group of a body's columns.
@@ -99,8 +99,9 @@ export class Charts {
         const size = Math.max(...series.flatMap(([, values]) => values.map(Math.abs)).filter(Number.isFinite), 0);
         const scale = scaled((this.dimension === 2 && BY_DEPTH[unit]) || unit, size);
         const clock = scaled("s", Math.abs(time.at(-1) ?? 0));
-        const readout = document.createElement("div");
-        Object.assign(readout, { className: "readout", hidden: true });
+        const [readout, now] = ["readout", "now"].map((className) => {
+            return Object.assign(document.createElement("div"), { className, hidden: true });
+        });
         const caption = document.createElement("figcaption");
         caption.textContent = scale.unit ? `${title} [${scale.unit}]` : title;
         if (group) caption.append(this.#groups(group));
@@ -127,14 +128,15 @@ export class Charts {
                 })),
             ],
             hooks: {
-                draw: [(plot) => this.#line(plot)],
+                draw: [(plot) => this.#mark(plot, now)],
                 setCursor: [(plot) => tell(plot, readout, scale.unit)],
                 setSeries: [(plot) => remember(plot, figure.hidden)],
             },
         };
         const data = [time, ...series.map(([, values]) => values.map((value) => value / scale.factor))];
         figure.plot = new uPlot(options, data, figure.element);
-        figure.plot.over.append(readout);
+        figure.now = now;
+        figure.plot.over.append(now, readout);
         figure.plot.over.addEventListener("click", (event) => this.onTime(figure.plot.posToVal(event.offsetX, "x")));
     }
 
@@ -146,18 +148,11 @@ export class Charts {
         return select;
     }
 
-    #line(plot) {
-        const x = plot.valToPos(this.time, "x", true);
-        const { left, top, width, height } = plot.bbox;
-        if (x < left - 1 || x > left + width + 1) return;
-        plot.ctx.save();
-        plot.ctx.strokeStyle = "#b3261e";
-        plot.ctx.lineWidth = 1.5;
-        plot.ctx.beginPath();
-        plot.ctx.moveTo(x, top);
-        plot.ctx.lineTo(x, top + height);
-        plot.ctx.stroke();
-        plot.ctx.restore();
+    // An element of its own, so that a chart need not be drawn anew for each frame.
+    #mark(plot, now) {
+        const x = plot.valToPos(this.time, "x");
+        now.hidden = !(x >= -1 && x <= plot.over.clientWidth + 1);
+        now.style.transform = `translateX(${x}px)`;
     }
 
     #width() {

@@ -4,8 +4,8 @@ import { BodyList } from "stickslip/bodies";
 import { Charts } from "stickslip/charts";
 import { Cloud } from "stickslip/cloud";
 import { mapPixels, withUnit } from "stickslip/colors";
-import { Forces } from "stickslip/forces";
 import { Frames } from "stickslip/frames";
+import { Layers } from "stickslip/layers";
 import { Looking } from "stickslip/looking";
 import { measure } from "stickslip/measuring";
 import { Overlay } from "stickslip/overlay";
@@ -29,7 +29,6 @@ const stage = new Stage(byId("canvas"), index, (motion) => {
     if (state.shown >= 0) overlay.draw();
 });
 const cloud = new Cloud(stage);
-const forces = new Forces(stage);
 const skins = new Skins(stage, source, cloud.material.uniforms);
 const panel = new ColorPanel(index, {
     onQuantity: () => show(state.frame),
@@ -40,7 +39,9 @@ const cuts = new CutPanel(index.dimension, () => choose(true));
 const bodies = new BodyList(index, { onChange: () => choose(false), onChoose: (body) => looking.atBody(body) });
 const charts = new Charts(byId("charts"), { onTime: (time) => show(nearest(time)), dimension: index.dimension });
 const state = { frame: 0, shown: -1, pictures: 0 };
-const looking = new Looking({ state, source, frames, cloud, bodies, charts, panel, stage }, () => index);
+const parts = { state, source, frames, cloud, bodies, charts, panel, stage, skins };
+const looking = new Looking(parts, () => index);
+const layers = new Layers(parts, () => index, choosePieces);
 const overlay = new Overlay(byId("overlay"), stage, () => looking.place());
 const playing = new Playing(state, { stage, show, fetch: fetchFrame, count: () => index.times.length });
 
@@ -58,9 +59,8 @@ function describe() {
     byId("status").textContent = word ?? "";
     byId("time").max = Math.max(index.times.length - 1, 0);
     byId("follow-switch").hidden = !(source.isLive && index.status === "running");
-    byId("draw").lastElementChild.disabled = !source.has("/skins");
     byId("sides").hidden = index.dimension === 2;
-    byId("fringes-switch").hidden = !(index.fringes && source.has("/fringes/0"));
+    layers.offer();
 }
 
 function nearest(time) {
@@ -103,14 +103,12 @@ function draw(frame, places, column) {
     cloud.show(places, column ? column.values : places.bodyColors);
     if (other) choosePieces();
     recolor();
-    showSurfaces();
     byId("time").value = frame;
     byId("clock").textContent = `${withUnit(index.times[frame], "s")}   ${frame + 1} of ${index.times.length}`;
     byId("message").textContent = places.count === 0 ? "this frame has no particles" : "";
     charts.at(index.times[frame]);
     state.pictures += 1;
-    showForces();
-    showFringes();
+    layers.show();
     looking.tell();
     for (let ahead = 1; ahead <= AHEAD; ahead++) fetchAhead(frame + ahead);
 }
@@ -161,63 +159,11 @@ function choosePieces() {
     cloud.choose(shown, cuts.cuts, (body) => !(skins.isOn && skins.bodies.has(body)));
 }
 
-// Bodies as surfaces, where the reader wants that and they are known.
-async function showSurfaces() {
-    if (state.shown < 0) return;
-    if (byId("draw").value === "particles") {
-        if (!skins.isOn) return;
-        skins.hide();
-        choosePieces();
-        stage.ask();
-        return;
-    }
-    const { shown } = state;
-    const { quantity } = panel;
-    const wasOn = skins.isOn;
-    try {
-        if (!skins.triangles) byId("no-surfaces").textContent = "making surfaces ...";
-        await skins.load(index.body_colors.length);
-        await skins.show(shown, quantity?.id);
-        byId("no-surfaces").textContent = "";
-        if (!wasOn) choosePieces();
-    } catch (error) {
-        byId("draw").value = "particles";
-        byId("no-surfaces").textContent = error.message;
-    }
-}
-
 function choose(moving) {
     choosePieces();
-    showForces();
+    layers.choose();
     if (moving) stage.move();
     else stage.ask();
-}
-
-async function showForces() {
-    const [chains, arrows] = ["chains", "arrows"].map((id) => byId(id).checked);
-    byId("force-scale").textContent = "";
-    if (state.shown < 0) return;
-    if (!chains && !arrows) {
-        forces.clear();
-        stage.ask();
-        return;
-    }
-    const { shown, places, box } = state;
-    const told = await source.json(`/contacts/${shown}`).catch((error) => ({ contacts: [], largest: 0, error }));
-    if (state.shown !== shown) return;
-    const choice = { chains, arrows, shown: (body) => bodies.isShown(body), rigid: index.rigid, size: box.size };
-    forces.show(told, places, choice);
-    const unit = index.dimension === 2 ? "N/m" : "N";
-    byId("force-scale").textContent =
-        told.error?.message ??
-        `contacts: ${told.contacts.length}; the widest and longest stand for ${withUnit(told.largest, unit)}`;
-    stage.ask();
-}
-
-function showFringes() {
-    const wanted = byId("show-fringes").checked && state.shown >= 0;
-    byId("fringes").hidden = !wanted;
-    if (wanted) byId("fringes").firstElementChild.src = `/fringes/${state.shown}`;
 }
 
 // A run that goes on: what is new is asked for each second.
@@ -279,9 +225,6 @@ byId("forth").onclick = () => show(state.frame + 1);
 byId("fit").onclick = () => state.places && stage.fit(...bounds(state.places));
 for (const button of byId("sides").querySelectorAll("button"))
     button.onclick = () => state.places && stage.fit(...bounds(state.places), button.value);
-byId("chains").onchange = byId("arrows").onchange = () => showForces();
-byId("draw").onchange = () => showSurfaces();
-byId("show-fringes").onchange = () => showFringes();
 byId("show-charts").onchange = () => (byId("charts").hidden = !byId("show-charts").checked);
 byId("save").onclick = () => {
     const link = document.createElement("a");

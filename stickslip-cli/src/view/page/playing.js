@@ -17,8 +17,9 @@ export class Playing {
         state.playing = true;
         byId("play").textContent = PAUSE;
         if (state.frame >= this.count() - 1) await this.show(0);
+        let due = performance.now();
         while (state.playing) {
-            const due = performance.now() + 1000 / Number(byId("rate").value);
+            due = Math.max(due + 1000 / Number(byId("rate").value), performance.now());
             const last = state.frame;
             const next = this.#after(last);
             if (next === undefined) break;
