@@ -21,8 +21,8 @@ const VIEW_ANGLE = 28; // degrees
 const [AZIMUTH, ELEVATION] = [16, 18].map((angle) => (angle * Math.PI) / 180);
 
 export class Stage {
-    // `onDraw({ moving, fewer, more })` is called before each picture: whether things move, and whether less is to be drawn
-    // while they do, for there are fewer pixels already, or more can be.
+    // `onDraw({ moving, fewer, more })` is called before each picture: whether things move, and whether less is to be
+    // drawn while they do, for there are fewer pixels already, or more can be.
     constructor(canvas, index, onDraw) {
         this.canvas = canvas;
         this.plane = index.dimension === 2;
