@@ -29,6 +29,28 @@ for (const pixel of pixels) {
 return { inked: inked / pixels.length, colors: colors.size };
 """
 
+# The size of the picture that a reader saves, and whether the bar of colours is in it.
+SAVE = """
+const done = arguments[0];
+HTMLAnchorElement.prototype.click = function () {
+    const picture = new Image();
+    picture.onload = () => {
+        const canvas = document.createElement('canvas');
+        [canvas.width, canvas.height] = [picture.width, picture.height];
+        const context = canvas.getContext('2d');
+        context.drawImage(picture, 0, 0);
+        const stage = document.getElementById('canvas').getBoundingClientRect();
+        const bar = document.querySelector('#colorbar canvas').getBoundingClientRect();
+        const [x, y] = [bar.left - stage.left + bar.width / 2, bar.top - stage.top + bar.height / 2];
+        const scale = picture.width / stage.width;
+        const [red, green, blue] = context.getImageData(scale * x, scale * y, 1, 1).data;
+        done({ name: this.download, width: picture.width, bar: Math.min(red, green, blue) < 200 });
+    };
+    picture.src = this.href;
+};
+document.getElementById('save').click();
+"""
+
 
 def settled(driver):
     """Waits until the picture stands still, and looks at it."""
@@ -86,10 +108,20 @@ def use(driver, address, screenshot):
     wait.until(lambda _: "particle" in captions()[-1])
     told["charts"] = captions()
 
+    chart = driver.find_element("css selector", "figure[data-chart=energy] .u-over")
+    ActionChains(driver).move_to_element(chart).perform()
+    wait.until(lambda d: chart.text)
+    told["readout"] = chart.text
+
     find("chains").click()
     find("arrows").click()
     wait.until(lambda _: "contacts" in find("force-scale").text)
     told["forces"] = find("force-scale").text
+    if find("velocities").is_enabled():
+        find("velocities").click()
+        wait.until(lambda _: find("velocity-scale").text)
+        told["velocities"] = find("velocity-scale").text
+        find("velocities").click()
     if find("show-fringes").is_displayed():
         find("show-fringes").click()
         wait.until(lambda d: d.execute_script("return document.querySelector('#fringes img').naturalWidth > 0"))
@@ -109,6 +141,13 @@ def use(driver, address, screenshot):
     cut = driver.find_element("css selector", "#cuts input[aria-label='x to']")
     driver.execute_script("arguments[0].value = 500; arguments[0].oninput()", cut)
     told["cut"] = settled(driver)
+    told["cut_at"] = find("cuts").text
+    told["sides"] = {}
+    for side in find("sides").find_elements("tag name", "button"):
+        if side.is_displayed():
+            side.click()
+            told["sides"][side.text] = settled(driver)["inked"]
+    told["saved"] = driver.execute_async_script(SAVE)
     return told
 
 

@@ -87,6 +87,7 @@ fn what_is_in_the_folder_is_served_and_nothing_else() {
     assert_eq!(page.code, 200);
     assert!(page.body.starts_with(b"<!DOCTYPE html><!-- Stickslip -->"));
     assert!(page.head.contains("Content-Security-Policy: default-src 'none'"), "{}", page.head);
+    assert!(page.head.contains("Connection: close"), "connections that stay open keep others waiting");
 
     let index = server.json("/index");
     assert_eq!((index["times"].as_array().unwrap().len(), index["bodies"].as_array().unwrap().len()), (6, 2));
@@ -182,6 +183,7 @@ fn one_file_names_its_size_and_replaces_no_others() {
     for route in ["/index", "/energy", "/frame/2", "/column/2/pressure", "/body/1", "/contacts/2"] {
         assert!(page.contains(&format!("data-route=\"{route}\"")), "{route}");
     }
+    assert!(page.contains("data-route=\"/skins/2/pressure\"") && said.contains("and surfaces"), "{said}");
     assert!(!page.contains("data-route=\"/frame/3\""));
     workplace.succeed(&["view", "scene.results", "--html", "seen.html", "--columns", "stress.xy"]);
 
@@ -222,8 +224,18 @@ fn assert_works(told: &Value, address: &str) {
     assert!(text("colorbar").contains("speed [") && text("colorbar").contains("m/s]"), "{told}");
     assert!(text("picked").contains("particle") && text("picked").contains("speed"), "{told}");
     assert!(text("forces").contains("contacts"), "{told}");
+    assert!(text("readout").contains("kinetic") && text("readout").contains("J"), "{told}");
+    assert!(text("cut_at").contains("to ") && text("cut_at").contains('m'), "{told}");
+    assert_eq!(told["saved"]["bar"], true, "{told}");
+    assert!(told["sides"].as_object().unwrap().values().all(|inked| inked.as_f64() > Some(0.02)), "{told}");
     let charts: Vec<&str> = told["charts"].as_array().unwrap().iter().filter_map(Value::as_str).collect();
     assert!(charts[0].starts_with("Energy") && charts[2].contains("particle"), "{charts:?}");
+}
+
+fn assert_surfaces(told: &Value) {
+    let seen = |state: &str| told[state]["inked"].as_f64().unwrap();
+    let share = seen("surfaces") / seen("with_bodies");
+    assert!((share - 1.0).abs() < 0.1, "surfaces cover what particles do: {told}");
 }
 
 #[test]
@@ -233,17 +245,15 @@ fn a_reader_plays_colours_picks_and_cuts_in_a_browser() {
     let Some(told) = use_viewer(&server.address) else { return };
     assert_works(&told, &server.address);
     assert_eq!(told["played_to"], 5);
+    assert!(told["velocities"].as_str().unwrap().contains("m/s"), "{told}");
     assert_eq!(told["fringes"], true, "the scene is plane");
-    let seen = |state: &str| told[state]["inked"].as_f64().unwrap();
-    assert!(
-        (seen("surfaces") / seen("with_bodies") - 1.0).abs() < 0.1,
-        "surfaces cover what particles do: {told}"
-    );
+    assert_surfaces(&told);
 
     workplace.succeed(&["view", "scene.results", "--html", "seen.html"]);
     let address = format!("file://{}", workplace.path("seen.html").display());
     let told = use_viewer(&address).unwrap();
     assert_works(&told, &address);
+    assert_surfaces(&told);
 }
 
 #[test]
@@ -256,4 +266,5 @@ fn a_scene_in_space_is_seen_in_a_browser() {
     let server = Server::start(&workplace, &["results"]);
     let Some(told) = use_viewer(&server.address) else { return };
     assert_works(&told, &server.address);
+    assert_eq!(told["sides"].as_object().unwrap().len(), 4);
 }

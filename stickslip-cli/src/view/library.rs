@@ -114,6 +114,18 @@ impl Library {
         Ok(first.map(|first| first.quantities.clone()).unwrap_or_default())
     }
 
+    /// Corners and triangles of all surfaces; nothing if there are none.
+    ///
+    /// # Errors
+    /// The first frame cannot be read.
+    pub fn size_of_skins(&self) -> Result<Option<[usize; 2]>, ReadError> {
+        match self.skins(&self.results()) {
+            Ok(skins) => Ok(Some(skins.size()).filter(|[corners, _]| *corners > 0)),
+            Err(NoSkins::Unknown(_)) => Ok(None),
+            Err(NoSkins::Unread(error)) => Err(error),
+        }
+    }
+
     /// The answer to what the page asks for.
     ///
     /// # Errors
@@ -207,12 +219,12 @@ impl Library {
         Ok(self.quarters.get_or_init(|| quarters))
     }
 
-    fn skins(&self, results: &Results) -> Result<&Skins, Refusal> {
+    fn skins(&self, results: &Results) -> Result<&Skins, NoSkins> {
         if let Some(skins) = self.skins.get() {
             return Ok(skins);
         }
         let first = results.frames().first();
-        let first = first.ok_or_else(|| Refusal::Missing("there is no frame yet".to_owned()))?;
+        let first = first.ok_or_else(|| NoSkins::Unknown("there is no frame yet".to_owned()))?;
         let skins = Skins::of(results, (&*self.opened(first)?, first.time))?;
         Ok(self.skins.get_or_init(|| skins))
     }

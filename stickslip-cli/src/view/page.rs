@@ -11,7 +11,7 @@ use std::io::{self, Write};
 const FRAME: &str = include_str!("page/index.html");
 const STYLES: [&str; 2] = [include_str!("vendor/uplot.css"), include_str!("page/style.css")];
 /// Modules by the names under which they import each other.
-const MODULES: [(&str, &str); 16] = [
+const MODULES: [(&str, &str); 22] = [
     ("three", include_str!("vendor/three.js")),
     ("uplot", include_str!("vendor/uplot.js")),
     ("stickslip/source", include_str!("page/source.js")),
@@ -21,12 +21,18 @@ const MODULES: [(&str, &str); 16] = [
     ("stickslip/cloud", include_str!("page/cloud.js")),
     ("stickslip/skins", include_str!("page/skins.js")),
     ("stickslip/picking", include_str!("page/picking.js")),
+    ("stickslip/arrows", include_str!("page/arrows.js")),
+    ("stickslip/velocities", include_str!("page/velocities.js")),
     ("stickslip/forces", include_str!("page/forces.js")),
     ("stickslip/panel", include_str!("page/panel.js")),
     ("stickslip/bodies", include_str!("page/bodies.js")),
     ("stickslip/charts", include_str!("page/charts.js")),
+    ("stickslip/layers", include_str!("page/layers.js")),
     ("stickslip/looking", include_str!("page/looking.js")),
     ("stickslip/measuring", include_str!("page/measuring.js")),
+    ("stickslip/overlay", include_str!("page/overlay.js")),
+    ("stickslip/playing", include_str!("page/playing.js")),
+    ("stickslip/saving", include_str!("page/saving.js")),
     ("stickslip/main", include_str!("page/main.js")),
 ];
 

@@ -42,7 +42,7 @@ pub fn quantities(file: &ParticleFile) -> Vec<Quantity> {
 
 /// The quantities of a column.
 fn of_column(column: &FileColumn) -> Vec<Quantity> {
-    let words = column.name.replace('_', " ");
+    let words = column.name.replace('_', " ").replace("von mises", "von Mises stress");
     let quantity = |suffix: &str, label: String, measure| Quantity {
         id: if suffix.is_empty() { column.name.clone() } else { format!("{}.{suffix}", column.name) },
         label,

@@ -7,12 +7,12 @@
 use super::library::{Content, Library, Refusal};
 use super::page::POLICY;
 use super::route::Route;
-use std::io;
+use std::io::{self, Write};
 use std::net::{Ipv4Addr, SocketAddr};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
-use tiny_http::{Header, Method, Request, Response, Server};
+use tiny_http::{Method, Request, Server, StatusCode};
 
 /// Requests that are answered side by side: a browser keeps six connections at most.
 const WORKERS: usize = 6;
@@ -66,22 +66,9 @@ impl Serving {
 
     fn respond(&self, library: &Library, request: Request) {
         let (code, content) = self.reply(library, &request);
-        let headers = [
-            ("Content-Type", content.kind),
-            ("Content-Security-Policy", POLICY),
-            ("Cross-Origin-Resource-Policy", "same-origin"),
-            ("X-Content-Type-Options", "nosniff"),
-            ("Referrer-Policy", "no-referrer"),
-            ("Cache-Control", "no-store"),
-        ];
-        let mut response = Response::from_data(content.bytes).with_status_code(code);
-        // The length is known, so nothing need come in pieces.
-        response = response.with_chunked_threshold(usize::MAX);
-        for (name, value) in headers {
-            response.add_header(Header::from_bytes(name, value).expect("ASCII"));
-        }
+        let bare = *request.method() == Method::Head;
         // A browser that has gone away wants no answer.
-        let _ = request.respond(response);
+        let _ = send(code, &content, bare, &mut *request.into_writer());
     }
 
     fn reply(&self, library: &Library, request: &Request) -> (u16, Content) {
@@ -105,6 +92,31 @@ impl Serving {
             Err(()) => told(404, "there is nothing of this name"),
         }
     }
+}
+
+/// Writes an answer, without its content if it is to be `bare`, after which the connection ends.
+///
+/// tiny_http has a thread for each connection that stays open, and one that comes when two do at once may wait until
+/// another ends. Browsers keep theirs for minutes, and its own `Response` cannot tell them to close.
+fn send(code: u16, content: &Content, bare: bool, writer: &mut dyn Write) -> io::Result<()> {
+    let length = content.bytes.len();
+    write!(writer, "HTTP/1.1 {code} {}\r\n", StatusCode(code).default_reason_phrase())?;
+    for (name, value) in [
+        ("Content-Type", content.kind),
+        ("Content-Security-Policy", POLICY),
+        ("Cross-Origin-Resource-Policy", "same-origin"),
+        ("X-Content-Type-Options", "nosniff"),
+        ("Referrer-Policy", "no-referrer"),
+        ("Cache-Control", "no-store"),
+        ("Connection", "close"),
+    ] {
+        write!(writer, "{name}: {value}\r\n")?;
+    }
+    write!(writer, "Content-Length: {length}\r\n\r\n")?;
+    if !bare {
+        writer.write_all(&content.bytes)?;
+    }
+    writer.flush()
 }
 
 fn told(code: u16, text: &str) -> (u16, Content) {

@@ -12,9 +12,11 @@ use stickslip::observe::{ParticleFile, ReadError};
 
 /// Bodies whose way through time a file holds.
 const MOST_BODIES: usize = 500;
-/// Bytes of a particle's place, and of its value of a quantity.
+/// Bytes of a particle's place, of that of a surface's corner, of a value of a quantity at either, and of a triangle.
 const PLACE: u64 = 8;
+const CORNER: u64 = 12;
 const VALUE: u64 = 4;
+const TRIANGLE: u64 = 12;
 
 /// What a file will hold, and how large it can get.
 #[derive(Clone, Debug)]
@@ -22,6 +24,7 @@ pub struct Estimate {
     frames: usize,
     particles: u64,
     quantities: usize,
+    surfaces: bool,
     bytes: u64,
 }
 
@@ -33,15 +36,18 @@ impl Estimate {
     pub fn of(library: &Library, quantities: usize) -> Result<Self, ReadError> {
         let frames = library.frames();
         let [head, foot] = page::halves();
+        let skins = library.size_of_skins()?;
+        let [corners, triangles] = skins.unwrap_or_default().map(|count| count as u64);
         let mut particles = 0;
-        let mut bytes = (head.len() + foot.len()) as u64;
+        let mut data = triangles * TRIANGLE + corners;
         for frame in &frames {
             let count = ParticleFile::open(&frame.path)?.particles() as u64;
             particles = count.max(particles);
-            // Base64 has four letters for three bytes; packing makes them fewer.
-            bytes += count * (PLACE + VALUE * quantities as u64) * 4 / 3;
+            data += count * PLACE + corners * CORNER + (count + corners) * VALUE * quantities as u64;
         }
-        Ok(Estimate { frames: frames.len(), particles, quantities, bytes })
+        // Base64 has four letters for three bytes; packing makes them fewer.
+        let bytes = (head.len() + foot.len()) as u64 + data * 4 / 3;
+        Ok(Estimate { frames: frames.len(), particles, quantities, surfaces: skins.is_some(), bytes })
     }
 
     /// The most that it can take, tables apart [bytes].
@@ -52,9 +58,13 @@ impl Estimate {
 
 impl fmt::Display for Estimate {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let Estimate { frames, particles, quantities, bytes } = self;
+        let Estimate { frames, particles, quantities, surfaces, bytes } = self;
+        let surfaces = if *surfaces { " and surfaces" } else { "" };
         let size = ByteSize(*bytes).display().si();
-        write!(f, "{frames} frames of {particles} particles with {quantities} quantities: at most {size}")
+        write!(
+            f,
+            "{frames} frames of {particles} particles{surfaces} with {quantities} quantities: at most {size}"
+        )
     }
 }
 
@@ -66,10 +76,12 @@ pub fn write(library: &Library, quantities: &[String], out: &Path) -> io::Result
     let frames = library.frames().len();
     let bodies = library.results().body_names().len().min(MOST_BODIES);
     let of_frame = |frame: usize| {
-        let columns = quantities.iter().map(move |id| Route::Column(frame, id.clone()));
-        [Route::Frame(frame), Route::Contacts(frame)].into_iter().chain(columns)
+        let columns = quantities
+            .iter()
+            .flat_map(move |id| [Route::Column(frame, id.clone()), Route::SkinColumn(frame, id.clone())]);
+        [Route::Frame(frame), Route::Contacts(frame), Route::SkinsIn(frame)].into_iter().chain(columns)
     };
-    let routes = [Route::Index, Route::Energy].into_iter();
+    let routes = [Route::Index, Route::Energy, Route::Skins].into_iter();
     let routes = routes.chain((0..bodies).map(Route::Body)).chain((0..frames).flat_map(of_frame));
     let [head, foot] = page::halves();
     files::write(out, files::PAGE, |file| {

@@ -68,6 +68,12 @@ impl Skins {
         Ok(Skins(starts.into_par_iter().filter_map(skin).collect()))
     }
 
+    /// How many corners and triangles there are.
+    pub fn size(&self) -> [usize; 2] {
+        let count = |of: fn(&Skin) -> usize| self.0.iter().map(|skin| of(skin.carried.skin())).sum();
+        [count(|skin| skin.corners.len()), count(|skin| skin.triangles.len())]
+    }
+
     /// The triangles as bytes, little-endian:
     ///
     /// ```text
@@ -75,10 +81,8 @@ impl Skins {
     /// M times u32 three corners, counted over all bodies; N times u8 1 if the corner is paler
     /// ```
     pub fn triangles(&self, quarters: &Quarters) -> Vec<u8> {
-        let count =
-            |of: fn(&Skin) -> usize| self.0.iter().map(|skin| of(skin.carried.skin()) as u32).sum::<u32>();
-        let words =
-            [count(|skin| skin.corners.len()), count(|skin| skin.triangles.len()), self.0.len() as u32];
+        let [corners, triangles] = self.size().map(|count| count as u32);
+        let words = [corners, triangles, self.0.len() as u32];
         let bodies = self.0.iter().flat_map(|BodySkin { run, carried }| {
             [run.body, carried.skin().corners.len() as u32, carried.skin().triangles.len() as u32]
         });

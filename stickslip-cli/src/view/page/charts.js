@@ -1,10 +1,11 @@
 // Charts beside the picture, with the time that is shown as a line in each: a click goes to another time.
 
 import uPlot from "uplot";
-import { number, scaled } from "stickslip/colors";
+import { number, scaled, withUnit } from "stickslip/colors";
 
-const HEIGHT = 150; // pixels
-const COLORS = ["#1f5fa8", "#c0562b", "#2f8555", "#7d4f9e", "#b08a1e", "#9c1c3c", "#4a5560", "#258a94", "#000000"];
+const HEIGHT = 164; // pixels
+const FONT = "11px system-ui";
+const COLORS = ["#1f5fa8", "#c0562b", "#2f8555", "#7d4f9e", "#b08a1e", "#9c1c3c", "#c2699a", "#258a94", "#000000"];
 const ENERGIES = [
     "kinetic",
     "strain",
@@ -16,17 +17,16 @@ const ENERGIES = [
     "external_work",
     "total",
 ];
-const MOMENTA = [
-    ["px", "py", "pz"],
-    ["lx", "ly", "lz"],
-];
+const MOMENTA = ["px", "py", "pz"];
 // What a body has through time, in groups that share an axis.
-export const OF_BODY = {
+const OF_BODY = {
     velocity: ["m/s", "vx", "vy", "vz"],
     position: ["m", "x", "y", "z"],
     spin: ["rad/s", "wx", "wy", "wz"],
     energy: ["J", "kinetic", "strain"],
 };
+// What is held by a metre of depth in the plane.
+const BY_DEPTH = { J: "J/m", "kg m/s": "kg m/s per m" };
 
 export class Charts {
     constructor(box, { onTime, dimension }) {
@@ -45,10 +45,9 @@ export class Charts {
             "Energy",
             "J",
             table.time,
-            moving.map((name) => [name.replace("_", " "), table[name]]),
+            moving.map((name) => [name.replace("_", " "), table[name], COLORS[ENERGIES.indexOf(name)]]),
         );
-        const [linear, angular] = MOMENTA;
-        const shown = this.dimension === 2 ? linear.slice(0, 2) : linear;
+        const shown = this.dimension === 2 ? MOMENTA.slice(0, 2) : MOMENTA;
         this.#put(
             "momentum",
             "Momentum",
@@ -56,7 +55,6 @@ export class Charts {
             table.time,
             shown.map((name) => [name, table[name]]),
         );
-        this.angular = angular;
     }
 
     // A body's table; `group` is a key of OF_BODY.
@@ -81,7 +79,7 @@ export class Charts {
     // The time that the picture shows.
     at(time) {
         this.time = time;
-        for (const { plot } of this.figures.values()) plot?.redraw(false);
+        for (const { plot, now } of this.figures.values()) if (plot) this.#mark(plot, now);
     }
 
     // `onGroup(group)` is called when the reader wants another group of a body's columns.
@@ -91,7 +89,7 @@ export class Charts {
             const element = document.createElement("figure");
             element.dataset.chart = id;
             this.box.append(element);
-            figure = { element };
+            figure = { element, hidden: new Set() };
             this.figures.set(id, figure);
             // The others make room for it.
             this.#resize();
@@ -99,7 +97,11 @@ export class Charts {
         figure.plot?.destroy();
         figure.element.replaceChildren();
         const size = Math.max(...series.flatMap(([, values]) => values.map(Math.abs)).filter(Number.isFinite), 0);
-        const scale = scaled(unit, size);
+        const scale = scaled((this.dimension === 2 && BY_DEPTH[unit]) || unit, size);
+        const clock = scaled("s", Math.abs(time.at(-1) ?? 0));
+        const [readout, now] = ["readout", "now"].map((className) => {
+            return Object.assign(document.createElement("div"), { className, hidden: true });
+        });
         const caption = document.createElement("figcaption");
         caption.textContent = scale.unit ? `${title} [${scale.unit}]` : title;
         if (group) caption.append(this.#groups(group));
@@ -108,35 +110,33 @@ export class Charts {
             width: this.#width(),
             height: HEIGHT,
             legend: { live: false },
+            pxAlign: 0,
             cursor: { points: { show: false }, drag: { x: false, y: false } },
             scales: { x: { time: false } },
             axes: [
-                {
-                    size: 26,
-                    font: "11px system-ui",
-                    values: (_, ticks) => ticks.map((value) => number(value)),
-                    grid: { stroke: "#eceef1" },
-                },
-                {
-                    size: 52,
-                    font: "11px system-ui",
-                    values: (_, ticks) => ticks.map((value) => number(value)),
-                    grid: { stroke: "#eceef1" },
-                },
+                { ...axis(26, clock.factor), label: `time [${clock.unit}]`, labelSize: 17, labelFont: FONT },
+                axis(52, 1),
             ],
             series: [
                 {},
-                ...series.map(([label], i) => ({
+                ...series.map(([label, , color], i) => ({
                     label,
-                    stroke: COLORS[i % COLORS.length],
+                    show: !figure.hidden.has(label),
+                    stroke: color ?? COLORS[i % COLORS.length],
                     width: 1.5,
                     points: { show: time.length < 3 },
                 })),
             ],
-            hooks: { draw: [(plot) => this.#line(plot)] },
+            hooks: {
+                draw: [(plot) => this.#mark(plot, now)],
+                setCursor: [(plot) => tell(plot, readout, scale.unit)],
+                setSeries: [(plot) => remember(plot, figure.hidden)],
+            },
         };
         const data = [time, ...series.map(([, values]) => values.map((value) => value / scale.factor))];
         figure.plot = new uPlot(options, data, figure.element);
+        figure.now = now;
+        figure.plot.over.append(now, readout);
         figure.plot.over.addEventListener("click", (event) => this.onTime(figure.plot.posToVal(event.offsetX, "x")));
     }
 
@@ -148,18 +148,11 @@ export class Charts {
         return select;
     }
 
-    #line(plot) {
-        const x = plot.valToPos(this.time, "x", true);
-        const { left, top, width, height } = plot.bbox;
-        if (x < left - 1 || x > left + width + 1) return;
-        plot.ctx.save();
-        plot.ctx.strokeStyle = "#b3261e";
-        plot.ctx.lineWidth = 1.5;
-        plot.ctx.beginPath();
-        plot.ctx.moveTo(x, top);
-        plot.ctx.lineTo(x, top + height);
-        plot.ctx.stroke();
-        plot.ctx.restore();
+    // An element of its own, so that a chart need not be drawn anew for each frame.
+    #mark(plot, now) {
+        const x = plot.valToPos(this.time, "x");
+        now.hidden = !(x >= -1 && x <= plot.over.clientWidth + 1);
+        now.style.transform = `translateX(${x}px)`;
     }
 
     #width() {
@@ -170,4 +163,37 @@ export class Charts {
     #resize() {
         for (const { plot } of this.figures.values()) plot?.setSize({ width: this.#width(), height: HEIGHT });
     }
+}
+
+function axis(size, factor) {
+    const values = (_, ticks) => ticks.map((value) => number(value / factor));
+    return { size, font: FONT, values, grid: { stroke: "#eceef1" } };
+}
+
+// Says beside the pointer what the curves have there.
+function tell(plot, readout, unit) {
+    const { idx, left, top } = plot.cursor;
+    readout.hidden = !(idx >= 0 && left >= 0);
+    if (readout.hidden) return;
+    const line = (text, color) => {
+        const element = document.createElement("div");
+        [element.textContent, element.style.color] = [text, color];
+        return element;
+    };
+    const shown = plot.series.map((series, i) => ({ series, value: plot.data[i][idx] })).slice(1);
+    readout.replaceChildren(
+        line(withUnit(plot.data[0][idx], "s"), "inherit"),
+        ...shown
+            .filter(({ series }) => series.show)
+            .map(({ series, value }) => line(`${series.label} ${number(value)} ${unit}`, series.stroke())),
+    );
+    const { offsetWidth: width, offsetHeight: height } = plot.over;
+    readout.style.left = left < 0.5 * width ? `${left + 12}px` : "";
+    readout.style.right = left < 0.5 * width ? "" : `${width - left + 12}px`;
+    readout.style.top = `${Math.max(0, Math.min(top - 8, height - readout.offsetHeight))}px`;
+}
+
+// Which curves the reader has put away, for a table that grows.
+function remember(plot, hidden) {
+    for (const { label, show } of plot.series.slice(1)) show ? hidden.delete(label) : hidden.add(label);
 }

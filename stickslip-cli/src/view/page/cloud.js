@@ -21,11 +21,11 @@ import {
 const PASSES = [0, 4, 2, 6, 1, 5, 3, 7];
 // Balls of this many sides across let no light through a face of a lattice, nor do squares that are turned.
 const [BALL, SQUARE] = [1.48, 1.3];
-// Longest wait between two pictures of a motion [ms], and the shortest at which more is drawn again.
-const [SLOW, FAST] = [70, 28];
 const LEAST_SHARE = 1 / 16;
 // Fewer particles than this are always all drawn.
 const FEW = 20000;
+// Marks a particle beside a cut.
+const FILLING = 2;
 
 const VERTEX = `
     attribute vec4 place;
@@ -120,7 +120,7 @@ export class Cloud {
     }
 
     // Chooses what is in sight: `shown(body)` says whether a body is, `cuts` between which values of an axis. Of that,
-    // bodies for which `drawn(body)` does not hold are drawn by others.
+    // bodies for which `drawn(body)` does not hold are drawn by others, as shells: particles beside a cut fill them.
     choose(shown, cuts, drawn = () => true) {
         const { places, stage } = this;
         if (!places) return;
@@ -138,7 +138,8 @@ export class Cloud {
         if (cut || !stage.plane) {
             for (let i = 0; i < count; i++) {
                 if (visible[i] === 0) continue;
-                let seen = stage.plane || (data[4 * i + 3] & 2) !== 0;
+                const seen = stage.plane || (data[4 * i + 3] & 2) !== 0;
+                let filling = false;
                 for (let axis = 0; cut && axis < 3; axis++) {
                     const x = data[4 * i + axis];
                     const [low, high, inner, outer] = bounds[axis];
@@ -146,19 +147,21 @@ export class Cloud {
                         visible[i] = 0;
                         break;
                     }
-                    if (x < inner || x > outer) seen = true;
+                    if (x < inner || x > outer) filling = true;
                 }
-                if (!seen) visible[i] = 0;
+                if (visible[i] === 0 || (stage.plane && seen)) continue;
+                visible[i] = filling ? FILLING : Number(seen);
             }
         }
         let total = 0;
-        for (let i = 0; i < count; i++) total += visible[i];
+        for (let i = 0; i < count; i++) if (visible[i]) total += 1;
         const list = this.list.length === total ? this.list : new Uint32Array(total);
         let at = 0;
         for (const pass of PASSES) for (let i = pass; i < count; i += 8) if (visible[i]) list[at++] = i;
         this.list = list;
         const others = places.runs.filter(({ body }) => !drawn(body));
-        for (const { start, end } of others) visible.fill(0, start, end);
+        for (const { start, end } of others)
+            for (let i = start; i < end; i++) if (visible[i] !== FILLING) visible[i] = 0;
         this.#draw(others.length > 0 ? list.filter((i) => visible[i]) : list);
     }
 
@@ -183,12 +186,10 @@ export class Cloud {
     }
 
     // Before each picture: how much of the list is drawn.
-    prepare({ moving, since }) {
+    prepare({ moving, fewer, more }) {
         const { stage, total = 0 } = this;
-        if (moving && total > FEW && since < 2000) {
-            if (since > SLOW) this.share = Math.max(this.share / 2, LEAST_SHARE);
-            else if (since < FAST) this.share = Math.min(this.share * 1.25, 1);
-        }
+        if (fewer) this.share = Math.max(this.share / 2, LEAST_SHARE);
+        else if (more) this.share = Math.min(this.share * 1.25, 1);
         const share = moving && total > FEW ? this.share : 1;
         this.drawn = Math.ceil(share * total);
         this.points.geometry.setDrawRange(0, this.drawn);

@@ -33,6 +33,12 @@ export function withUnit(value, unit) {
     return `${number(value / scale.factor)} ${scale.unit}`.trim();
 }
 
+// The largest of 1, 2, 5, 10 and so on up to a size.
+export function roundBelow(size) {
+    const power = 10 ** Math.floor(Math.log10(size) + 1e-9);
+    return power * [5, 2, 1].find((step) => step * power <= size * 1.0001);
+}
+
 // Round numbers between two ends, some five of them.
 export function ticks(low, high) {
     const rough = (high - low) / 5;

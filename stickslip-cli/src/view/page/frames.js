@@ -1,6 +1,8 @@
 // Frames as they come from the source: places of particles and values at them, the newest kept in memory.
 
 const KEPT_BYTES = 600e6;
+// Values that are sorted to find what most of them are.
+const SAMPLE = 50000;
 const MAGIC = 0x31565353; // "SSV1"
 
 // Places of the particles of a frame; places.rs says how the bytes stand.
@@ -85,6 +87,16 @@ export class Column {
         [this.least, this.most, this.low, this.high] = values;
         this.values = values.subarray(4);
         this.byteLength = buffer.byteLength;
+    }
+
+    // Between which values 95 of 100 lie, told by an even selection of them.
+    inner() {
+        if (this.between) return this.between;
+        const step = Math.ceil(this.values.length / SAMPLE);
+        const sample = this.values.filter((value, i) => i % step === 0 && Number.isFinite(value)).sort();
+        const at = (share) => sample[Math.round(share * (sample.length - 1))] ?? 0;
+        this.between = [at(0.025), at(0.975)];
+        return this.between;
     }
 }
 

@@ -14,11 +14,20 @@ export class Looking {
         this.picked = undefined;
     }
 
+    // Where the picked particle is [m], if it is in the frame that is shown, and its body is.
+    place() {
+        const { state, picked, bodies } = this;
+        if (!picked || !state.places || !bodies.isShown(picked.body)) return undefined;
+        const place = state.places.find(picked.body, picked.number);
+        return place < 0 ? undefined : state.places.position(place);
+    }
+
     // Says what the picked particle has in the frame that is shown.
     tell() {
         const { state, panel } = this;
         const box = byId("picked");
         box.hidden = !this.picked;
+        this.stage.ask();
         if (!this.picked) return;
         const index = this.newest();
         const { body, number: particle } = this.picked;

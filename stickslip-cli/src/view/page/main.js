@@ -4,11 +4,14 @@ import { BodyList } from "stickslip/bodies";
 import { Charts } from "stickslip/charts";
 import { Cloud } from "stickslip/cloud";
 import { mapPixels, withUnit } from "stickslip/colors";
-import { Forces } from "stickslip/forces";
 import { Frames } from "stickslip/frames";
-import { ColorPanel, CutPanel } from "stickslip/panel";
+import { Layers } from "stickslip/layers";
 import { Looking } from "stickslip/looking";
 import { measure } from "stickslip/measuring";
+import { Overlay } from "stickslip/overlay";
+import { ColorPanel, CutPanel } from "stickslip/panel";
+import { Playing } from "stickslip/playing";
+import { picture } from "stickslip/saving";
 import { Skins } from "stickslip/skins";
 import { Source } from "stickslip/source";
 import { Stage } from "stickslip/stage";
@@ -21,9 +24,11 @@ const STATUS = { running: "running", interrupted: "interrupted", out_of_time: "o
 const source = new Source();
 const frames = new Frames(source);
 let index = await source.json("/index").catch(fail);
-const stage = new Stage(byId("canvas"), index, (motion) => cloud.prepare(motion));
+const stage = new Stage(byId("canvas"), index, (motion) => {
+    cloud.prepare(motion);
+    if (state.shown >= 0) overlay.draw();
+});
 const cloud = new Cloud(stage);
-const forces = new Forces(stage);
 const skins = new Skins(stage, source, cloud.material.uniforms);
 const panel = new ColorPanel(index, {
     onQuantity: () => show(state.frame),
@@ -33,9 +38,12 @@ const panel = new ColorPanel(index, {
 const cuts = new CutPanel(index.dimension, () => choose(true));
 const bodies = new BodyList(index, { onChange: () => choose(false), onChoose: (body) => looking.atBody(body) });
 const charts = new Charts(byId("charts"), { onTime: (time) => show(nearest(time)), dimension: index.dimension });
-const state = { frame: 0, shown: -1, playing: false, pictures: 0 };
-
-const looking = new Looking({ state, source, frames, cloud, bodies, charts, panel }, () => index);
+const state = { frame: 0, shown: -1, pictures: 0 };
+const parts = { state, source, frames, cloud, bodies, charts, panel, stage, skins };
+const looking = new Looking(parts, () => index);
+const layers = new Layers(parts, () => index, choosePieces);
+const overlay = new Overlay(byId("overlay"), stage, () => looking.place());
+const playing = new Playing(state, { stage, show, fetch: fetchFrame, count: () => index.times.length });
 
 function fail(error) {
     byId("message").textContent = error.message ?? String(error);
@@ -51,8 +59,8 @@ function describe() {
     byId("status").textContent = word ?? "";
     byId("time").max = Math.max(index.times.length - 1, 0);
     byId("follow-switch").hidden = !(source.isLive && index.status === "running");
-    byId("draw").lastElementChild.disabled = !source.has("/skins");
-    byId("fringes-switch").hidden = !(index.fringes && source.has("/fringes/0"));
+    byId("sides").hidden = index.dimension === 2;
+    layers.offer();
 }
 
 function nearest(time) {
@@ -78,10 +86,7 @@ async function show(frame) {
     state.frame = frame;
     const { quantity } = panel;
     try {
-        const [places, column] = await Promise.all([
-            frames.places(frame),
-            quantity && frames.column(frame, quantity.id),
-        ]);
+        const [places, column] = await fetchFrame(frame);
         if (state.frame !== frame || panel.quantity !== quantity) return;
         draw(frame, places, column);
     } catch (error) {
@@ -98,14 +103,12 @@ function draw(frame, places, column) {
     cloud.show(places, column ? column.values : places.bodyColors);
     if (other) choosePieces();
     recolor();
-    showSurfaces();
     byId("time").value = frame;
     byId("clock").textContent = `${withUnit(index.times[frame], "s")}   ${frame + 1} of ${index.times.length}`;
     byId("message").textContent = places.count === 0 ? "this frame has no particles" : "";
     charts.at(index.times[frame]);
     state.pictures += 1;
-    showForces();
-    showFringes();
+    layers.show();
     looking.tell();
     for (let ahead = 1; ahead <= AHEAD; ahead++) fetchAhead(frame + ahead);
 }
@@ -118,14 +121,16 @@ function begin(places) {
     stage.origin = low.map((value, axis) => 0.5 * (value + high[axis]));
     state.box = { low, high, size: Math.hypot(...low.map((value, axis) => high[axis] - value)) };
     cuts.box = state.box;
-    stage.fit(low, high);
+    stage.fit(low, high, "oblique");
+}
+
+function fetchFrame(frame) {
+    const { quantity } = panel;
+    return Promise.all([frames.places(frame), quantity && frames.column(frame, quantity.id)]);
 }
 
 function fetchAhead(frame) {
-    if (frame >= index.times.length) return;
-    const { quantity } = panel;
-    frames.places(frame).catch(() => {});
-    if (quantity) frames.column(frame, quantity.id).catch(() => {});
+    if (frame < index.times.length) fetchFrame(frame).catch(() => {});
 }
 
 function recolor() {
@@ -154,89 +159,11 @@ function choosePieces() {
     cloud.choose(shown, cuts.cuts, (body) => !(skins.isOn && skins.bodies.has(body)));
 }
 
-// Bodies as surfaces, where the reader wants that and they are known.
-async function showSurfaces() {
-    if (byId("draw").value === "particles") {
-        if (!skins.isOn) return;
-        skins.hide();
-        choosePieces();
-        stage.ask();
-        return;
-    }
-    const { shown } = state;
-    const { quantity } = panel;
-    const wasOn = skins.isOn;
-    try {
-        if (!skins.triangles) byId("no-surfaces").textContent = "making surfaces ...";
-        await skins.load(index.body_colors.length);
-        await skins.show(shown, quantity?.id);
-        byId("no-surfaces").textContent = "";
-        if (!wasOn) choosePieces();
-    } catch (error) {
-        byId("draw").value = "particles";
-        byId("no-surfaces").textContent = error.message;
-    }
-}
-
 function choose(moving) {
     choosePieces();
-    showForces();
+    layers.choose();
     if (moving) stage.move();
     else stage.ask();
-}
-
-async function showForces() {
-    const [chains, arrows] = ["chains", "arrows"].map((id) => byId(id).checked);
-    byId("force-scale").textContent = "";
-    if (!chains && !arrows) {
-        forces.clear();
-        stage.ask();
-        return;
-    }
-    const { shown, places, box } = state;
-    const told = await source.json(`/contacts/${shown}`).catch((error) => ({ contacts: [], largest: 0, error }));
-    if (state.shown !== shown) return;
-    const choice = { chains, arrows, shown: (body) => bodies.isShown(body), rigid: index.rigid, size: box.size };
-    forces.show(told, places, choice);
-    const unit = index.dimension === 2 ? "N/m" : "N";
-    byId("force-scale").textContent =
-        told.error?.message ?? `${told.contacts.length} contacts; largest of the run: ${withUnit(told.largest, unit)}`;
-    stage.ask();
-}
-
-function showFringes() {
-    const wanted = byId("show-fringes").checked;
-    byId("fringes").hidden = !wanted;
-    if (wanted) byId("fringes").firstElementChild.src = `/fringes/${state.shown}`;
-}
-
-// Playing: the next frame when it is due and there.
-async function play() {
-    if (state.playing || index.times.length < 2) return;
-    state.playing = true;
-    byId("play").textContent = "❚❚";
-    if (state.frame >= index.times.length - 1) await show(0);
-    while (state.playing) {
-        const due = performance.now() + 1000 / Number(byId("rate").value);
-        const next = state.frame + 1;
-        if (next >= index.times.length) break;
-        await Promise.all([frames.places(next), panel.quantity && frames.column(next, panel.quantity.id)]).catch(
-            () => {},
-        );
-        await new Promise((resolve) => setTimeout(resolve, Math.max(0, due - performance.now())));
-        if (!state.playing || state.frame !== next - 1) continue;
-        stage.move();
-        await show(next);
-        // The picture is drawn before the next one is made.
-        await new Promise((resolve) => requestAnimationFrame(resolve));
-    }
-    stop();
-}
-
-function stop() {
-    state.playing = false;
-    byId("play").textContent = "▶";
-    stage.ask();
 }
 
 // A run that goes on: what is new is asked for each second.
@@ -279,30 +206,31 @@ async function refresh() {
     else draw(state.shown, state.places, state.column);
 }
 
-function showEnergy() {
-    source.json("/energy").then(
-        (table) => table.time && charts.energy(table),
-        () => {},
-    );
+// Energies need no word where there are none.
+async function showEnergy() {
+    const table = await source.json("/energy").catch(() => ({}));
+    if (!(table.time?.length > 1)) return;
+    charts.energy(table);
+    if (index.status !== "running") return;
+    byId("status").textContent = `running: ${withUnit(table.time.at(-1), "s")} of ${withUnit(index.end, "s")}`;
 }
 
 byId("time").oninput = () => {
     stage.move();
     show(Number(byId("time").value));
 };
-byId("play").onclick = () => (state.playing ? stop() : play());
 byId("first").onclick = () => show(0);
 byId("back").onclick = () => show(state.frame - 1);
 byId("forth").onclick = () => show(state.frame + 1);
 byId("fit").onclick = () => state.places && stage.fit(...bounds(state.places));
-byId("chains").onchange = byId("arrows").onchange = () => showForces();
-byId("draw").onchange = () => showSurfaces();
-byId("show-fringes").onchange = () => showFringes();
+for (const button of byId("sides").querySelectorAll("button"))
+    button.onclick = () => state.places && stage.fit(...bounds(state.places), button.value);
 byId("show-charts").onchange = () => (byId("charts").hidden = !byId("show-charts").checked);
 byId("save").onclick = () => {
     const link = document.createElement("a");
     stage.timed();
-    link.href = byId("canvas").toDataURL("image/png");
+    overlay.draw();
+    link.href = picture([byId("canvas"), byId("overlay")], byId("colorbar"));
     link.download = `${index.title}.png`;
     link.click();
 };
@@ -337,13 +265,13 @@ document.addEventListener("keydown", (event) => {
 });
 
 describe();
+recolor();
 showEnergy();
 if (index.times.length > 0) await show(index.status === "running" ? index.times.length - 1 : 0);
 else
     byId("message").textContent =
         index.status === "running" ? "waiting for the first frame ..." : "the run wrote no snapshots of particles";
 follow();
-const pickAt = (x, y) => looking.pickAt(x, y);
 window.stickslip = {
     state,
     source,
@@ -351,9 +279,8 @@ window.stickslip = {
     cloud,
     skins,
     show,
-    play,
-    stop,
-    pickAt,
+    play: () => playing.start(),
+    pickAt: (x, y) => looking.pickAt(x, y),
     measure: (seconds) => measure({ stage, cloud, state }, seconds),
     index: () => index,
 };

@@ -18,7 +18,8 @@ export async function measure({ stage, cloud, state }, seconds) {
     }
     const moving = pictures / ((performance.now() - start) / 1000);
     const drawnMoving = cloud.drawn;
-    cloud.prepare({ moving: false, since: 0 });
+    // Until the picture is drawn in full again.
+    while (stage.moving || stage.asked) await new Promise((resolve) => setTimeout(resolve, 50));
     const full = [stage.timed(), stage.timed(), stage.timed()].sort((a, b) => a - b)[1];
     return { moving, drawnMoving, full, drawn: cloud.drawn, particles: state.places.count };
 }

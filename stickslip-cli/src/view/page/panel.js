@@ -1,6 +1,6 @@
 // The controls of colour and of cuts, and the bar that says what colours mean.
 
-import { number, scaled, ticks } from "stickslip/colors";
+import { number, scaled, ticks, withUnit } from "stickslip/colors";
 
 const byId = (id) => document.getElementById(id);
 const STEPS = 1000;
@@ -70,7 +70,8 @@ export class ColorPanel {
             this.mode === "typed" ? ["low", "high"].map((id) => Number(byId(id).value.replace(",", "."))) : undefined;
         if (!range || !(range[1] > range[0])) {
             if (range) byId("range").value = "seen";
-            range = around(this.mode === "frame" ? [column.low, column.high] : seen, quantity.middle);
+            const ends = { frame: [column.low, column.high], inner: this.mode === "inner" && column.inner() };
+            range = around(ends[this.mode] ?? seen, quantity.middle);
             [byId("low").value, byId("high").value] = range.map((value) => number(value, 5));
         }
         if (!this.mapChosen) byId("map").value = range[0] < 0 || quantity.middle !== null ? "blue-red" : "viridis";
@@ -115,18 +116,20 @@ export class CutPanel {
         this.sliders = ["x", "y", "z"].slice(0, dimension).map((axis) => {
             const row = document.createElement("div");
             row.className = "cut";
+            const words = document.createElement("output");
             row.append(axis);
             const ends = ["from", "to"].map((word, end) => {
                 const slider = document.createElement("input");
                 Object.assign(slider, { type: "range", min: 0, max: STEPS, value: end * STEPS });
                 slider.setAttribute("aria-label", `${axis} ${word}`);
                 slider.oninput = () => {
-                    this.#tell(slider, axis);
+                    words.textContent = this.#words(axis);
                     onChange();
                 };
                 row.append(slider);
                 return slider;
             });
+            row.append(words);
             byId("cuts").append(row);
             return ends;
         });
@@ -137,18 +140,15 @@ export class CutPanel {
         return [0, 1, 2].map((axis) => {
             const ends = this.sliders[axis];
             if (!ends || !this.box) return { low: -Infinity, high: Infinity };
-            const [low, high] = ends.map((slider) => this.#value(axis, Number(slider.value)));
             const [first, last] = ends.map((slider) => Number(slider.value));
-            return { low: first === 0 ? -Infinity : low, high: last === STEPS ? Infinity : high };
+            const value = (step) => this.box.low[axis] + ((this.box.high[axis] - this.box.low[axis]) * step) / STEPS;
+            return { low: first === 0 ? -Infinity : value(first), high: last === STEPS ? Infinity : value(last) };
         });
     }
 
-    #value(axis, step) {
-        return this.box.low[axis] + ((this.box.high[axis] - this.box.low[axis]) * step) / STEPS;
-    }
-
-    #tell(slider, axis) {
-        const place = ["x", "y", "z"].indexOf(axis);
-        slider.title = this.box ? `${axis} = ${number(this.#value(place, Number(slider.value)))} m` : "";
+    #words(axis) {
+        const { low, high } = this.cuts[["x", "y", "z"].indexOf(axis)];
+        const ends = [low > -Infinity && `from ${withUnit(low, "m")}`, high < Infinity && `to ${withUnit(high, "m")}`];
+        return ends.filter(Boolean).join(" ");
     }
 }

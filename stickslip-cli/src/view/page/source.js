@@ -6,8 +6,6 @@ export class Source {
         for (const element of document.querySelectorAll("script[data-route]")) {
             this.embedded.set(element.dataset.route, element);
         }
-        // Moved so far, for measurements.
-        this.bytes = 0;
     }
 
     // Whether a server stands behind it, which may have more to say later.
@@ -20,9 +18,7 @@ export class Source {
     }
 
     async buffer(route) {
-        const buffer = this.isLive ? await this.#fetched(route) : await this.#unpacked(route);
-        this.bytes += buffer.byteLength;
-        return buffer;
+        return this.isLive ? this.#fetched(route) : this.#unpacked(route);
     }
 
     async json(route) {
