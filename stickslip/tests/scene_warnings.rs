@@ -60,7 +60,10 @@ fn each_doubt_is_told_of_where_it_stands_in_the_file() {
             line("[[contact]]", 1),
             "contact[1]: never holds: contact[0] ([\"rubber\", \"any\"]) comes before it",
         ),
-        (line("[[contact]]", 2), "contact[2]: never acts: [\"ram\", \"anvil\"] matches rigid bodies with prescribed motion only"),
+        (
+            line("[[contact]]", 2),
+            "contact[2]: never acts: [\"ram\", \"anvil\"] matches rigid bodies with prescribed motion only",
+        ),
         (
             line("shape.ball", 0),
             "bodies[1].shape: `roller` overlaps `strip` by 1.000e-4 m (1.00e-2 cells) near (0.1000, 0.0",

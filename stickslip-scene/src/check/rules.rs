@@ -266,9 +266,13 @@ mod tests {
             ball(name, "iron", x).replace("} },", &format!("}}, rigid = {{ {free} }} }},"))
         };
         let bodies = ball("a", "clay", 0.0) + &stiff("b", 4.0, "") + &stiff("c", 8.0, "free = {}");
-        let rules = "{ between = ['b', 'c'], restitution = 0.5 }, { between = ['a', 'c'], restitution = 0.5 }";
+        let rules =
+            "{ between = ['b', 'c'], restitution = 0.5 }, { between = ['a', 'c'], restitution = 0.5 }";
         let found = warnings(&bodies, rules);
-        assert!(found.len() == 1 && found[0].starts_with("contact[1].restitution: does not act"), "{found:?}");
+        assert!(
+            found.len() == 1 && found[0].starts_with("contact[1].restitution: does not act"),
+            "{found:?}"
+        );
     }
 
     #[test]

@@ -565,7 +565,7 @@ impl Scene {
     /// Whether contact can act between two bodies: not between prescribed ones, nor between those that a joint holds.
     pub fn may_touch(&self, [a, b]: [usize; 2]) -> bool {
         let both = |is: fn(&Body) -> bool| is(&self.bodies[a]) && is(&self.bodies[b]);
-        !both(Body::is_prescribed) && !(both(Body::is_rigid) && self.are_joined(a, b))
+        !(both(Body::is_prescribed) || both(Body::is_rigid) && self.are_joined(a, b))
     }
 
     /// The rule for two bodies, given by index: the first in the file that matches, else the default rule.

@@ -95,8 +95,16 @@ fn problem(from: &str, to: &str) -> (String, String) {
 fn joints_hold_near_their_bodies() {
     for (from, to, found) in [
         ("point = [1, 0.5]", "point = [1, 500]", ("", "")),
-        ("shape.box = { min = [0, 1], max = [2, 1.5] }", "shape.half_space = { point = [0, 0], normal = [0, -1] }", ("", "")),
-        ("cell = 0.1", "cell = 0.1\ndomain = { min = [-9, -1], max = [2, 9], x_max = \"symmetry\" }", ("", "")),
+        (
+            "shape.box = { min = [0, 1], max = [2, 1.5] }",
+            "shape.half_space = { point = [0, 0], normal = [0, -1] }",
+            ("", ""),
+        ),
+        (
+            "cell = 0.1",
+            "cell = 0.1\ndomain = { min = [-9, -1], max = [2, 9], x_max = \"symmetry\" }",
+            ("", ""),
+        ),
     ] {
         let (key, what) = problem(from, to);
         assert_eq!((key.as_str(), what.as_str()), found);

@@ -1,15 +1,15 @@
 //! Velocities of free rigid bodies, impulses of contact and those of joints, found together.
 
 use super::joint::poses;
-use super::row::{JointRow, Row, solve};
-use super::surfaces::RigidSurfaces;
+use super::row::{JointRow, Row, TOUCHING, solve};
 use super::six::{self, Six, SixFactor, SixMatrix, at, join};
+use super::surfaces::RigidSurfaces;
+use super::touch::Touch;
 use super::{FreeBody, Mechanism, slot};
 use crate::body::Body;
 use crate::contact::{Impulses, Solve, Span};
 use crate::grid::Lattice;
 use crate::scene::Joint;
-use super::touch::Touch;
 use crate::tensor::{Real, Vector};
 
 /// A use of contact in which free rigid bodies take part.
@@ -72,7 +72,7 @@ impl<T: Real, const D: usize> Coupling<'_, T, D> {
         self.find_rows(mechanism, dt);
         self.find_touches(bodies, mechanism, dt);
         let count = mechanism.bodies.len();
-        let mut settled = false;
+        let (mut settled, mut first) = (false, 0.0);
         for round in 0..MAX_ROUNDS {
             self.move_nodes(bodies, (&mechanism.bodies, &touched));
             self.solve.list(|part| round == 0 || parts[part], listed);
@@ -104,9 +104,16 @@ impl<T: Real, const D: usize> Coupling<'_, T, D> {
                 speed = speed.max(size(&join(motion.velocity(), motion.spin()))).max(size(&free.start));
             }
             let tolerance = TOLERANCE.max(ROUND_OFF * T::EPSILON.f64());
+            if round == 0 && !mechanism.touches.is_empty() {
+                first = 10.0 * TOUCHING * moved;
+            }
             // Joints see places, which are no nearer than round-off.
-            let round_off = if self.joints.is_empty() && mechanism.touches.is_empty() { 0.0 } else { ROUND_OFF * f64::EPSILON * far / dt };
-            if moved <= tolerance * speed + round_off {
+            let round_off = if self.joints.is_empty() && mechanism.touches.is_empty() {
+                0.0
+            } else {
+                ROUND_OFF * f64::EPSILON * far / dt
+            };
+            if moved <= tolerance * speed + round_off + first {
                 settled = held;
                 break;
             }

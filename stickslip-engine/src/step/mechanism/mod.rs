@@ -31,8 +31,8 @@ use crate::tensor::{Vector, cross};
 use joint::Link;
 use row::{JointRow, Row};
 use six::{Six, SixMatrix, join};
-use touch::Touch;
 use std::time::Instant;
+use touch::Touch;
 
 /// Free rigid bodies and joints in a step.
 #[derive(Clone, Debug, Default)]
@@ -172,7 +172,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let mut work = 0.0;
         for touch in mechanism.touches.iter().filter(|touch| touch.normal.impulse > 0.0) {
             let means = touch.contact.bodies.map(mean);
-            let works = |row: &Row| [0, 1].map(|side| row.impulse * six::dot(&row.directions[side], &means[side]));
+            let works =
+                |row: &Row| [0, 1].map(|side| row.impulse * six::dot(&row.directions[side], &means[side]));
             let lost = |row: &Row| -works(row).iter().sum::<f64>();
             let rubbed: f64 = touch.tangents.iter().map(lost).sum();
             self.state.damping += lost(&touch.normal);

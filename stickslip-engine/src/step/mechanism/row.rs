@@ -85,10 +85,32 @@ impl Sweep {
     }
 }
 
+impl Sweep {
+    /// The impulses of one contact, with all others as they are.
+    fn push(&mut self, touch: &mut Touch, changes: &mut [Six]) {
+        let push = touch.normal.wanted(changes, touch.normal.yields).max(0.0);
+        self.set(&mut touch.normal, push, changes);
+        let strength = touch.strength();
+        let yields = touch.tangents.iter().map(|row| row.yields).fold(0.0, f64::max);
+        if touch.friction == 0.0 || yields == 0.0 {
+            return;
+        }
+        let wanted = [0, 1].map(|i| touch.tangents.get(i).map_or(0.0, |row| row.wanted(changes, yields)));
+        let size = wanted[0].hypot(wanted[1]);
+        let scale = if size > strength { strength / size } else { 1.0 };
+        for (row, wanted) in touch.tangents.iter_mut().zip(wanted) {
+            self.set(row, scale * wanted, changes);
+        }
+    }
+}
+
 /// Sweeps over all equations at most.
 const MAX_SWEEPS: usize = 2000;
-/// They end where no impulse changes a velocity by more than this part of the largest change.
+/// They end where no impulse changes a velocity by more than this part of the largest change; where rigid bodies touch,
+/// by more than the second.
 const TOLERANCE: f64 = 1e-14;
+/// Many points of a face share a load in many ways, between which sweeps go on for long.
+pub const TOUCHING: f64 = 1e-9;
 
 /// Finds the impulses with which all equations hold, and adds what they change to the bodies' changes of velocity
 /// (projected Gauss-Seidel; friction on the disc of De Saxce and Feng 1998); says whether they came to rest.
@@ -96,6 +118,7 @@ pub fn solve(held: &mut [JointRow], touches: &mut [Touch], changes: &mut [Six]) 
     for row in held.iter().map(|held| &held.row).chain(touches.iter().flat_map(Touch::rows)) {
         row.give(row.impulse, changes);
     }
+    let tolerance = if touches.is_empty() { TOLERANCE } else { TOUCHING };
     for _ in 0..MAX_SWEEPS {
         let mut sweep = Sweep::default();
         for JointRow { row, limit, .. } in held.iter_mut().filter(|held| held.row.yields > 0.0) {
@@ -103,21 +126,9 @@ pub fn solve(held: &mut [JointRow], touches: &mut [Touch], changes: &mut [Six]) 
             sweep.set(row, wanted, changes);
         }
         for touch in touches.iter_mut().filter(|touch| touch.normal.yields > 0.0) {
-            let push = touch.normal.wanted(changes, touch.normal.yields).max(0.0);
-            sweep.set(&mut touch.normal, push, changes);
-            let strength = touch.strength();
-            let yields = touch.tangents.iter().map(|row| row.yields).fold(0.0, f64::max);
-            if touch.friction == 0.0 || yields == 0.0 {
-                continue;
-            }
-            let wanted = [0, 1].map(|i| touch.tangents.get(i).map_or(0.0, |row| row.wanted(changes, yields)));
-            let size = wanted[0].hypot(wanted[1]);
-            let scale = if size > strength { strength / size } else { 1.0 };
-            for (row, wanted) in touch.tangents.iter_mut().zip(wanted) {
-                sweep.set(row, scale * wanted, changes);
-            }
+            sweep.push(touch, changes);
         }
-        if sweep.moved <= TOLERANCE * sweep.largest {
+        if sweep.moved <= tolerance * sweep.largest {
             return true;
         }
     }

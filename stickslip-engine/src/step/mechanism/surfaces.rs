@@ -19,6 +19,9 @@ const FLAT: f64 = 0.9998;
 /// Steps of the search for the nearest point at most, and where it ends, over the distance between points.
 const MAX_STEPS: usize = 40;
 const FOUND: f64 = 1e-9;
+/// From this part of the way on that a point may take it would have gone on, if the slope is more than the second.
+const AT_END: f64 = 0.999;
+const LEVEL: f64 = 1e-6;
 
 /// A rigid body's surface, as points on the shape at the start.
 #[derive(Clone, Debug)]
@@ -147,15 +150,18 @@ impl RigidSurfaces {
         for (one, other, sign) in [(a, b, 1.0), (b, a, -1.0)] {
             for &point in &one.surface.points {
                 let place = one.pose.now(point);
-                if (Vector(place) - Vector(other.center)).norm() > other.reach + margin + one.surface.spacing {
+                if (Vector(place) - Vector(other.center)).norm() > other.reach + margin + one.surface.spacing
+                {
                     continue;
                 }
                 if other.level(place).distance > margin + one.surface.spacing {
                     continue;
                 }
-                let (place, level) = one.nearest(place, other);
+                let Some((place, level)) = one.nearest(place, other) else { continue };
                 let Some(normal) = Vector(level.gradient).direction() else { continue };
                 if level.distance <= margin {
+                    // In the middle between the surfaces, where either body's points find the same place.
+                    let place = (place - normal * (0.5 * level.distance)).0;
                     let normal = normal.0.map(|n| sign * n);
                     near.push(RigidContact { bodies, place, normal, gap: level.distance });
                 }
@@ -212,8 +218,14 @@ impl<'a, T, const D: usize> PlacedSurface<'a, T, D> {
     }
 
     /// From a point of its surface along it to where it is nearest to `other`, by no more than points are apart: where
-    /// the gradient of the distance has no part along the surface (steepest descent, Barzilai and Borwein 1988).
-    fn nearest(&self, place: [f64; 3], other: &PlacedSurface<T, D>) -> ([f64; 3], SignedDistance) {
+    /// the gradient of the distance has no part along the surface (steepest descent, Barzilai and Borwein 1988). `None`
+    /// if it goes on from there: another point is nearer then. So a wheel that rolls touches at its lowest point, and
+    /// not at those that come down in front of it.
+    fn nearest(
+        &self,
+        place: [f64; 3],
+        other: &PlacedSurface<T, D>,
+    ) -> Option<(Vector<f64, 3>, SignedDistance)> {
         let (first, spacing) = (Vector(place), self.surface.spacing);
         let mut at = first;
         let mut level = other.level(at.0);
@@ -242,13 +254,14 @@ impl<'a, T, const D: usize> PlacedSurface<'a, T, D> {
             let turned = along(to, &there);
             let change = turned - slope;
             let curved = moved.dot(change);
-            step = if curved > 0.0 { moved.dot(moved) / curved } else { spacing };
+            step = if curved > 0.0 { moved.dot(moved) / curved } else { 4.0 * step };
             (at, level, slope) = (to, there, turned);
             if moved.norm() < FOUND * spacing {
                 break;
             }
         }
-        (at.0, level)
+        let goes_on = (at - first).norm() > AT_END * spacing && slope.norm() > LEVEL;
+        (!goes_on).then_some((at, level))
     }
 }
 
@@ -266,9 +279,8 @@ fn reduce(mut near: Vec<RigidContact>, alike: f64, dimension: usize, kept: &mut 
             for direction in around(&tangents) {
                 let far = |contact: &&RigidContact| Vector(contact.place).dot(Vector(direction));
                 let Some(extreme) = set.iter().max_by(|a, b| far(a).total_cmp(&far(b))) else { continue };
-                let same = |contact: &RigidContact| {
-                    (Vector(contact.place) - Vector(extreme.place)).norm() <= alike
-                };
+                let same =
+                    |contact: &RigidContact| (Vector(contact.place) - Vector(extreme.place)).norm() <= alike;
                 if !chosen.iter().any(same) {
                     chosen.push(*extreme);
                 }
@@ -290,13 +302,10 @@ pub fn tangents(normal: [f64; 3], dimension: usize) -> Vec<[f64; 3]> {
 fn around(tangents: &[[f64; 3]]) -> Vec<[f64; 3]> {
     match tangents {
         [t] => vec![*t, t.map(|t| -t)],
-        [s, t] => (0..8)
-            .map(|i| {
-                let angle = std::f64::consts::FRAC_PI_4 * f64::from(i);
-                let (sin, cos) = (libm::sin(angle), libm::cos(angle));
-                std::array::from_fn(|k| cos * s[k] + sin * t[k])
-            })
-            .collect(),
+        // Askew to the edges of most bodies, so that one point is the farthest.
+        [s, t] => [[0.8, 0.6], [-0.6, 0.8], [-0.8, -0.6], [0.6, -0.8]]
+            .map(|[a, b]| std::array::from_fn(|k| a * s[k] + b * t[k]))
+            .to_vec(),
         _ => Vec::new(),
     }
 }

@@ -86,7 +86,7 @@ impl Parser<'_> {
 
     /// Do `1 /` and a unit come next?
     fn divides(&self) -> bool {
-        let ahead = |n: usize| self.words.get(self.next + n).map(|(token, _)| token.clone());
+        let ahead = |n: usize| self.words.get(self.next + n).map(|(token, _)| *token);
         let unit = matches!(ahead(2), Some(Token::Name(name)) if Unit::named(name).is_some());
         unit && ahead(0) == Some(Token::Number(1.0)) && ahead(1) == Some(Token::Symbol("/"))
     }

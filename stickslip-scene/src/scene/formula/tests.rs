@@ -138,7 +138,12 @@ fn mistakes_are_shown_where_they_are() {
         ("", "", "the end of the formula", ""),
         ("1 +", "", "the end of the formula", ""),
         ("1 2", "2", "`2`", "a product needs its `*`"),
-        ("1 kg m", "m", "`* m`, where `m` is both a unit and a parameter", "for the unit leave out the spaces"),
+        (
+            "1 kg m",
+            "m",
+            "`* m`, where `m` is both a unit and a parameter",
+            "for the unit leave out the spaces",
+        ),
         ("{radius}", "{", "`{`", "braces are for parameters in text; a formula names them as they are"),
         ("sin(1, 2)", "sin(1, 2)", "`sin` of 2", ""),
         ("if(1, 2, 3)", "1", "a plain number", ""),
