@@ -240,11 +240,9 @@ impl ContactSums {
         let magnitude = (push + rub).norm();
         sum.magnitude += magnitude;
         sum.normal += push.norm();
-        for i in 0..3 {
-            sum.tangential[i] += rub.0[i];
-            sum.impulse[i] -= push.0[i] + rub.0[i];
-            sum.moment[i] += magnitude * place[i];
-        }
+        sum.tangential = (Vector(sum.tangential) + rub).0;
+        sum.impulse = (Vector(sum.impulse) - push - rub).0;
+        sum.moment = (Vector(sum.moment) + Vector(*place) * magnitude).0;
         self.rub(*bodies, *friction);
     }
 

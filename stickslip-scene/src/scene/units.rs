@@ -88,7 +88,7 @@ const NAMED: &[([i8; 3], &str, &str)] = &[
     ([1, 1, -2], "a force", "N"),
     ([1, 0, -2], "a stiffness or an energy per area", "N/m"),
     ([1, 0, -1], "a force per velocity", "N*s/m"),
-    ([1, 2, -2], "an energy", "J"),
+    ([1, 2, -2], "an energy or a moment", "J"),
     ([1, 2, -3], "a power", "W"),
 ];
 

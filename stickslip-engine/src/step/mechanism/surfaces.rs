@@ -212,7 +212,7 @@ impl<'a, T, const D: usize> PlacedSurface<'a, T, D> {
             if !level.distance.is_finite() {
                 break;
             }
-            place = place - Vector(level.gradient) * level.distance;
+            place -= Vector(level.gradient) * level.distance;
         }
         place
     }

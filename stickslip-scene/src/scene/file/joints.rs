@@ -125,7 +125,14 @@ pub fn resolve(joints: &[Joint], (bodies, context): (&[Body], &Context)) -> Resu
             let number = resolved.all.len() + 1;
             let name = match &joint.name {
                 Some(text) => text.new_name(context, &mut taken)?,
-                None => format!("joint {number}"),
+                None => {
+                    let name = format!("joint {number}");
+                    if !taken.insert(name.clone()) {
+                        let found = format!("the name `{name}`, which another has");
+                        return Err(Fault::new(&declared, found, "a `name` of its own"));
+                    }
+                    name
+                }
             };
             resolved.all.push(joint.resolve(&declared, name, (bodies, context))?);
             resolved.declared.push(declared.clone());
