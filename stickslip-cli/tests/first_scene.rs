@@ -10,6 +10,20 @@ use stickslip::{Workplace, new_scene};
 const QUICK: [&str; 4] = ["--set", "cells_per_radius=4", "--set", "friction=0.3"];
 
 #[test]
+fn shells_complete_and_man_has_pages() {
+    let workplace = Workplace::new();
+    for shell in ["bash", "zsh", "fish"] {
+        let script = workplace.succeed(&["completions", shell]);
+        assert!(script.contains("checkpoint-every") && script.contains("validate"), "{shell}");
+    }
+    let refused = workplace.run(&["completions", "tcsh"]);
+    assert!(refused.code == Some(2) && refused.stderr.contains("bash"), "{}", refused.stderr);
+    workplace.succeed(&["manual", "pages"]);
+    let page = std::fs::read_to_string(workplace.path("pages/stickslip-run.1")).unwrap();
+    assert!(page.contains("checkpoint") && workplace.path("pages/stickslip.1").exists());
+}
+
+#[test]
 fn the_schema_is_json() {
     let schema = Workplace::new().succeed(&["schema"]);
     let schema: serde_json::Value = serde_json::from_str(&schema).unwrap();

@@ -2,7 +2,9 @@
 
 mod bench;
 mod check;
+mod completions;
 mod fringes;
+mod manual;
 mod network;
 mod new;
 mod plot;
@@ -40,6 +42,8 @@ pub enum Command {
     Network(network::Arguments),
     Reproduce(reproduce::Arguments),
     Schema(schema::Arguments),
+    Completions(completions::Arguments),
+    Manual(manual::Arguments),
     Bench(bench::Arguments),
     Validate(validate::Arguments),
     View(view::Arguments),
@@ -59,6 +63,8 @@ impl Command {
             Command::Network(arguments) => arguments.execute(),
             Command::Reproduce(arguments) => arguments.execute(),
             Command::Schema(arguments) => arguments.execute(),
+            Command::Completions(arguments) => arguments.execute(),
+            Command::Manual(arguments) => arguments.execute(),
             Command::Bench(arguments) => arguments.execute(),
             Command::Validate(arguments) => arguments.execute(),
             Command::View(arguments) => arguments.execute(),

@@ -587,3 +587,57 @@ fn boxes_slide_stand_and_tip() {
     );
     assert!(moved > 0.02 && spin < -0.02);
 }
+
+/// The scene in the book: two wheels on axles carry a carriage up a slope, one of them driven by a motor.
+#[test]
+fn a_carriage_climbs_a_slope_by_its_motor() {
+    let mut simulation = start(include_str!("../../../scenes/carriage.toml"));
+    let before = simulation.ledger();
+    run_to(&mut *simulation, 2.0, |_| {});
+    let (after, bodies) = (simulation.ledger(), simulation.bodies());
+    let slope = 11.31_f64.to_radians();
+    let (mass, turning) = (500.0, 0.5 * 50.0 * 2.0);
+    let exact = (600.0 / 0.3 - mass * 9.81 * slope.sin()) / (mass + turning);
+    let found = bodies[3].velocity[0] / 2.0;
+    let drift = (after.total - before.total) / after.external_work;
+    println!("acceleration {found:.7} m/s^2, exact {exact:.7}; energy off by {drift:.1e} of the work");
+    assert!((found / exact - 1.0).abs() < 1e-4 && drift.abs() < 1e-2, "{found} {exact} {drift}");
+    assert!(bodies[3].spin[2].abs() < 1e-6, "the carriage reared up");
+}
+
+/// A plate on a slider holds a pressure: a block between it and a floor is strained as by that pressure, in the plane
+/// with E / (1 - nu^2).
+#[test]
+fn a_plate_on_a_slider_holds_its_force() {
+    let scene = format!(
+        r#"
+        space = {{ dimension = "plane-strain", cell = 0.1 }}
+        time = {{ end = 2 }}
+        {GEL}
+        [[bodies]]
+        name = "floor"
+        material = "gel"
+        shape.box = {{ min = [-0.3, -0.3], max = [1.1, 0] }}
+        rigid = {{}}
+        [[bodies]]
+        name = "block"
+        material = "gel"
+        shape.box = {{ min = [0, 0], max = [0.8, 1.6] }}
+        [[bodies]]
+        name = "plate"
+        material = "gel"
+        shape.box = {{ min = [-0.3, 1.6], max = [1.1, 1.9] }}
+        rigid.free = {{}}
+        [[joints]]
+        body = "plate"
+        slider = {{ axis = [0, 1], force = "-16 kN * min(t / 0.5 s, 1)", dashpot = "40 kN s/m" }}
+        "#
+    );
+    let mut simulation = start(&scene);
+    run_to(&mut *simulation, 2.0, |_| {});
+    let (plate, joint) = (simulation.bodies()[2].clone(), simulation.joints()[0]);
+    // 20 kPa on 1 MPa / (1 - nu^2), finite strain aside.
+    let exact = -1.6 * 20e3 * (1.0 - 0.09) / 1e6;
+    println!("way {:.6} m for {exact:.6}, speed {:.1e} m/s", joint.way, plate.velocity[1]);
+    assert!((joint.way / exact - 1.0).abs() < 0.03, "{joint:?}");
+}
