@@ -1,7 +1,7 @@
 //! Runs that go on: bit for bit as if nothing had happened, or not at all, and then with the reason.
 //!
 //! Set-up: two disks, one viscoelastic and one that flows, fall on each other and on a rigid floor without bounds, with
-//! friction, a support, a load, a driven rigid paddle, and every kind of output; in the plane in both precisions, and
+//! friction, a support, a load, a driven rigid paddle, free rigid bodies on joints, and every kind of output; in the plane in both precisions, and
 //! balls in space with relaxation.
 //!
 //! Expected: every file of an interrupted run, but the times in its record and its checkpoints, has the bytes of one
@@ -51,9 +51,29 @@ name = "paddle"
 material = "slow"
 shape.box = { min = [-0.9, 0.3], max = [-0.6, 0.6] }
 rigid = { velocity = ["0.6 * sin(20 * t)", 0], spin = "2 * t" }
+[[bodies]]
+name = "flap"
+material = "slow"
+shape.box = { min = [0.52, 0.1], max = [0.72, 0.7] }
+rigid.free = {}
+[[bodies]]
+name = "pebble"
+material = "slow"
+shape.ball = { center = [1.2, 0.4], radius = 0.2 }
+velocity = [-1.5, -1]
+rigid.free = {}
+[[joints]]
+body = "flap"
+hinge = { point = [0.62, 0.7], stiffness = 40, dashpot = 2 }
+[[joints]]
+name = "string"
+body = "flap"
+to = "pebble"
+spring = { from = [0.7, 0.3], to = [1.2, 0.4], stiffness = 300 }
 [[contact]]
 between = ["any", "any"]
 friction = 0.3
+restitution = 0.4
 [[supports]]
 name = "hook"
 body = "high"
@@ -79,6 +99,10 @@ stress_parameter = 4e3
 width = 90
 overlay = "force-chains"
 bodies = ["low", "high"]
+[[outputs.sections]]
+name = "waist"
+point = [0, 0.5]
+normal = [0, 1]
 [[outputs.probes]]
 name = "heart"
 at = [0.2, 1.5]

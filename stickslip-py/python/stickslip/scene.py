@@ -184,6 +184,10 @@ class Scene:
         """A point at which velocity and stress are recorded: `at` [m], `body`, `fixed_in`."""
         return self._measure("probes", {"name": name, "at": at, **keys})
 
+    def section(self, name: str, point: Any, normal: Any, **keys: Any) -> Scene:
+        """A plane through which force and moment are recorded: a `point` of it [m] and its `normal`, `within`, `bodies`."""
+        return self._measure("sections", {"name": name, "point": point, "normal": normal, **keys})
+
     def arrival(self, quantity: str, threshold: Any, **keys: Any) -> Scene:
         """A threshold whose first passing is recorded: `probes`, `bodies`, `reading`."""
         return self._measure("arrivals", {"quantity": quantity, "threshold": threshold, **keys})

@@ -14,8 +14,9 @@ use super::loads::LoadsObserver;
 use super::memory::Memory;
 use super::particles::ParticlesObserver;
 use super::probes::ProbesObserver;
+use super::sections::SectionsObserver;
 use super::{
-    ARRIVALS, BODIES, CONTACTS, ENERGY, FRINGES, FRONTS, GRID, JOINTS, LOADS, Observer, PARTICLES, PROBES,
+    ARRIVALS, BODIES, CONTACTS, ENERGY, FRINGES, FRONTS, GRID, JOINTS, LOADS, Observer, PARTICLES, PROBES, SECTIONS,
 };
 use crate::door::View;
 use crate::scene::Scene;
@@ -50,6 +51,9 @@ impl<'a> Recorder<'a> {
             recorder.schedule(JOINTS, JointsObserver::create(scene, folder)?);
         }
         let wanted = &scene.outputs.measurements;
+        if !wanted.sections.is_empty() {
+            recorder.schedule(SECTIONS, SectionsObserver::create(scene, folder)?);
+        }
         if !wanted.probes.is_empty() {
             recorder.schedule(PROBES, ProbesObserver::create(scene, folder)?);
         }
@@ -76,7 +80,7 @@ impl<'a> Recorder<'a> {
     /// # Errors
     /// One is not.
     pub fn find(folder: &OutputFolder, memory: &Memory) -> Result<(), OutputError> {
-        let tables = [BODIES, ENERGY, CONTACTS, LOADS, JOINTS, PROBES, ARRIVALS, FRONTS];
+        let tables = [BODIES, ENERGY, CONTACTS, LOADS, JOINTS, SECTIONS, PROBES, ARRIVALS, FRONTS];
         for path in
             tables.iter().filter(|name| memory.has(&format!("{name}/length"))).map(|name| folder.join(name))
         {

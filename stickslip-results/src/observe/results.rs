@@ -13,10 +13,11 @@ use super::loads::LoadRow;
 use super::manifest::Manifest;
 use super::particles::read_particles;
 use super::probes::ProbeRow;
+use super::sections::SectionRow;
 use super::recorded::RecordedScene;
 use super::table::{TableRow, read_rows};
 use super::{
-    ARRIVALS, BODIES, CONTACTS, ENERGY, FRINGES_TABLE, FRONT_SPEEDS, FRONTS, JOINTS, LOADS, PARTICLES, PROBES,
+    ARRIVALS, BODIES, CONTACTS, ENERGY, FRINGES_TABLE, FRONT_SPEEDS, FRONTS, JOINTS, LOADS, PARTICLES, PROBES, SECTIONS,
 };
 use crate::column::every;
 use crate::door::ParticleSnapshot;
@@ -111,10 +112,18 @@ impl Results {
         read_rows(&self.folder.join(CONTACTS))
     }
 
-    /// The rows of `joints.csv`.
+    /// `sections.csv`: at each time a row for each section; none if the scene has none.
     ///
     /// # Errors
-    /// The table is missing or damaged.
+    /// The file is damaged.
+    pub fn sections_table(&self) -> Result<Vec<SectionRow>, ReadError> {
+        self.measured(SECTIONS)
+    }
+
+    /// `joints.csv`: at each time but the first a row for each joint; none if the scene has none.
+    ///
+    /// # Errors
+    /// The file is damaged.
     pub fn joints_table(&self) -> Result<Vec<JointRow>, ReadError> {
         self.measured(JOINTS)
     }

@@ -15,6 +15,9 @@ pub struct Measurements {
     pub arrivals: Vec<Arrival>,
     /// Fronts whose position is recorded.
     pub fronts: Vec<Front>,
+    /// Planes through which forces and moments are recorded.
+    #[serde(default)]
+    pub sections: Vec<Section>,
 }
 
 /// A unit of time that belongs to the scene, such as the time in which a wave crosses a disk.
@@ -37,6 +40,21 @@ pub struct Probe {
     pub body: Option<String>,
     /// What it stays with.
     pub fixed_in: Anchor,
+}
+
+/// A plane of space through which forces and moments are recorded.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Section {
+    /// Its name, unique among the sections.
+    pub name: String,
+    /// A point of it, about which moments are taken [m].
+    pub point: [f64; 3],
+    /// Unit normal [-].
+    pub normal: [f64; 3],
+    /// Lower and upper corner of the box in which material counts [m]; `None`: everywhere.
+    pub within: Option<[[f64; 3]; 2]>,
+    /// Names of the bodies that it cuts.
+    pub bodies: Vec<String>,
 }
 
 /// What a probe stays with.

@@ -33,6 +33,7 @@ mod precision;
 mod relaxation;
 mod resistance;
 mod rigid_bodies;
+mod sections;
 mod spinning_disk;
 mod struck_bar;
 mod threads;

@@ -11,6 +11,7 @@ use crate::scene::error::Fault;
 use crate::scene::parameters::Dependence;
 use crate::scene::source::{DocumentNode, Value};
 use crate::scene::units::Powers;
+use crate::tensor::Vector;
 use crate::scene::{self, Anchor, Body, Observable, Reading};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use std::borrow::Cow;
@@ -70,6 +71,34 @@ table! {
         /// Start and end of the way over which its speed is fitted [m];
         /// by default from 10 % to 90 % of the way that it went.
         fit: Option<WayInput>,
+    }
+}
+
+table! {
+    /// A plane of space through which the force and the moment in the material are recorded.
+    Section {
+        /// Its name.
+        name: Text,
+        /// Makes many of it: indices, and how many values each has, as of [[bodies]]. By default one.
+        repeat: Option<Repeat>,
+        /// A point of the plane, about which moments are taken [m].
+        point: VectorInput<Length>,
+        /// Normal of the plane, of any length: the force is that of the material on its side on the rest.
+        normal: VectorInput<Ratio>,
+        /// Only what is in this box counts: within = { min = [0, 0], max = [1, 1] }; by default all.
+        within: Option<Room>,
+        /// Names of the bodies that it cuts; by default all but rigid ones.
+        bodies: Option<Vec<Text>>,
+    }
+}
+
+table! {
+    /// A box.
+    Room {
+        /// Lower corner [m].
+        min: VectorInput<Length>,
+        /// Upper corner [m].
+        max: VectorInput<Length>,
     }
 }
 
@@ -153,13 +182,20 @@ pub fn resolve(
     let fronts = outputs.fronts.iter().flatten();
     let fronts =
         fronts.map(|front| front.resolve((&bodies, &mut taken), context)).collect::<Result<_, _>>()?;
+    let (mut sections, mut taken) = (Vec::new(), HashSet::new());
+    for section in outputs.sections.iter().flatten() {
+        Repeat::each(section.repeat.as_ref(), context, || {
+            sections.push(section.resolve((&bodies, &mut taken), context)?);
+            Ok(())
+        })?;
+    }
     let time_unit = outputs.time_unit.as_ref().map(|unit| time_unit(unit, context)).transpose()?;
     let samples = match &outputs.samples {
         None => scene::Measurements::of_run(end).samples,
         Some(Sampling::EveryStep) => 0.0,
         Some(Sampling::Every(interval)) => interval.positive(context)?,
     };
-    Ok((scene::Measurements { time_unit, samples, probes, arrivals, fronts }, declared))
+    Ok((scene::Measurements { time_unit, samples, probes, arrivals, fronts, sections }, declared))
 }
 
 fn time_unit(unit: &QuantityInput<Duration>, context: &Context) -> Result<scene::TimeUnit, Fault> {
@@ -245,6 +281,35 @@ impl Front {
             },
             fit: self.fit.as_ref().map(|way| way.value(context)).transpose()?,
         })
+    }
+}
+
+impl Section {
+    fn resolve(
+        &self,
+        (bodies, taken): (&[&str], &mut HashSet<String>),
+        context: &Context,
+    ) -> Result<scene::Section, Fault> {
+        let Some(normal) = Vector(self.normal.value(context)?).direction() else {
+            return Err(self.normal.node().fault("a direction that is not zero, such as [1, 0]"));
+        };
+        Ok(scene::Section {
+            name: self.name.new_name(context, taken)?,
+            point: self.point.value(context)?,
+            normal: normal.0,
+            within: self.within.as_ref().map(|room| room.value(context)).transpose()?,
+            bodies: match &self.bodies {
+                Some(list) => names_in(list, (A_BODY, bodies), context)?,
+                None => bodies.iter().map(|name| name.to_string()).collect(),
+            },
+        })
+    }
+}
+
+impl Room {
+    fn value(&self, context: &Context) -> Result<[[f64; 3]; 2], Fault> {
+        let (min, max) = corners(&self.min, &self.max, context)?;
+        Ok([min, max])
     }
 }
 

@@ -46,6 +46,8 @@ table! {
         arrivals: Option<Vec<Arrival>>,
         /// Fronts whose position and speed are recorded: [[outputs.fronts]].
         fronts: Option<Vec<Front>>,
+        /// Planes through which forces and moments are recorded, at the times of the tables: [[outputs.sections]].
+        sections: Option<Vec<Section>>,
     }
 }
 
