@@ -162,7 +162,15 @@ fn mirror(setting: &Setting, choice: &PictureChoice) -> Result<Option<SymmetryPl
 pub fn illustrate(folder: &Path) -> Result<String, Failure> {
     let results = Results::open(folder).map_err(Failure::input)?;
     let mut drawn = vec!["bodies.csv", "energy.csv", "contacts.csv", "run.json"];
-    let measured = ["loads.csv", "joints.csv", "sections.csv", "probes.csv", "arrivals.csv", "fronts.csv", "front_speeds.csv"];
+    let measured = [
+        "loads.csv",
+        "joints.csv",
+        "sections.csv",
+        "probes.csv",
+        "arrivals.csv",
+        "fronts.csv",
+        "front_speeds.csv",
+    ];
     drawn.extend(measured.into_iter().filter(|name| folder.join(name).exists()));
     let chart = chart(&results, &ChartChoice::default()).map_err(Failure::input)?;
     match crate::chart::draw(&chart, &folder.join("plot.png"), chart.size()) {

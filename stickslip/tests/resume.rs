@@ -1,8 +1,8 @@
 //! Runs that go on: bit for bit as if nothing had happened, or not at all, and then with the reason.
 //!
 //! Set-up: two disks, one viscoelastic and one that flows, fall on each other and on a rigid floor without bounds, with
-//! friction, a support, a load, a driven rigid paddle, free rigid bodies on joints, and every kind of output; in the plane in both precisions, and
-//! balls in space with relaxation.
+//! friction, a support, a load, a driven rigid paddle, free rigid bodies on joints, and every kind of output; in the
+//! plane in both precisions, and balls in space with relaxation.
 //!
 //! Expected: every file of an interrupted run, but the times in its record and its checkpoints, has the bytes of one
 //! that was never interrupted.

@@ -16,7 +16,8 @@ pub struct Arguments {
 
 impl Arguments {
     pub fn execute(self) -> Result<(), Failure> {
-        let failed = |error| Failure::Run(miette!("cannot write pages into {}: {error}", self.folder.display()));
+        let failed =
+            |error| Failure::Run(miette!("cannot write pages into {}: {error}", self.folder.display()));
         std::fs::create_dir_all(&self.folder).map_err(failed)?;
         let command = Command::command().disable_help_subcommand(true);
         clap_mangen::generate_to(command, &self.folder).map_err(failed)

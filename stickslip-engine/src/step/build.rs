@@ -105,13 +105,24 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 (_, Some(motion)) => motion.spin(),
                 _ => [0.0; 3],
             };
+            // The particles of a free rigid body weigh what it weighs, whatever its mass is given as.
+            let volume = || filling.sites.iter().map(|site| site.volume).sum::<f64>();
+            let density = match motion.as_ref().and_then(RigidMotion::as_free) {
+                Some(free) => free.mass / volume(),
+                None => scene.materials[body.material].density,
+            };
             bodies.push(Body {
                 name: body.name.clone(),
                 material: material(scene, body)?,
                 density: T::of(scene.materials[body.material].density),
-                particles: particles(scene, body, &filling, (velocity, turning)),
+                particles: particles(scene, body, &filling, (velocity, turning, density)),
                 motion,
-                whole: MirroredShape::new(&body.shape, mirrors::<D>(scene), D),
+                whole: MirroredShape::new(
+                    &body.shape,
+                    // A mirror does not move along with what is free.
+                    if body.as_free_rigid().is_some() { Vec::new() } else { mirrors::<D>(scene) },
+                    D,
+                ),
                 thickness: scene.dimension.thickness(),
                 gyration: rotation::gyration::<T, B>(cell, whole_cells),
                 volume_change: scene.materials[body.material].volume_change,
@@ -191,9 +202,8 @@ fn particles<T: Real, const D: usize>(
     scene: &Scene,
     body: &scene::Body,
     filling: &Filling,
-    (velocity, turning): (impl Fn([f64; 3]) -> [f64; 3], [f64; 3]),
+    (velocity, turning, density): (impl Fn([f64; 3]) -> [f64; 3], [f64; 3], f64),
 ) -> Particles<T, D> {
-    let density = scene.materials[body.material].density;
     let particle = |number: usize| {
         let site: &ParticleSite = &filling.sites[number];
         Particle {

@@ -146,6 +146,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 load.points[i].moved = way.map(|way| if way.abs() < near { 0.0 } else { way });
             }
         }
+        for (joint, sums) in self.settings.joints.iter().zip(&mut self.state.joints) {
+            sums.begin(joint, &self.state.bodies);
+        }
         (self.state.signal, self.workspace.totals) = (None, Mutex::default());
         Ok(())
     }

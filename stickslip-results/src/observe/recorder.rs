@@ -16,7 +16,8 @@ use super::particles::ParticlesObserver;
 use super::probes::ProbesObserver;
 use super::sections::SectionsObserver;
 use super::{
-    ARRIVALS, BODIES, CONTACTS, ENERGY, FRINGES, FRONTS, GRID, JOINTS, LOADS, Observer, PARTICLES, PROBES, SECTIONS,
+    ARRIVALS, BODIES, CONTACTS, ENERGY, FRINGES, FRONTS, GRID, JOINTS, LOADS, Observer, PARTICLES, PROBES,
+    SECTIONS,
 };
 use crate::door::View;
 use crate::scene::Scene;

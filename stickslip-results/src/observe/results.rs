@@ -13,11 +13,12 @@ use super::loads::LoadRow;
 use super::manifest::Manifest;
 use super::particles::read_particles;
 use super::probes::ProbeRow;
-use super::sections::SectionRow;
 use super::recorded::RecordedScene;
+use super::sections::SectionRow;
 use super::table::{TableRow, read_rows};
 use super::{
-    ARRIVALS, BODIES, CONTACTS, ENERGY, FRINGES_TABLE, FRONT_SPEEDS, FRONTS, JOINTS, LOADS, PARTICLES, PROBES, SECTIONS,
+    ARRIVALS, BODIES, CONTACTS, ENERGY, FRINGES_TABLE, FRONT_SPEEDS, FRONTS, JOINTS, LOADS, PARTICLES,
+    PROBES, SECTIONS,
 };
 use crate::column::every;
 use crate::door::ParticleSnapshot;

@@ -8,7 +8,7 @@ use super::table::{CellValue, CsvTable, TableRow, columns};
 use super::{Observer, SECTIONS};
 use crate::door::{ParticleSnapshot, View};
 use crate::scene::{Scene, Section};
-use crate::tensor::cross;
+use stickslip_scene::tensor::cross;
 
 /// Force and moment across a plane at one time, in SI units; the columns of `sections.csv`.
 ///
@@ -100,9 +100,8 @@ fn across(section: &Section, cuts: &[bool], particles: &ParticleSnapshot, cell: 
         let x = particles.position[i];
         let from: [f64; 3] = std::array::from_fn(|k| x[k] - point[k]);
         let away = (0..3).map(|k| from[k] * n[k]).sum::<f64>().abs();
-        let inside = within.is_none_or(|[min, max]| {
-            (0..particles.dimension).all(|k| (min[k]..=max[k]).contains(&x[k]))
-        });
+        let inside = within
+            .is_none_or(|[min, max]| (0..particles.dimension).all(|k| (min[k]..=max[k]).contains(&x[k])));
         if away >= cell || !inside {
             continue;
         }

@@ -3,6 +3,8 @@
 use super::bodies::FillingExtent;
 use super::neighbours::pairs_within;
 use super::table::short;
+use super::warning::Warning;
+use crate::geometry::Bounds;
 use crate::rigid::MassProperties;
 use crate::scene::{ContactLaw, Face, JointKind, Problem, Scene};
 use crate::tensor::Vector;
@@ -39,22 +41,38 @@ pub(super) fn check(scene: &Scene, extents: &[FillingExtent]) -> Result<(), Prob
             return Err(problem(found, "a body beside the mirror, or a domain without it"));
         }
     }
+    if let (Some(_), Some(body)) =
+        (scene.time.relax, scene.bodies.iter().find(|body| body.as_free_rigid().is_some()))
+    {
+        return Err(Problem {
+            key: "time.relax".to_string(),
+            found: format!("dynamic relaxation with the free rigid body `{}`", body.name),
+            allowed: "rigid bodies with prescribed motion: free ones do not come to rest so".to_string(),
+            help: Some(
+                "a dashpot on a joint, and [damping] for what deforms, bring them to rest in a run"
+                    .to_string(),
+            ),
+        });
+    }
     for (i, joint) in scene.joints.iter().enumerate() {
-        let point = match &joint.kind {
-            JointKind::Hinge { point, .. } | JointKind::Ball { point } => *point,
-            JointKind::Slider { .. } | JointKind::Weld | JointKind::Spring { .. } => continue,
+        let bodies = [Some(joint.body), joint.to];
+        let (key, points) = match &joint.kind {
+            JointKind::Hinge { point, .. } | JointKind::Ball { point } => ("point", [*point; 2]),
+            JointKind::Spring { points, .. } => ("from", *points),
+            JointKind::Slider { .. } | JointKind::Weld => continue,
         };
-        let held = [Some(joint.body), joint.to].into_iter().flatten().map(|body| &extents[body].bounds);
-        let held: Vec<_> = held.filter(|bounds| bounds.is_finite()).collect();
-        let size = held.iter().map(|bounds| Vector(bounds.size()).norm()).fold(0.0, f64::max);
-        let away = |bounds: &&crate::geometry::Bounds| {
+        let held =
+            bodies.iter().zip(points).filter_map(|(body, point)| Some((&extents[(*body)?].bounds, point)));
+        let held: Vec<_> = held.filter(|(bounds, _)| bounds.is_finite()).collect();
+        let size = held.iter().map(|(bounds, _)| Vector(bounds.size()).norm()).fold(0.0, f64::max);
+        let away = |(bounds, point): &(&Bounds, [f64; 3])| {
             let beyond = |k: usize| (bounds.min[k] - point[k]).max(point[k] - bounds.max[k]).max(0.0);
             Vector(std::array::from_fn::<f64, 3, _>(beyond)).norm()
         };
         let farthest = held.iter().map(away).fold(0.0, f64::max);
         if farthest > FARTHEST * size {
             return Err(Problem {
-                key: format!("joints[{i}].{}.point", joint.kind.name()),
+                key: format!("joints[{i}].{}.{key}", joint.kind.name()),
                 found: format!("a point {} m away from a body that it holds", short(farthest)),
                 allowed: format!("a point no farther than {FARTHEST} times their size, {} m", short(size)),
                 help: Some("lengths without a unit are metres".to_string()),
@@ -64,17 +82,36 @@ pub(super) fn check(scene: &Scene, extents: &[FillingExtent]) -> Result<(), Prob
     glued(scene, extents)
 }
 
+/// Free rigid bodies go through the faces of the domain.
+pub(super) fn warning(scene: &Scene) -> Option<Warning> {
+    let body = scene.bodies.iter().find(|body| body.as_free_rigid().is_some())?;
+    let domain = scene.domain.as_ref()?;
+    let axes = 0..scene.dimension.axes();
+    let holds = axes.flat_map(|k| domain.faces[k]).any(|face| face != Face::Open);
+    holds.then(|| {
+        Warning::about(
+            "space.domain".to_string(),
+            format!(
+                "its faces hold what deforms, and not free rigid bodies such as `{}`, which leave the domain there and end \
+                 the run; a rigid half-space with rigid = {{}} holds them",
+                body.name
+            ),
+        )
+    })
+}
+
 /// # Errors
 /// Glue between rigid bodies.
 fn glued(scene: &Scene, extents: &[FillingExtent]) -> Result<(), Problem> {
     if scene.bodies.iter().all(|body| body.as_free_rigid().is_none()) {
         return Ok(());
     }
+    let joined = scene.joined_pairs();
     let boxes: Vec<_> = extents.iter().map(|extent| extent.bounds).collect();
     for [a, b] in pairs_within(&boxes, scene.discretization.cell) {
         let rigid = [a, b].iter().all(|&body| scene.bodies[body].is_rigid());
         let Some(rule) = scene.contact_rule_between(a, b) else { continue };
-        if rigid && scene.may_touch([a, b]) && scene.contact[rule].law == ContactLaw::Glued {
+        if rigid && scene.may_touch([a, b], &joined) && scene.contact[rule].law == ContactLaw::Glued {
             let [a, b] = [a, b].map(|body| &scene.bodies[body].name);
             return Err(Problem {
                 key: format!("contact[{rule}].law"),

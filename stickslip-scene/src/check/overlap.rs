@@ -18,7 +18,8 @@ const ROUND_OFF: f64 = 1e-6;
 pub(super) fn check(scene: &Scene, extents: &[FillingExtent]) -> Result<(), Problem> {
     let boxes: Vec<_> = extents.iter().map(|extent| extent.bounds).collect();
     let pairs = pairs_within(&boxes, 0.0);
-    let joined = |[a, b]: [usize; 2]| scene.are_joined(a, b);
+    let pairs_joined = scene.joined_pairs();
+    let joined = |pair: [usize; 2]| pairs_joined.contains(&pair);
     match pairs.par_iter().find_map_first(|&pair| shared(scene, extents, pair).filter(|_| !joined(pair))) {
         Some(problem) => Err(problem),
         None => Ok(()),
@@ -44,11 +45,10 @@ pub(super) fn warning(scene: &Scene) -> Option<Warning> {
     });
     let bounds = |body: &Body| body.shape.bounds(axes).unwrap_or(Bounds::EVERYTHING).intersected(&inside);
     let boxes: Vec<_> = scene.bodies.iter().map(bounds).collect();
+    let joined = scene.joined_pairs();
     let overlap = |&[a, b]: &[usize; 2]| {
         let law = scene.contact_between(a, b).law;
-        if matches!(law, ContactLaw::None | ContactLaw::Glued)
-            || scene.bodies[a].is_rigid() && scene.bodies[b].is_rigid()
-        {
+        if matches!(law, ContactLaw::None | ContactLaw::Glued) || !scene.may_touch([a, b], &joined) {
             return None;
         }
         let room = boxes[a].intersected(&boxes[b]);

@@ -7,7 +7,7 @@ use super::memory::Footprint;
 use super::rules::RuleReport;
 use super::table::short;
 use super::warning::{Warning, and_more};
-use super::{examine, locking, memory, overlap, rigid_pairs, rules, thickness};
+use super::{examine, joints, locking, memory, overlap, rigid_pairs, rules, thickness};
 use crate::geometry::Bounds;
 use crate::rigid::longest_step;
 use crate::scene::{Body, BodyMotion, Dimension, Problem, Scene, Source};
@@ -171,6 +171,7 @@ fn warnings(
     (rules::idle(scene))
         .chain(overlap::warning(scene))
         .chain(rigid_pairs::warning(scene, extents))
+        .chain(joints::warning(scene))
         .chain(locking::warning(scene))
         .chain(loads::warning(scene, loads))
         .chain(thin_rigid_bodies(scene))

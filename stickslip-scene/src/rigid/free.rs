@@ -189,7 +189,7 @@ mod tests {
         let own = top.orientation().transpose().times(top.state.angular_momentum);
         let angle = rate * dt * f64::from(steps);
         assert!(
-            (own[0] - 0.1 * angle.cos()).abs() < 1e-6 && (own[1] + 0.1 * angle.sin()).abs() < 1e-6,
+            (own[0] - 0.1 * angle.cos()).abs() < 1e-6 && (own[1] - 0.1 * angle.sin()).abs() < 1e-6,
             "{own:?}"
         );
     }

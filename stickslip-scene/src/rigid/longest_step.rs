@@ -6,15 +6,18 @@ use crate::tensor::Vector;
 
 /// A run in which a rigid body is free takes so many steps at least.
 const FEWEST_STEPS: f64 = 1000.0;
+/// The period over 2 pi of what swings by its weight holds so many steps at least.
+const STEPS_A_SWING: f64 = 25.0;
 /// A spring's period over 2 pi holds so many steps at least.
 const STEPS_A_SPRING: f64 = 50.0;
 
 /// The longest step of a scene's rigid bodies [s]; infinite where they set none.
 ///
 /// ```text
-/// dt <= end / 1000,   C sqrt(h / g),   sqrt(m / k) / 50,   m / (50 c)
+/// dt <= end / 1000,   sqrt(r / g) / 25,   sqrt(m / k) / 50,   m / (50 d)
 /// ```
-/// h: cell, C: Courant number, g: gravity; m, k, c: smallest mass at a spring or dashpot of a joint, and these, for
+/// r: the cell or the smallest radius of gyration, g: gravity; m, k, d: smallest mass at a spring or dashpot of a joint,
+/// and these, for
 /// hinges with the moment of inertia about the centre in place of the mass. Bodies of a mechanism move by a small part
 /// of a period in such a step.
 pub fn longest_step(scene: &Scene) -> f64 {
@@ -28,7 +31,10 @@ pub fn longest_step(scene: &Scene) -> f64 {
     let mut longest = scene.time.end / FEWEST_STEPS;
     let gravity = Vector(scene.gravity).norm();
     if gravity > 0.0 {
-        longest = longest.min(scene.time.courant * (scene.discretization.cell / gravity).sqrt());
+        let bodies = (0..scene.bodies.len()).filter_map(free);
+        let radius = |body: MassProperties| (body.inertia.trace() / body.mass).sqrt();
+        let least = bodies.map(radius).fold(scene.discretization.cell, f64::min);
+        longest = longest.min((least / gravity).sqrt() / STEPS_A_SWING);
     }
     for joint in &scene.joints {
         let (axis, stiffness, dashpot) = match &joint.kind {

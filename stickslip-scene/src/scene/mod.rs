@@ -28,7 +28,7 @@ pub use fringes::{Fringes, Light, Overlay, Polariscope, PolariscopeField, Sensit
 pub use joints::{Joint, JointKind, Motor};
 pub use load::{Loaded, load, parse};
 pub use loads::{Action, Dashpot, Extent, Load, Part, RIGID, Support, SupportMotion};
-pub use measurements::{Anchor, Arrival, Front, Measurements, Observable, Probe, Reading, TimeUnit};
+pub use measurements::{Anchor, Arrival, Front, Measurements, Observable, Probe, Reading, Section, TimeUnit};
 pub use name_pattern::{NamePattern, RuleNames, is_pattern};
 pub use problem::Problem;
 pub use schema::schema;
@@ -38,6 +38,7 @@ use crate::geometry::{Arrangement, Shape, SiteLattice};
 use crate::material::{Material, Thickness};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+use std::collections::HashSet;
 use std::path::PathBuf;
 
 /// Everything that a run needs, resolved to SI units.
@@ -554,18 +555,17 @@ impl Scene {
         body.particles_per_side.unwrap_or(self.discretization.particles_per_side) as f64
     }
 
-    /// Whether a joint holds two rigid bodies together, which then do not touch each other; springs do not hold.
-    pub fn are_joined(&self, a: usize, b: usize) -> bool {
-        self.joints.iter().any(|joint| {
-            let pair = [(a, b), (b, a)].iter().any(|&(a, b)| joint.body == a && joint.to == Some(b));
-            pair && joint.holds()
-        })
+    /// Pairs of rigid bodies that a joint holds together, the smaller index first: they do not touch each other. Springs
+    /// do not hold.
+    pub fn joined_pairs(&self) -> HashSet<[usize; 2]> {
+        let holding = self.joints.iter().filter(|joint| joint.holds());
+        holding.filter_map(|joint| Some([joint.body.min(joint.to?), joint.body.max(joint.to?)])).collect()
     }
 
-    /// Whether contact can act between two bodies: not between prescribed ones, nor between those that a joint holds.
-    pub fn may_touch(&self, [a, b]: [usize; 2]) -> bool {
+    /// Whether contact can act between two bodies: not between prescribed ones, nor between those that are joined.
+    pub fn may_touch(&self, [a, b]: [usize; 2], joined: &HashSet<[usize; 2]>) -> bool {
         let both = |is: fn(&Body) -> bool| is(&self.bodies[a]) && is(&self.bodies[b]);
-        !(both(Body::is_prescribed) || both(Body::is_rigid) && self.are_joined(a, b))
+        !(both(Body::is_prescribed) || joined.contains(&[a.min(b), a.max(b)]))
     }
 
     /// The rule for two bodies, given by index: the first in the file that matches, else the default rule.

@@ -32,6 +32,9 @@ pub struct Coupling<'a, T, const D: usize> {
     pub surfaces: Option<&'a RigidSurfaces>,
 }
 
+/// Searches for contacts of rigid bodies at most, and how much faster than it was looked ahead for a body may become.
+const MAX_SEARCHES: usize = 3;
+const FASTER: f64 = 1.5;
 /// Rounds at most.
 const MAX_ROUNDS: usize = 60;
 /// From this round on a node in contact counts as one that sticks: velocities then come closer in each round.
@@ -66,55 +69,24 @@ impl<T: Real, const D: usize> Coupling<'_, T, D> {
             let state = bodies[free.index].motion.as_ref().and_then(|motion| motion.as_free());
             let state = state.expect("it is free").state;
             free.target = join(state.momentum, state.angular_momentum);
-            free.momenta = free.target;
         }
         let (touched, parts) = self.touched(bodies, &mechanism.bodies);
         self.find_rows(mechanism, dt);
-        self.find_touches(bodies, mechanism, dt);
-        let count = mechanism.bodies.len();
-        let (mut settled, mut first) = (false, 0.0);
-        for round in 0..MAX_ROUNDS {
-            self.move_nodes(bodies, (&mechanism.bodies, &touched));
-            self.solve.list(|part| round == 0 || parts[part], listed);
-            let (impulses, nodes) = self.sum((&parts, listed), (bodies, &mechanism.bodies), round >= SURE);
-            let factors: Vec<SixFactor> = nodes.iter().map(SixMatrix::factor).collect();
-            let mut changes: Vec<Six> = (0..count)
-                .map(|i| {
-                    let FreeBody { target, momenta, .. } = &mechanism.bodies[i];
-                    let missing = std::array::from_fn(|k| target[k] - momenta[k] + impulses[i][k]);
-                    factors[i].solve(&missing)
-                })
-                .collect();
-            self.find_off(bodies, mechanism, dt);
-            mechanism.rows.iter_mut().for_each(|held| held.row.respond(&factors));
-            mechanism.touches.iter_mut().flat_map(Touch::rows_mut).for_each(|row| row.respond(&factors));
-            let held = solve(&mut mechanism.rows, &mut mechanism.touches, &mut changes);
-            let (mut moved, mut speed, mut far) = (0.0_f64, 0.0_f64, 0.0_f64);
-            for (free, change) in mechanism.bodies.iter_mut().zip(&changes) {
-                let gained = free.inertia.times(change);
-                six::add(&mut free.momenta, 1.0, &gained);
+        let mut settled = false;
+        for _ in 0..MAX_SEARCHES {
+            let sought: Vec<f64> = mechanism.bodies.iter().map(|free| free.speed(bodies)).collect();
+            self.find_touches(bodies, mechanism, dt);
+            for free in &mut mechanism.bodies {
+                free.momenta = free.target;
                 let motion = bodies[free.index].motion.as_mut().expect("it is rigid");
-                motion.set_momenta(six::parts(free.momenta), dt);
-                let size = |six: &Six| {
-                    let [v, w] = six::parts(*six).map(|part| Vector(part).norm());
-                    v + w * free.radius
-                };
-                moved = moved.max(size(change));
-                far = far.max(free.radius + Vector(motion.center).norm());
-                speed = speed.max(size(&join(motion.velocity(), motion.spin()))).max(size(&free.start));
+                motion.set_momenta(six::parts(free.target), dt);
             }
-            let tolerance = TOLERANCE.max(ROUND_OFF * T::EPSILON.f64());
-            if round == 0 && !mechanism.touches.is_empty() {
-                first = 10.0 * TOUCHING * moved;
-            }
-            // Joints see places, which are no nearer than round-off.
-            let round_off = if self.joints.is_empty() && mechanism.touches.is_empty() {
-                0.0
-            } else {
-                ROUND_OFF * f64::EPSILON * far / dt
-            };
-            if moved <= tolerance * speed + round_off + first {
-                settled = held;
+            settled = self.iterate(bodies, mechanism, (&touched, &parts), listed);
+            // Joints and impacts may have made a body faster than it was looked ahead for.
+            let outran = |(free, sought): (&FreeBody, &f64)| free.speed(bodies) > FASTER * sought;
+            if mechanism.touches.is_empty() && self.surfaces.is_none()
+                || !mechanism.bodies.iter().zip(&sought).any(outran)
+            {
                 break;
             }
         }
@@ -122,6 +94,58 @@ impl<T: Real, const D: usize> Coupling<'_, T, D> {
         self.move_nodes(bodies, (&mechanism.bodies, &touched));
         self.solve.apply(listed);
         settled
+    }
+
+    /// Betters the velocities, round by round, with the contacts and joints that were found; says whether they came to
+    /// rest.
+    fn iterate(
+        &self,
+        bodies: &mut [Body<T, D>],
+        mechanism: &mut Mechanism,
+        (touched, parts): (&[TouchedNode], &[bool]),
+        listed: &mut Impulses<T, D>,
+    ) -> bool {
+        let dt = self.solve.step.duration.f64();
+        let far = mechanism.bodies.iter().map(|free| {
+            let motion = bodies[free.index].motion.as_ref().expect("it is rigid");
+            free.radius + Vector(motion.center).norm()
+        });
+        // Places are no nearer than round-off.
+        let round_off = ROUND_OFF * f64::EPSILON * far.fold(0.0, f64::max) / dt;
+        let placed = !(self.joints.is_empty() && mechanism.touches.is_empty());
+        let tolerance = TOLERANCE.max(ROUND_OFF * T::EPSILON.f64());
+        let mut first = 0.0;
+        for round in 0..MAX_ROUNDS {
+            self.move_nodes(bodies, (&mechanism.bodies, touched));
+            self.solve.list(|part| round == 0 || parts[part], listed);
+            let (impulses, nodes) = self.sum((parts, listed), (bodies, &mechanism.bodies), round >= SURE);
+            let factors: Vec<SixFactor> = nodes.iter().map(SixMatrix::factor).collect();
+            let missing = |(i, free): (usize, &FreeBody)| {
+                let missing = std::array::from_fn(|k| free.target[k] - free.momenta[k] + impulses[i][k]);
+                factors[i].solve(&missing)
+            };
+            let mut changes: Vec<Six> = mechanism.bodies.iter().enumerate().map(missing).collect();
+            self.find_off(bodies, mechanism, dt);
+            mechanism.rows.iter_mut().for_each(|held| held.row.respond(&factors));
+            mechanism.touches.iter_mut().flat_map(Touch::rows_mut).for_each(|row| row.respond(&factors));
+            let held = solve(&mut mechanism.rows, &mut mechanism.touches, &mut changes, round_off);
+            let (mut moved, mut speed) = (0.0_f64, 0.0_f64);
+            for (free, change) in mechanism.bodies.iter_mut().zip(&changes) {
+                let gained = free.inertia.times(change);
+                six::add(&mut free.momenta, 1.0, &gained);
+                let motion = bodies[free.index].motion.as_mut().expect("it is rigid");
+                motion.set_momenta(six::parts(free.momenta), dt);
+                moved = moved.max(free.size(change));
+                speed = speed.max(free.speed(bodies)).max(free.size(&free.start)).max(free.pushed());
+            }
+            if round == 0 && !mechanism.touches.is_empty() {
+                first = 10.0 * TOUCHING * moved;
+            }
+            if moved <= tolerance * speed + if placed { round_off + first } else { 0.0 } {
+                return held;
+            }
+        }
+        false
     }
 
     /// Nodes of free bodies where others are, and which parts of the survey have any.
@@ -263,7 +287,12 @@ impl<T: Real, const D: usize> Coupling<'_, T, D> {
             });
             let [a, b] = contact.bodies;
             let (rule, centers) = (rules.rule(rules.number(a, b)), motions.map(|motion| motion.center));
-            mechanism.touches.push(Touch::new(contact, rule, (slots, centers, start), (D, dt)));
+            mechanism.touches.push(Touch::new(
+                contact,
+                rule,
+                (slots, centers, start),
+                (D, dt, mechanism.gravity),
+            ));
         }
     }
 

@@ -99,6 +99,11 @@ fn way(joint: &Joint, poses: &[Option<Pose>; 2], center: [f64; 3]) -> f64 {
 }
 
 impl JointSums {
+    /// Measures the joint where the bodies begin, at rest.
+    pub fn begin<T, const D: usize>(&mut self, joint: &Joint, bodies: &[Body<T, D>]) {
+        self.measure(joint, bodies, f64::INFINITY);
+    }
+
     /// Measures the joint where the bodies are now.
     pub fn measure<T, const D: usize>(&mut self, joint: &Joint, bodies: &[Body<T, D>], dt: f64) {
         let pose = |body: usize| bodies[body].motion.as_ref().expect("joints hold rigid bodies").pose();

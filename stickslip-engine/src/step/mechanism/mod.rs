@@ -25,14 +25,19 @@ pub use surfaces::RigidSurfaces;
 
 use super::Engine;
 use crate::basis::Basis;
+use crate::body::Body;
 use crate::lanes::Laned;
 use crate::rigid::RigidMotion;
+use crate::scene::{JointKind, Motor};
 use crate::tensor::{Vector, cross};
 use joint::Link;
 use row::{JointRow, Row};
 use six::{Six, SixMatrix, join};
 use std::time::Instant;
 use touch::Touch;
+
+/// A step turns free rigid bodies by so much at most [rad].
+const TURN: f64 = 0.05;
 
 /// Free rigid bodies and joints in a step.
 #[derive(Clone, Debug, Default)]
@@ -47,6 +52,8 @@ pub struct Mechanism {
     touches: Vec<Touch>,
     /// When the step began [s].
     time: f64,
+    /// Magnitude of gravity [m/s^2].
+    gravity: f64,
 }
 
 /// A free rigid body in a step.
@@ -94,6 +101,27 @@ impl FreeBody {
     }
 }
 
+impl FreeBody {
+    /// How fast velocities are, those of turning by the body's radius [m/s].
+    fn size(&self, velocities: &Six) -> f64 {
+        let [v, w] = six::parts(*velocities).map(|part| Vector(part).norm());
+        v + w * self.radius
+    }
+
+    /// How fast the body is now [m/s].
+    fn speed<T, const D: usize>(&self, bodies: &[Body<T, D>]) -> f64 {
+        let motion = bodies[self.index].motion.as_ref().expect("it is rigid");
+        self.size(&join(motion.velocity(), motion.spin()))
+    }
+
+    /// How much speed the pushes of the step alone give it [m/s].
+    fn pushed(&self) -> f64 {
+        let begun = self.inertia.times(&self.start);
+        let gained = std::array::from_fn(|k| self.target[k] - begun[k]);
+        self.size(&self.inertia.factor().solve(&gained))
+    }
+}
+
 impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// Takes up the free bodies as they are, before the step's first contact.
     pub(super) fn find_free_bodies(&mut self) {
@@ -104,6 +132,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let of = |index: usize| FreeBody::new(index, bodies[index].motion.as_ref()?);
         let mechanism = &mut self.workspace.mechanism;
         mechanism.time = self.state.time;
+        mechanism.gravity = self.settings.gravity.norm().f64();
         mechanism.bodies.clear();
         mechanism.bodies.extend((0..bodies.len()).filter_map(of));
         mechanism.links.clear();
@@ -151,6 +180,20 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             motion.set_momenta(six::parts(free.target), dt);
         }
         self.watch.lap("mechanism", start);
+    }
+
+    /// The longest step in which no free rigid body, and no motor of a joint, turns by more than a part of a radian [s].
+    pub(super) fn longest_turn(&self) -> f64 {
+        let bodies = self.state.bodies.iter().filter_map(|body| body.motion.as_ref());
+        let spins =
+            bodies.filter(|motion| motion.as_free().is_some()).map(|motion| Vector(motion.spin()).norm());
+        let motors = self.settings.joints.iter().map(|joint| match &joint.kind {
+            JointKind::Hinge { motor: Motor { speed: Some(speed), .. }, .. } => {
+                speed.at(self.state.time).abs()
+            }
+            _ => 0.0,
+        });
+        TURN / spins.chain(motors).fold(0.0, f64::max)
     }
 
     /// Books what joints and the contacts of rigid bodies did in the step, once velocities are known. Works are those of

@@ -113,8 +113,9 @@ const TOLERANCE: f64 = 1e-14;
 pub const TOUCHING: f64 = 1e-9;
 
 /// Finds the impulses with which all equations hold, and adds what they change to the bodies' changes of velocity
-/// (projected Gauss-Seidel; friction on the disc of De Saxce and Feng 1998); says whether they came to rest.
-pub fn solve(held: &mut [JointRow], touches: &mut [Touch], changes: &mut [Six]) -> bool {
+/// (projected Gauss-Seidel; friction on the disc of De Saxce and Feng 1998); says whether they came to rest, down to
+/// velocities of `round_off`.
+pub fn solve(held: &mut [JointRow], touches: &mut [Touch], changes: &mut [Six], round_off: f64) -> bool {
     for row in held.iter().map(|held| &held.row).chain(touches.iter().flat_map(Touch::rows)) {
         row.give(row.impulse, changes);
     }
@@ -128,7 +129,7 @@ pub fn solve(held: &mut [JointRow], touches: &mut [Touch], changes: &mut [Six]) 
         for touch in touches.iter_mut().filter(|touch| touch.normal.yields > 0.0) {
             sweep.push(touch, changes);
         }
-        if sweep.moved <= tolerance * sweep.largest {
+        if sweep.moved <= tolerance * sweep.largest + round_off {
             return true;
         }
     }

@@ -8,8 +8,10 @@ use crate::scene::{ContactLaw, Scene};
 use crate::tensor::{Real, Vector, cross};
 use std::collections::HashSet;
 
-/// Points on the surface of a body are this part of its size apart at most.
+/// Points on the surface of a body are this part of its largest extent apart at most.
 const FINEST: f64 = 1.0 / 12.0;
+/// A surface has so many points at most; those of a larger one are farther apart.
+const MOST_POINTS: usize = 200_000;
 /// How far apart two surfaces may be for the next step to matter, over what they can approach each other in a step.
 const AHEAD: f64 = 1.5;
 /// Points whose distances differ by less than this touch alike, over the distance between points.
@@ -76,9 +78,13 @@ impl RigidSurfaces {
                 };
                 return unbounded;
             };
-            let size = bounds.size()[..axes].iter().copied().fold(f64::INFINITY, f64::min);
-            let spacing = spacing.min(FINEST * size);
-            let points = body.shape.surface(spacing, axes, &bounds);
+            let size = bounds.size()[..axes].iter().copied().fold(0.0, f64::max);
+            let mut spacing = spacing.min(FINEST * size);
+            let mut points = body.shape.surface(spacing, axes, &bounds);
+            while points.len() > MOST_POINTS {
+                spacing *= 2.0;
+                points = body.shape.surface(spacing, axes, &bounds);
+            }
             let center: [f64; 3] = std::array::from_fn(|k| 0.5 * (bounds.min[k] + bounds.max[k]));
             let points: Vec<_> = points.into_iter().map(|point| point.position).collect();
             let far = |point: &[f64; 3]| (Vector(*point) - Vector(center)).norm();
@@ -148,12 +154,14 @@ impl RigidSurfaces {
         let bodies = pair.map(|placed| placed.surface.body);
         let mut near = Vec::new();
         for (one, other, sign) in [(a, b, 1.0), (b, a, -1.0)] {
+            // Where the other one is as this one sees it, so that far points need no turning.
+            let (seen, reach) = (one.pose.start(other.center), other.reach + margin + one.surface.spacing);
             for &point in &one.surface.points {
-                let place = one.pose.now(point);
-                if (Vector(place) - Vector(other.center)).norm() > other.reach + margin + one.surface.spacing
-                {
+                let off = Vector(point) - Vector(seen);
+                if off.dot(off) > reach * reach {
                     continue;
                 }
+                let place = one.pose.now(point);
                 if other.level(place).distance > margin + one.surface.spacing {
                     continue;
                 }

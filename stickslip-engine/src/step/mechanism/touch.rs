@@ -6,7 +6,7 @@ use super::surfaces::{RigidContact, tangents};
 use crate::contact::{RigidTouch, Rule};
 use crate::tensor::{Real, Vector};
 
-/// Part of an overlap that a step takes away.
+/// Part of an overlap that a step takes away, where gravity would give as much speed over that way.
 const RECOVERY: f64 = 0.2;
 
 /// A contact between two rigid bodies in a step. With the velocities v after the step, along its normal n and across,
@@ -15,7 +15,7 @@ const RECOVERY: f64 = 0.2;
 /// n.v >= w,   l_n >= 0,   l_n (n.v - w) = 0,        |l_t| <= mu l_n, against the slip where they slip
 /// ```
 /// w = -gap / dt: the surfaces do not overlap after the step; where they would, and approach each other at the speed
-/// v^n, w = e v^n with the coefficient of restitution e (Newton; Moreau 1988).
+/// v^n, w = e v^n with the coefficient of restitution e (Newton; Moreau 1988). Those that overlap part slowly.
 #[derive(Clone, Debug)]
 pub struct Touch {
     pub contact: RigidContact,
@@ -34,7 +34,7 @@ impl Touch {
         contact: RigidContact,
         rule: &Rule<T>,
         (slots, centers, start): ([Option<usize>; 2], [[f64; 3]; 2], [Six; 2]),
-        (dimension, dt): (usize, f64),
+        (dimension, dt, gravity): (usize, f64, f64),
     ) -> Self {
         let row = |direction: [f64; 3]| {
             let arm = |side: usize| (Vector(contact.place) - Vector(centers[side])).0;
@@ -49,7 +49,8 @@ impl Touch {
         } else if contact.gap > 0.0 {
             -contact.gap / dt
         } else {
-            -RECOVERY * contact.gap / dt
+            // No faster than what falls by as much, or an overlap would be a store of energy.
+            (RECOVERY * -contact.gap / dt).min((-contact.gap * gravity).sqrt())
         };
         Touch {
             contact,

@@ -2,7 +2,7 @@
 
 use super::Context;
 use super::fringes::Fringes;
-use super::measurements::{self, Arrival, Front, Probe, Sampling};
+use super::measurements::{self, Arrival, Front, Probe, Sampling, Section};
 use super::quantity::{Duration, QuantityInput, evaluate};
 use super::read::{Read, table};
 use super::text::{Count, Text, Word, names_in};

@@ -1,7 +1,7 @@
 //! The unit after a number: `6 MPa`, `9.81 m/s^2`.
 //!
-//! A unit goes on over spaces, `*`, `/` and `^` as long as names of units follow; it may start with `1/`. Where such a name is also a parameter, spaces
-//! decide or nobody does: `2 kg/m` is a unit, `2 kg / m` is refused.
+//! A unit goes on over spaces, `*`, `/` and `^` as long as names of units follow; it may start with `1/`. Where such a
+//! name is also a parameter, spaces decide or nobody does: `2 kg/m` is a unit, `2 kg / m` is refused.
 
 use super::parser::{Parsed, Parser, fail};
 use super::token::Token;

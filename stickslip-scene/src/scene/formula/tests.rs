@@ -142,7 +142,7 @@ fn mistakes_are_shown_where_they_are() {
             "1 kg m",
             "m",
             "`* m`, where `m` is both a unit and a parameter",
-            "for the unit leave out the spaces",
+            "for the parameter put the quantity before it in brackets: `(1 kg) * m`; for the unit leave out the spaces: `*m`",
         ),
         ("{radius}", "{", "`{`", "braces are for parameters in text; a formula names them as they are"),
         ("sin(1, 2)", "sin(1, 2)", "`sin` of 2", ""),
