@@ -381,7 +381,7 @@ fn outputs_that_are_left_out_for_a_while_come_back_as_they_were() {
     let [whole, parts] = ["whole", "parts"].map(|name| folder.path().join(name));
     let mut full = scene(PLANE);
     start(&full, &whole).unwrap();
-    start_and_stop(&full, &parts, 80);
+    start_and_stop(&full, &parts, 320);
     let mut bare = full.clone();
     (bare.outputs.particles, bare.outputs.grid, bare.outputs.fringes) = (None, None, None);
     bare.outputs.particles_at.clear();
@@ -411,7 +411,7 @@ fn outputs_that_the_checkpoint_does_not_know_begin_there() {
     (bare.outputs.particles, bare.outputs.grid, bare.outputs.fringes) = (None, None, None);
     bare.outputs.particles_at.clear();
     (bare.outputs.measurements.probes, bare.outputs.measurements.arrivals) = (Vec::new(), Vec::new());
-    start_and_stop(&bare, &parts, 80);
+    start_and_stop(&bare, &parts, 320);
     let kept: Vec<(PathBuf, Vec<u8>)> = Checkpoint::list(&parts)
         .unwrap()
         .into_iter()

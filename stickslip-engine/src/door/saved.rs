@@ -28,6 +28,8 @@ pub struct SavedState {
     pub(crate) moved: Vec<Vec<[f64; 3]>>,
     #[serde(default)]
     pub(crate) joints: Vec<JointSums>,
+    #[serde(default)]
+    pub(crate) longest_rigid: Option<f64>,
 }
 
 /// A body between two steps.

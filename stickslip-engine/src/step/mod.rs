@@ -190,7 +190,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     fn stable(&self) -> f64 {
         let signal = self.state.signal.unwrap_or_else(|| fastest_signal(&self.state.bodies));
         let step = self.settings.time.courant * self.settings.lattice.cell.f64() / signal;
-        let step = step.min(self.settings.longest_rigid).min(self.longest_turn());
+        let step = step.min(self.state.longest_rigid).min(self.longest_turn());
         self.settings.time.max_step.map_or(step, |longest| step.min(longest))
     }
 }

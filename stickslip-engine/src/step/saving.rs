@@ -41,6 +41,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             unbounded: self.state.unbounded.iter().map(Unbounded::saved).collect(),
             moved: self.settings.loads.iter().map(moved).collect(),
             joints: self.state.joints.clone(),
+            longest_rigid: Some(self.state.longest_rigid).filter(|step| step.is_finite()),
         }
     }
 
@@ -97,6 +98,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         }
         state.contact_sums = saved.contact_sums.indexed();
         (state.loads, state.joints) = (saved.loads, saved.joints);
+        state.longest_rigid = saved.longest_rigid.unwrap_or(state.longest_rigid);
         (state.damping, state.relaxation) = (saved.damping, saved.relaxation);
         (state.signal, state.time, state.steps) = (saved.signal, saved.time, saved.steps);
         Ok(())

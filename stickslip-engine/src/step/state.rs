@@ -40,8 +40,6 @@ pub struct Settings<T, const D: usize> {
     pub surfaces: RigidSurfaces,
     /// Of each body, whether it is rigid and free; empty where none is.
     pub free: Vec<bool>,
-    /// The longest step that rigid bodies allow [s].
-    pub longest_rigid: f64,
     pub time: Time,
     pub path: ParticleLoop,
 }
@@ -58,6 +56,8 @@ pub struct State<T, const D: usize> {
     pub unbounded: Vec<Unbounded<D>>,
     /// What contact did, pair by pair, and works since the start.
     pub contact_sums: ContactSums,
+    /// The longest step that rigid bodies allow, by the scene with which the run began [s].
+    pub longest_rigid: f64,
     /// What loads did since the start.
     pub loads: Vec<LoadSums>,
     /// What joints did since the start.

@@ -68,6 +68,7 @@ struct RecordedCylinder {
 enum RecordedMotion {
     Free(IgnoredAny),
     Rigid(IgnoredAny),
+    FreeRigid(IgnoredAny),
 }
 
 /// What a recorded scene wrote.
@@ -94,9 +95,9 @@ impl RecordedScene {
 }
 
 impl RecordedBody {
-    /// Whether it is rigid and moves as prescribed.
+    /// Whether it is rigid.
     pub fn is_rigid(&self) -> bool {
-        matches!(self.motion, RecordedMotion::Rigid(_))
+        !matches!(self.motion, RecordedMotion::Free(_))
     }
 }
 
@@ -147,6 +148,12 @@ mod tests {
             material = "iron"
             shape.half_space = { point = [0, 0, 1], normal = [0, 0, 1] }
             rigid = {}
+
+            [[bodies]]
+            name = "hammer"
+            material = "iron"
+            shape.ball = { center = [1, 0, 5], radius = 1 }
+            rigid.free = {}
         "#;
         let scene = scene::parse("scene", text, &[]).unwrap_or_else(|error| panic!("{error}")).scene;
         let json = serde_json::to_value(&scene).unwrap();
@@ -155,8 +162,9 @@ mod tests {
         assert_eq!((read.number("speed"), read.number("word").is_nan()), (2.0, true));
         assert_eq!(read.domain, scene.domain);
         assert_eq!(read.outputs.measurements.time_unit, scene.outputs.measurements.time_unit);
-        let [ball, floor] = &read.bodies[..] else { panic!("{:?}", read.bodies) };
+        let [ball, floor, hammer] = &read.bodies[..] else { panic!("{:?}", read.bodies) };
         assert_eq!((ball.shape.round_center(), ball.is_rigid()), (Some([1.0, 0.0, 2.0]), false));
         assert_eq!((floor.shape.round_center(), floor.is_rigid()), (None, true));
+        assert!(hammer.is_rigid());
     }
 }

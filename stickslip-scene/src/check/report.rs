@@ -193,7 +193,7 @@ fn of_body(scene: &Scene, body: &Body, extent: &FillingExtent) -> BodyReport {
         material: scene.materials[body.material].name.clone(),
         rigid: body.is_rigid(),
         particles: extent.particles,
-        mass: extent.mass,
+        mass: body.as_free_rigid().and_then(|free| free.mass).unwrap_or(extent.mass),
         size: extent.bounds.size(),
     }
 }
