@@ -81,6 +81,7 @@ impl<'a> Album<'a> {
         let first = snapshots(results)?.first().expect("there is at least one");
         needs_whole_snapshots(results)?;
         let setting = Setting::of(&results.scene().map_err(Failure::input)?);
+        let setting = setting.with_floors(&results.manifest().scene);
         let mirror = mirror(&setting, &choice)?;
         let first = results.particles(first).map_err(Failure::input)?;
         choice.quantity.is_in(&first).map_err(|what| Failure::Input(miette!("--color: {what}")))?;

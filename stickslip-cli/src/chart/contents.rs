@@ -227,7 +227,7 @@ fn interpolated(points: &[[f64; 2]], time: f64) -> Option<f64> {
 const TERMS: &[(&str, usize, bool)] = &[
     ("kinetic", 0, false),
     ("strain", 2, false),
-    ("potential", 1, false),
+    ("potential, from the start", 1, false),
     ("friction", 3, false),
     ("plastic", 4, false),
     ("damping", 5, false),
@@ -235,14 +235,23 @@ const TERMS: &[(&str, usize, bool)] = &[
     ("external_work", 7, true),
 ];
 
-/// All that adds up to the total energy; what there is none of has no curve.
+/// All that adds up to the total energy; what there is none of has no curve. Potential energy counts from the start:
+/// where it is zero means nothing, and would hide the rest.
 fn energy_panel(rows: &[EnergyRow]) -> Panel {
+    let zero = rows.first().map_or(0.0, |row| row.ledger.potential);
+    let mut rows = rows.to_vec();
+    for row in &mut rows {
+        row.ledger.potential -= zero;
+        row.ledger.total -= zero;
+    }
+    let rows = &rows[..];
     let curve = |(name, color, taken_off): &(&str, usize, bool)| {
         let sign = if *taken_off { -1.0 } else { 1.0 };
         let label = match taken_off {
             true => format!("\u{2212} {}", name.replace('_', " ")),
             false => (*name).to_owned(),
         };
+        let name = name.split(',').next().unwrap_or_default();
         Curve { label, color: body_color(*color), dashed: false, points: column(rows, name, sign) }
     };
     let total = Curve {
