@@ -1,9 +1,8 @@
 //! What can go wrong for a user, how it is printed, and the exit code it gives.
 
 use crate::drawing::DrawError;
+use crate::progress::terminal;
 use miette::{Diagnostic, GraphicalReportHandler, Report};
-use std::io::IsTerminal;
-use std::process::ExitCode;
 
 /// Why a command did not do what it was asked.
 #[derive(Debug)]
@@ -45,14 +44,14 @@ impl Failure {
     }
 
     /// 2 for input, 1 for a run, 3 for results that are doubtful, 4 for a run out of its time, 130 for Ctrl-C.
-    pub fn exit_code(&self) -> ExitCode {
-        ExitCode::from(match self {
+    pub fn exit_code(&self) -> u8 {
+        match self {
             Failure::Input(_) => 2,
             Failure::Run(_) => 1,
             Failure::Doubtful(_) | Failure::Differs => 3,
             Failure::OutOfTime => 4,
             Failure::Interrupted => Self::INTERRUPTED,
-        })
+        }
     }
 
     /// Prints to standard error: with the lines at fault on a terminal, as `file:line:column: error: ...` elsewhere.
@@ -63,7 +62,7 @@ impl Failure {
             Failure::Doubtful(_) | Failure::Differs => eprintln!("error: {self}"),
             Failure::Input(report) | Failure::Run(report) => {
                 let mut text = String::new();
-                let drawn = std::io::stderr().is_terminal()
+                let drawn = terminal()
                     && GraphicalReportHandler::new()
                         .render_report(&mut text, &DrawnError::new(report))
                         .is_ok();

@@ -1,7 +1,7 @@
 //! Pictures and a chart of a folder of results.
 
 use crate::chart::{ChartChoice, chart};
-use crate::drawing::{DrawError, Scale, save};
+use crate::drawing::{ColorMap, DrawError, Scale, save};
 use crate::failure::Failure;
 use crate::picture::{
     self, BoxCorners, ColorQuantity, PictureStyle, Quarters, Setting, SymmetryPlane, Viewpoint,
@@ -25,6 +25,8 @@ pub struct PictureChoice {
     pub quantity: ColorQuantity,
     /// Values at the ends of the colours; those that occur, without it.
     pub range: Option<[f64; 2]>,
+    /// The colours of values; those that suit, without it.
+    pub colors: Option<ColorMap>,
     /// Where the camera stands.
     pub view: Viewpoint,
     /// `x`, `y`, `z` or `none`. Without it, pictures of bodies are mirrored where the scene has just one plane of
@@ -39,6 +41,7 @@ impl Default for PictureChoice {
         PictureChoice {
             quantity: ColorQuantity::Body,
             range: None,
+            colors: None,
             view: Viewpoint::Auto,
             mirror: None,
             size: None,
@@ -78,6 +81,7 @@ impl<'a> Album<'a> {
         let first = snapshots(results)?.first().expect("there is at least one");
         needs_whole_snapshots(results)?;
         let setting = Setting::of(&results.scene().map_err(Failure::input)?);
+        let setting = setting.with_floors(&results.manifest().scene);
         let mirror = mirror(&setting, &choice)?;
         let first = results.particles(first).map_err(Failure::input)?;
         choice.quantity.is_in(&first).map_err(|what| Failure::Input(miette!("--color: {what}")))?;
@@ -106,14 +110,15 @@ impl<'a> Album<'a> {
 
     fn scale(&self, particles: &ParticleSnapshot) -> Scale {
         let quantity = &self.choice.quantity;
-        match self.choice.range {
+        let scale = match self.choice.range {
             Some(range) => quantity.scale_between(range),
             None => {
                 let count = particles.body.len();
                 let values: Vec<f64> = (0..count).map(|i| quantity.value(particles, i)).collect();
                 quantity.scale(&values)
             }
-        }
+        };
+        Scale { map: self.choice.colors, ..scale }
     }
 }
 

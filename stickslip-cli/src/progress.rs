@@ -1,13 +1,33 @@
-//! How far a run has come: a bar on a terminal, a line now and then elsewhere.
+//! How far a run has come: a bar on a terminal, a line now and then elsewhere, or lines for programs.
 
 use crate::drawing::prefix;
+use clap::ValueEnum;
 use indicatif::{ProgressBar, ProgressStyle};
+use serde_json::json;
 use std::cell::Cell;
+use std::io::IsTerminal;
 use std::time::{Duration, Instant};
 use stickslip::run::Progress;
 
+/// How progress is shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ProgressForm {
+    /// A bar on a terminal, a line every ten seconds elsewhere
+    Auto,
+    /// A line of JSON every second on standard error, for programs
+    Json,
+    /// Nothing but warnings
+    None,
+}
+
+/// Whether standard error is a terminal that can write over a line, and show colours.
+pub fn terminal() -> bool {
+    std::io::stderr().is_terminal() && std::env::var_os("TERM").is_none_or(|kind| kind != "dumb")
+}
+
 /// Shows the progress of one run on standard error.
 pub struct Display {
+    form: ProgressForm,
     bar: Option<ProgressBar>,
     next_line: Cell<Instant>,
 }
@@ -16,32 +36,48 @@ pub struct Display {
 pub const PARTS: u64 = 1000;
 /// Wall time between two lines where there is no terminal.
 const BETWEEN_LINES: Duration = Duration::from_secs(10);
+/// The same for programs.
+const BETWEEN_RECORDS: Duration = Duration::from_secs(1);
 
 impl Display {
     /// A display for a run until a simulated time [s].
-    pub fn new(end: f64, terminal: bool) -> Self {
-        let bar = terminal.then(|| ProgressBar::new(PARTS).with_style(style()));
+    pub fn new(end: f64, form: ProgressForm) -> Self {
+        let bar =
+            (form == ProgressForm::Auto && terminal()).then(|| ProgressBar::new(PARTS).with_style(style()));
         if let Some(bar) = &bar {
             bar.set_message(format!("t = 0 of {end} s"));
         }
-        Display { bar, next_line: Cell::new(Instant::now() + BETWEEN_LINES) }
+        let first = if form == ProgressForm::Json { Duration::ZERO } else { BETWEEN_LINES };
+        Display { form, bar, next_line: Cell::new(Instant::now() + first) }
     }
 
     /// Shows the present state.
     pub fn show(&self, progress: &Progress) {
-        for line in &progress.news {
-            self.bar.as_ref().map_or_else(|| eprintln!("{line}"), |bar| bar.println(line));
+        if self.form != ProgressForm::None {
+            progress.news.iter().for_each(|line| self.say(line));
         }
         for note in &progress.notes {
-            let line = format!("t = {:.4e} s: warning: {note}", progress.time);
-            self.bar.as_ref().map_or_else(|| eprintln!("{line}"), |bar| bar.println(&line));
+            self.say(&format!("t = {:.4e} s: warning: {note}", progress.time));
         }
         if let Some(bar) = &self.bar {
             bar.set_position((progress.share() * PARTS as f64) as u64);
-            bar.set_message(line(progress));
-        } else if Instant::now() >= self.next_line.get() {
-            eprintln!("{}", line(progress));
-            self.next_line.set(Instant::now() + BETWEEN_LINES);
+            bar.set_message(line(progress, room()));
+        } else if self.form != ProgressForm::None && Instant::now() >= self.next_line.get() {
+            let (line, pause) = match self.form {
+                ProgressForm::Json => (record(progress), BETWEEN_RECORDS),
+                _ => (line(progress, usize::MAX), BETWEEN_LINES),
+            };
+            eprintln!("{line}");
+            self.next_line.set(Instant::now() + pause);
+        }
+    }
+
+    /// Says something beside the progress; to programs as a record.
+    fn say(&self, line: &str) {
+        match &self.bar {
+            Some(bar) => bar.println(line),
+            None if self.form == ProgressForm::Json => eprintln!("{}", json!({ "message": line })),
+            None => eprintln!("{line}"),
         }
     }
 
@@ -55,8 +91,13 @@ impl Display {
 
 /// What the bar of a run looks like.
 pub fn style() -> ProgressStyle {
-    let style = ProgressStyle::with_template("{bar:24.cyan/dim} {percent:>3} %  {wide_msg}");
+    let style = ProgressStyle::with_template("{bar:16.cyan/dim} {percent:>3} %  {wide_msg}");
     style.expect("the template is well formed").progress_chars("━╸─")
+}
+
+/// Columns that the bar leaves for a message.
+fn room() -> usize {
+    usize::from(console::Term::stderr().size().1).saturating_sub(24)
 }
 
 /// Shows the progress of a family of runs on standard error: a bar for all of them, or a line when one ends.
@@ -104,20 +145,42 @@ impl Family {
     }
 }
 
-fn line(progress: &Progress) -> String {
+/// The time left, and as much of the rest as has room in so many columns.
+fn line(progress: &Progress, room: usize) -> String {
     let rate = prefix(progress.particle_steps_per_second);
     // A wave crosses the paper's disks in a microsecond.
     let time = match progress.end < 1e-2 {
         true => format!("{:.3e} of {:.3e}", progress.time, progress.end),
         false => format!("{:.4} of {}", progress.time, progress.end),
     };
-    format!(
-        "t = {time} s, step {}, {:.1} {} particle-steps/s, {} left",
-        progress.steps,
-        progress.particle_steps_per_second / rate.factor,
-        rate.letter,
-        duration(progress.eta)
-    )
+    let pace = progress.particle_steps_per_second / rate.factor;
+    let mut line = format!("{} left", duration(progress.eta));
+    let rest = [
+        format!("t = {time} s"),
+        format!("step {}", progress.steps),
+        format!("{pace:.1} {} particle-steps/s", rate.letter),
+    ];
+    for part in rest {
+        if line.len() + 2 + part.len() > room {
+            break;
+        }
+        line = format!("{line}, {part}");
+    }
+    line
+}
+
+/// The same for programs, in SI units; what is not known yet is null.
+fn record(progress: &Progress) -> String {
+    let Progress { time, end, steps, particles, particle_steps_per_second, eta, .. } = progress;
+    let record = json!({
+        "time": time,
+        "end": end,
+        "steps": steps,
+        "particles": particles,
+        "particle_steps_per_second": particle_steps_per_second,
+        "seconds_left": eta,
+    });
+    record.to_string()
 }
 
 /// `1 h 02 min`, `3 min 20 s`, `4 s`; unknown before there is a pace.
@@ -149,8 +212,13 @@ mod tests {
             news: Vec::new(),
             notes: Vec::new(),
         };
-        let expected = "t = 0.5000 of 2 s, step 321, 2.5 M particle-steps/s, 3 min 20 s left";
-        assert_eq!(line(&progress), expected);
+        let whole = "3 min 20 s left, t = 0.5000 of 2 s, step 321, 2.5 M particle-steps/s";
+        assert_eq!(line(&progress, usize::MAX), whole);
+        // Beside the bar on a terminal of 80 columns.
+        assert_eq!(line(&progress, 56), "3 min 20 s left, t = 0.5000 of 2 s, step 321");
+        assert_eq!(line(&progress, 5), "3 min 20 s left");
+        let record: serde_json::Value = serde_json::from_str(&record(&progress)).expect("JSON");
+        assert_eq!((&record["seconds_left"], &record["steps"]), (&json!(200.0), &json!(321)));
     }
 
     #[test]

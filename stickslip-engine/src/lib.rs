@@ -2,7 +2,7 @@
 //!
 //! It reads no files and writes none. The rooms below are in reading order: each uses only rooms above it.
 
-pub use stickslip_scene::{check, column, geometry, material, number, part, rigid, scene, tensor};
+pub use stickslip_scene::{check, column, geometry, material, number, outside, part, rigid, scene, tensor};
 
 // Several numbers in a register, on whatever the processor has.
 pub mod lanes;

@@ -76,6 +76,8 @@ pub struct CarriedPoint<'a, T, const D: usize> {
     pub particle: &'a Particle<T, D>,
     /// Its velocity [m/s].
     pub velocity: Vector<T, D>,
+    /// What a function from outside says of it, if the load has one.
+    pub outside: [f64; 3],
 }
 
 impl LoadPoints {
@@ -146,10 +148,10 @@ impl LoadPoints {
         (time, now, dt): (f64, f64, f64),
         sums: &LoadSums,
     ) -> PointForce<T, D> {
-        let CarriedPoint { point, particle, velocity } = carried;
+        let CarriedPoint { point, particle, velocity, outside } = carried;
         let place = place_of(particle, point).space();
         // Forces are those of the middle of the step, displacements those of now.
-        let moment = |time: f64| Moment { time, place, start: point.position };
+        let moment = |time: f64| Moment { time, place, start: point.position, outside };
         let vector = |value: &[Expression; 3], factor: f64| {
             Vector::of([0, 1, 2].map(|i| factor * value[i].at_moment(&moment(time + 0.5 * dt))))
         };
@@ -207,11 +209,14 @@ impl LoadPoints {
     pub fn is_still(&self, time: f64, dt: f64, end: f64) -> bool {
         let Some(point) = self.points.first() else { return true };
         let at = |value: &Expression, time: f64| {
-            value.at_moment(&Moment { time, place: point.position, start: point.position })
+            let (place, start) = (point.position, point.position);
+            value.at_moment(&Moment { time, place, start, ..Moment::default() })
         };
         let constant = |value: &Expression| match value {
             Expression::Constant(_) => true,
             Expression::Table(table) => table.end() <= time,
+            // Nobody knows what it says later.
+            Expression::Outside(_) => false,
             Expression::Formula(_) => {
                 at(value, time) == at(value, time + dt) && at(value, time) == at(value, end)
             }

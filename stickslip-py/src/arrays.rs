@@ -1,4 +1,5 @@
-//! Columns of particles as NumPy arrays over the engine's own memory. Whatever is unsafe in this crate is here.
+//! Columns of particles as NumPy arrays over the engine's own memory. Whatever is unsafe in this crate is here and where
+//! compiled functions are called (`functions.rs`).
 
 use crate::shared::{Hold, Shared};
 use numpy::ndarray::{ArrayView1, ArrayView2, ShapeBuilder};

@@ -85,10 +85,20 @@ pub fn of_problem(py: Python<'_>, loaded: &Loaded, problem: Problem) -> PyErr {
 
 /// A step that went wrong.
 pub fn of_step(py: Python<'_>, error: &StepError) -> PyErr {
+    let said = format!("{error}; {}", error.advice());
+    if let StepError::Outside { time, reason, .. } = error {
+        let facts = vec![("time", fact(py, *time)), ("help", fact(py, error.advice()))];
+        let raised = exception(py, "StepError", &said, facts);
+        raised.set_cause(py, reason.0.downcast_ref::<PyErr>().map(|cause| cause.clone_ref(py)));
+        return raised;
+    }
     let (StepError::Inverted { body, number, position, time, .. }
     | StepError::Escaped { body, number, position, time, .. }
     | StepError::NoThickness { body, number, position, time }
-    | StepError::NotFinite { body, number, position, time }) = error;
+    | StepError::NotFinite { body, number, position, time }) = error
+    else {
+        return exception(py, "StepError", &said, Vec::new());
+    };
     let facts = vec![
         ("body", fact(py, body.clone())),
         ("particle", fact(py, *number)),
@@ -96,7 +106,7 @@ pub fn of_step(py: Python<'_>, error: &StepError) -> PyErr {
         ("time", fact(py, *time)),
         ("help", fact(py, error.advice())),
     ];
-    exception(py, "StepError", &format!("{error}; {}", error.advice()), facts)
+    exception(py, "StepError", &said, facts)
 }
 
 /// Steps that did not come to their time.

@@ -13,6 +13,9 @@ mod scene;
 // A simulation that several owners share, each call under a lock.
 mod shared;
 
+// Laws, loads and prescribed motion from Python.
+mod functions;
+
 // Columns of particles as arrays, without a copy.
 mod arrays;
 
@@ -33,7 +36,7 @@ mod _core {
     #[pymodule_export]
     use crate::results::{frames, read_frame};
     #[pymodule_export]
-    use crate::run::{run, unfinished, walk};
+    use crate::run::{command, run, unfinished, walk};
     #[pymodule_export]
     use crate::scene::{ReadScene, document, free_memory};
 

@@ -6,6 +6,7 @@ use crate::errors;
 use crate::scene::until;
 use pyo3::prelude::*;
 use serde_json::json;
+use std::ffi::OsString;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -219,6 +220,13 @@ pub fn run(
     drop(call);
     between.outcome()?;
     outcome.map(|summary| described(&summary)).map_err(|error| errors::of_run(py, &error))
+}
+
+/// Does what the words of a command line ask for, the program's name first, and gives the exit code; for processes that
+/// do nothing else.
+#[pyfunction]
+pub fn command(words: Vec<OsString>) -> u8 {
+    stickslip_cli::execute(words)
 }
 
 /// The newest checkpoint of a run that nobody asked to stop, and that can go on.

@@ -1,14 +1,14 @@
 //! A scene that was read: what is wrong with it, what its run will be, and its simulation.
 
 use crate::engine::Engine;
-use crate::errors;
+use crate::{errors, functions};
 use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use std::ops::Range;
 use std::path::PathBuf;
 use stickslip::observe::{Manifest, SceneSource};
-use stickslip::scene::{Loaded, Scene};
+use stickslip::scene::{Loaded, Scene, SceneError};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
@@ -24,13 +24,31 @@ pub fn pool(threads: Option<usize>) -> PyResult<rayon::ThreadPool> {
     pool.build().map_err(|error| pyo3::exceptions::PyOSError::new_err(error.to_string()))
 }
 
+impl ReadScene {
+    /// A scene with the functions that it names.
+    fn given(
+        py: Python<'_>,
+        loaded: Result<Loaded, SceneError>,
+        functions: &Bound<'_, PyDict>,
+    ) -> PyResult<Self> {
+        let mut loaded = loaded.map_err(|error| errors::of_scene(py, error))?;
+        functions::give(&mut loaded.scene, functions)?;
+        Ok(ReadScene { loaded })
+    }
+}
+
 #[pymethods]
 impl ReadScene {
     /// Reads a text; `name` stands for its file, and relative paths start at that file's folder.
     #[new]
-    fn new(py: Python<'_>, name: &str, text: &str, set: Vec<(String, String)>) -> PyResult<Self> {
-        let loaded = py.detach(|| stickslip::scene::parse(name, text, &set));
-        loaded.map(|loaded| ReadScene { loaded }).map_err(|error| errors::of_scene(py, error))
+    fn new(
+        py: Python<'_>,
+        given: (String, String),
+        set: Vec<(String, String)>,
+        functions: &Bound<'_, PyDict>,
+    ) -> PyResult<Self> {
+        let (name, text) = given;
+        ReadScene::given(py, py.detach(|| stickslip::scene::parse(&name, &text, &set)), functions)
     }
 
     /// Reads a file.
@@ -47,9 +65,9 @@ impl ReadScene {
         path: PathBuf,
         set: Vec<(String, String)>,
         until: Option<String>,
+        functions: &Bound<'_, PyDict>,
     ) -> PyResult<Self> {
-        let loaded = py.detach(|| SceneSource { path, set, until }.load());
-        loaded.map(|loaded| ReadScene { loaded }).map_err(|error| errors::of_scene(py, error))
+        ReadScene::given(py, py.detach(|| SceneSource { path, set, until }.load()), functions)
     }
 
     /// The text that was read.

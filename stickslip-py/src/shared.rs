@@ -4,6 +4,7 @@
 //! So a function that a run calls between two steps may ask the simulation whatever it likes. Nobody waits for Python
 //! while holding the lock.
 
+use crate::functions::is_in_function;
 use rayon::ThreadPool;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard};
@@ -40,6 +41,11 @@ impl Shared {
     }
 
     fn lock(&self) -> MutexGuard<'_, Box<dyn Simulation>> {
+        // The step that called it holds the lock: waiting for that would take forever.
+        assert!(
+            !is_in_function(),
+            "a law, load or motion in Python asks its simulation; it may use its arguments alone"
+        );
         self.simulation.lock().expect("no call of the engine panicked before")
     }
 

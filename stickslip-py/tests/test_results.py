@@ -104,7 +104,36 @@ def test_frames_of_pandas_and_polars_have_all_columns(results, monkeypatch):
         getattr(results.energy, f"to_{name}")()
         getattr(contacts, f"to_{name}")()
     assert list(made[0]) == list(results.energy.dtype.names) and np.array_equal(made[0]["px"], results.energy["px"])
-    assert {"bodies_a", "bodies_b", "force_x", "force_y", "force_z", "normal"} <= set(made[1])
+    assert {"body_a", "body_b", "fx", "fy", "fz", "normal"} <= set(made[1])
+
+
+def test_contacts_of_simulations_and_of_tables_have_the_same_columns(results):
+    live, table = results.sim.contacts(), results.contacts
+    assert list(live.dtype.names) == [name for name in table.dtype.names if name != "time"]
+    assert table.rows("fx", "fy", "fz").shape == (len(table), 3)
+
+
+def test_a_table_over_time_and_bodies_is_a_dataset(results, monkeypatch):
+    fake = types.SimpleNamespace(Dataset=lambda data, coords=None, attrs=None: (data, coords, attrs))
+    monkeypatch.setitem(sys.modules, "xarray", fake)
+    data, axes, _ = results.bodies.to_xarray()
+    assert list(axes) == ["time", "body"] and list(axes["body"]) == ["left", "right"]
+    names, speed = data["vx"]
+    assert names == ("time", "body") and np.array_equal(speed[:, 1], results.bodies.where(body="right")["vx"])
+    data, _, attributes = results.frame(-1).to_xarray()
+    names, stress, about = data["stress"]
+    assert names == ("particle", "component_6") and about == {"unit": "Pa"} and attributes == {"time": 0.01}
+    assert data["deformation"][1].shape == (len(stress), 9) and "position" not in data
+
+
+def test_frames_go_to_other_packages_with_all_columns(results, tmp_path):
+    meshio = pytest.importorskip("meshio")
+    frame = results.frame(-1)
+    frame.to_meshio().write(tmp_path / "frame.vtu")
+    mesh = meshio.read(tmp_path / "frame.vtu")
+    assert np.array_equal(mesh.points, frame["position"])
+    assert np.array_equal(mesh.point_data["stress"], frame["stress"])
+    assert set(mesh.point_data) == set(frame) - {"position"}
 
 
 def test_a_chart_has_the_run_and_its_known_answer(results, monkeypatch):
@@ -127,7 +156,7 @@ def test_a_chart_has_the_run_and_its_known_answer(results, monkeypatch):
         results.plot("ring", "vx", ax=axes)
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     monkeypatch.setitem(sys.modules, "matplotlib.pyplot", None)
-    with pytest.raises(ImportError, match="charts need matplotlib"):
+    with pytest.raises(ImportError, match="needs matplotlib, which is not installed"):
         results.plot("left", "vx")
 
 

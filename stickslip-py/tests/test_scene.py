@@ -68,7 +68,7 @@ def test_keywords_replace_parameters_as_set_does():
     path = REPOSITORY / "scenes/paper/backspin.toml"
     scene = ss.Scene.load(path, cells_per_radius=4, contact="gap", **{"time.end": "500 ms", "bodies[0].spin[1]": 2.5})
     given = [("cells_per_radius", "4"), ("contact", "gap"), ("time.end", "500 ms"), ("bodies[0].spin[1]", "2.5")]
-    expected = json.loads(_core.ReadScene(str(path), path.read_text(), given).record())
+    expected = json.loads(_core.ReadScene((str(path), path.read_text()), given, {}).record())
     assert json.loads(scene._read().record()) == expected
     assert expected["discretization"]["cell"] == 0.25 and expected["time"]["end"] == 0.5
     # And where the file itself is out of the game.
@@ -91,7 +91,8 @@ def test_an_unknown_parameter_is_refused():
 
 
 def test_a_mistake_has_its_line_and_its_advice(tmp_path):
-    scene = flying().body("other", material="rubber", shape={"ball": {"center": (2, 0), "radios": 1}})
+    scene = flying().body("other", material="rubber", shape=ss.ball((2, 0), 1))
+    scene.document["bodies"][1]["shape"] = {"ball": {"center": [2, 0], "radios": 1}}
     with pytest.raises(ss.SceneError) as caught:
         scene.simulation()
     error = caught.value
@@ -260,3 +261,58 @@ def test_packings_repeats_and_patterns_are_words_like_others():
     with pytest.raises(ss.SceneError) as caught:
         scene.check()
     assert caught.value.key == "packings[0].solid_fraction" and "jam" in caught.value.found
+
+
+def test_keys_that_there_are_none_of_are_found_at_once():
+    scene = ss.Scene("plane-strain", 0.1)
+    scene.body("first", material="rubber", shape=ss.disk((0, 0), 1))
+    wrong = [
+        (lambda: scene.body("ball", materiel="rubber"), "bodies[1].materiel", "material"),
+        (
+            lambda: scene.body("ball", material="rubber", shape={"ball": {"radios": 1}}),
+            "bodies[1].shape.ball.radios",
+            "radius",
+        ),
+        (lambda: scene.material("rubber", densty=1), "materials.rubber.densty", "density"),
+        (
+            lambda: scene.material("rubber", density=1, neo_hookean=dict(youngs_modulus=1, poisson_ratio=0.3)),
+            "materials.rubber.neo_hookean.youngs_modulus",
+            "young_modulus",
+        ),
+        (lambda: scene.contact(frictoin=0.3), "contact[0].frictoin", "friction"),
+        (lambda: scene.load("first", presure=1), "loads[0].presure", "pressure"),
+        (lambda: scene.support("first", velocty=1), "supports[0].velocty", "velocity"),
+        (lambda: scene.time(ends=1), "time.ends", "end"),
+        (lambda: scene.outputs(tabels=1), "outputs.tabels", "tables"),
+        (lambda: scene.probe("here", (0, 0), boddy="first"), "outputs.probes[0].boddy", "body"),
+        (lambda: scene.domain((0, 0), (1, 1), x_mn="fixed"), "space.domain.x_mn", "x_min"),
+        (lambda: ss.Scene("plane-strain", 0.1, bases="gimp"), "space.bases", "basis"),
+    ]
+    before = scene.text()
+    for give, key, meant in wrong:
+        with pytest.raises(ss.SceneError) as error:
+            give()
+        assert error.value.key == key and f"did you mean `{meant}`?" in error.value.help, (key, error.value)
+        assert f"{key}: found unknown key `{key.split('.')[-1]}`; allowed: " in str(error.value)
+    assert scene.text() == before, "what is refused leaves nothing"
+    # What the command says of the same key.
+    scene.document["bodies"][0]["materiel"] = "rubber"
+    scene.material("rubber", density=1, neo_hookean=dict(young_modulus=1, poisson_ratio=0.3)).time(end=1)
+    with pytest.raises(ss.SceneError) as late:
+        scene.check()
+    with pytest.raises(ss.SceneError) as early:
+        scene.body("first", materiel="rubber")
+    assert (late.value.found, late.value.allowed, late.value.help) == (
+        early.value.found,
+        early.value.allowed,
+        early.value.help,
+    )
+
+
+def test_what_is_not_there_yet_is_no_mistake_until_the_scene_is_read(tmp_path):
+    scene = ss.Scene("plane-strain", "size / 10")
+    scene.body("part", material="later", shape=ss.mesh(tmp_path / "none.stl"), velocity=("speed", 0))
+    scene.contact(("part", "other"), friction="mu").load("other", force=(0, "load"))
+    assert len(scene.document["bodies"]) == 1
+    with pytest.raises(ss.SceneError):
+        scene.check()

@@ -74,9 +74,10 @@ def test_contacts_are_means_since_the_last_reading():
     sim.run(until=6e-3)
     after = sim.bodies["right"].state
     (row,) = sim.contacts()
-    assert row["bodies"].tolist() == ["left", "right"]
+    assert (row["body_a"], row["body_b"]) == ("left", "right")
     change = after.mass * (after.velocity - momentum.velocity)
-    assert row["force"] * (sim.time - before) == pytest.approx(change, rel=1e-9, abs=1e-12), "force times time"
+    force = np.array([row["fx"], row["fy"], row["fz"]])
+    assert force * (sim.time - before) == pytest.approx(change, rel=1e-9, abs=1e-12), "force times time"
     assert row["normal"] > 0.0 and row["area"] > 0.0 and row["nodes"] > 0 and row["slip"] > 0.0
     assert len(sim.contacts()) == 0, "no time has passed"
 
@@ -353,3 +354,13 @@ def test_many_bodies_are_asked_for_by_patterns():
     sim = scene.simulation()
     assert [body.name for body in sim.bodies.matching("disk *")] == ["disk 0", "disk 1", "disk 2"]
     assert sim.bodies.matching("disk") == [] and len(sim.bodies.matching("*")) == len(sim.bodies)
+
+
+def test_times_that_cannot_be_read_are_named_as_they_were_given():
+    sim = flying().simulation()
+    for given in (dict(until="5 m"), dict(every="soon", callback=print)):
+        (name,) = given.keys() - {"callback"}
+        with pytest.raises(ss.SceneError, match=f"^{name}: found ") as error:
+            sim.run(**given)
+        assert error.value.key == name and "time.end" not in str(error.value)
+    assert sim.time == 0.0

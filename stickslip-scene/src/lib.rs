@@ -17,6 +17,9 @@ pub mod packing;
 // What a column of particles holds: name, unit, components.
 pub mod column;
 
+// What a scene file only names, and the program that runs the scene gives.
+pub mod outside;
+
 // One file a law: equation, code, tests.
 pub mod material;
 

@@ -16,7 +16,7 @@ pub use stickslip_engine::{
     basis, body, boundary, clock, contact, door, grid, lanes, march, pages, particles, step, transfer,
 };
 pub use stickslip_results::{image, observe, polariscope, surface};
-pub use stickslip_scene::{column, geometry, material, number, rigid, scene, tensor};
+pub use stickslip_scene::{column, geometry, material, number, outside, rigid, scene, tensor};
 
 // What is wrong or doubtful with a scene, and what its run will cost.
 pub mod check;

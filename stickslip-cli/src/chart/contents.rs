@@ -4,7 +4,6 @@ use super::measurements::{self, ChartTime};
 use super::{Chart, Curve, Panel};
 use crate::drawing::{Rgb, body_color};
 use clap::ValueEnum;
-use stickslip::door::Ledger;
 use stickslip::observe::{BodyRow, EnergyRow, ReadError, ReferenceCurve, Results, TableRow};
 
 /// What the user asks for; nothing at all gives what the scene is about.
@@ -23,6 +22,8 @@ pub struct ChartChoice {
 pub enum ChartTable {
     /// Bodies through time
     Bodies,
+    /// Energies of all bodies together
+    Energy,
     /// Force between each pair of bodies that touch
     Contacts,
     /// Stress and velocity at probes
@@ -40,6 +41,23 @@ impl ChartTable {
             ChartTable::Bodies => {
                 &["x", "y", "z", "vx", "vy", "vz", "wx", "wy", "wz", "mass", "kinetic", "strain"]
             }
+            ChartTable::Energy => &[
+                "total",
+                "kinetic",
+                "strain",
+                "potential",
+                "external_work",
+                "friction",
+                "adhesion",
+                "plastic",
+                "damping",
+                "px",
+                "py",
+                "pz",
+                "lx",
+                "ly",
+                "lz",
+            ],
             ChartTable::Contacts => &["normal", "tangential", "fx", "fy", "fz", "nodes"],
             ChartTable::Probes => measurements::PROBE_COLUMNS,
             ChartTable::Arrivals | ChartTable::Fronts => &["distance"],
@@ -58,6 +76,10 @@ const EXACT: Rgb = [0.22, 0.24, 0.27];
 pub fn chart(results: &Results, choice: &ChartChoice) -> Result<Chart, ReadError> {
     let mut chart = match choice.table {
         Some(ChartTable::Bodies) => of_bodies(results, choice)?,
+        Some(ChartTable::Energy) => {
+            let panels = energy_panels(&results.energy_table()?, &choice.quantities);
+            Chart { panels, ..measurements::empty(results) }
+        }
         Some(table) => measurements::chart(results, (table, choice))?,
         None if choice.bodies.is_empty() && choice.quantities.is_empty() => of_everything(results)?,
         None => of_bodies(results, choice)?,
@@ -201,20 +223,74 @@ fn interpolated(points: &[[f64; 2]], time: f64) -> Option<f64> {
     Some(if t1 > t0 { v0 + (v1 - v0) * (time - t0) / (t1 - t0) } else { v1 })
 }
 
+/// Terms of the ledger that add up to the total, each with its colour, and whether it is taken off.
+const TERMS: &[(&str, usize, bool)] = &[
+    ("kinetic", 0, false),
+    ("strain", 2, false),
+    ("potential, from the start", 1, false),
+    ("friction", 3, false),
+    ("plastic", 4, false),
+    ("damping", 5, false),
+    ("adhesion", 6, false),
+    ("external_work", 7, true),
+];
+
+/// All that adds up to the total energy; what there is none of has no curve. Potential energy counts from the start:
+/// where it is zero means nothing, and would hide the rest.
 fn energy_panel(rows: &[EnergyRow]) -> Panel {
-    let curve = |label: &str, color: Rgb, term: fn(&Ledger) -> f64| Curve {
-        label: label.to_owned(),
-        color,
-        dashed: false,
-        points: rows.iter().map(|row| [row.time, term(&row.ledger)]).collect(),
+    let zero = rows.first().map_or(0.0, |row| row.ledger.potential);
+    let mut rows = rows.to_vec();
+    for row in &mut rows {
+        row.ledger.potential -= zero;
+        row.ledger.total -= zero;
+    }
+    let rows = &rows[..];
+    let curve = |(name, color, taken_off): &(&str, usize, bool)| {
+        let sign = if *taken_off { -1.0 } else { 1.0 };
+        let label = match taken_off {
+            true => format!("\u{2212} {}", name.replace('_', " ")),
+            false => (*name).to_owned(),
+        };
+        let name = name.split(',').next().unwrap_or_default();
+        Curve { label, color: body_color(*color), dashed: false, points: column(rows, name, sign) }
     };
-    let curves = vec![
-        curve("kinetic", body_color(0), |ledger| ledger.kinetic),
-        curve("strain", body_color(2), |ledger| ledger.strain),
-        curve("potential", body_color(1), |ledger| ledger.potential),
-        curve("total", EXACT, |ledger| ledger.total),
-    ];
+    let total = Curve {
+        label: "total, their sum".to_owned(),
+        color: EXACT,
+        dashed: true,
+        points: column(rows, "total", 1.0),
+    };
+    let is_there = |curve: &Curve| curve.points.iter().any(|point| point[1] != 0.0);
+    let curves = TERMS.iter().map(curve).filter(is_there).chain([total]).collect();
     Panel { name: "energy".to_owned(), unit: "J", curves }
+}
+
+/// A column of energy.csv times a number.
+fn column(rows: &[EnergyRow], name: &str, times: f64) -> Vec<[f64; 2]> {
+    rows.iter().filter_map(|row| Some([row.time, times * row.number(name)?])).collect()
+}
+
+/// The columns of energy.csv that are asked for, energies and momenta apart; none means all energies.
+fn energy_panels(rows: &[EnergyRow], columns: &[String]) -> Vec<Panel> {
+    if columns.is_empty() {
+        return vec![energy_panel(rows)];
+    }
+    let axis = |name: &str| match name.chars().next() {
+        _ if name.len() > 2 => ("energy", "J"),
+        Some('p') => ("momentum", "kg m/s"),
+        _ => ("angular momentum", "kg m\u{b2}/s"),
+    };
+    let mut panels: Vec<Panel> = Vec::new();
+    for (i, name) in columns.iter().enumerate() {
+        let (title, unit) = axis(name);
+        let place = panels.iter().position(|panel| panel.name == title).unwrap_or_else(|| {
+            panels.push(Panel { name: title.to_owned(), unit, curves: Vec::new() });
+            panels.len() - 1
+        });
+        let (color, points) = (body_color(i), column(rows, name, 1.0));
+        panels[place].curves.push(Curve { label: name.clone(), color, dashed: false, points });
+    }
+    panels
 }
 
 /// The coordinates of the bodies' centres that change most, as the way they went.
@@ -232,16 +308,35 @@ fn center_panel(rows: &[BodyRow], bodies: &[String]) -> Panel {
     ways.sort_by(|a, b| b.0.total_cmp(&a.0));
     let most = ways.first().map_or(0.0, |(most, _)| *most);
     ways.retain(|(way, _)| *way > 1e-3 * most);
-    ways.truncate(MOST_CURVES);
-    let curves = ways.into_iter().enumerate();
-    let curves = curves.map(|(i, (_, curve))| Curve { color: body_color(i), ..curve }).collect();
+    let mut curves: Vec<Curve> = ways.into_iter().map(|(_, curve)| curve).collect();
+    if curves.len() > MOST_CURVES {
+        curves = ["x", "y", "z"].iter().flat_map(|axis| typical(&curves, axis)).collect();
+    }
+    curves.iter_mut().enumerate().for_each(|(i, curve)| curve.color = body_color(i));
     Panel { name: "displacement of centres".to_owned(), unit: "m", curves }
+}
+
+/// Of many curves of a coordinate those that end lowest, in the middle and highest.
+fn typical(curves: &[Curve], axis: &str) -> Vec<Curve> {
+    let end = |curve: &Curve| curve.points.last().map_or(0.0, |point| point[1]);
+    let mut along: Vec<&Curve> =
+        curves.iter().filter(|curve| curve.label.ends_with(&format!(" {axis}"))).collect();
+    along.sort_by(|a, b| end(a).total_cmp(&end(b)));
+    let count = along.len();
+    if count <= 3 {
+        return along.into_iter().cloned().collect();
+    }
+    let named = |(what, place): (&str, usize)| {
+        let label = format!("{}, {what} of {count}", along[place].label);
+        Curve { label, ..along[place].clone() }
+    };
+    [("lowest", 0), ("median", count / 2), ("highest", count - 1)].map(named).to_vec()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use stickslip::door::BodyState;
+    use stickslip::door::{BodyState, Ledger};
 
     fn row(time: f64, x: f64) -> BodyRow {
         let state = BodyState { position: [x, 0.0, 0.0], ..BodyState::default() };
@@ -276,6 +371,43 @@ mod tests {
         let labels: Vec<&str> = panels[0].curves.iter().map(|curve| curve.label.as_str()).collect();
         assert_eq!(labels, ["sphere x", "rigid", "sphere y"]);
         assert_ne!(panels[0].curves[0].color, panels[0].curves[2].color);
+    }
+
+    #[test]
+    fn energies_of_a_chart_add_up_to_the_total() {
+        let ledger = Ledger {
+            kinetic: 1.0,
+            plastic: 5.0,
+            friction: 0.5,
+            external_work: 6.0,
+            total: 0.5,
+            ..Ledger::default()
+        };
+        let rows = [EnergyRow { time: 0.0, ledger }];
+        let panel = energy_panel(&rows);
+        let labels: Vec<&str> = panel.curves.iter().map(|curve| curve.label.as_str()).collect();
+        assert_eq!(labels, ["kinetic", "friction", "plastic", "\u{2212} external work", "total, their sum"]);
+        let (terms, total) = panel.curves.split_at(4);
+        assert_eq!(terms.iter().map(|curve| curve.points[0][1]).sum::<f64>(), total[0].points[0][1]);
+        let asked = energy_panels(&rows, &["px".to_owned(), "plastic".to_owned(), "total".to_owned()]);
+        let names: Vec<_> = asked.iter().map(|panel| (panel.name.as_str(), panel.curves.len())).collect();
+        assert_eq!(names, [("momentum", 1), ("energy", 2)]);
+    }
+
+    #[test]
+    fn of_many_bodies_the_ways_are_drawn_that_lie_apart() {
+        let curve = |i: usize| Curve {
+            label: format!("grain {i} y"),
+            color: EXACT,
+            dashed: false,
+            points: vec![[0.0, 0.0], [1.0, i as f64]],
+        };
+        let curves: Vec<Curve> = (0..200).map(curve).collect();
+        let labels: Vec<String> = typical(&curves, "y").into_iter().map(|curve| curve.label).collect();
+        assert_eq!(
+            labels,
+            ["grain 0 y, lowest of 200", "grain 100 y, median of 200", "grain 199 y, highest of 200"]
+        );
     }
 
     #[test]

@@ -67,7 +67,7 @@ pub fn chart(results: &Results, (table, choice): (ChartTable, &ChartChoice)) -> 
     let columns = if choice.quantities.is_empty() { &usual } else { &choice.quantities[..] };
     let wanted = |name: &str| choice.bodies.is_empty() || choice.bodies.iter().any(|body| body == name);
     match table {
-        ChartTable::Bodies => {}
+        ChartTable::Bodies | ChartTable::Energy => {}
         ChartTable::Contacts => {
             let rows: Vec<ContactRow> = results.contacts_table()?;
             let rows = rows.into_iter().filter(|row| wanted(&row.body_a) || wanted(&row.body_b)).collect();

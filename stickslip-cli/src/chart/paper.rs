@@ -90,6 +90,8 @@ fn draw_panel<D: DrawingBackend>(
     pixel: i32,
 ) -> Result<(), DrawError> {
     let [times, values] = [0, 1].map(|axis| range(&panel.curves, axis));
+    let (over, pace) = over_axis(over, times[0].abs().max(times[1].abs()));
+    let times = times.map(|time| time / pace);
     let largest = values[0].abs().max(values[1].abs());
     let size = axis_prefix(largest, panel.unit);
     let values = values.map(|value| value / size.factor);
@@ -123,7 +125,7 @@ fn draw_panel<D: DrawingBackend>(
         .draw()
         .map_err(DrawError::ink)?;
     for curve in &panel.curves {
-        let points = curve.points.iter().map(|[time, value]| (*time, value / size.factor));
+        let points = curve.points.iter().map(|[time, value]| (time / pace, value / size.factor));
         let points = points.filter(|(_, value)| value.is_finite());
         let style = stroke(curve, pixel);
         let dashes = curve.dashed;
@@ -155,6 +157,18 @@ fn draw_panel<D: DrawingBackend>(
         .label_font(letters(13, pixel))
         .draw()
         .map_err(DrawError::ink)
+}
+
+/// Name of the axis of what is drawn over, in seconds with the prefix that its numbers read well with, and by what they
+/// are divided.
+fn over_axis(over: &str, largest: f64) -> (String, f64) {
+    match over.strip_suffix(" [s]") {
+        Some(name) => {
+            let Prefix { letter, factor } = axis_prefix(largest, "s");
+            (format!("{name} [{letter}s]"), factor)
+        }
+        None => (over.to_owned(), 1.0),
+    }
 }
 
 fn axis_name(panel: &Panel, size: Prefix) -> String {
@@ -231,6 +245,13 @@ mod tests {
         let nothing =
             Chart { title: String::new(), over: String::new(), panels: Vec::new(), caption: String::new() };
         assert!(matches!(draw(&nothing, Path::new("x.png"), [64, 64]), Err(DrawError::Empty(_))));
+    }
+
+    #[test]
+    fn short_times_have_a_prefix() {
+        assert_eq!(over_axis("time [s]", 2e-5), ("time [\u{b5}s]".to_owned(), 1e-6));
+        assert_eq!(over_axis("time [s]", 2.0), ("time [s]".to_owned(), 1.0));
+        assert_eq!(over_axis("time / (d/c)", 2e-5), ("time / (d/c)".to_owned(), 1.0));
     }
 
     #[test]

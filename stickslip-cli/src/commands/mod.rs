@@ -22,15 +22,16 @@ use clap::Parser;
 use miette::miette;
 use std::io::Write;
 use std::path::Path;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, LazyLock};
 use stickslip::check::{Report, free_memory};
+use stickslip::lanes::Processor;
 use stickslip::observe::Results;
 use stickslip::scene::{Loaded, SceneError};
 
 /// Many deformable bodies in frictional contact, by the material point method.
 #[derive(Debug, Parser)]
-#[command(name = "stickslip", version, arg_required_else_help = true)]
+#[command(name = "stickslip", version, long_version = build(), arg_required_else_help = true)]
 pub enum Command {
     Run(run::Arguments),
     Resume(resume::Arguments),
@@ -47,6 +48,22 @@ pub enum Command {
     Bench(bench::Arguments),
     Validate(validate::Arguments),
     View(view::Arguments),
+}
+
+/// The version with what it was built for, and by which instructions the machine steps.
+fn build() -> &'static str {
+    static SAID: LazyLock<String> = LazyLock::new(|| {
+        use std::env::consts::{ARCH, OS};
+        let kind = if cfg!(debug_assertions) { "development" } else { "release" };
+        let instructions = match Processor::best() {
+            Processor::Avx512 => "AVX-512",
+            Processor::Avx2 => "AVX2 with fused multiply-add",
+            Processor::Any => "those that the build assumes",
+        };
+        let version = env!("CARGO_PKG_VERSION");
+        format!("{version}\nbuild: {kind}, {OS} on {ARCH}\ninstructions on this machine: {instructions}")
+    });
+    &SAID
 }
 
 impl Command {

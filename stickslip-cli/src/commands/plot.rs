@@ -88,7 +88,9 @@ impl Arguments {
 /// What the rows of a table are about.
 fn names(results: &Results, table: ChartTable) -> Result<Vec<String>, ReadError> {
     let mut names: Vec<String> = match table {
-        ChartTable::Bodies | ChartTable::Contacts => return Ok(results.body_names().to_vec()),
+        ChartTable::Bodies | ChartTable::Contacts | ChartTable::Energy => {
+            return Ok(results.body_names().to_vec());
+        }
         ChartTable::Probes => results.probes_table()?.into_iter().map(|row| row.probe).collect(),
         ChartTable::Arrivals => results.arrivals_table()?.into_iter().map(|row| row.place).collect(),
         ChartTable::Fronts => results.fronts_table()?.into_iter().map(|row| row.front).collect(),

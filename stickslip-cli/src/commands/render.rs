@@ -2,9 +2,9 @@
 
 use super::fringes::FringeArguments;
 use super::{open, recorded, say};
-use crate::drawing::{DrawError, save};
+use crate::drawing::{ColorMap, DrawError, save};
 use crate::failure::Failure;
-use crate::files;
+use crate::film::{self, FilmKind};
 use crate::frame_pictures::FramePictures;
 use crate::illustration::{Album, PictureChoice, Pictures, snapshots};
 use crate::picture::{ColorQuantity, QuantityParser, Viewpoint};
@@ -12,7 +12,7 @@ use clap::Args;
 use miette::miette;
 use std::io;
 use std::path::PathBuf;
-use stickslip::image::write_animation;
+use stickslip::image::Image;
 use stickslip::observe::{FRAMES_PER_SECOND, Frame, Results};
 
 /// Draw pictures of a run's snapshots.
@@ -21,9 +21,9 @@ pub struct Arguments {
     /// Folder of results.
     folder: PathBuf,
 
-    /// Which snapshot, counted from 0; the last without this.
-    #[arg(long, conflicts_with_all = ["time", "all", "animate"])]
-    frame: Option<usize>,
+    /// Which snapshot, counted from 0, or several side by side, separated by commas; the last without this.
+    #[arg(long, value_delimiter = ',', value_name = "NUMBER", conflicts_with_all = ["time", "all", "animate"])]
+    frame: Vec<usize>,
 
     /// The snapshot nearest to this time [s].
     #[arg(long, conflicts_with_all = ["all", "animate"], allow_negative_numbers = true)]
@@ -33,7 +33,8 @@ pub struct Arguments {
     #[arg(long)]
     all: bool,
 
-    /// Every snapshot as `--all` draws them, in one animated PNG, which browsers play.
+    /// Every snapshot as `--all` draws them, in one animation: PNG, which browsers play, GIF, or MP4 and WebM where
+    /// ffmpeg is on the path.
     #[arg(long, conflicts_with = "all")]
     animate: bool,
 
@@ -49,6 +50,10 @@ pub struct Arguments {
     #[arg(long, value_name = "LOW,HIGH", value_parser = pair, allow_hyphen_values = true)]
     range: Option<[f64; 2]>,
 
+    /// The colours that values run through; those that suit without this.
+    #[arg(long, value_enum)]
+    colors: Option<ColorMap>,
+
     /// Where the camera stands: auto, an axis (x, -x, ...), or AZIMUTH,ELEVATION in degrees from the front.
     #[arg(long, default_value = "auto", allow_hyphen_values = true)]
     view: Viewpoint,
@@ -62,8 +67,8 @@ pub struct Arguments {
     #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = size)]
     size: Option<[usize; 2]>,
 
-    /// The picture or the animation, .png, or the folder for `--all`; DIR/picture.png, DIR/animation.png or
-    /// DIR/pictures without this, and fringes in the place of picture.
+    /// The picture, .png, the animation, .png, .gif, .mp4 or .webm, or the folder for `--all`; DIR/picture.png,
+    /// DIR/animation.png or DIR/pictures without this, and fringes in the place of picture.
     #[arg(long)]
     out: Option<PathBuf>,
 
@@ -130,11 +135,13 @@ impl Arguments {
                 self.draw_film(&*pictures, frames)
             };
         }
-        let frame = self.chosen(frames)?;
+        let chosen = self.chosen(frames)?;
         let out = self.file("picture.png")?;
-        let pictures = self.pictures(&results, std::slice::from_ref(frame))?;
-        save(&pictures.picture(frame)?, &out)?;
-        say(&format!("{} shows t = {} s", out.display(), significant(frame.time)))
+        let pictures = self.pictures(&results, &chosen)?;
+        let drawn: Result<Vec<Image>, Failure> = chosen.iter().map(|frame| pictures.picture(frame)).collect();
+        save(&side_by_side(&drawn?), &out)?;
+        let times: Vec<String> = chosen.iter().map(|frame| significant(frame.time)).collect();
+        say(&format!("{} shows t = {} s", out.display(), times.join(", ")))
     }
 
     /// What draws the snapshots `frames`, all from one place and with one range of colours.
@@ -152,6 +159,7 @@ impl Arguments {
         let choice = PictureChoice {
             quantity: self.color.clone(),
             range: self.range,
+            colors: self.colors,
             view: self.view,
             mirror: self.mirror.clone(),
             size: self.size,
@@ -175,17 +183,20 @@ impl Arguments {
         self.folder.join(format!("{kind}{name}"))
     }
 
-    /// The snapshot that `--frame` or `--time` asks for; the last without them.
-    fn chosen<'a>(&self, frames: &'a [Frame]) -> Result<&'a Frame, Failure> {
+    /// The snapshots that `--frame` or `--time` asks for; the last without them.
+    fn chosen(&self, frames: &[Frame]) -> Result<Vec<Frame>, Failure> {
         let last = frames.len() - 1;
-        if let Some(number) = self.frame {
+        let numbered = |&number: &usize| {
             let missing = || Failure::Input(miette!("--frame: found {number}; allowed: 0 to {last}"));
-            return frames.get(number).ok_or_else(missing);
+            frames.get(number).cloned().ok_or_else(missing)
+        };
+        if !self.frame.is_empty() {
+            return self.frame.iter().map(numbered).collect();
         }
-        let Some(time) = self.time else { return Ok(&frames[last]) };
+        let Some(time) = self.time else { return Ok(vec![frames[last].clone()]) };
         recorded(time, frames.iter().map(|frame| frame.time))?;
         let nearer = |a: &&Frame, b: &&Frame| (a.time - time).abs().total_cmp(&(b.time - time).abs());
-        Ok(frames.iter().min_by(nearer).expect("there is at least one snapshot"))
+        Ok(vec![frames.iter().min_by(nearer).expect("there is at least one snapshot").clone()])
     }
 
     fn draw_all(&self, pictures: &dyn Pictures, frames: &[Frame]) -> Result<(), Failure> {
@@ -199,7 +210,11 @@ impl Arguments {
     }
 
     fn draw_film(&self, pictures: &dyn Pictures, frames: &[Frame]) -> Result<(), Failure> {
-        let out = self.file("animation.png")?;
+        let out = self.out.clone().unwrap_or_else(|| self.usual("animation.png"));
+        let kind = FilmKind::of(&out).ok_or_else(|| {
+            let allowed = "a file name that ends in .png, .gif, .mp4 or .webm";
+            Failure::Input(miette!("--out: found `{}`; allowed: {allowed}", out.display()))
+        })?;
         // A picture that cannot be drawn has a better error than the file that lacks it.
         let mut failure = None;
         let images = frames.iter().map(|frame| {
@@ -209,13 +224,39 @@ impl Arguments {
             })
         });
         let rate = self.rate.unwrap_or(FRAMES_PER_SECOND);
-        let written = files::write(&out, files::PNG, |file| write_animation(images, rate, file));
+        let written = film::write(&out, kind, images, rate);
         match (written, failure) {
             (_, Some(failure)) => Err(failure),
             (Err(source), None) => Err(DrawError::Write { path: out, source }.into()),
             (Ok(()), None) => say(&format!("{} plays {} pictures", out.display(), frames.len())),
         }
     }
+}
+
+/// Pictures of one size in rows, two or three in each; white where a row has none.
+fn side_by_side(images: &[Image]) -> Image {
+    let [width, height] = images[0].size;
+    let columns = if images.len() < 5 { images.len().min(2) } else { 3 };
+    let rows = images.len().div_ceil(columns);
+    let mut whole = Image::new([columns * width, rows * height], [255; 3]);
+    for (place, image) in images.iter().enumerate() {
+        let (column, row) = (place % columns, place / columns);
+        for (y, line) in image.pixels.chunks_exact(3 * width).enumerate().take(height) {
+            let first = 3 * (((row * height) + y) * columns * width + column * width);
+            whole.pixels[first..first + 3 * width].copy_from_slice(line);
+        }
+    }
+    whole
+}
+
+#[test]
+fn pictures_stand_in_rows() {
+    let shades = [10, 20, 30].map(|shade| Image::new([3, 2], [shade; 3]));
+    let whole = side_by_side(&shades);
+    assert_eq!(whole.size, [6, 4]);
+    let at = |x: usize, y: usize| whole.pixels[3 * (6 * y + x)];
+    assert_eq!([at(0, 0), at(5, 1), at(2, 3), at(3, 2)], [10, 20, 30, 255]);
+    assert_eq!(side_by_side(&shades[..1]), shades[0]);
 }
 
 /// A time as one reads it: six digits.

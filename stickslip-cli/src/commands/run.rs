@@ -3,16 +3,15 @@
 use super::{assignment, load, report, say, stop_on_interrupt};
 use crate::failure::Failure;
 use crate::illustration::illustrate;
-use crate::progress::Display;
+use crate::progress::{Display, ProgressForm};
 use bytesize::ByteSize;
 use clap::Args;
 use miette::{IntoDiagnostic, miette};
-use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 use stickslip::check::free_memory;
 use stickslip::door::Simulation;
-use stickslip::observe::{ArrivalRow, FrontSpeedRow, Manifest, Results, SceneSource, Status};
+use stickslip::observe::{ArrivalRow, FrontSpeedRow, Manifest, Performance, Results, SceneSource, Status};
 use stickslip::run::{Checkpointing, Progress, RunError, RunOptions, Summary};
 use stickslip::scene::{Loaded, Scene};
 
@@ -78,6 +77,18 @@ pub(super) struct How {
     /// Exit with code 3 if the summary warns that results are doubtful.
     #[arg(long)]
     strict: bool,
+
+    /// Say nothing but warnings and errors.
+    #[arg(short, long)]
+    quiet: bool,
+
+    /// Say where the time went, too.
+    #[arg(short, long, conflicts_with = "quiet")]
+    verbose: bool,
+
+    /// How progress is shown.
+    #[arg(long, value_enum, default_value = "auto", value_name = "FORM")]
+    progress: ProgressForm,
 }
 
 /// A wall time; without one, never.
@@ -240,7 +251,11 @@ impl How {
             max_time: self.max_time.0,
             ..RunOptions::new(&out)
         };
-        let display = Display::new(scene.time.end, std::io::stderr().is_terminal());
+        let form = match self.progress {
+            ProgressForm::Auto if self.quiet => ProgressForm::None,
+            form => form,
+        };
+        let display = Display::new(scene.time.end, form);
         let outcome = make(scene, &mut *simulation, &options, &mut |progress| display.show(progress));
         display.finish();
         let summary = match outcome {
@@ -252,11 +267,18 @@ impl How {
                 return Err(Failure::run(error));
             }
         };
+        let say = |text: &str| if self.quiet { Ok(()) } else { say(text) };
         say(&format!("{}\n{summary}{}", scene.title, measured(&out, scene)?))?;
+        if self.verbose {
+            say(&times(&summary.performance))?;
+        }
         let drawn = illustrate(&out).map_err(Failure::after_the_run)?;
         say(&format!("results in {}/: {drawn}", out.display()))?;
         if summary.status != Status::Finished && at_end {
             say(&format!("go on with: stickslip resume {}", out.display()))?;
+        }
+        if self.quiet {
+            summary.warnings.iter().for_each(|warning| eprintln!("warning: {}", warning.message));
         }
         match (summary.status, summary.warnings.len()) {
             (Status::Interrupted, _) => Err(Failure::Interrupted),
@@ -265,6 +287,20 @@ impl How {
             _ => Ok(()),
         }
     }
+}
+
+/// Where the time of a run went: a line for each part of the step, and one for the rest.
+fn times(performance: &Performance) -> String {
+    let Performance { wall_time, timings, .. } = performance;
+    let rest = wall_time - timings.iter().map(|timing| timing.seconds).sum::<f64>();
+    let parts = timings.iter().map(|timing| (timing.verb.as_str(), timing.seconds));
+    let line = |(part, seconds): (&str, f64)| {
+        format!(
+            "  {part:<20} {seconds:>9.3} s  {:>3.0} %",
+            100.0 * seconds / wall_time.max(f64::MIN_POSITIVE)
+        )
+    };
+    parts.chain([("outputs and the rest", rest)]).map(line).collect::<Vec<_>>().join("\n")
 }
 
 /// A line for each arrival, each front's speed and each probe that saw nothing; a threshold that was not passed has

@@ -5,11 +5,10 @@ use super::{assignment, load, say, stop_on_interrupt};
 use crate::chart::draw;
 use crate::drawing::DrawError;
 use crate::failure::Failure;
-use crate::progress::Family;
+use crate::progress::{Family, terminal};
 use crate::sweep::{self, Crew, Member, News, Sweep, SweepRecord, SweepRow, Variation};
 use clap::Args;
 use miette::miette;
-use std::io::IsTerminal;
 use std::num::NonZero;
 use std::path::PathBuf;
 use std::sync::atomic::Ordering;
@@ -72,7 +71,7 @@ impl Arguments {
         let jobs = self.jobs.map_or(threads, usize::from).clamp(1, members.len());
         let crew = Crew { jobs, threads: (threads / jobs).max(1), folder, stop: stop_on_interrupt()? };
         let mut written = Ok(());
-        let mut display = Family::new(members.len(), std::io::stderr().is_terminal());
+        let mut display = Family::new(members.len(), terminal());
         crew.run(&members, |news| {
             for each in news {
                 match each {

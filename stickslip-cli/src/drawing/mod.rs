@@ -5,7 +5,7 @@ mod colors;
 mod ticks;
 
 pub use canvas::{Canvas, Ink, SAMPLES, register_font, save};
-pub use colors::{Rgb, Scale, body_color, shaded};
+pub use colors::{ColorMap, Rgb, Scale, body_color, shaded};
 pub use ticks::{Prefix, axis_prefix, label, prefix, ticks};
 
 use std::path::PathBuf;

@@ -1,8 +1,7 @@
 //! How far many runs have come: bars on a terminal, a line for each run that ends elsewhere.
 
-use crate::progress::{PARTS, duration, style};
+use crate::progress::{PARTS, duration, style, terminal};
 use indicatif::{MultiProgress, ProgressBar};
-use std::io::IsTerminal;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 use stickslip::run::Progress;
@@ -28,7 +27,7 @@ impl Board {
         if kept > 0 {
             eprintln!("{kept} runs are there already");
         }
-        let bars = std::io::stderr().is_terminal().then(MultiProgress::new);
+        let bars = terminal().then(MultiProgress::new);
         Board { bars, ended: AtomicUsize::new(0), all: runs }
     }
 

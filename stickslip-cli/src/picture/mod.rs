@@ -15,7 +15,7 @@ mod surface;
 pub use camera::Viewpoint;
 pub use grains::{Quarters, quarters};
 pub use quantity::{ColorQuantity, QuantityParser, determinant};
-pub use setting::{Setting, SymmetryPlane};
+pub use setting::{Floor, Setting, SymmetryPlane};
 
 use crate::drawing::{Canvas, DrawError, Rgb, SAMPLES, Scale, body_color};
 use camera::{Camera, Point, unit};
@@ -61,6 +61,8 @@ pub const HEADING: usize = 48;
 const COLUMN: usize = 130;
 /// Contrast of light where colours stand for values, which shadows must not falsify.
 const VALUE_CONTRAST: f64 = 0.6;
+/// Colour of what rests and is everywhere, in pictures of values.
+const FLOOR: Rgb = [0.86; 3];
 /// More bodies than this are not named.
 const MOST_NAMES: usize = 12;
 
@@ -84,7 +86,11 @@ pub fn draw(
     let extent = extent(&grains, look);
     let legend = legend(particles, setting, look);
     let mut canvas = if particles.dimension == 2 {
-        plane_picture(&grains, &extent, look, &legend)?
+        let shown: Vec<Grain> =
+            grains.iter().filter(|grain| !setting.has_floor(grain.body)).copied().collect();
+        let floors = (look.mirror.is_none() && !shown.is_empty()).then_some(&setting.floors[..]);
+        let grains = if floors.is_some() { &shown } else { &grains };
+        plane_picture(grains, (&extent, floors.unwrap_or_default()), look, &legend)?
     } else {
         space_picture(&grains, &extent, (look, setting), &legend)?
     };
@@ -177,7 +183,7 @@ fn room(look: &PictureStyle, margins: [usize; 4], aspect: f64) -> [[usize; 2]; 2
 
 fn plane_picture(
     grains: &[Grain],
-    extent: &[Point],
+    (extent, floors): (&[Point], &[Floor]),
     look: &PictureStyle,
     legend: &Legend,
 ) -> Result<Canvas, DrawError> {
@@ -198,7 +204,12 @@ fn plane_picture(
     };
     let [left, top] = [margins[0] * SAMPLES, margins[1] * SAMPLES];
     let drawn = DrawnGrains::new(grains, &window);
-    canvas.paint([left, top, inner[0], inner[1]], |x, y| drawn.color(x, y));
+    let floor = |x: usize, y: usize| {
+        let place = window.place([x as f64 + 0.5, y as f64 + 0.5]);
+        let body = floors.iter().find(|floor| floor.holds(place))?.body;
+        Some(if look.quantity == ColorQuantity::Body { body_color(body as usize) } else { FLOOR })
+    };
+    canvas.paint([left, top, inner[0], inner[1]], |x, y| drawn.color(x, y).or_else(|| floor(x, y)));
     let ink = canvas.ink();
     furniture::axes(&ink, &window, (left as i32, top as i32))?;
     furniture::legend(&ink, legend, (left + inner[0]) as i32 + 8 * SAMPLES as i32)?;
@@ -261,6 +272,7 @@ mod tests {
             bodies: vec!["sphere".to_owned(), "slab".to_owned()],
             round: vec![Some(center), None],
             mirrors: vec![SymmetryPlane { axis: 1, position: -2.0 }],
+            floors: Vec::new(),
         }
     }
 

@@ -28,6 +28,11 @@ impl PlaneView {
         [(x[0] - self.low[0]) * scale, (self.high[1] - x[1]) * scale]
     }
 
+    /// Position of a pixel.
+    pub fn place(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        [self.low[0] + x / self.scale(), self.high[1] - y / self.scale()]
+    }
+
     /// Pixels per metre.
     pub fn scale(&self) -> f64 {
         self.size[0] as f64 / (self.high[0] - self.low[0])

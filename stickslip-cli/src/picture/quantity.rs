@@ -163,19 +163,19 @@ impl ColorQuantity {
         let (low, high) = (at(0.001), at(0.999));
         match self.kind(low) {
             ColorSource::Magnitude => {
-                Scale { range: [0.0, if high > 0.0 { high } else { 1.0 }], diverging: false }
+                Scale { range: [0.0, if high > 0.0 { high } else { 1.0 }], diverging: false, map: None }
             }
             ColorSource::Around(middle) => {
                 let half = (high - middle).abs().max((low - middle).abs());
                 let half = if half > 0.0 { half } else { 1.0 };
-                Scale { range: [middle - half, middle + half], diverging: true }
+                Scale { range: [middle - half, middle + half], diverging: true, map: None }
             }
         }
     }
 
     /// Colours between two ends that the user chose.
     pub fn scale_between(&self, range: [f64; 2]) -> Scale {
-        Scale { range, diverging: self.kind(range[0]) != ColorSource::Magnitude }
+        Scale { range, diverging: self.kind(range[0]) != ColorSource::Magnitude, map: None }
     }
 
     /// Where the colours come from if values go down to this.

@@ -14,6 +14,7 @@ pub use saved::{RestoreError, SavedBody, SavedColumn, SavedState};
 pub use snapshot::{ColumnSource, ParticleSnapshot, SnapshotColumn};
 
 use crate::column::ColumnDescription;
+use crate::outside::OutsideFault;
 use crate::scene::StartVelocities;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
@@ -474,6 +475,16 @@ pub enum StepError {
         /// When [s].
         time: f64,
     },
+    /// A function from outside has no answer.
+    #[error("{what} failed near t = {time:.6e} s: {reason}")]
+    Outside {
+        /// What it is, and of what.
+        what: String,
+        /// When [s].
+        time: f64,
+        /// Why.
+        reason: OutsideFault,
+    },
     /// A particle's position, velocity or stress is not a finite number.
     #[error(
         "particle {number} of body `{body}` has a value that is not finite near {} m, t = {time:.6e} s",
@@ -514,6 +525,7 @@ impl StepError {
             StepError::NoThickness { .. } => {
                 "it strained far in one step: try a smaller time.courant; look at the last frame for what went wrong first"
             }
+            StepError::Outside { .. } => "mend the function, and go on from the last checkpoint",
             StepError::NotFinite { .. } => {
                 "try a smaller time.courant, or mend the formula of a prescribed motion; look at the last frame for what went wrong first"
             }

@@ -12,10 +12,12 @@
 use super::Engine;
 use crate::basis::Basis;
 use crate::boundary::{Boundary, reflect};
+use crate::door::StepError;
 use crate::grid::{ActiveBlocks, Node};
 use crate::lanes::Laned;
 use crate::load::{CarriedPoint, LoadPoints, LoadSums, PointForce, nodes_of, place_of};
-use crate::scene::Face;
+use crate::outside::OutsidePoints;
+use crate::scene::{Face, OutsideValue};
 use crate::tensor::{Real, Vector};
 use crate::threads::each;
 use std::time::Instant;
@@ -40,6 +42,18 @@ pub struct LoadRoom<T, const D: usize> {
     reached: Vec<u32>,
     /// Whether forces were taken where the step ends.
     late: bool,
+    /// What functions from outside are asked and say.
+    outside: OutsideRoom,
+}
+
+/// Room for functions from outside.
+#[derive(Clone, Debug, Default)]
+struct OutsideRoom {
+    /// Where the points of a load are, and where they were at the start [m].
+    now: Vec<[f64; 3]>,
+    start: Vec<[f64; 3]>,
+    /// What the functions said of each point of all loads; nothing where no load has one.
+    values: Vec<[f64; 3]>,
 }
 
 /// A point of a load in a step.
@@ -97,12 +111,16 @@ impl<T: Real, const D: usize> Default for NodeLoad<T, D> {
 impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// What loads and supports do to points of bodies, and which nodes feel it. Where particles have strained but still
     /// move, `ahead` is how long [s].
-    pub(super) fn feel_loads(&mut self, dt: T, ahead: Option<T>) {
+    ///
+    /// # Errors
+    /// A function from outside that has no answer.
+    pub(super) fn feel_loads(&mut self, dt: T, ahead: Option<T>) -> Result<(), StepError> {
         if self.settings.loads.is_empty() {
-            return;
+            return Ok(());
         }
         let start = Instant::now();
         self.find_loaded_particles();
+        self.ask_functions(dt)?;
         self.load_points(dt, ahead);
         if ahead.is_none() {
             let time = (self.state.time, dt.f64());
@@ -127,6 +145,32 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             }
         }
         self.watch.lap("loads", start);
+        Ok(())
+    }
+
+    /// What functions from outside say for the middle of the step of the points on which they act, as these are now.
+    fn ask_functions(&mut self, dt: T) -> Result<(), StepError> {
+        let LoadRoom { places, outside: OutsideRoom { now, start, values }, .. } = &mut self.workspace.loads;
+        let time = self.state.time + 0.5 * dt.f64();
+        let mut first = 0;
+        for load in &self.settings.loads {
+            let points = first..first + load.points.len();
+            first = points.end;
+            let Some(function) = load.action.outside().and_then(OutsideValue::function) else { continue };
+            let particles = &self.state.bodies[load.body].particles;
+            now.clear();
+            now.extend(load.points.iter().map(|point| {
+                place_of(&particles.get(places[load.body][point.particle] as usize), point).space()
+            }));
+            start.clear();
+            start.extend(load.points.iter().map(|point| point.position));
+            values.resize(points.end.max(values.len()), [0.0; 3]);
+            function.evaluate(OutsidePoints { time, now, start }, &mut values[points]).map_err(|reason| {
+                let what = format!("the load on body `{}`", self.state.bodies[load.body].name);
+                StepError::Outside { what, time, reason }
+            })?;
+        }
+        Ok(())
     }
 
     /// Loads and supports change the velocities that the forces of the stress and gravity gave to the nodes.
@@ -179,7 +223,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let loads = &self.settings.loads;
         room.begin(loads);
         room.late = ahead.is_some();
-        let numbers = &room.numbers;
+        let (numbers, values) = (&room.numbers, &room.outside.values);
         let (places, bodies, sums) = (&room.places, &self.state.bodies, &self.state.loads);
         let (active, boundary, lattice) =
             (&self.workspace.active, &self.workspace.boundary, &self.settings.lattice);
@@ -208,7 +252,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 None => loaded.before = place_of(&particle, point),
                 Some(ahead) => particle.position += moves * ahead,
             }
-            let carried = CarriedPoint { point, particle: &particle, velocity };
+            let outside = values.get(i).copied().unwrap_or_default();
+            let carried = CarriedPoint { point, particle: &particle, velocity, outside };
             loaded.felt = load.at(carried, time, &sums[number]);
         });
     }
@@ -286,7 +331,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
 impl<T, const D: usize> Default for LoadRoom<T, D> {
     fn default() -> Self {
         let (places, numbers, points) = (Vec::new(), Vec::new(), Vec::new());
-        LoadRoom { places, numbers, points, nodes: Vec::new(), reached: Vec::new(), late: false }
+        let (nodes, reached, outside) = (Vec::new(), Vec::new(), OutsideRoom::default());
+        LoadRoom { places, numbers, points, nodes, reached, late: false, outside }
     }
 }
 

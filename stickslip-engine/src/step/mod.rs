@@ -10,6 +10,7 @@
 //! | G2P's and P2G's sums over nodes | `interpolate`, `flow`, `moments`, `gradient`, `scatter` of [`crate::transfer`] |
 //! | the same as the equations read, one particle and node after the other | `naive.rs`, and `transfer/naive.rs` |
 //! | the stress | `respond` of a law in [`crate::material`] |
+//! | the stress of laws that take a body at once | `together.rs` |
 //! | bodies that keep their volume | `average.rs` |
 //! | damping at a node | [`crate::damping`] |
 //! | what is booked of a step | `account.rs` |
@@ -34,6 +35,7 @@ mod relax;
 mod saving;
 mod state;
 mod tile;
+mod together;
 mod unbounded;
 mod verbs;
 mod view;
@@ -103,7 +105,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.impose_boundary_conditions(); //                     of rigid bodies and walls
         self.detect_contact(None); //                             surfaces, normals and gaps where bodies meet
         self.join_glued_bodies(); //                              one v for bodies that glue joins
-        self.feel_loads(dt, None); //                             supports, on points of bodies
+        self.feel_loads(dt, None)?; //                            supports, on points of bodies
         self.hold_supported_nodes(); //                           v~, where they act
         self.contact_on_interpolated(dt, ContactUse::Strain); //  v~, and walls        (5)-(13), (20)-(22)
         self.average_dilatation(dt); //                           of nearly incompressible bodies
@@ -111,7 +113,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.keep_velocities(); //                                v~ moves the particles, too
         self.release_supported_nodes(); //                        v as it was
         self.update_velocities(dt); //                            v += dt (f / m + g)                  (3)
-        self.feel_loads(dt, Some(dt)); //                         supports and loads, on points of bodies
+        self.feel_loads(dt, Some(dt))?; //                        supports and loads, on points of bodies
         self.apply_loads(dt); //                                  v += dt F / m
         self.push_free_bodies(dt); //                             rigid ones: v += dt (F / m + g)
         self.impose_boundary_conditions(); //                     once more
@@ -137,7 +139,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.join_glued_bodies(); //                              one v for bodies that glue joins
         self.contact_on_interpolated(dt, ContactUse::Start); //   by all laws but `surface`: (5)-(13), (20)-(22)
         self.update_velocities(dt); //                            v += dt (f / m + g)                  (3)
-        self.feel_loads(dt, None); //                             supports and loads, on points of bodies
+        self.feel_loads(dt, None)?; //                            supports and loads, on points of bodies
         self.apply_loads(dt); //                                  v += dt F / m
         self.push_free_bodies(dt); //                             rigid ones: v += dt (F / m + g)
         self.impose_boundary_conditions(); //                     once more
@@ -165,7 +167,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.join_glued_bodies(); //                              one v for bodies that glue joins
         self.contact_on_interpolated(dt, ContactUse::Start); //   by all laws but `surface`: (5)-(13), (20)-(22)
         self.update_velocities(dt); //                            v += dt (f / m + g)                  (3)
-        self.feel_loads(dt, None); //                             supports and loads, on points of bodies
+        self.feel_loads(dt, None)?; //                            supports and loads, on points of bodies
         self.apply_loads(dt); //                                  v += dt F / m
         self.push_free_bodies(dt); //                             rigid ones: v += dt (F / m + g)
         self.impose_boundary_conditions(); //                     once more
@@ -199,8 +201,13 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
     fn step(&mut self, longest: f64) -> Result<f64, StepError> {
         *self.workspace.totals.get_mut().unwrap_or_else(PoisonError::into_inner) = None;
         let dt = self.stable().min(longest);
-        for motion in self.state.bodies.iter_mut().filter_map(|body| body.motion.as_mut()) {
-            motion.set_time(self.state.time + 0.5 * dt);
+        let time = self.state.time + 0.5 * dt;
+        for body in &mut self.state.bodies {
+            let Some(motion) = &mut body.motion else { continue };
+            motion.set_time(time).map_err(|reason| {
+                let what = format!("the prescribed motion of body `{}`", body.name);
+                StepError::Outside { what, time, reason }
+            })?;
         }
         // One of the pool's threads takes the whole step: handing it every loop from outside would cost more than many
         // a loop.

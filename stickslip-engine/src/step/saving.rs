@@ -215,7 +215,7 @@ fn begun<T: Real, const D: usize>(
                 return Err(off("is free in one of the two, and moves as prescribed in the other"));
             }
             motion.restore(saved);
-            motion.set_time(0.0);
+            motion.set_time(0.0).map_err(|fault| off(&format!("has no motion: {fault}")))?;
             if velocities == StartVelocities::Zero {
                 motion.stop();
             }

@@ -5,6 +5,7 @@ use super::cpu::Threads;
 use super::loads::LoadRoom;
 use super::mechanism::{JointSums, Mechanism, RigidSurfaces};
 use super::relax::RelaxationProgress;
+use super::together::LawRoom;
 use super::unbounded::Unbounded;
 use crate::body::{Body, Totals};
 use crate::boundary::{Boundary, Wall};
@@ -99,6 +100,8 @@ pub struct Workspace<T, const D: usize> {
     pub damped: Vec<f64>,
     /// Room for loads and supports.
     pub loads: LoadRoom<T, D>,
+    /// Room for laws that take a body at once.
+    pub laws: LawRoom,
     /// Free rigid bodies in a step.
     pub mechanism: Mechanism,
     /// Impulses of damping at the nodes in the last step, where there is damping [N s].
@@ -126,6 +129,7 @@ impl<T, const D: usize> Workspace<T, D> {
             moved: Vec::new(),
             damped: Vec::new(),
             loads: LoadRoom::default(),
+            laws: LawRoom::default(),
             mechanism: Mechanism::default(),
             damping_impulses: Vec::new(),
             block_sums: Vec::new(),

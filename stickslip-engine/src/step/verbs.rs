@@ -105,10 +105,13 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// G2P of velocity gradients, and P2G of forces:  F = (I + L dt) F,  sigma = law(F),  f = -sum V sigma grad S
     pub(super) fn update_stress(&mut self, dt: T) -> Result<(), StepError> {
         let averages = self.averages_volume();
-        let scatter = (!averages).then_some(Share::Force);
+        let scatter = (!averages && !self.has_laws_over_arrays()).then_some(Share::Force);
         self.run_pass("stress update", Verbs { update_stress: true, scatter, ..Verbs::default() }, dt)?;
+        self.respond_together(dt)?;
         if averages {
             self.average_mean_stress();
+        }
+        if scatter.is_none() {
             self.scatter(Share::Force);
         }
         Ok(())
@@ -125,12 +128,14 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             "stress update",
             Verbs { update_velocity: true, update_stress: true, advect: true, ..Verbs::default() },
             dt,
-        )
+        )?;
+        self.respond_together(dt)
     }
 
     /// G2P:  F = (I + L dt) F,  sigma = law(F),  x += v dt
     pub(super) fn update_stress_and_positions(&mut self, dt: T) -> Result<(), StepError> {
-        self.run_pass("stress update", Verbs { update_stress: true, advect: true, ..Verbs::default() }, dt)
+        self.run_pass("stress update", Verbs { update_stress: true, advect: true, ..Verbs::default() }, dt)?;
+        self.respond_together(dt)
     }
 
     pub(super) fn run_pass(&mut self, name: &'static str, verbs: Verbs, dt: T) -> Result<(), StepError> {
@@ -368,7 +373,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         found.fault.map_or(Ok(()), |fault| Err(self.error(&fault)))
     }
 
-    fn error(&self, fault: &ParticleFault) -> StepError {
+    pub(super) fn error(&self, fault: &ParticleFault) -> StepError {
         let body = &self.state.bodies[fault.body];
         let particle = body.particles.get(fault.particle);
         let (name, number, position, time) =

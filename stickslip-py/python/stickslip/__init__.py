@@ -18,7 +18,9 @@ in SI units; stress is positive in tension, and forces and energies of plane sce
 """
 
 from . import _core
+from .commands import Picture, Sweep, plot, render, sweep, validate
 from .errors import ResultsError, RunError, SceneError, StepError, StickslipError, StickslipWarning
+from .functions import Function, Law, Step
 from .records import Record, Table
 from .results import Frame, Results
 from .running import Summary, resume
@@ -54,6 +56,9 @@ __all__ = [
     "Body",
     "Column",
     "Frame",
+    "Function",
+    "Law",
+    "Picture",
     "Record",
     "Report",
     "Results",
@@ -62,10 +67,12 @@ __all__ = [
     "Scene",
     "SceneError",
     "Simulation",
+    "Step",
     "StepError",
     "StickslipError",
     "StickslipWarning",
     "Summary",
+    "Sweep",
     "Table",
     "ball",
     "box",
@@ -78,7 +85,9 @@ __all__ = [
     "half_space",
     "intersection",
     "mesh",
+    "plot",
     "polygon",
+    "render",
     "resume",
     "revolved",
     "ring",
@@ -86,6 +95,8 @@ __all__ = [
     "rounded_box",
     "spline",
     "superquadric",
+    "sweep",
     "torus",
     "union",
+    "validate",
 ]

@@ -92,17 +92,13 @@ class Table(np.ndarray):
                 rows &= column == value
         return self[rows].view(Table)
 
+    def rows(self, *names: str) -> np.ndarray:
+        """Some columns of numbers side by side (n, number of names): `contacts.rows("fx", "fy", "fz")`."""
+        return np.stack([np.asarray(self[name], dtype=float) for name in names], axis=-1)
+
     def columns(self) -> dict[str, np.ndarray]:
-        """Columns by their names. One of several numbers a row is several: `force_x`, `force_y`, `force_z`."""
-        found: dict[str, np.ndarray] = {}
-        for name in self.dtype.names or ():
-            column = np.asarray(self[name])
-            if column.ndim == 1:
-                found[name] = column
-                continue
-            endings = "xyz" if column.shape[1] == 3 else "abcdefghi"
-            found.update({f"{name}_{ending}": column[:, i] for i, ending in zip(range(column.shape[1]), endings)})
-        return found
+        """Columns by their names."""
+        return {name: np.asarray(self[name]) for name in self.dtype.names or ()}
 
     def to_pandas(self) -> Any:
         """A `pandas.DataFrame`; needs pandas."""
@@ -111,6 +107,22 @@ class Table(np.ndarray):
     def to_polars(self) -> Any:
         """A `polars.DataFrame`; needs polars."""
         return _needed("polars").DataFrame(self.columns())
+
+    def to_xarray(self) -> Any:
+        """An `xarray.Dataset` over time, and over what else names the rows, such as the body; needs xarray."""
+        columns = self.columns()
+        labels = [name for name, column in columns.items() if name == "time" or column.dtype.kind == "U"]
+        places, axes = [], {}
+        for name in labels:
+            axes[name], place = np.unique(columns[name], return_inverse=True)
+            places.append(place)
+        shape = tuple(len(axis) for axis in axes.values())
+        data = {}
+        for name in (name for name in columns if name not in labels):
+            whole = np.full(shape, np.nan)
+            whole[tuple(places)] = columns[name]
+            data[name] = (tuple(labels), whole)
+        return _needed("xarray").Dataset(data, axes)
 
     def _repr_html_(self) -> str | None:
         if self.dtype.names is None or self.ndim != 1:
@@ -145,4 +157,5 @@ def _needed(package: str) -> Any:
     try:
         return importlib.import_module(package)
     except ImportError as error:
-        raise ImportError(f"this needs {package}, which is not installed: pip install {package}") from error
+        name = package.split(".")[0]
+        raise ImportError(f"this needs {name}, which is not installed: pip install {name}") from error

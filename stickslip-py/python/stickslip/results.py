@@ -14,7 +14,7 @@ import numpy as np
 
 from . import _core
 from .errors import ResultsError
-from .records import Record, Table
+from .records import Record, Table, _needed
 from .running import _record
 
 
@@ -38,6 +38,32 @@ class Frame(Mapping[str, np.ndarray]):
         rows = self._columns["body"] == self._names.index(name)
         return Frame(self.time, {key: column[rows] for key, column in self._columns.items()}, self.units, self._names)
 
+    def to_pyvista(self) -> Any:
+        """A `pyvista.PolyData` of points with all columns; needs pyvista. `frame.to_pyvista().plot(scalars="pressure")`"""
+        cloud = _needed("pyvista").PolyData(np.ascontiguousarray(self["position"]))
+        for name, column in self._flat():
+            cloud.point_data[name] = column
+        return cloud
+
+    def to_meshio(self) -> Any:
+        """A `meshio.Mesh` of vertices with all columns; needs meshio. `frame.to_meshio().write("frame.vtu")`"""
+        points = self["position"]
+        vertices = [("vertex", np.arange(len(points)).reshape(-1, 1))]
+        return _needed("meshio").Mesh(points, vertices, point_data=dict(self._flat()))
+
+    def to_xarray(self) -> Any:
+        """An `xarray.Dataset` over the particles, with units and time as attributes; needs xarray."""
+        data = {}
+        for name, column in self._flat():
+            axes = ("particle",) if column.ndim == 1 else ("particle", f"component_{column.shape[1]}")
+            data[name] = (axes, column, {"unit": self.units.get(name, "")})
+        return _needed("xarray").Dataset(data, attrs={"time": self.time})
+
+    def _flat(self) -> Iterator[tuple[str, np.ndarray]]:
+        """Columns but for the position, tensors row by row."""
+        return ((name, column.reshape(len(column), -1) if column.ndim > 2 else column)
+                for name, column in self._columns.items() if name != "position")
+
     def __getitem__(self, name: str) -> np.ndarray:
         if name not in self._columns:
             raise KeyError(
@@ -53,6 +79,15 @@ class Frame(Mapping[str, np.ndarray]):
 
     def __repr__(self) -> str:
         return f"<Frame t = {self.time:g} s: {len(self['body'])} particles, {', '.join(self)}>"
+
+
+def read_table(path: Path) -> Table:
+    """A table of a file; a last row that is cut short is left out."""
+    with open(path, encoding="utf-8", newline="") as file:
+        whole = (line for line in file if line.endswith("\n"))
+        head, *rows = list(csv.reader(whole)) or [[]]
+    columns = zip(*rows) if rows else ([] for _ in head)
+    return Table.of_columns(dict(zip(head, map(list, columns))))
 
 
 class Results:
@@ -98,11 +133,7 @@ class Results:
         """The table of this name. A last row that is cut short is left out: a run may be writing it."""
         if name not in self.tables:
             raise AttributeError(f"found no table `{name}` in {self.folder}; allowed: {', '.join(self.tables)}")
-        with open(self.folder / f"{name}.csv", encoding="utf-8", newline="") as file:
-            whole = (line for line in file if line.endswith("\n"))
-            head, *rows = list(csv.reader(whole)) or [[]]
-        columns = zip(*rows) if rows else ([] for _ in head)
-        return Table.of_columns(dict(zip(head, map(list, columns))))
+        return read_table(self.folder / f"{name}.csv")
 
     def frame(self, number: int) -> Frame:
         """The snapshot of this number, from 0; -1 is the last."""
@@ -127,11 +158,7 @@ class Results:
         if quantity not in quantities:
             raise ValueError(f"found a column `{quantity}`; allowed: {', '.join(quantities)}")
         if ax is None:
-            try:
-                import matplotlib.pyplot
-            except ImportError as error:
-                raise ImportError("charts need matplotlib, which is not installed: pip install matplotlib") from error
-            ax = matplotlib.pyplot.figure().add_subplot()
+            ax = _needed("matplotlib.pyplot").figure().add_subplot()
         rows = bodies.where(body=body)
         ax.plot(rows["time"], rows[quantity], label=f"{body} {quantity}")
         for reference in self.record.references:

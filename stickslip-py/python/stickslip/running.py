@@ -84,6 +84,7 @@ def resume(
     until: float | str | None = None,
     *,
     scene: str | os.PathLike[str] | None = None,
+    functions: Mapping[str, Any] | None = None,
     threads: int | None = None,
     progress: bool = False,
     checkpoint_every: float | None = 600.0,
@@ -93,6 +94,7 @@ def resume(
 
     It goes on to `until` [s], else to what was named last, else to the end of the scene. The scene is read again from
     where it was, or from the file `scene`. A run that was stopped ends in the same bits as one that was not.
+    `functions` are the laws, loads and motions of your own that it names, as `Scene.functions` has them.
     """
     folder = Path(folder)
     before = _record(folder)
@@ -105,7 +107,7 @@ def resume(
     named = named if named is None or isinstance(named, str) else repr(float(named))
     if not path.exists():
         raise RunError(f"the scene file {path} is not there; name it with scene", help="name it with scene")
-    read = _core.ReadScene.again(path, given, named)
+    read = _core.ReadScene.again(path, given, named, dict(functions or {}))
     request: _core.RunRequest = {
         "out": folder,
         "resumed": True,

@@ -14,6 +14,7 @@ from typing import Any, overload
 from . import _core
 from .document import plain, written, written_value
 from .errors import RunError, SceneError, StickslipWarning
+from .functions import Function, Law, named
 from .records import Record
 from .running import Summary, carry_out
 from .simulation import Simulation
@@ -61,6 +62,8 @@ class Scene:
     """
 
     document: dict[str, Any]
+    functions: dict[str, Law | Function | Callable[..., Any]]
+    """Laws, loads and motions of your own by the names that `{ outside = NAME }` of the document has for them."""
 
     def __init__(
         self,
@@ -80,10 +83,12 @@ class Scene:
         """
         top = {"title": title, "about": about, "gravity": gravity, "parameters": parameters}
         table = {"dimension": dimension, "cell": cell, **_keys(space)}
+        self.functions = {}
         self.document = plain({**top, "space": table})
         self._file: tuple[Path, str] | None = None
         self._loaded: dict[str, Any] | None = None
         self._set: list[tuple[str, str]] = []
+        self._refuse_unknown({"space": self.document["space"]})
 
     load = _Load()
 
@@ -97,7 +102,7 @@ class Scene:
         given = [(name, written_value(plain(value, name))) for name, value in parameters.items()]
         words = _core.ReadScene.load(path, given).text
         scene = cls.__new__(cls)
-        scene.document = _core.document(words)
+        scene.document, scene.functions = _core.document(words), {}
         scene._file, scene._loaded, scene._set = (Path(path).absolute(), words), copy.deepcopy(scene.document), []
         return scene.set(**parameters)
 
@@ -128,11 +133,17 @@ class Scene:
         return self._update("parameters", values)
 
     def material(self, name: str, **keys: Any) -> Scene:
-        """A material: `density` [kg/m^3], and a law with its constants, such as `neo_hookean=dict(...)`."""
+        """A material: `density` [kg/m^3], and a law with its constants, such as `neo_hookean=dict(...)`.
+
+        A law of your own is `outside=dict(law=function, bulk_modulus=..., shear_modulus=...)`, see `Law`.
+        """
         return self._update("materials", {name: _keys(keys)})
 
     def body(self, name: str, **keys: Any) -> Scene:
-        """A body: `material`, `shape` (`ss.ball` ...), `velocity` [m/s], `spin` [rad/s], `rigid=dict(...)` ..."""
+        """A body: `material`, `shape` (`ss.ball` ...), `velocity` [m/s], `spin` [rad/s], `rigid=dict(...)` ...
+
+        `velocity` and `spin` of `rigid` may be functions of time, see `Function`.
+        """
         return self._append("bodies", {"name": name, **keys})
 
     def packing(self, name: str, **keys: Any) -> Scene:
@@ -152,7 +163,10 @@ class Scene:
         return self._append("supports", {"body": body, **keys})
 
     def _add_load(self, body: str, **keys: Any) -> Scene:
-        """What presses or pulls a part of a body: `on`, `within`, and `force` [N], `traction` or `pressure` [Pa] ..."""
+        """What presses or pulls a part of a body: `on`, `within`, and `force` [N], `traction` or `pressure` [Pa] ...
+
+        These may be functions of time and place, see `Function`.
+        """
         return self._append("loads", {"body": body, **keys})
 
     def joint(self, body: str, **keys: Any) -> Scene:
@@ -161,7 +175,10 @@ class Scene:
 
     def domain(self, min: Any, max: Any, **faces: Any) -> Scene:
         """A box that holds all material: its corners [m], and what its faces do (`x_min="symmetry"` ...)."""
-        self.document.setdefault("space", {})["domain"] = plain({"min": min, "max": max, **faces}, "space.domain")
+        space = self.document.get("space", {})
+        space = {**space, "domain": plain({"min": min, "max": max, **faces}, "space.domain")}
+        self._refuse_unknown({"space": space})
+        self.document["space"] = space
         return self
 
     def time(self, **keys: Any) -> Scene:
@@ -280,16 +297,28 @@ class Scene:
     def _read(self, *further: tuple[str, str]) -> _core.ReadScene:
         """The scene as the one reader of scenes has it, with what is set besides."""
         if self._file is not None and self._is_loaded():
-            return _core.ReadScene(_shown(self._file[0]), self._file[1], [*self._set, *further])
+            given = (_shown(self._file[0]), self._file[1])
+            return _core.ReadScene(given, [*self._set, *further], self.functions)
         name = IN_PYTHON
         if self._file is not None:
             # Lines are those of the text in Python.
             name = _shown(self._file[0].with_name(f"<{self._file[0].name} in Python>"))
-        return _core.ReadScene(name, written(self.document), list(further))
+        return _core.ReadScene((name, written(self.document)), list(further), self.functions)
 
-    def _seconds(self, time: float | str) -> float:
-        """A time [s]; text may have a unit or be a formula of the scene's parameters, as `time.end` of a file."""
-        return self._read(("time.end", written_value(time))).end if isinstance(time, str) else float(time)
+    def _seconds(self, name: str, time: float | str) -> float:
+        """The time that is given as `name` [s]; text may have a unit or be a formula, as `time.end` of a file."""
+        if not isinstance(time, str):
+            return float(time)
+        try:
+            return self._read(("time.end", written_value(time))).end
+        except SceneError as error:
+            if error.key != "time.end":
+                raise
+            said = f"{name}: found {error.found}; allowed: {error.allowed}"
+            said += f"; {error.help}" if error.help else ""
+            raise SceneError(
+                said, key=name, found=error.found, allowed=error.allowed, help=error.help
+            ) from None
 
     def _is_loaded(self) -> bool:
         """Whether it is what its file and `set` say."""
@@ -300,18 +329,46 @@ class Scene:
         return Path.cwd() if self._file is None else self._file[0].parent
 
     def _update(self, table: str, keys: Mapping[str, Any]) -> Scene:
-        self.document.setdefault(table, {}).update(plain(_keys(keys), table))
+        keys = plain(named(_keys(keys), table, self.functions), table)
+        self._refuse_unknown({table: {**self.document.get(table, {}), **keys}} if table != "materials" else {table: keys})
+        self.document.setdefault(table, {}).update(keys)
         return self
 
     def _append(self, table: str, keys: Mapping[str, Any]) -> Scene:
-        entries = self.document.setdefault(table, [])
-        entries.append(plain(_keys(keys), f"{table}[{len(entries)}]"))
+        entries = self.document.get(table, [])
+        entry = plain(named(_keys(keys), table, self.functions), f"{table}[{len(entries)}]")
+        self._refuse_unknown({table: [entry]}, f"{table}[{len(entries)}]")
+        self.document.setdefault(table, []).append(entry)
         return self
 
     def _measure(self, table: str, keys: Mapping[str, Any]) -> Scene:
-        entries = self.document.setdefault("outputs", {}).setdefault(table, [])
-        entries.append(plain(_keys(keys), f"outputs.{table}[{len(entries)}]"))
+        entries = self.document.get("outputs", {}).get(table, [])
+        entry = plain(_keys(keys), f"outputs.{table}[{len(entries)}]")
+        self._refuse_unknown({"outputs": {table: [entry]}}, f"outputs.{table}[{len(entries)}]")
+        self.document.setdefault("outputs", {}).setdefault(table, []).append(entry)
         return self
+
+    def _refuse_unknown(self, tables: dict[str, Any], place: str | None = None) -> None:
+        """Refuses keys that the scene file does not have, as the one reader of scenes finds them, once they are given.
+
+        `tables` are those that are new; of a list with one entry, `place` is what stands for that in messages.
+        """
+        dimension = self.document["space"].get("dimension")
+        # A time without an end is where the reader stops once it has seen all keys, before it fills any shape.
+        rest: dict[str, Any] = {"space": {"dimension": dimension, "cell": 1}, "time": {"end": "1 kg"}}
+        rest |= {"materials": {"any_material": {}}}
+        if "materials" in tables:
+            rest["time"] = {"end": 1}
+        try:
+            _core.ReadScene((IN_PYTHON, written({**rest, **tables})), [], {})
+        except SceneError as error:
+            if not (error.found or "").startswith("unknown key"):
+                return
+            key = error.key if place is None or error.key is None else place + error.key[error.key.index("]") + 1 :]
+            said = f"{IN_PYTHON}: {key}: found {error.found}; allowed: {error.allowed}"
+            said += f"; {error.help}" if error.help else ""
+            facts = dict(file=IN_PYTHON, key=key, found=error.found, allowed=error.allowed, help=error.help)
+            raise SceneError(said, **facts) from None
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Scene) and plain(self.document) == plain(other.document)

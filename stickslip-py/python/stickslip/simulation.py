@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from . import _core
+from .functions import refuse_asking
 from .progress import shown
 from .records import Record, Table, matches
 from .running import Summary, carry_out, way_to
@@ -47,11 +48,16 @@ class Body:
     """
 
     def __init__(self, engine: _core.Engine, index: int, name: str) -> None:
-        self._engine = engine
+        self._own = engine
         self.index = index
         """Place of the body in the scene, from 0."""
         self.name = name
         """Name of the body."""
+
+    @property
+    def _engine(self) -> _core.Engine:
+        refuse_asking()
+        return self._own
 
     @property
     def columns(self) -> list[Column]:
@@ -161,11 +167,17 @@ class Simulation:
     """
 
     def __init__(self, engine: _core.Engine, scene: Scene) -> None:
-        self.engine = engine
+        self._own = engine
         self.scene = scene
         """The scene that it is of."""
         self.bodies = Bodies(engine)
         """The bodies by their names."""
+
+    @property
+    def engine(self) -> _core.Engine:
+        """The compiled half."""
+        refuse_asking()
+        return self._own
 
     @property
     def time(self) -> float:
@@ -223,8 +235,8 @@ class Simulation:
         summary.
         """
         call = None if callback is None else lambda: callback(self)
-        until = None if until is None else self.scene._seconds(until)
-        every = None if every is None else self.scene._seconds(every)
+        until = None if until is None else self.scene._seconds("until", until)
+        every = None if every is None else self.scene._seconds("every", every)
         if out is not None:
             return carry_out(
                 self,
@@ -254,27 +266,22 @@ class Simulation:
     def contacts(self) -> Table:
         """Contacts since this was asked for last, or since the start: means over that time, a row a pair of bodies.
 
-        bodies (names, 2), force of the first on the second [N] (3), normal: force that pushes them apart [N],
-        tangential [N], position [m] (3), area [m^2], gap between the surfaces [m], slip [m] and work of friction [J] in
-        that time, nodes.
+        Columns are those of contacts.csv: body_a, body_b, force of the first on the second fx fy fz [N], normal: force
+        that pushes them apart [N], tangential [N], nodes, centre x y z [m], area [m^2], gap between the surfaces [m],
+        slip [m] and work of friction [J] in that time. `contacts.rows("fx", "fy", "fz")` is (n, 3).
         """
         names = list(self.bodies)
         text = f"U{max(map(len, names), default=1)}"
-        fields = [
-            ("bodies", text, (2,)),
-            ("force", float, (3,)),
-            ("normal", float),
-            ("tangential", float),
-            ("position", float, (3,)),
-            ("area", float),
-            ("gap", float),
-            ("slip", float),
-            ("friction", float),
-            ("nodes", int),
-        ]
-        rows = json.loads(self.engine.contacts())
-        named = [([names[i] for i in pair], *(np.nan if x is None else x for x in rest)) for pair, *rest in rows]
-        return Table.of(np.array(named, np.dtype(fields)))
+        numbers = "fx fy fz normal tangential nodes x y z area gap slip friction".split()
+        fields = [("body_a", text), ("body_b", text)]
+        fields += [(name, int if name == "nodes" else float) for name in numbers]
+        rows = []
+        for (a, b), force, normal, tangential, place, area, gap, slip, friction, nodes in json.loads(
+            self.engine.contacts()
+        ):
+            found = [*force, normal, tangential, nodes, *place, area, gap, slip, friction]
+            rows.append((names[a], names[b], *(np.nan if x is None else x for x in found)))
+        return Table.of(np.array(rows, np.dtype(fields)))
 
     def loads(self) -> dict[str, Record]:
         """What supports and loads did since the start, by their names.

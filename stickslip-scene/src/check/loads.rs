@@ -2,6 +2,7 @@
 
 use super::table::short;
 use super::warning::Warning;
+use crate::outside::GIVEN;
 use crate::part;
 use crate::scene::{Action, Dashpot, Extent, Load, Moment, Problem, Scene, SupportMotion};
 use rayon::prelude::*;
@@ -47,7 +48,7 @@ pub(super) fn check(scene: &Scene) -> Result<Vec<LoadReport>, Problem> {
 fn jump(action: &Action, points: impl Iterator<Item = [f64; 3]>) -> f64 {
     let Action::Support(support) = action else { return 0.0 };
     let at = |place: [f64; 3]| {
-        let start = Moment { time: 0.0, place, start: place };
+        let start = Moment { time: 0.0, place, start: place, ..Moment::default() };
         let away = support.motion.iter().flatten().map(|motion| match motion {
             SupportMotion::Displacement(displacement) => displacement.at_moment(&start),
             SupportMotion::Velocity(_) => 0.0,
@@ -105,6 +106,10 @@ fn report(scene: &Scene, load: &Load, key: &str) -> Result<LoadReport, Problem> 
     if !on_volume && matches!(load.action, Action::Acceleration(_)) {
         return Err(problem("on", "a surface".to_string(), "a volume: a surface has no mass"));
     }
+    if let Some(value) = load.action.outside().filter(|value| value.function().is_none()) {
+        let found = format!("the function `{}`, which is not given", value.name());
+        return Err(problem(load.action.key(), found, GIVEN));
+    }
     let points = part::points(scene, load);
     let Some(first) = points.first() else {
         let part = if load.part.within.is_some() { "within" } else { "on" };
@@ -117,7 +122,7 @@ fn report(scene: &Scene, load: &Load, key: &str) -> Result<LoadReport, Problem> 
             ..nothing
         });
     };
-    let start = Moment { time: 0.0, place: first.position, start: first.position };
+    let start = Moment { time: 0.0, place: first.position, start: first.position, ..Moment::default() };
     if let Some(value) =
         load.action.values().map(|value| value.at_moment(&start)).find(|value| !value.is_finite())
     {

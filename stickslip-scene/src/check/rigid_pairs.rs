@@ -29,7 +29,8 @@ impl RigidPath {
         let step = scene.time.end / LOOKS as f64;
         let mut poses = vec![motion.pose()];
         for i in 0..LOOKS {
-            motion.set_time((i as f64 + 0.5) * step);
+            // What fails here fails in the run, which says so.
+            motion.set_time((i as f64 + 0.5) * step).ok()?;
             motion.advance(&motion.rotation(step), step);
             poses.push(motion.pose());
         }

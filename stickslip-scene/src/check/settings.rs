@@ -2,6 +2,8 @@
 
 use super::table::short;
 use crate::column::ColumnDescription;
+use crate::material::Material;
+use crate::outside::{GIVEN, OUTSIDE};
 use crate::scene::{
     BodyMotion, Damping, Dimension, Domain, Expression, Face, FreeRigid, MOST_BULK, NamedMaterial, Problem,
     Relaxation, Scene,
@@ -33,6 +35,7 @@ pub(super) fn check(scene: &Scene) -> Result<(), Problem> {
         check_material(&format!("materials.{}", material.name), material, scene)?;
     }
     check_histories(scene)?;
+    check_outside(scene)?;
     if let Some(domain) = &scene.domain {
         check_domain(domain, scene.discretization.cell, scene.dimension.axes())?;
     }
@@ -84,6 +87,7 @@ fn check_material(key: &str, material: &NamedMaterial, scene: &Scene) -> Result<
     let (k, g) = (elastic.bulk_modulus, elastic.shear_modulus);
     let speed = material.wave_speed(dimension.thickness());
     if k > 0.0 && g >= 0.0 && speed > 0.0 && speed.is_finite() {
+        check_arrays(key, material, dimension)?;
         let sound = material.law.check().and_then(|()| material.law.on_grid(scene.discretization.cell));
         return sound.map(|_| ()).map_err(|bad| {
             let law = format!("{key}.{}", material.law.name());
@@ -102,6 +106,34 @@ fn check_material(key: &str, material: &NamedMaterial, scene: &Scene) -> Result<
             _ => "K above 0, G at least 0 and a finite wave speed, else the material is not stable",
         },
     ))
+}
+
+/// A law over arrays has no thickness to look for.
+fn check_arrays(key: &str, material: &NamedMaterial, dimension: Dimension) -> Result<(), Problem> {
+    let over_arrays =
+        matches!(material.law, Material::Custom(custom) if custom.law().over_arrays().is_some());
+    if dimension == Dimension::PlaneStress && over_arrays {
+        let found = format!("a law over arrays in plane stress, of the material `{}`", material.name);
+        let allowed = "plane-strain or 3d, or a law that takes one particle at a time";
+        return Err(problem(&format!("{key}.{}", material.law.name()), found, allowed));
+    }
+    Ok(())
+}
+
+/// What moves rigid bodies and comes from outside is given.
+fn check_outside(scene: &Scene) -> Result<(), Problem> {
+    for (i, body) in scene.bodies.iter().enumerate() {
+        let BodyMotion::Rigid { velocity, spin } = &body.motion else { continue };
+        for (key, values) in [("velocity", velocity), ("spin", spin)] {
+            let missing =
+                values.iter().filter_map(Expression::outside).find(|value| value.function().is_none());
+            if let Some(value) = missing {
+                let found = format!("the function `{}`, which is not given", value.name());
+                return Err(problem(&format!("bodies[{i}].rigid.{key}.{OUTSIDE}"), found, GIVEN));
+            }
+        }
+    }
+    Ok(())
 }
 
 /// What two laws call alike is one column in snapshots and files, so it must be of one kind.

@@ -3,8 +3,12 @@
 //! The laws of the list are compiled for several particles at a time; this one is called for each.
 //! Its history lies in columns like any other.
 
-use super::{Entries, History, Isotropic, Law, MOST_HISTORY, Motion, Response, history_entries};
+use super::{
+    BadConstants, Entries, History, Isotropic, Keep, Law, LawOverArrays, MOST_HISTORY, Motion, Recall,
+    Response, history, history_entries,
+};
 use crate::tensor::{Matrix, Number, Symmetric, array};
+use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 use std::marker::PhantomData;
 
@@ -14,6 +18,29 @@ use std::marker::PhantomData;
 pub trait CustomLaw: std::fmt::Debug + Send + Sync {
     /// Its name in manifests and errors, one word.
     fn name(&self) -> &'static str;
+
+    /// Key of its material under which scene files name it, by default its name.
+    fn key(&self) -> &'static str {
+        self.name()
+    }
+
+    /// Its constants by their names, which manifests record beside its elastic moduli.
+    fn constants(&self) -> Vec<(String, f64)> {
+        Vec::new()
+    }
+
+    /// Whether it can be asked.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    fn check(&self) -> Result<(), BadConstants> {
+        Ok(())
+    }
+
+    /// The law over arrays, if it takes all particles of a body at once; not in plane stress.
+    fn over_arrays(&self) -> Option<&dyn LawOverArrays> {
+        None
+    }
 
     /// The columns that it remembers, with at most [`MOST_HISTORY`] components in space together. Their names must
     /// differ from those that all particles and files have ([`crate::column::reserved`]), and from those that other
@@ -75,6 +102,18 @@ impl<T> Custom<T> {
     }
 }
 
+impl<T: Number> Custom<T> {
+    /// The components in space of a particle's history, from where it is kept.
+    pub fn recalled(&self, from: &impl Recall<T>) -> [T; MOST_HISTORY] {
+        history::recalled(self.law.history(), from)
+    }
+
+    /// Keeps the components in space of a particle's history.
+    pub fn keep(&self, components: &[T; MOST_HISTORY], to: &mut impl Keep<T>) {
+        history::kept(self.law.history(), components, to);
+    }
+}
+
 /// The same object.
 impl<T> PartialEq for Custom<T> {
     fn eq(&self, other: &Self) -> bool {
@@ -84,7 +123,15 @@ impl<T> PartialEq for Custom<T> {
 
 impl<T> Serialize for Custom<T> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.serialize_str(self.law.name())
+        let Isotropic { bulk_modulus, shear_modulus } = self.law.elastic();
+        let mut table = serializer.serialize_map(None)?;
+        table.serialize_entry("law", self.law.name())?;
+        table.serialize_entry("bulk_modulus", &bulk_modulus)?;
+        table.serialize_entry("shear_modulus", &shear_modulus)?;
+        for (name, value) in self.law.constants() {
+            table.serialize_entry(&name, &value)?;
+        }
+        table.end()
     }
 }
 
@@ -192,7 +239,7 @@ impl LawState {
 impl<T: Number> Custom<T> {
     /// Components in space of all its columns.
     #[inline(always)]
-    fn components(&self) -> usize {
+    pub fn components(&self) -> usize {
         history_entries(self.law.history(), 3).min(MOST_HISTORY)
     }
 

@@ -8,6 +8,7 @@ mod custom;
 mod declaration;
 mod elastic;
 mod history;
+mod outside;
 mod plane_stress;
 
 pub use custom::{Custom, CustomLaw};
@@ -17,6 +18,7 @@ pub use declaration::{
 };
 pub use elastic::Isotropic;
 pub use history::{AtRest, Entries, History, Keep, MOST_HISTORY, Recall, history_entries};
+pub use outside::{LawArrays, LawOverArrays, OUTSIDE_CONSTANTS, outside_law};
 pub use plane_stress::Thickness;
 
 use crate::tensor::{Matrix, Number, Real, Symmetric};
@@ -33,7 +35,7 @@ macro_rules! laws {
         #[serde(rename_all = "snake_case")]
         pub enum Material<T> {
             $(#[doc = concat!("See [`", stringify!($law), "`].")] $law($law<T>),)*
-            /// See [`CustomLaw`]; no scene file can name it.
+            /// See [`CustomLaw`]; scene files can only name it.
             Custom(Custom<T>),
         }
 
@@ -59,7 +61,7 @@ macro_rules! laws {
             pub fn name(&self) -> &'static str {
                 match self {
                     $(Material::$law(_) => stringify!($file),)*
-                    Material::Custom(custom) => custom.law().name(),
+                    Material::Custom(custom) => custom.law().key(),
                 }
             }
 
@@ -190,8 +192,8 @@ impl Material<f64> {
     /// A constant that is not, or several that do not fit; a history whose name is taken, or too much of it.
     pub fn check(&self) -> Result<(), BadConstants> {
         history::check(self.history())?;
-        if let Material::Custom(_) = self {
-            return Ok(());
+        if let Material::Custom(custom) = self {
+            return custom.law().check();
         }
         let law = LAWS.iter().find(|law| law.name == self.name()).expect("the list has every law");
         law.build(&self.given()).map(|_| ())

@@ -6,7 +6,8 @@ mod longest_step;
 pub use free::{FreeMotion, FreeState, MassProperties};
 pub use longest_step::longest_step;
 
-use crate::scene::{BodyMotion, Expression};
+use crate::outside::OutsideFault;
+use crate::scene::{BodyMotion, Expression, OutsideValue};
 use crate::tensor::{Matrix, cross};
 use serde::{Deserialize, Serialize};
 
@@ -72,7 +73,8 @@ impl RigidMotion {
         }
     }
 
-    /// A body at rest at `center` until its first step.
+    /// A body at rest at `center` until its first step. A function from outside that fails now is asked again in the
+    /// first step, and fails there.
     pub fn new(center: [f64; 3], velocity: [Expression; 3], spin: [Expression; 3]) -> Self {
         let mut motion = RigidMotion {
             center,
@@ -82,7 +84,7 @@ impl RigidMotion {
             now: [0.0; 3],
             turning: [0.0; 3],
         };
-        motion.set_time(0.0);
+        let _ = motion.set_time(0.0);
         motion
     }
 
@@ -100,11 +102,14 @@ impl RigidMotion {
     }
 
     /// Takes the velocities that are prescribed at time `t` [s]; a free body keeps its own.
-    pub fn set_time(&mut self, t: f64) {
+    ///
+    /// # Errors
+    /// A function from outside that has no answer.
+    pub fn set_time(&mut self, t: f64) -> Result<(), OutsideFault> {
         if let Drive::Prescribed { velocity, spin } = &self.drive {
-            self.now = std::array::from_fn(|i| velocity[i].at(t));
-            self.turning = std::array::from_fn(|i| spin[i].at(t));
+            (self.now, self.turning) = (OutsideValue::vector(velocity, t)?, OutsideValue::vector(spin, t)?);
         }
+        Ok(())
     }
 
     /// Its momenta and inertia, if it is free.

@@ -1,13 +1,14 @@
 //! Formulas in scene files.
 
 use super::formula::{DEEPEST, Function};
+use super::outside::OutsideValue;
 use serde::{Serialize, Serializer};
 
 /// A number that may depend on time, and in loads on place: `"5 m/s * min(t / 1 ms, 1)"`, compiled.
 ///
 /// Free variables are `t`, the simulated time in seconds, and where a place is known `x` to `z` and `x0` to `z0` in
-/// metres; parameters and units are already resolved to SI. Serialised, it is the number, the text of the formula, or
-/// the table.
+/// metres; parameters and units are already resolved to SI. Serialised, it is the number, the text of the formula, the
+/// table, or the name of what comes from outside.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Expression {
     /// The same number always.
@@ -16,6 +17,8 @@ pub enum Expression {
     Formula(Box<Program>),
     /// Values at times.
     Table(TimeTable),
+    /// A component of what a function from outside says, of the one that is in [`Moment::outside`].
+    Outside(OutsideValue),
 }
 
 /// Names of the coordinates that formulas of place know: of a point now, and of the same point at the start.
@@ -30,6 +33,8 @@ pub struct Moment {
     pub place: [f64; 3],
     /// Where it was at the start [m].
     pub start: [f64; 3],
+    /// What the function from outside said, if there is one.
+    pub outside: [f64; 3],
 }
 
 /// Values at times, straight lines in between, and before the first and after the last time the value there.
@@ -103,7 +108,13 @@ impl Expression {
             Expression::Constant(value) => *value,
             Expression::Formula(program) => run(&program.code, moment),
             Expression::Table(table) => table.at(moment.time),
+            Expression::Outside(value) => moment.outside[value.component()],
         }
+    }
+
+    /// What comes from outside, if it does.
+    pub fn outside(&self) -> Option<&OutsideValue> {
+        if let Expression::Outside(value) = self { Some(value) } else { None }
     }
 
     /// From the instructions for the formula `text`.
@@ -121,6 +132,7 @@ impl Serialize for Expression {
             Expression::Constant(value) => serializer.serialize_f64(*value),
             Expression::Formula(program) => serializer.serialize_str(&program.text),
             Expression::Table(table) => table.serialize(serializer),
+            Expression::Outside(value) => value.serialize(serializer),
         }
     }
 }

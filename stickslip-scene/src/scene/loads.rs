@@ -1,6 +1,6 @@
 //! What holds, presses, pulls or drives parts of bodies from outside.
 
-use super::Expression;
+use super::{Expression, OutsideValue};
 use crate::geometry::Shape;
 use serde::Serialize;
 
@@ -143,6 +143,24 @@ impl Action {
         vector.iter().chain(motions.map(|motion| match motion {
             SupportMotion::Displacement(value) | SupportMotion::Velocity(value) => value,
         }))
+    }
+}
+
+impl Action {
+    /// Its key in scene files; that of a support is said by its motion.
+    pub fn key(&self) -> &'static str {
+        match self {
+            Action::Force(_) => "force",
+            Action::Traction(_) => "traction",
+            Action::Pressure(_) => "pressure",
+            Action::Acceleration(_) => "acceleration",
+            Action::Support(_) => "displacement",
+        }
+    }
+
+    /// The function from outside that says its values, if one does.
+    pub fn outside(&self) -> Option<&OutsideValue> {
+        self.values().find_map(Expression::outside)
     }
 }
 

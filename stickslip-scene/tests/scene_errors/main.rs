@@ -11,6 +11,7 @@ mod loads;
 mod many;
 mod meshes;
 mod outputs;
+mod outside;
 mod parameters;
 mod places;
 mod shapes;

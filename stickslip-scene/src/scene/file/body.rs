@@ -2,6 +2,7 @@
 
 use super::Context;
 use super::loads::positive;
+use super::outside::OrOutside;
 use super::quantity::{Mass, MomentOfInertia, QuantityInput, Velocity};
 use super::read::{Read, table};
 use super::repeat::Repeat;
@@ -49,9 +50,9 @@ table! {
         /// the body. By default its motion is prescribed.
         free: Option<FreeInput>,
         /// Velocity of its centre of mass [m/s]: ["0.1 m/s * min(t / 1 ms, 1)", 0, 0]. By default none.
-        velocity: Option<VectorInput<Velocity>>,
+        velocity: Option<OrOutside<VectorInput<Velocity>>>,
         /// Angular velocity about its centre of mass [rad/s]; in the plane one number. By default none.
-        spin: Option<SpinInput>,
+        spin: Option<OrOutside<SpinInput>>,
     }
 }
 
@@ -194,7 +195,7 @@ impl BodyKeys<'_> {
         let start = self.velocity.as_ref().map(VectorInput::node).or(self.spin.as_ref().map(SpinInput::node));
         if let Some(free) = &rigid.free {
             let inner =
-                rigid.velocity.as_ref().map(VectorInput::node).or(rigid.spin.as_ref().map(SpinInput::node));
+                rigid.velocity.as_ref().map(OrOutside::node).or(rigid.spin.as_ref().map(OrOutside::node));
             if let Some(node) = inner {
                 let found = format!("`{}` prescribed to a free body", node.name);
                 let allowed = format!("the {} at the start as the body's own key, beside `rigid`", node.name);
@@ -214,8 +215,12 @@ impl BodyKeys<'_> {
         }
         let rest = || Ok([0.0; 3].map(Expression::Constant));
         Ok(BodyMotion::Rigid {
-            velocity: rigid.velocity.as_ref().map_or_else(rest, |velocity| velocity.over_time(context))?,
-            spin: rigid.spin.as_ref().map_or_else(rest, |spin| spin.over_time(context))?,
+            velocity: rigid.velocity.as_ref().map_or_else(rest, |velocity| {
+                velocity.resolve(context, |i| i < context.dimension.axes(), |v| v.over_time(context))
+            })?,
+            spin: rigid.spin.as_ref().map_or_else(rest, |spin| {
+                spin.resolve(context, |i| i == 2 || !context.dimension.is_plane(), |w| w.over_time(context))
+            })?,
         })
     }
 }

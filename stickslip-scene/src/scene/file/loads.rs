@@ -2,6 +2,7 @@
 
 use super::Context;
 use super::files::read_file;
+use super::outside::OrOutside;
 use super::quantity::{
     Acceleration, Duration, Force, ForceOverVelocity, Length, Measure, Pressure, QuantityInput, Stiffness,
     Velocity, evaluate,
@@ -65,13 +66,13 @@ table! {
         /// Only what lies in this shape at the start: within.ball = { center = [0, 0], radius = 1 }.
         within: Option<ShapeInput>,
         /// Force, shared out evenly over the part [N]; in the plane per metre of depth.
-        force: Option<VaryingVector<Force>>,
+        force: Option<OrOutside<VaryingVector<Force>>>,
         /// Force per undeformed area [Pa].
-        traction: Option<VaryingVector<Pressure>>,
+        traction: Option<OrOutside<VaryingVector<Pressure>>>,
         /// Force per deformed area against the outward normal, which it follows [Pa].
-        pressure: Option<Varying<Pressure>>,
+        pressure: Option<OrOutside<Varying<Pressure>>>,
         /// Force per mass [m/s^2].
-        acceleration: Option<VaryingVector<Acceleration>>,
+        acceleration: Option<OrOutside<VaryingVector<Acceleration>>>,
     }
 }
 
@@ -311,12 +312,11 @@ impl Support {
 
 impl Load {
     fn action(&self, context: &Context, number: usize) -> Result<Action, Fault> {
-        let vary = Dependence::TimeAndPlace;
         let nodes = [
-            self.force.as_ref().map(|input| &input.node),
-            self.traction.as_ref().map(|input| &input.node),
-            self.pressure.as_ref().map(|input| &input.node),
-            self.acceleration.as_ref().map(|input| &input.node),
+            self.force.as_ref().map(OrOutside::node),
+            self.traction.as_ref().map(OrOutside::node),
+            self.pressure.as_ref().map(OrOutside::node),
+            self.acceleration.as_ref().map(OrOutside::node),
         ];
         let allowed = "one of force, traction, pressure and acceleration";
         if let Some(second) = nodes.into_iter().flatten().nth(1) {
@@ -324,13 +324,33 @@ impl Load {
             return Err(Fault::new(&second.key, found, allowed).at(second.name_span.clone()));
         }
         match (&self.force, &self.traction, &self.pressure, &self.acceleration) {
-            (Some(force), ..) => Ok(Action::Force(force.resolve(context, vary)?)),
-            (_, Some(traction), ..) => Ok(Action::Traction(traction.resolve(context, vary)?)),
-            (_, _, Some(pressure), _) => Ok(Action::Pressure(pressure.resolve(context, vary)?)),
-            (_, _, _, Some(acceleration)) => Ok(Action::Acceleration(acceleration.resolve(context, vary)?)),
+            (Some(force), ..) => Ok(Action::Force(vector(force, context)?)),
+            (_, Some(traction), ..) => Ok(Action::Traction(vector(traction, context)?)),
+            (_, _, Some(pressure), _) => {
+                let number = |p: &Varying<Pressure>| {
+                    Ok([p.resolve(context, Dependence::TimeAndPlace)?, NOTHING, NOTHING])
+                };
+                let [pressure, ..] = pressure.resolve(context, |i| i == 0, number)?;
+                Ok(Action::Pressure(pressure))
+            }
+            (_, _, _, Some(acceleration)) => Ok(Action::Acceleration(vector(acceleration, context)?)),
             _ => Err(Fault::new(&format!("loads[{number}]"), "a load that does nothing", allowed)),
         }
     }
+}
+
+const NOTHING: Expression = Expression::Constant(0.0);
+
+/// A vector that may vary in time and place, or come from outside.
+fn vector<M: Measure>(
+    input: &OrOutside<VaryingVector<M>>,
+    context: &Context,
+) -> Result<[Expression; 3], Fault> {
+    input.resolve(
+        context,
+        |i| i < context.dimension.axes(),
+        |vector| vector.resolve(context, Dependence::TimeAndPlace),
+    )
 }
 
 /// What a number or formula says. A force in the plane is one per metre of depth, and may be written as that: in N or

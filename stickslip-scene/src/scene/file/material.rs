@@ -3,8 +3,9 @@
 use super::Context;
 use super::quantity::{Density, QuantityInput, evaluate};
 use super::read::{Read, check_keys, field, unknown_key};
-use super::text::{Choice, Word};
-use crate::material::{Constant, Description, Form, Given, LAWS, Quantity as Wanted};
+use super::text::{Choice, Text, Word};
+use crate::material::{Constant, Form, Given, LAWS, OUTSIDE_CONSTANTS, Quantity as Wanted, outside_law};
+use crate::outside::OUTSIDE;
 use crate::scene::error::Fault;
 use crate::scene::parameters::Dependence;
 use crate::scene::source::{DocumentNode, Value};
@@ -37,7 +38,8 @@ impl Materials {
 /// One material: its density and exactly one law.
 fn material(node: &DocumentNode, context: &Context) -> Result<NamedMaterial, Fault> {
     let laws: Vec<&str> = LAWS.iter().map(|law| law.name).collect();
-    let keys: Vec<&str> = ["density", "volume_change"].into_iter().chain(laws.iter().copied()).collect();
+    let keys = ["density", "volume_change"].into_iter().chain(laws.iter().copied()).chain([OUTSIDE]);
+    let keys: Vec<&str> = keys.collect();
     if node.name == "any" {
         return Err(Fault::new(&node.key, "the name `any`, which matches every body", "another name"));
     }
@@ -51,20 +53,25 @@ fn material(node: &DocumentNode, context: &Context) -> Result<NamedMaterial, Fau
         let help = Some("a plate takes the thickness that leaves its volume free: nothing locks".to_string());
         return Err(Problem { key, found, allowed: "\"own\"".to_string(), help }.into());
     }
-    let mut named = node
-        .children()
-        .iter()
-        .filter_map(|child| Some((child, LAWS.iter().find(|law| law.name == child.name)?)));
-    let Some((table, law)) = named.next() else {
+    let is_law = |child: &&DocumentNode| child.name == OUTSIDE || laws.contains(&child.name.as_str());
+    let mut named = node.children().iter().filter(is_law);
+    let Some(table) = named.next() else {
         let example = "neo_hookean = { bulk_modulus = \"6 MPa\", shear_modulus = \"3 MPa\" }";
         let allowed = format!("a law ({}), like {example}", laws.join(", "));
         return Err(Fault::new(&node.key, "no law", allowed).at(node.name_span.clone()));
     };
-    if let Some((second, _)) = named.next() {
+    if let Some(second) = named.next() {
         let found = format!("a second law, `{}` besides `{}`", second.name, table.name);
         return Err(Fault::new(&second.key, found, "one law").at(second.name_span.clone()));
     }
-    let law = law.build(&constants(table, law, context)?).map_err(|bad| {
+    let built = match LAWS.iter().find(|law| law.name == table.name) {
+        Some(law) => law.build(&constants(table, (law.constants, None), context)?),
+        None => {
+            let given = constants(table, (OUTSIDE_CONSTANTS, Some("law")), context)?;
+            outside_law(field::<Text>(table, "law")?.value(context)?, &given)
+        }
+    };
+    let law = built.map_err(|bad| {
         let child = bad.key.as_ref().and_then(|key| table.children().iter().find(|child| child.name == *key));
         let key = child.unwrap_or(table).key.clone();
         let found = match child {
@@ -78,15 +85,19 @@ fn material(node: &DocumentNode, context: &Context) -> Result<NamedMaterial, Fau
     Ok(NamedMaterial { name: node.name.clone(), density, law, volume_change })
 }
 
-/// The constants of a law in SI units.
-fn constants(table: &DocumentNode, law: &Description, context: &Context) -> Result<Given, Fault> {
-    let names: Vec<&str> = law.constants.iter().map(|constant| constant.name).collect();
+/// The constants of a law in SI units; the key `other` is none of them.
+fn constants(
+    table: &DocumentNode,
+    (declared, other): (&[Constant], Option<&str>),
+    context: &Context,
+) -> Result<Given, Fault> {
+    let names: Vec<&str> = other.into_iter().chain(declared.iter().map(|constant| constant.name)).collect();
     let Value::Table(children) = &table.value else {
         return Err(table.fault(format!("a table {{ ... }} with the keys {}", names.join(", "))));
     };
     let mut given = Given::default();
-    for child in children {
-        let constant = law.constants.iter().find(|constant| constant.name == child.name);
+    for child in children.iter().filter(|child| other != Some(child.name.as_str())) {
+        let constant = declared.iter().find(|constant| constant.name == child.name);
         let constant = constant.ok_or_else(|| unknown_key(child, &names))?;
         let values = match constant.form {
             Form::Number(wanted) => vec![number(child, &wanted, context)?],
@@ -175,12 +186,11 @@ impl JsonSchema for Materials {
             "Whose change of volume a particle takes; its own by default.".into(),
         );
         properties.insert("volume_change".into(), volume_change.into());
+        let constants_of = |constants: &[Constant]| -> serde_json::Map<_, _> {
+            constants.iter().map(|constant| (constant.name.to_string(), schema_of(constant).into())).collect()
+        };
         for law in LAWS {
-            let constants: serde_json::Map<_, _> = law
-                .constants
-                .iter()
-                .map(|constant| (constant.name.to_string(), schema_of(constant).into()))
-                .collect();
+            let constants = constants_of(law.constants);
             let table = json_schema!({
                 "description": law.summary,
                 "type": "object",
@@ -189,7 +199,21 @@ impl JsonSchema for Materials {
             });
             properties.insert(law.name.into(), table.into());
         }
-        let one: Vec<Schema> = LAWS.iter().map(|law| json_schema!({ "required": [law.name] })).collect();
+        let mut outside = constants_of(OUTSIDE_CONSTANTS);
+        let mut law = Text::json_schema(generator);
+        law.insert("description".into(), "Name of the law.".into());
+        outside.insert("law".into(), law.into());
+        let outside = json_schema!({
+            "description": "A law that the program which runs the scene gives, such as a function of Python, with its \
+                            moduli at small strain.",
+            "type": "object",
+            "properties": outside,
+            "required": ["law"],
+            "additionalProperties": false,
+        });
+        properties.insert(OUTSIDE.into(), outside.into());
+        let names = LAWS.iter().map(|law| law.name).chain([OUTSIDE]);
+        let one: Vec<Schema> = names.map(|name| json_schema!({ "required": [name] })).collect();
         json_schema!({
             "type": "object",
             "minProperties": 1,

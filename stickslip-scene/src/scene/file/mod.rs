@@ -14,6 +14,7 @@ mod measurements;
 mod mesh;
 mod outline;
 mod outputs;
+mod outside;
 mod packing;
 mod pixels;
 mod ply;

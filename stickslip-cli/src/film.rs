@@ -1,0 +1,166 @@
+//! Animations: PNG and GIF by ourselves, MP4 and WebM by the user's own ffmpeg.
+
+use crate::files::{self, Kind};
+use std::io::{self, ErrorKind, Write};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use stickslip::image::{Image, write_animation};
+
+const GIF: Kind<'static> = Kind { name: "GIF", starts: &[b"GIF8"] };
+const WEBM: Kind<'static> = Kind { name: "WebM", starts: &[b"\x1aE\xdf\xa3"] };
+const MP4: Kind<'static> =
+    Kind { name: "MP4", starts: &[b"\0\0\0\x18ftyp", b"\0\0\0\x1cftyp", b"\0\0\0\x20ftyp"] };
+
+/// Kinds of animations.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FilmKind {
+    Png,
+    Gif,
+    Mp4,
+    Webm,
+}
+
+impl FilmKind {
+    /// What a file of this name holds; `None` of a name that none has.
+    pub fn of(path: &Path) -> Option<Self> {
+        let extension = path.extension()?.to_str()?.to_ascii_lowercase();
+        let kinds = [Self::Png, Self::Gif, Self::Mp4, Self::Webm];
+        ["png", "gif", "mp4", "webm"]
+            .iter()
+            .zip(kinds)
+            .find(|(name, _)| **name == extension)
+            .map(|(_, kind)| kind)
+    }
+}
+
+/// Writes images as an animation of so many a second, that plays for ever where its kind can.
+///
+/// # Errors
+/// What the system says, a file of another kind in the place, images of different sizes, and an ffmpeg that is not
+/// there or refuses.
+pub fn write(
+    path: &Path,
+    kind: FilmKind,
+    images: impl ExactSizeIterator<Item = io::Result<Image>>,
+    rate: f64,
+) -> io::Result<()> {
+    match kind {
+        FilmKind::Png => files::write(path, files::PNG, |file| write_animation(images, rate, file)),
+        FilmKind::Gif => files::write(path, GIF, |file| write_gif(images, rate, file)),
+        FilmKind::Mp4 => by_ffmpeg((path, MP4), &["-c:v", "libx264", "-pix_fmt", "yuv420p"], images, rate),
+        FilmKind::Webm => {
+            by_ffmpeg((path, WEBM), &["-c:v", "libvpx-vp9", "-pix_fmt", "yuv420p"], images, rate)
+        }
+    }
+}
+
+fn write_gif(
+    images: impl Iterator<Item = io::Result<Image>>,
+    rate: f64,
+    to: &mut dyn Write,
+) -> io::Result<()> {
+    let mut encoder = None;
+    let mut to = Some(to);
+    for image in images {
+        let Image { size, pixels } = image?;
+        let [width, height] = size.map(|side| u16::try_from(side).unwrap_or(u16::MAX));
+        if let Some(to) = to.take() {
+            let mut begun = gif::Encoder::new(to, width, height, &[]).map_err(io::Error::other)?;
+            begun.set_repeat(gif::Repeat::Infinite).map_err(io::Error::other)?;
+            encoder = Some(begun);
+        }
+        let mut frame = gif::Frame::from_rgb_speed(width, height, &pixels, 10);
+        // Hundredths of a second.
+        frame.delay = (100.0 / rate).round().clamp(1.0, 60_000.0) as u16;
+        let encoder = encoder.as_mut().expect("it has begun with the first image");
+        encoder.write_frame(&frame).map_err(io::Error::other)?;
+    }
+    Ok(())
+}
+
+/// Has the user's ffmpeg make a film of the images.
+fn by_ffmpeg(
+    (path, kind): (&Path, Kind),
+    codec: &[&str],
+    images: impl Iterator<Item = io::Result<Image>>,
+    rate: f64,
+) -> io::Result<()> {
+    files::replaceable(path, kind)?;
+    let mut running: Option<(Child, [usize; 2])> = None;
+    let mut written = Ok(());
+    for image in images {
+        let image = image?;
+        let (child, size) = match &mut running {
+            Some(running) => running,
+            None => running.insert((ffmpeg(path, codec, (image.size, rate))?, image.size)),
+        };
+        if image.size != *size {
+            return Err(io::Error::new(ErrorKind::InvalidInput, "an animation of images of different sizes"));
+        }
+        let pipe = child.stdin.as_mut().expect("it was asked for");
+        written = pipe.write_all(&image.pixels);
+        if written.is_err() {
+            break;
+        }
+    }
+    let Some((child, _)) = running else { return Ok(()) };
+    let done = child.wait_with_output()?;
+    if done.status.success() {
+        return written;
+    }
+    let said = String::from_utf8_lossy(&done.stderr);
+    Err(io::Error::other(format!("ffmpeg says: {}", said.lines().last().unwrap_or("nothing"))))
+}
+
+fn ffmpeg(path: &Path, codec: &[&str], (size, rate): ([usize; 2], f64)) -> io::Result<Child> {
+    let [width, height] = size;
+    // An option's name may not stand where a file's should.
+    let out = if path.is_absolute() { path.to_path_buf() } else { PathBuf::from(".").join(path) };
+    let mut command = Command::new("ffmpeg");
+    command.args(["-hide_banner", "-loglevel", "error", "-y", "-f", "rawvideo", "-pix_fmt", "rgb24"]);
+    command.args(["-s", &format!("{width}x{height}"), "-r", &rate.to_string(), "-i", "-"]);
+    // Codecs want even sides.
+    command.args(["-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white"]).args(codec).arg(out);
+    let child = command.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::piped()).spawn();
+    child.map_err(|error| match error.kind() {
+        ErrorKind::NotFound => io::Error::new(
+            error.kind(),
+            "films of this kind are made by ffmpeg, which is not on the path; a name \
+                                          that ends in .png or .gif needs none",
+        ),
+        _ => error,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn images() -> impl ExactSizeIterator<Item = io::Result<Image>> {
+        (0..3u8).map(|shade| Ok(Image::new([9, 5], [80 * shade, 0, 200])))
+    }
+
+    #[test]
+    fn a_gif_has_every_image_and_its_delay() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("film.GIF");
+        assert_eq!(FilmKind::of(&path), Some(FilmKind::Gif));
+        write(&path, FilmKind::Gif, images(), 20.0).expect("written");
+        let mut decoder = gif::Decoder::new(std::fs::File::open(&path).expect("there")).expect("a GIF");
+        assert_eq!((decoder.width(), decoder.height()), (9, 5));
+        let mut delays = Vec::new();
+        while let Some(frame) = decoder.read_next_frame().expect("sound") {
+            delays.push(frame.delay);
+        }
+        assert_eq!(delays, [5, 5, 5]);
+        std::fs::write(&path, "precious").expect("written");
+        assert!(write(&path, FilmKind::Gif, images(), 20.0).is_err(), "what is no GIF stays");
+    }
+
+    #[test]
+    fn kinds_are_known_by_their_names() {
+        let kind = |name: &str| FilmKind::of(Path::new(name));
+        assert_eq!([kind("a.mp4"), kind("a.webm"), kind("a.png")].map(|kind| kind.is_some()), [true; 3]);
+        assert_eq!((kind("a.avi"), kind("mp4")), (None, None));
+    }
+}

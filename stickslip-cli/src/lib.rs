@@ -1,0 +1,36 @@
+//! The command `stickslip`, for the program of this name, and for others that bring it along, as the Python package does.
+
+mod bench;
+mod chart;
+mod commands;
+mod drawing;
+mod failure;
+mod files;
+mod film;
+mod frame_pictures;
+mod illustration;
+mod jobs;
+mod page;
+mod picture;
+mod progress;
+mod reproduce;
+mod sweep;
+mod validation;
+mod view;
+
+use clap::Parser;
+use std::ffi::OsString;
+
+/// Does what the words of a command line ask for, the program's name first, and gives the exit code.
+///
+/// It takes over Ctrl-C and the pool of threads of the process, and ends that where the words ask for help or are
+/// wrong: it is for processes that do nothing else.
+pub fn execute(words: impl IntoIterator<Item = OsString>) -> u8 {
+    match commands::Command::parse_from(words).execute() {
+        Ok(()) => 0,
+        Err(failure) => {
+            failure.print();
+            failure.exit_code()
+        }
+    }
+}

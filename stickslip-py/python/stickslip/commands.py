@@ -1,0 +1,139 @@
+"""What the command does and the library does not, from Python: pictures, sweeps, validation.
+
+Each is the command in a process of its own. Its options are keywords: `render(folder, time=0.1, color="pressure")` is
+`stickslip render folder --time 0.1 --color pressure`.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from .errors import ResultsError, RunError, SceneError, StickslipError
+from .results import Results, read_table
+
+if TYPE_CHECKING:
+    from .records import Table
+    from .scene import Scene
+
+
+class Picture:
+    """A picture in a file, which notebooks show: PNG, animated or not, or SVG."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        """The file."""
+
+    def _repr_png_(self) -> bytes | None:
+        return self.path.read_bytes() if self.path.suffix.lower() == ".png" else None
+
+    def _repr_svg_(self) -> str | None:
+        return self.path.read_text(encoding="utf-8") if self.path.suffix.lower() == ".svg" else None
+
+    def __fspath__(self) -> str:
+        return str(self.path)
+
+    def __repr__(self) -> str:
+        return f"<Picture {self.path}>"
+
+
+class Sweep:
+    """A family of runs: `table` has a row each, `sweep[0]` are the results of the first."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        """Where the runs are."""
+
+    @property
+    def table(self) -> Table:
+        """sweep.csv: a row a run, with its parameters, how it stands and what it came to."""
+        return read_table(self.folder / "sweep.csv")
+
+    def __len__(self) -> int:
+        return len(self.table)
+
+    def __getitem__(self, number: int) -> Results:
+        return Results(self.folder / str(self.table["run"][number]))
+
+    def __iter__(self) -> Iterator[Results]:
+        return (self[number] for number in range(len(self)))
+
+    def _repr_html_(self) -> str | None:
+        return self.table._repr_html_()
+
+    def __repr__(self) -> str:
+        return f"<Sweep {self.folder}: {len(self)} runs>"
+
+
+def render(results: Results | str | os.PathLike[str], *, out: str | os.PathLike[str] | None = None, **options: Any) -> Picture:
+    """Draws a snapshot of a run, the last without `frame` or `time`; `stickslip render --help` lists the options.
+
+    `color="pressure"`, `range=(-1e5, 1e5)`, `view=(30, 10)`, `size="1200x800"`, `animate=True`, ... Without `out` it is
+    DIR/picture.png, of an animation DIR/animation.png.
+    """
+    folder = Path(getattr(results, "folder", results))
+    name = "animation.png" if options.get("animate") else "picture.png"
+    path = folder / name if out is None else Path(out)
+    command("render", folder, out=path, failure=ResultsError, **options)
+    return Picture(path)
+
+
+def plot(results: Results | str | os.PathLike[str], *, out: str | os.PathLike[str] | None = None, **options: Any) -> Picture:
+    """Draws the chart of a run or a sweep: `table="energy"`, `body="ball"`, `quantity="x,y"`; PNG or SVG.
+
+    `Results.plot` draws with matplotlib instead.
+    """
+    folder = Path(getattr(results, "folder", results))
+    path = folder / "plot.png" if out is None else Path(out)
+    command("plot", folder, out=path, failure=ResultsError, **options)
+    return Picture(path)
+
+
+def sweep(scene: Scene, out: str | os.PathLike[str], *, jobs: int | None = None, threads: int | None = None, **values: Any) -> Sweep:
+    """Runs a scene with every combination of values of its parameters: `sweep(scene, "out", friction=(0, 0.3))`.
+
+    Scenes with functions of Python are not for it: run them one after the other.
+    """
+    if scene.functions:
+        names = ", ".join(scene.functions)
+        raise SceneError(f"found functions of Python ({names}) in a sweep; allowed: scenes of the scene file alone")
+    given = []
+    for name, value in values.items():
+        listed = value if isinstance(value, (list, tuple)) else [value]
+        given.append(f"{name}={','.join(map(str, listed))}")
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "scene.toml"
+        scene.save(file)
+        command("sweep", file, set=given, out=out, jobs=jobs, threads=threads)
+    return Sweep(Path(out))
+
+
+def validate(*, out: str | os.PathLike[str], **options: Any) -> str:
+    """Problems with known answers by the contact laws: what `stickslip validate` prints, and its page in `out`."""
+    return command("validate", out=out, failure=RunError, **options)
+
+
+def command(name: str, *words: Any, failure: type[StickslipError] = RunError, **options: Any) -> str:
+    """What a command prints: `command("check", "scene.toml", set=["cell=0.1"])`.
+
+    Options are keywords with underscores for hyphens: True stands for an option without a value, False and None leave
+    one out, tuples are joined by commas, and each entry of a list repeats it. Raises `failure` with what the command
+    says of what is wrong.
+    """
+    line = [sys.executable, "-m", "stickslip", name, *map(os.fspath, words)]
+    for option, value in options.items():
+        for entry in value if isinstance(value, list) else [value]:
+            if entry is None or entry is False:
+                continue
+            text = ",".join(map(str, entry)) if isinstance(entry, tuple) else str(entry)
+            flag = f"--{option.rstrip('_').replace('_', '-')}"
+            line.append(flag if entry is True else f"{flag}={text}")
+    done = subprocess.run(line, capture_output=True, text=True, encoding="utf-8", check=False)
+    if done.returncode not in (0, 3):
+        raise failure(done.stderr.strip().removeprefix("error: ") or f"stickslip {name} ended with {done.returncode}")
+    return done.stdout
