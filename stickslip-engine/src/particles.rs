@@ -369,6 +369,15 @@ impl<T: Real, const D: usize> Particles<T, D> {
         *self = Particles { columns, numbers, ..others };
     }
 
+    /// Becomes a copy of the particles of the same body, in the memory that is there.
+    pub fn become_copy_of(&mut self, other: &Self) {
+        let Particles { len, columns, stride, numbers, later, history, transfer, viscosity } = self;
+        columns.clone_from(&other.columns);
+        numbers.clone_from(&other.numbers);
+        (*len, *stride, *later) = (other.len, other.stride, other.later);
+        (*history, *transfer, *viscosity) = (other.history, other.transfer, other.viscosity);
+    }
+
     /// Where a column lies as long as nothing is sorted, and after it once they are settled; `number` is one, too.
     pub fn column_place(&self, name: &str) -> Option<ColumnPlace> {
         let len = self.len;

@@ -97,6 +97,14 @@ impl Simulation for Handle {
         self.0.change(|simulation| simulation.rebuild_workspace());
     }
 
+    fn hold(&mut self) {
+        self.0.ask(|simulation| simulation.hold());
+    }
+
+    fn take_back(&mut self) -> bool {
+        self.0.change(|simulation| simulation.take_back())
+    }
+
     fn settle(&mut self) {
         self.0.change(|simulation| simulation.settle());
     }

@@ -101,6 +101,12 @@ pub trait Simulation: View + Send {
     /// Drops all that can be made anew from the state between two steps: grid, lists, room to work in. The next step
     /// makes it anew, with the same bits as without.
     fn rebuild_workspace(&mut self) {}
+    /// Keeps a copy of the state, to [`Simulation::take_back`] the steps after it.
+    fn hold(&mut self) {}
+    /// Goes back to the state that was held last; a simulation that holds none gives false, and stays as it is.
+    fn take_back(&mut self) -> bool {
+        false
+    }
     /// Moves the columns of all particles to where they lay at first: steps that sort particles move them. What they
     /// hold, and in which order, stays.
     fn settle(&mut self) {}
@@ -253,6 +259,12 @@ pub struct ContactSum {
     pub friction: f64,
     /// Grid nodes in contact in the last step in which the pair touched.
     pub nodes: usize,
+    /// Impulses at nodes since the start, and how many of these were reduced to the rule's `max_strain`.
+    #[serde(default)]
+    pub pushes: u64,
+    /// See `pushes`.
+    #[serde(default)]
+    pub reduced: u64,
 }
 
 /// A reader's place in time among the contacts. Each reader has its own, and none disturbs another.

@@ -163,6 +163,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 steps: 0,
             },
             workspace: Workspace::new(Boundary::new(walls::<D>(scene))),
+            held: None,
             watch: Stopwatch::default(),
             basis: PhantomData,
         })

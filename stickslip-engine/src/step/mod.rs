@@ -25,6 +25,7 @@ mod average;
 mod build;
 mod cpu;
 mod glue;
+mod hold;
 mod loads;
 mod mechanism;
 #[cfg(test)]
@@ -68,6 +69,8 @@ pub struct Engine<T, const D: usize, B> {
     settings: Settings<T, D>,
     state: State<T, D>,
     workspace: Workspace<T, D>,
+    /// The state before the last step, of simulations that take failed steps again.
+    held: Option<State<T, D>>,
     watch: Stopwatch,
     basis: PhantomData<B>,
 }
@@ -214,6 +217,18 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
 
     fn rebuild_workspace(&mut self) {
         self.workspace = Workspace::new(Boundary::new(self.settings.walls.clone()));
+    }
+
+    fn hold(&mut self) {
+        self.hold_state();
+    }
+
+    fn take_back(&mut self) -> bool {
+        let held = self.take_back_state();
+        if held {
+            self.rebuild_workspace();
+        }
+        held
     }
 
     fn settle(&mut self) {

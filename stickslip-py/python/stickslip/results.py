@@ -71,7 +71,7 @@ class Results:
 
     @property
     def status(self) -> str:
-        """How the run stands: "running", "finished", "interrupted", "out_of_time" or "failed"."""
+        """How the run stands: "running", "finished", "interrupted", "out_of_time", "stopped" or "failed"."""
         return str(self.record.status)
 
     @property

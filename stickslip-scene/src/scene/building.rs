@@ -6,7 +6,7 @@
 
 use super::{
     BasisKind, Body, BodyMotion, ContactLaw, ContactRule, Damping, Dimension, Discretization, Domain,
-    Expression, Face, FreeRigid, Measurements, NamedMaterial, Normal, Outputs, Precision, Problem,
+    Expression, Face, FreeRigid, Health, Measurements, NamedMaterial, Normal, Outputs, Precision, Problem,
     Relaxation, Scene, SnapshotContent, StressUpdate, Time, Transfer, VolumeChange,
 };
 use crate::geometry::{Arrangement, Shape};
@@ -33,6 +33,7 @@ impl Scene {
             time: Time::until(end),
             start: None,
             damping: Damping::default(),
+            health: Health::default(),
             gravity: [0.0; 3],
             materials: Vec::new(),
             bodies: Vec::new(),

@@ -9,6 +9,7 @@ mod expression;
 mod file;
 mod formula;
 mod fringes;
+mod health;
 mod joints;
 mod load;
 mod loads;
@@ -25,6 +26,7 @@ mod units;
 pub use error::{Mistake, SceneError};
 pub use expression::{Expression, Moment, Program, TimeTable};
 pub use fringes::{Fringes, Light, Overlay, Polariscope, PolariscopeField, Sensitivity};
+pub use health::{Health, HealthCheck, HealthRule, Response};
 pub use joints::{Joint, JointKind, Motor};
 pub use load::{Loaded, load, parse};
 pub use loads::{Action, Dashpot, Extent, Load, Part, RIGID, Support, SupportMotion};
@@ -64,6 +66,9 @@ pub struct Scene {
     pub start: Option<Start>,
     /// What slows the bodies down beside contact and materials.
     pub damping: Damping,
+    /// What a run watches, and what it does where something is wrong.
+    #[serde(skip_serializing_if = "Health::is_usual")]
+    pub health: Health,
     /// Acceleration of every body [m/s^2].
     pub gravity: [f64; 3],
     /// The materials that bodies name.
@@ -245,7 +250,8 @@ pub struct Time {
     pub xpic_order: usize,
     /// The run looks for the state at rest, and ends there if that comes before `end`.
     pub relax: Option<Relaxation>,
-    /// Drift of the energy that a run may have before its verdict names it, over the energy that moved [-].
+    /// Drift of the energy, and energy that becomes noise, that a run may have, over the energy that moved [-]; see
+    /// [`Scene::health_bound`].
     pub energy_drift: f64,
 }
 

@@ -3,7 +3,7 @@
 use super::{Check, CheckInputs, Finding, asks_for_damping, minus, norm};
 use crate::door::BodyState;
 use crate::observe::{Memory, OutputError};
-use crate::scene::{Face, Scene};
+use crate::scene::{Face, HealthCheck, Scene};
 use crate::tensor::cross;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
@@ -36,8 +36,6 @@ struct Together {
     scale: f64,
 }
 
-/// Change that is allowed [-].
-const BOUND: f64 = 0.02;
 /// Energy of the turning over that of all motion about the centre of mass and of strain: below, a body does not turn,
 /// it rings.
 const TURNS: f64 = 0.01;
@@ -52,8 +50,8 @@ const PUSHED: f64 = 1e-4;
 const NEAR: f64 = 2.0;
 
 impl Check for SpinCheck {
-    fn kind(&self) -> &'static str {
-        "angular-momentum"
+    fn kind(&self) -> HealthCheck {
+        HealthCheck::AngularMomentum
     }
 
     fn advice(&self) -> &'static str {
@@ -140,7 +138,7 @@ impl Alone {
         let turning = 0.5 * before.max(after).powi(2) / inertia;
         let whole = 0.5 * state.mass * norm(state.velocity).powi(2);
         let turns = turning >= TURNS * (state.kinetic - whole + state.strain) && turning >= ROUNDING * whole;
-        if !turns || change.is_nan() || change <= BOUND {
+        if !turns || change.is_nan() || change <= look.bound(HealthCheck::AngularMomentum) {
             return None;
         }
         let name = &look.scene.bodies[self.body].name;
@@ -171,7 +169,7 @@ impl Together {
         let sizes = look.bodies.iter().map(|state| size(state).max(most(state)));
         self.scale = self.scale.max(sizes.sum());
         let change = norm(minus(look.ledger.angular_momentum, self.angular_momentum)) / self.scale;
-        if change.is_nan() || change <= BOUND {
+        if change.is_nan() || change <= look.bound(HealthCheck::AngularMomentum) {
             return None;
         }
         let message = format!(
