@@ -235,7 +235,8 @@ fn the_scene_sets_how_far_energy_may_drift() {
 #[test]
 fn a_check_that_stops_ends_the_run_with_all_records() {
     let out = tempfile::tempdir().unwrap();
-    let stopping = SCENE.replace("[[bodies]]", "health = { energy = { then = \"stop\", bound = 0.3 } }\n[[bodies]]");
+    let stopping =
+        SCENE.replace("[[bodies]]", "health = { energy = { then = \"stop\", bound = 0.3 } }\n[[bodies]]");
     let scene = scene::parse("puppet.toml", &stopping, &[]).unwrap().scene;
     let mut puppet = Puppet { energy: |t| [t * t, 1.0], ..Puppet::new(|x, _| (x, [0.0; 2], REST)) };
     let options = RunOptions { threads: 1, ..RunOptions::new(out.path()) };
@@ -288,7 +289,8 @@ fn what_the_scene_ignores_is_not_looked_for() {
         let text = SCENE.replace("[[bodies]]", &format!("health = {{ {health} }}\n[[bodies]]"));
         assert!(kinds(&text, drifting()).is_empty(), "{health}");
     }
-    let text = SCENE.replace("[[bodies]]", "health = { default = \"ignore\", energy = \"warn\" }\n[[bodies]]");
+    let text =
+        SCENE.replace("[[bodies]]", "health = { default = \"ignore\", energy = \"warn\" }\n[[bodies]]");
     assert_eq!(kinds(&text, drifting()), ["energy"]);
 }
 
@@ -297,7 +299,8 @@ fn steps_are_cut_where_energy_drifts() {
     let cutting = SCENE.replace("[[bodies]]", "health = { energy = \"cut-step\" }\n[[bodies]]");
     let drifting = || Puppet { energy: |t| [0.5 * t, 1.0], ..Puppet::new(|x, _| (x, [0.0; 2], REST)) };
     let (mut whole, mut cut) = (drifting(), drifting());
-    let kinds = |warnings: Vec<RunWarning>| warnings.into_iter().map(|warning| warning.kind).collect::<Vec<_>>();
+    let kinds =
+        |warnings: Vec<RunWarning>| warnings.into_iter().map(|warning| warning.kind).collect::<Vec<_>>();
     assert_eq!(kinds(judge(SCENE, &mut whole).1), ["energy"]);
     assert_eq!(kinds(judge(&cutting, &mut cut).1), ["energy"]);
     // From t = 0.2 s on, and again and again.
@@ -346,6 +349,7 @@ fn impulses_that_are_reduced_too_often_are_found() {
         time = { end = "60 ms" }
         materials.gel = { density = 1000, neo_hookean = { young_modulus = "1 MPa", poisson_ratio = 0.3 } }
         contact = [{ max_strain = 1e-6 }]
+        health = { max_strain = { bound = 0.1 } }
         [[bodies]]
         name = "left"
         material = "gel"

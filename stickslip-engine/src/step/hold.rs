@@ -18,6 +18,7 @@ impl<T: Real, const D: usize> State<T, D> {
             ref contact_sums,
             ref loads,
             ref joints,
+            ref removed,
             longest_rigid,
             damping,
             relaxation,
@@ -34,6 +35,7 @@ impl<T: Real, const D: usize> State<T, D> {
         self.contact_sums.clone_from(contact_sums);
         self.loads.clone_from(loads);
         self.joints.clone_from(joints);
+        self.removed.clone_from(removed);
         (self.longest_rigid, self.damping, self.relaxation) = (longest_rigid, damping, relaxation);
         (self.signal, self.time, self.steps) = (signal, time, steps);
     }

@@ -26,6 +26,7 @@ mod build;
 mod cpu;
 mod glue;
 mod hold;
+mod leave;
 mod loads;
 mod mechanism;
 #[cfg(test)]
@@ -212,6 +213,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
         self.relax();
         self.state.time += dt;
         self.state.steps += 1;
+        self.remove_leavers();
         Ok(dt)
     }
 

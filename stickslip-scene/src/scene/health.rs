@@ -36,27 +36,28 @@ pub enum HealthCheck {
     Precision,
     /// Dynamic relaxation that did not come to rest.
     Relaxation,
+    /// Particles that left the domain and were taken out.
+    Leaving,
     /// Checkpoints that could not be written.
     Checkpoint,
 }
 
 /// What a run does where something is wrong.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Response {
     /// It says so, and goes on.
-    #[default]
     Warn,
     /// It ends there, with all records and a checkpoint.
     Stop,
     /// It says so, and takes shorter steps from there on; energy only.
     CutStep,
-    /// It does not look.
+    /// It gives no warning.
     Ignore,
 }
 
 /// What a scene says of one check.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HealthRule {
     /// What to do beyond the bound.
     pub then: Response,
@@ -65,7 +66,7 @@ pub struct HealthRule {
     pub bound: Option<f64>,
 }
 
-/// What a scene says of the checks; those that it does not name warn beyond their usual bounds.
+/// What a scene says of the checks; those that it does not name do what is usual.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Health {
     /// What it says of each, or of all.
@@ -76,7 +77,7 @@ pub struct Health {
 
 impl HealthCheck {
     /// Every check in the order in which a run looks.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 16] = [
         Self::Energy,
         Self::Noise,
         Self::Momentum,
@@ -91,6 +92,7 @@ impl HealthCheck {
         Self::MaxStrain,
         Self::Precision,
         Self::Relaxation,
+        Self::Leaving,
         Self::Checkpoint,
     ];
 
@@ -111,7 +113,17 @@ impl HealthCheck {
             Self::MaxStrain => "max-strain",
             Self::Precision => "precision",
             Self::Relaxation => "relaxation",
+            Self::Leaving => "leaving",
             Self::Checkpoint => "checkpoint",
+        }
+    }
+
+    /// What it does if the scene says nothing. Contacts that are not resolved have a line of their own in each summary,
+    /// and count as a warning only where the scene asks for it.
+    pub fn usual_response(self) -> Response {
+        match self {
+            Self::Contact => Response::Ignore,
+            _ => Response::Warn,
         }
     }
 
@@ -120,11 +132,12 @@ impl HealthCheck {
     pub fn usual_bound(self) -> Option<f64> {
         match self {
             Self::Energy | Self::Noise | Self::CellCrossing | Self::Precision => Some(0.1),
-            Self::Momentum | Self::SmallStep | Self::MaxStrain => Some(0.01),
+            Self::Momentum | Self::SmallStep => Some(0.01),
             Self::AngularMomentum => Some(0.02),
             Self::Strain => Some(0.25),
-            Self::Speed => Some(0.5),
-            Self::Tearing | Self::FailedStep | Self::Contact | Self::Relaxation | Self::Checkpoint => None,
+            Self::Speed | Self::MaxStrain => Some(0.5),
+            Self::Tearing | Self::FailedStep | Self::Contact => None,
+            Self::Relaxation | Self::Leaving | Self::Checkpoint => None,
         }
     }
 }
@@ -132,7 +145,7 @@ impl HealthCheck {
 impl Health {
     /// What to do where a check finds something.
     pub fn response(&self, check: HealthCheck) -> Response {
-        self.rules.get(&check).copied().unwrap_or_default().then
+        self.rules.get(&check).map_or(check.usual_response(), |rule| rule.then)
     }
 
     /// Whether the scene says nothing: such a record has none of it.

@@ -206,7 +206,7 @@ pub enum BasisKind {
     Spline,
 }
 
-/// A box that holds all material. A particle that leaves it stops the run.
+/// A box that holds all material.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Domain {
     /// Lower corner [m]; grid nodes lie at whole cells from here.
@@ -215,6 +215,27 @@ pub struct Domain {
     pub max: [f64; 3],
     /// What the lower and the upper face across each axis do.
     pub faces: [[Face; 2]; 3],
+    /// What becomes of a particle that leaves it.
+    #[serde(default, skip_serializing_if = "Leaving::stops")]
+    pub leaving: Leaving,
+}
+
+/// What becomes of a particle of a deformable body that leaves the domain.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Leaving {
+    /// It ends the run; so does that of a rigid body in any case.
+    #[default]
+    Stop,
+    /// It is taken out, and the run goes on without it.
+    Remove,
+}
+
+impl Leaving {
+    /// Whether it ends the run: a record of a scene does not say so.
+    fn stops(&self) -> bool {
+        *self == Leaving::Stop
+    }
 }
 
 /// What a face of the domain does. Faces other than `Open` lie on grid nodes.

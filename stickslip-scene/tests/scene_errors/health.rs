@@ -19,10 +19,7 @@ fn mistakes_in_health() {
             "energy = 0.1",
             "6:10: health.energy: found 0.1; allowed: \"warn\", \"stop\", \"cut-step\" or \"ignore\", or a table with the keys then, bound",
         ),
-        (
-            "energy = { bound = 0 }",
-            "6:20: health.energy.bound: found 0; allowed: a number above 0",
-        ),
+        ("energy = { bound = 0 }", "6:20: health.energy.bound: found 0; allowed: a number above 0"),
         (
             "energy = { limit = 1 }",
             "6:12: health.energy.limit: found unknown key `limit`; allowed: then, bound",
@@ -39,14 +36,8 @@ fn mistakes_in_health() {
             "default = \"cut-step\"",
             "6:11: health.default: found \"cut-step\"; allowed: \"cut-step\" for `energy` only; \"warn\", \"stop\" or \"ignore\"",
         ),
-        (
-            "retries = 21",
-            "6:11: health.retries: found 21; allowed: a whole number from 0 to 20",
-        ),
-        (
-            "retries = 1.5",
-            "6:11: health.retries: found 1.5; allowed: a whole number from 0 to 20",
-        ),
+        ("retries = 21", "6:11: health.retries: found 21; allowed: a whole number from 0 to 20"),
+        ("retries = 1.5", "6:11: health.retries: found 1.5; allowed: a whole number from 0 to 20"),
     ];
     let mut keys = vec!["default".to_string()];
     keys.extend(HealthCheck::ALL.map(|check| check.word().replace('-', "_")));
@@ -70,7 +61,13 @@ fn a_scene_says_what_each_check_does() {
     assert_eq!(said(HealthCheck::Noise), (Response::Ignore, 0.3));
     assert_eq!(said(HealthCheck::Speed), (Response::Ignore, 0.1));
     assert_eq!(said(HealthCheck::Tearing), (Response::Ignore, f64::INFINITY));
+    assert_eq!(said(HealthCheck::Contact), (Response::Ignore, f64::INFINITY));
     let plain = scene::parse("a.toml", MINIMAL, &set).expect("a scene").scene;
     assert_eq!(plain.health.response(HealthCheck::Speed), Response::Warn);
+    assert_eq!(plain.health.response(HealthCheck::Contact), Response::Ignore);
+    let strict = MINIMAL.replacen("[time]", "[health]\ndefault = \"stop\"\nspeed = \"warn\"\n[time]", 1);
+    let strict = scene::parse("a.toml", &strict, &[]).expect("a scene").scene.health;
+    assert_eq!(strict.response(HealthCheck::Contact), Response::Stop);
+    assert_eq!(strict.response(HealthCheck::Speed), Response::Warn);
     assert_eq!(plain.health_bound(HealthCheck::Energy), 0.3);
 }

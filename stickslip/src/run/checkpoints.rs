@@ -213,6 +213,7 @@ const FREE: &[&str] = &[
     "outputs",
     "references",
     "health",
+    "domain.leaving",
     "start.from",
     "time.end",
     "time.energy_drift",

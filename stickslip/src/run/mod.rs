@@ -233,10 +233,10 @@ fn drive(
     manifest.relaxation = simulation.relaxation();
     manifest.warnings = kept.verdict.warnings().to_vec();
     manifest.looks = kept.verdict.looks();
-    let stopped = kept.verdict.stop().map(|warning| RunError::Unhealthy {
-        warning: Box::new(warning.clone()),
-        time: simulation.time(),
-    });
+    let stopped = kept
+        .verdict
+        .stop()
+        .map(|warning| RunError::Unhealthy { warning: Box::new(warning.clone()), time: simulation.time() });
     let ended = outcome.and_then(|_| stopped.map_or(Ok(()), Err));
     manifest.error = ended.as_ref().err().map(RunError::to_string);
     let saved = manifest.write(&folder);
@@ -268,7 +268,9 @@ impl Kept {
         if let Some(FailedStep { error, part }) = march.failed() {
             let noted = Noted {
                 check: HealthCheck::FailedStep,
-                message: format!("a step failed, and was taken again with {part:.1e} of the stable one: {error}"),
+                message: format!(
+                    "a step failed, and was taken again with {part:.3} of the stable one: {error}"
+                ),
                 worst: 1.0 / part,
                 advice: error.advice().to_owned(),
             };

@@ -14,8 +14,7 @@ table! {
     /// What a run watches while it goes on, and what it does where something is wrong: a check is "warn", "stop" or
     /// "ignore", or a table of that and a bound, { then = "stop", bound = 0.05 }.
     Health {
-        /// What holds for all that is not named here.
-        #[schemars(extend("default" = "warn"))]
+        /// What holds for all that is not named here; by default "warn", of `contact` "ignore".
         default: Option<Word<Response>>,
         /// Energy that comes from nowhere or is lost; the bound is the drift of the total over the largest energy that
         /// moved, was stored or turned to heat, by default `time.energy_drift`.
@@ -43,15 +42,17 @@ table! {
         small_step: Option<Rule>,
         /// Steps that failed and were taken again, see `retries`.
         failed_step: Option<Rule>,
-        /// Contacts that the grid does not resolve.
+        /// Contacts that the grid does not resolve, of which summaries tell in any case; by default "ignore".
         contact: Option<Rule>,
         /// Impulses of contact that were reduced to the rule's `max_strain`; the bound is their share of all that two
-        /// bodies gave each other, by default 0.01.
+        /// bodies gave each other, by default 0.5.
         max_strain: Option<Rule>,
         /// Steps that are lost in rounding; the bound is how far bodies move so [cells], by default 0.1.
         precision: Option<Rule>,
         /// Bodies that are not at rest at the end of dynamic relaxation.
         relaxation: Option<Rule>,
+        /// Particles that left the domain and were taken out, see `space.domain.leaving`.
+        leaving: Option<Rule>,
         /// Checkpoints that could not be written.
         checkpoint: Option<Rule>,
         /// How often a step that fails is taken again from memory, with half of its length and half of that, before
@@ -88,7 +89,7 @@ impl Choice for Response {
             Response::CutStep,
             "The run says so, and halves its steps for as long as it gets worse; for energy only.",
         ),
-        ("ignore", Response::Ignore, "Nothing is looked for."),
+        ("ignore", Response::Ignore, "There is no warning, and nothing is looked for."),
     ];
 }
 
@@ -109,26 +110,26 @@ impl Health {
             (HealthCheck::MaxStrain, &self.max_strain),
             (HealthCheck::Precision, &self.precision),
             (HealthCheck::Relaxation, &self.relaxation),
+            (HealthCheck::Leaving, &self.leaving),
             (HealthCheck::Checkpoint, &self.checkpoint),
         ]
     }
 
     /// What each check does.
     pub fn resolve(&self, context: &Context) -> Result<scene::Health, Fault> {
-        let default = match &self.default {
-            Some(word) => allowed_for((None, word), context)?,
-            None => Response::default(),
-        };
+        let default = self.default.as_ref().map(|word| allowed_for((None, word), context)).transpose()?;
         let mut health = scene::Health::default();
         if let Some(retries) = &self.retries {
             health.retries = retries.value(context, 0..=MOST_RETRIES)?;
         }
         for (check, written) in self.rules() {
+            let usual = HealthRule { then: check.usual_response(), bound: None };
+            let default = HealthRule { then: default.unwrap_or(usual.then), ..usual };
             let rule = match written {
-                Some(rule) => rule.resolve((check, default), context)?,
-                None => HealthRule { then: default, bound: None },
+                Some(rule) => rule.resolve((check, default.then), context)?,
+                None => default,
             };
-            if rule != HealthRule::default() {
+            if rule != usual {
                 health.rules.insert(check, rule);
             }
         }
@@ -137,7 +138,11 @@ impl Health {
 }
 
 impl Rule {
-    fn resolve(&self, (check, default): (HealthCheck, Response), context: &Context) -> Result<HealthRule, Fault> {
+    fn resolve(
+        &self,
+        (check, default): (HealthCheck, Response),
+        context: &Context,
+    ) -> Result<HealthRule, Fault> {
         let (word, bound) = match self {
             Rule::Word(word) => (Some(word), None),
             Rule::Table(table) => (table.then.as_ref(), table.bound.as_ref()),
@@ -186,7 +191,8 @@ impl JsonSchema for Rule {
     }
 
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
-        let (word, table) = (generator.subschema_for::<Word<Response>>(), generator.subschema_for::<RuleTable>());
+        let (word, table) =
+            (generator.subschema_for::<Word<Response>>(), generator.subschema_for::<RuleTable>());
         json_schema!({ "anyOf": [word, table] })
     }
 }
@@ -198,8 +204,7 @@ mod tests {
     /// A check is written as it is recorded.
     #[test]
     fn keys_are_the_words_of_records() {
-        let keys: Vec<String> =
-            HealthCheck::ALL.iter().map(|check| check.word().replace('-', "_")).collect();
+        let keys: Vec<String> = HealthCheck::ALL.iter().map(|check| check.word().replace('-', "_")).collect();
         assert!(keys.iter().all(|key| Health::KEYS.contains(&key.as_str())), "{keys:?}");
         for check in HealthCheck::ALL {
             assert_eq!(serde_json::to_value(check).expect("a word"), check.word());

@@ -37,7 +37,11 @@ fn crossing(look: &CheckInputs, body: usize) -> Option<Finding> {
     let state = &look.bodies[body];
     let density = look.scene.materials[look.scene.bodies[body].material].density;
     let stress = (2.0 * state.strain * density / (state.mass * look.wave_modulus(body))).sqrt();
-    if crossed.is_nan() || crossed <= look.bound(HealthCheck::CellCrossing) || stress.is_nan() || stress <= STRESSED {
+    if crossed.is_nan()
+        || crossed <= look.bound(HealthCheck::CellCrossing)
+        || stress.is_nan()
+        || stress <= STRESSED
+    {
         return None;
     }
     let name = &look.scene.bodies[body].name;

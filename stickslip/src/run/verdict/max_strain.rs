@@ -9,7 +9,7 @@ use crate::scene::HealthCheck;
 pub(super) struct MaxStrainCheck;
 
 /// Impulses between two bodies below which a share says nothing: at the first touch there are few.
-const FEWEST: u64 = 1000;
+const FEWEST: u64 = 200;
 
 impl Check for MaxStrainCheck {
     fn kind(&self) -> HealthCheck {
@@ -36,7 +36,10 @@ impl Check for MaxStrainCheck {
                 sum.reduced,
                 100.0 * bound
             );
-            Some((sum.bodies[0], Finding { body: Some(sum.bodies[0]), position: None, worst: share, message }))
+            Some((
+                sum.bodies[0],
+                Finding { body: Some(sum.bodies[0]), position: None, worst: share, message },
+            ))
         };
         // Pairs are ordered by their first bodies, and of each of these the worst is told.
         let mut worst: Vec<(usize, Finding)> = Vec::new();

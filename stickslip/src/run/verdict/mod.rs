@@ -2,6 +2,7 @@
 
 mod crossing;
 mod energy;
+mod leaving;
 mod max_strain;
 mod momentum;
 mod neighbours;
@@ -22,7 +23,7 @@ use neighbours::Neighbours;
 
 /// Every check of a run that the scene does not ignore.
 fn checks(scene: &Scene) -> Vec<Box<dyn Check>> {
-    let all: [Box<dyn Check>; 12] = [
+    let all: [Box<dyn Check>; 13] = [
         Box::new(energy::EnergyCheck),
         Box::new(noise::NoiseCheck),
         Box::new(momentum::MomentumCheck::default()),
@@ -31,10 +32,11 @@ fn checks(scene: &Scene) -> Vec<Box<dyn Check>> {
         Box::new(tearing::TearingCheck::default()),
         Box::new(crossing::CrossingCheck),
         Box::new(speed::SpeedCheck),
-        Box::new(small_step::SmallStepCheck::default()),
+        Box::new(small_step::SmallStepCheck),
         Box::new(max_strain::MaxStrainCheck),
         Box::new(precision::PrecisionCheck::default()),
         Box::new(relaxation::RelaxationCheck),
+        Box::new(leaving::LeavingCheck::default()),
     ];
     all.into_iter().filter(|check| scene.health.response(check.kind()) != Response::Ignore).collect()
 }
@@ -70,8 +72,8 @@ struct CheckInputs<'a> {
     neighbours: &'a [Neighbours],
     /// Their particles now, in the order of [`Neighbours::start`].
     particles: &'a [Vec<TracedParticle>],
-    /// The longest step that is allowed now [s].
-    step: f64,
+    /// The longest step that is allowed now, and the first one [s].
+    steps: [f64; 2],
 }
 
 impl CheckInputs<'_> {
@@ -130,8 +132,8 @@ pub(super) struct RunChecks {
     interval: f64,
     next_time: f64,
     next_step: u64,
-    /// Below this step a look is due whatever the time: simulated time hardly goes on [s].
-    small: f64,
+    /// The stable step at the start [s].
+    first_step: f64,
     looks: u64,
     warnings: Vec<RunWarning>,
     lines: usize,
@@ -159,10 +161,7 @@ impl RunChecks {
             interval: scene.outputs.tables.max(scene.time.end / LOOKS),
             next_time: simulation.time(),
             next_step: simulation.steps(),
-            small: match scene.health.response(HealthCheck::SmallStep) {
-                Response::Ignore => 0.0,
-                _ => scene.health_bound(HealthCheck::SmallStep) * simulation.stable_step(),
-            },
+            first_step: simulation.stable_step(),
             looks: 0,
             warnings: Vec::new(),
             lines: 0,
@@ -177,12 +176,15 @@ impl RunChecks {
         memory.keep("weighing", &mut self.weighing)?;
         memory.keep("next_time", &mut self.next_time)?;
         memory.keep("next_step", &mut self.next_step)?;
-        memory.keep("small", &mut self.small)?;
+        memory.keep("first_step", &mut self.first_step)?;
         memory.keep("looks", &mut self.looks)?;
         memory.keep("warnings", &mut self.warnings)?;
         memory.keep("lines", &mut self.lines)?;
         if let Some(cutting) = &mut self.cutting {
             memory.keep("cutting", cutting)?;
+        }
+        for (body, neighbours) in self.neighbours.iter_mut().enumerate() {
+            memory.part(&format!("neighbours {body}"), |memory| neighbours.remember(memory))?;
         }
         self.lines = self.lines.min(MOST_LINES);
         self.checks
@@ -205,7 +207,9 @@ impl RunChecks {
                 cutting.look(&ledger, scene.health_bound(HealthCheck::Energy));
             }
         }
-        let small = step > 0.0 && step < self.small && part * simulation.stable_step() < self.small;
+        // Where steps are that small simulated time hardly goes on, and the next look by it is far.
+        let bound = scene.health_bound(HealthCheck::SmallStep) * self.first_step;
+        let small = step > 0.0 && step < bound && part * simulation.stable_step() < bound;
         if simulation.steps() < self.next_step || (simulation.time() < self.next_time && !small) {
             return Vec::new();
         }
@@ -228,7 +232,7 @@ impl RunChecks {
         self.looks += 1;
         let (ledger, bodies) = (simulation.ledger(), simulation.bodies());
         self.balance.update(&ledger);
-        let particles: Vec<_> = (self.neighbours.iter().enumerate())
+        let particles: Vec<_> = (self.neighbours.iter_mut().enumerate())
             .map(|(body, neighbours)| neighbours.particles(simulation, body))
             .collect();
         let look = CheckInputs {
@@ -239,11 +243,10 @@ impl RunChecks {
             bodies: &bodies,
             neighbours: &self.neighbours,
             particles: &particles,
-            step: part * simulation.stable_step(),
+            steps: [part * simulation.stable_step(), self.first_step],
         };
-        let found: Vec<_> = (self.checks.iter_mut())
-            .map(|check| (check.kind(), check.advice(), check.look(&look)))
-            .collect();
+        let found: Vec<_> =
+            (self.checks.iter_mut()).map(|check| (check.kind(), check.advice(), check.look(&look))).collect();
         let mut lines = Vec::new();
         for (check, advice, found) in found {
             for finding in found {

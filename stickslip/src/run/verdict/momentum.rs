@@ -51,8 +51,8 @@ impl Check for MomentumCheck {
         let mass: f64 = moved(look.scene).map(|i| look.bodies[i].mass).sum();
         let force = look.scene.gravity.map(|g| mass * g);
         let held = |weight: [f64; 3]| {
-            let momentum = look.ledger.momentum;
-            [0, 1, 2].map(|i| momentum[i] - given[i] - weight[i])
+            let (momentum, gone) = (look.ledger.momentum, look.ledger.removed_momentum);
+            [0, 1, 2].map(|i| momentum[i] + gone[i] - given[i] - weight[i])
         };
         let account = self.account.get_or_insert_with(|| Account {
             start: held([0.0; 3]),

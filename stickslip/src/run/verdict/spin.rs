@@ -22,6 +22,8 @@ pub(super) struct SpinCheck {
 struct Alone {
     body: usize,
     /// At the start.
+    #[serde(default)]
+    mass: f64,
     velocity: [f64; 3],
     angular_momentum: [f64; 3],
     time: f64,
@@ -91,7 +93,8 @@ impl SpinCheck {
         let time = look.simulation.time();
         let alone = |body: usize| {
             let state = &look.bodies[body];
-            Alone { body, velocity: state.velocity, angular_momentum: own(state), time }
+            let (mass, velocity) = (state.mass, state.velocity);
+            Alone { body, mass, velocity, angular_momentum: own(state), time }
         };
         let pushed = |&body: &usize| look.scene.loads.iter().any(|load| load.body == body);
         self.alone = look.free().filter(|body| !pushed(body)).map(alone).collect();
@@ -118,6 +121,10 @@ fn own(state: &BodyState) -> [f64; 3] {
 impl Alone {
     fn unpushed(&self, look: &CheckInputs) -> bool {
         let state = &look.bodies[self.body];
+        // What left the domain took its spin along.
+        if state.mass < self.mass {
+            return false;
+        }
         let fallen = look.simulation.time() - self.time;
         let push: [f64; 3] =
             std::array::from_fn(|i| state.velocity[i] - self.velocity[i] - look.scene.gravity[i] * fallen);
@@ -168,7 +175,9 @@ impl Together {
         };
         let sizes = look.bodies.iter().map(|state| size(state).max(most(state)));
         self.scale = self.scale.max(sizes.sum());
-        let change = norm(minus(look.ledger.angular_momentum, self.angular_momentum)) / self.scale;
+        let gone = look.ledger.removed_angular_momentum;
+        let now = [0, 1, 2].map(|i| look.ledger.angular_momentum[i] + gone[i]);
+        let change = norm(minus(now, self.angular_momentum)) / self.scale;
         if change.is_nan() || change <= look.bound(HealthCheck::AngularMomentum) {
             return None;
         }

@@ -25,6 +25,7 @@ pub(super) struct StrainCheck {
 }
 
 /// How far a body was stretched, and which of its pairs belong together.
+#[derive(Default)]
 struct Stretch {
     /// Group of each pair: its region and direction.
     group: Vec<u32>,
@@ -60,9 +61,13 @@ impl Check for StrainCheck {
     }
 
     fn look(&mut self, look: &CheckInputs) -> Vec<Finding> {
-        if self.bodies.is_empty() {
-            let side = REGION * look.scene.discretization.cell;
-            self.bodies = look.neighbours.iter().map(|neighbours| Stretch::new(neighbours, side)).collect();
+        let side = REGION * look.scene.discretization.cell;
+        self.bodies.resize_with(look.neighbours.len(), Stretch::default);
+        for (stretch, neighbours) in self.bodies.iter_mut().zip(look.neighbours) {
+            // At first, and where particles have left the domain.
+            if stretch.group.len() != neighbours.pairs.len() {
+                *stretch = Stretch::new(neighbours, side);
+            }
         }
         self.largest.resize(self.bodies.len(), 0.0);
         look.free().filter_map(|body| self.bodies[body].look(look, body, &mut self.largest[body])).collect()
