@@ -61,9 +61,9 @@ impl Check for MomentumCheck {
             force,
             scale: 0.0,
         });
-        for i in 0..3 {
-            account.weight[i] += 0.5 * (time - account.time) * (force[i] + account.force[i]);
-        }
+        let elapsed = time - account.time;
+        let mean = [0, 1, 2].map(|i| 0.5 * (force[i] + account.force[i]));
+        account.weight.iter_mut().zip(mean).for_each(|(weight, mean)| *weight += elapsed * mean);
         (account.time, account.force) = (time, force);
         let now = held(account.weight);
         let speeds = moved(look.scene).map(|i| &look.bodies[i]);
