@@ -170,6 +170,7 @@ pub fn illustrate(folder: &Path) -> Result<String, Failure> {
     let measured = [
         "loads.csv",
         "joints.csv",
+        "removed.csv",
         "sections.csv",
         "probes.csv",
         "arrivals.csv",

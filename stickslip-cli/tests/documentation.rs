@@ -155,6 +155,7 @@ fn every_key_and_word_of_scene_files_is_explained() {
         "space",
         "time",
         "damping",
+        "health",
         "materials",
         "bodies",
         "packings",

@@ -40,7 +40,13 @@ fn memory<T: Real, const D: usize>(scene: &Scene, particles: &[usize]) -> f64 {
         let themselves = Particles::<T, D>::bytes_of(count, own) + ORDER_BYTES * count;
         themselves as f64 + node * NODES_PER_CELL * count as f64 / per_cell
     };
-    scene.bodies.iter().zip(particles).map(of_body).sum()
+    let all: f64 = scene.bodies.iter().zip(particles).map(of_body).sum();
+    // The copy of the state before each step.
+    let held = |(body, &count): (&crate::scene::Body, &usize)| {
+        Particles::<T, D>::bytes_of(count, own_columns(scene, body)) as f64
+    };
+    let copies = if scene.health.retries > 0 { 1.0 } else { 0.0 };
+    all + copies * scene.bodies.iter().zip(particles).map(held).sum::<f64>()
 }
 
 #[cfg(test)]

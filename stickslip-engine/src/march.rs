@@ -2,18 +2,72 @@
 //! by one ([`March`]).
 
 use crate::door::{Simulation, StepError};
+use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
 
 /// Remainder of the way, as a part of the last step, that is rounding and not time to be simulated.
 const ROUNDING: f64 = 1e-6;
 
 /// The way of a simulation to a time, step by step.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct March {
     /// Where it ends [s].
     until: f64,
     /// Length of the last step [s].
     last: f64,
+    /// How long steps may be.
+    pace: Pace,
+    /// How often a step that fails is halved, at most.
+    retries: usize,
+    /// What failed in the last step, before it succeeded.
+    failed: Option<FailedStep>,
+}
+
+/// How long steps may be, as a part of the stable one.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Pace {
+    /// Now: halved by a step that fails, and growing back to the limit with those that do not.
+    part: f64,
+    /// At most.
+    limit: f64,
+}
+
+/// A step that failed and was taken again.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FailedStep {
+    /// What went wrong first.
+    pub error: StepError,
+    /// Length of the step that succeeded, as a part of the stable one.
+    pub part: f64,
+}
+
+/// By how much the part grows with each step that does not fail: it doubles in seven.
+const GROWTH: f64 = 1.1;
+/// The limit is never less.
+const LEAST_LIMIT: f64 = 1.0 / 64.0;
+
+impl Default for Pace {
+    fn default() -> Self {
+        Pace { part: 1.0, limit: 1.0 }
+    }
+}
+
+impl Pace {
+    /// Longest step, as a part of the stable one.
+    pub fn part(&self) -> f64 {
+        self.part
+    }
+
+    /// Halves all steps from now on, down to a 64th of the stable one.
+    pub fn cut(&mut self) {
+        self.limit = LEAST_LIMIT.max(0.5 * self.limit);
+        self.part = self.part.min(self.limit);
+    }
+
+    /// Whether it is above zero and at most 1, as that of a run is.
+    pub fn is_sound(&self) -> bool {
+        0.0 < self.part && self.part <= self.limit && self.limit <= 1.0
+    }
 }
 
 /// Why a march stopped on its way.
@@ -47,12 +101,34 @@ impl MarchError {
 impl March {
     /// To a time [s].
     pub fn to(until: f64) -> Self {
-        March { until, last: 0.0 }
+        March::from(0.0, until)
     }
 
     /// To a time [s], after a step of this length [s].
     pub fn from(last: f64, until: f64) -> Self {
-        March { until, last }
+        March { until, last, pace: Pace::default(), retries: 0, failed: None }
+    }
+
+    /// At this pace. A step that fails is taken again from memory, with half of its length and half of that, down to
+    /// 2^-`retries` of the stable step; the state is copied before each step, unless `retries` is 0.
+    pub fn with_retries(mut self, pace: Pace, retries: usize) -> Self {
+        (self.pace, self.retries) = (pace, retries);
+        self
+    }
+
+    /// How long steps may be.
+    pub fn pace(&self) -> Pace {
+        self.pace
+    }
+
+    /// Halves all steps from now on, see [`Pace::cut`].
+    pub fn cut(&mut self) {
+        self.pace.cut();
+    }
+
+    /// What failed in the last step, before it succeeded.
+    pub fn failed(&self) -> Option<&FailedStep> {
+        self.failed.as_ref()
     }
 
     /// Takes steps and shows the simulation after each, with the step's length [s], until `look` breaks off.
@@ -87,7 +163,13 @@ impl March {
             return Ok(None);
         }
         let before = simulation.time();
-        simulation.step(self.longest(self.until - before, simulation))?;
+        let longest = self.longest(self.until - before, simulation);
+        self.failed = None;
+        match self.retries {
+            0 => simulation.step(longest)?,
+            _ => self.step_again(longest, simulation)?,
+        };
+        self.pace.part = self.pace.limit.min(GROWTH * self.pace.part);
         let time = simulation.time();
         if time <= before {
             return Err(MarchError::Stuck { time, step: simulation.stable_step() });
@@ -96,17 +178,47 @@ impl March {
         Ok(Some(self.last))
     }
 
+    /// Takes a step, with half of its length if it fails.
+    fn step_again(&mut self, longest: f64, simulation: &mut dyn Simulation) -> Result<f64, StepError> {
+        simulation.hold();
+        let least = self.pace.limit * 0.5_f64.powi(self.retries as i32);
+        let mut longest = longest;
+        loop {
+            let error = match simulation.step(longest) {
+                Ok(step) => return Ok(step),
+                Err(error) => error,
+            };
+            // Of the state before the step; it is needed to look at what failed if this was the last time.
+            let tried = self.failed.as_ref().map_or(self.pace.part, |failed| failed.part);
+            if tried <= least || !simulation.take_back() {
+                return Err(error);
+            }
+            let stable = simulation.stable_step();
+            let part = least.max(0.5 * tried.min(longest / stable));
+            longest = part * stable;
+            self.pace.part = part;
+            let error = self.failed.take().map_or(error, |failed| failed.error);
+            self.failed = Some(FailedStep { error, part });
+        }
+    }
+
     /// Longest next step [s].
     ///
     /// Where more than one and less than two steps remain, they are shared equally: a last step of nearly no length
     /// would divide forces by nearly nothing.
     fn longest(&self, remaining: f64, simulation: &dyn Simulation) -> f64 {
+        let part = self.pace.part;
         // Asking for the stable step may cost a look at all particles: only near the end.
-        if remaining > 4.0 * self.last && self.last > 0.0 {
+        if part == 1.0 && remaining > 4.0 * self.last && self.last > 0.0 {
             return remaining;
         }
-        let stable = simulation.stable_step();
-        if remaining > stable && remaining < 2.0 * stable { 0.5 * remaining } else { remaining }
+        let stable = part * simulation.stable_step();
+        match remaining {
+            remaining if remaining > stable && remaining < 2.0 * stable => 0.5 * remaining,
+            // The simulation itself knows how long a whole step is.
+            remaining if part == 1.0 => remaining,
+            remaining => remaining.min(stable),
+        }
     }
 }
 

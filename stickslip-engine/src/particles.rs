@@ -356,17 +356,45 @@ impl<T: Real, const D: usize> Particles<T, D> {
         }
     }
 
+    /// Takes out particles by their places, which must ascend; the others keep their order, and all their memory.
+    pub fn remove(&mut self, gone: &[u32]) {
+        let columns = ColumnStart::<D>::HISTORY + self.own().entries(D);
+        (0..columns).for_each(|entry| close_gaps(self.line_mut(entry), gone));
+        let (first, len) = (self.first_number(), self.len);
+        close_gaps(&mut self.numbers[first..first + len], gone);
+        self.len -= gone.len();
+        let first_now = self.first_number();
+        self.numbers.copy_within(first..first + self.len, first_now);
+        self.numbers.truncate(2 * self.len);
+    }
+
+    /// Keeps the first particles only.
+    pub fn truncate(&mut self, count: usize) {
+        let rest: Vec<u32> = (count as u32..self.len as u32).collect();
+        self.remove(&rest);
+    }
+
     /// Becomes other particles, in the memory that is there if they take as much.
     pub fn become_others(&mut self, others: Self) {
-        if [others.columns.len(), others.len] != [self.columns.len(), self.len] {
+        if others.columns.len() != self.columns.len() {
             *self = others;
             return;
         }
         let Particles { columns, numbers, .. } = self;
         columns.copy_from_slice(&others.columns);
-        numbers.copy_from_slice(&others.numbers);
+        numbers.clear();
+        numbers.extend_from_slice(&others.numbers);
         let (columns, numbers) = (std::mem::take(columns), std::mem::take(numbers));
         *self = Particles { columns, numbers, ..others };
+    }
+
+    /// Becomes a copy of the particles of the same body, in the memory that is there.
+    pub fn become_copy_of(&mut self, other: &Self) {
+        let Particles { len, columns, stride, numbers, later, history, transfer, viscosity } = self;
+        columns.clone_from(&other.columns);
+        numbers.clone_from(&other.numbers);
+        (*len, *stride, *later) = (other.len, other.stride, other.later);
+        (*history, *transfer, *viscosity) = (other.history, other.transfer, other.viscosity);
     }
 
     /// Where a column lies as long as nothing is sorted, and after it once they are settled; `number` is one, too.
@@ -388,6 +416,30 @@ impl<T: Real, const D: usize> Particles<T, D> {
             components: (0..column.kind.entries(D)).map(|entry| column.kind.place(D, entry)).collect(),
             len,
         })
+    }
+}
+
+/// Places in memory of particles with these numbers, in the order of the numbers.
+pub fn by_number(numbers: &[u32]) -> Vec<u32> {
+    let mut places: Vec<u32> = (0..numbers.len() as u32).collect();
+    if numbers.iter().all(|&number| (number as usize) < numbers.len()) {
+        (numbers.iter().zip(0..)).for_each(|(&number, place)| places[number as usize] = place);
+    } else {
+        // Some are gone.
+        places.sort_unstable_by_key(|&place| numbers[place as usize]);
+    }
+    places
+}
+
+/// Moves what is not gone to the front, in its order.
+fn close_gaps<X: Copy>(line: &mut [X], gone: &[u32]) {
+    let Some(&first) = gone.first() else { return };
+    let mut to = first as usize;
+    for (i, &before) in gone.iter().enumerate() {
+        let from = before as usize + 1;
+        let end = gone.get(i + 1).map_or(line.len(), |&next| next as usize);
+        line.copy_within(from..end, to);
+        to += end - from;
     }
 }
 
@@ -653,6 +705,45 @@ mod tests {
         sorted_again_and_again::<2>(100, HISTORY);
         sorted_again_and_again::<3>(100, HISTORY);
         sorted_again_and_again::<3>(0, &[]);
+    }
+
+    #[test]
+    fn those_who_stay_keep_their_order() {
+        for later in [false, true] {
+            let of = |i: usize| Particle {
+                position: Vector::from_fn(|k| (10 * i + k) as f64),
+                velocity: Vector::ZERO,
+                spin: Vector::ZERO,
+                mass: i as f64,
+                volume: 1.0,
+                half_width: 1.0,
+                deformation: Matrix::IDENTITY,
+                stress: Symmetric::ZERO,
+                number: i as u32,
+            };
+            let mut particles = Particles::<f64, 2>::from_fn(9, own(HISTORY), of);
+            let (mut order, mut expected): (Vec<u32>, Vec<usize>) = ((0..9).collect(), (0..9).collect());
+            if later {
+                order.reverse();
+                expected.reverse();
+                particles.permute(&order);
+            }
+            for gone in [&[0, 3, 4, 8][..], &[], &[1], &[3]] {
+                particles.remove(gone);
+                gone.iter().rev().for_each(|&place| drop(expected.remove(place as usize)));
+                assert!(particles.iter().eq(expected.iter().map(|&i| of(i))), "{gone:?}");
+                assert_eq!(by_number(particles.numbers()).len(), expected.len());
+            }
+            // They can be sorted on.
+            particles.permute(&[2, 0, 1]);
+            assert!(particles.iter().eq([2, 0, 1].iter().map(|&i| of(expected[i]))));
+            particles.remove(&[0, 1, 2]);
+            assert!(particles.is_empty());
+            particles.permute(&[]);
+            particles.settle();
+        }
+        assert_eq!(by_number(&[7, 2, 9, 3]), [1, 3, 0, 2]);
+        assert_eq!(by_number(&[2, 0, 1]), [1, 2, 0]);
     }
 
     #[test]

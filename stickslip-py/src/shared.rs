@@ -11,8 +11,8 @@ use std::sync::{Arc, Mutex, MutexGuard};
 use stickslip::column::ColumnDescription;
 use stickslip::door::{
     BodyState, ColumnPlace, ColumnRef, ContactPatch, ContactSum, GridSnapshot, JointState, Ledger, LoadState,
-    NoColumn, ParticleSnapshot, ParticleView, RelaxationState, RestoreError, SavedState, Simulation,
-    StepError, TracedParticle, View, WriteError,
+    NoColumn, ParticleSnapshot, ParticleView, RelaxationState, RemovedParticles, RestoreError, SavedState,
+    Simulation, StepError, TracedParticle, View, WriteError,
 };
 use stickslip::scene::StartVelocities;
 
@@ -103,6 +103,14 @@ impl Simulation for Handle {
         self.0.change(|simulation| simulation.rebuild_workspace());
     }
 
+    fn hold(&mut self) {
+        self.0.ask(|simulation| simulation.hold());
+    }
+
+    fn take_back(&mut self) -> bool {
+        self.0.change(|simulation| simulation.take_back())
+    }
+
     fn settle(&mut self) {
         self.0.change(|simulation| simulation.settle());
     }
@@ -166,6 +174,10 @@ impl View for Handle {
         self.0.ask(|simulation| simulation.joints())
     }
 
+    fn removed(&self) -> Vec<RemovedParticles> {
+        self.0.lock().removed()
+    }
+
     fn patches(&self) -> Vec<ContactPatch> {
         self.0.ask(|simulation| simulation.patches())
     }
@@ -189,7 +201,8 @@ impl View for Handle {
         let count = column.description.kind.components();
         let mut values = vec![0.0; count * column.len()];
         column.copy_to(&mut values);
-        let numbers: Vec<u32> = (0..column.len() as u32).collect();
+        let mut numbers = column.numbers().to_vec();
+        numbers.sort_unstable();
         Ok(ColumnRef::new(column.description, numbers, move |row, component| values[row * count + component]))
     }
 

@@ -160,6 +160,50 @@ particles = 0.05
 checkpoints = 0.05
 "#;
 
+/// A block that is struck so hard that steps fail and are taken again, and one that flies out of the domain.
+const LOSING: &str = r#"
+gravity = [0, -9.81]
+[space]
+dimension = "plane-strain"
+cell = 0.1
+domain = { min = [-1, -1], max = [2, 1], leaving = "remove" }
+[time]
+end = 0.18
+[health]
+retries = 6
+energy = { then = "cut-step", bound = 0.01 }
+[materials.gel]
+density = 1000
+neo_hookean = { young_modulus = 1e5, poisson_ratio = 0.3 }
+[[bodies]]
+name = "struck"
+material = "gel"
+shape.box = { min = [-0.95, -0.4], max = [-0.15, 0.4] }
+[[bodies]]
+name = "gone"
+material = "gel"
+shape.box = { min = [1.2, 0.2], max = [1.7, 0.7] }
+velocity = [6, 0]
+spin = 3
+[[loads]]
+name = "blow"
+body = "struck"
+on = "x_min"
+traction = ["2e6 * exp(-t / 5e-3)", 0]
+[outputs]
+tables = 0.002
+particles = 0.02
+checkpoints = 0.01
+[[outputs.probes]]
+name = "heart"
+at = [1.4, 0.5]
+fixed_in = "material"
+[[outputs.arrivals]]
+quantity = "speed"
+threshold = 0.2
+bodies = ["gone"]
+"#;
+
 fn scene(text: &str) -> Scene {
     parse("scene.toml", text, &[]).unwrap_or_else(|error| panic!("{error}")).scene
 }
@@ -232,6 +276,7 @@ fn assert_same_run(expected: &Path, found: &Path) {
     assert!(expected.state_sum.is_some());
     assert_eq!(expected.state_sum, found.state_sum);
     assert_eq!((expected.warnings, expected.status), (found.warnings, found.status));
+    assert_eq!(expected.looks, found.looks);
     assert_eq!(expected.performance.steps, found.performance.steps);
     assert_eq!(expected.relaxation, found.relaxation);
 }
@@ -239,7 +284,7 @@ fn assert_same_run(expected: &Path, found: &Path) {
 #[test]
 fn a_stopped_run_goes_on_bit_for_bit() {
     let single = PLANE.replace("double", "single");
-    for (text, first) in [(PLANE, 1), (PLANE, 97), (&single, 40), (SPACE, 30)] {
+    for (text, first) in [(PLANE, 1), (PLANE, 97), (&single, 40), (SPACE, 30), (LOSING, 3), (LOSING, 100)] {
         let scene = scene(text);
         let folder = tempfile::tempdir().unwrap();
         let [whole, parts] = ["whole", "parts"].map(|name| folder.path().join(name));
@@ -263,6 +308,55 @@ fn a_stopped_run_goes_on_bit_for_bit() {
         go_on(&scene, &parts).unwrap();
         assert_same_run(&whole, &parts);
     }
+}
+
+#[test]
+fn a_run_that_loses_particles_and_takes_steps_again_says_so() {
+    let scene = scene(LOSING);
+    let folder = tempfile::tempdir().unwrap();
+    let summary = start(&scene, folder.path()).unwrap();
+    let of = |kind: &str, body: Option<&str>| {
+        let mut found = summary.warnings.iter();
+        let found = found.find(|warning| warning.kind == kind && warning.body.as_deref() == body);
+        found.unwrap_or_else(|| panic!("{kind}: {:?}", summary.warnings)).clone()
+    };
+    let leaving = of("leaving", Some("gone"));
+    assert!(leaving.message.contains("all that there were") && leaving.count > 1, "{leaving:?}");
+    assert_eq!(leaving.worst, 100.0, "five by five cells of four particles");
+    assert!(leaving.message.contains("the first at t = 5.") && leaving.time > 0.05, "{leaving:?}");
+    let failed = of("failed-step", None);
+    assert!(failed.message.contains("inverted") && failed.worst >= 2.0, "{failed:?}");
+    assert!(failed.time > 0.0 && failed.time < 0.01, "{failed:?}");
+    let results = stickslip::observe::Results::open(folder.path()).unwrap();
+    let removed = results.removed_table().unwrap();
+    let last = removed.last().unwrap();
+    assert_eq!((last.body.as_str(), last.particles), ("gone", 100));
+    assert!((last.mass - 250.0).abs() < 1e-9 && (last.momentum[0] / 1500.0 - 1.0).abs() < 0.05, "{last:?}");
+    let bodies = results.bodies_table().unwrap();
+    let masses: Vec<f64> = bodies.iter().filter(|row| row.body == "gone").map(|row| row.state.mass).collect();
+    assert!(masses[0] == 250.0 && masses.windows(2).all(|pair| pair[1] <= pair[0]));
+    assert_eq!(*masses.last().unwrap(), 0.0);
+    assert!(bodies.iter().all(|row| row.state.position.iter().all(|x| x.is_finite())));
+    // Snapshots are read back, and the last has none of them.
+    let frame = results.frames().last().unwrap().clone();
+    assert!(results.particles(&frame).unwrap().body.iter().all(|&body| body != 1));
+}
+
+#[test]
+fn a_scene_begins_with_what_another_run_has_left() {
+    let folder = tempfile::tempdir().unwrap();
+    let first = folder.path().join("first");
+    let mut short = scene(LOSING);
+    short.time.end = 0.06;
+    start(&short, &first).unwrap();
+    let left = stickslip::observe::Results::open(&first).unwrap().bodies_table().unwrap();
+    let mass = left.iter().rfind(|row| row.body == "gone").unwrap().state.mass;
+    assert!(mass > 0.0 && mass < 250.0, "{mass}");
+    let text = format!("{LOSING}\n[start]\nfrom = {:?}\n", first.display().to_string());
+    let out = folder.path().join("second");
+    start(&scene(&text), &out).unwrap();
+    let bodies = stickslip::observe::Results::open(&out).unwrap().bodies_table().unwrap();
+    assert_eq!(bodies.iter().find(|row| row.body == "gone").unwrap().state.mass, mass);
 }
 
 #[test]

@@ -6,8 +6,8 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use stickslip::column;
 use stickslip::door::*;
-use stickslip::observe::{Results, RunWarning};
-use stickslip::run::{self, RunOptions};
+use stickslip::observe::{Checkpoint, Manifest, Results, RunWarning, Status};
+use stickslip::run::{self, Checkpointing, RunError, RunOptions};
 use stickslip::scene::{self, Scene};
 
 /// A block of 10 by 4 cells of 10 cm with four particles in each, about the origin.
@@ -41,6 +41,10 @@ struct Puppet {
     motion: BodyMotion,
     /// Total and strain energy at a time [J].
     energy: fn(f64) -> [f64; 2],
+    /// Momentum at a time [kg m/s].
+    momentum: fn(f64) -> [f64; 3],
+    /// The stable step at a time [s].
+    stable: fn(f64) -> f64,
     time: f64,
     steps: u64,
 }
@@ -49,7 +53,14 @@ const REST: [[f64; 2]; 2] = [[1.0, 0.0], [0.0, 1.0]];
 
 impl Puppet {
     fn new(motion: BodyMotion) -> Self {
-        Puppet { motion, energy: |_| [0.0, 0.0], time: 0.0, steps: 0 }
+        Puppet {
+            motion,
+            energy: |_| [0.0, 0.0],
+            momentum: |_| [0.0; 3],
+            stable: |_| STEP,
+            time: 0.0,
+            steps: 0,
+        }
     }
 
     fn now(&self) -> impl Iterator<Item = TracedParticle> {
@@ -81,7 +92,7 @@ impl View for Puppet {
     }
 
     fn stable_step(&self) -> f64 {
-        STEP
+        (self.stable)(self.time)
     }
 
     fn bodies(&self) -> Vec<BodyState> {
@@ -106,7 +117,8 @@ impl View for Puppet {
 
     fn ledger(&self) -> Ledger {
         let [total, strain] = (self.energy)(self.time);
-        Ledger { kinetic: self.bodies()[0].kinetic, strain, total, ..Ledger::default() }
+        let momentum = (self.momentum)(self.time);
+        Ledger { kinetic: self.bodies()[0].kinetic, strain, total, momentum, ..Ledger::default() }
     }
 
     fn contact_sums(&self) -> Vec<ContactSum> {
@@ -155,7 +167,7 @@ impl View for Puppet {
 
 impl Simulation for Puppet {
     fn step(&mut self, longest: f64) -> Result<f64, StepError> {
-        let step = longest.min(STEP);
+        let step = longest.min(self.stable_step());
         self.time += step;
         self.steps += 1;
         Ok(step)
@@ -218,6 +230,145 @@ fn the_scene_sets_how_far_energy_may_drift() {
     let puppet = || Puppet { energy: |t| [-0.3 * t, 1.0], ..Puppet::new(|x, _| (x, [0.0; 2], REST)) };
     assert_eq!(kinds(SCENE, puppet()), ["energy"]);
     assert!(kinds(&SCENE.replace("end = 1", "end = 1, energy_drift = 0.4"), puppet()).is_empty());
+}
+
+#[test]
+fn a_check_that_stops_ends_the_run_with_all_records() {
+    let out = tempfile::tempdir().unwrap();
+    let stopping =
+        SCENE.replace("[[bodies]]", "health = { energy = { then = \"stop\", bound = 0.3 } }\n[[bodies]]");
+    let scene = scene::parse("puppet.toml", &stopping, &[]).unwrap().scene;
+    let mut puppet = Puppet { energy: |t| [t * t, 1.0], ..Puppet::new(|x, _| (x, [0.0; 2], REST)) };
+    let options = RunOptions { threads: 1, ..RunOptions::new(out.path()) };
+    let error = run::run(&scene, &mut puppet, &options, &mut |_| {}).unwrap_err();
+    let RunError::Unhealthy { warning, time } = &error else { panic!("{error}") };
+    assert_eq!((warning.kind.as_str(), warning.count, *time), ("energy", 1, puppet.time));
+    assert!(*time > 0.3_f64.sqrt() && *time < 0.3_f64.sqrt() + 201.0 * STEP, "{error}");
+    assert!(error.to_string().contains("by health.energy: energy comes from nowhere"), "{error}");
+    assert!(miette::Diagnostic::help(&error).unwrap().to_string().contains("try"));
+    let manifest = Manifest::read(out.path()).unwrap();
+    assert_eq!((manifest.status, manifest.error), (Status::Stopped, Some(error.to_string())));
+    assert!(manifest.looks > 1 && manifest.warnings == [*warning.clone()], "{:?}", manifest.warnings);
+    let results = Results::open(out.path()).unwrap();
+    assert_eq!(results.energy_table().unwrap().last().unwrap().time, puppet.time);
+    assert_eq!(results.frames().last().unwrap().time, puppet.time);
+}
+
+#[test]
+fn a_run_that_a_check_stopped_goes_on_once_the_scene_lets_it() {
+    let out = tempfile::tempdir().unwrap();
+    let text = r#"
+        space = { dimension = "plane-strain", cell = "2 cm" }
+        time = { end = "40 ms" }
+        health = { speed = { then = "stop", bound = 1e-6 } }
+        materials.gel = { density = 1000, neo_hookean = { young_modulus = "1 MPa", poisson_ratio = 0.3 } }
+        [[bodies]]
+        name = "left"
+        material = "gel"
+        shape.ball = { center = [0, 0], radius = "10 cm" }
+        spin = 1
+    "#;
+    let make = |text: &str| scene::parse("disk.toml", text, &[]).unwrap().scene;
+    let checkpoints = Checkpointing { at_end: true, ..Checkpointing::default() };
+    let options = RunOptions { threads: 1, checkpoints, ..RunOptions::new(out.path()) };
+    let stopping = make(text);
+    let error = run::run(&stopping, &mut *stickslip::step::build(&stopping).unwrap(), &options, &mut |_| {});
+    assert!(matches!(error, Err(RunError::Unhealthy { .. })), "{error:?}");
+    assert_eq!(Checkpoint::list(out.path()).unwrap().len(), 1);
+    let warning = make(&text.replace("stop", "warn"));
+    let mut simulation = stickslip::step::build(&warning).unwrap();
+    let summary = run::resume(&warning, &mut *simulation, &options, &mut |_| {}).unwrap();
+    assert_eq!(summary.status, Status::Finished);
+    assert!(summary.warnings[0].count > 1, "{:?}", summary.warnings);
+}
+
+#[test]
+fn what_the_scene_ignores_is_not_looked_for() {
+    let drifting = || Puppet { energy: |t| [-0.3 * t, 1.0], ..Puppet::new(|x, _| (x, [0.0; 2], REST)) };
+    for health in ["energy = \"ignore\"", "default = \"ignore\"", "energy = { bound = 0.4 }"] {
+        let text = SCENE.replace("[[bodies]]", &format!("health = {{ {health} }}\n[[bodies]]"));
+        assert!(kinds(&text, drifting()).is_empty(), "{health}");
+    }
+    let text =
+        SCENE.replace("[[bodies]]", "health = { default = \"ignore\", energy = \"warn\" }\n[[bodies]]");
+    assert_eq!(kinds(&text, drifting()), ["energy"]);
+}
+
+#[test]
+fn steps_are_cut_where_energy_drifts() {
+    let cutting = SCENE.replace("[[bodies]]", "health = { energy = \"cut-step\" }\n[[bodies]]");
+    let drifting = || Puppet { energy: |t| [0.5 * t, 1.0], ..Puppet::new(|x, _| (x, [0.0; 2], REST)) };
+    let (mut whole, mut cut) = (drifting(), drifting());
+    let kinds =
+        |warnings: Vec<RunWarning>| warnings.into_iter().map(|warning| warning.kind).collect::<Vec<_>>();
+    assert_eq!(kinds(judge(SCENE, &mut whole).1), ["energy"]);
+    assert_eq!(kinds(judge(&cutting, &mut cut).1), ["energy"]);
+    // From t = 0.2 s on, and again and again.
+    assert!(whole.steps == 1024 && cut.steps > 4 * whole.steps, "{} {}", whole.steps, cut.steps);
+    assert_eq!(cut.time, 1.0);
+}
+
+#[test]
+fn momentum_that_nothing_from_outside_gives_is_found() {
+    let pushed = |momentum| Puppet { momentum, ..Puppet::new(|[x, y], t| ([x + t, y], [1.0, 0.0], REST)) };
+    let weight = DENSITY * 0.4 * 9.81;
+    assert!((weight - 3924.0).abs() < 1e-9);
+    // 400 kg at 1 m/s.
+    assert!(kinds(SCENE, pushed(|_| [400.0, 0.0, 0.0])).is_empty());
+    let (notes, warnings) = judge(SCENE, &mut pushed(|t| [400.0 + 40.0 * t, 0.0, 0.0]));
+    let [warning] = &warnings[..] else { panic!("{warnings:?}") };
+    assert_eq!((warning.kind.as_str(), &warning.body, notes.len()), ("momentum", &None, 1));
+    assert!((warning.worst - 0.1).abs() < 1e-3 && warning.time > 0.1, "{warning:?}");
+    // Weight explains it, and a mirror takes what it likes across itself.
+    let falling = SCENE.replace("space =", "gravity = [0, -9.81]\nspace =");
+    let fall: fn(f64) -> [f64; 3] = |t| [400.0, -3924.0 * t, 0.0];
+    assert!(kinds(&falling, pushed(fall)).is_empty());
+    assert_eq!(kinds(SCENE, pushed(fall)), ["momentum"]);
+    let domain = "domain = { min = [-9, -9], max = [9, 9], y_min = \"symmetry\" }, cell";
+    assert!(kinds(&SCENE.replace("cell", domain), pushed(fall)).is_empty());
+}
+
+#[test]
+fn steps_that_shrink_without_end_are_found_though_time_hardly_goes_on() {
+    let shrinking = SCENE.replace("end = 1", "end = 0.02");
+    let stable: fn(f64) -> f64 = |t| if t < 0.01 { STEP } else { 1e-3 * STEP };
+    let mut puppet = Puppet { stable, ..Puppet::new(|x, _| (x, [0.0; 2], REST)) };
+    let (_, warnings) = judge(&shrinking, &mut puppet);
+    let [warning] = &warnings[..] else { panic!("{warnings:?}") };
+    assert_eq!((warning.kind.as_str(), warning.worst), ("small-step", 1e3));
+    // Seen within 200 of its steps, though the next row is far.
+    assert!(warning.time < 0.0112 && warning.count > 10, "{warning:?}");
+    let steady = Puppet { stable: |t| STEP * (1.0 - 0.9 * t), ..Puppet::new(|x, _| (x, [0.0; 2], REST)) };
+    assert!(kinds(SCENE, steady).is_empty());
+}
+
+#[test]
+fn impulses_that_are_reduced_too_often_are_found() {
+    let text = r#"
+        space = { dimension = "plane-strain", cell = "2 cm" }
+        time = { end = "60 ms" }
+        materials.gel = { density = 1000, neo_hookean = { young_modulus = "1 MPa", poisson_ratio = 0.3 } }
+        contact = [{ max_strain = 1e-6 }]
+        health = { max_strain = { bound = 0.1 } }
+        [[bodies]]
+        name = "left"
+        material = "gel"
+        shape.ball = { center = [0, 0], radius = "10 cm" }
+        velocity = ["0.3 m/s", 0]
+        [[bodies]]
+        name = "right"
+        material = "gel"
+        shape.ball = { center = ["20.5 cm", "2 cm"], radius = "10 cm" }
+        velocity = ["-0.3 m/s", 0]
+    "#;
+    let collide = |text: &str| {
+        let scene = scene::parse("disks.toml", text, &[]).unwrap().scene;
+        let warnings = judge(text, &mut *stickslip::step::build(&scene).unwrap()).1;
+        warnings.into_iter().find(|warning| warning.kind == "max-strain")
+    };
+    let warning = collide(text).expect("they are reduced");
+    assert!(warning.worst > 0.1 && warning.message.contains("between `left` and `right`"), "{warning:?}");
+    assert!(collide(&text.replace("max_strain = 1e-6", "friction = 0")).is_none());
 }
 
 #[test]

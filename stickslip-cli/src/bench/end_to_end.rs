@@ -1,6 +1,6 @@
-//! Problem P6: whole runs as a user starts them, with and without outputs.
+//! Problem P6: whole runs as a user starts them, with and without outputs, checks and checkpoints.
 
-use super::measure::{BenchTask, Order};
+use super::measure::{BenchSample, BenchTask, Order};
 use super::problems::BenchExtent;
 use super::record::EndToEnd;
 use crate::failure::Failure;
@@ -17,11 +17,18 @@ pub struct WholeRun {
 
 const SPHERE: &str = include_str!("../../../scenes/paper/inclined_plane_no_slip.toml");
 const DISKS: &str = include_str!("../../../scenes/paper/disks_collinear.toml");
-/// Runs with and runs without outputs; they take turns, so that a disturbance hits both kinds.
+/// Runs of each kind; they take turns, so that a disturbance hits all of them.
 const REPETITIONS: usize = 3;
 /// What takes the outputs away, but for the first and the last row of each table.
 const SILENT: [(&str, &str); 3] =
     [("outputs.tables", "1e9 s"), ("outputs.particles", "never"), ("outputs.grid", "never")];
+
+/// What takes the checks away.
+const UNCHECKED: [(&str, &str); 1] = [("health.default", "ignore")];
+/// Checkpoints in a run that has some: many, so that what they add can be told from what else varies.
+const CHECKPOINTS: u32 = 20;
+/// Seconds from one checkpoint to the next in the ratio that is asked for.
+const APART: f64 = 60.0;
 
 /// The scenes that are run whole.
 pub fn wholes(extent: BenchExtent) -> Vec<WholeRun> {
@@ -37,42 +44,60 @@ pub fn wholes(extent: BenchExtent) -> Vec<WholeRun> {
 }
 
 impl WholeRun {
-    /// Runs it with and without outputs, each in a process of its own.
+    /// Runs it as it is, and without outputs, without checks and with checkpoints, each in a process of its own.
     ///
     /// # Errors
-    /// A run fails, or its folder cannot be written.
+    /// The scene has mistakes, a run fails, or its folder cannot be written.
     pub fn measure(&self, threads: usize) -> Result<EndToEnd, Failure> {
         let folder = TemporaryFolder::new()?;
-        let (mut with_outputs, mut without_outputs) = (Vec::new(), Vec::new());
-        let mut sample = None;
+        let own: Vec<(String, String)> = owned(self.overrides);
+        let end =
+            stickslip::scene::parse("benchmark", self.scene, &own).map_err(Failure::input)?.scene.time.end;
+        let checkpoints =
+            vec![("outputs.checkpoints".to_owned(), format!("{} s", end / f64::from(CHECKPOINTS)))];
+        let kinds = [Vec::new(), owned(&SILENT), owned(&UNCHECKED), checkpoints];
+        let mut samples: [Vec<BenchSample>; 4] = Default::default();
         for _ in 0..REPETITIONS {
-            for (silent, times) in [(&[][..], &mut with_outputs), (&SILENT[..], &mut without_outputs)] {
-                let overrides = self.overrides.iter().chain(silent);
+            for (changes, samples) in kinds.iter().zip(&mut samples) {
                 let order = Order {
                     scene: self.scene.to_owned(),
-                    overrides: overrides
-                        .map(|(name, value)| ((*name).to_owned(), (*value).to_owned()))
-                        .collect(),
+                    overrides: own.iter().chain(changes).cloned().collect(),
                     threads,
                     task: BenchTask::Run(folder.0.clone()),
                 };
-                let ran = order.measure()?;
-                times.extend(&ran.repetitions);
-                sample = Some(ran);
+                samples.push(order.measure()?);
             }
         }
-        let sample = sample.expect("there are repetitions");
-        let fastest = |times: &[f64]| times.iter().copied().fold(f64::INFINITY, f64::min);
+        let least = |times: Vec<f64>| times.into_iter().fold(f64::INFINITY, f64::min);
+        let wall = |samples: &[BenchSample]| samples.iter().flat_map(|ran| ran.repetitions.clone()).collect();
+        let [with_outputs, without_outputs]: [Vec<f64>; 2] = [wall(&samples[0]), wall(&samples[1])];
+        // Of the processor, where the system tells it: other programs hardly disturb it.
+        let work = |samples: &[BenchSample]| {
+            least(
+                samples
+                    .iter()
+                    .filter_map(|ran| ran.processor_time.or(ran.repetitions.first().copied()))
+                    .collect(),
+            )
+        };
+        let [whole, _, unchecked, saving] = [0, 1, 2, 3].map(|kind: usize| work(&samples[kind]));
+        let sample = samples[0].first().expect("there are repetitions");
         Ok(EndToEnd {
             scene: self.name.to_owned(),
             threads,
             particles: sample.particles,
             steps: sample.steps,
-            ratio: fastest(&with_outputs) / fastest(&without_outputs),
+            ratio: least(with_outputs.clone()) / least(without_outputs.clone()),
+            checks: whole / unchecked,
+            checkpoints: 1.0 + (saving - whole) / f64::from(CHECKPOINTS) / APART,
             with_outputs,
             without_outputs,
         })
     }
+}
+
+fn owned(pairs: &[(&str, &str)]) -> Vec<(String, String)> {
+    pairs.iter().map(|(name, value)| ((*name).to_owned(), (*value).to_owned())).collect()
 }
 
 /// A folder for results that nobody will look at; it goes with this value.

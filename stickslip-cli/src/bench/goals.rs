@@ -116,6 +116,10 @@ pub fn goals(findings: Findings) -> Vec<Goal> {
     for run in findings.end_to_end {
         let name = format!("P6 {}: time with outputs over time without", run.scene);
         goals.push(goal(&name, Some(run.ratio), (AtMost, 1.05, None)));
+        let name = format!("P6 {}: time with checks of the run over time without", run.scene);
+        goals.push(goal(&name, Some(run.checks), (AtMost, 1.02, None)));
+        let name = format!("P6 {}: time with a checkpoint each minute over time without", run.scene);
+        goals.push(goal(&name, Some(run.checkpoints), (AtMost, 1.01, None)));
     }
     for peer in findings.peers.iter().filter(|peer| peer.basis == "linear") {
         let least = match peer.program.as_str() {

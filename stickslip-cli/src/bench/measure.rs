@@ -62,6 +62,8 @@ pub struct BenchSample {
     pub repetitions: Vec<f64>,
     /// Wall time in each verb of the step, in all repetitions [s].
     pub verbs: Vec<(String, f64)>,
+    /// Processor time of a run from end to end, that of threads which write outputs included [s].
+    pub processor_time: Option<f64>,
     /// Most memory that the process held from before the scene was read [bytes].
     pub memory: Option<u64>,
     /// Part of the repetitions' wall time in which the threads together had a core, over the number of threads.
@@ -130,7 +132,7 @@ pub fn answer() -> Result<(), Failure> {
 }
 
 fn take(order: &Order) -> Result<BenchSample, Failure> {
-    let start = Instant::now();
+    let (start, processor_time) = (Instant::now(), memory::processor_time());
     let loaded =
         stickslip::scene::parse("benchmark", &order.scene, &order.overrides).map_err(Failure::input)?;
     let mut simulation = stickslip::step::build(&loaded.scene)
@@ -148,6 +150,8 @@ fn take(order: &Order) -> Result<BenchSample, Failure> {
                 .map_err(Failure::run)?;
             sample.steps = simulation.steps();
             sample.repetitions = vec![start.elapsed().as_secs_f64()];
+            let spent = memory::processor_time().zip(processor_time);
+            sample.processor_time = spent.map(|(after, before)| after - before);
             sample.verbs = verbs(&*simulation);
         }
     }

@@ -111,6 +111,10 @@ pub struct EndToEnd {
     pub without_outputs: Vec<f64>,
     /// The fastest with over the fastest without outputs.
     pub ratio: f64,
+    /// Processor time with the checks of a run over that without, least of each.
+    pub checks: f64,
+    /// Processor time with a checkpoint each minute of it over that without, by what a checkpoint adds.
+    pub checkpoints: f64,
 }
 
 /// Another program on problem P1.
@@ -216,6 +220,7 @@ mod tests {
             steps: 10,
             repetitions: vec![5.0, 10.0, 4.0],
             verbs: vec![("scatter".into(), 9.5)],
+            processor_time: None,
             memory: Some(500_000_000),
             at_work: None,
         };

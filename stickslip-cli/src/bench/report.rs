@@ -111,8 +111,17 @@ fn verbs(results: &[Measured]) -> String {
 
 impl BenchRecord {
     fn whole_runs(&self) -> String {
-        let mut table =
-            TextTable::new(&["<scene", "particles", "steps", "threads", "with s", "without s", "ratio"]);
+        let mut table = TextTable::new(&[
+            "<scene",
+            "particles",
+            "steps",
+            "threads",
+            "with s",
+            "without s",
+            "ratio",
+            "checks",
+            "checkpoints",
+        ]);
         for run in &self.end_to_end {
             let fastest =
                 |times: &[f64]| format!("{:.2}", times.iter().copied().fold(f64::INFINITY, f64::min));
@@ -124,9 +133,14 @@ impl BenchRecord {
                 fastest(&run.with_outputs),
                 fastest(&run.without_outputs),
                 format!("{:.3}", run.ratio),
+                format!("{:.4}", run.checks),
+                format!("{:.5}", run.checkpoints),
             ]);
         }
-        format!("P6, whole runs with and without outputs.\n{table}\n")
+        format!(
+            "P6, whole runs with and without outputs; ratios of processor time with and without checks, and with and without a \
+             checkpoint each minute.\n{table}\n"
+        )
     }
 
     fn other_programs(&self) -> String {

@@ -264,6 +264,9 @@ impl How {
             Err(error) => {
                 // The failure is the news; a picture of it is welcome but must not hide it.
                 let _ = illustrate(&out);
+                if at_end && matches!(error, RunError::Unhealthy { .. }) {
+                    say(&format!("go on with: stickslip resume {}", out.display()))?;
+                }
                 return Err(Failure::run(error));
             }
         };

@@ -147,7 +147,7 @@ mod tests {
 
     #[test]
     fn a_cut_is_a_mirror() {
-        let mut domain = Domain { min: [0.5; 3], max: [4.0; 3], faces: [[Face::Open; 2]; 3] };
+        let mut domain = Domain::new([0.5; 3], [4.0; 3]);
         domain.faces[1] = [Face::Symmetry, Face::Fixed];
         let setting = Setting { mirrors: mirrors(&domain), ..Setting::default() };
         assert_eq!(setting.only_mirror(), Some(SymmetryPlane { axis: 1, position: 0.5 }));

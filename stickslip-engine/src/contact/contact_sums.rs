@@ -38,6 +38,11 @@ struct ImpulseSums {
     friction: f64,
     /// Way of slip, the mean over the area of each use [m].
     slip: f64,
+    /// Impulses at nodes, and those of them that were reduced to the rule's largest strain.
+    #[serde(default)]
+    pushes: u64,
+    #[serde(default)]
+    reduced: u64,
     /// Area times duration [m^2 s], and with the gap [m^3 s].
     area: f64,
     gap: f64,
@@ -204,7 +209,9 @@ impl ContactSums {
                 sum.moment[i] += magnitude * place[i];
             }
             sum.normal -= impulse.change.normal.f64();
-            self.scaled += u64::from(impulse.change.scale < T::ONE);
+            let reduced = u64::from(impulse.change.scale < T::ONE);
+            (sum.pushes, sum.reduced) = (sum.pushes + 1, sum.reduced + reduced);
+            self.scaled += reduced;
             self.work += impulse.work.f64();
         }
         for &place in &self.present {
@@ -286,6 +293,8 @@ impl ContactSums {
                 slip: sum.slipped(),
                 friction: sum.friction,
                 nodes: sum.last.nodes,
+                pushes: sum.pushes,
+                reduced: sum.reduced,
             })
         })
     }

@@ -1,6 +1,7 @@
 //! A column of a body's particles where it lies in the engine's memory, whatever its precision and dimension.
 
 use crate::column::ColumnDescription;
+use crate::particles::by_number;
 use std::borrow::Cow;
 
 /// A column of a body's particles: borrowed, and read as f64 in SI units and three dimensions.
@@ -15,14 +16,18 @@ pub struct ColumnRef<'a> {
 }
 
 impl<'a> ColumnRef<'a> {
-    /// A column of particles with these numbers, which are 0, 1, 2 ... in any order: `at(row, component)` is a
-    /// component in space.
+    /// A column of particles with these numbers, in any order: `at(row, component)` is a component in space.
     pub fn new(
         description: ColumnDescription,
         numbers: impl Into<Cow<'a, [u32]>>,
         at: impl Fn(usize, usize) -> f64 + 'a,
     ) -> Self {
         ColumnRef { description, numbers: numbers.into(), at: Box::new(at) }
+    }
+
+    /// Each particle's number in its body, in the order of memory.
+    pub fn numbers(&self) -> &[u32] {
+        &self.numbers
     }
 
     /// Particles of the body.
@@ -46,7 +51,7 @@ impl<'a> ColumnRef<'a> {
         self.numbers.iter().enumerate().map(row)
     }
 
-    /// The `N` components in space of each particle, by its number.
+    /// The `N` components in space of each particle, in the order of their numbers.
     ///
     /// # Panics
     /// `N` is not what [`Kind::components`](crate::column::Kind::components) says.
@@ -56,16 +61,15 @@ impl<'a> ColumnRef<'a> {
         values
     }
 
-    /// Writes the components in space of one particle after the other, by their numbers.
+    /// Writes the components in space of one particle after the other, in the order of their numbers.
     ///
     /// # Panics
     /// There is not room for exactly so many.
     pub fn copy_to(&self, values: &mut [f64]) {
         let count = self.description.kind.components();
         assert_eq!(values.len(), count * self.len(), "room for `{}`", self.description.name);
-        for (row, &number) in self.numbers.iter().enumerate() {
-            let to = &mut values[number as usize * count..][..count];
-            to.iter_mut().enumerate().for_each(|(k, x)| *x = (self.at)(row, k));
+        for (to, row) in values.chunks_exact_mut(count).zip(by_number(&self.numbers)) {
+            to.iter_mut().enumerate().for_each(|(k, x)| *x = (self.at)(row as usize, k));
         }
     }
 }

@@ -50,6 +50,11 @@ pub trait View {
     }
     /// The widest contact of each pair of bodies since the start, ordered by pair.
     fn patches(&self) -> Vec<ContactPatch>;
+    /// What left the domain since the start with particles that were taken out, in the order of the bodies; nothing of
+    /// simulations that take none out.
+    fn removed(&self) -> Vec<RemovedParticles> {
+        Vec::new()
+    }
     /// All particles now, ordered by body and then by the particle's number in its body.
     fn snapshot(&self) -> ParticleSnapshot;
     /// Shows every particle of a body to `look`, in no order that means anything.
@@ -102,6 +107,12 @@ pub trait Simulation: View + Send {
     /// Drops all that can be made anew from the state between two steps: grid, lists, room to work in. The next step
     /// makes it anew, with the same bits as without.
     fn rebuild_workspace(&mut self) {}
+    /// Keeps a copy of the state, to [`Simulation::take_back`] the steps after it.
+    fn hold(&mut self) {}
+    /// Goes back to the state that was held last; a simulation that holds none gives false, and stays as it is.
+    fn take_back(&mut self) -> bool {
+        false
+    }
     /// Moves the columns of all particles to where they lay at first: steps that sort particles move them. What they
     /// hold, and in which order, stays.
     fn settle(&mut self) {}
@@ -165,7 +176,8 @@ pub struct Ledger {
     pub strain: f64,
     /// Potential energy in gravity, zero at the origin [J].
     pub potential: f64,
-    /// Work done on the bodies by prescribed motion, loads and supports [J].
+    /// Work done on the bodies by prescribed motion, loads and supports, less the energy that went with particles which
+    /// left the domain [J].
     pub external_work: f64,
     /// Dissipated by friction, cohesion and viscosity of contacts [J].
     pub friction: f64,
@@ -187,6 +199,39 @@ pub struct Ledger {
     /// Nodes of three bodies and more where contact was still changing velocities when it was cut short,
     /// since the start.
     pub unsettled_nodes: u64,
+    /// Mass of particles that left the domain and were taken out, since the start [kg].
+    #[serde(default)]
+    pub removed_mass: f64,
+    /// Their kinetic, strain and potential energy when they were taken out [J].
+    #[serde(default)]
+    pub removed_energy: f64,
+    /// Their momentum then [kg m/s].
+    #[serde(default)]
+    pub removed_momentum: [f64; 3],
+    /// Their angular momentum then, about the origin [kg m^2/s].
+    #[serde(default)]
+    pub removed_angular_momentum: [f64; 3],
+}
+
+/// What left the domain with the particles of a body that were taken out since the start.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct RemovedParticles {
+    /// How many.
+    pub count: u64,
+    /// When the first was taken out [s].
+    pub time: f64,
+    /// Where that was [m].
+    pub place: [f64; 3],
+    /// Their mass [kg].
+    pub mass: f64,
+    /// Their kinetic, strain and potential energy then [J].
+    pub energy: f64,
+    /// What their material had dissipated [J].
+    pub plastic: f64,
+    /// Their momentum [kg m/s].
+    pub momentum: [f64; 3],
+    /// Their angular momentum about the origin [kg m^2/s].
+    pub angular_momentum: [f64; 3],
 }
 
 /// What a load or a support did. Impulse and work are sums since the start: differences are what it did in between.
@@ -254,6 +299,12 @@ pub struct ContactSum {
     pub friction: f64,
     /// Grid nodes in contact in the last step in which the pair touched.
     pub nodes: usize,
+    /// Impulses at nodes since the start, and how many of these were reduced to the rule's `max_strain`.
+    #[serde(default)]
+    pub pushes: u64,
+    /// See `pushes`.
+    #[serde(default)]
+    pub reduced: u64,
 }
 
 /// A reader's place in time among the contacts. Each reader has its own, and none disturbs another.
@@ -520,7 +571,8 @@ impl StepError {
                  earlier, or give the scene a domain"
             }
             StepError::Escaped { bounded: true, .. } => {
-                "make the domain larger, end the run earlier, or put a face in the way"
+                "make the domain larger, end the run earlier, put a face in the way, or let particles of deformable \
+                 bodies go: space.domain.leaving = \"remove\""
             }
             StepError::NoThickness { .. } => {
                 "it strained far in one step: try a smaller time.courant; look at the last frame for what went wrong first"

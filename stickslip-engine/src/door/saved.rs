@@ -1,5 +1,6 @@
 //! The state of a simulation as data: what a checkpoint holds of it.
 
+use super::RemovedParticles;
 use crate::contact::ContactSums;
 use crate::load::LoadSums;
 use crate::rigid::{Pose, RigidState};
@@ -30,6 +31,9 @@ pub struct SavedState {
     pub(crate) joints: Vec<JointSums>,
     #[serde(default)]
     pub(crate) longest_rigid: Option<f64>,
+    /// What left the domain, body by body; nothing where nothing did.
+    #[serde(default)]
+    pub(crate) removed: Vec<RemovedParticles>,
 }
 
 /// A body between two steps.
@@ -41,6 +45,9 @@ pub struct SavedBody {
     pub numbers: Vec<u32>,
     /// What its particles have.
     pub columns: Vec<SavedColumn>,
+    /// How many of its particles have left the domain and are not there.
+    #[serde(default)]
+    pub(crate) missing: usize,
     /// Where it is and how it moves, if it is rigid.
     pub(crate) motion: Option<RigidState>,
     pub(crate) disorder: Disorder,

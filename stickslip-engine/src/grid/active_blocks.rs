@@ -80,7 +80,7 @@ impl<const D: usize> ActiveBlocks<D> {
     /// which must be [`addressable`].
     ///
     /// `left` says which cells of each tile particles have left since the last time, from the lowest bit on; without it
-    /// all particles are looked at.
+    /// all particles are looked at, as always of bodies that were [forgotten](ActiveBlocks::forget).
     pub fn update(
         &mut self,
         (bodies, count, reach): (usize, impl Fn(usize) -> usize + Sync, i32),
@@ -92,11 +92,11 @@ impl<const D: usize> ActiveBlocks<D> {
         let changed = AtomicBool::new(false);
         each(&mut self.cell_lists, 16, |body, cell_list| {
             let blocks = match left {
-                Some(left) => {
+                Some(left) if !cell_list.forgotten => {
                     let left = &left[first_tile[body]..first_tile[body + 1]];
                     cell_list.update(left, |particle| base(body, particle))
                 }
-                None => cell_list.start((count(body), reach), |particle| base(body, particle)),
+                _ => cell_list.start((count(body), reach), |particle| base(body, particle)),
             };
             if blocks == Blocks::New {
                 changed.store(true, Ordering::Relaxed);
@@ -107,6 +107,11 @@ impl<const D: usize> ActiveBlocks<D> {
             return Blocks::New;
         }
         Blocks::Same
+    }
+
+    /// Takes note that a body has other particles: the next update looks at all of them.
+    pub fn forget(&mut self, body: usize) {
+        self.cell_lists[body].forgotten = true;
     }
 
     /// Covers a body anew: all its particles are others than before. Counts as [`ActiveBlocks::update`] does.

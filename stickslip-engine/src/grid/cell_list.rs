@@ -57,6 +57,8 @@ pub(super) struct CellList {
     pub reached: Vec<CornerBlocks>,
     /// Blocks that the particles reach, sorted.
     pub blocks: Vec<u64>,
+    /// Whether it knows nothing of the particles that there are now.
+    pub forgotten: bool,
     /// Nodes that a particle reaches beyond its base node, along each axis.
     reach: i32,
     /// Particles on the move, by their new homes.

@@ -12,7 +12,7 @@ use crate::boundary::{Boundary, Wall};
 use crate::check;
 use crate::contact::{ContactSums, Rules};
 use crate::damping::{BulkViscosity, NodeDamping, viscosity_columns};
-use crate::door::Simulation;
+use crate::door::{RemovedParticles, Simulation};
 use crate::geometry::{Filling, Mirror, MirroredShape, ParticleSite, fill};
 use crate::grid::Lattice;
 use crate::lanes::{Laned, Processor};
@@ -129,11 +129,15 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             });
         }
         let origin = scene.domain.as_ref().map_or([0.0; 3], |domain| domain.min);
+        let filled = bodies.iter().map(|body: &Body<T, D>| body.particles.len()).collect();
+        let removed = vec![RemovedParticles::default(); bodies.len()];
         let disorder = bodies.iter().map(|body: &Body<T, D>| Disorder::any(body.particles.len())).collect();
         Ok(Engine {
             settings: Settings {
                 lattice: Lattice { whole_cells, ..Lattice::new(Vector::of(origin), T::of(cell)) },
                 domain: scene.domain.as_ref().map(|domain| [domain.min, domain.max].map(Vector::of)),
+                leaving: scene.domain.as_ref().map_or_else(Default::default, |domain| domain.leaving),
+                filled,
                 gravity: Vector::of(scene.gravity),
                 transfer: scene.time.transfer,
                 pic_share: T::of(pic_share(scene.time.transfer, scene.time.pic_share)),
@@ -156,6 +160,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 contact_sums: ContactSums::default(),
                 loads: vec![LoadSums::default(); scene.loads.len()],
                 joints: vec![JointSums::default(); scene.joints.len()],
+                removed,
                 damping: 0.0,
                 relaxation: RelaxationProgress::default(),
                 signal: None,
@@ -163,6 +168,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 steps: 0,
             },
             workspace: Workspace::new(Boundary::new(walls::<D>(scene))),
+            held: None,
             watch: Stopwatch::default(),
             basis: PhantomData,
         })

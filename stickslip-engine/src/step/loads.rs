@@ -206,10 +206,16 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         for load in &self.settings.loads {
             let (numbers, places) = (bodies[load.body].particles.numbers(), &mut places[load.body]);
             let lies = |number: usize| {
-                places.get(number).is_some_and(|&place| numbers[place as usize] as usize == number)
+                places.get(number).is_some_and(|&place| {
+                    place == NOWHERE || numbers.get(place as usize) == Some(&(number as u32))
+                })
             };
             if !load.points.iter().all(|point| lies(point.particle)) {
-                places.resize(numbers.len(), 0);
+                // Of particles that left the domain there is none.
+                let points = load.points.iter().map(|point| point.particle);
+                let most = points.chain(numbers.iter().map(|&number| number as usize)).max();
+                places.clear();
+                places.resize(most.map_or(0, |most| most + 1), NOWHERE);
                 for (place, &number) in numbers.iter().enumerate() {
                     places[number as usize] = place as u32;
                 }
@@ -234,8 +240,13 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             let [number, point] = numbers[i].map(|number| number as usize);
             let (load, point) = (&loads[number], &loads[number].points[point]);
             let body = &bodies[load.body];
-            let mut particle = body.particles.get(places[load.body][point.particle] as usize);
+            let place = places[load.body][point.particle];
             loaded.nodes.clear();
+            if place == NOWHERE {
+                loaded.felt = PointForce::default();
+                return;
+            }
+            let mut particle = body.particles.get(place as usize);
             let (mut velocity, mut moves) = (Vector::ZERO, Vector::ZERO);
             // A rigid body feels the force itself, see `mechanism/`.
             let moved_by_nodes = !body.is_rigid();
@@ -280,7 +291,11 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             let body = &self.state.bodies[load.body];
             for (point, loaded) in load.points.iter().zip(points.by_ref()) {
                 let LoadedPoint { felt, before, nodes } = loaded;
-                let particle = body.particles.get(room.places[load.body][point.particle] as usize);
+                let place = room.places[load.body][point.particle];
+                if place == NOWHERE {
+                    continue;
+                }
+                let particle = body.particles.get(place as usize);
                 let way = place_of(&particle, point) - *before;
                 let mut force = felt.force;
                 if body.is_rigid() {
@@ -309,12 +324,12 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.watch.lap("loads", start);
     }
 
-    /// How far the points of a load are from where they were, the mean over them [m].
+    /// How far the points of a load are from where they were, the mean over those that are there [m].
     pub(super) fn load_displacement(&self, load: &LoadPoints) -> [f64; 3] {
         let particles = &self.state.bodies[load.body].particles;
         let mut wanted: Vec<_> = load.points.iter().map(|point| (point.particle as u32, point)).collect();
         wanted.sort_by_key(|(number, _)| *number);
-        let mut sum = [0.0; 3];
+        let (mut sum, mut there) = ([0.0; 3], (0, 0.0));
         for (place, number) in particles.numbers().iter().enumerate() {
             let first = wanted.partition_point(|(wanted, _)| wanted < number);
             let here = wanted[first..].iter().take_while(|(wanted, _)| wanted == number);
@@ -322,9 +337,14 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 let particle = particles.get(place);
                 let now = place_of(&particle, point).space();
                 (0..D).for_each(|i| sum[i] += point.measure * (now[i] - load.start(point)[i]));
+                there = (there.0 + 1, there.1 + point.measure);
             }
         }
-        sum.map(|sum| sum / load.measure)
+        match there {
+            (0, _) => [0.0; 3],
+            (count, _) if count == load.points.len() => sum.map(|sum| sum / load.measure),
+            (_, measure) => sum.map(|sum| sum / measure),
+        }
     }
 }
 

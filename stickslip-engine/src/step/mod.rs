@@ -26,6 +26,8 @@ mod average;
 mod build;
 mod cpu;
 mod glue;
+mod hold;
+mod leave;
 mod loads;
 mod mechanism;
 #[cfg(test)]
@@ -70,6 +72,8 @@ pub struct Engine<T, const D: usize, B> {
     settings: Settings<T, D>,
     state: State<T, D>,
     workspace: Workspace<T, D>,
+    /// The state before the last step, of simulations that take failed steps again.
+    held: Option<State<T, D>>,
     watch: Stopwatch,
     basis: PhantomData<B>,
 }
@@ -216,11 +220,24 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
         self.relax();
         self.state.time += dt;
         self.state.steps += 1;
+        self.remove_leavers();
         Ok(dt)
     }
 
     fn rebuild_workspace(&mut self) {
         self.workspace = Workspace::new(Boundary::new(self.settings.walls.clone()));
+    }
+
+    fn hold(&mut self) {
+        self.hold_state();
+    }
+
+    fn take_back(&mut self) -> bool {
+        let held = self.take_back_state();
+        if held {
+            self.rebuild_workspace();
+        }
+        held
     }
 
     fn settle(&mut self) {

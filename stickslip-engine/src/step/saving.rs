@@ -6,7 +6,7 @@ use super::state::{Disorder, State};
 use super::unbounded::Unbounded;
 use crate::basis::Basis;
 use crate::body::{Body, Particle};
-use crate::door::{RestoreError, SavedBody, SavedColumn, SavedState, SavedUnbounded};
+use crate::door::{RemovedParticles, RestoreError, SavedBody, SavedColumn, SavedState, SavedUnbounded};
 use crate::lanes::Laned;
 use crate::load::{LoadPoints, place_of};
 use crate::particles::{ColumnStart, Particles};
@@ -20,15 +20,16 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// The state as data.
     pub(super) fn saved(&self) -> SavedState {
         let State { time, steps, signal, damping, relaxation, .. } = self.state;
-        let bodies = self.state.bodies.iter().zip(&self.state.disorder);
+        let bodies = self.state.bodies.iter().zip(&self.state.disorder).zip(&self.settings.filled);
         SavedState {
             time,
             steps,
             bodies: bodies
-                .map(|(body, &disorder)| SavedBody {
+                .map(|((body, &disorder), filled)| SavedBody {
                     name: body.name.clone(),
                     numbers: body.particles.numbers().to_vec(),
                     columns: columns(&body.particles),
+                    missing: filled.saturating_sub(body.particles.len()),
                     motion: body.motion.as_ref().map(|motion| motion.state()),
                     disorder,
                 })
@@ -42,7 +43,12 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             moved: self.settings.loads.iter().map(moved).collect(),
             joints: self.state.joints.clone(),
             longest_rigid: Some(self.state.longest_rigid).filter(|step| step.is_finite()),
+            removed: self.state.removed.iter().copied().filter(|_| self.has_removed()).collect(),
         }
+    }
+
+    fn has_removed(&self) -> bool {
+        self.state.removed.iter().any(|removed| removed.count > 0)
     }
 
     /// Takes up a state of the same scene.
@@ -77,8 +83,10 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             }
         }
         let without_bounds = |i: usize| state.unbounded.iter().any(|unbounded| unbounded.body == i);
-        let restored = (saved.bodies.iter().zip(&state.bodies).enumerate())
-            .map(|(i, (saved, body))| particles(saved, body, without_bounds(i)));
+        let restored = (saved.bodies.iter().zip(&state.bodies).enumerate()).map(|(i, (saved, body))| {
+            let filled = self.settings.filled[i];
+            particles(saved, body, (!without_bounds(i)).then_some(filled))
+        });
         let restored: Vec<Particles<T, D>> = restored.collect::<Result<_, _>>()?;
 
         for ((body, saved), particles) in state.bodies.iter_mut().zip(&saved.bodies).zip(restored) {
@@ -97,6 +105,10 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             load.points.iter_mut().zip(moved).for_each(|(point, moved)| point.moved = moved);
         }
         state.contact_sums = saved.contact_sums.indexed();
+        state.removed = match saved.removed.len() {
+            count if count == wanted => saved.removed,
+            _ => vec![RemovedParticles::default(); wanted],
+        };
         (state.loads, state.joints) = (saved.loads, saved.joints);
         state.longest_rigid = saved.longest_rigid.unwrap_or(state.longest_rigid);
         (state.damping, state.relaxation) = (saved.damping, saved.relaxation);
@@ -137,13 +149,16 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let near = f64::from(f32::EPSILON) * self.settings.lattice.cell.f64();
         for load in &mut self.settings.loads {
             let particles = &self.state.bodies[load.body].particles;
-            let places = places(particles.numbers()).expect("each particle has a number of its own");
+            let filled = self.settings.filled[load.body];
+            let places = places(particles.numbers(), filled).expect("each particle has a number of its own");
             for i in 0..load.points.len() {
                 let point = &load.points[i];
-                let (now, start) = (
-                    place_of::<T, D>(&particles.get(places[point.particle]), point).space(),
-                    load.start(point),
-                );
+                // Where the particle left the domain, the point went with it.
+                let Some(particle) = places.get(point.particle).filter(|place| **place != usize::MAX) else {
+                    continue;
+                };
+                let (now, start) =
+                    (place_of::<T, D>(&particles.get(*particle), point).space(), load.start(point));
                 let way: [f64; 3] = std::array::from_fn(|k| if k < D { now[k] - start[k] } else { 0.0 });
                 load.points[i].moved = way.map(|way| if way.abs() < near { 0.0 } else { way });
             }
@@ -227,13 +242,20 @@ fn begun<T: Real, const D: usize>(
         return Ok(body);
     }
     let count = saved.numbers.len();
-    if count != fresh.particles.len() {
+    if count.checked_add(saved.missing) != Some(fresh.particles.len()) {
         let [count, wanted] = [count, fresh.particles.len()];
         return Err(off(&format!(
             "has {wanted} particles in the scene, and {count} in it: its shape or its filling is another"
         )));
     }
-    let places = places(&saved.numbers).ok_or_else(|| off("has particles that are numbered twice"))?;
+    let filled = fresh.particles.len();
+    let places =
+        places(&saved.numbers, filled).ok_or_else(|| off("has particles that are numbered twice"))?;
+    let gone = fresh.particles.numbers().iter().zip(0..);
+    let gone: Vec<u32> =
+        gone.filter(|(number, _)| places[**number as usize] == usize::MAX).map(|(_, place)| place).collect();
+    body.particles.remove(&gone);
+    let numbers = body.particles.numbers().to_vec();
     let density = body.density;
     // What carries velocities follows from the transfer, and may be another.
     let of_motion =
@@ -258,9 +280,8 @@ fn begun<T: Real, const D: usize>(
         }
         let values: Vec<T> = saved.numbers().collect();
         for (k, values) in (0..entries).zip(values.chunks(count.max(1))) {
-            let numbers = fresh.particles.numbers();
             let line = body.particles.line_mut(first + k);
-            line.iter_mut().zip(numbers).for_each(|(x, &number)| *x = values[places[number as usize]]);
+            line.iter_mut().zip(&numbers).for_each(|(x, &number)| *x = values[places[number as usize]]);
         }
     }
     if !same_start(&body.particles, &fresh.particles, NEAR) {
@@ -285,9 +306,10 @@ fn begun<T: Real, const D: usize>(
     Ok(body)
 }
 
-/// Where each particle stands among these numbers, by its own; none if two have one number.
-fn places(numbers: &[u32]) -> Option<Vec<usize>> {
-    let mut places = vec![usize::MAX; numbers.len()];
+/// Where each of so many particles stands among these numbers, by its own, `usize::MAX` of those that are not there;
+/// none if two have one number.
+fn places(numbers: &[u32], filled: usize) -> Option<Vec<usize>> {
+    let mut places = vec![usize::MAX; filled];
     for (place, &number) in numbers.iter().enumerate() {
         let known = places.get_mut(number as usize).filter(|known| **known == usize::MAX)?;
         *known = place;
@@ -338,11 +360,12 @@ fn columns<T: Real, const D: usize>(particles: &Particles<T, D>) -> Vec<SavedCol
     saved.collect()
 }
 
-/// The particles of a body as they were saved. Those of a body without bounds may be any number.
+/// The particles of a body as they were saved, of so many at the start; those of a body without bounds may be any
+/// number.
 fn particles<T: Real, const D: usize>(
     saved: &SavedBody,
     body: &Body<T, D>,
-    without_bounds: bool,
+    filled: Option<usize>,
 ) -> Result<Particles<T, D>, RestoreError> {
     let off = |what: String| RestoreError(format!("body `{}` {what}", body.name));
     let fresh = &body.particles;
@@ -350,10 +373,11 @@ fn particles<T: Real, const D: usize>(
     if saved.name != body.name {
         return Err(off(format!("stands where it has `{}`", saved.name)));
     }
-    if !without_bounds && count != fresh.len() {
-        return Err(off(format!("has {} particles in the scene, and {count} in it", fresh.len())));
+    if let Some(filled) = filled.filter(|&filled| count.checked_add(saved.missing) != Some(filled)) {
+        return Err(off(format!("has {filled} particles in the scene, and {count} in it")));
     }
-    places(&saved.numbers).ok_or_else(|| off("has particles that are numbered twice".into()))?;
+    let room = filled.unwrap_or(count);
+    places(&saved.numbers, room).ok_or_else(|| off("has particles that are numbered twice".into()))?;
     let blank = |i: usize| Particle {
         position: Vector::ZERO,
         velocity: Vector::ZERO,
@@ -363,9 +387,10 @@ fn particles<T: Real, const D: usize>(
         half_width: T::ZERO,
         deformation: Matrix::IDENTITY,
         stress: Symmetric::ZERO,
-        number: saved.numbers[i],
+        number: saved.numbers.get(i).copied().unwrap_or_default(),
     };
-    let mut particles = Particles::from_fn(count, fresh.own(), blank);
+    let mut particles = Particles::from_fn(room, fresh.own(), blank);
+    particles.truncate(count);
     if saved.columns.len() != fresh.described().count() {
         return Err(off("has other columns of particles in it than in the scene".into()));
     }
@@ -385,7 +410,7 @@ fn particles<T: Real, const D: usize>(
             particles.line_mut(entry).iter_mut().zip(&mut numbers).for_each(|(x, saved)| *x = saved);
         }
     }
-    if !without_bounds && !same_start(&particles, fresh, 0.0) {
+    if filled.is_some() && !same_start(&particles, fresh, 0.0) {
         return Err(off("began elsewhere than it does in the scene".into()));
     }
     Ok(particles)
@@ -402,7 +427,10 @@ fn same_start<T: Real, const D: usize>(
 ) -> bool {
     let first = ColumnStart::<D>::START;
     (first..first + D).all(|entry| {
-        let mut start = vec![[T::ZERO; 2]; fresh.len()];
+        // Those that are not there any more may have begun anywhere.
+        let most =
+            particles.numbers().iter().chain(fresh.numbers()).max().map_or(0, |&most| most as usize + 1);
+        let mut start = vec![[T::ZERO, T::of(f64::INFINITY)]; most];
         let widths = fresh.line(ColumnStart::<D>::HALF_WIDTH);
         for ((&number, &x), &width) in fresh.numbers().iter().zip(fresh.line(entry)).zip(widths) {
             start[number as usize] = [x, T::of(near) * width];

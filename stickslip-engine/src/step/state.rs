@@ -11,9 +11,10 @@ use crate::body::{Body, Totals};
 use crate::boundary::{Boundary, Wall};
 use crate::contact::{ContactSums, Impulses, Rules, Survey};
 use crate::damping::{BulkViscosity, NodeDamping};
+use crate::door::RemovedParticles;
 use crate::grid::{ActiveBlocks, Field, Lattice};
 use crate::load::{LoadPoints, LoadSums};
-use crate::scene::{Joint, Time, Transfer};
+use crate::scene::{Joint, Leaving, Time, Transfer};
 use crate::tensor::Vector;
 use serde::{Deserialize, Serialize};
 use std::sync::{Arc, Mutex};
@@ -25,6 +26,10 @@ pub struct Settings<T, const D: usize> {
     pub lattice: Lattice<T, D>,
     /// Lower and upper corner of the domain [m].
     pub domain: Option<[Vector<T, D>; 2]>,
+    /// What becomes of a particle that leaves it.
+    pub leaving: Leaving,
+    /// Particles of each body at the start; none of rigid ones without bounds.
+    pub filled: Vec<usize>,
     pub gravity: Vector<T, D>,
     pub transfer: Transfer,
     pub pic_share: T,
@@ -63,6 +68,8 @@ pub struct State<T, const D: usize> {
     pub loads: Vec<LoadSums>,
     /// What joints did since the start.
     pub joints: Vec<JointSums>,
+    /// What left the domain with particles since the start, body by body.
+    pub removed: Vec<RemovedParticles>,
     /// What damping took since the start [J].
     pub damping: f64,
     /// How far dynamic relaxation has come.

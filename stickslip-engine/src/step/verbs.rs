@@ -147,7 +147,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             pic: self.settings.pic_share,
             viscosity: self.settings.viscosity,
             lattice: self.settings.lattice,
-            domain: self.settings.domain,
+            domain: self.settings.domain.filter(|_| !self.removes_leavers()),
         });
         if verbs.update_velocity || verbs.update_stress {
             // Tile after tile, whoever took them.

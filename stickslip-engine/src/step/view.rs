@@ -10,12 +10,13 @@ use crate::column::{ColumnDescription, Kind};
 use crate::contact::Span;
 use crate::door::{
     BodyState, ColumnPlace, ColumnRef, ColumnSource, ContactPatch, ContactSum, GridSnapshot, JointState,
-    Ledger, LoadState, NoColumn, ParticleSnapshot, ParticleView, RelaxationState, SnapshotColumn,
-    TracedParticle, View,
+    Ledger, LoadState, NoColumn, ParticleSnapshot, ParticleView, RelaxationState, RemovedParticles,
+    SnapshotColumn, TracedParticle, View,
 };
 use crate::grid::{node_at, nodes_per_block};
 use crate::lanes::Laned;
 use crate::load::{LoadPoints, LoadSums};
+use crate::particles::by_number;
 use crate::rigid::RigidMotion;
 use crate::tensor::{Real, cross};
 use crate::threads::by_parts;
@@ -45,9 +46,8 @@ impl<'a, T: Laned, const D: usize> SnapshotRows<'a, T, D> {
         for (i, body) in bodies.iter().enumerate() {
             let first = places.len();
             places.resize(first + body.particles.len(), [i as u32, 0]);
-            for (place, &number) in body.particles.numbers().iter().enumerate() {
-                places[first + number as usize][1] = place as u32;
-            }
+            let by_number = by_number(body.particles.numbers());
+            places[first..].iter_mut().zip(by_number).for_each(|(row, place)| row[1] = place);
         }
         SnapshotRows { bodies, places }
     }
@@ -148,6 +148,10 @@ impl<T: Laned, const D: usize, B: Basis<T>> View for Engine<T, D, B> {
                     };
                 }
                 let totals = &all[i];
+                if totals.mass == 0.0 {
+                    // All its particles have left.
+                    return BodyState::default();
+                }
                 BodyState {
                     mass: totals.mass,
                     position: totals.first_moment.map(|x| x / totals.mass),
@@ -162,15 +166,24 @@ impl<T: Laned, const D: usize, B: Basis<T>> View for Engine<T, D, B> {
     }
 
     fn ledger(&self) -> Ledger {
+        let all_removed = &self.state.removed;
+        let removed = |of: fn(&RemovedParticles) -> f64| all_removed.iter().map(of).sum::<f64>();
         let mut ledger = Ledger {
             friction: self.state.contact_sums.friction,
             external_work: self.state.contact_sums.work
                 + loads::work(&self.state.loads)
-                + self.state.joints.iter().map(|joint| joint.work).sum::<f64>(),
+                + self.state.joints.iter().map(|joint| joint.work).sum::<f64>()
+                - removed(|removed| removed.energy),
             adhesion: self.state.contact_sums.adhesion,
             damping: self.state.damping,
             scaled_impulses: self.state.contact_sums.scaled,
             unsettled_nodes: self.state.contact_sums.unsettled,
+            plastic: removed(|removed| removed.plastic),
+            removed_mass: removed(|removed| removed.mass),
+            removed_energy: removed(|removed| removed.energy),
+            removed_momentum: [0, 1, 2].map(|i| all_removed.iter().map(|removed| removed.momentum[i]).sum()),
+            removed_angular_momentum: [0, 1, 2]
+                .map(|i| all_removed.iter().map(|removed| removed.angular_momentum[i]).sum()),
             ..Ledger::default()
         };
         let gravity = self.settings.gravity.space();
@@ -235,12 +248,18 @@ impl<T: Laned, const D: usize, B: Basis<T>> View for Engine<T, D, B> {
         self.state.contact_sums.patches()
     }
 
+    fn removed(&self) -> Vec<RemovedParticles> {
+        if self.removes_leavers() { self.state.removed.clone() } else { Vec::new() }
+    }
+
     fn snapshot(&self) -> ParticleSnapshot {
         let rows = SnapshotRows::of(&self.state.bodies);
         let Ok(snapshot) = ParticleSnapshot::of_columns(D, &rows);
         ParticleSnapshot {
             body: rows.places.par_iter().map(|&[body, _]| body).collect(),
-            number: (self.state.bodies.iter()).flat_map(|body| 0..body.particles.len() as u32).collect(),
+            number: (rows.places.iter())
+                .map(|&[body, place]| rows.bodies[body as usize].particles.numbers()[place as usize])
+                .collect(),
             history: self.remembered(&rows),
             ..snapshot
         }
@@ -272,7 +291,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> View for Engine<T, D, B> {
     }
 
     fn column_place(&self, body: usize, name: &str) -> Option<ColumnPlace> {
-        if self.without_bounds(body).is_some() {
+        if self.without_bounds(body).is_some() || self.removes_leavers() {
             None
         } else {
             self.state.bodies[body].particles.column_place(name)

@@ -17,7 +17,7 @@ pub struct Manifest {
     pub version: String,
     /// How the run stands.
     pub status: Status,
-    /// What stopped it, if it failed.
+    /// What stopped it, if it failed or a check stopped it.
     pub error: Option<String>,
     /// Title of the scene.
     pub title: String,
@@ -42,6 +42,9 @@ pub struct Manifest {
     /// What is wrong with its results, in the order in which it was found.
     #[serde(default)]
     pub warnings: Vec<RunWarning>,
+    /// How often the run was looked at for these.
+    #[serde(default)]
+    pub looks: u64,
     /// Known answers, to be held against `bodies.csv`.
     pub references: Vec<ReferenceCurve>,
     /// Where the scene came from, if from a file.
@@ -93,6 +96,8 @@ pub enum Status {
     Interrupted,
     /// It took as long as it was given.
     OutOfTime,
+    /// A check of the scene's `[health]` ended it.
+    Stopped,
     /// It could not go on.
     Failed,
 }
@@ -182,6 +187,7 @@ impl Manifest {
             resumed: Vec::new(),
             state_sum: None,
             warnings: Vec::new(),
+            looks: 0,
             references: reference_curves(scene),
             source: None,
             scene: Self::record(scene),

@@ -29,6 +29,7 @@ mod points;
 mod probes;
 mod recorded;
 mod recorder;
+mod removed;
 mod results;
 mod schedule;
 mod sections;
@@ -61,6 +62,7 @@ pub use recorded::{
     RecordedBody, RecordedMeasurements, RecordedOutputs, RecordedScene, RecordedShape, RecordedTime,
 };
 pub use recorder::Recorder;
+pub use removed::RemovedRow;
 pub use results::Results;
 pub use schedule::Schedule;
 pub use sections::SectionRow;
@@ -77,6 +79,7 @@ const ENERGY: &str = "energy.csv";
 const CONTACTS: &str = "contacts.csv";
 const LOADS: &str = "loads.csv";
 const JOINTS: &str = "joints.csv";
+const REMOVED: &str = "removed.csv";
 const PROBES: &str = "probes.csv";
 const ARRIVALS: &str = "arrivals.csv";
 const SECTIONS: &str = "sections.csv";

@@ -14,13 +14,14 @@ use super::loads::LoadsObserver;
 use super::memory::Memory;
 use super::particles::ParticlesObserver;
 use super::probes::ProbesObserver;
+use super::removed::RemovedObserver;
 use super::sections::SectionsObserver;
 use super::{
     ARRIVALS, BODIES, CONTACTS, ENERGY, FRINGES, FRONTS, GRID, JOINTS, LOADS, Observer, PARTICLES, PROBES,
-    SECTIONS,
+    REMOVED, SECTIONS,
 };
 use crate::door::View;
-use crate::scene::Scene;
+use crate::scene::{Leaving, Scene};
 
 /// The observers that a scene asks for, and those that are added.
 pub struct Recorder<'a> {
@@ -50,6 +51,9 @@ impl<'a> Recorder<'a> {
         }
         if !scene.joints.is_empty() {
             recorder.schedule(JOINTS, JointsObserver::create(scene, folder)?);
+        }
+        if scene.domain.as_ref().is_some_and(|domain| domain.leaving == Leaving::Remove) {
+            recorder.schedule(REMOVED, RemovedObserver::create(scene, folder)?);
         }
         let wanted = &scene.outputs.measurements;
         if !wanted.sections.is_empty() {
@@ -81,7 +85,7 @@ impl<'a> Recorder<'a> {
     /// # Errors
     /// One is not.
     pub fn find(folder: &OutputFolder, memory: &Memory) -> Result<(), OutputError> {
-        let tables = [BODIES, ENERGY, CONTACTS, LOADS, JOINTS, SECTIONS, PROBES, ARRIVALS, FRONTS];
+        let tables = [BODIES, ENERGY, CONTACTS, LOADS, JOINTS, REMOVED, SECTIONS, PROBES, ARRIVALS, FRONTS];
         for path in
             tables.iter().filter(|name| memory.has(&format!("{name}/length"))).map(|name| folder.join(name))
         {

@@ -14,11 +14,12 @@ use super::manifest::Manifest;
 use super::particles::read_particles;
 use super::probes::ProbeRow;
 use super::recorded::RecordedScene;
+use super::removed::RemovedRow;
 use super::sections::SectionRow;
 use super::table::{TableRow, read_rows};
 use super::{
     ARRIVALS, BODIES, CONTACTS, ENERGY, FRINGES_TABLE, FRONT_SPEEDS, FRONTS, JOINTS, LOADS, PARTICLES,
-    PROBES, SECTIONS,
+    PROBES, REMOVED, SECTIONS,
 };
 use crate::column::every;
 use crate::door::ParticleSnapshot;
@@ -135,6 +136,14 @@ impl Results {
     /// The file is damaged.
     pub fn loads_table(&self) -> Result<Vec<LoadRow>, ReadError> {
         self.measured(LOADS)
+    }
+
+    /// `removed.csv`: what bodies lost with particles that left the domain; none if the scene lets none go.
+    ///
+    /// # Errors
+    /// The file is damaged.
+    pub fn removed_table(&self) -> Result<Vec<RemovedRow>, ReadError> {
+        self.measured(REMOVED)
     }
 
     /// `fringes.csv`: a row for each frame of the scene's camera; none if it has none.

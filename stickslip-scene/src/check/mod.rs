@@ -126,6 +126,7 @@ mod tests {
             min: [0.0, 0.0, -1.6],
             max: [20.8, 3.2, 4.8],
             faces: [[Face::Open; 2], [Face::Symmetry, Face::Open], [Face::Fixed, Face::Open]],
+            leaving: Leaving::Stop,
         });
         scene
     }

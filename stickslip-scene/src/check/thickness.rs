@@ -176,7 +176,7 @@ mod tests {
         assert!(warning(&scene).is_some());
         let open = [Face::Open; 2];
         let faces = [open, [Face::Symmetry, Face::Open], open];
-        scene.domain = Some(Domain { min: [-1.0, 0.0, 0.0], max: [4.0; 3], faces });
+        scene.domain = Some(Domain { faces, ..Domain::new([-1.0, 0.0, 0.0], [4.0; 3]) });
         assert_eq!(warning(&scene), None);
         scene.domain = None;
         scene.bodies = vec![at_rest("half", strip(0.2))];

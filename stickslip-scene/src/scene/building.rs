@@ -6,8 +6,8 @@
 
 use super::{
     BasisKind, Body, BodyMotion, ContactLaw, ContactRule, Damping, Dimension, Discretization, Domain,
-    Expression, Face, FreeRigid, Measurements, NamedMaterial, Normal, Outputs, Precision, Problem,
-    Relaxation, Scene, SnapshotContent, StressUpdate, Time, Transfer, VolumeChange,
+    Expression, Face, FreeRigid, Health, Leaving, Measurements, NamedMaterial, Normal, Outputs, Precision,
+    Problem, Relaxation, Scene, SnapshotContent, StressUpdate, Time, Transfer, VolumeChange,
 };
 use crate::geometry::{Arrangement, Shape};
 use crate::material::LAWS;
@@ -33,6 +33,7 @@ impl Scene {
             time: Time::until(end),
             start: None,
             damping: Damping::default(),
+            health: Health::default(),
             gravity: [0.0; 3],
             materials: Vec::new(),
             bodies: Vec::new(),
@@ -91,7 +92,7 @@ impl Default for Relaxation {
 impl Domain {
     /// A box that is open on all sides, between its lower and its upper corner [m].
     pub fn new(min: [f64; 3], max: [f64; 3]) -> Self {
-        Domain { min, max, faces: [[Face::default(); 2]; 3] }
+        Domain { min, max, faces: [[Face::default(); 2]; 3], leaving: Leaving::default() }
     }
 }
 

@@ -9,6 +9,7 @@ mod expression;
 mod file;
 mod formula;
 mod fringes;
+mod health;
 mod joints;
 mod load;
 mod loads;
@@ -26,6 +27,7 @@ mod units;
 pub use error::{Mistake, SceneError};
 pub use expression::{Expression, Moment, Program, TimeTable};
 pub use fringes::{Fringes, Light, Overlay, Polariscope, PolariscopeField, Sensitivity};
+pub use health::{Health, HealthCheck, HealthRule, Response};
 pub use joints::{Joint, JointKind, Motor};
 pub use load::{Loaded, load, parse};
 pub use loads::{Action, Dashpot, Extent, Load, Part, RIGID, Support, SupportMotion};
@@ -66,6 +68,9 @@ pub struct Scene {
     pub start: Option<Start>,
     /// What slows the bodies down beside contact and materials.
     pub damping: Damping,
+    /// What a run watches, and what it does where something is wrong.
+    #[serde(skip_serializing_if = "Health::is_usual")]
+    pub health: Health,
     /// Acceleration of every body [m/s^2].
     pub gravity: [f64; 3],
     /// The materials that bodies name.
@@ -203,7 +208,7 @@ pub enum BasisKind {
     Spline,
 }
 
-/// A box that holds all material. A particle that leaves it stops the run.
+/// A box that holds all material.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Domain {
     /// Lower corner [m]; grid nodes lie at whole cells from here.
@@ -212,6 +217,27 @@ pub struct Domain {
     pub max: [f64; 3],
     /// What the lower and the upper face across each axis do.
     pub faces: [[Face; 2]; 3],
+    /// What becomes of a particle that leaves it.
+    #[serde(default, skip_serializing_if = "Leaving::stops")]
+    pub leaving: Leaving,
+}
+
+/// What becomes of a particle of a deformable body that leaves the domain.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Leaving {
+    /// It ends the run; so does that of a rigid body in any case.
+    #[default]
+    Stop,
+    /// It is taken out, and the run goes on without it.
+    Remove,
+}
+
+impl Leaving {
+    /// Whether it ends the run: a record of a scene does not say so.
+    fn stops(&self) -> bool {
+        *self == Leaving::Stop
+    }
 }
 
 /// What a face of the domain does. Faces other than `Open` lie on grid nodes.
@@ -247,7 +273,8 @@ pub struct Time {
     pub xpic_order: usize,
     /// The run looks for the state at rest, and ends there if that comes before `end`.
     pub relax: Option<Relaxation>,
-    /// Drift of the energy that a run may have before its verdict names it, over the energy that moved [-].
+    /// Drift of the energy, and energy that becomes noise, that a run may have, over the energy that moved [-]; see
+    /// [`Scene::health_bound`].
     pub energy_drift: f64,
 }
 

@@ -4,6 +4,7 @@
 //! of all materials' laws.
 
 mod bodies;
+mod health;
 mod images;
 mod joints;
 mod keys;

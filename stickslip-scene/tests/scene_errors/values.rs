@@ -75,6 +75,11 @@ fn values_out_of_range() {
             ),
             (
                 "[time]",
+                "domain = { min = [0, 0, 0], max = [1, 1, 1], leaving = \"go\" }\n[time]",
+                "5:56: space.domain.leaving: found \"go\"; allowed: \"stop\" or \"remove\"",
+            ),
+            (
+                "[time]",
                 "domain = { min = [0, 0, 0], max = [1, 0, 1] }\n[time]",
                 "5:39: space.domain.max[1]: found 0; allowed: more than 0 m, the y of min",
             ),

@@ -206,8 +206,18 @@ pub fn unfinished(folder: &Path) -> Result<Option<PathBuf>, ReadError> {
 }
 
 /// What of a scene may change where a run goes on.
-const FREE: &[&str] =
-    &["title", "about", "parameters", "outputs", "references", "start.from", "time.end", "time.energy_drift"];
+const FREE: &[&str] = &[
+    "title",
+    "about",
+    "parameters",
+    "outputs",
+    "references",
+    "health",
+    "domain.leaving",
+    "start.from",
+    "time.end",
+    "time.energy_drift",
+];
 
 /// Holds the scene of a run in `path` against another, both as `run.json` has them
 /// ([`crate::observe::Manifest::record`]).

@@ -1,14 +1,15 @@
 //! During a run: contacts that have become as wide as they will be, and are not resolved by the grid.
 
+use super::verdict::Noted;
 use super::widest::{LargestForces, WidestContacts};
 use crate::check::ContactResolution;
 use crate::door::{ContactPatch, View};
-use crate::scene::Scene;
+use crate::scene::{HealthCheck, Scene};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 
-/// Looks at the widest contact of each pair as often as tables are written, and tells once of each pair that bears a
-/// part of the force.
+/// Looks at the widest contact of each pair as often as tables are written, tells once of each pair that bears a part
+/// of the force, and at each look of all that it has told of.
 #[derive(Serialize, Deserialize)]
 pub(super) struct ContactWatch {
     next: f64,
@@ -36,36 +37,45 @@ impl ContactWatch {
         }
     }
 
-    /// What is new, if it is time to look.
-    pub(super) fn look(&mut self, scene: &Scene, view: &dyn View) -> Option<String> {
+    /// What is new, and what is not resolved, if it is time to look.
+    pub(super) fn look(&mut self, scene: &Scene, view: &dyn View) -> (Option<String>, Option<Noted>) {
         if view.time() < self.next {
-            return None;
+            return (None, None);
         }
         self.next = view.time() + scene.outputs.tables;
         let touched = self.forces.look(view);
         let patches: Vec<ContactPatch> = touched.iter().map(|touched| touched.patch).collect();
         let new = self.grown_up(&patches);
         self.before = patches;
-        if self.lines == MOST_LINES {
-            return None;
-        }
         // Weighed against all that the bodies bear.
         let mut found = WidestContacts::new(scene, &touched).bearing();
         let name = |body: usize| scene.bodies[body].name.as_str();
         let new_names: BTreeSet<_> = new.iter().map(|patch| [patch.body_a, patch.body_b].map(name)).collect();
-        found.0.retain(|contact| {
-            contact.verdict == ContactResolution::NotResolved
-                && new_names.contains(&contact.bodies.each_ref().map(String::as_str))
-        });
         // Others may widen yet.
-        let pair = |patch: &ContactPatch| [patch.body_a, patch.body_b];
+        let told: BTreeSet<_> = self.reported.iter().map(|pair| pair.map(name)).collect();
+        found.0.retain(|contact| {
+            let names = contact.bodies.each_ref().map(String::as_str);
+            contact.verdict == ContactResolution::NotResolved
+                && (new_names.contains(&names) || told.contains(&names))
+        });
+        let noted = found.0.first().map(|narrowest| Noted {
+            check: HealthCheck::Contact,
+            message: format!("contact not resolved: {}, {}; {}", found.named(), found.borne(), narrowest.off),
+            worst: narrowest.cells,
+            advice: "take smaller cells where they touch".to_owned(),
+        });
+        found.0.retain(|contact| new_names.contains(&contact.bodies.each_ref().map(String::as_str)));
         let poor: BTreeSet<_> =
             found.0.iter().map(|contact| contact.bodies.each_ref().map(String::as_str)).collect();
-        self.reported.extend(new.iter().map(pair).filter(|pair| poor.contains(&pair.map(name))));
-        let narrowest = found.0.first()?;
-        self.lines += 1;
-        let last = if self.lines == MOST_LINES { "; no more of this until the summary" } else { "" };
-        Some(format!("contact not resolved: {}, {}; {}{last}", found.named(), found.borne(), narrowest.off))
+        let pair = |patch: &ContactPatch| [patch.body_a, patch.body_b];
+        let newly = new.iter().map(pair).filter(|pair| poor.contains(&pair.map(name))).collect::<Vec<_>>();
+        self.reported.extend(newly);
+        let line = found.0.first().filter(|_| self.lines < MOST_LINES).map(|narrowest| {
+            self.lines += 1;
+            let last = if self.lines == MOST_LINES { "; no more of this until the summary" } else { "" };
+            format!("contact not resolved: {}, {}; {}{last}", found.named(), found.borne(), narrowest.off)
+        });
+        (line, noted)
     }
 
     /// The widest contacts of the whole run, after its last step.

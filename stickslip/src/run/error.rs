@@ -2,7 +2,7 @@
 
 use super::ResumeError;
 use crate::march::MarchError;
-use crate::observe::{FolderError, OutputError};
+use crate::observe::{FolderError, OutputError, RunWarning};
 use miette::Diagnostic;
 
 /// Why a run ended before its time.
@@ -27,6 +27,17 @@ pub enum RunError {
         error: MarchError,
         /// Why the last record could not be written, if so.
         unsaved: Option<OutputError>,
+    },
+
+    /// A check of the scene's `[health]` that stops the run found something. Everything is recorded up to there, and a
+    /// checkpoint is made if the run makes any.
+    #[error("stopped at t = {time:.6e} s by health.{}: {}", warning.kind.replace('-', "_"), warning.message)]
+    #[diagnostic(help("{}", warning.advice))]
+    Unhealthy {
+        /// What it found.
+        warning: Box<RunWarning>,
+        /// When [s].
+        time: f64,
     },
 
     /// An output could not be written.

@@ -17,22 +17,21 @@ pub use summary::{ReferenceResult, Summary};
 pub use widest::{WidestContact, WidestContacts};
 
 use crate::door::{Ledger, Simulation, View};
-use crate::march::{March, MarchEnd};
+use crate::march::{FailedStep, March, MarchEnd, Pace};
 use crate::observe::{
     Checkpoint, Manifest, Memory, Observer, OutputError, OutputFolder, Recorder, SceneSource, Status,
     state_sum,
 };
-use crate::scene::Scene;
+use crate::scene::{HealthCheck, Scene};
 use checkpoints::Checkpoints;
 use clock::RunClock;
 use contact_watch::ContactWatch;
-use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 use summary::Energies;
-use verdict::RunChecks;
+use verdict::{Noted, RunChecks};
 
 /// How a scene is run.
 #[derive(Clone, Debug)]
@@ -186,6 +185,7 @@ fn drive(
         verdict: RunChecks::new(scene, simulation),
         contact_watch: ContactWatch::new(simulation.time()),
         last_step: 0.0,
+        pace: Pace::default(),
     };
     if let Some(memory) = &mut beginning.memory {
         kept.remember(simulation, memory).map_err(ResumeError::Misfit)?;
@@ -232,9 +232,15 @@ fn drive(
     manifest.state_sum = outcome.as_ref().ok().and_then(|(_, sum)| sum.clone());
     manifest.relaxation = simulation.relaxation();
     manifest.warnings = kept.verdict.warnings().to_vec();
-    manifest.error = outcome.as_ref().err().map(RunError::to_string);
+    manifest.looks = kept.verdict.looks();
+    let stopped = kept
+        .verdict
+        .stop()
+        .map(|warning| RunError::Unhealthy { warning: Box::new(warning.clone()), time: simulation.time() });
+    let ended = outcome.and_then(|_| stopped.map_or(Ok(()), Err));
+    manifest.error = ended.as_ref().err().map(RunError::to_string);
     let saved = manifest.write(&folder);
-    outcome?;
+    ended?;
     saved?;
     let contacts = kept.contact_watch.widest(scene, simulation);
     let energies = Energies { start: kept.start, scale: kept.verdict.energy_scale() };
@@ -250,13 +256,45 @@ struct Kept {
     contact_watch: ContactWatch,
     /// Length of the last step [s].
     last_step: f64,
+    /// How long steps may be.
+    pace: Pace,
 }
 
 impl Kept {
+    /// What is new after a step of this length [s].
+    fn look(&mut self, scene: &Scene, view: &dyn View, (march, step): (&mut March, f64)) -> Vec<String> {
+        self.last_step = step;
+        let mut lines = Vec::new();
+        if let Some(FailedStep { error, part }) = march.failed() {
+            let noted = Noted {
+                check: HealthCheck::FailedStep,
+                message: format!(
+                    "a step failed, and was taken again with {part:.3} of the stable one: {error}"
+                ),
+                worst: 1.0 / part,
+                advice: error.advice().to_owned(),
+            };
+            lines.extend(self.verdict.note(scene, view, noted));
+        }
+        let (line, noted) = self.contact_watch.look(scene, view);
+        if let Some(noted) = noted {
+            self.verdict.note(scene, view, noted);
+        }
+        lines.extend(line);
+        lines.extend(self.verdict.look(scene, view, (step, march.pace().part())));
+        if self.verdict.asks_to_cut() {
+            march.cut();
+        }
+        self.pace = march.pace();
+        lines
+    }
+
     fn remember(&mut self, view: &dyn View, memory: &mut Memory) -> Result<(), OutputError> {
         memory.keep("start", &mut self.start)?;
         memory.keep("last_step", &mut self.last_step)?;
         self.last_step = if self.last_step.is_finite() { self.last_step.max(0.0) } else { 0.0 };
+        memory.keep("pace", &mut self.pace)?;
+        self.pace = Some(self.pace).filter(Pace::is_sound).unwrap_or_default();
         memory.keep("contact_watch", &mut self.contact_watch)?;
         memory.part("clock", |memory| self.clock.remember(view, memory))?;
         memory.part("verdict", |memory| self.verdict.remember(memory))
@@ -291,7 +329,7 @@ impl Watched<'_> {
             }
             None => {
                 recorder.record_present(*simulation)?;
-                notes.extend(kept.verdict.look(scene, *simulation));
+                notes.extend(kept.verdict.look(scene, *simulation, (0.0, 1.0)));
                 if folder.has_previous() {
                     // Keeping waits until the first records are on the disk.
                     recorder.remember(*simulation, &mut Memory::keeping(folder.path()))?;
@@ -304,25 +342,29 @@ impl Watched<'_> {
         let begun = Instant::now();
         let late = || options.max_time.is_some_and(|longest| begun.elapsed() >= longest);
         let stop = || options.stop.load(Ordering::Relaxed) || late();
-        let way = match stop() {
-            true => Ok(MarchEnd::BrokenOff),
-            false => March::from(kept.last_step, end).go(*simulation, |simulation, step| {
-                kept.last_step = step;
-                recorded = recorder.record_due(simulation);
-                notes.extend(kept.contact_watch.look(scene, simulation));
-                notes.extend(kept.verdict.look(scene, simulation));
-                if reports.due() || !notes.is_empty() {
-                    let notes = std::mem::take(&mut notes);
-                    progress(&Progress { notes, ..kept.clock.progress(simulation, end) });
-                }
-                if recorded.is_ok() && checkpoints.due(simulation) {
-                    recorded = save(simulation, (recorder, kept, checkpoints), memory.as_ref()).map(drop);
-                }
-                notes.extend(
-                    checkpoints.trouble().map(|error| kept.verdict.note_checkpoint(&error, simulation)),
-                );
-                if recorded.is_err() || stop() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-            }),
+        let mut march = March::from(kept.last_step, end).with_retries(kept.pace, scene.health.retries);
+        let mut stopped = stop() || kept.verdict.stop().is_some();
+        let way = loop {
+            if stopped && !march.is_done(*simulation) {
+                break Ok(MarchEnd::BrokenOff);
+            }
+            let step = match march.step(*simulation) {
+                Ok(Some(step)) => step,
+                Ok(None) => break Ok(MarchEnd::Arrived),
+                Err(error) => break Err(error),
+            };
+            recorded = recorder.record_due(*simulation);
+            notes.extend(kept.look(scene, *simulation, (&mut march, step)));
+            if reports.due() || !notes.is_empty() {
+                let notes = std::mem::take(&mut notes);
+                progress(&Progress { notes, ..kept.clock.progress(*simulation, end) });
+            }
+            if recorded.is_ok() && checkpoints.due(*simulation) {
+                recorded = save(*simulation, (recorder, kept, checkpoints), memory.as_ref()).map(drop);
+            }
+            let trouble = checkpoints.trouble();
+            notes.extend(trouble.and_then(|error| kept.verdict.note_checkpoint(scene, *simulation, &error)));
+            stopped = recorded.is_err() || stop() || kept.verdict.stop().is_some();
         };
         recorded?;
         let status = match way {
@@ -340,11 +382,13 @@ impl Watched<'_> {
             let saved = save(*simulation, (recorder, kept, checkpoints), memory.as_ref())?;
             sum = saved.map(|checkpoint| state_sum(&checkpoint.state));
         }
-        notes.extend(kept.verdict.conclude(scene, *simulation));
+        notes.extend(kept.verdict.conclude(scene, *simulation, march.pace().part()));
         recorder.record_present(*simulation)?;
         recorder.conclude()?;
         checkpoints.finish();
-        notes.extend(checkpoints.trouble().map(|error| kept.verdict.note_checkpoint(&error, *simulation)));
+        let trouble = checkpoints.trouble();
+        notes.extend(trouble.and_then(|error| kept.verdict.note_checkpoint(scene, *simulation, &error)));
+        let status = if kept.verdict.stop().is_some() { Status::Stopped } else { status };
         progress(&Progress { notes, ..kept.clock.progress(*simulation, end) });
         Ok((status, sum))
     }

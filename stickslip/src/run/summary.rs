@@ -116,7 +116,7 @@ impl Display for Summary {
         let ended = match self.status {
             Status::Interrupted => "interrupted",
             Status::OutOfTime => "stopped, as it took as long as it was given,",
-            Status::Running | Status::Finished | Status::Failed => "finished",
+            Status::Running | Status::Finished | Status::Failed | Status::Stopped => "finished",
         };
         writeln!(f, "{ended} at t = {time:.6} s after {steps} steps of {particles} particles")?;
         writeln!(f, "  wall time  {wall_time:.1} s, {particle_steps_per_second:.3e} particle-steps/s")?;
@@ -187,7 +187,8 @@ impl Summary {
         for kind in kinds {
             let of_kind: Vec<_> = self.warnings.iter().filter(|warning| warning.kind == kind).collect();
             for warning in of_kind.iter().take(NAMED) {
-                writeln!(f, "  warning    from t = {:.4e} s: {}", warning.time, line(warning))?;
+                let times = if warning.count == 1 { "once" } else { &format!("{} times", warning.count) };
+                writeln!(f, "  warning    from t = {:.4e} s, {times}: {}", warning.time, line(warning))?;
             }
             if of_kind.len() > NAMED {
                 writeln!(f, "  warning    {kind}: {} more, in run.json", of_kind.len() - NAMED)?;

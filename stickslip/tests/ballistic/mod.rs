@@ -127,6 +127,7 @@ impl View for Ballistic {
             slip: 0.02 * steps,
             friction: 0.75 * steps,
             nodes: 4,
+            ..ContactSum::default()
         };
         if self.steps > 0 { vec![sum] } else { Vec::new() }
     }
@@ -229,6 +230,7 @@ pub fn scene() -> Scene {
             energy_drift: 0.1,
         },
         damping: Damping::default(),
+        health: Health::default(),
         gravity: [0.0, -GRAVITY, 0.0],
         materials: vec![NamedMaterial {
             name: "rubber".into(),

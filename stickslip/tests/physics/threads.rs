@@ -53,6 +53,11 @@ fn compare(name: &str, scene: &str, steps: usize) {
     assert!(outcome(scene, 1, rebuilding) == one, "{name}: with its workspace made anew it differs");
     let going_back = |simulation: &mut dyn Simulation| {
         for step in 0..steps {
+            if step % 67 == 31 {
+                simulation.hold();
+                take_steps(simulation, 5);
+                assert!(simulation.take_back(), "the engine can be held");
+            }
             if step % 67 == 11 {
                 let saved = simulation.save().expect("the engine can be saved");
                 take_steps(simulation, 5);

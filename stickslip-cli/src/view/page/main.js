@@ -19,7 +19,8 @@ import { Stage } from "stickslip/stage";
 const byId = (id) => document.getElementById(id);
 const POLL = 1000; // ms
 const AHEAD = 2; // frames that are fetched before they are shown
-const STATUS = { running: "running", interrupted: "interrupted", out_of_time: "out of time", failed: "failed" };
+const STATUS = { running: "running", interrupted: "interrupted", out_of_time: "out of time", stopped: "stopped",
+  failed: "failed" };
 
 const source = new Source();
 const frames = new Frames(source);
@@ -55,7 +56,7 @@ function describe() {
     document.title = `${index.title} - Stickslip`;
     const word = STATUS[index.status];
     byId("status").hidden = !word;
-    byId("status").className = index.status === "failed" ? "bad" : "";
+    byId("status").className = ["failed", "stopped"].includes(index.status) ? "bad" : "";
     byId("status").textContent = word ?? "";
     byId("time").max = Math.max(index.times.length - 1, 0);
     byId("follow-switch").hidden = !(source.isLive && index.status === "running");

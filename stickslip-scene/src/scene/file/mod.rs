@@ -6,6 +6,7 @@ mod contact;
 mod damping;
 mod files;
 mod fringes;
+mod health;
 mod image;
 mod joints;
 mod loads;
@@ -72,6 +73,8 @@ table! {
         start: Option<start::Start>,
         /// What slows the bodies down beside contact and materials; by default nothing, with `time.relax` a little.
         damping: Option<damping::Damping>,
+        /// What a run watches while it goes on, and what it does where something is wrong; by default it warns.
+        health: Option<health::Health>,
         /// The materials by name.
         materials: material::Materials,
         /// The bodies: [[bodies]]. There must be one at least, here, in a packing or in an image.
@@ -152,6 +155,7 @@ pub(super) fn resolve(source: &Source) -> Result<(Scene, Declared), Fault> {
             Some(damping) => damping.resolve(context, time.relax)?,
             None => Damping::of(time.relax),
         },
+        health: file.health.map(|health| health.resolve(context)).transpose()?.unwrap_or_default(),
         start: file.start.map(|start| start.resolve(context)).transpose()?,
         gravity: file.gravity.map_or(Ok([0.0; 3]), |gravity| gravity.value(context))?,
         outputs,

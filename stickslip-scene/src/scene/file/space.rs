@@ -6,7 +6,7 @@ use super::read::table;
 use super::text::{Choice, Count, Word};
 use super::vector::VectorInput;
 use crate::scene::error::Fault;
-use crate::scene::{self, BasisKind, Dimension, Discretization, Face, Precision};
+use crate::scene::{self, BasisKind, Dimension, Discretization, Face, Leaving, Precision};
 
 table! {
     /// Dimensions, cells, particles and domain.
@@ -30,7 +30,7 @@ table! {
 }
 
 table! {
-    /// A box that holds all material. A particle that leaves it stops the run.
+    /// A box that holds all material.
     Domain {
         /// Lower corner [m].
         min: VectorInput<Length>,
@@ -54,6 +54,9 @@ table! {
         /// What the upper face across z does; three dimensions only.
         #[schemars(extend("default" = Face::default()))]
         z_max: Option<Word<Face>>,
+        /// What becomes of a particle that leaves it.
+        #[schemars(extend("default" = Leaving::default()))]
+        leaving: Option<Word<Leaving>>,
     }
 }
 
@@ -80,9 +83,20 @@ impl Choice for Precision {
 
 impl Choice for Face {
     const WORDS: &'static [(&'static str, Self, &'static str)] = &[
-        ("open", Face::Open, "Nothing; material that reaches it stops the run."),
+        ("open", Face::Open, "Nothing; what leaves through it stops the run, or is removed: see `leaving`."),
         ("symmetry", Face::Symmetry, "A mirror: no velocity through it, no resistance along it."),
         ("fixed", Face::Fixed, "Material sticks to it: no velocity at all."),
+    ];
+}
+
+impl Choice for Leaving {
+    const WORDS: &'static [(&'static str, Self, &'static str)] = &[
+        ("stop", Leaving::Stop, "It stops the run."),
+        (
+            "remove",
+            Leaving::Remove,
+            "It is taken out, with its mass, momentum and energy booked; of a rigid body it stops the run.",
+        ),
     ];
 }
 
@@ -114,6 +128,9 @@ impl Domain {
     fn resolve(&self, context: &Context) -> Result<scene::Domain, Fault> {
         let (min, max) = corners(&self.min, &self.max, context)?;
         let mut domain = scene::Domain::new(min, max);
+        if let Some(word) = &self.leaving {
+            domain.leaving = word.value(context)?;
+        }
         let written = [[&self.x_min, &self.x_max], [&self.y_min, &self.y_max], [&self.z_min, &self.z_max]];
         for (axis, pair) in written.iter().enumerate() {
             for (side, word) in pair.iter().enumerate() {

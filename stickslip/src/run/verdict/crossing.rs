@@ -1,19 +1,17 @@
 //! Stressed particles that cross cells with linear functions, whose slopes jump there.
 
 use super::{Check, CheckInputs, Finding};
-use crate::scene::BasisKind;
+use crate::scene::{BasisKind, HealthCheck};
 
 /// Counts the particles that have left their first cell while their body is under stress.
 pub(super) struct CrossingCheck;
 
-/// Share of the particles that may cross.
-const CROSSED: f64 = 0.1;
 /// Stress over the stiffness against waves, below which jumps of the forces harm nobody.
 const STRESSED: f64 = 1e-3;
 
 impl Check for CrossingCheck {
-    fn kind(&self) -> &'static str {
-        "cell-crossing"
+    fn kind(&self) -> HealthCheck {
+        HealthCheck::CellCrossing
     }
 
     fn advice(&self) -> &'static str {
@@ -39,7 +37,11 @@ fn crossing(look: &CheckInputs, body: usize) -> Option<Finding> {
     let state = &look.bodies[body];
     let density = look.scene.materials[look.scene.bodies[body].material].density;
     let stress = (2.0 * state.strain * density / (state.mass * look.wave_modulus(body))).sqrt();
-    if crossed.is_nan() || crossed <= CROSSED || stress.is_nan() || stress <= STRESSED {
+    if crossed.is_nan()
+        || crossed <= look.bound(HealthCheck::CellCrossing)
+        || stress.is_nan()
+        || stress <= STRESSED
+    {
         return None;
     }
     let name = &look.scene.bodies[body].name;

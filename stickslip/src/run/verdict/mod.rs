@@ -2,10 +2,14 @@
 
 mod crossing;
 mod energy;
+mod leaving;
+mod max_strain;
+mod momentum;
 mod neighbours;
 mod noise;
 mod precision;
 mod relaxation;
+mod small_step;
 mod speed;
 mod spin;
 mod strain;
@@ -13,29 +17,34 @@ mod tearing;
 
 use crate::door::{BodyState, Ledger, TracedParticle, View};
 use crate::observe::{Memory, OutputError, RunWarning};
-use crate::scene::{Damping, Scene};
-use energy::{EnergyBalance, WeighingTimes};
+use crate::scene::{Damping, HealthCheck, Response, Scene};
+use energy::{EnergyBalance, StepCutting, WeighingTimes};
 use neighbours::Neighbours;
 
-/// Every check of a run.
-fn checks() -> Vec<Box<dyn Check>> {
-    vec![
+/// Every check of a run that the scene does not ignore.
+fn checks(scene: &Scene) -> Vec<Box<dyn Check>> {
+    let all: [Box<dyn Check>; 13] = [
         Box::new(energy::EnergyCheck),
         Box::new(noise::NoiseCheck),
+        Box::new(momentum::MomentumCheck::default()),
         Box::new(spin::SpinCheck::default()),
         Box::new(strain::StrainCheck::default()),
         Box::new(tearing::TearingCheck::default()),
         Box::new(crossing::CrossingCheck),
         Box::new(speed::SpeedCheck),
+        Box::new(small_step::SmallStepCheck),
+        Box::new(max_strain::MaxStrainCheck),
         Box::new(precision::PrecisionCheck::default()),
         Box::new(relaxation::RelaxationCheck),
-    ]
+        Box::new(leaving::LeavingCheck::default()),
+    ];
+    all.into_iter().filter(|check| scene.health.response(check.kind()) != Response::Ignore).collect()
 }
 
 /// A check of a run.
 trait Check {
-    /// Its name in `run.json`.
-    fn kind(&self) -> &'static str;
+    /// Which it is.
+    fn kind(&self) -> HealthCheck;
 
     /// What to try.
     fn advice(&self) -> &'static str;
@@ -63,9 +72,16 @@ struct CheckInputs<'a> {
     neighbours: &'a [Neighbours],
     /// Their particles now, in the order of [`Neighbours::start`].
     particles: &'a [Vec<TracedParticle>],
+    /// The longest step that is allowed now, and the first one [s].
+    steps: [f64; 2],
 }
 
 impl CheckInputs<'_> {
+    /// The bound that the scene sets to a check.
+    fn bound(&self, check: HealthCheck) -> f64 {
+        self.scene.health_bound(check)
+    }
+
     /// Bodies that deform.
     fn free(&self) -> impl Iterator<Item = usize> {
         let free = |&i: &usize| !self.scene.bodies[i].is_rigid();
@@ -97,6 +113,16 @@ struct Finding {
     message: String,
 }
 
+/// Something wrong at one time, as the run itself finds it.
+pub(super) struct Noted {
+    /// Which check it belongs to.
+    pub check: HealthCheck,
+    /// What, by how much, and what to try.
+    pub message: String,
+    pub worst: f64,
+    pub advice: String,
+}
+
 /// Looks at a run now and then, and remembers what was wrong.
 pub(super) struct RunChecks {
     checks: Vec<Box<dyn Check>>,
@@ -106,16 +132,21 @@ pub(super) struct RunChecks {
     interval: f64,
     next_time: f64,
     next_step: u64,
+    /// The stable step at the start [s].
+    first_step: f64,
+    looks: u64,
     warnings: Vec<RunWarning>,
     lines: usize,
+    /// What ends the run.
+    stop: Option<RunWarning>,
+    /// Where the scene asks for shorter steps as energy drifts.
+    cutting: Option<StepCutting>,
 }
 
 /// Looks in a run, at most.
 const LOOKS: f64 = 200.0;
 /// Steps between two looks, or two weighings of energies, at least: what these cost is then nothing beside the steps.
 const STEPS: u64 = 200;
-/// Kind of the warning of checkpoints that could not be written.
-const CHECKPOINT: &str = "checkpoint";
 /// Lines in a run: beyond, the summary tells.
 const MOST_LINES: usize = 6;
 
@@ -123,15 +154,19 @@ impl RunChecks {
     /// The verdict on a run that begins.
     pub(super) fn new(scene: &Scene, simulation: &dyn View) -> Self {
         RunChecks {
-            checks: checks(),
+            checks: checks(scene),
             balance: EnergyBalance::default(),
             weighing: WeighingTimes::default(),
             neighbours: neighbours::of_bodies(scene, simulation),
             interval: scene.outputs.tables.max(scene.time.end / LOOKS),
             next_time: simulation.time(),
             next_step: simulation.steps(),
+            first_step: simulation.stable_step(),
+            looks: 0,
             warnings: Vec::new(),
             lines: 0,
+            stop: None,
+            cutting: StepCutting::of(scene),
         }
     }
 
@@ -141,38 +176,63 @@ impl RunChecks {
         memory.keep("weighing", &mut self.weighing)?;
         memory.keep("next_time", &mut self.next_time)?;
         memory.keep("next_step", &mut self.next_step)?;
+        memory.keep("first_step", &mut self.first_step)?;
+        memory.keep("looks", &mut self.looks)?;
         memory.keep("warnings", &mut self.warnings)?;
         memory.keep("lines", &mut self.lines)?;
+        if let Some(cutting) = &mut self.cutting {
+            memory.keep("cutting", cutting)?;
+        }
+        for (body, neighbours) in self.neighbours.iter_mut().enumerate() {
+            memory.part(&format!("neighbours {body}"), |memory| neighbours.remember(memory))?;
+        }
         self.lines = self.lines.min(MOST_LINES);
         self.checks
             .iter_mut()
-            .try_for_each(|check| memory.part(check.kind(), |memory| check.remember(memory)))
+            .try_for_each(|check| memory.part(check.kind().word(), |memory| check.remember(memory)))
     }
 
-    /// What is new, if it is time to look.
-    pub(super) fn look(&mut self, scene: &Scene, simulation: &dyn View) -> Vec<String> {
+    /// What is new, if it is time to look after a step of this length [s], where steps may be this part of the stable
+    /// one.
+    pub(super) fn look(
+        &mut self,
+        scene: &Scene,
+        simulation: &dyn View,
+        (step, part): (f64, f64),
+    ) -> Vec<String> {
         if self.weighing.come(simulation.steps()) {
-            self.balance.weigh(&simulation.ledger());
+            let ledger = simulation.ledger();
+            self.balance.weigh(&ledger);
+            if let Some(cutting) = &mut self.cutting {
+                cutting.look(&ledger, scene.health_bound(HealthCheck::Energy));
+            }
         }
-        if simulation.time() < self.next_time || simulation.steps() < self.next_step {
+        // Where steps are that small simulated time hardly goes on, and the next look by it is far.
+        let bound = scene.health_bound(HealthCheck::SmallStep) * self.first_step;
+        let small = step > 0.0 && step < bound && part * simulation.stable_step() < bound;
+        if simulation.steps() < self.next_step || (simulation.time() < self.next_time && !small) {
             return Vec::new();
         }
         // At the times of tables, which sum up all particles anyway.
         self.next_time = ((simulation.time() / self.interval + EARLY).floor() + 1.0 - EARLY) * self.interval;
         self.next_step = simulation.steps() + STEPS;
-        self.look_now(scene, simulation)
+        self.look_now(scene, simulation, part)
     }
 
     /// What is new at the end of the run.
-    pub(super) fn conclude(&mut self, scene: &Scene, simulation: &dyn View) -> Vec<String> {
+    pub(super) fn conclude(&mut self, scene: &Scene, simulation: &dyn View, part: f64) -> Vec<String> {
         let looked = self.next_step == simulation.steps() + STEPS;
-        if looked { Vec::new() } else { self.look_now(scene, simulation) }
+        if looked { Vec::new() } else { self.look_now(scene, simulation, part) }
     }
 
-    fn look_now(&mut self, scene: &Scene, simulation: &dyn View) -> Vec<String> {
+    fn look_now(&mut self, scene: &Scene, simulation: &dyn View, part: f64) -> Vec<String> {
+        if self.checks.is_empty() {
+            return Vec::new();
+        }
+        self.looks += 1;
         let (ledger, bodies) = (simulation.ledger(), simulation.bodies());
         self.balance.update(&ledger);
-        let particles: Vec<_> = (self.neighbours.iter().enumerate())
+        let particles: Vec<_> = (self.neighbours.iter_mut().enumerate())
             .map(|(body, neighbours)| neighbours.particles(simulation, body))
             .collect();
         let look = CheckInputs {
@@ -183,35 +243,15 @@ impl RunChecks {
             bodies: &bodies,
             neighbours: &self.neighbours,
             particles: &particles,
+            steps: [part * simulation.stable_step(), self.first_step],
         };
+        let found: Vec<_> =
+            (self.checks.iter_mut()).map(|check| (check.kind(), check.advice(), check.look(&look))).collect();
         let mut lines = Vec::new();
-        for check in &mut self.checks {
-            let found = check.look(&look);
-            let new = found.into_iter().filter_map(|finding| {
-                let body = finding.body.map(|body| scene.bodies[body].name.clone());
-                let known = self.warnings.iter_mut().find(|w| w.kind == check.kind() && w.body == body);
-                if let Some(known) = known {
-                    known.count += 1;
-                    if finding.worst.abs() > known.worst.abs() {
-                        known.message = finding.message;
-                        known.position = finding.position;
-                        known.worst = finding.worst;
-                    }
-                    return None;
-                }
-                self.warnings.push(RunWarning {
-                    kind: check.kind().to_owned(),
-                    message: finding.message,
-                    advice: check.advice().to_owned(),
-                    body,
-                    position: finding.position,
-                    time: simulation.time(),
-                    count: 1,
-                    worst: finding.worst,
-                });
-                self.warnings.last().map(line)
-            });
-            lines.extend(new);
+        for (check, advice, found) in found {
+            for finding in found {
+                lines.extend(self.take_note((scene, simulation), (check, advice), finding));
+            }
         }
         lines.truncate(MOST_LINES - self.lines);
         self.lines += lines.len();
@@ -223,23 +263,77 @@ impl RunChecks {
         lines
     }
 
-    /// Takes note of a checkpoint that could not be written, and says what there is to say.
-    pub(super) fn note_checkpoint(&mut self, error: &OutputError, view: &dyn View) -> String {
-        let message = format!("no checkpoint: {error}");
-        match self.warnings.iter_mut().find(|warning| warning.kind == CHECKPOINT) {
-            Some(known) => (known.count, known.message) = (known.count + 1, message.clone()),
-            None => self.warnings.push(RunWarning {
-                kind: CHECKPOINT.to_owned(),
+    /// Records what was found, and returns the line that tells of it if it is new.
+    fn take_note(
+        &mut self,
+        (scene, view): (&Scene, &dyn View),
+        (check, advice): (HealthCheck, &str),
+        Finding { body, position, worst, message }: Finding,
+    ) -> Option<String> {
+        let body = body.map(|body| scene.bodies[body].name.clone());
+        let known = self.warnings.iter().position(|w| w.kind == check.word() && w.body == body);
+        let place = known.unwrap_or_else(|| {
+            self.warnings.push(RunWarning {
+                kind: check.word().to_owned(),
                 message: message.clone(),
-                advice: "free some space; the next one is tried in its time".to_owned(),
-                body: None,
-                position: None,
+                advice: advice.to_owned(),
+                body,
+                position,
                 time: view.time(),
-                count: 1,
-                worst: 1.0,
-            }),
+                count: 0,
+                worst,
+            });
+            self.warnings.len() - 1
+        });
+        let warning = &mut self.warnings[place];
+        warning.count += 1;
+        if worst.abs() > warning.worst.abs() {
+            (warning.message, warning.position, warning.worst) = (message, position, worst);
         }
-        message
+        if scene.health.response(check) == Response::Stop && self.stop.is_none() {
+            self.stop = Some(warning.clone());
+            return None;
+        }
+        known.is_none().then(|| line(warning))
+    }
+
+    /// Records what the run itself found, and says what there is to say.
+    pub(super) fn note(&mut self, scene: &Scene, view: &dyn View, noted: Noted) -> Option<String> {
+        let Noted { check, message, worst, advice } = noted;
+        if scene.health.response(check) == Response::Ignore {
+            return None;
+        }
+        let finding = Finding { body: None, position: None, worst, message };
+        self.take_note((scene, view), (check, &advice), finding)
+    }
+
+    /// Records a checkpoint that could not be written, of which each is told.
+    pub(super) fn note_checkpoint(
+        &mut self,
+        scene: &Scene,
+        view: &dyn View,
+        error: &OutputError,
+    ) -> Option<String> {
+        let message = format!("no checkpoint: {error}");
+        let advice = "free some space; the next one is tried in its time".to_owned();
+        let noted = Noted { check: HealthCheck::Checkpoint, message: message.clone(), worst: 1.0, advice };
+        self.note(scene, view, noted);
+        (scene.health.response(HealthCheck::Checkpoint) == Response::Warn).then_some(message)
+    }
+
+    /// What ends the run, if something does.
+    pub(super) fn stop(&self) -> Option<&RunWarning> {
+        self.stop.as_ref()
+    }
+
+    /// Whether steps are to be shorter from now on; told once.
+    pub(super) fn asks_to_cut(&mut self) -> bool {
+        self.cutting.as_mut().is_some_and(StepCutting::asks_to_cut)
+    }
+
+    /// How often the run was looked at.
+    pub(super) fn looks(&self) -> u64 {
+        self.looks
     }
 
     /// The largest energy that drifts are held against [J].

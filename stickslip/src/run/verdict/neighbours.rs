@@ -1,6 +1,7 @@
 //! Particles that were neighbours before anything moved: some of each body, chosen once.
 
 use crate::door::{TracedParticle, View};
+use crate::observe::{Memory, OutputError};
 use crate::scene::Scene;
 use std::collections::{HashMap, HashSet};
 
@@ -11,6 +12,10 @@ pub(super) struct Neighbours {
     pub start: Vec<[f64; 3]>,
     /// Pairs of them, by their place in `start`.
     pub pairs: Vec<[u32; 2]>,
+    /// Their numbers.
+    numbers: Vec<u32>,
+    /// Whether some of them have left the domain.
+    lost: bool,
     /// Place in `start` of each particle of the body, by its number.
     place: Vec<u32>,
 }
@@ -35,10 +40,15 @@ pub(super) fn of_bodies(scene: &Scene, view: &dyn View) -> Vec<Neighbours> {
 
 impl Neighbours {
     fn new(view: &dyn View, body: usize, all: usize) -> Self {
-        let Ok(start) = view.column(body, "start") else { return Neighbours::default() };
-        let start = start.by_number::<3>();
-        let chosen = chosen(start.len(), (MOST * start.len() / all.max(1)).max(FEWEST));
-        let mut seeds = vec![false; start.len()];
+        let Ok(column) = view.column(body, "start") else { return Neighbours::default() };
+        let mut numbers = column.numbers().to_vec();
+        numbers.sort_unstable();
+        let most = numbers.last().map_or(0, |&last| last as usize + 1);
+        let mut start = vec![[0.0; 3]; most];
+        column.rows::<3>().for_each(|(number, x)| start[number as usize] = x);
+        let chosen = chosen(numbers.len(), (MOST * numbers.len() / all.max(1)).max(FEWEST));
+        let chosen: Vec<u32> = chosen.into_iter().map(|rank| numbers[rank as usize]).collect();
+        let mut seeds = vec![false; most];
         chosen.iter().for_each(|&number| seeds[number as usize] = true);
         let traced = view.trace(body, &|number| seeds[number as usize]);
         let widest = traced.iter().map(|particle| particle.half_width).fold(0.0, f64::max);
@@ -55,9 +65,10 @@ impl Neighbours {
         };
         let near: HashSet<[i64; 3]> = chosen.iter().flat_map(|&n| around(cell(start[n as usize]))).collect();
         let mut cells: HashMap<[i64; 3], Vec<u32>> = HashMap::new();
-        for (number, &x) in start.iter().enumerate() {
+        for &number in &numbers {
+            let x = start[number as usize];
             if near.contains(&cell(x)) {
-                cells.entry(cell(x)).or_default().push(number as u32);
+                cells.entry(cell(x)).or_default().push(number);
             }
         }
 
@@ -84,22 +95,67 @@ impl Neighbours {
         if *place == NONE {
             *place = self.start.len() as u32;
             self.start.push(start[number as usize]);
+            self.numbers.push(number);
         }
         *place
     }
 
-    /// The chosen particles now, in the order of `start`.
-    pub(super) fn particles(&self, view: &dyn View, body: usize) -> Vec<TracedParticle> {
+    /// The chosen particles now, in the order of `start`; those that have left the domain are chosen no more.
+    pub(super) fn particles(&mut self, view: &dyn View, body: usize) -> Vec<TracedParticle> {
         if self.start.is_empty() {
             return Vec::new();
         }
-        let place = |number: u32| self.place[number as usize];
-        let traced = view.trace(body, &|number| place(number) != NONE);
-        let mut particles = traced.clone();
-        for particle in traced {
-            particles[place(particle.number) as usize] = particle;
+        let place = |number: u32| self.place.get(number as usize).copied().unwrap_or(NONE);
+        let mut traced = view.trace(body, &|number| place(number) != NONE);
+        traced.sort_unstable_by_key(|particle| place(particle.number));
+        if traced.len() < self.start.len() {
+            self.keep(traced.iter().map(|particle| particle.number).collect());
         }
-        particles
+        traced
+    }
+
+    /// Chooses these only, of those that are chosen, in the same order.
+    fn keep(&mut self, numbers: Vec<u32>) {
+        self.lost = true;
+        let mut now = vec![NONE; self.start.len()];
+        for (new, &number) in numbers.iter().enumerate() {
+            now[self.place[number as usize] as usize] = new as u32;
+        }
+        let mut there = now.iter().map(|&new| new != NONE);
+        self.start.retain(|_| there.next().unwrap_or(false));
+        self.pairs = (self.pairs.iter())
+            .map(|pair| pair.map(|place| now[place as usize]))
+            .filter(|pair| !pair.contains(&NONE))
+            .collect();
+        self.numbers = numbers;
+        self.find_places();
+    }
+
+    fn find_places(&mut self) {
+        self.place.fill(NONE);
+        let most = self.numbers.iter().max().map_or(0, |&most| most as usize + 1);
+        self.place.resize(most.max(self.place.len()), NONE);
+        for (place, &number) in self.numbers.iter().enumerate() {
+            self.place[number as usize] = place as u32;
+        }
+    }
+
+    /// Keeps what was chosen once some of it is gone, or takes that up: it cannot be chosen anew then.
+    pub(super) fn remember(&mut self, memory: &mut Memory) -> Result<(), OutputError> {
+        if !self.lost && !memory.is_taking_up() {
+            return Ok(());
+        }
+        let mut kept = (self.start.clone(), self.pairs.clone(), self.numbers.clone());
+        if memory.keep("chosen", &mut kept)? {
+            let (start, pairs, numbers) = kept;
+            let fits = start.len() == numbers.len()
+                && pairs.iter().flatten().all(|&place| (place as usize) < start.len());
+            if fits {
+                (self.start, self.pairs, self.numbers, self.lost) = (start, pairs, numbers, true);
+                self.find_places();
+            }
+        }
+        Ok(())
     }
 }
 

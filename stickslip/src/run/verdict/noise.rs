@@ -1,15 +1,16 @@
 //! Energy that became noise and was damped, though the scene asks for no damping.
 
 use super::{Check, CheckInputs, Finding, asks_for_damping};
+use crate::scene::HealthCheck;
 use crate::transfer::pic_share;
 
-/// Holds what damping took against the bound on the drift of energy. `rflip` takes noise from particles' own rotation;
+/// Holds what damping took against the bound on it. `rflip` takes noise from particles' own rotation;
 /// what it takes came from motion that the grid did not carry on, so the ledger closes and the swing is gone.
 pub(super) struct NoiseCheck;
 
 impl Check for NoiseCheck {
-    fn kind(&self) -> &'static str {
-        "noise"
+    fn kind(&self) -> HealthCheck {
+        HealthCheck::Noise
     }
 
     fn advice(&self) -> &'static str {
@@ -23,7 +24,7 @@ impl Check for NoiseCheck {
         let time = &look.scene.time;
         let takes_velocities = pic_share(time.transfer, time.pic_share) > 0.0;
         let wanted = takes_velocities || asks_for_damping(look.scene);
-        if wanted || part.is_nan() || part.abs() <= time.energy_drift {
+        if wanted || part.is_nan() || part.abs() <= look.bound(self.kind()) {
             return Vec::new();
         }
         let message = format!(

@@ -2,7 +2,7 @@
 
 use super::{Check, CheckInputs, Finding, norm};
 use crate::observe::{Memory, OutputError};
-use crate::scene;
+use crate::scene::{self, HealthCheck};
 
 /// Adds up the way of bodies whose steps are about as short as the spacing of numbers where they are.
 #[derive(Default)]
@@ -14,12 +14,10 @@ pub(super) struct PrecisionCheck {
 
 /// Spacings of numbers in a step: below, rounding takes or adds more than a tenth of each.
 const SPACINGS: f64 = 5.0;
-/// Way that may be lost, in cells.
-const BOUND: f64 = 0.1;
 
 impl Check for PrecisionCheck {
-    fn kind(&self) -> &'static str {
-        "precision"
+    fn kind(&self) -> HealthCheck {
+        HealthCheck::Precision
     }
 
     fn advice(&self) -> &'static str {
@@ -50,7 +48,7 @@ impl Check for PrecisionCheck {
                 self.doubtful[body] = doubtful;
             }
             let cells = doubtful / look.scene.discretization.cell;
-            if cells > BOUND {
+            if cells > look.bound(self.kind()) {
                 let name = &look.scene.bodies[body].name;
                 let message = format!(
                     "`{name}` moves by {:.2e} m a step where numbers are {spacing:.2e} m apart: \

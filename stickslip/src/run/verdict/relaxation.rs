@@ -1,13 +1,14 @@
 //! Dynamic relaxation that came to its end before the bodies were at rest.
 
 use super::{Check, CheckInputs, EARLY, Finding};
+use crate::scene::HealthCheck;
 
 /// Looks whether the bodies are at rest when the run ends.
 pub(super) struct RelaxationCheck;
 
 impl Check for RelaxationCheck {
-    fn kind(&self) -> &'static str {
-        "relaxation"
+    fn kind(&self) -> HealthCheck {
+        HealthCheck::Relaxation
     }
 
     fn advice(&self) -> &'static str {

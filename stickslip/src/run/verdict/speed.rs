@@ -1,16 +1,14 @@
 //! Motion within a body that nears the speed of its waves.
 
 use super::{Check, CheckInputs, Finding, minus, norm, place};
+use crate::scene::HealthCheck;
 
 /// Holds the speed of particles, relative to their body on the whole, against its waves.
 pub(super) struct SpeedCheck;
 
-/// Share of the wave speed that is allowed: an impact at it strains by about as much.
-const BOUND: f64 = 0.5;
-
 impl Check for SpeedCheck {
-    fn kind(&self) -> &'static str {
-        "speed"
+    fn kind(&self) -> HealthCheck {
+        HealthCheck::Speed
     }
 
     fn advice(&self) -> &'static str {
@@ -18,19 +16,20 @@ impl Check for SpeedCheck {
     }
 
     fn look(&mut self, look: &CheckInputs) -> Vec<Finding> {
+        let bound = look.bound(self.kind());
         let of_body = |body: usize| {
             let whole = look.bodies[body].velocity;
             let speed = |velocity| norm(minus(velocity, whole));
             let by_speed = |a: &&_, b: &&_| f64::total_cmp(&speed(velocity(a)), &speed(velocity(b)));
             let fastest = look.particles[body].iter().max_by(by_speed)?;
             let share = speed(fastest.velocity) / look.wave_speed(body);
-            if share.is_nan() || share <= BOUND {
+            if share.is_nan() || share <= bound {
                 return None;
             }
             let name = &look.scene.bodies[body].name;
             let message = format!(
                 "a part of `{name}` moves against the rest by {share:.2} of its wave speed at {}, \
-                 where {BOUND} is allowed",
+                 where {bound} is allowed",
                 place(fastest.position)
             );
             Some(Finding { body: Some(body), position: Some(fastest.position), worst: share, message })

@@ -3,7 +3,7 @@
 use super::{Check, CheckInputs, Finding, asks_for_damping, minus, norm};
 use crate::door::BodyState;
 use crate::observe::{Memory, OutputError};
-use crate::scene::{Face, Scene};
+use crate::scene::{Face, HealthCheck, Scene};
 use crate::tensor::cross;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
@@ -22,6 +22,8 @@ pub(super) struct SpinCheck {
 struct Alone {
     body: usize,
     /// At the start.
+    #[serde(default)]
+    mass: f64,
     velocity: [f64; 3],
     angular_momentum: [f64; 3],
     time: f64,
@@ -36,8 +38,6 @@ struct Together {
     scale: f64,
 }
 
-/// Change that is allowed [-].
-const BOUND: f64 = 0.02;
 /// Energy of the turning over that of all motion about the centre of mass and of strain: below, a body does not turn,
 /// it rings.
 const TURNS: f64 = 0.01;
@@ -52,8 +52,8 @@ const PUSHED: f64 = 1e-4;
 const NEAR: f64 = 2.0;
 
 impl Check for SpinCheck {
-    fn kind(&self) -> &'static str {
-        "angular-momentum"
+    fn kind(&self) -> HealthCheck {
+        HealthCheck::AngularMomentum
     }
 
     fn advice(&self) -> &'static str {
@@ -93,7 +93,8 @@ impl SpinCheck {
         let time = look.simulation.time();
         let alone = |body: usize| {
             let state = &look.bodies[body];
-            Alone { body, velocity: state.velocity, angular_momentum: own(state), time }
+            let (mass, velocity) = (state.mass, state.velocity);
+            Alone { body, mass, velocity, angular_momentum: own(state), time }
         };
         let pushed = |&body: &usize| look.scene.loads.iter().any(|load| load.body == body);
         self.alone = look.free().filter(|body| !pushed(body)).map(alone).collect();
@@ -120,6 +121,10 @@ fn own(state: &BodyState) -> [f64; 3] {
 impl Alone {
     fn unpushed(&self, look: &CheckInputs) -> bool {
         let state = &look.bodies[self.body];
+        // What left the domain took its spin along.
+        if state.mass < self.mass {
+            return false;
+        }
         let fallen = look.simulation.time() - self.time;
         let push: [f64; 3] =
             std::array::from_fn(|i| state.velocity[i] - self.velocity[i] - look.scene.gravity[i] * fallen);
@@ -140,7 +145,7 @@ impl Alone {
         let turning = 0.5 * before.max(after).powi(2) / inertia;
         let whole = 0.5 * state.mass * norm(state.velocity).powi(2);
         let turns = turning >= TURNS * (state.kinetic - whole + state.strain) && turning >= ROUNDING * whole;
-        if !turns || change.is_nan() || change <= BOUND {
+        if !turns || change.is_nan() || change <= look.bound(HealthCheck::AngularMomentum) {
             return None;
         }
         let name = &look.scene.bodies[self.body].name;
@@ -170,8 +175,10 @@ impl Together {
         };
         let sizes = look.bodies.iter().map(|state| size(state).max(most(state)));
         self.scale = self.scale.max(sizes.sum());
-        let change = norm(minus(look.ledger.angular_momentum, self.angular_momentum)) / self.scale;
-        if change.is_nan() || change <= BOUND {
+        let gone = look.ledger.removed_angular_momentum;
+        let now = [0, 1, 2].map(|i| look.ledger.angular_momentum[i] + gone[i]);
+        let change = norm(minus(now, self.angular_momentum)) / self.scale;
+        if change.is_nan() || change <= look.bound(HealthCheck::AngularMomentum) {
             return None;
         }
         let message = format!(

@@ -3,6 +3,7 @@
 use super::neighbours::Neighbours;
 use super::{Check, CheckInputs, Finding, minus, norm, place};
 use crate::observe::{Memory, OutputError};
+use crate::scene::HealthCheck;
 use std::collections::BTreeMap;
 
 /// Holds the distances of neighbours against those that their deformation gradients give.
@@ -24,6 +25,7 @@ pub(super) struct StrainCheck {
 }
 
 /// How far a body was stretched, and which of its pairs belong together.
+#[derive(Default)]
 struct Stretch {
     /// Group of each pair: its region and direction.
     group: Vec<u32>,
@@ -31,10 +33,9 @@ struct Stretch {
     groups: usize,
 }
 
-/// Part of the stretch by which positions may differ from it.
-const BOUND: f64 = 0.25;
-/// The same where material flows: it is sheared so far that the mean of two gradients says less.
-const BOUND_OF_FLOW: f64 = 0.5;
+/// By how much more positions may differ from the stretch where material flows: it is sheared so far that the mean of
+/// two gradients says less.
+const FLOW: f64 = 2.0;
 /// Stretch that counts at least: with less, positions that are off by a part of it harm nobody.
 const LEAST_STRETCH: f64 = 5e-4;
 /// Cells along the side of a region.
@@ -51,8 +52,8 @@ struct PairSums {
 }
 
 impl Check for StrainCheck {
-    fn kind(&self) -> &'static str {
-        "strain"
+    fn kind(&self) -> HealthCheck {
+        HealthCheck::Strain
     }
 
     fn advice(&self) -> &'static str {
@@ -60,9 +61,13 @@ impl Check for StrainCheck {
     }
 
     fn look(&mut self, look: &CheckInputs) -> Vec<Finding> {
-        if self.bodies.is_empty() {
-            let side = REGION * look.scene.discretization.cell;
-            self.bodies = look.neighbours.iter().map(|neighbours| Stretch::new(neighbours, side)).collect();
+        let side = REGION * look.scene.discretization.cell;
+        self.bodies.resize_with(look.neighbours.len(), Stretch::default);
+        for (stretch, neighbours) in self.bodies.iter_mut().zip(look.neighbours) {
+            // At first, and where particles have left the domain.
+            if stretch.group.len() != neighbours.pairs.len() {
+                *stretch = Stretch::new(neighbours, side);
+            }
         }
         self.largest.resize(self.bodies.len(), 0.0);
         look.free().filter_map(|body| self.bodies[body].look(look, body, &mut self.largest[body])).collect()
@@ -111,7 +116,7 @@ impl Stretch {
         let (off, worst) = shared(&sums)?;
         let share = off / largest.max(LEAST_STRETCH);
         let trusted = look.scene.materials[look.scene.bodies[body].material].law.trusts_deformation();
-        let bound = if trusted { BOUND } else { BOUND_OF_FLOW };
+        let bound = look.bound(HealthCheck::Strain) * if trusted { 1.0 } else { FLOW };
         if share.is_nan() || share <= bound {
             return None;
         }

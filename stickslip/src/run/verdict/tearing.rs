@@ -3,7 +3,7 @@
 use super::{Check, CheckInputs, Finding, minus, place};
 use crate::door::TracedParticle;
 use crate::observe::{Memory, OutputError};
-use crate::scene::BasisKind;
+use crate::scene::{BasisKind, HealthCheck};
 
 /// Looks for neighbours that no longer share a node of the grid.
 #[derive(Default)]
@@ -16,8 +16,8 @@ pub(super) struct TearingCheck {
 const LOOKED_INTO: usize = 16;
 
 impl Check for TearingCheck {
-    fn kind(&self) -> &'static str {
-        "tearing"
+    fn kind(&self) -> HealthCheck {
+        HealthCheck::Tearing
     }
 
     fn advice(&self) -> &'static str {

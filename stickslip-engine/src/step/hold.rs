@@ -1,0 +1,59 @@
+//! The state before a step, kept so that a step that fails can be taken again.
+
+use super::Engine;
+use super::state::State;
+use crate::basis::Basis;
+use crate::lanes::Laned;
+use crate::tensor::Real;
+use crate::threads::each;
+
+impl<T: Real, const D: usize> State<T, D> {
+    /// Becomes a copy of another state of the same simulation, in the memory that is there.
+    fn become_copy_of(&mut self, other: &Self) {
+        // Each field by name: a new one cannot be forgotten.
+        let &State {
+            ref bodies,
+            ref disorder,
+            ref unbounded,
+            ref contact_sums,
+            ref loads,
+            ref joints,
+            ref removed,
+            longest_rigid,
+            damping,
+            relaxation,
+            signal,
+            time,
+            steps,
+        } = other;
+        each(&mut self.bodies, 1, |i, body| {
+            body.particles.become_copy_of(&bodies[i].particles);
+            body.motion.clone_from(&bodies[i].motion);
+        });
+        self.disorder.clone_from(disorder);
+        self.unbounded.clone_from(unbounded);
+        self.contact_sums.clone_from(contact_sums);
+        self.loads.clone_from(loads);
+        self.joints.clone_from(joints);
+        self.removed.clone_from(removed);
+        (self.longest_rigid, self.damping, self.relaxation) = (longest_rigid, damping, relaxation);
+        (self.signal, self.time, self.steps) = (signal, time, steps);
+    }
+}
+
+impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
+    /// Copies the state.
+    pub(super) fn hold_state(&mut self) {
+        match &mut self.held {
+            Some(held) => held.become_copy_of(&self.state),
+            None => self.held = Some(self.state.clone()),
+        }
+    }
+
+    /// Goes back to the copy, if there is one.
+    pub(super) fn take_back_state(&mut self) -> bool {
+        let Some(held) = &self.held else { return false };
+        self.state.become_copy_of(held);
+        true
+    }
+}

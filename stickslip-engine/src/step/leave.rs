@@ -1,0 +1,100 @@
+//! Particles that have left the domain, where the scene goes on without them.
+
+use super::Engine;
+use crate::basis::Basis;
+use crate::body::{Body, Totals};
+use crate::door::RemovedParticles;
+use crate::grid::SIDE;
+use crate::lanes::Laned;
+use crate::particles::ColumnStart;
+use crate::scene::Leaving;
+use std::sync::PoisonError;
+
+/// Steps from one removal to the next: to take particles out costs about as much as to sort the body. Those that are
+/// outside meanwhile, by a few cells at most, behave as if the domain ended there.
+const EVERY: u64 = 10;
+/// A particle moves by less in a step [cells].
+const MARGIN: i32 = 2;
+
+impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
+    /// Whether deformable bodies go on without particles that leave the domain.
+    pub(super) fn removes_leavers(&self) -> bool {
+        self.settings.domain.is_some() && self.settings.leaving == Leaving::Remove
+    }
+
+    /// Takes out the particles of deformable bodies that are outside the domain, and books what goes with them.
+    pub(super) fn remove_leavers(&mut self) {
+        if !self.removes_leavers() || !self.state.steps.is_multiple_of(EVERY) {
+            return;
+        }
+        for body in 0..self.state.bodies.len() {
+            let outside = self.outside(body);
+            if !outside.is_empty() {
+                self.remove(body, &outside);
+            }
+        }
+    }
+
+    /// The particles of a deformable body that are outside the domain, by their places in memory, ascending. Only tiles
+    /// at the domain's faces are looked at.
+    fn outside(&self, body: usize) -> Vec<u32> {
+        let mut found = Vec::new();
+        let Some([min, max]) = self.settings.domain.filter(|_| !self.state.bodies[body].is_rigid()) else {
+            return found;
+        };
+        let (active, particles) = (&self.workspace.active, &self.state.bodies[body].particles);
+        let end = self.settings.lattice.cells(max);
+        let end: [i32; D] = std::array::from_fn(|k| end[k].floor());
+        let lines: [&[T]; D] = std::array::from_fn(|k| particles.line(ColumnStart::<D>::POSITION + k));
+        for tile in &active.tiles[active.tiles_of_body(body)] {
+            let inside = (0..D).all(|k| {
+                let first = tile.block[k] * SIDE;
+                first - MARGIN > 0 && first + SIDE + MARGIN < end[k]
+            });
+            if inside {
+                continue;
+            }
+            let cells = active.cells_of(tile);
+            let order = &active.order_of(body)[cells[0] as usize..cells[cells.len() - 1] as usize];
+            found.extend(order.iter().filter(|&&p| {
+                (0..D).any(|k| lines[k][p as usize] < min[k] || lines[k][p as usize] > max[k])
+            }));
+        }
+        found.sort_unstable();
+        found
+    }
+
+    fn remove(&mut self, number: usize, outside: &[u32]) {
+        let gravity = self.settings.gravity.space();
+        let body = &mut self.state.bodies[number];
+        let before = Body::totals(body);
+        let removed = &mut self.state.removed[number];
+        if removed.count == 0 {
+            // The same of all orders in memory.
+            let first = outside.iter().map(|&p| body.particles.get(p as usize));
+            let first = first.min_by_key(|particle| particle.number).expect("some are outside");
+            (removed.time, removed.place) = (self.state.time, first.position.space());
+        }
+        body.particles.remove(outside);
+        removed.take(outside.len() as u64, (&before, &Body::totals(body)), gravity);
+        self.workspace.active.forget(number);
+        *self.workspace.totals.get_mut().unwrap_or_else(PoisonError::into_inner) = None;
+    }
+}
+
+impl RemovedParticles {
+    /// Books what a body has less.
+    fn take(&mut self, count: u64, (before, after): (&Totals, &Totals), gravity: [f64; 3]) {
+        let gone = |of: fn(&Totals) -> f64| of(before) - of(after);
+        let gone3 = |of: fn(&Totals) -> [f64; 3]| [0, 1, 2].map(|i| of(before)[i] - of(after)[i]);
+        self.count += count;
+        self.mass += gone(|totals| totals.mass);
+        let moment = gone3(|totals| totals.first_moment);
+        let potential: f64 = (0..3).map(|i| -gravity[i] * moment[i]).sum();
+        self.energy += gone(|totals| totals.kinetic + totals.strain) + potential;
+        self.plastic += gone(|totals| totals.plastic);
+        let (momentum, angular) = (gone3(|totals| totals.momentum), gone3(|totals| totals.angular_momentum));
+        (0..3).for_each(|i| self.momentum[i] += momentum[i]);
+        (0..3).for_each(|i| self.angular_momentum[i] += angular[i]);
+    }
+}
