@@ -166,6 +166,7 @@ pub fn illustrate(folder: &Path) -> Result<String, Failure> {
         "loads.csv",
         "joints.csv",
         "sections.csv",
+        "reactions.csv",
         "probes.csv",
         "arrivals.csv",
         "fronts.csv",

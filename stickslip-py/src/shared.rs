@@ -11,7 +11,7 @@ use stickslip::column::ColumnDescription;
 use stickslip::door::{
     BodyState, ColumnPlace, ColumnRef, ContactPatch, ContactSum, GridSnapshot, JointState, Ledger, LoadState,
     NoColumn, ParticleSnapshot, ParticleView, RelaxationState, RestoreError, SavedState, Simulation,
-    StepError, TracedParticle, View, WriteError,
+    StepError, TracedParticle, View, WallState, WriteError,
 };
 use stickslip::scene::StartVelocities;
 
@@ -158,6 +158,10 @@ impl View for Handle {
 
     fn joints(&self) -> Vec<JointState> {
         self.0.ask(|simulation| simulation.joints())
+    }
+
+    fn walls(&self) -> Vec<WallState> {
+        self.0.ask(|simulation| simulation.walls())
     }
 
     fn patches(&self) -> Vec<ContactPatch> {

@@ -15,6 +15,7 @@ use crate::boundary::{Boundary, reflect};
 use crate::grid::{ActiveBlocks, Node};
 use crate::lanes::Laned;
 use crate::load::{CarriedPoint, LoadPoints, LoadSums, PointForce, nodes_of, place_of};
+use crate::part::PartPoint;
 use crate::scene::Face;
 use crate::tensor::{Real, Vector};
 use crate::threads::each;
@@ -22,8 +23,6 @@ use std::time::Instant;
 
 /// Points that a thread takes at a time.
 const POINTS: usize = 32;
-/// No node.
-const NOWHERE: u32 = u32::MAX;
 
 /// Room for loads in a step.
 #[derive(Clone, Debug)]
@@ -131,8 +130,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
 
     /// Loads and supports change the velocities that the forces of the stress and gravity gave to the nodes.
     pub(super) fn apply_loads(&mut self, dt: T) {
+        let gravity = self.gravity(dt);
         let (room, field) = (&mut self.workspace.loads, &mut self.workspace.field);
-        let gravity = self.settings.gravity;
         for &index in &room.reached {
             room.nodes[index as usize].accelerate(&mut field.nodes[index as usize], gravity, dt);
         }
@@ -160,16 +159,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let (places, bodies) = (&mut self.workspace.loads.places, &self.state.bodies);
         places.resize_with(bodies.len(), Vec::new);
         for load in &self.settings.loads {
-            let (numbers, places) = (bodies[load.body].particles.numbers(), &mut places[load.body]);
-            let lies = |number: usize| {
-                places.get(number).is_some_and(|&place| numbers[place as usize] as usize == number)
-            };
-            if !load.points.iter().all(|point| lies(point.particle)) {
-                places.resize(numbers.len(), 0);
-                for (place, &number) in numbers.iter().enumerate() {
-                    places[number as usize] = place as u32;
-                }
-            }
+            find_carriers(&mut places[load.body], bodies[load.body].particles.numbers(), &load.points);
         }
     }
 
@@ -197,8 +187,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             let moved_by_nodes = !body.is_rigid();
             let nodes_near = || nodes_of::<T, D, B>(lattice, &particle, point);
             for (node, [own, weight]) in moved_by_nodes.then(nodes_near).into_iter().flatten() {
-                let (index, mirrored) = find(active, boundary, (load.body, node));
-                if index != NOWHERE && nodes[index as usize].mass > T::ZERO {
+                let Some((index, mirrored)) = find(active, boundary, (load.body, node)) else { continue };
+                if nodes[index as usize].mass > T::ZERO {
                     velocity += mirror(nodes[index as usize].start, mirrored) * weight;
                     moves += mirror(nodes[index as usize].integrated, mirrored) * own;
                     loaded.nodes.push(LoadedNode { index, mirrored, weight });
@@ -345,13 +335,25 @@ impl<T: Real, const D: usize> NodeLoad<T, D> {
     }
 }
 
+/// Where the particles of a body that carry points lie in memory, by number, from the numbers in the order of memory.
+pub(super) fn find_carriers(places: &mut Vec<u32>, numbers: &[u32], points: &[PartPoint]) {
+    let lies =
+        |number: usize| places.get(number).is_some_and(|&place| numbers[place as usize] as usize == number);
+    if !points.iter().all(|point| lies(point.particle)) {
+        places.resize(numbers.len(), 0);
+        for (place, &number) in numbers.iter().enumerate() {
+            places[number as usize] = place as u32;
+        }
+    }
+}
+
 /// The field's index of a body's node, for one behind mirrors that of its image before them, and the axes along which
-/// it is one.
-fn find<const D: usize>(
+/// it is one; `None` where the body has no node.
+pub(super) fn find<const D: usize>(
     active: &ActiveBlocks<D>,
     boundary: &Boundary,
     (body, mut node): (usize, [i32; D]),
-) -> (u32, u32) {
+) -> Option<(u32, u32)> {
     let mut mirrored = 0;
     for wall in boundary.walls.iter().filter(|wall| wall.face == Face::Symmetry) {
         if wall.depth(node) < 0 {
@@ -359,11 +361,11 @@ fn find<const D: usize>(
             mirrored ^= 1 << wall.axis;
         }
     }
-    (active.node_index(body, node).map_or(NOWHERE, |index| index as u32), mirrored)
+    Some((active.node_index(body, node)? as u32, mirrored))
 }
 
 /// A vector's image across axes, a bit each.
-fn mirror<T: Real, const D: usize>(v: Vector<T, D>, axes: u32) -> Vector<T, D> {
+pub(super) fn mirror<T: Real, const D: usize>(v: Vector<T, D>, axes: u32) -> Vector<T, D> {
     (0..D).filter(|axis| axes >> axis & 1 == 1).fold(v, reflect)
 }
 

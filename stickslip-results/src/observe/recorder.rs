@@ -14,10 +14,11 @@ use super::loads::LoadsObserver;
 use super::memory::Memory;
 use super::particles::ParticlesObserver;
 use super::probes::ProbesObserver;
+use super::reactions::ReactionsObserver;
 use super::sections::SectionsObserver;
 use super::{
     ARRIVALS, BODIES, CONTACTS, ENERGY, FRINGES, FRONTS, GRID, JOINTS, LOADS, Observer, PARTICLES, PROBES,
-    SECTIONS,
+    REACTIONS, SECTIONS,
 };
 use crate::door::View;
 use crate::scene::Scene;
@@ -48,12 +49,15 @@ impl<'a> Recorder<'a> {
         if !scene.loads.is_empty() {
             recorder.schedule(LOADS, LoadsObserver::create(scene, folder)?);
         }
-        if !scene.joints.is_empty() {
+        if scene.joint_names().next().is_some() {
             recorder.schedule(JOINTS, JointsObserver::create(scene, folder)?);
         }
         let wanted = &scene.outputs.measurements;
         if !wanted.sections.is_empty() {
             recorder.schedule(SECTIONS, SectionsObserver::create(scene, folder)?);
+        }
+        if !wanted.reactions.is_empty() {
+            recorder.schedule(REACTIONS, ReactionsObserver::create(scene, folder)?);
         }
         if !wanted.probes.is_empty() {
             recorder.schedule(PROBES, ProbesObserver::create(scene, folder)?);
@@ -81,7 +85,7 @@ impl<'a> Recorder<'a> {
     /// # Errors
     /// One is not.
     pub fn find(folder: &OutputFolder, memory: &Memory) -> Result<(), OutputError> {
-        let tables = [BODIES, ENERGY, CONTACTS, LOADS, JOINTS, SECTIONS, PROBES, ARRIVALS, FRONTS];
+        let tables = [BODIES, ENERGY, CONTACTS, LOADS, JOINTS, SECTIONS, REACTIONS, PROBES, ARRIVALS, FRONTS];
         for path in
             tables.iter().filter(|name| memory.has(&format!("{name}/length"))).map(|name| folder.join(name))
         {

@@ -8,6 +8,7 @@ mod custom;
 mod declaration;
 mod elastic;
 mod history;
+mod initial;
 mod plane_stress;
 
 pub use custom::{Custom, CustomLaw};
@@ -17,6 +18,7 @@ pub use declaration::{
 };
 pub use elastic::Isotropic;
 pub use history::{AtRest, Entries, History, Keep, MOST_HISTORY, Recall, history_entries};
+pub use initial::NoStretch;
 pub use plane_stress::Thickness;
 
 use crate::tensor::{Matrix, Number, Real, Symmetric};

@@ -3,8 +3,8 @@
 use super::Context;
 use super::files::read_file;
 use super::quantity::{
-    Acceleration, Duration, Force, ForceOverVelocity, Length, Measure, Pressure, QuantityInput, Stiffness,
-    Velocity, evaluate,
+    Acceleration, Duration, Force, ForceOverVelocity, Length, Measure, Pressure, QuantityInput, Ratio,
+    Stiffness, Velocity, evaluate,
 };
 use super::read::{Read, table};
 use super::repeat::Repeat;
@@ -50,7 +50,7 @@ table! {
 }
 
 table! {
-    /// What pushes or pulls a part of a body: one of force, traction, pressure and acceleration.
+    /// What pushes, pulls or heats a part of a body: one of force, traction, pressure, acceleration and temperature.
     Load {
         /// Its name in loads.csv; by default "load 1", "load 2" ...
         name: Option<Text>,
@@ -60,7 +60,7 @@ table! {
         /// "grain*", makes one on each body that matches.
         body: Text,
         /// Where on the body: its surface, a face of it, or all its particles; by default the surface, for an
-        /// acceleration all particles.
+        /// acceleration and a temperature all particles.
         on: Option<Word<Extent>>,
         /// Only what lies in this shape at the start: within.ball = { center = [0, 0], radius = 1 }.
         within: Option<ShapeInput>,
@@ -72,6 +72,9 @@ table! {
         pressure: Option<Varying<Pressure>>,
         /// Force per mass [m/s^2].
         acceleration: Option<VaryingVector<Acceleration>>,
+        /// How much warmer than at the start its particles are [K], a number without a unit; its material has a
+        /// `thermal_expansion`.
+        temperature: Option<Varying<Ratio>>,
     }
 }
 
@@ -274,7 +277,7 @@ impl Place<'_> {
             if on == Extent::Volume && no_area {
                 return Err(word.refused(context, "a surface: a volume has no area"));
             }
-            if on != Extent::Volume && matches!(load.action, Action::Acceleration(_)) {
+            if on != Extent::Volume && load.action.is_on_particles() {
                 return Err(word.refused(context, "\"volume\": a surface has no mass"));
             }
         }
@@ -317,11 +320,15 @@ impl Load {
             self.traction.as_ref().map(|input| &input.node),
             self.pressure.as_ref().map(|input| &input.node),
             self.acceleration.as_ref().map(|input| &input.node),
+            self.temperature.as_ref().map(|input| &input.node),
         ];
-        let allowed = "one of force, traction, pressure and acceleration";
+        let allowed = "one of force, traction, pressure, acceleration and temperature";
         if let Some(second) = nodes.into_iter().flatten().nth(1) {
             let found = format!("`{}` beside another", second.name);
             return Err(Fault::new(&second.key, found, allowed).at(second.name_span.clone()));
+        }
+        if let Some(temperature) = &self.temperature {
+            return Ok(Action::Temperature(temperature.resolve(context, vary)?));
         }
         match (&self.force, &self.traction, &self.pressure, &self.acceleration) {
             (Some(force), ..) => Ok(Action::Force(force.resolve(context, vary)?)),
@@ -385,7 +392,8 @@ impl<M: Measure> Varying<M> {
 }
 
 impl<M: Measure> VaryingVector<M> {
-    fn resolve(&self, context: &Context, dependence: Dependence) -> Result<[Expression; 3], Fault> {
+    /// Its components in SI units; in the plane the third is zero.
+    pub fn resolve(&self, context: &Context, dependence: Dependence) -> Result<[Expression; 3], Fault> {
         self.sized(context)?;
         let mut resolved = [0.0; 3].map(Expression::Constant);
         for (part, resolved) in self.parts.iter().zip(&mut resolved) {
