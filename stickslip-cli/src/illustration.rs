@@ -172,6 +172,7 @@ pub fn illustrate(folder: &Path) -> Result<String, Failure> {
         "joints.csv",
         "removed.csv",
         "sections.csv",
+        "reactions.csv",
         "probes.csv",
         "arrivals.csv",
         "fronts.csv",

@@ -163,6 +163,7 @@ fn every_key_and_word_of_scene_files_is_explained() {
         "supports",
         "loads",
         "joints",
+        "springs",
         "contact",
         "outputs",
         "references",

@@ -47,7 +47,11 @@ pub fn fastest_signal<T: Real, const D: usize>(bodies: &[Body<T, D>]) -> f64 {
         let of_particle = |i: usize| {
             // SAFETY: the particles are borrowed for reading.
             let history = unsafe { body.particles.view().history_of(i) };
-            signal(body, &body.particles.get(i), &history).f64()
+            let mut particle = body.particles.get(i);
+            if let Some(natural) = body.particles.natural(i, body.expansion) {
+                particle.deformation = natural.elastic(&particle.deformation, T::ONE).0;
+            }
+            signal(body, &particle, &history).f64()
         };
         let fastest = |range: Range<usize>| range.map(of_particle).fold(0.0, f64::max);
         by_parts(body.particles.len(), PARTICLES, fastest).into_iter().fold(0.0, f64::max)

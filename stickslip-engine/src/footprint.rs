@@ -5,7 +5,7 @@ use crate::geometry::Bounds;
 use crate::grid::Node;
 use crate::particles::Particles;
 use crate::scene::{Precision, Scene};
-use crate::step::{own_columns, particles_around};
+use crate::step::{heated_bodies, own_columns, particles_around};
 use crate::tensor::Real;
 
 /// Each particle's place in the order of blocks and cells, of which there are two: one while the next is made [bytes].
@@ -34,19 +34,20 @@ impl Footprint for OfEngine {
 
 fn memory<T: Real, const D: usize>(scene: &Scene, particles: &[usize]) -> f64 {
     let node = size_of::<Node<T, D>>() as f64;
-    let of_body = |(body, &count): (&crate::scene::Body, &usize)| {
-        let own = own_columns(scene, body);
+    let heated = heated_bodies(scene);
+    let of_body = |(number, (body, &count)): (usize, (&crate::scene::Body, &usize))| {
+        let own = own_columns(scene, body, heated.contains(&number));
         let per_cell = (scene.discretization.cell / scene.lattice(body).spacing).powi(D as i32);
         let themselves = Particles::<T, D>::bytes_of(count, own) + ORDER_BYTES * count;
         themselves as f64 + node * NODES_PER_CELL * count as f64 / per_cell
     };
-    let all: f64 = scene.bodies.iter().zip(particles).map(of_body).sum();
+    let all: f64 = scene.bodies.iter().zip(particles).enumerate().map(of_body).sum();
     // The copy of the state before each step.
-    let held = |(body, &count): (&crate::scene::Body, &usize)| {
-        Particles::<T, D>::bytes_of(count, own_columns(scene, body)) as f64
+    let held = |(number, (body, &count)): (usize, (&crate::scene::Body, &usize))| {
+        Particles::<T, D>::bytes_of(count, own_columns(scene, body, heated.contains(&number))) as f64
     };
     let copies = if scene.health.retries > 0 { 1.0 } else { 0.0 };
-    all + copies * scene.bodies.iter().zip(particles).map(held).sum::<f64>()
+    all + copies * scene.bodies.iter().zip(particles).enumerate().map(held).sum::<f64>()
 }
 
 #[cfg(test)]

@@ -2,7 +2,9 @@
 //!
 //! It reads no files and writes none. The rooms below are in reading order: each uses only rooms above it.
 
-pub use stickslip_scene::{check, column, geometry, material, number, outside, part, rigid, scene, tensor};
+pub use stickslip_scene::{
+    check, column, geometry, initial_stress, material, number, outside, part, rigid, scene, tensor,
+};
 
 // Several numbers in a register, on whatever the processor has.
 pub mod lanes;
@@ -18,6 +20,9 @@ pub mod body;
 
 // Large pages of memory.
 pub mod pages;
+
+// What a law sees of the deformation where bodies begin with a stress or are heated.
+pub mod natural;
 
 // A body's particles as columns in memory.
 pub mod particles;

@@ -11,8 +11,8 @@
 use crate::basis::Basis;
 use crate::body::Particle;
 use crate::grid::Lattice;
-use crate::part::{self, PartPoint};
-use crate::scene::{Action, Dashpot, Expression, Extent, Load, Moment, RIGID, Scene, SupportMotion};
+use crate::part::{self, PartPoint, PartPoints};
+use crate::scene::{Action, Dashpot, Expression, Extent, Load, Moment, RIGID, Scene, Spring, SupportMotion};
 use crate::tensor::{Real, Vector};
 use crate::transfer::offsets;
 use serde::{Deserialize, Serialize};
@@ -24,8 +24,10 @@ pub struct LoadPoints {
     pub action: Action,
     /// Index of its body.
     pub body: usize,
-    /// The points.
+    /// The points; none of a temperature.
     pub points: Vec<PartPoint>,
+    /// Of a temperature, which particles of the body it heats, by number.
+    pub heats: Vec<bool>,
     /// Area of all of them, or volume [m^2 or m^3].
     pub measure: f64,
     /// Stiffness along axes that are held, per area or volume [Pa/m or Pa/m^2].
@@ -34,6 +36,34 @@ pub struct LoadPoints {
     dashpot: [f64; 2],
     /// How far inside the surface the points lie [m].
     inset: f64,
+}
+
+/// A spring with the points of its ends.
+#[derive(Clone, Debug)]
+pub struct SpringPoints {
+    /// Force over change of length [N/m].
+    pub stiffness: f64,
+    /// Force over its rate [N s/m].
+    pub dashpot: f64,
+    /// Length at the start [m].
+    pub drawn: f64,
+    /// Length without a force [m].
+    pub rest: f64,
+    /// Its ends.
+    pub ends: [PartPoints; 2],
+}
+
+impl SpringPoints {
+    /// A spring of a scene with its points.
+    pub fn new(scene: &Scene, spring: &Spring) -> Self {
+        let ends = [0, 1].map(|side| {
+            let end = &spring.ends[side];
+            PartPoints::new(scene, end.body, &end.part)
+        });
+        let drawn = (Vector(ends[0].center) - Vector(ends[1].center)).norm();
+        let rest = spring.length.unwrap_or(drawn);
+        SpringPoints { stiffness: spring.stiffness, dashpot: spring.dashpot, drawn, rest, ends }
+    }
 }
 
 /// What a load did since the start.
@@ -81,7 +111,7 @@ pub struct CarriedPoint<'a, T, const D: usize> {
 }
 
 impl LoadPoints {
-    /// A load of a scene with its points.
+    /// A load of a scene with its points, on a body of so many particles.
     ///
     /// A rigid support has springs of, per area,
     ///
@@ -91,8 +121,8 @@ impl LoadPoints {
     /// which give way as much as a layer of the body of thickness M/k does. They act half as deep inside the surface,
     /// which takes as much from how far the body gives way: N . K^-1 . N of its stiffness K falls by 2 d/E as N moves
     /// inward by d.
-    pub fn new(scene: &Scene, load: &Load) -> Self {
-        let mut points = part::points(scene, load);
+    pub fn new(scene: &Scene, load: &Load, particles: usize) -> Self {
+        let mut points = part::points(scene, load.body, &load.part);
         let measure = points.iter().map(|point| point.measure).sum::<f64>();
         let (mut stiffness, mut dashpot, mut inset) = (0.0, [0.0; 2], 0.0);
         if let Action::Support(support) = &load.action {
@@ -120,10 +150,16 @@ impl LoadPoints {
         for point in &mut points {
             (0..3).for_each(|i| point.arm[i] -= inset * point.normal[i]);
         }
+        let mut heats = Vec::new();
+        if matches!(load.action, Action::Temperature(_)) {
+            heats.resize(particles, false);
+            points.drain(..).for_each(|point| heats[point.particle] = true);
+        }
         LoadPoints {
             action: load.action.clone(),
             body: load.body,
             points,
+            heats,
             measure,
             stiffness,
             dashpot,
@@ -165,6 +201,7 @@ impl LoadPoints {
                 let pressure = pressure.at_moment(&moment(time + 0.5 * dt));
                 of(Vector::of(normal.map(|area| -pressure * area)))
             }
+            Action::Temperature(_) => PointForce::default(),
             Action::Support(support) => {
                 let mut felt = PointForce::default();
                 let start = self.start(point);
@@ -207,10 +244,9 @@ impl LoadPoints {
     /// Whether what it prescribes stays as it is: whether nothing of it changes within the step from `time` on, nor
     /// until `end` [s].
     pub fn is_still(&self, time: f64, dt: f64, end: f64) -> bool {
-        let Some(point) = self.points.first() else { return true };
+        let place = self.points.first().map_or([0.0; 3], |point| point.position);
         let at = |value: &Expression, time: f64| {
-            let (place, start) = (point.position, point.position);
-            value.at_moment(&Moment { time, place, start, ..Moment::default() })
+            value.at_moment(&Moment { time, place, start: place, ..Moment::default() })
         };
         let constant = |value: &Expression| match value {
             Expression::Constant(_) => true,
@@ -225,7 +261,7 @@ impl LoadPoints {
             Action::Force(values) | Action::Traction(values) | Action::Acceleration(values) => {
                 values.iter().all(constant)
             }
-            Action::Pressure(value) => constant(value),
+            Action::Pressure(value) | Action::Temperature(value) => constant(value),
             Action::Support(support) => support.motion.iter().flatten().all(|motion| match motion {
                 SupportMotion::Displacement(displacement) => constant(displacement),
                 SupportMotion::Velocity(velocity) => constant(velocity) && at(velocity, time) == 0.0,

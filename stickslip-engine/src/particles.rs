@@ -4,6 +4,7 @@ use crate::body::Particle;
 use crate::column::{ColumnDescription, EVERY, Kind, NUMBER, same};
 use crate::grid::Disjoint;
 use crate::material::{History, Keep, Recall, history_entries};
+use crate::natural::{self, Natural};
 use crate::pages::ask_for_large;
 use crate::tensor::{Matrix, Real, Symmetric, Vector};
 use crate::threads::each_range;
@@ -93,10 +94,12 @@ pub struct Particles<T, const D: usize> {
     transfer: &'static [History],
     /// What bulk viscosity needs.
     viscosity: &'static [History],
+    /// What initial stress and heat need.
+    natural: &'static [History],
 }
 
-/// Columns that not all bodies have: what a law remembers, behind that what a transfer carries, and what
-/// bulk viscosity needs.
+/// Columns that not all bodies have: what a law remembers, behind that what a transfer carries, what bulk viscosity
+/// needs, and what initial stress and heat need.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct OwnColumns {
     /// Of the law.
@@ -105,12 +108,14 @@ pub struct OwnColumns {
     pub transfer: &'static [History],
     /// Of bulk viscosity.
     pub viscosity: &'static [History],
+    /// Of the state without stress, see [`crate::natural`].
+    pub natural: &'static [History],
 }
 
 impl OwnColumns {
     /// All of them.
     fn all(self) -> impl Iterator<Item = &'static History> {
-        self.history.iter().chain(self.transfer).chain(self.viscosity)
+        self.history.iter().chain(self.transfer).chain(self.viscosity).chain(self.natural)
     }
 
     /// Their entries.
@@ -118,6 +123,7 @@ impl OwnColumns {
         history_entries(self.history, dimension)
             + history_entries(self.transfer, dimension)
             + history_entries(self.viscosity, dimension)
+            + history_entries(self.natural, dimension)
     }
 }
 
@@ -181,9 +187,18 @@ impl<T: Real, const D: usize> Particles<T, D> {
         let columns = vec![T::ZERO; stride * Self::columns_of(own)];
         ask_for_large(columns.as_ptr(), columns.len());
         let numbers = vec![0; 2 * count];
-        let OwnColumns { history, transfer, viscosity } = own;
-        let mut particles =
-            Particles { len: count, columns, stride, numbers, later: false, history, transfer, viscosity };
+        let OwnColumns { history, transfer, viscosity, natural } = own;
+        let mut particles = Particles {
+            len: count,
+            columns,
+            stride,
+            numbers,
+            later: false,
+            history,
+            transfer,
+            viscosity,
+            natural,
+        };
         for i in 0..count {
             let particle = f(i);
             particles.set(i, &particle);
@@ -213,7 +228,12 @@ impl<T: Real, const D: usize> Particles<T, D> {
 
     /// Its own columns.
     pub fn own(&self) -> OwnColumns {
-        OwnColumns { history: self.history, transfer: self.transfer, viscosity: self.viscosity }
+        OwnColumns {
+            history: self.history,
+            transfer: self.transfer,
+            viscosity: self.viscosity,
+            natural: self.natural,
+        }
     }
 
     /// The columns that not all bodies have.
@@ -287,6 +307,17 @@ impl<T: Real, const D: usize> Particles<T, D> {
         (Vector::from_fn(|k| at(ColumnStart::<D>::POSITION + k)), at(ColumnStart::<D>::HALF_WIDTH))
     }
 
+    /// The state without stress of particle `i`, of a material with this expansion by temperature; `None` where that is
+    /// the one in which its body is drawn.
+    pub fn natural(&self, i: usize, expansion: T) -> Option<Natural<T>> {
+        let columns = self.view().natural_columns();
+        let mut entries = [T::ZERO; natural::most_entries(3)];
+        for (entry, column) in entries.iter_mut().zip(columns.clone()) {
+            *entry = self.line(column)[i];
+        }
+        (!columns.is_empty()).then(|| Natural::new::<D>((&entries, columns.len()), expansion))
+    }
+
     /// Writes particle `i`.
     pub fn set(&mut self, i: usize, particle: &Particle<T, D>) {
         assert!(i < self.len(), "a particle of the body");
@@ -319,6 +350,7 @@ impl<T: Real, const D: usize> Particles<T, D> {
             history: history_entries(self.history, D),
             transfer: history_entries(self.transfer, D),
             viscosity: history_entries(self.viscosity, D),
+            natural: history_entries(self.natural, D),
         }
     }
 
@@ -331,6 +363,7 @@ impl<T: Real, const D: usize> Particles<T, D> {
             history: history_entries(self.history, D),
             transfer: history_entries(self.transfer, D),
             viscosity: history_entries(self.viscosity, D),
+            natural: history_entries(self.natural, D),
         }
     }
 
@@ -472,6 +505,8 @@ pub struct Columns<T, const D: usize> {
     transfer: usize,
     /// Entries of what bulk viscosity needs.
     viscosity: usize,
+    /// Entries of what initial stress and heat need.
+    natural: usize,
 }
 
 // SAFETY: entries are only reached through unsafe functions, whose callers keep threads apart.
@@ -506,13 +541,20 @@ impl<T: Real, const D: usize> Columns<T, D> {
         first..first + self.viscosity
     }
 
+    /// Places of the columns of the state without stress.
+    #[inline(always)]
+    pub fn natural_columns(&self) -> Range<usize> {
+        let first = self.viscosity_columns().end;
+        first..first + self.natural
+    }
+
     /// The entry of particle `i` in a column.
     ///
     /// # Safety
     /// The column and the particle must exist, and nobody may use the entry but by this pointer.
     #[inline(always)]
     pub unsafe fn at(&self, column: usize, i: usize) -> *mut T {
-        debug_assert!(column < self.viscosity_columns().end && i < self.stride, "an entry");
+        debug_assert!(column < self.natural_columns().end && i < self.stride, "an entry");
         // SAFETY: the caller's.
         unsafe { self.start.add(column * self.stride + i) }
     }

@@ -132,9 +132,9 @@ impl Engine {
         json(&names.zip(states).collect::<Vec<_>>())
     }
 
-    /// What joints did, with their names.
+    /// What joints and springs did, with their names.
     fn joints(&self, py: Python<'_>) -> String {
-        let names = self.scene.joints.iter().map(|joint| joint.name.as_str());
+        let names = self.scene.joint_names();
         let states = py.detach(|| self.handle().joints());
         json(&names.zip(states).collect::<Vec<_>>())
     }

@@ -12,7 +12,7 @@ use stickslip::column::ColumnDescription;
 use stickslip::door::{
     BodyState, ColumnPlace, ColumnRef, ContactPatch, ContactSum, GridSnapshot, JointState, Ledger, LoadState,
     NoColumn, ParticleSnapshot, ParticleView, RelaxationState, RemovedParticles, RestoreError, SavedState,
-    Simulation, StepError, TracedParticle, View, WriteError,
+    Simulation, StepError, TracedParticle, View, WallState, WriteError,
 };
 use stickslip::scene::StartVelocities;
 
@@ -176,6 +176,10 @@ impl View for Handle {
 
     fn removed(&self) -> Vec<RemovedParticles> {
         self.0.lock().removed()
+    }
+
+    fn walls(&self) -> Vec<WallState> {
+        self.0.ask(|simulation| simulation.walls())
     }
 
     fn patches(&self) -> Vec<ContactPatch> {

@@ -105,24 +105,34 @@ pub const STRAIN_RATE: &str = "strain_rate";
 /// Pressure of the bulk viscosity that some scenes ask for.
 pub const BULK_VISCOSITY: &str = "bulk_viscosity";
 
+/// What the law sees of the deformation beside F, of bodies that begin with a stress.
+pub const INITIAL_STRETCH: &str = "initial_stretch";
+
+/// How much warmer than at the start a particle is, of bodies that loads heat.
+pub const TEMPERATURE: &str = "temperature";
+
+/// Relative growth by the heating of the last step.
+pub const THERMAL_STRAIN_STEP: &str = "thermal_strain_step";
+
+/// Names of the columns that only some bodies have, whatever their law.
+const OF_SOME: [&str; 5] = [STRAIN_RATE, BULK_VISCOSITY, INITIAL_STRETCH, TEMPERATURE, THERMAL_STRAIN_STEP];
+
 /// Names of the columns that every file of particles may have.
 pub fn in_files() -> impl Iterator<Item = &'static str> {
     let every = EVERY.iter().map(|column| column.name);
     every.chain(IDENTITY).chain(DERIVED.iter().map(|derived| derived.column.name))
 }
 
-/// Names of those of them that a file may do without, and of what transfers and bulk viscosity carry.
+/// Names of those of them that a file may do without, and of what only some bodies have.
 pub fn optional_in_files() -> impl Iterator<Item = &'static str> {
     // What the engine keeps for itself is in no file.
     let kept = ["position", "spin", "half_width", "start"];
-    in_files()
-        .chain([STRAIN_RATE, BULK_VISCOSITY])
-        .filter(move |name| !kept.contains(name) && !IDENTITY.contains(name))
+    in_files().chain(OF_SOME).filter(move |name| !kept.contains(name) && !IDENTITY.contains(name))
 }
 
 /// Names that no column of history may have: a file would hold two columns called the same.
 pub fn reserved() -> impl Iterator<Item = &'static str> {
-    in_files().chain([STRAIN_RATE, BULK_VISCOSITY])
+    in_files().chain(OF_SOME)
 }
 
 /// What a particle has in a column.

@@ -29,6 +29,9 @@ pub mod scene;
 // Prescribed motion of rigid bodies.
 pub mod rigid;
 
+// Stress with which bodies begin.
+pub mod initial_stress;
+
 // Parts of bodies on which loads act.
 pub mod part;
 

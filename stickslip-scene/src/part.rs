@@ -1,7 +1,7 @@
-//! Parts of bodies on which loads act, as points that particles carry along.
+//! Parts of bodies on which loads and springs act, as points that particles carry along.
 
 use crate::geometry::{Arrangement, ParticleSite, Shape, sites};
-use crate::scene::{Extent, Face, Load, Scene};
+use crate::scene::{Extent, Face, Part, Scene};
 use rstar::{AABB, PointDistance, RTree, RTreeObject};
 
 /// A point of a part, and the particle that carries it.
@@ -61,16 +61,40 @@ impl PointDistance for Leaf {
     }
 }
 
-/// The points of the part on which a load acts; none where the body has nothing there.
-pub fn points(scene: &Scene, load: &Load) -> Vec<PartPoint> {
-    let body = &scene.bodies[load.body];
+/// The points of a part of a body, and what they are together.
+#[derive(Clone, Debug)]
+pub struct PartPoints {
+    /// Index of the body.
+    pub body: usize,
+    /// The points; none where the body has nothing there.
+    pub points: Vec<PartPoint>,
+    /// Area of all of them, or volume [m^2 or m^3].
+    pub measure: f64,
+    /// Their mean place at the start [m].
+    pub center: [f64; 3],
+}
+
+impl PartPoints {
+    /// Those of a part of a body of the scene.
+    pub fn new(scene: &Scene, body: usize, part: &Part) -> Self {
+        let points = points(scene, body, part);
+        let measure = points.iter().map(|point| point.measure).sum::<f64>();
+        let mean =
+            |i: usize| points.iter().map(|point| point.measure / measure * point.position[i]).sum::<f64>();
+        let center = [mean(0), mean(1), mean(2)];
+        PartPoints { body, points, measure, center }
+    }
+}
+
+/// The points of a part of a body; none where it has nothing there.
+pub fn points(scene: &Scene, body: usize, part: &Part) -> Vec<PartPoint> {
+    let body = &scene.bodies[body];
     let lattice = scene.lattice(body);
     let dimension = lattice.dimension;
     let Some(particles) = sites(&body.shape, &lattice, body.particles) else { return Vec::new() };
-    let inside = |point: [f64; 3]| {
-        load.part.within.as_ref().is_none_or(|shape: &Shape| shape.contains(point, dimension))
-    };
-    if load.part.on == Extent::Volume {
+    let inside =
+        |point: [f64; 3]| part.within.as_ref().is_none_or(|shape: &Shape| shape.contains(point, dimension));
+    if part.on == Extent::Volume {
         let point = |(particle, site): (usize, ParticleSite)| PartPoint {
             moved: [0.0; 3],
             particle,
@@ -80,7 +104,7 @@ pub fn points(scene: &Scene, load: &Load) -> Vec<PartPoint> {
             measure: site.volume,
         };
         let within =
-            |site: [f64; 3]| load.part.within.as_ref().is_none_or(|shape| lattice.contains_site(shape, site));
+            |site: [f64; 3]| part.within.as_ref().is_none_or(|shape| lattice.contains_site(shape, site));
         return particles.enumerate().map(point).filter(|point| within(point.position)).collect();
     }
     let Some(bounds) = body.shape.bounds(dimension) else { return Vec::new() };
@@ -90,7 +114,7 @@ pub fn points(scene: &Scene, load: &Load) -> Vec<PartPoint> {
     let chosen = surface.into_iter().filter(|point| {
         // What lies on the border of the shape is in it where the body beneath is.
         let beneath = std::array::from_fn(|k| point.position[k] - INWARD * lattice.spacing * point.normal[k]);
-        load.part.on.has(point.normal) && inside(beneath) && !on_mirror(scene, point.position)
+        part.on.has(point.normal) && inside(beneath) && !on_mirror(scene, point.position)
     });
     chosen
         .filter_map(|point| {

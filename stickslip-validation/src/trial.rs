@@ -96,7 +96,7 @@ impl Trial {
         let (name, text) = (name.into(), text.into());
         let scene = scene::parse(&name, &text, &[])?.scene;
         let simulation = step::build(&scene)?;
-        let isolated = scene.gravity == [0.0; 3]
+        let isolated = scene.gravity.is_none()
             && scene.bodies.iter().all(|body| !body.is_rigid())
             && scene.domain.iter().flat_map(|domain| domain.faces).flatten().all(|face| face == Face::Open);
         let first = simulation.ledger();

@@ -112,6 +112,7 @@ fn impact(end: f64) -> Result<Scene, Box<dyn Error>> {
         density: DENSITY,
         law,
         volume_change: VolumeChange::Own,
+        thermal_expansion: 0.0,
     });
     let bar = Body::new("bar", ours, Shape::rectangle([-LENGTH, 0.0], [0.0, HEIGHT]));
     scene.add_body(bar.moving([SPEED, 0.0, 0.0], [0.0; 3]));

@@ -49,7 +49,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 /// A disk of soft rubber at rest on a rigid slope; what is not said here is as in a scene file that does not say it.
 fn slope(friction: f64) -> Result<Scene, Box<dyn Error>> {
     let mut scene = Scene::new(Dimension::PlaneStrain, RADIUS / 8.0, END);
-    scene.gravity = [GRAVITY * SLOPE.sin(), -GRAVITY * SLOPE.cos(), 0.0];
+    scene.gravity = [GRAVITY * SLOPE.sin(), -GRAVITY * SLOPE.cos(), 0.0].into();
     let moduli = [("young_modulus", 1e6), ("poisson_ratio", 0.3)];
     let rubber = scene.add_material(NamedMaterial::new("rubber", 1000.0, "neo_hookean", &moduli)?);
     scene.add_body(Body::new("disk", rubber, Shape::disk([0.0, RADIUS], RADIUS)).fitted());

@@ -72,6 +72,8 @@ pub struct Body<T, const D: usize> {
     pub material: Material<T>,
     /// Mass per undeformed volume [kg/m^3].
     pub density: T,
+    /// Expansion by temperature [1/K].
+    pub expansion: T,
     /// Its particles, in the order of memory.
     pub particles: Particles<T, D>,
     /// Its motion and pose if it is rigid: prescribed, whatever pushes it.

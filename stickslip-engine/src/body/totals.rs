@@ -3,6 +3,7 @@
 use super::{Body, Gyration};
 use crate::lanes::{Laned, Lanes, MOST_LANES, Machine, Processor, Work};
 use crate::material::{Material, Recall};
+use crate::natural::{self, Natural};
 use crate::particles::{ColumnStart, Columns, deformation_entries, spin_entries, stress_entries};
 use crate::tensor::{Matrix, Real, Symmetric, cross};
 use crate::threads::by_parts;
@@ -133,6 +134,8 @@ struct SumOfRange<'a, T, const D: usize> {
     material: Option<&'a Material<T>>,
     /// Mass per undeformed volume [kg/m^3].
     density: f64,
+    /// Expansion by temperature [1/K].
+    expansion: T,
 }
 
 impl<T: Laned, const D: usize> Work for SumOfRange<'_, T, D> {
@@ -172,8 +175,9 @@ impl<T: Laned, const D: usize> Work for SumOfRange<'_, T, D> {
             }
             if let Some(material) = &material {
                 // SAFETY: as above.
-                let [energy, dissipation, jacobian] =
-                    unsafe { stored::<M::Wide, D>(&self.columns, material, first, count) };
+                let [energy, dissipation, jacobian] = unsafe {
+                    stored(&self.columns, (material, M::Wide::splat(self.expansion)), first, count)
+                };
                 for lane in 0..count {
                     // A particle that turned inside out has stopped the run and has no energy.
                     if jacobian[lane] > 0.0 {
@@ -214,14 +218,15 @@ unsafe fn strain_rates<V: Lanes, const D: usize>(
     each(rate.double_dot(&rate))
 }
 
-/// Strain energy and dissipation per undeformed volume [J/m^3], and J [-].
+/// Strain energy and dissipation per undeformed volume [J/m^3], and J [-], of a material and its expansion by
+/// temperature.
 ///
 /// # Safety
 /// The particles must exist, and nobody may write to them meanwhile.
 #[inline(always)]
 unsafe fn stored<V: Lanes, const D: usize>(
     columns: &Columns<V::Real, D>,
-    material: &Material<V>,
+    (material, expansion): (&Material<V>, V),
     first: usize,
     count: usize,
 ) -> [Each; 3] {
@@ -235,8 +240,20 @@ unsafe fn stored<V: Lanes, const D: usize>(
             stress.0[k] = V::load_first(columns.at(ColumnStart::<D>::STRESS + k, first), count);
         }
     }
+    let jacobian = f.det();
+    let mut per_volume = V::ONE;
+    let natural = columns.natural_columns();
+    if !natural.is_empty() {
+        let mut entries = [V::ZERO; natural::most_entries(3)];
+        for (entry, column) in entries.iter_mut().zip(natural.clone()) {
+            // SAFETY: the caller's.
+            *entry = unsafe { V::load_first(columns.at(column, first), count) };
+        }
+        let natural = Natural::new::<D>((&entries, natural.len()), expansion);
+        (f, per_volume) = (natural.elastic(&f, jacobian).0, V::ONE / natural.volume);
+    }
     let [energy, dissipation] = material.energies(&f, &stress, &HistoryOfSome { columns, first, count });
-    [each(energy), each(dissipation), each(f.det())]
+    [each(energy * per_volume), each(dissipation * per_volume), each(jacobian)]
 }
 
 /// The history of particles that lie side by side; zero in the lanes beyond.
@@ -305,8 +322,8 @@ impl<T: Laned, const D: usize> Body<T, D> {
         let sum = |part| {
             let material = (!self.is_rigid()).then_some(&self.material);
             let density = self.density.f64();
-            let (columns, gyration) = (self.particles.view(), self.gyration());
-            T::run(Processor::best(), SumOfRange { columns, part, gyration, material, density })
+            let (columns, gyration, expansion) = (self.particles.view(), self.gyration(), self.expansion);
+            T::run(Processor::best(), SumOfRange { columns, part, gyration, material, density, expansion })
         };
         self.by_parts(sum).iter().fold(Totals::default(), Totals::plus)
     }

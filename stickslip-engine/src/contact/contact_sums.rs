@@ -5,7 +5,7 @@ use super::spread::Spread;
 use crate::boundary::Boundary;
 use crate::door::{ContactPatch, ContactSum};
 use crate::grid::Lattice;
-use crate::tensor::{Real, Vector};
+use crate::tensor::{Real, Vector, cross};
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 use std::hash::{BuildHasherDefault, Hasher};
@@ -34,6 +34,9 @@ struct ImpulseSums {
     /// Magnitudes of the nodes' impulses, and with their places [N s, N s m].
     magnitude: f64,
     moment: [f64; 3],
+    /// Of the impulse, about the origin [N m s].
+    #[serde(default)]
+    turn: [f64; 3],
     /// Work of friction [J].
     friction: f64,
     /// Way of slip, the mean over the area of each use [m].
@@ -202,10 +205,13 @@ impl ContactSums {
             let magnitude =
                 impulse.change.impulse[0].norm().f64().max(impulse.change.impulse[1].norm().f64());
             sum.magnitude += magnitude;
+            let on_second = std::array::from_fn(|i| 0.5 * (on_b[i] - on_a[i]));
+            let turn = cross(place, on_second);
             for i in 0..3 {
+                sum.turn[i] += turn[i];
                 sum.tangential[i] += tangential[i];
                 // The paper's own normals give impulses that are not quite opposite; the force is their mean.
-                sum.impulse[i] += 0.5 * (on_b[i] - on_a[i]);
+                sum.impulse[i] += on_second[i];
                 sum.moment[i] += magnitude * place[i];
             }
             sum.normal -= impulse.change.normal.f64();
@@ -250,6 +256,7 @@ impl ContactSums {
         sum.tangential = (Vector(sum.tangential) + rub).0;
         sum.impulse = (Vector(sum.impulse) - push - rub).0;
         sum.moment = (Vector(sum.moment) + Vector(*place) * magnitude).0;
+        sum.turn = (Vector(sum.turn) - Vector(cross(*place, (push + rub).0))).0;
         self.rub(*bodies, *friction);
     }
 
@@ -288,6 +295,7 @@ impl ContactSums {
                 tangential: sum.tangential,
                 magnitude: sum.magnitude,
                 moment: sum.moment,
+                turn: sum.turn,
                 area,
                 gap,
                 slip: sum.slipped(),

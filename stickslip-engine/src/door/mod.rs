@@ -48,6 +48,10 @@ pub trait View {
     fn joints(&self) -> Vec<JointState> {
         Vec::new()
     }
+    /// What bodies did to faces of the domain since the start, by face and then by body, where the scene asks for that.
+    fn walls(&self) -> Vec<WallState> {
+        Vec::new()
+    }
     /// The widest contact of each pair of bodies since the start, ordered by pair.
     fn patches(&self) -> Vec<ContactPatch>;
     /// What left the domain since the start with particles that were taken out, in the order of the bodies; nothing of
@@ -174,7 +178,7 @@ pub struct Ledger {
     pub kinetic: f64,
     /// Strain energy [J].
     pub strain: f64,
-    /// Potential energy in gravity, zero at the origin [J].
+    /// Potential energy in gravity, zero at the origin; zero where gravity varies in time, whose work is external [J].
     pub potential: f64,
     /// Work done on the bodies by prescribed motion, loads and supports, less the energy that went with particles which
     /// left the domain [J].
@@ -234,6 +238,21 @@ pub struct RemovedParticles {
     pub angular_momentum: [f64; 3],
 }
 
+/// What a body did to a face of the domain since the start.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct WallState {
+    /// Axis across the face.
+    pub axis: usize,
+    /// Whether it is the upper one.
+    pub upper: bool,
+    /// Index of the body.
+    pub body: usize,
+    /// Impulse on the face [N s].
+    pub impulse: [f64; 3],
+    /// Its moment about the middle of the face [N m s].
+    pub moment: [f64; 3],
+}
+
 /// What a load or a support did. Impulse and work are sums since the start: differences are what it did in between.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct LoadState {
@@ -289,6 +308,9 @@ pub struct ContactSum {
     pub magnitude: f64,
     /// The same times their places [N s m].
     pub moment: [f64; 3],
+    /// Moment about the origin of the impulse of the first on the second [N m s].
+    #[serde(default)]
+    pub turn: [f64; 3],
     /// Area times duration [m^2 s], in the plane length per depth.
     pub area: f64,
     /// Distance between the surfaces times area and duration, negative where they overlap [m^3 s].

@@ -4,7 +4,7 @@ use super::RemovedParticles;
 use crate::contact::ContactSums;
 use crate::load::LoadSums;
 use crate::rigid::{Pose, RigidState};
-use crate::step::{Disorder, JointSums, RelaxationProgress};
+use crate::step::{Disorder, JointSums, RelaxationProgress, WallSums};
 use serde::{Deserialize, Serialize};
 
 /// All that a simulation is between two steps, whatever its dimension and precision. A simulation of the same scene
@@ -21,6 +21,9 @@ pub struct SavedState {
     pub(crate) signal: Option<f64>,
     /// Energy that damping took [J].
     pub(crate) damping: f64,
+    /// Work of gravity, where that varies [J].
+    #[serde(default)]
+    pub(crate) gravity_work: f64,
     pub(crate) relaxation: RelaxationProgress,
     pub(crate) loads: Vec<LoadSums>,
     pub(crate) contact_sums: ContactSums,
@@ -29,6 +32,10 @@ pub struct SavedState {
     pub(crate) moved: Vec<Vec<[f64; 3]>>,
     #[serde(default)]
     pub(crate) joints: Vec<JointSums>,
+    #[serde(default)]
+    pub(crate) springs: Vec<JointSums>,
+    #[serde(default)]
+    pub(crate) walls: Vec<WallSums>,
     #[serde(default)]
     pub(crate) longest_rigid: Option<f64>,
     /// What left the domain, body by body; nothing where nothing did.

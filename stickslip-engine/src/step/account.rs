@@ -36,6 +36,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     pub(super) fn account(&mut self, dt: T, interpolated: Interpolated) {
         let twice = interpolated == Interpolated::Twice;
         self.book_contact(dt, twice);
+        self.account_walls(dt);
         let damps = self.settings.damping.acts();
         if damps || self.settings.time.relax.is_some() {
             let start = Instant::now();

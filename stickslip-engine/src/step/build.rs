@@ -4,6 +4,7 @@ use super::mechanism::{JointSums, RigidSurfaces};
 use super::relax::RelaxationProgress;
 use super::state::{Disorder, Settings, State, Workspace};
 use super::unbounded::Unbounded;
+use super::walls::WallSums;
 use super::watch::Stopwatch;
 use super::{Engine, ParticleLoop};
 use crate::basis::{Basis, Gimp, Linear};
@@ -15,14 +16,19 @@ use crate::damping::{BulkViscosity, NodeDamping, viscosity_columns};
 use crate::door::{RemovedParticles, Simulation};
 use crate::geometry::{Filling, Mirror, MirroredShape, ParticleSite, fill};
 use crate::grid::Lattice;
+use crate::initial_stress::{self, InitialStress};
 use crate::lanes::{Laned, Processor};
-use crate::load::{LoadPoints, LoadSums};
+use crate::load::{LoadPoints, LoadSums, SpringPoints};
 use crate::material::{BadConstants, Material};
-use crate::particles::{OwnColumns, Particles};
+use crate::natural;
+use crate::particles::{OwnColumns, Particles, stress_entries};
 use crate::rigid::{MassProperties, RigidMotion, longest_step};
-use crate::scene::{self, BasisKind, BodyMotion, Dimension, Face, NamedMaterial, Precision, Problem, Scene};
+use crate::scene::{
+    self, Action, BasisKind, BodyMotion, Dimension, Face, NamedMaterial, Precision, Problem, Scene,
+};
 use crate::tensor::{Matrix, Real, Symmetric, Vector, cross};
 use crate::transfer::{has_spin, pic_share, rotation};
+use std::collections::HashSet;
 use std::marker::PhantomData;
 
 /// The simulation of a scene.
@@ -72,7 +78,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let whole_cells = scene.discretization.basis == BasisKind::Spline;
         let mut bodies = Vec::new();
         let mut unbounded = Vec::new();
-        for body in &scene.bodies {
+        let heated = heated_bodies(scene);
+        for (number, body) in scene.bodies.iter().enumerate() {
             let sites = scene.lattice(body);
             let filled = fill(&body.shape, &sites, body.particles);
             let center = filled.as_ref().map_or(body.shape.anchor(sites.dimension), Filling::center);
@@ -115,7 +122,12 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 name: body.name.clone(),
                 material: material(scene, body)?,
                 density: T::of(scene.materials[body.material].density),
-                particles: particles(scene, body, &filling, (velocity, turning, density)),
+                expansion: T::of(scene.materials[body.material].thermal_expansion),
+                particles: {
+                    let own = own_columns(scene, body, heated.contains(&number));
+                    let stresses = initial_stress::of_body(scene, number)?;
+                    particles((own, &stresses), &filling, (velocity, turning, density))
+                },
                 motion,
                 whole: MirroredShape::new(
                     &body.shape,
@@ -131,6 +143,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let origin = scene.domain.as_ref().map_or([0.0; 3], |domain| domain.min);
         let filled = bodies.iter().map(|body: &Body<T, D>| body.particles.len()).collect();
         let removed = vec![RemovedParticles::default(); bodies.len()];
+        let tallies = scene.outputs.measurements.faces().next().is_some();
+        let points = |load: &scene::Load| LoadPoints::new(scene, load, bodies[load.body].particles.len());
+        let loads = scene.loads.iter().map(points).collect();
         let disorder = bodies.iter().map(|body: &Body<T, D>| Disorder::any(body.particles.len())).collect();
         Ok(Engine {
             settings: Settings {
@@ -138,15 +153,16 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 domain: scene.domain.as_ref().map(|domain| [domain.min, domain.max].map(Vector::of)),
                 leaving: scene.domain.as_ref().map_or_else(Default::default, |domain| domain.leaving),
                 filled,
-                gravity: Vector::of(scene.gravity),
+                gravity: scene.gravity.clone(),
                 transfer: scene.time.transfer,
                 pic_share: T::of(pic_share(scene.time.transfer, scene.time.pic_share)),
                 walls: walls::<D>(scene),
                 damping: NodeDamping::new(&scene.damping),
                 viscosity: BulkViscosity::new(&scene.damping),
                 rules: Rules::new(scene),
-                loads: scene.loads.iter().map(|load| LoadPoints::new(scene, load)).collect(),
+                loads,
                 joints: scene.joints.clone(),
+                springs: scene.springs.iter().map(|spring| SpringPoints::new(scene, spring)).collect(),
                 surfaces: RigidSurfaces::new(scene),
                 free: free_bodies(scene),
                 time: scene.time.clone(),
@@ -161,13 +177,23 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 loads: vec![LoadSums::default(); scene.loads.len()],
                 joints: vec![JointSums::default(); scene.joints.len()],
                 removed,
+                springs: vec![JointSums::default(); scene.springs.len()],
+                walls: vec![
+                    WallSums::default();
+                    if tallies { walls::<D>(scene).len() * scene.bodies.len() } else { 0 }
+                ],
                 damping: 0.0,
+                gravity_work: 0.0,
                 relaxation: RelaxationProgress::default(),
                 signal: None,
                 time: 0.0,
                 steps: 0,
             },
-            workspace: Workspace::new(Boundary::new(walls::<D>(scene))),
+            workspace: Workspace::new(if tallies {
+                Boundary::new(walls::<D>(scene)).tallied()
+            } else {
+                Boundary::new(walls::<D>(scene))
+            }),
             held: None,
             watch: Stopwatch::default(),
             basis: PhantomData,
@@ -205,8 +231,7 @@ fn about(center: [f64; 3], velocity: [f64; 3], spin: [f64; 3], x: [f64; 3]) -> [
 }
 
 fn particles<T: Real, const D: usize>(
-    scene: &Scene,
-    body: &scene::Body,
+    (own, stresses): (OwnColumns, &[InitialStress]),
     filling: &Filling,
     (velocity, turning, density): (impl Fn([f64; 3]) -> [f64; 3], [f64; 3], f64),
 ) -> Particles<T, D> {
@@ -220,21 +245,44 @@ fn particles<T: Real, const D: usize>(
             volume: T::of(site.volume),
             half_width: T::of(site.half_width),
             deformation: Matrix::IDENTITY,
-            stress: Symmetric::ZERO,
+            stress: stresses
+                .get(number)
+                .map_or(Symmetric::ZERO, |begun| Symmetric(begun.stress.0.map(T::of))),
             number: number as u32,
         }
     };
-    Particles::from_fn(filling.sites.len(), own_columns(scene, body), particle)
+    let mut particles = Particles::from_fn(filling.sites.len(), own, particle);
+    if natural::begins_stretched(own.natural) {
+        let first = particles.view().natural_columns().start;
+        for k in 0..stress_entries(D) {
+            let line = particles.line_mut(first + k).iter_mut();
+            line.zip(stresses).for_each(|(entry, begun)| *entry = T::of(begun.stretch.0[k]));
+        }
+    }
+    particles
 }
 
-/// The columns that the particles of a body have for its law, its transfer and damping: rigid ones none.
-pub fn own_columns(scene: &Scene, body: &scene::Body) -> OwnColumns {
+/// Bodies that loads heat.
+pub fn heated_bodies(scene: &Scene) -> HashSet<usize> {
+    let heats = |load: &&scene::Load| matches!(load.action, Action::Temperature(_));
+    scene.loads.iter().filter(heats).map(|load| load.body).collect()
+}
+
+/// The columns that the particles of a body have for its law, its transfer, damping, initial stress and heat: rigid
+/// ones none.
+pub fn own_columns(scene: &Scene, body: &scene::Body, heated: bool) -> OwnColumns {
     if body.is_rigid() {
         return OwnColumns::default();
     }
-    let history = scene.materials[body.material].law.history();
+    let law = &scene.materials[body.material].law;
     let viscosity = viscosity_columns(&scene.damping);
-    OwnColumns { history, transfer: crate::transfer::columns(scene.time.transfer), viscosity }
+    let natural = natural::columns(body.stress.is_some() && !law.carries_stress(), heated);
+    OwnColumns {
+        history: law.history(),
+        transfer: crate::transfer::columns(scene.time.transfer),
+        viscosity,
+        natural,
+    }
 }
 
 /// The domain's faces that are mirrors.

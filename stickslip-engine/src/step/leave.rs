@@ -65,7 +65,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     }
 
     fn remove(&mut self, number: usize, outside: &[u32]) {
-        let gravity = self.settings.gravity.space();
+        let gravity = self.settings.gravity.constant().unwrap_or_default();
         let body = &mut self.state.bodies[number];
         let before = Body::totals(body);
         let removed = &mut self.state.removed[number];

@@ -17,6 +17,7 @@ use crate::grid::{ActiveBlocks, Node};
 use crate::lanes::Laned;
 use crate::load::{CarriedPoint, LoadPoints, LoadSums, PointForce, nodes_of, place_of};
 use crate::outside::OutsidePoints;
+use crate::part::PartPoint;
 use crate::scene::{Face, OutsideValue};
 use crate::tensor::{Real, Vector};
 use crate::threads::each;
@@ -24,8 +25,8 @@ use std::time::Instant;
 
 /// Points that a thread takes at a time.
 const POINTS: usize = 32;
-/// No node.
-const NOWHERE: u32 = u32::MAX;
+/// The place in memory of a particle that has left the domain.
+pub(super) const NOWHERE: u32 = u32::MAX;
 
 /// Room for loads in a step.
 #[derive(Clone, Debug)]
@@ -159,8 +160,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             let Some(function) = load.action.outside().and_then(OutsideValue::function) else { continue };
             let particles = &self.state.bodies[load.body].particles;
             now.clear();
-            now.extend(load.points.iter().map(|point| {
-                place_of(&particles.get(places[load.body][point.particle] as usize), point).space()
+            now.extend(load.points.iter().map(|point| match places[load.body][point.particle] {
+                NOWHERE => point.position,
+                place => place_of(&particles.get(place as usize), point).space(),
             }));
             start.clear();
             start.extend(load.points.iter().map(|point| point.position));
@@ -175,8 +177,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
 
     /// Loads and supports change the velocities that the forces of the stress and gravity gave to the nodes.
     pub(super) fn apply_loads(&mut self, dt: T) {
+        let gravity = self.gravity(dt);
         let (room, field) = (&mut self.workspace.loads, &mut self.workspace.field);
-        let gravity = self.settings.gravity;
         for &index in &room.reached {
             room.nodes[index as usize].accelerate(&mut field.nodes[index as usize], gravity, dt);
         }
@@ -204,22 +206,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let (places, bodies) = (&mut self.workspace.loads.places, &self.state.bodies);
         places.resize_with(bodies.len(), Vec::new);
         for load in &self.settings.loads {
-            let (numbers, places) = (bodies[load.body].particles.numbers(), &mut places[load.body]);
-            let lies = |number: usize| {
-                places.get(number).is_some_and(|&place| {
-                    place == NOWHERE || numbers.get(place as usize) == Some(&(number as u32))
-                })
-            };
-            if !load.points.iter().all(|point| lies(point.particle)) {
-                // Of particles that left the domain there is none.
-                let points = load.points.iter().map(|point| point.particle);
-                let most = points.chain(numbers.iter().map(|&number| number as usize)).max();
-                places.clear();
-                places.resize(most.map_or(0, |most| most + 1), NOWHERE);
-                for (place, &number) in numbers.iter().enumerate() {
-                    places[number as usize] = place as u32;
-                }
-            }
+            find_carriers(&mut places[load.body], bodies[load.body].particles.numbers(), &load.points);
         }
     }
 
@@ -252,8 +239,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             let moved_by_nodes = !body.is_rigid();
             let nodes_near = || nodes_of::<T, D, B>(lattice, &particle, point);
             for (node, [own, weight]) in moved_by_nodes.then(nodes_near).into_iter().flatten() {
-                let (index, mirrored) = find(active, boundary, (load.body, node));
-                if index != NOWHERE && nodes[index as usize].mass > T::ZERO {
+                let Some((index, mirrored)) = find(active, boundary, (load.body, node)) else { continue };
+                if nodes[index as usize].mass > T::ZERO {
                     velocity += mirror(nodes[index as usize].start, mirrored) * weight;
                     moves += mirror(nodes[index as usize].integrated, mirrored) * own;
                     loaded.nodes.push(LoadedNode { index, mirrored, weight });
@@ -411,13 +398,32 @@ impl<T: Real, const D: usize> NodeLoad<T, D> {
     }
 }
 
+/// Where the particles of a body that carry points lie in memory, by number, from the numbers in the order of memory;
+/// [`NOWHERE`] for those that have left the domain.
+pub(super) fn find_carriers(places: &mut Vec<u32>, numbers: &[u32], points: &[PartPoint]) {
+    let lies = |number: usize| {
+        places.get(number).is_some_and(|&place| {
+            place == NOWHERE || numbers.get(place as usize) == Some(&(number as u32))
+        })
+    };
+    if !points.iter().all(|point| lies(point.particle)) {
+        let points = points.iter().map(|point| point.particle);
+        let most = points.chain(numbers.iter().map(|&number| number as usize)).max();
+        places.clear();
+        places.resize(most.map_or(0, |most| most + 1), NOWHERE);
+        for (place, &number) in numbers.iter().enumerate() {
+            places[number as usize] = place as u32;
+        }
+    }
+}
+
 /// The field's index of a body's node, for one behind mirrors that of its image before them, and the axes along which
-/// it is one.
-fn find<const D: usize>(
+/// it is one; `None` where the body has no node.
+pub(super) fn find<const D: usize>(
     active: &ActiveBlocks<D>,
     boundary: &Boundary,
     (body, mut node): (usize, [i32; D]),
-) -> (u32, u32) {
+) -> Option<(u32, u32)> {
     let mut mirrored = 0;
     for wall in boundary.walls.iter().filter(|wall| wall.face == Face::Symmetry) {
         if wall.depth(node) < 0 {
@@ -425,11 +431,11 @@ fn find<const D: usize>(
             mirrored ^= 1 << wall.axis;
         }
     }
-    (active.node_index(body, node).map_or(NOWHERE, |index| index as u32), mirrored)
+    Some((active.node_index(body, node)? as u32, mirrored))
 }
 
 /// A vector's image across axes, a bit each.
-fn mirror<T: Real, const D: usize>(v: Vector<T, D>, axes: u32) -> Vector<T, D> {
+pub(super) fn mirror<T: Real, const D: usize>(v: Vector<T, D>, axes: u32) -> Vector<T, D> {
     (0..D).filter(|axis| axes >> axis & 1 == 1).fold(v, reflect)
 }
 

@@ -16,7 +16,10 @@
 //! | what is booked of a step | `account.rs` |
 //! | dynamic relaxation, between two steps | `relax.rs` |
 //! | what happens at a node: v = p / m, v += dt (f / m + g) | [`crate::grid::Node`] |
+//! | gravity, and its work where it varies | `gravity.rs` |
 //! | loads and supports at a node | `loads.rs` |
+//! | loads that heat | `heat.rs`, and [`crate::natural`] |
+//! | springs between parts of bodies | `springs.rs` |
 //! | free rigid bodies, and joints between them | `mechanism/` |
 //! | glue at a node | `glue.rs` |
 //! | contact at a node | `contact/solve.rs`, by a law of `contact/law/` |
@@ -26,6 +29,8 @@ mod average;
 mod build;
 mod cpu;
 mod glue;
+mod gravity;
+mod heat;
 mod hold;
 mod leave;
 mod loads;
@@ -35,22 +40,25 @@ mod naive;
 mod pass;
 mod relax;
 mod saving;
+mod springs;
 mod state;
 mod tile;
 mod together;
 mod unbounded;
 mod verbs;
 mod view;
+mod walls;
 mod watch;
 mod writing;
 
-pub(crate) use build::own_columns;
 pub use build::{build, build_on};
+pub(crate) use build::{heated_bodies, own_columns};
 pub(crate) use mechanism::JointSums;
 pub use pass::ParticleLoop;
 pub(crate) use relax::RelaxationProgress;
 pub(crate) use state::Disorder;
 pub(crate) use unbounded::particles_around;
+pub(crate) use walls::WallSums;
 
 use crate::basis::Basis;
 use crate::boundary::Boundary;
@@ -113,6 +121,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.hold_supported_nodes(); //                           v~, where they act
         self.contact_on_interpolated(dt, ContactUse::Strain); //  v~, and walls        (5)-(13), (20)-(22)
         self.average_dilatation(dt); //                           of nearly incompressible bodies
+        self.heat(dt); //                                         temperatures at the end of the step
         self.update_stress(dt)?; //                               G2P: F = (I + L dt) F, sigma = law(F); P2G: f
         self.keep_velocities(); //                                v~ moves the particles, too
         self.release_supported_nodes(); //                        v as it was
@@ -120,6 +129,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.feel_loads(dt, Some(dt))?; //                        supports and loads, on points of bodies
         self.apply_loads(dt); //                                  v += dt F / m
         self.push_free_bodies(dt); //                             rigid ones: v += dt (F / m + g)
+        self.pull_springs(dt, Some(dt)); //                       between parts of bodies
         self.impose_boundary_conditions(); //                     once more
         self.contact_on_integrated(dt); //                        v~, and walls
         self.exchange_velocities(); //                            v~ that was kept, to move by; v~ of now, for dv
@@ -129,6 +139,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.account_mechanism(dt); //                            forces and works of joints
         self.account(dt, Interpolated::Once); //                  impulses, works, balance of forces
         self.account_loads(dt); //                                forces and works of supports and loads
+        self.account_springs(dt); //                              and of springs
         Ok(())
     }
 
@@ -146,16 +157,19 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.feel_loads(dt, None)?; //                            supports and loads, on points of bodies
         self.apply_loads(dt); //                                  v += dt F / m
         self.push_free_bodies(dt); //                             rigid ones: v += dt (F / m + g)
+        self.pull_springs(dt, None); //                           between parts of bodies
         self.impose_boundary_conditions(); //                     once more
         self.contact_on_integrated(dt); //                        v~, and walls
         self.keep_velocities(); //                                v~, for dv
         self.damp(dt); //                                         of v~ for dv
         self.average_dilatation(dt); //                           of nearly incompressible bodies
+        self.heat(dt); //                                         temperatures at the end of the step
         self.update_particles(dt)?; //                            G2P: v_p += dv, F, sigma, x += v~ dt
         self.move_rigid_bodies(dt)?; //                           as prescribed, free ones by their velocities
         self.account_mechanism(dt); //                            forces and works of joints
         self.account(dt, Interpolated::Once); //                  impulses, works, balance of forces
         self.account_loads(dt); //                                forces and works of supports and loads
+        self.account_springs(dt); //                              and of springs
         Ok(())
     }
 
@@ -174,6 +188,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.feel_loads(dt, None)?; //                            supports and loads, on points of bodies
         self.apply_loads(dt); //                                  v += dt F / m
         self.push_free_bodies(dt); //                             rigid ones: v += dt (F / m + g)
+        self.pull_springs(dt, None); //                           between parts of bodies
         self.impose_boundary_conditions(); //                     once more
         self.contact_on_integrated(dt); //                        v~, and walls
         self.keep_velocities_and_clear_momentum(); //             v~, for dv; p = 0
@@ -185,10 +200,12 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.hold_supported_nodes(); //                           v~, where supports act
         self.contact_on_straining(dt); //                         v~, and walls
         self.average_dilatation(dt); //                           of nearly incompressible bodies
+        self.heat(dt); //                                         temperatures at the end of the step
         self.update_stress_and_positions(dt)?; //                 G2P: F, sigma, x += v~ dt
         self.move_rigid_bodies(dt)?; //                           as prescribed, free ones by their velocities
         self.account_mechanism(dt); //                            forces and works of joints
         self.account_loads(dt); //                                forces and works of supports and loads
+        self.account_springs(dt); //                              and of springs
         Ok(())
     }
 
@@ -215,7 +232,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
         }
         // One of the pool's threads takes the whole step: handing it every loop from outside would cost more than many
         // a loop.
+        let weights = self.weigh();
         rayon::scope(|_| self.advance(T::of(dt)))?;
+        self.book_gravity(T::of(dt), weights);
         self.count_disorder();
         self.relax();
         self.state.time += dt;
@@ -225,7 +244,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
     }
 
     fn rebuild_workspace(&mut self) {
-        self.workspace = Workspace::new(Boundary::new(self.settings.walls.clone()));
+        let boundary = Boundary::new(self.settings.walls.clone());
+        let tallies = !self.state.walls.is_empty();
+        self.workspace = Workspace::new(if tallies { boundary.tallied() } else { boundary });
     }
 
     fn hold(&mut self) {

@@ -63,7 +63,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let mut motions = self.state.bodies.iter().filter_map(|body| body.motion.as_ref());
         let balanced = self.state.relaxation.residual <= residual;
         let (time, dt) = (self.state.time, self.stable());
-        let still = self.settings.loads.iter().all(|load| load.is_still(time, dt, self.settings.time.end));
+        let end = self.settings.time.end;
+        let still = self.settings.gravity.is_still(time, dt, end)
+            && self.settings.loads.iter().all(|load| load.is_still(time, dt, end));
         self.state.relaxation.at_rest = balanced && still && !motions.any(driven) && {
             let [kinetic, strain] = self.energies();
             kinetic <= residual * residual * strain

@@ -6,6 +6,7 @@ use super::state::{Disorder, State};
 use super::unbounded::Unbounded;
 use crate::basis::Basis;
 use crate::body::{Body, Particle};
+use crate::column::INITIAL_STRETCH;
 use crate::door::{RemovedParticles, RestoreError, SavedBody, SavedColumn, SavedState, SavedUnbounded};
 use crate::lanes::Laned;
 use crate::load::{LoadPoints, place_of};
@@ -19,7 +20,7 @@ use std::sync::Mutex;
 impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// The state as data.
     pub(super) fn saved(&self) -> SavedState {
-        let State { time, steps, signal, damping, relaxation, .. } = self.state;
+        let State { time, steps, signal, damping, gravity_work, relaxation, .. } = self.state;
         let bodies = self.state.bodies.iter().zip(&self.state.disorder).zip(&self.settings.filled);
         SavedState {
             time,
@@ -36,12 +37,15 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 .collect(),
             signal,
             damping,
+            gravity_work,
             relaxation,
             loads: self.state.loads.clone(),
             contact_sums: self.state.contact_sums.clone(),
             unbounded: self.state.unbounded.iter().map(Unbounded::saved).collect(),
             moved: self.settings.loads.iter().map(moved).collect(),
             joints: self.state.joints.clone(),
+            springs: self.state.springs.clone(),
+            walls: self.state.walls.clone(),
             longest_rigid: Some(self.state.longest_rigid).filter(|step| step.is_finite()),
             removed: self.state.removed.iter().copied().filter(|_| self.has_removed()).collect(),
         }
@@ -66,10 +70,10 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 "it has other supports, loads or bodies without bounds than the scene".into(),
             ));
         }
-        if saved.joints.len() != state.joints.len() {
-            return Err(RestoreError("it has other joints than the scene".into()));
+        if saved.joints.len() != state.joints.len() || saved.springs.len() != state.springs.len() {
+            return Err(RestoreError("it has other joints or springs than the scene".into()));
         }
-        let numbers = [saved.time, saved.damping, saved.signal.unwrap_or(1.0)];
+        let numbers = [saved.time, saved.damping, saved.gravity_work, saved.signal.unwrap_or(1.0)];
         if !numbers.iter().all(|x| x.is_finite()) || saved.time < 0.0 || !saved.contact_sums.are_of(wanted) {
             return Err(RestoreError("it has numbers that no run has".to_string()));
         }
@@ -109,9 +113,14 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             count if count == wanted => saved.removed,
             _ => vec![RemovedParticles::default(); wanted],
         };
-        (state.loads, state.joints) = (saved.loads, saved.joints);
+        (state.loads, state.joints, state.springs) = (saved.loads, saved.joints, saved.springs);
         state.longest_rigid = saved.longest_rigid.unwrap_or(state.longest_rigid);
         (state.damping, state.relaxation) = (saved.damping, saved.relaxation);
+        state.gravity_work = saved.gravity_work;
+        // Outputs may be others.
+        if saved.walls.len() == state.walls.len() {
+            state.walls = saved.walls;
+        }
         (state.signal, state.time, state.steps) = (saved.signal, saved.time, saved.steps);
         Ok(())
     }
@@ -166,6 +175,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         for (joint, sums) in self.settings.joints.iter().zip(&mut self.state.joints) {
             sums.begin(joint, &self.state.bodies);
         }
+        self.begin_springs();
         (self.state.signal, self.workspace.totals) = (None, Mutex::default());
         Ok(())
     }
@@ -271,6 +281,10 @@ fn begun<T: Real, const D: usize>(
             "has `{name}` in it, which its material in the scene does not remember: what flowed or broke would spring \
              back"
         )));
+    }
+    let stretched = |name: &str| name == INITIAL_STRETCH;
+    if known(INITIAL_STRETCH) && !saved.columns.iter().any(|saved| stretched(&saved.name)) {
+        return Err(off("begins with a `stress` in the scene, and has that of its particles from it"));
     }
     for (first, column) in fresh.particles.described() {
         let Some(saved) = saved.columns.iter().find(|saved| saved.name == column.name) else { continue };

@@ -2,19 +2,22 @@
 
 use super::account::NodeTotals;
 use super::cpu::Threads;
+use super::heat::Warmed;
 use super::loads::LoadRoom;
 use super::mechanism::{JointSums, Mechanism, RigidSurfaces};
 use super::relax::RelaxationProgress;
+use super::springs::SpringRoom;
 use super::together::LawRoom;
 use super::unbounded::Unbounded;
+use super::walls::WallSums;
 use crate::body::{Body, Totals};
 use crate::boundary::{Boundary, Wall};
 use crate::contact::{ContactSums, Impulses, Rules, Survey};
 use crate::damping::{BulkViscosity, NodeDamping};
 use crate::door::RemovedParticles;
 use crate::grid::{ActiveBlocks, Field, Lattice};
-use crate::load::{LoadPoints, LoadSums};
-use crate::scene::{Joint, Leaving, Time, Transfer};
+use crate::load::{LoadPoints, LoadSums, SpringPoints};
+use crate::scene::{Gravity, Joint, Leaving, Time, Transfer};
 use crate::tensor::Vector;
 use serde::{Deserialize, Serialize};
 use std::sync::{Arc, Mutex};
@@ -30,7 +33,7 @@ pub struct Settings<T, const D: usize> {
     pub leaving: Leaving,
     /// Particles of each body at the start; none of rigid ones without bounds.
     pub filled: Vec<usize>,
-    pub gravity: Vector<T, D>,
+    pub gravity: Gravity,
     pub transfer: Transfer,
     pub pic_share: T,
     /// Faces of the domain that are not open.
@@ -42,6 +45,8 @@ pub struct Settings<T, const D: usize> {
     pub loads: Vec<LoadPoints>,
     /// What joins rigid bodies.
     pub joints: Vec<Joint>,
+    /// Springs between parts of bodies.
+    pub springs: Vec<SpringPoints>,
     /// Surfaces of rigid bodies that may touch each other.
     pub surfaces: RigidSurfaces,
     /// Of each body, whether it is rigid and free; empty where none is.
@@ -70,8 +75,14 @@ pub struct State<T, const D: usize> {
     pub joints: Vec<JointSums>,
     /// What left the domain with particles since the start, body by body.
     pub removed: Vec<RemovedParticles>,
+    /// What springs did since the start, on the first of their bodies.
+    pub springs: Vec<JointSums>,
+    /// What bodies did to the domain's faces since the start, of each wall body by body; empty where nobody asks.
+    pub walls: Vec<WallSums>,
     /// What damping took since the start [J].
     pub damping: f64,
+    /// Work of gravity since the start, where that varies [J].
+    pub gravity_work: f64,
     /// How far dynamic relaxation has come.
     pub relaxation: RelaxationProgress,
     /// Fastest signal now [m/s]; unknown before the first step.
@@ -109,10 +120,16 @@ pub struct Workspace<T, const D: usize> {
     pub loads: LoadRoom<T, D>,
     /// Room for laws that take a body at once.
     pub laws: LawRoom,
+    /// Room for springs.
+    pub springs: SpringRoom<T, D>,
+    /// Room for what heat does to the particles of a body.
+    pub warmed: Vec<Warmed<T>>,
     /// Free rigid bodies in a step.
     pub mechanism: Mechanism,
     /// Impulses of damping at the nodes in the last step, where there is damping [N s].
     pub damping_impulses: Vec<Vector<T, D>>,
+    /// Room for sums of mass times place over parts of a body's particles.
+    pub weights: Vec<[f64; D]>,
     /// Room for sums over the nodes of each block.
     pub block_sums: Vec<NodeTotals>,
     /// What the particles of each body add up to since the last step, once somebody has asked.
@@ -137,8 +154,11 @@ impl<T, const D: usize> Workspace<T, D> {
             damped: Vec::new(),
             loads: LoadRoom::default(),
             laws: LawRoom::default(),
+            springs: SpringRoom::default(),
+            warmed: Vec::new(),
             mechanism: Mechanism::default(),
             damping_impulses: Vec::new(),
+            weights: Vec::new(),
             block_sums: Vec::new(),
             totals: Mutex::new(None),
             threads: Threads::default(),

@@ -167,6 +167,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     pub(super) fn interpolate_velocities(&mut self) {
         let start = Instant::now();
         self.workspace.field.find_present(Node::begin);
+        self.workspace.boundary.count(true);
         self.watch.lap("grid", start);
         if filters(self.settings.transfer) {
             self.filter_velocities();
@@ -187,11 +188,12 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// v = p / m of the particles' new velocities.
     pub(super) fn interpolate_again(&mut self) {
         self.at_nodes("grid", Node::divide_by_mass);
+        self.workspace.boundary.count(false);
     }
 
     /// v += dt (f / m + g)
     pub(super) fn update_velocities(&mut self, dt: T) {
-        let gravity = self.settings.gravity;
+        let gravity = self.gravity(dt);
         self.at_nodes("grid", |node| node.accelerate(gravity, dt));
     }
 

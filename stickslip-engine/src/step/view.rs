@@ -4,6 +4,7 @@ use super::Engine;
 use super::loads;
 use super::mechanism::JointSums;
 use super::relax::RelaxationProgress;
+use super::walls::WallSums;
 use crate::basis::Basis;
 use crate::body::{Body, Totals};
 use crate::column::{ColumnDescription, Kind};
@@ -11,14 +12,14 @@ use crate::contact::Span;
 use crate::door::{
     BodyState, ColumnPlace, ColumnRef, ColumnSource, ContactPatch, ContactSum, GridSnapshot, JointState,
     Ledger, LoadState, NoColumn, ParticleSnapshot, ParticleView, RelaxationState, RemovedParticles,
-    SnapshotColumn, TracedParticle, View,
+    SnapshotColumn, TracedParticle, View, WallState,
 };
 use crate::grid::{node_at, nodes_per_block};
 use crate::lanes::Laned;
 use crate::load::{LoadPoints, LoadSums};
 use crate::particles::by_number;
 use crate::rigid::RigidMotion;
-use crate::tensor::{Real, cross};
+use crate::tensor::{Real, Vector, cross};
 use crate::threads::by_parts;
 use rayon::prelude::*;
 use std::convert::Infallible;
@@ -171,8 +172,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> View for Engine<T, D, B> {
         let mut ledger = Ledger {
             friction: self.state.contact_sums.friction,
             external_work: self.state.contact_sums.work
+                + self.state.gravity_work
                 + loads::work(&self.state.loads)
-                + self.state.joints.iter().map(|joint| joint.work).sum::<f64>()
+                + self.state.joints.iter().chain(&self.state.springs).map(|joint| joint.work).sum::<f64>()
                 - removed(|removed| removed.energy),
             adhesion: self.state.contact_sums.adhesion,
             damping: self.state.damping,
@@ -186,7 +188,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> View for Engine<T, D, B> {
                 .map(|i| all_removed.iter().map(|removed| removed.angular_momentum[i]).sum()),
             ..Ledger::default()
         };
-        let gravity = self.settings.gravity.space();
+        let gravity = Vector::<T, D>::of(self.settings.gravity.constant().unwrap_or_default()).space();
         let all = self.totals();
         for motion in self.state.bodies.iter().filter_map(|body| body.motion.as_ref()) {
             let Some(free) = motion.as_free() else { continue };
@@ -241,7 +243,18 @@ impl<T: Laned, const D: usize, B: Basis<T>> View for Engine<T, D, B> {
             speed: sums.speed,
             work: sums.work,
         };
-        self.state.joints.iter().map(state).collect()
+        self.state.joints.iter().chain(&self.state.springs).map(state).collect()
+    }
+
+    fn walls(&self) -> Vec<WallState> {
+        let bodies = self.state.bodies.len();
+        let sums = self.state.walls.iter().enumerate().filter(|(_, sums)| **sums != WallSums::default());
+        let state = |(i, sums): (usize, &WallSums)| {
+            let wall = &self.settings.walls[i / bodies];
+            let (upper, body) = (wall.inward < 0, i % bodies);
+            WallState { axis: wall.axis, upper, body, impulse: sums.impulse, moment: sums.moment }
+        };
+        sums.map(state).collect()
     }
 
     fn patches(&self) -> Vec<ContactPatch> {

@@ -173,6 +173,10 @@ class Scene:
         """What joins a free rigid body to another, `to`, or the ground: `hinge=dict(point=...)`, `slider`, `ball` ..."""
         return self._append("joints", {"body": body, **keys})
 
+    def spring(self, from_: Any, to: Any, **keys: Any) -> Scene:
+        """A spring between parts of bodies, `dict(body=..., on=..., within=...)`: `stiffness`, `dashpot`, `length`."""
+        return self._append("springs", {"from": from_, "to": to, **keys})
+
     def domain(self, min: Any, max: Any, **faces: Any) -> Scene:
         """A box that holds all material: its corners [m], and what its faces do (`x_min="symmetry"` ...)."""
         space = self.document.get("space", {})

@@ -291,7 +291,7 @@ class Simulation:
         return {name: Record(state) for name, state in json.loads(self.engine.loads())}
 
     def joints(self) -> dict[str, Record]:
-        """What joints did since the start on the bodies that they hold, by their names.
+        """What joints did since the start on the bodies that they hold, and springs on that of `from`, by their names.
 
         impulse [N s], moment: its sum over time [N m s], way: angle [rad] or length [m], speed: its rate, work [J].
         """

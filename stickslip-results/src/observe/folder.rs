@@ -5,7 +5,7 @@ use super::file::part_of;
 use super::manifest::Manifest;
 use super::{
     ARRIVALS, BODIES, CHECKPOINTS, CONTACTS, ENERGY, FRINGES, FRINGES_ANIMATION, FRINGES_TABLE, FRONT_SPEEDS,
-    FRONTS, GRID, JOINTS, LOADS, PARTICLES, PROBES, REMOVED, SECTIONS,
+    FRONTS, GRID, JOINTS, LOADS, PARTICLES, PROBES, REACTIONS, REMOVED, SECTIONS,
 };
 use miette::Diagnostic;
 use std::ffi::OsString;
@@ -23,6 +23,7 @@ const FILES: [&str; 16] = [
     JOINTS,
     REMOVED,
     SECTIONS,
+    REACTIONS,
     PROBES,
     ARRIVALS,
     FRONTS,

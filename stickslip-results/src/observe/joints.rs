@@ -1,4 +1,4 @@
-//! `joints.csv`: forces and moments of joints, and how far they have moved.
+//! `joints.csv`: forces and moments of joints and springs, and how far they have moved.
 
 use super::file::OutputError;
 use super::folder::OutputFolder;
@@ -9,12 +9,13 @@ use super::{JOINTS, Observer};
 use crate::door::{JointState, View};
 use crate::scene::Scene;
 
-/// What a joint did on the body that it holds, averaged from the row before to this one; the columns of `joints.csv`.
+/// What a joint or a spring did on the body that it holds, averaged from the row before to this one; the columns of
+/// `joints.csv`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct JointRow {
     /// Simulated time at which the average ends [s].
     pub time: f64,
-    /// Name of the joint.
+    /// Name of the joint or spring.
     pub joint: String,
     /// Mean force on the body since the row before [N].
     pub force: [f64; 3],
@@ -46,9 +47,10 @@ pub(super) struct JointsObserver {
 
 impl JointsObserver {
     pub(super) fn create(scene: &Scene, folder: &OutputFolder) -> Result<Self, OutputError> {
+        let names: Vec<String> = scene.joint_names().map(String::from).collect();
         Ok(JointsObserver {
-            names: scene.joints.iter().map(|joint| joint.name.clone()).collect(),
-            before: (0.0, vec![JointState::default(); scene.joints.len()]),
+            before: (0.0, vec![JointState::default(); names.len()]),
+            names,
             schedule: Schedule::every(scene.outputs.tables),
             table: CsvTable::create(folder.join(JOINTS), scene.outputs.measurements.unit())?,
         })

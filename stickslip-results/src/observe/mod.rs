@@ -27,6 +27,7 @@ mod particle_file;
 mod particles;
 mod points;
 mod probes;
+mod reactions;
 mod recorded;
 mod recorder;
 mod removed;
@@ -58,6 +59,7 @@ pub use particle_file::{FileColumn, ParticleFile};
 pub use particles::{FileColumns, encode_particles, read_columns, read_particles};
 pub use points::PointSample;
 pub use probes::ProbeRow;
+pub use reactions::ReactionRow;
 pub use recorded::{
     RecordedBody, RecordedMeasurements, RecordedOutputs, RecordedScene, RecordedShape, RecordedTime,
 };
@@ -83,6 +85,7 @@ const REMOVED: &str = "removed.csv";
 const PROBES: &str = "probes.csv";
 const ARRIVALS: &str = "arrivals.csv";
 const SECTIONS: &str = "sections.csv";
+const REACTIONS: &str = "reactions.csv";
 const FRONTS: &str = "fronts.csv";
 const FRONT_SPEEDS: &str = "front_speeds.csv";
 const PARTICLES: &str = "particles";

@@ -1,8 +1,8 @@
 //! The scene in `run.json`: what reports and pictures read of it again.
 
 use crate::scene::{Domain, Fringes, Parameter, TimeUnit};
-use serde::Deserialize;
 use serde::de::IgnoredAny;
+use serde::{Deserialize, Deserializer};
 use std::collections::BTreeMap;
 
 /// A scene as it was run, in SI units, parameters resolved. The record holds all of the scene; this is what has a
@@ -17,12 +17,34 @@ pub struct RecordedScene {
     pub domain: Option<Domain>,
     /// When it ends.
     pub time: RecordedTime,
-    /// Acceleration of every body [m/s^2].
+    /// Acceleration of every body [m/s^2]: where that varies, of a table its largest value, and 0 of a formula.
+    #[serde(deserialize_with = "largest")]
     pub gravity: [f64; 3],
     /// Its bodies, in the order of the numbers in snapshots.
     pub bodies: Vec<RecordedBody>,
     /// What was written.
     pub outputs: RecordedOutputs,
+}
+
+/// A number as a scene writes it that may vary.
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum RecordedNumber {
+    Constant(f64),
+    Table { table: Vec<[f64; 2]> },
+    Formula(IgnoredAny),
+}
+
+fn largest<'de, D: Deserializer<'de>>(deserializer: D) -> Result<[f64; 3], D::Error> {
+    let numbers = <[RecordedNumber; 3]>::deserialize(deserializer)?;
+    Ok(numbers.map(|number| match number {
+        RecordedNumber::Constant(value) => value,
+        RecordedNumber::Table { table } => {
+            let values = table.into_iter().map(|[_, value]| value);
+            values.max_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or_default()
+        }
+        RecordedNumber::Formula(_) => 0.0,
+    }))
 }
 
 /// When a recorded scene ends.
@@ -158,7 +180,14 @@ mod tests {
         let scene = scene::parse("scene", text, &[]).unwrap_or_else(|error| panic!("{error}")).scene;
         let json = serde_json::to_value(&scene).unwrap();
         let read: RecordedScene = serde_json::from_value(json).unwrap();
-        assert_eq!((&read.title, read.time.end, read.gravity), (&scene.title, Some(1.0), scene.gravity));
+        assert_eq!(
+            (&read.title, read.time.end, read.gravity),
+            (&scene.title, Some(1.0), scene.gravity.at(0.0))
+        );
+        let varies = text.replace("[0, 0, -9.81]", "['9 * t', 0, { table = [[0, 0], [1, -9.81], [2, -3]] }]");
+        let scene = scene::parse("scene", &varies, &[]).unwrap_or_else(|error| panic!("{error}")).scene;
+        let read: RecordedScene = serde_json::from_value(serde_json::to_value(&scene).unwrap()).unwrap();
+        assert_eq!(read.gravity, [0.0, 0.0, -9.81]);
         assert_eq!((read.number("speed"), read.number("word").is_nan()), (2.0, true));
         assert_eq!(read.domain, scene.domain);
         assert_eq!(read.outputs.measurements.time_unit, scene.outputs.measurements.time_unit);

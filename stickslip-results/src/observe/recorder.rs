@@ -14,11 +14,12 @@ use super::loads::LoadsObserver;
 use super::memory::Memory;
 use super::particles::ParticlesObserver;
 use super::probes::ProbesObserver;
+use super::reactions::ReactionsObserver;
 use super::removed::RemovedObserver;
 use super::sections::SectionsObserver;
 use super::{
     ARRIVALS, BODIES, CONTACTS, ENERGY, FRINGES, FRONTS, GRID, JOINTS, LOADS, Observer, PARTICLES, PROBES,
-    REMOVED, SECTIONS,
+    REACTIONS, REMOVED, SECTIONS,
 };
 use crate::door::View;
 use crate::scene::{Leaving, Scene};
@@ -49,7 +50,7 @@ impl<'a> Recorder<'a> {
         if !scene.loads.is_empty() {
             recorder.schedule(LOADS, LoadsObserver::create(scene, folder)?);
         }
-        if !scene.joints.is_empty() {
+        if scene.joint_names().next().is_some() {
             recorder.schedule(JOINTS, JointsObserver::create(scene, folder)?);
         }
         if scene.domain.as_ref().is_some_and(|domain| domain.leaving == Leaving::Remove) {
@@ -58,6 +59,9 @@ impl<'a> Recorder<'a> {
         let wanted = &scene.outputs.measurements;
         if !wanted.sections.is_empty() {
             recorder.schedule(SECTIONS, SectionsObserver::create(scene, folder)?);
+        }
+        if !wanted.reactions.is_empty() {
+            recorder.schedule(REACTIONS, ReactionsObserver::create(scene, folder)?);
         }
         if !wanted.probes.is_empty() {
             recorder.schedule(PROBES, ProbesObserver::create(scene, folder)?);
@@ -85,7 +89,9 @@ impl<'a> Recorder<'a> {
     /// # Errors
     /// One is not.
     pub fn find(folder: &OutputFolder, memory: &Memory) -> Result<(), OutputError> {
-        let tables = [BODIES, ENERGY, CONTACTS, LOADS, JOINTS, REMOVED, SECTIONS, PROBES, ARRIVALS, FRONTS];
+        let tables = [
+            BODIES, ENERGY, CONTACTS, LOADS, JOINTS, REMOVED, SECTIONS, REACTIONS, PROBES, ARRIVALS, FRONTS,
+        ];
         for path in
             tables.iter().filter(|name| memory.has(&format!("{name}/length"))).map(|name| folder.join(name))
         {

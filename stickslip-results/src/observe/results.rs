@@ -13,13 +13,14 @@ use super::loads::LoadRow;
 use super::manifest::Manifest;
 use super::particles::read_particles;
 use super::probes::ProbeRow;
+use super::reactions::ReactionRow;
 use super::recorded::RecordedScene;
 use super::removed::RemovedRow;
 use super::sections::SectionRow;
 use super::table::{TableRow, read_rows};
 use super::{
     ARRIVALS, BODIES, CONTACTS, ENERGY, FRINGES_TABLE, FRONT_SPEEDS, FRONTS, JOINTS, LOADS, PARTICLES,
-    PROBES, REMOVED, SECTIONS,
+    PROBES, REACTIONS, REMOVED, SECTIONS,
 };
 use crate::column::every;
 use crate::door::ParticleSnapshot;
@@ -120,6 +121,15 @@ impl Results {
     /// The file is damaged.
     pub fn sections_table(&self) -> Result<Vec<SectionRow>, ReadError> {
         self.measured(SECTIONS)
+    }
+
+    /// `reactions.csv`: at each time but the first a row for each body at a face, and for each rigid body, that the
+    /// scene asks for.
+    ///
+    /// # Errors
+    /// The file is damaged.
+    pub fn reactions_table(&self) -> Result<Vec<ReactionRow>, ReadError> {
+        self.measured(REACTIONS)
     }
 
     /// `joints.csv`: at each time but the first a row for each joint; none if the scene has none.

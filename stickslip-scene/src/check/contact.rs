@@ -128,7 +128,7 @@ impl Pressing {
     fn new(scene: &Scene, pair: [usize; 2], direction: Vector<f64, 3>, masses: [f64; 2]) -> Self {
         let bodies = pair.map(|i| &scene.bodies[i]);
         let held = bodies.map(Body::is_prescribed);
-        let gravity = Vector(scene.gravity);
+        let gravity = Vector(scene.gravity.strongest(scene.time.end));
         // The one above rests on the other; gravity along the surface presses nothing, but for round-off.
         let along = direction.dot(gravity);
         let above = usize::from(along < 0.0);
@@ -263,7 +263,7 @@ mod tests {
         floor.motion = BodyMotion::Rigid { velocity: still(), spin: still() };
         let disk = free("disk", 0, Shape::Ball { center: [0.0, 0.5, 0.0], radius: 0.5 });
         let mut scene = scene(Dimension::PlaneStrain, 0.1, vec![floor, disk]);
-        scene.gravity = [0.0, -10.0, 0.0];
+        scene.gravity = [0.0, -10.0, 0.0].into();
         let contact = &estimates_of(&scene)[0];
         let elastic = scene.materials[0].law.elastic();
         let modulus = elastic.young_modulus() / (1.0 - elastic.poisson_ratio().powi(2));
@@ -282,7 +282,7 @@ mod tests {
             let floor = Shape::HalfSpace { point: [0.0; 3], normal: [0.0, 0.0, 1.0] };
             let mut scene =
                 scene(Dimension::Space, 0.1, vec![free("roller", 0, roller), at_rest("floor", floor)]);
-            scene.gravity = [0.0, 0.0, -10.0];
+            scene.gravity = [0.0, 0.0, -10.0].into();
             estimates_of(&scene)
         };
         let found = on_floor([0.0, 1.0, 0.5]);
@@ -301,7 +301,7 @@ mod tests {
         let floor = Shape::HalfSpace { point: [0.0; 3], normal: [0.0, 0.0, 1.0] };
         let mut scene = scene(Dimension::Space, 0.1, vec![free("block", 0, block), at_rest("floor", floor)]);
         assert!(estimates_of(&scene).is_empty());
-        scene.gravity = [0.0, 0.0, -10.0];
+        scene.gravity = [0.0, 0.0, -10.0].into();
         let found = estimates_of(&scene);
         assert!(
             (found[0].cells - 2.5).abs() < 1e-9 && found[0].verdict == ContactResolution::Marginal,
@@ -314,7 +314,7 @@ mod tests {
         let on = |support: Shape| {
             let ball = free("ball", 0, Shape::Ball { center: [0.0, 0.0, 1.0], radius: 1.0 });
             let mut scene = scene(Dimension::Space, 0.2, vec![ball, free("support", 1, support)]);
-            scene.gravity = [0.0, 0.0, -10.0];
+            scene.gravity = [0.0, 0.0, -10.0].into();
             estimates_of(&scene)[0].patch.radius
         };
         let block = || Shape::Box { min: [-2.0, -2.0, -1.0], max: [2.0, 2.0, 1.0] };
@@ -368,7 +368,7 @@ mod tests {
         let mut bodies: Vec<_> = (0..3).map(|i| free(&format!("{i}"), 0, ball(f64::from(i), 0.5))).collect();
         bodies.push(free("floor", 1, Shape::Box { min: [-1.0, -1.0, -1.0], max: [3.0, 1.0, -0.5] }));
         let mut scene = scene(Dimension::Space, 0.1, bodies);
-        scene.gravity = [0.0, 0.0, -10.0];
+        scene.gravity = [0.0, 0.0, -10.0].into();
         let found = estimates_of(&scene);
         assert_eq!(found.len(), 3);
         assert!(found.iter().all(|contact| contact.bodies[1] == "floor"));

@@ -7,6 +7,7 @@ use crate::part;
 use crate::scene::{Action, Dashpot, Extent, Load, Moment, Problem, Scene, SupportMotion};
 use rayon::prelude::*;
 use serde::Serialize;
+use std::collections::HashSet;
 
 /// Where a load or a support acts.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -38,6 +39,19 @@ pub(super) fn check(scene: &Scene) -> Result<Vec<LoadReport>, Problem> {
             if load.is_support() { ("supports", &mut supports) } else { ("loads", &mut loads) };
         keys.push(format!("{kind}[{number}]"));
         *number += 1;
+    }
+    let mut heated = HashSet::new();
+    for (load, key) in scene.loads.iter().zip(&keys) {
+        if matches!(load.action, Action::Temperature(_)) && !heated.insert(load.body) {
+            let name = scene.bodies.get(load.body).map_or("", |body| &body.name);
+            return Err(Problem {
+                key: format!("{key}.temperature"),
+                found: format!("a second temperature of `{name}`"),
+                allowed: "one for each body; its formula may tell places apart, by if(x0 < 1, 20, 50)"
+                    .to_string(),
+                help: None,
+            });
+        }
     }
     // Collected before the first problem is taken, so that it is the first in the scene and not the first in time.
     let all: Vec<_> = scene.loads.par_iter().zip(&keys).map(|(load, key)| report(scene, load, key)).collect();
@@ -98,19 +112,31 @@ fn report(scene: &Scene, load: &Load, key: &str) -> Result<LoadReport, Problem> 
     let per_area = match &load.action {
         Action::Pressure(_) | Action::Traction(_) => true,
         Action::Support(support) => support.dashpot == Some(Dashpot::Absorbing),
-        Action::Force(_) | Action::Acceleration(_) => false,
+        Action::Force(_) | Action::Acceleration(_) | Action::Temperature(_) => false,
     };
     if on_volume && per_area {
         return Err(problem("on", "a volume".to_string(), "a surface: a volume has no area"));
     }
-    if !on_volume && matches!(load.action, Action::Acceleration(_)) {
+    if !on_volume && load.action.is_on_particles() {
         return Err(problem("on", "a surface".to_string(), "a volume: a surface has no mass"));
     }
     if let Some(value) = load.action.outside().filter(|value| value.function().is_none()) {
         let found = format!("the function `{}`, which is not given", value.name());
         return Err(problem(load.action.key(), found, GIVEN));
     }
-    let points = part::points(scene, load);
+    if matches!(load.action, Action::Temperature(_)) {
+        let material = &scene.materials[body.material];
+        if body.is_rigid() {
+            return Err(problem("body", format!("rigid `{}`", body.name), "a body that deforms"));
+        }
+        if material.thermal_expansion == 0.0 {
+            let found = format!("a temperature of `{}`, whose material does not expand by it", body.name);
+            let allowed =
+                format!("a body with a `thermal_expansion`: that of materials.{} is 0", material.name);
+            return Err(problem("temperature", found, &allowed));
+        }
+    }
+    let points = part::points(scene, load.body, &load.part);
     let Some(first) = points.first() else {
         let part = if load.part.within.is_some() { "within" } else { "on" };
         let nothing = problem(part, format!("no part of body `{}`", body.name), "a part that the body has");

@@ -1,9 +1,20 @@
-//! Probes that would ride with no material.
+//! Probes that would ride with no material, and reactions of faces that do nothing.
 
-use crate::scene::{Anchor, Problem, Scene};
+use crate::scene::{Anchor, FACES, Face, Problem, Scene};
 
-/// Each point of the material must start in its body, or within a cell of it.
+/// Each point of the material must start in its body, or within a cell of it; faces with reactions must do something.
 pub(super) fn check(scene: &Scene) -> Result<(), Problem> {
+    for [axis, side] in scene.outputs.measurements.faces() {
+        let face = scene.domain.as_ref().map_or(Face::Open, |domain| domain.faces[axis][side]);
+        if face == Face::Open {
+            return Err(Problem {
+                key: "outputs.reactions".to_string(),
+                found: format!("`{}`, a face of the domain that is open", FACES[axis][side]),
+                allowed: "faces that are \"symmetry\" or \"fixed\"".to_string(),
+                help: None,
+            });
+        }
+    }
     for (i, probe) in scene.outputs.measurements.probes.iter().enumerate() {
         if probe.fixed_in == Anchor::Space {
             continue;

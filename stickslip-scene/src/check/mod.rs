@@ -21,6 +21,7 @@ mod rigid_pairs;
 mod rules;
 mod settings;
 mod shapes;
+mod springs;
 mod table;
 mod thickness;
 mod touch;
@@ -35,14 +36,15 @@ pub use report::{BodyReport, MachineSpeed, MaterialReport, Report, report};
 pub use rules::RuleReport;
 pub use warning::Warning;
 
+use crate::initial_stress;
 use crate::scene::{Problem, Scene};
 
 /// Finds what is wrong with a scene and takes its geometry to see.
 ///
-/// # Errors
-/// The first of: settings that allow no step, a material that is not stable, a domain whose walls miss the grid, motion
-/// out of the plane, a shape that is not one or holds no particle, a body that deforms and is unbounded, a body outside
-/// the domain, two bodies in one place, a free rigid body without an end, a joint far from its bodies, a load on nothing.
+/// # Errors The first of: settings that allow no step, a material that is not stable, a domain whose walls miss the
+/// grid, motion out of the plane, a shape that is not one or holds no particle, a body that deforms and is unbounded, a
+/// body outside the domain, two bodies in one place, a free rigid body without an end, a joint far from its bodies, a
+/// stress that no deformation gives, a load on nothing, a spring at nothing.
 pub fn problems(scene: &Scene) -> Result<(), Problem> {
     examine(scene).map(|_| ())
 }
@@ -59,6 +61,8 @@ fn examine(scene: &Scene) -> Result<(Vec<bodies::FillingExtent>, Vec<LoadReport>
         overlap::check(scene, &extents)?;
     }
     joints::check(scene, &extents)?;
+    springs::check(scene)?;
+    (0..scene.bodies.len()).try_for_each(|body| initial_stress::of_body(scene, body).map(|_| ()))?;
     Ok((extents, loads::check(scene)?))
 }
 
@@ -89,7 +93,13 @@ mod tests {
     pub fn neo_hookean(name: &str, factor: f64) -> NamedMaterial {
         let elastic = Isotropic { bulk_modulus: 6e6 * factor, shear_modulus: 3e6 * factor };
         let law = Material::NeoHookean(NeoHookean { elastic });
-        NamedMaterial { name: name.into(), density: 1000.0 * factor, law, volume_change: Default::default() }
+        NamedMaterial {
+            name: name.into(),
+            density: 1000.0 * factor,
+            law,
+            volume_change: Default::default(),
+            thermal_expansion: 0.0,
+        }
     }
 
     pub fn free(name: &str, material: usize, shape: Shape) -> Body {
@@ -121,7 +131,7 @@ mod tests {
         let bodies = vec![free("sphere", 0, Shape::Intersection(vec![ball, half])), free("plane", 1, plane)];
         let mut scene = scene(Dimension::Space, cell, bodies);
         let slope = std::f64::consts::FRAC_PI_4;
-        scene.gravity = [10.0 * slope.sin(), 0.0, -10.0 * slope.cos()];
+        scene.gravity = [10.0 * slope.sin(), 0.0, -10.0 * slope.cos()].into();
         scene.domain = Some(Domain {
             min: [0.0, 0.0, -1.6],
             max: [20.8, 3.2, 4.8],

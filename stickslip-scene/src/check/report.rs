@@ -352,7 +352,7 @@ mod tests {
             free(&format!("disk {i}"), 0, Shape::Ball { center, radius: 0.5 })
         };
         let mut scene = scene(Dimension::PlaneStrain, 0.1, (0..4096).map(disk).collect());
-        scene.gravity = [0.0, -10.0, 0.0];
+        scene.gravity = [0.0, -10.0, 0.0].into();
         let report = report(&scene).expect("no problem");
         assert_eq!((report.bodies.len(), report.contacts.len()), (4096, 64 * 63));
     }

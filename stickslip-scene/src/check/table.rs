@@ -302,7 +302,7 @@ mod tests {
             free(&format!("disk {i}"), 0, Shape::Ball { center, radius: 0.5 })
         };
         let mut scene = scene(Dimension::PlaneStrain, 0.2, (0..1024).map(disk).collect());
-        scene.gravity = [0.0, -10.0, 0.0];
+        scene.gravity = [0.0, -10.0, 0.0].into();
         let text = report(&scene).expect("no problem").to_string();
         assert!(text.lines().count() <= 40, "{text}");
         assert!(text.contains("... and 1014 more") && text.contains("in all 992: "), "{text}");

@@ -8,6 +8,7 @@ mod custom;
 mod declaration;
 mod elastic;
 mod history;
+mod initial;
 mod outside;
 mod plane_stress;
 
@@ -18,6 +19,7 @@ pub use declaration::{
 };
 pub use elastic::Isotropic;
 pub use history::{AtRest, Entries, History, Keep, MOST_HISTORY, Recall, history_entries};
+pub use initial::NoStretch;
 pub use outside::{LawArrays, LawOverArrays, OUTSIDE_CONSTANTS, outside_law};
 pub use plane_stress::Thickness;
 

@@ -29,7 +29,7 @@ pub fn longest_step(scene: &Scene) -> f64 {
         return f64::INFINITY;
     }
     let mut longest = scene.time.end / FEWEST_STEPS;
-    let gravity = Vector(scene.gravity).norm();
+    let gravity = Vector(scene.gravity.strongest(scene.time.end)).norm();
     if gravity > 0.0 {
         let bodies = (0..scene.bodies.len()).filter_map(free);
         let radius = |body: MassProperties| (body.inertia.trace() / body.mass).sqrt();

@@ -6,8 +6,8 @@
 
 use super::{
     BasisKind, Body, BodyMotion, ContactLaw, ContactRule, Damping, Dimension, Discretization, Domain,
-    Expression, Face, FreeRigid, Health, Leaving, Measurements, NamedMaterial, Normal, Outputs, Precision,
-    Problem, Relaxation, Scene, SnapshotContent, StressUpdate, Time, Transfer, VolumeChange,
+    Expression, Face, FreeRigid, Gravity, Health, Leaving, Measurements, NamedMaterial, Normal, Outputs,
+    Precision, Problem, Relaxation, Scene, SnapshotContent, StressUpdate, Time, Transfer, VolumeChange,
 };
 use crate::geometry::{Arrangement, Shape};
 use crate::material::LAWS;
@@ -34,11 +34,12 @@ impl Scene {
             start: None,
             damping: Damping::default(),
             health: Health::default(),
-            gravity: [0.0; 3],
+            gravity: Gravity::default(),
             materials: Vec::new(),
             bodies: Vec::new(),
             loads: Vec::new(),
             joints: Vec::new(),
+            springs: Vec::new(),
             contact: Vec::new(),
             outputs: Outputs::of_run(end),
             references: Vec::new(),
@@ -147,7 +148,13 @@ impl NamedMaterial {
             let constant = bad.key.map(|key| format!(".{key}")).unwrap_or_default();
             problem(&format!(".{law}{constant}"), bad.found, bad.allowed)
         })?;
-        Ok(NamedMaterial { name: name.to_string(), density, law, volume_change: VolumeChange::Own })
+        Ok(NamedMaterial {
+            name: name.to_string(),
+            density,
+            law,
+            volume_change: VolumeChange::Own,
+            thermal_expansion: 0.0,
+        })
     }
 }
 
@@ -161,6 +168,7 @@ impl Body {
             particles: Arrangement::default(),
             particles_per_side: None,
             motion: BodyMotion::default(),
+            stress: None,
         }
     }
 
@@ -173,6 +181,12 @@ impl Body {
     /// [rad/s].
     pub fn moving(self, velocity: [f64; 3], spin: [f64; 3]) -> Self {
         Body { motion: BodyMotion::Free { velocity, spin }, ..self }
+    }
+
+    /// The same body with this Cauchy stress everywhere before anything moves: xx, yy, zz, xy, yz, xz, tension positive
+    /// [Pa].
+    pub fn stressed(self, stress: [f64; 6]) -> Self {
+        Body { stress: Some(stress.map(Expression::Constant)), ..self }
     }
 
     /// The same body, rigid, moved at this velocity [m/s] and turned at this angular velocity [rad/s] whatever pushes
@@ -280,7 +294,7 @@ law = "traction"
 "#;
         let mut scene = Scene::new(Dimension::PlaneStrain, 0.1, 2.0);
         scene.title = "written".to_string();
-        scene.gravity = [0.0, -9.81, 0.0];
+        scene.gravity = [0.0, -9.81, 0.0].into();
         scene.domain = Some(Domain::new([-1.0, -1.0, 0.0], [4.0, 4.0, 0.0]));
         let constants = [("young_modulus", 1e6), ("poisson_ratio", 0.3)];
         let rubber = NamedMaterial::new("rubber", 1000.0, "neo_hookean", &constants).unwrap();

@@ -102,6 +102,14 @@ impl Expression {
         self.at_moment(&Moment { time: t, ..Moment::default() })
     }
 
+    /// The value, if it is the same always.
+    pub fn constant(&self) -> Option<f64> {
+        match self {
+            Expression::Constant(value) => Some(*value),
+            Expression::Formula(_) | Expression::Table(_) => None,
+        }
+    }
+
     /// The value at a time and a place, in SI units.
     pub fn at_moment(&self, moment: &Moment) -> f64 {
         match self {

@@ -58,6 +58,8 @@ pub enum Action {
     Pressure(Expression),
     /// A force per mass [m/s^2].
     Acceleration([Expression; 3]),
+    /// How much warmer its particles are than in the state in which they are drawn [K].
+    Temperature(Expression),
     /// A force toward where the part should be.
     Support(Support),
 }
@@ -109,7 +111,7 @@ pub const RIGID: f64 = 1.6;
 impl Load {
     /// A load on all of a body's surface, or volume where it acts on mass.
     pub fn new(name: &str, body: usize, action: Action) -> Self {
-        let on = if matches!(action, Action::Acceleration(_)) { Extent::Volume } else { Extent::Surface };
+        let on = if action.is_on_particles() { Extent::Volume } else { Extent::Surface };
         Load { name: name.to_string(), body, part: Part { on, within: None }, action }
     }
 
@@ -130,13 +132,18 @@ impl Load {
 }
 
 impl Action {
+    /// Whether only particles feel it, and no surface.
+    pub fn is_on_particles(&self) -> bool {
+        matches!(self, Action::Acceleration(_) | Action::Temperature(_))
+    }
+
     /// All of its values that may vary.
     pub fn values(&self) -> impl Iterator<Item = &Expression> {
         let (vector, support) = match self {
             Action::Force(vector) | Action::Traction(vector) | Action::Acceleration(vector) => {
                 (&vector[..], None)
             }
-            Action::Pressure(pressure) => (std::slice::from_ref(pressure), None),
+            Action::Pressure(value) | Action::Temperature(value) => (std::slice::from_ref(value), None),
             Action::Support(support) => (&[][..], Some(support)),
         };
         let motions = support.into_iter().flat_map(|support| support.motion.iter().flatten());

@@ -18,6 +18,20 @@ pub struct Measurements {
     /// Planes through which forces and moments are recorded.
     #[serde(default)]
     pub sections: Vec<Section>,
+    /// Faces of the domain, by the words of [`FACES`], and rigid bodies by their names, on which forces are recorded.
+    #[serde(default)]
+    pub reactions: Vec<String>,
+}
+
+/// Words for the faces of a domain, by axis, the lower and the upper one.
+pub const FACES: [[&str; 2]; 3] = [["x_min", "x_max"], ["y_min", "y_max"], ["z_min", "z_max"]];
+
+impl Measurements {
+    /// Faces of the domain, by axis and side, on which forces are recorded.
+    pub fn faces(&self) -> impl Iterator<Item = [usize; 2]> {
+        let wanted = |&[axis, side]: &[usize; 2]| self.reactions.iter().any(|name| name == FACES[axis][side]);
+        (0..3).flat_map(|axis| [[axis, 0], [axis, 1]]).filter(wanted)
+    }
 }
 
 /// A unit of time that belongs to the scene, such as the time in which a wave crosses a disk.

@@ -9,6 +9,7 @@ mod expression;
 mod file;
 mod formula;
 mod fringes;
+mod gravity;
 mod health;
 mod joints;
 mod load;
@@ -21,22 +22,27 @@ mod parameters;
 mod problem;
 mod schema;
 mod source;
+mod springs;
 mod suggestion;
 mod units;
 
 pub use error::{Mistake, SceneError};
 pub use expression::{Expression, Moment, Program, TimeTable};
 pub use fringes::{Fringes, Light, Overlay, Polariscope, PolariscopeField, Sensitivity};
+pub use gravity::Gravity;
 pub use health::{Health, HealthCheck, HealthRule, Response};
 pub use joints::{Joint, JointKind, Motor};
 pub use load::{Loaded, load, parse};
 pub use loads::{Action, Dashpot, Extent, Load, Part, RIGID, Support, SupportMotion};
-pub use measurements::{Anchor, Arrival, Front, Measurements, Observable, Probe, Reading, Section, TimeUnit};
+pub use measurements::{
+    Anchor, Arrival, FACES, Front, Measurements, Observable, Probe, Reading, Section, TimeUnit,
+};
 pub use name_pattern::{NamePattern, RuleNames, is_pattern};
 pub use outside::{OutsideUse, OutsideValue};
 pub use problem::Problem;
 pub use schema::schema;
 pub use source::Source;
+pub use springs::{Spring, SpringEnd};
 
 use crate::geometry::{Arrangement, Shape, SiteLattice};
 use crate::material::{Material, Thickness};
@@ -71,8 +77,8 @@ pub struct Scene {
     /// What a run watches, and what it does where something is wrong.
     #[serde(skip_serializing_if = "Health::is_usual")]
     pub health: Health,
-    /// Acceleration of every body [m/s^2].
-    pub gravity: [f64; 3],
+    /// Acceleration of every body.
+    pub gravity: Gravity,
     /// The materials that bodies name.
     pub materials: Vec<NamedMaterial>,
     /// The bodies, in the order of the file.
@@ -81,6 +87,8 @@ pub struct Scene {
     pub loads: Vec<Load>,
     /// What joins rigid bodies to each other and to the ground.
     pub joints: Vec<Joint>,
+    /// Springs and dashpots between parts of bodies.
+    pub springs: Vec<Spring>,
     /// Contact rules; the first that matches a pair holds, see [`Scene::contact_between`].
     pub contact: Vec<ContactRule>,
     /// What is written, and how often.
@@ -353,6 +361,8 @@ pub struct NamedMaterial {
     pub law: Material<f64>,
     /// Whether its particles change their volume each by itself.
     pub volume_change: VolumeChange,
+    /// alpha, by how much it grows in every direction without stress, for each kelvin [1/K].
+    pub thermal_expansion: f64,
 }
 
 /// Whose change of volume a particle takes.
@@ -381,6 +391,8 @@ pub struct Body {
     pub particles_per_side: Option<usize>,
     /// How it moves.
     pub motion: BodyMotion,
+    /// Cauchy stress before anything moves, by the place: xx, yy, zz, xy, yz, xz, tension positive [Pa]; `None`: none.
+    pub stress: Option<[Expression; 6]>,
 }
 
 /// How a body moves.
@@ -570,6 +582,12 @@ impl Body {
 }
 
 impl Scene {
+    /// Names of what has rows in `joints.csv`: joints, and then springs.
+    pub fn joint_names(&self) -> impl Iterator<Item = &str> {
+        let joints = self.joints.iter().map(|joint| joint.name.as_str());
+        joints.chain(self.springs.iter().map(|spring| spring.name.as_str()))
+    }
+
     /// The particle sites of a body: every cell of the scene's grid divided into equal parts.
     pub fn lattice(&self, body: &Body) -> SiteLattice {
         SiteLattice {

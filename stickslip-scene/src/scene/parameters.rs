@@ -37,6 +37,8 @@ pub(super) enum Dependence {
     Constant,
     /// The time, `t`.
     Time,
+    /// The place, `x`, `y` and `z`.
+    Place,
     /// The time, and the place: now `x`, `y` and `z`, at the start `x0`, `y0` and `z0`.
     TimeAndPlace,
 }
@@ -281,11 +283,12 @@ impl<'s> Parameters<'s> {
 
 impl Names for Scope<'_, '_> {
     fn meaning(&self, name: &str) -> Meaning {
-        if name == "t" && self.1 != Dependence::Constant {
+        if name == "t" && matches!(self.1, Dependence::Time | Dependence::TimeAndPlace) {
             return Meaning::Time;
         }
         let coordinate = PLACE.iter().position(|other| *other == name);
-        let coordinate = coordinate.filter(|_| self.1 == Dependence::TimeAndPlace);
+        let coordinate =
+            coordinate.filter(|_| matches!(self.1, Dependence::Place | Dependence::TimeAndPlace));
         if let Some(value) = self.0.index(name) {
             if coordinate.is_some() {
                 let found = format!("the index `{name}`, which is a place in formulas of loads");

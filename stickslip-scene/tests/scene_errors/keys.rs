@@ -38,7 +38,7 @@ fn keys() {
             (
                 "[[bodies]]",
                 "[bodies]",
-                "12:2: bodies: found a table; allowed: a list [...] of a table with the keys name, repeat, material, shape, particles, particles_per_side, velocity, spin, rigid; tables in a list have two brackets: [[bodies]]",
+                "12:2: bodies: found a table; allowed: a list [...] of a table with the keys name, repeat, material, shape, particles, particles_per_side, velocity, spin, rigid, stress; tables in a list have two brackets: [[bodies]]",
             ),
             (
                 "radius = \"0.4 m\"",
@@ -125,7 +125,7 @@ fn types_and_units() {
             (
                 "\"1 s\"",
                 "\"2 * t\"",
-                "6:12: time.end: found `t`, the time; allowed: a formula without time: only prescribed motion, loads and references vary in time",
+                "6:12: time.end: found `t`, the time; allowed: a formula without time: only prescribed motion, gravity, loads and references vary in time",
             ),
             (
                 "\"1 s\"",

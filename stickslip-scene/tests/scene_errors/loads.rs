@@ -84,8 +84,8 @@ fn supports_and_loads() {
             (
                 "force = [{ table",
                 "pressure = 1\nforce = [{ table",
-                "26:1: loads[0].pressure: found `pressure` beside another; allowed: one of force, traction, pressure and \
-                 acceleration",
+                "26:1: loads[0].pressure: found `pressure` beside another; allowed: one of force, traction, pressure, \
+                 acceleration and temperature",
             ),
             (
                 "[\"1 ms\", \"3 kN\"]",
@@ -111,6 +111,191 @@ fn supports_and_loads() {
             ),
         ],
     );
+}
+
+#[test]
+fn gravity_over_time() {
+    let text = |gravity: &str| format!("gravity = {gravity}\n{LOADED}");
+    let gravity = r#"[0, { table = [["0 s", 0], ["1 s", "-10 m/s^2"]] }]"#;
+    let scene = scene::parse("a.toml", &text(gravity), &[]).unwrap_or_else(|error| panic!("{error}")).scene;
+    assert_eq!((scene.gravity.at(0.5), scene.gravity.constant()), ([0.0, -5.0, 0.0], None));
+    check(
+        &text("[0, \"-9.81 m/s^2 * min(t / 10 ms, 1)\"]"),
+        &[
+            (
+                "-9.81 m/s^2 *",
+                "-9.81 m/s *",
+                "1:15: gravity[1]: found \"-9.81 m/s * min(t / 10 ms, 1)\", a velocity [m/s]; allowed: an acceleration \
+                 [m/s^2], like \"9.81 m/s^2\"",
+            ),
+            (
+                "t / 10 ms",
+                "y / 10 m",
+                "1:34: gravity[1]: found unknown name `y`; allowed: a parameter (there are none), pi or inf",
+            ),
+            (
+                "\"-9.81 m/s^2 * min(t / 10 ms, 1)\"",
+                "{ table = [[1, 0], [0, 1]] }",
+                "1:35: gravity[1].table[1][0]: found 0; allowed: a time after 1 s, that of the row before",
+            ),
+        ],
+    );
+}
+
+const SPRING: &str = r#"[[springs]]
+from = { body = "block", on = "y_min" }
+to = { body = "floor2", on = "y_max" }
+stiffness = "1 kN/m"
+"#;
+
+#[test]
+fn springs() {
+    let plate = "[[bodies]]\nname = \"floor2\"\nmaterial = \"rubber\"\nrigid = {}\n\
+                 shape.box = { min = [0, -2], max = [1, -1] }\n";
+    let text = format!("{}{plate}{SPRING}", LOADED.replace("[0, 0], normal", "[0, -3], normal"));
+    let scene = scene::parse("a.toml", &text, &[]).unwrap_or_else(|error| panic!("{error}")).scene;
+    assert_eq!(checks::problems(&scene), Ok(()));
+    assert_eq!(scene.joint_names().collect::<Vec<_>>(), ["spring 1"]);
+    check(
+        &text,
+        &[
+            (
+                "from = { body = \"block\"",
+                "from = { body = \"blok\"",
+                "33:17: springs[0].from.body: found \"blok\"; allowed: the name of a body (\"block\", \"floor\", \
+                 \"floor2\"); did you mean `block`?",
+            ),
+            (
+                "stiffness = \"1 kN/m\"",
+                "",
+                "32:1: springs[0]: found a spring that does nothing; allowed: a `stiffness`, a `dashpot` or both",
+            ),
+            (
+                "stiffness = \"1 kN/m\"",
+                "dashpot = 0",
+                "35:11: springs[0].dashpot: found 0; allowed: a force per velocity [N*s/m] above 0, like \"10 N*s/m\"",
+            ),
+            (
+                "on = \"y_min\" }",
+                "on = \"z_min\" }",
+                "33:31: springs[0].from.on: found \"z_min\"; allowed: another face, as the scene is plane",
+            ),
+            (
+                "stiffness = \"1 kN/m\"",
+                "stiffness = 1\n[[springs]]\nname = \"spring 1\"\nfrom = { body = \"block\" }\nto = { body = \"floor2\" }\n\
+                 stiffness = 1",
+                "37:8: springs[1].name: found \"spring 1\"; allowed: a name that no other in the list has",
+            ),
+        ],
+    );
+    assert_eq!(
+        problem(&text.replace("on = \"y_min\" }", "within.ball = { center = [9, 9], radius = 1 } }")),
+        "springs[0].from.within: no part of body `block`; a part that the body has"
+    );
+    assert_eq!(
+        problem(&text.replace("from = { body = \"block\"", "from = { body = \"floor2\"")),
+        "springs[0]: a spring between `floor2` and `floor2`; one between bodies of which one can move: not both are as \
+         prescribed"
+    );
+    assert!(
+        problem(&text.replace(
+            "to = { body = \"floor2\", on = \"y_max\" }",
+            "to = { body = \"block\", on = \"y_min\" }"
+        ))
+        .contains("another place: a spring acts along the line between the centres")
+    );
+}
+
+/// What is wrong with a scene once it is read.
+fn problem(text: &str) -> String {
+    let scene = scene::parse("a.toml", text, &[]).unwrap_or_else(|error| panic!("{error}")).scene;
+    let problem = checks::problems(&scene).expect_err("a problem");
+    format!("{}: {}; {}", problem.key, problem.found, problem.allowed)
+}
+
+#[test]
+fn temperatures() {
+    let force =
+        "on = \"y_max\"\nforce = [{ table = [[\"0 s\", 0], [\"1 ms\", \"3 kN\"]] }, \"1 N/m * x / 1 m\"]";
+    let text = LOADED.replace(force, "temperature = \"20 * t / 1 s\"");
+    let expands = text.replace("density = 1000", "density = 1000\nthermal_expansion = 1e-5");
+    let scene = scene::parse("a.toml", &expands, &[]).unwrap_or_else(|error| panic!("{error}")).scene;
+    assert_eq!(checks::problems(&scene), Ok(()));
+    check(
+        &expands,
+        &[
+            (
+                "temperature = \"20",
+                "on = \"x_max\"\ntemperature = \"20",
+                "26:6: loads[0].on: found \"x_max\"; allowed: \"volume\": a surface has no mass",
+            ),
+            (
+                "thermal_expansion = 1e-5",
+                "thermal_expansion = 12",
+                "8:21: materials.rubber.thermal_expansion: found 12; allowed: a number per kelvin, of magnitude below 0.01, \
+                 like 1.2e-5",
+            ),
+            (
+                "\"20 * t / 1 s\"",
+                "\"20 Pa\"",
+                "26:15: loads[0].temperature: found \"20 Pa\", a pressure [Pa]; allowed: a number without unit, like 0.5",
+            ),
+        ],
+    );
+    assert_eq!(
+        problem(&text),
+        "loads[0].temperature: a temperature of `block`, whose material does not expand by it; a body with a \
+         `thermal_expansion`: that of materials.rubber is 0"
+    );
+    assert_eq!(
+        problem(&format!("{expands}[[loads]]\nbody = \"block\"\ntemperature = 5\n")),
+        "loads[1].temperature: a second temperature of `block`; one for each body; its formula may tell places apart, by \
+         if(x0 < 1, 20, 50)"
+    );
+}
+
+#[test]
+fn initial_stresses() {
+    let shape = "shape.box = { min = [0, 0], max = [1, 1] }";
+    let with = |stress: &str| LOADED.replacen(shape, &format!("{shape}\n{stress}"), 1);
+    let text = with("stress = { yy = \"-20 kN/m^3 * (1 m - y)\" }");
+    let scene = scene::parse("a.toml", &text, &[]).unwrap_or_else(|error| panic!("{error}")).scene;
+    assert_eq!(checks::problems(&scene), Ok(()));
+    check(
+        &text,
+        &[
+            (
+                "kN/m^3",
+                "kN/m^2",
+                "13:17: bodies[0].stress.yy: found \"-20 kN/m^2 * (1 m - y)\", a stiffness or an energy per area [N/m]; \
+                 allowed: a pressure [Pa], like \"6 MPa\"",
+            ),
+            (
+                "(1 m - y)",
+                "(1 m - t * 1 m/s)",
+                "13:38: bodies[0].stress.yy: found `t`, the time; allowed: a formula without time: only prescribed motion, \
+                 gravity, loads and references vary in time",
+            ),
+        ],
+    );
+    assert_eq!(
+        problem(&with("stress = { xz = 1 }")),
+        "bodies[0].stress: [0.0, 0.0, 0.0, 0.0, 0.0, 1.0] Pa (xx, yy, zz, xy, yz, xz) at [0.025, 0.025, 0.0] m in \
+         `block`; none out of the plane of the scene; in plane strain along z, zz, alone"
+    );
+    assert!(
+        problem(&with("stress.yy = \"1 Pa / (y - 0.025 m) * 1 m\"")).contains("stresses that are numbers")
+    );
+    let flows = with("stress.xy = \"1 MPa\"").replace(
+        "neo_hookean = { young_modulus = \"1 MPa\"",
+        "von_mises = { yield_stress = 1000, young_modulus = \"1 MPa\"",
+    );
+    assert!(problem(&flows).ends_with("a stress under which the material neither flows nor breaks"));
+    let water = with("stress.xy = 1")
+        .replace("young_modulus = \"1 MPa\", poisson_ratio = 0.3", "bulk_modulus = 1e6, shear_modulus = 0");
+    assert!(problem(&water).contains("a fluid bears none along its planes"));
+    let rigid = LOADED.replace("rigid = {}", "rigid = {}\nstress.xx = 1");
+    assert_eq!(problem(&rigid), "bodies[1].stress: a stress of the rigid body `floor`; a body that deforms");
 }
 
 #[test]

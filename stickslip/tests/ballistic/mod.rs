@@ -122,6 +122,7 @@ impl View for Ballistic {
             tangential: [0.0; 3],
             magnitude: 3.0 * time,
             moment: [0.5, 0.0, 0.25].map(|x| 3.0 * time * x),
+            turn: [0.0; 3],
             area: 0.125 * time,
             gap: -0.01 * 0.125 * time,
             slip: 0.02 * steps,
@@ -209,6 +210,7 @@ pub fn scene() -> Scene {
         particles: Arrangement::Lattice,
         particles_per_side: None,
         motion: BodyMotion::Free { velocity: [2.0, 0.0, 0.0], spin: [0.0; 3] },
+        stress: None,
     };
     Scene {
         title: "two bodies in flight".into(),
@@ -231,17 +233,19 @@ pub fn scene() -> Scene {
         },
         damping: Damping::default(),
         health: Health::default(),
-        gravity: [0.0, -GRAVITY, 0.0],
+        gravity: [0.0, -GRAVITY, 0.0].into(),
         materials: vec![NamedMaterial {
             name: "rubber".into(),
             density: 1000.0,
             law,
             volume_change: Default::default(),
+            thermal_expansion: 0.0,
         }],
         bodies: vec![body("sphere"), body("plane")],
         start: None,
         loads: Vec::new(),
         joints: Vec::new(),
+        springs: Vec::new(),
         contact: vec![ContactRule { friction: f64::INFINITY, ..Default::default() }],
         outputs: Outputs {
             tables: 0.1,

@@ -46,6 +46,7 @@ fn body<const D: usize>() -> Body<f64, D> {
             elastic: Isotropic { bulk_modulus: 1.0, shear_modulus: 1.0 },
         }),
         density: 1.0,
+        expansion: 0.0,
         particles,
         motion: None,
         whole: MirroredShape::new(&Shape::Ball { center: [0.0; 3], radius: 1.0 }, Vec::new(), D),

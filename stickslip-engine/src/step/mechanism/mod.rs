@@ -83,6 +83,30 @@ impl Mechanism {
     fn slot(&self, body: usize) -> Option<usize> {
         slot(&self.bodies, body)
     }
+
+    /// How fast a unit impulse along a direction at an arm makes a free body there along it [1/kg]; not at all what is
+    /// not free.
+    pub fn yields(&self, body: usize, arm: [f64; 3], direction: [f64; 3]) -> f64 {
+        let Some(slot) = self.slot(body) else { return 0.0 };
+        let along = six::at(arm, direction);
+        six::dot(&along, &self.bodies[slot].inertia.factor().solve(&along))
+    }
+
+    /// Gives a body an impulse at a place, if it is free, in a step of `dt` [s].
+    pub fn push<T, const D: usize>(
+        &mut self,
+        bodies: &mut [Body<T, D>],
+        (body, dt): (usize, f64),
+        (place, impulse): ([f64; 3], [f64; 3]),
+    ) {
+        let Some(slot) = self.slot(body) else { return };
+        let motion = bodies[body].motion.as_mut().expect("free bodies are rigid");
+        let arm = (Vector(place) - Vector(motion.center)).0;
+        let free = &mut self.bodies[slot];
+        six::add(&mut free.target, 1.0, &six::at(arm, impulse));
+        free.momenta = free.target;
+        motion.set_momenta(six::parts(free.target), dt);
+    }
 }
 
 impl FreeBody {
@@ -128,11 +152,12 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         if self.settings.free.is_empty() {
             return;
         }
+        let gravity = self.gravity(T::ZERO).norm().f64();
         let bodies = &self.state.bodies;
         let of = |index: usize| FreeBody::new(index, bodies[index].motion.as_ref()?);
         let mechanism = &mut self.workspace.mechanism;
         mechanism.time = self.state.time;
-        mechanism.gravity = self.settings.gravity.norm().f64();
+        mechanism.gravity = gravity;
         mechanism.bodies.clear();
         mechanism.bodies.extend((0..bodies.len()).filter_map(of));
         mechanism.links.clear();
@@ -141,11 +166,12 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
 
     /// Gravity, loads and what joints push with change the momenta of free rigid bodies.
     pub(super) fn push_free_bodies(&mut self, dt: T) {
-        let mechanism = &mut self.workspace.mechanism;
-        if mechanism.bodies.is_empty() {
+        if self.workspace.mechanism.bodies.is_empty() {
             return;
         }
         let start = Instant::now();
+        let gravity = self.gravity(dt).space();
+        let mechanism = &mut self.workspace.mechanism;
         let (dt, time) = (dt.f64(), self.state.time);
         let (free, bodies) = (&self.settings.free, &mut self.state.bodies);
         let mut impulses = vec![[0.0; 6]; mechanism.bodies.len()];
@@ -167,7 +193,6 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 }
             }
         }
-        let gravity = self.settings.gravity.space();
         for (free, impulse) in mechanism.bodies.iter_mut().zip(&impulses) {
             let motion = bodies[free.index].motion.as_mut().expect("free bodies are rigid");
             // After contact on the interpolated velocities, if there was any.

@@ -7,7 +7,8 @@ use crate::body::Gyration;
 use crate::clock::{no_faster, signal_speed};
 use crate::damping::BulkViscosity;
 use crate::lanes::{Laned, Lanes, Machine};
-use crate::material::{Material, Motion, Thickness};
+use crate::material::{Material, Motion, Recall, Thickness};
+use crate::natural::Natural;
 use crate::particles::ColumnStart;
 use crate::step::pass::{FaultKind, Pass, Verbs, Visit};
 use crate::tensor::{Matrix, Real, Symmetric, Vector};
@@ -22,6 +23,8 @@ pub struct Constants<V, const D: usize> {
     pub material: Material<V>,
     /// 1/rho_0 [m^3/kg]
     pub per_density: V,
+    /// Expansion by temperature [1/K].
+    pub expansion: V,
     /// Position of the node at zero [m].
     pub origin: Vector<V, D>,
     /// Side of a cell [m].
@@ -134,6 +137,8 @@ pub fn group<
     if update_stress || pushes || scatter == Some(Share::MeanStress) {
         stress = members.stress::<V>();
     }
+    // What the law sees of F, where that is not all.
+    let natural = if update_stress || advect { members.natural::<V>(constants.expansion) } else { None };
     let mut bulk = V::ZERO;
     if viscosity.is_some() && (update_stress || pushes) {
         bulk = members.viscosity::<V>();
@@ -172,18 +177,34 @@ pub fn group<
             members.store_for_report((&deformation, volume), kind);
             return Err(kind);
         }
-        let motion = Motion { deformation, jacobian, increment, stress, dt: V::splat(dt) };
-        if D == 2 && visit.body.thickness == Thickness::Free {
+        let mut motion = Motion { deformation, jacobian, increment, stress, dt: V::splat(dt) };
+        let thickness_is_free = D == 2 && visit.body.thickness == Thickness::Free;
+        if let Some(natural) = &natural {
+            motion = if thickness_is_free {
+                natural.seen_with_free_thickness(&motion)
+            } else {
+                natural.seen(&motion)
+            };
+        }
+        if thickness_is_free {
             let found = free_thickness(visit.body, (motion, dt), &mut history);
-            let motion = found.ok_or(FaultKind::NoThickness)?;
-            (deformation, jacobian, stress) = (motion.deformation, motion.jacobian, motion.stress);
+            let found = found.ok_or(FaultKind::NoThickness)?;
+            stress = found.stress;
+            match &natural {
+                None => (deformation, jacobian) = (found.deformation, found.jacobian),
+                Some(natural) => {
+                    let thickening = natural.thickening(&motion.deformation, &found.deformation);
+                    deformation.0[2][2] *= thickening;
+                    jacobian *= thickening;
+                }
+            }
         } else {
             stress = constants.material.respond(&motion, &mut history);
         }
         history.changed = true;
         if let Some(BulkViscosity { coefficients }) = viscosity {
-            let modulus =
-                constants.material.wave_modulus(visit.body.thickness, (&deformation, jacobian), &history);
+            let seen = (&natural, &deformation, jacobian);
+            let modulus = wave_modulus(&constants.material, visit.body.thickness, seen, &history);
             let (speed, rate) = ((modulus * constants.per_density).sqrt(), gradient.trace());
             let over_density = BulkViscosity::<T>::over_density(coefficients.map(V::splat), rate, speed);
             // The forces of this step were made with the one before, those of the next are made with this one.
@@ -233,8 +254,8 @@ pub fn group<
         }
         members.store_vector(ColumnStart::<D>::POSITION, &moved);
         members.give_back::<V>(ColumnStart::<D>::POSITION..ColumnStart::<D>::VELOCITY);
-        let modulus =
-            constants.material.wave_modulus(visit.body.thickness, (&deformation, jacobian), &history);
+        let seen = (&natural, &deformation, jacobian);
+        let modulus = wave_modulus(&constants.material, visit.body.thickness, seen, &history);
         let squares = [modulus * constants.per_density, state.velocity.dot(state.velocity)];
         if !every::<V>(no_faster(squares, V::splat(visit.found.signal))) {
             let signals = signal_speed(squares).numbers();
@@ -311,6 +332,29 @@ pub fn group<
         group.scatter::<M>(visit.window, &load);
     }
     Ok(inside)
+}
+
+/// Stiffness against the fastest wave, times J [Pa].
+#[inline(always)]
+fn wave_modulus<V: Lanes>(
+    material: &Material<V>,
+    thickness: Thickness,
+    (natural, deformation, jacobian): (&Option<Natural<V>>, &Matrix<V>, V),
+    history: &impl Recall<V>,
+) -> V {
+    let elastic;
+    let (deformation, jacobian) = match natural {
+        None => (deformation, jacobian),
+        Some(natural) => {
+            elastic = natural.elastic(deformation, jacobian);
+            (&elastic.0, elastic.1)
+        }
+    };
+    let modulus = material.wave_modulus(thickness, (deformation, jacobian), history);
+    match natural {
+        None => modulus,
+        Some(natural) => modulus / natural.volume,
+    }
 }
 
 /// V tr_D(sigma) / D [J]

@@ -2,6 +2,7 @@
 
 use crate::lanes::{Lanes, MOST_LANES, Numbers, prefetch};
 use crate::material::{Keep, MOST_HISTORY, Recall};
+use crate::natural::{self, Natural};
 use crate::particles::{ColumnStart, Columns, deformation_entries, spin_entries, stress_entries};
 use crate::step::pass::{FaultKind, Verbs};
 use crate::tensor::{Matrix, Real, Symmetric, Vector};
@@ -35,6 +36,8 @@ struct Reads {
     transfer: usize,
     /// Entries of what bulk viscosity needs.
     viscosity: usize,
+    /// Entries of what initial stress and heat need.
+    natural: usize,
 }
 
 impl Reads {
@@ -57,12 +60,13 @@ impl Reads {
             } else {
                 0
             },
+            natural: if verbs.update_stress || verbs.advect { columns.natural_columns().len() } else { 0 },
         }
     }
 
     /// All columns that are read.
     #[inline(always)]
-    fn columns<T: Real, const D: usize>(self, of: &Columns<T, D>) -> [Range<usize>; 6] {
+    fn columns<T: Real, const D: usize>(self, of: &Columns<T, D>) -> [Range<usize>; 7] {
         let only = |read: bool, columns: Range<usize>| if read { columns } else { 0..0 };
         [
             0..ColumnStart::<D>::DEFORMATION,
@@ -71,6 +75,7 @@ impl Reads {
             ColumnStart::<D>::HISTORY..ColumnStart::<D>::HISTORY + self.history,
             of.transfer_columns().start..of.transfer_columns().start + self.transfer,
             of.viscosity_columns().start..of.viscosity_columns().start + self.viscosity,
+            of.natural_columns().start..of.natural_columns().start + self.natural,
         ]
     }
 }
@@ -134,7 +139,8 @@ impl ParticleRuns {
 }
 
 /// Columns of a particle in space.
-const MOST_COLUMNS: usize = ColumnStart::<3>::HISTORY + MOST_HISTORY + stress_entries(3) + 1;
+const MOST_COLUMNS: usize =
+    ColumnStart::<3>::HISTORY + MOST_HISTORY + stress_entries(3) + 1 + natural::most_entries(3);
 
 impl<'a, T: Real, const D: usize, const WHOLE: bool> Members<'a, T, D, WHOLE> {
     /// Particles that lie side by side.
@@ -279,6 +285,20 @@ impl<'a, T: Real, const D: usize, const WHOLE: bool> Members<'a, T, D, WHOLE> {
             self.store(column, pressure);
         }
         self.give_back::<V>(self.columns.viscosity_columns());
+    }
+
+    /// The state without stress; `None` where that is the one in which the body is drawn.
+    #[inline(always)]
+    pub fn natural<V: Lanes<Real = T>>(&self, expansion: V) -> Option<Natural<V>> {
+        let columns = self.columns.natural_columns();
+        if columns.is_empty() {
+            return None;
+        }
+        let mut entries = [V::ZERO; natural::most_entries(3)];
+        for (entry, column) in entries.iter_mut().zip(columns.clone()) {
+            *entry = self.load(column);
+        }
+        Some(Natural::new::<D>((&entries, columns.len()), expansion))
     }
 
     #[inline(always)]
@@ -440,6 +460,9 @@ impl<T: Real> Copies<T> {
                 }
                 if reads.viscosity > 0 {
                     self.take_run::<V, D>(columns, run, columns.viscosity_columns());
+                }
+                if reads.natural > 0 {
+                    self.take_run::<V, D>(columns, run, columns.natural_columns());
                 }
             }
         }

@@ -101,6 +101,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
         Constants {
             material: self.body.material.map(V::splat),
             per_density: V::splat(T::ONE / self.body.density),
+            expansion: V::splat(self.body.expansion),
             origin: splat(&self.pass.lattice.origin),
             cell: V::splat(self.pass.lattice.cell),
             per_cell: V::splat(self.pass.lattice.per_cell),

@@ -3,7 +3,7 @@
 use super::Context;
 use super::loads::positive;
 use super::outside::OrOutside;
-use super::quantity::{Mass, MomentOfInertia, QuantityInput, Velocity};
+use super::quantity::{Mass, MomentOfInertia, Pressure, QuantityInput, Velocity};
 use super::read::{Read, table};
 use super::repeat::Repeat;
 use super::shape::ShapeInput;
@@ -39,6 +39,40 @@ table! {
         spin: Option<SpinInput>,
         /// Makes the body rigid: its motion is prescribed, or with rigid.free forces move it.
         rigid: Option<Rigid>,
+        /// Stress with which it begins, by the place: stress = { yy = "-18 kN/m^3 * (2 m - y)" }. By default none.
+        stress: Option<StressInput>,
+    }
+}
+
+table! {
+    /// Cauchy stress before anything moves, tension positive: numbers, or formulas of the place x, y, z. What is not
+    /// named is zero.
+    StressInput {
+        /// Normal stress along x [Pa].
+        xx: Option<QuantityInput<Pressure>>,
+        /// Normal stress along y [Pa].
+        yy: Option<QuantityInput<Pressure>>,
+        /// Normal stress along z [Pa]; not in plane stress, where it is zero.
+        zz: Option<QuantityInput<Pressure>>,
+        /// Shear stress between x and y [Pa].
+        xy: Option<QuantityInput<Pressure>>,
+        /// Shear stress between y and z [Pa]; three dimensions only.
+        yz: Option<QuantityInput<Pressure>>,
+        /// Shear stress between x and z [Pa]; three dimensions only.
+        xz: Option<QuantityInput<Pressure>>,
+    }
+}
+
+impl StressInput {
+    fn resolve(&self, context: &Context) -> Result<[Expression; 6], Fault> {
+        let StressInput { xx, yy, zz, xy, yz, xz } = self;
+        let mut stress = [0.0; 6].map(Expression::Constant);
+        for (input, stress) in [xx, yy, zz, xy, yz, xz].into_iter().zip(&mut stress) {
+            if let Some(input) = input {
+                *stress = input.over_place(context)?;
+            }
+        }
+        Ok(stress)
     }
 }
 
@@ -172,6 +206,7 @@ impl Body {
         }
         let keys = BodyKeys { velocity: &self.velocity, spin: &self.spin, rigid: &self.rigid };
         body.motion = keys.motion(context)?;
+        body.stress = self.stress.as_ref().map(|stress| stress.resolve(context)).transpose()?;
         Ok(body)
     }
 }

@@ -123,17 +123,8 @@ pub fn resolve(joints: &[Joint], (bodies, context): (&[Body], &Context)) -> Resu
         let declared = format!("joints[{table}]");
         Repeat::each(joint.repeat.as_ref(), context, || {
             let number = resolved.all.len() + 1;
-            let name = match &joint.name {
-                Some(text) => text.new_name(context, &mut taken)?,
-                None => {
-                    let name = format!("joint {number}");
-                    if !taken.insert(name.clone()) {
-                        let found = format!("the name `{name}`, which another has");
-                        return Err(Fault::new(&declared, found, "a `name` of its own"));
-                    }
-                    name
-                }
-            };
+            let name =
+                Text::name_or(joint.name.as_ref(), ("joint", number), (&declared, &mut taken), context)?;
             resolved.all.push(joint.resolve(&declared, name, (bodies, context))?);
             resolved.declared.push(declared.clone());
             Ok(())

@@ -4,8 +4,8 @@ use super::Context;
 use super::files::read_file;
 use super::outside::OrOutside;
 use super::quantity::{
-    Acceleration, Duration, Force, ForceOverVelocity, Length, Measure, Pressure, QuantityInput, Stiffness,
-    Velocity, evaluate,
+    Acceleration, Duration, Force, ForceOverVelocity, Length, Measure, Pressure, QuantityInput, Ratio,
+    Stiffness, Velocity, evaluate,
 };
 use super::read::{Read, table};
 use super::repeat::Repeat;
@@ -51,7 +51,7 @@ table! {
 }
 
 table! {
-    /// What pushes or pulls a part of a body: one of force, traction, pressure and acceleration.
+    /// What pushes, pulls or heats a part of a body: one of force, traction, pressure, acceleration and temperature.
     Load {
         /// Its name in loads.csv; by default "load 1", "load 2" ...
         name: Option<Text>,
@@ -61,7 +61,7 @@ table! {
         /// "grain*", makes one on each body that matches.
         body: Text,
         /// Where on the body: its surface, a face of it, or all its particles; by default the surface, for an
-        /// acceleration all particles.
+        /// acceleration and a temperature all particles.
         on: Option<Word<Extent>>,
         /// Only what lies in this shape at the start: within.ball = { center = [0, 0], radius = 1 }.
         within: Option<ShapeInput>,
@@ -73,6 +73,9 @@ table! {
         pressure: Option<OrOutside<Varying<Pressure>>>,
         /// Force per mass [m/s^2].
         acceleration: Option<OrOutside<VaryingVector<Acceleration>>>,
+        /// How much warmer than at the start its particles are [K], a number without a unit; its material has a
+        /// `thermal_expansion`.
+        temperature: Option<Varying<Ratio>>,
     }
 }
 
@@ -275,7 +278,7 @@ impl Place<'_> {
             if on == Extent::Volume && no_area {
                 return Err(word.refused(context, "a surface: a volume has no area"));
             }
-            if on != Extent::Volume && matches!(load.action, Action::Acceleration(_)) {
+            if on != Extent::Volume && load.action.is_on_particles() {
                 return Err(word.refused(context, "\"volume\": a surface has no mass"));
             }
         }
@@ -317,11 +320,15 @@ impl Load {
             self.traction.as_ref().map(OrOutside::node),
             self.pressure.as_ref().map(OrOutside::node),
             self.acceleration.as_ref().map(OrOutside::node),
+            self.temperature.as_ref().map(|input| &input.node),
         ];
-        let allowed = "one of force, traction, pressure and acceleration";
+        let allowed = "one of force, traction, pressure, acceleration and temperature";
         if let Some(second) = nodes.into_iter().flatten().nth(1) {
             let found = format!("`{}` beside another", second.name);
             return Err(Fault::new(&second.key, found, allowed).at(second.name_span.clone()));
+        }
+        if let Some(temperature) = &self.temperature {
+            return Ok(Action::Temperature(temperature.resolve(context, vary)?));
         }
         match (&self.force, &self.traction, &self.pressure, &self.acceleration) {
             (Some(force), ..) => Ok(Action::Force(vector(force, context)?)),
@@ -405,7 +412,8 @@ impl<M: Measure> Varying<M> {
 }
 
 impl<M: Measure> VaryingVector<M> {
-    fn resolve(&self, context: &Context, dependence: Dependence) -> Result<[Expression; 3], Fault> {
+    /// Its components in SI units; in the plane the third is zero.
+    pub fn resolve(&self, context: &Context, dependence: Dependence) -> Result<[Expression; 3], Fault> {
         self.sized(context)?;
         let mut resolved = [0.0; 3].map(Expression::Constant);
         for (part, resolved) in self.parts.iter().zip(&mut resolved) {

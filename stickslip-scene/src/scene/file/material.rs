@@ -1,7 +1,7 @@
 //! `[materials.NAME]`: density and a law from the list with its constants.
 
 use super::Context;
-use super::quantity::{Density, QuantityInput, evaluate};
+use super::quantity::{Density, QuantityInput, Ratio, evaluate};
 use super::read::{Read, check_keys, field, unknown_key};
 use super::text::{Choice, Text, Word};
 use crate::material::{Constant, Form, Given, LAWS, OUTSIDE_CONSTANTS, Quantity as Wanted, outside_law};
@@ -38,8 +38,8 @@ impl Materials {
 /// One material: its density and exactly one law.
 fn material(node: &DocumentNode, context: &Context) -> Result<NamedMaterial, Fault> {
     let laws: Vec<&str> = LAWS.iter().map(|law| law.name).collect();
-    let keys = ["density", "volume_change"].into_iter().chain(laws.iter().copied()).chain([OUTSIDE]);
-    let keys: Vec<&str> = keys.collect();
+    let own = ["density", "volume_change", "thermal_expansion"];
+    let keys: Vec<&str> = own.into_iter().chain(laws.iter().copied()).chain([OUTSIDE]).collect();
     if node.name == "any" {
         return Err(Fault::new(&node.key, "the name `any`, which matches every body", "another name"));
     }
@@ -53,6 +53,11 @@ fn material(node: &DocumentNode, context: &Context) -> Result<NamedMaterial, Fau
         let help = Some("a plate takes the thickness that leaves its volume free: nothing locks".to_string());
         return Err(Problem { key, found, allowed: "\"own\"".to_string(), help }.into());
     }
+    let thermal_expansion = field::<Option<QuantityInput<Ratio>>>(node, "thermal_expansion")?;
+    let thermal_expansion = thermal_expansion.map_or(Ok(0.0), |alpha| {
+        alpha
+            .checked(context, "a number per kelvin, of magnitude below 0.01, like 1.2e-5", |x| x.abs() < 0.01)
+    })?;
     let is_law = |child: &&DocumentNode| child.name == OUTSIDE || laws.contains(&child.name.as_str());
     let mut named = node.children().iter().filter(is_law);
     let Some(table) = named.next() else {
@@ -82,7 +87,7 @@ fn material(node: &DocumentNode, context: &Context) -> Result<NamedMaterial, Fau
         };
         Problem { key, found, allowed: bad.allowed, help: None }
     })?;
-    Ok(NamedMaterial { name: node.name.clone(), density, law, volume_change })
+    Ok(NamedMaterial { name: node.name.clone(), density, law, volume_change, thermal_expansion })
 }
 
 /// The constants of a law in SI units; the key `other` is none of them.
@@ -186,6 +191,12 @@ impl JsonSchema for Materials {
             "Whose change of volume a particle takes; its own by default.".into(),
         );
         properties.insert("volume_change".into(), volume_change.into());
+        let mut expansion = QuantityInput::<Ratio>::json_schema(generator);
+        expansion.insert(
+            "description".into(),
+            "Coefficient of thermal expansion [1/K], for loads that are temperatures; 0 by default.".into(),
+        );
+        properties.insert("thermal_expansion".into(), expansion.into());
         let constants_of = |constants: &[Constant]| -> serde_json::Map<_, _> {
             constants.iter().map(|constant| (constant.name.to_string(), schema_of(constant).into())).collect()
         };

@@ -8,6 +8,7 @@ use super::repeat::Repeat;
 use super::space::corners;
 use super::text::{Choice, Text, Word, names_in};
 use super::vector::VectorInput;
+use crate::scene::FACES;
 use crate::scene::error::Fault;
 use crate::scene::parameters::Dependence;
 use crate::scene::source::{DocumentNode, Value};
@@ -163,6 +164,11 @@ pub fn resolve(
     (bodies, end): (&[Body], f64),
     context: &Context,
 ) -> Result<(scene::Measurements, Vec<String>), Fault> {
+    let rigid = bodies.iter().filter(|body| body.is_rigid()).map(|body| body.name.as_str());
+    let known: Vec<&str> = FACES.into_iter().flatten().chain(rigid).collect();
+    let reactions = outputs.reactions.as_deref().unwrap_or_default();
+    let what = "a face of the domain or the name of a rigid body";
+    let reactions = names_in(reactions, (what, &known), context)?;
     let free = bodies.iter().filter(|body| !body.is_rigid());
     let bodies: Vec<&str> = free.map(|body| body.name.as_str()).collect();
     let (mut probes, mut taken): (Vec<scene::Probe>, _) = (Vec::new(), HashSet::new());
@@ -196,7 +202,7 @@ pub fn resolve(
         Some(Sampling::EveryStep) => 0.0,
         Some(Sampling::Every(interval)) => interval.positive(context)?,
     };
-    Ok((scene::Measurements { time_unit, samples, probes, arrivals, fronts, sections }, declared))
+    Ok((scene::Measurements { time_unit, samples, probes, arrivals, fronts, sections, reactions }, declared))
 }
 
 fn time_unit(unit: &QuantityInput<Duration>, context: &Context) -> Result<scene::TimeUnit, Fault> {

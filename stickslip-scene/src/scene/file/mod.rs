@@ -25,22 +25,22 @@ mod repeat;
 mod shape;
 mod solid;
 mod space;
+mod springs;
 mod start;
 mod text;
 mod time;
 mod vector;
 
 use super::error::Fault;
-use super::parameters::Parameters;
+use super::parameters::{Dependence, Parameters};
 use super::source::{Declared, DocumentNode, Source, Value};
-use super::{Damping, Dimension, Scene};
+use super::{Damping, Dimension, Gravity, Scene};
 use quantity::Acceleration;
 use read::{Read, table};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use std::borrow::Cow;
 use std::path::Path;
 use text::Text;
-use vector::VectorInput;
 
 /// What values in a file are read with.
 pub struct Context<'a> {
@@ -60,9 +60,9 @@ table! {
         title: Option<Text>,
         /// What the scene shows, and the numbers it must give.
         about: Option<Text>,
-        /// Acceleration of every body, such as [0, 0, "-9.81 m/s^2"]; by default none.
-        /// It stands above the first [table].
-        gravity: Option<VectorInput<Acceleration>>,
+        /// Acceleration of every body, such as [0, 0, "-9.81 m/s^2"]; numbers, formulas of the time t or tables. By
+        /// default none. It stands above the first [table].
+        gravity: Option<loads::VaryingVector<Acceleration>>,
         /// Named numbers, formulas and words for the rest of the file; `--set name=value` replaces one.
         parameters: Option<ParameterTable>,
         /// Dimensions, cells, particles and domain.
@@ -89,6 +89,8 @@ table! {
         loads: Option<Vec<loads::Load>>,
         /// What joins free rigid bodies to each other and to the ground: [[joints]].
         joints: Option<Vec<joints::Joint>>,
+        /// Springs and dashpots between parts of bodies: [[springs]].
+        springs: Option<Vec<springs::SpringBetween>>,
         /// Rules for how bodies touch: [[contact]]. The first that matches a pair holds; a pair that none matches has
         /// the surface law without friction.
         contact: Option<Vec<contact::Contact>>,
@@ -133,6 +135,8 @@ pub(super) fn resolve(source: &Source) -> Result<(Scene, Declared), Fault> {
     let (supports, loads) = (file.supports.unwrap_or_default(), file.loads.unwrap_or_default());
     let loads = loads::resolve(&supports, &loads, (&bodies, context))?;
     let joints = joints::resolve(file.joints.as_deref().unwrap_or_default(), (&bodies, context))?;
+    let springs = file.springs.as_deref().unwrap_or_default();
+    let springs = springs::resolve(springs, &joints.all, (&bodies, context))?;
     let known = (&bodies[..], &materials[..], time.end);
     let (outputs, declared_probes) = outputs::resolve(file.outputs.as_ref(), known, context)?;
     let declared = Declared::from([
@@ -141,6 +145,7 @@ pub(super) fn resolve(source: &Source) -> Result<(Scene, Declared), Fault> {
         ("supports", loads.declared_supports),
         ("loads", loads.declared_loads),
         ("joints", joints.declared),
+        ("springs", springs.declared),
     ]);
     let stem = source.name().rsplit(['/', '\\']).next().unwrap_or_default().trim_end_matches(".toml");
     let scene = Scene {
@@ -157,7 +162,10 @@ pub(super) fn resolve(source: &Source) -> Result<(Scene, Declared), Fault> {
         },
         health: file.health.map(|health| health.resolve(context)).transpose()?.unwrap_or_default(),
         start: file.start.map(|start| start.resolve(context)).transpose()?,
-        gravity: file.gravity.map_or(Ok([0.0; 3]), |gravity| gravity.value(context))?,
+        gravity: match file.gravity {
+            Some(gravity) => Gravity(gravity.resolve(context, Dependence::Time)?),
+            None => Gravity::default(),
+        },
         outputs,
         references: outputs::references(file.references.as_deref().unwrap_or_default(), &bodies, context)?,
         time,
@@ -165,6 +173,7 @@ pub(super) fn resolve(source: &Source) -> Result<(Scene, Declared), Fault> {
         bodies,
         loads: loads.all,
         joints: joints.all,
+        springs: springs.all,
         contact,
     };
     Ok((scene, declared))

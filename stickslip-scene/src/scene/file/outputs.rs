@@ -48,6 +48,9 @@ table! {
         fronts: Option<Vec<Front>>,
         /// Planes through which forces and moments are recorded, at the times of the tables: [[outputs.sections]].
         sections: Option<Vec<Section>>,
+        /// Faces of the domain and rigid bodies on which forces are recorded, at the times of the tables: names, or
+        /// patterns of names: ["y_min", "plate*"].
+        reactions: Option<Vec<Text>>,
     }
 }
 

@@ -115,6 +115,11 @@ impl<M: Measure> QuantityInput<M> {
         evaluate(&self.node, Powers::from(M::POWERS), &Self::wanted(), (context, Dependence::Time))
     }
 
+    /// Its value as a function of the place.
+    pub fn over_place(&self, context: &Context) -> Result<Expression, Fault> {
+        evaluate(&self.node, Powers::from(M::POWERS), &Self::wanted(), (context, Dependence::Place))
+    }
+
     /// Its value, above zero.
     pub fn positive(&self, context: &Context) -> Result<f64, Fault> {
         let value = self.value(context)?;

@@ -107,6 +107,24 @@ impl Text {
         Ok(name)
     }
 
+    /// The name of something new in a table of the file: that of its key, or by default what it is and its number.
+    pub fn name_or(
+        given: Option<&Text>,
+        (kind, number): (&str, usize),
+        (declared, taken): (&str, &mut HashSet<String>),
+        context: &Context,
+    ) -> Result<String, Fault> {
+        if let Some(text) = given {
+            return text.new_name(context, taken);
+        }
+        let name = format!("{kind} {number}");
+        if taken.insert(name.clone()) {
+            return Ok(name);
+        }
+        let found = format!("the name `{name}`, which another has");
+        Err(Fault::new(declared, found, "a `name` of its own"))
+    }
+
     /// Refuses a new name that would stand for others.
     pub fn is_no_pattern(&self, name: &str) -> Result<(), Fault> {
         let allowed = "a name without `*`, which is any letters where bodies are named";

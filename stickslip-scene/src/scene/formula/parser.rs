@@ -145,8 +145,7 @@ impl<'a> Parser<'a> {
             Meaning::Time => Ok(self.variable(Instruction::Time, Powers::TIME, span)),
             Meaning::Place(which) => Ok(self.variable(Instruction::Place(which), Powers::LENGTH, span)),
             Meaning::Unknown if name == "t" => {
-                let allowed =
-                    "a formula without time: only prescribed motion, loads and references vary in time";
+                let allowed = "a formula without time: only prescribed motion, gravity, loads and references vary in time";
                 fail(span, "`t`, the time", allowed, None)
             }
             Meaning::Unknown => {

@@ -2,7 +2,7 @@
 
 use super::{Check, CheckInputs, Finding, asks_for_damping, norm};
 use crate::observe::{Memory, OutputError};
-use crate::scene::{ContactLaw, Face, HealthCheck, Normal, Scene};
+use crate::scene::{ContactLaw, Face, HealthCheck, Normal, Scene, Spring};
 use serde::{Deserialize, Serialize};
 
 /// Holds the momentum of all bodies that forces move against what acted on them from outside:
@@ -49,7 +49,7 @@ impl Check for MomentumCheck {
         let along = |vector: [f64; 3]| [0, 1, 2].map(|i| if axes[i] { vector[i] } else { 0.0 });
         let (time, given) = (look.simulation.time(), outside(look));
         let mass: f64 = moved(look.scene).map(|i| look.bodies[i].mass).sum();
-        let force = look.scene.gravity.map(|g| mass * g);
+        let force = look.scene.gravity.constant().unwrap_or_default().map(|g| mass * g);
         let held = |weight: [f64; 3]| {
             let (momentum, gone) = (look.ledger.momentum, look.ledger.removed_momentum);
             [0, 1, 2].map(|i| momentum[i] + gone[i] - given[i] - weight[i])
@@ -101,7 +101,10 @@ fn free_axes(scene: &Scene) -> [bool; 3] {
     let faces = scene.domain.as_ref().map_or([[Face::Open; 2]; 3], |domain| domain.faces);
     let unlike = scene.contact.iter().any(|rule| rule.normal == Normal::Own && rule.law != ContactLaw::None);
     let fixed = faces.as_flattened().contains(&Face::Fixed);
-    faces.map(|faces| !unlike && !fixed && faces == [Face::Open; 2])
+    // What these do between two looks is not known here.
+    let driven = |spring: &Spring| spring.ends.iter().any(|end| scene.bodies[end.body].is_prescribed());
+    let unknown = scene.gravity.constant().is_none() || scene.springs.iter().any(driven);
+    faces.map(|faces| !unlike && !fixed && !unknown && faces == [Face::Open; 2])
 }
 
 /// Impulse from outside on all bodies that forces move since the start, but for gravity [N s].

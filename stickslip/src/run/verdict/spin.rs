@@ -107,7 +107,7 @@ impl SpinCheck {
 /// Nothing outside the bodies acts on them.
 fn isolated(scene: &Scene) -> bool {
     let faces = scene.domain.iter().flat_map(|domain| domain.faces).flatten();
-    scene.gravity == [0.0; 3]
+    scene.gravity.is_none()
         && scene.loads.is_empty()
         && scene.bodies.iter().all(|body| !body.is_rigid())
         && faces.into_iter().all(|face| face == Face::Open)
@@ -120,6 +120,7 @@ fn own(state: &BodyState) -> [f64; 3] {
 
 impl Alone {
     fn unpushed(&self, look: &CheckInputs) -> bool {
+        let Some(gravity) = look.scene.gravity.constant() else { return false };
         let state = &look.bodies[self.body];
         // What left the domain took its spin along.
         if state.mass < self.mass {
@@ -127,7 +128,7 @@ impl Alone {
         }
         let fallen = look.simulation.time() - self.time;
         let push: [f64; 3] =
-            std::array::from_fn(|i| state.velocity[i] - self.velocity[i] - look.scene.gravity[i] * fallen);
+            std::array::from_fn(|i| state.velocity[i] - self.velocity[i] - gravity[i] * fallen);
         let speed = (2.0 * state.kinetic / state.mass).sqrt();
         norm(push) <= PUSHED * speed
             && !look.particles[self.body].iter().any(|particle| near_face(look.scene, particle.position))

@@ -3,6 +3,10 @@
 //! Behind a mirror the particles' images are summed: nodes behind it give their share to the nodes before it and take
 //! their values back with the sign of the normal component turned, as if the other half of the bodies were there.
 
+mod tally;
+
+pub use tally::WallTally;
+
 use crate::grid::{ActiveBlocks, Disjoint, Field, Node, SIDE, node_at, nodes_per_block};
 use crate::scene::Face;
 use crate::tensor::{Real, Vector};
@@ -55,12 +59,19 @@ pub struct Boundary {
     on_mirror: Vec<(usize, usize)>,
     /// Nodes on or behind a fixed face.
     fixed: Vec<usize>,
+    /// What walls give to nodes, where somebody wants to know.
+    tally: Option<WallTally>,
 }
 
 impl Boundary {
     /// The boundary with these walls.
     pub fn new(walls: Vec<Wall>) -> Self {
         Boundary { walls, ..Boundary::default() }
+    }
+
+    /// The same, which keeps count of what walls give to nodes.
+    pub fn tallied(self) -> Self {
+        Boundary { tally: Some(WallTally::default()), ..self }
     }
 
     /// Whether a node lies behind a mirror, where it only repeats the one before it.
@@ -84,8 +95,11 @@ impl Boundary {
         self.mirrored.resize_with(self.walls.len(), Vec::new);
         self.on_mirror.clear();
         self.fixed.clear();
+        if let Some(tally) = &mut self.tally {
+            tally.clear();
+        }
         let n = nodes_per_block(D);
-        for (wall, mirrored) in self.walls.iter().zip(&mut self.mirrored) {
+        for (number, (wall, mirrored)) in self.walls.iter().zip(&mut self.mirrored).enumerate() {
             mirrored.clear();
             for (slot, &(body, block)) in active.slots.iter().enumerate() {
                 let first = block[wall.axis] * SIDE;
@@ -96,6 +110,9 @@ impl Boundary {
                 for local in 0..n {
                     let node = node_at(block, local);
                     let (depth, index) = (wall.depth(node), slot * n + local);
+                    if let Some(tally) = self.tally.as_mut().filter(|_| depth <= 0) {
+                        tally.add(&self.walls, number, (index, body, node));
+                    }
                     match wall.face {
                         Face::Fixed if depth <= 0 => self.fixed.push(index),
                         Face::Symmetry if depth == 0 => self.on_mirror.push((index, wall.axis)),
@@ -109,12 +126,18 @@ impl Boundary {
                 }
             }
         }
+        if let Some(tally) = &mut self.tally {
+            tally.begin();
+        }
     }
 
     /// Adds what was scattered behind the mirrors to the nodes before them.
-    pub fn add_images<T: Real, const D: usize>(&self, field: &mut Field<T, D>, share: Share) {
+    pub fn add_images<T: Real, const D: usize>(&mut self, field: &mut Field<T, D>, share: Share) {
         for (wall, mirrored) in self.walls.iter().zip(&self.mirrored) {
             each_image(mirrored, field, |image, node| add_image(image, node, wall.axis, share));
+        }
+        if let Some(tally) = self.tally.as_mut().filter(|_| share.has_force()) {
+            tally.take_forces(&self.walls, &field.nodes);
         }
         for &(node, axis) in &self.on_mirror {
             field.nodes[node].velocity[axis] = T::ZERO;
@@ -123,7 +146,10 @@ impl Boundary {
     }
 
     /// Makes the velocities obey the walls.
-    pub fn impose<T: Real, const D: usize>(&self, field: &mut Field<T, D>) {
+    pub fn impose<T: Real, const D: usize>(&mut self, field: &mut Field<T, D>) {
+        if let Some(tally) = &mut self.tally {
+            tally.take_momentum(&self.walls, &field.nodes);
+        }
         for &node in &self.fixed {
             field.nodes[node].velocity = Vector::ZERO;
         }

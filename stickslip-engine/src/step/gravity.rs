@@ -1,0 +1,69 @@
+//! Gravity, and its work where it varies in time.
+//!
+//! Weights have a potential energy as long as gravity is constant. Where it varies, the ledger has none, and the work
+//! of each step counts as done from outside:
+//!
+//! ```text
+//! W = g . sum m (x^1 - x^0)            g: in the middle of the step
+//! ```
+
+use super::Engine;
+use crate::basis::Basis;
+use crate::body::Body;
+use crate::lanes::Laned;
+use crate::particles::ColumnStart;
+use crate::tensor::{Real, Vector};
+use crate::threads::each;
+
+/// Particles that a thread takes at a time.
+const PART: usize = 1 << 13;
+
+impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
+    /// Gravity in a step from now on, that of its middle [m/s^2].
+    pub(super) fn gravity(&self, dt: T) -> Vector<T, D> {
+        Vector::of(self.settings.gravity.at(self.state.time + 0.5 * dt.f64()))
+    }
+
+    /// sum m x of all bodies that gravity pulls, where it varies; else nothing is summed [kg m].
+    pub(super) fn weigh(&mut self) -> Option<Vector<f64, 3>> {
+        if self.settings.gravity.constant().is_some() {
+            return None;
+        }
+        let mut parts = std::mem::take(&mut self.workspace.weights);
+        let mut sum = Vector::ZERO;
+        for body in &self.state.bodies {
+            if let Some(motion) = &body.motion {
+                let mass = motion.as_free().map_or(0.0, |free| free.mass);
+                sum += Vector(motion.center) * mass;
+                continue;
+            }
+            parts.clear();
+            parts.resize(body.particles.len().div_ceil(PART), [0.0; D]);
+            each(&mut parts, 1, |part, moment| *moment = first_moment(body, part));
+            for moment in &parts {
+                (0..D).for_each(|i| sum[i] += moment[i]);
+            }
+        }
+        self.workspace.weights = parts;
+        Some(sum)
+    }
+
+    /// Books the work of gravity in a step of `dt` that began with these moments, while `time` is still its start.
+    pub(super) fn book_gravity(&mut self, dt: T, before: Option<Vector<f64, 3>>) {
+        if let (Some(before), Some(after)) = (before, self.weigh()) {
+            let gravity = Vector(self.gravity(dt).space());
+            self.state.gravity_work += gravity.dot(after - before);
+        }
+    }
+}
+
+/// sum m x of a part of a body's particles [kg m].
+fn first_moment<T: Real, const D: usize>(body: &Body<T, D>, part: usize) -> [f64; D] {
+    let end = body.particles.len().min((part + 1) * PART);
+    let line = |column: usize| &body.particles.line(column)[part * PART..end];
+    let masses = line(ColumnStart::<D>::MASS);
+    std::array::from_fn(|i| {
+        let places = line(ColumnStart::<D>::POSITION + i);
+        masses.iter().zip(places).map(|(mass, place)| mass.f64() * place.f64()).sum()
+    })
+}

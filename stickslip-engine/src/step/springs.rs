@@ -1,0 +1,233 @@
+//! Springs and dashpots between parts of bodies.
+//!
+//! A spring acts on the mean place of the points of each of its parts ([`crate::load`] says how points move with
+//! nodes), along the line between the two. Its force falls while the parts move within the step:
+//!
+//! ```text
+//! f = -(k (l - l_0) + c dl/dt) / (1 + dt (dt k + c) / m)          1/m = sum_i |g_i|^2 / m_i
+//! v_i += dt f g_i / m_i,   g_i = +-e sum_s (a_s/a) N_is           a_s: area of a point, a: of all of a part
+//! ```
+//! with dl/dt as all other forces leave it, and for rigid bodies what they yield at the point. So the step stays stable
+//! and as long as it was, however stiff a spring. One spring follows another.
+
+use super::Engine;
+use super::loads::{NOWHERE, find, find_carriers, mirror};
+use crate::basis::Basis;
+use crate::body::Body;
+use crate::lanes::Laned;
+use crate::load::{SpringPoints, nodes_of, place_of};
+use crate::part::{PartPoint, PartPoints};
+use crate::tensor::{Real, Vector};
+use std::time::Instant;
+
+/// Room for springs in a step.
+#[derive(Clone, Debug)]
+pub struct SpringRoom<T, const D: usize> {
+    /// Place in memory of the particles of each body at which springs end, by number.
+    places: Vec<Vec<u32>>,
+    springs: Vec<SpringStep>,
+    /// Nodes of the parts of one spring, with g_i.
+    nodes: [Vec<(u32, Vector<T, D>)>; 2],
+}
+
+/// What a spring does in a step.
+#[derive(Clone, Copy, Debug, Default)]
+struct SpringStep {
+    /// e, from the second part to the first.
+    direction: [f64; 3],
+    /// f [N]
+    force: f64,
+    /// k as the step feels it [N/m].
+    stiffness: f64,
+    /// How far prescribed ends move along e in the step: by so much the length grows with no work on what is free [m].
+    driven: f64,
+    /// By how much the length has grown since the step began where the force is taken [m].
+    gone: f64,
+}
+
+impl<T, const D: usize> Default for SpringRoom<T, D> {
+    fn default() -> Self {
+        SpringRoom { places: Vec::new(), springs: Vec::new(), nodes: [Vec::new(), Vec::new()] }
+    }
+}
+
+impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
+    /// Springs pull at the velocities that all other forces give to nodes and free rigid bodies. Where particles are to
+    /// move yet by the velocities that strained them, `ahead` is how long [s].
+    pub(super) fn pull_springs(&mut self, dt: T, ahead: Option<T>) {
+        if self.settings.springs.is_empty() {
+            return;
+        }
+        let start = Instant::now();
+        let (dt, ahead) = (dt.f64(), ahead.unwrap_or(T::ZERO));
+        self.find_spring_carriers();
+        let mut room = std::mem::take(&mut self.workspace.springs);
+        room.springs.resize(self.settings.springs.len(), SpringStep::default());
+        for i in 0..self.settings.springs.len() {
+            room.springs[i] = self.pull(i, (dt, ahead), (&room.places, &mut room.nodes));
+        }
+        self.workspace.springs = room;
+        self.watch.lap("springs", start);
+    }
+
+    fn pull(
+        &mut self,
+        number: usize,
+        (dt, ahead): (f64, T),
+        (places, nodes): (&[Vec<u32>], &mut [Vec<(u32, Vector<T, D>)>; 2]),
+    ) -> SpringStep {
+        let spring = &self.settings.springs[number];
+        let Some(centers) = centers(spring, &self.state.bodies, places) else { return SpringStep::default() };
+        let apart = Vector(std::array::from_fn(|i| centers[0][i] - centers[1][i]));
+        let Some(direction) = apart.direction() else { return SpringStep::default() };
+        let (mut rate, mut yields, mut driven, mut gone) = (0.0, 0.0, 0.0, 0.0);
+        for side in 0..2 {
+            let end = &spring.ends[side];
+            let along = direction * if side == 0 { 1.0 } else { -1.0 };
+            let body = &self.state.bodies[end.body];
+            nodes[side].clear();
+            if let Some(motion) = &body.motion {
+                let speed = Vector(motion.velocity_at(centers[side])).dot(along);
+                rate += speed;
+                if motion.as_free().is_some() {
+                    let arm = (Vector(centers[side]) - Vector(motion.center)).0;
+                    yields += self.workspace.mechanism.yields(end.body, arm, along.0);
+                } else {
+                    driven += dt * speed;
+                }
+                continue;
+            }
+            let along = Vector::<T, D>::of(along.0);
+            self.find_nodes((end, &places[end.body]), along, &mut nodes[side]);
+            for (index, pull) in &nodes[side] {
+                let node = &self.workspace.field.nodes[*index as usize];
+                rate += pull.dot(node.velocity).f64();
+                gone += (pull.dot(node.integrated) * ahead).f64();
+                yields += (pull.dot(*pull) / node.mass).f64();
+            }
+        }
+        let softer = 1.0 / (1.0 + dt * (dt * spring.stiffness + spring.dashpot) * yields);
+        let stretch = spring.drawn + self.state.springs[number].way + gone - spring.rest;
+        let force = -(spring.stiffness * stretch + spring.dashpot * rate) * softer;
+        for (side, nodes) in nodes.iter().enumerate() {
+            let along = direction * if side == 0 { 1.0 } else { -1.0 };
+            let (body, impulse) = (spring.ends[side].body, along * (dt * force));
+            self.workspace.mechanism.push(&mut self.state.bodies, (body, dt), (centers[side], impulse.0));
+            for (index, pull) in nodes {
+                let node = &mut self.workspace.field.nodes[*index as usize];
+                node.velocity += *pull * (T::of(dt * force) / node.mass);
+            }
+        }
+        SpringStep { direction: direction.0, force, stiffness: spring.stiffness * softer, driven, gone }
+    }
+
+    /// The nodes that move the mean place of a part, each with g_i along a direction.
+    fn find_nodes(
+        &self,
+        (end, places): (&PartPoints, &[u32]),
+        along: Vector<T, D>,
+        nodes: &mut Vec<(u32, Vector<T, D>)>,
+    ) {
+        let (active, boundary) = (&self.workspace.active, &self.workspace.boundary);
+        for point in &end.points {
+            let particle = self.state.bodies[end.body].particles.get(places[point.particle] as usize);
+            let share = T::of(point.measure / end.measure);
+            for (node, [_, weight]) in nodes_of::<T, D, B>(&self.settings.lattice, &particle, point) {
+                let Some((index, mirrored)) = find(active, boundary, (end.body, node)) else { continue };
+                if self.workspace.field.nodes[index as usize].mass > T::ZERO {
+                    nodes.push((index, mirror(along, mirrored) * (weight * share)));
+                }
+            }
+        }
+        nodes.sort_by_key(|(index, _)| *index);
+        nodes.dedup_by(|next, kept| {
+            let same = next.0 == kept.0;
+            if same {
+                kept.1 += next.1;
+            }
+            same
+        });
+    }
+
+    /// Where the particles that carry ends of springs lie in memory.
+    pub(super) fn find_spring_carriers(&mut self) {
+        let (places, bodies) = (&mut self.workspace.springs.places, &self.state.bodies);
+        places.resize_with(bodies.len(), Vec::new);
+        for end in self.settings.springs.iter().flat_map(|spring| &spring.ends) {
+            if !bodies[end.body].is_rigid() {
+                find_carriers(&mut places[end.body], bodies[end.body].particles.numbers(), &end.points);
+            }
+        }
+    }
+
+    /// Books what springs did in the step, once bodies have moved: forces, and works along the change of length. For
+    /// the spring itself this is exactly what it loses.
+    ///
+    /// ```text
+    /// W = (f - k (dl/2 - a)) (dl - what prescribed ends moved)
+    /// ```
+    /// a: by how much it has grown where f is taken.
+    pub(super) fn account_springs(&mut self, dt: T) {
+        if self.settings.springs.is_empty() {
+            return;
+        }
+        let (room, dt) = (&self.workspace.springs, dt.f64());
+        for (i, (spring, step)) in self.settings.springs.iter().zip(&room.springs).enumerate() {
+            let sums = &mut self.state.springs[i];
+            let Some(length) = length(spring, &self.state.bodies, &room.places) else { continue };
+            let way = length - spring.drawn;
+            let change = way - sums.way;
+            (sums.way, sums.speed) = (way, change / dt);
+            (0..3).for_each(|k| sums.impulse[k] += dt * step.force * step.direction[k]);
+            sums.work += (step.force - step.stiffness * (0.5 * change - step.gone)) * (change - step.driven);
+        }
+    }
+
+    /// Measures springs where bodies begin.
+    pub(super) fn begin_springs(&mut self) {
+        self.find_spring_carriers();
+        let (springs, places) = (&self.settings.springs, &self.workspace.springs.places);
+        for (spring, sums) in springs.iter().zip(&mut self.state.springs) {
+            sums.way = length(spring, &self.state.bodies, places).map_or(0.0, |length| length - spring.drawn);
+        }
+    }
+}
+
+/// Mean places of the parts of a spring now [m]; `None` once a particle that carries one has left the domain: the spring
+/// lets go.
+fn centers<T: Real, const D: usize>(
+    spring: &SpringPoints,
+    bodies: &[Body<T, D>],
+    places: &[Vec<u32>],
+) -> Option<[[f64; 3]; 2]> {
+    let deforms = |end: &&PartPoints| bodies[end.body].motion.is_none();
+    let mut carriers = spring.ends.iter().filter(deforms).flat_map(|end| {
+        let places = &places[end.body];
+        end.points.iter().map(|point| places[point.particle])
+    });
+    if carriers.any(|place| place == NOWHERE) {
+        return None;
+    }
+    Some([0, 1].map(|side| {
+        let end = &spring.ends[side];
+        let body = &bodies[end.body];
+        if let Some(motion) = &body.motion {
+            return motion.pose().now(end.center);
+        }
+        let place = |point: &PartPoint| {
+            let particle = body.particles.get(places[end.body][point.particle] as usize);
+            Vector(place_of(&particle, point).space()) * (point.measure / end.measure)
+        };
+        end.points.iter().map(place).sum::<Vector<f64, 3>>().0
+    }))
+}
+
+/// Length of a spring now [m].
+fn length<T: Real, const D: usize>(
+    spring: &SpringPoints,
+    bodies: &[Body<T, D>],
+    places: &[Vec<u32>],
+) -> Option<f64> {
+    let [a, b] = centers(spring, bodies, places)?;
+    Some((Vector(a) - Vector(b)).norm())
+}
