@@ -423,11 +423,12 @@ impl<T: Real, const D: usize> Particles<T, D> {
 
     /// Becomes a copy of the particles of the same body, in the memory that is there.
     pub fn become_copy_of(&mut self, other: &Self) {
-        let Particles { len, columns, stride, numbers, later, history, transfer, viscosity } = self;
+        let Particles { len, columns, stride, numbers, later, history, transfer, viscosity, natural } = self;
         columns.clone_from(&other.columns);
         numbers.clone_from(&other.numbers);
         (*len, *stride, *later) = (other.len, other.stride, other.later);
-        (*history, *transfer, *viscosity) = (other.history, other.transfer, other.viscosity);
+        (*history, *transfer) = (other.history, other.transfer);
+        (*viscosity, *natural) = (other.viscosity, other.natural);
     }
 
     /// Where a column lies as long as nothing is sorted, and after it once they are settled; `number` is one, too.
@@ -772,7 +773,9 @@ mod tests {
             }
             for gone in [&[0, 3, 4, 8][..], &[], &[1], &[3]] {
                 particles.remove(gone);
-                gone.iter().rev().for_each(|&place| drop(expected.remove(place as usize)));
+                for &place in gone.iter().rev() {
+                    expected.remove(place as usize);
+                }
                 assert!(particles.iter().eq(expected.iter().map(|&i| of(i))), "{gone:?}");
                 assert_eq!(by_number(particles.numbers()).len(), expected.len());
             }

@@ -36,7 +36,7 @@ pub fn of_body(scene: &Scene, number: usize) -> Result<Vec<InitialStress>, Probl
     let places: Vec<[f64; 3]> = sites(&body.shape, &scene.lattice(body), body.particles)
         .map_or(Vec::new(), |sites| sites.map(|site| site.position).collect());
     let at = |place: [f64; 3]| {
-        let moment = Moment { time: 0.0, place, start: place };
+        let moment = Moment { place, start: place, ..Moment::default() };
         Symmetric(std::array::from_fn(|k| formulas[k].at_moment(&moment)))
     };
     let of_stress = |stress: Symmetric<f64>, place: [f64; 3]| {

@@ -80,7 +80,7 @@ fn warm<T: Real, const D: usize>(
     }
     let particle = particles.get(i);
     let start = Vector::<T, D>::from_fn(|k| particles.line(ColumnStart::<D>::START + k)[i]);
-    let moment = Moment { time, place: particle.position.space(), start: start.space() };
+    let moment = Moment { time, place: particle.position.space(), start: start.space(), ..Moment::default() };
     let after = T::of(temperature.at_moment(&moment));
     let alpha = body.expansion.f64();
     let next = alpha * (after.f64() - before.f64()) / (1.0 + alpha * before.f64());

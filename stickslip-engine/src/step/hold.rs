@@ -18,9 +18,12 @@ impl<T: Real, const D: usize> State<T, D> {
             ref contact_sums,
             ref loads,
             ref joints,
+            ref springs,
+            ref walls,
             ref removed,
             longest_rigid,
             damping,
+            gravity_work,
             relaxation,
             signal,
             time,
@@ -35,9 +38,12 @@ impl<T: Real, const D: usize> State<T, D> {
         self.contact_sums.clone_from(contact_sums);
         self.loads.clone_from(loads);
         self.joints.clone_from(joints);
+        self.springs.clone_from(springs);
+        self.walls.clone_from(walls);
         self.removed.clone_from(removed);
         (self.longest_rigid, self.damping, self.relaxation) = (longest_rigid, damping, relaxation);
-        (self.signal, self.time, self.steps) = (signal, time, steps);
+        (self.gravity_work, self.signal) = (gravity_work, signal);
+        (self.time, self.steps) = (time, steps);
     }
 }
 

@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Files that a run may leave in its folder.
-const FILES: [&str; 16] = [
+const FILES: [&str; 17] = [
     BODIES,
     ENERGY,
     CONTACTS,

@@ -106,7 +106,7 @@ impl Expression {
     pub fn constant(&self) -> Option<f64> {
         match self {
             Expression::Constant(value) => Some(*value),
-            Expression::Formula(_) | Expression::Table(_) => None,
+            Expression::Formula(_) | Expression::Table(_) | Expression::Outside(_) => None,
         }
     }
 

@@ -54,6 +54,8 @@ impl Gravity {
             Expression::Constant(_) => true,
             Expression::Table(table) => table.end() <= time,
             Expression::Formula(_) => part.at(time) == part.at(time + dt) && part.at(time) == part.at(end),
+            // Nobody knows what it says later.
+            Expression::Outside(_) => false,
         })
     }
 }

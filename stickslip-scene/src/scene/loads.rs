@@ -161,6 +161,7 @@ impl Action {
             Action::Traction(_) => "traction",
             Action::Pressure(_) => "pressure",
             Action::Acceleration(_) => "acceleration",
+            Action::Temperature(_) => "temperature",
             Action::Support(_) => "displacement",
         }
     }

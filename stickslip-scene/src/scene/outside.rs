@@ -88,7 +88,7 @@ impl Scene {
                 Some((&mut values[..], OutsideUse::VectorAtPoints))
             }
             Action::Pressure(value) => Some((std::slice::from_mut(value), OutsideUse::NumberAtPoints)),
-            Action::Support(_) => None,
+            Action::Temperature(_) | Action::Support(_) => None,
         });
         for (values, purpose) in motions.flatten().chain(loads) {
             let Some(name) = values.iter().find_map(Expression::outside).map(|value| value.name.clone())

@@ -328,7 +328,7 @@ impl Load {
             return Err(Fault::new(&second.key, found, allowed).at(second.name_span.clone()));
         }
         if let Some(temperature) = &self.temperature {
-            return Ok(Action::Temperature(temperature.resolve(context, vary)?));
+            return Ok(Action::Temperature(temperature.resolve(context, Dependence::TimeAndPlace)?));
         }
         match (&self.force, &self.traction, &self.pressure, &self.acceleration) {
             (Some(force), ..) => Ok(Action::Force(vector(force, context)?)),
