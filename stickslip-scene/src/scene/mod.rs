@@ -24,9 +24,10 @@ mod units;
 
 pub use error::{Mistake, SceneError};
 pub use expression::{Expression, Moment, Program, TimeTable};
+pub use file::{Disk, SceneFiles};
 pub use fringes::{Fringes, Light, Overlay, Polariscope, PolariscopeField, Sensitivity};
 pub use joints::{Joint, JointKind, Motor};
-pub use load::{Loaded, load, parse};
+pub use load::{Loaded, load, parse, parse_beside};
 pub use loads::{Action, Dashpot, Extent, Load, Part, RIGID, Support, SupportMotion};
 pub use measurements::{Anchor, Arrival, Front, Measurements, Observable, Probe, Reading, Section, TimeUnit};
 pub use name_pattern::{NamePattern, RuleNames, is_pattern};
