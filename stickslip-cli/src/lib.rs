@@ -1,8 +1,10 @@
 //! The command `stickslip`, for the program of this name, and for others that bring it along, as the Python package does.
+//! What stands in [`door`] is for tests that feed it what nobody means to (`fuzz/`).
 
 mod bench;
 mod chart;
 mod commands;
+pub mod door;
 mod drawing;
 mod failure;
 mod files;

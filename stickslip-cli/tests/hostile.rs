@@ -195,3 +195,134 @@ fn a_probe_that_sees_nothing_is_told() {
         ran.stderr
     );
 }
+
+/// Files and folders below a path, by their names from there.
+fn below(path: &std::path::Path) -> std::collections::BTreeSet<String> {
+    let mut found = std::collections::BTreeSet::new();
+    let mut open = vec![path.to_path_buf()];
+    while let Some(folder) = open.pop() {
+        for entry in fs::read_dir(&folder).unwrap().flatten() {
+            found.insert(entry.path().strip_prefix(path).unwrap().display().to_string());
+            if entry.path().is_dir() {
+                open.push(entry.path());
+            }
+        }
+    }
+    found
+}
+
+/// A scene in which everything that has a name has that of a place outside.
+const ELSEWHERE: &str = r#"
+title = "TOP {word}"
+gravity = [0, -10]
+space = { dimension = "plane-strain", cell = 0.25 }
+time.end = 0.01
+parameters = { word = "w" }
+[materials."TOP"]
+density = 1000
+neo_hookean = { young_modulus = 1e5, poisson_ratio = 0.3 }
+[[bodies]]
+name = "TOP/a"
+material = "TOP"
+shape.ball = { center = [0, 0.5], radius = 0.5 }
+[[bodies]]
+name = "TOP/b"
+material = "TOP"
+shape.box = { min = [2, 0], max = [2.5, 1] }
+rigid.free = {}
+[[packings]]
+name = "TOP/p"
+material = "TOP"
+count = 1
+shape.ball = { center = [0, 0], radius = 0.5 }
+within.box = { min = [3, 0], max = [5, 2] }
+[[images]]
+name = "TOP/i"
+file = "labels.png"
+pixel = 0.25
+origin = [6, 0]
+material = "TOP"
+[[joints]]
+name = "TOP/j"
+body = "TOP/b"
+hinge = { point = [2.2, 0.5] }
+[[supports]]
+name = "TOP/s"
+body = "TOP/a"
+on = "y_min"
+[[loads]]
+name = "TOP/l"
+body = "TOP/a"
+on = "y_max"
+force = [0, -1]
+[[references]]
+body = "TOP/a"
+quantity = "y"
+value = 0.5
+label = "TOP/r"
+[outputs]
+particles = 0.005
+grid = 0.005
+samples = 0.001
+checkpoints = 0.005
+[outputs.fringes]
+interval = 0.005
+stress_parameter = 1e3
+width = 40
+[[outputs.sections]]
+name = "TOP/c"
+point = [0, 0.5]
+normal = [0, 1]
+[[outputs.probes]]
+name = "TOP/o"
+at = [0, 0.5]
+fixed_in = "material"
+[[outputs.arrivals]]
+quantity = "speed"
+threshold = 1e-3
+bodies = ["TOP/a"]
+[[outputs.fronts]]
+name = "TOP/f"
+quantity = "speed"
+threshold = 1e-3
+from = [0, 1]
+direction = [0, -1]
+bodies = ["TOP/a"]
+"#;
+
+#[test]
+fn nothing_that_a_scene_names_is_written_outside_its_results() {
+    let workplace = Workplace::new();
+    fs::create_dir_all(workplace.path("in/side")).unwrap();
+    let labels = fs::File::create(workplace.path("in/side/labels.png")).unwrap();
+    let mut encoder = png::Encoder::new(labels, 4, 4);
+    encoder.set_color(png::ColorType::Grayscale);
+    encoder.write_header().unwrap().write_image_data(&[7; 16]).unwrap();
+    let absolute = workplace.path("absolute").display().to_string();
+    for (number, outside) in ["../out", "../../out", &absolute].iter().enumerate() {
+        let (scene, results) = (format!("in/side/{number}.toml"), format!("in/side/{number}.results"));
+        let text = ELSEWHERE.replace("TOP", outside);
+        workplace.write(&scene, &text);
+        let mut expected = below(&workplace.path(""));
+        workplace.succeed(&["run", &scene, "--out", &results]);
+        for words in [&["render", &results][..], &["plot", &results], &["network", &results]] {
+            workplace.succeed(words);
+        }
+        workplace.succeed(&["render", &results, "--all"]);
+        workplace.succeed(&["view", &results, "--html", &format!("{results}/view.html")]);
+        let swept = format!("word=\"{outside}/x\",\"{outside}/y\"");
+        let sweep = format!("in/side/{number}.sweep");
+        workplace.succeed(&["sweep", &scene, "--set", &swept, "--out", &sweep]);
+        expected.extend([results.clone(), sweep.clone()]);
+        let mut found = below(&workplace.path(""));
+        found.retain(|path| ![&results, &sweep].iter().any(|folder| path.starts_with(&format!("{folder}/"))));
+        assert_eq!(found, expected);
+        // What is there has fixed names, or numbers.
+        let named = below(&workplace.path(&results));
+        let stranger = named.iter().find(|path| path.contains("out") || path.contains("absolute"));
+        assert_eq!(stranger, None);
+        for table in ["bodies.csv", "fringes.png", "probes.csv", "sections.csv", "joints.csv", "loads.csv"] {
+            assert!(named.contains(table), "{table}: {named:?}");
+        }
+    }
+}

@@ -13,6 +13,9 @@ pub struct Image {
     pub pixels: Vec<u8>,
 }
 
+/// A byte of a PNG file holds at most so many of its image, as packed by deflate.
+const MOST_UNPACKED: u64 = 1032;
+
 impl Image {
     /// An image of one colour.
     pub fn new(size: [usize; 2], color: [u8; 3]) -> Self {
@@ -44,12 +47,16 @@ impl Image {
     /// # Errors
     /// The file cannot be read, is damaged, or has another kind of pixels.
     pub fn read_png(path: &Path) -> io::Result<Self> {
-        let mut reader = png::Decoder::new(BufReader::new(File::open(path)?)).read_info()?;
+        let file = File::open(path)?;
+        let length = file.metadata()?.len();
+        let mut reader = png::Decoder::new(BufReader::new(file)).read_info()?;
         let size = [reader.info().width as usize, reader.info().height as usize];
+        let wrong = |what| io::Error::new(io::ErrorKind::InvalidData, what);
         if reader.output_color_type() != (png::ColorType::Rgb, png::BitDepth::Eight) {
-            return Err(io::Error::new(io::ErrorKind::InvalidData, "not an image of eight bits a colour"));
+            return Err(wrong("not an image of eight bits a colour"));
         }
-        let mut pixels = vec![0; 3 * size[0] * size[1]];
+        let bytes = reader.output_buffer_size().filter(|&bytes| bytes as u64 <= MOST_UNPACKED * length);
+        let mut pixels = vec![0; bytes.ok_or_else(|| wrong("more pixels than the file can hold"))?];
         reader.next_frame(&mut pixels)?;
         Ok(Image { size, pixels })
     }
@@ -110,6 +117,17 @@ mod tests {
         let path = folder.path().join("a.png");
         image(9).write_png(&mut File::create(&path).unwrap()).unwrap();
         assert_eq!(Image::read_png(&path).unwrap(), image(9));
+    }
+
+    #[test]
+    fn an_image_of_more_pixels_than_its_file_holds_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.png");
+        let file = File::create(&path).unwrap();
+        let mut encoder = png::Encoder::new(file, 1 << 20, 1 << 20);
+        encoder.set_color(png::ColorType::Rgb);
+        encoder.write_header().unwrap().write_chunk(png::chunk::IDAT, &[0x78, 1]).unwrap();
+        assert!(Image::read_png(&path).unwrap_err().to_string().contains("more pixels"));
     }
 
     #[test]

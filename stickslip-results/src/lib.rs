@@ -2,6 +2,8 @@
 //!
 //! The rooms below are in reading order: each uses only rooms above it.
 
+#![forbid(unsafe_code)]
+
 use stickslip_engine::door;
 use stickslip_scene::{column, geometry, scene};
 

@@ -2,6 +2,8 @@
 //!
 //! The rooms below are in reading order: each uses only rooms above it.
 
+#![forbid(unsafe_code)]
+
 // One number, or several side by side: what laws compute with.
 pub mod number;
 

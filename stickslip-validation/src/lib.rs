@@ -4,6 +4,8 @@
 //! which reads like a report. To add a benchmark, write its file and list it there. Everything here drives the engine
 //! as any user can: scenes are text, and simulations are stepped and looked at through [`stickslip::door`].
 
+#![forbid(unsafe_code)]
+
 // What a benchmark is: its report, its targets, its resolutions.
 mod benchmark;
 

@@ -12,6 +12,8 @@
 //! `examples/add_an_observer.rs` looks at a run after every step, with an observer of its own; `examples/add_a_law.rs`
 //! gives a body a law of its own.
 
+#![forbid(unsafe_code)]
+
 pub use stickslip_engine::{
     basis, body, boundary, clock, contact, door, grid, lanes, march, pages, particles, step, transfer,
 };

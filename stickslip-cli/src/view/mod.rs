@@ -19,5 +19,5 @@ mod skins;
 mod tables;
 
 pub use library::Library;
-pub use server::serve;
+pub use server::{answer, serve};
 pub use single_file::{Estimate, write};

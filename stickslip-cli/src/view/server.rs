@@ -72,25 +72,34 @@ impl Serving {
     }
 
     fn reply(&self, library: &Library, request: &Request) -> (u16, Content) {
-        let header = |name: &'static str| {
-            let found = request.headers().iter().find(|header| header.field.equiv(name));
-            found.map(|header| header.value.as_str())
-        };
-        let sender =
-            Sender { host: header("Host"), origin: header("Origin"), site: header("Sec-Fetch-Site") };
         if !matches!(request.method(), Method::Get | Method::Head) {
             return told(405, "only GET is answered");
         }
-        let route = request.url().parse::<Route>();
-        if let Err(reason) = sender.judge(self.port, route == Ok(Route::Page)) {
-            return told(403, reason);
-        }
-        match route.map(|route| library.answer(&route)) {
-            Ok(Ok(content)) => (200, content),
-            Ok(Err(Refusal::Missing(what))) => told(404, &what),
-            Ok(Err(Refusal::Broken(what))) => told(500, &what),
-            Err(()) => told(404, "there is nothing of this name"),
-        }
+        answer(library, self.port, request.url(), &|name| {
+            let mut found = request.headers().iter();
+            let found = found.find(|header| header.field.as_str().as_str().eq_ignore_ascii_case(name));
+            found.map(|header| header.value.as_str())
+        })
+    }
+}
+
+/// The status and the content that who asks for an address gets, at a port of this machine, with these headers.
+pub fn answer<'a>(
+    library: &Library,
+    port: u16,
+    address: &str,
+    header: &dyn Fn(&str) -> Option<&'a str>,
+) -> (u16, Content) {
+    let sender = Sender { host: header("Host"), origin: header("Origin"), site: header("Sec-Fetch-Site") };
+    let route = address.parse::<Route>();
+    if let Err(reason) = sender.judge(port, route == Ok(Route::Page)) {
+        return told(403, reason);
+    }
+    match route.map(|route| library.answer(&route)) {
+        Ok(Ok(content)) => (200, content),
+        Ok(Err(Refusal::Missing(what))) => told(404, &what),
+        Ok(Err(Refusal::Broken(what))) => told(500, &what),
+        Err(()) => told(404, "there is nothing of this name"),
     }
 }
 

@@ -7,7 +7,7 @@
 //! ```
 
 use super::CHECKPOINTS;
-use super::file::{OutputError, ReadError, ReadProblem, replace_for_good};
+use super::file::{OutputError, ReadError, ReadProblem, read_bytes, replace_for_good};
 use super::folder::OutputFolder;
 use super::memory::{Memory, Values};
 use crate::door::SavedState;
@@ -87,7 +87,7 @@ impl Checkpoint {
     pub fn read(path: &Path) -> Result<Self, ReadError> {
         let read = || -> Result<Checkpoint, ReadProblem> {
             let layout = |what: &str| ReadProblem::Layout(what.to_string());
-            let bytes = fs::read(path)?;
+            let bytes = read_bytes(path)?;
             let head = MAGIC.len() + size_of::<u32>();
             if bytes.len() < head + SUM || !bytes.starts_with(MAGIC) {
                 return Err(layout("it is no checkpoint of stickslip"));

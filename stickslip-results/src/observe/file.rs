@@ -118,6 +118,17 @@ fn put(
     })
 }
 
+/// The bytes of a file. Pipes and devices are refused: who reads them may wait for ever.
+///
+/// # Errors
+/// It is missing, or no file, or the disk refuses.
+pub(super) fn read_bytes(path: &Path) -> io::Result<Vec<u8>> {
+    if !fs::metadata(path)?.is_file() {
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, "it is no file"));
+    }
+    fs::read(path)
+}
+
 /// Waits until a file or a folder is on the disk.
 ///
 /// # Errors

@@ -1,6 +1,6 @@
 //! Snapshots through time: numbered `.vtu` files, and the `.pvd` file that tells ParaView their times.
 
-use super::file::{OutputError, ReadError, ReadProblem, is_there, remove_from, replace, secure};
+use super::file::{OutputError, ReadError, ReadProblem, is_there, read_bytes, remove_from, replace, secure};
 use super::folder::OutputFolder;
 use super::memory::Memory;
 use super::vtu::Vtu;
@@ -9,7 +9,8 @@ use super::xml::attribute;
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::io;
+use std::path::{Component, Path, PathBuf};
 
 /// A snapshot of a run.
 #[derive(Clone, Debug, PartialEq)]
@@ -162,7 +163,7 @@ impl Series {
 /// The snapshots that a `.pvd` file lists.
 pub(super) fn read_frames(path: &Path) -> Result<Vec<Frame>, ReadError> {
     let read = || -> Result<Vec<Frame>, ReadProblem> {
-        let xml = fs::read_to_string(path)?;
+        let xml = String::from_utf8(read_bytes(path)?).map_err(io::Error::other)?;
         let mut reader = Reader::from_str(&xml);
         let mut frames = Vec::new();
         loop {
@@ -178,5 +179,37 @@ pub(super) fn read_frames(path: &Path) -> Result<Vec<Frame>, ReadError> {
 
 fn frame(tag: &BytesStart, collection: &Path) -> Result<Frame, ReadProblem> {
     let file: String = attribute(tag, "file")?;
+    let inside = Path::new(&file).components().all(|part| matches!(part, Component::Normal(_)));
+    if !inside || file.is_empty() {
+        return Err(ReadProblem::Layout(format!("it lists `{file}`, which is no file of the folder")));
+    }
     Ok(Frame { time: attribute(tag, "timestep")?, path: collection.with_file_name(file) })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_list_names_files_of_its_folder_only() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("particles.pvd");
+        let list = |file: &str| {
+            let entry = format!("<DataSet timestep=\"0\" part=\"0\" file=\"{file}\"/>");
+            fs::write(&path, format!("<Collection>{entry}</Collection>")).unwrap();
+            read_frames(&path)
+        };
+        assert_eq!(list("particles/00000.vtu").unwrap()[0].path, folder.path().join("particles/00000.vtu"));
+        for file in ["/dev/zero", "../other/00000.vtu", "a/../../b.vtu", "", "."] {
+            let error = list(file).unwrap_err().to_string();
+            assert!(error.contains("no file of the folder"), "{file}: {error}");
+        }
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn a_device_in_the_place_of_a_list_is_refused() {
+        let error = read_frames(Path::new("/dev/zero")).unwrap_err().to_string();
+        assert!(error.contains("it is no file"), "{error}");
+    }
 }

@@ -1,11 +1,10 @@
 //! `run.json`: what was run, by which program, how it went and how long it took.
 
-use super::file::{OutputError, ReadError, ReadProblem, replace_for_good};
+use super::file::{OutputError, ReadError, ReadProblem, read_bytes, replace_for_good};
 use super::folder::OutputFolder;
 use crate::door::RelaxationState;
 use crate::scene::{Loaded, Scene, SceneError, load};
 use serde::{Deserialize, Serialize};
-use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The record of a run. It is there from the first moment of the run, so that a folder of results is known as one.
@@ -216,7 +215,7 @@ impl Manifest {
     /// There is none, or another program wrote it.
     pub fn read(folder: &Path) -> Result<Self, ReadError> {
         let path = folder.join(Self::FILE);
-        let read = || -> Result<Manifest, ReadProblem> { Ok(serde_json::from_slice(&fs::read(&path)?)?) };
+        let read = || -> Result<Manifest, ReadProblem> { Ok(serde_json::from_slice(&read_bytes(&path)?)?) };
         let manifest = read().map_err(|problem| problem.at(&path))?;
         if manifest.program != "stickslip" {
             let found = format!("it is the record of `{}`, not of stickslip", manifest.program);

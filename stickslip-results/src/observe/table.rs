@@ -1,10 +1,10 @@
 //! Tables in CSV: a header, then whole rows only, whatever stops the run.
 
-use super::file::{OutputError, ReadError, ReadProblem};
+use super::file::{OutputError, ReadError, ReadProblem, read_bytes};
 use super::memory::Memory;
 use super::writer::Writer;
 use serde::Serialize;
-use std::fs::{self, File};
+use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::marker::PhantomData;
 use std::path::{Path, PathBuf};
@@ -239,7 +239,7 @@ fn encode<R: TableRow>(rows: impl IntoIterator<Item = R>, unit: Option<f64>) -> 
 /// a run may be writing it.
 pub(super) fn read_rows<R: TableRow>(path: &Path) -> Result<Vec<R>, ReadError> {
     let rows = || -> Result<Vec<R>, ReadProblem> {
-        let bytes = fs::read(path)?;
+        let bytes = read_bytes(path)?;
         let whole = bytes.iter().rposition(|&byte| byte == b'\n').map_or(0, |last| last + 1);
         if whole == 0 {
             return Err(io::Error::from(io::ErrorKind::UnexpectedEof).into());
@@ -271,6 +271,7 @@ pub(super) fn read_rows<R: TableRow>(path: &Path) -> Result<Vec<R>, ReadError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::fs;
 
     #[derive(Clone, Debug, Default, PartialEq)]
     struct FieldPlace {

@@ -1,9 +1,10 @@
 //! From a scene file to a [`Scene`].
 
+use super::Scene;
 use super::error::SceneError;
+use super::file::{self, Disk, SceneFiles};
 use super::source::Source;
 use super::suggestion::did_you_mean;
-use super::{Scene, file};
 use std::path::Path;
 
 /// A scene and the text that it came from.
@@ -37,8 +38,21 @@ pub fn load(path: &Path, overrides: &[(String, String)]) -> Result<Loaded, Scene
 /// # Errors
 /// The first mistake, with file, line, column, key, what was found, what is allowed and a suggestion.
 pub fn parse(name: &str, text: &str, overrides: &[(String, String)]) -> Result<Loaded, SceneError> {
+    parse_beside(name, text, overrides, &Disk)
+}
+
+/// As [`parse`], with the files that the scene names from elsewhere than the disk.
+///
+/// # Errors
+/// As [`parse`].
+pub fn parse_beside(
+    name: &str,
+    text: &str,
+    overrides: &[(String, String)],
+    files: &dyn SceneFiles,
+) -> Result<Loaded, SceneError> {
     let mut source = Source::read(name, text, overrides)?;
-    let (scene, declared) = file::resolve(&source).map_err(|fault| source.show(fault))?;
+    let (scene, declared) = file::resolve(&source, files).map_err(|fault| source.show(fault))?;
     source.declare(declared);
     Ok(Loaded { scene, source })
 }

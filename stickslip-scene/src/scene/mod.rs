@@ -28,11 +28,12 @@ mod units;
 
 pub use error::{Mistake, SceneError};
 pub use expression::{Expression, Moment, Program, TimeTable};
+pub use file::{Disk, SceneFiles};
 pub use fringes::{Fringes, Light, Overlay, Polariscope, PolariscopeField, Sensitivity};
 pub use gravity::Gravity;
 pub use health::{Health, HealthCheck, HealthRule, Response};
 pub use joints::{Joint, JointKind, Motor};
-pub use load::{Loaded, load, parse};
+pub use load::{Loaded, load, parse, parse_beside};
 pub use loads::{Action, Dashpot, Extent, Load, Part, RIGID, Support, SupportMotion};
 pub use measurements::{
     Anchor, Arrival, FACES, Front, Measurements, Observable, Probe, Reading, Section, TimeUnit,

@@ -90,8 +90,8 @@ fn plainly<const D: usize, B: Basis<f64>>(
             let inverse = particle.deformation.inverse();
             let inverse = Matrix::from_fn(|i, j| inverse.0[i][j] * sign(i) * sign(j));
             let arm = seen(particle.position) - first;
+            // SAFETY: nobody else uses the particles.
             let at = |k: usize| unsafe { *columns.at(ColumnStart::<D>::START + k, index) };
-            // SAFETY of `at`: nobody else uses the particles.
             let start = seen(Vector::from_fn(at));
             let mut placed = Vec::new();
             placed.extend((0..D).map(|i| start[i] - (0..D).map(|j| inverse.0[i][j] * arm[j]).sum::<f64>()));

@@ -121,7 +121,6 @@ macro_rules! lanes {
             }
         }
 
-        // SAFETY of all below: values of this type exist only where the processor has the instructions.
         impl $(<const $flag: bool>)? Number for $name $(<$flag>)? {
             const ZERO: Self = Self::constant(0.0);
             const NOTHING: Self = Self::constant(-0.0);
@@ -143,6 +142,7 @@ macro_rules! lanes {
             }
             #[inline(always)]
             fn sqrt(self) -> Self {
+                // SAFETY: values of this type exist only where the processor has the instructions.
                 unsafe { Self($sqrt(self.0)) }
             }
             #[inline(always)]
@@ -165,18 +165,22 @@ macro_rules! lanes {
             }
             #[inline(always)]
             fn min(self, other: Self) -> Self {
+                // SAFETY: values of this type exist only where the processor has the instructions.
                 unsafe { Self($min(self.0, other.0)) }
             }
             #[inline(always)]
             fn max(self, other: Self) -> Self {
+                // SAFETY: values of this type exist only where the processor has the instructions.
                 unsafe { Self($max(self.0, other.0)) }
             }
             #[inline(always)]
             fn times_plus(self, factor: Self, other: Self) -> Self {
+                // SAFETY: values of this type exist only where the processor has the instructions.
                 unsafe { Self($times_plus(self.0, factor.0, other.0)) }
             }
             #[inline(always)]
             fn apart<J: Task>(task: J) -> J::Output {
+                // SAFETY: values of this type exist only where the processor has the instructions.
                 unsafe { $apart(task) }
             }
         }
@@ -186,19 +190,23 @@ macro_rules! lanes {
             const COUNT: usize = $count;
             #[inline(always)]
             fn splat(x: $t) -> Self {
+                // SAFETY: values of this type exist only where the processor has the instructions.
                 unsafe { Self($set(x)) }
             }
             #[inline(always)]
             unsafe fn load(first: *const $t) -> Self {
+                // SAFETY: the caller's, and values of this type exist only where the processor has the instructions.
                 unsafe { Self($load(first)) }
             }
             #[inline(always)]
             unsafe fn store(self, first: *mut $t) {
+                // SAFETY: the caller's, and values of this type exist only where the processor has the instructions.
                 unsafe { $store(first, self.0) }
             }
             #[inline(always)]
             fn at_least(self, other: Self) -> u32 {
                 let ($a, $b) = (self.0, other.0);
+                // SAFETY: values of this type exist only where the processor has the instructions.
                 unsafe { $at_least }
             }
             $($part)*

@@ -2,14 +2,13 @@
 
 use super::{BLOCK, Scalar};
 use crate::column::Kind;
-use crate::observe::file::{ReadError, ReadProblem};
+use crate::observe::file::{ReadError, ReadProblem, read_bytes};
 use crate::observe::xml::attribute;
 use flate2::read::ZlibDecoder;
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
-use std::fs;
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
@@ -40,7 +39,7 @@ struct ArrayPlace {
 impl PointArrays {
     /// Opens a file and reads what it holds; arrays are unpacked when asked for.
     pub(in crate::observe) fn open(path: &Path) -> Result<Self, ReadError> {
-        let bytes = fs::read(path).map_err(|error| ReadProblem::Io(error).at(path))?;
+        let bytes = read_bytes(path).map_err(|error| ReadProblem::Io(error).at(path))?;
         let mut points = PointArrays {
             path: path.to_path_buf(),
             bytes: Vec::new(),

@@ -169,7 +169,7 @@ impl Image {
                 Some("tif" | "tiff") => pixels::tiff,
                 _ => return Err(self.file.refused(file, "an image that ends in .png, .tif or .tiff")),
             };
-            let bytes = read_file(&self.file, (&named, path), LARGEST_FILE)?;
+            let bytes = read_file(&self.file, (&named, path), (context.files, LARGEST_FILE))?;
             let read = read(&bytes, left).map_err(|found| {
                 self.file_fault(&named, found, "an image of greys or labels, each a whole number")
             })?;
@@ -221,12 +221,8 @@ impl Image {
             self.file.refused(file, "images that can be read").help(Some(help))
         };
         let wild = wildmatch::WildMatch::new(&pattern);
-        let open = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
-        let mut names: Vec<String> = std::fs::read_dir(open)
-            .map_err(|reason| unread(reason.to_string()))?
-            .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
-            .filter(|name| wild.matches(name))
-            .collect();
+        let mut names = context.files.names(folder).map_err(|reason| unread(reason.to_string()))?;
+        names.retain(|name| wild.matches(name));
         if names.is_empty() {
             return Err(unread("no file of such a name".to_string()));
         }

@@ -513,7 +513,7 @@ const LARGEST_TABLE: u64 = 1 << 26;
 fn read_csv(file: &Text, context: &Context) -> Result<TimeTable, Fault> {
     let name = file.value(context)?;
     let path = context.folder.join(&name);
-    let bytes = read_file(file, (&name, &path), LARGEST_TABLE)?;
+    let bytes = read_file(file, (&name, &path), (context.files, LARGEST_TABLE))?;
     let mut format = csv::ReaderBuilder::new();
     format.has_headers(false).flexible(true).trim(csv::Trim::All);
     let mut table: Vec<[f64; 2]> = Vec::new();

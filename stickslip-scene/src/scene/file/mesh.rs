@@ -54,7 +54,7 @@ impl Mesh {
             Some("ply") => ply,
             _ => return Err(self.file.refused(&name, "a file of triangles that ends in .stl, .obj or .ply")),
         };
-        let bytes = read_file(&self.file, (&name, &path), LARGEST_MESH)?;
+        let bytes = read_file(&self.file, (&name, &path), (context.files, LARGEST_MESH))?;
         let solid = read(&bytes).and_then(|triangles| {
             if let Some(corner) =
                 triangles.iter().flatten().find(|corner| corner.iter().any(|x| !x.is_finite()))
@@ -105,25 +105,5 @@ fn ply(bytes: &[u8]) -> Result<Triangles, Unread> {
 
 /// The triangles of an OBJ file, of all its objects; polygons are cut into fans.
 fn obj(bytes: &[u8]) -> Result<Triangles, Unread> {
-    let options = tobj::LoadOptions {
-        triangulate: true,
-        ignore_points: true,
-        ignore_lines: true,
-        ..Default::default()
-    };
-    let mut text = Cursor::new(bytes);
-    let no_materials = |_: &Path| Ok((Vec::new(), Default::default()));
-    let (models, _) = tobj::load_obj_buf(&mut text, &options, no_materials)
-        .map_err(|reason| Unread::Garbled(format!("no OBJ: {reason}")))?;
-    let mut triangles = Vec::new();
-    for model in &models {
-        let corner = |&number: &u32| {
-            let first = 3 * number as usize;
-            [0, 1, 2].map(|k| model.mesh.positions[first + k])
-        };
-        triangles.extend(
-            model.mesh.indices.chunks_exact(3).map(|c| [corner(&c[0]), corner(&c[1]), corner(&c[2])]),
-        );
-    }
-    Ok(triangles)
+    super::obj::triangles(bytes).map_err(|reason| Unread::Garbled(format!("no OBJ: {reason}")))
 }

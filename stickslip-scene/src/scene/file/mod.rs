@@ -13,6 +13,7 @@ mod loads;
 mod material;
 mod measurements;
 mod mesh;
+mod obj;
 mod outline;
 mod outputs;
 mod outside;
@@ -30,6 +31,8 @@ mod start;
 mod text;
 mod time;
 mod vector;
+
+pub use files::{Disk, SceneFiles};
 
 use super::error::Fault;
 use super::parameters::{Dependence, Parameters};
@@ -50,6 +53,8 @@ pub struct Context<'a> {
     pub dimension: Dimension,
     /// Where the file lies, and those that it names.
     pub folder: &'a Path,
+    /// What reads those.
+    pub files: &'a dyn SceneFiles,
 }
 
 table! {
@@ -108,12 +113,12 @@ pub struct ParameterTable(Vec<DocumentNode>);
 ///
 /// # Errors
 /// The first mistake found.
-pub(super) fn resolve(source: &Source) -> Result<(Scene, Declared), Fault> {
+pub(super) fn resolve(source: &Source, files: &dyn SceneFiles) -> Result<(Scene, Declared), Fault> {
     let file = File::read(source.root())?;
     let parameters = Parameters::new(source, file.parameters.as_ref().map_or(&[], |table| &table.0))?;
     let values = parameters.resolved()?;
     let folder = Path::new(source.name()).parent().unwrap_or(Path::new(""));
-    let mut context = Context { parameters: &parameters, dimension: Dimension::Space, folder };
+    let mut context = Context { parameters: &parameters, dimension: Dimension::Space, folder, files };
     context.dimension = file.space.dimension.value(&context)?;
     let context = &context;
 

@@ -11,6 +11,9 @@ pub struct Slice {
     pub values: Vec<f32>,
 }
 
+/// A byte of a file holds at most about so many of an image's, as packed by deflate or LZW.
+const MOST_UNPACKED: usize = 2048;
+
 /// The image of a PNG file of at most so many pixels: greys, those of an indexed file their numbers in the palette;
 /// what is transparent keeps its grey.
 ///
@@ -26,7 +29,14 @@ pub fn png(bytes: &[u8], most: usize) -> Result<Vec<Slice>, String> {
     let [width, height] = [reader.info().width, reader.info().height].map(|side| side as usize);
     let size = checked([width, height], most)?;
     let (color, depth) = reader.output_color_type();
-    let mut buffer = vec![0; reader.output_buffer_size().ok_or("too many pixels")?];
+    let length = reader.output_buffer_size().ok_or("too many pixels")?;
+    if length / MOST_UNPACKED > bytes.len() {
+        return Err(format!(
+            "{width} x {height} pixels in a file of {} bytes, which ends early",
+            bytes.len()
+        ));
+    }
+    let mut buffer = vec![0; length];
     let frame = reader.next_frame(&mut buffer).map_err(garbled)?;
     let (bits, samples) = (depth as usize, color.samples());
     let sample = |row: &[u8], number: usize| -> f32 {
@@ -64,6 +74,12 @@ pub fn tiff(bytes: &[u8], most: usize) -> Result<Vec<Slice>, String> {
     loop {
         let (width, height) = decoder.dimensions().map_err(garbled)?;
         let size = checked([width as usize, height as usize], left)?;
+        if size[0] * size[1] / MOST_UNPACKED > bytes.len() {
+            return Err(format!(
+                "{width} x {height} pixels in a file of {} bytes, which ends early",
+                bytes.len()
+            ));
+        }
         left -= size[0] * size[1];
         let color = decoder.colortype().map_err(garbled)?;
         if !matches!(color, tiff::ColorType::Gray(8 | 16 | 32 | 64)) {
@@ -198,6 +214,38 @@ mod tests {
             let _ = png(&image[..end], 6);
         }
         assert!(tiff(b"II*\0\x08\0\0\0", 100).err().expect("no image").starts_with("no TIFF: "));
+    }
+
+    #[test]
+    fn more_pixels_than_a_file_can_hold_take_no_memory() {
+        let mut bytes = Vec::new();
+        let mut encoder = png::Encoder::new(&mut bytes, 1 << 15, 1 << 15);
+        encoder.set_color(png::ColorType::Rgba);
+        encoder.set_depth(png::BitDepth::Sixteen);
+        let mut writer = encoder.write_header().expect("a header");
+        writer.write_chunk(png::chunk::IDAT, &[0x78, 1]).expect("data");
+        drop(writer);
+        let found = png(&bytes, 1 << 30).err().expect("no image");
+        assert!(found.starts_with("32768 x 32768 pixels in a file of "), "{found}");
+        // Little-endian; width and height of 32768, eight bits, greys, and a strip of one byte.
+        let mut bytes = b"II*\0\x08\0\0\0\x07\0".to_vec();
+        for (tag, kind, value) in [
+            (256_u16, 4_u16, 1_u32 << 15),
+            (257, 4, 1 << 15),
+            (258, 3, 8),
+            (262, 3, 1),
+            (273, 4, 8),
+            (278, 4, 1 << 15),
+            (279, 4, 1),
+        ] {
+            bytes.extend(tag.to_le_bytes());
+            bytes.extend(kind.to_le_bytes());
+            bytes.extend(1_u32.to_le_bytes());
+            bytes.extend(value.to_le_bytes());
+        }
+        bytes.extend([0; 4]);
+        let found = tiff(&bytes, 1 << 30).err().expect("no image");
+        assert!(found.starts_with("32768 x 32768 pixels in a file of "), "{found}");
     }
 
     #[test]
