@@ -179,7 +179,7 @@ gravity = [0, -9.81]
 [space]
 dimension = "plane-strain"
 cell = 0.1
-domain = { min = [-1, -1], max = [2, 1], leaving = "remove" }
+domain = { min = [-1, -2], max = [2, 2], leaving = "remove" }
 [time]
 end = 0.18
 [health]
@@ -195,21 +195,21 @@ shape.box = { min = [-0.95, -0.4], max = [-0.15, 0.4] }
 [[bodies]]
 name = "gone"
 material = "gel"
-shape.box = { min = [1.2, 0.2], max = [1.7, 0.7] }
+shape.box = { min = [1.2, 1.0], max = [1.7, 1.5] }
 velocity = [6, 0]
 spin = 3
 [[loads]]
 name = "blow"
 body = "struck"
 on = "x_min"
-traction = ["2e6 * exp(-t / 5e-3)", 0]
+traction = ["4e6 * exp(-t / 5e-3)", 0]
 [outputs]
 tables = 0.002
 particles = 0.02
 checkpoints = 0.01
 [[outputs.probes]]
 name = "heart"
-at = [1.4, 0.5]
+at = [1.4, 1.3]
 fixed_in = "material"
 [[outputs.arrivals]]
 quantity = "speed"
@@ -297,7 +297,7 @@ fn assert_same_run(expected: &Path, found: &Path) {
 #[test]
 fn a_stopped_run_goes_on_bit_for_bit() {
     let single = PLANE.replace("double", "single");
-    for (text, first) in [(PLANE, 1), (PLANE, 97), (&single, 40), (SPACE, 30), (LOSING, 3), (LOSING, 100)] {
+    for (text, first) in [(PLANE, 1), (PLANE, 97), (&single, 40), (SPACE, 30), (LOSING, 3)] {
         let scene = scene(text);
         let folder = tempfile::tempdir().unwrap();
         let [whole, parts] = ["whole", "parts"].map(|name| folder.path().join(name));
