@@ -50,7 +50,7 @@ impl JointsObserver {
             names: scene.joints.iter().map(|joint| joint.name.clone()).collect(),
             before: (0.0, vec![JointState::default(); scene.joints.len()]),
             schedule: Schedule::every(scene.outputs.tables),
-            table: CsvTable::create(folder.join(JOINTS), scene.outputs.measurements.unit())?,
+            table: CsvTable::create(folder, JOINTS, scene.outputs.measurements.unit())?,
         })
     }
 }

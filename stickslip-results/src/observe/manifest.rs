@@ -5,6 +5,7 @@ use super::folder::OutputFolder;
 use crate::door::RelaxationState;
 use crate::scene::{Loaded, Scene, SceneError, load};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -42,6 +43,9 @@ pub struct Manifest {
     /// What is wrong with its results, in the order in which it was found.
     #[serde(default)]
     pub warnings: Vec<RunWarning>,
+    /// Bytes of each table at the end of the run: one that is shorter was cut since.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub tables: BTreeMap<String, u64>,
     /// Known answers, to be held against `bodies.csv`.
     pub references: Vec<ReferenceCurve>,
     /// Where the scene came from, if from a file.
@@ -182,6 +186,7 @@ impl Manifest {
             resumed: Vec::new(),
             state_sum: None,
             warnings: Vec::new(),
+            tables: BTreeMap::new(),
             references: reference_curves(scene),
             source: None,
             scene: Self::record(scene),

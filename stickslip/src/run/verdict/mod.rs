@@ -13,7 +13,8 @@ mod tearing;
 
 use crate::door::{BodyState, Ledger, TracedParticle, View};
 use crate::observe::{Memory, OutputError, RunWarning};
-use crate::scene::{Damping, Scene};
+use crate::run::start::Remembered;
+use crate::scene::{Body, Damping, Scene};
 use energy::{EnergyBalance, WeighingTimes};
 use neighbours::Neighbours;
 
@@ -45,6 +46,11 @@ trait Check {
 
     /// Keeps what it knows of the run so far, or takes that up.
     fn remember(&mut self, _memory: &mut Memory) -> Result<(), OutputError> {
+        Ok(())
+    }
+
+    /// Takes over what it knew of bodies in another run, from which they begin: of each body its place there.
+    fn carry(&mut self, _memory: &mut Memory, _origins: &[Option<usize>]) -> Result<(), OutputError> {
         Ok(())
     }
 }
@@ -147,6 +153,22 @@ impl RunChecks {
         self.checks
             .iter_mut()
             .try_for_each(|check| memory.part(check.kind(), |memory| check.remember(memory)))
+    }
+
+    /// Takes over what another run remembered of bodies that begin as it left them; `names` are those of its bodies.
+    pub(super) fn carry(
+        &mut self,
+        scene: &Scene,
+        (memory, names): &mut Remembered,
+    ) -> Result<(), OutputError> {
+        let there = |body: &Body| names.iter().position(|name| *name == body.name);
+        let origins: Vec<Option<usize>> = scene.bodies.iter().map(there).collect();
+        memory.part("verdict", |memory| {
+            let carry = |check: &mut Box<dyn Check>| {
+                memory.part(check.kind(), |memory| check.carry(memory, &origins))
+            };
+            self.checks.iter_mut().try_for_each(carry)
+        })
     }
 
     /// What is new, if it is time to look.
