@@ -9,6 +9,7 @@ mod files;
 mod frame_pictures;
 mod illustration;
 mod jobs;
+mod memory;
 mod page;
 mod picture;
 mod progress;
@@ -20,7 +21,11 @@ mod view;
 use clap::Parser;
 use std::process::ExitCode;
 
+#[global_allocator]
+static MEMORY: memory::EndsWithASentence = memory::EndsWithASentence;
+
 fn main() -> ExitCode {
+    memory::keep_some();
     match commands::Command::parse().execute() {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
