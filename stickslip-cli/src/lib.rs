@@ -12,6 +12,7 @@ mod film;
 mod frame_pictures;
 mod illustration;
 mod jobs;
+pub mod memory;
 mod page;
 mod picture;
 mod progress;

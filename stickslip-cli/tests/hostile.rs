@@ -126,6 +126,13 @@ fn files_of_others_are_not_replaced() {
         assert_eq!(ran.code, Some(2), "{arguments:?}: {}", ran.stderr);
         assert!(ran.stderr.contains("it is there already"), "{arguments:?}: {}", ran.stderr);
     }
+    // Scenes of measurements are written by their names; one of them is somebody's own.
+    let listed = workplace.succeed(&["bench", "--scenes", "scenes", "--only", "P1", "--tiny"]);
+    let own = fs::read_dir(workplace.path("scenes")).unwrap().next().unwrap().unwrap().path();
+    fs::write(&own, "years of work").unwrap();
+    let again = workplace.run(&["bench", "--scenes", "scenes", "--only", "P1", "--tiny"]);
+    assert_eq!(again.code, Some(2), "{listed}{}", again.stderr);
+    assert_eq!(fs::read_to_string(&own).unwrap(), "years of work");
     for name in ["thesis.graphml", "thesis.png", "thesis.svg", "index.html", "picture_00000.png"] {
         assert_eq!(fs::read_to_string(workplace.path(name)).unwrap(), "years of work", "{name}");
     }
@@ -324,5 +331,67 @@ fn nothing_that_a_scene_names_is_written_outside_its_results() {
         for table in ["bodies.csv", "fringes.png", "probes.csv", "sections.csv", "joints.csv", "loads.csv"] {
             assert!(named.contains(table), "{table}: {named:?}");
         }
+    }
+}
+
+#[test]
+fn colours_of_what_no_law_remembers_are_refused() {
+    let workplace = workplace();
+    assert_eq!(run(&workplace, &[]).code, Some(0));
+    refused(&workplace.run(&["render", "scene.results", "--color", "plastic_strain"]), "plastic_strain");
+}
+
+/// A body that leaves all that the grid can number, where there is no domain that could be larger.
+#[test]
+fn a_scene_without_a_domain_is_not_told_to_make_it_larger() {
+    let workplace = workplace();
+    let scene = new_scene();
+    let domain = scene.lines().find(|line| line.starts_with("domain = ")).unwrap();
+    let bar = scene.lines().find(|line| line.contains("\"7 * radius\", 0")).unwrap();
+    let thrown = format!("{bar}\nrigid = {{ velocity = [\"1e18 m/s^2 * t\", 0] }}");
+    let scene = scene.replace(domain, "").replace(bar, &thrown);
+    workplace.write("scene.toml", &scene);
+    let ran = run(&workplace, &[]);
+    assert_eq!(ran.code, Some(1), "{}{}", ran.stdout, ran.stderr);
+    assert!(!ran.stderr.contains("make the domain larger"), "{}", ran.stderr);
+    assert!(ran.stderr.contains("give the scene a domain"), "{}", ran.stderr);
+}
+
+/// Intervals shorter than a step are those of every step, and the first signal ends the run.
+#[test]
+#[cfg(unix)]
+fn an_interval_of_nothing_neither_hangs_nor_holds_a_run_that_is_to_end() {
+    let workplace = workplace();
+    let shortest = ["--set", "outputs.tables=1e-300", "--set", "time.end=9"];
+    let mut child = (workplace.command(&[&["run", "scene.toml"][..], &QUICK[..2], &shortest].concat()))
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let begun = Instant::now();
+    let rows = || {
+        fs::read_to_string(workplace.path("scene.results/energy.csv")).map_or(0, |text| text.lines().count())
+    };
+    while rows() < 20 {
+        assert!(begun.elapsed() < Duration::from_secs(60) && child.try_wait().unwrap().is_none());
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    let pid = child.id().to_string();
+    assert!(std::process::Command::new("kill").args(["-s", "INT", &pid]).status().unwrap().success());
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+}
+
+/// A full disk leaves no file that holds nothing.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_picture_that_finds_no_space_is_not_there() {
+    let workplace = workplace();
+    assert_eq!(run(&workplace, &[]).code, Some(0));
+    for (command, name) in [("render", "picture.png"), ("plot", "plot.svg"), ("network", "graph.graphml")] {
+        std::os::unix::fs::symlink("/dev/full", workplace.path(&format!("{name}.part"))).unwrap();
+        let ran = workplace.run(&[command, "scene.results", "--out", name]);
+        assert!(ran.code == Some(1) || ran.code == Some(2), "{command}: {:?}", ran.code);
+        assert!(ran.stderr.contains(name) && ran.stderr.contains("space"), "{command}: {}", ran.stderr);
+        assert!(!workplace.path(name).exists(), "{command}");
     }
 }

@@ -57,35 +57,69 @@ fn spawn(workplace: &Workplace, (folder, cells): (&str, &str), threads: usize) -
     workplace.command(&arguments).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap()
 }
 
-/// Kills a run and what goes on from it, so often, at any instant; then lets it end, and holds it against one that
-/// nobody killed.
-fn chaos(kills: usize, cells: &str) {
+/// When a run is killed.
+#[derive(Clone, Copy)]
+enum Instants {
+    Any,
+    /// While a file is written that has not its own name yet.
+    InWrites,
+}
+
+/// Whether there is a file of a run that has not its own name yet.
+fn writes(out: &Path) -> bool {
+    let folders = ["checkpoints", "particles", "."].map(|name| fs::read_dir(out.join(name)));
+    let mut entries = folders.into_iter().flatten().flatten().flatten();
+    entries.any(|entry| entry.path().extension().is_some_and(|ending| ending == "part"))
+}
+
+/// Kills a run and what goes on from it, so often; then lets it end, and holds it against one that nobody killed. Gives
+/// how many were killed inside a write.
+fn chaos(kills: usize, cells: &str, instants: Instants) -> usize {
     let workplace = Workplace::new();
     workplace.write("scene.toml", &new_scene());
     let begun = Instant::now();
     workplace.succeed(&[&["run", "scene.toml", "--out", "whole", "--set", cells][..], &SETTINGS].concat());
     let longest = begun.elapsed();
+    let parts = workplace.path("parts");
     let mut numbers = Numbers(0x9e37_79b9_7f4a_7c15);
+    let mut inside = 0;
     for kill in 0..kills {
         let mut child = spawn(&workplace, ("parts", cells), 1 + kill % 2);
         std::thread::sleep(longest.mul_f64(3.0 / kills as f64 * numbers.next()) + Duration::from_millis(30));
+        if let Instants::InWrites = instants {
+            while !writes(&parts) && child.try_wait().unwrap().is_none() {
+                std::hint::spin_loop();
+            }
+        }
         child.kill().unwrap();
         child.wait().unwrap();
+        inside += usize::from(writes(&parts));
     }
     assert!(spawn(&workplace, ("parts", cells), 2).wait().unwrap().success());
-    assert!(!record(&workplace.path("parts"))["resumed"].as_array().unwrap().is_empty());
-    assert!(outcome(&workplace.path("whole")) == outcome(&workplace.path("parts")));
+    assert!(!record(&parts)["resumed"].as_array().unwrap().is_empty());
+    assert!(outcome(&workplace.path("whole")) == outcome(&parts));
+    assert!(!writes(&parts), "what was half-written is cleared");
+    inside
 }
 
 #[test]
 fn a_run_that_is_killed_again_and_again_ends_as_one_that_is_not() {
-    chaos(10, COARSE);
+    chaos(10, COARSE, Instants::Any);
 }
 
 #[test]
 #[ignore = "slow"]
 fn a_run_that_is_killed_two_hundred_times_ends_as_one_that_is_not() {
-    chaos(200, FINE);
+    let inside = chaos(200, FINE, Instants::Any);
+    println!("{inside} of 200 kills were inside a write");
+}
+
+#[test]
+#[ignore = "slow"]
+fn a_run_that_is_killed_a_hundred_times_while_it_writes_ends_as_one_that_is_not() {
+    let inside = chaos(100, FINE, Instants::InWrites);
+    println!("{inside} of 100 kills were inside a write");
+    assert!(inside >= 5, "{inside} of 100");
 }
 
 /// Whether the tests run under `nohup`, whose children ignore hangups, too.

@@ -23,31 +23,38 @@ impl Footprint for OfEngine {
     }
 
     fn memory(&self, scene: &Scene, particles: &[usize]) -> f64 {
-        match (scene.dimension.axes(), scene.precision) {
-            (2, Precision::Double) => memory::<f64, 2>(scene, particles),
-            (2, Precision::Single) => memory::<f32, 2>(scene, particles),
-            (_, Precision::Double) => memory::<f64, 3>(scene, particles),
-            (_, Precision::Single) => memory::<f32, 3>(scene, particles),
-        }
+        let [held, grid] = cost(scene, particles);
+        // With the copy of the state before each step, where steps may be taken again.
+        let copies = if scene.health.retries > 0 { 2.0 } else { 1.0 };
+        copies * held + grid + (ORDER_BYTES * particles.iter().sum::<usize>()) as f64
+    }
+
+    fn copy(&self, scene: &Scene, particles: &[usize]) -> f64 {
+        cost(scene, particles)[0]
     }
 }
 
-fn memory<T: Real, const D: usize>(scene: &Scene, particles: &[usize]) -> f64 {
+fn cost(scene: &Scene, particles: &[usize]) -> [f64; 2] {
+    match (scene.dimension.axes(), scene.precision) {
+        (2, Precision::Double) => cost_of::<f64, 2>(scene, particles),
+        (2, Precision::Single) => cost_of::<f32, 2>(scene, particles),
+        (_, Precision::Double) => cost_of::<f64, 3>(scene, particles),
+        (_, Precision::Single) => cost_of::<f32, 3>(scene, particles),
+    }
+}
+
+/// Bytes of the particles, and of the nodes around them.
+fn cost_of<T: Real, const D: usize>(scene: &Scene, particles: &[usize]) -> [f64; 2] {
     let node = size_of::<Node<T, D>>() as f64;
     let heated = heated_bodies(scene);
     let of_body = |(number, (body, &count)): (usize, (&crate::scene::Body, &usize))| {
         let own = own_columns(scene, body, heated.contains(&number));
         let per_cell = (scene.discretization.cell / scene.lattice(body).spacing).powi(D as i32);
-        let themselves = Particles::<T, D>::bytes_of(count, own) + ORDER_BYTES * count;
-        themselves as f64 + node * NODES_PER_CELL * count as f64 / per_cell
+        let themselves = Particles::<T, D>::bytes_of(count, own) as f64;
+        [themselves, node * NODES_PER_CELL * count as f64 / per_cell]
     };
-    let all: f64 = scene.bodies.iter().zip(particles).enumerate().map(of_body).sum();
-    // The copy of the state before each step.
-    let held = |(number, (body, &count)): (usize, (&crate::scene::Body, &usize))| {
-        Particles::<T, D>::bytes_of(count, own_columns(scene, body, heated.contains(&number))) as f64
-    };
-    let copies = if scene.health.retries > 0 { 1.0 } else { 0.0 };
-    all + copies * scene.bodies.iter().zip(particles).enumerate().map(held).sum::<f64>()
+    let of_bodies = scene.bodies.iter().zip(particles).enumerate().map(of_body);
+    of_bodies.fold([0.0; 2], |[held, grid], [more, nodes]| [held + more, grid + nodes])
 }
 
 #[cfg(test)]
@@ -103,5 +110,17 @@ mod tests {
         let report = report(&scene("", 2.97), &OfEngine).expect("no problem");
         let each = report.memory / report.particles as f64;
         assert!((30.0 * 8.0 + 4.0 * 4.0..400.0).contains(&each), "{each}");
+    }
+
+    /// The copy in a checkpoint takes what is saved, and not much more.
+    #[test]
+    fn the_copy_for_a_checkpoint_is_what_is_saved() {
+        let scene = scene("", 2.97);
+        let saved = crate::step::build(&scene).expect("no problem").save().expect("it can be saved");
+        let block = &saved.bodies[0];
+        let bytes =
+            block.columns.iter().map(|column| column.bytes.len()).sum::<usize>() + 4 * block.numbers.len();
+        let share = OfEngine.copy(&scene, &[block.numbers.len(), 0]) / bytes as f64;
+        assert!((1.0..1.1).contains(&share), "{share}");
     }
 }

@@ -12,7 +12,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 use std::time::Duration;
-use stickslip::observe::{Checkpoint, FolderError, Manifest, OutputError, Status};
+use stickslip::observe::{Checkpoint, FolderError, Manifest, OutputError, OutputFolder, Patience, Status};
 use stickslip::run::{
     Checkpointing, Progress, ResumeError, RunError, RunOptions, Summary, resume, run, run_with,
 };
@@ -716,4 +716,114 @@ fn a_run_stops_when_its_time_is_up_and_goes_on() {
     assert!(summary.performance.steps >= 4, "each takes a step at least");
     go_on(&scene, &parts).unwrap();
     assert_same_run(&whole, &parts);
+}
+
+/// A pipe that nobody reads stands in the place of a snapshot: the user is told once, and the end of the run's time
+/// holds. Once somebody reads, the disk is back, and the run goes on.
+#[test]
+#[cfg(unix)]
+fn a_disk_that_stands_still_is_told_of_and_does_not_hold_a_run_that_is_to_stop() {
+    use std::sync::atomic::AtomicUsize;
+    static TOLD: AtomicUsize = AtomicUsize::new(0);
+    let scene = scene(PLANE);
+    let folder = tempfile::tempdir().unwrap();
+    let [whole, parts] = ["whole", "parts"].map(|name| folder.path().join(name));
+    start(&scene, &whole).unwrap();
+    start_and_stop(&scene, &parts, 60);
+    let next = stickslip::observe::Results::open(&parts).unwrap().frames().len();
+    let pipe = parts.join(format!("particles/{next:05}.vtu.part"));
+    assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    let patience = Patience {
+        told_after: Duration::from_millis(100),
+        given_up_after: Duration::from_millis(300),
+        tell: |path, _| {
+            assert!(path.ends_with("particles"));
+            TOLD.fetch_add(1, Ordering::Relaxed);
+        },
+    };
+    let patient = RunOptions { patience, max_time: Some(Duration::from_millis(600)), ..options(&parts) };
+    let mut simulation = stickslip::step::build(&scene).unwrap();
+    let begun = std::time::Instant::now();
+    let error = resume(&scene, &mut *simulation, &patient, &mut |_| {}).unwrap_err();
+    assert!(error.to_string().contains("particles: the disk has taken nothing for"), "{error}");
+    assert_eq!(TOLD.load(Ordering::Relaxed), 1);
+    assert!(begun.elapsed() < Duration::from_secs(20), "{:?}", begun.elapsed());
+    assert_eq!(Manifest::read(&parts).unwrap().status, Status::Failed);
+
+    std::io::copy(&mut fs::File::open(&pipe).unwrap(), &mut std::io::sink()).unwrap();
+    // Until the thread that was left to itself has ended, the folder is its own.
+    while OutputFolder::reopen(&parts).is_err() {
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    go_on(&scene, &parts).unwrap();
+    assert_same_run(&whole, &parts);
+}
+
+/// The folder is moved away, and another takes its name: the run ends, and writes into neither.
+#[test]
+#[cfg(unix)]
+fn a_folder_that_is_another_now_is_left_alone() {
+    struct Move(PathBuf, PathBuf);
+    impl stickslip::observe::Observer for Move {
+        fn next(&self) -> f64 {
+            0.0
+        }
+
+        fn observe(&mut self, view: &dyn stickslip::door::View) -> Result<(), OutputError> {
+            if view.steps() >= 60 && !self.1.exists() {
+                fs::rename(&self.0, &self.1).unwrap();
+                fs::create_dir(&self.0).unwrap();
+            }
+            Ok(())
+        }
+    }
+    let scene = scene(PLANE);
+    let folder = tempfile::tempdir().unwrap();
+    let [whole, parts, moved] = ["whole", "parts", "moved"].map(|name| folder.path().join(name));
+    start(&scene, &whole).unwrap();
+    let mut mover = Move(parts.clone(), moved.clone());
+    let mut simulation = stickslip::step::build(&scene).unwrap();
+    let error =
+        run_with(&scene, &mut *simulation, &options(&parts), &mut [&mut mover], &mut |_| {}).unwrap_err();
+    assert!(error.to_string().contains("is not where the run began to write"), "{error}");
+    assert_eq!(fs::read_dir(&parts).unwrap().count(), 0, "nothing is made in it");
+    go_on(&scene, &moved).unwrap();
+    assert_same_run(&whole, &moved);
+}
+
+/// What version 1 of the format wrote is read by all that follow. `version_1` was made by a run of its scene to 0.1 s,
+/// with a checkpoint at the end.
+#[test]
+fn a_run_of_version_1_goes_on_and_scenes_begin_from_it() {
+    let text = include_str!("version_1/scene.toml");
+    let mut scene = scene(text);
+    scene.time.end = 0.2;
+    let folder = tempfile::tempdir().unwrap();
+    let [out, next] = ["out", "next"].map(|name| folder.path().join(name));
+    copy_all(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/version_1/results"), &out);
+    let (checkpoint, _, damaged) = Checkpoint::newest(&out).unwrap();
+    assert!(damaged.is_empty());
+    let recorded = Manifest::read(&out).unwrap();
+    assert_eq!(Some(stickslip::observe::state_sum(&checkpoint.state)), recorded.state_sum);
+    assert!(stickslip::observe::verify(&out).unwrap().wrong.is_empty());
+    let begun = recorded.performance.steps;
+    let found = go_on(&scene, &out).unwrap();
+    assert!(found.performance.steps > begun && found.performance.time == 0.2, "{found}");
+
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/version_1/results");
+    scene.start = Some(stickslip::scene::Start {
+        from: path,
+        at: None,
+        velocities: stickslip::scene::StartVelocities::Kept,
+    });
+    scene.time.end = 0.01;
+    start(&scene, &next).unwrap();
+}
+
+fn copy_all(from: &Path, to: &Path) {
+    fs::create_dir(to).unwrap();
+    for entry in fs::read_dir(from).unwrap().map(Result::unwrap) {
+        let (from, to) = (entry.path(), to.join(entry.file_name()));
+        if from.is_dir() { copy_all(&from, &to) } else { fs::copy(from, to).unwrap(); }
+    }
 }

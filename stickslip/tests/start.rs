@@ -279,3 +279,169 @@ fn a_body_of_another_shape_is_refused_and_nothing_is_written() {
     };
     assert!(error.to_string().contains("nowhere"), "{error}");
 }
+
+/// A plunger that has come down, and a rigid ball that fell, turned and rolled.
+const RIGID: &str = r#"
+[[bodies]]
+name = "plunger"
+material = "rubber"
+rigid = { velocity = [0, "-0.3"], spin = "0.5" }
+shape.box = { min = [-0.5, 2.6], max = [0.5, 2.8] }
+[[bodies]]
+name = "pebble"
+material = "rubber"
+shape.ball = { center = [-0.9, 0.4], radius = 0.25 }
+velocity = [0.2, 0]
+spin = -2
+rigid.free = {}
+[[contact]]"#;
+
+/// The packing with all rigid bodies, and snapshots of this kind.
+fn packing_with(snapshots: &str) -> String {
+    PACKING.replacen("[[contact]]", RIGID.trim_start(), 1) + "[outputs]\nparticles = 0.05\n" + snapshots
+}
+
+/// The last snapshot of a run, and one of its times.
+fn last_frame(out: &Path) -> (std::path::PathBuf, f64) {
+    let frame = Results::open(out).unwrap().frames().last().unwrap().clone();
+    (frame.path, frame.time)
+}
+
+/// From the snapshot of the end as from the checkpoint there: bodies that deform to the bit in double precision, rigid
+/// ones as their particles say; in single precision to that. At rest nothing else is missing, and the runs stay together.
+#[test]
+fn a_snapshot_begins_as_the_checkpoint_of_its_time_does() {
+    let double = "[outputs.snapshots]\nprecision = \"double\"\n";
+    let short = packing_with(double).replace("end = 0.3", "end = 0.02").replace("s = 0.05", "s = 0.01");
+    let rest = "velocities = \"zero\"";
+    for (snapshots, near, later) in [(double, 1e-12, 1e-11), ("", 1e-6, 1e-5)] {
+        let folder = tempfile::tempdir().unwrap();
+        let place = |name: &str| folder.path().join(name);
+        let packing = place("packing");
+        make(&scene(&packing_with(snapshots)), &packing).unwrap();
+        let (file, time) = last_frame(&packing);
+        make(&from(&short, &packing, ""), &place("exact")).unwrap();
+        make(&from(&short, &file, ""), &place("rounded")).unwrap();
+        // The nearest is taken.
+        make(&from(&short, &packing, &format!("at = {}", time - 0.01)), &place("timed")).unwrap();
+        assert!(last(&place("rounded")) == last(&place("timed")));
+
+        let [expected, found] = ["exact", "rounded"].map(|name| frame(&place(name), 0));
+        assert_eq!((&expected.body, &expected.number), (&found.body, &found.number));
+        let columns = expected.columns().zip(found.columns()).map(|((c, a), (_, b))| (c.name, c.kind, a, b));
+        let history = expected.history.iter().zip(&found.history);
+        let history = history.map(|(a, b)| (a.name.as_str(), a.kind, &a.values[..], &b.values[..]));
+        let mut checked = 0;
+        for (name, kind, expected_values, found_values) in columns.chain(history) {
+            let largest = expected_values.iter().fold(1e-9, |largest: f64, x| largest.max(x.abs()));
+            for (i, (a, b)) in expected_values.iter().zip(found_values).enumerate() {
+                // The spin of a free rigid body follows from velocities of particles, which have a size.
+                let near = if expected.body[i / kind.components()] < 2 { near } else { 5e-3 };
+                assert!((a - b).abs() <= near * largest, "{name}: {a} {b} of {largest}");
+            }
+            checked += 1;
+        }
+        assert!(checked >= 8, "{checked} columns");
+
+        make(&from(&short, &packing, rest), &place("exact at rest")).unwrap();
+        make(&from(&short, &file, rest), &place("rounded at rest")).unwrap();
+        let deformed = |particles: &ParticleSnapshot| [0, 1].map(|body| of_body(particles, body)).concat();
+        let [expected, found] =
+            ["exact at rest", "rounded at rest"].map(|name| deformed(&last(&place(name))));
+        let off =
+            expected.iter().zip(&found).flat_map(|((a, ..), (b, ..))| (0..3).map(|k| (a[k] - b[k]).abs()));
+        let off = off.fold(0.0, f64::max);
+        println!("after 0.02 s places are within {off:.1e} m of those from the checkpoint");
+        assert!(off < later, "{off}");
+    }
+}
+
+/// What a snapshot was not asked to have is listed with the key that left it out; nothing is written.
+#[test]
+fn a_snapshot_that_lacks_something_is_refused_with_all_that_it_lacks() {
+    let folder = tempfile::tempdir().unwrap();
+    let other = folder.path().join("other");
+    for (i, (snapshots, scene_edit, missing)) in [
+        (
+            "columns = [\"velocity\", \"stress\", \"plastic_strain\"]",
+            "",
+            &["`deformation`", "`mass`", "snapshots.columns"][..],
+        ),
+        (
+            "columns = [\"velocity\", \"stress\", \"deformation\", \"mass\", \"volume\"]",
+            "",
+            &["`plastic_strain`"],
+        ),
+        (
+            "columns = [\"velocity\", \"stress\", \"deformation\", \"mass\", \"volume\"]",
+            "neo_hookean = { young_modulus = 3e5, poisson_ratio = 0.3 }",
+            &["all that the law of `low` remembered"],
+        ),
+        ("every = 3", "", &["each 3th particle", "snapshots.every"]),
+        ("bodies = [\"low\", \"gate\", \"floor\"]", "", &["the body `high`", "snapshots.bodies"]),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let packing = folder.path().join(format!("packing {i}"));
+        let text = PACKING.to_owned() + "[outputs.snapshots]\n" + snapshots + "\n";
+        make(&scene(&text.replace("end = 0.3", "end = 0.03")), &packing).unwrap();
+        let law = "von_mises = { young_modulus = 3e5, poisson_ratio = 0.3, yield_stress = 2e3 }";
+        let text = if scene_edit.is_empty() { PACKING.to_owned() } else { PACKING.replace(law, scene_edit) };
+        let Err(error) = make(&from(&text, &last_frame(&packing).0, ""), &other) else {
+            panic!("{snapshots}")
+        };
+        assert!(matches!(error, RunError::Resume(ResumeError::Lacks { .. })), "{error}");
+        assert!(missing.iter().all(|what| error.to_string().contains(what)), "{error}");
+        assert!(!other.exists());
+    }
+}
+
+/// Where a body began is in no snapshot: the record of the run says what it was.
+#[test]
+fn a_snapshot_of_another_shape_or_of_nowhere_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let [packing, other] = ["packing", "other"].map(|name| folder.path().join(name));
+    let text = PACKING.replace("end = 0.3", "end = 0.03");
+    make(&scene(&text), &packing).unwrap();
+    let (file, _) = last_frame(&packing);
+    let stray = folder.path().join("00000.vtu");
+    std::fs::copy(&file, &stray).unwrap();
+    let grid = packing.join("particles/00077.vtu");
+    std::fs::copy(&file, &grid).unwrap();
+    for (text, place, more, why) in [
+        (text.replace("center = [0.1, 1.55]", "center = [0.1, 1.65]"), &file, "", "another shape"),
+        (text.replace("cell = 0.1", "cell = 0.05"), &file, "", "another filling"),
+        (text.replace("rigid = {}", "rigid = { velocity = [0, 1] }"), &file, "", "no bounds and moves"),
+        (text.clone(), &stray, "", "run.json"),
+        (text.clone(), &grid, "", "none of the snapshots"),
+        (text.clone(), &packing, "at = 7", "allowed: 0 s to"),
+    ] {
+        let Err(error) = make(&from(&text, place, more), &other) else { panic!("{why}") };
+        assert!(error.to_string().contains(why), "{why}: {error}");
+        assert!(!other.exists());
+    }
+}
+
+/// The largest stretch so far counts where positions are held against it: it goes with the bodies.
+#[test]
+fn the_stretch_of_bodies_so_far_goes_with_them() {
+    let folder = tempfile::tempdir().unwrap();
+    let [packing, next] = ["packing", "next"].map(|name| folder.path().join(name));
+    // With free rigid bodies a run has steps enough to be looked at.
+    let text = packing_with("");
+    make(&scene(&text), &packing).unwrap();
+    let text = without(&text, "gate").replace("end = 0.3", "end = 1e-5");
+    make(&from(&text, &packing, "velocities = \"zero\""), &next).unwrap();
+    let [before, after] = [&packing, &next].map(|out| {
+        let (mut checkpoint, path, _) = stickslip::observe::Checkpoint::newest(out).unwrap();
+        let mut largest: Vec<f64> = Vec::new();
+        checkpoint
+            .memory(&path)
+            .part("verdict", |memory| memory.part("strain", |memory| memory.keep("largest", &mut largest)))
+            .unwrap();
+        largest
+    });
+    assert!(before[..2].iter().all(|&stretch| stretch > 1e-3), "{before:?}");
+    assert_eq!(before[..2], after[..2]);
+}

@@ -42,10 +42,12 @@ impl BenchSuite {
         // First what may be missing, then what takes long.
         let python = self.peers.as_ref().map(Peers::prepare).transpose()?;
         let machine = self.machine();
+        #[expect(clippy::disallowed_methods, reason = "a date, not an interval")]
+        let now = SystemTime::now();
         let mut record = BenchRecord {
             program: "stickslip",
             version: env!("CARGO_PKG_VERSION"),
-            unix_time: SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |time| time.as_secs()),
+            unix_time: now.duration_since(UNIX_EPOCH).map_or(0, |time| time.as_secs()),
             machine,
             results: Vec::new(),
             skipped: Vec::new(),

@@ -27,7 +27,8 @@ use std::sync::{Arc, LazyLock};
 use stickslip::check::{Report, free_memory};
 use stickslip::lanes::Processor;
 use stickslip::observe::Results;
-use stickslip::scene::{Loaded, SceneError};
+use stickslip::run::ResumeError;
+use stickslip::scene::{Loaded, Problem, SceneError, Start};
 
 /// Many deformable bodies in frictional contact, by the material point method.
 #[derive(Debug, Parser)]
@@ -109,6 +110,33 @@ fn report(loaded: &Loaded) -> Result<Report, Failure> {
     let report = stickslip::check::report(&loaded.scene);
     let report = report.map_err(|problem| Failure::input(loaded.source.locate(problem)))?;
     Ok(report.in_memory(free_memory()).placed(&loaded.source))
+}
+
+/// What a scene cannot begin from, where it says so; other errors as they are.
+fn at_start(loaded: &Loaded, error: ResumeError) -> Failure {
+    let Some(start) = &loaded.scene.start else { return Failure::input(error) };
+    let allowed = match &error {
+        ResumeError::Begin { .. } => {
+            "a run whose bodies of the same names have the same shapes, particles and cells"
+        }
+        ResumeError::Lacks { .. } => {
+            "a snapshot of all columns and particles of its bodies, as [outputs.snapshots] has without `columns`, \
+             `bodies` and `every`, or a checkpoint, which has everything"
+        }
+        ResumeError::Unread(error) if is_of(&error.path, start) => {
+            "a folder of results with a checkpoint in it, a checkpoint, or a snapshot in a folder of results"
+        }
+        _ => return Failure::input(error),
+    };
+    let key = if start.at.is_some() { "start.at" } else { "start.from" };
+    let (found, allowed) = (error.to_string(), allowed.to_string());
+    Failure::input(loaded.source.locate(Problem { key: key.to_string(), found, allowed, help: None }))
+}
+
+/// Whether a file belongs to what a scene begins from.
+fn is_of(path: &Path, start: &Start) -> bool {
+    let folder = start.from.parent().and_then(Path::parent).filter(|_| !start.from.is_dir());
+    path.starts_with(&start.from) || folder.is_some_and(|folder| path.starts_with(folder))
 }
 
 /// The results in a folder.

@@ -1,8 +1,9 @@
 //! `stickslip run SCENE`: from a scene file to numbers, a chart and a picture.
 
-use super::{assignment, load, report, say, stop_on_interrupt};
+use super::{assignment, at_start, load, report, say, stop_on_interrupt};
 use crate::failure::Failure;
 use crate::illustration::illustrate;
+use crate::memory;
 use crate::progress::{Display, ProgressForm};
 use bytesize::ByteSize;
 use clap::Args;
@@ -11,7 +12,9 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 use stickslip::check::free_memory;
 use stickslip::door::Simulation;
-use stickslip::observe::{ArrivalRow, FrontSpeedRow, Manifest, Performance, Results, SceneSource, Status};
+use stickslip::observe::{
+    ArrivalRow, FrontSpeedRow, Manifest, Patience, Performance, Results, SceneSource, Status,
+};
 use stickslip::run::{Checkpointing, Progress, RunError, RunOptions, Summary};
 use stickslip::scene::{Loaded, Scene};
 
@@ -226,13 +229,18 @@ impl How {
         let scene = &loaded.scene;
         let threads = rayon::current_num_threads();
         let report = report(loaded)?;
+        let WallTime(every) = self.checkpoint_every;
+        let at_end = every.is_some() || self.max_time.0.is_some() || scene.outputs.checkpoints.is_some();
         let limit = self.max_memory.map_or_else(free_memory, |limit| limit.as_u64() as f64);
-        if report.memory > limit {
+        let copy = if at_end { report.checkpoint_memory } else { 0.0 };
+        if report.memory + copy > limit {
             let size = |bytes: f64| ByteSize(bytes as u64).display().si();
             return Err(Failure::Input(miette!(
-                help = "take larger cells, fewer particles, or a larger machine; --max-memory allows more or less",
-                "the run needs about {}, and may take {}",
-                size(report.memory),
+                help = "take larger cells, fewer particles, or a larger machine; --max-memory allows more or less, and \
+                        --checkpoint-every never saves what checkpoints need",
+                "the run needs about {}, with {} of them for checkpoints, and may take {}",
+                size(report.memory + copy),
+                size(copy),
                 size(limit)
             )));
         }
@@ -241,14 +249,14 @@ impl How {
         }
         let mut simulation =
             stickslip::step::build(scene).map_err(|problem| Failure::input(loaded.source.locate(problem)))?;
-        let WallTime(every) = self.checkpoint_every;
-        let at_end = every.is_some() || self.max_time.0.is_some() || scene.outputs.checkpoints.is_some();
+        memory::run_writes_to(&out);
         let options = RunOptions {
             stop: stop_on_interrupt()?,
             threads,
             source: Some(source),
             checkpoints: Checkpointing { every, at_end, ..Checkpointing::default() },
             max_time: self.max_time.0,
+            patience: Patience { tell: tell_of_slow_disk, ..Patience::default() },
             ..RunOptions::new(&out)
         };
         let form = match self.progress {
@@ -260,7 +268,10 @@ impl How {
         display.finish();
         let summary = match outcome {
             Ok(summary) => summary,
-            Err(error @ (RunError::Folder(_) | RunError::Resume(_))) => return Err(Failure::input(error)),
+            Err(error @ RunError::Folder(_)) => return Err(Failure::input(error)),
+            Err(RunError::Resume(error)) => return Err(at_start(loaded, error)),
+            // The folder itself has gone.
+            Err(RunError::Output(error)) if error.path == out => return Err(Failure::run(error)),
             Err(error) => {
                 // The failure is the news; a picture of it is welcome but must not hide it.
                 let _ = illustrate(&out);
@@ -304,6 +315,15 @@ fn times(performance: &Performance) -> String {
         )
     };
     parts.chain([("outputs and the rest", rest)]).map(line).collect::<Vec<_>>().join("\n")
+}
+
+/// Tells the user of a disk that takes nothing.
+fn tell_of_slow_disk(path: &Path, waited: Duration) {
+    let (path, waited) = (path.display(), waited.as_secs());
+    eprintln!(
+        "\nwarning: the disk has taken nothing for {path} in {waited} s; the run waits for it, and Ctrl-C or --max-time \
+         end it"
+    );
 }
 
 /// A line for each arrival, each front's speed and each probe that saw nothing; a threshold that was not passed has

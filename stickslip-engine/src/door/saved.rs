@@ -1,6 +1,8 @@
 //! The state of a simulation as data: what a checkpoint holds of it.
 
 use super::RemovedParticles;
+use super::ParticleSnapshot;
+use crate::column::Kind;
 use crate::contact::ContactSums;
 use crate::load::LoadSums;
 use crate::rigid::{Pose, RigidState};
@@ -41,6 +43,73 @@ pub struct SavedState {
     /// What left the domain, body by body; nothing where nothing did.
     #[serde(default)]
     pub(crate) removed: Vec<RemovedParticles>,
+    /// Whether it comes from a snapshot, which knows less.
+    #[serde(skip)]
+    pub(crate) of_snapshot: bool,
+}
+
+impl SavedState {
+    /// What a snapshot of a run at a time [s] knows of its state, for [`crate::door::Simulation::begin_from`]; it is
+    /// none that a simulation of the same scene could take up. `names` are those of its bodies, by their numbers.
+    ///
+    /// It has not the spin of particles, where they were before anything moved, and momenta of rigid bodies: a scene
+    /// that begins from it finds these from its own filling and from the velocities.
+    pub fn of_snapshot(snapshot: &ParticleSnapshot, time: f64, names: &[String]) -> Self {
+        let mut rows = vec![Vec::new(); names.len()];
+        for (row, &body) in snapshot.body.iter().enumerate() {
+            if let Some(rows) = rows.get_mut(body as usize) {
+                rows.push(row);
+            }
+        }
+        let history =
+            snapshot.history.iter().map(|column| (&column.name[..], column.kind, &column.values[..]));
+        let columns: Vec<(&str, Kind, &[f64])> = snapshot
+            .columns()
+            .map(|(column, values)| (column.name, column.kind, values))
+            .chain(history)
+            .collect();
+        let body = |(name, rows): (&String, Vec<usize>)| SavedBody {
+            name: name.clone(),
+            numbers: rows.iter().map(|&row| snapshot.number[row]).collect(),
+            columns: columns
+                .iter()
+                .map(|column| SavedColumn::of(*column, &rows, snapshot.dimension))
+                .collect(),
+            motion: None,
+            disorder: Disorder::any(rows.len()),
+            missing: 0,
+        };
+        SavedState {
+            time,
+            steps: 0,
+            bodies: names.iter().zip(rows).filter(|(_, rows)| !rows.is_empty()).map(body).collect(),
+            signal: None,
+            damping: 0.0,
+            relaxation: RelaxationProgress::default(),
+            loads: Vec::new(),
+            contact_sums: ContactSums::default(),
+            unbounded: Vec::new(),
+            moved: Vec::new(),
+            joints: Vec::new(),
+            springs: Vec::new(),
+            walls: Vec::new(),
+            gravity_work: 0.0,
+            removed: Vec::new(),
+            longest_rigid: None,
+            of_snapshot: true,
+        }
+    }
+}
+
+impl SavedColumn {
+    /// Some rows of a column with all components in space.
+    fn of((name, kind, values): (&str, Kind, &[f64]), rows: &[usize], dimension: usize) -> Self {
+        let places = (0..kind.entries(dimension)).map(|entry| kind.place(dimension, entry));
+        let numbers =
+            places.flat_map(|place| rows.iter().map(move |row| values[row * kind.components() + place]));
+        let bytes = numbers.flat_map(f64::to_le_bytes).collect();
+        SavedColumn { name: name.to_string(), width: size_of::<f64>(), bytes }
+    }
 }
 
 /// A body between two steps.
@@ -84,3 +153,10 @@ pub(crate) struct SavedUnbounded {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 pub struct RestoreError(pub(crate) String);
+
+impl RestoreError {
+    /// One that says so.
+    pub fn new(problem: impl Into<String>) -> Self {
+        RestoreError(problem.into())
+    }
+}

@@ -12,7 +12,7 @@ use crate::lanes::Laned;
 use crate::load::{LoadPoints, place_of};
 use crate::particles::{ColumnStart, Particles};
 use crate::scene::{ContactLaw, StartVelocities, Transfer};
-use crate::tensor::{Matrix, Real, Symmetric, Vector};
+use crate::tensor::{Matrix, Real, Symmetric, Vector, cross};
 use crate::transfer::columns as columns_of;
 use std::collections::HashMap;
 use std::sync::Mutex;
@@ -48,6 +48,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             walls: self.state.walls.clone(),
             longest_rigid: Some(self.state.longest_rigid).filter(|step| step.is_finite()),
             removed: self.state.removed.iter().copied().filter(|_| self.has_removed()).collect(),
+            of_snapshot: false,
         }
     }
 
@@ -139,8 +140,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             saved.bodies.iter().map(|saved| (saved.name.as_str(), saved)).collect();
         let carried = state.bodies.iter().enumerate().map(|(i, body)| {
             let without_bounds = state.unbounded.iter().any(|unbounded| unbounded.body == i);
-            let begin = |saved| begun(saved, body, (without_bounds, velocities));
-            named.get(body.name.as_str()).map(|saved| begin(saved)).transpose()
+            let begin = |own: &&SavedBody| begun((saved, own), body, (without_bounds, velocities));
+            named.get(body.name.as_str()).map(begin).transpose()
         });
         let carried: Vec<Option<Body<T, D>>> = carried.collect::<Result<_, _>>()?;
         if carried.iter().all(Option::is_none) {
@@ -221,8 +222,8 @@ const TRANSFERS: [Transfer; 5] =
     [Transfer::Rflip, Transfer::Flip, Transfer::Apic, Transfer::Xpic, Transfer::Pic];
 
 /// A body as one of the same name was in another run.
-fn begun<T: Real, const D: usize>(
-    saved: &SavedBody,
+fn begun<T: Laned, const D: usize>(
+    (state, saved): (&SavedState, &SavedBody),
     fresh: &Body<T, D>,
     (without_bounds, velocities): (bool, StartVelocities),
 ) -> Result<Body<T, D>, RestoreError> {
@@ -245,8 +246,10 @@ fn begun<T: Real, const D: usize>(
                 motion.stop();
             }
         }
-        (Some(_), None) => return Err(off("is rigid in the scene, and deformed in it")),
-        (None, _) => {}
+        (Some(_), None) if !state.of_snapshot => {
+            return Err(off("is rigid in the scene, and deformed in it"));
+        }
+        (Some(_) | None, _) => {}
     }
     if without_bounds {
         return Ok(body);
@@ -301,6 +304,14 @@ fn begun<T: Real, const D: usize>(
     if !same_start(&body.particles, &fresh.particles, NEAR) {
         return Err(off("began elsewhere than it does in the scene: its shape or its filling is another"));
     }
+    if state.of_snapshot {
+        complete(&mut body, fresh).map_err(off)?;
+        if velocities == StartVelocities::Zero
+            && let Some(motion) = &mut body.motion
+        {
+            motion.stop();
+        }
+    }
     for i in 0..body.particles.len() {
         let mut particle = body.particles.get(i);
         // Of another density: m = rho V / J.
@@ -318,6 +329,46 @@ fn begun<T: Real, const D: usize>(
         body.particles.stop();
     }
     Ok(body)
+}
+
+/// Finds what a snapshot does not have of a body: its particles turn as the whole does, and a rigid one is where they
+/// are. Masses and volumes follow from the filling.
+///
+/// # Errors
+/// Its particles have other volumes, or belong to no rigid body although it is one.
+fn complete<T: Laned, const D: usize>(body: &mut Body<T, D>, fresh: &Body<T, D>) -> Result<(), &'static str> {
+    for i in 0..body.particles.len() {
+        let (mut particle, filled) = (body.particles.get(i), fresh.particles.get(i));
+        let volume = filled.volume * particle.deformation.det();
+        if !(volume > T::ZERO && (volume - particle.volume).abs() <= T::of(NEAR) * volume) {
+            return Err("has particles of another volume in it: its filling is another");
+        }
+        (particle.volume, particle.mass, particle.spin) = (volume, filled.mass, Vector::ZERO);
+        body.particles.set(i, &particle);
+    }
+    if body.particles.len() == 0 {
+        return Ok(());
+    }
+    let totals = body.totals();
+    let turning = body.spin(&totals);
+    let Some(motion) = &mut body.motion else {
+        for i in 0..body.particles.len() {
+            let particle = body.particles.get(i);
+            body.particles.set(i, &Particle { spin: spin::<T, D>(turning), ..particle });
+        }
+        return Ok(());
+    };
+    let [first, began] = [&body.particles, &fresh.particles].map(|particles| particles.get(0));
+    let turn = Matrix::from_fn(|i, j| first.deformation.0[i][j].f64());
+    if (turn.det() - 1.0).abs() > NEAR {
+        return Err("is rigid in the scene, and deformed in it");
+    }
+    motion.put(turn, [began.position.space(), first.position.space()]);
+    let [mean, center] = [&totals.momentum, &totals.first_moment].map(|sum| sum.map(|x| x / totals.mass));
+    let turned = cross(turning, std::array::from_fn(|i| motion.center[i] - center[i]));
+    motion.set_velocities([std::array::from_fn(|i| mean[i] + turned[i]), turning]);
+    motion.set_time(0.0).map_err(|_| "has no motion that its formulas or functions give")
+
 }
 
 /// Where each of so many particles stands among these numbers, by its own, `usize::MAX` of those that are not there;

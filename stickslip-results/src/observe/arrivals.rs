@@ -119,7 +119,7 @@ impl ArrivalsObserver {
             known: Vec::new(),
             taken_up: false,
             schedule: Schedule::every(wanted.samples),
-            table: CsvTable::create(folder.join(ARRIVALS), wanted.unit())?,
+            table: CsvTable::create(folder, ARRIVALS, wanted.unit())?,
         })
     }
 }

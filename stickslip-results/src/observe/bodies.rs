@@ -41,7 +41,7 @@ impl BodiesObserver {
         Ok(BodiesObserver {
             names: scene.bodies.iter().map(|body| body.name.clone()).collect(),
             schedule: Schedule::every(scene.outputs.tables),
-            table: CsvTable::create(folder.join(BODIES), scene.outputs.measurements.unit())?,
+            table: CsvTable::create(folder, BODIES, scene.outputs.measurements.unit())?,
         })
     }
 }

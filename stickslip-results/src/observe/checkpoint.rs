@@ -48,9 +48,14 @@ impl Checkpoint {
         }
     }
 
-    /// Where a checkpoint after so many steps lies in the folder of a run.
-    pub fn path(folder: &Path, steps: u64) -> PathBuf {
-        folder.join(CHECKPOINTS).join(format!("{steps:010}.checkpoint"))
+    /// Where the checkpoints lie in the folder of a run.
+    pub fn folder(results: &Path) -> PathBuf {
+        results.join(CHECKPOINTS)
+    }
+
+    /// Where a checkpoint after so many steps lies there.
+    pub fn path(results: &Path, steps: u64) -> PathBuf {
+        Self::folder(results).join(format!("{steps:010}.checkpoint"))
     }
 
     /// The scene as run.

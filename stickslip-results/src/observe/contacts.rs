@@ -49,7 +49,7 @@ impl ContactsObserver {
             names: scene.bodies.iter().map(|body| body.name.clone()).collect(),
             cursor: ContactCursor::default(),
             schedule: Schedule::every(scene.outputs.tables),
-            table: CsvTable::create(folder.join(CONTACTS), scene.outputs.measurements.unit())?,
+            table: CsvTable::create(folder, CONTACTS, scene.outputs.measurements.unit())?,
         })
     }
 }

@@ -56,7 +56,7 @@ impl EnergyObserver {
     pub(super) fn create(scene: &Scene, folder: &OutputFolder) -> Result<Self, OutputError> {
         Ok(EnergyObserver {
             schedule: Schedule::every(scene.outputs.tables),
-            table: CsvTable::create(folder.join(ENERGY), scene.outputs.measurements.unit())?,
+            table: CsvTable::create(folder, ENERGY, scene.outputs.measurements.unit())?,
         })
     }
 }

@@ -1,8 +1,9 @@
 //! Files that are whole at any time, and what can go wrong with them.
 
 use miette::Diagnostic;
+use serde::{Deserialize, Serialize};
 use std::fs::{self, File};
-use std::io::{self, BufWriter, Write};
+use std::io::{self, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
 
 /// A file of results that could not be written.
@@ -31,6 +32,14 @@ fn remedy(error: &io::Error) -> &'static str {
         }
         io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => {
             "give a folder that you may write to"
+        }
+        io::ErrorKind::NotFound => {
+            "was it moved or removed? `stickslip resume` goes on where it is now, or once it is back, from the last \
+             checkpoint, if there is one"
+        }
+        io::ErrorKind::TimedOut => {
+            "see what is wrong with the disk; everything written before can be read, and `stickslip resume` goes on \
+             from the last checkpoint, if there is one"
         }
         _ => "everything written before can be read",
     }
@@ -80,6 +89,92 @@ impl ReadProblem {
 /// # Errors
 /// The disk is full or refuses; then the old file is untouched and nothing half-written is left.
 pub fn replace(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), OutputError> {
+    put(path, false, write).map(drop)
+}
+
+/// What a file holds, in short: enough to find that a bit of it has changed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) struct FileSum {
+    /// Its length.
+    pub bytes: u64,
+    /// CRC-32 of them, as zlib has it.
+    pub crc: u32,
+}
+
+impl FileSum {
+    /// That of the first bytes of a file.
+    pub(super) fn of(file: &mut impl Read, bytes: u64) -> io::Result<FileSum> {
+        let mut summed = SummedFile::new(io::sink());
+        io::copy(&mut file.take(bytes), &mut summed)?;
+        Ok(summed.sum())
+    }
+
+    /// Whether a file is still what it was.
+    ///
+    /// # Errors
+    /// It is missing, or not as it was.
+    pub(super) fn check(&self, path: &Path) -> Result<(), ReadError> {
+        let found = File::open(path).and_then(|mut file| FileSum::of(&mut file, u64::MAX));
+        match found.map_err(|error| ReadProblem::Io(error).at(path))? {
+            found if found == *self => Ok(()),
+            found => Err(self.differs(found).at(path)),
+        }
+    }
+
+    /// What is wrong where something else was found.
+    pub(super) fn differs(&self, found: FileSum) -> ReadProblem {
+        ReadProblem::Layout(match self.bytes == found.bytes {
+            true => "its contents are not those that the run wrote: bytes of it have changed".to_string(),
+            false => format!("it has {} bytes where the run wrote {}", found.bytes, self.bytes),
+        })
+    }
+}
+
+/// A file that sums what goes into it.
+pub(super) struct SummedFile<W> {
+    pub inner: W,
+    crc: crc32fast::Hasher,
+    bytes: u64,
+}
+
+impl<W> SummedFile<W> {
+    /// A file that holds nothing yet.
+    pub(super) fn new(inner: W) -> Self {
+        SummedFile { inner, crc: crc32fast::Hasher::new(), bytes: 0 }
+    }
+
+    /// The sum so far.
+    pub(super) fn sum(&self) -> FileSum {
+        FileSum { bytes: self.bytes, crc: self.crc.clone().finalize() }
+    }
+
+    /// Goes on from what is there, or was there before.
+    pub(super) fn go_on_from(&mut self, sum: FileSum) {
+        (self.crc, self.bytes) = (crc32fast::Hasher::new_with_initial_len(sum.crc, sum.bytes), sum.bytes);
+    }
+}
+
+impl<W: Write> Write for SummedFile<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let written = self.inner.write(bytes)?;
+        self.crc.update(&bytes[..written]);
+        self.bytes += written as u64;
+        Ok(written)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.inner.flush()
+    }
+}
+
+/// [`replace`], with what went into the file.
+///
+/// # Errors
+/// As [`replace`].
+pub(super) fn replace_summed(
+    path: &Path,
+    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<FileSum, OutputError> {
     put(path, false, write)
 }
 
@@ -103,15 +198,18 @@ fn put(
     path: &Path,
     flushed: bool,
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
-) -> Result<(), OutputError> {
+) -> Result<FileSum, OutputError> {
     let part = part_of(path);
     let written = File::create(&part).and_then(|file| {
-        let mut file = BufWriter::with_capacity(1 << 18, file);
+        let mut file = BufWriter::with_capacity(1 << 18, SummedFile::new(file));
         write(&mut file)?;
         let file = file.into_inner().map_err(io::IntoInnerError::into_error)?;
-        if flushed { file.sync_all() } else { Ok(()) }
+        if flushed {
+            file.inner.sync_all()?;
+        }
+        Ok(file.sum())
     });
-    written.and_then(|()| fs::rename(&part, path)).map_err(|source| {
+    written.and_then(|sum| fs::rename(&part, path).map(|()| sum)).map_err(|source| {
         // The first error is the one to report; a part that cannot be removed either is cleared by the next run.
         let _ = fs::remove_file(&part);
         OutputError { path: path.to_path_buf(), source }
@@ -137,13 +235,17 @@ pub(super) fn secure(path: &Path) -> Result<(), OutputError> {
     File::open(path).and_then(|file| file.sync_all()).map_err(OutputError::at(path))
 }
 
-/// Whether there is a file that holds something.
+/// Whether there is a file that holds something, and as much as it did where its sum is known.
 ///
 /// # Errors
-/// There is none, or it is empty.
-pub(super) fn is_there(path: &Path) -> Result<(), OutputError> {
-    match fs::metadata(path).map_err(OutputError::at(path))?.len() {
-        0 => Err(OutputError::at(path)(io::Error::new(io::ErrorKind::InvalidData, "it is empty"))),
+/// There is none, it is empty, or of another length.
+pub(super) fn is_there(path: &Path, sum: Option<&FileSum>) -> Result<(), OutputError> {
+    let wrong = |what: String| Err(OutputError::at(path)(io::Error::new(io::ErrorKind::InvalidData, what)));
+    match (fs::metadata(path).map_err(OutputError::at(path))?.len(), sum) {
+        (0, _) => wrong("it is empty".to_string()),
+        (bytes, Some(sum)) if bytes != sum.bytes => {
+            wrong(format!("it has {bytes} bytes where the run wrote {}", sum.bytes))
+        }
         _ => Ok(()),
     }
 }

@@ -1,13 +1,15 @@
 //! The folder that a run writes to: made, or cleared of the results of an earlier run, and of nothing else.
 
 use super::checkpoint::is_checkpoint;
-use super::file::part_of;
+use super::file::{OutputError, part_of};
 use super::manifest::Manifest;
+use super::waiting::Waiting;
 use super::{
     ARRIVALS, BODIES, CHECKPOINTS, CONTACTS, ENERGY, FRINGES, FRINGES_ANIMATION, FRINGES_TABLE, FRONT_SPEEDS,
     FRONTS, GRID, JOINTS, LOADS, PARTICLES, PROBES, REACTIONS, REMOVED, SECTIONS,
 };
 use miette::Diagnostic;
+use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::fs::{self, File, TryLockError};
 use std::io;
@@ -44,8 +46,9 @@ const PREVIOUS: &str = "previous";
 #[derive(Clone, Debug)]
 pub struct OutputFolder {
     path: PathBuf,
-    /// Open and locked while somebody holds the folder, where the system locks folders.
-    _lock: Arc<Option<File>>,
+    /// The folder itself, open and locked while somebody holds it, where the system opens and locks folders.
+    held: Arc<Option<File>>,
+    waiting: Arc<Waiting>,
 }
 
 /// A folder that cannot take the results of a run: the user's choice, to be mended before the run starts.
@@ -90,7 +93,7 @@ impl OutputFolder {
     pub fn prepare(path: &Path) -> Result<Self, FolderError> {
         let unusable = |source| FolderError::Unusable { path: path.to_path_buf(), source };
         fs::create_dir_all(path).map_err(unusable)?;
-        let lock = lock(path)?;
+        let held = lock(path)?;
         let mut entries = fs::read_dir(path).map_err(unusable)?;
         if let Some(entry) = entries.next().transpose().map_err(unusable)?
             && Manifest::read(path).is_err()
@@ -102,7 +105,7 @@ impl OutputFolder {
         // Asked for before anything is moved: a folder that cannot be written keeps its old results.
         try_to_write(path).map_err(unusable)?;
         put_aside(path)?;
-        Ok(OutputFolder { path: path.to_path_buf(), _lock: Arc::new(lock) })
+        Ok(OutputFolder { path: path.to_path_buf(), held: Arc::new(held), waiting: Arc::default() })
     }
 
     /// Whether the results of an earlier run are put aside.
@@ -127,9 +130,41 @@ impl OutputFolder {
     pub fn reopen(path: &Path) -> Result<Self, FolderError> {
         let unusable = |source| FolderError::Unusable { path: path.to_path_buf(), source };
         fs::read_dir(path).map_err(unusable)?;
-        let lock = lock(path)?;
+        let held = lock(path)?;
         try_to_write(path).map_err(unusable)?;
-        Ok(OutputFolder { path: path.to_path_buf(), _lock: Arc::new(lock) })
+        Ok(OutputFolder { path: path.to_path_buf(), held: Arc::new(held), waiting: Arc::default() })
+    }
+
+    /// The same, with how long its writers wait for a disk that takes nothing.
+    pub fn with_patience(self, waiting: Waiting) -> Self {
+        OutputFolder { waiting: Arc::new(waiting), ..self }
+    }
+
+    /// How long its writers wait.
+    pub fn waiting(&self) -> &Arc<Waiting> {
+        &self.waiting
+    }
+
+    /// Looks whether the folder is still where it was, where the system can tell: what is written now would go
+    /// elsewhere, or nowhere.
+    ///
+    /// # Errors
+    /// It was moved or removed.
+    pub fn is_in_place(&self) -> Result<(), OutputError> {
+        let Some(held) = &*self.held else { return Ok(()) };
+        if fs::metadata(&self.path).is_ok_and(|found| is_one(held, &found)) {
+            return Ok(());
+        }
+        let now = place(held).map_or("it was moved or removed".to_string(), |now| format!("it is {now} now"));
+        let told = format!("{now}: the folder is not where the run began to write");
+        Err(OutputError::at(&self.path)(io::Error::new(io::ErrorKind::NotFound, told)))
+    }
+
+    /// Bytes of each table in it.
+    pub fn tables(&self) -> BTreeMap<String, u64> {
+        let tables = FILES.iter().filter(|name| name.ends_with(".csv"));
+        let length = |name: &&str| Some((name.to_string(), fs::metadata(self.join(name)).ok()?.len()));
+        tables.filter_map(length).collect()
     }
 
     /// Where a file of this folder lies.
@@ -148,14 +183,44 @@ fn try_to_write(path: &Path) -> io::Result<()> {
     fs::write(&trial, []).and_then(|()| fs::remove_file(&trial))
 }
 
-/// Locks a folder against other runs, until what is returned is dropped or the process ends, however it ends. Systems
-/// that lock no folders give nothing.
+/// Opens a folder and locks it against other runs, until what is returned is dropped or the process ends, however it
+/// ends. Systems that open no folders give nothing.
 fn lock(path: &Path) -> Result<Option<File>, FolderError> {
     let Ok(folder) = File::open(path) else { return Ok(None) };
     match folder.try_lock() {
-        Ok(()) => Ok(Some(folder)),
         Err(TryLockError::WouldBlock) => Err(FolderError::InUse { path: path.to_path_buf() }),
-        Err(TryLockError::Error(_)) => Ok(None),
+        // Systems that lock no folders have none locked.
+        Ok(()) | Err(TryLockError::Error(_)) => Ok(Some(folder)),
+    }
+}
+
+/// Whether an open folder is the one that was found under its name.
+fn is_one(held: &File, found: &fs::Metadata) -> bool {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::MetadataExt;
+        held.metadata().is_ok_and(|held| (held.dev(), held.ino()) == (found.dev(), found.ino()))
+    }
+    #[cfg(not(unix))]
+    {
+        let _ = held;
+        found.is_dir()
+    }
+}
+
+/// Where an open folder is now, where the system says so.
+fn place(held: &File) -> Option<String> {
+    #[cfg(target_os = "linux")]
+    {
+        use std::os::fd::AsRawFd;
+        let link = fs::read_link(format!("/proc/self/fd/{}", held.as_raw_fd())).ok()?;
+        let now = link.to_str()?;
+        Some(if now.ends_with(" (deleted)") { "removed".to_string() } else { format!("at {now}") })
+    }
+    #[cfg(not(target_os = "linux"))]
+    {
+        let _ = held;
+        None
     }
 }
 
@@ -275,7 +340,7 @@ mod tests {
         full.iter().for_each(|(name, text)| fs::write(out.join(name), text).unwrap());
         fs::write(out.join("notes.txt"), "mine").unwrap();
         let scene = crate::scene::Scene::new(crate::scene::Dimension::Space, 1.0, 1.0);
-        let folder = OutputFolder { path: out.clone(), _lock: Arc::new(None) };
+        let folder = OutputFolder { path: out.clone(), held: Arc::default(), waiting: Arc::default() };
         Manifest::new(&scene, Default::default()).write(&folder).unwrap();
         drop(OutputFolder::prepare(&out).unwrap());
         assert!(exist(&inside) && !out.join("bodies.csv").exists() && out.join("notes.txt").exists());

@@ -1,6 +1,8 @@
 //! Snapshots through time: numbered `.vtu` files, and the `.pvd` file that tells ParaView their times.
 
-use super::file::{OutputError, ReadError, ReadProblem, is_there, read_bytes, remove_from, replace, secure};
+use super::file::{
+    FileSum, OutputError, ReadError, ReadProblem, is_there, read_bytes, remove_from, replace, secure,
+};
 use super::folder::OutputFolder;
 use super::memory::Memory;
 use super::vtu::Vtu;
@@ -32,12 +34,12 @@ impl Frames {
     pub(super) fn create(folder: &OutputFolder, name: &'static str) -> Result<Self, OutputError> {
         let path = folder.join(name);
         fs::create_dir_all(&path).map_err(OutputError::at(&path))?;
-        let series = Series { folder: folder.clone(), name, times: Vec::new(), secured: 0 };
+        let series = Series { folder: folder.clone(), name, times: Vec::new(), sums: Vec::new(), secured: 0 };
         // That of a run that goes on stays until it is cut.
         if !series.collection().exists() {
             series.write_collection()?;
         }
-        Ok(Frames { writer: Writer::start(series).map_err(OutputError::at(&path))? })
+        Ok(Frames { writer: Writer::start(series, &path, folder.waiting())? })
     }
 
     /// Waits until there is room in memory for another snapshot: to be called before one is made.
@@ -60,17 +62,18 @@ impl Frames {
     /// The disk is full or refuses; a snapshot is missing.
     pub(super) fn remember(&mut self, memory: &mut Memory) -> Result<(), OutputError> {
         // What the checkpoint does not know was not there.
-        let mut times = match memory.is_taking_up() {
-            true => Vec::new(),
+        let (mut times, mut sums) = match memory.is_taking_up() {
+            true => Default::default(),
             false => self.writer.ask(|series| {
                 series.secure()?;
-                Ok(series.times.clone())
+                Ok((series.times.clone(), series.sums.clone()))
             })?,
         };
         memory.keep("times", &mut times)?;
+        memory.keep("sums", &mut sums)?;
         let in_earnest = memory.is_in_earnest();
         if memory.is_taking_up() {
-            self.writer.ask(move |series| series.cut(times, in_earnest))
+            self.writer.ask(move |series| series.cut((times, sums), in_earnest))
         } else {
             Ok(())
         }
@@ -90,6 +93,8 @@ struct Series {
     folder: OutputFolder,
     name: &'static str,
     times: Vec<f64>,
+    /// Of each, what is in its file; unknown of those that are older than sums.
+    sums: Vec<Option<FileSum>>,
     /// How many of them are known to be on the disk.
     secured: usize,
 }
@@ -98,16 +103,19 @@ impl Series {
     /// Adds a snapshot; after an error the series is as it was.
     fn push(&mut self, time: f64, snapshot: &Vtu) -> Result<(), OutputError> {
         if self.times.last() == Some(&time) {
-            self.secured = self.secured.min(self.times.len() - 1);
-            return snapshot.write(&self.path(self.times.len() - 1));
+            let last = self.times.len() - 1;
+            self.secured = self.secured.min(last);
+            self.sums[last] = Some(snapshot.put(&self.path(last))?);
+            return Ok(());
         }
         let path = self.path(self.times.len());
-        snapshot.write(&path)?;
+        self.sums.push(Some(snapshot.put(&path)?));
         self.times.push(time);
         self.write_collection().inspect_err(|_| {
             // A snapshot that no list names only takes the room that the record of the failed run needs.
             let _ = fs::remove_file(&path);
             self.times.pop();
+            self.sums.pop();
         })
     }
 
@@ -122,12 +130,17 @@ impl Series {
     }
 
     /// Takes away all but the snapshots at these times.
-    fn cut(&mut self, times: Vec<f64>, in_earnest: bool) -> Result<(), OutputError> {
-        (0..times.len()).try_for_each(|number| is_there(&self.path(number)))?;
+    fn cut(
+        &mut self,
+        (times, mut sums): (Vec<f64>, Vec<Option<FileSum>>),
+        in_earnest: bool,
+    ) -> Result<(), OutputError> {
+        sums.resize(times.len(), None);
+        (sums.iter().enumerate()).try_for_each(|(number, sum)| is_there(&self.path(number), sum.as_ref()))?;
         if !in_earnest {
             return Ok(());
         }
-        self.times = times;
+        (self.times, self.sums) = (times, sums);
         self.secured = self.secured.min(self.times.len());
         remove_from((self.times.len()..).map(|number| self.path(number)))?;
         self.write_collection()

@@ -1,7 +1,7 @@
 //! `fringes/` and `fringes.png`: photoelastic fringes as a camera behind a polariscope sees them,
 //! frame by frame and as an animation.
 
-use super::file::{OutputError, is_there, remove_from, replace, secure};
+use super::file::{FileSum, OutputError, is_there, remove_from, replace, replace_summed, secure};
 use super::folder::OutputFolder;
 use super::memory::Memory;
 use super::table::{CellValue, CsvTable, TableRow, columns};
@@ -59,6 +59,8 @@ struct FringeWriter {
     folder: OutputFolder,
     table: CsvTable<FringeRow>,
     frames: Vec<PathBuf>,
+    /// Of each, what is in its file; unknown of those that are older than sums.
+    sums: Vec<Option<FileSum>>,
     /// How many of them are known to be on the disk.
     secured: usize,
     /// From the first look on.
@@ -147,8 +149,9 @@ impl FringesObserver {
         let writer = FringeWriter {
             specimens: (0..scene.bodies.len()).filter(|&i| birefringent(&scene.bodies[i])).collect(),
             folder: folder.clone(),
-            table: CsvTable::create(folder.join(FRINGES_TABLE), scene.outputs.measurements.unit())?,
+            table: CsvTable::create(folder, FRINGES_TABLE, scene.outputs.measurements.unit())?,
             frames: Vec::new(),
+            sums: Vec::new(),
             secured: 0,
             view: None,
             largest: 0.0,
@@ -160,7 +163,7 @@ impl FringesObserver {
             overlay: camera.overlay,
             looked: false,
             contacts: ContactCursor::default(),
-            writer: Writer::start(writer).map_err(OutputError::at(&path))?,
+            writer: Writer::start(writer, &path, folder.waiting())?,
         })
     }
 }
@@ -213,7 +216,7 @@ impl FringeWriter {
         let times = std::mem::take(&mut view.times);
         view.film = view.bench.film();
         let path = self.frame(self.frames.len());
-        replace(&path, |file| image.write_png(file))?;
+        let sum = replace_summed(&path, |file| image.write_png(file))?;
         self.table.append([FringeRow {
             frame: self.frames.len(),
             time: times.iter().sum::<f64>() / times.len() as f64,
@@ -222,6 +225,7 @@ impl FringeWriter {
             samples: times.len(),
         }])?;
         self.frames.push(path);
+        self.sums.push(Some(sum));
         Ok(())
     }
 
@@ -246,8 +250,11 @@ struct SavedFringes {
     view: Option<(ImageWindow, Film, Vec<f64>, Vec<Link>)>,
 }
 
+/// What is in the files of pictures, and in their table, where it is known.
+type FringeSums = (Vec<Option<FileSum>>, Option<u32>);
+
 impl FringeWriter {
-    fn save(&mut self) -> Result<SavedFringes, OutputError> {
+    fn save(&mut self) -> Result<(SavedFringes, FringeSums), OutputError> {
         self.frames[self.secured..].iter().try_for_each(|path| secure(path))?;
         self.secured = self.frames.len();
         secure(&self.folder.join(FRINGES))?;
@@ -255,12 +262,10 @@ impl FringeWriter {
             let Photograph { bench, film, times, links } = view;
             (bench.stage().window, film.clone(), times.clone(), links.clone())
         });
-        Ok(SavedFringes {
-            frames: self.frames.len(),
-            table: self.table.length()?,
-            largest: self.largest,
-            view,
-        })
+        let table = self.table.secured()?;
+        let film =
+            SavedFringes { frames: self.frames.len(), table: table.bytes, largest: self.largest, view };
+        Ok((film, (self.sums.clone(), Some(table.crc))))
     }
 
     /// No pictures yet.
@@ -269,7 +274,11 @@ impl FringeWriter {
     }
 
     /// Goes on from there, or only looks whether it could, if not in earnest; false if the film is another camera's.
-    fn take_up(&mut self, saved: SavedFringes, in_earnest: bool) -> Result<bool, OutputError> {
+    fn take_up(
+        &mut self,
+        (saved, (mut sums, crc)): (SavedFringes, FringeSums),
+        in_earnest: bool,
+    ) -> Result<bool, OutputError> {
         let of_camera = |(window, film, ..): &(ImageWindow, Film, Vec<f64>, Vec<Link>)| {
             let [width, height] = window.size;
             width == self.camera.width && height <= 8 * width && film.fits(window.size)
@@ -277,13 +286,15 @@ impl FringeWriter {
         if !saved.view.iter().all(of_camera) {
             return Ok(false);
         }
-        (0..saved.frames).try_for_each(|number| is_there(&self.frame(number)))?;
-        self.table.cut(saved.table, in_earnest)?;
+        sums.resize(saved.frames, None);
+        (sums.iter().enumerate())
+            .try_for_each(|(number, sum)| is_there(&self.frame(number), sum.as_ref()))?;
+        self.table.cut((saved.table, crc), in_earnest)?;
         if !in_earnest {
             return Ok(true);
         }
         self.frames = (0..saved.frames).map(|number| self.frame(number)).collect();
-        self.secured = self.secured.min(saved.frames);
+        (self.secured, self.sums) = (self.secured.min(saved.frames), sums);
         self.largest = saved.largest;
         self.view = saved.view.map(|(window, film, times, links)| {
             let stage = Stage { window, specimens: self.specimens.clone() };
@@ -336,16 +347,18 @@ impl Observer for FringesObserver {
         memory.keep("looked", &mut self.looked)?;
         memory.keep("contacts", &mut self.contacts)?;
         // What the checkpoint does not know was not there.
-        let mut saved = match memory.is_taking_up() {
-            true => self.writer.ask(|writer| Ok(writer.nothing()))?,
+        let (mut saved, (mut sums, mut crc)) = match memory.is_taking_up() {
+            true => self.writer.ask(|writer| Ok((writer.nothing(), FringeSums::default())))?,
             false => self.writer.ask(FringeWriter::save)?,
         };
         memory.keep("film", &mut saved)?;
+        memory.keep("sums", &mut sums)?;
+        memory.keep("sum", &mut crc)?;
         if !memory.is_taking_up() {
             return Ok(());
         }
         let in_earnest = memory.is_in_earnest();
-        let fits = self.writer.ask(move |writer| writer.take_up(saved, in_earnest))?;
+        let fits = self.writer.ask(move |writer| writer.take_up((saved, (sums, crc)), in_earnest))?;
         if fits { Ok(()) } else { Err(memory.wrong("film", "it does not fit the camera of the scene")) }
     }
 }

@@ -94,8 +94,8 @@ impl FrontsObserver {
         Ok(FrontsObserver {
             tracks: wanted.fronts.iter().map(track).collect(),
             schedule: Schedule::every(wanted.samples),
-            table: CsvTable::create(folder.join(FRONTS), wanted.unit())?,
-            speeds: CsvTable::create(folder.join(FRONT_SPEEDS), wanted.unit())?,
+            table: CsvTable::create(folder, FRONTS, wanted.unit())?,
+            speeds: CsvTable::create(folder, FRONT_SPEEDS, wanted.unit())?,
         })
     }
 }

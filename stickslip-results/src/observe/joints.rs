@@ -52,7 +52,7 @@ impl JointsObserver {
             before: (0.0, vec![JointState::default(); names.len()]),
             names,
             schedule: Schedule::every(scene.outputs.tables),
-            table: CsvTable::create(folder.join(JOINTS), scene.outputs.measurements.unit())?,
+            table: CsvTable::create(folder, JOINTS, scene.outputs.measurements.unit())?,
         })
     }
 }

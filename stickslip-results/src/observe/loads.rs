@@ -46,7 +46,7 @@ impl LoadsObserver {
             names: scene.loads.iter().map(|load| load.name.clone()).collect(),
             before: (0.0, vec![LoadState::default(); scene.loads.len()]),
             schedule: Schedule::every(scene.outputs.tables),
-            table: CsvTable::create(folder.join(LOADS), scene.outputs.measurements.unit())?,
+            table: CsvTable::create(folder, LOADS, scene.outputs.measurements.unit())?,
         })
     }
 }

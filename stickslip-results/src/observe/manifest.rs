@@ -5,6 +5,7 @@ use super::folder::OutputFolder;
 use crate::door::RelaxationState;
 use crate::scene::{Loaded, Scene, SceneError, load};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// The record of a run. It is there from the first moment of the run, so that a folder of results is known as one.
@@ -44,6 +45,9 @@ pub struct Manifest {
     /// How often the run was looked at for these.
     #[serde(default)]
     pub looks: u64,
+    /// Bytes of each table at the end of the run: one that is shorter was cut since.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub tables: BTreeMap<String, u64>,
     /// Known answers, to be held against `bodies.csv`.
     pub references: Vec<ReferenceCurve>,
     /// Where the scene came from, if from a file.
@@ -187,6 +191,7 @@ impl Manifest {
             state_sum: None,
             warnings: Vec::new(),
             looks: 0,
+            tables: BTreeMap::new(),
             references: reference_curves(scene),
             source: None,
             scene: Self::record(scene),

@@ -35,7 +35,9 @@ mod results;
 mod schedule;
 mod sections;
 mod table;
+mod verify;
 mod vtu;
+mod waiting;
 mod writer;
 mod xml;
 
@@ -69,7 +71,9 @@ pub use results::Results;
 pub use schedule::Schedule;
 pub use sections::SectionRow;
 pub use table::{CellValue, TableRow};
+pub use verify::{Verified, verify};
 pub use vtu::Vtu;
+pub use waiting::{Patience, Waiting};
 pub use writer::Writer;
 
 use crate::door::View;

@@ -96,7 +96,7 @@ impl ProbesObserver {
             names: wanted.probes.iter().map(|probe| probe.name.clone()).collect(),
             points: Points::new(scene, points(scene, wanted.probes.iter())),
             schedule: Schedule::every(wanted.samples),
-            table: CsvTable::create(folder.join(PROBES), wanted.unit())?,
+            table: CsvTable::create(folder, PROBES, wanted.unit())?,
         })
     }
 }

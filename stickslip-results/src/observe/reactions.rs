@@ -70,7 +70,7 @@ impl ReactionsObserver {
             rigid: rigid.collect(),
             before: Known::default(),
             schedule: Schedule::every(scene.outputs.tables),
-            table: CsvTable::create(folder.join(REACTIONS), scene.outputs.measurements.unit())?,
+            table: CsvTable::create(folder, REACTIONS, scene.outputs.measurements.unit())?,
         })
     }
 

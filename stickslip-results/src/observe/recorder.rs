@@ -24,9 +24,15 @@ use super::{
 use crate::door::View;
 use crate::scene::{Leaving, Scene};
 
+/// Tables that keep their own length over a checkpoint, under their name.
+pub(super) const TABLES: [&str; 11] = [
+    BODIES, ENERGY, CONTACTS, LOADS, JOINTS, REMOVED, SECTIONS, REACTIONS, PROBES, ARRIVALS, FRONTS,
+];
+
 /// The observers that a scene asks for, and those that are added.
 pub struct Recorder<'a> {
     scheduled: Vec<Scheduled<'a>>,
+    folder: OutputFolder,
 }
 
 struct Scheduled<'a> {
@@ -43,7 +49,7 @@ impl<'a> Recorder<'a> {
     /// # Errors
     /// A file cannot be made.
     pub fn new(scene: &Scene, folder: &OutputFolder) -> Result<Self, OutputError> {
-        let mut recorder = Recorder { scheduled: Vec::new() };
+        let mut recorder = Recorder { scheduled: Vec::new(), folder: folder.clone() };
         recorder.schedule(BODIES, BodiesObserver::create(scene, folder)?);
         recorder.schedule(ENERGY, EnergyObserver::create(scene, folder)?);
         recorder.schedule(CONTACTS, ContactsObserver::create(scene, folder)?);
@@ -89,13 +95,10 @@ impl<'a> Recorder<'a> {
     /// # Errors
     /// One is not.
     pub fn find(folder: &OutputFolder, memory: &Memory) -> Result<(), OutputError> {
-        let tables = [
-            BODIES, ENERGY, CONTACTS, LOADS, JOINTS, REMOVED, SECTIONS, REACTIONS, PROBES, ARRIVALS, FRONTS,
-        ];
         for path in
-            tables.iter().filter(|name| memory.has(&format!("{name}/length"))).map(|name| folder.join(name))
+            TABLES.iter().filter(|name| memory.has(&format!("{name}/length"))).map(|name| folder.join(name))
         {
-            is_there(&path)?;
+            is_there(&path, None)?;
         }
         Ok(())
     }
@@ -164,12 +167,14 @@ impl<'a> Recorder<'a> {
         view: &dyn View,
         chosen: impl Fn(&Scheduled) -> bool,
     ) -> Result<(), OutputError> {
-        for output in &mut self.scheduled {
-            if chosen(output) {
-                output.observer.observe(view)?;
-                output.last = Some(view.time());
-            }
+        let mut due = self.scheduled.iter_mut().filter(|output| chosen(output)).peekable();
+        if due.peek().is_some() {
+            self.folder.is_in_place()?;
         }
-        Ok(())
+        due.try_for_each(|output| {
+            output.observer.observe(view)?;
+            output.last = Some(view.time());
+            Ok(())
+        })
     }
 }

@@ -48,7 +48,7 @@ impl RemovedObserver {
         Ok(RemovedObserver {
             names: scene.bodies.iter().map(|body| body.name.clone()).collect(),
             schedule: Schedule::every(scene.outputs.tables),
-            table: CsvTable::create(folder.join(REMOVED), scene.outputs.measurements.unit())?,
+            table: CsvTable::create(folder, REMOVED, scene.outputs.measurements.unit())?,
         })
     }
 }

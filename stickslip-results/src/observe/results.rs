@@ -25,6 +25,7 @@ use super::{
 use crate::column::every;
 use crate::door::ParticleSnapshot;
 use serde::Deserialize;
+use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The results of a run, finished or not.
@@ -96,7 +97,7 @@ impl Results {
     /// # Errors
     /// The file is missing or damaged; so for the other tables.
     pub fn bodies_table(&self) -> Result<Vec<BodyRow>, ReadError> {
-        read_rows(&self.folder.join(BODIES))
+        self.table(BODIES)
     }
 
     /// `energy.csv`: a row for each time.
@@ -104,7 +105,7 @@ impl Results {
     /// # Errors
     /// The file is missing or damaged.
     pub fn energy_table(&self) -> Result<Vec<EnergyRow>, ReadError> {
-        read_rows(&self.folder.join(ENERGY))
+        self.table(ENERGY)
     }
 
     /// `contacts.csv`: at each time a row for each pair of bodies that touched since the time before.
@@ -112,7 +113,7 @@ impl Results {
     /// # Errors
     /// The file is missing or damaged.
     pub fn contacts_table(&self) -> Result<Vec<ContactRow>, ReadError> {
-        read_rows(&self.folder.join(CONTACTS))
+        self.table(CONTACTS)
     }
 
     /// `sections.csv`: at each time a row for each section; none if the scene has none.
@@ -198,7 +199,18 @@ impl Results {
 
     /// The rows of a table that is there only if the scene asks for it.
     fn measured<R: TableRow>(&self, name: &str) -> Result<Vec<R>, ReadError> {
+        let known = self.manifest.tables.contains_key(name) || self.folder.join(name).exists();
+        if known { self.table(name) } else { Ok(Vec::new()) }
+    }
+
+    /// The rows of a table, none of which is lost.
+    fn table<R: TableRow>(&self, name: &str) -> Result<Vec<R>, ReadError> {
         let path = self.folder.join(name);
-        if path.exists() { read_rows(&path) } else { Ok(Vec::new()) }
+        let found = fs::metadata(&path).map_or(0, |about| about.len());
+        if let Some(&wrote) = self.manifest.tables.get(name).filter(|&&wrote| found < wrote && found > 0) {
+            let cut = format!("it was cut: it has {found} bytes where the run wrote {wrote}");
+            return Err(ReadProblem::Layout(cut).at(&path));
+        }
+        read_rows(&path)
     }
 }

@@ -58,7 +58,7 @@ impl SectionsObserver {
             sections: measurements.sections.iter().map(cuts).collect(),
             cell: scene.discretization.cell,
             schedule: Schedule::every(scene.outputs.tables),
-            table: CsvTable::create(folder.join(SECTIONS), measurements.unit())?,
+            table: CsvTable::create(folder, SECTIONS, measurements.unit())?,
         })
     }
 }

@@ -1,13 +1,16 @@
 //! Tables in CSV: a header, then whole rows only, whatever stops the run.
 
-use super::file::{OutputError, ReadError, ReadProblem, read_bytes};
+use super::file::{FileSum, OutputError, ReadError, ReadProblem, SummedFile, read_bytes};
+use super::folder::OutputFolder;
 use super::memory::Memory;
+use super::waiting::Waiting;
 use super::writer::Writer;
 use serde::Serialize;
-use std::fs::File;
-use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::fs::{self, File};
+use std::io::{self, Read, Seek, Write};
 use std::marker::PhantomData;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// A row of a table through time. The list of its columns serves writing, reading and looking up.
 pub trait TableRow: Clone + Default {
@@ -91,36 +94,41 @@ pub(super) struct CsvTable<R> {
 /// The file of a table.
 struct Sheet {
     path: PathBuf,
-    file: File,
-    /// Bytes of the whole rows written so far.
-    length: u64,
+    /// It holds whole rows only.
+    file: SummedFile<File>,
 }
 
 impl<R: TableRow> CsvTable<R> {
     /// A table with its header; one that is there already, of a run that goes on, keeps its rows.
-    pub(super) fn create(path: PathBuf, unit: Option<f64>) -> Result<Self, OutputError> {
+    pub(super) fn create(folder: &OutputFolder, name: &str, unit: Option<f64>) -> Result<Self, OutputError> {
+        Self::open(&folder.join(name), unit, folder.waiting())
+    }
+
+    fn open(path: &Path, unit: Option<f64>, waiting: &Arc<Waiting>) -> Result<Self, OutputError> {
         let mut row = R::default();
         let names = row.columns().into_iter().map(|(name, _)| name).chain(unit.map(|_| TIME_UNITS));
         let header = names.collect::<Vec<_>>().join(",") + "\n";
-        let sheet = Sheet::open(&path, &header)?;
+        let sheet = Sheet::open(path, &header)?;
         let header = header.len() as u64;
-        Ok(CsvTable {
-            writer: Writer::start(sheet).map_err(OutputError::at(&path))?,
-            header,
-            unit,
-            row: PhantomData,
-        })
+        Ok(CsvTable { writer: Writer::start(sheet, path, waiting)?, header, unit, row: PhantomData })
     }
 
-    /// Keeps how long it is, or cuts off what was written later.
+    /// Keeps how long it is and what is in it, or cuts off what was written later.
     ///
     /// # Errors
-    /// The disk is full or refuses; the table is shorter than it was.
+    /// The disk is full or refuses; the table is shorter than it was, or something else is in it.
     pub(super) fn remember(&mut self, memory: &mut Memory) -> Result<(), OutputError> {
         // What the checkpoint does not know was not there.
-        let mut length = if memory.is_taking_up() { self.header } else { self.length()? };
-        memory.keep("length", &mut length)?;
-        if memory.is_taking_up() { self.cut(length, memory.is_in_earnest()) } else { Ok(()) }
+        let mut sum = match memory.is_taking_up() {
+            true => FileSum { bytes: self.header, crc: 0 },
+            false => self.secured()?,
+        };
+        memory.keep("length", &mut sum.bytes)?;
+        let summed = memory.keep("sum", &mut sum.crc)?;
+        if !memory.is_taking_up() {
+            return Ok(());
+        }
+        self.cut((sum.bytes, summed.then_some(sum.crc)), memory.is_in_earnest())
     }
 
     /// Bytes of its header, which it has without rows.
@@ -128,23 +136,25 @@ impl<R: TableRow> CsvTable<R> {
         self.header
     }
 
-    /// Bytes that it has on the disk, with all that was appended.
+    /// What is in it with all that was appended, once that is on the disk.
     ///
     /// # Errors
     /// The disk is full or refuses.
-    pub(super) fn length(&mut self) -> Result<u64, OutputError> {
-        self.writer.ask(|sheet| {
-            sheet.file.sync_data().map_err(OutputError::at(&sheet.path))?;
-            Ok(sheet.length)
-        })
+    pub(super) fn secured(&mut self) -> Result<FileSum, OutputError> {
+        self.writer.ask(Sheet::secured)
     }
 
-    /// Cuts off what is beyond a length, or only looks whether it could, if not in earnest.
+    /// Cuts off what is beyond a length, or only looks whether it could, if not in earnest; `crc` is that of what stays,
+    /// where it is known.
     ///
     /// # Errors
-    /// The disk refuses; the table is shorter than that.
-    pub(super) fn cut(&mut self, length: u64, in_earnest: bool) -> Result<(), OutputError> {
-        self.writer.ask(move |sheet| sheet.cut(length, in_earnest))
+    /// The disk refuses; the table is shorter, or something else is in it.
+    pub(super) fn cut(
+        &mut self,
+        (bytes, crc): (u64, Option<u32>),
+        in_earnest: bool,
+    ) -> Result<(), OutputError> {
+        self.writer.ask(move |sheet| sheet.cut((bytes, crc), in_earnest))
     }
 
     /// Adds rows. They are complete when they are in the file, which is soon.
@@ -178,44 +188,68 @@ impl Sheet {
             .truncate(false)
             .open(path)
             .map_err(at(path))?;
-        let length = file.metadata().map_err(at(path))?.len();
-        let mut sheet = Sheet { path: path.to_path_buf(), file, length };
-        if length == 0 {
-            sheet.write(header.as_bytes())?;
-            return Ok(sheet);
+        let about = file.metadata().map_err(at(path))?;
+        let there = about.len();
+        let mut sheet = Sheet { path: path.to_path_buf(), file: SummedFile::new(file) };
+        if there == 0 {
+            return match sheet.write(header.as_bytes()) {
+                Ok(()) => Ok(sheet),
+                Err(error) => {
+                    // A table without its header is better not there; what is no file stays, such as a device.
+                    if about.is_file() {
+                        let _ = fs::remove_file(path);
+                    }
+                    Err(error)
+                }
+            };
         }
         let mut found = vec![0; header.len()];
-        let same = sheet.file.read_exact(&mut found).is_ok() && found == header.as_bytes();
+        let same = sheet.file.inner.read_exact(&mut found).is_ok() && found == header.as_bytes();
         if !same {
             let other = io::Error::new(io::ErrorKind::InvalidData, "it is a table with other columns");
             return Err(OutputError { path: path.to_path_buf(), source: other });
         }
-        sheet.file.seek(SeekFrom::End(0)).map_err(at(path))?;
+        sheet.take_in(there)?;
         Ok(sheet)
     }
 
-    fn cut(&mut self, length: u64, in_earnest: bool) -> Result<(), OutputError> {
-        if length > self.length {
-            let short = format!("it has {} bytes where the checkpoint has {length}", self.length);
-            let source = io::Error::new(io::ErrorKind::InvalidData, short);
-            return Err(OutputError { path: self.path.clone(), source });
+    /// Sums its first bytes, and goes to their end.
+    fn take_in(&mut self, bytes: u64) -> Result<FileSum, OutputError> {
+        let file = &mut self.file.inner;
+        let sum =
+            file.rewind().and_then(|()| FileSum::of(file, bytes)).map_err(OutputError::at(&self.path))?;
+        self.file.go_on_from(sum);
+        Ok(sum)
+    }
+
+    /// What is in it, once that is on the disk.
+    fn secured(&mut self) -> Result<FileSum, OutputError> {
+        self.file.inner.sync_data().map_err(OutputError::at(&self.path))?;
+        Ok(self.file.sum())
+    }
+
+    fn cut(&mut self, (bytes, crc): (u64, Option<u32>), in_earnest: bool) -> Result<(), OutputError> {
+        let all = self.file.sum();
+        let found = self.take_in(bytes)?;
+        let expected = FileSum { bytes, crc: crc.unwrap_or(found.crc) };
+        if found != expected {
+            let differs = io::Error::new(io::ErrorKind::InvalidData, expected.differs(found).to_string());
+            return Err(OutputError { path: self.path.clone(), source: differs });
         }
-        if !in_earnest {
-            return Ok(());
+        if in_earnest {
+            return self.file.inner.set_len(bytes).map_err(OutputError::at(&self.path));
         }
-        let cut = self.file.set_len(length).and_then(|()| self.file.seek(SeekFrom::End(0)));
-        cut.map_err(OutputError::at(&self.path))?;
-        self.length = length;
-        Ok(())
+        self.take_in(all.bytes).map(drop)
     }
 
     fn write(&mut self, bytes: &[u8]) -> Result<(), OutputError> {
+        let before = self.file.sum();
         if let Err(source) = self.file.write_all(bytes) {
             // Cutting off the half of a row that went in; the write's own error is the one to report.
-            let _ = self.file.set_len(self.length);
+            let _ = self.file.inner.set_len(before.bytes);
+            self.file.go_on_from(before);
             return Err(OutputError { path: self.path.clone(), source });
         }
-        self.length += bytes.len() as u64;
         Ok(())
     }
 }
@@ -294,7 +328,7 @@ mod tests {
     fn numbers_and_names_come_back_exactly() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("table.csv");
-        let mut table = CsvTable::create(path.clone(), None).unwrap();
+        let mut table = CsvTable::open(&path, None, &Arc::default()).unwrap();
         assert_eq!(fs::read_to_string(&path).unwrap(), "time,body\n");
         table.append([row(0.1 + 0.2, "a"), row(-1e-300, "ball, \"left\"")]).unwrap();
         table.finish().unwrap();
@@ -329,7 +363,7 @@ mod tests {
     fn a_unit_of_time_adds_a_column_that_readers_may_leave_out() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("table.csv");
-        let mut table = CsvTable::create(path.clone(), Some(0.25)).unwrap();
+        let mut table = CsvTable::open(&path, Some(0.25), &Arc::default()).unwrap();
         table.append([row(0.5, "a"), row(1.0, "b, c")]).unwrap();
         table.finish().unwrap();
         assert_eq!(fs::read_to_string(&path).unwrap(), "time,body,time_units\n0.5,a,2.0\n1.0,\"b, c\",4.0\n");
@@ -341,9 +375,10 @@ mod tests {
     fn a_disk_that_gets_full_is_an_error_at_the_end_at_the_latest() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("table.csv");
-        let sheet = Sheet { path: path.clone(), file: File::create("/dev/full").unwrap(), length: 0 };
+        let full = SummedFile::new(File::create("/dev/full").unwrap());
+        let sheet = Sheet { path: path.clone(), file: full };
         let mut table = CsvTable::<FieldPlace> {
-            writer: Writer::start(sheet).unwrap(),
+            writer: Writer::start(sheet, &path, &Arc::default()).unwrap(),
             header: 0,
             unit: None,
             row: PhantomData,
@@ -355,7 +390,8 @@ mod tests {
     #[test]
     #[cfg(target_os = "linux")]
     fn a_full_disk_is_an_error_that_names_the_table() {
-        let error = CsvTable::<FieldPlace>::create("/dev/full".into(), None).err().unwrap();
+        let error =
+            CsvTable::<FieldPlace>::open(Path::new("/dev/full"), None, &Arc::default()).err().unwrap();
         assert!(error.to_string().contains("/dev/full"), "{error}");
         assert_eq!(error.source.kind(), io::ErrorKind::StorageFull);
     }

@@ -1,9 +1,13 @@
 //! A thread that writes, so that the run goes on while files grow.
 
 use super::file::OutputError;
+use super::waiting::{LOOK_UP, Waiting};
 use std::io;
-use std::sync::mpsc::{Receiver, Sender, channel};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::thread::{Builder, JoinHandle};
+use std::time::Instant;
 
 /// Bytes that may wait: what is handed over next is made once less than this is waiting, so that neither many small
 /// records nor two large ones pile up in memory.
@@ -11,23 +15,29 @@ const ROOM: usize = 64 << 20;
 
 /// Writes what it is handed, in that order, on a thread of its own that owns the files `F`.
 ///
-/// The first error ends it: it is returned by the next call, and nothing that was handed over later is written.
+/// The first error ends it: it is returned by the next call, and nothing that was handed over later is written. A disk
+/// that takes nothing is waited for as [`Waiting`] says; then the thread is left to itself.
 pub struct Writer<F> {
     tasks: Option<Sender<(usize, WriterTask<F>)>>,
-    done: Receiver<(usize, Result<(), OutputError>)>,
+    done: Receiver<Done>,
     /// Bytes handed over and not yet written.
-    waiting: usize,
+    queued: usize,
     thread: Option<JoinHandle<()>>,
+    /// The file or the folder that it writes.
+    about: PathBuf,
+    waiting: Arc<Waiting>,
 }
 
+/// Bytes of what was handed over, and how writing it went.
+type Done = (usize, Result<(), OutputError>);
 type WriterTask<F> = Box<dyn FnOnce(&mut F) -> Result<(), OutputError> + Send>;
 
 impl<F: Send + 'static> Writer<F> {
-    /// Starts the thread.
+    /// Starts the thread, which writes a file or the files of a folder.
     ///
     /// # Errors
     /// The system gives no thread.
-    pub fn start(mut files: F) -> io::Result<Self> {
+    pub fn start(mut files: F, about: &Path, waiting: &Arc<Waiting>) -> Result<Self, OutputError> {
         let (tasks, handed_over) = channel::<(usize, WriterTask<F>)>();
         let (report, done) = channel();
         let thread = Builder::new().name("writer".to_string()).spawn(move || {
@@ -40,16 +50,29 @@ impl<F: Send + 'static> Writer<F> {
                     return;
                 }
             }
-        })?;
-        Ok(Writer { tasks: Some(tasks), done, waiting: 0, thread: Some(thread) })
+        });
+        Ok(Writer {
+            tasks: Some(tasks),
+            done,
+            queued: 0,
+            thread: Some(thread.map_err(OutputError::at(about))?),
+            about: about.to_path_buf(),
+            waiting: waiting.clone(),
+        })
     }
 
     /// Waits until there is room for another record.
     ///
     /// # Errors
-    /// Something that was handed over before could not be written.
+    /// Something that was handed over before could not be written, or the disk takes nothing and the run is to stop; so
+    /// for the others.
     pub fn make_room(&mut self) -> Result<(), OutputError> {
-        self.wait_until(|waiting| waiting < ROOM)
+        while self.queued >= ROOM {
+            if self.next_done()?.is_none() {
+                return Ok(());
+            }
+        }
+        self.take_note().map(drop)
     }
 
     /// Hands over what is to be written, and how many bytes it keeps in memory until then.
@@ -61,7 +84,7 @@ impl<F: Send + 'static> Writer<F> {
         let Some(tasks) = &self.tasks else { return };
         // A writer that failed takes nothing more; the next look at it says why.
         if tasks.send((bytes, Box::new(task))).is_ok() {
-            self.waiting += bytes;
+            self.queued += bytes;
         }
     }
 
@@ -79,10 +102,23 @@ impl<F: Send + 'static> Writer<F> {
             let _ = answer.send(question(files)?);
             Ok(())
         });
-        answered.recv().map_err(|_| {
-            let ended = || OutputError { path: "writer".into(), source: io::ErrorKind::BrokenPipe.into() };
-            self.wait_until(|_| false).err().unwrap_or_else(ended)
-        })
+        let mut since = Instant::now();
+        loop {
+            match answered.recv_timeout(LOOK_UP) {
+                Ok(answer) => return Ok(answer),
+                Err(RecvTimeoutError::Timeout) => {
+                    if self.take_note()? {
+                        since = Instant::now();
+                    }
+                    self.look_up(since)?;
+                }
+                // The thread has failed, and said why.
+                Err(RecvTimeoutError::Disconnected) => {
+                    while self.next_done()?.is_some() {}
+                    return Err(OutputError::at(&self.about)(io::ErrorKind::BrokenPipe.into()));
+                }
+            }
+        }
     }
 
     /// Waits until everything is written.
@@ -91,25 +127,49 @@ impl<F: Send + 'static> Writer<F> {
     /// Something could not be written.
     pub fn finish(&mut self) -> Result<(), OutputError> {
         self.tasks = None;
-        let result = self.wait_until(|_| false);
+        while self.next_done()?.is_some() {}
         self.end();
-        result
+        Ok(())
     }
 
-    /// Takes note of what was written, until so few bytes wait or nothing will be written any more.
-    fn wait_until(&mut self, few: impl Fn(usize) -> bool) -> Result<(), OutputError> {
-        loop {
-            let report = if few(self.waiting) { self.done.try_recv().ok() } else { self.done.recv().ok() };
-            let Some((bytes, result)) = report else { return Ok(()) };
-            self.waiting -= bytes;
+    /// Takes note of what was written; true if something was.
+    fn take_note(&mut self) -> Result<bool, OutputError> {
+        let mut noted = false;
+        while let Ok((bytes, result)) = self.done.try_recv() {
+            (self.queued, noted) = (self.queued - bytes, true);
             result?;
         }
+        Ok(noted)
     }
 }
 
 impl<F> Writer<F> {
+    /// Waits until one more task is done; `None` once there will be none.
+    fn next_done(&mut self) -> Result<Option<()>, OutputError> {
+        let since = Instant::now();
+        loop {
+            match self.done.recv_timeout(LOOK_UP) {
+                Ok((bytes, result)) => {
+                    self.queued -= bytes;
+                    return result.map(Some);
+                }
+                Err(RecvTimeoutError::Disconnected) => return Ok(None),
+                Err(RecvTimeoutError::Timeout) => self.look_up(since)?,
+            }
+        }
+    }
+
+    fn look_up(&mut self, since: Instant) -> Result<(), OutputError> {
+        self.waiting.look_up(&self.about, since).inspect_err(|_| {
+            // Nobody waits for it any more; if the disk comes back, what was handed over is written.
+            (self.tasks, self.thread) = (None, None);
+        })
+    }
+
     fn end(&mut self) {
         self.tasks = None;
+        // What fails now is what failed before, or has nobody to be told to.
+        while self.thread.is_some() && matches!(self.next_done(), Ok(Some(())) | Err(_)) {}
         if let Some(Err(panic)) = self.thread.take().map(JoinHandle::join)
             && !std::thread::panicking()
         {
@@ -128,15 +188,16 @@ impl<F> Drop for Writer<F> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::sync::mpsc::RecvTimeoutError;
-    use std::sync::{Arc, Mutex};
+    use crate::observe::waiting::Patience;
+    use std::sync::Mutex;
+    use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
     use std::time::Duration;
 
     type Log = Arc<Mutex<Vec<usize>>>;
 
     fn writer() -> (Writer<Log>, Log) {
         let log = Log::default();
-        (Writer::start(log.clone()).unwrap(), log)
+        (Writer::start(log.clone(), Path::new("log"), &Arc::default()).unwrap(), log)
     }
 
     fn note(number: usize) -> impl FnOnce(&mut Log) -> Result<(), OutputError> {
@@ -214,5 +275,51 @@ mod tests {
         watched.recv().unwrap();
         waiter.join().unwrap();
         assert_eq!(*log.lock().unwrap(), [7], "dropping a writer writes the rest");
+    }
+
+    /// A disk that takes nothing: the user is told once, a run goes on waiting, and one that is to stop does.
+    #[test]
+    fn a_disk_that_stands_still_is_told_of_once_and_waited_for_until_the_run_is_to_stop() {
+        static TOLD: AtomicUsize = AtomicUsize::new(0);
+        let patience = Patience {
+            told_after: Duration::from_millis(60),
+            given_up_after: Duration::from_millis(120),
+            tell: |path, waited| {
+                assert!(path == Path::new("slow") && waited >= Duration::from_millis(60));
+                TOLD.fetch_add(1, Ordering::Relaxed);
+            },
+        };
+        let stop = Arc::new(AtomicBool::new(false));
+        let waiting = Arc::new(Waiting::new(patience, stop.clone(), None));
+        let mut writers = [(), ()].map(|()| {
+            let mut writer = Writer::start((), Path::new("slow"), &waiting).unwrap();
+            let (hold, held) = channel::<()>();
+            writer.hand_over(ROOM, move |()| {
+                // For ever.
+                let _ = held.recv();
+                Ok(())
+            });
+            (writer, hold)
+        });
+        let begun = Instant::now();
+        let stopper = std::thread::spawn(move || {
+            std::thread::sleep(Duration::from_millis(300));
+            stop.store(true, Ordering::Relaxed);
+        });
+        let error = writers[0].0.make_room().unwrap_err();
+        stopper.join().unwrap();
+        assert_eq!(error.source.kind(), io::ErrorKind::TimedOut);
+        assert!(
+            error.to_string().contains("slow") && begun.elapsed() >= Duration::from_millis(300),
+            "{error}"
+        );
+        // The other does not wait as long again, and leaving does not wait at all.
+        let error = writers[1].0.ask(|()| Ok(())).unwrap_err();
+        assert_eq!(error.source.kind(), io::ErrorKind::TimedOut);
+        let last = Instant::now();
+        let holds: Vec<_> = writers.into_iter().map(|(_, hold)| hold).collect();
+        assert!(last.elapsed() < Duration::from_millis(100));
+        assert_eq!(TOLD.load(Ordering::Relaxed), 1);
+        drop(holds);
     }
 }

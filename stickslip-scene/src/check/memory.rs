@@ -14,6 +14,9 @@ pub trait Footprint {
 
     /// Memory of particles and grid [B]; `particles` counts those of each body.
     fn memory(&self, scene: &Scene, particles: &[usize]) -> f64;
+
+    /// Memory of the copy of the particles that there is while a checkpoint is written [B].
+    fn copy(&self, scene: &Scene, particles: &[usize]) -> f64;
 }
 
 /// Particles of a rigid body without bounds around all deformable bodies, or 0 for one with bounds. Those that are not

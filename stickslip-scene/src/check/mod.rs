@@ -83,6 +83,9 @@ mod tests {
         fn memory(&self, _scene: &Scene, particles: &[usize]) -> f64 {
             300.0 * particles.iter().sum::<usize>() as f64
         }
+        fn copy(&self, _scene: &Scene, particles: &[usize]) -> f64 {
+            200.0 * particles.iter().sum::<usize>() as f64
+        }
     }
 
     /// What the run will be with that engine.

@@ -50,6 +50,8 @@ pub struct Report {
     pub particles: usize,
     /// Memory of particles and grid, estimated [bytes].
     pub memory: f64,
+    /// Memory beside it while a checkpoint is written: a copy of the particles, estimated [bytes].
+    pub checkpoint_memory: f64,
     /// Simulated time at the end [s].
     pub end: f64,
     /// Time step at the start [s].
@@ -126,6 +128,7 @@ pub fn report(scene: &Scene, footprint: &dyn Footprint) -> Result<Report, Proble
         materials: of_materials(scene),
         particles: counts.iter().sum(),
         memory: footprint.memory(scene, &counts),
+        checkpoint_memory: footprint.copy(scene, &counts),
         end: scene.time.end,
         time_step,
         // A last step that is only round-off is none.
@@ -151,7 +154,8 @@ impl Report {
     /// The same where so much memory is available [bytes]: with a warning if the run does not fit.
     pub fn in_memory(mut self, available: f64) -> Self {
         let axes = self.dimension.axes();
-        self.warnings.extend(memory::warning(self.memory, available, self.cell, axes));
+        let needed = self.memory + self.checkpoint_memory;
+        self.warnings.extend(memory::warning(needed, available, self.cell, axes));
         self
     }
 
@@ -314,7 +318,7 @@ mod tests {
     #[test]
     fn a_run_larger_than_the_machine_is_a_warning() {
         let report = || report(&incline(4.0)).expect("no problem");
-        let needed = report().memory;
+        let needed = report().memory + report().checkpoint_memory;
         assert_eq!(report().in_memory(1.01 * needed), report());
         let warnings = report().in_memory(0.5 * needed).warnings;
         let last = warnings.last().expect("too large").to_string();

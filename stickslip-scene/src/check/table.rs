@@ -31,7 +31,8 @@ impl Display for Report {
         }
         writeln!(f)?;
         writeln!(f, "particles    {}", self.particles)?;
-        writeln!(f, "memory       {} (estimated)", bytes(self.memory))?;
+        let [memory, copy] = [self.memory, self.checkpoint_memory].map(bytes);
+        writeln!(f, "memory       {memory} (estimated), and {copy} more while a checkpoint is written")?;
         writeln!(
             f,
             "time step    {} s, {} steps to {} s",

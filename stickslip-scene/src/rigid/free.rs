@@ -78,12 +78,12 @@ impl FreeMotion {
 
     /// The turn Q since the start.
     pub fn orientation(&self) -> Matrix<f64> {
-        let [w, x, y, z] = self.state.quaternion;
-        Matrix([
-            [w * w + x * x - y * y - z * z, 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
-            [2.0 * (x * y + w * z), w * w - x * x + y * y - z * z, 2.0 * (y * z - w * x)],
-            [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), w * w - x * x - y * y + z * z],
-        ])
+        turn_of(self.state.quaternion)
+    }
+
+    /// Turns it to where it is after this rotation since the start.
+    pub(super) fn put(&mut self, quaternion: [f64; 4]) {
+        self.state.quaternion = quaternion;
     }
 
     /// Tensor of inertia now, Q I_0 Q^T [kg m^2].
@@ -144,6 +144,30 @@ impl FreeMotion {
     }
 }
 
+/// The rotation of a unit quaternion, real part first.
+pub(super) fn turn_of([w, x, y, z]: [f64; 4]) -> Matrix<f64> {
+    Matrix([
+        [w * w + x * x - y * y - z * z, 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
+        [2.0 * (x * y + w * z), w * w - x * x + y * y - z * z, 2.0 * (y * z - w * x)],
+        [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), w * w - x * x - y * y + z * z],
+    ])
+}
+
+/// The unit quaternion of a rotation that is one to round-off (Shepperd 1978, J. Guid. Control 1, 223-224).
+pub(super) fn quaternion_of(turn: &Matrix<f64>) -> [f64; 4] {
+    let [[xx, xy, xz], [yx, yy, yz], [zx, zy, zz]] = turn.0;
+    // Four times the products of its parts: the row of the largest part has the least round-off.
+    let products = [
+        [1.0 + xx + yy + zz, zy - yz, xz - zx, yx - xy],
+        [zy - yz, 1.0 + xx - yy - zz, xy + yx, xz + zx],
+        [xz - zx, xy + yx, 1.0 - xx + yy - zz, yz + zy],
+        [yx - xy, xz + zx, yz + zy, 1.0 - xx - yy + zz],
+    ];
+    let largest = (0..4).max_by(|&a, &b| products[a][a].total_cmp(&products[b][b])).unwrap_or(0);
+    let length = products[largest].iter().map(|q| q * q).sum::<f64>().sqrt();
+    products[largest].map(|q| q / length)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -173,6 +197,21 @@ mod tests {
             .flat_map(|i| (0..3).map(move |j| (i, j)))
             .map(|(i, j)| (product.0[i][j] - Matrix::<f64>::IDENTITY.0[i][j]).abs());
         assert!(off.fold(0.0, f64::max) < 1e-14);
+    }
+
+    /// Rotations by all angles about axes of all kinds, rounded to single precision, come back to that.
+    #[test]
+    fn a_rotation_has_its_quaternion() {
+        for axis in [[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0], [0.6, -0.48, 0.64]] {
+            for angle in (0..16).map(|i| std::f64::consts::TAU * f64::from(i) / 16.0) {
+                let (w, s) = ((0.5 * angle).cos(), (0.5 * angle).sin());
+                let turn = turn_of([w, s * axis[0], s * axis[1], s * axis[2]]);
+                let rounded = Matrix::from_fn(|i, j| f64::from(turn.0[i][j] as f32));
+                let found = turn_of(quaternion_of(&rounded));
+                let off = (0..9).map(|k| (found.0[k / 3][k % 3] - turn.0[k / 3][k % 3]).abs());
+                assert!(off.fold(0.0, f64::max) < 2e-7, "{axis:?} {angle}");
+            }
+        }
     }
 
     /// The nutation of a symmetric top: W about the axis of symmetry stays, and the other turns at (I_3/I_1 - 1) W_3.

@@ -4,6 +4,7 @@ mod free;
 mod longest_step;
 
 pub use free::{FreeMotion, FreeState, MassProperties};
+use free::{quaternion_of, turn_of};
 pub use longest_step::longest_step;
 
 use crate::outside::OutsideFault;
@@ -192,6 +193,25 @@ impl RigidMotion {
         if let (Drive::Free(free), Some(saved)) = (&mut self.drive, state.free) {
             free.state = saved;
         }
+    }
+
+    /// Puts it where it has turned so, and where a point of it is now that was at `began` before anything moved [m]. The
+    /// turn may be one to single precision only.
+    pub fn put(&mut self, orientation: Matrix<f64>, [began, now]: [[f64; 3]; 2]) {
+        let quaternion = quaternion_of(&orientation);
+        self.orientation = turn_of(quaternion);
+        let arm = self.orientation.times(std::array::from_fn(|i| began[i] - self.start[i]));
+        self.center = std::array::from_fn(|i| now[i] - arm[i]);
+        if let Drive::Free(free) = &mut self.drive {
+            free.put(quaternion);
+        }
+    }
+
+    /// Gives a free body the momenta that it has with a velocity of its centre [m/s] and an angular velocity [rad/s].
+    pub fn set_velocities(&mut self, [velocity, spin]: [[f64; 3]; 2]) {
+        let Some(free) = self.as_free() else { return };
+        let momenta = [velocity.map(|v| free.mass * v), free.inertia().times(spin)];
+        self.set_momenta(momenta, 0.0);
     }
 
     /// Brings it to rest where it is.

@@ -99,10 +99,12 @@ pub struct Scene {
 }
 
 /// The state of another run, from which bodies of the same names begin.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Start {
-    /// Its folder of results, or a checkpoint.
+    /// Its folder of results, a checkpoint, or a snapshot.
     pub from: PathBuf,
+    /// Time of the snapshot in the folder [s]; `None`: its newest checkpoint.
+    pub at: Option<f64>,
     /// What becomes of the velocities there.
     pub velocities: StartVelocities,
 }

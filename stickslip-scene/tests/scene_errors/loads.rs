@@ -373,4 +373,7 @@ impl checks::Footprint for NoMemory {
     fn memory(&self, _: &scene::Scene, _: &[usize]) -> f64 {
         0.0
     }
+    fn copy(&self, _: &scene::Scene, _: &[usize]) -> f64 {
+        0.0
+    }
 }

@@ -3,6 +3,30 @@
 use crate::{MINIMAL, check, message};
 
 #[test]
+fn a_start_at_a_time_that_is_none_or_of_a_file() {
+    check(
+        MINIMAL,
+        &[
+            (
+                "[time]",
+                "[start]\nfrom = \"packing.results\"\nat = -1\n[time]",
+                "7:6: start.at: found -1; allowed: a time [s] of 0 or more, like \"0.3 s\"",
+            ),
+            (
+                "[time]",
+                "[start]\nfrom = \"packing.results\"\nat = \"1 m\"\n[time]",
+                "7:6: start.at: found \"1 m\", a length [m]; allowed: a time [s], like \"2.5 ms\"",
+            ),
+            (
+                "[time]",
+                "[start]\nfrom = \"packing.results/particles/00003.vtu\"\nat = 1\n[time]",
+                "7:6: start.at: found 1; allowed: a time beside a folder of results: `from` names one of its files",
+            ),
+        ],
+    );
+}
+
+#[test]
 fn values_out_of_range() {
     check(
         MINIMAL,

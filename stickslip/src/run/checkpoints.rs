@@ -86,6 +86,18 @@ pub enum ResumeError {
         /// What does not fit.
         problem: RestoreError,
     },
+    /// The scene begins from a snapshot that has not all that it needs.
+    #[error("the scene cannot begin from {}: it lacks {}", path.display(), missing.join(", "))]
+    #[diagnostic(help(
+        "record that run with [outputs.snapshots] that leave out nothing, or begin from one of its checkpoints, which \
+         have everything"
+    ))]
+    Lacks {
+        /// The snapshot.
+        path: PathBuf,
+        /// What it lacks, and which key left it out.
+        missing: Vec<String>,
+    },
     /// The scene begins from the folder that takes its results.
     #[error("the scene begins from {}, and would write its results there", path.display())]
     #[diagnostic(help("write to another folder"))]
@@ -114,8 +126,6 @@ pub(super) struct Checkpoints {
     scene: Value,
     writer: Writer<()>,
     trouble: Arc<Mutex<Option<OutputError>>>,
-    /// Whether the folder for them is made.
-    prepared: bool,
 }
 
 impl Checkpoints {
@@ -125,8 +135,7 @@ impl Checkpoints {
         options: &Checkpointing,
         view: &dyn View,
     ) -> Result<Self, OutputError> {
-        let writer =
-            Writer::start(()).map_err(|source| OutputError { path: folder.path().to_path_buf(), source })?;
+        let writer = Writer::start((), &Checkpoint::folder(folder.path()), folder.waiting())?;
         let mut checkpoints = Checkpoints {
             options: options.clone(),
             schedule: Schedule::every(scene.outputs.checkpoints.unwrap_or(f64::INFINITY)),
@@ -135,7 +144,6 @@ impl Checkpoints {
             scene: record,
             writer,
             trouble: Arc::default(),
-            prepared: false,
         };
         checkpoints.made(view.time());
         Ok(checkpoints)
@@ -154,18 +162,26 @@ impl Checkpoints {
 
     /// Saves the present state, and what is remembered beside it. Of a simulation that cannot be saved there is none.
     /// One that cannot be written does not end the run, see [`Checkpoints::trouble`].
-    pub(super) fn save(&mut self, simulation: &dyn Simulation, memory: Memory) -> Option<Arc<Checkpoint>> {
+    ///
+    /// # Errors
+    /// The folder is not where it was, or the disk takes nothing and the run is to stop.
+    pub(super) fn save(
+        &mut self,
+        simulation: &dyn Simulation,
+        memory: Memory,
+    ) -> Result<Option<Arc<Checkpoint>>, OutputError> {
+        self.folder.is_in_place()?;
         // One at a time: each is a copy of the state in memory.
-        self.finish();
+        self.finish()?;
         self.made(simulation.time());
         let path = self.path(simulation);
-        let checkpoint = Arc::new(Checkpoint::new(&self.scene, simulation.save()?, memory));
+        let Some(state) = simulation.save() else { return Ok(None) };
+        let checkpoint = Arc::new(Checkpoint::new(&self.scene, state, memory));
         let written = Arc::clone(&checkpoint);
         let (folder, keep) = (self.folder.clone(), self.options.keep.max(1));
-        let (trouble, first) = (Arc::clone(&self.trouble), !std::mem::replace(&mut self.prepared, true));
+        let trouble = Arc::clone(&self.trouble);
         self.writer.hand_over(0, move |()| {
-            let prepared = if first { Checkpoint::prepare(&folder) } else { Ok(()) };
-            let done = prepared
+            let done = Checkpoint::prepare(&folder)
                 .and_then(|()| written.write(&path))
                 .and_then(|()| Checkpoint::keep_newest(folder.path(), keep));
             if let Err(error) = done {
@@ -173,13 +189,15 @@ impl Checkpoints {
             }
             Ok(())
         });
-        Some(checkpoint)
+        Ok(Some(checkpoint))
     }
 
-    /// Waits until the last one is on the disk.
-    pub(super) fn finish(&mut self) {
-        // Tasks tell their errors by `trouble`.
-        let _ = self.writer.ask(|()| Ok(()));
+    /// Waits until the last one is on the disk; whether it could be written, [`Checkpoints::trouble`] says.
+    ///
+    /// # Errors
+    /// The disk takes nothing, and the run is to stop.
+    pub(super) fn finish(&mut self) -> Result<(), OutputError> {
+        self.writer.ask(|()| Ok(()))
     }
 
     /// Why the last one could not be written, told once.
@@ -215,6 +233,7 @@ const FREE: &[&str] = &[
     "health",
     "domain.leaving",
     "start.from",
+    "start.at",
     "time.end",
     "time.energy_drift",
 ];
@@ -258,6 +277,8 @@ fn first_difference<'a>(key: String, then: &'a Value, now: &'a Value) -> Option<
             names.into_iter().find_map(|name| match (a.get(name), b.get(name)) {
                 (Some(then), Some(now)) => first_difference(place(name), then, now),
                 _ if FREE.contains(&place(name).as_str()) => None,
+                // What only one version of the program knows, and the scene does not ask for.
+                (None, Some(value)) | (Some(value), None) if says_nothing(value) => None,
                 (then, now) => Some((place(name), then, now)),
             })
         }
@@ -281,6 +302,16 @@ fn first_difference<'a>(key: String, then: &'a Value, now: &'a Value) -> Option<
     }
 }
 
+/// Whether a value stands for what is not there.
+fn says_nothing(value: &Value) -> bool {
+    match value {
+        Value::Null | Value::Bool(false) => true,
+        Value::Array(list) => list.is_empty(),
+        Value::Object(map) => map.values().all(says_nothing),
+        _ => false,
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -300,5 +331,7 @@ mod tests {
         assert_eq!(with("/bodies/0/name", json!("b")), Some("bodies[0].name".to_string()));
         assert_eq!(with("/bodies", json!([])), Some("bodies[\"a\"]".to_string()));
         assert_eq!(with("/bodies", json!([1, 2])), Some("bodies[\"a\"]".to_string()));
+        assert_eq!(with("/time", json!({"courant": 0.4, "later": null, "keys": {"of": []}})), None);
+        assert_eq!(with("/time", json!({"courant": 0.4, "later": 1})), Some("time.later".to_string()));
     }
 }

@@ -4,6 +4,7 @@ mod checkpoints;
 mod clock;
 mod contact_watch;
 mod error;
+mod origin;
 mod start;
 mod summary;
 mod verdict;
@@ -13,14 +14,15 @@ pub use checkpoints::{Checkpointing, ResumeError, same_physics, unfinished};
 pub use clock::Progress;
 pub use error::RunError;
 pub use start::{CarriedBodies, begin};
+use start::{Remembered, carry};
 pub use summary::{ReferenceResult, Summary};
 pub use widest::{WidestContact, WidestContacts};
 
 use crate::door::{Ledger, Simulation, View};
 use crate::march::{FailedStep, March, MarchEnd, Pace};
 use crate::observe::{
-    Checkpoint, Manifest, Memory, Observer, OutputError, OutputFolder, Recorder, SceneSource, Status,
-    state_sum,
+    Checkpoint, Manifest, Memory, Observer, OutputError, OutputFolder, Patience, Recorder, SceneSource,
+    Status, Waiting, Writer, state_sum,
 };
 use crate::scene::{HealthCheck, Scene};
 use checkpoints::Checkpoints;
@@ -48,6 +50,8 @@ pub struct RunOptions {
     pub checkpoints: Checkpointing,
     /// Wall time after which the run stops with a checkpoint; as long as it takes without it.
     pub max_time: Option<Duration>,
+    /// How long the run waits for a disk that takes nothing.
+    pub patience: Patience,
 }
 
 impl RunOptions {
@@ -61,7 +65,14 @@ impl RunOptions {
             source: None,
             checkpoints: Checkpointing::default(),
             max_time: None,
+            patience: Patience::default(),
         }
+    }
+
+    /// The folder with how long its writers wait in a run that begins now.
+    fn patient(&self, folder: OutputFolder) -> OutputFolder {
+        let until = self.max_time.and_then(|longest| Instant::now().checked_add(longest));
+        folder.with_patience(Waiting::new(self.patience.clone(), self.stop.clone(), until))
     }
 }
 
@@ -100,9 +111,13 @@ pub fn run_with(
     if let Some(start) = scene.start.as_ref().filter(|start| is_within(&start.from, &options.out)) {
         return Err(ResumeError::Itself { path: start.from.clone() }.into());
     }
-    let news = begin(scene, simulation)?.iter().map(CarriedBodies::to_string).collect();
-    let folder = OutputFolder::prepare(&options.out)?;
-    let beginning = Beginning { news, ..Beginning::default() };
+    let (carried, remembered) = carry(scene, simulation)?.unzip();
+    let folder = options.patient(OutputFolder::prepare(&options.out)?);
+    let beginning = Beginning {
+        news: carried.iter().map(CarriedBodies::to_string).collect(),
+        remembered: remembered.flatten(),
+        ..Beginning::default()
+    };
     drive(scene, simulation, (options, folder), (observers, beginning), progress)
 }
 
@@ -125,7 +140,7 @@ pub fn resume(
     options: &RunOptions,
     progress: &mut dyn FnMut(&Progress),
 ) -> Result<Summary, RunError> {
-    let folder = OutputFolder::reopen(&options.out)?;
+    let folder = options.patient(OutputFolder::reopen(&options.out)?);
     // A power cut may have taken the record; the checkpoint holds the scene, too.
     let before = Manifest::read(&options.out);
     if Checkpoint::list(&options.out).map_err(ResumeError::from)?.is_empty() {
@@ -153,7 +168,7 @@ pub fn resume(
     let damaged = damaged.into_iter().map(|error| error.path).collect();
     let (steps, end, from) = (simulation.steps(), scene.time.end, path.display());
     let news = vec![format!("goes on at t = {time} s, step {steps}, to t = {end} s, from {from}")];
-    let beginning = Beginning { memory: Some(memory), resumed, damaged, news, notes };
+    let beginning = Beginning { memory: Some(memory), resumed, damaged, news, notes, remembered: None };
     drive(scene, simulation, (options, folder), (&mut [], beginning), progress)
 }
 
@@ -170,6 +185,8 @@ struct Beginning {
     news: Vec<String>,
     /// What the user should know of the checkpoints.
     notes: Vec<String>,
+    /// What another run remembered of the bodies that begin as it left them.
+    remembered: Option<Remembered>,
 }
 
 fn drive(
@@ -187,6 +204,9 @@ fn drive(
         last_step: 0.0,
         pace: Pace::default(),
     };
+    if let Some(remembered) = &mut beginning.remembered {
+        kept.verdict.carry(scene, remembered).map_err(ResumeError::Misfit)?;
+    }
     if let Some(memory) = &mut beginning.memory {
         kept.remember(simulation, memory).map_err(ResumeError::Misfit)?;
         Recorder::find(&folder, memory).map_err(ResumeError::Misfit)?;
@@ -232,6 +252,12 @@ fn drive(
     manifest.state_sum = outcome.as_ref().ok().and_then(|(_, sum)| sum.clone());
     manifest.relaxation = simulation.relaxation();
     manifest.warnings = kept.verdict.warnings().to_vec();
+    // Whatever went wrong with files: if the folder is not where it was, that is why.
+    let in_place = folder.is_in_place();
+    let outcome = match (outcome, in_place) {
+        (Err(RunError::Output(_)) | Ok(_), Err(moved)) => return Err(moved.into()),
+        (outcome, _) => outcome,
+    };
     manifest.looks = kept.verdict.looks();
     let stopped = kept
         .verdict
@@ -239,12 +265,20 @@ fn drive(
         .map(|warning| RunError::Unhealthy { warning: Box::new(warning.clone()), time: simulation.time() });
     let ended = outcome.and_then(|_| stopped.map_or(Ok(()), Err));
     manifest.error = ended.as_ref().err().map(RunError::to_string);
-    let saved = manifest.write(&folder);
+    manifest.tables = folder.tables();
+    let saved = record(&manifest, &folder);
     ended?;
     saved?;
     let contacts = kept.contact_watch.widest(scene, simulation);
     let energies = Energies { start: kept.start, scale: kept.verdict.energy_scale() };
     Ok(Summary::new(scene, simulation, energies, (manifest, contacts)))
+}
+
+/// Writes the record of a run that has ended, by a thread that waits no longer than the others.
+fn record(manifest: &Manifest, folder: &OutputFolder) -> Result<(), OutputError> {
+    let owned = (manifest.clone(), folder.clone());
+    let mut writer = Writer::start(owned, &folder.join(Manifest::FILE), folder.waiting())?;
+    writer.ask(|(manifest, folder)| manifest.write(folder))
 }
 
 /// What a run remembers beside the state of the simulation and its outputs.
@@ -385,7 +419,7 @@ impl Watched<'_> {
         notes.extend(kept.verdict.conclude(scene, *simulation, march.pace().part()));
         recorder.record_present(*simulation)?;
         recorder.conclude()?;
-        checkpoints.finish();
+        checkpoints.finish()?;
         let trouble = checkpoints.trouble();
         notes.extend(trouble.and_then(|error| kept.verdict.note_checkpoint(scene, *simulation, &error)));
         let status = if kept.verdict.stop().is_some() { Status::Stopped } else { status };
@@ -405,5 +439,5 @@ fn save(
         before.map_or_else(|| Memory::keeping(&path), |before| Memory::keeping_beside(&path, before));
     kept.remember(simulation, &mut memory)?;
     recorder.remember(simulation, &mut memory)?;
-    Ok(checkpoints.save(simulation, memory))
+    checkpoints.save(simulation, memory)
 }

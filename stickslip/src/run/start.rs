@@ -1,9 +1,10 @@
 //! Scenes whose bodies begin as another run left them.
 
 use super::ResumeError;
+use super::origin::Origin;
 use crate::door::Simulation;
-use crate::observe::{Checkpoint, ReadError};
-use crate::scene::{BodyMotion, Scene, Start};
+use crate::observe::Memory;
+use crate::scene::{BodyMotion, Scene};
 use std::collections::HashSet;
 use std::fmt::{self, Display, Formatter};
 use std::path::PathBuf;
@@ -11,8 +12,10 @@ use std::path::PathBuf;
 /// Which bodies of a scene begin as another run left them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CarriedBodies {
-    /// The checkpoint from which they come.
+    /// The checkpoint or the snapshot from which they come.
     pub from: PathBuf,
+    /// Whether it is a snapshot, which is rounded and knows less.
+    pub rounded: bool,
     /// Simulated time there [s].
     pub time: f64,
     /// How many bodies begin so, and how many the scene has.
@@ -32,12 +35,24 @@ pub struct CarriedBodies {
 /// # Errors
 /// The other run cannot be read, or has other bodies of these names; then nothing is changed.
 pub fn begin(scene: &Scene, simulation: &mut dyn Simulation) -> Result<Option<CarriedBodies>, ResumeError> {
+    Ok(carry(scene, simulation)?.map(|(carried, _)| carried))
+}
+
+/// What another run remembered of its bodies, and their names there.
+pub(super) type Remembered = (Memory, Vec<String>);
+
+/// [`begin`], with what the other run remembered, where that is known.
+pub(super) fn carry(
+    scene: &Scene,
+    simulation: &mut dyn Simulation,
+) -> Result<Option<(CarriedBodies, Option<Remembered>)>, ResumeError> {
     let Some(start) = scene.start.as_ref().filter(|_| simulation.steps() == 0) else { return Ok(None) };
-    let (checkpoint, from, damaged) = checkpoint_of(start)?;
-    let begun = simulation.begin_from(&checkpoint.state, start.velocities);
+    let Origin { state, from, is_snapshot, memory, damaged } = Origin::of(scene, start, &*simulation)?;
+    let begun = simulation.begin_from(&state, start.velocities);
     begun.map_err(|problem| ResumeError::Begin { path: from.clone(), problem })?;
 
-    let there: HashSet<&str> = checkpoint.state.bodies.iter().map(|body| body.name.as_str()).collect();
+    let names: Vec<String> = state.bodies.iter().map(|body| body.name.clone()).collect();
+    let there: HashSet<&str> = names.iter().map(String::as_str).collect();
     let here: HashSet<&str> = scene.bodies.iter().map(|body| body.name.as_str()).collect();
     let (carried, new): (Vec<_>, Vec<_>) =
         scene.bodies.iter().partition(|body| there.contains(body.name.as_str()));
@@ -46,28 +61,20 @@ pub fn begin(scene: &Scene, simulation: &mut dyn Simulation) -> Result<Option<Ca
         BodyMotion::FreeRigid(free) => [free.velocity, free.spin].iter().any(|of| *of != [0.0; 3]),
         BodyMotion::Rigid { .. } => false,
     };
-    let left_out = checkpoint.state.bodies.iter().filter(|body| !here.contains(body.name.as_str()));
-    Ok(Some(CarriedBodies {
+    let named = |bodies: &mut dyn Iterator<Item = &crate::scene::Body>| {
+        bodies.map(|body| body.name.clone()).collect::<Vec<String>>()
+    };
+    let bodies = CarriedBodies {
         from,
-        time: checkpoint.state.time,
+        rounded: is_snapshot,
+        time: state.time,
         count: [carried.len(), scene.bodies.len()],
-        new: new.iter().map(|body| body.name.clone()).collect(),
-        left_out: left_out.map(|body| body.name.clone()).collect(),
-        damaged: damaged.into_iter().map(|error| error.path).collect(),
-        passed_over: carried
-            .iter()
-            .filter(|body| moves(&body.motion))
-            .map(|body| body.name.clone())
-            .collect(),
-    }))
-}
-
-/// The checkpoint from which a scene begins, where it lies, and why newer ones cannot be read.
-fn checkpoint_of(start: &Start) -> Result<(Checkpoint, PathBuf, Vec<ReadError>), ReadError> {
-    match start.from.is_file() {
-        true => Ok((Checkpoint::read(&start.from)?, start.from.clone(), Vec::new())),
-        false => Checkpoint::newest(&start.from),
-    }
+        new: named(&mut new.into_iter()),
+        left_out: names.iter().filter(|name| !here.contains(name.as_str())).cloned().collect(),
+        damaged,
+        passed_over: named(&mut carried.into_iter().filter(|body| moves(&body.motion))),
+    };
+    Ok(Some((bodies, memory.map(|memory| (memory, names)))))
 }
 
 /// Names that are listed; beyond, how many more.
@@ -86,6 +93,10 @@ impl Display for CarriedBodies {
             if names.len() > LISTED {
                 write!(f, " and {} more", names.len() - LISTED)?;
             }
+        }
+        if self.rounded {
+            let what = "from a snapshot: in its precision, and each particle turns as its body does";
+            write!(f, "\n  rounded     {what}")?;
         }
         if let Some(newest) = self.damaged.first() {
             write!(f, "\n  warning     {} is damaged, and an earlier one is taken", newest.display())?;

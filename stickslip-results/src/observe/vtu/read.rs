@@ -187,22 +187,48 @@ impl PointArrays {
         if place.kind != T::NAME || place.components != N {
             return Err(wanted());
         }
+        let values = self.blocks(name, (place, N * size_of::<T>()), T::read)?.concat();
+        Ok(values.as_chunks().0.to_vec())
+    }
+
+    /// The unpacked blocks of an array that has so many bytes for each point, each as `read` makes of it.
+    fn blocks<R: Send>(
+        &self,
+        name: &str,
+        (place, each): (&ArrayPlace, usize),
+        read: impl Fn(&[u8]) -> R + Sync,
+    ) -> Result<Vec<R>, ReadProblem> {
         let cut = || missing(&format!("complete array `{name}`"));
         let start = self.appended.checked_add(place.offset).ok_or_else(cut)?;
         let bytes = self.bytes.get(start..).ok_or_else(cut)?;
-        let total = self.count.checked_mul(N * size_of::<T>()).ok_or_else(cut)?;
+        let total = self.count.checked_mul(each).ok_or_else(cut)?;
         let blocks = split(bytes, total).ok_or_else(cut)?;
-        let unpacked: Option<Vec<Vec<T>>> = blocks
+        let unpacked: Option<Vec<R>> = blocks
             .into_par_iter()
             .map(|(packed, size)| {
                 let mut bytes = Vec::with_capacity(size);
                 // A block that says too much is none of ours.
                 ZlibDecoder::new(packed).take(size as u64 + 1).read_to_end(&mut bytes).ok()?;
-                (bytes.len() == size).then(|| T::read(&bytes))
+                (bytes.len() == size).then(|| read(&bytes))
             })
             .collect();
-        let values = unpacked.ok_or_else(cut)?.concat();
-        Ok(values.as_chunks().0.to_vec())
+        unpacked.ok_or_else(cut)
+    }
+
+    /// Unpacks all that each point has, which holds it against its own checksums.
+    ///
+    /// # Errors
+    /// Something is cut short or damaged.
+    pub(in crate::observe) fn check(&self) -> Result<(), ReadError> {
+        let of_points = self.positions.iter().map(|place| ("points", place));
+        let mut all = of_points.chain(self.arrays.iter().map(|(name, place)| (name.as_str(), place)));
+        all.try_for_each(|(name, place)| {
+            let bits: Option<usize> = place.kind.trim_start_matches(char::is_alphabetic).parse().ok();
+            let each = bits.and_then(|bits| place.components.checked_mul(bits / 8));
+            let each = each.ok_or_else(|| missing(&format!("array `{name}` of numbers")))?;
+            self.blocks(name, (place, each), |_| ()).map(drop)
+        })
+        .map_err(|problem| problem.at(&self.path))
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::{BLOCK, Scalar};
 use crate::column::Kind;
-use crate::observe::file::{OutputError, replace};
+use crate::observe::file::{FileSum, OutputError, replace_summed};
 use crate::scene::Precision;
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
@@ -127,7 +127,15 @@ impl Vtu {
     /// # Errors
     /// The disk is full or refuses; then no file of this name appears.
     pub fn write(&self, path: &Path) -> Result<(), OutputError> {
-        replace(path, |file| {
+        self.put(path).map(drop)
+    }
+
+    /// The same, with what went into the file.
+    ///
+    /// # Errors
+    /// As [`Vtu::write`].
+    pub(in crate::observe) fn put(&self, path: &Path) -> Result<FileSum, OutputError> {
+        replace_summed(path, |file| {
             file.write_all(self.header().as_bytes())?;
             self.arrays().try_for_each(|array| file.write_all(&array.bytes))?;
             file.write_all(b"\n</AppendedData>\n</VTKFile>\n")

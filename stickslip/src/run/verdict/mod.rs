@@ -17,7 +17,8 @@ mod tearing;
 
 use crate::door::{BodyState, Ledger, TracedParticle, View};
 use crate::observe::{Memory, OutputError, RunWarning};
-use crate::scene::{Damping, HealthCheck, Response, Scene};
+use crate::run::start::Remembered;
+use crate::scene::{Body, Damping, HealthCheck, Response, Scene};
 use energy::{EnergyBalance, StepCutting, WeighingTimes};
 use neighbours::Neighbours;
 
@@ -54,6 +55,11 @@ trait Check {
 
     /// Keeps what it knows of the run so far, or takes that up.
     fn remember(&mut self, _memory: &mut Memory) -> Result<(), OutputError> {
+        Ok(())
+    }
+
+    /// Takes over what it knew of bodies in another run, from which they begin: of each body its place there.
+    fn carry(&mut self, _memory: &mut Memory, _origins: &[Option<usize>]) -> Result<(), OutputError> {
         Ok(())
     }
 }
@@ -190,6 +196,22 @@ impl RunChecks {
         self.checks
             .iter_mut()
             .try_for_each(|check| memory.part(check.kind().word(), |memory| check.remember(memory)))
+    }
+
+    /// Takes over what another run remembered of bodies that begin as it left them; `names` are those of its bodies.
+    pub(super) fn carry(
+        &mut self,
+        scene: &Scene,
+        (memory, names): &mut Remembered,
+    ) -> Result<(), OutputError> {
+        let there = |body: &Body| names.iter().position(|name| *name == body.name);
+        let origins: Vec<Option<usize>> = scene.bodies.iter().map(there).collect();
+        memory.part("verdict", |memory| {
+            let carry = |check: &mut Box<dyn Check>| {
+                memory.part(check.kind().word(), |memory| check.carry(memory, &origins))
+            };
+            self.checks.iter_mut().try_for_each(carry)
+        })
     }
 
     /// What is new, if it is time to look after a step of this length [s], where steps may be this part of the stable

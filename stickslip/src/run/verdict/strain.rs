@@ -77,6 +77,15 @@ impl Check for StrainCheck {
         memory.keep("largest", &mut self.largest)?;
         Ok(())
     }
+
+    fn carry(&mut self, memory: &mut Memory, origins: &[Option<usize>]) -> Result<(), OutputError> {
+        let mut there: Vec<f64> = Vec::new();
+        memory.keep("largest", &mut there)?;
+        let largest =
+            |origin: &Option<usize>| origin.and_then(|body| there.get(body).copied()).unwrap_or(0.0);
+        self.largest = origins.iter().map(largest).collect();
+        Ok(())
+    }
 }
 
 impl Stretch {

@@ -1,0 +1,136 @@
+//! Whether the files of results are as the run wrote them.
+
+use super::checkpoint::Checkpoint;
+use super::file::{FileSum, ReadError, ReadProblem};
+use super::memory::Memory;
+use super::recorder::TABLES;
+use super::results::Results;
+use super::vtu::PointArrays;
+use super::{FRINGES, GRID, PARTICLES};
+use crate::image::Image;
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::path::{Path, PathBuf};
+
+/// What was found of the files of results.
+#[derive(Debug, Default)]
+pub struct Verified {
+    /// Files that were looked at.
+    pub files: usize,
+    /// Of these, how many were held against a sum that the newest checkpoint has of them. The others hold sums of their
+    /// own, or are tables that can be read.
+    pub summed: usize,
+    /// What is not as the run wrote it.
+    pub wrong: Vec<ReadError>,
+}
+
+/// Reads all files of results: holds them against the sums that the newest checkpoint has of them, and what was written
+/// later against the sums in the files themselves.
+///
+/// # Errors
+/// The folder holds no record of a run, or cannot be read. What is wrong with its files is found, not an error.
+pub fn verify(folder: &Path) -> Result<Verified, ReadError> {
+    let results = Results::open(folder)?;
+    let mut verified = Verified::default();
+    let mut newest = None;
+    for path in Checkpoint::list(folder)? {
+        let read = Checkpoint::read(&path);
+        verified.note(read.map(|mut checkpoint| {
+            newest.get_or_insert_with(|| checkpoint.memory(&path));
+        }));
+    }
+    let sums = newest.map_or_else(|| Ok(Sums::default()), |mut memory| Sums::of(folder, &mut memory))?;
+    verified.tables(&results, &sums);
+    for (path, sum) in &sums.files {
+        verified.note(sum.check(path));
+        verified.summed += 1;
+    }
+    let later = |path: &Path| !sums.files.contains_key(path);
+    let grids = super::frames::read_frames(&folder.join(format!("{GRID}.pvd"))).unwrap_or_default();
+    for frame in results.frames().iter().chain(&grids).filter(|frame| later(&frame.path)) {
+        verified.note(PointArrays::open(&frame.path).and_then(|arrays| arrays.check()));
+    }
+    let pictures = results.fringes_table().unwrap_or_default();
+    for path in pictures.iter().map(|row| picture(folder, row.frame)).filter(|path| later(path)) {
+        verified.note(Image::read_png(&path).map(drop).map_err(|error| ReadProblem::Io(error).at(&path)));
+    }
+    Ok(verified)
+}
+
+impl Verified {
+    fn note(&mut self, found: Result<(), ReadError>) {
+        self.files += 1;
+        self.wrong.extend(found.err());
+    }
+
+    /// Each table by its sum, as far as that reaches, and all of it by reading it.
+    fn tables(&mut self, results: &Results, sums: &Sums) {
+        for (path, sum) in &sums.tables {
+            let start = File::open(path).and_then(|mut file| FileSum::of(&mut file, sum.bytes));
+            let start = start.map_err(ReadProblem::Io);
+            let found = start.and_then(|start| if start == *sum { Ok(()) } else { Err(sum.differs(start)) });
+            self.note(found.map_err(|problem| problem.at(path)));
+            self.summed += 1;
+        }
+        let read = [
+            results.bodies_table().err(),
+            results.energy_table().err(),
+            results.contacts_table().err(),
+            results.loads_table().err(),
+            results.joints_table().err(),
+            results.sections_table().err(),
+            results.probes_table().err(),
+            results.arrivals_table().err(),
+            results.fronts_table().err(),
+            results.front_speeds_table().err(),
+            results.fringes_table().err(),
+        ];
+        for error in read.into_iter().flatten() {
+            if self.wrong.iter().all(|known| known.path != error.path) {
+                self.files += usize::from(!sums.tables.contains_key(&error.path));
+                self.wrong.push(error);
+            }
+        }
+    }
+}
+
+/// What a checkpoint knows of files.
+#[derive(Default)]
+struct Sums {
+    /// Of whole files.
+    files: BTreeMap<PathBuf, FileSum>,
+    /// Of the first bytes of tables.
+    tables: BTreeMap<PathBuf, FileSum>,
+}
+
+impl Sums {
+    fn of(folder: &Path, memory: &mut Memory) -> Result<Self, ReadError> {
+        let mut sums = Sums::default();
+        let unreadable = |error: super::OutputError| ReadProblem::Io(error.source).at(&error.path);
+        for name in TABLES {
+            let mut sum = FileSum::default();
+            let known = memory.part(name, |memory| {
+                Ok(memory.keep("length", &mut sum.bytes)? && memory.keep("sum", &mut sum.crc)?)
+            });
+            if known.map_err(unreadable)? {
+                sums.tables.insert(folder.join(name), sum);
+            }
+        }
+        for name in [PARTICLES, GRID, FRINGES] {
+            let mut files: Vec<Option<FileSum>> = Vec::new();
+            memory.part(name, |memory| memory.keep("sums", &mut files)).map_err(unreadable)?;
+            let path = |number: usize| match name {
+                FRINGES => picture(folder, number),
+                _ => folder.join(format!("{name}/{number:05}.vtu")),
+            };
+            let known = files.into_iter().enumerate().filter_map(|(number, sum)| Some((path(number), sum?)));
+            sums.files.extend(known);
+        }
+        Ok(sums)
+    }
+}
+
+/// Where a picture of fringes lies.
+fn picture(folder: &Path, number: usize) -> PathBuf {
+    folder.join(format!("{FRINGES}/{number:05}.png"))
+}
