@@ -18,7 +18,10 @@ MODULI = dict(bulk_modulus=K, shear_modulus=G)
 
 
 def neo_hookean(step: ss.Step, bulk: float, shear: float) -> tuple[np.ndarray, np.ndarray]:
-    """sigma = K/2 (J - 1/J) I + G J^(-5/3) dev(F F^T), and W = K/2 ((J^2 - 1)/2 - ln J) + G/2 (J^(-2/3) tr(F F^T) - 3)."""
+    """The built-in law.
+
+    sigma = K/2 (J - 1/J) I + G J^(-5/3) dev(F F^T), W = K/2 ((J^2 - 1)/2 - ln J) + G/2 (J^(-2/3) tr(F F^T) - 3)
+    """
     f = step.deformation
     j = np.linalg.det(f)[:, None, None]
     b = f @ f.transpose(0, 2, 1)
@@ -176,7 +179,8 @@ def test_a_compiled_law_takes_particle_by_particle_in_all_threads() -> None:
 
 def test_a_law_of_numba() -> None:
     numba = pytest.importorskip("numba")
-    law = ss.Law(numba.cfunc(ss.Law.signature())(pointwise), history=dict(age="number"), constants=dict(bulk=K, shear=G))
+    compiled = numba.cfunc(ss.Law.signature())(pointwise)
+    law = ss.Law(compiled, history=dict(age="number"), constants=dict(bulk=K, shear=G))
     a, b = flying().simulation(), own(flying(), law).simulation()
     same_steps(a, b, 5e-3)
     assert np.allclose(a.bodies["ball"].by_number("position"), b.bodies["ball"].by_number("position"), atol=1e-9)

@@ -126,6 +126,26 @@ def test_a_table_over_time_and_bodies_is_a_dataset(results, monkeypatch):
     assert data["deformation"][1].shape == (len(stress), 9) and "position" not in data
 
 
+def test_pictures_and_charts_are_those_of_the_command(results, tmp_path):
+    picture = ss.render(results, color="velocity", frame=(0, 1), out=tmp_path / "two.png")
+    assert picture._repr_png_()[:4] == b"\x89PNG" and picture._repr_svg_() is None
+    chart = ss.plot(results.folder, table="energy", out=tmp_path / "energy.svg")
+    assert "total, their sum" in chart._repr_svg_() and chart._repr_png_() is None
+    with pytest.raises(ss.ResultsError, match="--color: found `nonsense`"):
+        ss.render(results, color="nonsense", out=tmp_path / "none.png")
+
+
+def test_a_sweep_has_a_row_and_results_for_each_run(tmp_path):
+    scene = flying().parameter(speed=2)
+    scene.document["bodies"][0]["velocity"] = ["speed", 0]
+    runs = ss.sweep(scene, tmp_path / "sweep", speed=(1, 3))
+    assert list(runs.table["speed"]) == [1, 3] and set(runs.table["status"]) == {"finished"} and len(runs) == 2
+    assert [round(float(run.bodies["vx"][-1]), 6) for run in runs] == [1, 3]
+    assert "<table>" in runs._repr_html_()
+    with pytest.raises(ss.SceneError, match="found functions of Python"):
+        ss.sweep(scene.load("ball", force=lambda t, x, x0: (0, 1)), tmp_path / "none", speed=(1, 3))
+
+
 def test_frames_go_to_other_packages_with_all_columns(results, tmp_path):
     meshio = pytest.importorskip("meshio")
     frame = results.frame(-1)

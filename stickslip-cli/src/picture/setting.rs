@@ -99,7 +99,7 @@ fn floors_of(body: u32, recorded: &Value) -> Vec<Floor> {
     let shape = &recorded["shape"];
     let parts = shape["union"].as_array().map_or(std::slice::from_ref(shape), Vec::as_slice);
     let vector = |part: &Value, key: &str| {
-        let numbers = part["half_space"][key].as_array()?;
+        let numbers = part["half-space"][key].as_array()?;
         Some([0, 1, 2].map(|i| numbers.get(i).and_then(Value::as_f64).unwrap_or(0.0)))
     };
     let floor =

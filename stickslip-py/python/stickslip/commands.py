@@ -21,6 +21,9 @@ if TYPE_CHECKING:
     from .records import Table
     from .scene import Scene
 
+Folder = str | os.PathLike[str]
+"""A path."""
+
 
 class Picture:
     """A picture in a file, which notebooks show: PNG, animated or not, or SVG."""
@@ -70,7 +73,7 @@ class Sweep:
         return f"<Sweep {self.folder}: {len(self)} runs>"
 
 
-def render(results: Results | str | os.PathLike[str], *, out: str | os.PathLike[str] | None = None, **options: Any) -> Picture:
+def render(results: Results | Folder, *, out: Folder | None = None, **options: Any) -> Picture:
     """Draws a snapshot of a run, the last without `frame` or `time`; `stickslip render --help` lists the options.
 
     `color="pressure"`, `range=(-1e5, 1e5)`, `view=(30, 10)`, `size="1200x800"`, `animate=True`, ... Without `out` it is
@@ -83,7 +86,7 @@ def render(results: Results | str | os.PathLike[str], *, out: str | os.PathLike[
     return Picture(path)
 
 
-def plot(results: Results | str | os.PathLike[str], *, out: str | os.PathLike[str] | None = None, **options: Any) -> Picture:
+def plot(results: Results | Folder, *, out: Folder | None = None, **options: Any) -> Picture:
     """Draws the chart of a run or a sweep: `table="energy"`, `body="ball"`, `quantity="x,y"`; PNG or SVG.
 
     `Results.plot` draws with matplotlib instead.
@@ -94,7 +97,9 @@ def plot(results: Results | str | os.PathLike[str], *, out: str | os.PathLike[st
     return Picture(path)
 
 
-def sweep(scene: Scene, out: str | os.PathLike[str], *, jobs: int | None = None, threads: int | None = None, **values: Any) -> Sweep:
+def sweep(
+    scene: Scene, out: Folder, *, jobs: int | None = None, threads: int | None = None, **values: Any
+) -> Sweep:
     """Runs a scene with every combination of values of its parameters: `sweep(scene, "out", friction=(0, 0.3))`.
 
     Scenes with functions of Python are not for it: run them one after the other.
@@ -113,7 +118,7 @@ def sweep(scene: Scene, out: str | os.PathLike[str], *, jobs: int | None = None,
     return Sweep(Path(out))
 
 
-def validate(*, out: str | os.PathLike[str], **options: Any) -> str:
+def validate(*, out: Folder, **options: Any) -> str:
     """Problems with known answers by the contact laws: what `stickslip validate` prints, and its page in `out`."""
     return command("validate", out=out, failure=RunError, **options)
 

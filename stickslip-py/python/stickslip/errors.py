@@ -39,6 +39,13 @@ class SceneError(StickslipError, ValueError):
     allowed: str | None = None
     """What is allowed."""
 
+    def at(self, key: str, file: str | None = None) -> SceneError:
+        """The same mistake at another key, which stands in no line."""
+        place = key if file is None else f"{file}: {key}"
+        advice = f"; {self.help}" if self.help else ""
+        facts = dict(file=file, key=key, found=self.found, allowed=self.allowed, help=self.help)
+        return SceneError(f"{place}: found {self.found}; allowed: {self.allowed}{advice}", **facts)
+
 
 class RunError(StickslipError, RuntimeError):
     """A run that could not begin, go on or write its results."""

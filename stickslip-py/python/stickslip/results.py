@@ -39,7 +39,7 @@ class Frame(Mapping[str, np.ndarray]):
         return Frame(self.time, {key: column[rows] for key, column in self._columns.items()}, self.units, self._names)
 
     def to_pyvista(self) -> Any:
-        """A `pyvista.PolyData` of points with all columns; needs pyvista. `frame.to_pyvista().plot(scalars="pressure")`"""
+        """A `pyvista.PolyData` of points with all columns, for `.plot(scalars="pressure")`; needs pyvista."""
         cloud = _needed("pyvista").PolyData(np.ascontiguousarray(self["position"]))
         for name, column in self._flat():
             cloud.point_data[name] = column

@@ -318,11 +318,7 @@ class Scene:
         except SceneError as error:
             if error.key != "time.end":
                 raise
-            said = f"{name}: found {error.found}; allowed: {error.allowed}"
-            said += f"; {error.help}" if error.help else ""
-            raise SceneError(
-                said, key=name, found=error.found, allowed=error.allowed, help=error.help
-            ) from None
+            raise error.at(name) from None
 
     def _is_loaded(self) -> bool:
         """Whether it is what its file and `set` say."""
@@ -334,7 +330,8 @@ class Scene:
 
     def _update(self, table: str, keys: Mapping[str, Any]) -> Scene:
         keys = plain(named(_keys(keys), table, self.functions), table)
-        self._refuse_unknown({table: {**self.document.get(table, {}), **keys}} if table != "materials" else {table: keys})
+        before = {} if table == "materials" else self.document.get(table, {})
+        self._refuse_unknown({table: {**before, **keys}})
         self.document.setdefault(table, {}).update(keys)
         return self
 
@@ -368,11 +365,9 @@ class Scene:
         except SceneError as error:
             if not (error.found or "").startswith("unknown key"):
                 return
-            key = error.key if place is None or error.key is None else place + error.key[error.key.index("]") + 1 :]
-            said = f"{IN_PYTHON}: {key}: found {error.found}; allowed: {error.allowed}"
-            said += f"; {error.help}" if error.help else ""
-            facts = dict(file=IN_PYTHON, key=key, found=error.found, allowed=error.allowed, help=error.help)
-            raise SceneError(said, **facts) from None
+            key = error.key or ""
+            key = key if place is None else place + key[key.index("]") + 1 :]
+            raise error.at(key, IN_PYTHON) from None
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Scene) and plain(self.document) == plain(other.document)
