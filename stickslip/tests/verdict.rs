@@ -343,35 +343,6 @@ fn steps_that_shrink_without_end_are_found_though_time_hardly_goes_on() {
 }
 
 #[test]
-fn impulses_that_are_reduced_too_often_are_found() {
-    let text = r#"
-        space = { dimension = "plane-strain", cell = "2 cm" }
-        time = { end = "60 ms" }
-        materials.gel = { density = 1000, neo_hookean = { young_modulus = "1 MPa", poisson_ratio = 0.3 } }
-        contact = [{ max_strain = 1e-6 }]
-        health = { max_strain = { bound = 0.1 } }
-        [[bodies]]
-        name = "left"
-        material = "gel"
-        shape.ball = { center = [0, 0], radius = "10 cm" }
-        velocity = ["0.3 m/s", 0]
-        [[bodies]]
-        name = "right"
-        material = "gel"
-        shape.ball = { center = ["20.5 cm", "2 cm"], radius = "10 cm" }
-        velocity = ["-0.3 m/s", 0]
-    "#;
-    let collide = |text: &str| {
-        let scene = scene::parse("disks.toml", text, &[]).unwrap().scene;
-        let warnings = judge(text, &mut *stickslip::step::build(&scene).unwrap()).1;
-        warnings.into_iter().find(|warning| warning.kind == "max-strain")
-    };
-    let warning = collide(text).expect("they are reduced");
-    assert!(warning.worst > 0.1 && warning.message.contains("between `left` and `right`"), "{warning:?}");
-    assert!(collide(&text.replace("max_strain = 1e-6", "friction = 0")).is_none());
-}
-
-#[test]
 fn spin_that_goes_where_nothing_touches_is_found() {
     let slowing: BodyMotion = |x, t| {
         let (position, velocity, f) = turning(x, t);

@@ -9,7 +9,7 @@ use crate::scene::HealthCheck;
 pub(super) struct MaxStrainCheck;
 
 /// Impulses between two bodies below which a share says nothing: at the first touch there are few.
-const FEWEST: u64 = 200;
+const FEWEST: u64 = 50;
 
 impl Check for MaxStrainCheck {
     fn kind(&self) -> HealthCheck {
