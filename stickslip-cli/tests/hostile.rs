@@ -306,7 +306,8 @@ fn nothing_that_a_scene_names_is_written_outside_its_results() {
     encoder.set_color(png::ColorType::Grayscale);
     encoder.write_header().unwrap().write_image_data(&[7; 16]).unwrap();
     let absolute = workplace.path("absolute").display().to_string();
-    for (number, outside) in ["../out", "../../out", &absolute].iter().enumerate() {
+    // Further ways up take the same paths; one is enough for a test that always runs.
+    for (number, outside) in ["../../out", &absolute].iter().enumerate() {
         let (scene, results) = (format!("in/side/{number}.toml"), format!("in/side/{number}.results"));
         let text = ELSEWHERE.replace("TOP", outside);
         workplace.write(&scene, &text);
