@@ -99,6 +99,12 @@ stress_parameter = 4e3
 width = 90
 overlay = "force-chains"
 bodies = ["low", "high"]
+[[outputs.groups]]
+name = "low and high"
+bodies = ["low", "high"]
+[[outputs.groups]]
+name = "others"
+bodies = ["*"]
 [[outputs.sections]]
 name = "waist"
 point = [0, 0.5]

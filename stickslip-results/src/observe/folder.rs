@@ -5,7 +5,7 @@ use super::file::part_of;
 use super::manifest::Manifest;
 use super::{
     ARRIVALS, BODIES, CHECKPOINTS, CONTACTS, ENERGY, FRINGES, FRINGES_ANIMATION, FRINGES_TABLE, FRONT_SPEEDS,
-    FRONTS, GRID, JOINTS, LOADS, PARTICLES, PROBES, SECTIONS,
+    FRONTS, GRID, GROUP_CONTACTS, GROUPS, JOINTS, LOADS, PARTICLES, PROBES, SECTIONS,
 };
 use miette::Diagnostic;
 use std::ffi::OsString;
@@ -15,13 +15,15 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Files that a run may leave in its folder.
-const FILES: [&str; 15] = [
+const FILES: [&str; 17] = [
     BODIES,
     ENERGY,
     CONTACTS,
     LOADS,
     JOINTS,
     SECTIONS,
+    GROUPS,
+    GROUP_CONTACTS,
     PROBES,
     ARRIVALS,
     FRONTS,

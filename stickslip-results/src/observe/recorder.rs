@@ -9,6 +9,7 @@ use super::folder::OutputFolder;
 use super::fringes::FringesObserver;
 use super::fronts::FrontsObserver;
 use super::grid::GridObserver;
+use super::groups::GroupsObserver;
 use super::joints::JointsObserver;
 use super::loads::LoadsObserver;
 use super::memory::Memory;
@@ -16,8 +17,8 @@ use super::particles::ParticlesObserver;
 use super::probes::ProbesObserver;
 use super::sections::SectionsObserver;
 use super::{
-    ARRIVALS, BODIES, CONTACTS, ENERGY, FRINGES, FRONTS, GRID, JOINTS, LOADS, Observer, PARTICLES, PROBES,
-    SECTIONS,
+    ARRIVALS, BODIES, CONTACTS, ENERGY, FRINGES, FRONTS, GRID, GROUPS, JOINTS, LOADS, Observer, PARTICLES,
+    PROBES, SECTIONS,
 };
 use crate::door::View;
 use crate::scene::Scene;
@@ -55,6 +56,9 @@ impl<'a> Recorder<'a> {
         if !wanted.sections.is_empty() {
             recorder.schedule(SECTIONS, SectionsObserver::create(scene, folder)?);
         }
+        if !wanted.groups.is_empty() {
+            recorder.schedule(GROUPS, GroupsObserver::create(scene, folder)?);
+        }
         if !wanted.probes.is_empty() {
             recorder.schedule(PROBES, ProbesObserver::create(scene, folder)?);
         }
@@ -81,7 +85,7 @@ impl<'a> Recorder<'a> {
     /// # Errors
     /// One is not.
     pub fn find(folder: &OutputFolder, memory: &Memory) -> Result<(), OutputError> {
-        let tables = [BODIES, ENERGY, CONTACTS, LOADS, JOINTS, SECTIONS, PROBES, ARRIVALS, FRONTS];
+        let tables = [BODIES, ENERGY, CONTACTS, LOADS, JOINTS, SECTIONS, GROUPS, PROBES, ARRIVALS, FRONTS];
         for path in
             tables.iter().filter(|name| memory.has(&format!("{name}/length"))).map(|name| folder.join(name))
         {

@@ -8,6 +8,7 @@ use super::file::{ReadError, ReadProblem};
 use super::frames::{Frame, read_frames};
 use super::fringes::FringeRow;
 use super::fronts::{FrontRow, FrontSpeedRow};
+use super::groups::{GroupContactRow, GroupRow};
 use super::joints::JointRow;
 use super::loads::LoadRow;
 use super::manifest::Manifest;
@@ -17,8 +18,8 @@ use super::recorded::RecordedScene;
 use super::sections::SectionRow;
 use super::table::{TableRow, read_rows};
 use super::{
-    ARRIVALS, BODIES, CONTACTS, ENERGY, FRINGES_TABLE, FRONT_SPEEDS, FRONTS, JOINTS, LOADS, PARTICLES,
-    PROBES, SECTIONS,
+    ARRIVALS, BODIES, CONTACTS, ENERGY, FRINGES_TABLE, FRONT_SPEEDS, FRONTS, GROUP_CONTACTS, GROUPS, JOINTS,
+    LOADS, PARTICLES, PROBES, SECTIONS,
 };
 use crate::column::every;
 use crate::door::ParticleSnapshot;
@@ -119,6 +120,23 @@ impl Results {
     /// The file is damaged.
     pub fn sections_table(&self) -> Result<Vec<SectionRow>, ReadError> {
         self.measured(SECTIONS)
+    }
+
+    /// `groups.csv`: at each time a row for each group of bodies; none if the scene has none.
+    ///
+    /// # Errors
+    /// The file is damaged.
+    pub fn groups_table(&self) -> Result<Vec<GroupRow>, ReadError> {
+        self.measured(GROUPS)
+    }
+
+    /// `group_contacts.csv`: at each time a row for each pair of groups that touched since the time before; none if the
+    /// scene has no groups.
+    ///
+    /// # Errors
+    /// The file is damaged.
+    pub fn group_contacts_table(&self) -> Result<Vec<GroupContactRow>, ReadError> {
+        self.measured(GROUP_CONTACTS)
     }
 
     /// `joints.csv`: at each time but the first a row for each joint; none if the scene has none.

@@ -18,6 +18,18 @@ pub struct Measurements {
     /// Planes through which forces and moments are recorded.
     #[serde(default)]
     pub sections: Vec<Section>,
+    /// Bodies whose sums are recorded.
+    #[serde(default)]
+    pub groups: Vec<Group>,
+}
+
+/// Bodies whose sums are recorded.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Group {
+    /// Its name, unique among the groups.
+    pub name: String,
+    /// Names of its bodies.
+    pub bodies: Vec<String>,
 }
 
 /// A unit of time that belongs to the scene, such as the time in which a wave crosses a disk.

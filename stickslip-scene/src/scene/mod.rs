@@ -28,7 +28,9 @@ pub use fringes::{Fringes, Light, Overlay, Polariscope, PolariscopeField, Sensit
 pub use joints::{Joint, JointKind, Motor};
 pub use load::{Loaded, load, parse};
 pub use loads::{Action, Dashpot, Extent, Load, Part, RIGID, Support, SupportMotion};
-pub use measurements::{Anchor, Arrival, Front, Measurements, Observable, Probe, Reading, Section, TimeUnit};
+pub use measurements::{
+    Anchor, Arrival, Front, Group, Measurements, Observable, Probe, Reading, Section, TimeUnit,
+};
 pub use name_pattern::{NamePattern, RuleNames, is_pattern};
 pub use problem::Problem;
 pub use schema::schema;

@@ -2,7 +2,7 @@
 
 use super::Context;
 use super::fringes::Fringes;
-use super::measurements::{self, Arrival, Front, Probe, Sampling, Section};
+use super::measurements::{self, Arrival, Front, Group, Probe, Sampling, Section};
 use super::quantity::{Duration, QuantityInput, evaluate};
 use super::read::{Read, table};
 use super::text::{Count, Text, Word, names_in};
@@ -48,6 +48,8 @@ table! {
         fronts: Option<Vec<Front>>,
         /// Planes through which forces and moments are recorded, at the times of the tables: [[outputs.sections]].
         sections: Option<Vec<Section>>,
+        /// Bodies whose sums are recorded, at the times of the tables: [[outputs.groups]].
+        groups: Option<Vec<Group>>,
     }
 }
 
