@@ -48,6 +48,8 @@ struct LoadedPoint<T, const D: usize> {
     felt: PointForce<T, D>,
     /// Where it was when the step began [m].
     before: Vector<T, D>,
+    /// How fast its nodes were then [m/s].
+    begun: Vector<T, D>,
     nodes: Vec<LoadedNode<T>>,
 }
 
@@ -208,6 +210,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 None => loaded.before = place_of(&particle, point),
                 Some(ahead) => particle.position += moves * ahead,
             }
+            loaded.begun = velocity;
             let carried = CarriedPoint { point, particle: &particle, velocity };
             loaded.felt = load.at(carried, time, &sums[number]);
         });
@@ -221,8 +224,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// du_s: change of the place of a point; f_s with what a dashpot's force falls by in the step; the last sum is over
     /// what springs keep from nodes while they move.
     /// Minus where f_s was taken before the points moved, plus where it was taken after. For springs this is exactly
-    /// what they lose. Points move as nodes strain, with velocities of the middle of the step: the ledger swings a
-    /// little in each step, and does not drift.
+    /// what they lose. Along axes without springs du_s is the mean of this and of what the velocities at the start of
+    /// the step would have made: with it a force gives what nodes gain. The ledger swings a little in each step, and does
+    /// not drift.
     pub(super) fn account_loads(&mut self, dt: T) {
         if self.settings.loads.is_empty() {
             return;
@@ -234,7 +238,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         for (load, sums) in self.settings.loads.iter().zip(&mut self.state.loads) {
             let body = &self.state.bodies[load.body];
             for (point, loaded) in load.points.iter().zip(points.by_ref()) {
-                let LoadedPoint { felt, before, nodes } = loaded;
+                let LoadedPoint { felt, before, begun, nodes } = loaded;
                 let particle = body.particles.get(room.places[load.body][point.particle] as usize);
                 let way = place_of(&particle, point) - *before;
                 let mut force = felt.force;
@@ -257,7 +261,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 }
                 for i in 0..D {
                     let closer = way[i] - felt.speed[i] * dt;
-                    sums.work += ((force[i] + felt.spring[i] * closer * half) * way[i]).f64();
+                    let is_pushed = felt.spring[i] == T::ZERO && !body.is_rigid();
+                    let moved = if is_pushed { (way[i] + begun[i] * dt) * T::HALF } else { way[i] };
+                    sums.work += ((force[i] + felt.spring[i] * closer * half) * moved).f64();
                 }
             }
         }
@@ -317,7 +323,12 @@ impl<T: Real, const D: usize> LoadRoom<T, D> {
             self.numbers = loads.iter().enumerate().flat_map(numbers).collect();
             self.points.resize(
                 count,
-                LoadedPoint { felt: PointForce::default(), before: Vector::ZERO, nodes: Vec::new() },
+                LoadedPoint {
+                    felt: PointForce::default(),
+                    before: Vector::ZERO,
+                    begun: Vector::ZERO,
+                    nodes: Vec::new(),
+                },
             );
         }
     }

@@ -21,6 +21,7 @@ mod free_rigid;
 mod friction;
 mod glued_identity;
 mod images;
+mod load_works;
 mod loads;
 mod many_bodies;
 mod meshes;
