@@ -13,6 +13,7 @@
 pub mod array;
 mod descent;
 mod grain;
+mod kept;
 mod neighbours;
 mod sizes;
 mod walls;

@@ -101,7 +101,7 @@ impl Packing {
             seed: self.seed.as_ref().map_or(Ok(0), |seed| seed.value(context, 0..=MOST_SEED))? as u64,
             dimension,
         };
-        let placements = request.place().map_err(|problem| self.fault(problem, declared))?;
+        let placements = request.find_or_place().map_err(|problem| self.fault(problem, declared))?;
         let fitted = match &self.particles {
             Some(word) => word.value(context)?,
             None if fits(&grain, dimension) => Arrangement::Fitted,
