@@ -11,6 +11,7 @@ use std::path::Path;
 use stickslip::door::ParticleSnapshot;
 use stickslip::image::Image;
 use stickslip::observe::{Frame, Results};
+use stickslip::scene::NamePattern;
 
 /// A way to draw snapshots.
 pub trait Pictures {
@@ -21,6 +22,8 @@ pub trait Pictures {
 /// What the user wants to see of snapshots.
 #[derive(Clone, Debug)]
 pub struct PictureChoice {
+    /// Names of bodies, or patterns of names; none means all.
+    pub bodies: Vec<String>,
     /// What colour stands for.
     pub quantity: ColorQuantity,
     /// Values at the ends of the colours; those that occur, without it.
@@ -39,6 +42,7 @@ pub struct PictureChoice {
 impl Default for PictureChoice {
     fn default() -> Self {
         PictureChoice {
+            bodies: Vec::new(),
             quantity: ColorQuantity::Body,
             range: None,
             colors: None,
@@ -68,6 +72,8 @@ pub struct Album<'a> {
     quarters: Quarters,
     mirror: Option<SymmetryPlane>,
     choice: PictureChoice,
+    /// Of each body, whether it is drawn.
+    shown: Vec<bool>,
     bounds: Option<BoxCorners>,
 }
 
@@ -83,10 +89,11 @@ impl<'a> Album<'a> {
         let setting = Setting::of(&results.scene().map_err(Failure::input)?);
         let setting = setting.with_floors(&results.manifest().scene);
         let mirror = mirror(&setting, &choice)?;
-        let first = results.particles(first).map_err(Failure::input)?;
+        let shown = shown(results, &choice);
+        let first = particles(results, &shown, first)?;
         choice.quantity.is_in(&first).map_err(|what| Failure::Input(miette!("--color: {what}")))?;
         let quarters = picture::quarters(&first, &setting);
-        Ok(Album { results, setting, quarters, mirror, choice, bounds: None })
+        Ok(Album { results, setting, quarters, mirror, choice, shown, bounds: None })
     }
 
     /// The same album with one camera and one range of colours for all pictures.
@@ -94,7 +101,7 @@ impl<'a> Album<'a> {
         let mut album = self.clone();
         let mut range = [f64::INFINITY, f64::NEG_INFINITY];
         for frame in self.results.frames() {
-            let particles = self.results.particles(frame).map_err(Failure::input)?;
+            let particles = particles(self.results, &self.shown, frame)?;
             let here = picture::bounds(&particles);
             let all = album.bounds.get_or_insert(here);
             for axis in 0..3 {
@@ -124,7 +131,7 @@ impl<'a> Album<'a> {
 
 impl Pictures for Album<'_> {
     fn picture(&self, frame: &Frame) -> Result<Image, Failure> {
-        let particles = self.results.particles(frame).map_err(Failure::input)?;
+        let particles = particles(self.results, &self.shown, frame)?;
         let look = PictureStyle {
             quantity: self.choice.quantity.clone(),
             scale: self.scale(&particles),
@@ -135,6 +142,29 @@ impl Pictures for Album<'_> {
         };
         let canvas = picture::draw(&particles, &self.setting, &self.quarters, (frame.time, &look))?;
         Ok(canvas.image())
+    }
+}
+
+/// Of each body, whether the user wants to see it.
+fn shown(results: &Results, choice: &PictureChoice) -> Vec<bool> {
+    let patterns: Vec<NamePattern> = choice.bodies.iter().map(|body| NamePattern::new(body)).collect();
+    let is_wanted =
+        |name: &String| patterns.is_empty() || patterns.iter().any(|pattern| pattern.matches(name));
+    results.body_names().iter().map(is_wanted).collect()
+}
+
+/// The particles of a snapshot that are drawn.
+fn particles(results: &Results, shown: &[bool], frame: &Frame) -> Result<ParticleSnapshot, Failure> {
+    let all = results.particles(frame).map_err(Failure::input)?;
+    if shown.iter().all(|shown| *shown) {
+        return Ok(all);
+    }
+    let some = all.only(|body, _| shown[body as usize]);
+    match some.body.is_empty() {
+        false => Ok(some),
+        true => Err(Failure::Input(miette!(
+            "--body: found bodies without particles in the snapshot; allowed: others"
+        ))),
     }
 }
 
@@ -173,6 +203,8 @@ pub fn illustrate(folder: &Path) -> Result<String, Failure> {
         "removed.csv",
         "sections.csv",
         "reactions.csv",
+        "groups.csv",
+        "group_contacts.csv",
         "probes.csv",
         "arrivals.csv",
         "fronts.csv",

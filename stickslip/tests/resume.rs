@@ -112,6 +112,12 @@ stress_parameter = 4e3
 width = 90
 overlay = "force-chains"
 bodies = ["low", "high"]
+[[outputs.groups]]
+name = "low and high"
+bodies = ["low", "high"]
+[[outputs.groups]]
+name = "others"
+bodies = ["*"]
 [[outputs.sections]]
 name = "waist"
 point = [0, 0.5]
@@ -825,6 +831,10 @@ fn copy_all(from: &Path, to: &Path) {
     fs::create_dir(to).unwrap();
     for entry in fs::read_dir(from).unwrap().map(Result::unwrap) {
         let (from, to) = (entry.path(), to.join(entry.file_name()));
-        if from.is_dir() { copy_all(&from, &to) } else { fs::copy(from, to).unwrap(); }
+        if from.is_dir() {
+            copy_all(&from, &to)
+        } else {
+            fs::copy(from, to).unwrap();
+        }
     }
 }

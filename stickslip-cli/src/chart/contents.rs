@@ -4,12 +4,15 @@ use super::measurements::{self, ChartTime};
 use super::{Chart, Curve, Panel};
 use crate::drawing::{Rgb, body_color};
 use clap::ValueEnum;
+use stickslip::door::BodyState;
 use stickslip::observe::{BodyRow, EnergyRow, ReadError, ReferenceCurve, Results, TableRow};
+use stickslip::scene::{NamePattern, is_pattern};
 
 /// What the user asks for; nothing at all gives what the scene is about.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ChartChoice {
-    /// Names of bodies; none means all that have something to show.
+    /// Names of bodies, or patterns, each of which stands for the sums of all that match it; none means all that have
+    /// something to show.
     pub bodies: Vec<String>,
     /// Columns of the table; none means those with known answers, or the table's first.
     pub quantities: Vec<String>,
@@ -104,9 +107,14 @@ fn of_everything(results: &Results) -> Result<Chart, ReadError> {
 }
 
 fn of_bodies(results: &Results, choice: &ChartChoice) -> Result<Chart, ReadError> {
-    let rows = results.bodies_table()?;
+    let mut rows = results.bodies_table()?;
+    let mut names = results.body_names().to_vec();
+    for pattern in choice.bodies.iter().filter(|name| is_pattern(name)) {
+        rows.extend(sums(&rows, pattern));
+        names.push(pattern.clone());
+    }
     let references = &results.manifest().references;
-    let shown = shown(results, choice);
+    let shown = shown(&names, references, choice);
     let mut chart = measurements::empty(results);
     if !shown.is_empty() {
         chart.panels = panels(&rows, references, &shown);
@@ -127,12 +135,12 @@ struct Shown {
 }
 
 /// The quantities to show, in the order of the bodies; none for the picture of a run that nobody knows the answer to.
-fn shown(results: &Results, choice: &ChartChoice) -> Vec<Shown> {
+fn shown(names: &[String], references: &[ReferenceCurve], choice: &ChartChoice) -> Vec<Shown> {
     let wanted = |list: &[String], name: &str| list.is_empty() || list.iter().any(|entry| entry == name);
     let mut quantities = choice.quantities.clone();
     let mut shown = Vec::new();
-    for (number, body) in results.body_names().iter().enumerate() {
-        let known = results.manifest().references.iter().filter(|reference| reference.body == *body);
+    for (number, body) in names.iter().enumerate() {
+        let known = references.iter().filter(|reference| reference.body == *body);
         let known: Vec<String> = known.map(|reference| reference.quantity.clone()).collect();
         if choice.quantities.is_empty() {
             quantities = known;
@@ -147,6 +155,36 @@ fn shown(results: &Results, choice: &ChartChoice) -> Vec<Shown> {
         }
     }
     shown
+}
+
+/// The rows of all bodies that match a pattern as those of one: masses and energies are sums, the rest means by mass, of
+/// bodies without mass plain ones.
+fn sums(rows: &[BodyRow], pattern: &str) -> Vec<BodyRow> {
+    let matching = NamePattern::new(pattern);
+    let matched: Vec<&BodyRow> = rows.iter().filter(|row| matching.matches(&row.body)).collect();
+    let at_once = matched.chunk_by(|a, b| a.time == b.time);
+    let sum = |each: &[&BodyRow]| {
+        let states = || each.iter().map(|row| &row.state);
+        let mass: f64 = states().map(|state| state.mass).sum();
+        let mean = |of: fn(&BodyState) -> [f64; 3]| {
+            let weight = |state: &BodyState| match mass > 0.0 {
+                true => state.mass / mass,
+                false => 1.0 / each.len() as f64,
+            };
+            std::array::from_fn(|k| states().map(|state| weight(state) * of(state)[k]).sum())
+        };
+        let state = BodyState {
+            mass,
+            position: mean(|state| state.position),
+            velocity: mean(|state| state.velocity),
+            spin: mean(|state| state.spin),
+            kinetic: states().map(|state| state.kinetic).sum(),
+            strain: states().map(|state| state.strain).sum(),
+            ..BodyState::default()
+        };
+        BodyRow { time: each[0].time, body: pattern.to_owned(), state }
+    };
+    at_once.map(sum).collect()
 }
 
 /// Name and unit of the axis that a column belongs on.
@@ -336,7 +374,7 @@ fn typical(curves: &[Curve], axis: &str) -> Vec<Curve> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use stickslip::door::{BodyState, Ledger};
+    use stickslip::door::Ledger;
 
     fn row(time: f64, x: f64) -> BodyRow {
         let state = BodyState { position: [x, 0.0, 0.0], ..BodyState::default() };
@@ -408,6 +446,28 @@ mod tests {
             labels,
             ["grain 0 y, lowest of 200", "grain 100 y, median of 200", "grain 199 y, highest of 200"]
         );
+    }
+
+    #[test]
+    fn a_pattern_is_the_sum_of_its_bodies() {
+        let of = |time: f64, body: &str, mass: f64, x: f64| BodyRow {
+            time,
+            body: body.to_owned(),
+            state: BodyState { mass, position: [x, 0.0, 0.0], kinetic: mass * x, ..BodyState::default() },
+        };
+        let rows = [
+            of(0.0, "grain 1", 1.0, 0.0),
+            of(0.0, "wall", 0.0, 9.0),
+            of(0.0, "grain 2", 3.0, 4.0),
+            of(1.0, "grain 1", 1.0, 2.0),
+            of(1.0, "grain 2", 3.0, 6.0),
+        ];
+        let sums = sums(&rows, "grain *");
+        let told: Vec<_> = sums
+            .iter()
+            .map(|row| (row.time, &*row.body, row.state.mass, row.state.position[0], row.state.kinetic))
+            .collect();
+        assert_eq!(told, [(0.0, "grain *", 4.0, 3.0, 12.0), (1.0, "grain *", 4.0, 5.0, 20.0)]);
     }
 
     #[test]

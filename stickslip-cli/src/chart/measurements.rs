@@ -4,7 +4,7 @@ use super::contents::{ChartChoice, ChartTable, MOST_CURVES};
 use super::{Chart, Curve, Panel};
 use crate::drawing::body_color;
 use stickslip::observe::{ArrivalRow, ContactRow, FrontSpeedRow, ProbeRow, ReadError, Results, TableRow};
-use stickslip::scene::TimeUnit;
+use stickslip::scene::{NamePattern, TimeUnit};
 
 /// Columns of `probes.csv` that can be drawn.
 pub const PROBE_COLUMNS: &[&str] = &[
@@ -65,7 +65,8 @@ pub fn chart(results: &Results, (table, choice): (ChartTable, &ChartChoice)) -> 
     let mut chart = empty(results);
     let usual = [table.columns()[0].to_owned()];
     let columns = if choice.quantities.is_empty() { &usual } else { &choice.quantities[..] };
-    let wanted = |name: &str| choice.bodies.is_empty() || choice.bodies.iter().any(|body| body == name);
+    let patterns: Vec<NamePattern> = choice.bodies.iter().map(|body| NamePattern::new(body)).collect();
+    let wanted = |name: &str| patterns.is_empty() || patterns.iter().any(|pattern| pattern.matches(name));
     match table {
         ChartTable::Bodies | ChartTable::Energy => {}
         ChartTable::Contacts => {

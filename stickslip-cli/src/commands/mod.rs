@@ -28,7 +28,7 @@ use stickslip::check::{Report, free_memory};
 use stickslip::lanes::Processor;
 use stickslip::observe::Results;
 use stickslip::run::ResumeError;
-use stickslip::scene::{Loaded, Problem, SceneError, Start};
+use stickslip::scene::{Loaded, NamePattern, Problem, SceneError, Start};
 
 /// Many deformable bodies in frictional contact, by the material point method.
 #[derive(Debug, Parser)]
@@ -154,6 +154,25 @@ fn recorded(time: f64, times: impl Iterator<Item = f64>) -> Result<(), Failure> 
         return Err(Failure::Input(miette!("--time: found {time} s; allowed: {first} s to {last} s")));
     }
     Ok(())
+}
+
+/// Refuses names that none of those are which are known, and patterns that match none.
+fn are_names(wanted: &[String], known: &[String]) -> Result<(), Failure> {
+    /// Names that a message lists.
+    const MOST_LISTED: usize = 12;
+    let is_known = |name: &str| {
+        let pattern = NamePattern::new(name);
+        known.iter().any(|known| pattern.matches(known))
+    };
+    let Some(unknown) = wanted.iter().find(|name| !is_known(name)) else { return Ok(()) };
+    let mut listed: Vec<String> = known.iter().take(MOST_LISTED).cloned().collect();
+    if known.len() > MOST_LISTED {
+        listed.push(format!("and {} more", known.len() - MOST_LISTED));
+    }
+    let listed = listed.join(", ");
+    Err(Failure::Input(miette!(
+        "--body: found `{unknown}`; allowed: {listed}, or a pattern of them with `*`"
+    )))
 }
 
 /// Writes to standard output. Whoever reads it may have had enough (`stickslip schema | head`): that is no failure.

@@ -1,6 +1,6 @@
 //! `stickslip plot DIR`: charts over time.
 
-use super::{open, say};
+use super::{are_names, open, say};
 use crate::chart::{ChartChoice, ChartTable, chart, draw};
 use crate::failure::Failure;
 use crate::sweep;
@@ -19,7 +19,8 @@ pub struct Arguments {
     #[arg(long)]
     table: Option<ChartTable>,
 
-    /// Only this body, or the probe or front of this name; may be repeated.
+    /// Only this body, or the probe or front of this name; may be repeated. In a pattern `*` is any letters: of bodies
+    /// that match, masses and energies are added up, and of the rest means by mass are drawn.
     #[arg(long = "body", value_name = "NAME")]
     bodies: Vec<String>,
 
@@ -53,9 +54,7 @@ impl Arguments {
         let results = open(&self.folder)?;
         let table = self.table.unwrap_or(ChartTable::Bodies);
         let names = names(&results, table).map_err(Failure::input)?;
-        if let Some(unknown) = self.bodies.iter().find(|body| !names.contains(body)) {
-            return Err(Failure::Input(miette!("--body: found `{unknown}`; allowed: {}", names.join(", "))));
-        }
+        are_names(&self.bodies, &names)?;
         if let Some(unknown) = self.quantities.iter().find(|name| !table.columns().contains(&name.as_str())) {
             let allowed = table.columns().join(", ");
             return Err(Failure::Input(miette!("--quantity: found `{unknown}`; allowed: {allowed}")));

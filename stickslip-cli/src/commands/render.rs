@@ -1,7 +1,7 @@
 //! `stickslip render DIR`: pictures of snapshots.
 
 use super::fringes::FringeArguments;
-use super::{open, recorded, say};
+use super::{are_names, open, recorded, say};
 use crate::drawing::{ColorMap, DrawError, save};
 use crate::failure::Failure;
 use crate::film::{self, FilmKind};
@@ -45,6 +45,10 @@ pub struct Arguments {
     /// What colour stands for.
     #[arg(long, value_parser = QuantityParser, default_value = "body")]
     color: ColorQuantity,
+
+    /// Only this body; may be repeated, and in a pattern `*` is any letters.
+    #[arg(long = "body", value_name = "NAME", conflicts_with = "fringes")]
+    only: Vec<String>,
 
     /// Values at the ends of the colours, in SI units: LOW,HIGH.
     #[arg(long, value_name = "LOW,HIGH", value_parser = pair, allow_hyphen_values = true)]
@@ -156,7 +160,9 @@ impl Arguments {
             say(&pictures.scale())?;
             return Ok(Box::new(pictures));
         }
+        are_names(&self.only, results.body_names())?;
         let choice = PictureChoice {
+            bodies: self.only.clone(),
             quantity: self.color.clone(),
             range: self.range,
             colors: self.colors,

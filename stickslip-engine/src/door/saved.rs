@@ -1,7 +1,7 @@
 //! The state of a simulation as data: what a checkpoint holds of it.
 
-use super::RemovedParticles;
 use super::ParticleSnapshot;
+use super::RemovedParticles;
 use crate::column::Kind;
 use crate::contact::ContactSums;
 use crate::load::LoadSums;

@@ -63,6 +63,8 @@ struct LoadedPoint<T, const D: usize> {
     felt: PointForce<T, D>,
     /// Where it was when the step began [m].
     before: Vector<T, D>,
+    /// How fast its nodes were then [m/s].
+    begun: Vector<T, D>,
     nodes: Vec<LoadedNode<T>>,
 }
 
@@ -250,6 +252,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 None => loaded.before = place_of(&particle, point),
                 Some(ahead) => particle.position += moves * ahead,
             }
+            loaded.begun = velocity;
             let outside = values.get(i).copied().unwrap_or_default();
             let carried = CarriedPoint { point, particle: &particle, velocity, outside };
             loaded.felt = load.at(carried, time, &sums[number]);
@@ -264,8 +267,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// du_s: change of the place of a point; f_s with what a dashpot's force falls by in the step; the last sum is over
     /// what springs keep from nodes while they move.
     /// Minus where f_s was taken before the points moved, plus where it was taken after. For springs this is exactly
-    /// what they lose. Points move as nodes strain, with velocities of the middle of the step: the ledger swings a
-    /// little in each step, and does not drift.
+    /// what they lose. Along axes without springs du_s is the mean of this and of what the velocities at the start of
+    /// the step would have made: with it a force gives what nodes gain. The ledger swings a little in each step, and does
+    /// not drift.
     pub(super) fn account_loads(&mut self, dt: T) {
         if self.settings.loads.is_empty() {
             return;
@@ -277,7 +281,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         for (load, sums) in self.settings.loads.iter().zip(&mut self.state.loads) {
             let body = &self.state.bodies[load.body];
             for (point, loaded) in load.points.iter().zip(points.by_ref()) {
-                let LoadedPoint { felt, before, nodes } = loaded;
+                let LoadedPoint { felt, before, begun, nodes } = loaded;
                 let place = room.places[load.body][point.particle];
                 if place == NOWHERE {
                     continue;
@@ -304,7 +308,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 }
                 for i in 0..D {
                     let closer = way[i] - felt.speed[i] * dt;
-                    sums.work += ((force[i] + felt.spring[i] * closer * half) * way[i]).f64();
+                    let is_pushed = felt.spring[i] == T::ZERO && !body.is_rigid();
+                    let moved = if is_pushed { (way[i] + begun[i] * dt) * T::HALF } else { way[i] };
+                    sums.work += ((force[i] + felt.spring[i] * closer * half) * moved).f64();
                 }
             }
         }
@@ -370,7 +376,12 @@ impl<T: Real, const D: usize> LoadRoom<T, D> {
             self.numbers = loads.iter().enumerate().flat_map(numbers).collect();
             self.points.resize(
                 count,
-                LoadedPoint { felt: PointForce::default(), before: Vector::ZERO, nodes: Vec::new() },
+                LoadedPoint {
+                    felt: PointForce::default(),
+                    before: Vector::ZERO,
+                    begun: Vector::ZERO,
+                    nodes: Vec::new(),
+                },
             );
         }
     }
@@ -402,9 +413,9 @@ impl<T: Real, const D: usize> NodeLoad<T, D> {
 /// [`NOWHERE`] for those that have left the domain.
 pub(super) fn find_carriers(places: &mut Vec<u32>, numbers: &[u32], points: &[PartPoint]) {
     let lies = |number: usize| {
-        places.get(number).is_some_and(|&place| {
-            place == NOWHERE || numbers.get(place as usize) == Some(&(number as u32))
-        })
+        places
+            .get(number)
+            .is_some_and(|&place| place == NOWHERE || numbers.get(place as usize) == Some(&(number as u32)))
     };
     if !points.iter().all(|point| lies(point.particle)) {
         let points = points.iter().map(|point| point.particle);

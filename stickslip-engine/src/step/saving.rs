@@ -368,7 +368,6 @@ fn complete<T: Laned, const D: usize>(body: &mut Body<T, D>, fresh: &Body<T, D>)
     let turned = cross(turning, std::array::from_fn(|i| motion.center[i] - center[i]));
     motion.set_velocities([std::array::from_fn(|i| mean[i] + turned[i]), turning]);
     motion.set_time(0.0).map_err(|_| "has no motion that its formulas or functions give")
-
 }
 
 /// Where each of so many particles stands among these numbers, by its own, `usize::MAX` of those that are not there;

@@ -94,8 +94,8 @@ class Results:
     """What a run left in a folder, finished or not.
 
     `results.bodies` is bodies.csv, and so for every table there: `energy`, `contacts`, `loads`, `joints`, `sections`,
-    `removed`, `probes`, `arrivals`, `fronts`, `front_speeds`, `fringes` (chapter 7 of the book names their columns). Tables
-    and snapshots are read when they are asked for.
+    `removed`, `groups`, `group_contacts`, `probes`, `arrivals`, `fronts`, `front_speeds`, `fringes` (chapter 7 of the
+    book names their columns). Tables and snapshots are read when they are asked for.
     """
 
     def __init__(self, folder: str | os.PathLike[str]) -> None:

@@ -202,12 +202,16 @@ class Scene:
         return self._update("outputs", keys)
 
     def probe(self, name: str, at: Any, **keys: Any) -> Scene:
-        """A point at which velocity and stress are recorded: `at` [m], `body`, `fixed_in`."""
+        """A point at which velocity and stress are recorded: `at` [m], `body`, `fixed_in`; with `to` and `count` a line."""
         return self._measure("probes", {"name": name, "at": at, **keys})
 
     def section(self, name: str, point: Any, normal: Any, **keys: Any) -> Scene:
         """A plane through which force and moment are recorded: a `point` of it [m] and its `normal`, `within`, `bodies`."""
         return self._measure("sections", {"name": name, "point": point, "normal": normal, **keys})
+
+    def group(self, name: str, bodies: Any, **keys: Any) -> Scene:
+        """Bodies, by names or patterns, whose sums and the forces between them and other groups are recorded."""
+        return self._measure("groups", {"name": name, "bodies": bodies, **keys})
 
     def arrival(self, quantity: str, threshold: Any, **keys: Any) -> Scene:
         """A threshold whose first passing is recorded: `probes`, `bodies`, `reading`."""

@@ -6,7 +6,7 @@ use super::manifest::Manifest;
 use super::waiting::Waiting;
 use super::{
     ARRIVALS, BODIES, CHECKPOINTS, CONTACTS, ENERGY, FRINGES, FRINGES_ANIMATION, FRINGES_TABLE, FRONT_SPEEDS,
-    FRONTS, GRID, JOINTS, LOADS, PARTICLES, PROBES, REACTIONS, REMOVED, SECTIONS,
+    FRONTS, GRID, GROUP_CONTACTS, GROUPS, JOINTS, LOADS, PARTICLES, PROBES, REACTIONS, REMOVED, SECTIONS,
 };
 use miette::Diagnostic;
 use std::collections::BTreeMap;
@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Files that a run may leave in its folder.
-const FILES: [&str; 17] = [
+const FILES: [&str; 19] = [
     BODIES,
     ENERGY,
     CONTACTS,
@@ -26,6 +26,8 @@ const FILES: [&str; 17] = [
     REMOVED,
     SECTIONS,
     REACTIONS,
+    GROUPS,
+    GROUP_CONTACTS,
     PROBES,
     ARRIVALS,
     FRONTS,

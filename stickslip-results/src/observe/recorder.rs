@@ -9,6 +9,7 @@ use super::folder::OutputFolder;
 use super::fringes::FringesObserver;
 use super::fronts::FrontsObserver;
 use super::grid::GridObserver;
+use super::groups::GroupsObserver;
 use super::joints::JointsObserver;
 use super::loads::LoadsObserver;
 use super::memory::Memory;
@@ -18,16 +19,15 @@ use super::reactions::ReactionsObserver;
 use super::removed::RemovedObserver;
 use super::sections::SectionsObserver;
 use super::{
-    ARRIVALS, BODIES, CONTACTS, ENERGY, FRINGES, FRONTS, GRID, JOINTS, LOADS, Observer, PARTICLES, PROBES,
-    REACTIONS, REMOVED, SECTIONS,
+    ARRIVALS, BODIES, CONTACTS, ENERGY, FRINGES, FRONTS, GRID, GROUPS, JOINTS, LOADS, Observer, PARTICLES,
+    PROBES, REACTIONS, REMOVED, SECTIONS,
 };
 use crate::door::View;
 use crate::scene::{Leaving, Scene};
 
 /// Tables that keep their own length over a checkpoint, under their name.
-pub(super) const TABLES: [&str; 11] = [
-    BODIES, ENERGY, CONTACTS, LOADS, JOINTS, REMOVED, SECTIONS, REACTIONS, PROBES, ARRIVALS, FRONTS,
-];
+pub(super) const TABLES: [&str; 12] =
+    [BODIES, ENERGY, CONTACTS, LOADS, JOINTS, REMOVED, SECTIONS, REACTIONS, GROUPS, PROBES, ARRIVALS, FRONTS];
 
 /// The observers that a scene asks for, and those that are added.
 pub struct Recorder<'a> {
@@ -68,6 +68,9 @@ impl<'a> Recorder<'a> {
         }
         if !wanted.reactions.is_empty() {
             recorder.schedule(REACTIONS, ReactionsObserver::create(scene, folder)?);
+        }
+        if !wanted.groups.is_empty() {
+            recorder.schedule(GROUPS, GroupsObserver::create(scene, folder)?);
         }
         if !wanted.probes.is_empty() {
             recorder.schedule(PROBES, ProbesObserver::create(scene, folder)?);

@@ -8,6 +8,7 @@ use super::file::{ReadError, ReadProblem};
 use super::frames::{Frame, read_frames};
 use super::fringes::FringeRow;
 use super::fronts::{FrontRow, FrontSpeedRow};
+use super::groups::{GroupContactRow, GroupRow};
 use super::joints::JointRow;
 use super::loads::LoadRow;
 use super::manifest::Manifest;
@@ -19,8 +20,8 @@ use super::removed::RemovedRow;
 use super::sections::SectionRow;
 use super::table::{TableRow, read_rows};
 use super::{
-    ARRIVALS, BODIES, CONTACTS, ENERGY, FRINGES_TABLE, FRONT_SPEEDS, FRONTS, JOINTS, LOADS, PARTICLES,
-    PROBES, REACTIONS, REMOVED, SECTIONS,
+    ARRIVALS, BODIES, CONTACTS, ENERGY, FRINGES_TABLE, FRONT_SPEEDS, FRONTS, GROUP_CONTACTS, GROUPS, JOINTS,
+    LOADS, PARTICLES, PROBES, REACTIONS, REMOVED, SECTIONS,
 };
 use crate::column::every;
 use crate::door::ParticleSnapshot;
@@ -131,6 +132,23 @@ impl Results {
     /// The file is damaged.
     pub fn reactions_table(&self) -> Result<Vec<ReactionRow>, ReadError> {
         self.measured(REACTIONS)
+    }
+
+    /// `groups.csv`: at each time a row for each group of bodies; none if the scene has none.
+    ///
+    /// # Errors
+    /// The file is damaged.
+    pub fn groups_table(&self) -> Result<Vec<GroupRow>, ReadError> {
+        self.measured(GROUPS)
+    }
+
+    /// `group_contacts.csv`: at each time a row for each pair of groups that touched since the time before; none if the
+    /// scene has no groups.
+    ///
+    /// # Errors
+    /// The file is damaged.
+    pub fn group_contacts_table(&self) -> Result<Vec<GroupContactRow>, ReadError> {
+        self.measured(GROUP_CONTACTS)
     }
 
     /// `joints.csv`: at each time but the first a row for each joint; none if the scene has none.

@@ -35,6 +35,7 @@ pub use mesh::{Mesh, MeshFault};
 pub use mirrored_shape::{Mirror, MirroredShape};
 pub use moments::ShapeMoments;
 pub use revolved::Revolved;
+pub(crate) use rotation::Rotation;
 pub use round::RoundPart;
 pub use surface::SurfacePoint;
 

@@ -3,7 +3,7 @@
 use crate::tensor::{Vector, cross};
 
 /// A turn about an axis through a fixed point.
-pub(super) struct Rotation {
+pub(crate) struct Rotation {
     center: [f64; 3],
     axis: [f64; 3],
     sine: f64,
@@ -14,7 +14,7 @@ impl Rotation {
     /// Right-handed by `angle` [rad] about `axis`, of any length; a turn about an axis of no length is no turn.
     ///
     /// In the plane only the axis's component out of the plane counts.
-    pub(super) fn new(center: [f64; 3], axis: [f64; 3], angle: f64, dimension: usize) -> Self {
+    pub(crate) fn new(center: [f64; 3], axis: [f64; 3], angle: f64, dimension: usize) -> Self {
         let axis = if dimension == 2 { [0.0, 0.0, axis[2]] } else { axis };
         match Vector(axis).direction() {
             Some(axis) => Rotation { center, axis: axis.0, sine: libm::sin(angle), cosine: libm::cos(angle) },
@@ -23,7 +23,7 @@ impl Rotation {
     }
 
     /// Where a point goes [m].
-    pub(super) fn forward(&self, point: [f64; 3]) -> [f64; 3] {
+    pub(crate) fn forward(&self, point: [f64; 3]) -> [f64; 3] {
         self.turn(point, self.sine)
     }
 

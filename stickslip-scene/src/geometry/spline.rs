@@ -1,4 +1,4 @@
-//! Smooth closed curves through points, as polygons.
+//! Smooth curves through points, as polygons.
 
 use std::collections::VecDeque;
 
@@ -17,26 +17,54 @@ const MOST_PARTS: f64 = 1000.0;
 /// The periodic cubic spline over the lengths l of the chords, with continuous curvature: M are its second derivatives;
 /// de Boor (1978), A Practical Guide to Splines, chapter IV. Sides come as many to each span as the largest of its
 /// second derivatives asks for: a chord over h is off by h^2 M / 8 at most.
-pub fn closed(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
+pub fn closed<const N: usize>(points: &[[f64; N]]) -> Vec<[f64; N]> {
     let count = points.len();
-    let next = |i: usize| (i + 1) % count;
-    let length = |i: usize| (0..2).map(|k| (points[next(i)][k] - points[i][k]).powi(2)).sum::<f64>().sqrt();
-    let lengths: Vec<f64> = (0..count).map(length).collect();
-    let bends = [0, 1].map(|k| second_derivatives(&lengths, |i| points[i][k]));
+    let lengths: Vec<f64> = (0..count).map(|i| length(points[i], points[(i + 1) % count])).collect();
+    let bends = std::array::from_fn(|k| second_derivatives(&lengths, |i| points[i][k]));
+    polygon(points, &lengths, &bends)
+}
+
+/// The curve from the first of some points through the others to the last, as [`closed`]; at its ends it is straight
+/// (the natural spline). At least two points, no two in a row the same.
+pub fn open<const N: usize>(points: &[[f64; N]]) -> Vec<[f64; N]> {
+    let spans = points.len() - 1;
+    let lengths: Vec<f64> = (0..spans).map(|i| length(points[i], points[i + 1])).collect();
+    let bends = std::array::from_fn(|k| {
+        let slope = |i: usize| (points[i + 1][k] - points[i][k]) / lengths[i];
+        let inner = 1..spans;
+        let diagonal: Vec<f64> = inner.clone().map(|i| 2.0 * (lengths[i - 1] + lengths[i])).collect();
+        let right: Vec<f64> = inner.map(|i| 6.0 * (slope(i) - slope(i - 1))).collect();
+        let inside = tridiagonal(&diagonal, lengths.get(1..).unwrap_or_default(), &right);
+        [0.0].into_iter().chain(inside).chain([0.0]).collect()
+    });
+    let mut polygon = polygon(points, &lengths, &bends);
+    polygon.push(points[spans]);
+    polygon
+}
+
+fn length<const N: usize>(from: [f64; N], to: [f64; N]) -> f64 {
+    (0..N).map(|k| (to[k] - from[k]).powi(2)).sum::<f64>().sqrt()
+}
+
+/// Points on the spans of a curve with these second derivatives at its points; of each span the first, and not the
+/// last.
+fn polygon<const N: usize>(points: &[[f64; N]], lengths: &[f64], bends: &[Vec<f64>; N]) -> Vec<[f64; N]> {
+    let next = |i: usize| (i + 1) % points.len();
+    let norm = |of: &dyn Fn(usize) -> f64| (0..N).map(of).fold(0.0, f64::hypot);
     let extent = |k: usize| {
         let most = points.iter().map(|point| point[k]).fold(f64::NEG_INFINITY, f64::max);
         most - points.iter().map(|point| point[k]).fold(f64::INFINITY, f64::min)
     };
-    let tolerance = TOLERANCE * extent(0).hypot(extent(1));
+    let tolerance = TOLERANCE * norm(&extent);
     let mut polygon = Vec::new();
-    for i in 0..count {
-        let bend = |i: usize| bends[0][i].hypot(bends[1][i]);
+    for i in 0..lengths.len() {
+        let bend = |i: usize| norm(&|k| bends[k][i]);
         let most = bend(i).max(bend(next(i)));
         let parts = (lengths[i] * (most / (8.0 * tolerance)).sqrt()).ceil().clamp(1.0, MOST_PARTS) as usize;
         for part in 0..parts {
             let b = part as f64 / parts as f64;
             let a = 1.0 - b;
-            polygon.push([0, 1].map(|k| {
+            polygon.push(std::array::from_fn(|k| {
                 let cubic = (a * a * a - a) * bends[k][i] + (b * b * b - b) * bends[k][next(i)];
                 a * points[i][k] + b * points[next(i)][k] + cubic * lengths[i] * lengths[i] / 6.0
             }));
@@ -101,6 +129,7 @@ fn tridiagonal(diagonal: &[f64], beside: &[f64], right: &[f64]) -> Vec<f64> {
 mod tests {
     use super::*;
     use crate::geometry::polygon;
+    use crate::tensor::Vector;
     use std::f64::consts::{PI, TAU};
 
     fn around(count: usize) -> Vec<[f64; 2]> {
@@ -139,6 +168,21 @@ mod tests {
             // Sides of a circle of radius r that are off it by s turn by sqrt(8 s / r); here r is 0.05 or more.
             assert!(turn.abs() < 0.08, "{i}: {turn}");
         }
+    }
+
+    /// From end to end, in space, and straight where there are two points.
+    #[test]
+    fn an_open_curve_goes_through_its_points_from_the_first_to_the_last() {
+        let points = [[0.0, 0.0, 0.0], [1.0, 0.5, 0.2], [2.0, 0.0, 1.0], [2.5, -1.0, 1.5]];
+        let curve = open(&points);
+        assert!(points.iter().all(|point| curve.contains(point)) && curve.len() > 100);
+        assert_eq!((curve[0], curve[curve.len() - 1]), (points[0], points[3]));
+        let way = |i: usize| Vector(curve[i + 1]) - Vector(curve[i]);
+        for i in 0..curve.len() - 2 {
+            let [one, next] = [way(i), way(i + 1)].map(|way| way / way.norm());
+            assert!((one - next).norm() < 0.05, "{i}");
+        }
+        assert_eq!(open(&points[..2]), points[..2]);
     }
 
     /// Half a circle upon the axis sweeps a ball, round at its poles.

@@ -10,8 +10,10 @@
 //! of balls and 0.84 of disks of about two sizes, they find room; above it they jam, and that is an error. On the way
 //! each grain is a thousandth of its size larger than it is to be, so that nothing overlaps in the end, by no digit.
 
+pub mod array;
 mod descent;
 mod grain;
+mod kept;
 mod neighbours;
 mod sizes;
 mod walls;

@@ -21,6 +21,9 @@ pub struct Measurements {
     /// Faces of the domain, by the words of [`FACES`], and rigid bodies by their names, on which forces are recorded.
     #[serde(default)]
     pub reactions: Vec<String>,
+    /// Bodies whose sums are recorded.
+    #[serde(default)]
+    pub groups: Vec<Group>,
 }
 
 /// Words for the faces of a domain, by axis, the lower and the upper one.
@@ -32,6 +35,15 @@ impl Measurements {
         let wanted = |&[axis, side]: &[usize; 2]| self.reactions.iter().any(|name| name == FACES[axis][side]);
         (0..3).flat_map(|axis| [[axis, 0], [axis, 1]]).filter(wanted)
     }
+}
+
+/// Bodies whose sums are recorded.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Group {
+    /// Its name, unique among the groups.
+    pub name: String,
+    /// Names of its bodies.
+    pub bodies: Vec<String>,
 }
 
 /// A unit of time that belongs to the scene, such as the time in which a wave crosses a disk.

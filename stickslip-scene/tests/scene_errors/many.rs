@@ -50,6 +50,16 @@ name = "at {k}"
 repeat.k = 4
 at = ["k * 1 cm", "4 cm"]
 
+[[outputs.probes]]
+name = "row"
+at = [0, "4 cm"]
+to = ["2 cm", "5 cm"]
+count = 3
+
+[[outputs.groups]]
+name = "all grains"
+bodies = ["grain *"]
+
 [[outputs.arrivals]]
 quantity = "speed"
 threshold = 1
@@ -76,7 +86,133 @@ fn a_table_stands_for_many_with_indices_in_its_formulas_and_names() {
     assert_eq!(radius, 0.005);
     let probes: Vec<_> =
         scene.outputs.measurements.probes.iter().map(|probe| (&*probe.name, probe.at[0])).collect();
-    assert_eq!(probes, [("at 0", 0.0), ("at 1", 0.01), ("at 2", 0.02), ("at 3", 0.03)]);
+    let at = [("at 0", 0.0), ("at 1", 0.01), ("at 2", 0.02), ("at 3", 0.03)];
+    let row = [("row 1", 0.0), ("row 2", 0.01), ("row 3", 0.02)];
+    assert_eq!(probes, [&at[..], &row[..]].concat());
+}
+
+#[test]
+fn an_array_makes_copies_with_numbers() {
+    let make = |array: &str| {
+        let text = MANY.replace("name = \"floor\"", &format!("name = \"floor\"\narray.{array}"));
+        scene::parse("a.toml", &text, &[]).unwrap_or_else(|error| panic!("{error}")).scene
+    };
+    let centers = |scene: &Scene| -> Vec<(String, [f64; 2])> {
+        let floors = scene.bodies.iter().filter(|body| body.name.starts_with("floor "));
+        let middle = |shape: &Shape| shape.bounds(2).expect("bounded").middle();
+        floors
+            .map(|body| (body.name.clone(), middle(&body.shape)))
+            .map(|(name, [x, y, _])| (name, [x, y]))
+            .collect()
+    };
+    let near = |found: &[(String, [f64; 2])], expected: &[(&str, [f64; 2])]| {
+        assert_eq!(found.len(), expected.len(), "{found:?}");
+        for ((name, at), (wanted, place)) in found.iter().zip(expected) {
+            assert!(name == wanted && (0..2).all(|k| (at[k] - place[k]).abs() < 1e-12), "{found:?}");
+        }
+    };
+    let rows = make("square = { spacing = \"10 cm\", counts = [1, 2] }");
+    near(&centers(&rows), &[("floor 1", [0.015, -0.0125]), ("floor 2", [0.015, 0.0875])]);
+    let ring = make("ring = { center = [0, -1], count = 2, orientation = \"kept\" }");
+    near(&centers(&ring), &[("floor 1", [0.015, -0.0125]), ("floor 2", [-0.015, -1.9875])]);
+    let path = make("path = { points = [[0, -1], [0, -2]], spacing = \"50 cm\" }");
+    near(&centers(&path), &[("floor 1", [0.0, -1.0]), ("floor 2", [0.0, -1.5]), ("floor 3", [0.0, -2.0])]);
+    let inside = make(
+        "hexagonal = { spacing = \"6 cm\", within.box = { min = [-1, -1], max = [\"-89 cm\", \"-90 cm\"] } }",
+    );
+    near(
+        &centers(&inside),
+        &[
+            ("floor 1", [-0.975, -0.9925]),
+            ("floor 2", [-0.915, -0.9925]),
+            ("floor 3", [-0.945, -0.9925 + 0.06 * 0.75_f64.sqrt()]),
+        ],
+    );
+}
+
+#[test]
+fn mistakes_in_arrays_lines_and_groups() {
+    let floor = "name = \"floor\"";
+    let with = |array: &str| format!("name = \"floor\"\narray = {array}");
+    let cases = [
+        (
+            "{}",
+            "19:1: bodies[1].array: found an array of no kind; allowed: one of square, hexagonal, ring and path",
+        ),
+        (
+            "{ ring = { center = [0, 0], count = 2 }, path = { points = [[0, 0], [1, 0]], spacing = 1 } }",
+            "19:1: bodies[1].array: found an array of several kinds; allowed: one of square, hexagonal, ring and path",
+        ),
+        (
+            "{ square = { spacing = 1 } }",
+            "19:11: bodies[1].array.square: found neither `counts` nor `within`; allowed: one of counts and within",
+        ),
+        (
+            "{ square = { spacing = 1, counts = [2] } }",
+            "19:44: bodies[1].array.square.counts: found 1 numbers; allowed: 2 whole numbers",
+        ),
+        (
+            "{ square = { spacing = 0, counts = [2, 2] } }",
+            "19:32: bodies[1].array.square.spacing: found 0; allowed: a length [m] above 0, like \"0.4 m\"",
+        ),
+        (
+            "{ square = { spacing = 1, counts = [2000, 2000] } }",
+            "19:11: bodies[1].array.square: found about 4.0e6 copies; allowed: at most 1000000; are the units right?",
+        ),
+        (
+            "{ square = { spacing = 1, within.ball = { center = [0, 0], radius = \"1 cm\" } } }",
+            "19:35: bodies[1].array.square.within: found a container in which the shape has no room; allowed: one that holds a copy at least",
+        ),
+        (
+            "{ square = { spacing = 1, within.half_space = { point = [0, 0], normal = [0, 1] } } }",
+            "19:35: bodies[1].array.square.within: found a shape without bounds; allowed: a container with bounds",
+        ),
+        (
+            "{ ring = { center = [0, 0], count = 2, axis = [0, 1] } }",
+            "19:55: bodies[1].array.ring.axis: found [0, 1]; allowed: no axis, as the scene is plane",
+        ),
+        (
+            "{ path = { points = [[0, 0]], spacing = 1 } }",
+            "19:29: bodies[1].array.path.points: found 1 points; allowed: at least 2 points, 4 if the last is the first",
+        ),
+        (
+            "{ path = { points = [[0, 0], [0, 0]], spacing = 1 } }",
+            "19:38: bodies[1].array.path.points[1]: found [0, 0]; allowed: another point than the one before it",
+        ),
+    ];
+    for (array, expected) in cases {
+        check(MANY, &[(floor, &with(array), expected)]);
+    }
+    check(
+        MANY,
+        &[
+            (
+                "count = 3\n",
+                "",
+                "47:1: outputs.probes[1].count: found nothing, the key is missing; allowed: how many probes the line has",
+            ),
+            (
+                "to = [\"2 cm\", \"5 cm\"]\n",
+                "",
+                "50:9: outputs.probes[1].count: found 3; allowed: a count only beside `to`, the end of a line",
+            ),
+            (
+                "count = 3",
+                "count = 1",
+                "51:9: outputs.probes[1].count: found 1; allowed: a whole number from 2 to 100000",
+            ),
+            (
+                "bodies = [\"grain *\"]",
+                "bodies = [\"gravel *\"]",
+                "55:11: outputs.groups[0].bodies[0]: found \"gravel *\"; allowed: the name of a body (\"disk 0 of row 1\", \"disk 1 of row 1\", \"disk 2 of row 1\", \"disk 0 of row 2\", \"disk 1 of row 2\", \"disk 0 of row 3\", \"floor\", \"grain 1\", \"grain 2\", \"grain 3\", \"grain 4\", \"grain 5\", and 172 more); in a pattern, `*` is any letters: none of these names match it",
+            ),
+            (
+                "name = \"all grains\"",
+                "name = \"\"",
+                "54:8: outputs.groups[0].name: found \"\"; allowed: a name that no other in the list has",
+            ),
+        ],
+    );
 }
 
 #[test]
@@ -238,7 +374,7 @@ fn mistakes() {
     let content = |keys: &str| message(&format!("{MANY}\n[outputs.snapshots]\n{keys}\n"));
     assert_eq!(
         content("columns = [\"velocity\", \"stres\"]"),
-        "a.toml:53:24: outputs.snapshots.columns[1]: found \"stres\"; allowed: a column of particles (\"velocity\", \
+        "a.toml:63:24: outputs.snapshots.columns[1]: found \"stres\"; allowed: a column of particles (\"velocity\", \
          \"mass\", \"volume\", \"deformation\", \"stress\", \"pressure\", \"von_mises\", \"strain_rate\", \
          \"bulk_viscosity\", \"initial_stretch\", \"temperature\", \"thermal_strain_step\"); did you mean `stress`?"
     );

@@ -1,6 +1,7 @@
 //! `[[bodies]]`: shape, material, and how a body moves.
 
 use super::Context;
+use super::array::ArrayKeys;
 use super::loads::positive;
 use super::outside::OrOutside;
 use super::quantity::{Mass, MomentOfInertia, Pressure, QuantityInput, Velocity};
@@ -10,6 +11,7 @@ use super::shape::ShapeInput;
 use super::text::{Choice, Count, Text, Word};
 use super::vector::{SpinInput, VectorInput};
 use crate::geometry::Arrangement;
+use crate::packing::Placement;
 use crate::scene::error::Fault;
 use crate::scene::source::{DocumentNode, Value};
 use crate::scene::{self, BodyMotion, Expression, FreeRigid, NamedMaterial};
@@ -24,6 +26,9 @@ table! {
         /// Makes many of it: indices, and how many values each has, such as { i = 10, j = 5 }. Formulas use them by
         /// name, text in braces: "grain {i}". By default one.
         repeat: Option<Repeat>,
+        /// Makes copies of it in a regular array: "grain" makes "grain 1", "grain 2" ..., together "grain *". By default
+        /// one body.
+        array: Option<ArrayKeys>,
         /// Name of its material.
         material: Text,
         /// Where it is at the start: shape.ball = { center = [0, 0, 1], radius = 1 }.
@@ -173,6 +178,25 @@ impl Bodies {
         self.declared.push(declared.to_string());
         Ok(())
     }
+
+    /// Takes copies of a body, numbered from 1 on: its shape at each of some places.
+    ///
+    /// # Errors
+    /// A name that they cannot have.
+    pub fn add_copies(
+        &mut self,
+        body: &scene::Body,
+        places: &[Placement],
+        (name, declared): (&Text, &str),
+        context: &Context,
+    ) -> Result<(), Fault> {
+        for (i, place) in places.iter().enumerate() {
+            let shape = place.shape(&body.shape, context.dimension.axes());
+            let name_of_copy = format!("{} {}", body.name, i + 1);
+            self.add(scene::Body { name: name_of_copy, shape, ..body.clone() }, name, declared)?;
+        }
+        Ok(())
+    }
 }
 
 /// The bodies in the order of the file.
@@ -181,7 +205,10 @@ pub fn resolve(bodies: &[Body], materials: &[NamedMaterial], context: &Context) 
     for (i, body) in bodies.iter().enumerate() {
         let declared = format!("bodies[{i}]");
         Repeat::each(body.repeat.as_ref(), context, || {
-            resolved.add(body.resolve(materials, context)?, &body.name, &declared)
+            let one = body.resolve(materials, context)?;
+            let Some(array) = &body.array else { return resolved.add(one, &body.name, &declared) };
+            let places = array.place(&one.shape, &format!("{declared}.array"), context)?;
+            resolved.add_copies(&one, &places, (&body.name, &declared), context)
         })?;
     }
     Ok(resolved)

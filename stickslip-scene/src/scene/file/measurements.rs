@@ -6,7 +6,7 @@ use super::quantity::{Duration, Length, QuantityInput, Ratio, evaluate};
 use super::read::{Read, table};
 use super::repeat::Repeat;
 use super::space::corners;
-use super::text::{Choice, Text, Word, names_in};
+use super::text::{Choice, Count, Text, Word, names_in};
 use super::vector::VectorInput;
 use crate::scene::FACES;
 use crate::scene::error::Fault;
@@ -28,6 +28,11 @@ table! {
         repeat: Option<Repeat>,
         /// Where it is at the start [m].
         at: VectorInput<Length>,
+        /// Makes a line of `count` probes, "name 1", "name 2" ..., at equal distances from `at` to this point [m]. By
+        /// default one probe.
+        to: Option<VectorInput<Length>>,
+        /// How many probes that line has.
+        count: Option<Count>,
         /// Name of the body that it looks at; by default whichever is there.
         body: Option<Text>,
         /// What it stays with.
@@ -91,6 +96,18 @@ table! {
         within: Option<Room>,
         /// Names of the bodies that it cuts; by default all but rigid ones.
         bodies: Option<Vec<Text>>,
+    }
+}
+
+table! {
+    /// Bodies whose sums are recorded, and the forces between them and other groups.
+    Group {
+        /// Its name.
+        name: Text,
+        /// Makes many of it: indices, and how many values each has, as of [[bodies]]. By default one.
+        repeat: Option<Repeat>,
+        /// Names of its bodies, or patterns in which `*` is any letters.
+        bodies: Vec<Text>,
     }
 }
 
@@ -169,6 +186,7 @@ pub fn resolve(
     let reactions = outputs.reactions.as_deref().unwrap_or_default();
     let what = "a face of the domain or the name of a rigid body";
     let reactions = names_in(reactions, (what, &known), context)?;
+    let all: Vec<&str> = bodies.iter().map(|body| body.name.as_str()).collect();
     let free = bodies.iter().filter(|body| !body.is_rigid());
     let bodies: Vec<&str> = free.map(|body| body.name.as_str()).collect();
     let (mut probes, mut taken): (Vec<scene::Probe>, _) = (Vec::new(), HashSet::new());
@@ -176,8 +194,8 @@ pub fn resolve(
     for (i, probe) in outputs.probes.iter().flatten().enumerate() {
         Repeat::each(probe.repeat.as_ref(), context, || {
             let resolved = probe.resolve((&bodies, &mut taken), context)?;
-            probes.push(resolved);
-            declared.push(format!("outputs.probes[{i}]"));
+            declared.resize(probes.len() + resolved.len(), format!("outputs.probes[{i}]"));
+            probes.extend(resolved);
             Ok(())
         })?;
     }
@@ -196,13 +214,24 @@ pub fn resolve(
             Ok(())
         })?;
     }
+    let (mut groups, mut taken) = (Vec::new(), HashSet::new());
+    for group in outputs.groups.iter().flatten() {
+        Repeat::each(group.repeat.as_ref(), context, || {
+            let bodies = names_in(&group.bodies, ("the name of a body", &all), context)?;
+            groups.push(scene::Group { name: group.name.new_name(context, &mut taken)?, bodies });
+            Ok(())
+        })?;
+    }
     let time_unit = outputs.time_unit.as_ref().map(|unit| time_unit(unit, context)).transpose()?;
     let samples = match &outputs.samples {
         None => scene::Measurements::of_run(end).samples,
         Some(Sampling::EveryStep) => 0.0,
         Some(Sampling::Every(interval)) => interval.positive(context)?,
     };
-    Ok((scene::Measurements { time_unit, samples, probes, arrivals, fronts, sections, reactions }, declared))
+    Ok((
+        scene::Measurements { time_unit, samples, probes, arrivals, fronts, sections, reactions, groups },
+        declared,
+    ))
 }
 
 fn time_unit(unit: &QuantityInput<Duration>, context: &Context) -> Result<scene::TimeUnit, Fault> {
@@ -217,21 +246,44 @@ fn time_unit(unit: &QuantityInput<Duration>, context: &Context) -> Result<scene:
 const A_BODY: &str = "the name of a body that is not rigid";
 
 impl Probe {
+    /// One, or those of a line.
     fn resolve(
         &self,
         (bodies, taken): (&[&str], &mut HashSet<String>),
         context: &Context,
-    ) -> Result<scene::Probe, Fault> {
+    ) -> Result<Vec<scene::Probe>, Fault> {
+        let at = self.at.value(context)?;
         let body = self.body.as_ref().map(|name| name.name_of(context, A_BODY, bodies)).transpose()?;
-        let fixed_in = self.fixed_in.as_ref();
-        Ok(scene::Probe {
-            name: self.name.new_name(context, taken)?,
-            at: self.at.value(context)?,
-            body,
-            fixed_in: fixed_in.map_or(Ok(Anchor::Space), |word| word.value(context))?,
-        })
+        let fixed_in = self.fixed_in.as_ref().map_or(Ok(Anchor::Space), |word| word.value(context))?;
+        let probe = |name: String, at: [f64; 3]| scene::Probe { name, at, body: body.clone(), fixed_in };
+        let (to, count) = match (&self.to, &self.count) {
+            (None, None) => return Ok(vec![probe(self.name.new_name(context, taken)?, at)]),
+            (Some(to), Some(count)) => (to.value(context)?, count.value(context, 2..=MOST_ON_LINE)?),
+            (Some(to), None) => {
+                let key = to.node().key.replace(".to", ".count");
+                return Err(Fault::new(&key, "nothing, the key is missing", "how many probes the line has"));
+            }
+            (None, Some(count)) => {
+                return Err(count.refused(context, "a count only beside `to`, the end of a line")?);
+            }
+        };
+        let name = self.name.new_name(context, taken)?;
+        let place = |i: usize| {
+            let share = i as f64 / (count - 1) as f64;
+            std::array::from_fn(|k| at[k] + share * (to[k] - at[k]))
+        };
+        let numbered = |i: usize| {
+            let numbered = format!("{name} {}", i + 1);
+            let is_new = taken.insert(numbered.clone());
+            let refused = || self.name.refused(&numbered, "a name that no other in the list has");
+            if is_new { Ok(probe(numbered, place(i))) } else { Err(refused()) }
+        };
+        (0..count).map(numbered).collect()
     }
 }
+
+/// Probes of one line.
+const MOST_ON_LINE: usize = 100_000;
 
 impl Arrival {
     fn resolve(

@@ -1,6 +1,7 @@
 //! The scene file as it is written: its tables, one file each, with what each key means and how it becomes part of a
 //! [`Scene`](super::Scene). The documentation of a key here is its description in the schema.
 
+mod array;
 mod body;
 mod contact;
 mod damping;

@@ -2,7 +2,7 @@
 
 use super::Context;
 use super::fringes::Fringes;
-use super::measurements::{self, Arrival, Front, Probe, Sampling, Section};
+use super::measurements::{self, Arrival, Front, Group, Probe, Sampling, Section};
 use super::quantity::{Duration, QuantityInput, evaluate};
 use super::read::{Read, table};
 use super::text::{Count, Text, Word, names_in};
@@ -51,6 +51,8 @@ table! {
         /// Faces of the domain and rigid bodies on which forces are recorded, at the times of the tables: names, or
         /// patterns of names: ["y_min", "plate*"].
         reactions: Option<Vec<Text>>,
+        /// Bodies whose sums are recorded, at the times of the tables: [[outputs.groups]].
+        groups: Option<Vec<Group>>,
     }
 }
 

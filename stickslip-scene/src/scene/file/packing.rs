@@ -101,7 +101,7 @@ impl Packing {
             seed: self.seed.as_ref().map_or(Ok(0), |seed| seed.value(context, 0..=MOST_SEED))? as u64,
             dimension,
         };
-        let placements = request.place().map_err(|problem| self.fault(problem, declared))?;
+        let placements = request.find_or_place().map_err(|problem| self.fault(problem, declared))?;
         let fitted = match &self.particles {
             Some(word) => word.value(context)?,
             None if fits(&grain, dimension) => Arrangement::Fitted,
@@ -111,13 +111,9 @@ impl Packing {
         let motion = keys.motion(context)?;
         let per_side =
             self.particles_per_side.as_ref().map(|count| count.value(context, 1..=8)).transpose()?;
-        for (i, placement) in placements.iter().enumerate() {
-            let shape = placement.shape(&grain, dimension);
-            let mut body = scene::Body::new(&format!("{name} {}", i + 1), material, shape);
-            (body.particles, body.particles_per_side, body.motion) = (fitted, per_side, motion.clone());
-            bodies.add(body, &self.name, declared)?;
-        }
-        Ok(())
+        let mut body = scene::Body::new(&name, material, grain.clone());
+        (body.particles, body.particles_per_side, body.motion) = (fitted, per_side, motion);
+        bodies.add_copies(&body, &placements, (&self.name, declared), context)
     }
 
     fn amount(&self, context: &Context, declared: &str) -> Result<Amount, Fault> {
