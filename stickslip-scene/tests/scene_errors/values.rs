@@ -130,7 +130,7 @@ fn values_out_of_range() {
             (
                 "neo_hookean = ",
                 "neohookean = ",
-                "10:1: materials.rubber.neohookean: found unknown key `neohookean`; allowed: density, volume_change, LAWS, outside; did you mean `neo_hookean`?",
+                "10:1: materials.rubber.neohookean: found unknown key `neohookean`; allowed: density, volume_change, thermal_expansion, LAWS, outside; did you mean `neo_hookean`?",
             ),
             (
                 "neo_hookean = ",

@@ -134,7 +134,8 @@ fn a_dashpot_takes_energy_and_a_stiff_spring_holds() {
     let lost = 0.5 * 0.04 / inverse * (1.0 - left * left);
     println!("closing {:.4} of {left:.4}, work {:.5}", closing / 0.2, ledger.external_work / -lost);
     assert!((closing / 0.2 - left).abs() < 2e-3 && (ledger.external_work / -lost - 1.0).abs() < 5e-3);
-    assert!((ledger.total - begun.total).abs() < 1e-3 * lost, "{ledger:?}");
+    // The force is of first order in the step over the time in which the dashpot stops the blocks, 4e-3.
+    assert!((ledger.total - begun.total).abs() < 5e-3 * lost, "{ledger:?}");
 
     let mut simulation = start(&blocks(("plane-strain", ""), moving, "stiffness = 1e12\ndashpot = 1e6"));
     let begun = simulation.ledger();
