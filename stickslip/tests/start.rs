@@ -443,5 +443,7 @@ fn the_stretch_of_bodies_so_far_goes_with_them() {
         largest
     });
     assert!(before[..2].iter().all(|&stretch| stretch > 1e-3), "{before:?}");
-    assert_eq!(before[..2], after[..2]);
+    // The first look adds what has stretched since.
+    let grown = before[..2].iter().zip(&after[..2]).map(|(before, after)| after / before - 1.0);
+    assert!(grown.clone().all(|grown| (0.0..1e-6).contains(&grown)), "{before:?} {after:?}");
 }

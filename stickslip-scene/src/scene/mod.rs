@@ -365,7 +365,12 @@ pub struct NamedMaterial {
     /// Whether its particles change their volume each by itself.
     pub volume_change: VolumeChange,
     /// alpha, by how much it grows in every direction without stress, for each kelvin [1/K].
+    #[serde(skip_serializing_if = "is_zero")]
     pub thermal_expansion: f64,
+}
+
+fn is_zero(number: &f64) -> bool {
+    *number == 0.0
 }
 
 /// Whose change of volume a particle takes.
