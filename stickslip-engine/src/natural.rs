@@ -70,10 +70,9 @@ impl<V: Number> Natural<V> {
     #[inline(always)]
     pub fn new<const D: usize>((entries, count): (&[V], usize), expansion: V) -> Self {
         let (mut map, mut growth) = (Symmetric::isotropic(V::ONE), V::ONE);
-        if count >= Kind::Symmetric.entries(D) {
-            for k in 0..Kind::Symmetric.entries(D) {
-                map.0[k] = entries[k];
-            }
+        let stretch = Kind::Symmetric.entries(D);
+        if count >= stretch {
+            map.0[..stretch].copy_from_slice(&entries[..stretch]);
         }
         if let Some(first) = heat_in::<D>(count) {
             map = map * (V::ONE / expansion.times_plus(entries[first], V::ONE));
@@ -101,8 +100,8 @@ impl<V: Number> Natural<V> {
     #[inline(always)]
     pub fn seen_with_free_thickness(&self, motion: &Motion<V>) -> Motion<V> {
         let mut seen = self.seen(motion);
-        seen.deformation.0[2][2] = seen.deformation.0[2][2] * self.growth;
-        seen.jacobian = seen.jacobian * self.growth;
+        seen.deformation.0[2][2] *= self.growth;
+        seen.jacobian *= self.growth;
         seen.increment.0[2][2] = V::ONE;
         seen
     }

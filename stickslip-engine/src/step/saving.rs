@@ -346,7 +346,7 @@ fn complete<T: Laned, const D: usize>(body: &mut Body<T, D>, fresh: &Body<T, D>)
         (particle.volume, particle.mass, particle.spin) = (volume, filled.mass, Vector::ZERO);
         body.particles.set(i, &particle);
     }
-    if body.particles.len() == 0 {
+    if body.particles.is_empty() {
         return Ok(());
     }
     let totals = body.totals();

@@ -20,6 +20,9 @@ use crate::part::{PartPoint, PartPoints};
 use crate::tensor::{Real, Vector};
 use std::time::Instant;
 
+/// The nodes that move a part, each with g_i.
+type PartNodes<T, const D: usize> = Vec<(u32, Vector<T, D>)>;
+
 /// Room for springs in a step.
 #[derive(Clone, Debug)]
 pub struct SpringRoom<T, const D: usize> {
@@ -27,7 +30,7 @@ pub struct SpringRoom<T, const D: usize> {
     places: Vec<Vec<u32>>,
     springs: Vec<SpringStep>,
     /// Nodes of the parts of one spring, with g_i.
-    nodes: [Vec<(u32, Vector<T, D>)>; 2],
+    nodes: [PartNodes<T, D>; 2],
 }
 
 /// What a spring does in a step.
@@ -74,7 +77,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         &mut self,
         number: usize,
         (dt, ahead): (f64, T),
-        (places, nodes): (&[Vec<u32>], &mut [Vec<(u32, Vector<T, D>)>; 2]),
+        (places, nodes): (&[Vec<u32>], &mut [PartNodes<T, D>; 2]),
     ) -> SpringStep {
         let spring = &self.settings.springs[number];
         let Some(centers) = centers(spring, &self.state.bodies, places) else { return SpringStep::default() };
@@ -126,7 +129,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         &self,
         (end, places): (&PartPoints, &[u32]),
         along: Vector<T, D>,
-        nodes: &mut Vec<(u32, Vector<T, D>)>,
+        nodes: &mut PartNodes<T, D>,
     ) {
         let (active, boundary) = (&self.workspace.active, &self.workspace.boundary);
         for point in &end.points {

@@ -84,10 +84,12 @@ impl ReactionsObserver {
             for (side, body) in contact.bodies.into_iter().enumerate() {
                 let Ok(which) = self.rigid.binary_search(&body) else { continue };
                 let sign = if side == 0 { -1.0 } else { 1.0 };
-                for i in 0..3 {
-                    rigid[which][0][i] += sign * contact.impulse[i];
-                    rigid[which][1][i] += sign * contact.turn[i];
-                }
+                let [impulse, turn, _] = &mut rigid[which];
+                let add = |sum: &mut [f64; 3], more: [f64; 3]| {
+                    sum.iter_mut().zip(more).for_each(|(x, more)| *x += sign * more);
+                };
+                add(impulse, contact.impulse);
+                add(turn, contact.turn);
             }
         }
         Known { time: view.time(), faces: view.walls(), rigid }
@@ -141,7 +143,7 @@ impl Observer for ReactionsObserver {
                     moment: about.map(|x| x / elapsed),
                 });
             }
-            self.table.append(rows.into_iter())?;
+            self.table.append(rows)?;
         }
         self.schedule.recorded(time);
         Ok(())

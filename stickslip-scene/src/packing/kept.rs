@@ -9,6 +9,7 @@ use sha2::{Digest, Sha256};
 use std::fmt::{self, Write as _};
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant, SystemTime};
 
 /// Beside the version of the crate: another number where the same packing comes out with other places.
@@ -121,8 +122,9 @@ fn keep(path: &Path, placed: &[Placement]) -> std::io::Result<()> {
     let folder = path.parent().unwrap_or(Path::new(""));
     fs::create_dir_all(folder)?;
     // A name that no other process, and no other thread of this one, writes to.
-    let now = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default();
-    let part = path.with_extension(format!("{}-{}.part", std::process::id(), now.as_nanos()));
+    static WRITES: AtomicU64 = AtomicU64::new(0);
+    let write = WRITES.fetch_add(1, Ordering::Relaxed);
+    let part = path.with_extension(format!("{}-{write}.part", std::process::id()));
     let written = fs::write(&part, encoded(placed)).and_then(|()| fs::rename(&part, path));
     if written.is_err() {
         let _ = fs::remove_file(&part);

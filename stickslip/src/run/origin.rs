@@ -136,7 +136,7 @@ impl RecordedBodies<'_> {
             wanted.extend(own.filter(|name| written.iter().all(|column| column != name)));
             let law = self.body(&body.name).and_then(|body| body.get("material")).and_then(Value::as_u64);
             let law = law.and_then(|number| self.record.pointer(&format!("/materials/{number}/law")));
-            if kind(law) != kind(serde_json::to_value(&scene.materials[body.material].law).ok().as_ref()) {
+            if kind(law) != kind(serde_json::to_value(scene.materials[body.material].law).ok().as_ref()) {
                 missing.push(format!(
                     "all that the law of `{}` remembered (outputs.snapshots.columns)",
                     body.name
