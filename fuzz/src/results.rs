@@ -134,7 +134,7 @@ pub fn snapshot(bytes: &[u8]) {
             ["/frame/1", "/particle/0/3/velocity.x", "/skins/1", "/skins/1/velocity", "/column/1/stress.xy"];
         view(folder, &fixed.into_iter().chain(addresses.iter().map(String::as_str)).collect::<Vec<_>>());
         if whole.is_ok() && is_drawn(bytes) {
-            for color in ["body", "pressure", "plastic_strain"] {
+            for color in ["body", "pressure", "von_mises"] {
                 draw(
                     &["render", "--frame", "1", "--size", "200x200", "--color", color],
                     folder,

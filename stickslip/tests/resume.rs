@@ -747,6 +747,8 @@ fn a_disk_that_stands_still_is_told_of_and_does_not_hold_a_run_that_is_to_stop()
     std::io::copy(&mut fs::File::open(&pipe).unwrap(), &mut std::io::sink()).unwrap();
     // Until the thread that was left to itself has ended, the folder is its own.
     while OutputFolder::reopen(&parts).is_err() {
+        // It opens what it wrote once more, and a pipe opens with a partner only.
+        let _partner = fs::OpenOptions::new().read(true).write(true).open(pipe.with_extension(""));
         std::thread::sleep(Duration::from_millis(10));
     }
     go_on(&scene, &parts).unwrap();

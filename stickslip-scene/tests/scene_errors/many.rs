@@ -380,11 +380,11 @@ fn mistakes() {
     );
     assert_eq!(
         content("every = 0"),
-        "a.toml:53:9: outputs.snapshots.every: found 0; allowed: a whole number from 1 to 1000000"
+        "a.toml:63:9: outputs.snapshots.every: found 0; allowed: a whole number from 1 to 1000000"
     );
     assert_eq!(
         content("precision = \"half\""),
-        "a.toml:53:13: outputs.snapshots.precision: found \"half\"; allowed: \"double\" or \"single\""
+        "a.toml:63:13: outputs.snapshots.precision: found \"half\"; allowed: \"double\" or \"single\""
     );
     let dense = message(&MANY.replace("solid_fraction = 0.7", "solid_fraction = 0.9"));
     let start = "a.toml:28:18: packings[0].solid_fraction: found grains that fill 0.900 of the container, and jam; allowed: about 0.";

@@ -125,6 +125,8 @@ pub(super) struct Checkpoints {
     folder: OutputFolder,
     scene: Value,
     writer: Writer<()>,
+    /// Whether the folder for them is made.
+    prepared: bool,
     trouble: Arc<Mutex<Option<OutputError>>>,
 }
 
@@ -143,6 +145,7 @@ impl Checkpoints {
             folder: folder.clone(),
             scene: record,
             writer,
+            prepared: false,
             trouble: Arc::default(),
         };
         checkpoints.made(view.time());
@@ -179,9 +182,10 @@ impl Checkpoints {
         let checkpoint = Arc::new(Checkpoint::new(&self.scene, state, memory));
         let written = Arc::clone(&checkpoint);
         let (folder, keep) = (self.folder.clone(), self.options.keep.max(1));
-        let trouble = Arc::clone(&self.trouble);
+        let (trouble, first) = (Arc::clone(&self.trouble), !std::mem::replace(&mut self.prepared, true));
         self.writer.hand_over(0, move |()| {
-            let done = Checkpoint::prepare(&folder)
+            let prepared = if first { Checkpoint::prepare(&folder) } else { Ok(()) };
+            let done = prepared
                 .and_then(|()| written.write(&path))
                 .and_then(|()| Checkpoint::keep_newest(folder.path(), keep));
             if let Err(error) = done {
