@@ -485,9 +485,15 @@ fn a_flipped_bit_is_found_in_every_kind_of_file() {
     let newest =
         fs::read_dir(workplace.path("out/checkpoints")).unwrap().map(|entry| entry.unwrap().path()).max();
     let newest = newest.unwrap().strip_prefix(workplace.path("out")).unwrap().to_str().unwrap().to_owned();
-    for name in
-        ["particles/00003.vtu", "grid/00002.vtu", "fringes/00001.png", "energy.csv", "contacts.csv", &newest]
-    {
+    for name in [
+        "particles/00003.vtu",
+        "grid/00002.vtu",
+        "fringes/00001.png",
+        "fringes.csv",
+        "energy.csv",
+        "contacts.csv",
+        &newest,
+    ] {
         let path = workplace.path("out").join(name);
         let kept = fs::read(&path).unwrap();
         for place in [1, 3].map(|part| part * kept.len() / 4) {
@@ -501,6 +507,9 @@ fn a_flipped_bit_is_found_in_every_kind_of_file() {
         fs::write(&path, &kept).unwrap();
     }
     assert_eq!(workplace.succeed(&["check", "out"]), whole);
+    let set = workplace.run(&["check", "out", "--set", "cells=4"]);
+    assert_eq!(set.code, Some(2), "{}", set.stdout);
+    assert!(set.stderr.contains("a folder of results has no parameters to set"), "{}", set.stderr);
     // Tables are held against their sums when a run goes on, too.
     let table = workplace.path("out/energy.csv");
     let text = fs::read_to_string(&table).unwrap();

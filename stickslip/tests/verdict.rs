@@ -45,6 +45,8 @@ struct Puppet {
     momentum: fn(f64) -> [f64; 3],
     /// The stable step at a time [s].
     stable: fn(f64) -> f64,
+    /// Impulses of contact with a second body so far, and how many of them were reduced.
+    pushes: [u64; 2],
     time: f64,
     steps: u64,
 }
@@ -58,6 +60,7 @@ impl Puppet {
             energy: |_| [0.0, 0.0],
             momentum: |_| [0.0; 3],
             stable: |_| STEP,
+            pushes: [0; 2],
             time: 0.0,
             steps: 0,
         }
@@ -122,7 +125,12 @@ impl View for Puppet {
     }
 
     fn contact_sums(&self) -> Vec<ContactSum> {
-        Vec::new()
+        let [pushes, reduced] = self.pushes;
+        if pushes == 0 {
+            return Vec::new();
+        }
+        // The scene has one body, which here is both of a pair.
+        vec![ContactSum { bodies: [0, 0], pushes, reduced, ..ContactSum::default() }]
     }
 
     fn patches(&self) -> Vec<ContactPatch> {
@@ -413,6 +421,25 @@ fn a_part_that_moves_as_fast_as_waves_is_found() {
     assert_eq!(kinds(SCENE, Puppet::new(struck)), ["speed"]);
     let whole: BodyMotion = |[x, y], t| ([x + 40.0 * t, y], [40.0, 0.0], REST);
     assert!(kinds(SCENE, Puppet::new(whole)).is_empty());
+}
+
+/// The share of impulses that were reduced counts, where there are enough of them to say something; and the scene's
+/// bound.
+#[test]
+fn impulses_that_are_reduced_too_often_are_found() {
+    let touching = |pushes| Puppet { pushes, ..Puppet::new(turning) };
+    let (notes, warnings) = judge(SCENE, &mut touching([100, 60]));
+    let [warning] = &warnings[..] else { panic!("{warnings:?}") };
+    assert_eq!((warning.kind.as_str(), warning.body.as_deref()), ("max-strain", Some("block")));
+    assert!((warning.worst - 0.6).abs() < 1e-12 && notes.len() == 1, "{warning:?}");
+    assert!(warning.message.contains("60.0 % of the impulses"), "{warning:?}");
+    assert!(kinds(SCENE, touching([100, 40])).is_empty());
+    assert!(kinds(SCENE, touching([40, 40])).is_empty());
+    let bound = |bound| {
+        SCENE.replace("[[bodies]]", &format!("health = {{ max_strain = {{ bound = {bound} }} }}\n[[bodies]]"))
+    };
+    assert!(kinds(&bound(0.7), touching([100, 60])).is_empty());
+    assert_eq!(kinds(&bound(0.3), touching([100, 40])), ["max-strain"]);
 }
 
 #[test]

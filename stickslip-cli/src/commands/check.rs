@@ -22,6 +22,12 @@ pub struct Arguments {
 impl Arguments {
     pub fn execute(self) -> Result<(), Failure> {
         if self.scene.is_dir() {
+            if !self.parameters.is_empty() {
+                return Err(Failure::Input(miette!(
+                    help = "name the scene file, or leave --set out",
+                    "--set: a folder of results has no parameters to set"
+                )));
+            }
             return check_results(&self.scene);
         }
         let loaded = load(&self.scene, &self.parameters).map_err(Failure::input)?;

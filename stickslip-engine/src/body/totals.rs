@@ -316,6 +316,22 @@ impl<T: Laned, const D: usize> Work for Turning<T, D> {
     }
 }
 
+/// Angular velocity of what has this inertia tensor and angular momentum; in the plane about the third axis.
+fn quotient<const D: usize>(inertia: &Matrix<f64>, angular: [f64; 3]) -> [f64; 3] {
+    if D == 2 {
+        return [0.0, 0.0, angular[2] / inertia.0[2][2]];
+    }
+    let inverse = inertia.inverse();
+    std::array::from_fn(|i| (0..3).map(|j| inverse.0[i][j] * angular[j]).sum())
+}
+
+/// Points stand on a line (in the plane: are one) where their inertia tensor has no more than this part of the
+/// determinant of the body's.
+const ON_A_LINE: f64 = 1e-6;
+/// What points on a line keep of the inertia of their particles: so much is lost of the spin across the line, and
+/// round-off of single precision makes no spin about it.
+const OWN_SHARE: f64 = 1e-3;
+
 impl<T: Laned, const D: usize> Body<T, D> {
     /// Mass, momentum and energy, summed in the order of memory, part by part.
     pub fn totals(&self) -> Totals {
@@ -331,10 +347,28 @@ impl<T: Laned, const D: usize> Body<T, D> {
     /// Angular velocity: the inverse of the inertia tensor times the angular momentum,
     /// both about the centre of mass [rad/s].
     pub fn spin(&self, totals: &Totals) -> [f64; 3] {
+        let (inertia, angular) = self.turning(totals, self.gyration());
+        quotient::<D>(&inertia, angular)
+    }
+
+    /// Angular velocity of a body whose particles have velocities and no spins yet: as if they were points. Where these
+    /// stand on one line, which cannot tell how it turns about itself, they keep a little of their own inertia [rad/s].
+    pub fn spin_of_points(&self, totals: &Totals) -> [f64; 3] {
+        let (points, angular) = self.turning(totals, Gyration { cell: 0.0, share: 0.0 });
+        let (whole, _) = self.turning(totals, self.gyration());
+        let size = |inertia: &Matrix<f64>| if D == 2 { inertia.0[2][2] } else { inertia.det() };
+        if size(&points) > ON_A_LINE * size(&whole) {
+            return quotient::<D>(&points, angular);
+        }
+        quotient::<D>(&(points * (1.0 - OWN_SHARE) + whole * OWN_SHARE), angular)
+    }
+
+    /// Inertia tensor [kg m^2] and angular momentum [kg m^2/s] about the centre of mass, for particles of this size.
+    fn turning(&self, totals: &Totals, gyration: Gyration<f64>) -> (Matrix<f64>, [f64; 3]) {
         let center = totals.first_moment.map(|x| x / totals.mass);
         let mean = totals.momentum.map(|p| p / totals.mass);
         let turning = |part| {
-            let (columns, gyration) = (self.particles.view(), self.gyration());
+            let columns = self.particles.view();
             T::run(Processor::best(), Turning { columns, part, gyration, center, mean })
         };
         let (mut inertia, mut angular) = (Matrix::<f64>::ZERO, [0.0; 3]);
@@ -342,11 +376,7 @@ impl<T: Laned, const D: usize> Body<T, D> {
             inertia = inertia + some_inertia;
             angular = std::array::from_fn(|i| angular[i] + some_angular[i]);
         }
-        if D == 2 {
-            return [0.0, 0.0, angular[2] / inertia.0[2][2]];
-        }
-        let inverse = inertia.inverse();
-        std::array::from_fn(|i| (0..3).map(|j| inverse.0[i][j] * angular[j]).sum())
+        (inertia, angular)
     }
 
     fn gyration(&self) -> Gyration<f64> {

@@ -173,7 +173,7 @@ impl ContactSums {
         let mut last: Option<([usize; 2], usize)> = None;
         for impulse in impulses {
             let [on_a, on_b] = impulse.change.impulse.map(|j| j.space());
-            let pushes = on_a != [0.0; 3] || on_b != [0.0; 3];
+            let pushes = impulse.change.pushes();
             if !pushes && impulse.gap > T::of(CLOSE) {
                 continue;
             }
@@ -235,6 +235,18 @@ impl ContactSums {
                 let half_width = if D == 2 { 0.5 * area } else { whole.half_width(lattice.cell.f64()) };
                 let (body_a, body_b) = (*body_a, *body_b);
                 *largest = Some(ContactPatch { body_a, body_b, area, half_width, impulse: 0.0 });
+            }
+        }
+    }
+
+    /// Counts the impulses of a use that enters no sum, and how many of them were reduced.
+    pub fn count<'a, T: Real, const D: usize>(&mut self, impulses: impl Iterator<Item = &'a Impulse<T, D>>) {
+        for impulse in impulses.filter(|impulse| impulse.change.pushes()) {
+            let reduced = u64::from(impulse.change.scale < T::ONE);
+            self.scaled += reduced;
+            if let Some(&place) = self.places.get(&impulse.bodies) {
+                let sum = &mut self.pairs[place].sum;
+                (sum.pushes, sum.reduced) = (sum.pushes + 1, sum.reduced + reduced);
             }
         }
     }

@@ -25,5 +25,5 @@ pub use law::{PairLaw, Span};
 pub use pair::{Change, ContactUse, Pair, SurfaceEstimate, TimeStep};
 pub use reference_map::ReferenceMap;
 pub use rules::{Rule, Rules};
-pub use solve::{Impulse, ImpulseRecord, Impulses, Solve};
+pub use solve::{Impulse, Impulses, Solve};
 pub use survey::{BodyShare, Encounter, Facing, LawInputs, Near, SharedNode, Survey, SurveyPart, room};

@@ -95,6 +95,11 @@ impl<T: Real, const D: usize> Change<T, D> {
     /// No contact.
     pub const NONE: Self =
         Change { impulse: [Vector::ZERO; 2], normal: T::ZERO, tangential: Vector::ZERO, scale: T::ONE };
+
+    /// Whether it gives an impulse to either body.
+    pub fn pushes(&self) -> bool {
+        self.impulse.iter().any(|impulse| *impulse != Vector::ZERO)
+    }
 }
 
 impl<T: Real, const D: usize> Pair<'_, T, D> {

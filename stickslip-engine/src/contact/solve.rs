@@ -68,8 +68,6 @@ struct List<T, const D: usize> {
     impulses: Vec<Impulse<T, D>>,
     /// Velocities of the bodies at a node while it is being solved [m/s].
     velocities: Vec<Vector<T, D>>,
-    /// How many impulses that nobody asks for were reduced, so that no cell strains by more than its rule allows.
-    reduced: u64,
     /// At how many nodes pairs still changed each other after [`MAX_SWEEPS`].
     unsettled: u64,
 }
@@ -82,7 +80,7 @@ impl<T, const D: usize> Default for Impulses<T, D> {
 
 impl<T, const D: usize> Default for List<T, D> {
     fn default() -> Self {
-        List { impulses: Vec::new(), velocities: Vec::new(), reduced: 0, unsettled: 0 }
+        List { impulses: Vec::new(), velocities: Vec::new(), unsettled: 0 }
     }
 }
 
@@ -90,11 +88,6 @@ impl<T, const D: usize> Impulses<T, D> {
     /// The impulses in the order of their encounters.
     pub fn iter(&self) -> impl Iterator<Item = &Impulse<T, D>> {
         self.parts.iter().flat_map(|list| &list.impulses)
-    }
-
-    /// How many impulses were reduced of a use whose impulses were dropped.
-    pub fn reduced(&self) -> u64 {
-        self.parts.iter().map(|list| list.reduced).sum()
     }
 
     /// At how many nodes pairs still changed each other when the last sweep was done.
@@ -124,53 +117,40 @@ pub struct Solve<'a, T, const D: usize> {
     pub free: &'a [bool],
 }
 
-/// What becomes of the impulses of a use.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ImpulseRecord {
-    /// They are kept.
-    Kept,
-    /// Nobody asks for them.
-    Dropped,
-}
-
 impl<T: Real, const D: usize> Solve<'_, T, D> {
     /// Changes the velocities by the impulses of all encounters, which are listed in their order.
     ///
     /// Where more than two bodies meet, each pair's impulse is solved in turn with the others held until none changes
     /// (block Gauss-Seidel), so that every pair obeys its own law and momentum is conserved pair by pair. A law that
     /// judges the whole step sees the velocities without what it gave before.
-    pub fn impulses(&self, record: ImpulseRecord, listed: &mut Impulses<T, D>) {
+    pub fn impulses(&self, listed: &mut Impulses<T, D>) {
         let parts = self.survey.parts();
-        listed.parts.resize_with(parts.len().max(listed.parts.len()), List::default);
-        let (used, unused) = listed.parts.split_at_mut(parts.len());
-        for list in unused {
-            list.impulses.clear();
-            (list.reduced, list.unsettled) = (0, 0);
-        }
-        each(used, 4, |i, list| {
+        each(self.parts_of(listed), 4, |i, list| {
             self.part((i, &parts[i]), list);
             self.apply_part(list);
-            if record == ImpulseRecord::Dropped {
-                list.reduced += list.impulses.iter().filter(|j| j.change.scale < T::ONE).count() as u64;
-                list.impulses.clear();
-            }
         });
     }
 
     /// Lists the impulses of the parts of the survey that are `wanted`, by their numbers, and changes no velocity.
     pub fn list(&self, wanted: impl Fn(usize) -> bool + Sync, listed: &mut Impulses<T, D>) {
         let parts = self.survey.parts();
-        listed.parts.resize_with(parts.len().max(listed.parts.len()), List::default);
-        let (used, unused) = listed.parts.split_at_mut(parts.len());
-        for list in unused {
-            list.impulses.clear();
-            (list.reduced, list.unsettled) = (0, 0);
-        }
-        each(used, 4, |i, list| {
+        each(self.parts_of(listed), 4, |i, list| {
             if wanted(i) {
                 self.part((i, &parts[i]), list);
             }
         });
+    }
+
+    /// The lists of the parts of the survey; what others hold from an earlier one is cleared.
+    fn parts_of<'a>(&self, listed: &'a mut Impulses<T, D>) -> &'a mut [List<T, D>] {
+        let parts = self.survey.parts().len();
+        listed.parts.resize_with(parts.max(listed.parts.len()), List::default);
+        let (used, unused) = listed.parts.split_at_mut(parts);
+        for list in unused {
+            list.impulses.clear();
+            list.unsettled = 0;
+        }
+        used
     }
 
     /// Changes the velocities by impulses that were listed.
@@ -191,7 +171,7 @@ impl<T: Real, const D: usize> Solve<'_, T, D> {
     fn part(&self, (number, part): (usize, &SurveyPart<T, D>), list: &mut List<T, D>) {
         let given = self.given.map_or(&[][..], |given| given.of(number));
         list.impulses.clear();
-        (list.reduced, list.unsettled) = (0, 0);
+        list.unsettled = 0;
         for site in &part.sites {
             let given = if given.is_empty() { given } else { &given[site.encounters.clone()] };
             self.site((part, site), given, list);
@@ -466,7 +446,7 @@ mod tests {
             given: None,
             free: &[],
         };
-        solve.impulses(ImpulseRecord::Kept, &mut impulses);
+        solve.impulses(&mut impulses);
         let after = velocities(&nodes);
         let masses = state.iter().map(|body| body.0).collect();
         let unsettled = impulses.unsettled();

@@ -350,7 +350,7 @@ fn complete<T: Laned, const D: usize>(body: &mut Body<T, D>, fresh: &Body<T, D>)
         return Ok(());
     }
     let totals = body.totals();
-    let turning = body.spin(&totals);
+    let turning = body.spin_of_points(&totals);
     let Some(motion) = &mut body.motion else {
         for i in 0..body.particles.len() {
             let particle = body.particles.get(i);

@@ -10,7 +10,7 @@ use super::state::{Disorder, Workspace};
 use crate::basis::Basis;
 use crate::body::Body;
 use crate::clock::signal_speed;
-use crate::contact::{ContactUse, ImpulseRecord, Near, Solve, TimeStep};
+use crate::contact::{ContactUse, Near, Solve, TimeStep};
 use crate::door::StepError;
 use crate::grid::{Blocks, Disjoint, Node, node_at, nodes_per_block};
 use crate::lanes::{Laned, Processor};
@@ -301,20 +301,21 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let nodes = Disjoint::new(&mut field.nodes);
         let (rules, free) = (&self.settings.rules, &self.settings.free[..]);
         let solve = Solve { survey, rules, nodes, step, given, free };
-        match number {
-            2 => solve.impulses(ImpulseRecord::Dropped, listed),
-            _ if mechanism.bodies.is_empty() => solve.impulses(ImpulseRecord::Kept, listed),
-            _ => {
-                let (joints, surfaces) = match number {
-                    1 => (&self.settings.joints[..], Some(&self.settings.surfaces)),
-                    _ => (&[][..], None),
-                };
-                let coupling = Coupling { solve, lattice: &self.settings.lattice, joints, surfaces };
-                let settled = coupling.settle(&mut self.state.bodies, mechanism, listed);
-                self.state.contact_sums.unsettled += u64::from(!settled);
-            }
+        if number == 2 || mechanism.bodies.is_empty() {
+            solve.impulses(listed);
+        } else {
+            let (joints, surfaces) = match number {
+                1 => (&self.settings.joints[..], Some(&self.settings.surfaces)),
+                _ => (&[][..], None),
+            };
+            let coupling = Coupling { solve, lattice: &self.settings.lattice, joints, surfaces };
+            let settled = coupling.settle(&mut self.state.bodies, mechanism, listed);
+            self.state.contact_sums.unsettled += u64::from(!settled);
         }
-        self.state.contact_sums.scaled += listed.reduced();
+        // What the others gave stands in the account of the step.
+        if number == 2 {
+            self.state.contact_sums.count(listed.iter());
+        }
         self.state.contact_sums.unsettled += listed.unsettled();
         boundary.impose(field);
         self.watch.lap("contact", start);

@@ -6,8 +6,9 @@ use super::memory::Memory;
 use super::recorder::TABLES;
 use super::results::Results;
 use super::vtu::PointArrays;
-use super::{FRINGES, GRID, PARTICLES};
+use super::{FRINGES, FRINGES_TABLE, GRID, PARTICLES};
 use crate::image::Image;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -94,6 +95,12 @@ impl Verified {
     }
 }
 
+/// How long the table of fringes is, among what is kept of the camera's film.
+#[derive(Default, Serialize, Deserialize)]
+struct FringesLength {
+    table: u64,
+}
+
 /// What a checkpoint knows of files.
 #[derive(Default)]
 struct Sums {
@@ -115,6 +122,15 @@ impl Sums {
             if known.map_err(unreadable)? {
                 sums.tables.insert(folder.join(name), sum);
             }
+        }
+        let (mut fringes, mut sum) = (FringesLength::default(), None);
+        let known = memory.part(FRINGES, |memory| {
+            Ok(memory.keep("film", &mut fringes)? && memory.keep("sum", &mut sum)?)
+        });
+        if known.map_err(unreadable)?
+            && let Some(crc) = sum
+        {
+            sums.tables.insert(folder.join(FRINGES_TABLE), FileSum { bytes: fringes.table, crc });
         }
         for name in [PARTICLES, GRID, FRINGES] {
             let mut files: Vec<Option<FileSum>> = Vec::new();

@@ -215,7 +215,7 @@ fn drive(
     manifest.source.clone_from(&options.source);
     manifest.resumed = std::mem::take(&mut beginning.resumed);
     if beginning.memory.is_none() {
-        manifest.write(&folder)?;
+        record(&manifest, &folder)?;
     }
     let recorder = Recorder::new(scene, &folder).map_err(RunError::from).and_then(|mut recorder| {
         observers.iter_mut().for_each(|observer| recorder.add(&mut **observer));
@@ -232,7 +232,7 @@ fn drive(
             Ok(_) => {}
         }
         beginning.damaged.iter().try_for_each(|path| Checkpoint::put_away(path))?;
-        manifest.write(&folder)?;
+        record(&manifest, &folder)?;
     }
     if !beginning.news.is_empty() {
         let news = std::mem::take(&mut beginning.news);
@@ -274,7 +274,7 @@ fn drive(
     Ok(Summary::new(scene, simulation, energies, (manifest, contacts)))
 }
 
-/// Writes the record of a run that has ended, by a thread that waits no longer than the others.
+/// Writes the record of a run, by a thread that waits no longer than the others.
 fn record(manifest: &Manifest, folder: &OutputFolder) -> Result<(), OutputError> {
     let owned = (manifest.clone(), folder.clone());
     let mut writer = Writer::start(owned, &folder.join(Manifest::FILE), folder.waiting())?;

@@ -171,7 +171,7 @@ fn oblique_balls() {
 }
 
 /// Every law counts the impulses that it reduces, so that no cell strains by more than `max_strain`; `surface` does so
-/// for the velocities that strain, whose impulses stand in no table.
+/// for the velocities that strain, whose impulses stand in no table. They are counted by pair as well.
 #[test]
 fn reduced_impulses_are_counted() {
     for rule in RULES {
@@ -179,7 +179,11 @@ fn reduced_impulses_are_counted() {
             let scene = format!("{}max_strain = {max_strain}\n", disks([0.6, 0.3], rule, 0.0));
             let mut simulation = start(&scene);
             take_steps(&mut *simulation, 20);
-            simulation.ledger().scaled_impulses
+            let scaled = simulation.ledger().scaled_impulses;
+            let sums = simulation.contact_sums();
+            assert!(sums.iter().all(|sum| sum.reduced <= sum.pushes), "{rule:?}: {sums:?}");
+            assert_eq!(sums.iter().map(|sum| sum.reduced).sum::<u64>(), scaled, "{rule:?}");
+            scaled
         };
         let (never, often) = (reduced(1.0), reduced(1e-6));
         assert!(never < often, "{rule:?}: {never} at 1, {often} at 1e-6");
