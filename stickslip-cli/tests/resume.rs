@@ -57,6 +57,20 @@ fn spawn(workplace: &Workplace, (folder, cells): (&str, &str), threads: usize) -
     workplace.command(&arguments).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap()
 }
 
+/// The newest two checkpoints are kept, or as many as are asked for.
+#[test]
+fn as_many_checkpoints_are_kept_as_are_asked_for() {
+    let workplace = Workplace::new();
+    workplace.write("scene.toml", &new_scene());
+    let run = ["run", "scene.toml", "--out", "out", "--set", COARSE, "--set", "outputs.checkpoints=0.01"];
+    let kept = |more: &[&str]| {
+        workplace.succeed(&[&run[..], more].concat());
+        fs::read_dir(workplace.path("out/checkpoints")).unwrap().count()
+    };
+    assert_eq!([kept(&[]), kept(&["--keep-checkpoints", "4"])], [2, 4]);
+    assert_eq!(workplace.run(&[&run[..], &["--keep-checkpoints", "0"]].concat()).code, Some(2));
+}
+
 /// When a run is killed.
 #[derive(Clone, Copy)]
 enum Instants {

@@ -69,6 +69,10 @@ pub(super) struct How {
     #[arg(long, value_name = "TIME", default_value = "10min", value_parser = wall_time)]
     checkpoint_every: WallTime,
 
+    /// How many checkpoints are kept, the newest ones.
+    #[arg(long, value_name = "NUMBER", default_value_t = 2, value_parser = clap::value_parser!(u16).range(1..))]
+    keep_checkpoints: u16,
+
     /// Stop after this wall time, with a checkpoint and exit code 4: "8h", or "never".
     #[arg(long, value_name = "TIME", default_value = "never", value_parser = wall_time)]
     max_time: WallTime,
@@ -254,7 +258,7 @@ impl How {
             stop: stop_on_interrupt()?,
             threads,
             source: Some(source),
-            checkpoints: Checkpointing { every, at_end, ..Checkpointing::default() },
+            checkpoints: Checkpointing { every, at_end, keep: usize::from(self.keep_checkpoints) },
             max_time: self.max_time.0,
             patience: Patience { tell: tell_of_slow_disk, ..Patience::default() },
             ..RunOptions::new(&out)
