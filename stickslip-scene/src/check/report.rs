@@ -257,15 +257,17 @@ fn thin_rigid_bodies(scene: &Scene) -> Option<Warning> {
     ))
 }
 
+/// Of more than two contacts the one in the middle is told: among many there are some that hardly touch.
 fn narrow_contacts(contacts: &[ContactEstimate]) -> Option<Warning> {
     let narrow = contacts.iter().filter(|contact| contact.verdict == ContactResolution::NotResolved).count();
-    let narrowest = contacts.first().filter(|_| narrow > 0)?;
+    let told = contacts[..narrow].get(narrow.saturating_sub(1) / 2)?;
+    let which = if narrow > 2 { "half of them are narrower than that in which" } else { "in the narrowest" };
     let text = format!(
-        "not resolved: {narrow} of {} contacts; in the narrowest {}; it needs cells of {} m to be marginal, {} m to be resolved",
+        "not resolved: {narrow} of {} contacts; {which} {}; it needs cells of {} m to be marginal, {} m to be resolved",
         contacts.len(),
-        narrowest.off,
-        short(narrowest.patch.radius),
-        short(0.25 * narrowest.patch.radius)
+        told.off,
+        short(told.patch.radius),
+        short(0.25 * told.patch.radius)
     );
     Some(Warning::about("", text))
 }
@@ -273,6 +275,7 @@ fn narrow_contacts(contacts: &[ContactEstimate]) -> Option<Warning> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::check::bodies::measure;
     use crate::check::tests::{at_rest, free, incline, report, scene};
     use crate::geometry::Shape;
 
@@ -292,6 +295,24 @@ mod tests {
             "{:?}",
             report.warnings
         );
+    }
+
+    #[test]
+    fn of_many_narrow_contacts_the_one_in_the_middle_is_told() {
+        let contact = estimates(&incline(4.0), &measure(&incline(4.0)).expect("filled")).found[0].clone();
+        let narrow = |radius: f64| {
+            let mut contact = contact.clone();
+            contact.patch.radius = radius;
+            contact
+        };
+        let text = |radii: &[f64]| {
+            narrow_contacts(&radii.iter().map(|&radius| narrow(radius)).collect::<Vec<_>>()).unwrap().text
+        };
+        assert!(text(&[0.125, 0.25]).contains("in the narrowest"));
+        assert!(text(&[0.125, 0.25]).contains("cells of 0.125 m to be marginal"), "{}", text(&[0.125, 0.25]));
+        let many = text(&[1e-9, 1e-3, 0.25, 0.3, 0.35]);
+        assert!(many.contains("half of them are narrower than that in which"), "{many}");
+        assert!(many.contains("cells of 0.25 m to be marginal"), "{many}");
     }
 
     #[test]
