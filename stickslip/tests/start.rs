@@ -397,7 +397,8 @@ fn bodies_spin_on_from_a_snapshot() {
         let [whole, onward] = ["whole", "onward"].map(|name| folder.path().join(name));
         let left = make(&scene(&text), &whole).unwrap().1.ledger().angular_momentum;
         let soon = text.replace("end = 0.02", "end = 1e-9");
-        let found = make(&from(&soon, &last_frame(&whole).0, ""), &onward).unwrap().1.ledger().angular_momentum;
+        let found =
+            make(&from(&soon, &last_frame(&whole).0, ""), &onward).unwrap().1.ledger().angular_momentum;
         let size = left.iter().map(|x| x * x).sum::<f64>().sqrt();
         for (a, b) in left.into_iter().zip(found) {
             assert!((a - b).abs() < 2e-3 * size, "{shape}: {left:?} was left, {found:?} found");

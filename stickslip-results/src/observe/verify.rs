@@ -124,9 +124,8 @@ impl Sums {
             }
         }
         let (mut fringes, mut sum) = (FringesLength::default(), None);
-        let known = memory.part(FRINGES, |memory| {
-            Ok(memory.keep("film", &mut fringes)? && memory.keep("sum", &mut sum)?)
-        });
+        let known = memory
+            .part(FRINGES, |memory| Ok(memory.keep("film", &mut fringes)? && memory.keep("sum", &mut sum)?));
         if known.map_err(unreadable)?
             && let Some(crc) = sum
         {

@@ -79,10 +79,20 @@ pub fn image_parts(
     (first, pixel): ([f64; 3], f64),
 ) -> Result<Vec<(u64, ImagePart)>, Spread> {
     let (numbers, extents) = match solids {
-        Solids::Labels { background, wanted } => labelled(pixels, *background, wanted.as_deref()),
+        Solids::Labels { background, .. } => labelled(pixels, *background),
         Solids::Brighter { than, inverted } => connected(pixels, *than, *inverted),
     };
-    let kept: Vec<_> = extents.into_iter().filter(|(_, extent)| extent.pixels >= least).collect();
+    let is_wanted = |number: u32| match solids {
+        Solids::Labels { wanted: Some(wanted), .. } => wanted.contains(&(number as f32)),
+        _ => true,
+    };
+    let (wanted, beside): (Vec<_>, Vec<_>) =
+        extents.into_iter().filter(|(_, extent)| extent.pixels >= least).partition(|(of, _)| is_wanted(*of));
+    // Those beside them are other bodies, of which another table may ask, and their surfaces are the same then.
+    let near = |(_, extent): &(u32, Extent)| wanted.iter().any(|(_, other)| extent.is_near(other));
+    let beside: Vec<_> = beside.into_iter().filter(near).collect();
+    let mut kept = [wanted, beside].concat();
+    kept.sort_by_key(|(number, _)| *number);
     let room = |(_, extent): &(u32, Extent)| extent.field(pixels.counts).1.iter().product::<usize>();
     let spread = Spread { parts: kept.len(), pixels: kept.iter().map(room).sum() };
     if spread.parts > MOST.parts || spread.pixels > MOST.pixels {
@@ -121,6 +131,7 @@ pub fn image_parts(
         let extent = coefficients.inside()?;
         Some((u64::from(number), ImagePart::new(name, (coefficients, extent), start, pixel)))
     };
+    fields.retain(|(number, ..)| is_wanted(*number));
     Ok(fields.into_iter().filter_map(part).collect())
 }
 
@@ -151,6 +162,11 @@ impl Extent {
         self.min = std::array::from_fn(|k| self.min[k].min(pixel[k]));
         self.max = std::array::from_fn(|k| self.max[k].max(pixel[k]));
         self.pixels += 1;
+    }
+
+    /// Whether their fields may share a pixel.
+    fn is_near(&self, other: &Extent) -> bool {
+        (0..3).all(|k| self.min[k] <= other.max[k] + 2 * MARGIN && other.min[k] <= self.max[k] + 2 * MARGIN)
     }
 
     /// First pixel and numbers of pixels of the field.
@@ -203,12 +219,11 @@ impl Lattice {
 }
 
 /// The number of each pixel's part, 0 of none, and the parts.
-fn labelled(pixels: &Pixels, background: f32, wanted: Option<&[f32]>) -> (Vec<u32>, Vec<(u32, Extent)>) {
-    let is_wanted = |label: f32| label != background && wanted.is_none_or(|wanted| wanted.contains(&label));
+fn labelled(pixels: &Pixels, background: f32) -> (Vec<u32>, Vec<(u32, Extent)>) {
     let mut found: BTreeMap<u32, Extent> = BTreeMap::new();
     let mut numbers = vec![u32::MAX; pixels.values.len()];
     for (number, &label) in pixels.values.iter().enumerate() {
-        if is_wanted(label) {
+        if label != background {
             numbers[number] = label as u32;
             let place = pixels.place(number);
             found.entry(label as u32).or_insert(Extent::of(place)).take(place);

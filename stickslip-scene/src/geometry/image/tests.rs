@@ -70,6 +70,22 @@ fn a_ball_is_known_to_a_part_of_a_voxel() {
     assert!(mean.abs() < 0.05 && most < 0.15 && turn < 0.07, "{mean} {most} {turn}");
 }
 
+/// Each label has the surface that it has among all of them: two tables of one image make bodies that do not overlap.
+#[test]
+fn labels_asked_for_one_by_one_are_those_of_the_whole_image() {
+    let mut image = balls([60, 60, 1], &[([20.0, 30.0, 0.0], 12.0), ([40.0, 30.0, 0.0], 12.0)], false);
+    // A matrix around them, as thin between them as a pixel or two.
+    for value in &mut image.values {
+        *value = if *value == 0.0 { 9.0 } else { *value };
+    }
+    let all = shapes(&image, &LABELS);
+    assert_eq!(all.len(), 3);
+    for (shape, label) in all.iter().zip([1.0, 2.0, 9.0]) {
+        let alone = shapes(&image, &Solids::Labels { background: 0.0, wanted: Some(vec![label]) });
+        assert_eq!(&alone[..], std::slice::from_ref(shape), "{label}");
+    }
+}
+
 /// Distances are those to the surface, in the field and beyond it.
 #[test]
 fn distances_hold_near_and_far() {
