@@ -59,7 +59,7 @@ impl<T: Real> Rules<T> {
         let classes = names.classes();
         let few = if classes <= FEW { classes } else { 0 };
         let pairs = (0..few).flat_map(|a| (0..few).map(move |b| [a, b]));
-        let by_class = pairs.map(|[a, b]| names.rule(a, b).unwrap_or(rules.len() - 1)).collect();
+        let by_class = pairs.map(|[a, b]| names.rule(a, b).unwrap_or_else(|| rules.len() - 1)).collect();
         Rules { rules, names, by_class }
     }
 
