@@ -7,9 +7,10 @@ from typing import Any
 
 
 class StickslipError(Exception):
-    """Whatever Stickslip refuses or cannot do. `help` says what to try, or is None."""
+    """Whatever Stickslip refuses or cannot do."""
 
     help: str | None = None
+    """What to try, or None."""
 
     def __init__(self, message: str, **facts: Any) -> None:
         super().__init__(message)
@@ -59,7 +60,7 @@ class StepError(RunError):
     particle: int | None = None
     """Number of the particle in its body."""
     position: Sequence[float] | None = None
-    """Where it is [m]."""
+    """Where it is (3,) [m]."""
     time: float | None = None
     """Simulated time [s]."""
 

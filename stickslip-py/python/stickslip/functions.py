@@ -51,6 +51,7 @@ class _Given:
     """A function under a name, which is not copied with its scene."""
 
     def __init__(self, function: Any) -> None:
+        """`function` is one of Python, a `cfunc` of numba, or a pointer of ctypes."""
         if not callable(function) and _address(function) is None:
             raise TypeError(f"found a {type(function).__name__}; allowed: a function, a cfunc of numba or of ctypes")
         self.function = function
@@ -138,6 +139,7 @@ class Law(_Given):
         constants: Mapping[str, float] | None = None,
         increment: bool = False,
     ) -> None:
+        """`constants` are the numbers, in SI units, with which `function` is called."""
         super().__init__(function)
         self.constants = {name: float(value) for name, value in (constants or {}).items()}
         """Numbers that it is called with, in SI units."""

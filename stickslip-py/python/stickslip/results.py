@@ -29,10 +29,14 @@ class Frame(Mapping[str, np.ndarray]):
     def __init__(
         self, time: float, columns: Mapping[str, np.ndarray], units: Mapping[str, str], names: list[str]
     ) -> None:
-        self.time, self.units, self._columns, self._names = time, dict(units), dict(columns), names
+        self.time = time
+        """Simulated time [s]."""
+        self.units = dict(units)
+        """SI units of the columns by their names; empty for numbers without one."""
+        self._columns, self._names = dict(columns), names
 
     def body(self, name: str) -> Frame:
-        """The particles of one body."""
+        """The particles of one body, n of them."""
         if name not in self._names:
             raise KeyError(f"found a body `{name}`, which the run does not have; allowed: {', '.join(self._names)}")
         rows = self._columns["body"] == self._names.index(name)
@@ -99,7 +103,9 @@ class Results:
     """
 
     def __init__(self, folder: str | os.PathLike[str]) -> None:
+        """`folder` is that of `out` of a run, or NAME.results of the command."""
         self.folder = Path(folder)
+        """Where they are."""
         self._frames = _core.frames(self.folder)
         self.record = Record(_record(self.folder))
         """`run.json`: status, warnings, performance, the scene as run."""
@@ -126,7 +132,7 @@ class Results:
 
     @property
     def times(self) -> np.ndarray:
-        """Times of the snapshots [s]."""
+        """Times of the snapshots (n,) [s]."""
         return np.array([time for time, _ in self._frames], dtype=float)
 
     def table(self, name: str) -> Table:
@@ -147,7 +153,7 @@ class Results:
         return Frame(time, columns, units, self.names)
 
     def plot(self, body: str, quantity: str, ax: Any = None) -> Any:
-        """A chart of a column of bodies.csv through time, with its known answer if the scene has one.
+        """A chart of a column of bodies.csv, in SI units, through time [s], with its known answer if the scene has one.
 
         Needs matplotlib; draws on `ax` if it is given, and returns the axes.
         """

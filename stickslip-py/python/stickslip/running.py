@@ -27,7 +27,9 @@ class Summary(Record):
     """
 
     folder: Path
+    """Where the results are."""
     text: str
+    """What the command prints."""
 
     def __init__(self, folder: Path, said: str, values: Mapping[str, Any]) -> None:
         super().__init__(values)
@@ -95,6 +97,7 @@ def resume(
     It goes on to `until` [s], else to what was named last, else to the end of the scene. The scene is read again from
     where it was, or from the file `scene`. A run that was stopped ends in the same bits as one that was not.
     `functions` are the laws, loads and motions of your own that it names, as `Scene.functions` has them.
+    `checkpoint_every` and `max_time` are wall times [s], as of `Scene.run`.
     """
     folder = Path(folder)
     before = _record(folder)

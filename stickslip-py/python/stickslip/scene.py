@@ -27,6 +27,7 @@ class Report(Record):
     """What a run will be, as `stickslip check` says: `print(report)`, or its values, such as `report.particles`."""
 
     text: str
+    """What the command prints."""
 
     def __init__(self, said: str, values: Mapping[str, Any]) -> None:
         super().__init__(values)
@@ -55,13 +56,14 @@ class Scene:
 
     Its methods take the keys of the scene file (chapter 2 of the book) as keywords: numbers in SI units, or text with a
     unit or a formula (`"0.5 mm"`, `"radius / 8"`); vectors are sequences of two numbers in the plane, of three in
-    space. A key that is a word of Python gets an underscore behind it: `from_`. All methods that add something return
-    the scene. What is wrong is said by `check`, `simulation`, `run` and `save`, as `SceneError`.
+    space, written (D,) below. A key that is a word of Python gets an underscore behind it: `from_`. All methods that
+    add something return the scene. What is wrong is said by `check`, `simulation`, `run` and `save`, as `SceneError`.
 
     `document` is the scene as nested dictionaries and lists, as the file has it; it may be changed at will.
     """
 
     document: dict[str, Any]
+    """The scene as nested dictionaries and lists."""
     functions: dict[str, Law | Function | Callable[..., Any]]
     """Laws, loads and motions of your own by the names that `{ outside = NAME }` of the document has for them."""
 
@@ -78,8 +80,8 @@ class Scene:
     ) -> None:
         """`dimension` is "plane-strain", "plane-stress" or "3d", `cell` the side of a grid cell [m].
 
-        `gravity` is the acceleration of every body [m/s^2]; `parameters` are names of your own for numbers and words;
-        `space` are further keys of `[space]`, such as `basis`, `precision` and `particles_per_side`.
+        `gravity` is the acceleration of every body (D,) [m/s^2]; `parameters` are names of your own for numbers and
+        words; `space` are further keys of `[space]`, such as `basis`, `precision` and `particles_per_side`.
         """
         top = {"title": title, "about": about, "gravity": gravity, "parameters": parameters}
         table = {"dimension": dimension, "cell": cell, **_keys(space)}
@@ -129,7 +131,7 @@ class Scene:
         return self
 
     def parameter(self, **values: Any) -> Scene:
-        """Names of your own for numbers, formulas and words: `scene.parameter(radius="5 cm")`."""
+        """Names of your own for numbers in SI units, formulas and words: `scene.parameter(radius="5 cm")`."""
         return self._update("parameters", values)
 
     def material(self, name: str, **keys: Any) -> Scene:
@@ -140,18 +142,25 @@ class Scene:
         return self._update("materials", {name: _keys(keys)})
 
     def body(self, name: str, **keys: Any) -> Scene:
-        """A body: `material`, `shape` (`ss.ball` ...), `velocity` [m/s], `spin` [rad/s], `rigid=dict(...)` ...
+        """A body: `material`, `shape` (`ss.ball` ...), `velocity` (D,) [m/s], `spin` [rad/s], `rigid=dict(...)` ...
 
-        `velocity` and `spin` of `rigid` may be functions of time, see `Function`.
+        In the plane `spin` is one number, in space (3,). `velocity` and `spin` of `rigid` may be functions of time, see
+        `Function`.
         """
         return self._append("bodies", {"name": name, **keys})
 
     def packing(self, name: str, **keys: Any) -> Scene:
-        """Bodies `name` 1, 2 ... at random places: `material`, `shape`, `within`, `count` or `solid_fraction` ..."""
+        """Bodies `name` 1, 2 ... at random places: `material`, `shape`, `within`, `count` or `solid_fraction` ...
+
+        `sizes` are over that of the shape [-], `gap` is a length [m].
+        """
         return self._append("packings", {"name": name, **keys})
 
     def image(self, name: str, file: str | os.PathLike[str], **keys: Any) -> Scene:
-        """Bodies `name` 1, 2 ... from the labels of an image: `pixel` [m], `material`, or with `threshold` its greys."""
+        """Bodies `name` 1, 2 ... from the labels of an image, with `threshold` from its greys.
+
+        `pixel` is the side of one [m], `origin` the lower corner of the image (D,) [m].
+        """
         return self._append("images", {"name": name, "file": file, **keys})
 
     def contact(self, between: Any = None, **keys: Any) -> Scene:
@@ -159,26 +168,37 @@ class Scene:
         return self._append("contact", {"between": between, **keys})
 
     def support(self, body: str, **keys: Any) -> Scene:
-        """What holds or drives a part of a body: `on`, `within`, `displacement` [m], `velocity`, `stiffness` ..."""
+        """What holds or drives a part of a body: `on`, `within`, and what it does to it.
+
+        `displacement` (D,) [m] or `velocity` (D,) [m/s], "free" along axes that it leaves free, `stiffness` [N/m],
+        `dashpot` [N s/m].
+        """
         return self._append("supports", {"body": body, **keys})
 
     def _add_load(self, body: str, **keys: Any) -> Scene:
-        """What presses or pulls a part of a body: `on`, `within`, and `force` [N], `traction` or `pressure` [Pa] ...
+        """What presses or pulls a part of a body: `on`, `within`, and one of five.
 
-        These may be functions of time and place, see `Function`.
+        `force` (D,) [N], `traction` (D,) [Pa], `pressure` [Pa], `acceleration` (D,) [m/s^2] or `temperature` [K]. All
+        but the last may be functions of time and place, see `Function`.
         """
         return self._append("loads", {"body": body, **keys})
 
     def joint(self, body: str, **keys: Any) -> Scene:
-        """What joins a free rigid body to another, `to`, or the ground: `hinge=dict(point=...)`, `slider`, `ball` ..."""
+        """What joins a free rigid body to another, `to`, or the ground: `hinge=dict(point=...)`, `slider`, `ball` ...
+
+        Points are (D,) [m], `torque` is in N m, `force` in N, `speed` in rad/s or m/s.
+        """
         return self._append("joints", {"body": body, **keys})
 
     def spring(self, from_: Any, to: Any, **keys: Any) -> Scene:
-        """A spring between parts of bodies, `dict(body=..., on=..., within=...)`: `stiffness`, `dashpot`, `length`."""
+        """A spring between parts of bodies, each a `dict(body=..., on=..., within=...)`.
+
+        `stiffness` [N/m], `dashpot` [N s/m], `length` without a force [m].
+        """
         return self._append("springs", {"from": from_, "to": to, **keys})
 
     def domain(self, min: Any, max: Any, **faces: Any) -> Scene:
-        """A box that holds all material: its corners [m], and what its faces do (`x_min="symmetry"` ...)."""
+        """A box that holds all material: its corners (D,) [m], and what its faces do (`x_min="symmetry"` ...)."""
         space = self.document.get("space", {})
         space = {**space, "domain": plain({"min": min, "max": max, **faces}, "space.domain")}
         self._refuse_unknown({"space": space})
@@ -186,7 +206,7 @@ class Scene:
         return self
 
     def time(self, **keys: Any) -> Scene:
-        """`end` of the run [s], `courant`, `max_step` [s], `transfer`, `relax` ..."""
+        """Time and step: `end` of the run [s], `courant` [-], `max_step` [s], `transfer`, `relax` ..."""
         return self._update("time", keys)
 
     def start(self, folder: str | os.PathLike[str], **keys: Any) -> Scene:
@@ -194,7 +214,7 @@ class Scene:
         return self._update("start", {"from": folder, **keys})
 
     def damping(self, **keys: Any) -> Scene:
-        """`viscous` [1/s], `local`, `bulk_linear`, `bulk_quadratic`."""
+        """What slows bodies down: `viscous` [1/s], `local`, `bulk_linear`, `bulk_quadratic` [-]."""
         return self._update("damping", keys)
 
     def outputs(self, **keys: Any) -> Scene:
@@ -202,11 +222,17 @@ class Scene:
         return self._update("outputs", keys)
 
     def probe(self, name: str, at: Any, **keys: Any) -> Scene:
-        """A point at which velocity and stress are recorded: `at` [m], `body`, `fixed_in`; with `to` and `count` a line."""
+        """A point at which velocity [m/s] and stress [Pa] are recorded: `at` (D,) [m], `body`, `fixed_in`.
+
+        With `to` (D,) [m] and `count` there is a line of them.
+        """
         return self._measure("probes", {"name": name, "at": at, **keys})
 
     def section(self, name: str, point: Any, normal: Any, **keys: Any) -> Scene:
-        """A plane through which force and moment are recorded: a `point` of it [m] and its `normal`, `within`, `bodies`."""
+        """A plane through which force [N] and moment [N m] are recorded: a `point` (D,) [m], and the `normal` (D,).
+
+        `within` is a box and `bodies` are names to which it is confined.
+        """
         return self._measure("sections", {"name": name, "point": point, "normal": normal, **keys})
 
     def group(self, name: str, bodies: Any, **keys: Any) -> Scene:
@@ -214,15 +240,15 @@ class Scene:
         return self._measure("groups", {"name": name, "bodies": bodies, **keys})
 
     def arrival(self, quantity: str, threshold: Any, **keys: Any) -> Scene:
-        """A threshold whose first passing is recorded: `probes`, `bodies`, `reading`."""
+        """A threshold, in the unit of `quantity`, whose first passing is recorded: `probes`, `bodies`, `reading`."""
         return self._measure("arrivals", {"quantity": quantity, "threshold": threshold, **keys})
 
     def front(self, name: str, **keys: Any) -> Scene:
-        """A front whose way is recorded: `quantity`, `threshold`, `from_`, `direction` ..."""
+        """A front whose way is recorded: `quantity`, `threshold`, `from_` (D,) [m], `direction` (D,) ..."""
         return self._measure("fronts", {"name": name, **keys})
 
     def reference(self, body: str, quantity: str, value: Any, label: str) -> Scene:
-        """A known answer for a column of bodies.csv, as a formula of `t`; charts and summaries compare with it."""
+        """A known answer for a column of bodies.csv, in its unit, as a formula of `t` [s]; charts compare with it."""
         entry = {"body": body, "quantity": quantity, "value": value, "label": label}
         return self._append("references", entry)
 
