@@ -72,18 +72,6 @@ def foam():
     write_png("foam.png", np.clip(128 + 128 * (2.2 - wall), 0, 255)[::-1])
 
 
-def prism(outline, low, high):
-    """A prism over an outline that is star-shaped about its middle, counterclockwise."""
-    middle = outline.mean(axis=0)
-    triangles = []
-    for a, b in zip(outline, np.roll(outline, -1, axis=0)):
-        down = [(*p, low) for p in (a, b, middle)]
-        up = [(*p, high) for p in (a, b, middle)]
-        triangles += [[down[1], down[0], down[2]], up]
-        triangles += [[down[0], down[1], up[1]], [down[0], up[1], up[0]]]
-    return triangles
-
-
 def gear(name, teeth, module, center, turn, low, high):
     """Involute teeth with a pressure angle of 20 degrees, thinner by a little than half of the pitch."""
     pitch, angle = 0.5 * module * teeth, np.radians(20)
@@ -96,14 +84,14 @@ def gear(name, teeth, module, center, turn, low, high):
     for tooth in range(teeth):
         middle = 2 * np.pi * tooth / teeth + turn
         points += [(r, middle - t) for r, t in flank] + [(r, middle + t) for r, t in reversed(flank)]
-    outline = np.array([(center + r * np.cos(t), r * np.sin(t)) for r, t in points])
-    outline_middle = np.array([center, 0.0])
+    at = lambda r, t: (center + r * np.cos(t), r * np.sin(t))
     triangles = []
-    for a, b in zip(outline, np.roll(outline, -1, axis=0)):
-        down = [(*p, low) for p in (a, b, outline_middle)]
-        up = [(*p, high) for p in (a, b, outline_middle)]
-        triangles += [[down[1], down[0], down[2]], up]
-        triangles += [[down[0], down[1], up[1]], [down[0], up[1], up[0]]]
+    for (r, t), (s, u) in zip(points, points[1:] + points[:1]):
+        rim, hub, middle = (at(r, t), at(s, u)), (at(0.8 * root, t), at(0.8 * root, u)), (center, 0.0)
+        for a, b, c in ((*rim, hub[1]), (rim[0], hub[1], hub[0]), (*hub, middle)):
+            triangles += [[(*b, low), (*a, low), (*c, low)], [(*a, high), (*b, high), (*c, high)]]
+        (a, b), (c, d) = [[(*p, z) for p in rim] for z in (low, high)]
+        triangles += [[a, b, d], [a, d, c]]
     write_stl(name, triangles)
 
 

@@ -6,6 +6,7 @@ use crate::geometry::{Bounds, SignedDistance};
 use crate::rigid::{Pose, RigidMotion};
 use crate::scene::{ContactLaw, Scene};
 use crate::tensor::{Real, Vector, cross};
+use crate::threads::by_parts;
 use std::collections::HashSet;
 
 /// Points on the surface of a body are this part of its largest extent apart at most.
@@ -21,9 +22,15 @@ const FLAT: f64 = 0.9998;
 /// Steps of the search for the nearest point at most, and where it ends, over the distance between points.
 const MAX_STEPS: usize = 40;
 const FOUND: f64 = 1e-9;
+/// A point that is this near to a surface is on it, over the same.
+const ON_SURFACE: f64 = 1e-12;
+/// Points of a surface that one thread looks at together.
+const PART: usize = 64;
 /// From this part of the way on that a point may take it would have gone on, if the slope is more than the second.
 const AT_END: f64 = 0.999;
 const LEVEL: f64 = 1e-6;
+/// And surely, without a look around, if so much of the slope leads outwards.
+const OUTWARDS: f64 = 0.5;
 
 /// A rigid body's surface, as points on the shape at the start.
 #[derive(Clone, Debug)]
@@ -133,7 +140,7 @@ impl RigidSurfaces {
         found
     }
 
-    fn between<T, const D: usize>(
+    fn between<T: Sync, const D: usize>(
         &self,
         pair: [&PlacedSurface<T, D>; 2],
         dt: f64,
@@ -156,24 +163,27 @@ impl RigidSurfaces {
         for (one, other, sign) in [(a, b, 1.0), (b, a, -1.0)] {
             // Where the other one is as this one sees it, so that far points need no turning.
             let (seen, reach) = (one.pose.start(other.center), other.reach + margin + one.surface.spacing);
-            for &point in &one.surface.points {
+            let touches = |&point: &[f64; 3]| {
                 let off = Vector(point) - Vector(seen);
                 if off.dot(off) > reach * reach {
-                    continue;
+                    return None;
                 }
                 let place = one.pose.now(point);
                 if other.level(place).distance > margin + one.surface.spacing {
-                    continue;
+                    return None;
                 }
-                let Some((place, level)) = one.nearest(place, other) else { continue };
-                let Some(normal) = Vector(level.gradient).direction() else { continue };
-                if level.distance <= margin {
-                    // In the middle between the surfaces, where either body's points find the same place.
-                    let place = (place - normal * (0.5 * level.distance)).0;
-                    let normal = normal.0.map(|n| sign * n);
-                    near.push(RigidContact { bodies, place, normal, gap: level.distance });
-                }
-            }
+                let (place, level) = one.nearest(place, other)?;
+                let normal = Vector(level.gradient).direction()?;
+                // In the middle between the surfaces, where either body's points find the same place.
+                let place = (place - normal * (0.5 * level.distance)).0;
+                let normal = normal.0.map(|n| sign * n);
+                let contact = RigidContact { bodies, place, normal, gap: level.distance };
+                (level.distance <= margin).then_some(contact)
+            };
+            let points = &one.surface.points;
+            let parts =
+                by_parts(points.len(), PART, |part| points[part].iter().filter_map(touches).collect());
+            near.extend(parts.into_iter().flat_map(|part: Vec<_>| part));
         }
         let alike = ALIKE * a.surface.spacing.min(b.surface.spacing);
         reduce(near, alike, self.dimension, found);
@@ -213,16 +223,17 @@ impl<'a, T, const D: usize> PlacedSurface<'a, T, D> {
         SignedDistance { gradient: self.pose.turned(level.gradient), ..level }
     }
 
-    /// The point of its surface next to `place`.
-    fn onto(&self, mut place: Vector<f64, 3>) -> Vector<f64, 3> {
+    /// The point of its surface next to `place`, and the normal there.
+    fn onto(&self, mut place: Vector<f64, 3>) -> (Vector<f64, 3>, Vector<f64, 3>) {
+        let mut level = self.level(place.0);
         for _ in 0..3 {
-            let level = self.level(place.0);
-            if !level.distance.is_finite() {
+            if !level.distance.is_finite() || level.distance.abs() <= ON_SURFACE * self.surface.spacing {
                 break;
             }
             place -= Vector(level.gradient) * level.distance;
+            level = self.level(place.0);
         }
-        place
+        (place, Vector(level.gradient))
     }
 
     /// From a point of its surface along it to where it is nearest to `other`, by no more than points are apart: where
@@ -238,11 +249,11 @@ impl<'a, T, const D: usize> PlacedSurface<'a, T, D> {
         let mut at = first;
         let mut level = other.level(at.0);
         let mut step = spacing;
-        let along = |at: Vector<f64, 3>, level: &SignedDistance| {
-            let (normal, slope) = (Vector(self.level(at.0).gradient), Vector(level.gradient));
+        let along = |normal: Vector<f64, 3>, level: &SignedDistance| {
+            let slope = Vector(level.gradient);
             slope - normal * slope.dot(normal)
         };
-        let mut slope = along(at, &level);
+        let mut slope = along(Vector(self.level(at.0).gradient), &level);
         for _ in 0..MAX_STEPS {
             if slope.norm() * step < FOUND * spacing {
                 break;
@@ -252,20 +263,25 @@ impl<'a, T, const D: usize> PlacedSurface<'a, T, D> {
             if off.norm() > spacing {
                 to = first + off * (spacing / off.norm());
             }
-            let to = self.onto(to);
+            let (to, normal) = self.onto(to);
             let there = other.level(to.0);
             if there.distance >= level.distance {
                 step *= 0.25;
                 continue;
             }
             let moved = to - at;
-            let turned = along(to, &there);
+            let turned = along(normal, &there);
             let change = turned - slope;
             let curved = moved.dot(change);
             step = if curved > 0.0 { moved.dot(moved) / curved } else { 4.0 * step };
             (at, level, slope) = (to, there, turned);
             if moved.norm() < FOUND * spacing {
                 break;
+            }
+            let off = at - first;
+            let outwards = -slope.dot(off) / off.norm();
+            if off.norm() > AT_END * spacing && outwards > LEVEL.max(OUTWARDS * slope.norm()) {
+                return None;
             }
         }
         let goes_on = (at - first).norm() > AT_END * spacing && slope.norm() > LEVEL;
