@@ -56,6 +56,12 @@ const FILLED: [f64; 2] = [0.4, 1.5];
 /// Part of its particles that may lie outside of the smooth surface.
 const OUTSIDE: f64 = 0.05;
 
+/// Points of the lattices around clouds: so many, and so many more for each particle.
+const ROOM: [f64; 2] = [1e6, 200.0];
+
+/// How far from the origin particles may be, in their spacing: beyond, places have no digits left for it.
+const FARTHEST: f64 = 1e12;
+
 /// Width of the Gaussian that smooths the surface [spacings].
 const SMOOTH: f64 = 1.5;
 
@@ -82,7 +88,10 @@ pub fn point_clouds(
     let boxes: Vec<_> = clouds.iter().map(|cloud| extent(&cloud.sites, (spacing, dimension))).collect();
     let pixels =
         boxes.iter().map(|(_, counts)| counts.iter().map(|&n| n as f64).product::<f64>()).sum::<f64>();
-    if clouds.len() > MOST.parts || pixels > MOST.pixels as f64 {
+    let particles = clouds.iter().map(|cloud| cloud.sites.len()).sum::<usize>();
+    let room = (ROOM[0] + ROOM[1] * particles as f64).min(MOST.pixels as f64);
+    let far = |site: &ParticleSite| site.position.iter().any(|x| x.abs() > FARTHEST * spacing);
+    if clouds.len() > MOST.parts || pixels > room || clouds.iter().flat_map(|cloud| &cloud.sites).any(far) {
         return Err(NoCloud::Spread { parts: clouds.len(), pixels: pixels as usize });
     }
     let mut fields = Vec::with_capacity(clouds.len());
@@ -124,10 +133,14 @@ fn extent(sites: &[ParticleSite], (spacing, dimension): (f64, usize)) -> ([i64; 
         ends.map(|x| (x / spacing).floor() as i64)
     };
     let margin = MARGIN as i64;
-    let lower = |k: usize| if k < dimension { range(k)[0] - margin } else { 0 };
+    let lower = |k: usize| if k < dimension { range(k)[0].saturating_sub(margin) } else { 0 };
     let count = |k: usize| {
         let [low, high] = range(k);
-        if k < dimension { (high - low).saturating_add(1 + 2 * margin).max(1) as usize } else { 1 }
+        if k < dimension {
+            high.saturating_sub(low).saturating_add(1 + 2 * margin).max(1) as usize
+        } else {
+            1
+        }
     };
     (std::array::from_fn(lower), std::array::from_fn(count))
 }
