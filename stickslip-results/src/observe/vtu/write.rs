@@ -16,7 +16,8 @@ use std::path::Path;
 const VTK_VERTEX: u8 = 1;
 const VTK_TRIANGLE: u8 = 5;
 
-/// A file of points, or of triangles between points, encoded and ready to be written: it borrows nothing, so that another thread may write it.
+/// A file of points, or of triangles between points, encoded and ready to be written: it borrows nothing, so that
+/// another thread may write it.
 pub struct Vtu {
     precision: Precision,
     points: usize,

@@ -11,9 +11,9 @@ use std::sync::Arc;
 
 /// What given particles fill: the particles, and a smooth surface around them.
 ///
-/// On a lattice of their mean spacing each particle fills what its cube, in the plane its square, covers; the surface is
-/// at first where half is filled, and then smoothed as that of an image's part. It is known to half a spacing. A copy
-/// shares what it is made of.
+/// On a lattice of their mean spacing each particle fills what its cube, in the plane its square, covers; the surface
+/// is at first where half is filled, and then smoothed as that of an image's part. It is known to half a spacing. A
+/// copy shares what it is made of.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PointCloud {
     surface: ImagePart,
@@ -43,8 +43,8 @@ pub enum NoCloud {
         /// Points of the lattices around them.
         pixels: usize,
     },
-    /// Cloud of this number: its volumes do not fill the space between its particles, at which the mean of what is filled
-    /// is so much [-].
+    /// Cloud of this number: its volumes do not fill the space between its particles, at which the mean of what is
+    /// filled is so much [-].
     Sparse(usize, f64),
     /// The same: its volumes fill space several times.
     Dense(usize, f64),

@@ -18,11 +18,11 @@ table! {
     PointCloud {
         /// What the body is called; with a column `body` "grain" makes "grain 7" of the value 7.
         name: Text,
-        /// A CSV file whose first line names its columns: x, y, in space z; volume or mass of each particle; perhaps vx,
-        /// vy, vz and body. Others are passed over. A relative path starts at the folder of the scene file.
+        /// A CSV file whose first line names its columns: x, y, in space z; volume or mass of each particle; perhaps
+        /// vx, vy, vz and body. Others are passed over. A relative path starts at the folder of the scene file.
         file: Text,
-        /// What a length of 1 is in the file [m]; volumes count in its cube, in the plane in its square, velocities in it
-        /// per second, masses in kg.
+        /// What a length of 1 is in the file [m]; volumes count in its cube, in the plane in its square, velocities in
+        /// it per second, masses in kg.
         #[schemars(extend("default" = "1 m"))]
         unit: Option<QuantityInput<Length>>,
         /// Name of the bodies' material.
