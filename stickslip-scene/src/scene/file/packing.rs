@@ -171,7 +171,7 @@ impl Packing {
             NoPacking::Restless(left) => Fault::new(
                 &key("settle"),
                 format!("grains that do not come to rest: a force of {left:.2} weights is left on one"),
-                "grains that rest; larger or fewer ones, or another seed",
+                "grains that rest: some hundreds; more settle in a run of their own, see [start]",
             ),
             NoPacking::Overfull(ratio) => {
                 let gap = if self.gap.is_some() { ", with half of the gap around each" } else { "" };
