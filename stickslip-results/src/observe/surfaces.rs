@@ -50,8 +50,8 @@ struct Corners {
     triangles: Vec<[u32; 3]>,
 }
 
-/// Bytes of a corner and its share of the triangles.
-const CORNER_BYTES: usize = 7 * size_of::<f64>() + 8 * size_of::<u32>();
+/// Bytes of a corner with its body, and of two triangles, as many as a surface has for each corner.
+const CORNER_BYTES: usize = 7 * size_of::<f64>() + 7 * size_of::<u32>();
 
 impl SurfacesObserver {
     pub(super) fn create(scene: &Scene, folder: &OutputFolder) -> Result<Self, OutputError> {

@@ -255,10 +255,10 @@ fn settled_grains_rest_as_dense_as_random_packings_are() {
                 }
                 assert!(apart >= r + s, "{i} and {j} overlap");
             }
-            for k in 0..dimension {
+            for (k, &at) in x.iter().enumerate().take(dimension) {
                 let away = if k == up { 1.0 } else { 0.0 };
-                towards.extend((x[k] - bounds.min[k] < r * (1.0 + 1.001e-3)).then_some(away));
-                towards.extend((bounds.max[k] - x[k] < r * (1.0 + 1.001e-3)).then_some(-away));
+                towards.extend((at - bounds.min[k] < r * (1.0 + 1.001e-3)).then_some(away));
+                towards.extend((bounds.max[k] - at < r * (1.0 + 1.001e-3)).then_some(-away));
             }
             assert!(towards.iter().any(|up| *up > 0.0), "nothing below grain {i} at {x:?}: {towards:?}");
             held += usize::from(towards.len() >= dimension);
