@@ -9,6 +9,7 @@ mod checkpoint;
 mod formula;
 mod image;
 mod mesh;
+mod point_cloud;
 mod request;
 mod results;
 mod scene;
@@ -41,6 +42,7 @@ pub const TARGETS: &[Target] = &[
     Target { name: "ply", run: mesh::ply, seeds: mesh::ply_seeds, longest: 1000 },
     Target { name: "png", run: image::png, seeds: image::png_seeds, longest: 1000 },
     Target { name: "tiff", run: image::tiff, seeds: image::tiff_seeds, longest: 1000 },
+    Target { name: "point_cloud", run: point_cloud::run, seeds: point_cloud::seeds, longest: 2000 },
     Target { name: "checkpoint", run: checkpoint::run, seeds: checkpoint::seeds, longest: 120_000 },
     Target { name: "record", run: results::record, seeds: results::record_seeds, longest: 10_000 },
     Target { name: "tables", run: results::tables, seeds: results::table_seeds, longest: 3000 },

@@ -160,6 +160,7 @@ fn every_key_and_word_of_scene_files_is_explained() {
         "bodies",
         "packings",
         "images",
+        "point_clouds",
         "supports",
         "loads",
         "joints",

@@ -14,6 +14,7 @@ use stickslip::door::{
     NoColumn, ParticleSnapshot, ParticleView, RelaxationState, RemovedParticles, RestoreError, SavedState,
     Simulation, StepError, TracedParticle, View, WallState, WriteError,
 };
+use stickslip::rigid::Pose;
 use stickslip::scene::StartVelocities;
 
 /// A simulation with the threads that it uses.
@@ -152,6 +153,10 @@ impl View for Handle {
 
     fn bodies(&self) -> Vec<BodyState> {
         self.0.ask(|simulation| simulation.bodies())
+    }
+
+    fn poses(&self) -> Vec<Option<Pose>> {
+        self.0.lock().poses()
     }
 
     fn ledger(&self) -> Ledger {

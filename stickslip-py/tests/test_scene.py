@@ -208,11 +208,14 @@ def test_an_image_makes_bodies_of_its_labels(tmp_path, monkeypatch):
     header = struct.pack(">IIBBBBB", 16, 6, 8, 0, 0, 0, 0)
     data = chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(b"".join(rows))) + chunk(b"IEND", b"")
     (tmp_path / "labels.png").write_bytes(b"\x89PNG\r\n\x1a\n" + data)
+    rows = [f"{x + 20.5},{y + 0.5},1" for x in range(6) for y in range(6)]
+    (tmp_path / "stones.csv").write_text("\n".join(["x,y,volume", *rows]))
     monkeypatch.chdir(tmp_path)
     scene = ss.Scene("plane-strain", "1 mm").time(end=1)
     scene.material("sand", density=1, neo_hookean=dict(young_modulus=1, poisson_ratio=0.3))
     scene.image("grain", "labels.png", pixel="1 mm", material="sand")
-    assert [body["name"] for body in record(scene)["bodies"]] == ["grain 3", "grain 7"]
+    scene.point_cloud("stone", "stones.csv", unit="1 mm", material="sand")
+    assert [body["name"] for body in record(scene)["bodies"]] == ["grain 3", "grain 7", "stone"]
 
 
 def test_meshes_are_found_from_where_a_scene_is_saved(tmp_path, monkeypatch):

@@ -15,6 +15,7 @@ pub use snapshot::{ColumnSource, ParticleSnapshot, SnapshotColumn};
 
 use crate::column::ColumnDescription;
 use crate::outside::OutsideFault;
+use crate::rigid::Pose;
 use crate::scene::StartVelocities;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
@@ -31,6 +32,10 @@ pub trait View {
     fn stable_step(&self) -> f64;
     /// Each body's mass, motion and energy now, in the order of the scene.
     fn bodies(&self) -> Vec<BodyState>;
+    /// Where each body is that is rigid, in the order of the scene; of simulations that know none, nothing.
+    fn poses(&self) -> Vec<Option<Pose>> {
+        Vec::new()
+    }
     /// The energy and momentum ledger now.
     fn ledger(&self) -> Ledger;
     /// How far dynamic relaxation has come; `None` where the scene asks for none.

@@ -14,7 +14,7 @@ use crate::check;
 use crate::contact::{ContactSums, Rules};
 use crate::damping::{BulkViscosity, NodeDamping, viscosity_columns};
 use crate::door::{RemovedParticles, Simulation};
-use crate::geometry::{Filling, Mirror, MirroredShape, ParticleSite, fill};
+use crate::geometry::{Curved, Filling, Mirror, MirroredShape, ParticleSite, Shape, fill};
 use crate::grid::Lattice;
 use crate::initial_stress::{self, InitialStress};
 use crate::lanes::{Laned, Processor};
@@ -100,8 +100,14 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 Some(RigidMotion::free(&properties, free.velocity, free.spin))
             });
             let motion = free.or_else(|| RigidMotion::prescribed(&body.motion, center));
-            let velocity = |x| match (&body.motion, &motion) {
-                (BodyMotion::Free { velocity, spin }, _) => about(center, *velocity, *spin, x),
+            let given = match &body.shape {
+                Shape::Curved(Curved::PointCloud(cloud)) => cloud.velocities(),
+                _ => None,
+            };
+            let velocity = |number: usize, x| match (&body.motion, &motion) {
+                (BodyMotion::Free { velocity, spin }, _) => {
+                    given.map_or_else(|| about(center, *velocity, *spin, x), |given| given[number])
+                }
                 (_, Some(motion)) => motion.velocity_at(x),
                 _ => [0.0; 3],
             };
@@ -233,13 +239,13 @@ fn about(center: [f64; 3], velocity: [f64; 3], spin: [f64; 3], x: [f64; 3]) -> [
 fn particles<T: Real, const D: usize>(
     (own, stresses): (OwnColumns, &[InitialStress]),
     filling: &Filling,
-    (velocity, turning, density): (impl Fn([f64; 3]) -> [f64; 3], [f64; 3], f64),
+    (velocity, turning, density): (impl Fn(usize, [f64; 3]) -> [f64; 3], [f64; 3], f64),
 ) -> Particles<T, D> {
     let particle = |number: usize| {
         let site: &ParticleSite = &filling.sites[number];
         Particle {
             position: Vector::of(site.position),
-            velocity: Vector::of(velocity(site.position)),
+            velocity: Vector::of(velocity(number, site.position)),
             spin: spin::<T, D>(turning),
             mass: T::of(site.volume * density),
             volume: T::of(site.volume),

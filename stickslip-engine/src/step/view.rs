@@ -18,7 +18,7 @@ use crate::grid::{node_at, nodes_per_block};
 use crate::lanes::Laned;
 use crate::load::{LoadPoints, LoadSums};
 use crate::particles::by_number;
-use crate::rigid::RigidMotion;
+use crate::rigid::{Pose, RigidMotion};
 use crate::tensor::{Real, Vector, cross};
 use crate::threads::by_parts;
 use rayon::prelude::*;
@@ -263,6 +263,10 @@ impl<T: Laned, const D: usize, B: Basis<T>> View for Engine<T, D, B> {
 
     fn removed(&self) -> Vec<RemovedParticles> {
         if self.removes_leavers() { self.state.removed.clone() } else { Vec::new() }
+    }
+
+    fn poses(&self) -> Vec<Option<Pose>> {
+        self.state.bodies.iter().map(|body| body.motion.as_ref().map(RigidMotion::pose)).collect()
     }
 
     fn snapshot(&self) -> ParticleSnapshot {

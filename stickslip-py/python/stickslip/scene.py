@@ -163,6 +163,10 @@ class Scene:
         """
         return self._append("images", {"name": name, "file": file, **keys})
 
+    def point_cloud(self, name: str, file: str | os.PathLike[str], **keys: Any) -> Scene:
+        """A body, or one for each value of `body`, of the particles in a CSV file: `material`, `unit` [m] ..."""
+        return self._append("point_clouds", {"name": name, "file": file, **keys})
+
     def contact(self, between: Any = None, **keys: Any) -> Scene:
         """A contact rule: `between` names two bodies or materials, `friction`, `law` ... The first that fits holds."""
         return self._append("contact", {"between": between, **keys})

@@ -7,6 +7,7 @@ use super::waiting::Waiting;
 use super::{
     ARRIVALS, BODIES, CHECKPOINTS, CONTACTS, ENERGY, FRINGES, FRINGES_ANIMATION, FRINGES_TABLE, FRONT_SPEEDS,
     FRONTS, GRID, GROUP_CONTACTS, GROUPS, JOINTS, LOADS, PARTICLES, PROBES, REACTIONS, REMOVED, SECTIONS,
+    SURFACES,
 };
 use miette::Diagnostic;
 use std::collections::BTreeMap;
@@ -17,7 +18,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Files that a run may leave in its folder.
-const FILES: [&str; 19] = [
+const FILES: [&str; 20] = [
     BODIES,
     ENERGY,
     CONTACTS,
@@ -35,11 +36,12 @@ const FILES: [&str; 19] = [
     FRINGES_TABLE,
     FRINGES_ANIMATION,
     "particles.pvd",
+    "surfaces.pvd",
     "grid.pvd",
     Manifest::FILE,
 ];
 /// Folders of snapshots that a run may leave in its folder.
-const SNAPSHOTS: [&str; 4] = [PARTICLES, GRID, FRINGES, CHECKPOINTS];
+const SNAPSHOTS: [&str; 5] = [PARTICLES, SURFACES, GRID, FRINGES, CHECKPOINTS];
 
 /// Where results of an earlier run stay until the next has its first record.
 const PREVIOUS: &str = "previous";

@@ -18,9 +18,10 @@ use super::probes::ProbesObserver;
 use super::reactions::ReactionsObserver;
 use super::removed::RemovedObserver;
 use super::sections::SectionsObserver;
+use super::surfaces::SurfacesObserver;
 use super::{
     ARRIVALS, BODIES, CONTACTS, ENERGY, FRINGES, FRONTS, GRID, GROUPS, JOINTS, LOADS, Observer, PARTICLES,
-    PROBES, REACTIONS, REMOVED, SECTIONS,
+    PROBES, REACTIONS, REMOVED, SECTIONS, SURFACES,
 };
 use crate::door::View;
 use crate::scene::{Leaving, Scene};
@@ -83,6 +84,9 @@ impl<'a> Recorder<'a> {
         }
         if scene.outputs.particles.is_some() || !scene.outputs.particles_at.is_empty() {
             recorder.schedule(PARTICLES, ParticlesObserver::create(scene, folder)?);
+        }
+        if scene.outputs.surfaces.is_some() {
+            recorder.schedule(SURFACES, SurfacesObserver::create(scene, folder)?);
         }
         if scene.outputs.grid.is_some() {
             recorder.schedule(GRID, GridObserver::create(scene, folder)?);

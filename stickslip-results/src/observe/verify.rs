@@ -6,7 +6,7 @@ use super::memory::Memory;
 use super::recorder::TABLES;
 use super::results::Results;
 use super::vtu::PointArrays;
-use super::{FRINGES, FRINGES_TABLE, GRID, PARTICLES};
+use super::{FRINGES, FRINGES_TABLE, GRID, PARTICLES, SURFACES};
 use crate::image::Image;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -47,8 +47,10 @@ pub fn verify(folder: &Path) -> Result<Verified, ReadError> {
         verified.summed += 1;
     }
     let later = |path: &Path| !sums.files.contains_key(path);
-    let grids = super::frames::read_frames(&folder.join(format!("{GRID}.pvd"))).unwrap_or_default();
-    for frame in results.frames().iter().chain(&grids).filter(|frame| later(&frame.path)) {
+    let series =
+        |name: &str| super::frames::read_frames(&folder.join(format!("{name}.pvd"))).unwrap_or_default();
+    let others = [SURFACES, GRID].map(series).concat();
+    for frame in results.frames().iter().chain(&others).filter(|frame| later(&frame.path)) {
         verified.note(PointArrays::open(&frame.path).and_then(|arrays| arrays.check()));
     }
     let pictures = results.fringes_table().unwrap_or_default();
@@ -131,7 +133,7 @@ impl Sums {
         {
             sums.tables.insert(folder.join(FRINGES_TABLE), FileSum { bytes: fringes.table, crc });
         }
-        for name in [PARTICLES, GRID, FRINGES] {
+        for name in [PARTICLES, SURFACES, GRID, FRINGES] {
             let mut files: Vec<Option<FileSum>> = Vec::new();
             memory.part(name, |memory| memory.keep("sums", &mut files)).map_err(unreadable)?;
             let path = |number: usize| match name {

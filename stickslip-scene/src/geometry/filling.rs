@@ -2,7 +2,7 @@
 
 use super::fitted::fit;
 use super::inside::NudgedPoint;
-use super::{Bounds, Shape};
+use super::{Bounds, Curved, Shape};
 use serde::Serialize;
 
 /// Ties nearer to a border than this share of the spacing are round-off.
@@ -53,7 +53,7 @@ pub struct Filling {
 
 impl ParticleSite {
     /// A site with the half-width of its volume.
-    pub(super) fn of_volume(position: [f64; 3], volume: f64, dimension: usize) -> Self {
+    pub(crate) fn of_volume(position: [f64; 3], volume: f64, dimension: usize) -> Self {
         let side = if dimension == 2 { volume.sqrt() } else { libm::cbrt(volume) };
         ParticleSite { position, volume, half_width: 0.5 * side }
     }
@@ -131,7 +131,7 @@ impl SiteLattice {
     }
 }
 
-/// The particles of a shape; `None` for a shape without bounds, and for one that cannot be fitted.
+/// The particles of a shape; `None` for a shape without bounds, and for one that cannot be fitted. A cloud has its own.
 ///
 /// On the lattice every site inside is a particle. Each stands for a cube of the lattice, so the volume of all
 /// particles differs from the shape's by the stairs along its surface, and agrees with it exactly for a box on the
@@ -148,6 +148,9 @@ pub fn sites<'a>(
     lattice: &SiteLattice,
     arrangement: Arrangement,
 ) -> Option<Box<dyn Iterator<Item = ParticleSite> + 'a>> {
+    if let Shape::Curved(Curved::PointCloud(cloud)) = shape {
+        return Some(Box::new(cloud.sites()));
+    }
     Some(match arrangement {
         Arrangement::Lattice => {
             let (volume, half_width) = (lattice.volume(), 0.5 * lattice.spacing);

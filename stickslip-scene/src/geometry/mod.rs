@@ -30,7 +30,10 @@ pub use curved::{Capsule, Curved, Ellipsoid, MOST_EXPONENT, RoundedBox, Superqua
 pub use distance::SignedDistance;
 pub use filling::{Arrangement, Filling, ParticleSite, SiteLattice, fill, sites};
 pub use fitted::{FITTED_SHAPES, fits};
-pub use image::{ImagePart, Pixels, Solids, Spread, image_parts};
+pub use image::{
+    CloudPoints, ImagePart, NoCloud, Pixels, PointCloud, Solids, Spread, image_parts, mean_spacing,
+    point_clouds,
+};
 pub use mesh::{Mesh, MeshFault};
 pub use mirrored_shape::{Mirror, MirroredShape};
 pub use moments::ShapeMoments;

@@ -1,11 +1,12 @@
 //! Down the energy of overlaps, by the fast inertial relaxation engine (FIRE; Bitzek et al. 2006, Phys. Rev. Lett. 97,
 //! 170201): grains roll down, faster the longer they go down, and stop where they go up.
 
-use super::Packing;
 use super::grain::{Grain, GrainShape, Push};
-use super::neighbours::near;
+use super::neighbours::{Near, near};
 use super::walls::{Wall, walls};
+use super::{NoPacking, Packing};
 use crate::geometry::Shape;
+use crate::tensor::Vector;
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
@@ -17,7 +18,9 @@ pub struct Descent<'a> {
     shape: &'a GrainShape<'a>,
     walls: Vec<Wall>,
     pub grains: Vec<Grain>,
-    near: Vec<Vec<u32>>,
+    near: Near,
+    /// Of each, whether no wall is within its reach until the neighbours are found anew.
+    amid: Vec<bool>,
     /// Where they were when the neighbours were found.
     listed: Vec<[f64; 3]>,
     /// How far they may go until those are found anew [m].
@@ -53,9 +56,30 @@ const SHAKE: f64 = 0.1;
 /// Grains times steps, those with points of their surfaces by half as many times as these are.
 const MOST_WORK: usize = 400_000_000;
 
-/// Velocities: of the middles, and of the surfaces by turning.
+/// Under the first weight grains that settle press the lowest of them this part of a radius into each other, and fall
+/// fast; then under one that is by this factor less and less, until they keep apart, at least from the last one on.
+const PRESSED: [f64; 2] = [0.03, 1e-4];
+const LIGHTER: f64 = 0.25;
+const LIGHTEST: f64 = 0.01;
+
+/// The largest force on a grain, over its weight, before which the next weight has its turn, and that of rest.
+const TURN: f64 = 0.05;
+const REST: f64 = 0.01;
+
+/// Steps under each weight, and the force over the weight that is rest, too, when they have run out.
+const FALL_STEPS: usize = 40_000;
+const NEARLY_RESTS: f64 = 0.1;
+
+/// Velocities or forces: of the middles, and of the surfaces by turning.
 #[derive(Clone, Copy, Default)]
 struct Motion([f64; 6]);
+
+/// What acts on a grain.
+struct Acting {
+    force: Motion,
+    /// As that of a [`Push`].
+    excess: f64,
+}
 
 impl<'a> Descent<'a> {
     pub fn new(
@@ -73,7 +97,8 @@ impl<'a> Descent<'a> {
             shape,
             walls,
             grains,
-            near: Vec::new(),
+            near: Near::default(),
+            amid: Vec::new(),
             listed: Vec::new(),
             skin,
             stiffness,
@@ -91,6 +116,12 @@ impl<'a> Descent<'a> {
             self.grains.iter().map(|grain| reach * grain.scale * self.shape.radius).collect();
         let margin = 2.0 * self.skin + self.packing.gap;
         self.near = near(&self.listed, &radii, margin, self.packing.dimension);
+        let within_reach = |(grain, radius): (&Grain, &f64)| {
+            self.walls
+                .iter()
+                .any(|wall| wall.may_reach(grain.position, radius + margin, self.packing.dimension))
+        };
+        self.amid = self.grains.par_iter().zip(&radii).map(|of| !within_reach(of)).collect();
     }
 
     /// By how much jammed grains must be smaller to find room, about [-].
@@ -116,7 +147,7 @@ impl<'a> Descent<'a> {
     /// Until nothing overlaps; whether that came to be. Grains that are not balls begin small, and as the balls that
     /// hold them: those find places apart, and then the grains grow to their size, so that no two are ever so deep in
     /// each other that no direction leads out. `room` is the volume of the container.
-    pub fn settle(&mut self, room: f64) -> bool {
+    pub fn separate(&mut self, room: f64) -> bool {
         let sizes: Vec<f64> = self.grains.iter().map(|grain| grain.scale).collect();
         if !self.shape.points.is_empty() {
             let dimension = self.packing.dimension;
@@ -136,6 +167,58 @@ impl<'a> Descent<'a> {
         self.run(self.most_steps())
     }
 
+    /// Lets the grains fall along a direction and come to rest, without overlap.
+    ///
+    /// # Errors
+    /// They do not come to rest.
+    pub fn settle(&mut self, along: [f64; 3]) -> Result<(), NoPacking> {
+        let Some(bounds) = self.packing.container.bounds(self.packing.dimension) else { return Ok(()) };
+        let height: f64 = bounds.size().iter().zip(&along).map(|(size, along)| size * along.abs()).sum();
+        let smallest = self.grains.iter().map(|grain| grain.scale).fold(f64::INFINITY, f64::min);
+        // How many grains lie upon each other at most, about.
+        let layers = 1.0 + 0.5 * height / (smallest * self.shape.radius);
+        let [mut pressed, last] = PRESSED;
+        loop {
+            let weight = pressed * self.shape.radius * self.stiffness / layers;
+            let along = along.map(|along| along * weight);
+            let mut left = self.fall(along, TURN);
+            let apart = |descent: &Self| descent.acting().iter().all(|acting| acting.excess <= 0.0);
+            if pressed <= last && apart(self) {
+                left = self.fall(along, REST);
+                if apart(self) && left <= NEARLY_RESTS {
+                    return Ok(());
+                }
+            }
+            if pressed < LIGHTEST * last {
+                return Err(NoPacking::Restless(left));
+            }
+            pressed *= LIGHTER;
+        }
+    }
+
+    /// Takes steps under a weight, that of a grain of size 1, until the largest force that is left on a grain, over its
+    /// weight, is no more than `enough`, or the steps run out; that force.
+    fn fall(&mut self, weight: [f64; 3], enough: f64) -> f64 {
+        let mut roll = Roll::new(self);
+        let size = Vector(weight).norm();
+        let mut left = f64::INFINITY;
+        for _ in 0..FALL_STEPS {
+            let mut acting = self.acting();
+            left = 0.0;
+            for (Acting { force: Motion(force), .. }, grain) in acting.iter_mut().zip(&self.grains) {
+                let heavy = grain.scale.powi(self.packing.dimension as i32);
+                (0..3).for_each(|k| force[k] += heavy * weight[k]);
+                left = left.max(Vector([force[0], force[1], force[2]]).norm() / (heavy * size));
+            }
+            if left <= enough {
+                break;
+            }
+            let step = roll.on(&acting);
+            self.advance(&roll.motions, step);
+        }
+        left
+    }
+
     fn resize(&mut self, sizes: &[f64], factor: f64) {
         self.grains.iter_mut().zip(sizes).for_each(|(grain, size)| grain.scale = factor * size);
         // Whose surfaces are near each other follows from their sizes.
@@ -144,15 +227,11 @@ impl<'a> Descent<'a> {
 
     /// Takes at most so many steps until nothing overlaps; whether that came to be.
     fn run(&mut self, most: usize) -> bool {
-        let longest: f64 = if self.shape.points.is_empty() { 0.35 } else { 0.15 };
-        // Walls have corners, at which the energy has no slope: steps that shrink there without end would stay there.
-        let shortest = 0.25 * longest;
-        let (mut step, mut share, mut downhill) = (shortest, 0.1, 0);
-        let mut motions = vec![Motion::default(); self.grains.len()];
+        let mut roll = Roll::new(self);
         let (mut best, mut since) = (f64::INFINITY, 0);
         for _ in 0..most {
-            let pushes = self.pushes();
-            let excess = pushes.iter().map(|push| push.excess).fold(f64::NEG_INFINITY, f64::max);
+            let acting = self.acting();
+            let excess = acting.iter().map(|acting| acting.excess).fold(f64::NEG_INFINITY, f64::max);
             if excess <= 0.0 {
                 return true;
             }
@@ -162,46 +241,20 @@ impl<'a> Descent<'a> {
                 return false;
             }
             if since % STALL == STALL - 1 && !self.shape.points.is_empty() {
-                self.shake(&pushes);
-                motions.fill(Motion::default());
+                self.shake(&acting);
+                roll.halt();
                 continue;
             }
-            let forces: Vec<Motion> =
-                pushes.iter().zip(&self.grains).map(|(push, grain)| self.force(push, grain)).collect();
-            let dot = |a: &[Motion], b: &[Motion]| -> f64 {
-                a.iter().zip(b).map(|(a, b)| a.0.iter().zip(&b.0).map(|(a, b)| a * b).sum::<f64>()).sum()
-            };
-            if dot(&forces, &motions) > 0.0 {
-                downhill += 1;
-                if downhill > 5 {
-                    step = longest.min(1.1 * step);
-                    share *= 0.99;
-                }
-                let turn =
-                    share * (dot(&motions, &motions) / dot(&forces, &forces).max(f64::MIN_POSITIVE)).sqrt();
-                for (motion, force) in motions.iter_mut().zip(&forces) {
-                    for k in 0..6 {
-                        motion.0[k] = (1.0 - share) * motion.0[k] + turn * force.0[k];
-                    }
-                }
-            } else {
-                (step, share, downhill) = (shortest.max(0.5 * step), 0.1, 0);
-                motions.fill(Motion::default());
-            }
-            for (motion, force) in motions.iter_mut().zip(&forces) {
-                for k in 0..6 {
-                    motion.0[k] += step * force.0[k];
-                }
-            }
-            self.advance(&motions, step);
+            let step = roll.on(&acting);
+            self.advance(&roll.motions, step);
         }
         false
     }
 
     /// Moves and turns grains that overlap by chance: corners that hook into each other go down to no way out.
-    fn shake(&mut self, pushes: &[Push]) {
+    fn shake(&mut self, acting: &[Acting]) {
         let flat = self.packing.dimension == 2;
-        for (grain, _) in self.grains.iter_mut().zip(pushes).filter(|(_, push)| push.excess > 0.0) {
+        for (grain, _) in self.grains.iter_mut().zip(acting).filter(|(_, acting)| acting.excess > 0.0) {
             let mut chance = || SHAKE * self.random.sample::<f64, _>(StandardNormal);
             let by = [chance(), chance(), if flat { 0.0 } else { chance() }];
             let turn = if flat { [0.0, 0.0, chance()] } else { [chance(), chance(), chance()] };
@@ -216,20 +269,27 @@ impl<'a> Descent<'a> {
 
     /// What acts on each grain; summed for each by itself, in the order of its neighbours, so that the sums are the
     /// same for any number of threads.
-    fn pushes(&self) -> Vec<Push> {
+    fn acting(&self) -> Vec<Acting> {
         let gap = self.packing.gap;
         let ball = self.shape.ball();
         let shape = if self.as_balls { &ball } else { self.shape };
+        let places: Vec<[f64; 4]> = match shape.points.is_empty() {
+            true => self.grains.iter().map(Grain::ball).collect(),
+            false => Vec::new(),
+        };
         let on = |i: usize| {
             let grain = &self.grains[i];
             let mut push = Push::NONE;
-            for wall in &self.walls {
-                push.join(shape.held(grain, wall, gap, EXTRA));
+            if !self.amid[i] {
+                self.walls.iter().for_each(|wall| push.join(shape.held(grain, wall, gap, EXTRA)));
             }
-            for &j in &self.near[i] {
-                push.join(shape.push((grain, &self.grains[j as usize]), gap, EXTRA));
+            match places.get(i) {
+                Some(place) => (self.near.of(i))
+                    .for_each(|j| push.join(shape.push_ball((place, &places[j]), gap, EXTRA))),
+                None => (self.near.of(i))
+                    .for_each(|j| push.join(shape.push((grain, &self.grains[j]), gap, EXTRA))),
             }
-            push
+            Acting { force: self.force(&push, grain), excess: push.excess }
         };
         (0..self.grains.len()).into_par_iter().with_min_len(64).map(on).collect()
     }
@@ -267,5 +327,82 @@ impl<'a> Descent<'a> {
         if far {
             self.list();
         }
+    }
+}
+
+/// The state of the engine that rolls grains down.
+struct Roll {
+    motions: Vec<Motion>,
+    step: f64,
+    longest: f64,
+    shortest: f64,
+    /// Of the motion, that is turned into the direction of the force.
+    share: f64,
+    /// Steps for which it has gone down.
+    downhill: usize,
+    /// Components of motion that there are: without turning, the first three.
+    components: usize,
+}
+
+/// The share at first and after a halt.
+const SHARE: f64 = 0.1;
+
+impl Roll {
+    fn new(descent: &Descent) -> Self {
+        let turns = !descent.shape.points.is_empty();
+        let longest: f64 = if turns { 0.15 } else { 0.35 };
+        // Walls have corners, at which the energy has no slope: steps that shrink there without end would stay there.
+        let shortest = 0.25 * longest;
+        Roll {
+            motions: vec![Motion::default(); descent.grains.len()],
+            step: shortest,
+            longest,
+            shortest,
+            share: SHARE,
+            downhill: 0,
+            components: if turns { 6 } else { 3 },
+        }
+    }
+
+    fn halt(&mut self) {
+        self.motions.fill(Motion::default());
+    }
+
+    /// The motions under what acts, and for how long they last.
+    fn on(&mut self, acting: &[Acting]) -> f64 {
+        let components = self.components;
+        let (mut power, mut of_motion, mut of_force) = (0.0, 0.0, 0.0);
+        for (Motion(motion), Acting { force: Motion(force), .. }) in self.motions.iter().zip(acting) {
+            let (mut p, mut m, mut f) = (0.0, 0.0, 0.0);
+            for (motion, force) in motion[..components].iter().zip(&force[..components]) {
+                p += force * motion;
+                m += motion * motion;
+                f += force * force;
+            }
+            power += p;
+            of_motion += m;
+            of_force += f;
+        }
+        let mut turn = None;
+        if power > 0.0 {
+            self.downhill += 1;
+            if self.downhill > 5 {
+                self.step = self.longest.min(1.1 * self.step);
+                self.share *= 0.99;
+            }
+            turn = Some(self.share * (of_motion / of_force.max(f64::MIN_POSITIVE)).sqrt());
+        } else {
+            (self.step, self.share, self.downhill) = (self.shortest.max(0.5 * self.step), SHARE, 0);
+            self.halt();
+        }
+        for (Motion(motion), Acting { force: Motion(force), .. }) in self.motions.iter_mut().zip(acting) {
+            for (motion, force) in motion[..components].iter_mut().zip(&force[..components]) {
+                if let Some(turn) = turn {
+                    *motion = (1.0 - self.share) * *motion + turn * force;
+                }
+                *motion += self.step * force;
+            }
+        }
+        self.step
     }
 }

@@ -27,6 +27,12 @@ impl Grain {
         Placement { scale: self.scale, position: self.position, turn: (axis, angle) }
     }
 
+    /// Where its middle is [m], and its size.
+    pub fn ball(&self) -> [f64; 4] {
+        let [x, y, z] = self.position;
+        [x, y, z, self.scale]
+    }
+
     /// Turns it on about its middle, by a vector along the axis with the angle as its length [rad].
     pub fn turn(&mut self, by: [f64; 3]) {
         self.orientation = Matrix::rotation_by(by) * self.orientation;
@@ -164,21 +170,13 @@ impl<'a> GrainShape<'a> {
     /// radii more.
     pub fn push(&self, (grain, other): (&Grain, &Grain), gap: f64, extra: f64) -> Push {
         let arm: [f64; 3] = std::array::from_fn(|k| grain.position[k] - other.position[k]);
-        let apart = Vector(arm).norm();
         let reach = self.radius * (grain.scale + other.scale);
         let beyond = gap + (extra + self.apart()) * reach;
         let mut push = Push::NONE;
-        if apart >= reach + beyond {
+        if Vector(arm).norm() >= reach + beyond {
             return push;
         }
         let size = self.radius * grain.scale.min(other.scale);
-        if self.points.is_empty() {
-            let out = if apart > 0.0 { arm.map(|x| x / apart) } else { [1.0, 0.0, 0.0] };
-            let depth = reach + beyond - apart;
-            push.add(depth, out, [0.0; 3]);
-            push.excess = (depth - extra * reach) / size;
-            return push;
-        }
         let mut deepest = f64::NEG_INFINITY;
         // The points of one in the other, both ways round.
         for (of, inside, sign) in [(grain, other, 1.0), (other, grain, -1.0)] {
@@ -201,6 +199,23 @@ impl<'a> GrainShape<'a> {
             }
         }
         push.excess = (deepest - extra * reach) / size;
+        push
+    }
+
+    /// The same of balls, by their middles and sizes.
+    pub fn push_ball(&self, ([x, y, z, scale], other): (&[f64; 4], &[f64; 4]), gap: f64, extra: f64) -> Push {
+        let arm = [x - other[0], y - other[1], z - other[2]];
+        let reach = self.radius * (scale + other[3]);
+        let beyond = gap + (extra + self.apart()) * reach;
+        let mut push = Push::NONE;
+        let apart = Vector(arm).norm();
+        if apart >= reach + beyond {
+            return push;
+        }
+        let out = if apart > 0.0 { arm.map(|x| x / apart) } else { [1.0, 0.0, 0.0] };
+        let depth = reach + beyond - apart;
+        push.force = out.map(|n| n * depth);
+        push.excess = (depth - extra * reach) / (self.radius * scale.min(other[3]));
         push
     }
 

@@ -153,7 +153,7 @@ mod tests {
 
     fn packing<'a>(container: &'a Shape, grain: &'a Shape, seed: u64) -> Packing<'a> {
         let (sizes, amount) = (Sizes::Uniform(0.8, 1.2), Amount::Count(20));
-        Packing { container, grain, sizes, amount, turned: true, gap: 0.0, seed, dimension: 2 }
+        Packing { container, grain, sizes, amount, turned: true, gap: 0.0, settle: None, seed, dimension: 2 }
     }
 
     #[test]
@@ -196,6 +196,7 @@ mod tests {
             packing(&round, &grain, 1),
             packing(&square, &other, 1),
             Packing { gap: 1e-9, ..first.clone() },
+            Packing { settle: Some([0.0, -1.0, 0.0]), ..first.clone() },
         ];
         assert!(others.iter().all(|other| other.name() != first.name()));
     }

@@ -9,6 +9,14 @@
 //! until none is left (O'Hern, Silbert, Liu and Nagel 2003, Phys. Rev. E 68, 011306). Below random close packing, 0.64
 //! of balls and 0.84 of disks of about two sizes, they find room; above it they jam, and that is an error. On the way
 //! each grain is a thousandth of its size larger than it is to be, so that nothing overlaps in the end, by no digit.
+//!
+//! Balls that are to settle then fall, down the same energy and that of their weight,
+//!
+//! ```text
+//! E = 1/2 sum over contacts k d^2 - sum over grains w a . x,    w ~ volume, a = the direction of falling
+//! ```
+//! without friction, to rest: with less and less weight, until what they press into each other is less than the
+//! thousandth that they are larger.
 
 pub mod array;
 mod descent;
@@ -43,6 +51,8 @@ pub struct Packing<'a> {
     pub turned: bool,
     /// Distance that surfaces keep at least [m].
     pub gap: f64,
+    /// Unit vector along which the grains, balls, fall and come to rest; `None` where they stay wherever they are [-].
+    pub settle: Option<[f64; 3]>,
     /// Another number, another packing.
     pub seed: u64,
     /// 2 or 3.
@@ -102,6 +112,10 @@ pub enum NoPacking {
         /// Has room.
         room: f64,
     },
+    /// Grains that are to settle are no balls.
+    SettleOfNoBalls,
+    /// They do not come to rest: the largest force that is left on one, over its weight [-].
+    Restless(f64),
 }
 
 /// Distance from the origin over the radius of the smallest grain.
@@ -125,6 +139,9 @@ impl Packing<'_> {
         if far > MOST_RADII * shape.radius * self.sizes.range()[0] {
             return Err(NoPacking::Far);
         }
+        if self.settle.is_some() && !shape.points.is_empty() {
+            return Err(NoPacking::SettleOfNoBalls);
+        }
         let mut random = ChaCha8Rng::seed_from_u64(self.seed);
         let scales = self.scales(room / volume, &mut random)?;
         let power = self.dimension as i32;
@@ -143,8 +160,11 @@ impl Packing<'_> {
             grains.push(Grain { scale, position, orientation });
         }
         let mut descent = Descent::new(self, &shape, grains, random);
-        if !descent.settle(room) {
+        if !descent.separate(room) {
             return Err(NoPacking::Jammed { asked, room: asked * descent.shrunk().powi(power) });
+        }
+        if let Some(along) = self.settle {
+            descent.settle(along)?;
         }
         Ok(descent.grains.iter().map(Grain::placement).collect())
     }

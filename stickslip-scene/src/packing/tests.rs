@@ -14,6 +14,7 @@ fn request<'a>(container: &'a Shape, grain: &'a Shape, fraction: f64, dimension:
         amount: Amount::Fraction(fraction),
         turned: !matches!(grain, Shape::Ball { .. }),
         gap: 0.0,
+        settle: None,
         seed: 1,
         dimension,
     }
@@ -24,15 +25,18 @@ fn shapes(packing: &Packing, placements: &[Placement]) -> Vec<Shape> {
     placements.iter().map(|placement| placement.shape(packing.grain, packing.dimension)).collect()
 }
 
+/// Middles and radii of balls.
+fn balls(packing: &Packing, placements: &[Placement]) -> Vec<([f64; 3], f64)> {
+    let ball = |shape| match shape {
+        Shape::Ball { center, radius } => (center, radius),
+        other => panic!("{other:?}"),
+    };
+    shapes(packing, placements).into_iter().map(ball).collect()
+}
+
 /// How deep balls are in each other and in the walls of a box, at most, over their radius [-].
 fn overlap_of_balls(packing: &Packing, placements: &[Placement]) -> f64 {
-    let balls: Vec<_> = shapes(packing, placements)
-        .into_iter()
-        .map(|shape| match shape {
-            Shape::Ball { center, radius } => (center, radius),
-            other => panic!("{other:?}"),
-        })
-        .collect();
+    let balls = balls(packing, placements);
     let mut deepest = f64::NEG_INFINITY;
     for (i, (a, r)) in balls.iter().enumerate() {
         deepest = deepest.max((packing.container.distance(*a, packing.dimension) + r + packing.gap) / r);
@@ -196,6 +200,92 @@ fn shares_are_those_of_numbers_or_of_volumes() {
     let drawn: Vec<f64> = (0..20_000).map(|_| normal.draw(3, &mut random)).collect();
     let mean = drawn.iter().sum::<f64>() / drawn.len() as f64;
     assert!((mean - 1.0).abs() < 3e-3 && drawn.iter().all(|size| (0.7..=1.3).contains(size)), "{mean}");
+}
+
+/// Part of a box that balls fill, by points of it on a lattice.
+fn filled(balls: &[([f64; 3], f64)], [low, high]: [[f64; 3]; 2], dimension: usize) -> f64 {
+    let points = if dimension == 2 { [200, 200, 1] } else { [40, 40, 40] };
+    let count = points.iter().product::<usize>();
+    let is_filled = |n: usize| {
+        let index = [n % points[0], n / points[0] % points[1], n / points[0] / points[1]];
+        let at = |k: usize| low[k] + (high[k] - low[k]) * (index[k] as f64 + 0.5) / points[k] as f64;
+        let holds = |(center, radius): &([f64; 3], f64)| {
+            (0..dimension).map(|k| (center[k] - at(k)).powi(2)).sum::<f64>() < radius * radius
+        };
+        balls.iter().any(holds)
+    };
+    (0..count).filter(|&n| is_filled(n)).count() as f64 / count as f64
+}
+
+/// Grains settle without friction: in space balls of one size to between random loose and random close packing, 0.55
+/// (Onoda and Liniger 1990, Phys. Rev. Lett. 64, 2727) and 0.64 (Scott and Kilgour 1969, J. Phys. D 2, 863), in the
+/// plane disks of two sizes to near 0.84 (O'Hern et al. 2003); away from the walls, at which order begins, and from the
+/// open surface.
+#[test]
+fn settled_grains_rest_as_dense_as_random_packings_are() {
+    let disk = Shape::ball([0.0; 3], 0.02);
+    let cases = [
+        (
+            2,
+            0.5,
+            Sizes::Numbers(vec![[1.0, 0.5], [1.4, 0.5]]),
+            Shape::cuboid([0.0; 3], [1.0, 1.4, 1.0]),
+            0.81..0.86,
+        ),
+        (3, 0.4, Sizes::One(2.0), Shape::cuboid([0.0; 3], [0.6, 0.6, 0.9]), 0.55..0.65),
+    ];
+    for (dimension, fraction, sizes, container, range) in cases {
+        let up = dimension - 1;
+        let along: [f64; 3] = std::array::from_fn(|k| if k == up { -1.0 } else { 0.0 });
+        let packing =
+            Packing { sizes, settle: Some(along), ..request(&container, &disk, fraction, dimension) };
+        let placements = packing.place().unwrap_or_else(|problem| panic!("{problem:?}"));
+        let overlap = overlap_of_balls(&packing, &placements);
+        assert!(overlap <= 0.0, "{overlap:e} of a radius");
+        // Each is held from below, by as many others and walls as a frictionless grain at rest has.
+        let balls = balls(&packing, &placements);
+        let bounds = container.bounds(dimension).expect("a box");
+        let mut held = 0;
+        for (i, (x, r)) in balls.iter().enumerate() {
+            let mut towards: Vec<f64> = Vec::new();
+            for (j, (y, s)) in balls.iter().enumerate().filter(|(j, _)| *j != i) {
+                let apart = (0..dimension).map(|k| (x[k] - y[k]).powi(2)).sum::<f64>().sqrt();
+                if apart < (r + s) * (1.0 + 1.001e-3) {
+                    towards.push((x[up] - y[up]) / apart);
+                }
+                assert!(apart >= r + s, "{i} and {j} overlap");
+            }
+            for (k, &at) in x.iter().enumerate().take(dimension) {
+                let away = if k == up { 1.0 } else { 0.0 };
+                towards.extend((at - bounds.min[k] < r * (1.0 + 1.001e-3)).then_some(away));
+                towards.extend((bounds.max[k] - at < r * (1.0 + 1.001e-3)).then_some(-away));
+            }
+            assert!(towards.iter().any(|up| *up > 0.0), "nothing below grain {i} at {x:?}: {towards:?}");
+            held += usize::from(towards.len() >= dimension);
+        }
+        // One on the open surface may pass over two others just then.
+        assert!(held as f64 >= 0.99 * balls.len() as f64, "{held} of {} are held", balls.len());
+        let top = balls.iter().map(|(x, _)| x[up]).fold(0.0, f64::max);
+        let margin = 0.15 * bounds.size()[0];
+        let low: [f64; 3] = std::array::from_fn(|k| bounds.min[k] + margin);
+        let mut high: [f64; 3] = std::array::from_fn(|k| bounds.max[k] - margin);
+        high[up] = top - margin;
+        let found = filled(&balls, [low, high], dimension);
+        println!("{found:.4} filled up to {top:.3} m");
+        assert!(range.contains(&found), "{found} in {dimension} dimensions");
+    }
+    // By any number of threads.
+    let (container, few) = (cube(0.5), Amount::Count(150));
+    let settle = Some([0.6, -0.8, 0.0]);
+    let packing = Packing { amount: few, settle, ..request(&container, &disk, 0.3, 2) };
+    let with = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+        pool.install(|| packing.place()).expect("room")
+    };
+    assert_eq!(with(1), with(3));
+    let square = Shape::rectangle([0.0; 2], [0.1, 0.1]);
+    let squares = Packing { settle, ..request(&container, &square, 0.3, 2) };
+    assert_eq!(squares.place(), Err(NoPacking::SettleOfNoBalls));
 }
 
 proptest! {

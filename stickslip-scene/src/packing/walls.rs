@@ -18,6 +18,13 @@ impl Wall {
             false => SignedDistance { distance, gradient },
         }
     }
+
+    /// Whether it may be nearer than `reach` [m] to a point, or the point beyond it; always where the distance is not
+    /// known exactly.
+    pub fn may_reach(&self, point: [f64; 3], reach: f64, dimension: usize) -> bool {
+        let exact = matches!(self.shape, Shape::HalfSpace { .. } | Shape::Ball { .. });
+        !exact || self.level(point, dimension).distance > -reach
+    }
 }
 
 /// Lengths of a cylinder by which its round wall goes on beyond its ends.

@@ -12,10 +12,12 @@ use super::{
 use crate::geometry::{Arrangement, Shape};
 use crate::material::LAWS;
 
-/// Rows of tables in a run.
-const ROWS: f64 = 200.0;
+/// Rows of each body in the tables of a run: as many where bodies are few, and down to so many where they are many, so
+/// that they make up no more than [`ALL_ROWS`].
+const ROWS: [f64; 2] = [200.0, 50.0];
+const ALL_ROWS: f64 = 10_000.0;
 /// Snapshots of the particles in a run.
-const SNAPSHOTS: f64 = 40.0;
+const SNAPSHOTS: f64 = 20.0;
 /// Samples of probes, arrivals and fronts in a run.
 const SAMPLES: f64 = 1000.0;
 
@@ -101,15 +103,22 @@ impl Outputs {
     /// Tables and snapshots of the particles, evenly over a run of this length [s].
     pub fn of_run(end: f64) -> Self {
         Outputs {
-            tables: end / ROWS,
+            tables: end / ROWS[0],
             particles: Some(end / SNAPSHOTS),
             particles_at: Vec::new(),
             snapshots: SnapshotContent::default(),
+            surfaces: None,
             grid: None,
             fringes: None,
             checkpoints: None,
             measurements: Measurements::of_run(end),
         }
+    }
+
+    /// The same of a run of so many bodies, of which tables have fewer rows each where they are many.
+    pub fn of_bodies(bodies: usize, end: f64) -> Self {
+        let [most, least] = ROWS;
+        Outputs { tables: end / (ALL_ROWS / bodies as f64).clamp(least, most), ..Outputs::of_run(end) }
     }
 }
 

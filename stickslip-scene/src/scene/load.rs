@@ -136,7 +136,7 @@ mod tests {
         assert!(scene.gravity.is_none() && scene.domain.is_none());
         assert_eq!((scene.time.courant, scene.time.pic_share, scene.time.max_step), (0.4, 0.0, None));
         assert_eq!(scene.discretization.particles_per_side, 2);
-        assert_eq!((scene.outputs.tables, scene.outputs.particles), (0.005, Some(0.025)));
+        assert_eq!((scene.outputs.tables, scene.outputs.particles), (0.005, Some(0.05)));
     }
 
     #[test]

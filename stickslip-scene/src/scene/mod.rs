@@ -520,6 +520,8 @@ pub struct Outputs {
     pub particles_at: Vec<f64>,
     /// What snapshots hold.
     pub snapshots: SnapshotContent,
+    /// Surfaces of bodies for ParaView.
+    pub surfaces: Option<f64>,
     /// Grid nodes for ParaView.
     pub grid: Option<f64>,
     /// Photoelastic fringes.

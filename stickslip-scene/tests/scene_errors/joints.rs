@@ -104,6 +104,30 @@ fn joints() {
                  rad/s\"",
             ),
             (
+                "\"20 rad/s\"",
+                "{ table = [[0, 0], [\"1 s\", \"20 m/s\"]] }",
+                "27:64: joints[0].hinge.speed.table[1][1]: found \"20 m/s\", a velocity [m/s]; allowed: a rate [1/s], \
+                 like \"5 rad/s\"",
+            ),
+            (
+                "\"20 rad/s\"",
+                "[20]",
+                "27:37: joints[0].hinge.speed: found [20]; allowed: a rate [1/s], like \"5 rad/s\", a formula, { table = \
+                 ... } or { csv = ... }",
+            ),
+            (
+                "\"1 kN\"",
+                "{ table = [[\"1 s\", 0], [\"1 s\", \"1 kN\"]] }",
+                "30:59: joints[1].slider.force.table[1][0]: found \"1 s\"; allowed: a time after 1 s, that of the row \
+                 before",
+            ),
+            (
+                "\"1 kN\"",
+                "{ csv = \"force.csv\" }",
+                "30:43: joints[1].slider.force.csv: found \"force.csv\"; allowed: a file that can be read; force.csv: No such \
+                 file or directory (os error 2); a relative path starts at the scene's folder",
+            ),
+            (
                 "slider = {",
                 "weld = {}\nslider = {",
                 "28:1: joints[1]: found a joint of several kinds; allowed: one of hinge, slider, ball, weld and \

@@ -15,6 +15,7 @@ mod outputs;
 mod outside;
 mod parameters;
 mod places;
+mod point_clouds;
 mod shapes;
 mod values;
 

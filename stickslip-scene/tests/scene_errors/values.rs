@@ -177,6 +177,6 @@ fn values_out_of_range() {
     let none = MINIMAL.split("[[bodies]]").next().unwrap();
     assert_eq!(
         message(&format!("bodies = []\n{none}")),
-        "a.toml:1:10: bodies: found no body; allowed: at least one [[bodies]], [[packings]] or [[images]]"
+        "a.toml:1:10: bodies: found no body; allowed: at least one [[bodies]], [[packings]], [[images]] or [[point_clouds]]"
     );
 }

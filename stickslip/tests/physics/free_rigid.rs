@@ -588,6 +588,50 @@ fn boxes_slide_stand_and_tip() {
     assert!(moved > 0.02 && spin < -0.02);
 }
 
+/// Motors and prescribed motion by tables: the momentum of a sledge is the area under its force's table, a wheel has the
+/// speed of its motor's table, and a plate has gone as far as the area under its velocity's.
+#[test]
+fn motors_and_prescribed_motion_follow_tables() {
+    let scene = format!(
+        r#"
+        space = {{ dimension = "plane-strain", cell = 0.1 }}
+        time = {{ end = 2, max_step = 1e-3 }}
+        {GEL}
+        [[bodies]]
+        name = "sledge"
+        material = "gel"
+        shape.box = {{ min = [0, 0], max = [1, 1] }}
+        rigid.free.mass = 40
+        [[bodies]]
+        name = "wheel"
+        material = "gel"
+        shape.ball = {{ center = [0, 5], radius = 0.5 }}
+        rigid.free = {{}}
+        [[bodies]]
+        name = "plate"
+        material = "gel"
+        shape.box = {{ min = [-5, 8], max = [5, 9] }}
+        rigid = {{ velocity = [0, {{ table = [[0, 0], ["1 s", "2 m/s"], [1.5, 0]] }}], spin = {{ table = [[0, 1], [1, 3]] }} }}
+        [[joints]]
+        body = "sledge"
+        slider = {{ axis = [1, 0], force = {{ table = [["0.5 s", 0], ["1 s", "80 N/m"], ["1.25 s", 0]] }} }}
+        [[joints]]
+        body = "wheel"
+        hinge = {{ point = [0, 5], speed = {{ table = [[0, 0], [1, "4 rad/s"], [2, "-4 rad/s"]] }} }}
+        "#
+    );
+    let mut simulation = start(&scene);
+    for (time, speed, spin) in [(0.5, 0.0, 2.0), (1.0, 0.5, 4.0), (1.75, 0.75, -2.0)] {
+        run_to(&mut *simulation, time, |_| {});
+        let bodies = simulation.bodies();
+        assert!((bodies[0].velocity[0] - speed).abs() < 1e-5, "{time} s: {:?}", bodies[0].velocity);
+        assert!((bodies[1].spin[2] - spin).abs() < 0.01, "{time} s: {:?}", bodies[1].spin);
+    }
+    let plate = simulation.bodies()[2].clone();
+    assert!((plate.position[1] - 8.5 - 1.5).abs() < 2e-3, "{:?}", plate.position);
+    assert!((plate.spin[2] - 3.0).abs() < 1e-4, "{:?}", plate.spin);
+}
+
 /// The scene in the book: two wheels on axles carry a carriage up a slope, one of them driven by a motor.
 #[test]
 fn a_carriage_climbs_a_slope_by_its_motor() {

@@ -37,6 +37,7 @@ mod nearly_incompressible;
 mod paths;
 mod plane_stress;
 mod plastic_flow;
+mod point_clouds;
 mod precision;
 mod reactions;
 mod relaxation;

@@ -1,4 +1,4 @@
-//! VTK's file of points in XML (`.vtu`), with appended raw data in blocks compressed by zlib.
+//! VTK's file of points or triangles in XML (`.vtu`), with appended raw data in blocks compressed by zlib.
 //!
 //! Layout of the data of one array, all little-endian (VTK file formats, "Appended data" and "Compression"):
 //!

@@ -12,13 +12,17 @@ use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::Path;
 
-/// VTK's number of a cell that is a single point.
+/// VTK's numbers of a cell that is a single point, and of a triangle.
 const VTK_VERTEX: u8 = 1;
+const VTK_TRIANGLE: u8 = 5;
 
-/// A file of points, encoded and ready to be written: it borrows nothing, so that another thread may write it.
+/// A file of points, or of triangles between points, encoded and ready to be written: it borrows nothing, so that
+/// another thread may write it.
 pub struct Vtu {
     precision: Precision,
     points: usize,
+    /// Of cells.
+    count: usize,
     fields: Vec<(&'static str, f64)>,
     geometry: Vec<Array>,
     cells: Vec<Array>,
@@ -78,16 +82,37 @@ impl Vtu {
     /// Points at a time [s], each a cell of its own, so that ParaView can threshold and select them one by one.
     pub(in crate::observe) fn new(time: f64, positions: &[[f64; 3]], precision: Precision) -> Self {
         let numbers: Vec<i64> = (0..positions.len() as i64).collect();
-        let ends: Vec<i64> = (1..=positions.len() as i64).collect();
+        Vtu::of_cells(time, (positions, precision), (&numbers, 1, VTK_VERTEX))
+    }
+
+    /// Triangles at a time [s], between points.
+    pub(in crate::observe) fn of_triangles(
+        time: f64,
+        (positions, triangles): (&[[f64; 3]], &[[u32; 3]]),
+        precision: Precision,
+    ) -> Self {
+        let corners: Vec<i64> = triangles.as_flattened().iter().map(|&corner| i64::from(corner)).collect();
+        Vtu::of_cells(time, (positions, precision), (&corners, 3, VTK_TRIANGLE))
+    }
+
+    /// Cells of so many points each, by the numbers of these, and all of one type.
+    fn of_cells(
+        time: f64,
+        (positions, precision): (&[[f64; 3]], Precision),
+        (corners, each, kind): (&[i64], usize, u8),
+    ) -> Self {
+        let cells = corners.len() / each;
+        let ends: Vec<i64> = (1..=cells).map(|cell| (cell * each) as i64).collect();
         Vtu {
             precision,
             points: positions.len(),
+            count: cells,
             fields: vec![("TimeValue", time)],
             geometry: vec![Array::real("points", VECTOR, (positions.as_flattened(), precision))],
             cells: vec![
-                Array::new("connectivity", NUMBER, &numbers),
+                Array::new("connectivity", NUMBER, corners),
                 Array::new("offsets", NUMBER, &ends),
-                Array::new("types", NUMBER, &vec![VTK_VERTEX; positions.len()]),
+                Array::new("types", NUMBER, &vec![kind; cells]),
             ],
             point_data: Vec::new(),
         }
@@ -158,8 +183,8 @@ impl Vtu {
                 "<DataArray type=\"Float64\" Name=\"{name}\" NumberOfTuples=\"1\" format=\"ascii\">{value:e}</DataArray>\n"
             );
         }
-        let n = self.points;
-        xml += &format!("</FieldData>\n<Piece NumberOfPoints=\"{n}\" NumberOfCells=\"{n}\">\n");
+        let (points, cells) = (self.points, self.count);
+        xml += &format!("</FieldData>\n<Piece NumberOfPoints=\"{points}\" NumberOfCells=\"{cells}\">\n");
         let mut offset = 0;
         for (tag, arrays) in
             [("Points", &self.geometry), ("Cells", &self.cells), ("PointData", &self.point_data)]
@@ -201,7 +226,7 @@ fn compress<T: Scalar>(values: &[T]) -> Vec<u8> {
         .map(|chunk| {
             let mut bytes = Vec::with_capacity(size_of_val(chunk));
             T::write(chunk, &mut bytes);
-            block(&bytes)
+            block(&bytes, if T::NAME.starts_with("Float") { OF_REALS } else { OF_WHOLE })
         })
         .collect();
     let mut sizes = vec![blocks.len() as u64, BLOCK as u64, (size_of_val(values) % BLOCK) as u64];
@@ -212,10 +237,12 @@ fn compress<T: Scalar>(values: &[T]) -> Vec<u8> {
     bytes
 }
 
-/// How hard to look for what repeats: numbers that use all their bits repeat next to nothing, however long one looks.
-const EFFORT: Compression = Compression::fast();
+/// How hard to look for what repeats: reals, which use all their bits, repeat next to nothing, however long one looks;
+/// whole numbers do.
+const OF_REALS: Compression = Compression::fast();
+const OF_WHOLE: Compression = Compression::new(6);
 
-fn block(bytes: &[u8]) -> Vec<u8> {
-    let mut packed = ZlibEncoder::new(Vec::with_capacity(bytes.len()), EFFORT);
+fn block(bytes: &[u8], effort: Compression) -> Vec<u8> {
+    let mut packed = ZlibEncoder::new(Vec::with_capacity(bytes.len()), effort);
     packed.write_all(bytes).and_then(|()| packed.finish()).expect("memory takes all bytes")
 }

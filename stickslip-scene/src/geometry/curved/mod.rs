@@ -13,7 +13,7 @@ pub use superquadric::{MOST_EXPONENT, Superquadric};
 pub use torus::Torus;
 
 use super::distance::SignedDistance;
-use super::{Bounds, ImagePart, Shape};
+use super::{Bounds, ImagePart, PointCloud, Shape};
 use serde::Serialize;
 
 /// A shape with a curved surface.
@@ -32,6 +32,8 @@ pub enum Curved {
     RoundedBox(RoundedBox),
     /// A part of an image.
     Image(ImagePart),
+    /// What given particles fill.
+    PointCloud(PointCloud),
 }
 
 /// What such a shape says of itself. In the plane, only the first two coordinates count.
@@ -57,6 +59,7 @@ impl Curved {
             Curved::Torus(solid) => solid,
             Curved::RoundedBox(solid) => solid,
             Curved::Image(solid) => solid,
+            Curved::PointCloud(solid) => solid,
         }
     }
 
@@ -69,6 +72,7 @@ impl Curved {
             Curved::Torus(_) => "torus",
             Curved::RoundedBox(_) => "rounded_box",
             Curved::Image(_) => "image",
+            Curved::PointCloud(_) => "point_cloud",
         }
     }
 

@@ -92,7 +92,7 @@ impl Lattice {
     }
 
     /// Along each axis in turn; beyond the ends numbers go on by a turn of half a circle about the last one.
-    fn convolved(&self, kernel: &[f64]) -> Lattice {
+    pub fn convolved(&self, kernel: &[f64]) -> Lattice {
         let half = (kernel.len() / 2) as i64;
         let mut values = self.values.clone();
         let mut row = Vec::new();

@@ -46,6 +46,10 @@ impl ImagePart {
     ) -> Self {
         ImagePart { name: name.into(), levels: Arc::new(Levels { coefficients, held }), first, pixel }
     }
+
+    pub(super) fn is_plane(&self) -> bool {
+        self.levels.coefficients.dimension() == 2
+    }
 }
 
 impl Solid for ImagePart {

@@ -34,7 +34,7 @@ pub enum Solids {
 }
 
 /// Pixels around a part that its field has.
-const MARGIN: usize = 5;
+pub(super) const MARGIN: usize = 5;
 
 /// Widths of the Gaussian that takes the stairs out of labels, and out of greys what pixels of a sharp edge lack
 /// [pixels].
@@ -61,7 +61,7 @@ pub struct Spread {
 }
 
 /// Pixels of all fields, and how many parts there may be.
-const MOST: Spread = Spread { parts: 100_000, pixels: 1 << 31 };
+pub(super) const MOST: Spread = Spread { parts: 100_000, pixels: 1 << 31 };
 
 /// Each part of at least so many pixels with its number: its label, or its place in the order of the pixels from 1 on.
 ///
@@ -136,7 +136,7 @@ pub fn image_parts(
 }
 
 /// Distances from where numbers are zero, without stairs.
-fn unstepped(numbers: Lattice, width: f64) -> Lattice {
+pub(super) fn unstepped(numbers: Lattice, width: f64) -> Lattice {
     let distances = numbers.distances();
     let depth = -distances.values.iter().fold(0.0_f32, |least, &distance| least.min(distance));
     distances.smoothed(width.min(OF_DEPTH * f64::from(depth))).distances()
@@ -201,7 +201,7 @@ impl Lattice {
     }
 
     /// A box around all of the splines that may be below zero; `None` where none is.
-    fn inside(&self) -> Option<[[f64; 3]; 2]> {
+    pub(super) fn inside(&self) -> Option<[[f64; 3]; 2]> {
         let strides = self.strides();
         let (mut min, mut max) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
         for number in (0..self.values.len()).filter(|&number| self.values[number] < 0.0) {
@@ -267,7 +267,7 @@ fn connected(pixels: &Pixels, than: f32, inverted: bool) -> (Vec<u32>, Vec<(u32,
 
 /// Raises coefficients of two fields alike wherever their sum is negative. B-splines are nowhere negative, so the sum
 /// of both fields is not either, and no point is in two parts.
-fn part_them(fields: &mut [(u32, [i64; 3], Lattice)]) {
+pub(super) fn part_them(fields: &mut [(u32, [i64; 3], Lattice)]) {
     for b in 1..fields.len() {
         let (earlier, rest) = fields.split_at_mut(b);
         let (_, lower_b, of_b) = &mut rest[0];

@@ -2,17 +2,18 @@
 
 use super::Context;
 use super::array::ArrayKeys;
-use super::loads::positive;
+use super::loads::{VaryingVector, positive};
 use super::outside::OrOutside;
 use super::quantity::{Mass, MomentOfInertia, Pressure, QuantityInput, Velocity};
 use super::read::{Read, table};
 use super::repeat::Repeat;
 use super::shape::ShapeInput;
 use super::text::{Choice, Count, Text, Word};
-use super::vector::{SpinInput, VectorInput};
+use super::vector::{SpinInput, VaryingSpin, VectorInput};
 use crate::geometry::Arrangement;
 use crate::packing::Placement;
 use crate::scene::error::Fault;
+use crate::scene::parameters::Dependence;
 use crate::scene::source::{DocumentNode, Value};
 use crate::scene::{self, BodyMotion, Expression, FreeRigid, NamedMaterial};
 use schemars::JsonSchema;
@@ -82,16 +83,16 @@ impl StressInput {
 }
 
 table! {
-    /// A rigid body. Its motion is prescribed, by formulas that may use `t`, the time; {} is a body at rest. Or it is
-    /// free.
+    /// A rigid body. Its motion is prescribed, by formulas that may use `t`, the time, or by tables; {} is a body at
+    /// rest. Or it is free.
     Rigid {
         /// Contact, gravity, loads and joints move it: rigid = { free = {} }. It begins with the velocity and the spin of
         /// the body. By default its motion is prescribed.
         free: Option<FreeInput>,
         /// Velocity of its centre of mass [m/s]: ["0.1 m/s * min(t / 1 ms, 1)", 0, 0]. By default none.
-        velocity: Option<OrOutside<VectorInput<Velocity>>>,
+        velocity: Option<OrOutside<VaryingVector<Velocity>>>,
         /// Angular velocity about its centre of mass [rad/s]; in the plane one number. By default none.
-        spin: Option<OrOutside<SpinInput>>,
+        spin: Option<OrOutside<VaryingSpin>>,
     }
 }
 
@@ -278,10 +279,14 @@ impl BodyKeys<'_> {
         let rest = || Ok([0.0; 3].map(Expression::Constant));
         Ok(BodyMotion::Rigid {
             velocity: rigid.velocity.as_ref().map_or_else(rest, |velocity| {
-                velocity.resolve(context, |i| i < context.dimension.axes(), |v| v.over_time(context))
+                velocity.resolve(
+                    context,
+                    |i| i < context.dimension.axes(),
+                    |v| v.resolve(context, Dependence::Time),
+                )
             })?,
             spin: rigid.spin.as_ref().map_or_else(rest, |spin| {
-                spin.resolve(context, |i| i == 2 || !context.dimension.is_plane(), |w| w.over_time(context))
+                spin.resolve(context, |i| i == 2 || !context.dimension.is_plane(), |w| w.resolve(context))
             })?,
         })
     }

@@ -1,7 +1,7 @@
 //! `[[joints]]`: what joins free rigid bodies to others and to the ground.
 
 use super::Context;
-use super::loads::{per_depth, positive};
+use super::loads::{Varying, positive};
 use super::quantity::{
     AngularVelocity, Force, ForceOverVelocity, Length, Measure, Moment, MomentOverSpin, QuantityInput, Ratio,
     Stiffness, Velocity,
@@ -9,11 +9,10 @@ use super::quantity::{
 use super::read::table;
 use super::repeat::Repeat;
 use super::text::Text;
-use super::vector::VectorInput;
+use super::vector::{VectorInput, direction};
 use crate::scene::error::Fault;
 use crate::scene::parameters::Dependence;
 use crate::scene::{self, Body, JointKind, Motor};
-use crate::tensor::Vector;
 use std::collections::HashSet;
 
 table! {
@@ -48,10 +47,11 @@ table! {
         point: VectorInput<Length>,
         /// Along its axis, of any length; in three dimensions only: in the plane it is the third axis.
         axis: Option<VectorInput<Ratio>>,
-        /// Moment on the body about the axis [N m]; may vary in time. By default none.
-        torque: Option<QuantityInput<Moment>>,
-        /// Speed of turning that a motor keeps up [rad/s]; may vary in time. By default any.
-        speed: Option<QuantityInput<AngularVelocity>>,
+        /// Moment on the body about the axis [N m]; a formula of the time t or a table varies it. By default none.
+        torque: Option<Varying<Moment>>,
+        /// Speed of turning that a motor keeps up [rad/s]; a formula of the time t or a table
+        /// varies it. By default any.
+        speed: Option<Varying<AngularVelocity>>,
         /// Largest moment of that motor [N m]; by default as large as it takes.
         limit: Option<QuantityInput<Moment>>,
         /// Moment against the angle from the start, over the angle [N m]. By default none.
@@ -66,10 +66,11 @@ table! {
     Slider {
         /// Direction of sliding, of any length.
         axis: VectorInput<Ratio>,
-        /// Force on the body along the direction [N]; may vary in time. By default none.
-        force: Option<QuantityInput<Force>>,
-        /// Speed of sliding that a motor keeps up [m/s]; may vary in time. By default any.
-        speed: Option<QuantityInput<Velocity>>,
+        /// Force on the body along the direction [N]; a formula of the time t or a table varies it. By default none.
+        force: Option<Varying<Force>>,
+        /// Speed of sliding that a motor keeps up [m/s]; a formula of the time t or a table varies
+        /// it. By default any.
+        speed: Option<Varying<Velocity>>,
         /// Largest force of that motor [N]; by default as large as it takes.
         limit: Option<QuantityInput<Force>>,
         /// Force against the way from the start, over the way [N/m]. By default none.
@@ -179,24 +180,16 @@ impl Joint {
 }
 
 /// A moment or force that may vary in time; by default none.
-fn push<M: Measure>(input: &Option<QuantityInput<M>>, context: &Context) -> Result<scene::Expression, Fault> {
+fn push<M: Measure>(input: &Option<Varying<M>>, context: &Context) -> Result<scene::Expression, Fault> {
     match input {
         None => Ok(scene::Expression::Constant(0.0)),
-        Some(input) => per_depth::<M>(input.node(), (context, Dependence::Time)),
+        Some(input) => input.resolve(context, Dependence::Time),
     }
 }
 
 /// A number above zero, or what stands for none.
 fn or<M: Measure>(input: &Option<QuantityInput<M>>, none: f64, context: &Context) -> Result<f64, Fault> {
     input.as_ref().map_or(Ok(none), |input| positive(input, context))
-}
-
-/// A unit vector.
-fn direction(axis: &VectorInput<Ratio>, context: &Context) -> Result<[f64; 3], Fault> {
-    match Vector(axis.value(context)?).direction() {
-        Some(direction) => Ok(direction.0),
-        None => Err(axis.node().fault("a direction: a vector that is not zero")),
-    }
 }
 
 impl Hinge {
@@ -218,7 +211,7 @@ impl Hinge {
         };
         let motor = Motor {
             push: push(&self.torque, context)?,
-            speed: self.speed.as_ref().map(|speed| speed.over_time(context)).transpose()?,
+            speed: self.speed.as_ref().map(|speed| speed.resolve(context, Dependence::Time)).transpose()?,
             limit: or(&self.limit, f64::INFINITY, context)?,
             stiffness: or(&self.stiffness, 0.0, context)?,
             dashpot: or(&self.dashpot, 0.0, context)?,
@@ -232,7 +225,7 @@ impl Slider {
     fn resolve(&self, context: &Context) -> Result<JointKind, Fault> {
         let motor = Motor {
             push: push(&self.force, context)?,
-            speed: self.speed.as_ref().map(|speed| speed.over_time(context)).transpose()?,
+            speed: self.speed.as_ref().map(|speed| speed.resolve(context, Dependence::Time)).transpose()?,
             limit: or(&self.limit, f64::INFINITY, context)?,
             stiffness: or(&self.stiffness, 0.0, context)?,
             dashpot: or(&self.dashpot, 0.0, context)?,

@@ -397,7 +397,8 @@ pub fn positive<M: Measure>(input: &QuantityInput<M>, context: &Context) -> Resu
 }
 
 impl<M: Measure> Varying<M> {
-    fn resolve(&self, context: &Context, dependence: Dependence) -> Result<Expression, Fault> {
+    /// Its value in SI units; in the plane as [`per_depth`] reads it.
+    pub fn resolve(&self, context: &Context, dependence: Dependence) -> Result<Expression, Fault> {
         match &self.node.value {
             Value::Table(_) => {
                 Ok(Expression::Table(TableInput::read(&self.node)?.resolve::<M>(&self.node, context)?))

@@ -21,6 +21,7 @@ mod outside;
 mod packing;
 mod pixels;
 mod ply;
+mod point_cloud;
 mod quantity;
 mod read;
 mod repeat;
@@ -83,12 +84,14 @@ table! {
         health: Option<health::Health>,
         /// The materials by name.
         materials: material::Materials,
-        /// The bodies: [[bodies]]. There must be one at least, here, in a packing or in an image.
+        /// The bodies: [[bodies]]. There must be one at least, here, in a packing, an image or a point cloud.
         bodies: Option<Vec<body::Body>>,
         /// Many bodies at once, at random places in a container: [[packings]].
         packings: Option<Vec<packing::Packing>>,
         /// Bodies from an image, a body of each label or bright part: [[images]].
         images: Option<Vec<image::Image>>,
+        /// Bodies from particles in CSV files: [[point_clouds]].
+        point_clouds: Option<Vec<point_cloud::PointCloud>>,
         /// What holds parts of bodies, or drives them: [[supports]].
         supports: Option<Vec<loads::Support>>,
         /// What pushes or pulls parts of bodies: [[loads]].
@@ -132,8 +135,13 @@ pub(super) fn resolve(source: &Source, files: &dyn SceneFiles) -> Result<(Scene,
     for (i, image) in file.images.iter().flatten().enumerate() {
         image.add_to(&mut bodies, (&materials, &format!("images[{i}]")), context)?;
     }
+    for (i, cloud) in file.point_clouds.iter().flatten().enumerate() {
+        let cell = file.space.discretization(context)?.cell;
+        cloud.add_to(&mut bodies, (&materials, &format!("point_clouds[{i}]"), cell), context)?;
+    }
     if bodies.all.is_empty() {
-        return Err(Fault::new("bodies", "no body", "at least one [[bodies]], [[packings]] or [[images]]"));
+        let allowed = "at least one [[bodies]], [[packings]], [[images]] or [[point_clouds]]";
+        return Err(Fault::new("bodies", "no body", allowed));
     }
     let body::Bodies { all: bodies, declared, .. } = bodies;
     let contact =

@@ -6,7 +6,7 @@ use super::quantity::{Length, QuantityInput, Ratio, Velocity};
 use super::read::{Read, table};
 use super::shape::ShapeInput;
 use super::text::{Choice, Count, Text, Word};
-use super::vector::{SpinInput, VectorInput};
+use super::vector::{SpinInput, VectorInput, direction};
 use crate::geometry::{Arrangement, Shape, fits};
 use crate::packing::{self, Amount, MOST_GRAINS, NoPacking, Sizes};
 use crate::scene::error::Fault;
@@ -36,6 +36,9 @@ table! {
         /// Distance that grains keep at least from each other and from the container [m].
         #[schemars(extend("default" = 0))]
         gap: Option<QuantityInput<Length>>,
+        /// Lets the grains, disks or balls, fall along this direction, of any length, and come to rest on each other and
+        /// on the container, without friction: settle = [0, -1]. By default they stay at their random places.
+        settle: Option<VectorInput<Ratio>>,
         /// Whether each grain is turned at random.
         #[schemars(extend("default" = "random"))]
         orientation: Option<Word<Orientation>>,
@@ -98,6 +101,7 @@ impl Packing {
             amount: self.amount(context, declared)?,
             turned: orientation == Orientation::Random && !matches!(grain, Shape::Ball { .. }),
             gap: self.gap.as_ref().map_or(Ok(0.0), not_negative)?,
+            settle: self.settle.as_ref().map(|along| direction(along, context)).transpose()?,
             seed: self.seed.as_ref().map_or(Ok(0), |seed| seed.value(context, 0..=MOST_SEED))? as u64,
             dimension,
         };
@@ -159,6 +163,16 @@ impl Packing {
                 )
                 .help(Some(help))
             }
+            NoPacking::SettleOfNoBalls => Fault::new(
+                &key("settle"),
+                "a packing of other shapes that is to settle",
+                "`settle` with shape.ball; other grains settle in a run of their own, see [start]",
+            ),
+            NoPacking::Restless(left) => Fault::new(
+                &key("settle"),
+                format!("grains that do not come to rest: a force of {left:.2} weights is left on one"),
+                "grains that rest: some hundreds; more settle in a run of their own, see [start]",
+            ),
             NoPacking::Overfull(ratio) => {
                 let gap = if self.gap.is_some() { ", with half of the gap around each" } else { "" };
                 let found = format!("grains of {ratio:.3} times the volume of the container{gap}");

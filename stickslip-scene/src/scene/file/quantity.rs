@@ -110,11 +110,6 @@ impl<M: Measure> QuantityInput<M> {
         if value.is_nan() { Err(self.refused(value, Self::wanted())) } else { Ok(value) }
     }
 
-    /// Its value as a function of time.
-    pub fn over_time(&self, context: &Context) -> Result<Expression, Fault> {
-        evaluate(&self.node, Powers::from(M::POWERS), &Self::wanted(), (context, Dependence::Time))
-    }
-
     /// Its value as a function of the place.
     pub fn over_place(&self, context: &Context) -> Result<Expression, Fault> {
         evaluate(&self.node, Powers::from(M::POWERS), &Self::wanted(), (context, Dependence::Place))

@@ -1,0 +1,332 @@
+//! `surfaces.pvd`: the surfaces of bodies through time, for ParaView.
+
+use super::file::OutputError;
+use super::folder::OutputFolder;
+use super::frames::Frames;
+use super::memory::Memory;
+use super::schedule::Schedule;
+use super::vtu::{NUMBER, VECTOR, Vtu};
+use super::{Observer, SURFACES};
+use crate::column::DERIVED;
+use crate::door::{ParticleSnapshot, View};
+use crate::geometry::{Bounds, Shape, sites};
+use crate::rigid::Pose;
+use crate::scene::{Precision, Scene};
+use crate::surface::{CarriedSkin, Skin};
+use crate::tensor::cross;
+use rayon::prelude::*;
+use std::sync::Arc;
+
+/// Writes `surfaces.pvd` and `surfaces/`.
+pub(super) struct SurfacesObserver {
+    schedule: Schedule,
+    frames: Frames,
+    surfaces: Arc<Vec<Surface>>,
+    /// Of what files hold.
+    precision: Precision,
+}
+
+/// The surface of a body.
+struct Surface {
+    body: usize,
+    moved: Moved,
+}
+
+/// With what it moves.
+enum Moved {
+    /// With the pose of a rigid body.
+    Rigidly(Skin),
+    /// With the particles of one that deforms.
+    ByParticles(CarriedSkin),
+}
+
+/// The surfaces at one time.
+#[derive(Default)]
+struct Corners {
+    position: Vec<[f64; 3]>,
+    velocity: Vec<[f64; 3]>,
+    von_mises: Vec<f64>,
+    body: Vec<i32>,
+    triangles: Vec<[u32; 3]>,
+}
+
+/// Bytes of a corner with its body, and of two triangles, as many as a surface has for each corner.
+const CORNER_BYTES: usize = 7 * size_of::<f64>() + 7 * size_of::<u32>();
+
+impl SurfacesObserver {
+    pub(super) fn create(scene: &Scene, folder: &OutputFolder) -> Result<Self, OutputError> {
+        Ok(SurfacesObserver {
+            schedule: Schedule::every(scene.outputs.surfaces.unwrap_or(f64::INFINITY)),
+            frames: Frames::create(folder, SURFACES)?,
+            surfaces: Arc::new(surfaces_of(scene)),
+            precision: scene.outputs.snapshots.precision,
+        })
+    }
+}
+
+impl Observer for SurfacesObserver {
+    fn next(&self) -> f64 {
+        self.schedule.next()
+    }
+
+    fn observe(&mut self, view: &dyn View) -> Result<(), OutputError> {
+        let time = view.time();
+        self.frames.make_room()?;
+        let (snapshot, poses) = (view.snapshot(), view.poses());
+        let spins: Vec<[[f64; 3]; 2]> = view.bodies().iter().map(|body| [body.velocity, body.spin]).collect();
+        let corners = self.surfaces.iter().map(|surface| surface.moved.skin().corners.len()).sum::<usize>();
+        let (surfaces, precision) = (self.surfaces.clone(), self.precision);
+        self.frames.push(time, snapshot.bytes() + CORNER_BYTES * corners, move || {
+            encode_surfaces(&corners_of(&surfaces, &snapshot, (&poses, &spins)), time, precision)
+        });
+        self.schedule.recorded(time);
+        Ok(())
+    }
+
+    fn conclude(&mut self) -> Result<(), OutputError> {
+        self.frames.finish()
+    }
+
+    fn remember(&mut self, _: &dyn View, memory: &mut Memory) -> Result<(), OutputError> {
+        self.schedule.remember(memory)?;
+        self.frames.remember(memory)
+    }
+
+    fn replaces(&self) -> bool {
+        true
+    }
+}
+
+/// The surfaces of all bodies that have one. What has no bounds ends with the domain; without one it has no surface.
+fn surfaces_of(scene: &Scene) -> Vec<Surface> {
+    let dimension = scene.dimension.axes();
+    let domain = scene.domain.as_ref().map(|domain| Bounds { min: domain.min, max: domain.max });
+    let surface = |number: usize| {
+        let body = &scene.bodies[number];
+        let lattice = scene.lattice(body);
+        let bounds = body.shape.bounds(dimension);
+        if body.is_rigid() {
+            let skin = match (bounds, domain) {
+                (Some(_), _) => Skin::of(&body.shape, lattice.spacing, dimension, None)?,
+                (None, Some(domain)) => {
+                    let within = Shape::cuboid(domain.min, domain.max).and(body.shape.clone());
+                    Skin::of(&within, lattice.spacing, dimension, None)?
+                }
+                (None, None) => return None,
+            };
+            return Some(Surface { body: number, moved: Moved::Rigidly(skin) });
+        }
+        let skin = Skin::of(&body.shape, lattice.spacing, dimension, domain)?;
+        let reference = sites(&body.shape, &lattice, body.particles)?.map(|site| site.position).collect();
+        let carried = CarriedSkin::new(skin, reference, lattice.spacing);
+        Some(Surface { body: number, moved: Moved::ByParticles(carried) })
+    };
+    (0..scene.bodies.len()).into_par_iter().filter_map(surface).collect()
+}
+
+impl Moved {
+    fn skin(&self) -> &Skin {
+        match self {
+            Moved::Rigidly(skin) => skin,
+            Moved::ByParticles(carried) => carried.skin(),
+        }
+    }
+}
+
+/// All surfaces as they are now: of rigid bodies by their poses, velocities and spins, of others by their particles.
+/// Bodies that lost particles have none any more.
+fn corners_of(
+    surfaces: &[Surface],
+    snapshot: &ParticleSnapshot,
+    (poses, spins): (&[Option<Pose>], &[[[f64; 3]; 2]]),
+) -> Corners {
+    let part = |surface: &Surface| -> Corners {
+        let body = surface.body;
+        let skin = surface.moved.skin();
+        let mut corners = Corners { triangles: skin.triangles.clone(), ..Corners::default() };
+        match &surface.moved {
+            Moved::Rigidly(skin) => {
+                let Some(Some(pose)) = poses.get(body) else { return Corners::default() };
+                let [velocity, spin] = spins[body];
+                let center = pose.now(pose.begun());
+                for &corner in &skin.corners {
+                    let now = pose.now(corner);
+                    let arm: [f64; 3] = std::array::from_fn(|k| now[k] - center[k]);
+                    let [x, y, z] = cross(spin, arm);
+                    corners.position.push(now);
+                    corners.velocity.push([velocity[0] + x, velocity[1] + y, velocity[2] + z]);
+                    corners.von_mises.push(0.0);
+                }
+            }
+            Moved::ByParticles(carried) => {
+                // Particles are in the order of bodies and numbers.
+                let first = snapshot.body.partition_point(|&other| (other as usize) < body);
+                let end = snapshot.body.partition_point(|&other| (other as usize) <= body);
+                if end - first != carried.particles() {
+                    return Corners::default();
+                }
+                let of = first..end;
+                corners.position =
+                    carried.corners(&snapshot.position[of.clone()], &snapshot.deformation[of.clone()]);
+                let part = |k: usize| -> Vec<f32> {
+                    carried.at_corners(
+                        &snapshot.velocity[of.clone()].iter().map(|v| v[k] as f32).collect::<Vec<_>>(),
+                    )
+                };
+                let [x, y, z] = [part(0), part(1), part(2)];
+                corners.velocity = (0..x.len()).map(|i| [x[i], y[i], z[i]].map(f64::from)).collect();
+                let stress: Vec<f32> =
+                    snapshot.stress[of].iter().map(|stress| von_mises(stress) as f32).collect();
+                corners.von_mises = carried.at_corners(&stress).into_iter().map(f64::from).collect();
+            }
+        }
+        corners.body = vec![body as i32; corners.position.len()];
+        corners
+    };
+    let parts: Vec<Corners> = surfaces.par_iter().map(part).collect();
+    let mut all = Corners::default();
+    for part in parts {
+        let first = all.position.len() as u32;
+        all.triangles.extend(part.triangles.iter().map(|triangle| triangle.map(|corner| first + corner)));
+        all.position.extend(part.position);
+        all.velocity.extend(part.velocity);
+        all.von_mises.extend(part.von_mises);
+        all.body.extend(part.body);
+    }
+    all
+}
+
+/// The von Mises stress [Pa].
+fn von_mises(stress: &[f64; 6]) -> f64 {
+    let derived = DERIVED.iter().find(|derived| derived.column.name == "von_mises");
+    (derived.expect("it is a derived column").value)(stress)
+}
+
+/// Surfaces at a time [s] as a file for ParaView: triangles, and at each corner the `velocity` [m/s], the `von_mises`
+/// stress [Pa] and the index of the `body`.
+fn encode_surfaces(corners: &Corners, time: f64, precision: Precision) -> Vtu {
+    let mut file = Vtu::of_triangles(time, (&corners.position, &corners.triangles), precision);
+    file.real("velocity", VECTOR, corners.velocity.as_flattened());
+    file.real("von_mises", NUMBER, &corners.von_mises);
+    file.whole("body", &corners.body);
+    file
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::observe::vtu::PointArrays;
+    use crate::scene;
+
+    /// A plate of prescribed motion, a free one, a disk that deforms and a floor, after half a second without forces.
+    #[test]
+    fn surfaces_move_with_their_bodies() {
+        let text = r#"
+            space = { dimension = "plane-strain", cell = 0.1, domain = { min = [-2, -1], max = [6, 5] } }
+            time.end = 1
+            materials.gel = { density = 1000, neo_hookean = { young_modulus = 1e4, poisson_ratio = 0.3 } }
+            [[bodies]]
+            name = "plate"
+            material = "gel"
+            shape.box = { min = [0, 0], max = [1, 0.5] }
+            rigid = { velocity = [1, 2], spin = 3 }
+            [[bodies]]
+            name = "sledge"
+            material = "gel"
+            shape.box = { min = [3, 3], max = [4, 4] }
+            velocity = [-0.5, 0]
+            spin = -2
+            rigid.free = {}
+            [[bodies]]
+            name = "disk"
+            material = "gel"
+            shape.ball = { center = [-1, 3], radius = 0.5 }
+            velocity = [0.25, 0.5]
+            [[bodies]]
+            name = "floor"
+            material = "gel"
+            shape.half_space = { point = [0, -0.55], normal = [0, 1] }
+            rigid = {}
+        "#;
+        let scene = scene::parse("a.toml", text, &[]).unwrap_or_else(|error| panic!("{error}")).scene;
+        let mut simulation = stickslip_engine::step::build(&scene).unwrap();
+        let end = 0.5;
+        while simulation.time() < end {
+            simulation.step(end - simulation.time()).unwrap();
+        }
+        let surfaces = surfaces_of(&scene);
+        let motions: Vec<_> = simulation.bodies().iter().map(|body| [body.velocity, body.spin]).collect();
+        let corners = corners_of(&surfaces, &simulation.snapshot(), (&simulation.poses(), &motions));
+        let mut first = 0;
+        for (surface, (center, velocity, spin, area)) in surfaces.iter().zip([
+            ([0.5, 0.25], [1.0, 2.0], 3.0, 0.5),
+            ([3.5, 3.5], [-0.5, 0.0], -2.0, 1.0),
+            ([-1.0, 3.0], [0.25, 0.5], 0.0, std::f64::consts::PI * 0.25),
+            ([0.0, -0.55], [0.0, 0.0], 0.0, 8.0 * 0.45),
+        ]) {
+            let skin = surface.moved.skin();
+            let (sine, cosine) = (spin * end).sin_cos();
+            for (i, corner) in skin.corners.iter().enumerate() {
+                let arm = [corner[0] - center[0], corner[1] - center[1]];
+                let turned = [cosine * arm[0] - sine * arm[1], sine * arm[0] + cosine * arm[1]];
+                let expected: [f64; 2] = std::array::from_fn(|k| center[k] + velocity[k] * end + turned[k]);
+                let (found, moving) = (corners.position[first + i], corners.velocity[first + i]);
+                let rate = [velocity[0] - spin * turned[1], velocity[1] + spin * turned[0]];
+                assert!((0..2).all(|k| (found[k] - expected[k]).abs() < 1e-5), "{found:?} {expected:?}");
+                assert!((0..2).all(|k| (moving[k] - rate[k]).abs() < 1e-5), "{moving:?} {rate:?}");
+                assert_eq!(corners.body[first + i] as usize, surface.body);
+            }
+            let of = |triangle: &&[u32; 3]| (triangle[0] as usize).wrapping_sub(first) < skin.corners.len();
+            let size = |triangle: &[u32; 3]| {
+                let [a, b, c] = triangle.map(|corner| corners.position[corner as usize]);
+                0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]))
+            };
+            let found: f64 = corners.triangles.iter().filter(of).map(size).sum();
+            assert!((found / area - 1.0).abs() < 5e-3, "{found} for {area}");
+            first += skin.corners.len();
+        }
+        assert_eq!(first, corners.position.len(), "all of them");
+        // And back from the disk.
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("00000.vtu");
+        encode_surfaces(&corners, end, Precision::Double).write(&path).unwrap();
+        let file = PointArrays::open(&path).unwrap();
+        assert_eq!(file.positions::<3>().unwrap(), corners.position);
+        assert_eq!(file.whole::<i32>("body").unwrap(), corners.body);
+        file.check().unwrap();
+    }
+
+    #[test]
+    fn a_body_that_lost_particles_has_no_surface_any_more() {
+        let text = r#"
+            space = { dimension = "3d", cell = 0.25 }
+            time.end = 1
+            materials.gel = { density = 1000, neo_hookean = { young_modulus = 1e4, poisson_ratio = 0.3 } }
+            [[bodies]]
+            name = "ball"
+            material = "gel"
+            shape.ball = { center = [0, 0, 0], radius = 1 }
+            [[bodies]]
+            name = "cube"
+            material = "gel"
+            shape.box = { min = [2, 0, 0], max = [3, 1, 1] }
+        "#;
+        let scene = scene::parse("a.toml", text, &[]).unwrap_or_else(|error| panic!("{error}")).scene;
+        let simulation = stickslip_engine::step::build(&scene).unwrap();
+        let surfaces = surfaces_of(&scene);
+        let (poses, motions) = (simulation.poses(), vec![[[0.0; 3]; 2]; 2]);
+        let whole = corners_of(&surfaces, &simulation.snapshot(), (&poses, &motions));
+        // The normals of the triangles look out of the ball.
+        let ball = |triangle: &&[u32; 3]| whole.body[triangle[0] as usize] == 0;
+        for triangle in whole.triangles.iter().filter(ball) {
+            let [a, b, c] = triangle.map(|corner| whole.position[corner as usize]);
+            let edge = |to: [f64; 3]| std::array::from_fn(|k| to[k] - a[k]);
+            let out: f64 = cross(edge(b), edge(c)).iter().zip(a).map(|(n, x)| n * x).sum();
+            assert!(out > 0.0, "{triangle:?}");
+        }
+        let less = simulation.snapshot().only(|body, number| (body, number) != (0, 17));
+        let left = corners_of(&surfaces, &less, (&poses, &motions));
+        assert!(left.body.iter().all(|&body| body == 1) && !left.body.is_empty());
+        assert!(left.triangles.iter().flatten().all(|&corner| (corner as usize) < left.position.len()));
+    }
+}
