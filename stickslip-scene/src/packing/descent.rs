@@ -67,7 +67,10 @@ impl<'a> Descent<'a> {
         let largest = grains.iter().map(|grain| grain.scale).fold(0.0, f64::max);
         let skin = 0.3 * shape.radius * largest;
         let stiffness = if shape.points.is_empty() { 1.0 } else { 0.25 };
-        let walls = walls(packing.container, packing.dimension);
+        let mut walls = walls(packing.container, packing.dimension);
+        for (axis, ends) in packing.repeats.iter().enumerate() {
+            walls.retain(|wall| !ends.is_some_and(|ends| wall.is_end(axis, ends)));
+        }
         let mut descent = Descent {
             packing,
             shape,
@@ -85,12 +88,47 @@ impl<'a> Descent<'a> {
     }
 
     fn list(&mut self) {
+        for grain in &mut self.grains {
+            grain.position = self.packing.inside(grain.position);
+        }
         self.listed = self.grains.iter().map(|grain| grain.position).collect();
         let reach = 1.0 + EXTRA + self.shape.apart();
         let radii: Vec<f64> =
             self.grains.iter().map(|grain| reach * grain.scale * self.shape.radius).collect();
         let margin = 2.0 * self.skin + self.packing.gap;
-        self.near = near(&self.listed, &radii, margin, self.packing.dimension);
+        let count = self.listed.len();
+        let (places, of) = self.with_images(2.0 * radii.iter().fold(0.0_f64, |a, &b| a.max(b)) + margin);
+        let radii: Vec<f64> = of.iter().map(|&grain| radii[grain as usize]).collect();
+        self.near = near(&places, &radii, margin, self.packing.dimension);
+        self.near.truncate(count);
+        if places.len() > count {
+            for near in &mut self.near {
+                near.iter_mut().for_each(|other| *other = of[*other as usize]);
+                near.sort_unstable();
+                near.dedup();
+            }
+        }
+    }
+
+    /// Where grains are, and those of their images that are nearer than `reach` to the container, with the numbers of
+    /// their grains.
+    fn with_images(&self, reach: f64) -> (Vec<[f64; 3]>, Vec<u32>) {
+        let mut places = self.listed.clone();
+        let mut of: Vec<u32> = (0..places.len() as u32).collect();
+        for (axis, ends) in self.packing.repeats.iter().enumerate() {
+            let Some([first, last]) = *ends else { continue };
+            for i in 0..places.len() {
+                for away in [first - last, last - first] {
+                    let mut image = places[i];
+                    image[axis] += away;
+                    if image[axis] > first - reach && image[axis] < last + reach {
+                        places.push(image);
+                        of.push(of[i]);
+                    }
+                }
+            }
+        }
+        (places, of)
     }
 
     /// By how much jammed grains must be smaller to find room, about [-].
@@ -227,7 +265,9 @@ impl<'a> Descent<'a> {
                 push.join(shape.held(grain, wall, gap, EXTRA));
             }
             for &j in &self.near[i] {
-                push.join(shape.push((grain, &self.grains[j as usize]), gap, EXTRA));
+                let other = &self.grains[j as usize];
+                let position = self.packing.image_near(other.position, grain.position);
+                push.join(shape.push((grain, &Grain { position, ..*other }), gap, EXTRA));
             }
             push
         };
