@@ -289,8 +289,9 @@ pub fn own_columns(scene: &Scene, body: &scene::Body, heated: bool) -> OwnColumn
 /// The undeformed shape of a body with its images.
 fn whole<const D: usize>(scene: &Scene, number: usize) -> MirroredShape {
     let body = &scene.bodies[number];
-    // A mirror does not move along with what is free.
-    let mirrors = if body.as_free_rigid().is_some() { Vec::new() } else { mirrors::<D>(scene) };
+    // A mirror does not move along with what is free, unless that slides along it.
+    let stays = |mirror: &Mirror| body.as_free_rigid().is_none() || scene.slides_along(number, mirror.axis);
+    let mirrors = mirrors::<D>(scene).into_iter().filter(stays).collect();
     let whole = MirroredShape::new(&body.shape, mirrors, D);
     let joined = scene.joined_ends(number).into_iter().enumerate();
     joined.fold(whole, |whole, (axis, ends)| {
