@@ -93,7 +93,7 @@ fn faces_that_do_not_fit() {
     }
     assert_eq!(
         message(&edited(TUBE, "x_max = \"periodic\"", "x_max = \"cyclic\"")),
-        "a.toml:8:9: space.domain.x_max: found \"cyclic\"; allowed: open, symmetry, fixed, periodic"
+        "a.toml:8:9: space.domain.x_max: found \"cyclic\"; allowed: \"open\", \"symmetry\", \"fixed\" or \"periodic\""
     );
 }
 
@@ -128,7 +128,7 @@ fn bodies_that_it_cannot_hold() {
         (
             "rigid = {}",
             "rigid = { spin = 1 }",
-            "a.toml:18:11: bodies[0].rigid.spin: found `floor`, which has no bounds, turns in a periodic domain; allowed: \
+            "a.toml:18:18: bodies[0].rigid.spin: found `floor`, which has no bounds, turns in a periodic domain; allowed: \
              no spin",
         ),
         (
