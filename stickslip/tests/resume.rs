@@ -271,6 +271,40 @@ checkpoints = 0.02
 reactions = ["y_min", "x_min", "plate"]
 "#;
 
+/// A disk flies through the faces, against a layer that has no end between them.
+const PERIODIC: &str = r#"
+gravity = [0, -9.81]
+[space]
+dimension = "plane-strain"
+cell = 0.1
+[space.domain]
+min = [0, -0.5]
+max = [1.2, 2]
+x_min = "periodic"
+x_max = "periodic"
+[time]
+end = 0.5
+[materials.slow]
+density = 1000
+viscoelastic = { bulk_modulus = 2e5, shear_modulus = 5e4, prony = [[0.4, 0.05]] }
+[[bodies]]
+name = "disk"
+material = "slow"
+shape.ball = { center = [1.0, 0.75], radius = 0.25 }
+velocity = [3, -2]
+[[bodies]]
+name = "layer"
+material = "slow"
+shape.box = { min = [0, 0], max = [1.2, 0.5] }
+[[bodies]]
+name = "floor"
+material = "slow"
+shape.half_space = { point = [0, 0], normal = [0, 1] }
+rigid.velocity = [0.2, 0]
+[[contact]]
+friction = 0.4
+"#;
+
 fn scene(text: &str) -> Scene {
     parse("scene.toml", text, &[]).unwrap_or_else(|error| panic!("{error}")).scene
 }
@@ -351,7 +385,9 @@ fn assert_same_run(expected: &Path, found: &Path) {
 #[test]
 fn a_stopped_run_goes_on_bit_for_bit() {
     let single = PLANE.replace("double", "single");
-    for (text, first) in [(LOADED, 50), (PLANE, 1), (PLANE, 97), (&single, 40), (SPACE, 30), (LOSING, 3)] {
+    let scenes =
+        [(PLANE, 1), (PLANE, 97), (&single, 40), (SPACE, 30), (LOSING, 3), (LOADED, 50), (PERIODIC, 110)];
+    for (text, first) in scenes {
         let scene = scene(text);
         let folder = tempfile::tempdir().unwrap();
         let [whole, parts] = ["whole", "parts"].map(|name| folder.path().join(name));

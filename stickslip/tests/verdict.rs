@@ -368,6 +368,47 @@ fn spin_that_goes_where_nothing_touches_is_found() {
     assert!(kinds(SCENE, Puppet::new(pushed)).is_empty());
 }
 
+/// The push of one disk on the other has its reaction a period away: angular momentum of both is not conserved, and not
+/// looked for. That of the same two without faces is, and momentum is with both.
+#[test]
+fn bodies_that_push_through_a_periodic_face_are_sound() {
+    let kinds = |faces: &str, x: f64| {
+        let text = format!(
+            r#"
+            [space]
+            dimension = "plane-strain"
+            cell = 0.05
+            [space.domain]
+            min = [0, -1]
+            max = [2.4, 1]
+            {faces}
+            [time]
+            end = 0.5
+            [materials.rubber]
+            density = 1000
+            neo_hookean = {{ young_modulus = 1e5, poisson_ratio = 0.3 }}
+            [[bodies]]
+            name = "left"
+            material = "rubber"
+            shape.ball = {{ center = [{x}, 0], radius = 0.3 }}
+            velocity = [-2, 0]
+            [[bodies]]
+            name = "right"
+            material = "rubber"
+            shape.ball = {{ center = [{}, 0.3], radius = 0.3 }}
+            "#,
+            if faces.is_empty() { x - 0.6 } else { x + 1.8 }
+        );
+        let scene = scene::parse("disks.toml", &text, &[]).unwrap().scene;
+        let simulation = &mut *stickslip::step::build(&scene).unwrap();
+        let warnings = judge(&text, simulation).1;
+        assert!(!simulation.contact_sums().is_empty(), "they touch");
+        warnings.into_iter().map(|warning| warning.kind).collect::<Vec<_>>()
+    };
+    assert_eq!(kinds("", 1.5), [""; 0]);
+    assert_eq!(kinds("x_min = \"periodic\"\nx_max = \"periodic\"", 0.4), [""; 0]);
+}
+
 #[test]
 fn positions_that_leave_their_strain_behind_are_found() {
     let drifting: BodyMotion = |[x, y], t| {

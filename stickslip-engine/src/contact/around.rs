@@ -3,6 +3,7 @@
 use super::Near;
 use crate::basis::MAX_WIDTH;
 use crate::body::Particle;
+use crate::grid::SIDE;
 use crate::scene::Face;
 use crate::tensor::{Matrix, Real, Vector};
 use crate::transfer::offsets;
@@ -22,7 +23,10 @@ impl<T: Real, const D: usize> Near<'_, T, D> {
         node: [i32; D],
         mut f: impl FnMut(Vector<T, D>, &Particle<T, D>, Matrix<T>),
     ) {
-        for image in self.images(node) {
+        let periods = self.active.images_of(body);
+        for image in
+            periods.iter().flat_map(|away| self.images(std::array::from_fn(|i| node[i] + away[i] * SIDE)))
+        {
             let seen = self.lattice.position(image.node);
             let mirror = Matrix::from_fn(|i, j| match (i == j, i < D) {
                 (true, true) => image.sign[i],

@@ -34,6 +34,10 @@ struct ImpulseSums {
     /// Magnitudes of the nodes' impulses, and with their places [N s, N s m].
     magnitude: f64,
     moment: [f64; 3],
+    /// Where the grid repeats, the place that was added last: the next one is that image which is nearest to it, so that
+    /// a contact through a face is in one piece, and one that travels through it goes on [m].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    place: Option<[f64; 3]>,
     /// Of the impulse, about the origin [N m s].
     #[serde(default)]
     turn: [f64; 3],
@@ -193,7 +197,13 @@ impl ContactSums {
             let mirrors = boundary.mirrors_through(impulse.node);
             let area = impulse.area.f64() / f64::from(1_u32 << mirrors.count_ones());
             sum.last.mirrors |= mirrors;
-            let place = lattice.position(impulse.node).space();
+            let place = match sum.place {
+                Some(last) => lattice.position_near(impulse.node, last),
+                None => lattice.position(impulse.node).space(),
+            };
+            if lattice.periods.any() {
+                sum.place = Some(place);
+            }
             sum.last.spread.add(area, place);
             sum.last.gap += area * (impulse.gap * lattice.cell).f64();
             sum.last.slip += area * impulse.slip.f64();

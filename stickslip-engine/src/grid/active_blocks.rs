@@ -5,7 +5,7 @@
 //! since no basis reaches more than three nodes.
 
 use super::cell_list::{CellList, block_of, corner_block, key};
-use super::{locate, nodes_per_block};
+use super::{Periods, locate, nodes_per_block};
 use crate::threads::each;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -15,7 +15,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 pub struct Tile<const D: usize> {
     /// Index of the body.
     pub body: usize,
-    /// Home block.
+    /// Home block, where its particles are: in a periodic domain it may lie periods away.
     pub block: [i32; D],
     /// Its number among the body's tiles.
     pub number: usize,
@@ -54,6 +54,10 @@ pub struct ActiveBlocks<const D: usize> {
     shared: Vec<u32>,
     /// Key and slot of every block, sorted.
     keys: Vec<(u64, u32)>,
+    periods: Periods<D>,
+    /// Where the grid repeats, for each body how far away from the first period blocks are that its particles reach, in
+    /// blocks, sorted.
+    images: Vec<Vec<[i32; D]>>,
 }
 
 /// Most tiles of a small body.
@@ -75,6 +79,11 @@ pub enum Blocks {
 }
 
 impl<const D: usize> ActiveBlocks<D> {
+    /// No blocks, on a grid that repeats.
+    pub fn new(periods: Periods<D>) -> Self {
+        ActiveBlocks { periods, ..ActiveBlocks::default() }
+    }
+
     /// Covers so many bodies of so many particles each, which reach so many nodes beyond their base nodes, and says
     /// whether their blocks are others than before; `base(body, particle)` is a particle's base node,
     /// which must be [`addressable`].
@@ -121,6 +130,10 @@ impl<const D: usize> ActiveBlocks<D> {
     }
 
     fn rebuild(&mut self) {
+        if self.periods.any() {
+            self.find_images();
+        }
+        let periods = self.periods;
         self.slots.clear();
         self.tiles.clear();
         self.first_slot.clear();
@@ -140,7 +153,7 @@ impl<const D: usize> ActiveBlocks<D> {
                 for (corner, slot) in slots.iter_mut().enumerate().take(1 << D) {
                     // What is not reached is given nothing: the home block may stand for it.
                     let reached = cell_list.reached[number] >> corner & 1 == 1;
-                    let key = key(if reached { corner_block(block, corner) } else { block });
+                    let key = key(periods.wrapped(if reached { corner_block(block, corner) } else { block }));
                     let place = cell_list
                         .blocks
                         .binary_search(&key)
@@ -156,6 +169,31 @@ impl<const D: usize> ActiveBlocks<D> {
         self.meet();
     }
 
+    /// Finds the images of blocks that bodies reach, and gives these blocks the nodes of those in the first period.
+    fn find_images(&mut self) {
+        let periods = self.periods;
+        self.images.resize_with(self.cell_lists.len(), Vec::new);
+        for (cell_list, images) in self.cell_lists.iter_mut().zip(&mut self.images) {
+            images.clear();
+            for (&home, &reached) in cell_list.homes.iter().zip(&cell_list.reached) {
+                let corners = (0..1 << D).filter(|&corner| reached >> corner & 1 == 1);
+                images.extend(corners.map(|corner| {
+                    let block = corner_block::<D>(block_of(home), corner);
+                    let first = periods.wrapped(block);
+                    std::array::from_fn(|i| block[i] - first[i])
+                }));
+            }
+            images.sort_unstable();
+            images.dedup();
+            cell_list
+                .blocks
+                .iter_mut()
+                .for_each(|block| *block = key(periods.wrapped(block_of::<D>(*block))));
+            cell_list.blocks.sort_unstable();
+            cell_list.blocks.dedup();
+        }
+    }
+
     /// Small bodies together make portions, each for one thread; the tiles of large ones get colours.
     fn share_out(&mut self) {
         self.portions.clear();
@@ -165,7 +203,9 @@ impl<const D: usize> ActiveBlocks<D> {
         for body in 0..self.cell_lists.len() {
             let tiles = self.tiles_of_body(body);
             let small = tiles.len() <= MOST_SMALL && tiles.len() * LEAST_SMALL <= self.tiles.len();
-            if !small {
+            if !small && self.periods.any() {
+                self.color_images(tiles);
+            } else if !small {
                 for i in tiles {
                     let block = self.tiles[i].block;
                     let color = block.iter().fold(0, |color, b| color << 1 | (b & 1) as usize);
@@ -177,6 +217,20 @@ impl<const D: usize> ActiveBlocks<D> {
                 self.portions.push(tiles);
             }
             open = small && self.portions.last().is_some_and(|portion| portion.len() < PORTION);
+        }
+    }
+
+    /// Where the grid repeats, several tiles of a body may have the same nodes: each of them gets other colours.
+    fn color_images(&mut self, tiles: Range<usize>) {
+        let first = |i: usize| key(self.periods.wrapped(self.tiles[i].block));
+        let mut places: Vec<(u64, u32)> = tiles.map(|i| (first(i), i as u32)).collect();
+        places.sort_unstable();
+        for images in places.chunk_by(|a, b| a.0 == b.0) {
+            for (number, &(block, tile)) in images.iter().enumerate() {
+                let color = number * 3_usize.pow(D as u32) + self.periods.color(block_of(block));
+                self.colors.resize_with(self.colors.len().max(color + 1), Vec::new);
+                self.colors[color].push(tile);
+            }
         }
     }
 
@@ -234,8 +288,15 @@ impl<const D: usize> ActiveBlocks<D> {
     /// The field index of a body's node, if the body holds its block.
     pub fn node_index(&self, body: usize, node: [i32; D]) -> Option<usize> {
         let (block, local) = locate(node);
+        let block = self.periods.wrapped(block);
         let place = self.cell_lists[body].blocks.binary_search(&key(block)).ok()?;
         Some((self.first_slot[body] + place) * nodes_per_block(D) + local)
+    }
+
+    /// How far away blocks are whose nodes are those of the first period and which a body's particles reach, in blocks.
+    #[inline]
+    pub fn images_of(&self, body: usize) -> &[[i32; D]] {
+        if self.periods.any() { &self.images[body] } else { &[[0; D]] }
     }
 
     /// A body's particles whose home is a block: indices of all its particles, and places there where those of each

@@ -6,12 +6,15 @@
 mod active_blocks;
 mod cell_list;
 mod field;
+mod periods;
 
 pub use active_blocks::{ActiveBlocks, Blocks, SharedBlock, Tile};
 pub use cell_list::{MOST_CELLS, addressable};
 pub use field::{
     Disjoint, Field, NODE_VALUES, Node, NodeSums, NodeValues, Sought, WINDOW, WINDOW_NODES, Window,
 };
+
+pub use periods::Periods;
 
 use crate::tensor::{Real, Vector};
 
@@ -48,12 +51,14 @@ pub struct Lattice<T, const D: usize> {
     pub per_cell: T,
     /// Whether the nodes see each particle as a box of a cell, see [`crate::basis::Gimp`], and not as its own box.
     pub whole_cells: bool,
+    /// After how many blocks it repeats.
+    pub periods: Periods<D>,
 }
 
 impl<T: Real, const D: usize> Lattice<T, D> {
     /// A grid with a node at `origin` and cells of side `cell` [m].
     pub fn new(origin: Vector<T, D>, cell: T) -> Self {
-        Lattice { origin, cell, per_cell: T::ONE / cell, whole_cells: false }
+        Lattice { origin, cell, per_cell: T::ONE / cell, whole_cells: false, periods: Periods::default() }
     }
 
     /// Half of the side of the box as which the nodes see a particle with this half-width [m], in cells.
@@ -72,6 +77,16 @@ impl<T: Real, const D: usize> Lattice<T, D> {
     #[inline(always)]
     pub fn cells(&self, position: Vector<T, D>) -> Vector<T, D> {
         (position - self.origin) * self.per_cell
+    }
+
+    /// Position of that image of a node which is nearest to a place along each axis [m].
+    pub fn position_near(&self, node: [i32; D], place: [f64; 3]) -> [f64; 3] {
+        let mut position = self.position(node).space();
+        for (i, &blocks) in self.periods.0.iter().enumerate().filter(|(_, blocks)| **blocks > 0) {
+            let period = f64::from(blocks * SIDE) * self.cell.f64();
+            position[i] -= period * ((position[i] - place[i]) / period).round();
+        }
+        position
     }
 
     /// Position of a node [m].

@@ -15,7 +15,7 @@ use crate::contact::{ContactSums, Rules};
 use crate::damping::{BulkViscosity, NodeDamping, viscosity_columns};
 use crate::door::{RemovedParticles, Simulation};
 use crate::geometry::{Curved, Filling, Mirror, MirroredShape, ParticleSite, Shape, fill};
-use crate::grid::Lattice;
+use crate::grid::{Lattice, Periods, SIDE};
 use crate::initial_stress::{self, InitialStress};
 use crate::lanes::{Laned, Processor};
 use crate::load::{LoadPoints, LoadSums, SpringPoints};
@@ -89,6 +89,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                     shape: body.shape.clone(),
                     sites,
                     cell,
+                    periods: periods::<D>(scene),
                     mirrors: mirrors::<D>(scene),
                     served: Vec::new(),
                     pose: None,
@@ -135,17 +136,13 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                     particles((own, &stresses), &filling, (velocity, turning, density))
                 },
                 motion,
-                whole: MirroredShape::new(
-                    &body.shape,
-                    // A mirror does not move along with what is free.
-                    if body.as_free_rigid().is_some() { Vec::new() } else { mirrors::<D>(scene) },
-                    D,
-                ),
+                whole: whole::<D>(scene, number),
                 thickness: scene.dimension.thickness(),
                 gyration: rotation::gyration::<T, B>(cell, whole_cells),
                 volume_change: scene.materials[body.material].volume_change,
             });
         }
+        let periods = periods::<D>(scene);
         let origin = scene.domain.as_ref().map_or([0.0; 3], |domain| domain.min);
         let filled = bodies.iter().map(|body: &Body<T, D>| body.particles.len()).collect();
         let removed = vec![RemovedParticles::default(); bodies.len()];
@@ -155,8 +152,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let disorder = bodies.iter().map(|body: &Body<T, D>| Disorder::any(body.particles.len())).collect();
         Ok(Engine {
             settings: Settings {
-                lattice: Lattice { whole_cells, ..Lattice::new(Vector::of(origin), T::of(cell)) },
+                lattice: Lattice { whole_cells, periods, ..Lattice::new(Vector::of(origin), T::of(cell)) },
                 domain: scene.domain.as_ref().map(|domain| [domain.min, domain.max].map(Vector::of)),
+                held: scene.domain.as_ref().map(held),
                 leaving: scene.domain.as_ref().map_or_else(Default::default, |domain| domain.leaving),
                 filled,
                 gravity: scene.gravity.clone(),
@@ -195,11 +193,14 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 time: 0.0,
                 steps: 0,
             },
-            workspace: Workspace::new(if tallies {
-                Boundary::new(walls::<D>(scene)).tallied()
-            } else {
-                Boundary::new(walls::<D>(scene))
-            }),
+            workspace: Workspace::new(
+                if tallies {
+                    Boundary::new(walls::<D>(scene)).tallied()
+                } else {
+                    Boundary::new(walls::<D>(scene))
+                },
+                periods,
+            ),
             held: None,
             watch: Stopwatch::default(),
             basis: PhantomData,
@@ -291,6 +292,34 @@ pub fn own_columns(scene: &Scene, body: &scene::Body, heated: bool) -> OwnColumn
     }
 }
 
+/// The undeformed shape of a body with its images.
+fn whole<const D: usize>(scene: &Scene, number: usize) -> MirroredShape {
+    let body = &scene.bodies[number];
+    // A mirror does not move along with what is free, unless that slides along it.
+    let stays = |mirror: &Mirror| body.as_free_rigid().is_none() || scene.slides_along(number, mirror.axis);
+    let mirrors = mirrors::<D>(scene).into_iter().filter(stays).collect();
+    let whole = MirroredShape::new(&body.shape, mirrors, D);
+    let joined = scene.joined_ends(number).into_iter().enumerate();
+    joined.fold(whole, |whole, (axis, ends)| {
+        ends.into_iter().fold(whole, |whole, ends| whole.joined(axis, ends))
+    })
+}
+
+/// After how many blocks the grid of a scene repeats.
+pub(super) fn periods<const D: usize>(scene: &Scene) -> Periods<D> {
+    let block = scene.discretization.cell * f64::from(SIDE);
+    let periods = scene.periods();
+    Periods(std::array::from_fn(|k| (periods[k] / block).round() as i32))
+}
+
+/// Corners of the box that particles may not leave: the domain, without end where it is periodic [m].
+fn held<T: Real, const D: usize>(domain: &scene::Domain) -> [Vector<T, D>; 2] {
+    let corner = |corner: [f64; 3], end: f64| {
+        Vector::from_fn(|k| T::of(if domain.is_periodic(k) { end } else { corner[k] }))
+    };
+    [corner(domain.min, f64::NEG_INFINITY), corner(domain.max, f64::INFINITY)]
+}
+
 /// The domain's faces that are mirrors.
 pub(super) fn mirrors<const D: usize>(scene: &Scene) -> Vec<Mirror> {
     let Some(domain) = &scene.domain else { return Vec::new() };
@@ -310,7 +339,7 @@ fn walls<const D: usize>(scene: &Scene) -> Vec<Wall> {
     for axis in 0..D {
         let upper = ((domain.max[axis] - domain.min[axis]) / scene.discretization.cell).round() as i32;
         for (face, node, inward) in [(domain.faces[axis][0], 0, 1), (domain.faces[axis][1], upper, -1)] {
-            if face != Face::Open {
+            if matches!(face, Face::Symmetry | Face::Fixed) {
                 walls.push(Wall { axis, node, inward, face });
             }
         }

@@ -39,7 +39,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// at the domain's faces are looked at.
     fn outside(&self, body: usize) -> Vec<u32> {
         let mut found = Vec::new();
-        let Some([min, max]) = self.settings.domain.filter(|_| !self.state.bodies[body].is_rigid()) else {
+        let Some([min, max]) = self.settings.held.filter(|_| !self.state.bodies[body].is_rigid()) else {
             return found;
         };
         let (active, particles) = (&self.workspace.active, &self.state.bodies[body].particles);

@@ -246,7 +246,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
     fn rebuild_workspace(&mut self) {
         let boundary = Boundary::new(self.settings.walls.clone());
         let tallies = !self.state.walls.is_empty();
-        self.workspace = Workspace::new(if tallies { boundary.tallied() } else { boundary });
+        let boundary = if tallies { boundary.tallied() } else { boundary };
+        self.workspace = Workspace::new(boundary, self.settings.lattice.periods);
     }
 
     fn hold(&mut self) {

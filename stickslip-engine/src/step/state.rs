@@ -15,7 +15,7 @@ use crate::boundary::{Boundary, Wall};
 use crate::contact::{ContactSums, Impulses, Rules, Survey};
 use crate::damping::{BulkViscosity, NodeDamping};
 use crate::door::RemovedParticles;
-use crate::grid::{ActiveBlocks, Field, Lattice};
+use crate::grid::{ActiveBlocks, Field, Lattice, Periods};
 use crate::load::{LoadPoints, LoadSums, SpringPoints};
 use crate::scene::{Gravity, Joint, Leaving, Time, Transfer};
 use crate::tensor::Vector;
@@ -29,6 +29,8 @@ pub struct Settings<T, const D: usize> {
     pub lattice: Lattice<T, D>,
     /// Lower and upper corner of the domain [m].
     pub domain: Option<[Vector<T, D>; 2]>,
+    /// The same without end where it is periodic: what particles may not leave [m].
+    pub held: Option<[Vector<T, D>; 2]>,
     /// What becomes of a particle that leaves it.
     pub leaving: Leaving,
     /// Particles of each body at the start; none of rigid ones without bounds.
@@ -139,10 +141,10 @@ pub struct Workspace<T, const D: usize> {
 }
 
 impl<T, const D: usize> Workspace<T, D> {
-    /// An empty one, for a domain with these faces.
-    pub fn new(boundary: Boundary) -> Self {
+    /// An empty one, for a domain with these faces, on a grid that repeats or not.
+    pub fn new(boundary: Boundary, periods: Periods<D>) -> Self {
         Workspace {
-            active: ActiveBlocks::default(),
+            active: ActiveBlocks::new(periods),
             listed: false,
             field: Field { nodes: Vec::new(), present: Vec::new(), filtered: Vec::new(), means: Vec::new() },
             boundary,

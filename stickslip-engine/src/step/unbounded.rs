@@ -5,13 +5,13 @@
 //! blocks beyond it; memory follows them, not the domain.
 
 use super::Engine;
-use super::build::{mirrors, spin};
+use super::build::{mirrors, periods, spin};
 use super::pass::home;
 use super::state::Disorder;
 use crate::basis::Basis;
 use crate::body::Particle;
 use crate::geometry::{Bounds, Mirror, Shape, SiteLattice};
-use crate::grid::{Blocks, SIDE, addressable, locate};
+use crate::grid::{Blocks, Periods, SIDE, addressable, locate};
 use crate::lanes::Laned;
 use crate::particles::{OwnColumns, Particles};
 use crate::rigid::{Pose, RigidMotion};
@@ -29,6 +29,8 @@ pub(super) struct Unbounded<const D: usize> {
     pub sites: SiteLattice,
     /// Side of a cell [m].
     pub cell: f64,
+    /// After how many blocks the grid repeats: it has particles in the first period.
+    pub periods: Periods<D>,
     /// What is behind them is no part of it.
     pub mirrors: Vec<Mirror>,
     /// Blocks around which it has particles, sorted.
@@ -92,14 +94,14 @@ impl<const D: usize> Unbounded<D> {
             (0..1_usize << D).any(|corner| {
                 let side = |k: usize| if corner >> k & 1 == 1 { margin } else { -margin };
                 let near = block_of(std::array::from_fn(|k| if k < D { x[k] + side(k) } else { x[k] }));
-                near.is_some_and(|block| self.served.binary_search(&block).is_ok())
+                near.is_some_and(|block| self.served.binary_search(&self.periods.wrapped(block)).is_ok())
             })
         };
         let before_mirrors = |x: [f64; 3]| {
             self.mirrors.iter().all(|mirror| (x[mirror.axis] - mirror.position) * mirror.inward >= 0.0)
         };
         let mut found = Vec::new();
-        for block in grown(&self.served) {
+        for block in grown(&self.served, self.periods) {
             let [min, max] = self.corners(block);
             let around = Bounds::around((Bounds { min, max }).corners().map(|corner| pose.start(corner)));
             found.extend(self.sites.sites_around(&around).filter(|&site| {
@@ -116,11 +118,12 @@ impl<const D: usize> Unbounded<D> {
 }
 
 /// The blocks and those that touch them, sorted.
-fn grown<const D: usize>(blocks: &[[i32; D]]) -> Vec<[i32; D]> {
+fn grown<const D: usize>(blocks: &[[i32; D]], periods: Periods<D>) -> Vec<[i32; D]> {
     let mut all = Vec::with_capacity(blocks.len() * 3_usize.pow(D as u32));
     for block in blocks {
         for i in 0..3_i32.pow(D as u32) {
-            all.push(std::array::from_fn(|k| block[k] + i / 3_i32.pow(k as u32) % 3 - 1));
+            let beside = std::array::from_fn(|k| block[k] + i / 3_i32.pow(k as u32) % 3 - 1);
+            all.push(periods.wrapped(beside));
         }
     }
     all.sort_unstable();
@@ -147,9 +150,9 @@ fn count<const D: usize>(scene: &Scene, body: usize, boxes: &[Bounds]) -> usize 
     let sites = scene.lattice(&scene.bodies[body]);
     let still = || [0.0; 3].map(Expression::Constant);
     let pose = RigidMotion::new(shape.anchor(D), still(), still()).pose();
-    let mirrors = mirrors::<D>(scene);
+    let (mirrors, periods) = (mirrors::<D>(scene), periods::<D>(scene));
     let mut layer =
-        Unbounded::<D> { body, shape, sites, cell, mirrors, served: Vec::new(), pose: Some(pose) };
+        Unbounded::<D> { body, shape, sites, cell, periods, mirrors, served: Vec::new(), pose: Some(pose) };
     let mut served = Vec::new();
     for bounds in boxes {
         let block = |k: usize, x: f64| ((x - sites.origin[k]) / (cell * f64::from(SIDE))).floor() as i32;
@@ -163,6 +166,7 @@ fn count<const D: usize>(scene: &Scene, body: usize, boxes: &[Bounds]) -> usize 
                 rest /= count[k];
                 first[k] + along as i32
             });
+            let block = periods.wrapped(block);
             if layer.meets(block, &pose) {
                 served.push(block);
             }
@@ -205,7 +209,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             near.sort_unstable();
             near.dedup();
             // Those beside them are kept: bodies come back.
-            let beside = grown(&near);
+            let beside = grown(&near, unbounded.periods);
             let kept = unbounded.served.iter().filter(|block| beside.binary_search(block).is_ok());
             let mut served: Vec<_> = kept.copied().filter(|&block| unbounded.meets(block, &pose)).collect();
             served.extend(&near);

@@ -147,7 +147,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             pic: self.settings.pic_share,
             viscosity: self.settings.viscosity,
             lattice: self.settings.lattice,
-            domain: self.settings.domain.filter(|_| !self.removes_leavers()),
+            domain: self.settings.held.filter(|_| !self.removes_leavers()),
         });
         if verbs.update_velocity || verbs.update_stress {
             // Tile after tile, whoever took them.
@@ -242,7 +242,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             for slot in active.slots_of_body(body) {
                 let (_, block) = active.slots[slot];
                 for local in 0..n {
-                    let position = self.settings.lattice.position(node_at(block, local)).space();
+                    let position = self.settings.lattice.position_near(node_at(block, local), motion.center);
                     field.nodes[slot * n + local].prescribe(motion.velocity_at(position));
                 }
             }
@@ -333,7 +333,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             // One without bounds is everywhere: its particles stand for what the others are near.
             let domain = self
                 .settings
-                .domain
+                .held
                 .filter(|_| !self.state.unbounded.iter().any(|unbounded| unbounded.body == i));
             let turn = Matrix::from_fn(|i, j| T::of(rotation.0[i][j]));
             let mut moved_on = 0;

@@ -3,7 +3,7 @@
 use super::file::OutputError;
 use super::memory::Memory;
 use crate::door::{ParticleView, View};
-use crate::scene::{Anchor, Scene};
+use crate::scene::{Anchor, Domain, Scene};
 use serde::{Deserialize, Serialize};
 
 /// Motion and stress of the material at a point.
@@ -44,6 +44,9 @@ pub(super) struct Points {
     /// Indices of the bodies that are not rigid.
     bodies: Vec<usize>,
     radius: f64,
+    /// Where images of particles are, if the domain is periodic.
+    #[serde(skip)]
+    domain: Option<Domain>,
 }
 
 /// Which particles a point takes.
@@ -74,7 +77,8 @@ impl Points {
             }
             (point, TakenParticles::Around)
         });
-        Points { points: points.collect(), bodies, radius: RADIUS * scene.discretization.cell }
+        let domain = scene.domain.clone().filter(|domain| domain.periods() != [0.0; 3]);
+        Points { points: points.collect(), bodies, radius: RADIUS * scene.discretization.cell, domain }
     }
 
     /// The material at each point now; `None` where no particle is around.
@@ -162,7 +166,11 @@ impl Points {
     fn weight(&self, i: usize, particle: &ParticleView) -> f64 {
         match &self.points[i] {
             (point, TakenParticles::Around) => {
-                particle.mass * wendland(&point.at, &particle.position, self.radius)
+                let place = match &self.domain {
+                    Some(domain) => domain.image_near(particle.position, point.at),
+                    None => particle.position,
+                };
+                particle.mass * wendland(&point.at, &place, self.radius)
             }
             (_, TakenParticles::These { weights, .. }) => {
                 let (Some(first), Some(last)) = (weights.first(), weights.last()) else { return 0.0 };

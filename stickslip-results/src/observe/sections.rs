@@ -7,7 +7,7 @@ use super::schedule::Schedule;
 use super::table::{CellValue, CsvTable, TableRow, columns};
 use super::{Observer, SECTIONS};
 use crate::door::{ParticleSnapshot, View};
-use crate::scene::{Scene, Section};
+use crate::scene::{Domain, Scene, Section};
 use stickslip_scene::tensor::cross;
 
 /// Force and moment across a plane at one time, in SI units; the columns of `sections.csv`.
@@ -43,6 +43,8 @@ pub(super) struct SectionsObserver {
     /// With the indices of the bodies that each cuts.
     sections: Vec<(Section, Vec<bool>)>,
     cell: f64,
+    /// Where images of particles are, if the domain is periodic.
+    domain: Option<Domain>,
     schedule: Schedule,
     table: CsvTable<SectionRow>,
 }
@@ -57,6 +59,7 @@ impl SectionsObserver {
         Ok(SectionsObserver {
             sections: measurements.sections.iter().map(cuts).collect(),
             cell: scene.discretization.cell,
+            domain: scene.domain.clone().filter(|domain| domain.periods() != [0.0; 3]),
             schedule: Schedule::every(scene.outputs.tables),
             table: CsvTable::create(folder, SECTIONS, measurements.unit())?,
         })
@@ -69,8 +72,16 @@ impl Observer for SectionsObserver {
     }
 
     fn observe(&mut self, view: &dyn View) -> Result<(), OutputError> {
-        let (time, particles) = (view.time(), view.snapshot());
+        let (time, mut particles) = (view.time(), view.snapshot());
+        let places = particles.position.clone();
         let rows = self.sections.iter().map(|(section, cuts)| {
+            if let Some(domain) = &self.domain {
+                let middle = section
+                    .within
+                    .map_or(section.point, |[min, max]| std::array::from_fn(|k| 0.5 * (min[k] + max[k])));
+                let near = |place: &[f64; 3]| domain.image_near(*place, middle);
+                particles.position = places.iter().map(near).collect();
+            }
             let [force, moment, [area, ..]] = across(section, cuts, &particles, self.cell);
             SectionRow { time, section: section.name.clone(), force, moment, area }
         });

@@ -156,7 +156,7 @@ pub(super) fn check_domain(scene: &Scene, extents: &[FillingExtent]) -> Result<(
     let Some(domain) = &scene.domain else { return Ok(()) };
     for (i, extent) in extents.iter().enumerate().filter(|(_, extent)| extent.bounds.is_finite()) {
         let lattice = scene.lattice(&scene.bodies[i]);
-        for k in 0..lattice.dimension {
+        for k in (0..lattice.dimension).filter(|&k| !domain.is_periodic(k)) {
             let sides = [
                 (extent.bounds.min[k], extent.centers.min[k], domain.min[k], -1.0, "below its lower"),
                 (extent.bounds.max[k], extent.centers.max[k], domain.max[k], 1.0, "above its upper"),

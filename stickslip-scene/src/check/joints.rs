@@ -31,14 +31,16 @@ pub(super) fn check(scene: &Scene, extents: &[FillingExtent]) -> Result<(), Prob
         let bounds = &extents[i].bounds;
         let through = scene.domain.iter().any(|domain| {
             let near = 1e-6 * scene.discretization.cell;
-            (0..scene.dimension.axes()).any(|k| {
+            (0..scene.dimension.axes()).filter(|&k| !scene.slides_along(i, k)).any(|k| {
                 domain.faces[k][0] == Face::Symmetry && bounds.min[k] < domain.min[k] + near
                     || domain.faces[k][1] == Face::Symmetry && bounds.max[k] > domain.max[k] - near
             })
         });
         if through {
             let found = format!("`{}`, through which a symmetry face of the domain goes", body.name);
-            return Err(problem(found, "a body beside the mirror, or a domain without it"));
+            let allowed = "a body beside the mirror, or one that a slider to the ground, whose axis lies along the \
+                           mirror, or a weld holds on it";
+            return Err(problem(found, allowed));
         }
     }
     if let (Some(_), Some(body)) =
@@ -87,7 +89,7 @@ pub(super) fn warning(scene: &Scene) -> Option<Warning> {
     let body = scene.bodies.iter().find(|body| body.as_free_rigid().is_some())?;
     let domain = scene.domain.as_ref()?;
     let axes = 0..scene.dimension.axes();
-    let holds = axes.flat_map(|k| domain.faces[k]).any(|face| face != Face::Open);
+    let holds = axes.flat_map(|k| domain.faces[k]).any(|face| matches!(face, Face::Symmetry | Face::Fixed));
     holds.then(|| {
         Warning::about(
             "space.domain".to_string(),

@@ -6,10 +6,11 @@ use crate::scene::{Anchor, FACES, Face, Problem, Scene};
 pub(super) fn check(scene: &Scene) -> Result<(), Problem> {
     for [axis, side] in scene.outputs.measurements.faces() {
         let face = scene.domain.as_ref().map_or(Face::Open, |domain| domain.faces[axis][side]);
-        if face == Face::Open {
+        if matches!(face, Face::Open | Face::Periodic) {
+            let what = if face == Face::Open { "open" } else { "periodic" };
             return Err(Problem {
                 key: "outputs.reactions".to_string(),
-                found: format!("`{}`, a face of the domain that is open", FACES[axis][side]),
+                found: format!("`{}`, a face of the domain that is {what}", FACES[axis][side]),
                 allowed: "faces that are \"symmetry\" or \"fixed\"".to_string(),
                 help: None,
             });

@@ -16,6 +16,7 @@ mod memory;
 mod neighbours;
 mod overlap;
 mod penetration;
+mod periodic;
 mod report;
 mod rigid_pairs;
 mod rules;
@@ -43,7 +44,7 @@ use crate::scene::{Problem, Scene};
 ///
 /// # Errors The first of: settings that allow no step, a material that is not stable, a domain whose walls miss the
 /// grid, motion out of the plane, a shape that is not one or holds no particle, a body that deforms and is unbounded, a
-/// body outside the domain, two bodies in one place, a free rigid body without an end, a joint far from its bodies, a
+/// body outside the domain, one that a periodic domain cannot hold, two bodies in one place, a free rigid body without an end, a joint far from its bodies, a
 /// stress that no deformation gives, a load on nothing, a spring at nothing.
 pub fn problems(scene: &Scene) -> Result<(), Problem> {
     examine(scene).map(|_| ())
@@ -56,6 +57,7 @@ fn examine(scene: &Scene) -> Result<(Vec<bodies::FillingExtent>, Vec<LoadReport>
     measurements::check(scene)?;
     let extents = bodies::measure(scene)?;
     bodies::check_domain(scene, &extents)?;
+    periodic::check(scene, &extents)?;
     // Where bodies begin elsewhere, whoever lets them begin looks.
     if scene.start.is_none() {
         overlap::check(scene, &extents)?;

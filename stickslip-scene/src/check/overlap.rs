@@ -3,6 +3,7 @@
 use super::bodies::FillingExtent;
 use super::neighbours::pairs_within;
 use super::penetration::deepest;
+use super::periodic::Images;
 use super::warning::Warning;
 use crate::geometry::{Bounds, SiteLattice};
 use crate::scene::{Body, ContactLaw, Problem, Scene};
@@ -17,10 +18,13 @@ const ROUND_OFF: f64 = 1e-6;
 /// what lies between the sites of the finer one.
 pub(super) fn check(scene: &Scene, extents: &[FillingExtent]) -> Result<(), Problem> {
     let boxes: Vec<_> = extents.iter().map(|extent| extent.bounds).collect();
+    let images = Images::new(scene, &boxes);
+    let boxes = images.boxes(&boxes);
     let pairs = pairs_within(&boxes, 0.0);
     let pairs_joined = scene.joined_pairs();
-    let joined = |pair: [usize; 2]| pairs_joined.contains(&pair);
-    match pairs.par_iter().find_map_first(|&pair| shared(scene, extents, pair).filter(|_| !joined(pair))) {
+    let joined = |[a, b]: [usize; 2]| pairs_joined.contains(&[a, images.of[b]]);
+    let counts = |pair: [usize; 2]| images.counts(pair) && !joined(pair);
+    match pairs.par_iter().find_map_first(|&pair| shared(&images, &boxes, pair).filter(|_| counts(pair))) {
         Some(problem) => Err(problem),
         None => Ok(()),
     }
@@ -40,45 +44,56 @@ pub(super) fn warning(scene: &Scene) -> Option<Warning> {
     }
     let (cell, axes) = (scene.discretization.cell, scene.dimension.axes());
     let inside = scene.domain.as_ref().map_or(Bounds::EVERYTHING, |domain| {
-        let upper = |k: usize| if k < axes { [domain.min[k], domain.max[k]] } else { [0.0; 2] };
+        let upper = |k: usize| match k < axes {
+            true if domain.is_periodic(k) => [f64::NEG_INFINITY, f64::INFINITY],
+            true => [domain.min[k], domain.max[k]],
+            false => [0.0; 2],
+        };
         Bounds { min: std::array::from_fn(|k| upper(k)[0]), max: std::array::from_fn(|k| upper(k)[1]) }
     });
     let bounds = |body: &Body| body.shape.bounds(axes).unwrap_or(Bounds::EVERYTHING).intersected(&inside);
     let boxes: Vec<_> = scene.bodies.iter().map(bounds).collect();
+    let images = Images::new(scene, &boxes);
+    let boxes = images.boxes(&boxes);
     let joined = scene.joined_pairs();
     let overlap = |&[a, b]: &[usize; 2]| {
-        let law = scene.contact_between(a, b).law;
-        if matches!(law, ContactLaw::None | ContactLaw::Glued) || !scene.may_touch([a, b], &joined) {
+        let bodies = [a, images.of[b]];
+        let law = scene.contact_between(bodies[0], bodies[1]).law;
+        let meant = matches!(law, ContactLaw::None | ContactLaw::Glued);
+        if meant || !images.counts([a, b]) || !scene.may_touch(bodies, &joined) {
             return None;
         }
         let room = boxes[a].intersected(&boxes[b]);
-        let [of_a, of_b] = [a, b].map(|body| move |x| scene.bodies[body].shape.level(x, axes));
+        let shapes = [a, b].map(|body| &images.scene.bodies[body].shape);
+        let [of_a, of_b] = shapes.map(|shape| move |x| shape.level(x, axes));
         let shared = deepest([&of_a, &of_b], &room, cell, axes)?;
         let far = room.min.iter().chain(&room.max).fold(0.0_f64, |far, x| far.max(x.abs()));
         (shared.depth > TOUCH * cell + SEVEN_DIGITS * far).then_some(([a, b], shared))
     };
     let found: Vec<_> = pairs_within(&boxes, 0.0).par_iter().filter_map(overlap).collect();
     let ([a, b], deep) = *found.iter().max_by(|x, y| x.1.depth.total_cmp(&y.1.depth))?;
-    let [first, second] = [a, b].map(|body| format!("`{}`", scene.bodies[body].name));
+    let [first, second] = [a, images.of[b]].map(|body| format!("`{}`", scene.bodies[body].name));
     let place: Vec<_> = deep.place[..axes].iter().map(|x| format!("{x:.4}")).collect();
     let others = match found.len() - 1 {
         0 => String::new(),
         more => format!(", and {more} more pair{} by less", if more == 1 { "" } else { "s" }),
     };
     Some(Warning::about(
-        format!("bodies[{b}].shape"),
+        format!("bodies[{}].shape", images.of[b]),
         format!(
-            "{second} overlaps {first} by {:.3e} m ({:.2e} cells) near ({}) m{others}: they start pressed together, \
+            "{second} overlaps {first} by {:.3e} m ({:.2e} cells) near ({}) m{}{others}: they start pressed together, \
              with energy that nothing put in; move one of them, or cut one shape out of the other with a difference",
             deep.depth,
             deep.depth / cell,
-            place.join(", ")
+            place.join(", "),
+            images.through(b)
         ),
     ))
 }
 
 /// The problem with a pair of bodies, if they share sites.
-fn shared(scene: &Scene, extents: &[FillingExtent], [a, b]: [usize; 2]) -> Option<Problem> {
+fn shared(images: &Images, boxes: &[Bounds], [a, b]: [usize; 2]) -> Option<Problem> {
+    let scene = &images.scene;
     let (first, second) = (&scene.bodies[a], &scene.bodies[b]);
     let mut lattices = [first, second].map(|body| scene.lattice(body));
     lattices.sort_by(|a, b| a.spacing.total_cmp(&b.spacing));
@@ -87,7 +102,7 @@ fn shared(scene: &Scene, extents: &[FillingExtent], [a, b]: [usize; 2]) -> Optio
         let inside = |body: &crate::scene::Body| -body.shape.distance(point, dimension);
         inside(first).min(inside(second))
     };
-    let common = extents[a].bounds.intersected(&extents[b].bounds);
+    let common = boxes[a].intersected(&boxes[b]);
     let in_both = |lattice: &SiteLattice| {
         let deep = |&point: &[f64; 3]| depth(point) > ROUND_OFF * lattice.spacing;
         let mut sites = lattice.sites_around(&common).filter(deep);
@@ -98,13 +113,14 @@ fn shared(scene: &Scene, extents: &[FillingExtent], [a, b]: [usize; 2]) -> Optio
     let (at, count) = in_both(finer).or_else(|| if one { None } else { in_both(coarser) })?;
     let place: Vec<_> = at[..dimension].iter().map(|x| format!("{x:.4}")).collect();
     Some(Problem {
-        key: format!("bodies[{b}].shape"),
+        key: format!("bodies[{}].shape", images.of[b]),
         found: format!(
-            "`{}` overlaps `{}` in {count} particle{} near ({}) m",
+            "`{}` overlaps `{}` in {count} particle{} near ({}) m{}",
             second.name,
             first.name,
             if count == 1 { "" } else { "s" },
-            place.join(", ")
+            place.join(", "),
+            images.through(b)
         ),
         allowed: "bodies that touch but do not overlap".into(),
         help: Some("move one of them, or cut one shape out of the other with a difference".into()),

@@ -5,8 +5,8 @@ use crate::column::ColumnDescription;
 use crate::material::Material;
 use crate::outside::{GIVEN, OUTSIDE};
 use crate::scene::{
-    BodyMotion, Damping, Dimension, Domain, Expression, Face, FreeRigid, MOST_BULK, NamedMaterial, Problem,
-    Relaxation, Scene,
+    BodyMotion, Damping, Dimension, Domain, Expression, FACES, Face, FreeRigid, MOST_BULK, NamedMaterial,
+    PERIOD_STEP, Problem, Relaxation, SHORTEST_PERIOD, Scene,
 };
 
 /// Walls may miss the nodes of the grid by this share of a cell.
@@ -161,6 +161,7 @@ fn check_domain(domain: &Domain, cell: f64, dimension: usize) -> Result<(), Prob
             return Err(problem("space.domain.max", found, "finite corners, the upper above the lower"));
         }
         let cells = (max - min) / cell;
+        check_periodic(domain, (k, cells), cell)?;
         if domain.faces[k][1] != Face::Open && (cells - cells.round()).abs() > WALL_TOLERANCE {
             let whole = cells.round().max(1.0);
             return Err(Problem {
@@ -176,6 +177,37 @@ fn check_domain(domain: &Domain, cell: f64, dimension: usize) -> Result<(), Prob
         }
     }
     Ok(())
+}
+
+/// Periodic faces come in pairs, a whole number of the grid's blocks apart.
+fn check_periodic(domain: &Domain, (k, cells): (usize, f64), cell: f64) -> Result<(), Problem> {
+    let axis = ["x", "y", "z"][k];
+    let Some(side) = domain.faces[k].iter().position(|face| *face == Face::Periodic) else { return Ok(()) };
+    if !domain.is_periodic(k) {
+        return Err(Problem {
+            key: format!("space.domain.{}", FACES[k][side]),
+            found: format!("\"periodic\", and `{}` is not", FACES[k][1 - side]),
+            allowed: format!("both faces across {axis} periodic, or neither"),
+            help: None,
+        });
+    }
+    let (step, shortest) = (PERIOD_STEP as f64, SHORTEST_PERIOD as f64);
+    let whole = (step * (cells / step).round()).max(shortest);
+    if (cells - whole).abs() <= WALL_TOLERANCE {
+        return Ok(());
+    }
+    Err(Problem {
+        key: "space.domain.max".into(),
+        found: format!("a period of {} cells of {} m along {axis}", short(cells), short(cell)),
+        allowed: format!(
+            "{SHORTEST_PERIOD} cells or more between periodic faces, a multiple of {PERIOD_STEP}"
+        ),
+        help: Some(format!(
+            "put the upper {axis} face at {} m, or take cells of {} m",
+            rounded(domain.min[k] + whole * cell),
+            rounded((domain.max[k] - domain.min[k]) / whole)
+        )),
+    })
 }
 
 /// Ten digits: near enough to be a whole number of cells.

@@ -1,4 +1,5 @@
-//! A shape together with its mirror images: a face that lies on a mirror is no surface.
+//! A shape together with its images: a face that lies on a mirror, or where the shape is joined to itself a period
+//! further, is no surface.
 
 use super::rotation::Rotation;
 use super::{Shape, SignedDistance};
@@ -20,6 +21,8 @@ pub struct MirroredShape {
     /// The shape, continued through the mirrors where it ends on them.
     shape: Shape,
     mirrors: Vec<Mirror>,
+    /// Axes along which it repeats, and its two ends there [m].
+    repeats: Vec<(usize, [f64; 2])>,
     dimension: usize,
 }
 
@@ -31,12 +34,30 @@ impl MirroredShape {
     /// and meshes.
     pub fn new(shape: &Shape, mirrors: Vec<Mirror>, dimension: usize) -> Self {
         let shape = mirrors.iter().fold(shape.clone(), |shape, mirror| continued(shape, mirror, dimension));
-        MirroredShape { shape, mirrors, dimension }
+        MirroredShape { shape, mirrors, repeats: Vec::new(), dimension }
+    }
+
+    /// The same, joined to itself at its two ends along an axis [m]: it has no end there. Between two images it goes
+    /// straight on, as at a mirror.
+    pub fn joined(mut self, axis: usize, ends: [f64; 2]) -> Self {
+        for (position, inward) in ends.into_iter().zip([1.0, -1.0]) {
+            self.shape = continued(self.shape, &Mirror { axis, position, inward }, self.dimension);
+        }
+        self.repeats.push((axis, ends));
+        self
+    }
+
+    /// Whether it is joined to itself along an axis.
+    pub fn is_joined(&self, axis: usize) -> bool {
+        self.repeats.iter().any(|(along, _)| *along == axis)
     }
 
     /// Signed distance to the surface and its gradient, as [`Shape::level`].
     pub fn level(&self, mut point: [f64; 3]) -> SignedDistance {
         let mut sign = [1.0; 3];
+        for &(axis, [first, last]) in &self.repeats {
+            point[axis] = first + (point[axis] - first).rem_euclid(last - first);
+        }
         for Mirror { axis, position, inward } in &self.mirrors {
             if (point[*axis] - position) * inward < 0.0 {
                 point[*axis] = 2.0 * position - point[*axis];
@@ -217,6 +238,23 @@ mod tests {
             MirroredShape::new(&lying, vec![MIRROR], 3).level([0.5, 0.1, 0.0]),
             lying.level([0.5, 0.1, 0.0], 3)
         );
+    }
+
+    /// The ends of a strip are no surface, wherever along it one looks; its sides are.
+    #[test]
+    fn a_strip_that_is_joined_to_itself_has_no_end() {
+        let strip = Shape::Box { min: [-1.0, 0.0, 0.0], max: [3.0, 0.5, 0.0] };
+        let whole = MirroredShape::new(&strip, Vec::new(), 2).joined(0, [-1.0, 3.0]);
+        for x in [-5.0, -1.0, 0.3, 2.999, 3.0, 41.7] {
+            let level = whole.level([x, 0.4, 0.0]);
+            assert!((level.distance + 0.1).abs() < 1e-12 && level.gradient[1] == 1.0, "{x}: {level:?}");
+        }
+        // A hole in it is there again four metres further.
+        let hole = Shape::Difference(vec![strip, Shape::Ball { center: [0.5, 0.25, 0.0], radius: 0.1 }]);
+        let whole = MirroredShape::new(&hole, Vec::new(), 2).joined(0, [-1.0, 3.0]);
+        for x in [0.5, 4.5, -7.5] {
+            assert!((whole.level([x, 0.25, 0.0]).distance - 0.1).abs() < 1e-12, "{x}");
+        }
     }
 
     #[test]

@@ -91,7 +91,10 @@ impl<'a> Descent<'a> {
         let largest = grains.iter().map(|grain| grain.scale).fold(0.0, f64::max);
         let skin = 0.3 * shape.radius * largest;
         let stiffness = if shape.points.is_empty() { 1.0 } else { 0.25 };
-        let walls = walls(packing.container, packing.dimension);
+        let mut walls = walls(packing.container, packing.dimension);
+        for (axis, ends) in packing.repeats.iter().enumerate() {
+            walls.retain(|wall| !ends.is_some_and(|ends| wall.is_end(axis, ends)));
+        }
         let mut descent = Descent {
             packing,
             shape,
@@ -110,18 +113,48 @@ impl<'a> Descent<'a> {
     }
 
     fn list(&mut self) {
+        for grain in &mut self.grains {
+            grain.position = self.packing.inside(grain.position);
+        }
         self.listed = self.grains.iter().map(|grain| grain.position).collect();
         let reach = 1.0 + EXTRA + self.shape.apart();
         let radii: Vec<f64> =
             self.grains.iter().map(|grain| reach * grain.scale * self.shape.radius).collect();
         let margin = 2.0 * self.skin + self.packing.gap;
-        self.near = near(&self.listed, &radii, margin, self.packing.dimension);
+        let count = self.listed.len();
         let within_reach = |(grain, radius): (&Grain, &f64)| {
             self.walls
                 .iter()
                 .any(|wall| wall.may_reach(grain.position, radius + margin, self.packing.dimension))
         };
         self.amid = self.grains.par_iter().zip(&radii).map(|of| !within_reach(of)).collect();
+        let (places, of) = self.with_images(2.0 * radii.iter().fold(0.0_f64, |a, &b| a.max(b)) + margin);
+        let radii: Vec<f64> = of.iter().map(|&grain| radii[grain as usize]).collect();
+        self.near = near(&places, &radii, margin, self.packing.dimension);
+        if places.len() > count {
+            self.near = self.near.with_images(count, &of);
+        }
+    }
+
+    /// Where grains are, and those of their images that are nearer than `reach` to the container, with the numbers of
+    /// their grains.
+    fn with_images(&self, reach: f64) -> (Vec<[f64; 3]>, Vec<u32>) {
+        let mut places = self.listed.clone();
+        let mut of: Vec<u32> = (0..places.len() as u32).collect();
+        for (axis, ends) in self.packing.repeats.iter().enumerate() {
+            let Some([first, last]) = *ends else { continue };
+            for i in 0..places.len() {
+                for away in [first - last, last - first] {
+                    let mut image = places[i];
+                    image[axis] += away;
+                    if image[axis] > first - reach && image[axis] < last + reach {
+                        places.push(image);
+                        of.push(of[i]);
+                    }
+                }
+            }
+        }
+        (places, of)
     }
 
     /// By how much jammed grains must be smaller to find room, about [-].
@@ -284,10 +317,16 @@ impl<'a> Descent<'a> {
                 self.walls.iter().for_each(|wall| push.join(shape.held(grain, wall, gap, EXTRA)));
             }
             match places.get(i) {
-                Some(place) => (self.near.of(i))
-                    .for_each(|j| push.join(shape.push_ball((place, &places[j]), gap, EXTRA))),
-                None => (self.near.of(i))
-                    .for_each(|j| push.join(shape.push((grain, &self.grains[j]), gap, EXTRA))),
+                Some(place) => (self.near.of(i)).for_each(|j| {
+                    let [x, y, z, scale] = places[j];
+                    let [x, y, z] = self.packing.image_near([x, y, z], grain.position);
+                    push.join(shape.push_ball((place, &[x, y, z, scale]), gap, EXTRA));
+                }),
+                None => (self.near.of(i)).for_each(|j| {
+                    let other = &self.grains[j];
+                    let position = self.packing.image_near(other.position, grain.position);
+                    push.join(shape.push((grain, &Grain { position, ..*other }), gap, EXTRA));
+                }),
             }
             Acting { force: self.force(&push, grain), excess: push.excess }
         };

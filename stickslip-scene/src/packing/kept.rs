@@ -153,7 +153,18 @@ mod tests {
 
     fn packing<'a>(container: &'a Shape, grain: &'a Shape, seed: u64) -> Packing<'a> {
         let (sizes, amount) = (Sizes::Uniform(0.8, 1.2), Amount::Count(20));
-        Packing { container, grain, sizes, amount, turned: true, gap: 0.0, settle: None, seed, dimension: 2 }
+        Packing {
+            container,
+            grain,
+            sizes,
+            amount,
+            turned: true,
+            gap: 0.0,
+            settle: None,
+            seed,
+            dimension: 2,
+            repeats: [None; 3],
+        }
     }
 
     #[test]
@@ -197,6 +208,7 @@ mod tests {
             packing(&square, &other, 1),
             Packing { gap: 1e-9, ..first.clone() },
             Packing { settle: Some([0.0, -1.0, 0.0]), ..first.clone() },
+            Packing { repeats: [Some([0.0, 9.0]), None, None], ..first.clone() },
         ];
         assert!(others.iter().all(|other| other.name() != first.name()));
     }

@@ -57,6 +57,9 @@ pub struct Packing<'a> {
     pub seed: u64,
     /// 2 or 3.
     pub dimension: usize,
+    /// Along each axis the two ends of the container [m] at which it has no walls, as everything is there again beyond
+    /// them.
+    pub repeats: [Option<[f64; 2]>; 3],
 }
 
 /// How many grains.
@@ -101,6 +104,13 @@ pub enum NoPacking {
     Container,
     /// The container lies so far from the origin that places there have no digits left for a grain.
     Far,
+    /// A period along this axis, shorter than two of the largest grains [m].
+    Short {
+        /// The axis.
+        axis: usize,
+        /// Two of the largest grains [m].
+        least: f64,
+    },
     /// More grains than [`MOST_GRAINS`].
     TooMany(f64),
     /// Their volume over that of the container, with half of the gap around each, is at least 1 [-].
@@ -120,6 +130,9 @@ pub enum NoPacking {
 
 /// Distance from the origin over the radius of the smallest grain.
 const MOST_RADII: f64 = 1e8;
+
+/// How far grains that are not balls keep apart on the way, at most, over their radius.
+const APART: f64 = 0.2;
 
 /// Grains of a packing.
 pub const MOST_GRAINS: usize = 1_000_000;
@@ -152,6 +165,13 @@ impl Packing<'_> {
         if !(asked < 1.0 && filled < 1.0 && asked.is_finite()) {
             return Err(NoPacking::Overfull(filled));
         }
+        let largest = scales.iter().fold(0.0_f64, |largest, &scale| largest.max(scale)) * shape.radius;
+        // Of two grains only the nearest images may touch.
+        let least = 4.0 * (1.0 + APART) * largest + 2.0 * self.gap;
+        let short = |axis: &usize| self.repeats[*axis].is_some_and(|[first, last]| last - first < least);
+        if let Some(axis) = (0..self.dimension).find(short) {
+            return Err(NoPacking::Short { axis, least });
+        }
         let mut grains = Vec::with_capacity(scales.len());
         for scale in scales {
             let orientation =
@@ -166,7 +186,24 @@ impl Packing<'_> {
         if let Some(along) = self.settle {
             descent.settle(along)?;
         }
-        Ok(descent.grains.iter().map(Grain::placement).collect())
+        let inside = |grain: &Grain| Grain { position: self.inside(grain.position), ..*grain };
+        Ok(descent.grains.iter().map(|grain| inside(grain).placement()).collect())
+    }
+
+    /// The image of a place between the ends of the container.
+    fn inside(&self, place: [f64; 3]) -> [f64; 3] {
+        std::array::from_fn(|k| match self.repeats[k] {
+            Some([first, last]) => first + (place[k] - first).rem_euclid(last - first),
+            None => place[k],
+        })
+    }
+
+    /// The image of a place that is nearest to another one.
+    fn image_near(&self, place: [f64; 3], to: [f64; 3]) -> [f64; 3] {
+        std::array::from_fn(|k| match self.repeats[k] {
+            Some([first, last]) => place[k] - (last - first) * ((place[k] - to[k]) / (last - first)).round(),
+            None => place[k],
+        })
     }
 
     /// Sizes of the grains; `ratio` of the volumes of container and grain.

@@ -17,6 +17,19 @@ impl Near {
     pub fn of(&self, i: usize) -> impl Iterator<Item = usize> {
         self.others[self.starts[i]..self.starts[i + 1]].iter().map(|&j| j as usize)
     }
+
+    /// Those of the first `count` balls, where the others are images of them: `of` says of which.
+    pub fn with_images(&self, count: usize, of: &[u32]) -> Near {
+        let mut near = Near { starts: vec![0], others: Vec::new() };
+        for i in 0..count {
+            let mut found: Vec<u32> = self.of(i).map(|j| of[j]).collect();
+            found.sort_unstable();
+            found.dedup();
+            near.others.extend(found);
+            near.starts.push(near.others.len());
+        }
+        near
+    }
 }
 
 /// Balls that one thread takes at a time.

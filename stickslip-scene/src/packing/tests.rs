@@ -17,6 +17,7 @@ fn request<'a>(container: &'a Shape, grain: &'a Shape, fraction: f64, dimension:
         settle: None,
         seed: 1,
         dimension,
+        repeats: [None; 3],
     }
 }
 
@@ -311,4 +312,48 @@ proptest! {
             std::array::from_fn(|i| grain.position[i] + 2.0 * (0..3).map(|j| rows[i][j] * arm[j]).sum::<f64>());
         prop_assert!((placed.distance(at, 3) + 0.2).abs() < 1e-9, "{}", placed.distance(at, 3));
     }
+}
+
+/// Grains lie across the ends, and none overlaps an image of another; without the walls there, all are as if in the
+/// middle.
+#[test]
+fn grains_in_a_container_that_repeats_lie_across_its_ends() {
+    let ball = Shape::ball([0.0; 3], 0.05);
+    let brick = Shape::cuboid([0.0; 3], [0.12, 0.08, 0.08]);
+    for (grain, fraction, dimension) in [(&ball, 0.78, 2), (&ball, 0.55, 3), (&brick, 0.6, 2)] {
+        let container = cube(1.0);
+        let repeats = [Some([0.0, 1.0]), None, (dimension == 3).then_some([0.0, 1.0])];
+        let packing = Packing { repeats, ..request(&container, grain, fraction, dimension) };
+        let placements = packing.place().expect("room");
+        let across = |k: usize| {
+            let size = |p: &Placement| p.scale * 0.04;
+            placements.iter().filter(|p| p.position[k] < size(p) || p.position[k] > 1.0 - size(p)).count()
+        };
+        assert!(across(0) > 0 && (dimension == 2 || across(2) > 0), "{}", across(0));
+        assert_eq!(across(1), 0, "the other walls hold them");
+        let shapes = shapes(&packing, &placements);
+        let points: Vec<Vec<[f64; 3]>> = (shapes.iter())
+            .map(|shape| {
+                let bounds = shape.bounds(dimension).expect("it has");
+                shape.surface(0.01, dimension, &bounds).iter().map(|point| point.position).collect()
+            })
+            .collect();
+        for (a, shape) in shapes.iter().enumerate() {
+            for (b, points) in points.iter().enumerate().filter(|(b, _)| *b != a) {
+                let [from, to] = [b, a].map(|i| placements[i].position);
+                let near = packing.image_near(from, to);
+                let deepest = points.iter().map(|x| {
+                    let x = std::array::from_fn(|k| x[k] + near[k] - from[k]);
+                    -shape.distance(x, dimension)
+                });
+                let deepest = deepest.fold(f64::NEG_INFINITY, f64::max);
+                assert!(deepest < 1e-12, "{a} and {b} overlap by {deepest}");
+            }
+        }
+        assert_eq!(packing.place().expect("room"), placements);
+    }
+    let container = cube(0.15);
+    let repeats = [Some([0.0, 0.15]), None, None];
+    let few = Packing { repeats, amount: Amount::Count(1), ..request(&container, &ball, 0.1, 2) };
+    assert!(matches!(few.place(), Err(NoPacking::Short { axis: 0, .. })));
 }

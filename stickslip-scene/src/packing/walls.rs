@@ -27,6 +27,15 @@ impl Wall {
     }
 }
 
+impl Wall {
+    /// Whether it is flat and stands at an end of the container along an axis.
+    pub fn is_end(&self, axis: usize, ends: [f64; 2]) -> bool {
+        let Shape::HalfSpace { point, normal } = &self.shape else { return false };
+        let across = (0..3).all(|k| k == axis || normal[k].abs() <= 1e-12 * normal[axis].abs());
+        across && ends.iter().any(|end| (point[axis] - end).abs() <= 1e-9 * (ends[1] - ends[0]))
+    }
+}
+
 /// Lengths of a cylinder by which its round wall goes on beyond its ends.
 const BEYOND: f64 = 10.0;
 

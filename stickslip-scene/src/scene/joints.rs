@@ -1,6 +1,6 @@
 //! What joins rigid bodies to each other and to the ground.
 
-use super::Expression;
+use super::{Expression, Scene};
 use serde::Serialize;
 
 /// What joins a free rigid body to another rigid body, or to the ground.
@@ -91,6 +91,19 @@ impl Joint {
     /// Whether it leaves bodies less than all motion against each other; springs leave it.
     pub fn holds(&self) -> bool {
         !matches!(self.kind, JointKind::Spring { .. })
+    }
+}
+
+impl Scene {
+    /// Whether a joint to the ground lets a free rigid body neither turn nor move along an axis: it stays on a mirror
+    /// across that axis.
+    pub fn slides_along(&self, body: usize, mirror: usize) -> bool {
+        let stays = |joint: &Joint| match &joint.kind {
+            JointKind::Slider { axis, .. } => axis[mirror].abs() <= 1e-12,
+            JointKind::Weld => true,
+            JointKind::Hinge { .. } | JointKind::Ball { .. } | JointKind::Spring { .. } => false,
+        };
+        self.joints.iter().any(|joint| joint.body == body && joint.to.is_none() && stays(joint))
     }
 }
 

@@ -19,6 +19,7 @@ mod name_pattern;
 mod outside;
 mod overrides;
 mod parameters;
+mod periodic;
 mod problem;
 mod schema;
 mod source;
@@ -40,6 +41,7 @@ pub use measurements::{
 };
 pub use name_pattern::{NamePattern, RuleNames, is_pattern};
 pub use outside::{OutsideUse, OutsideValue};
+pub use periodic::{PERIOD_STEP, SHORTEST_PERIOD};
 pub use problem::Problem;
 pub use schema::schema;
 pub use source::Source;
@@ -262,6 +264,8 @@ pub enum Face {
     Symmetry,
     /// Material sticks to it: no velocity at all.
     Fixed,
+    /// What leaves through it comes in through the other face across its axis, which is periodic, too.
+    Periodic,
 }
 
 /// Time and how it is stepped.

@@ -14,6 +14,7 @@ mod meshes;
 mod outputs;
 mod outside;
 mod parameters;
+mod periodic;
 mod places;
 mod point_clouds;
 mod shapes;

@@ -249,6 +249,7 @@ pub fn scene() -> Scene {
         contact: vec![ContactRule { friction: f64::INFINITY, ..Default::default() }],
         outputs: Outputs {
             tables: 0.1,
+            surfaces: None,
             particles: Some(0.25),
             particles_at: Vec::new(),
             snapshots: SnapshotContent { precision: Precision::Double, ..Default::default() },

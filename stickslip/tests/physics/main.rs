@@ -35,6 +35,7 @@ mod meshes;
 mod mirror;
 mod nearly_incompressible;
 mod paths;
+mod periodic;
 mod plane_stress;
 mod plastic_flow;
 mod point_clouds;

@@ -2,11 +2,13 @@
 //!
 //! Source: Hooke's law.
 //!
-//! Set-up: a bar in plane stress that two plates glued to its ends pull with a force each, which grows for 10 ms.
-//!
-//! Expected: stress and strain in its middle within 1 % (0.05 and 0.08 %).
+//! | set-up | expected |
+//! |---|---|
+//! | a bar in plane stress that two plates glued to its ends pull with a force each, which grows for 10 ms | stress and strain in its middle within 1 % (0.05 and 0.08 %) |
+//! | an eighth of a cube, cut by three mirrors; plates that slide along the mirrors hold a pressure on two of its sides, and one presses the third in: a triaxial test | the pressure, and E eps + 2 nu p, within 2 % (1.4 and 0.9 %) |
 
 use crate::trial::{mean_where, run_to, start};
+use stickslip::door::ParticleSnapshot;
 
 #[test]
 fn a_bar_pulled_by_plates_that_hold_a_force() {
@@ -54,4 +56,86 @@ fn a_bar_pulled_by_plates_that_hold_a_force() {
     let strain = (mean_where(&snapshot, middle, |p| snapshot.deformation[p][0]) - 1.0) / 1e-3;
     println!("stress {stress:.4}, strain {strain:.4}");
     assert!((stress - 1.0).abs() < 0.01 && (strain - 1.0).abs() < 0.01, "{stress} {strain}");
+}
+
+/// Mean of an entry of the stress of the first body [Pa].
+fn mean_stress(snapshot: &ParticleSnapshot, entry: usize) -> f64 {
+    mean_where(snapshot, |p| snapshot.body[p] == 0, |p| snapshot.stress[p][entry])
+}
+
+#[test]
+fn a_triaxial_test_on_an_eighth_of_a_cube() {
+    let (young, poisson, pressure, strain, side) = (1e6, 0.3, 1e4, 0.01, 0.4);
+    let plate = |axis: usize| {
+        let corner =
+            |x: f64, along: f64| -> [f64; 3] { std::array::from_fn(|k| if k == axis { along } else { x }) };
+        let name = ["plate x", "plate y", "plate z"][axis];
+        let direction = corner(0.0, 1.0);
+        let held = if axis < 2 {
+            let force = pressure * side * side;
+            format!(
+                r#"
+                rigid.free.mass = 2
+                [[joints]]
+                body = "{name}"
+                slider = {{ axis = {direction:?}, force = "-{force} * min(t / 0.05, 1)", dashpot = 1000 }}
+                "#
+            )
+        } else {
+            format!(
+                "rigid.velocity = [0, 0, \"if(t < 0.1, -{} * (1 - cos(20 * pi * t)), 0)\"]",
+                strain * side / 0.1
+            )
+        };
+        format!(
+            r#"
+            [[bodies]]
+            name = "{name}"
+            material = "gel"
+            shape.box = {{ min = {:?}, max = {:?} }}
+            {held}
+            "#,
+            corner(0.0, side),
+            corner(side, side + 0.1)
+        )
+    };
+    let text = format!(
+        r#"
+        damping.local = 0.2
+        [space]
+        dimension = "3d"
+        cell = 0.05
+        [space.domain]
+        min = [0, 0, 0]
+        max = [0.6, 0.6, 0.6]
+        x_min = "symmetry"
+        y_min = "symmetry"
+        z_min = "symmetry"
+        [time]
+        end = 0.2
+        [materials]
+        gel = {{ density = 1000, neo_hookean = {{ young_modulus = {young}, poisson_ratio = {poisson} }} }}
+        [[bodies]]
+        name = "cube"
+        material = "gel"
+        shape.box = {{ min = [0, 0, 0], max = [{side}, {side}, {side}] }}
+        # Plates that lean on each other would carry a part of the force.
+        [[contact]]
+        between = ["plate *", "plate *"]
+        law = "none"
+        {}{}{}
+        "#,
+        plate(0),
+        plate(1),
+        plate(2),
+    );
+    let mut simulation = start(&text);
+    run_to(&mut *simulation, 0.2, |_| {});
+    let snapshot = simulation.snapshot();
+    let [x, y, z] = [0, 1, 2].map(|entry| mean_stress(&snapshot, entry));
+    let axial = -young * strain - 2.0 * poisson * pressure;
+    println!("lateral {:.4} and {:.4}, axial {:.4}", -x / pressure, -y / pressure, z / axial);
+    for off in [-x / pressure, -y / pressure, z / axial] {
+        assert!((off - 1.0).abs() < 0.02, "{x} {y} {z}");
+    }
 }

@@ -161,6 +161,15 @@ fn in_the_plane() {
         .replace("rigid = {}", "rigid.velocity = [0, 0.5]");
     assert!(unbounded.contains("half_space") && unbounded.contains("rigid.velocity"));
     compare("a floor without bounds that rises", &unbounded, 200);
+    // Three blocks a period: the last and the first are neighbours. Bodies move through the face.
+    let periodic = plane
+        .replace(
+            "max = [4, 4], x_min = \"symmetry\"",
+            "max = [1.2, 4], x_min = \"periodic\", x_max = \"periodic\"",
+        )
+        .replace("max = [3, 0]", "max = [1.2, 0]");
+    assert!(periodic.contains("periodic") && periodic.contains("max = [1.2, 0]"));
+    compare("periodic", &periodic, 200);
     // Linear functions with the stress updated last do not live long, whatever the threads.
     compare("linear, modified-last", &scene("plane-strain", "linear", "modified-last"), 200);
 }

@@ -3,7 +3,7 @@
 use super::sums::{FIRST, FORCE, MASS, MaterialSums, Wanted, placed_rows, stress_rows};
 use super::{Around, Chunk};
 use crate::basis::{Basis, ShapeFunctions};
-use crate::grid::{Nodes, next_of, node_at};
+use crate::grid::{Nodes, SIDE, next_of, node_at};
 use crate::lanes::{Laned, Lanes, MOST_LANES, Machine, Numbers, in_lanes, prefetch};
 use crate::particles::{ColumnStart, Columns, deformation_entries, stress_entries};
 use crate::tensor::{Matrix, Number, Real, Symmetric, Vector, array};
@@ -72,7 +72,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
         for i in 0..D {
             arm[i] = seen.offset[i] + seen.sign[i] * position[i] - seen.first[i];
             let start: V = members.load(ColumnStart::<D>::START + i);
-            place[i] = seen.offset[i] + seen.sign[i] * start;
+            place[i] = seen.start[i] + seen.sign[i] * start;
         }
 
         if self.near.bodies[self.body].trusts_deformation() {
@@ -229,6 +229,9 @@ pub(super) struct Seen<V, const D: usize> {
     first: Vector<V, D>,
     /// A point `x` is seen at `offset + sign x`.
     offset: Vector<V, D>,
+    /// The same of a point of the undeformed body. One that is joined to its own images is one for all of them; any
+    /// other has only one place.
+    start: Vector<V, D>,
     sign: Vector<V, D>,
     /// Signs of the entries of a stress.
     turn: [V; 6],
@@ -240,14 +243,20 @@ impl<V: Lanes, const D: usize> Seen<V, D> {
         let lattice = &around.near.lattice;
         let splat = |x: Vector<V::Real, D>| Vector::<V, D>::from_fn(|i| V::splat(x[i]));
         let sign = |i: usize| if i < D && around.mirrors[i].is_some() { -V::ONE } else { V::ONE };
-        let offset = Vector::from_fn(|i| match around.mirrors[i] {
+        let offset = Vector::<V, D>::from_fn(|i| match around.mirrors[i] {
             Some(wall) => {
                 let position = lattice.origin[i] + V::Real::of(f64::from(wall.node)) * lattice.cell;
                 V::splat(position + position)
             }
             None => V::ZERO,
         });
+        let joined = |i: usize| around.image[i] != 0 && around.near.bodies[around.body].whole.is_joined(i);
+        let start = Vector::from_fn(|i| match joined(i) {
+            true => V::splat(V::Real::of(f64::from(-around.image[i] * SIDE)) * lattice.cell),
+            false => offset[i],
+        });
         Seen {
+            start,
             origin: splat(lattice.origin),
             per_cell: V::splat(lattice.per_cell),
             first: splat(lattice.position(node_at(around.block, 0))),

@@ -49,7 +49,7 @@ pub type Mirrors<'a, const D: usize> = [Option<&'a Wall>; D];
 
 impl<T: Laned, const D: usize> Near<'_, T, D> {
     /// Adds a body's particles to the wanted nodes of a block: the sums of the n-th of them are `sums[n]`.
-    /// `chunks` is room to work in.
+    /// `chunks` is room to work in. Where the grid repeats, particles around every image of the block are added.
     pub fn sum_around<B: Basis<T>>(
         &self,
         (body, block): (usize, [i32; D]),
@@ -63,18 +63,21 @@ impl<T: Laned, const D: usize> Near<'_, T, D> {
             let mut mirrors: Mirrors<D> = [None; D];
             let chosen = near.iter().flatten().enumerate().filter(|(i, _)| combination >> i & 1 == 1);
             if chosen.into_iter().all(|(_, &wall)| mirrors[wall.axis].replace(wall).is_none()) {
-                let around = Around {
-                    near: self,
-                    body,
-                    block,
-                    wanted,
-                    sought,
-                    mirrors,
-                    chunks: &mut *chunks,
-                    sums: &mut *sums,
-                    basis: PhantomData::<B>,
-                };
-                T::run(self.processor, around);
+                for image in self.active.images_of(body) {
+                    let around = Around {
+                        near: self,
+                        body,
+                        block: std::array::from_fn(|i| block[i] + image[i]),
+                        image: *image,
+                        wanted,
+                        sought,
+                        mirrors,
+                        chunks: &mut *chunks,
+                        sums: &mut *sums,
+                        basis: PhantomData::<B>,
+                    };
+                    T::run(self.processor, around);
+                }
             }
         }
     }
@@ -92,6 +95,8 @@ struct Around<'a, T, const D: usize, B> {
     near: &'a Near<'a, T, D>,
     body: usize,
     block: [i32; D],
+    /// How many blocks that is from the one whose nodes these are.
+    image: [i32; D],
     wanted: Nodes,
     sought: Wanted,
     mirrors: Mirrors<'a, D>,

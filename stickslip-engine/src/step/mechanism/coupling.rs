@@ -331,6 +331,6 @@ impl<T: Real, const D: usize> Coupling<'_, T, D> {
 /// From a rigid body's centre to a node [m].
 fn arm<T: Real, const D: usize>(lattice: &Lattice<T, D>, node: [i32; D], body: &Body<T, D>) -> [f64; 3] {
     let center = body.motion.as_ref().expect("it is rigid").center;
-    let place = lattice.position(node).space();
+    let place = lattice.position_near(node, center);
     std::array::from_fn(|i| if i < D { place[i] - center[i] } else { 0.0 })
 }

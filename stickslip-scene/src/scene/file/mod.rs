@@ -129,8 +129,10 @@ pub(super) fn resolve(source: &Source, files: &dyn SceneFiles) -> Result<(Scene,
     let time = file.time.resolve(context)?;
     let materials = file.materials.resolve(context)?;
     let mut bodies = body::resolve(file.bodies.as_deref().unwrap_or_default(), &materials, context)?;
+    let domain = file.space.domain(context)?;
     for (i, packing) in file.packings.iter().flatten().enumerate() {
-        packing.add_to(&mut bodies, (&materials, &format!("packings[{i}]")), context)?;
+        let declared = format!("packings[{i}]");
+        packing.add_to(&mut bodies, (&materials, &declared), (domain.as_ref(), context))?;
     }
     for (i, image) in file.images.iter().flatten().enumerate() {
         image.add_to(&mut bodies, (&materials, &format!("images[{i}]")), context)?;
@@ -169,7 +171,7 @@ pub(super) fn resolve(source: &Source, files: &dyn SceneFiles) -> Result<(Scene,
         dimension: context.dimension,
         precision: file.space.precision(context)?,
         discretization: file.space.discretization(context)?,
-        domain: file.space.domain(context)?,
+        domain,
         damping: match file.damping {
             Some(damping) => damping.resolve(context, time.relax)?,
             None => Damping::of(time.relax),

@@ -11,7 +11,7 @@ use crate::geometry::{Arrangement, Shape, fits};
 use crate::packing::{self, Amount, MOST_GRAINS, NoPacking, Sizes};
 use crate::scene::error::Fault;
 use crate::scene::source::{DocumentNode, Value};
-use crate::scene::{self, NamedMaterial};
+use crate::scene::{self, Domain, NamedMaterial};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use std::borrow::Cow;
 
@@ -26,7 +26,8 @@ table! {
         shape: ShapeInput,
         /// Sizes over that of `shape`: a number, or a distribution; by default all are as it is.
         sizes: Option<SizesInput>,
-        /// The container: within.box = { min = [0, 0], max = [1, 1] }. Bodies touch it at most.
+        /// The container: within.box = { min = [0, 0], max = [1, 1] }. Bodies touch it at most; where it goes from one
+        /// periodic face of the domain to the other, they lie across these.
         within: ShapeInput,
         /// How many; or else solid_fraction.
         count: Option<Count>,
@@ -85,7 +86,7 @@ impl Packing {
         &self,
         bodies: &mut Bodies,
         (materials, declared): (&[NamedMaterial], &str),
-        context: &Context,
+        (domain, context): (Option<&Domain>, &Context),
     ) -> Result<(), Fault> {
         let dimension = context.dimension.axes();
         let (name, material) = (self.name.value(context)?, material_of(&self.material, materials, context)?);
@@ -104,6 +105,7 @@ impl Packing {
             settle: self.settle.as_ref().map(|along| direction(along, context)).transpose()?,
             seed: self.seed.as_ref().map_or(Ok(0), |seed| seed.value(context, 0..=MOST_SEED))? as u64,
             dimension,
+            repeats: [0, 1, 2].map(|k| repeats(&container, domain?, (k, dimension))),
         };
         let placements = request.find_or_place().map_err(|problem| self.fault(problem, declared))?;
         let fitted = match &self.particles {
@@ -149,6 +151,16 @@ impl Packing {
                 "a shape without bounds, or in which almost nothing is",
                 "a container",
             ),
+            NoPacking::Short { axis, least } => {
+                let axis = ["x", "y", "z"][axis];
+                Fault::new(
+                    &key("within"),
+                    format!(
+                        "a container that repeats along {axis} and is shorter than two of the largest grains"
+                    ),
+                    format!("at least {least:.4} m between the periodic faces"),
+                )
+            }
             NoPacking::TooMany(count) => {
                 let help = "are the units of the grain and the container right?".to_string();
                 Fault::new(declared, format!("about {count:.1e} grains"), format!("at most {MOST_GRAINS}"))
@@ -188,6 +200,16 @@ impl Packing {
             }
         }
     }
+}
+
+/// The ends of a container along an axis, if it goes from one periodic face of the domain to the other.
+fn repeats(container: &Shape, domain: &Domain, (axis, dimension): (usize, usize)) -> Option<[f64; 2]> {
+    /// Over the period.
+    const ROUND_OFF: f64 = 1e-9;
+    let bounds = container.bounds(dimension).filter(|_| domain.is_periodic(axis))?;
+    let (ends, period) = ([domain.min[axis], domain.max[axis]], domain.periods()[axis]);
+    let on = |x: f64, end: f64| (x - end).abs() <= ROUND_OFF * period;
+    (on(bounds.min[axis], ends[0]) && on(bounds.max[axis], ends[1])).then_some(ends)
 }
 
 impl SizesInput {

@@ -86,6 +86,11 @@ impl Choice for Face {
         ("open", Face::Open, "Nothing; what leaves through it stops the run, or is removed: see `leaving`."),
         ("symmetry", Face::Symmetry, "A mirror: no velocity through it, no resistance along it."),
         ("fixed", Face::Fixed, "Material sticks to it: no velocity at all."),
+        (
+            "periodic",
+            Face::Periodic,
+            "What leaves through it comes in through the other face across its axis, which is periodic, too.",
+        ),
     ];
 }
 

@@ -104,7 +104,9 @@ fn free_axes(scene: &Scene) -> [bool; 3] {
     // What these do between two looks is not known here.
     let driven = |spring: &Spring| spring.ends.iter().any(|end| scene.bodies[end.body].is_prescribed());
     let unknown = scene.gravity.constant().is_none() || scene.springs.iter().any(driven);
-    faces.map(|faces| !unlike && !fixed && !unknown && faces == [Face::Open; 2])
+    faces.map(|faces| {
+        !unlike && !fixed && !unknown && faces.iter().all(|face| matches!(face, Face::Open | Face::Periodic))
+    })
 }
 
 /// Impulse from outside on all bodies that forces move since the start, but for gravity [N s].

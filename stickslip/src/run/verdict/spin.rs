@@ -97,14 +97,17 @@ impl SpinCheck {
             Alone { body, mass, velocity, angular_momentum: own(state), time }
         };
         let pushed = |&body: &usize| look.scene.loads.iter().any(|load| load.body == body);
-        self.alone = look.free().filter(|body| !pushed(body)).map(alone).collect();
+        // One that is joined to its own images turns against them.
+        let joined = |&body: &usize| look.scene.joined_ends(body).iter().any(Option::is_some);
+        self.alone = look.free().filter(|body| !pushed(body) && !joined(body)).map(alone).collect();
         if look.bodies.len() > 1 && isolated(look.scene) {
             self.together = Some(Together { angular_momentum: look.ledger.angular_momentum, scale: 0.0 });
         }
     }
 }
 
-/// Nothing outside the bodies acts on them.
+/// Nothing outside the bodies acts on them, and each force has its reaction at the same place: through a periodic face
+/// that is a period away, and there the angular momentum of all is not conserved.
 fn isolated(scene: &Scene) -> bool {
     let faces = scene.domain.iter().flat_map(|domain| domain.faces).flatten();
     scene.gravity.is_none()
@@ -193,9 +196,10 @@ impl Together {
 fn near_face(scene: &Scene, x: [f64; 3]) -> bool {
     let Some(domain) = &scene.domain else { return false };
     let reach = NEAR * scene.discretization.cell;
+    let acts = |face: Face| matches!(face, Face::Symmetry | Face::Fixed);
     (0..scene.dimension.axes()).any(|axis| {
         let [lower, upper] = domain.faces[axis];
-        (lower != Face::Open && x[axis] < domain.min[axis] + reach)
-            || (upper != Face::Open && x[axis] > domain.max[axis] - reach)
+        (acts(lower) && x[axis] < domain.min[axis] + reach)
+            || (acts(upper) && x[axis] > domain.max[axis] - reach)
     })
 }
