@@ -22,15 +22,11 @@ const FLAT: f64 = 0.9998;
 /// Steps of the search for the nearest point at most, and where it ends, over the distance between points.
 const MAX_STEPS: usize = 40;
 const FOUND: f64 = 1e-9;
-/// A point that is this near to a surface is on it, over the same.
-const ON_SURFACE: f64 = 1e-12;
 /// Points of a surface that one thread looks at together.
 const PART: usize = 64;
 /// From this part of the way on that a point may take it would have gone on, if the slope is more than the second.
 const AT_END: f64 = 0.999;
 const LEVEL: f64 = 1e-6;
-/// And surely, without a look around, if so much of the slope leads outwards.
-const OUTWARDS: f64 = 0.5;
 
 /// A rigid body's surface, as points on the shape at the start.
 #[derive(Clone, Debug)]
@@ -223,17 +219,16 @@ impl<'a, T, const D: usize> PlacedSurface<'a, T, D> {
         SignedDistance { gradient: self.pose.turned(level.gradient), ..level }
     }
 
-    /// The point of its surface next to `place`, and the normal there.
-    fn onto(&self, mut place: Vector<f64, 3>) -> (Vector<f64, 3>, Vector<f64, 3>) {
-        let mut level = self.level(place.0);
+    /// The point of its surface next to `place`.
+    fn onto(&self, mut place: Vector<f64, 3>) -> Vector<f64, 3> {
         for _ in 0..3 {
-            if !level.distance.is_finite() || level.distance.abs() <= ON_SURFACE * self.surface.spacing {
+            let level = self.level(place.0);
+            if !level.distance.is_finite() {
                 break;
             }
             place -= Vector(level.gradient) * level.distance;
-            level = self.level(place.0);
         }
-        (place, Vector(level.gradient))
+        place
     }
 
     /// From a point of its surface along it to where it is nearest to `other`, by no more than points are apart: where
@@ -249,11 +244,11 @@ impl<'a, T, const D: usize> PlacedSurface<'a, T, D> {
         let mut at = first;
         let mut level = other.level(at.0);
         let mut step = spacing;
-        let along = |normal: Vector<f64, 3>, level: &SignedDistance| {
-            let slope = Vector(level.gradient);
+        let along = |at: Vector<f64, 3>, level: &SignedDistance| {
+            let (normal, slope) = (Vector(self.level(at.0).gradient), Vector(level.gradient));
             slope - normal * slope.dot(normal)
         };
-        let mut slope = along(Vector(self.level(at.0).gradient), &level);
+        let mut slope = along(at, &level);
         for _ in 0..MAX_STEPS {
             if slope.norm() * step < FOUND * spacing {
                 break;
@@ -263,25 +258,20 @@ impl<'a, T, const D: usize> PlacedSurface<'a, T, D> {
             if off.norm() > spacing {
                 to = first + off * (spacing / off.norm());
             }
-            let (to, normal) = self.onto(to);
+            let to = self.onto(to);
             let there = other.level(to.0);
             if there.distance >= level.distance {
                 step *= 0.25;
                 continue;
             }
             let moved = to - at;
-            let turned = along(normal, &there);
+            let turned = along(to, &there);
             let change = turned - slope;
             let curved = moved.dot(change);
             step = if curved > 0.0 { moved.dot(moved) / curved } else { 4.0 * step };
             (at, level, slope) = (to, there, turned);
             if moved.norm() < FOUND * spacing {
                 break;
-            }
-            let off = at - first;
-            let outwards = -slope.dot(off) / off.norm();
-            if off.norm() > AT_END * spacing && outwards > LEVEL.max(OUTWARDS * slope.norm()) {
-                return None;
             }
         }
         let goes_on = (at - first).norm() > AT_END * spacing && slope.norm() > LEVEL;
