@@ -10,7 +10,6 @@ mod failure;
 mod files;
 mod film;
 mod frame_pictures;
-mod gallery;
 mod illustration;
 mod jobs;
 pub mod memory;

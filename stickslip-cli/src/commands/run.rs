@@ -6,7 +6,7 @@ use crate::illustration::illustrate;
 use crate::memory;
 use crate::progress::{Display, ProgressForm};
 use bytesize::ByteSize;
-use clap::{Args, Parser};
+use clap::Args;
 use miette::{IntoDiagnostic, miette};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -136,14 +136,6 @@ fn results_go_beside_the_user_not_beside_the_scene() {
 }
 
 impl Arguments {
-    /// A run of a scene into a folder, and all else as it is without any options.
-    pub(super) fn plain(scene: PathBuf, out: PathBuf, threads: Option<u16>) -> Self {
-        let words = ["run".into(), scene.into_os_string(), "--out".into(), out.into_os_string()];
-        let mut plain = Plain::parse_from(words).arguments;
-        plain.how.threads = threads;
-        plain
-    }
-
     pub fn execute(self) -> Result<(), Failure> {
         self.how.use_threads()?;
         let before = self.again.as_deref().map(Repeated::of).transpose()?;
@@ -170,13 +162,6 @@ impl Arguments {
         })?;
         before.map_or(Ok(()), |before| before.compare(&out))
     }
-}
-
-/// The options of a run alone.
-#[derive(Parser)]
-struct Plain {
-    #[command(flatten)]
-    arguments: Arguments,
 }
 
 /// A run that is made again, to see whether it ends in the same bits.
