@@ -53,8 +53,8 @@ pub enum NoCloud {
 /// What is filled at the particles of a cloud, on average: less is sparse, more is dense.
 const FILLED: [f64; 2] = [0.4, 1.5];
 
-/// Part of its particles that may lie outside of the smooth surface.
-const OUTSIDE: f64 = 0.05;
+/// Part of its particles that may lie outside of the smooth surface: at the corners of a square of 6 x 6 a ninth.
+const OUTSIDE: f64 = 0.12;
 
 /// Points of the lattices around clouds: so many, and so many more for each particle.
 const ROOM: [f64; 2] = [1e6, 200.0];
