@@ -41,6 +41,23 @@ impl<N: Number> ShapeFunctions<N> {
     }
 }
 
+/// The box as which nodes see a particle, along one axis.
+#[derive(Clone, Copy, Debug)]
+pub struct BoxSide<N> {
+    /// Half of its side [cells].
+    pub half: N,
+    /// One over its side [1/cell].
+    per_side: N,
+}
+
+impl<N: Number> BoxSide<N> {
+    /// With this half side, at most half a cell [cells].
+    #[inline(always)]
+    pub fn new(half: N) -> Self {
+        BoxSide { half, per_side: N::ONE / (half + half) }
+    }
+}
+
 /// One-dimensional shape functions. Weights sum to one, slopes to zero, and a linear field is reproduced.
 pub trait Basis<T: Real>: Copy + Send + Sync + 'static {
     /// Nodes that a particle reaches along an axis.
@@ -53,11 +70,12 @@ pub trait Basis<T: Real>: Copy + Send + Sync + 'static {
     /// ```
     const BOX_SPREAD: f64;
 
-    /// Where the reach of a particle at `x` with half-width `half` begins: its base node is the next one below [cells].
+    /// Where the reach of a particle at `x` with the half side `half` begins: its base node is the next one below
+    /// [cells].
     fn reach<N: Number>(x: N, half: N) -> N;
 
     /// Weights and slopes of a particle at `r` from its base node.
-    fn shape<N: Number>(r: N, half: N) -> ShapeFunctions<N>;
+    fn shape<N: Number>(r: N, side: &BoxSide<N>) -> ShapeFunctions<N>;
 
     /// Factors that make the affine part of a field of its values at the nodes of an axis [1/cell]:
     ///
@@ -79,11 +97,11 @@ pub trait Basis<T: Real>: Copy + Send + Sync + 'static {
         factors
     }
 
-    /// Base node, weights and slopes of a particle at `x` with half-width `half` [cells].
+    /// Base node, weights and slopes of a particle at `x` with the half side `half` [cells].
     #[inline(always)]
     fn axis(x: T, half: T) -> Axis<T> {
         let base = Self::reach(x, half).floor();
-        Axis { base, shape: Self::shape(x - T::of(f64::from(base)), half) }
+        Axis { base, shape: Self::shape(x - T::of(f64::from(base)), &BoxSide::new(half)) }
     }
 }
 
@@ -107,21 +125,30 @@ impl<T: Real> Basis<T> for Linear {
     }
 
     #[inline(always)]
-    fn shape<N: Number>(r: N, _half: N) -> ShapeFunctions<N> {
+    fn shape<N: Number>(r: N, _side: &BoxSide<N>) -> ShapeFunctions<N> {
         ShapeFunctions { weight: [N::ONE - r, r, N::ZERO], difference: [N::ONE, N::ZERO] }
     }
 }
 
-/// Tent functions averaged over the particle's box, which keeps its first size and direction
-/// (uniform GIMP; Bardenhagen and Kober 2004, eq. 34).
+/// Tent functions averaged over the particle's box (Bardenhagen and Kober 2004, eq. 34).
 ///
 /// ```text
-/// with l = half-width, r = x - base in [l, 1 + l):
+/// with l = half of the box's side, r = x - base in [l, 1 + l):
 /// r <= 1 - l:  S_0 = 1 - r,                 S_2 = 0
 /// else:        S_0 = (1 + l - r)^2 / (4l),  S_2 = (r - 1 + l)^2 / (4l)
 /// S_1 = 1 - S_0 - S_2
 /// ```
-/// Needs l <= 1/2. With l = 1/2, whatever the particle's size, they are the quadratic B-splines of its centre
+/// Needs l <= 1/2. The box keeps its first size and direction (uniform GIMP, `space.basis = "gimp"`), or its sides follow
+/// the stretch (contiguous particle GIMP, `"cpgimp"`), so that the boxes of a body that is pulled still fill it:
+///
+/// ```text
+/// l_i = min(l sqrt(sum_j F_ij^2), 1/2)
+/// ```
+/// which is the stretch of the fibre that was laid along axis i before a rotation and is l for any rotation alone. It
+/// goes with F whenever positions change. (Coombs et al. 2020, Comput. Methods Appl. Mech. Eng. 358, compare what boxes
+/// may follow: diag(F) vanishes in rotation, det F shrinks what is pulled.)
+///
+/// With l = 1/2, whatever the particle's size, they are the quadratic B-splines of its centre
 /// (Steffen, Kirby and Berzins 2008, Int. J. Numer. Meth. Eng. 76), the tent averaged over a cell:
 ///
 /// ```text
@@ -142,15 +169,13 @@ impl<T: Real> Basis<T> for Gimp {
     }
 
     #[inline(always)]
-    fn shape<N: Number>(r: N, half: N) -> ShapeFunctions<N> {
+    fn shape<N: Number>(r: N, &BoxSide { half, per_side }: &BoxSide<N>) -> ShapeFunctions<N> {
         // Without a branch: `near` stops at 2l, where S_0 goes on as a straight line. No sum cancels, so that a node
         // that a particle hardly reaches gets hardly any mass, but not less than none.
-        let width = half + half;
-        let per_width = N::ONE / width;
         let before = (N::ONE + half) - r;
-        let near = before.min(width);
+        let near = before.min(half + half);
         let beyond = (r - (N::ONE - half)).max(N::ZERO);
-        let (falling, rising) = (near * per_width, beyond * per_width);
+        let (falling, rising) = (near * per_side, beyond * per_side);
         let first = N::HALF * near * falling + (before - near);
         let last = N::HALF * beyond * rising;
         ShapeFunctions { weight: [first, N::ONE - first - last, last], difference: [falling, rising] }
@@ -190,7 +215,7 @@ mod tests {
     fn boxes_of_a_cell_make_quadratic_splines() {
         for i in 0..=100 {
             let r = 0.5 + 0.01 * f64::from(i);
-            let shape = <Gimp as Basis<f64>>::shape(r, 0.5);
+            let shape = <Gimp as Basis<f64>>::shape(r, &BoxSide::new(0.5));
             let exact =
                 [0.5 * (1.5 - r) * (1.5 - r), 0.75 - (r - 1.0) * (r - 1.0), 0.5 * (r - 0.5) * (r - 0.5)];
             let slopes = [r - 1.5, 2.0 - 2.0 * r, r - 0.5];

@@ -305,15 +305,15 @@ fn deformed_area<T: Real, const D: usize>(particle: &Particle<T, D>, point: &Par
     })
 }
 
-/// The nodes that move a point, each with its S_i and N_i [-].
+/// The nodes that move a point of a particle with a box of these half sides [m], each with its S_i and N_i [-].
 pub fn nodes_of<T: Real, const D: usize, B: Basis<T>>(
     lattice: &Lattice<T, D>,
-    particle: &Particle<T, D>,
+    (particle, half_sides): (&Particle<T, D>, Vector<T, D>),
     point: &PartPoint,
 ) -> impl Iterator<Item = ([i32; D], [T; 2])> + use<T, D, B> {
     let x = lattice.cells(particle.position);
-    let half = lattice.half(particle.half_width);
-    let axes: [_; D] = std::array::from_fn(|i| B::axis(x[i], half));
+    let half = lattice.half_sides(half_sides);
+    let axes: [_; D] = std::array::from_fn(|i| B::axis(x[i], half[i]));
     let arm = arm::<T, D>(particle, point) * lattice.per_cell;
     offsets::<D>(B::WIDTH).map(move |offset| {
         let weight = |i: usize| axes[i].shape.weight[offset[i]];

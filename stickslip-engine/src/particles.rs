@@ -1,12 +1,12 @@
 //! Particles of one body as columns, so that a processor can take several at a time; seen from outside, they are rows.
 
 use crate::body::Particle;
-use crate::column::{ColumnDescription, EVERY, Kind, NUMBER, same};
+use crate::column::{ColumnDescription, EVERY, HALF_SIDES, Kind, NUMBER, same};
 use crate::grid::Disjoint;
 use crate::material::{History, Keep, Recall, history_entries};
 use crate::natural::{self, Natural};
 use crate::pages::ask_for_large;
-use crate::tensor::{Matrix, Real, Symmetric, Vector};
+use crate::tensor::{Matrix, Number, Real, Symmetric, Vector};
 use crate::threads::each_range;
 use std::ops::Range;
 
@@ -96,10 +96,22 @@ pub struct Particles<T, const D: usize> {
     viscosity: &'static [History],
     /// What initial stress and heat need.
     natural: &'static [History],
+    /// Boxes that follow the stretch.
+    boxes: &'static [History],
+}
+
+/// Half the sides of boxes that follow the stretch of their particles [m].
+pub const BOXES: &[History] = &[History::new(HALF_SIDES, "m", Kind::Vector)];
+
+/// Half the side of a box along an axis, of that row of F and the undeformed one, see [`crate::basis::Gimp`].
+#[inline(always)]
+pub fn stretched_half_side<N: Number>(row: &[N; 3], half_width: N, most: N) -> N {
+    let square = row[0].times_plus(row[0], row[1].times_plus(row[1], row[2] * row[2]));
+    (half_width * square.sqrt()).min(most)
 }
 
 /// Columns that not all bodies have: what a law remembers, behind that what a transfer carries, what bulk viscosity
-/// needs, and what initial stress and heat need.
+/// needs, what initial stress and heat need, and boxes that follow the stretch.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct OwnColumns {
     /// Of the law.
@@ -110,12 +122,15 @@ pub struct OwnColumns {
     pub viscosity: &'static [History],
     /// Of the state without stress, see [`crate::natural`].
     pub natural: &'static [History],
+    /// Of the boxes, if they follow the stretch.
+    pub boxes: &'static [History],
 }
 
 impl OwnColumns {
     /// All of them.
     fn all(self) -> impl Iterator<Item = &'static History> {
-        self.history.iter().chain(self.transfer).chain(self.viscosity).chain(self.natural)
+        let first = self.history.iter().chain(self.transfer).chain(self.viscosity);
+        first.chain(self.natural).chain(self.boxes)
     }
 
     /// Their entries.
@@ -124,6 +139,7 @@ impl OwnColumns {
             + history_entries(self.transfer, dimension)
             + history_entries(self.viscosity, dimension)
             + history_entries(self.natural, dimension)
+            + history_entries(self.boxes, dimension)
     }
 }
 
@@ -187,7 +203,7 @@ impl<T: Real, const D: usize> Particles<T, D> {
         let columns = vec![T::ZERO; stride * Self::columns_of(own)];
         ask_for_large(columns.as_ptr(), columns.len());
         let numbers = vec![0; 2 * count];
-        let OwnColumns { history, transfer, viscosity, natural } = own;
+        let OwnColumns { history, transfer, viscosity, natural, boxes } = own;
         let mut particles = Particles {
             len: count,
             columns,
@@ -198,6 +214,7 @@ impl<T: Real, const D: usize> Particles<T, D> {
             transfer,
             viscosity,
             natural,
+            boxes,
         };
         for i in 0..count {
             let particle = f(i);
@@ -211,6 +228,11 @@ impl<T: Real, const D: usize> Particles<T, D> {
             for entry in 0..remembered.column.kind.entries(D) {
                 particles.columns[column * stride..][..count].fill(T::of(remembered.start_of(D, entry)));
                 column += 1;
+            }
+        }
+        for entry in particles.view().box_columns() {
+            for i in 0..count {
+                particles.line_mut(entry)[i] = particles.line(ColumnStart::<D>::HALF_WIDTH)[i];
             }
         }
         particles
@@ -233,6 +255,7 @@ impl<T: Real, const D: usize> Particles<T, D> {
             transfer: self.transfer,
             viscosity: self.viscosity,
             natural: self.natural,
+            boxes: self.boxes,
         }
     }
 
@@ -300,11 +323,31 @@ impl<T: Real, const D: usize> Particles<T, D> {
         Particle { number: self.numbers()[i], ..unsafe { self.view().get(i) } }
     }
 
-    /// Position [m] and half the side of the undeformed box [m] of particle `i`.
+    /// Position [m] and half the sides of the box [m] of particle `i`.
     #[inline]
-    pub fn place(&self, i: usize) -> (Vector<T, D>, T) {
+    pub fn place(&self, i: usize) -> (Vector<T, D>, Vector<T, D>) {
         let at = |column: usize| self.columns[self.first() + column * self.stride + i];
-        (Vector::from_fn(|k| at(ColumnStart::<D>::POSITION + k)), at(ColumnStart::<D>::HALF_WIDTH))
+        (Vector::from_fn(|k| at(ColumnStart::<D>::POSITION + k)), self.half_sides(i))
+    }
+
+    /// Half the sides of the box of particle `i`: the undeformed ones, or those that follow its stretch [m].
+    #[inline]
+    pub fn half_sides(&self, i: usize) -> Vector<T, D> {
+        assert!(i < self.len(), "a particle of the body");
+        // SAFETY: in range, and borrowed for reading.
+        unsafe { self.view().half_sides(i) }
+    }
+
+    /// Lets boxes that follow the stretch of particles be those of their deformation; `most`: the longest half side
+    /// [m].
+    pub fn stretch_boxes(&mut self, most: T) {
+        for (entry, row) in self.view().box_columns().zip(0..) {
+            for i in 0..self.len() {
+                let particle = self.get(i);
+                self.line_mut(entry)[i] =
+                    stretched_half_side(&particle.deformation.0[row], particle.half_width, most);
+            }
+        }
     }
 
     /// The state without stress of particle `i`, of a material with this expansion by temperature; `None` where that is
@@ -351,6 +394,7 @@ impl<T: Real, const D: usize> Particles<T, D> {
             transfer: history_entries(self.transfer, D),
             viscosity: history_entries(self.viscosity, D),
             natural: history_entries(self.natural, D),
+            boxes: history_entries(self.boxes, D),
         }
     }
 
@@ -364,6 +408,7 @@ impl<T: Real, const D: usize> Particles<T, D> {
             transfer: history_entries(self.transfer, D),
             viscosity: history_entries(self.viscosity, D),
             natural: history_entries(self.natural, D),
+            boxes: history_entries(self.boxes, D),
         }
     }
 
@@ -423,12 +468,13 @@ impl<T: Real, const D: usize> Particles<T, D> {
 
     /// Becomes a copy of the particles of the same body, in the memory that is there.
     pub fn become_copy_of(&mut self, other: &Self) {
-        let Particles { len, columns, stride, numbers, later, history, transfer, viscosity, natural } = self;
+        let Particles { len, columns, stride, numbers, later, history, transfer, viscosity, natural, boxes } =
+            self;
         columns.clone_from(&other.columns);
         numbers.clone_from(&other.numbers);
         (*len, *stride, *later) = (other.len, other.stride, other.later);
         (*history, *transfer) = (other.history, other.transfer);
-        (*viscosity, *natural) = (other.viscosity, other.natural);
+        (*viscosity, *natural, *boxes) = (other.viscosity, other.natural, other.boxes);
     }
 
     /// Where a column lies as long as nothing is sorted, and after it once they are settled; `number` is one, too.
@@ -508,6 +554,8 @@ pub struct Columns<T, const D: usize> {
     viscosity: usize,
     /// Entries of what initial stress and heat need.
     natural: usize,
+    /// Entries of the boxes.
+    boxes: usize,
 }
 
 // SAFETY: entries are only reached through unsafe functions, whose callers keep threads apart.
@@ -549,13 +597,34 @@ impl<T: Real, const D: usize> Columns<T, D> {
         first..first + self.natural
     }
 
+    /// Places of the columns of the boxes, if these follow the stretch.
+    #[inline(always)]
+    pub fn box_columns(&self) -> Range<usize> {
+        let first = self.natural_columns().end;
+        first..first + self.boxes
+    }
+
+    /// Half the sides of the box of particle `i`: the undeformed ones, or those that follow its stretch [m].
+    ///
+    /// # Safety
+    /// The particle must exist, and nobody may write to it meanwhile.
+    #[inline]
+    pub unsafe fn half_sides(&self, i: usize) -> Vector<T, D> {
+        // SAFETY: the caller's.
+        let at = |column: usize| unsafe { *self.at(column, i) };
+        match self.box_columns() {
+            boxes if boxes.is_empty() => Vector([at(ColumnStart::<D>::HALF_WIDTH); D]),
+            boxes => Vector::from_fn(|k| at(boxes.start + k)),
+        }
+    }
+
     /// The entry of particle `i` in a column.
     ///
     /// # Safety
     /// The column and the particle must exist, and nobody may use the entry but by this pointer.
     #[inline(always)]
     pub unsafe fn at(&self, column: usize, i: usize) -> *mut T {
-        debug_assert!(column < self.natural_columns().end && i < self.stride, "an entry");
+        debug_assert!(column < self.box_columns().end && i < self.stride, "an entry");
         // SAFETY: the caller's.
         unsafe { self.start.add(column * self.stride + i) }
     }

@@ -462,6 +462,8 @@ pub struct TracedParticle {
     pub number: u32,
     /// Half the side of its undeformed box [m].
     pub half_width: f64,
+    /// Half the sides of the box as which the nodes see it; along no axis of the plane none [m].
+    pub half_sides: [f64; 3],
     /// Position [m].
     pub position: [f64; 3],
     /// Velocity [m/s].

@@ -61,10 +61,10 @@ impl<T: Real, const D: usize> Lattice<T, D> {
         Lattice { origin, cell, per_cell: T::ONE / cell, whole_cells: false, periods: Periods::default() }
     }
 
-    /// Half of the side of the box as which the nodes see a particle with this half-width [m], in cells.
+    /// Half the sides of the box as which the nodes see a particle with a box of these half sides [m], in cells.
     #[inline(always)]
-    pub fn half(&self, half_width: T) -> T {
-        if self.whole_cells { T::HALF } else { half_width * self.per_cell }
+    pub fn half_sides(&self, half_sides: Vector<T, D>) -> Vector<T, D> {
+        if self.whole_cells { Vector([T::HALF; D]) } else { half_sides * self.per_cell }
     }
 
     /// The same in metres.

@@ -21,7 +21,7 @@ use crate::lanes::{Laned, Processor};
 use crate::load::{LoadPoints, LoadSums, SpringPoints};
 use crate::material::{BadConstants, Material};
 use crate::natural;
-use crate::particles::{OwnColumns, Particles, stress_entries};
+use crate::particles::{BOXES, OwnColumns, Particles, stress_entries};
 use crate::rigid::{MassProperties, RigidMotion, longest_step};
 use crate::scene::{
     self, Action, BasisKind, BodyMotion, Dimension, Face, NamedMaterial, Precision, Problem, Scene,
@@ -62,8 +62,10 @@ fn with_basis<T: Laned, const D: usize>(
 ) -> Result<Box<dyn Simulation>, Problem> {
     Ok(match scene.discretization.basis {
         BasisKind::Linear => Box::new(Engine::<T, D, Linear>::new(scene, path)?),
-        // Boxes of a cell: see `Gimp`.
-        BasisKind::Gimp | BasisKind::Spline => Box::new(Engine::<T, D, Gimp>::new(scene, path)?),
+        // Boxes of a cell, or that follow the stretch: see `Gimp`.
+        BasisKind::Gimp | BasisKind::Cpgimp | BasisKind::Spline => {
+            Box::new(Engine::<T, D, Gimp>::new(scene, path)?)
+        }
     })
 }
 
@@ -275,8 +277,8 @@ pub fn heated_bodies(scene: &Scene) -> HashSet<usize> {
     scene.loads.iter().filter(heats).map(|load| load.body).collect()
 }
 
-/// The columns that the particles of a body have for its law, its transfer, damping, initial stress and heat: rigid
-/// ones none.
+/// The columns that the particles of a body have for its law, its transfer, damping, initial stress and heat, and its
+/// basis: rigid ones none.
 pub fn own_columns(scene: &Scene, body: &scene::Body, heated: bool) -> OwnColumns {
     if body.is_rigid() {
         return OwnColumns::default();
@@ -289,6 +291,7 @@ pub fn own_columns(scene: &Scene, body: &scene::Body, heated: bool) -> OwnColumn
         transfer: crate::transfer::columns(scene.time.transfer),
         viscosity,
         natural,
+        boxes: if scene.discretization.basis == BasisKind::Cpgimp { BOXES } else { &[] },
     }
 }
 

@@ -45,7 +45,9 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
     unsafe fn naive_one(&mut self, index: u32, cell: usize) {
         // SAFETY: the caller's.
         let mut particle = unsafe { self.columns.get(index as usize) };
-        let stencil = Stencil::<T, D, B>::new(&self.pass.lattice, &particle);
+        // SAFETY: as above.
+        let half_sides = unsafe { self.columns.half_sides(index as usize) };
+        let stencil = Stencil::<T, D, B>::new(&self.pass.lattice, (particle.position, half_sides));
         let outcome = self.change_naively((&mut particle, index as usize), &stencil);
         // SAFETY: the caller's.
         unsafe { self.columns.set(index as usize, &particle) };
@@ -63,7 +65,9 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
             }
         }
         if self.pass.verbs.advect {
-            let moved = Stencil::<T, D, B>::new(&self.pass.lattice, &particle).base() != stencil.base();
+            // SAFETY: as above.
+            let place = (particle.position, unsafe { self.columns.half_sides(index as usize) });
+            let moved = Stencil::<T, D, B>::new(&self.pass.lattice, place).base() != stencil.base();
             self.left |= u64::from(moved) << cell;
             self.moved += u32::from(moved);
             // SAFETY: the caller's.
@@ -163,7 +167,14 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
                 return Err(FaultKind::NotFinite);
             }
             particle.position = position;
-            if escaped::<T, D, B>(particle, lattice, domain) {
+            for (row, column) in self.columns.box_columns().enumerate() {
+                let half = particle.half_width * Vector::<T, 3>(particle.deformation.0[row]).norm();
+                // SAFETY: the caller of this pass keeps others away from the tile's particles.
+                unsafe { *self.columns.at(column, index) = half.min(T::HALF * lattice.cell) };
+            }
+            // SAFETY: as above.
+            let half_sides = unsafe { self.columns.half_sides(index) };
+            if escaped::<T, D, B>((position, half_sides), lattice, domain) {
                 return Err(FaultKind::Escaped);
             }
         }
@@ -333,7 +344,7 @@ mod tests {
     #[test]
     fn one_lane_and_several_do_what_the_equations_say() {
         for dimension in ["plane-strain", "3d"] {
-            for (basis, steps) in [("gimp", 40), ("linear", 12), ("spline", 40)] {
+            for (basis, steps) in [("gimp", 40), ("cpgimp", 40), ("linear", 12), ("spline", 40)] {
                 for update in ["first", "last", "modified-last"] {
                     let kinds = ["flip", "rflip", "pic", "apic", "xpic"].map(|transfer| (transfer, "own"));
                     for (transfer, volume_change) in kinds.into_iter().chain([("rflip", "averaged")]) {

@@ -1,7 +1,7 @@
 //! One pass over particles: what it does to each of them, and who does it.
 
 use crate::basis::Basis;
-use crate::body::{Body, Particle};
+use crate::body::Body;
 use crate::damping::BulkViscosity;
 use crate::grid::{Disjoint, Lattice, Node, SIDE, Sought, Tile, Window, addressable};
 use crate::lanes::{Machine, Processor};
@@ -201,20 +201,20 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
 /// Base node of a particle: the first that it reaches along each axis.
 pub fn home<T: Real, const D: usize, B: Basis<T>>(
     lattice: &Lattice<T, D>,
-    (position, half_width): (Vector<T, D>, T),
+    (position, half_sides): (Vector<T, D>, Vector<T, D>),
 ) -> [i32; D] {
-    let x = lattice.cells(position);
-    std::array::from_fn(|i| B::reach(x[i], lattice.half(half_width)).floor())
+    let (x, half) = (lattice.cells(position), lattice.half_sides(half_sides));
+    std::array::from_fn(|i| B::reach(x[i], half[i]).floor())
 }
 
-/// Whether a particle is outside the domain, or so far away that its cell has no number.
+/// Whether a particle at a position, with a box of these half sides, is outside the domain, or so far away that its cell
+/// has no number.
 pub fn escaped<T: Real, const D: usize, B: Basis<T>>(
-    particle: &Particle<T, D>,
+    (position, half_sides): (Vector<T, D>, Vector<T, D>),
     lattice: &Lattice<T, D>,
     domain: Option<[Vector<T, D>; 2]>,
 ) -> bool {
-    let outside = domain.is_some_and(|[min, max]| {
-        (0..D).any(|i| particle.position[i] < min[i] || particle.position[i] > max[i])
-    });
-    outside || !addressable(home::<T, D, B>(lattice, (particle.position, particle.half_width)))
+    let outside =
+        domain.is_some_and(|[min, max]| (0..D).any(|i| position[i] < min[i] || position[i] > max[i]));
+    outside || !addressable(home::<T, D, B>(lattice, (position, half_sides)))
 }

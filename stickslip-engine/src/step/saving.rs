@@ -136,11 +136,12 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         velocities: StartVelocities,
     ) -> Result<(), RestoreError> {
         let state = &self.state;
+        let most = T::HALF * self.settings.lattice.cell;
         let named: HashMap<&str, &SavedBody> =
             saved.bodies.iter().map(|saved| (saved.name.as_str(), saved)).collect();
         let carried = state.bodies.iter().enumerate().map(|(i, body)| {
             let without_bounds = state.unbounded.iter().any(|unbounded| unbounded.body == i);
-            let begin = |own: &&SavedBody| begun((saved, own), body, (without_bounds, velocities));
+            let begin = |own: &&SavedBody| begun((saved, own), body, (without_bounds, velocities, most));
             named.get(body.name.as_str()).map(begin).transpose()
         });
         let carried: Vec<Option<Body<T, D>>> = carried.collect::<Result<_, _>>()?;
@@ -225,7 +226,7 @@ const TRANSFERS: [Transfer; 5] =
 fn begun<T: Laned, const D: usize>(
     (state, saved): (&SavedState, &SavedBody),
     fresh: &Body<T, D>,
-    (without_bounds, velocities): (bool, StartVelocities),
+    (without_bounds, velocities, most): (bool, StartVelocities, T),
 ) -> Result<Body<T, D>, RestoreError> {
     let off = |what: &str| RestoreError(format!("body `{}` {what}", fresh.name));
     let mut body = fresh.clone();
@@ -325,6 +326,7 @@ fn begun<T: Laned, const D: usize>(
         }
         body.particles.set(i, &particle);
     }
+    body.particles.stretch_boxes(most);
     if velocities == StartVelocities::Zero && body.motion.is_none() {
         body.particles.stop();
     }

@@ -133,9 +133,12 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     ) {
         let (active, boundary) = (&self.workspace.active, &self.workspace.boundary);
         for point in &end.points {
-            let particle = self.state.bodies[end.body].particles.get(places[point.particle] as usize);
+            let (particles, place) =
+                (&self.state.bodies[end.body].particles, places[point.particle] as usize);
+            let (lattice, seen) =
+                (&self.settings.lattice, (&particles.get(place), particles.half_sides(place)));
             let share = T::of(point.measure / end.measure);
-            for (node, [_, weight]) in nodes_of::<T, D, B>(&self.settings.lattice, &particle, point) {
+            for (node, [_, weight]) in nodes_of::<T, D, B>(lattice, seen, point) {
                 let Some((index, mirrored)) = find(active, boundary, (end.body, node)) else { continue };
                 if self.workspace.field.nodes[index as usize].mass > T::ZERO {
                     nodes.push((index, mirror(along, mirrored) * (weight * share)));

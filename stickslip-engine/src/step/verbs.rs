@@ -339,8 +339,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             let mut moved_on = 0;
             for p in 0..body.particles.len() {
                 let mut particle = body.particles.get(p);
-                let before =
-                    home::<T, D, B>(&self.settings.lattice, (particle.position, particle.half_width));
+                let (start, half_sides) = body.particles.place(p);
+                let before = home::<T, D, B>(&self.settings.lattice, (start, half_sides));
                 let position = particle.position.space();
                 let moved = Vector::of(motion.moved(position, &rotation, dt));
                 let kind = if !moved.is_finite() {
@@ -350,13 +350,12 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                     particle.spin = spin::<T, D>(motion.spin());
                     particle.position = moved;
                     particle.deformation = turn * particle.deformation;
-                    escaped::<T, D, B>(&particle, &self.settings.lattice, domain)
+                    escaped::<T, D, B>((moved, half_sides), &self.settings.lattice, domain)
                         .then_some(FaultKind::Escaped)
                 };
                 body.particles.set(p, &particle);
                 moved_on += u32::from(
-                    home::<T, D, B>(&self.settings.lattice, (particle.position, particle.half_width))
-                        != before,
+                    home::<T, D, B>(&self.settings.lattice, (particle.position, half_sides)) != before,
                 );
                 let fault = kind.map(|kind| ParticleFault { body: i, particle: p, kind });
                 // No wave runs in a rigid body.

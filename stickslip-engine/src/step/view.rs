@@ -317,11 +317,14 @@ impl<T: Laned, const D: usize, B: Basis<T>> View for Engine<T, D, B> {
 
     fn trace(&self, body: usize, wanted: &(dyn Fn(u32) -> bool + Sync)) -> Vec<TracedParticle> {
         let particles = &self.state.bodies[body].particles;
+        let cell = self.settings.lattice.cell;
         let traced = |i: usize| {
             let particle = particles.get(i);
+            let seen = self.settings.lattice.half_sides(particles.half_sides(i));
             TracedParticle {
                 number: particle.number,
                 half_width: particle.half_width.f64(),
+                half_sides: (seen * cell).space(),
                 position: particle.position.space(),
                 velocity: particle.velocity.space(),
                 deformation: particle.deformation.0.map(|row| row.map(Real::f64)),

@@ -7,7 +7,7 @@
 // Sums over nodes and components read better by their indices.
 #![allow(clippy::needless_range_loop)]
 
-use crate::basis::{Basis, MAX_WIDTH, ShapeFunctions};
+use crate::basis::{Basis, BoxSide, MAX_WIDTH, ShapeFunctions};
 use crate::grid::{NODE_VALUES, NodeSums, NodeValues, WINDOW, WINDOW_NODES, Window};
 use crate::lanes::{Lanes, MOST_LANES, Machine, Numbers};
 use crate::tensor::{Matrix, Number, Real, Symmetric, Vector};
@@ -151,14 +151,14 @@ const fn last_start(dimension: usize) -> usize {
 }
 
 impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
-    /// Particles at `r` from their base nodes with half-widths `half` [cells], `count` of them; `start` has the base
+    /// Particles at `r` from their base nodes [cells] with boxes of these sides, `count` of them; `start` has the base
     /// nodes' places in the window.
     #[inline(always)]
-    pub fn new(r: Vector<V, D>, half: V, start: S, count: usize) -> Self {
+    pub fn new(r: Vector<V, D>, sides: &[BoxSide<V>; D], start: S, count: usize) -> Self {
         // No closure: the compiler may leave one of this size uninlined, and then its instructions are calls.
-        let mut shapes = [B::shape(r[0], half); D];
+        let mut shapes = [B::shape(r[0], &sides[0]); D];
         for i in 1..D {
-            shapes[i] = B::shape(r[i], half);
+            shapes[i] = B::shape(r[i], &sides[i]);
         }
         Group { shapes, r, start, count, basis: PhantomData }
     }

@@ -19,12 +19,12 @@ pub struct Stencil<T, const D: usize, B> {
 }
 
 impl<T: Real, const D: usize, B: Basis<T>> Stencil<T, D, B> {
-    /// The stencil of a particle.
+    /// The stencil of a particle at a position with a box of these half sides [m].
     #[inline(always)]
-    pub fn new(lattice: &Lattice<T, D>, particle: &Particle<T, D>) -> Self {
-        let x = lattice.cells(particle.position);
-        let half = lattice.half(particle.half_width);
-        let axes: [Axis<T>; D] = std::array::from_fn(|i| B::axis(x[i], half));
+    pub fn new(lattice: &Lattice<T, D>, (position, half_sides): (Vector<T, D>, Vector<T, D>)) -> Self {
+        let x = lattice.cells(position);
+        let half = lattice.half_sides(half_sides);
+        let axes: [Axis<T>; D] = std::array::from_fn(|i| B::axis(x[i], half[i]));
         let r = std::array::from_fn(|i| x[i] - T::of(f64::from(axes[i].base)));
         Stencil { axes, r, per_cell: lattice.per_cell, basis: PhantomData }
     }

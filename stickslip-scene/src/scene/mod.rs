@@ -217,6 +217,8 @@ pub enum BasisKind {
     /// Tent functions averaged over the particle's undeformed box (uniform GIMP; Bardenhagen and Kober 2004).
     #[default]
     Gimp,
+    /// The same over a box that follows the particle's stretch (contiguous particle GIMP; Bardenhagen and Kober 2004).
+    Cpgimp,
     /// Quadratic B-splines of the particle's centre (Steffen, Kirby and Berzins 2008).
     Spline,
 }

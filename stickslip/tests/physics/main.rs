@@ -50,6 +50,7 @@ mod servo_walls;
 mod silo;
 mod spinning_disk;
 mod springs;
+mod stretched;
 mod struck_bar;
 mod threads;
 mod transfers;

@@ -2,7 +2,7 @@
 
 use super::sums::{FIRST, FORCE, MASS, MaterialSums, Wanted, placed_rows, stress_rows};
 use super::{Around, Chunk};
-use crate::basis::{Basis, ShapeFunctions};
+use crate::basis::{Basis, BoxSide, ShapeFunctions};
 use crate::grid::{Nodes, SIDE, next_of, node_at};
 use crate::lanes::{Laned, Lanes, MOST_LANES, Machine, Numbers, in_lanes, prefetch};
 use crate::particles::{ColumnStart, Columns, deformation_entries, stress_entries};
@@ -41,11 +41,13 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
         // No closure: the compiler may leave one of some size uninlined, and then its instructions are calls.
         let mut position = Vector::<V, D>::ZERO;
         let half = members.load::<V>(ColumnStart::<D>::HALF_WIDTH) * seen.per_cell;
-        let mut shapes = [B::shape(V::ZERO, half); D];
+        // Of its undeformed box, whatever the nodes see elsewhere: to find surfaces by.
+        let side = BoxSide::new(half);
+        let mut shapes = [B::shape(V::ZERO, &side); D];
         for i in 0..D {
             position[i] = members.load(ColumnStart::<D>::POSITION + i);
             let r = (position[i] - seen.origin[i]) * seen.per_cell - V::splat(T::of(f64::from(cell[i])));
-            shapes[i] = B::shape(r, half);
+            shapes[i] = B::shape(r, &side);
             // The node sees a particle move away as the particle sees the node move: grad at the node = -grad S(x_p).
             for difference in &mut shapes[i].difference {
                 *difference *= seen.per_cell * -seen.sign[i];

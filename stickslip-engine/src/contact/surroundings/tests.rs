@@ -77,7 +77,10 @@ fn plainly<const D: usize, B: Basis<f64>>(
         let sign = |i: usize| if i < D && turned[i] == 1 { -1.0 } else { 1.0 };
         let columns = near.bodies[0].particles.view();
         for (index, particle) in near.bodies[0].particles.iter().enumerate() {
-            let stencil = Stencil::<f64, D, B>::new(&near.lattice, &particle);
+            let stencil = Stencil::<f64, D, B>::new(
+                &near.lattice,
+                (particle.position, Vector([particle.half_width; D])),
+            );
             let Some(offset) = offsets::<D>(B::WIDTH)
                 .find(|offset| (0..D).all(|i| stencil.base()[i] + offset[i] as i32 == image[i]))
             else {
@@ -123,7 +126,7 @@ fn particles_of_a_cell_side_by_side_give_the_sums<const D: usize, B: Basis<f64>>
     let mut active = ActiveBlocks::<D>::default();
     active.update((1, |_| 300, B::WIDTH as i32 - 1), None, |_, particle| {
         let (position, half) = bodies[0].particles.place(particle);
-        std::array::from_fn(|i| Number::max(B::reach(position[i], half), -9.0).floor() as i32)
+        std::array::from_fn(|i| Number::max(B::reach(position[i], half[i]), -9.0).floor() as i32)
     });
     let wall = |axis, node, inward| Wall { axis, node, inward, face: Face::Symmetry };
     let boundary = Boundary::new(vec![wall(0, 0, 1), wall(D - 1, 5, -1)]);

@@ -2,14 +2,14 @@
 
 use super::members::{HistoryOfGroup, Members};
 use super::thickness::free_thickness;
-use crate::basis::Basis;
+use crate::basis::{Basis, BoxSide};
 use crate::body::Gyration;
 use crate::clock::{no_faster, signal_speed};
 use crate::damping::BulkViscosity;
 use crate::lanes::{Laned, Lanes, Machine};
 use crate::material::{Material, Motion, Recall, Thickness};
 use crate::natural::Natural;
-use crate::particles::ColumnStart;
+use crate::particles::{ColumnStart, stretched_half_side};
 use crate::step::pass::{FaultKind, Pass, Verbs, Visit};
 use crate::tensor::{Matrix, Real, Symmetric, Vector};
 use crate::transfer::{
@@ -76,9 +76,14 @@ pub fn group<
     let Verbs { smooth, update_velocity, update_stress, advect, scatter } = verbs;
     let position = members.vector::<V>(ColumnStart::<D>::POSITION);
     let half_width = members.load::<V>(ColumnStart::<D>::HALF_WIDTH);
-    let half = if visit.pass.lattice.whole_cells { V::HALF } else { half_width * constants.per_cell };
+    let own_sides = members.half_sides::<V>();
+    let mut sides = match own_sides {
+        None if visit.pass.lattice.whole_cells => [BoxSide::new(V::HALF); D],
+        None => [BoxSide::new(half_width * constants.per_cell); D],
+        Some(own) => own.0.map(|half| BoxSide::new(half * constants.per_cell)),
+    };
     let group =
-        Group::<V, D, B, S>::new(constants.in_cells(&position) - base, half, start, members.count::<V>());
+        Group::<V, D, B, S>::new(constants.in_cells(&position) - base, &sides, start, members.count::<V>());
     let mut sound = Sound::EVERYTHING;
 
     let mut state =
@@ -232,8 +237,16 @@ pub fn group<
         let moved = position + flow * V::splat(dt);
         sound.require(finite(&moved.0), FaultKind::NotFinite);
         let cells = constants.in_cells(&moved);
+        if own_sides.is_some() {
+            for (i, side) in sides.iter_mut().enumerate() {
+                let most = V::HALF * constants.cell;
+                let half = stretched_half_side(&deformation.0[i], half_width, most);
+                members.store_half_side(i, half);
+                side.half = half * constants.per_cell;
+            }
+        }
         for i in 0..D {
-            let reach = B::reach(cells[i], half);
+            let reach = B::reach(cells[i], sides[i].half);
             inside &= reach.at_least(base[i]) & !reach.at_least(base[i] + V::ONE);
             if let Some([min, max]) = &constants.domain {
                 sound.require(moved[i].at_least(min[i]) & max[i].at_least(moved[i]), FaultKind::Escaped);
@@ -242,7 +255,7 @@ pub fn group<
         if !every::<V>(inside) {
             let far = V::splat(T::of(f64::from(crate::grid::MOST_CELLS - 1)));
             for i in 0..D {
-                let reach = B::reach(cells[i], half);
+                let reach = B::reach(cells[i], sides[i].half);
                 sound.require(reach.at_least(-far) & far.at_least(reach), FaultKind::Escaped);
             }
         }

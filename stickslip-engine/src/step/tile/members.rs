@@ -38,6 +38,8 @@ struct Reads {
     viscosity: usize,
     /// Entries of what initial stress and heat need.
     natural: usize,
+    /// Entries of the boxes.
+    boxes: usize,
 }
 
 impl Reads {
@@ -61,12 +63,13 @@ impl Reads {
                 0
             },
             natural: if verbs.update_stress || verbs.advect { columns.natural_columns().len() } else { 0 },
+            boxes: columns.box_columns().len(),
         }
     }
 
     /// All columns that are read.
     #[inline(always)]
-    fn columns<T: Real, const D: usize>(self, of: &Columns<T, D>) -> [Range<usize>; 7] {
+    fn columns<T: Real, const D: usize>(self, of: &Columns<T, D>) -> [Range<usize>; 8] {
         let only = |read: bool, columns: Range<usize>| if read { columns } else { 0..0 };
         [
             0..ColumnStart::<D>::DEFORMATION,
@@ -76,6 +79,7 @@ impl Reads {
             of.transfer_columns().start..of.transfer_columns().start + self.transfer,
             of.viscosity_columns().start..of.viscosity_columns().start + self.viscosity,
             of.natural_columns().start..of.natural_columns().start + self.natural,
+            of.box_columns(),
         ]
     }
 }
@@ -140,7 +144,7 @@ impl ParticleRuns {
 
 /// Columns of a particle in space.
 const MOST_COLUMNS: usize =
-    ColumnStart::<3>::HISTORY + MOST_HISTORY + stress_entries(3) + 1 + natural::most_entries(3);
+    ColumnStart::<3>::HISTORY + MOST_HISTORY + stress_entries(3) + 1 + natural::most_entries(3) + 3;
 
 impl<'a, T: Real, const D: usize, const WHOLE: bool> Members<'a, T, D, WHOLE> {
     /// Particles that lie side by side.
@@ -285,6 +289,20 @@ impl<'a, T: Real, const D: usize, const WHOLE: bool> Members<'a, T, D, WHOLE> {
             self.store(column, pressure);
         }
         self.give_back::<V>(self.columns.viscosity_columns());
+    }
+
+    /// Half the sides of the boxes that follow the stretch [m]; `None` where boxes keep theirs.
+    #[inline(always)]
+    pub fn half_sides<V: Lanes<Real = T>>(&self) -> Option<Vector<V, D>> {
+        let columns = self.columns.box_columns();
+        if columns.is_empty() { None } else { Some(self.vector(columns.start)) }
+    }
+
+    #[inline(always)]
+    pub fn store_half_side<V: Lanes<Real = T>>(&self, axis: usize, half: V) {
+        let column = self.columns.box_columns().start + axis;
+        self.store(column, half);
+        self.give_back::<V>(column..column + 1);
     }
 
     /// The state without stress; `None` where that is the one in which the body is drawn.
@@ -463,6 +481,9 @@ impl<T: Real> Copies<T> {
                 }
                 if reads.natural > 0 {
                     self.take_run::<V, D>(columns, run, columns.natural_columns());
+                }
+                if reads.boxes > 0 {
+                    self.take_run::<V, D>(columns, run, columns.box_columns());
                 }
             }
         }

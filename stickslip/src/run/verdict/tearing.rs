@@ -21,7 +21,7 @@ impl Check for TearingCheck {
     }
 
     fn advice(&self) -> &'static str {
-        "no law tears it, the grid lost it: try more particles_per_side, the gimp basis, smaller cells, a smaller load"
+        "no law tears it, the grid lost it: try the cpgimp basis with 3 particles_per_side, smaller cells, a smaller load"
     }
 
     fn look(&mut self, look: &CheckInputs) -> Vec<Finding> {
@@ -64,7 +64,8 @@ fn tear(look: &CheckInputs, body: usize) -> Option<Tear> {
     let pairs = &look.neighbours[body].pairs;
     let parted = |&[a, b]: &[u32; 2]| {
         let (a, b) = (&now[a as usize], &now[b as usize]);
-        let excess = distance(a.position, b.position) / reach(look, a, b);
+        let (apart, reach) = (minus(a.position, b.position), reach(look, a, b));
+        let excess = (0..3).map(|i| apart[i].abs() / reach[i]).fold(0.0, f64::max);
         (excess > 1.0).then(|| (excess, middle(a.position, b.position)))
     };
     let mut parted: Vec<(f64, [f64; 3])> = pairs.iter().filter_map(parted).collect();
@@ -86,13 +87,14 @@ fn tear(look: &CheckInputs, body: usize) -> Option<Tear> {
     Some(Tear { share: count as f64 / pairs.len() as f64, excess, position })
 }
 
-/// Distance along an axis up to which two particles share a node wherever they lie [m].
-fn reach(look: &CheckInputs, a: &TracedParticle, b: &TracedParticle) -> f64 {
+/// Distance along each axis up to which two particles share a node wherever they lie [m].
+fn reach(look: &CheckInputs, a: &TracedParticle, b: &TracedParticle) -> [f64; 3] {
     let cell = look.scene.discretization.cell;
     match look.scene.discretization.basis {
-        BasisKind::Linear => cell,
-        BasisKind::Gimp => cell + a.half_width + b.half_width,
-        BasisKind::Spline => 2.0 * cell,
+        BasisKind::Linear => [cell; 3],
+        BasisKind::Gimp | BasisKind::Cpgimp | BasisKind::Spline => {
+            std::array::from_fn(|i| cell + a.half_sides[i] + b.half_sides[i])
+        }
     }
 }
 
