@@ -6,6 +6,10 @@
 //! |---|---|
 //! | a bar in plane stress that two plates glued to its ends pull with a force each, which grows for 10 ms | stress and strain in its middle within 1 % (0.05 and 0.08 %) |
 //! | an eighth of a cube, cut by three mirrors; plates that slide along the mirrors hold a pressure on two of its sides, and one presses the third in: a triaxial test | the pressure, and E eps + 2 nu p, within 2 % (1.4 and 0.9 %) |
+//! | a periodic layer, glued to two plates, of which one moves along and the other holds a pressure: simple shear to 5 % | in its middle third the pressure, at all times, and G gamma within 1 % (0.3 and 0.2 %) |
+//!
+//! Glue joins nodes, and the nodes at a glued face belong to both bodies: within a cell of it the layer carries less, so
+//! the mean over all of its rows is 7 % below the pressure.
 
 use crate::trial::{mean_where, run_to, start};
 use stickslip::door::ParticleSnapshot;
@@ -138,4 +142,36 @@ fn a_triaxial_test_on_an_eighth_of_a_cube() {
     for off in [-x / pressure, -y / pressure, z / axial] {
         assert!((off - 1.0).abs() < 0.02, "{x} {y} {z}");
     }
+}
+
+/// A layer without end between two plates that are glued to it: the lower one moves along, the upper one holds a
+/// pressure (`scenes/sheared_layer.toml`).
+#[test]
+fn a_layer_sheared_at_constant_pressure() {
+    let mut simulation = start(include_str!("../../../scenes/sheared_layer.toml"));
+    let (pressure, shear_modulus) = (4e3, 1e6 / 2.6);
+    let (mut worst, mut steps) = ([0.0_f64; 2], 0);
+    run_to(&mut *simulation, 0.8, |simulation| {
+        steps += 1;
+        if simulation.time() < 0.2 || steps % 20 != 0 {
+            return;
+        }
+        let snapshot = simulation.snapshot();
+        let middle = |p: usize| snapshot.body[p] == 0 && (0.2..0.4).contains(&snapshot.position[p][1]);
+        let mean = |quantity: &dyn Fn(usize) -> f64| mean_where(&snapshot, middle, quantity);
+        let held = mean(&|p| -snapshot.stress[p][1]) / pressure;
+        worst[0] = worst[0].max((held - 1.0).abs());
+        // The slope of the way over the height, by least squares; at the start x is as spread in every row.
+        let [x, y] = [0, 1].map(|axis| mean(&|p| snapshot.position[p][axis]));
+        let spread = |axis: usize, from: f64| {
+            mean(&|p| (snapshot.position[p][axis] - from) * (snapshot.position[p][1] - y))
+        };
+        let gamma = spread(0, x) / spread(1, y);
+        if gamma.abs() > 0.01 {
+            let shear = mean(&|p| snapshot.stress[p][3]) / (shear_modulus * gamma);
+            worst[1] = worst[1].max((shear - 1.0).abs());
+        }
+    });
+    println!("the pressure is off by {:.2} %, the shear stress by {:.2} %", 100.0 * worst[0], 100.0 * worst[1]);
+    assert!(worst[1] > 0.0 && worst.iter().all(|&worst| worst < 0.01), "{worst:?}");
 }
