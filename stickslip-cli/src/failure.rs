@@ -15,6 +15,8 @@ pub enum Failure {
     Doubtful(usize),
     /// A run that was made again did not end in the same bits.
     Differs,
+    /// Checks of the gallery do not hold for these scenes.
+    Untrue(String),
     /// The user stopped it; everything written is valid.
     Interrupted,
     /// It took as long as it was given, by `--max-time`; everything written is valid.
@@ -43,12 +45,12 @@ impl Failure {
         }
     }
 
-    /// 2 for input, 1 for a run, 3 for results that are doubtful, 4 for a run out of its time, 130 for Ctrl-C.
+    /// 2 for input, 1 for a run, 3 for results that are doubtful or untrue, 4 for a run out of its time, 130 for Ctrl-C.
     pub fn exit_code(&self) -> u8 {
         match self {
             Failure::Input(_) => 2,
             Failure::Run(_) => 1,
-            Failure::Doubtful(_) | Failure::Differs => 3,
+            Failure::Doubtful(_) | Failure::Differs | Failure::Untrue(_) => 3,
             Failure::OutOfTime => 4,
             Failure::Interrupted => Self::INTERRUPTED,
         }
@@ -59,7 +61,7 @@ impl Failure {
         match self {
             Failure::Interrupted => eprintln!("interrupted; everything written is valid"),
             Failure::OutOfTime => eprintln!("out of time; everything written is valid"),
-            Failure::Doubtful(_) | Failure::Differs => eprintln!("error: {self}"),
+            Failure::Doubtful(_) | Failure::Differs | Failure::Untrue(_) => eprintln!("error: {self}"),
             Failure::Input(report) | Failure::Run(report) => {
                 let mut text = String::new();
                 let drawn = terminal()
@@ -81,6 +83,7 @@ impl std::fmt::Display for Failure {
             Failure::Interrupted => f.write_str("interrupted"),
             Failure::OutOfTime => f.write_str("out of time"),
             Failure::Differs => f.write_str("the run did not end in the same bits"),
+            Failure::Untrue(scenes) => write!(f, "the check does not hold: {scenes}"),
             Failure::Doubtful(1) => f.write_str("the results are doubtful: 1 warning, with --strict"),
             Failure::Doubtful(count) => {
                 write!(f, "the results are doubtful: {count} warnings, with --strict")

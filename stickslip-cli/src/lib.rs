@@ -10,6 +10,7 @@ mod failure;
 mod files;
 mod film;
 mod frame_pictures;
+mod gallery;
 mod illustration;
 mod jobs;
 pub mod memory;

@@ -4,6 +4,7 @@ mod bench;
 mod check;
 mod completions;
 mod fringes;
+mod gallery;
 mod manual;
 mod network;
 mod new;
@@ -39,6 +40,7 @@ pub enum Command {
     Sweep(sweep::Arguments),
     Check(check::Arguments),
     New(new::Arguments),
+    Gallery(gallery::Arguments),
     Render(Box<render::Arguments>),
     Plot(plot::Arguments),
     Network(network::Arguments),
@@ -76,6 +78,7 @@ impl Command {
             Command::Sweep(arguments) => arguments.execute(),
             Command::Check(arguments) => arguments.execute(),
             Command::New(arguments) => arguments.execute(),
+            Command::Gallery(arguments) => arguments.execute(),
             Command::Render(arguments) => arguments.execute(),
             Command::Plot(arguments) => arguments.execute(),
             Command::Network(arguments) => arguments.execute(),

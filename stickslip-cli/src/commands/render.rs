@@ -8,10 +8,11 @@ use crate::film::{self, FilmKind};
 use crate::frame_pictures::FramePictures;
 use crate::illustration::{Album, PictureChoice, Pictures, snapshots};
 use crate::picture::{ColorQuantity, QuantityParser, Viewpoint};
-use clap::Args;
+use clap::{Args, Parser};
 use miette::miette;
+use std::ffi::OsStr;
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use stickslip::image::Image;
 use stickslip::observe::{FRAMES_PER_SECOND, Frame, Results};
 
@@ -127,7 +128,20 @@ fn a_size_is_two_sides() {
     assert!(size("1280").is_err() && size("0x720").is_err() && size("10x99999").is_err());
 }
 
+/// The arguments alone, as a program.
+#[derive(Parser)]
+struct Alone {
+    #[command(flatten)]
+    arguments: Arguments,
+}
+
 impl Arguments {
+    /// Those of a folder, of words that the program itself says, and of the file to be drawn.
+    pub(super) fn of(folder: &Path, words: &[&str], out: &Path) -> Self {
+        let paths = ["render".as_ref(), folder.as_os_str(), "--out".as_ref(), out.as_os_str()];
+        Alone::parse_from(paths.into_iter().chain(words.iter().map(OsStr::new))).arguments
+    }
+
     pub fn execute(self) -> Result<(), Failure> {
         let results = open(&self.folder)?;
         let frames = snapshots(&results)?;

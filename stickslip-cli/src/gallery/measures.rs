@@ -1,0 +1,152 @@
+//! What is measured on the results of the gallery's scenes. Each function gives the number of one check; the book's
+//! chapter on the gallery says where its bounds come from.
+
+use stickslip::door::{Ledger, ParticleSnapshot};
+use stickslip::observe::{BodyRow, ReadError, Results};
+
+type Measured = Result<f64, ReadError>;
+
+/// [m/s²]
+const GRAVITY: f64 = 9.81;
+
+/// Length of Taylor's bar at the end [mm]: how far its particles reach, and half of their distance at rest.
+pub fn length_of_bar(results: &Results) -> Measured {
+    let particles = last_particles(results)?;
+    let reach = particles.position.iter().map(|position| position[2]).fold(0.0, f64::max);
+    Ok(1e3 * (reach + 0.25 * results.manifest().cell))
+}
+
+/// Kinetic energy that a rolling wheel lost over what its material dissipated, from a fifth of the run on [-].
+pub fn loss_of_wheel(results: &Results) -> Measured {
+    let [first, last] = ledgers(results, 0.2)?;
+    Ok((first.kinetic - last.kinetic) / (last.plastic - first.plastic))
+}
+
+/// Force on a seal over that of Hertz' line contact, where it is first squeezed by a twentieth of its diameter [-].
+pub fn force_of_seal(results: &Results) -> Measured {
+    let diameter = 5e-3;
+    let bodies = results.bodies_table()?;
+    let heights: Vec<f64> =
+        bodies.iter().filter(|row| row.body == "flange").map(|row| row.state.position[1]).collect();
+    let reactions = results.reactions_table()?;
+    let forces = reactions.iter().filter(|row| row.reaction == "flange").map(|row| row.force[1]);
+    // Forces are means between two rows.
+    let squeezes = heights.windows(2).map(|pair| (heights[0] - 0.5 * (pair[0] + pair[1])) / diameter);
+    let found = forces.zip(squeezes).find(|(_, squeeze)| *squeeze > 0.05);
+    Ok(found.map_or(f64::NAN, |(force, squeeze)| force / line_contact(squeeze, diameter)))
+}
+
+/// Force per length that squeezes a cylinder of rubber between two plates, by a share C of its diameter [N/m]:
+///
+/// ```text
+/// C = 4 F / (pi E* d) (ln(2 d / a) - 1/2),   a^2 = 2 F d / (pi E*)       Johnson (1985), Contact Mechanics, eq. (5.57)
+/// ```
+fn line_contact(squeeze: f64, diameter: f64) -> f64 {
+    use std::f64::consts::PI;
+    let modulus = 6e6 / (1.0 - 0.49 * 0.49);
+    let squeeze_of = |force: f64| {
+        let width = (2.0 * force / PI).sqrt();
+        4.0 * force / PI * ((2.0 / width).ln() - 0.5)
+    };
+    // Of forces over E* d; the squeeze grows with the force.
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if squeeze_of(middle) < squeeze { low = middle } else { high = middle }
+    }
+    low * modulus * diameter
+}
+
+/// Stress at which a foam is crushed, the mean from 2/3 of the run on, over that of buckling cells [-].
+pub fn plateau_of_foam(results: &Results) -> Measured {
+    // Side [m], share of walls within it, and Young's modulus in plane strain [Pa].
+    let [side, solid, modulus] = [16e-3, 0.2136_f64, 5e6 / (1.0 - 0.09)];
+    let end = results.manifest().performance.time;
+    let rows = results.reactions_table()?;
+    let force = mean(rows.iter().filter(|row| row.time > 2.0 / 3.0 * end).map(|row| row.force[1]));
+    Ok(force / side / (0.143 * modulus * solid.powi(3)))
+}
+
+/// Mean axial stress of the crystals over that of the binder at the end [-].
+pub fn bridging_of_stress(results: &Results) -> Measured {
+    let particles = last_particles(results)?;
+    let stress = |kind: &str| {
+        let of_kind = |&i: &usize| results.body_names()[particles.body[i] as usize].starts_with(kind);
+        let all = (0..particles.body.len()).filter(of_kind);
+        let (force, volume) = all.fold((0.0, 0.0), |(force, volume), i| {
+            (force + particles.stress[i][1] * particles.volume[i], volume + particles.volume[i])
+        });
+        force / volume
+    };
+    Ok(stress("crystal") / stress("binder"))
+}
+
+/// How far a column of grains ran out over its width [-]: to the grain from which on 5 of 100 lie further.
+pub fn run_out_of_column(results: &Results) -> Measured {
+    /// Of the column [m].
+    const WIDTH: f64 = 0.16;
+    let end = bodies_at(results, f64::INFINITY)?;
+    let mut places: Vec<f64> = grains(&end).map(|row| row.state.position[0]).collect();
+    places.sort_by(f64::total_cmp);
+    Ok((places[places.len() * 95 / 100] - WIDTH) / WIDTH)
+}
+
+/// Rate at which grains leave a silo, from 0.2 s to 0.6 s, over that of a free-fall arch [-]: grains fall from half a
+/// circle as wide as the opening less a grain, where they were at rest, W = 0.874 rho sqrt(g) (D - d)^(3/2).
+pub fn rate_of_silo(results: &Results) -> Measured {
+    // Grains' diameter and opening [m], density of the grains times their share of the filling [kg/m³].
+    let [d, opening, density] = [0.01, 0.06, 1100.0 * 0.8];
+    let law = 0.874 * density * GRAVITY.sqrt() * f64::powf(opening - d, 1.5);
+    let within = |rows: &[BodyRow]| -> f64 {
+        grains(rows).filter(|row| row.state.position[1] > 0.0).map(|row| row.state.mass).sum()
+    };
+    let [early, late] = [bodies_at(results, 0.2)?, bodies_at(results, 0.6)?];
+    Ok((within(&early) - within(&late)) / (late[0].time - early[0].time) / law)
+}
+
+/// Moment that turns a mill over the moment of the balls' weight about its axis [-], means over its second half.
+pub fn moment_of_mill(results: &Results) -> Measured {
+    let half = 0.5 * results.manifest().performance.time;
+    let reactions = results.reactions_table()?;
+    let moment = mean(reactions.iter().filter(|row| row.time > half).map(|row| row.moment[2]));
+    let groups = results.groups_table()?;
+    let balls = groups.iter().filter(|row| row.time > half);
+    Ok(moment / mean(balls.map(|row| -row.mass * GRAVITY * row.position[0])))
+}
+
+/// Friction's work on a slide over its weight times how far its middle went forward [-].
+pub fn friction_of_slide(results: &Results) -> Measured {
+    let (start, end) = (bodies_at(results, 0.0)?, bodies_at(results, f64::INFINITY)?);
+    let [from, to] = [&start[0].state, &end[0].state];
+    let way = (to.position[0] - from.position[0]).hypot(to.position[1] - from.position[1]);
+    let [_, last] = ledgers(results, 0.0)?;
+    Ok(last.friction / (from.mass * GRAVITY * way))
+}
+
+/// The ledgers after a share of the run and at its end.
+fn ledgers(results: &Results, share: f64) -> Result<[Ledger; 2], ReadError> {
+    let energy = results.energy_table()?;
+    let last = energy.len().saturating_sub(1);
+    Ok([(share * last as f64) as usize, last].map(|row| energy[row].ledger.clone()))
+}
+
+/// The rows of the bodies at the last time up to one.
+fn bodies_at(results: &Results, time: f64) -> Result<Vec<BodyRow>, ReadError> {
+    let rows = results.bodies_table()?;
+    let found = rows.iter().map(|row| row.time).filter(|found| *found <= time).fold(0.0, f64::max);
+    Ok(rows.into_iter().filter(|row| row.time == found).collect())
+}
+
+fn grains(rows: &[BodyRow]) -> impl Iterator<Item = &BodyRow> {
+    rows.iter().filter(|row| row.body.starts_with("grain"))
+}
+
+fn last_particles(results: &Results) -> Result<ParticleSnapshot, ReadError> {
+    results.frames().last().map_or_else(|| Ok(ParticleSnapshot::default()), |frame| results.particles(frame))
+}
+
+/// The mean; of nothing, not a number, which is within no bounds.
+fn mean(values: impl Iterator<Item = f64>) -> f64 {
+    let (sum, count) = values.fold((0.0, 0.0), |(sum, count), value| (sum + value, count + 1.0));
+    sum / count
+}
