@@ -84,29 +84,6 @@ def foam():
     write_png("foam.png", np.clip(128 + 128 * (2 - wall), 0, 255)[::-1])
 
 
-def gear(name, teeth, module, center, turn, low, high):
-    """Involute teeth with a pressure angle of 20 degrees, thinner by a little than half of the pitch."""
-    pitch, angle = 0.5 * module * teeth, np.radians(20)
-    base, outer, root = pitch * np.cos(angle), pitch + module, pitch - 1.25 * module
-    involute = lambda r: np.sqrt(max((r / base) ** 2 - 1, 0)) - np.arctan(np.sqrt(max((r / base) ** 2 - 1, 0)))
-    half = 0.5 * np.pi / teeth - 0.02 * module / pitch
-    radii = [root] + list(np.linspace(max(base, root), outer, 6))
-    flank = [(r, half + involute(pitch) - involute(max(r, base))) for r in radii]
-    points = []
-    for tooth in range(teeth):
-        middle = 2 * np.pi * tooth / teeth + turn
-        points += [(r, middle - t) for r, t in flank] + [(r, middle + t) for r, t in reversed(flank)]
-    at = lambda r, t: (center + r * np.cos(t), r * np.sin(t))
-    triangles = []
-    for (r, t), (s, u) in zip(points, points[1:] + points[:1]):
-        rim, hub, middle = (at(r, t), at(s, u)), (at(0.8 * root, t), at(0.8 * root, u)), (center, 0.0)
-        for a, b, c in ((*rim, hub[1]), (rim[0], hub[1], hub[0]), (*hub, middle)):
-            triangles += [[(*b, low), (*a, low), (*c, low)], [(*a, high), (*b, high), (*c, high)]]
-        (a, b), (c, d) = [[(*p, z) for p in rim] for z in (low, high)]
-        triangles += [[a, b, d], [a, d, c]]
-    write_stl(name, triangles)
-
-
 def tread():
     """A block of 20 x 16 x 10 mm with two sipes of 1.5 mm from below, as columns of boxes that share their faces."""
     x = [0.0, 5.75, 7.25, 12.75, 14.25, 20.0]

@@ -67,6 +67,26 @@ pub fn plateau_of_foam(results: &Results) -> Measured {
     Ok(force / side / (0.143 * modulus * solid.powi(3)))
 }
 
+/// Speed of a bolt and the plug that it sheared out of a plate, over that of Recht and Ipson (1963) [-]:
+///
+/// ```text
+/// v = sqrt((m_b v0 / (m_b + m_p))^2 - 2 W / (m_b + m_p)),   W = k h^2
+/// ```
+/// with the masses of bolt and plug, the bolt's speed before, the shear strength k, and the plate's thickness h: the
+/// work W of shear on two planes, whose length falls to zero as the plug moves by h.
+pub fn speed_of_bolt(results: &Results) -> Measured {
+    let [speed, strength, thickness] = [600.0, 3e8 / 3_f64.sqrt(), 6e-3];
+    let end = bodies_at(results, f64::INFINITY)?;
+    let both =
+        || end.iter().filter(|row| ["bolt", "plug"].contains(&row.body.as_str())).map(|row| &row.state);
+    let mass: f64 = both().map(|state| state.mass).sum();
+    let momentum: f64 = both().map(|state| -state.mass * state.velocity[1]).sum();
+    let bolt: f64 = end.iter().filter(|row| row.body == "bolt").map(|row| row.state.mass).sum();
+    let work = strength * thickness * thickness;
+    let law = ((bolt * speed / mass).powi(2) - 2.0 * work / mass).sqrt();
+    Ok(momentum / mass / law)
+}
+
 /// Mean axial stress of the crystals over that of the binder at the end [-].
 pub fn bridging_of_stress(results: &Results) -> Measured {
     let particles = last_particles(results)?;
@@ -79,6 +99,19 @@ pub fn bridging_of_stress(results: &Results) -> Measured {
         force / volume
     };
     Ok(stress("crystal") / stress("binder"))
+}
+
+/// Normal force that those contacts of disks bear that bear more than the mean, over that of all contacts of disks, at
+/// the end [-].
+pub fn share_of_chains(results: &Results) -> Measured {
+    let contacts = results.contacts_table()?;
+    let end = contacts.last().map_or(0.0, |row| row.time);
+    let disks = contacts
+        .iter()
+        .filter(|row| row.time == end && row.body_a.starts_with("disk") && row.body_b.starts_with("disk"));
+    let forces: Vec<f64> = disks.map(|row| row.mean.normal).collect();
+    let middle = mean(forces.iter().copied());
+    Ok(forces.iter().filter(|force| **force > middle).sum::<f64>() / forces.iter().sum::<f64>())
 }
 
 /// How far a column of grains ran out over its width [-]: to the grain from which on 5 of 100 lie further.
@@ -121,6 +154,29 @@ pub fn friction_of_slide(results: &Results) -> Measured {
     let way = (to.position[0] - from.position[0]).hypot(to.position[1] - from.position[1]);
     let [_, last] = ledgers(results, 0.0)?;
     Ok(last.friction / (from.mass * GRAVITY * way))
+}
+
+/// Force of the carcass on a tread block along the road over that down, means from 2/3 of the run on [-].
+pub fn friction_of_tread(results: &Results) -> Measured {
+    let end = results.manifest().performance.time;
+    let rows = results.loads_table()?;
+    let force =
+        |axis: usize| mean(rows.iter().filter(|row| row.time > 2.0 / 3.0 * end).map(|row| row.force[axis]));
+    Ok(-force(0) / force(2))
+}
+
+/// How deep a ball sank over what Uehara et al. (2003) found for balls in sand [-].
+pub fn depth_of_ball(results: &Results) -> Measured {
+    // Diameter, speed at first touch, and the bed's height [m, m/s, m].
+    let [diameter, speed, bed] = [0.05, 1.5, 0.37_f64];
+    // Densities of the ball and of the bed [kg/m³], and the slope of repose.
+    let [ball, bulk, repose] = [7800.0, 1100.0 * 0.82, 0.4_f64];
+    let end = bodies_at(results, f64::INFINITY)?;
+    let lowest = end.iter().filter(|row| row.body == "ball").map(|row| row.state.position[1]);
+    let depth = bed - (mean(lowest) - 0.5 * diameter);
+    let fall = f64::powi(speed, 2) / (2.0 * GRAVITY) + depth;
+    let law = 0.14 / repose * (ball / bulk).sqrt() * f64::powf(diameter, 2.0 / 3.0) * fall.cbrt();
+    Ok(depth / law)
 }
 
 /// The ledgers after a share of the run and at its end.
