@@ -62,14 +62,21 @@ fn write_gif(
     let mut encoder = None;
     let mut to = Some(to);
     for image in images {
-        let Image { size, pixels } = image?;
-        let [width, height] = size.map(|side| u16::try_from(side).unwrap_or(u16::MAX));
+        let image = image?;
+        let [width, height] = image.size.map(|side| u16::try_from(side).unwrap_or(u16::MAX));
         if let Some(to) = to.take() {
             let mut begun = gif::Encoder::new(to, width, height, &[]).map_err(io::Error::other)?;
             begun.set_repeat(gif::Repeat::Infinite).map_err(io::Error::other)?;
             encoder = Some(begun);
         }
-        let mut frame = gif::Frame::from_rgb_speed(width, height, &pixels, 10);
+        let mut frame = if image.opacity.is_empty() {
+            gif::Frame::from_rgb_speed(width, height, &image.pixels, 10)
+        } else {
+            let mut frame = gif::Frame::from_rgba_speed(width, height, &mut image.with_opacity(), 10);
+            // The next image is not to be drawn over this one.
+            frame.dispose = gif::DisposalMethod::Background;
+            frame
+        };
         // Hundredths of a second.
         frame.delay = (100.0 / rate).round().clamp(1.0, 60_000.0) as u16;
         let encoder = encoder.as_mut().expect("it has begun with the first image");

@@ -1,10 +1,11 @@
 //! Pictures and a chart of a folder of results.
 
 use crate::chart::{ChartChoice, chart};
-use crate::drawing::{ColorMap, DrawError, Scale, save};
+use crate::drawing::{Background, ColorMap, DrawError, Scale, save};
 use crate::failure::Failure;
 use crate::picture::{
-    self, BoxCorners, ColorQuantity, PictureStyle, Quarters, Setting, SymmetryPlane, Viewpoint,
+    self, BoxCorners, ColorQuantity, PicturePart, PictureStyle, Quarters, Setting, Subject, SymmetryPlane,
+    ViewPath, Viewpoint,
 };
 use miette::miette;
 use std::path::Path;
@@ -30,13 +31,25 @@ pub struct PictureChoice {
     pub range: Option<[f64; 2]>,
     /// The colours of values; those that suit, without it.
     pub colors: Option<ColorMap>,
-    /// Where the camera stands.
-    pub view: Viewpoint,
+    /// Whether values are averaged over neighbours; without it, those are that come of the stress.
+    pub smooth: Option<bool>,
+    /// How many lines are drawn along which the values are the same.
+    pub contours: usize,
+    /// Whether velocities are drawn as arrows.
+    pub arrows: bool,
+    /// Where the camera stands, or goes from the first snapshot to the last.
+    pub view: ViewPath,
     /// `x`, `y`, `z` or `none`. Without it, pictures of bodies are mirrored where the scene has just one plane of
     /// symmetry; pictures of values are not, as the cut shows the inside.
     pub mirror: Option<String>,
     /// Width and height in pixels.
     pub size: Option<[usize; 2]>,
+    /// Lower and upper corner of what is shown [m]: two numbers each in the plane, three in space.
+    pub window: Option<Vec<f64>>,
+    /// What the picture stands on.
+    pub background: Background,
+    /// What is left out.
+    pub hidden: Vec<PicturePart>,
 }
 
 impl Default for PictureChoice {
@@ -46,9 +59,15 @@ impl Default for PictureChoice {
             quantity: ColorQuantity::Body,
             range: None,
             colors: None,
-            view: Viewpoint::Auto,
+            smooth: None,
+            contours: 0,
+            arrows: false,
+            view: ViewPath(vec![Viewpoint::Auto]),
             mirror: None,
             size: None,
+            window: None,
+            background: Background::Color([255; 3]),
+            hidden: Vec::new(),
         }
     }
 }
@@ -75,31 +94,37 @@ pub struct Album<'a> {
     /// Of each body, whether it is drawn.
     shown: Vec<bool>,
     bounds: Option<BoxCorners>,
+    window: Option<BoxCorners>,
+    /// The largest speed of all snapshots [m/s].
+    fastest: Option<f64>,
 }
 
 impl<'a> Album<'a> {
     /// Opens the snapshots of a run.
     ///
     /// # Errors
-    /// There are none, no law remembers what colour is to stand for, or the scene has no plane of symmetry where the
-    /// user wants a mirror.
+    /// There are none, no law remembers what colour is to stand for, the scene has no plane of symmetry where the user
+    /// wants a mirror, or has another dimension than what the user wants to see.
     pub fn open(results: &'a Results, choice: PictureChoice) -> Result<Self, Failure> {
         let first = snapshots(results)?.first().expect("there is at least one");
         needs_whole_snapshots(results)?;
         let setting = Setting::of(&results.scene().map_err(Failure::input)?);
         let setting = setting.with_floors(&results.manifest().scene);
         let mirror = mirror(&setting, &choice)?;
+        let window = fits(results.manifest().dimension, &choice)?;
         let shown = shown(results, &choice);
+        let setting = setting.with_bodies(&shown);
         let first = particles(results, &shown, first)?;
         choice.quantity.is_in(&first).map_err(|what| Failure::Input(miette!("--color: {what}")))?;
         let quarters = picture::quarters(&first, &setting);
-        Ok(Album { results, setting, quarters, mirror, choice, shown, bounds: None })
+        Ok(Album { results, setting, quarters, mirror, choice, shown, bounds: None, window, fastest: None })
     }
 
     /// The same album with one camera and one range of colours for all pictures.
     pub fn steadied(&self) -> Result<Self, Failure> {
         let mut album = self.clone();
         let mut range = [f64::INFINITY, f64::NEG_INFINITY];
+        let mut fastest = 0.0f64;
         for frame in self.results.frames() {
             let particles = particles(self.results, &self.shown, frame)?;
             let here = picture::bounds(&particles);
@@ -108,41 +133,97 @@ impl<'a> Album<'a> {
                 all[0][axis] = all[0][axis].min(here[0][axis]);
                 all[1][axis] = all[1][axis].max(here[1][axis]);
             }
-            let [low, high] = self.scale(&particles).range;
+            let [low, high] = self.scale(&self.subject(&particles)).range;
             range = [range[0].min(low), range[1].max(high)];
+            fastest = fastest.max(self.fastest(&particles));
         }
         album.choice.range = Some(range);
+        album.fastest = Some(fastest);
         Ok(album)
     }
 
-    fn scale(&self, particles: &ParticleSnapshot) -> Scale {
+    fn subject<'p>(&'p self, particles: &'p ParticleSnapshot) -> Subject<'p> {
         let quantity = &self.choice.quantity;
+        Subject::new(particles, quantity, self.choice.smooth.unwrap_or(quantity.is_stress()))
+    }
+
+    fn scale(&self, subject: &Subject) -> Scale {
         let scale = match self.choice.range {
-            Some(range) => quantity.scale_between(range),
-            None => {
-                let count = particles.body.len();
-                let values: Vec<f64> = (0..count).map(|i| quantity.value(particles, i)).collect();
-                quantity.scale(&values)
-            }
+            Some(range) => subject.quantity.scale_between(range),
+            None => subject.quantity.scale(&subject.values),
         };
         Scale { map: self.choice.colors, ..scale }
+    }
+
+    /// The largest speed of what is not a half-space at rest [m/s].
+    fn fastest(&self, particles: &ParticleSnapshot) -> f64 {
+        let speeds = particles.velocity.iter().map(|v| v.iter().map(|c| c * c).sum::<f64>());
+        speeds.fold(0.0, f64::max).sqrt()
+    }
+
+    /// Where the camera stands in each of the run's snapshots.
+    fn views(&self) -> impl Iterator<Item = Viewpoint> {
+        let count = self.results.frames().len();
+        let share = move |i: usize| i as f64 / count.saturating_sub(1).max(1) as f64;
+        (0..count).map(move |i| self.choice.view.at(share(i)))
     }
 }
 
 impl Pictures for Album<'_> {
     fn picture(&self, frame: &Frame) -> Result<Image, Failure> {
         let particles = particles(self.results, &self.shown, frame)?;
+        let subject = self.subject(&particles);
+        let number = self.results.frames().iter().position(|other| other.path == frame.path);
+        let choice = &self.choice;
         let look = PictureStyle {
-            quantity: self.choice.quantity.clone(),
-            scale: self.scale(&particles),
-            view: self.choice.view,
+            scale: self.scale(&subject),
+            view: self.views().nth(number.unwrap_or_default()).unwrap_or(Viewpoint::Auto),
             mirror: self.mirror,
-            size: self.choice.size,
+            size: choice.size,
             bounds: self.bounds,
+            window: self.window,
+            path: if choice.view.is_path() { self.views().collect() } else { Vec::new() },
+            background: choice.background,
+            contours: choice.contours,
+            fastest: choice.arrows.then(|| self.fastest.unwrap_or_else(|| self.fastest(&particles))),
+            hidden: choice.hidden.clone(),
         };
-        let canvas = picture::draw(&particles, &self.setting, &self.quarters, (frame.time, &look))?;
-        Ok(canvas.image())
+        Ok(picture::draw(&subject, &self.setting, &self.quarters, (frame.time, &look))?)
     }
+}
+
+/// The part of space that the user wants to see.
+///
+/// # Errors
+/// That, or what is to be drawn there, does not suit the dimension of the scene.
+fn fits(dimension: usize, choice: &PictureChoice) -> Result<Option<BoxCorners>, Failure> {
+    let wrong = |what: String| Err(Failure::Input(miette!("{what}")));
+    if choice.contours > 0 && choice.quantity == ColorQuantity::Body {
+        return wrong(
+            "--contours: found no column of numbers; allowed: with --color and one of them".to_owned(),
+        );
+    }
+    if dimension == 3 && (choice.contours > 0 || choice.arrows) {
+        let option = if choice.arrows { "--vectors" } else { "--contours" };
+        return wrong(format!("{option}: found a scene in space; allowed: plane scenes"));
+    }
+    let Some(numbers) = &choice.window else { return Ok(None) };
+    if numbers.len() != 2 * dimension {
+        let allowed = match dimension {
+            2 => "four lengths in a plane scene, LEFT,BOTTOM,RIGHT,TOP",
+            _ => "six lengths in space, the lower corner x,y,z and the upper",
+        };
+        return wrong(format!("--window: found {} lengths; allowed: {allowed}", numbers.len()));
+    }
+    let corner = |of: &[f64]| [0, 1, 2].map(|axis| of.get(axis).copied().unwrap_or(0.0));
+    let (low, high) = numbers.split_at(dimension);
+    if (0..dimension).any(|axis| low[axis] >= high[axis]) {
+        return wrong(
+            "--window: found a corner that is not above the first; allowed: lower corner, upper corner"
+                .to_owned(),
+        );
+    }
+    Ok(Some([corner(low), corner(high)]))
 }
 
 /// Of each body, whether the user wants to see it.

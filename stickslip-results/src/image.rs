@@ -1,5 +1,6 @@
 //! Images of eight bits a colour, as PNG files and as animated PNG files, which browsers play.
 
+use std::borrow::Cow;
 use std::fs::File;
 use std::io::{self, BufReader, Write};
 use std::path::Path;
@@ -11,6 +12,8 @@ pub struct Image {
     pub size: [usize; 2],
     /// Red, green and blue of each pixel.
     pub pixels: Vec<u8>,
+    /// How much each pixel hides of what lies behind the image, 0 to 255; empty if all hide everything.
+    pub opacity: Vec<u8>,
 }
 
 /// A byte of a PNG file holds at most so many of its image, as packed by deflate.
@@ -19,7 +22,18 @@ const MOST_UNPACKED: u64 = 1032;
 impl Image {
     /// An image of one colour.
     pub fn new(size: [usize; 2], color: [u8; 3]) -> Self {
-        Image { size, pixels: color.repeat(size[0] * size[1]) }
+        Image::opaque(size, color.repeat(size[0] * size[1]))
+    }
+
+    /// An image that hides what lies behind it.
+    pub fn opaque(size: [usize; 2], pixels: Vec<u8>) -> Self {
+        Image { size, pixels, opacity: Vec::new() }
+    }
+
+    /// Red, green, blue and opacity of each pixel.
+    pub fn with_opacity(&self) -> Vec<u8> {
+        let opacity = self.opacity.iter().copied().chain(std::iter::repeat(255));
+        self.pixels.chunks_exact(3).zip(opacity).flat_map(|(rgb, a)| [rgb[0], rgb[1], rgb[2], a]).collect()
     }
 
     /// The colour of a pixel, counted from the left and from the top.
@@ -38,8 +52,13 @@ impl Image {
     /// The writer refuses.
     pub fn write_png(&self, to: &mut dyn Write) -> io::Result<()> {
         let mut writer = self.encoder(to).write_header()?;
-        writer.write_image_data(&self.pixels)?;
+        writer.write_image_data(&self.data())?;
         Ok(writer.finish()?)
+    }
+
+    /// The pixels as PNG files have them.
+    fn data(&self) -> Cow<'_, [u8]> {
+        if self.opacity.is_empty() { Cow::Borrowed(&self.pixels) } else { Cow::Owned(self.with_opacity()) }
     }
 
     /// Reads a PNG file that [`Image::write_png`] wrote.
@@ -52,18 +71,26 @@ impl Image {
         let mut reader = png::Decoder::new(BufReader::new(file)).read_info()?;
         let size = [reader.info().width as usize, reader.info().height as usize];
         let wrong = |what| io::Error::new(io::ErrorKind::InvalidData, what);
-        if reader.output_color_type() != (png::ColorType::Rgb, png::BitDepth::Eight) {
-            return Err(wrong("not an image of eight bits a colour"));
-        }
+        let channels = match reader.output_color_type() {
+            (png::ColorType::Rgb, png::BitDepth::Eight) => 3,
+            (png::ColorType::Rgba, png::BitDepth::Eight) => 4,
+            _ => return Err(wrong("not an image of eight bits a colour")),
+        };
         let bytes = reader.output_buffer_size().filter(|&bytes| bytes as u64 <= MOST_UNPACKED * length);
         let mut pixels = vec![0; bytes.ok_or_else(|| wrong("more pixels than the file can hold"))?];
         reader.next_frame(&mut pixels)?;
-        Ok(Image { size, pixels })
+        if channels == 3 {
+            return Ok(Image::opaque(size, pixels));
+        }
+        let opacity = pixels.iter().skip(3).step_by(4).copied().collect();
+        let pixels = pixels.chunks_exact(4).flat_map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect();
+        Ok(Image { size, pixels, opacity })
     }
 
     fn encoder<'a>(&self, to: &'a mut dyn Write) -> png::Encoder<'static, &'a mut dyn Write> {
         let mut encoder = png::Encoder::new(to, self.size[0] as u32, self.size[1] as u32);
-        encoder.set_color(png::ColorType::Rgb);
+        let opaque = self.opacity.is_empty();
+        encoder.set_color(if opaque { png::ColorType::Rgb } else { png::ColorType::Rgba });
         // Pictures are written while a run goes on: a little larger, but many times faster than with the default.
         encoder.set_compression(png::Compression::Fast);
         encoder
@@ -90,13 +117,13 @@ pub fn write_animation(
     // The delay is a fraction of two small whole numbers.
     encoder.set_frame_delay((1000.0 / rate).round().clamp(1.0, 60_000.0) as u16, 1000)?;
     let mut writer = encoder.write_header()?;
-    writer.write_image_data(&first.pixels)?;
+    writer.write_image_data(&first.data())?;
     for image in images {
         let image = image?;
-        if image.size != first.size {
+        if image.size != first.size || image.opacity.len() != first.opacity.len() {
             return Err(wrong("an animation of images of different sizes"));
         }
-        writer.write_image_data(&image.pixels)?;
+        writer.write_image_data(&image.data())?;
     }
     Ok(writer.finish()?)
 }
@@ -117,6 +144,9 @@ mod tests {
         let path = folder.path().join("a.png");
         image(9).write_png(&mut File::create(&path).unwrap()).unwrap();
         assert_eq!(Image::read_png(&path).unwrap(), image(9));
+        let clear = Image { opacity: (0..35).collect(), ..image(9) };
+        clear.write_png(&mut File::create(&path).unwrap()).unwrap();
+        assert_eq!(Image::read_png(&path).unwrap(), clear);
     }
 
     #[test]

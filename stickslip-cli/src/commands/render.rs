@@ -2,13 +2,13 @@
 
 use super::fringes::FringeArguments;
 use super::{are_names, open, recorded, say};
-use crate::drawing::{ColorMap, DrawError, save};
+use crate::drawing::{Background, ColorMap, DrawError, save};
 use crate::failure::Failure;
 use crate::film::{self, FilmKind};
 use crate::frame_pictures::FramePictures;
 use crate::illustration::{Album, PictureChoice, Pictures, snapshots};
-use crate::picture::{ColorQuantity, QuantityParser, Viewpoint};
-use clap::{Args, Parser};
+use crate::picture::{ColorQuantity, PicturePart, QuantityParser, ViewPath};
+use clap::{Args, Parser, ValueEnum};
 use miette::miette;
 use std::ffi::OsStr;
 use std::io;
@@ -59,9 +59,28 @@ pub struct Arguments {
     #[arg(long, value_enum)]
     colors: Option<ColorMap>,
 
-    /// Where the camera stands: auto, an axis (x, -x, ...), or AZIMUTH,ELEVATION in degrees from the front.
+    /// Average values over the neighbours of each particle within its body, as fringes do; without this, those that come
+    /// of the stress are, which differs between neighbours by more than it means, and others are not.
+    #[arg(long, value_name = "yes|no", conflicts_with = "fringes")]
+    smooth: Option<Answer>,
+
+    /// Lines along which the values are the same, so many at equal steps between the ends of the colours; in the plane.
+    #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u16).range(1..=100), conflicts_with = "fringes")]
+    contours: Option<u16>,
+
+    /// Arrows on a regular raster, averaged over neighbours; in the plane.
+    #[arg(long, value_enum, value_name = "COLUMN", conflicts_with = "fringes")]
+    vectors: Option<VectorColumn>,
+
+    /// Where the camera stands: auto, an axis (x, -x, ...), or AZIMUTH,ELEVATION in degrees from the front. Several of
+    /// these, as 0,20:90,20, are passed at even pace from the first snapshot to the last with `--all` and `--animate`.
     #[arg(long, default_value = "auto", allow_hyphen_values = true)]
-    view: Viewpoint,
+    view: ViewPath,
+
+    /// The part of the scene to show, by lengths in metres or with a unit: LEFT,BOTTOM,RIGHT,TOP, nothing beside which is
+    /// shown; in space the two corners of a box that is to fill the picture, X,Y,Z,X,Y,Z.
+    #[arg(long, value_name = "CORNERS", value_parser = window, allow_hyphen_values = true, conflicts_with = "fringes")]
+    window: Option<Window>,
 
     /// Draw the other half across a plane of symmetry; without this, pictures of bodies do where the scene has just
     /// one.
@@ -72,6 +91,14 @@ pub struct Arguments {
     #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = size)]
     size: Option<[usize; 2]>,
 
+    /// What the picture stands on: white, black, a colour as #RRGGBB, or transparent.
+    #[arg(long, value_name = "COLOR", default_value = "white", conflicts_with = "fringes")]
+    background: Background,
+
+    /// What to leave out; may be several, separated by commas.
+    #[arg(long, value_enum, value_name = "PART", value_delimiter = ',', conflicts_with = "fringes")]
+    hide: Vec<PicturePart>,
+
     /// The picture, .png, the animation, .png, .gif, .mp4 or .webm, or the folder for `--all`; DIR/picture.png,
     /// DIR/animation.png or DIR/pictures without this, and fringes in the place of picture.
     #[arg(long)]
@@ -79,6 +106,56 @@ pub struct Arguments {
 
     #[command(flatten)]
     fringes: FringeArguments,
+}
+
+/// Yes or no.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Answer {
+    Yes,
+    No,
+}
+
+/// Columns that can be drawn as arrows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum VectorColumn {
+    Velocity,
+}
+
+/// Corners of what is shown [m].
+#[derive(Clone, Debug, PartialEq)]
+struct Window(Vec<f64>);
+
+fn window(text: &str) -> Result<Window, String> {
+    let lengths: Option<Vec<f64>> = text.split(',').map(length).collect();
+    let allowed = || "allowed: four lengths, or six in space, such as \"-2 mm,0,5 mm,1 cm\"".to_owned();
+    lengths.filter(|lengths| [4, 6].contains(&lengths.len())).map(Window).ok_or_else(allowed)
+}
+
+/// A length in metres, which may have another unit.
+fn length(text: &str) -> Option<f64> {
+    const UNITS: [(&str, f64); 8] = [
+        ("nm", 1e9),
+        ("um", 1e6),
+        ("\u{b5}m", 1e6),
+        ("\u{3bc}m", 1e6),
+        ("mm", 1e3),
+        ("cm", 1e2),
+        ("km", 1e-3),
+        ("m", 1.0),
+    ];
+    let text = text.trim();
+    let of_unit = |(unit, parts): &(&str, f64)| Some((text.strip_suffix(unit)?, *parts));
+    let (number, parts) = UNITS.iter().find_map(of_unit).unwrap_or((text, 1.0));
+    number.trim().parse::<f64>().ok().filter(|number| number.is_finite()).map(|number| number / parts)
+}
+
+#[test]
+fn a_window_has_lengths_with_units() {
+    assert_eq!(window("-2 mm,0, 5um,1e-2").unwrap(), Window(vec![-2e-3, 0.0, 5e-6, 1e-2]));
+    assert_eq!(window("0,0,0,1cm,1 m,2").unwrap(), Window(vec![0.0, 0.0, 0.0, 1e-2, 1.0, 2.0]));
+    for wrong in ["1,2,3", "0,0,1,1 s", "0,0,1,inf", "0,0,1,mm"] {
+        assert!(window(wrong).unwrap_err().contains("four lengths"), "{wrong}");
+    }
 }
 
 /// A number above 0.
@@ -153,6 +230,12 @@ impl Arguments {
                 self.draw_film(&*pictures, frames)
             };
         }
+        if self.view.is_path() {
+            let allowed = "one place of the camera, or --all or --animate with it";
+            return Err(Failure::Input(miette!(
+                "--view: found a path for a single picture; allowed: {allowed}"
+            )));
+        }
         let chosen = self.chosen(frames)?;
         let out = self.file("picture.png")?;
         let pictures = self.pictures(&results, &chosen)?;
@@ -180,9 +263,15 @@ impl Arguments {
             quantity: self.color.clone(),
             range: self.range,
             colors: self.colors,
-            view: self.view,
+            smooth: self.smooth.map(|answer| answer == Answer::Yes),
+            contours: self.contours.unwrap_or_default().into(),
+            arrows: self.vectors.is_some(),
+            view: self.view.clone(),
             mirror: self.mirror.clone(),
             size: self.size,
+            window: self.window.clone().map(|Window(lengths)| lengths),
+            background: self.background,
+            hidden: self.hide.clone(),
         };
         let album = Album::open(results, choice)?;
         Ok(Box::new(if frames.len() > 1 { album.steadied()? } else { album }))
@@ -235,6 +324,12 @@ impl Arguments {
             let allowed = "a file name that ends in .png, .gif, .mp4 or .webm";
             Failure::Input(miette!("--out: found `{}`; allowed: {allowed}", out.display()))
         })?;
+        if self.background == Background::Transparent && matches!(kind, FilmKind::Mp4 | FilmKind::Webm) {
+            let allowed = "a colour, or a file name that ends in .png or .gif";
+            return Err(Failure::Input(miette!(
+                "--background: found `transparent` for a film; allowed: {allowed}"
+            )));
+        }
         // A picture that cannot be drawn has a better error than the file that lacks it.
         let mut failure = None;
         let images = frames.iter().map(|frame| {
@@ -253,17 +348,23 @@ impl Arguments {
     }
 }
 
-/// Pictures of one size in rows, two or three in each; white where a row has none.
+/// Pictures of one size in rows, two or three in each; as the corner of the first where a row has none.
 fn side_by_side(images: &[Image]) -> Image {
     let [width, height] = images[0].size;
     let columns = if images.len() < 5 { images.len().min(2) } else { 3 };
     let rows = images.len().div_ceil(columns);
-    let mut whole = Image::new([columns * width, rows * height], [255; 3]);
+    let mut whole = Image::new([columns * width, rows * height], images[0].color(0, 0));
+    if let Some(&corner) = images[0].opacity.first() {
+        whole.opacity = vec![corner; columns * width * rows * height];
+    }
     for (place, image) in images.iter().enumerate() {
         let (column, row) = (place % columns, place / columns);
         for (y, line) in image.pixels.chunks_exact(3 * width).enumerate().take(height) {
             let first = 3 * (((row * height) + y) * columns * width + column * width);
             whole.pixels[first..first + 3 * width].copy_from_slice(line);
+            if let Some(line) = image.opacity.chunks_exact(width).nth(y) {
+                whole.opacity[first / 3..first / 3 + width].copy_from_slice(line);
+            }
         }
     }
     whole
@@ -271,12 +372,18 @@ fn side_by_side(images: &[Image]) -> Image {
 
 #[test]
 fn pictures_stand_in_rows() {
-    let shades = [10, 20, 30].map(|shade| Image::new([3, 2], [shade; 3]));
+    let mut shades = [255, 20, 30].map(|shade| Image::new([3, 2], [shade; 3]));
     let whole = side_by_side(&shades);
     assert_eq!(whole.size, [6, 4]);
     let at = |x: usize, y: usize| whole.pixels[3 * (6 * y + x)];
-    assert_eq!([at(0, 0), at(5, 1), at(2, 3), at(3, 2)], [10, 20, 30, 255]);
+    assert_eq!([at(0, 0), at(5, 1), at(2, 3), at(3, 2)], [255, 20, 30, 255]);
     assert_eq!(side_by_side(&shades[..1]), shades[0]);
+    for (image, opacity) in shades.iter_mut().zip([0, 90, 200]) {
+        image.opacity = vec![opacity; 6];
+    }
+    let whole = side_by_side(&shades);
+    let at = |x: usize, y: usize| whole.opacity[6 * y + x];
+    assert_eq!([at(0, 0), at(5, 1), at(2, 3), at(3, 2)], [0, 90, 200, 0]);
 }
 
 /// A time as one reads it: six digits.

@@ -15,7 +15,7 @@ pub const SAMPLES: usize = 2;
 /// What lines and letters are drawn on.
 pub type Ink<'a> = DrawingArea<BitMapBackend<'a>, Shift>;
 
-/// An RGB image on white.
+/// An RGB image on a background of one colour.
 pub struct Canvas {
     /// Width and height as drawn.
     pub size: [usize; 2],
@@ -28,9 +28,14 @@ pub struct Canvas {
 impl Canvas {
     /// A white canvas for a file of this width and height in pixels, drawn `samples` times larger.
     pub fn new(size: [usize; 2], samples: usize) -> Self {
+        Canvas::colored(size, samples, [255; 3])
+    }
+
+    /// The same in another colour.
+    pub fn colored(size: [usize; 2], samples: usize, color: [u8; 3]) -> Self {
         register_font();
         let size = size.map(|side| side * samples);
-        Canvas { size, samples, pixels: vec![255; 3 * size[0] * size[1]] }
+        Canvas { size, samples, pixels: color.repeat(size[0] * size[1]) }
     }
 
     /// The canvas for lines and letters; lengths are in drawn pixels.
@@ -65,8 +70,47 @@ impl Canvas {
                 (sum / (samples * samples) as u32) as u8
             })
         });
-        Image { size: self.size.map(|side| side / samples), pixels: pixels.collect() }
+        Image::opaque(self.size.map(|side| side / samples), pixels.collect())
     }
+
+    /// Marks the pixels within a radius of a place, both in drawn pixels.
+    pub fn dot(&mut self, [x, y]: [f64; 2], radius: f64, color: Rgb) {
+        let span = |center: f64, end: usize| {
+            let low = (center - radius).floor().max(0.0) as usize;
+            low..((center + radius).ceil().max(0.0) as usize).min(end)
+        };
+        let bytes = color.map(|c| (c * 255.0 + 0.5) as u8);
+        for row in span(y, self.size[1]) {
+            for column in span(x, self.size[0]) {
+                let [dx, dy] = [column as f64 + 0.5 - x, row as f64 + 0.5 - y];
+                if dx * dx + dy * dy <= radius * radius {
+                    let start = 3 * (row * self.size[0] + column);
+                    self.pixels[start..start + 3].copy_from_slice(&bytes);
+                }
+            }
+        }
+    }
+}
+
+/// An image without its background, from what it is on white and on black: whatever was drawn over the background with an
+/// opacity a shows
+///
+/// ```text
+/// on white = a color + (1 - a) 255,   on black = a color,   so   a = 1 - (on white - on black) / 255
+/// ```
+pub fn without_background(on_white: &Image, on_black: &Image) -> Image {
+    let pairs = || on_white.pixels.chunks_exact(3).zip(on_black.pixels.chunks_exact(3));
+    // The three colours differ by rounding.
+    let opacity = |(white, black): (&[u8], &[u8])| {
+        let shine = (0..3).map(|i| white[i].saturating_sub(black[i])).max();
+        255 - shine.unwrap_or_default()
+    };
+    let opacity: Vec<u8> = pairs().map(opacity).collect();
+    let color = |((_, black), &a): ((&[u8], &[u8]), &u8)| {
+        [0, 1, 2].map(|i| (u32::from(black[i]) * 255).checked_div(a.into()).unwrap_or(0).min(255) as u8)
+    };
+    let pixels = pairs().zip(&opacity).flat_map(color).collect();
+    Image { size: on_white.size, pixels, opacity }
 }
 
 /// Writes an image as PNG.
@@ -103,5 +147,19 @@ mod tests {
         assert_eq!(averaged.len(), 3 * 3 * 2);
         assert_eq!(averaged[0], 127);
         assert_eq!(averaged[3], 255);
+    }
+
+    #[test]
+    fn what_white_and_black_show_gives_color_and_opacity() {
+        let on = |background| {
+            let mut canvas = Canvas::colored([2, 1], 2, [background; 3]);
+            canvas.paint([0, 0, 1, 2], |_, _| Some([1.0, 0.5, 0.0]));
+            canvas.image()
+        };
+        let image = without_background(&on(255), &on(0));
+        assert!((126..=129).contains(&image.opacity[0]), "{:?}", image.opacity);
+        assert_eq!(image.opacity[1], 0);
+        let [r, g, b] = image.color(0, 0);
+        assert!(r > 250 && (125..=130).contains(&g) && b == 0, "{r} {g} {b}");
     }
 }

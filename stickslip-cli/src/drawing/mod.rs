@@ -1,10 +1,12 @@
 //! What pictures and charts share: an antialiased canvas, letters, axis marks and colours.
 
+mod background;
 mod canvas;
 mod colors;
 mod ticks;
 
-pub use canvas::{Canvas, Ink, SAMPLES, register_font, save};
+pub use background::Background;
+pub use canvas::{Canvas, Ink, SAMPLES, register_font, save, without_background};
 pub use colors::{ColorMap, Rgb, Scale, body_color, shaded};
 pub use ticks::{Prefix, axis_prefix, label, prefix, ticks};
 

@@ -20,7 +20,9 @@ pub enum Viewpoint {
 
 /// A view that cannot be understood.
 #[derive(Debug, thiserror::Error)]
-#[error("found `{0}`; allowed: auto, x, -x, y, -y, z, -z, or two angles in degrees such as 30,20")]
+#[error(
+    "found `{0}`; allowed: auto, x, -x, y, -y, z, -z, or two angles in degrees such as 30,20, or several of these for a film, such as 0,20:90,20:90,60"
+)]
 pub struct UnknownView(String);
 
 impl FromStr for Viewpoint {
@@ -41,6 +43,43 @@ impl FromStr for Viewpoint {
             (Some(azimuth), Some(elevation)) => Ok(Viewpoint::Angles(azimuth, elevation)),
             _ => Err(unknown()),
         }
+    }
+}
+
+/// One place of the camera, or several that it passes at even pace.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ViewPath(pub Vec<Viewpoint>);
+
+impl FromStr for ViewPath {
+    type Err = UnknownView;
+
+    fn from_str(text: &str) -> Result<Self, UnknownView> {
+        let views: Vec<Viewpoint> = text.split(':').map(str::parse).collect::<Result<_, _>>()?;
+        let turns = |view: &Viewpoint| matches!(view, Viewpoint::Angles(..));
+        if views.len() > 1 && !views.iter().all(turns) {
+            return Err(UnknownView(text.to_owned()));
+        }
+        Ok(ViewPath(views))
+    }
+}
+
+impl ViewPath {
+    /// The place after a share of the way, 0 to 1.
+    pub fn at(&self, share: f64) -> Viewpoint {
+        let way = share.clamp(0.0, 1.0) * (self.0.len() - 1) as f64;
+        let leg = (way as usize).min(self.0.len().saturating_sub(2));
+        match (self.0[leg], self.0.get(leg + 1)) {
+            (Viewpoint::Angles(a, e), Some(&Viewpoint::Angles(b, f))) => {
+                let part = way - leg as f64;
+                Viewpoint::Angles(a + part * (b - a), e + part * (f - e))
+            }
+            (view, _) => view,
+        }
+    }
+
+    /// Whether the camera moves.
+    pub fn is_path(&self) -> bool {
+        self.0.len() > 1
     }
 }
 
@@ -102,6 +141,17 @@ impl Camera {
         self
     }
 
+    /// The camera zoomed so that so many metres across the view fill a rectangle (left, top, width, height) in pixels, whose
+    /// middle stays where it is.
+    pub fn scaled(mut self, [wide, high]: [f64; 2], [left, top, width, height]: [f64; 4]) -> Self {
+        let middle = [left + 0.5 * width, top + 0.5 * height];
+        let scale = (width / wide).min(height / high);
+        let factor = scale / self.scale;
+        self.origin = [0, 1].map(|i| middle[i] + factor * (self.origin[i] - middle[i]));
+        self.scale = scale;
+        self
+    }
+
     /// Pixels from the left and from the top, and metres towards the eye.
     pub fn project(&self, point: Point) -> [f64; 3] {
         [
@@ -158,6 +208,29 @@ mod tests {
         assert_eq!("30,-5".parse::<Viewpoint>().unwrap(), Viewpoint::Angles(30.0, -5.0));
         assert!("above".parse::<Viewpoint>().unwrap_err().to_string().contains("`above`"));
         assert!("1,inf".parse::<Viewpoint>().is_err());
+    }
+
+    #[test]
+    fn a_path_is_passed_at_even_pace() {
+        let path: ViewPath = "0,20:90,20:90,60".parse().unwrap();
+        let at = [0.0, 0.25, 0.5, 0.75, 1.0].map(|share| path.at(share));
+        let angles = [(0.0, 20.0), (45.0, 20.0), (90.0, 20.0), (90.0, 40.0), (90.0, 60.0)];
+        assert_eq!(at, angles.map(|(azimuth, elevation)| Viewpoint::Angles(azimuth, elevation)));
+        let still: ViewPath = "-x".parse().unwrap();
+        assert_eq!((still.at(0.7), still.is_path()), (Viewpoint::Axis(0, true), false));
+        assert!("auto:30,20".parse::<ViewPath>().is_err() && "30,20:".parse::<ViewPath>().is_err());
+    }
+
+    #[test]
+    fn a_zoom_keeps_the_middle() {
+        let camera = Camera::new(Viewpoint::Auto, &Setting::default());
+        let area = [10.0, 20.0, 300.0, 200.0];
+        let camera = camera.fit([unit(0), unit(1), -unit(2)], area);
+        let middle = camera.unproject([160.0, 120.0, 0.0]);
+        let zoomed = camera.scaled([6.0, 1.0], area);
+        assert!((zoomed.scale - 50.0).abs() < 1e-9);
+        let [x, y, _] = zoomed.project(middle);
+        assert!((x - 160.0).abs() < 1e-9 && (y - 120.0).abs() < 1e-9);
     }
 
     #[test]

@@ -1,9 +1,9 @@
 //! Particles as a picture shows them: place, size, shape and colour, with mirror images where the user wants them.
 
-use super::quantity::{colors, determinant};
+use super::Rgb;
+use super::quantity::determinant;
 use super::setting::{Setting, SymmetryPlane};
-use super::{ColorQuantity, Rgb};
-use crate::drawing::{Scale, body_color, shaded};
+use crate::drawing::{body_color, shaded};
 use std::collections::HashMap;
 use stickslip::door::ParticleSnapshot;
 
@@ -32,17 +32,8 @@ impl Grain {
 /// Paler quarters of round bodies, told by where each particle was at the start.
 pub type Quarters = HashMap<(u32, u32), bool>;
 
-/// The particles of a snapshot, coloured.
-pub fn grains(
-    particles: &ParticleSnapshot,
-    quantity: &ColorQuantity,
-    scale: &Scale,
-    quarters: &Quarters,
-) -> Vec<Grain> {
-    let colors = match quantity {
-        ColorQuantity::Body => quartered(particles, quarters),
-        _ => colors(quantity, scale, particles),
-    };
+/// The particles of a snapshot, each in its colour.
+pub fn grains(particles: &ParticleSnapshot, colors: &[Rgb]) -> Vec<Grain> {
     let count = particles.body.len();
     (0..count)
         .map(|i| {
@@ -60,7 +51,8 @@ pub fn grains(
         .collect()
 }
 
-fn quartered(particles: &ParticleSnapshot, quarters: &Quarters) -> Vec<Rgb> {
+/// The colour of each particle's body, paler in every other quarter of a round one.
+pub fn quartered(particles: &ParticleSnapshot, quarters: &Quarters) -> Vec<Rgb> {
     let color = |(&body, &number): (&u32, &u32)| {
         let color = body_color(body as usize);
         if quarters.get(&(body, number)) == Some(&true) { shaded(color, 1.6) } else { color }

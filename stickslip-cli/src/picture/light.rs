@@ -1,15 +1,22 @@
 //! Light on balls: a lamp with shadows, light from the sky that corners get less of, and a dark rim where bodies end.
 
 use super::camera::{Camera, Point};
+use super::floor::{SlabHit, Slabs, SlabsInView};
 use super::grains::Grain;
 use super::splat::{Layer, NOTHING, splat};
 use super::surface::Ball;
-use crate::drawing::{Rgb, SAMPLES};
+use crate::drawing::{Rgb, SAMPLES, body_color};
+use rayon::prelude::*;
+use stickslip::tensor::Vector;
 
 /// Share of a ball's own normal in the normal that light sees; the rest is that of the body's surface.
 const GRAININESS: f64 = 0.24;
+/// Points around another at which it is looked for what hides the sky from it.
+const PROBES: usize = 20;
 /// Distance over which corners darken, in ball radii.
 const CORNER: f64 = 5.0;
+/// Light left where a body ends.
+const RIM: f64 = 0.55;
 /// Pixels along each side of the picture that the lamp sees.
 const SHADOW_MAP: usize = 2048;
 
@@ -23,23 +30,68 @@ pub struct Lit<'a> {
     shadows: Layer,
     radius: f64,
     contrast: f64,
+    slabs: SlabsInView,
+    /// The colour of half-spaces; that of their bodies, without it.
+    slab_color: Option<Rgb>,
+    /// Where around a point it is looked for what hides the sky [m].
+    probes: Vec<[f64; 2]>,
+    /// Of each pixel of the file, what falls on the surface in its middle.
+    coarse: Vec<Option<Illumination>>,
+}
+
+/// How much of the light there is arrives at a surface.
+#[derive(Clone, Copy, Debug)]
+struct Illumination {
+    /// Where the surface is, and which way it faces: a pixel next to it sees the same if these differ little.
+    depth: f32,
+    normal: [f32; 3],
+    /// Shares of the lamp's light and of the sky's.
+    lamp: f32,
+    sky: f32,
+}
+
+/// A point of a surface.
+#[derive(Clone, Copy)]
+struct Lighted {
+    depth: f64,
+    normal: Point,
+    color: Rgb,
+    /// Light left at the rim of a body.
+    rim: f64,
+}
+
+/// What there is to be lit besides balls, and how.
+pub struct Surroundings {
+    /// Half-spaces at rest.
+    pub slabs: Slabs,
+    /// Their colour; that of their bodies, without it.
+    pub slab_color: Option<Rgb>,
+    /// 1 for light as it falls, 0 for colours as they are.
+    pub contrast: f64,
 }
 
 impl<'a> Lit<'a> {
-    /// Draws the balls for the eye and for the lamp. `contrast` is 1 for light as it falls, 0 for colours as they are.
+    /// Draws the balls for the eye and for the lamp.
     pub fn new(
         grains: &'a [Grain],
         balls: &'a [Ball],
         camera: Camera,
         size: [usize; 2],
-        contrast: f64,
+        surroundings: Surroundings,
     ) -> Self {
+        let Surroundings { slabs, slab_color, contrast } = surroundings;
         let toward = camera.toward * 0.62 + camera.up * 0.66 - camera.right * 0.42;
         let lamp = Camera::facing(toward.direction().expect("the eye is not opposite the lamp"), camera.up);
         let side = SHADOW_MAP as f64;
         let lamp = lamp.fit(balls.iter().map(|ball| ball.center), [8.0, 8.0, side - 16.0, side - 16.0]);
         let radius = balls.iter().map(|ball| ball.radius).sum::<f64>() / balls.len().max(1) as f64;
-        Lit {
+        // Points on a sunflower: evenly spread over a disk.
+        let probe = |k: usize| {
+            let (r, angle) =
+                (((k as f64 + 0.5) / PROBES as f64).sqrt() * CORNER * radius, k as f64 * 2.399_963);
+            [r * angle.cos(), r * angle.sin()]
+        };
+        let mut lit = Lit {
             grains,
             balls,
             camera,
@@ -48,27 +100,84 @@ impl<'a> Lit<'a> {
             shadows: splat(balls, &lamp, [SHADOW_MAP; 2]),
             radius,
             contrast,
-        }
+            slabs: slabs.seen(&camera),
+            slab_color,
+            probes: (0..PROBES).map(probe).collect(),
+            coarse: Vec::new(),
+        };
+        // What is costly and varies slowly is found once for the samples of a pixel.
+        let [columns, rows] = size.map(|side| side / SAMPLES);
+        let middle = |place: usize| {
+            let pixel = [place % columns, place / columns].map(|index| index * SAMPLES + SAMPLES / 2);
+            lit.surface(pixel).map(|point| lit.illumination(pixel, &point))
+        };
+        lit.coarse = (0..columns * rows).into_par_iter().map(middle).collect();
+        lit
     }
 
     /// The colour of a pixel; `None` where there is nothing.
     pub fn color(&self, x: usize, y: usize) -> Option<Rgb> {
+        let point = self.surface([x, y])?;
+        let columns = self.layer.size[0] / SAMPLES;
+        let coarse = self.coarse.get(y / SAMPLES * columns + x / SAMPLES).copied().flatten();
+        let alike = |near: &Illumination| {
+            let normal = Vector(near.normal.map(f64::from));
+            (f64::from(near.depth) - point.depth).abs() < self.radius && normal.dot(point.normal) > 0.9
+        };
+        let here = coarse.filter(alike).unwrap_or_else(|| self.illumination([x, y], &point));
+        Some(self.shine(&point, here))
+    }
+
+    /// The surface that a pixel sees.
+    fn surface(&self, [x, y]: [usize; 2]) -> Option<Lighted> {
         let place = y * self.layer.size[0] + x;
-        let ball = self.balls.get(self.layer.ball[place] as usize)?;
         let depth = f64::from(self.layer.depth[place]);
-        let point = self.camera.unproject([x as f64 + 0.5, y as f64 + 0.5, depth]);
+        let sight = [x as f64 + 0.5, y as f64 + 0.5];
+        let slab = self.slabs.hit(sight).filter(|hit| hit.depth > depth);
+        if let Some(hit) = slab {
+            let color = self.slab_color.unwrap_or_else(|| body_color(hit.body as usize));
+            return Some(Lighted { depth: hit.depth, normal: hit.normal, color, rim: self.edge(sight, hit) });
+        }
+        let ball = self.balls.get(self.layer.ball[place] as usize)?;
+        let point = self.camera.unproject([sight[0], sight[1], depth]);
         let own = (point - ball.center) / ball.radius;
         let normal = (own * GRAININESS + ball.normal * (1.0 - GRAININESS)).direction().unwrap_or(own);
-        let lamp = normal.dot(self.lamp.toward).max(0.0);
-        let lamp = if lamp > 0.0 { lamp * self.lit_share(point, normal) } else { 0.0 };
+        Some(Lighted { depth, normal, color: self.grains[ball.grain].color, rim: self.rim([x, y], ball) })
+    }
+
+    /// Darkens a pixel at the edge of a half-space.
+    fn edge(&self, [x, y]: [f64; 2], hit: SlabHit) -> f64 {
+        let reach = (SAMPLES / 2 + 1) as f64;
+        let around = [[-reach, 0.0], [reach, 0.0], [0.0, -reach], [0.0, reach]];
+        let inside = around.iter().all(|[dx, dy]| hit.is_beside(self.slabs.hit([x + dx, y + dy])));
+        if inside { 1.0 } else { RIM }
+    }
+
+    fn illumination(&self, [x, y]: [usize; 2], point: &Lighted) -> Illumination {
+        let Lighted { depth, normal, .. } = *point;
+        let faces = normal.dot(self.lamp.toward) > 0.0;
+        let place = self.camera.unproject([x as f64 + 0.5, y as f64 + 0.5, depth]);
+        let lamp = if faces { self.lit_share(place, normal) } else { 0.0 };
+        let sky = self.openness([x, y], normal, depth);
+        Illumination {
+            depth: depth as f32,
+            normal: normal.0.map(|n| n as f32),
+            lamp: lamp as f32,
+            sky: sky as f32,
+        }
+    }
+
+    /// A surface's colour in the light that falls on it.
+    fn shine(&self, point: &Lighted, here: Illumination) -> Rgb {
+        let Lighted { normal, color, rim, .. } = *point;
+        let (open, arrives) = (f64::from(here.sky), f64::from(here.lamp));
+        let lamp = normal.dot(self.lamp.toward).max(0.0) * arrives;
         let half = (self.lamp.toward + self.camera.toward).direction().expect("lamp and eye are on one side");
         let gloss = 0.10 * normal.dot(half).max(0.0).powi(28) * if lamp > 0.0 { 1.0 } else { 0.0 };
         let sky = 0.75 + 0.25 * normal.dot(self.camera.up);
-        let open = self.openness([x, y], normal, depth);
         let light = 0.68 * sky * open + 0.60 * lamp * (0.6 + 0.4 * open);
-        let light = (1.0 + self.contrast * (light - 1.0)) * self.rim([x, y], ball);
-        let color = self.grains[ball.grain].color;
-        Some(color.map(|c| (c * light as f32 + gloss as f32).clamp(0.0, 1.0)))
+        let light = (1.0 + self.contrast * (light - 1.0)) * rim;
+        color.map(|c| (c * light as f32 + gloss as f32).clamp(0.0, 1.0))
     }
 
     /// Share of the lamp's light that arrives: the mean over a small patch of the lamp's own picture.
@@ -86,14 +195,10 @@ impl<'a> Lit<'a> {
 
     /// 1 on open ground, less in corners: how little of the surroundings in the image stands above the tangent plane.
     fn openness(&self, [x, y]: [usize; 2], normal: Point, depth: f64) -> f64 {
-        const PROBES: usize = 20;
         let reach = CORNER * self.radius;
         let normal =
             [normal.dot(self.camera.right), normal.dot(self.camera.up), normal.dot(self.camera.toward)];
-        let hidden = |k: usize| {
-            // Points on a sunflower: evenly spread over a disk.
-            let (r, angle) = (((k as f64 + 0.5) / PROBES as f64).sqrt() * reach, k as f64 * 2.399_963);
-            let (dx, dy) = (r * angle.cos(), r * angle.sin());
+        let hidden = |&[dx, dy]: &[f64; 2]| {
             let pixel = |offset: f64| (offset * self.camera.scale) as i64;
             let there = self.layer.depth_at(x as i64 + pixel(dx), y as i64 - pixel(dy));
             let rise = f64::from(there) - depth;
@@ -105,7 +210,7 @@ impl<'a> Lit<'a> {
             let fade = (1.0 - (distance / (2.0 * reach)).powi(2)).max(0.0);
             (cosine - 0.15).max(0.0) * fade
         };
-        let hidden = (0..PROBES).map(hidden).sum::<f64>() / PROBES as f64;
+        let hidden = self.probes.iter().map(hidden).sum::<f64>() / PROBES as f64;
         (1.0 - 2.2 * hidden).max(0.25)
     }
 
@@ -125,17 +230,16 @@ impl<'a> Lit<'a> {
             }
         };
         let at_rim = other(-reach, 0) || other(reach, 0) || other(0, -reach) || other(0, reach);
-        if at_rim { 0.55 } else { 1.0 }
+        if at_rim { RIM } else { 1.0 }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::camera::Viewpoint;
-    use super::super::setting::Setting;
+    use super::super::setting::{Floor, Setting};
     use super::super::{sample, surface::surface};
     use super::*;
-    use stickslip::tensor::Vector;
 
     #[test]
     fn the_side_that_faces_the_lamp_is_brighter() {
@@ -143,7 +247,23 @@ mod tests {
         let balls = surface(&grains);
         let camera = Camera::new(Viewpoint::Auto, &Setting::default());
         let corners = [Vector([-1.2; 3]), Vector([1.2; 3])];
-        let lit = Lit::new(&grains, &balls, camera.fit(corners, [0.0, 0.0, 200.0, 200.0]), [200, 200], 1.0);
+        let camera = camera.fit(corners, [0.0, 0.0, 200.0, 200.0]);
+        let lit = |floors: &[Floor]| {
+            let slabs = Slabs::new(floors, &camera, [Vector([-1.0; 3]), Vector([1.0; 3])]);
+            let surroundings = Surroundings { slabs, slab_color: Some([0.8; 3]), contrast: 1.0 };
+            Lit::new(&grains, &balls, camera, [200, 200], surroundings)
+        };
+        let under = lit(&[Floor { body: 0, point: [0.0, 0.0, -1.0], normal: [0.0, 0.0, 1.0] }]);
+        let seen = |point: [f64; 3]| {
+            let [x, y, _] = camera.project(Vector(point));
+            under.color(x as usize, y as usize).map(|rgb| rgb.iter().sum::<f32>())
+        };
+        let (lit_floor, shadow) = (seen([0.95, -0.95, -1.0]).unwrap(), seen([0.1, -0.1, -1.0]));
+        assert!(
+            shadow.is_some_and(|shadow| shadow < lit_floor),
+            "the floor is below the ball, in its shadow"
+        );
+        let lit = lit(&[]);
         let brightness = |x, y| lit.color(x, y).map(|rgb| rgb.iter().sum::<f32>());
         assert!(brightness(80, 70).unwrap() > 1.5 * brightness(120, 140).unwrap());
         assert_eq!(brightness(2, 2), None);

@@ -1,6 +1,9 @@
 //! Pictures of particles, drawn without a display.
 
+mod arrows;
 mod camera;
+mod field;
+mod floor;
 mod furniture;
 mod grains;
 mod light;
@@ -9,18 +12,26 @@ mod quantity;
 #[cfg(test)]
 mod sample;
 mod setting;
+mod smooth;
 mod splat;
+mod subject;
 mod surface;
 
-pub use camera::Viewpoint;
+pub use camera::{ViewPath, Viewpoint};
 pub use grains::{Quarters, quarters};
 pub use quantity::{ColorQuantity, QuantityParser, determinant};
 pub use setting::{Floor, Setting, SymmetryPlane};
+pub use subject::Subject;
 
-use crate::drawing::{Canvas, DrawError, Rgb, SAMPLES, Scale, body_color};
+use crate::drawing::{Background, Canvas, DrawError, Rgb, SAMPLES, Scale, body_color, without_background};
+use arrows::Arrows;
 use camera::{Camera, Point, unit};
+use clap::ValueEnum;
+use field::{PlaneField, Source};
+use floor::Slabs;
+use furniture::Pen;
 use grains::Grain;
-use light::Lit;
+use light::{Lit, Surroundings};
 use plane::{DrawnGrains, PlaneView};
 use stickslip::door::ParticleSnapshot;
 use stickslip::image::Image;
@@ -29,8 +40,6 @@ use stickslip::tensor::Vector;
 /// How a picture is to look.
 #[derive(Clone, Debug)]
 pub struct PictureStyle {
-    /// What colour stands for.
-    pub quantity: ColorQuantity,
     /// The colours of values.
     pub scale: Scale,
     /// Where the camera stands; plane scenes are always seen from the front.
@@ -39,8 +48,41 @@ pub struct PictureStyle {
     pub mirror: Option<SymmetryPlane>,
     /// Width and height in pixels; without them, the height follows the scene.
     pub size: Option<[usize; 2]>,
-    /// The part of space to show, mirror image left out; without it, everything there is.
+    /// The part of space that there is in all pictures, mirror image left out; without it, what there is in this one.
     pub bounds: Option<BoxCorners>,
+    /// The part of space to show; in the plane nothing else is.
+    pub window: Option<BoxCorners>,
+    /// The views of all pictures, if they differ: bodies have one size in all.
+    pub path: Vec<Viewpoint>,
+    /// What the picture stands on.
+    pub background: Background,
+    /// How many lines are drawn along which the values are the same, in the plane.
+    pub contours: usize,
+    /// Velocities are drawn as arrows in the plane, of which the longest stands for so much [m/s].
+    pub fastest: Option<f64>,
+    /// What is left out.
+    pub hidden: Vec<PicturePart>,
+}
+
+impl PictureStyle {
+    fn shows(&self, part: PicturePart) -> bool {
+        !self.hidden.contains(&part)
+    }
+}
+
+/// What stands around the bodies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum PicturePart {
+    /// The scene's title
+    Title,
+    /// The time
+    Time,
+    /// The axes of a plane scene, which has a scale bar then, and the directions of space
+    Axes,
+    /// The colours, the bodies' names and the arrow of velocities
+    Legend,
+    /// The length to measure with
+    ScaleBar,
 }
 
 /// A box along the axes: lower and upper corner [m].
@@ -59,6 +101,8 @@ const WIDTH: usize = 1280;
 /// Space above the bodies, and for the legend on the right [pixels].
 pub const HEADING: usize = 48;
 const COLUMN: usize = 130;
+/// Space where nothing stands [pixels].
+const EDGE: usize = 12;
 /// Contrast of light where colours stand for values, which shadows must not falsify.
 const VALUE_CONTRAST: f64 = 0.6;
 /// Colour of what rests and is everywhere, in pictures of values.
@@ -66,35 +110,65 @@ const FLOOR: Rgb = [0.86; 3];
 /// More bodies than this are not named.
 const MOST_NAMES: usize = 12;
 
+/// Isolines are so wide [pixels of the file].
+const ISOLINE_WIDTH: f64 = 1.3;
+
 /// Draws a snapshot.
 ///
 /// # Errors
 /// There are no particles.
 pub fn draw(
-    particles: &ParticleSnapshot,
+    subject: &Subject,
     setting: &Setting,
     quarters: &Quarters,
     (time, look): (f64, &PictureStyle),
+) -> Result<Image, DrawError> {
+    let on = |color: [u8; 3]| Ok(canvas(subject, setting, quarters, (time, look, color))?.image());
+    let images: Result<Vec<Image>, DrawError> = look.background.colors().into_iter().map(on).collect();
+    let mut images = images?;
+    Ok(match &images[..] {
+        [on_white, on_black] => without_background(on_white, on_black),
+        _ => images.remove(0),
+    })
+}
+
+/// Draws a snapshot on a background of one colour.
+fn canvas(
+    subject: &Subject,
+    setting: &Setting,
+    quarters: &Quarters,
+    (time, look, background): (f64, &PictureStyle, [u8; 3]),
 ) -> Result<Canvas, DrawError> {
+    let particles = subject.particles;
     if particles.body.is_empty() {
         return Err(DrawError::Empty("the snapshot has no particles".to_owned()));
     }
-    let mut grains = grains::grains(particles, &look.quantity, &look.scale, quarters);
+    let colors = match subject.quantity {
+        ColorQuantity::Body => grains::quartered(particles, quarters),
+        _ => subject.values.iter().map(|value| look.scale.color(*value)).collect(),
+    };
+    let mut grains = grains::grains(particles, &colors);
+    let mut floors = setting.floors.clone();
     if let Some(mirror) = look.mirror {
         grains = grains::mirrored(grains, mirror);
+        floors.extend(setting.floors.iter().map(|floor| floor.mirrored(mirror)));
     }
     let extent = extent(&grains, look);
-    let legend = legend(particles, setting, look);
+    let legend = legend(subject, setting, look);
+    // Particles of half-spaces are only where other bodies are.
+    let has_others = grains.iter().any(|grain| !setting.has_floor(grain.body));
+    if !has_others {
+        floors.clear();
+    }
+    let scene = Scene { subject, setting, look, background, legend };
     let mut canvas = if particles.dimension == 2 {
-        let shown: Vec<Grain> =
-            grains.iter().filter(|grain| !setting.has_floor(grain.body)).copied().collect();
-        let floors = (look.mirror.is_none() && !shown.is_empty()).then_some(&setting.floors[..]);
-        let grains = if floors.is_some() { &shown } else { &grains };
-        plane_picture(grains, (&extent, floors.unwrap_or_default()), look, &legend)?
+        scene.plane_picture(&grains, &extent, &floors)?
     } else {
-        space_picture(&grains, &extent, (look, setting), &legend)?
+        scene.space_picture(&grains, extent, &floors)?
     };
-    furniture::heading(&canvas.ink(), setting, time)?;
+    let pen = Pen::new(canvas.ink(), look.background);
+    furniture::heading(&pen, setting, time, |part| look.shows(part))?;
+    drop(pen);
     Ok(canvas)
 }
 
@@ -104,10 +178,12 @@ pub fn draw(
 /// The title cannot be drawn.
 pub fn headed(image: &Image, setting: &Setting, time: f64) -> Result<Image, DrawError> {
     let mut canvas = Canvas::new([image.size[0], HEADING], SAMPLES);
-    furniture::heading(&canvas.ink(), setting, time)?;
-    let Image { size: [width, height], mut pixels } = canvas.image();
+    let pen = Pen::new(canvas.ink(), Background::Color([255; 3]));
+    furniture::heading(&pen, setting, time, |_| true)?;
+    drop(pen);
+    let Image { size: [width, height], mut pixels, .. } = canvas.image();
     pixels.extend(&image.pixels);
-    Ok(Image { size: [width, height + image.size[1]], pixels })
+    Ok(Image::opaque([width, height + image.size[1]], pixels))
 }
 
 /// Points that the picture must hold: the corners of the user's box, or of every particle's.
@@ -119,9 +195,9 @@ fn extent(grains: &[Grain], look: &PictureStyle) -> Vec<Point> {
         let half = 0.5 * grain.size();
         corners(grain.position.map(|x| x - half), grain.position.map(|x| x + half))
     };
-    match look.bounds {
-        Some(bounds) => {
-            let [low, high] = look.mirror.map_or(bounds, |mirror| widened(bounds, mirror));
+    match look.window.map(|window| (window, None)).or(look.bounds.map(|bounds| (bounds, look.mirror))) {
+        Some((bounds, mirror)) => {
+            let [low, high] = mirror.map_or(bounds, |mirror| widened(bounds, mirror));
             corners(low, high).collect()
         }
         None => grains.iter().flat_map(around).collect(),
@@ -160,9 +236,10 @@ fn widened(mut bounds: BoxCorners, mirror: SymmetryPlane) -> BoxCorners {
     bounds
 }
 
-fn legend(particles: &ParticleSnapshot, setting: &Setting, look: &PictureStyle) -> Legend {
-    if look.quantity != ColorQuantity::Body {
-        let (title, unit) = look.quantity.label(particles);
+fn legend(subject: &Subject, setting: &Setting, look: &PictureStyle) -> Legend {
+    let particles = subject.particles;
+    if *subject.quantity != ColorQuantity::Body {
+        let (title, unit) = subject.quantity.label(particles);
         return Legend::Bar { scale: look.scale, title, unit };
     }
     let count = particles.body.iter().max().map_or(0, |last| *last as usize + 1);
@@ -170,80 +247,207 @@ fn legend(particles: &ParticleSnapshot, setting: &Setting, look: &PictureStyle) 
     Legend::Names((0..shown).map(|body| (setting.body_name(body), body_color(body))).collect())
 }
 
-/// Pixels of the picture and of the room for the bodies in it: (left, top, right, bottom) margins go off.
-fn room(look: &PictureStyle, margins: [usize; 4], aspect: f64) -> [[usize; 2]; 2] {
-    let [left, top, right, bottom] = margins;
-    let size = look.size.unwrap_or_else(|| {
-        let height = ((WIDTH - left - right) as f64 / aspect).clamp(280.0, 800.0) as usize;
-        [WIDTH, height + top + bottom]
-    });
-    let inner = [size[0].saturating_sub(left + right), size[1].saturating_sub(top + bottom)];
-    [size, inner.map(|side| side.max(16))]
+/// A snapshot and how it is to be drawn.
+struct Scene<'a> {
+    subject: &'a Subject<'a>,
+    setting: &'a Setting,
+    look: &'a PictureStyle,
+    background: [u8; 3],
+    legend: Legend,
 }
 
-fn plane_picture(
-    grains: &[Grain],
-    (extent, floors): (&[Point], &[Floor]),
-    look: &PictureStyle,
-    legend: &Legend,
-) -> Result<Canvas, DrawError> {
-    let spans = [0, 1].map(|axis| span(extent, unit(axis)));
-    let extent = spans.map(|[low, high]| (high - low).max(1e-9));
-    let margins = [78, HEADING, COLUMN, 56];
-    let [size, inner] = room(look, margins, extent[0] / extent[1]);
-    let mut canvas = Canvas::new(size, SAMPLES);
-    let inner = inner.map(|side| side * SAMPLES);
-    let scale = [0, 1].map(|axis| inner[axis] as f64 / (1.04 * extent[axis]));
-    let scale = scale[0].min(scale[1]);
-    let half = [0, 1].map(|axis| 0.5 * inner[axis] as f64 / scale);
-    let middle = spans.map(|[low, high]| 0.5 * (low + high));
-    let window = PlaneView {
-        low: [middle[0] - half[0], middle[1] - half[1]],
-        high: [middle[0] + half[0], middle[1] + half[1]],
-        size: inner,
-    };
-    let [left, top] = [margins[0] * SAMPLES, margins[1] * SAMPLES];
-    let drawn = DrawnGrains::new(grains, &window);
-    let floor = |x: usize, y: usize| {
-        let place = window.place([x as f64 + 0.5, y as f64 + 0.5]);
-        let body = floors.iter().find(|floor| floor.holds(place))?.body;
-        Some(if look.quantity == ColorQuantity::Body { body_color(body as usize) } else { FLOOR })
-    };
-    canvas.paint([left, top, inner[0], inner[1]], |x, y| drawn.color(x, y).or_else(|| floor(x, y)));
-    let ink = canvas.ink();
-    furniture::axes(&ink, &window, (left as i32, top as i32))?;
-    furniture::legend(&ink, legend, (left + inner[0]) as i32 + 8 * SAMPLES as i32)?;
-    drop(ink);
-    Ok(canvas)
-}
+impl Scene<'_> {
+    /// Width of the furniture: left, top, right, bottom [pixels].
+    fn margins(&self) -> [usize; 4] {
+        let shows = |part| self.look.shows(part);
+        let heading = shows(PicturePart::Title) || shows(PicturePart::Time);
+        let top = if heading { HEADING } else { EDGE };
+        let right = if shows(PicturePart::Legend) { COLUMN } else { EDGE };
+        if self.subject.particles.dimension == 3 {
+            return [24, top, right, 24];
+        }
+        let [left, bottom] = if shows(PicturePart::Axes) { [78, 56] } else { [EDGE; 2] };
+        [left, top, right, bottom]
+    }
 
-fn space_picture(
-    grains: &[Grain],
-    extent: &[Point],
-    (look, setting): (&PictureStyle, &Setting),
-    legend: &Legend,
-) -> Result<Canvas, DrawError> {
-    let camera = Camera::new(look.view, setting);
-    let [width, height] = [camera.right, camera.up].map(|direction| {
-        let [low, high] = span(extent, direction);
-        (high - low).max(1e-9)
-    });
-    let margins = [24, HEADING, COLUMN, 24];
-    let [size, inner] = room(look, margins, width / height);
-    let mut canvas = Canvas::new(size, SAMPLES);
-    let area = [margins[0], margins[1], inner[0], inner[1]].map(|length| (length * SAMPLES) as f64);
-    let camera = camera.fit(extent.iter().copied(), area);
-    let balls = surface::surface(grains);
-    let contrast = if look.quantity == ColorQuantity::Body { 1.0 } else { VALUE_CONTRAST };
-    let lit = Lit::new(grains, &balls, camera, canvas.size, contrast);
-    let [width, height] = canvas.size;
-    canvas.paint([0, 0, width, height], |x, y| lit.color(x, y));
-    let ink = canvas.ink();
-    furniture::legend(&ink, legend, (width - COLUMN * SAMPLES) as i32)?;
-    furniture::triad(&ink, &camera)?;
-    furniture::scale_bar(&ink, &camera)?;
-    drop(ink);
-    Ok(canvas)
+    /// Pixels of the picture and of the room for the bodies in it.
+    fn room(&self, margins: [usize; 4], aspect: f64) -> [[usize; 2]; 2] {
+        let [left, top, right, bottom] = margins;
+        let is_window = self.look.window.is_some() && self.subject.particles.dimension == 2;
+        // Nothing beside a window is shown.
+        let fitted = |[width, height]: [usize; 2]| {
+            let wide = (height as f64 * aspect).round() as usize;
+            let high = (width as f64 / aspect).round() as usize;
+            if wide < width { [wide.max(16), height] } else { [width, high.max(16)] }
+        };
+        let [size, inner] = match self.look.size {
+            Some(size) => {
+                let inner = [size[0].saturating_sub(left + right), size[1].saturating_sub(top + bottom)];
+                let inner = inner.map(|side| side.max(16));
+                [size, if is_window { fitted(inner) } else { inner }]
+            }
+            None => {
+                let width = WIDTH - left - right;
+                let height = ((width as f64 / aspect).clamp(280.0, 800.0)) as usize;
+                let inner = if is_window { fitted([width, height]) } else { [width, height] };
+                [[inner[0] + left + right, inner[1] + top + bottom], inner]
+            }
+        };
+        [size, inner]
+    }
+
+    fn plane_picture(
+        &self,
+        grains: &[Grain],
+        extent: &[Point],
+        floors: &[Floor],
+    ) -> Result<Canvas, DrawError> {
+        let Scene { subject, look, .. } = self;
+        let spans = [0, 1].map(|axis| span(extent, unit(axis)));
+        let extent = spans.map(|[low, high]| (high - low).max(1e-9));
+        let margins = self.margins();
+        let [size, inner] = self.room(margins, extent[0] / extent[1]);
+        let mut canvas = Canvas::colored(size, SAMPLES, self.background);
+        let inner = inner.map(|side| side * SAMPLES);
+        let spare = if look.window.is_some() { 1.0 } else { 1.04 };
+        let scale = [0, 1].map(|axis| inner[axis] as f64 / (spare * extent[axis]));
+        let scale = scale[0].min(scale[1]);
+        let half = [0, 1].map(|axis| 0.5 * inner[axis] as f64 / scale);
+        let middle = spans.map(|[low, high]| 0.5 * (low + high));
+        let window = PlaneView {
+            low: [middle[0] - half[0], middle[1] - half[1]],
+            high: [middle[0] + half[0], middle[1] + half[1]],
+            size: inner,
+        };
+        let [left, top] = [margins[0] * SAMPLES, margins[1] * SAMPLES];
+        let kept: Vec<Grain> =
+            grains.iter().filter(|grain| !self.setting.has_floor(grain.body)).copied().collect();
+        let drawn = DrawnGrains::new(if floors.is_empty() { grains } else { &kept }, &window);
+        let own = if look.contours > 0 && subject.smoother().is_none() {
+            Some(subject::smoother(subject.particles, subject.quantity))
+        } else {
+            None
+        };
+        let velocities = look.fastest.map(|fastest| (fastest, subject::velocities(subject.particles)));
+        let count = drawn.count(look.mirror.is_some());
+        let source = |smoother| Source { smoother, quantity: subject.quantity, count, mirror: look.mirror };
+        let field = subject.smoother().or(own.as_ref());
+        let field = field.map(|smoother| PlaneField::new(&drawn, &window, &source(smoother)));
+        let shaded = field.as_ref().filter(|_| subject.smoother().is_some());
+        let color = |grain: &Grain, pixel: [usize; 2]| {
+            let value = shaded.and_then(|field| field.value(grain.body, pixel));
+            value.map_or(grain.color, |value| look.scale.color(value))
+        };
+        let floor = |x: usize, y: usize| {
+            let place = window.place([x as f64 + 0.5, y as f64 + 0.5]);
+            let body = floors.iter().find(|floor| floor.holds(place))?.body;
+            Some(if *subject.quantity == ColorQuantity::Body { body_color(body as usize) } else { FLOOR })
+        };
+        canvas.paint([left, top, inner[0], inner[1]], |x, y| {
+            drawn.color(x, y, |grain| color(grain, [x, y])).or_else(|| floor(x, y))
+        });
+        let levels = field::levels(look.scale.range, look.contours);
+        let lines = levels.iter().flat_map(|level| field.iter().flat_map(|field| field.isolines(*level)));
+        for [from, to] in lines {
+            // Close enough to run into one another.
+            let [dx, dy] = [to[0] - from[0], to[1] - from[1]];
+            let steps = (2.0 * dx.hypot(dy)).ceil().max(1.0) as usize;
+            for step in 0..=steps {
+                let share = step as f64 / steps as f64;
+                let at = [from[0] + share * dx + left as f64, from[1] + share * dy + top as f64];
+                canvas.dot(at, 0.5 * ISOLINE_WIDTH * SAMPLES as f64, furniture::ISOLINE);
+            }
+        }
+        let arrows = velocities.as_ref().map_or_else(Arrows::default, |(fastest, smoother)| {
+            arrows::arrows(&drawn, &window, &source(smoother), *fastest)
+        });
+        let pen = Pen::new(canvas.ink(), look.background);
+        let corner = (left as i32, top as i32);
+        furniture::arrows(&pen, &arrows, corner)?;
+        let column = (left + inner[0]) as i32 + 8 * SAMPLES as i32;
+        if look.shows(PicturePart::Axes) {
+            furniture::axes(&pen, &window, corner)?;
+        } else if look.shows(PicturePart::ScaleBar) {
+            let end = [inner[0] + left, inner[1] + top].map(|side| side as i32 - 12 * SAMPLES as i32);
+            furniture::scale_bar(&pen, window.scale(), (end[0], end[1]))?;
+        }
+        if look.shows(PicturePart::Legend) {
+            furniture::legend(&pen, (&self.legend, &levels), column)?;
+            furniture::arrow_legend(&pen, &arrows, column)?;
+        }
+        drop(pen);
+        Ok(canvas)
+    }
+
+    fn space_picture(
+        &self,
+        grains: &[Grain],
+        mut extent: Vec<Point>,
+        floors: &[Floor],
+    ) -> Result<Canvas, DrawError> {
+        let Scene { subject, setting, look, .. } = self;
+        let camera = Camera::new(look.view, setting);
+        let around = self.around(grains);
+        let slabs = Slabs::new(floors, &camera, around);
+        if look.window.is_none() {
+            let others =
+                look.path.iter().map(|view| Slabs::new(floors, &Camera::new(*view, setting), around));
+            let corners: Vec<Point> =
+                others.flat_map(|slabs| slabs.corners()).chain(slabs.corners()).collect();
+            extent.extend(corners);
+        }
+        let reach = |camera: &Camera| {
+            [camera.right, camera.up].map(|direction| {
+                let [low, high] = span(&extent, direction);
+                (high - low).max(1e-9)
+            })
+        };
+        let all = look.path.iter().map(|view| reach(&Camera::new(*view, setting)));
+        let [width, height] = all.fold(reach(&camera), |a, b| [a[0].max(b[0]), a[1].max(b[1])]);
+        let margins = self.margins();
+        let [size, inner] = self.room(margins, width / height);
+        let mut canvas = Canvas::colored(size, SAMPLES, self.background);
+        let area = [margins[0], margins[1], inner[0], inner[1]].map(|length| length * SAMPLES);
+        let mut camera = camera.fit(extent.iter().copied(), area.map(|length| length as f64));
+        if !look.path.is_empty() {
+            camera = camera.scaled([width, height], area.map(|length| length as f64));
+        }
+        let kept: Vec<Grain> =
+            grains.iter().filter(|grain| !setting.has_floor(grain.body)).copied().collect();
+        let grains = if floors.is_empty() { grains } else { &kept };
+        let balls = surface::surface(grains);
+        let is_body = *subject.quantity == ColorQuantity::Body;
+        let surroundings = Surroundings {
+            slabs,
+            slab_color: (!is_body).then_some(FLOOR),
+            contrast: if is_body { 1.0 } else { VALUE_CONTRAST },
+        };
+        let lit = Lit::new(grains, &balls, camera, canvas.size, surroundings);
+        let [width, height] = canvas.size;
+        let shown = if look.window.is_some() { area } else { [0, 0, width, height] };
+        canvas.paint(shown, |x, y| lit.color(x + shown[0], y + shown[1]));
+        let pen = Pen::new(canvas.ink(), look.background);
+        if look.shows(PicturePart::Legend) {
+            furniture::legend(&pen, (&self.legend, &[]), (width - COLUMN * SAMPLES) as i32)?;
+        }
+        if look.shows(PicturePart::Axes) {
+            furniture::triad(&pen, &camera)?;
+        }
+        if look.shows(PicturePart::ScaleBar) {
+            let edge = 24 * SAMPLES as i32;
+            furniture::scale_bar(&pen, camera.scale, (width as i32 - edge, height as i32 - edge))?;
+        }
+        drop(pen);
+        Ok(canvas)
+    }
+
+    /// The box around all that there is, whatever of it the picture shows.
+    fn around(&self, grains: &[Grain]) -> [Point; 2] {
+        let whole = PictureStyle { window: None, ..self.look.clone() };
+        let points = extent(grains, &whole);
+        let spans = [0, 1, 2].map(|axis| span(&points, unit(axis)));
+        [0, 1].map(|end| Vector(spans.map(|span| span[end])))
+    }
 }
 
 #[cfg(test)]
@@ -251,16 +455,19 @@ mod tests {
     use super::*;
     use crate::drawing::save;
 
-    fn look(quantity: ColorQuantity, particles: &ParticleSnapshot) -> PictureStyle {
-        let count = particles.body.len();
-        let values: Vec<f64> = (0..count).map(|i| quantity.value(particles, i)).collect();
+    fn look(subject: &Subject) -> PictureStyle {
         PictureStyle {
-            scale: quantity.scale(&values),
-            quantity,
+            scale: subject.quantity.scale(&subject.values),
             view: Viewpoint::Auto,
             mirror: None,
             size: None,
             bounds: None,
+            window: None,
+            path: Vec::new(),
+            background: Background::Color([255; 3]),
+            contours: 0,
+            fastest: None,
+            hidden: Vec::new(),
         }
     }
 
@@ -277,9 +484,9 @@ mod tests {
     }
 
     /// Colours that cover over a hundredth of the drawn pixels, other than white.
-    fn inked_share(canvas: &Canvas) -> f64 {
-        let inked = canvas.pixels.chunks(3).filter(|rgb| rgb.iter().any(|c| *c < 250)).count();
-        inked as f64 / (canvas.pixels.len() / 3) as f64
+    fn inked_share(image: &Image) -> f64 {
+        let inked = image.pixels.chunks(3).filter(|rgb| rgb.iter().any(|c| *c < 250)).count();
+        inked as f64 / (image.pixels.len() / 3) as f64
     }
 
     #[test]
@@ -295,12 +502,13 @@ mod tests {
             let setting = setting(gravity, center);
             let quarters = quarters(&particles, &setting);
             for quantity in [ColorQuantity::Body, ColorQuantity::Velocity, ColorQuantity::Pressure] {
-                let look = look(quantity.clone(), &particles);
-                let canvas = draw(&particles, &setting, &quarters, (0.5, &look)).unwrap();
-                let share = inked_share(&canvas);
+                let subject = Subject::new(&particles, &quantity, true);
+                let look = look(&subject);
+                let image = draw(&subject, &setting, &quarters, (0.5, &look)).unwrap();
+                let share = inked_share(&image);
                 assert!(share > 0.15 && share < 0.95, "{dimension} {quantity:?} {share}");
                 let path = keep.as_deref().unwrap_or(folder.path());
-                save(&canvas.image(), &path.join(format!("{dimension}_{quantity:?}.png"))).unwrap();
+                save(&image, &path.join(format!("{dimension}_{quantity:?}.png"))).unwrap();
             }
         }
     }
@@ -308,8 +516,9 @@ mod tests {
     #[test]
     fn a_snapshot_without_particles_is_an_error() {
         let nothing = ParticleSnapshot { dimension: 3, ..ParticleSnapshot::default() };
-        let look = look(ColorQuantity::Body, &nothing);
-        let drawn = draw(&nothing, &Setting::default(), &Quarters::default(), (0.0, &look));
+        let subject = Subject::new(&nothing, &ColorQuantity::Body, true);
+        let look = look(&subject);
+        let drawn = draw(&subject, &Setting::default(), &Quarters::default(), (0.0, &look));
         assert!(matches!(drawn, Err(DrawError::Empty(_))));
     }
 }

@@ -57,23 +57,57 @@ impl<'a> DrawnGrains<'a> {
                 draw((i as u32, each), window, band * BAND, pixels);
             }
         });
-        DrawnGrains { grains, size: window.size, grain }
+        let mut drawn = DrawnGrains { grains, size: window.size, grain };
+        drawn.close();
+        drawn
     }
 
-    /// The colour of a pixel; `None` where there is nothing.
-    pub fn color(&self, x: usize, y: usize) -> Option<Rgb> {
-        let grain = self.at(x as i64, y as i64)?;
+    /// Fills cracks between grains of one body, a pixel of the file wide at most, which are no edges of it.
+    fn close(&mut self) {
+        let [width, height] = self.size;
+        let body = |x: i64, y: i64| {
+            let place = [x, y].map(usize::try_from);
+            let [Ok(x), Ok(y)] = place else { return None };
+            self.grain(x, y).map(|(index, grain)| (index as u32, grain.body))
+        };
+        let filled = |place: usize| {
+            if self.grain[place] != NOTHING {
+                return None;
+            }
+            let (x, y) = ((place % width) as i64, (place / width) as i64);
+            let first = |dx: i64, dy: i64| (1..=SAMPLES as i64).find_map(|k| body(x + k * dx, y + k * dy));
+            [(1, 0), (0, 1), (1, 1), (1, -1)].iter().find_map(|&(dx, dy)| {
+                let (index, one) = first(dx, dy)?;
+                (first(-dx, -dy)?.1 == one).then_some((place, index))
+            })
+        };
+        let filled: Vec<(usize, u32)> = (0..width * height).into_par_iter().filter_map(filled).collect();
+        filled.into_iter().for_each(|(place, index)| self.grain[place] = index);
+    }
+
+    /// The colour of a pixel, which `color` says of a grain; `None` where there is nothing.
+    pub fn color(&self, x: usize, y: usize, color: impl Fn(&Grain) -> Rgb) -> Option<Rgb> {
+        let (_, grain) = self.grain(x, y)?;
         let reach = SAMPLES as i64;
         let rim = [(-reach, 0), (reach, 0), (0, -reach), (0, reach)].iter().any(|(dx, dy)| {
-            self.at(x as i64 + dx, y as i64 + dy).is_none_or(|neighbour| neighbour.body != grain.body)
+            let place = [x as i64 + dx, y as i64 + dy].map(usize::try_from);
+            let [Ok(x), Ok(y)] = place else { return true };
+            self.grain(x, y).is_none_or(|(_, neighbour)| neighbour.body != grain.body)
         });
-        Some(if rim { shaded(grain.color, 0.45) } else { grain.color })
+        let color = color(grain);
+        Some(if rim { shaded(color, 0.45) } else { color })
     }
 
-    fn at(&self, x: i64, y: i64) -> Option<&Grain> {
-        let x = usize::try_from(x).ok().filter(|x| *x < self.size[0])?;
-        let y = usize::try_from(y).ok().filter(|y| *y < self.size[1])?;
-        self.grains.get(self.grain[y * self.size[0] + x] as usize)
+    /// How many grains are particles rather than mirror images, which come last.
+    pub fn count(&self, mirrored: bool) -> usize {
+        if mirrored { self.grains.len() / 2 } else { self.grains.len() }
+    }
+
+    /// The grain at a pixel, with its index.
+    pub fn grain(&self, x: usize, y: usize) -> Option<(usize, &Grain)> {
+        let [width, height] = self.size;
+        let index = *self.grain.get(y * width + x).filter(|_| x < width && y < height)? as usize;
+        Some((index, self.grains.get(index)?))
     }
 }
 
@@ -120,9 +154,27 @@ mod tests {
         let drawn = DrawnGrains::new(&grains, &window);
         let hit = |x: f64, y: f64| {
             let [column, row] = window.pixel([x, y]);
-            drawn.color(column as usize, row as usize).is_some()
+            drawn.grain(column as usize, row as usize).is_some()
         };
         assert!(hit(0.8, 0.45) && hit(-0.8, -0.45));
         assert!(!hit(-0.3, 0.45) && !hit(0.3, -0.45));
+    }
+
+    #[test]
+    fn a_crack_is_closed_and_a_gap_is_not() {
+        let grain = |body: u32, x: f64| Grain {
+            body,
+            position: [x, 0.0, 0.0],
+            side: 1.0,
+            deformation: [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0],
+            color: [0.5; 3],
+        };
+        // A pixel is 0.05 m.
+        let window = PlaneView { low: [-2.0, -2.0], high: [2.0, 2.0], size: [80, 80] };
+        for (body, apart, closed) in [(0, 1.1, true), (0, 1.4, false), (1, 1.1, false)] {
+            let grains = [grain(0, -0.5 * apart), grain(body, 0.5 * apart)];
+            let drawn = DrawnGrains::new(&grains, &window);
+            assert_eq!(drawn.grain(40, 40).is_some(), closed, "{body} {apart}");
+        }
     }
 }

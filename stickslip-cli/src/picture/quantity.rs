@@ -1,6 +1,5 @@
 //! What the colour of a particle can stand for.
 
-use super::Rgb;
 use crate::drawing::Scale;
 use clap::builder::{EnumValueParser, PossibleValue, TypedValueParser};
 use clap::{Arg, Command, ValueEnum};
@@ -80,6 +79,9 @@ fn is_name(text: &str) -> bool {
     !text.is_empty() && text.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_')
 }
 
+/// Numbers that a value is made of: a velocity, a stress xx, yy, zz, xy, yz, xz, or the value first, and zeros.
+pub type Parts = [f64; 6];
+
 /// Where the colours of a quantity come from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum ColorSource {
@@ -90,29 +92,47 @@ enum ColorSource {
 }
 
 impl ColorQuantity {
-    /// The value at a particle in SI units; 0 for [`ColorQuantity::Body`], which has no value.
-    pub fn value(&self, particles: &ParticleSnapshot, i: usize) -> f64 {
-        let v = &particles.velocity[i];
-        let s = &particles.stress[i];
+    /// What the value at a particle is made of, which can be averaged over neighbours: a velocity, a stress, or the value
+    /// itself.
+    pub fn parts(&self, particles: &ParticleSnapshot, i: usize) -> Parts {
         match self {
-            ColorQuantity::Body => 0.0,
-            ColorQuantity::Velocity => v.iter().map(|c| c * c).sum::<f64>().sqrt(),
-            ColorQuantity::Vx => v[0],
-            ColorQuantity::Vy => v[1],
-            ColorQuantity::Vz => v[2],
-            ColorQuantity::Pressure => derived("pressure", s),
-            ColorQuantity::VonMises => derived("von_mises", s),
-            ColorQuantity::Xx => s[0],
-            ColorQuantity::Yy => s[1],
-            ColorQuantity::Zz => s[2],
-            ColorQuantity::Xy => s[3],
-            ColorQuantity::Yz => s[4],
-            ColorQuantity::Xz => s[5],
-            ColorQuantity::Jacobian => determinant(&particles.deformation[i]),
-            ColorQuantity::History(name) => {
-                particles.remembered(name).map_or(0.0, |column| column.magnitude(i))
+            ColorQuantity::Body => [0.0; 6],
+            ColorQuantity::Velocity | ColorQuantity::Vx | ColorQuantity::Vy | ColorQuantity::Vz => {
+                let [x, y, z] = particles.velocity[i];
+                [x, y, z, 0.0, 0.0, 0.0]
             }
+            ColorQuantity::Jacobian => [determinant(&particles.deformation[i]), 0.0, 0.0, 0.0, 0.0, 0.0],
+            ColorQuantity::History(name) => {
+                let value = particles.remembered(name).map_or(0.0, |column| column.magnitude(i));
+                [value, 0.0, 0.0, 0.0, 0.0, 0.0]
+            }
+            _ => particles.stress[i],
         }
+    }
+
+    /// The value in SI units that is made of some parts.
+    pub fn value_of(&self, parts: Parts) -> f64 {
+        match self {
+            ColorQuantity::Velocity => parts[..3].iter().map(|v| v * v).sum::<f64>().sqrt(),
+            ColorQuantity::Pressure => derived("pressure", &parts),
+            ColorQuantity::VonMises => derived("von_mises", &parts),
+            ColorQuantity::Body
+            | ColorQuantity::Vx
+            | ColorQuantity::Xx
+            | ColorQuantity::Jacobian
+            | ColorQuantity::History(_) => parts[0],
+            ColorQuantity::Vy | ColorQuantity::Yy => parts[1],
+            ColorQuantity::Vz | ColorQuantity::Zz => parts[2],
+            ColorQuantity::Xy => parts[3],
+            ColorQuantity::Yz => parts[4],
+            ColorQuantity::Xz => parts[5],
+        }
+    }
+
+    /// Whether it comes of the stress, which differs between neighbouring particles by more than it means.
+    pub fn is_stress(&self) -> bool {
+        use ColorQuantity::{Pressure, VonMises, Xx, Xy, Xz, Yy, Yz, Zz};
+        matches!(self, Pressure | VonMises | Xx | Yy | Zz | Xy | Yz | Xz)
     }
 
     /// Words and unit for the colour bar; no unit for a ratio.
@@ -201,11 +221,6 @@ pub fn determinant(f: &[f64; 9]) -> f64 {
         + f[2] * (f[3] * f[7] - f[4] * f[6])
 }
 
-/// The colour of every particle for a quantity with values.
-pub fn colors(quantity: &ColorQuantity, scale: &Scale, particles: &ParticleSnapshot) -> Vec<Rgb> {
-    (0..particles.body.len()).map(|i| scale.color(quantity.value(particles, i))).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -237,8 +252,9 @@ mod tests {
         };
         let [heat, back_stress, none] =
             ["heat", "back_stress", "none"].map(|name| ColorQuantity::History(name.into()));
-        assert_eq!([heat.value(&particles, 1), back_stress.value(&particles, 0)], [-1.0, 3.0]);
-        assert!((back_stress.value(&particles, 1) - 8.0_f64.sqrt()).abs() < 1e-15);
+        let value = |quantity: &ColorQuantity, i: usize| quantity.value_of(quantity.parts(&particles, i));
+        assert_eq!([value(&heat, 1), value(&back_stress, 0)], [-1.0, 3.0]);
+        assert!((value(&back_stress, 1) - 8.0_f64.sqrt()).abs() < 1e-15);
         assert_eq!(back_stress.label(&particles), ("back stress".into(), "Pa".into()));
         assert!(heat.is_in(&particles).is_ok());
         let error = none.is_in(&particles).unwrap_err();

@@ -35,6 +35,14 @@ pub struct Floor {
 }
 
 impl Floor {
+    /// Its mirror image.
+    pub fn mirrored(&self, SymmetryPlane { axis, position }: SymmetryPlane) -> Self {
+        let mut image = *self;
+        image.point[axis] = 2.0 * position - self.point[axis];
+        image.normal[axis] = -self.normal[axis];
+        image
+    }
+
     /// Whether a point lies in it.
     pub fn holds(&self, x: [f64; 2]) -> bool {
         (0..2).map(|i| (x[i] - self.point[i]) * self.normal[i]).sum::<f64>() < 0.0
@@ -69,6 +77,12 @@ impl Setting {
         let bodies = scene["bodies"].as_array().map_or(&[][..], Vec::as_slice);
         let found = bodies.iter().enumerate().flat_map(|(i, body)| floors_of(i as u32, body));
         Setting { floors: found.collect(), ..self }
+    }
+
+    /// Without the half-spaces of bodies that are not shown.
+    pub fn with_bodies(mut self, shown: &[bool]) -> Self {
+        self.floors.retain(|floor| shown.get(floor.body as usize) != Some(&false));
+        self
     }
 
     /// The name of a body, or its number if the scene is not known.
@@ -142,6 +156,12 @@ mod tests {
         let bodies: Vec<u32> = setting.floors.iter().map(|floor| floor.body).collect();
         assert_eq!(bodies, [1, 3, 3]);
         let holds = |x: [f64; 2]| setting.floors.iter().any(|floor| floor.holds(x));
+        let mut shown = [true; 4];
+        shown[3] = false;
+        let bodies = setting.clone().with_bodies(&shown).floors;
+        assert_eq!(bodies, setting.floors[..1]);
+        let image = setting.floors[1].mirrored(SymmetryPlane { axis: 0, position: 2.0 });
+        assert!(image.holds([9.5, 0.0]) && !image.holds([8.5, 0.0]));
         assert!(holds([0.0, -0.1]) && holds([-6.0, 3.0]) && holds([6.0, 3.0]) && !holds([0.0, 0.1]));
     }
 

@@ -76,8 +76,9 @@ class Sweep:
 def render(results: Results | Folder, *, out: Folder | None = None, **options: Any) -> Picture:
     """Draws a snapshot of a run, the last without `frame` or `time`; `stickslip render --help` lists the options.
 
-    `color="pressure"`, `range=(-1e5, 1e5)`, `view=(30, 10)`, `size="1200x800"`, `animate=True`, ... Without `out` it is
-    DIR/picture.png, of an animation DIR/animation.png.
+    `color="pressure"`, `range=(-1e5, 1e5)`, `view=(30, 10)`, `size="1200x800"`, `window=("-2 cm", 0, "2 cm", "4 cm")`,
+    `background="transparent"`, `contours=8`, `vectors="velocity"`, `hide=("title", "axes")`, `animate=True`, ...
+    Without `out` it is DIR/picture.png, of an animation DIR/animation.png.
     """
     folder = Path(getattr(results, "folder", results))
     name = "animation.png" if options.get("animate") else "picture.png"

@@ -45,6 +45,6 @@ impl Film {
         for (pixel, light) in pixels.chunks_exact_mut(3).zip(&self.light) {
             (0..3).for_each(|i| pixel[i] = screen.byte(f64::from(light[i]) * share));
         }
-        Image { size: self.size, pixels }
+        Image::opaque(self.size, pixels)
     }
 }

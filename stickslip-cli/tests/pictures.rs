@@ -1,0 +1,170 @@
+//! Pictures as a paper wants them: backgrounds, parts of the scene, isolines, arrows, half-spaces, paths of the camera.
+
+mod stickslip;
+
+use ::stickslip::image::Image;
+use stickslip::{Workplace, new_scene};
+
+/// A coarse and short run of the new scene.
+fn thrown_disk() -> Workplace {
+    let workplace = Workplace::new();
+    workplace.write("scene.toml", &new_scene());
+    let coarse = ["--set", "cells_per_radius=4", "--set", "time.end=0.1 s"];
+    workplace.succeed(&[&["run", "scene.toml", "--quiet"][..], &coarse].concat());
+    workplace
+}
+
+/// What `stickslip render` draws with some flags.
+fn picture(workplace: &Workplace, flags: &[&str]) -> Image {
+    workplace.succeed(&[&["render", "scene.results", "--out", "p.png"], flags].concat());
+    Image::read_png(&workplace.path("p.png")).unwrap()
+}
+
+/// How many pixels are as dark as isolines and arrows.
+fn dark(image: &Image) -> usize {
+    image.pixels.chunks(3).filter(|rgb| rgb.iter().all(|c| *c < 45)).count()
+}
+
+const BARE: [&str; 2] = ["--hide", "title,time,axes,legend,scale-bar"];
+
+#[test]
+fn a_picture_stands_on_any_colour_or_none() {
+    let workplace = thrown_disk();
+    let white = picture(&workplace, &[]);
+    assert_eq!((white.color(0, 0), white.opacity.len()), ([255; 3], 0));
+    let colored = picture(&workplace, &["--background", "#102030"]);
+    assert_eq!(colored.color(0, 0), [0x10, 0x20, 0x30]);
+    let bright = colored.pixels.chunks(3).filter(|rgb| rgb.iter().all(|c| *c > 190)).count();
+    assert!(bright > 200, "letters can be read: {bright}");
+
+    let clear = picture(&workplace, &["--background", "transparent"]);
+    assert_eq!(clear.size, white.size);
+    assert_eq!(clear.opacity[0], 0);
+    let middle = clear.size[1] * 3 / 4 * clear.size[0] + clear.size[0] / 2;
+    assert_eq!(clear.opacity[middle], 255, "the bar hides what is behind it");
+    // On white it is the other picture.
+    for (i, alpha) in clear.opacity.iter().map(|alpha| u32::from(*alpha)).enumerate() {
+        for k in 3 * i..3 * i + 3 {
+            let on_white = (u32::from(clear.pixels[k]) * alpha + 255 * (255 - alpha)) / 255;
+            assert!(on_white.abs_diff(u32::from(white.pixels[k])) <= 2, "{i}");
+        }
+    }
+    workplace.succeed(&[
+        "render",
+        "scene.results",
+        "--animate",
+        "--background",
+        "transparent",
+        "--out",
+        "f.gif",
+    ]);
+    let film = std::fs::read(workplace.path("f.gif")).unwrap();
+    let mut decoder = gif::Decoder::new(&film[..]).unwrap();
+    assert!(decoder.read_next_frame().unwrap().unwrap().transparent.is_some());
+}
+
+#[test]
+fn a_window_shows_a_part_and_nothing_else() {
+    let workplace = thrown_disk();
+    // In the bar, twice as wide as high.
+    let inside = ["--window", "-10 cm,-6cm,0.02,0"];
+    let image = picture(&workplace, &[&inside[..], &BARE, &["--color", "pressure"]].concat());
+    let [width, height] = image.size;
+    assert_eq!(width - 24, 2 * (height - 24), "{width} x {height}");
+    assert_eq!(image.color(0, 0), [255; 3]);
+    let all = (14..height - 14).all(|y| (14..width - 14).all(|x| image.color(x, y) != [255; 3]));
+    assert!(all, "the bar fills the picture");
+}
+
+#[test]
+fn stress_is_averaged_unless_the_user_says_no() {
+    let workplace = thrown_disk();
+    let stress = |flags: &[&str]| picture(&workplace, &[&["--color", "von_mises"], flags].concat());
+    assert_eq!(stress(&[]), stress(&["--smooth", "yes"]));
+    assert_ne!(stress(&[]), stress(&["--smooth", "no"]));
+    let speed = |flags: &[&str]| picture(&workplace, &[&["--color", "velocity"], flags].concat());
+    assert_eq!(speed(&[]), speed(&["--smooth", "no"]));
+}
+
+#[test]
+fn isolines_and_arrows_are_drawn() {
+    let workplace = thrown_disk();
+    let look = ["--color", "velocity", "--colors", "greys", "--range", "0,3"];
+    let plain = dark(&picture(&workplace, &look));
+    let lines = dark(&picture(&workplace, &[&look[..], &["--contours", "12"]].concat()));
+    assert!(lines > plain + 500, "{plain} {lines}");
+    let arrows = dark(&picture(&workplace, &[&look[..], &["--vectors", "velocity"]].concat()));
+    assert!(arrows > plain + 500, "{plain} {arrows}");
+}
+
+#[test]
+fn what_does_not_fit_is_refused() {
+    let workplace = thrown_disk();
+    for (flags, words) in [
+        (&["--contours", "5"][..], "--color"),
+        (&["--contours", "0", "--color", "xx"], "1..=100"),
+        (&["--window", "0,0,1"], "four lengths"),
+        (&["--window", "0,0,0,1,1,1"], "LEFT,BOTTOM,RIGHT,TOP"),
+        (&["--window", "0,0,1,-1"], "lower corner"),
+        (&["--background", "mauve"], "#RRGGBB"),
+        (&["--view", "0,10:20,10"], "--animate"),
+        (&["--animate", "--background", "transparent", "--out", "f.mp4"], ".gif"),
+        (&["--fringes", "--background", "black"], "--background"),
+        (&["--vectors", "speed"], "velocity"),
+        (&["--hide", "bodies"], "scale-bar"),
+    ] {
+        let ran = workplace.run(&[&["render", "scene.results"], flags].concat());
+        assert_eq!(ran.code, Some(2), "{flags:?}");
+        assert!(ran.stderr.contains(words), "{flags:?}: {}", ran.stderr);
+    }
+}
+
+/// A ball above a half-space.
+const DROPPED: &str = r#"
+    space = { dimension = "3d", cell = 0.1 }
+    gravity = [0, 0, -10]
+    time.end = 0.02
+    materials.rubber = { density = 1000, neo_hookean = { young_modulus = 1e6, poisson_ratio = 0.3 } }
+    bodies = [
+        { name = "ball", material = "rubber", shape.ball = { center = [0, 0, 0.32], radius = 0.3 } },
+        { name = "floor", material = "rubber", rigid = {},
+          shape.half_space = { point = [0, 0, 0], normal = [0, 0, 1] } },
+    ]
+    contact = [{ friction = 0.3 }]
+    outputs.particles = 0.01
+"#;
+
+#[test]
+fn in_space_half_spaces_have_clean_edges_and_the_camera_moves() {
+    let workplace = Workplace::new();
+    workplace.write("scene.toml", DROPPED);
+    workplace.succeed(&["run", "scene.toml", "--quiet"]);
+    let flags = ["--view", "-y", "--color", "velocity", "--size", "400x300"];
+    let image = picture(&workplace, &[&flags[..], &BARE].concat());
+    // From the side the floor is a rectangle: each row of its lower half is one colour from end to end.
+    let grey = |rgb: [u8; 3]| rgb[0] > 60 && rgb[0] < 250 && rgb[0].abs_diff(rgb[2]) < 4;
+    let last = (0..300).rev().find(|&y| grey(image.color(200, y))).unwrap();
+    let ends = |y: usize| {
+        let row: Vec<usize> = (0..400).filter(|&x| grey(image.color(x, y))).collect();
+        (row[0], row[row.len() - 1], row.len())
+    };
+    let (left, right, count) = ends(last - 4);
+    assert_eq!(right - left + 1, count, "nothing interrupts it");
+    assert!((1..6).all(|k| ends(last - 4 - k) == (left, right, count)), "its ends are straight");
+    // What is not shown is not there.
+    let alone = picture(&workplace, &[&flags[..], &BARE, &["--body", "ball"]].concat());
+    assert!(!grey(alone.color(200, last - 4)), "{:?}", alone.color(200, last - 4));
+
+    let near = picture(&workplace, &[&flags[..], &["--window", "-0.3,-0.3,0,0.3,0.3,0.6"]].concat());
+    assert_ne!(near, picture(&workplace, &flags));
+    let path = ["render", "scene.results", "--animate", "--view", "0,0:90,0", "--size", "300x200"];
+    workplace.succeed(&path);
+    for (flags, words) in [
+        (&["--vectors", "velocity"][..], "plane scenes"),
+        (&["--contours", "3", "--color", "vx"], "plane scenes"),
+        (&["--window", "0,0,1,1"], "six lengths"),
+    ] {
+        let ran = workplace.run(&[&["render", "scene.results"], flags].concat());
+        assert!(ran.code == Some(2) && ran.stderr.contains(words), "{flags:?}: {}", ran.stderr);
+    }
+}
