@@ -16,6 +16,7 @@ pub struct Kind<'a> {
 
 pub const PNG: Kind<'static> = Kind { name: "PNG", starts: &[b"\x89PNG"] };
 pub const SVG: Kind<'static> = Kind { name: "SVG", starts: &[b"<svg"] };
+pub const PDF: Kind<'static> = Kind { name: "PDF", starts: &[b"%PDF"] };
 pub const XML: Kind<'static> = Kind { name: "XML", starts: &[b"<?xml"] };
 /// How pages began before they named the program.
 const OLD_PAGE: &[u8] =

@@ -292,22 +292,38 @@ pub fn illustrate(folder: &Path) -> Result<String, Failure> {
         "front_speeds.csv",
     ];
     drawn.extend(measured.into_iter().filter(|name| folder.join(name).exists()));
-    let chart = chart(&results, &ChartChoice::default()).map_err(Failure::input)?;
-    match crate::chart::draw(&chart, &folder.join("plot.png"), chart.size()) {
-        Ok(()) => drawn.push("plot.png"),
-        Err(DrawError::Empty(_)) => {}
-        Err(error) => return Err(error.into()),
+    // The user waits for them.
+    let (charted, pictured) = rayon::join(|| draw_chart(&results, folder), || draw_last(&results, folder));
+    if charted? {
+        drawn.push("plot.png");
     }
-    if let Some(last) = results.frames().last() {
+    if !results.frames().is_empty() {
         drawn.push("particles.pvd");
-        if results.has_whole_snapshots() {
-            let picture = Album::open(&results, PictureChoice::default())?.picture(last)?;
-            save(&picture, &folder.join("picture.png"))?;
-            drawn.push("picture.png");
-        }
+    }
+    if pictured? {
+        drawn.push("picture.png");
     }
     if folder.join("fringes.png").exists() {
         drawn.push("fringes.png");
     }
     Ok(drawn.join(", "))
+}
+
+/// Draws what the scene is about into `plot.png`; false if there is nothing to draw.
+fn draw_chart(results: &Results, folder: &Path) -> Result<bool, Failure> {
+    let chart = chart(results, &ChartChoice::default()).map_err(Failure::input)?;
+    match crate::chart::draw(&chart, &folder.join("plot.png"), chart.size()) {
+        Ok(()) => Ok(true),
+        Err(DrawError::Empty(_)) => Ok(false),
+        Err(error) => Err(error.into()),
+    }
+}
+
+/// Draws the last snapshot into `picture.png`; false if there is none, or not all of one.
+fn draw_last(results: &Results, folder: &Path) -> Result<bool, Failure> {
+    let last = results.frames().last().filter(|_| results.has_whole_snapshots());
+    let Some(last) = last else { return Ok(false) };
+    let picture = Album::open(results, PictureChoice::default())?.picture(last)?;
+    save(&picture, &folder.join("picture.png"))?;
+    Ok(true)
 }

@@ -131,6 +131,11 @@ def test_pictures_and_charts_are_those_of_the_command(results, tmp_path):
     assert picture._repr_png_()[:4] == b"\x89PNG" and picture._repr_svg_() is None
     chart = ss.plot(results.folder, table="energy", out=tmp_path / "energy.svg")
     assert "total, their sum" in chart._repr_svg_() and chart._repr_png_() is None
+    again = ss.plot(results, results.folder, body="left", quantity="x", out=tmp_path / "both.svg")
+    assert again._repr_svg_().count(": left x") == 2
+    look = dict(background="transparent", window=(0, 0, "1 m", 1), hide=("title", "time"))
+    clear = ss.render(results, out=tmp_path / "clear.png", **look)
+    assert clear._repr_png_()[25] == 6, "colour with opacity"
     with pytest.raises(ss.ResultsError, match="--color: found `nonsense`"):
         ss.render(results, color="nonsense", out=tmp_path / "none.png")
 

@@ -1,6 +1,7 @@
 //! What a chart shows: the quantities that the scene knows answers for, or those that the user asks for.
 
 use super::measurements::{self, ChartTime};
+use super::tables::{self, axis};
 use super::{Chart, Curve, Panel};
 use crate::drawing::{Rgb, body_color};
 use clap::ValueEnum;
@@ -27,8 +28,22 @@ pub enum ChartTable {
     Bodies,
     /// Energies of all bodies together
     Energy,
-    /// Force between each pair of bodies that touch
+    /// Forces and places of each pair of bodies that touch
     Contacts,
+    /// Supports and loads
+    Loads,
+    /// Joints and springs
+    Joints,
+    /// Forces through sections
+    Sections,
+    /// Forces on faces of the domain and on rigid bodies
+    Reactions,
+    /// Groups of bodies
+    Groups,
+    /// Forces between groups
+    GroupContacts,
+    /// What left the domain
+    Removed,
     /// Stress and velocity at probes
     Probes,
     /// How far from the first place each came when it arrived
@@ -39,8 +54,8 @@ pub enum ChartTable {
 
 impl ChartTable {
     /// Its columns that can be drawn, the usual one first.
-    pub fn columns(self) -> &'static [&'static str] {
-        match self {
+    pub fn columns(self) -> Vec<&'static str> {
+        let own: &[&'static str] = match self {
             ChartTable::Bodies => {
                 &["x", "y", "z", "vx", "vy", "vz", "wx", "wy", "wz", "mass", "kinetic", "strain"]
             }
@@ -61,10 +76,17 @@ impl ChartTable {
                 "ly",
                 "lz",
             ],
-            ChartTable::Contacts => &["normal", "tangential", "fx", "fy", "fz", "nodes"],
             ChartTable::Probes => measurements::PROBE_COLUMNS,
             ChartTable::Arrivals | ChartTable::Fronts => &["distance"],
-        }
+            _ => &[],
+        };
+        let usual: &[&'static str] = match self {
+            ChartTable::Contacts | ChartTable::GroupContacts => &["normal"],
+            ChartTable::Removed => &["mass"],
+            _ => &[],
+        };
+        let named = tables::columns(self).into_iter().filter(|column| !usual.contains(column));
+        own.iter().chain(usual).copied().chain(named).collect()
     }
 }
 
@@ -185,18 +207,6 @@ fn sums(rows: &[BodyRow], pattern: &str) -> Vec<BodyRow> {
         BodyRow { time: each[0].time, body: pattern.to_owned(), state }
     };
     at_once.map(sum).collect()
-}
-
-/// Name and unit of the axis that a column belongs on.
-fn axis(quantity: &str) -> (&'static str, &'static str) {
-    match quantity {
-        "x" | "y" | "z" => ("position", "m"),
-        "vx" | "vy" | "vz" => ("velocity", "m/s"),
-        "wx" | "wy" | "wz" => ("angular velocity", "rad/s"),
-        "mass" => ("mass", "kg"),
-        "kinetic" | "strain" => ("energy", "J"),
-        _ => ("value", ""),
-    }
 }
 
 fn panels(rows: &[BodyRow], references: &[ReferenceCurve], shown: &[Shown]) -> Vec<Panel> {

@@ -1,9 +1,9 @@
 //! What a chart shows of forces, probes, arrivals and fronts.
 
 use super::contents::{ChartChoice, ChartTable, MOST_CURVES};
-use super::{Chart, Curve, Panel};
+use super::{Chart, Curve, Panel, tables};
 use crate::drawing::body_color;
-use stickslip::observe::{ArrivalRow, ContactRow, FrontSpeedRow, ProbeRow, ReadError, Results, TableRow};
+use stickslip::observe::{ArrivalRow, FrontSpeedRow, ProbeRow, ReadError, Results, TableRow};
 use stickslip::scene::{NamePattern, TimeUnit};
 
 /// Columns of `probes.csv` that can be drawn.
@@ -69,11 +69,20 @@ pub fn chart(results: &Results, (table, choice): (ChartTable, &ChartChoice)) -> 
     let wanted = |name: &str| patterns.is_empty() || patterns.iter().any(|pattern| pattern.matches(name));
     match table {
         ChartTable::Bodies | ChartTable::Energy => {}
-        ChartTable::Contacts => {
-            let rows: Vec<ContactRow> = results.contacts_table()?;
-            let rows = rows.into_iter().filter(|row| wanted(&row.body_a) || wanted(&row.body_b)).collect();
-            let times: Vec<f64> = results.energy_table()?.iter().map(|row| row.time).collect();
-            chart.panels = forces(rows, &times, columns);
+        ChartTable::Loads
+        | ChartTable::Joints
+        | ChartTable::Sections
+        | ChartTable::Reactions
+        | ChartTable::Groups
+        | ChartTable::GroupContacts
+        | ChartTable::Removed
+        | ChartTable::Contacts => {
+            let mut rows = tables::rows(results, table)?;
+            rows.retain(|row| row.name.split(", ").any(&wanted));
+            let touch = matches!(table, ChartTable::Contacts | ChartTable::GroupContacts);
+            let energy = if touch { results.energy_table()? } else { Vec::new() };
+            let times: Vec<f64> = energy.iter().map(|row| row.time).collect();
+            chart.panels = tables::panels(&rows, columns, (MOST_CURVES, &times));
         }
         ChartTable::Probes => {
             let mut rows = results.probes_table()?;
@@ -140,33 +149,6 @@ fn named<'a>(points: impl Iterator<Item = (&'a String, [f64; 2])>) -> Vec<Curve>
     curves
 }
 
-/// Force against time of the pairs with the largest forces. Pairs that did not touch have no row, and no force.
-fn forces(rows: Vec<ContactRow>, times: &[f64], columns: &[String]) -> Vec<Panel> {
-    let panels = columns.iter().filter_map(|column| {
-        let point = |row: &ContactRow| {
-            Some((format!("{}, {}", row.body_a, row.body_b), [row.time, row.number(column)?]))
-        };
-        let pairs: Vec<(String, [f64; 2])> = rows.iter().filter_map(point).collect();
-        let mut curves = named(pairs.iter().map(|(pair, point)| (pair, *point)));
-        for curve in &mut curves {
-            let touching = std::mem::take(&mut curve.points);
-            let mut next = touching.iter().peekable();
-            let at = |&time: &f64| next.next_if(|point| point[0] == time).copied().unwrap_or([time, 0.0]);
-            curve.points = times.iter().map(at).collect();
-        }
-        let most = |curve: &Curve| curve.points.iter().map(|point| point[1].abs()).fold(0.0, f64::max);
-        curves.sort_by(|a, b| most(b).total_cmp(&most(a)));
-        let unit = if column == "nodes" { "" } else { "N" };
-        panel(if column == "nodes" { "nodes" } else { "force" }, unit, curves).map(|panel| {
-            match column.as_str() {
-                "normal" | "nodes" => panel,
-                other => Panel { name: format!("force {other}"), ..panel },
-            }
-        })
-    });
-    panels.collect()
-}
-
 fn probes<'a>(rows: &'a [ProbeRow], columns: &[String]) -> Vec<Panel> {
     let panels = columns.iter().filter_map(|column| {
         let point = |row: &'a ProbeRow| Some((&row.probe, [row.time, row.number(column)?]));
@@ -203,23 +185,6 @@ fn speed_caption(speeds: &[FrontSpeedRow]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use stickslip::door::ContactMean;
-
-    #[test]
-    fn pairs_that_do_not_touch_have_no_force() {
-        let row = |time: f64, b: &str, normal: f64| ContactRow {
-            time,
-            body_a: "disk".to_owned(),
-            body_b: b.to_owned(),
-            mean: ContactMean { normal, ..ContactMean::default() },
-        };
-        let rows = vec![row(1.0, "wall", 2.0), row(2.0, "wall", 3.0), row(2.0, "striker", 9.0)];
-        let panels = forces(rows, &[0.0, 1.0, 2.0, 3.0], &["normal".to_owned()]);
-        assert_eq!((panels.len(), panels[0].unit), (1, "N"));
-        let [striker, wall] = &panels[0].curves[..] else { panic!("{panels:?}") };
-        assert_eq!(striker.label, "disk, striker", "the largest force first");
-        assert_eq!(wall.points, [[0.0, 0.0], [1.0, 2.0], [2.0, 3.0], [3.0, 0.0]]);
-    }
 
     #[test]
     fn arrivals_are_drawn_by_their_distance_from_the_first() {

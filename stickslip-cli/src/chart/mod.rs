@@ -3,9 +3,13 @@
 mod contents;
 mod measurements;
 mod paper;
+mod runs;
+mod tables;
 
 pub use contents::{ChartChoice, ChartTable, chart};
 pub use paper::{draw, svg};
+pub use runs::together;
+pub use tables::rows as table_rows;
 
 use crate::drawing::Rgb;
 

@@ -1,7 +1,7 @@
-//! A chart on paper: PNG or SVG.
+//! A chart on paper: PNG, SVG or PDF.
 
 use super::{Chart, Curve, Panel};
-use crate::drawing::{Canvas, DrawError, Prefix, axis_prefix, label, register_font, save};
+use crate::drawing::{Canvas, DrawError, PdfPage, Prefix, axis_prefix, label, register_font, save};
 use crate::files;
 use plotters::coord::Shift;
 use plotters::element::DashedPathElement;
@@ -18,15 +18,22 @@ const MARKS: usize = 6;
 /// Curves of so few points have them marked.
 const FEW: usize = 12;
 
-/// Draws a chart into a file of this width and height in pixels; a name that ends in `.svg` gives SVG, any other PNG.
+/// Draws a chart into a file of this width and height in pixels; a name that ends in `.svg` gives SVG, in
+/// `.pdf` PDF, any other PNG.
 ///
 /// # Errors
 /// The file cannot be written, or no panel has a curve.
 pub fn draw(chart: &Chart, path: &Path, size: [usize; 2]) -> Result<(), DrawError> {
-    if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("svg")) {
-        let text = svg(chart, size)?;
-        return files::write(path, files::SVG, |file| file.write_all(text.as_bytes()))
-            .map_err(|source| DrawError::Write { path: path.to_path_buf(), source });
+    let is = |kind: &str| path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(kind));
+    let written = |kind, bytes: &[u8]| {
+        files::write(path, kind, |file| file.write_all(bytes))
+            .map_err(|source| DrawError::Write { path: path.to_path_buf(), source })
+    };
+    if is("svg") {
+        return written(files::SVG, svg(chart, size)?.as_bytes());
+    }
+    if is("pdf") {
+        return written(files::PDF, &pdf(chart, size)?);
     }
     something(chart)?;
     let mut canvas = Canvas::new(size, SAMPLES);
@@ -47,6 +54,16 @@ pub fn svg(chart: &Chart, size: [usize; 2]) -> Result<String, DrawError> {
     area.present().map_err(DrawError::ink)?;
     drop(area);
     Ok(text)
+}
+
+/// A chart of this width and height as the bytes of a PDF file.
+fn pdf(chart: &Chart, size: [usize; 2]) -> Result<Vec<u8>, DrawError> {
+    something(chart)?;
+    let mut sheet = PdfPage::new(size);
+    let area = sheet.backend().into_drawing_area();
+    page(&area, chart, 1)?;
+    drop(area);
+    sheet.finish()
 }
 
 /// An error if there is nothing to see in a chart.
@@ -125,27 +142,33 @@ fn draw_panel<D: DrawingBackend>(
         .draw()
         .map_err(DrawError::ink)?;
     for curve in &panel.curves {
-        let points = curve.points.iter().map(|[time, value]| (time / pace, value / size.factor));
-        let points = points.filter(|(_, value)| value.is_finite());
         let style = stroke(curve, pixel);
         let dashes = curve.dashed;
-        if curve.points.len() <= FEW && !dashes {
-            let mark = |point| Circle::new(point, 3 * pixel, style.filled());
-            chart.draw_series(points.clone().map(mark)).map_err(DrawError::ink)?;
-        }
-        let series = if dashes {
-            chart.draw_series(DashedLineSeries::new(points, 7 * pixel, 5 * pixel, style))
-        } else {
-            chart.draw_series(LineSeries::new(points, style))
-        };
-        series.map_err(DrawError::ink)?.label(&curve.label).legend(move |(x, y)| {
-            let ends = [(x, y), (x + 22 * pixel, y)];
-            if dashes {
-                DashedPathElement::new(ends, 7 * pixel, 5 * pixel, style).into_dyn()
-            } else {
-                PathElement::new(ends, style).into_dyn()
+        // A line ends where there is no value.
+        for (number, part) in curve.points.split(|point| !point[1].is_finite()).enumerate() {
+            let points = part.iter().map(|[time, value]| (time / pace, value / size.factor));
+            if curve.points.len() <= FEW && !dashes {
+                let mark = |point| Circle::new(point, 3 * pixel, style.filled());
+                chart.draw_series(points.clone().map(mark)).map_err(DrawError::ink)?;
             }
-        });
+            let series = if dashes {
+                chart.draw_series(DashedLineSeries::new(points, 7 * pixel, 5 * pixel, style))
+            } else {
+                chart.draw_series(LineSeries::new(points, style))
+            };
+            let series = series.map_err(DrawError::ink)?;
+            if number > 0 {
+                continue;
+            }
+            series.label(&curve.label).legend(move |(x, y)| {
+                let ends = [(x, y), (x + 22 * pixel, y)];
+                if dashes {
+                    DashedPathElement::new(ends, 7 * pixel, 5 * pixel, style).into_dyn()
+                } else {
+                    PathElement::new(ends, style).into_dyn()
+                }
+            });
+        }
     }
     chart
         .configure_series_labels()
@@ -228,7 +251,7 @@ mod tests {
     }
 
     #[test]
-    fn a_chart_becomes_png_and_svg() {
+    fn a_chart_becomes_png_svg_and_pdf() {
         let folder = tempfile::tempdir().unwrap();
         let keep = std::env::var_os("STICKSLIP_TEST_PICTURES").map(std::path::PathBuf::from);
         let folder = keep.as_deref().unwrap_or(folder.path());
@@ -236,6 +259,8 @@ mod tests {
         draw(&chart(), &folder.join("chart.svg"), [1280, 560]).unwrap();
         let svg = std::fs::read_to_string(folder.join("chart.svg")).unwrap();
         assert!(svg.contains("velocity [m/s]") && svg.contains("</svg>"));
+        draw(&chart(), &folder.join("chart.PDF"), [1280, 560]).unwrap();
+        assert!(std::fs::read(folder.join("chart.PDF")).unwrap().starts_with(b"%PDF-"));
         let png = std::fs::read(folder.join("chart.png")).unwrap();
         assert_eq!(&png[1..4], b"PNG");
     }

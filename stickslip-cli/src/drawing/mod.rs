@@ -3,11 +3,13 @@
 mod background;
 mod canvas;
 mod colors;
+mod pdf;
 mod ticks;
 
 pub use background::Background;
 pub use canvas::{Canvas, Ink, SAMPLES, register_font, save, without_background};
 pub use colors::{ColorMap, Rgb, Scale, body_color, shaded};
+pub use pdf::PdfPage;
 pub use ticks::{Prefix, axis_prefix, label, prefix, ticks};
 
 use std::path::PathBuf;

@@ -87,14 +87,18 @@ def render(results: Results | Folder, *, out: Folder | None = None, **options: A
     return Picture(path)
 
 
-def plot(results: Results | Folder, *, out: Folder | None = None, **options: Any) -> Picture:
-    """Draws the chart of a run or a sweep: `table="energy"`, `body="ball"`, `quantity="x,y"`; PNG or SVG.
+def plot(
+    results: Results | Folder, *others: Results | Folder, out: Folder | None = None, **options: Any
+) -> Picture:
+    """Draws the chart of a run, of several runs or of a sweep: `table="energy"`, `body="ball"`, `quantity="x,y"`.
 
-    `Results.plot` draws with matplotlib instead.
+    PNG, SVG or PDF, by the name of `out`; without it plot.png, in the folder of a single run. `Results.plot` draws with
+    matplotlib instead.
     """
-    folder = Path(getattr(results, "folder", results))
-    path = folder / "plot.png" if out is None else Path(out)
-    command("plot", folder, out=path, failure=ResultsError, **options)
+    folders = [Path(getattr(each, "folder", each)) for each in (results, *others)]
+    usual = Path("plot.png") if others else folders[0] / "plot.png"
+    path = usual if out is None else Path(out)
+    command("plot", *folders, out=path, failure=ResultsError, **options)
     return Picture(path)
 
 
