@@ -4,11 +4,13 @@ use crate::chart::{ChartChoice, chart};
 use crate::drawing::{Background, ColorMap, DrawError, Scale, save};
 use crate::failure::Failure;
 use crate::picture::{
-    self, BoxCorners, ColorQuantity, PicturePart, PictureStyle, Quarters, Setting, Subject, SymmetryPlane,
-    ViewPath, Viewpoint,
+    self, BoxCorners, ColorQuantity, PicturePart, PictureStyle, Quarters, Setting, Skins, Subject,
+    SymmetryPlane, ViewPath, Viewpoint,
 };
+use crate::view;
 use miette::miette;
 use std::path::Path;
+use std::sync::Arc;
 use stickslip::door::ParticleSnapshot;
 use stickslip::image::Image;
 use stickslip::observe::{Frame, Results};
@@ -37,6 +39,8 @@ pub struct PictureChoice {
     pub contours: usize,
     /// Whether velocities are drawn as arrows.
     pub arrows: bool,
+    /// Whether bodies in space are drawn as particles, and not by their surfaces.
+    pub balls: bool,
     /// Where the camera stands, or goes from the first snapshot to the last.
     pub view: ViewPath,
     /// `x`, `y`, `z` or `none`. Without it, pictures of bodies are mirrored where the scene has just one plane of
@@ -62,6 +66,7 @@ impl Default for PictureChoice {
             smooth: None,
             contours: 0,
             arrows: false,
+            balls: false,
             view: ViewPath(vec![Viewpoint::Auto]),
             mirror: None,
             size: None,
@@ -97,6 +102,7 @@ pub struct Album<'a> {
     window: Option<BoxCorners>,
     /// The largest speed of all snapshots [m/s].
     fastest: Option<f64>,
+    skins: Option<Arc<Skins>>,
 }
 
 impl<'a> Album<'a> {
@@ -106,7 +112,7 @@ impl<'a> Album<'a> {
     /// There are none, no law remembers what colour is to stand for, the scene has no plane of symmetry where the user
     /// wants a mirror, or has another dimension than what the user wants to see.
     pub fn open(results: &'a Results, choice: PictureChoice) -> Result<Self, Failure> {
-        let first = snapshots(results)?.first().expect("there is at least one");
+        let start = snapshots(results)?.first().expect("there is at least one");
         needs_whole_snapshots(results)?;
         let setting = Setting::of(&results.scene().map_err(Failure::input)?);
         let setting = setting.with_floors(&results.manifest().scene);
@@ -114,10 +120,22 @@ impl<'a> Album<'a> {
         let window = fits(results.manifest().dimension, &choice)?;
         let shown = shown(results, &choice);
         let setting = setting.with_bodies(&shown);
-        let first = particles(results, &shown, first)?;
+        let first = particles(results, &shown, start)?;
         choice.quantity.is_in(&first).map_err(|what| Failure::Input(miette!("--color: {what}")))?;
         let quarters = picture::quarters(&first, &setting);
-        Ok(Album { results, setting, quarters, mirror, choice, shown, bounds: None, window, fastest: None })
+        let skins = if choice.balls { None } else { skins(results, (&first, start.time)) };
+        Ok(Album {
+            results,
+            setting,
+            quarters,
+            mirror,
+            choice,
+            shown,
+            bounds: None,
+            window,
+            fastest: None,
+            skins,
+        })
     }
 
     /// The same album with one camera and one range of colours for all pictures.
@@ -187,9 +205,20 @@ impl Pictures for Album<'_> {
             contours: choice.contours,
             fastest: choice.arrows.then(|| self.fastest.unwrap_or_else(|| self.fastest(&particles))),
             hidden: choice.hidden.clone(),
+            skins: self.skins.clone(),
         };
         Ok(picture::draw(&subject, &self.setting, &self.quarters, (frame.time, &look))?)
     }
+}
+
+/// The surfaces of the bodies in space, tied to their particles in the first snapshot; none if that is not of the start, or
+/// if the scene's file is gone or another one.
+fn skins(results: &Results, (first, time): (&ParticleSnapshot, f64)) -> Option<Arc<Skins>> {
+    if first.dimension == 2 || time != 0.0 {
+        return None;
+    }
+    let scene = view::scene(results).ok().filter(|scene| scene.start.is_none())?;
+    Some(Arc::new(Skins::new(&scene, first)))
 }
 
 /// The part of space that the user wants to see.

@@ -155,6 +155,35 @@ fn in_space_half_spaces_have_clean_edges_and_the_camera_moves() {
     let alone = picture(&workplace, &[&flags[..], &BARE, &["--body", "ball"]].concat());
     assert!(!grey(alone.color(200, last - 4)), "{:?}", alone.color(200, last - 4));
 
+    // The ball is round: its surface is drawn, and its particles only where the user wants them or the scene is gone.
+    let round = |image: &Image| {
+        let is_ball = |x: i64, y: i64| {
+            (0..400).contains(&x) && (0..300).contains(&y) && image.color(x as usize, y as usize) != [255; 3]
+        };
+        let columns: Vec<i64> = (0..400).filter(|&x| (0..300).any(|y| is_ball(x, y))).collect();
+        let rows: Vec<i64> = (0..300).filter(|&y| (0..400).any(|x| is_ball(x, y))).collect();
+        let [x, y] = [&columns, &rows].map(|ends| (ends[0] + ends[ends.len() - 1]) as f64 / 2.0);
+        let radius = columns.len() as f64 / 2.0;
+        let rim = |share: f64| {
+            let angles = (0..180).map(|k| f64::from(k).to_radians() * 2.0);
+            let seen = angles.filter(|a| {
+                is_ball(
+                    (x + share * radius * a.cos()).round() as i64,
+                    (y + share * radius * a.sin()).round() as i64,
+                )
+            });
+            seen.count()
+        };
+        (rim(0.97), rim(1.03))
+    };
+    assert_eq!(round(&alone), (180, 0));
+    let balls = picture(&workplace, &[&flags[..], &BARE, &["--body", "ball", "--balls"]].concat());
+    assert_ne!(balls, alone);
+    assert_ne!(round(&balls), (180, 0));
+    std::fs::rename(workplace.path("scene.toml"), workplace.path("gone.toml")).unwrap();
+    assert_eq!(picture(&workplace, &[&flags[..], &BARE, &["--body", "ball"]].concat()), balls);
+    std::fs::rename(workplace.path("gone.toml"), workplace.path("scene.toml")).unwrap();
+
     let near = picture(&workplace, &[&flags[..], &["--window", "-0.3,-0.3,0,0.3,0.3,0.6"]].concat());
     assert_ne!(near, picture(&workplace, &flags));
     let path = ["render", "scene.results", "--animate", "--view", "0,0:90,0", "--size", "300x200"];

@@ -72,6 +72,10 @@ pub struct Arguments {
     #[arg(long, value_enum, value_name = "COLUMN", conflicts_with = "fringes")]
     vectors: Option<VectorColumn>,
 
+    /// Draw the particles of bodies in space as balls, and not the surfaces that they carry.
+    #[arg(long, conflicts_with = "fringes")]
+    balls: bool,
+
     /// Where the camera stands: auto, an axis (x, -x, ...), or AZIMUTH,ELEVATION in degrees from the front. Several of
     /// these, as 0,20:90,20, are passed at even pace from the first snapshot to the last with `--all` and `--animate`.
     #[arg(long, default_value = "auto", allow_hyphen_values = true)]
@@ -266,6 +270,7 @@ impl Arguments {
             smooth: self.smooth.map(|answer| answer == Answer::Yes),
             contours: self.contours.unwrap_or_default().into(),
             arrows: self.vectors.is_some(),
+            balls: self.balls,
             view: self.view.clone(),
             mirror: self.mirror.clone(),
             size: self.size,

@@ -1,11 +1,12 @@
-//! Light on balls: a lamp with shadows, light from the sky that corners get less of, and a dark rim where bodies end.
+//! Light on balls, surfaces and half-spaces: a lamp with shadows, light from the sky that corners get less of, and a dark rim where bodies end.
 
 use super::camera::{Camera, Point};
 use super::floor::{SlabHit, Slabs, SlabsInView};
 use super::grains::Grain;
-use super::splat::{Layer, NOTHING, splat};
+use super::skins::Mesh;
+use super::splat::{Layer, Shares, splat, splat_triangles};
 use super::surface::Ball;
-use crate::drawing::{Rgb, SAMPLES, body_color};
+use crate::drawing::{Rgb, SAMPLES, Scale, body_color, shaded};
 use rayon::prelude::*;
 use stickslip::tensor::Vector;
 
@@ -15,6 +16,8 @@ const GRAININESS: f64 = 0.24;
 const PROBES: usize = 20;
 /// Distance over which corners darken, in ball radii.
 const CORNER: f64 = 5.0;
+/// Cosine of the angle between a triangle and the surface around a corner of it beyond which the body has an edge there.
+const EDGE: f64 = 0.72;
 /// Light left where a body ends.
 const RIM: f64 = 0.55;
 /// Pixels along each side of the picture that the lamp sees.
@@ -24,6 +27,10 @@ const SHADOW_MAP: usize = 2048;
 pub struct Lit<'a> {
     grains: &'a [Grain],
     balls: &'a [Ball],
+    mesh: Mesh,
+    tint: Tint,
+    /// The corners of the mesh in the image.
+    seen: Vec<[f64; 3]>,
     camera: Camera,
     layer: Layer,
     lamp: Camera,
@@ -60,8 +67,22 @@ struct Lighted {
     rim: f64,
 }
 
+/// What colours surfaces have.
+pub enum Tint {
+    /// Those of bodies, which in every other quarter of a round one are paler; of each body the centre if it is round.
+    Bodies(Vec<Option<[f64; 3]>>),
+    /// Those of values.
+    Values(Scale),
+}
+
 /// What there is to be lit besides balls, and how.
 pub struct Surroundings {
+    /// Surfaces of bodies.
+    pub mesh: Mesh,
+    /// Their colours.
+    pub tint: Tint,
+    /// Radius of a ball, and what rooms and corners are measured by [m].
+    pub radius: f64,
     /// Half-spaces at rest.
     pub slabs: Slabs,
     /// Their colour; that of their bodies, without it.
@@ -79,12 +100,20 @@ impl<'a> Lit<'a> {
         size: [usize; 2],
         surroundings: Surroundings,
     ) -> Self {
-        let Surroundings { slabs, slab_color, contrast } = surroundings;
+        let Surroundings { mesh, tint, radius, slabs, slab_color, contrast } = surroundings;
         let toward = camera.toward * 0.62 + camera.up * 0.66 - camera.right * 0.42;
         let lamp = Camera::facing(toward.direction().expect("the eye is not opposite the lamp"), camera.up);
         let side = SHADOW_MAP as f64;
-        let lamp = lamp.fit(balls.iter().map(|ball| ball.center), [8.0, 8.0, side - 16.0, side - 16.0]);
-        let radius = balls.iter().map(|ball| ball.radius).sum::<f64>() / balls.len().max(1) as f64;
+        let points = balls.iter().map(|ball| ball.center).chain(mesh.corners.iter().copied());
+        let lamp = lamp.fit(points, [8.0, 8.0, side - 16.0, side - 16.0]);
+        let layers = |camera: &Camera, size: [usize; 2]| {
+            let corners: Vec<[f64; 3]> =
+                mesh.corners.par_iter().map(|corner| camera.project(*corner)).collect();
+            let mut layer = splat(balls, camera, size);
+            splat_triangles(&mut layer, &corners, &mesh.triangles, balls.len() as u32);
+            (layer, corners)
+        };
+        let ((layer, seen), (shadows, _)) = (layers(&camera, size), layers(&lamp, [SHADOW_MAP; 2]));
         // Points on a sunflower: evenly spread over a disk.
         let probe = |k: usize| {
             let (r, angle) =
@@ -95,9 +124,12 @@ impl<'a> Lit<'a> {
             grains,
             balls,
             camera,
-            layer: splat(balls, &camera, size),
+            layer,
             lamp,
-            shadows: splat(balls, &lamp, [SHADOW_MAP; 2]),
+            shadows,
+            mesh,
+            tint,
+            seen,
             radius,
             contrast,
             slabs: slabs.seen(&camera),
@@ -138,11 +170,63 @@ impl<'a> Lit<'a> {
             let color = self.slab_color.unwrap_or_else(|| body_color(hit.body as usize));
             return Some(Lighted { depth: hit.depth, normal: hit.normal, color, rim: self.edge(sight, hit) });
         }
-        let ball = self.balls.get(self.layer.ball[place] as usize)?;
+        let index = self.layer.ball[place] as usize;
+        let rim = || self.rim([x, y]);
+        let Some(ball) = self.balls.get(index) else {
+            let triangle = index.checked_sub(self.balls.len()).filter(|i| *i < self.mesh.triangles.len())?;
+            let (normal, color) = self.face(triangle, sight)?;
+            return Some(Lighted { depth, normal, color, rim: rim() });
+        };
         let point = self.camera.unproject([sight[0], sight[1], depth]);
         let own = (point - ball.center) / ball.radius;
         let normal = (own * GRAININESS + ball.normal * (1.0 - GRAININESS)).direction().unwrap_or(own);
-        Some(Lighted { depth, normal, color: self.grains[ball.grain].color, rim: self.rim([x, y], ball) })
+        Some(Lighted { depth, normal, color: self.grains[ball.grain].color, rim: rim() })
+    }
+
+    /// Normal and colour of a triangle at a pixel: those of its corners by their shares in the place, but for corners at
+    /// an edge of the body.
+    fn face(&self, triangle: usize, sight: [f64; 2]) -> Option<(Point, Rgb)> {
+        let corners = self.mesh.triangles[triangle].map(|corner| corner as usize);
+        let shares = Shares::new(corners.map(|corner| self.seen[corner]))?.at(sight);
+        let flat = self.mesh.face(triangle);
+        let at = |corner: usize| {
+            let normal = self.mesh.normals[corner];
+            if normal.dot(flat) > EDGE { normal } else { flat }
+        };
+        let normal = (0..3).fold(Vector::ZERO, |sum, k| sum + at(corners[k]) * shares[k]);
+        // A surface cut open shows its inside.
+        let normal = normal.direction().unwrap_or(flat);
+        let normal = if normal.dot(self.camera.toward) < 0.0 && flat.dot(self.camera.toward) < 0.0 {
+            -normal
+        } else {
+            normal
+        };
+        let color = match &self.tint {
+            Tint::Values(scale) => {
+                scale.color((0..3).map(|k| shares[k] * self.mesh.values[corners[k]]).sum())
+            }
+            Tint::Bodies(centers) => {
+                let body = self.mesh.body[triangle] as usize;
+                let start = |axis: usize| {
+                    (0..3).map(|k| shares[k] * self.mesh.reference[corners[k]][axis]).sum::<f64>()
+                };
+                let is_below =
+                    |center: &[f64; 3]| (0..3).filter(|&axis| start(axis) < center[axis]).count() % 2 == 1;
+                let is_pale = centers.get(body).and_then(Option::as_ref).is_some_and(is_below);
+                let color = body_color(body);
+                if is_pale { shaded(color, 1.6) } else { color }
+            }
+        };
+        Some((normal, color))
+    }
+
+    /// The body of what the layer has an index of.
+    fn body(&self, index: u32) -> Option<u32> {
+        let index = index as usize;
+        match self.balls.get(index) {
+            Some(ball) => Some(self.grains[ball.grain].body),
+            None => self.mesh.body.get(index - self.balls.len()).copied(),
+        }
     }
 
     /// Darkens a pixel at the edge of a half-space.
@@ -215,19 +299,16 @@ impl<'a> Lit<'a> {
     }
 
     /// Darkens a pixel next to another body or to the background.
-    fn rim(&self, [x, y]: [usize; 2], ball: &Ball) -> f64 {
-        let body = self.grains[ball.grain].body;
+    fn rim(&self, [x, y]: [usize; 2]) -> f64 {
+        let [width, height] = self.layer.size;
+        let body = self.body(self.layer.ball[y * width + x]);
         let reach = SAMPLES as i64 / 2 + 1;
         let other = |dx: i64, dy: i64| {
             let (x, y) = (x as i64 + dx, y as i64 + dy);
-            let [width, height] = self.layer.size;
             if x < 0 || y < 0 || x >= width as i64 || y >= height as i64 {
                 return false;
             }
-            match self.layer.ball[y as usize * width + x as usize] {
-                NOTHING => true,
-                neighbour => self.grains[self.balls[neighbour as usize].grain].body != body,
-            }
+            self.body(self.layer.ball[y as usize * width + x as usize]) != body
         };
         let at_rim = other(-reach, 0) || other(reach, 0) || other(0, -reach) || other(0, reach);
         if at_rim { RIM } else { 1.0 }
@@ -250,7 +331,14 @@ mod tests {
         let camera = camera.fit(corners, [0.0, 0.0, 200.0, 200.0]);
         let lit = |floors: &[Floor]| {
             let slabs = Slabs::new(floors, &camera, [Vector([-1.0; 3]), Vector([1.0; 3])]);
-            let surroundings = Surroundings { slabs, slab_color: Some([0.8; 3]), contrast: 1.0 };
+            let surroundings = Surroundings {
+                mesh: Mesh::default(),
+                tint: Tint::Bodies(Vec::new()),
+                radius: 0.07,
+                slabs,
+                slab_color: Some([0.8; 3]),
+                contrast: 1.0,
+            };
             Lit::new(&grains, &balls, camera, [200, 200], surroundings)
         };
         let under = lit(&[Floor { body: 0, point: [0.0, 0.0, -1.0], normal: [0.0, 0.0, 1.0] }]);

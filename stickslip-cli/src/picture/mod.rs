@@ -12,6 +12,7 @@ mod quantity;
 #[cfg(test)]
 mod sample;
 mod setting;
+mod skins;
 mod smooth;
 mod splat;
 mod subject;
@@ -21,6 +22,7 @@ pub use camera::{ViewPath, Viewpoint};
 pub use grains::{Quarters, quarters};
 pub use quantity::{ColorQuantity, QuantityParser, determinant};
 pub use setting::{Floor, Setting, SymmetryPlane};
+pub use skins::Skins;
 pub use subject::Subject;
 
 use crate::drawing::{Background, Canvas, DrawError, Rgb, SAMPLES, Scale, body_color, without_background};
@@ -31,8 +33,10 @@ use field::{PlaneField, Source};
 use floor::Slabs;
 use furniture::Pen;
 use grains::Grain;
-use light::{Lit, Surroundings};
+use light::{Lit, Surroundings, Tint};
 use plane::{DrawnGrains, PlaneView};
+use skins::Mesh;
+use std::sync::Arc;
 use stickslip::door::ParticleSnapshot;
 use stickslip::image::Image;
 use stickslip::tensor::Vector;
@@ -62,6 +66,8 @@ pub struct PictureStyle {
     pub fastest: Option<f64>,
     /// What is left out.
     pub hidden: Vec<PicturePart>,
+    /// Surfaces of bodies in space, which are balls where there are none.
+    pub skins: Option<Arc<Skins>>,
 }
 
 impl PictureStyle {
@@ -412,12 +418,21 @@ impl Scene<'_> {
         if !look.path.is_empty() {
             camera = camera.scaled([width, height], area.map(|length| length as f64));
         }
-        let kept: Vec<Grain> =
-            grains.iter().filter(|grain| !setting.has_floor(grain.body)).copied().collect();
-        let grains = if floors.is_empty() { grains } else { &kept };
+        let radius = surface::COVERING * grains.iter().map(Grain::size).sum::<f64>() / grains.len() as f64;
+        let mesh = self.mesh();
+        let surfaces = mesh.bodies();
+        let is_ball = |grain: &&Grain| {
+            !surfaces.contains(&grain.body) && (floors.is_empty() || !setting.has_floor(grain.body))
+        };
+        let grains: Vec<Grain> = grains.iter().filter(is_ball).copied().collect();
+        let grains = &grains[..];
         let balls = surface::surface(grains);
         let is_body = *subject.quantity == ColorQuantity::Body;
+        let tint = if is_body { Tint::Bodies(setting.round.clone()) } else { Tint::Values(look.scale) };
         let surroundings = Surroundings {
+            mesh,
+            tint,
+            radius,
             slabs,
             slab_color: (!is_body).then_some(FLOOR),
             contrast: if is_body { 1.0 } else { VALUE_CONTRAST },
@@ -439,6 +454,23 @@ impl Scene<'_> {
         }
         drop(pen);
         Ok(canvas)
+    }
+
+    /// The surfaces of bodies, with mirror images where the user wants them.
+    fn mesh(&self) -> Mesh {
+        let Some(skins) = &self.look.skins else { return Mesh::default() };
+        let Subject { particles, quantity, values, .. } = self.subject;
+        let fitted = |body: u32, place: [f64; 3]| {
+            self.subject
+                .smoother()
+                .and_then(|smoother| smoother.at(body, place))
+                .map(|parts| quantity.value_of(parts))
+        };
+        let mesh = skins.mesh(particles, values, fitted);
+        match self.look.mirror {
+            Some(mirror) => mesh.mirrored(mirror),
+            None => mesh,
+        }
     }
 
     /// The box around all that there is, whatever of it the picture shows.
@@ -468,6 +500,7 @@ mod tests {
             contours: 0,
             fastest: None,
             hidden: Vec::new(),
+            skins: None,
         }
     }
 

@@ -22,7 +22,7 @@ pub struct Ball {
 /// Reach of the sum over neighbours, in sides of a particle.
 const REACH: f64 = 2.6;
 /// A ball of this radius, in sides, on a cubic lattice lets no light through a face of the lattice.
-const COVERING: f64 = 0.74;
+pub const COVERING: f64 = 0.74;
 /// Length of the mean offset to the neighbours, in sides, over which a particle counts as one of the surface;
 /// at a flat face it is 0.8 in the first layer and 0.3 in the second, inside it is 0.
 const EXPOSED: f64 = 0.16;

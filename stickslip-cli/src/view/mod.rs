@@ -21,3 +21,4 @@ mod tables;
 pub use library::Library;
 pub use server::{answer, serve};
 pub use single_file::{Estimate, write};
+pub use skins::scene;

@@ -153,7 +153,10 @@ fn lacks(column: &str) -> NoSkins {
 }
 
 /// The scene that was run, read from its file again: the record does not hold shapes that can be read.
-fn scene(results: &Results) -> Result<Scene, String> {
+///
+/// # Errors
+/// The file is gone, or says another thing than when it was run.
+pub fn scene(results: &Results) -> Result<Scene, String> {
     let manifest = results.manifest();
     let source: &SceneSource = manifest.source.as_ref().ok_or("the run did not come from a scene file")?;
     let loaded = source.load().map_err(|error| format!("the scene file cannot be read again: {error}"))?;
