@@ -13,7 +13,8 @@ const GRAVITY: f64 = 9.81;
 pub fn length_of_bar(results: &Results) -> Measured {
     let particles = last_particles(results)?;
     let reach = particles.position.iter().map(|position| position[2]).fold(0.0, f64::max);
-    Ok(1e3 * (reach + 0.25 * results.manifest().cell))
+    // Three particles lie along a cell.
+    Ok(1e3 * (reach + results.manifest().cell / 6.0))
 }
 
 /// Kinetic energy that a rolling wheel lost over what its material dissipated, from a fifth of the run on [-].
