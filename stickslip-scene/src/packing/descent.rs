@@ -30,10 +30,16 @@ pub struct Descent<'a> {
     random: ChaCha8Rng,
     /// Whether the balls that hold the grains stand for them.
     as_balls: bool,
+    /// How much larger grains are on the way, over their radius.
+    extra: f64,
+    /// Stiffness and mass of each, over those of a grain on the open surface.
+    hardness: Vec<f64>,
 }
 
-/// How much larger grains are on the way, over their radius.
+/// How much larger grains are on the way, over their radius; where they settle, more, as their weight presses them into
+/// each other.
 const EXTRA: f64 = 1e-3;
+const SETTLING_EXTRA: f64 = 3e-3;
 
 /// A grain resists turning as a ball does: moment of inertia over mass and radius squared.
 const INERTIA: f64 = 0.4;
@@ -56,19 +62,27 @@ const SHAKE: f64 = 0.1;
 /// Grains times steps, those with points of their surfaces by half as many times as these are.
 const MOST_WORK: usize = 400_000_000;
 
-/// Under the first weight grains that settle press the lowest of them this part of a radius into each other, and fall
-/// fast; then under one that is by this factor less and less, until they keep apart, at least from the last one on.
-const PRESSED: [f64; 2] = [0.03, 1e-4];
-const LIGHTER: f64 = 0.25;
-const LIGHTEST: f64 = 0.01;
+/// Longest time step where balls and other grains go down, and where they settle, over the period of a grain of
+/// stiffness 1 over its 2 pi.
+const LONGEST: [f64; 2] = [0.35, 0.15];
+const SETTLING_LONGEST: f64 = 0.5;
 
-/// The largest force on a grain, over its weight, before which the next weight has its turn, and that of rest.
-const TURN: f64 = 0.05;
+/// Under the first weight grains that settle press this part of a radius into each other, and fall fast; then under one
+/// that is less and less, by this factor or by as much as it takes, until they keep apart; the last one.
+const PRESSED: f64 = 3e-3;
+const LIGHTER: f64 = 0.15;
+const LEAST_PRESSED: f64 = 1e-7;
+
+/// The overlap that the next weight is to leave, over what they may have, and the largest factor to it.
+const AIM: f64 = 0.8;
+
+/// The largest force on a grain, over its weight, that is rest, and what is rest, too, when the steps have run out.
 const REST: f64 = 0.01;
-
-/// Steps under each weight, and the force over the weight that is rest, too, when they have run out.
-const FALL_STEPS: usize = 40_000;
 const NEARLY_RESTS: f64 = 0.1;
+
+/// Steps under each weight before the last one, and grains times steps in all.
+const FALL_STEPS: usize = 3000;
+const MOST_FALL: usize = 1_000_000_000;
 
 /// Velocities or forces: of the middles, and of the surfaces by turning.
 #[derive(Clone, Copy, Default)]
@@ -95,6 +109,7 @@ impl<'a> Descent<'a> {
         for (axis, ends) in packing.repeats.iter().enumerate() {
             walls.retain(|wall| !ends.is_some_and(|ends| wall.is_end(axis, ends)));
         }
+        let hardness = vec![1.0; grains.len()];
         let mut descent = Descent {
             packing,
             shape,
@@ -107,6 +122,8 @@ impl<'a> Descent<'a> {
             stiffness,
             random,
             as_balls: false,
+            extra: EXTRA,
+            hardness,
         };
         descent.list();
         descent
@@ -117,7 +134,7 @@ impl<'a> Descent<'a> {
             grain.position = self.packing.inside(grain.position);
         }
         self.listed = self.grains.iter().map(|grain| grain.position).collect();
-        let reach = 1.0 + EXTRA + self.shape.apart();
+        let reach = 1.0 + self.extra + self.shape.apart();
         let radii: Vec<f64> =
             self.grains.iter().map(|grain| reach * grain.scale * self.shape.radius).collect();
         let margin = 2.0 * self.skin + self.packing.gap;
@@ -205,51 +222,75 @@ impl<'a> Descent<'a> {
     /// # Errors
     /// They do not come to rest.
     pub fn settle(&mut self, along: [f64; 3]) -> Result<(), NoPacking> {
-        let Some(bounds) = self.packing.container.bounds(self.packing.dimension) else { return Ok(()) };
-        let height: f64 = bounds.size().iter().zip(&along).map(|(size, along)| size * along.abs()).sum();
-        let smallest = self.grains.iter().map(|grain| grain.scale).fold(f64::INFINITY, f64::min);
-        // How many grains lie upon each other at most, about.
-        let layers = 1.0 + 0.5 * height / (smallest * self.shape.radius);
-        let [mut pressed, last] = PRESSED;
+        self.extra = SETTLING_EXTRA;
+        self.list();
+        // In a container that they nearly fill there may be no room for that.
+        if !self.run(self.most_steps()) {
+            self.extra = EXTRA;
+        }
+        let work = self.grains.len().max(1) * (1 + self.shape.points.len() / 2);
+        let mut steps = (MOST_FALL / work).max(FALL_STEPS);
+        let mut pressed = PRESSED;
         loop {
-            let weight = pressed * self.shape.radius * self.stiffness / layers;
-            let along = along.map(|along| along * weight);
-            let mut left = self.fall(along, TURN);
-            let apart = |descent: &Self| descent.acting().iter().all(|acting| acting.excess <= 0.0);
-            if pressed <= last && apart(self) {
-                left = self.fall(along, REST);
-                if apart(self) && left <= NEARLY_RESTS {
+            self.harden(along);
+            let weight = along.map(|along| along * pressed * self.shape.radius * self.stiffness);
+            let mut left = self.fall(weight, FALL_STEPS.min(steps), &mut steps);
+            let mut excess = self.excess();
+            if excess <= 0.0 {
+                left = self.fall(weight, steps, &mut steps);
+                excess = self.excess();
+                if excess <= 0.0 && left <= NEARLY_RESTS {
                     return Ok(());
                 }
             }
-            if pressed < LIGHTEST * last {
+            if steps == 0 || pressed < LEAST_PRESSED {
                 return Err(NoPacking::Restless(left));
             }
-            pressed *= LIGHTER;
+            // Overlap is in proportion to the weight.
+            let allowed = 2.0 * self.extra;
+            pressed *= (AIM * allowed / (allowed + excess)).clamp(LIGHTER, AIM);
         }
     }
 
-    /// Takes steps under a weight, that of a grain of size 1, until the largest force that is left on a grain, over its
-    /// weight, is no more than `enough`, or the steps run out; that force.
-    fn fall(&mut self, weight: [f64; 3], enough: f64) -> f64 {
+    /// Makes grains harder and heavier, by how many lie above each of them, about: so overlaps are alike everywhere, and
+    /// those on the open surface, under their own weight alone, need no more steps than those below.
+    fn harden(&mut self, along: [f64; 3]) {
+        let depth = |grain: &Grain| (0..3).map(|k| grain.position[k] * along[k]).sum::<f64>();
+        let top = self.grains.iter().map(depth).fold(f64::INFINITY, f64::min);
+        let mean = self.grains.iter().map(|grain| grain.scale).sum::<f64>() / self.grains.len() as f64;
+        let layer = 2.0 * mean * self.shape.radius;
+        self.hardness = self.grains.iter().map(|grain| 1.0 + (depth(grain) - top) / layer).collect();
+    }
+
+    /// The deepest overlap beyond what grains may have on the way, over their size.
+    fn excess(&self) -> f64 {
+        self.acting().iter().map(|acting| acting.excess).fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// Takes at most so many steps under a weight, that of a grain of size 1, until all rest; the largest force that is
+    /// left on a grain, over its weight. Takes the steps from those that are `left`.
+    fn fall(&mut self, weight: [f64; 3], most: usize, left: &mut usize) -> f64 {
         let mut roll = Roll::new(self);
+        roll.longest *= SETTLING_LONGEST / LONGEST[0];
         let size = Vector(weight).norm();
-        let mut left = f64::INFINITY;
-        for _ in 0..FALL_STEPS {
+        let mut largest = f64::INFINITY;
+        for _ in 0..most {
             let mut acting = self.acting();
-            left = 0.0;
+            largest = 0.0;
             for (Acting { force: Motion(force), .. }, grain) in acting.iter_mut().zip(&self.grains) {
                 let heavy = grain.scale.powi(self.packing.dimension as i32);
                 (0..3).for_each(|k| force[k] += heavy * weight[k]);
-                left = left.max(Vector([force[0], force[1], force[2]]).norm() / (heavy * size));
+                let sum = force.iter().map(|f| f * f).sum::<f64>();
+                largest = largest.max(sum.sqrt() / (heavy * size));
             }
-            if left <= enough {
+            if largest <= REST {
                 break;
             }
-            let step = roll.on(&acting);
+            *left -= 1;
+            let step = roll.on(&acting, &self.hardness);
             self.advance(&roll.motions, step);
         }
-        left
+        largest
     }
 
     fn resize(&mut self, sizes: &[f64], factor: f64) {
@@ -278,7 +319,7 @@ impl<'a> Descent<'a> {
                 roll.halt();
                 continue;
             }
-            let step = roll.on(&acting);
+            let step = roll.on(&acting, &self.hardness);
             self.advance(&roll.motions, step);
         }
         false
@@ -310,22 +351,27 @@ impl<'a> Descent<'a> {
             true => self.grains.iter().map(Grain::ball).collect(),
             false => Vec::new(),
         };
+        let hardness = |i: usize, j: usize| 0.5 * (self.hardness[i] + self.hardness[j]);
         let on = |i: usize| {
             let grain = &self.grains[i];
             let mut push = Push::NONE;
             if !self.amid[i] {
-                self.walls.iter().for_each(|wall| push.join(shape.held(grain, wall, gap, EXTRA)));
+                for wall in &self.walls {
+                    push.join(shape.held(grain, wall, gap, self.extra).times(self.hardness[i]));
+                }
             }
             match places.get(i) {
                 Some(place) => (self.near.of(i)).for_each(|j| {
                     let [x, y, z, scale] = places[j];
                     let [x, y, z] = self.packing.image_near([x, y, z], grain.position);
-                    push.join(shape.push_ball((place, &[x, y, z, scale]), gap, EXTRA));
+                    let pushed = shape.push_ball((place, &[x, y, z, scale]), gap, self.extra);
+                    push.join(pushed.times(hardness(i, j)));
                 }),
                 None => (self.near.of(i)).for_each(|j| {
                     let other = &self.grains[j];
                     let position = self.packing.image_near(other.position, grain.position);
-                    push.join(shape.push((grain, &Grain { position, ..*other }), gap, EXTRA));
+                    let pushed = shape.push((grain, &Grain { position, ..*other }), gap, self.extra);
+                    push.join(pushed.times(hardness(i, j)));
                 }),
             }
             Acting { force: self.force(&push, grain), excess: push.excess }
@@ -389,7 +435,7 @@ const SHARE: f64 = 0.1;
 impl Roll {
     fn new(descent: &Descent) -> Self {
         let turns = !descent.shape.points.is_empty();
-        let longest: f64 = if turns { 0.15 } else { 0.35 };
+        let longest = LONGEST[usize::from(turns)];
         // Walls have corners, at which the energy has no slope: steps that shrink there without end would stay there.
         let shortest = 0.25 * longest;
         Roll {
@@ -407,11 +453,12 @@ impl Roll {
         self.motions.fill(Motion::default());
     }
 
-    /// The motions under what acts, and for how long they last.
-    fn on(&mut self, acting: &[Acting]) -> f64 {
+    /// The motions of grains of these masses under what acts, and for how long they last.
+    fn on(&mut self, acting: &[Acting], masses: &[f64]) -> f64 {
         let components = self.components;
         let (mut power, mut of_motion, mut of_force) = (0.0, 0.0, 0.0);
-        for (Motion(motion), Acting { force: Motion(force), .. }) in self.motions.iter().zip(acting) {
+        let each = self.motions.iter().zip(acting).zip(masses);
+        for ((Motion(motion), Acting { force: Motion(force), .. }), mass) in each {
             let (mut p, mut m, mut f) = (0.0, 0.0, 0.0);
             for (motion, force) in motion[..components].iter().zip(&force[..components]) {
                 p += force * motion;
@@ -419,8 +466,8 @@ impl Roll {
                 f += force * force;
             }
             power += p;
-            of_motion += m;
-            of_force += f;
+            of_motion += m * mass;
+            of_force += f / mass;
         }
         let mut turn = None;
         if power > 0.0 {
@@ -434,12 +481,14 @@ impl Roll {
             (self.step, self.share, self.downhill) = (self.shortest.max(0.5 * self.step), SHARE, 0);
             self.halt();
         }
-        for (Motion(motion), Acting { force: Motion(force), .. }) in self.motions.iter_mut().zip(acting) {
+        let each = self.motions.iter_mut().zip(acting).zip(masses);
+        for ((Motion(motion), Acting { force: Motion(force), .. }), mass) in each {
             for (motion, force) in motion[..components].iter_mut().zip(&force[..components]) {
+                let acceleration = force / mass;
                 if let Some(turn) = turn {
-                    *motion = (1.0 - self.share) * *motion + turn * force;
+                    *motion = (1.0 - self.share) * *motion + turn * acceleration;
                 }
-                *motion += self.step * force;
+                *motion += self.step * acceleration;
             }
         }
         self.step

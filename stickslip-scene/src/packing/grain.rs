@@ -111,6 +111,12 @@ impl Push {
         }
     }
 
+    /// As of surfaces that are so many times as stiff.
+    pub fn times(self, stiffness: f64) -> Push {
+        let [force, moment] = [self.force, self.moment].map(|of| of.map(|x| stiffness * x));
+        Push { force, moment, ..self }
+    }
+
     pub fn join(&mut self, other: Push) {
         for k in 0..3 {
             self.force[k] += other.force[k];

@@ -13,7 +13,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant, SystemTime};
 
 /// Beside the version of the crate: another number where the same packing comes out with other places.
-const EDITION: u32 = 1;
+const EDITION: u32 = 2;
 
 /// Where kept packings lie, if not in the user's own folder; `off` keeps none.
 const VARIABLE: &str = "STICKSLIP_CACHE";

@@ -218,6 +218,50 @@ fn filled(balls: &[([f64; 3], f64)], [low, high]: [[f64; 3]; 2], dimension: usiz
     (0..count).filter(|&n| is_filled(n)).count() as f64 / count as f64
 }
 
+/// Settles disks or balls down the last axis, and checks that they rest without overlap, as dense in their middle as
+/// random packings are.
+fn settle_and_check(packing: Packing, range: std::ops::Range<f64>) {
+    let (dimension, container, up) = (packing.dimension, packing.container, packing.dimension - 1);
+    let along: [f64; 3] = std::array::from_fn(|k| if k == up { -1.0 } else { 0.0 });
+    let packing = Packing { settle: Some(along), ..packing };
+    let start = std::time::Instant::now();
+    let placements = packing.place().unwrap_or_else(|problem| panic!("{problem:?}"));
+    println!("{} grains in {:.1} s", placements.len(), start.elapsed().as_secs_f64());
+    let overlap = overlap_of_balls(&packing, &placements);
+    assert!(overlap <= 0.0, "{overlap:e} of a radius");
+    // Each is held from below, by as many others and walls as a frictionless grain at rest has.
+    let balls = balls(&packing, &placements);
+    let bounds = container.bounds(dimension).expect("a box");
+    let mut held = 0;
+    for (i, (x, r)) in balls.iter().enumerate() {
+        let mut towards: Vec<f64> = Vec::new();
+        for (j, (y, s)) in balls.iter().enumerate().filter(|(j, _)| *j != i) {
+            let apart = (0..dimension).map(|k| (x[k] - y[k]).powi(2)).sum::<f64>().sqrt();
+            if apart < (r + s) * (1.0 + 3.001e-3) {
+                towards.push((x[up] - y[up]) / apart);
+            }
+            assert!(apart >= r + s, "{i} and {j} overlap");
+        }
+        for (k, &at) in x.iter().enumerate().take(dimension) {
+            let away = if k == up { 1.0 } else { 0.0 };
+            towards.extend((at - bounds.min[k] < r * (1.0 + 3.001e-3)).then_some(away));
+            towards.extend((bounds.max[k] - at < r * (1.0 + 3.001e-3)).then_some(-away));
+        }
+        assert!(towards.iter().any(|up| *up > 0.0), "nothing below grain {i} at {x:?}: {towards:?}");
+        held += usize::from(towards.len() >= dimension);
+    }
+    // One on the open surface may pass over two others just then.
+    assert!(held as f64 >= 0.99 * balls.len() as f64, "{held} of {} are held", balls.len());
+    let top = balls.iter().map(|(x, _)| x[up]).fold(0.0, f64::max);
+    let margin = 0.15 * bounds.size()[0];
+    let low: [f64; 3] = std::array::from_fn(|k| bounds.min[k] + margin);
+    let mut high: [f64; 3] = std::array::from_fn(|k| bounds.max[k] - margin);
+    high[up] = top - margin;
+    let found = filled(&balls, [low, high], dimension);
+    println!("{found:.4} filled up to {top:.3} m");
+    assert!(range.contains(&found), "{found} in {dimension} dimensions");
+}
+
 /// Grains settle without friction: in space balls of one size to between random loose and random close packing, 0.55
 /// (Onoda and Liniger 1990, Phys. Rev. Lett. 64, 2727) and 0.64 (Scott and Kilgour 1969, J. Phys. D 2, 863), in the
 /// plane disks of two sizes to near 0.84 (O'Hern et al. 2003); away from the walls, at which order begins, and from the
@@ -236,44 +280,7 @@ fn settled_grains_rest_as_dense_as_random_packings_are() {
         (3, 0.4, Sizes::One(2.0), Shape::cuboid([0.0; 3], [0.6, 0.6, 0.9]), 0.55..0.65),
     ];
     for (dimension, fraction, sizes, container, range) in cases {
-        let up = dimension - 1;
-        let along: [f64; 3] = std::array::from_fn(|k| if k == up { -1.0 } else { 0.0 });
-        let packing =
-            Packing { sizes, settle: Some(along), ..request(&container, &disk, fraction, dimension) };
-        let placements = packing.place().unwrap_or_else(|problem| panic!("{problem:?}"));
-        let overlap = overlap_of_balls(&packing, &placements);
-        assert!(overlap <= 0.0, "{overlap:e} of a radius");
-        // Each is held from below, by as many others and walls as a frictionless grain at rest has.
-        let balls = balls(&packing, &placements);
-        let bounds = container.bounds(dimension).expect("a box");
-        let mut held = 0;
-        for (i, (x, r)) in balls.iter().enumerate() {
-            let mut towards: Vec<f64> = Vec::new();
-            for (j, (y, s)) in balls.iter().enumerate().filter(|(j, _)| *j != i) {
-                let apart = (0..dimension).map(|k| (x[k] - y[k]).powi(2)).sum::<f64>().sqrt();
-                if apart < (r + s) * (1.0 + 1.001e-3) {
-                    towards.push((x[up] - y[up]) / apart);
-                }
-                assert!(apart >= r + s, "{i} and {j} overlap");
-            }
-            for (k, &at) in x.iter().enumerate().take(dimension) {
-                let away = if k == up { 1.0 } else { 0.0 };
-                towards.extend((at - bounds.min[k] < r * (1.0 + 1.001e-3)).then_some(away));
-                towards.extend((bounds.max[k] - at < r * (1.0 + 1.001e-3)).then_some(-away));
-            }
-            assert!(towards.iter().any(|up| *up > 0.0), "nothing below grain {i} at {x:?}: {towards:?}");
-            held += usize::from(towards.len() >= dimension);
-        }
-        // One on the open surface may pass over two others just then.
-        assert!(held as f64 >= 0.99 * balls.len() as f64, "{held} of {} are held", balls.len());
-        let top = balls.iter().map(|(x, _)| x[up]).fold(0.0, f64::max);
-        let margin = 0.15 * bounds.size()[0];
-        let low: [f64; 3] = std::array::from_fn(|k| bounds.min[k] + margin);
-        let mut high: [f64; 3] = std::array::from_fn(|k| bounds.max[k] - margin);
-        high[up] = top - margin;
-        let found = filled(&balls, [low, high], dimension);
-        println!("{found:.4} filled up to {top:.3} m");
-        assert!(range.contains(&found), "{found} in {dimension} dimensions");
+        settle_and_check(Packing { sizes, ..request(&container, &disk, fraction, dimension) }, range);
     }
     // By any number of threads.
     let (container, few) = (cube(0.5), Amount::Count(150));
@@ -287,6 +294,22 @@ fn settled_grains_rest_as_dense_as_random_packings_are() {
     let square = Shape::rectangle([0.0; 2], [0.1, 0.1]);
     let squares = Packing { settle, ..request(&container, &square, 0.3, 2) };
     assert_eq!(squares.place(), Err(NoPacking::SettleOfNoBalls));
+}
+
+/// Some eighty disks or twenty balls upon each other.
+#[test]
+#[ignore = "slow"]
+fn three_thousand_grains_of_three_sizes_settle() {
+    let disk = Shape::ball([0.0; 3], 0.02);
+    let cases = [
+        (2, Shape::cuboid([0.0; 3], [3.5, 3.0, 1.0]), 0.81..0.86),
+        (3, Shape::cuboid([0.0; 3], [0.7, 0.7, 1.5]), 0.58..0.67),
+    ];
+    for (dimension, container, range) in cases {
+        let sizes = Sizes::Numbers(vec![[1.0, 1.0], [1.3, 1.0], [1.6, 1.0]]);
+        let amount = Amount::Count(3000);
+        settle_and_check(Packing { sizes, amount, ..request(&container, &disk, 0.3, dimension) }, range);
+    }
 }
 
 proptest! {

@@ -1,7 +1,7 @@
 //! `[[packings]]`: many bodies at once, at random places in a container, without overlap.
 
 use super::Context;
-use super::body::{Bodies, BodyKeys, material_of};
+use super::body::{Bodies, BodyKeys, Rigid, material_of};
 use super::quantity::{Length, QuantityInput, Ratio, Velocity};
 use super::read::{Read, table};
 use super::shape::ShapeInput;
@@ -54,6 +54,9 @@ table! {
         velocity: Option<VectorInput<Velocity>>,
         /// Angular velocity of each about its centre of mass at the start [rad/s]; by default none.
         spin: Option<SpinInput>,
+        /// Makes the grains rigid: rigid.free = {} lets forces move each of them, by the mass and the moments of inertia of
+        /// its shape and the material's density; without free their motion is prescribed. By default they deform.
+        rigid: Option<Rigid>,
     }
 }
 
@@ -113,7 +116,7 @@ impl Packing {
             None if fits(&grain, dimension) => Arrangement::Fitted,
             None => Arrangement::Lattice,
         };
-        let keys = BodyKeys { velocity: &self.velocity, spin: &self.spin, rigid: &None };
+        let keys = BodyKeys { velocity: &self.velocity, spin: &self.spin, rigid: &self.rigid };
         let motion = keys.motion(context)?;
         let per_side =
             self.particles_per_side.as_ref().map(|count| count.value(context, 1..=8)).transpose()?;
@@ -183,7 +186,7 @@ impl Packing {
             NoPacking::Restless(left) => Fault::new(
                 &key("settle"),
                 format!("grains that do not come to rest: a force of {left:.2} weights is left on one"),
-                "grains that rest: some hundreds; more settle in a run of their own, see [start]",
+                "grains that rest: some thousands; more settle in a run of their own, see [start]",
             ),
             NoPacking::Overfull(ratio) => {
                 let gap = if self.gap.is_some() { ", with half of the gap around each" } else { "" };
