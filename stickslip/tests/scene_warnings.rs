@@ -102,3 +102,21 @@ fn the_scenes_of_the_repository_are_told_of_nothing_but_resolution() {
     }
     assert!(seen >= 10, "{seen}");
 }
+
+/// A rule that names no friction, and pairs that no rule names; glued bodies rub on nothing.
+#[test]
+fn pairs_without_a_word_on_friction_are_named() {
+    let said = |rules: &str| {
+        let (head, _) = DOUBTFUL.split_once("[[contact]]").expect("it has rules");
+        let loaded = scene::parse("a.toml", &format!("{head}{rules}"), &[]).expect("a scene");
+        report(&loaded.scene).expect("no problem").pairs_without_friction()
+    };
+    let all =
+        "the friction of `strip` and `roller`, and of 4 more pairs, is 0, as no [[contact]] says what it is";
+    assert_eq!(said("").as_deref(), Some(all));
+    let one = "[[contact]]\nbetween = [\"roller\", \"any\"]\nfriction = 0\n";
+    let others = "[[contact]]\nbetween = [\"strip\", \"ram\"]\nlaw = \"glued\"\n[[contact]]\nlaw = \"gap\"";
+    let last = "the friction of `strip` and `anvil` is 0, as no [[contact]] says what it is";
+    assert_eq!(said(&format!("{one}{others}")).as_deref(), Some(last));
+    assert_eq!(said("[[contact]]\nfriction = 0"), None);
+}

@@ -47,6 +47,8 @@ struct Puppet {
     stable: fn(f64) -> f64,
     /// Impulses of contact with a second body so far, and how many of them were reduced.
     pushes: [u64; 2],
+    /// Bodies that all move so.
+    crowd: usize,
     time: f64,
     steps: u64,
 }
@@ -61,6 +63,7 @@ impl Puppet {
             momentum: |_| [0.0; 3],
             stable: |_| STEP,
             pushes: [0; 2],
+            crowd: 1,
             time: 0.0,
             steps: 0,
         }
@@ -107,7 +110,7 @@ impl View for Puppet {
         let moment = |p: TracedParticle| p.position[0] * p.velocity[1] - p.position[1] * p.velocity[0];
         let angular: f64 = self.now().map(moment).sum();
         let squares = self.now().flat_map(|p| p.velocity).map(|v| v * v).sum::<f64>();
-        vec![BodyState {
+        let state = BodyState {
             mass: particle * self.particles() as f64,
             position: mean(|p| p.position),
             velocity: mean(|p| p.velocity),
@@ -115,7 +118,8 @@ impl View for Puppet {
             angular_momentum: [0.0, 0.0, particle * angular],
             kinetic: 0.5 * particle * squares,
             strain: (self.energy)(self.time)[1],
-        }]
+        };
+        vec![state; self.crowd]
     }
 
     fn ledger(&self) -> Ledger {
@@ -184,6 +188,13 @@ impl Simulation for Puppet {
 
 /// What a run of this scene notes while it runs, and what its record says in the end.
 fn judge(text: &str, simulation: &mut dyn Simulation) -> (Vec<String>, Vec<RunWarning>) {
+    let (notes, recorded, text) = summarized(text, simulation);
+    assert_eq!(text.matches("  warning    ").count(), recorded.len(), "{text}");
+    (notes, recorded)
+}
+
+/// What was told during the run, what was recorded, and the summary.
+fn summarized(text: &str, simulation: &mut dyn Simulation) -> (Vec<String>, Vec<RunWarning>, String) {
     let scene: Scene = scene::parse("puppet.toml", text, &[]).unwrap().scene;
     let out = tempfile::tempdir().unwrap();
     let stop = Arc::new(AtomicBool::new(false));
@@ -193,9 +204,7 @@ fn judge(text: &str, simulation: &mut dyn Simulation) -> (Vec<String>, Vec<RunWa
     let summary = run::run(&scene, simulation, &options, &mut progress).unwrap();
     let recorded = Results::open(&options.out).unwrap().manifest().warnings.clone();
     assert_eq!(summary.warnings, recorded);
-    let text = summary.to_string();
-    assert_eq!(text.matches("  warning    ").count(), recorded.len(), "{text}");
-    (notes, recorded)
+    (notes, recorded, summary.to_string())
 }
 
 /// Kinds of what is wrong.
@@ -419,6 +428,33 @@ fn positions_that_leave_their_strain_behind_are_found() {
     let [warning] = &warnings[..] else { panic!("{warnings:?}") };
     assert_eq!((warning.kind.as_str(), warning.body.as_deref()), ("strain", Some("block")));
     assert!(warning.position.is_some() && warning.worst > 0.5, "{warning:?}");
+}
+
+/// On the screen a line stands for all of them, with the worst; the record has each.
+#[test]
+fn of_many_bodies_with_the_same_trouble_the_worst_is_told() {
+    let drifting: BodyMotion = |[x, y], t| {
+        let stretch = 1.0 + 0.01 * t;
+        ([stretch * x, y], [0.0; 2], [[1.0 + 0.006 * t, 0.0], [0.0, 1.0]])
+    };
+    let scene = SCENE.replace("name = \"block\"", "name = \"block {i + 1}\"\nrepeat.i = 17").replace(
+        "min = [-0.5, -0.2], max = [0.5, 0.2]",
+        "min = [\"3 * i - 0.5\", -0.2], max = [\"3 * i + 0.5\", 0.2]",
+    );
+    let mut puppet = Puppet { crowd: 17, ..Puppet::new(drifting) };
+    let (notes, recorded, text) = summarized(&scene, &mut puppet);
+    assert_eq!(recorded.iter().filter(|warning| warning.kind == "strain").count(), 17);
+    let [told] = &notes[..] else { panic!("{notes:?}") };
+    assert!(told.ends_with("; 16 more bodies likewise"), "{told}");
+    let [line] = &text.lines().filter(|line| line.starts_with("  warning    ")).collect::<Vec<_>>()[..]
+    else {
+        panic!("{text}")
+    };
+    assert!(
+        line.starts_with("  warning    strain: 17 bodies, all in run.json; the worst from t = "),
+        "{line}"
+    );
+    assert!(line.contains("distances in `block "), "{line}");
 }
 
 #[test]

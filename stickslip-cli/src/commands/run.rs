@@ -248,6 +248,9 @@ impl How {
                 size(limit)
             )));
         }
+        if let Some(pairs) = report.pairs_without_friction().filter(|_| !self.quiet) {
+            eprintln!("note: {pairs}");
+        }
         for warning in report.warnings {
             eprintln!("warning: {warning}");
         }
@@ -296,7 +299,7 @@ impl How {
             say(&format!("go on with: stickslip resume {}", out.display()))?;
         }
         if self.quiet {
-            summary.warnings.iter().for_each(|warning| eprintln!("warning: {}", warning.message));
+            summary.warning_lines().iter().for_each(|line| eprintln!("warning: {line}"));
         }
         match (summary.status, summary.warnings.len()) {
             (Status::Interrupted, _) => Err(Failure::Interrupted),

@@ -34,6 +34,11 @@ impl RuleReport {
         !matches!(self.law, ContactLaw::None | ContactLaw::Glued)
     }
 
+    /// Whether surfaces would rub and have no friction because nobody said how much.
+    pub fn lacks_friction(&self) -> bool {
+        self.rubs() && !self.friction_given && self.friction == 0.0
+    }
+
     /// The coefficient, and why it is zero where nobody said so.
     pub fn friction(&self) -> String {
         let [rest, slip] = [self.friction, self.kinetic_friction].map(|x| x.to_string());

@@ -60,7 +60,7 @@ impl ReferenceResult {
     }
 }
 
-/// Warnings of a kind that the summary names.
+/// Bodies of which the same warning is told one by one; of more, the worst is.
 const NAMED: usize = 3;
 
 impl Summary {
@@ -106,6 +106,30 @@ impl Summary {
     /// [`Summary::energy_drift`] over [`Summary::energy_scale`] [-].
     pub fn relative_energy_drift(&self) -> f64 {
         if self.energy_scale > 0.0 { self.energy_drift() / self.energy_scale } else { 0.0 }
+    }
+
+    /// The warnings as lines of text: where many bodies have the same, one line with the worst of them.
+    pub fn warning_lines(&self) -> Vec<String> {
+        let mut kinds: Vec<&str> = Vec::new();
+        for warning in &self.warnings {
+            if !kinds.contains(&warning.kind.as_str()) {
+                kinds.push(&warning.kind);
+            }
+        }
+        let told = |warning: &RunWarning| {
+            let times = if warning.count == 1 { "once" } else { &format!("{} times", warning.count) };
+            format!("from t = {:.4e} s, {times}: {}", warning.time, line(warning))
+        };
+        let of_kind = |kind: &str| -> Vec<String> {
+            let all: Vec<_> = self.warnings.iter().filter(|warning| warning.kind == kind).collect();
+            match all.iter().max_by(|a, b| a.worst.abs().total_cmp(&b.worst.abs())) {
+                Some(worst) if all.len() > NAMED => {
+                    vec![format!("{kind}: {} bodies, all in run.json; the worst {}", all.len(), told(worst))]
+                }
+                _ => all.into_iter().map(told).collect(),
+            }
+        };
+        kinds.into_iter().flat_map(of_kind).collect()
     }
 }
 
@@ -176,25 +200,8 @@ impl Summary {
         writeln!(f, "  step       {}", shares.join(", "))
     }
 
-    /// The first few of each kind.
     fn write_warnings(&self, f: &mut Formatter) -> fmt::Result {
-        let mut kinds: Vec<&str> = Vec::new();
-        for warning in &self.warnings {
-            if !kinds.contains(&warning.kind.as_str()) {
-                kinds.push(&warning.kind);
-            }
-        }
-        for kind in kinds {
-            let of_kind: Vec<_> = self.warnings.iter().filter(|warning| warning.kind == kind).collect();
-            for warning in of_kind.iter().take(NAMED) {
-                let times = if warning.count == 1 { "once" } else { &format!("{} times", warning.count) };
-                writeln!(f, "  warning    from t = {:.4e} s, {times}: {}", warning.time, line(warning))?;
-            }
-            if of_kind.len() > NAMED {
-                writeln!(f, "  warning    {kind}: {} more, in run.json", of_kind.len() - NAMED)?;
-            }
-        }
-        Ok(())
+        self.warning_lines().iter().try_for_each(|line| writeln!(f, "  warning    {line}"))
     }
 }
 

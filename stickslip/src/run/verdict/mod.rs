@@ -271,9 +271,19 @@ impl RunChecks {
             (self.checks.iter_mut()).map(|check| (check.kind(), check.advice(), check.look(&look))).collect();
         let mut lines = Vec::new();
         for (check, advice, found) in found {
+            let mut new: Vec<(f64, String)> = Vec::new();
             for finding in found {
-                lines.extend(self.take_note((scene, simulation), (check, advice), finding));
+                let worst = finding.worst.abs();
+                let line = self.take_note((scene, simulation), (check, advice), finding);
+                new.extend(line.map(|line| (worst, line)));
             }
+            // Of many bodies the worst stands for all.
+            let others = new.len().saturating_sub(1);
+            let worst = new.into_iter().max_by(|a, b| a.0.total_cmp(&b.0));
+            lines.extend(worst.map(|(_, line)| match others {
+                0 => line,
+                others => format!("{line}; {others} more bodies likewise"),
+            }));
         }
         lines.truncate(MOST_LINES - self.lines);
         self.lines += lines.len();
