@@ -16,8 +16,11 @@ use crate::material::LAWS;
 /// that they make up no more than [`ALL_ROWS`].
 const ROWS: [f64; 2] = [200.0, 50.0];
 const ALL_ROWS: f64 = 10_000.0;
-/// Snapshots of the particles in a run.
-const SNAPSHOTS: f64 = 20.0;
+/// Snapshots of the particles in a run, likewise: of all bodies together no more than [`ALL_SNAPSHOTS`].
+const SNAPSHOTS: [f64; 2] = [20.0, 10.0];
+const ALL_SNAPSHOTS: f64 = 2_000.0;
+/// Steps from one row of the tables to the next where the run ends at rest, long before its end, of few bodies.
+const ROW_STEPS: f64 = 100.0;
 /// Samples of probes, arrivals and fronts in a run.
 const SAMPLES: f64 = 1000.0;
 
@@ -104,7 +107,7 @@ impl Outputs {
     pub fn of_run(end: f64) -> Self {
         Outputs {
             tables: end / ROWS[0],
-            particles: Some(end / SNAPSHOTS),
+            particles: Some(end / SNAPSHOTS[0]),
             particles_at: Vec::new(),
             snapshots: SnapshotContent::default(),
             surfaces: None,
@@ -115,10 +118,30 @@ impl Outputs {
         }
     }
 
-    /// The same of a run of so many bodies, of which tables have fewer rows each where they are many.
+    /// The same of a run of so many bodies: where they are many, tables have fewer rows of each, and there are fewer
+    /// snapshots.
     pub fn of_bodies(bodies: usize, end: f64) -> Self {
-        let [most, least] = ROWS;
-        Outputs { tables: end / (ALL_ROWS / bodies as f64).clamp(least, most), ..Outputs::of_run(end) }
+        let count = |all: f64, [most, least]: [f64; 2]| (all / bodies as f64).clamp(least, most);
+        Outputs {
+            tables: end / count(ALL_ROWS, ROWS),
+            particles: Some(end / count(ALL_SNAPSHOTS, SNAPSHOTS)),
+            ..Outputs::of_run(end)
+        }
+    }
+}
+
+impl Scene {
+    /// Time between rows of tables of a run that ends at rest [s]: some hundred steps, as nobody knows before when that
+    /// is; at most that of [`Outputs::of_bodies`].
+    pub(super) fn rows_of_relaxation(&self) -> f64 {
+        let Outputs { tables, .. } = Outputs::of_bodies(self.bodies.len(), self.time.end);
+        let deforming = self.bodies.iter().filter(|body| !body.is_rigid());
+        let wave = |body: &Body| self.materials[body.material].wave_speed(self.dimension.thickness());
+        let step = self.time.courant * self.discretization.cell / deforming.map(wave).fold(0.0, f64::max);
+        let step = step.min(self.time.max_step.unwrap_or(f64::INFINITY));
+        // As many times as long as those of few bodies.
+        let longer = tables * ROWS[0] / self.time.end;
+        tables.min(ROW_STEPS * longer * step)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::{check, message};
 use stickslip_scene::geometry::Shape;
-use stickslip_scene::scene::{self, Scene};
+use stickslip_scene::scene::{self, BodyMotion, Scene};
 
 const MANY: &str = r#"
 space = { dimension = "plane-strain", cell = "1 mm" }
@@ -240,6 +240,53 @@ fn a_packing_fills_its_container_as_asked() {
     let grains = scene.bodies.iter().filter(|body| body.name.starts_with("grain "));
     let area: f64 = grains.map(|body| body.shape.volume(2).expect("a disk")).sum();
     assert!((area / (0.04 * 0.02) - 0.7).abs() < 1e-12, "{area}");
+}
+
+#[test]
+fn grains_of_a_packing_may_be_free_rigid_bodies() {
+    let text = |rigid: &str| {
+        MANY.replace(
+            "solid_fraction = 0.7",
+            &format!("solid_fraction = 0.7\nvelocity = [0, -1]\nrigid{rigid}"),
+        )
+    };
+    let scene =
+        scene::parse("a.toml", &text(".free = {}"), &[]).unwrap_or_else(|error| panic!("{error}")).scene;
+    let grains: Vec<_> = scene.bodies.iter().filter(|body| body.name.starts_with("grain ")).collect();
+    assert!(grains.len() > 100);
+    for grain in grains {
+        let BodyMotion::FreeRigid(free) = &grain.motion else { panic!("{:?}", grain.motion) };
+        // Each has the mass of its own shape.
+        assert_eq!((free.velocity, free.mass, free.inertia), ([0.0, -1.0, 0.0], None, None));
+    }
+    let message =
+        scene::parse("a.toml", &text(" = {}"), &[]).err().expect("they have a velocity").to_string();
+    assert!(
+        message.ends_with("29:1: packings[0].velocity: found `velocity` of a rigid body; allowed: its motion in rigid = { velocity = ... }"),
+        "{message}"
+    );
+}
+
+/// A run that ends at rest has rows, however late its end is; many bodies have fewer rows and snapshots.
+#[test]
+fn intervals_of_outputs_follow_from_bodies_and_rest() {
+    let outputs = |text: &str| {
+        scene::parse("a.toml", text, &[]).unwrap_or_else(|error| panic!("{error}")).scene.outputs
+    };
+    let few = &MANY[..MANY.find("[[packings]]").expect("it has some")];
+    assert_eq!((outputs(few).tables, outputs(few).particles), (1.0 / 200.0, Some(1.0 / 20.0)));
+    let many = MANY.replace("solid_fraction = 0.7", "count = 193");
+    assert_eq!((outputs(&many).tables, outputs(&many).particles), (1.0 / 50.0, Some(1.0 / 10.0)));
+    // 0.4 of the time in which a wave of sqrt(M / rho), M = 1.346 E, crosses a cell.
+    let step = 0.4 * 1e-3 / (1e3_f64 * 0.7 / (1.3 * 0.4)).sqrt();
+    let relaxed = |text: &str, end: &str| {
+        outputs(&text.replace("time.end = 1", &format!("time = {{ end = {end}, relax = {{}} }}")))
+    };
+    assert!((relaxed(few, "1000").tables / (100.0 * step) - 1.0).abs() < 1e-12);
+    assert!((relaxed(&many, "1000").tables / (400.0 * step) - 1.0).abs() < 1e-12);
+    assert_eq!(relaxed(few, "1e-4").tables, 1e-4 / 200.0);
+    let asked = few.to_string() + "[outputs]\ntables = 2";
+    assert_eq!(relaxed(&asked, "1000").tables, 2.0);
 }
 
 #[test]

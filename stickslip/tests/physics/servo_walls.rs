@@ -172,6 +172,10 @@ fn a_layer_sheared_at_constant_pressure() {
             worst[1] = worst[1].max((shear - 1.0).abs());
         }
     });
-    println!("the pressure is off by {:.2} %, the shear stress by {:.2} %", 100.0 * worst[0], 100.0 * worst[1]);
+    println!(
+        "the pressure is off by {:.2} %, the shear stress by {:.2} %",
+        100.0 * worst[0],
+        100.0 * worst[1]
+    );
     assert!(worst[1] > 0.0 && worst.iter().all(|&worst| worst < 0.01), "{worst:?}");
 }

@@ -163,8 +163,9 @@ pub(super) fn resolve(source: &Source, files: &dyn SceneFiles) -> Result<(Scene,
         ("joints", joints.declared),
         ("springs", springs.declared),
     ]);
+    let given = file.outputs.as_ref().is_some_and(|outputs| outputs.tables.is_some());
     let stem = source.name().rsplit(['/', '\\']).next().unwrap_or_default().trim_end_matches(".toml");
-    let scene = Scene {
+    let mut scene = Scene {
         title: file.title.as_ref().map_or_else(|| Ok(stem.to_string()), |title| title.value(context))?,
         about: file.about.as_ref().map_or(String::new(), Text::as_prose),
         parameters: values,
@@ -192,6 +193,9 @@ pub(super) fn resolve(source: &Source, files: &dyn SceneFiles) -> Result<(Scene,
         springs: springs.all,
         contact,
     };
+    if scene.time.relax.is_some() && !given {
+        scene.outputs.tables = scene.rows_of_relaxation();
+    }
     Ok((scene, declared))
 }
 
