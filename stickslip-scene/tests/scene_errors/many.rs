@@ -259,8 +259,7 @@ fn grains_of_a_packing_may_be_free_rigid_bodies() {
         // Each has the mass of its own shape.
         assert_eq!((free.velocity, free.mass, free.inertia), ([0.0, -1.0, 0.0], None, None));
     }
-    let message =
-        scene::parse("a.toml", &text(" = {}"), &[]).err().expect("they have a velocity").to_string();
+    let message = scene::parse("a.toml", &text(" = {}"), &[]).expect_err("they have a velocity").to_string();
     assert!(
         message.ends_with("29:1: packings[0].velocity: found `velocity` of a rigid body; allowed: its motion in rigid = { velocity = ... }"),
         "{message}"
