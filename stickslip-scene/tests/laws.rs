@@ -1,5 +1,5 @@
 //! A law is two files: its own, and the list. Outside of them and of tests, nothing in the workspace says its name,
-//! nor that of what it remembers.
+//! nor that of what it remembers; the gallery's scenes are scenes, and their pictures name what they show.
 
 use std::path::{Path, PathBuf};
 use stickslip_scene::material::{Absent, Description, LAWS, Material};
@@ -9,7 +9,7 @@ use stickslip_scene::scene;
 fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in std::fs::read_dir(folder).expect("a folder of sources").flatten() {
         let (path, name) = (entry.path(), entry.file_name().to_string_lossy().into_owned());
-        if path.is_dir() && !name.starts_with('.') && !["target", "tests"].contains(&&*name) {
+        if path.is_dir() && !name.starts_with('.') && !["target", "tests", "gallery"].contains(&&*name) {
             sources(&path, found);
         } else if name.ends_with(".rs") && name != "tests.rs" {
             found.push(path);

@@ -161,6 +161,22 @@ fn bodies_may_begin_at_rest_and_with_another_density() {
     assert_eq!(from(PACKING, &packing, "").start.unwrap().velocities, StartVelocities::Kept);
 }
 
+/// Boxes that follow the stretch are those of the deformation, whatever the basis of the run that left it.
+#[test]
+fn the_basis_may_be_another() {
+    let folder = tempfile::tempdir().unwrap();
+    let with = |basis: &str| PACKING.replacen("cell = 0.1", &format!("cell = 0.1\nbasis = \"{basis}\""), 1);
+    for [first, second] in [["gimp", "cpgimp"], ["cpgimp", "gimp"]] {
+        let [packing, next] = ["packing", "next"].map(|name| folder.path().join(format!("{first}-{name}")));
+        make(&scene(&with(first)), &packing).unwrap();
+        let mut begun = from(&with(second), &packing, "");
+        begun.time.end = 0.02;
+        make(&begun, &next).unwrap();
+        let [before, after] = [last(&packing), frame(&next, 0)];
+        (0..2).for_each(|body| assert_eq!(of_body(&before, body), of_body(&after, body), "{first}"));
+    }
+}
+
 /// A fixed support holds bodies where they are now, and a run that began so goes on, with its packing gone.
 #[test]
 fn supports_hold_what_begins_from_a_run_where_it_is() {

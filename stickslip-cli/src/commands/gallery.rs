@@ -6,6 +6,7 @@ use crate::gallery::{EXHIBITS, Exhibit};
 use crate::jobs::{Earlier, Job, JobRunner};
 use clap::{Args, Subcommand};
 use miette::{IntoDiagnostic, miette};
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use stickslip::observe::Results;
 
@@ -80,6 +81,8 @@ impl Where {
         scenes: &[&'static Exhibit],
         with_each: impl Fn(&Exhibit, &Path) -> Result<(), Failure>,
     ) -> Result<(), Failure> {
+        let mut seen = HashSet::new();
+        let scenes: Vec<&Exhibit> = scenes.iter().copied().filter(|scene| seen.insert(scene.name)).collect();
         let jobs = scenes.iter().map(|scene| self.job(scene)).collect::<Result<Vec<Job>, Failure>>()?;
         let threads = match self.threads {
             Some(threads) => usize::from(threads),
@@ -89,8 +92,7 @@ impl Where {
         let runner = JobRunner { folder, threads, stop: stop_on_interrupt()?, earlier: Earlier::Keep };
         let mut outcomes = runner.work(&jobs)?;
         let mut wrong = Vec::new();
-        for scene in scenes {
-            // A name that is given twice is told of once.
+        for scene in &scenes {
             let Some(outcome) = outcomes.remove(scene.name) else { continue };
             let folder = self.out.join(scene.name);
             let results = outcome

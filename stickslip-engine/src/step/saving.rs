@@ -6,7 +6,7 @@ use super::state::{Disorder, State};
 use super::unbounded::Unbounded;
 use crate::basis::Basis;
 use crate::body::{Body, Particle};
-use crate::column::INITIAL_STRETCH;
+use crate::column::{HALF_SIDES, INITIAL_STRETCH};
 use crate::door::{RemovedParticles, RestoreError, SavedBody, SavedColumn, SavedState, SavedUnbounded};
 use crate::lanes::Laned;
 use crate::load::{LoadPoints, place_of};
@@ -271,13 +271,15 @@ fn begun<T: Laned, const D: usize>(
     body.particles.remove(&gone);
     let numbers = body.particles.numbers().to_vec();
     let density = body.density;
-    // What carries velocities follows from the transfer, and may be another.
-    let of_motion =
-        |name: &str| TRANSFERS.iter().any(|&way| columns_of(way).iter().any(|own| own.column.name == name));
+    // What carries velocities follows from the transfer, and boxes from F by the basis; both may be others.
+    let of_scheme = |name: &str| {
+        let of_motion = |way: &Transfer| columns_of(*way).iter().any(|own| own.column.name == name);
+        name == HALF_SIDES || TRANSFERS.iter().any(of_motion)
+    };
     let known = |name: &str| fresh.particles.described().any(|(_, column)| column.name == name);
     let forgotten = saved.columns.iter().find(|saved| {
         let remembers = saved.bytes.iter().any(|&byte| byte != 0);
-        remembers && !known(&saved.name) && !of_motion(&saved.name)
+        remembers && !known(&saved.name) && !of_scheme(&saved.name)
     });
     if let Some(column) = forgotten {
         let name = &column.name;

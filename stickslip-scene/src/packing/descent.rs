@@ -237,8 +237,10 @@ impl<'a> Descent<'a> {
             let mut left = self.fall(weight, FALL_STEPS.min(steps), &mut steps);
             let mut excess = self.excess();
             if excess <= 0.0 {
-                left = self.fall(weight, steps, &mut steps);
-                excess = self.excess();
+                if steps > 0 {
+                    left = self.fall(weight, steps, &mut steps);
+                    excess = self.excess();
+                }
                 if excess <= 0.0 && left <= NEARLY_RESTS {
                     return Ok(());
                 }

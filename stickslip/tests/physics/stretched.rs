@@ -4,8 +4,8 @@
 //! glued between two rigid grips, one of which moves away smoothly within 0.1 s (50 transits) and then stands.
 //!
 //! Expected: sigma_xx of F = diag(1.8, b, 1), where b is such that sigma_yy = 0, in the middle third: by `cpgimp`, whose
-//! boxes follow the stretch, within 3 % on the average (0.5 % found) and 10 % everywhere (5 %). By `gimp` the boxes part,
-//! and in the middle no particle is left.
+//! boxes follow the stretch, within 3 % on the average (0.5 % found) and 10 % everywhere (5 %). `gimp` tears at 1.6
+//! (book, chapter 17).
 
 use crate::trial::{mean_where, run_to, start};
 

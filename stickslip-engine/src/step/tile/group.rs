@@ -237,12 +237,12 @@ pub fn group<
         let moved = position + flow * V::splat(dt);
         sound.require(finite(&moved.0), FaultKind::NotFinite);
         let cells = constants.in_cells(&moved);
+        let mut stretched = Vector::<V, D>::ZERO;
         if own_sides.is_some() {
             for (i, side) in sides.iter_mut().enumerate() {
                 let most = V::HALF * constants.cell;
-                let half = stretched_half_side(&deformation.0[i], half_width, most);
-                members.store_half_side(i, half);
-                side.half = half * constants.per_cell;
+                stretched[i] = stretched_half_side(&deformation.0[i], half_width, most);
+                side.half = stretched[i] * constants.per_cell;
             }
         }
         for i in 0..D {
@@ -267,6 +267,11 @@ pub fn group<
         }
         members.store_vector(ColumnStart::<D>::POSITION, &moved);
         members.give_back::<V>(ColumnStart::<D>::POSITION..ColumnStart::<D>::VELOCITY);
+        if own_sides.is_some() {
+            for i in 0..D {
+                members.store_half_side(i, stretched[i]);
+            }
+        }
         let seen = (&natural, &deformation, jacobian);
         let modulus = wave_modulus(&constants.material, visit.body.thickness, seen, &history);
         let squares = [modulus * constants.per_density, state.velocity.dot(state.velocity)];

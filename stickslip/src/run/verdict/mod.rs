@@ -282,6 +282,7 @@ impl RunChecks {
             let worst = new.into_iter().max_by(|a, b| a.0.total_cmp(&b.0));
             lines.extend(worst.map(|(_, line)| match others {
                 0 => line,
+                1 => format!("{line}; 1 more body likewise"),
                 others => format!("{line}; {others} more bodies likewise"),
             }));
         }
