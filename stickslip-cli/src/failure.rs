@@ -45,7 +45,8 @@ impl Failure {
         }
     }
 
-    /// 2 for input, 1 for a run, 3 for results that are doubtful or untrue, 4 for a run out of its time, 130 for Ctrl-C.
+    /// 2 for input, 1 for a run, 3 for results that are doubtful or untrue, 4 for a run out of its time, 130 for
+    /// Ctrl-C.
     pub fn exit_code(&self) -> u8 {
         match self {
             Failure::Input(_) => 2,

@@ -173,7 +173,7 @@ impl<'a> Album<'a> {
         Scale { map: self.choice.colors, ..scale }
     }
 
-    /// The largest speed of what is not a half-space at rest [m/s].
+    /// The largest speed of all particles [m/s].
     fn fastest(&self, particles: &ParticleSnapshot) -> f64 {
         let speeds = particles.velocity.iter().map(|v| v.iter().map(|c| c * c).sum::<f64>());
         speeds.fold(0.0, f64::max).sqrt()
@@ -211,8 +211,8 @@ impl Pictures for Album<'_> {
     }
 }
 
-/// The surfaces of the bodies in space, tied to their particles in the first snapshot; none if that is not of the start, or
-/// if the scene's file is gone or another one.
+/// The surfaces of the bodies in space, tied to their particles in the first snapshot; none if that is not of the
+/// start, or if the scene's file is gone or another one.
 fn skins(results: &Results, (first, time): (&ParticleSnapshot, f64)) -> Option<Arc<Skins>> {
     if first.dimension == 2 || time != 0.0 {
         return None;

@@ -138,14 +138,14 @@ impl<T: Real> Basis<T> for Linear {
 /// else:        S_0 = (1 + l - r)^2 / (4l),  S_2 = (r - 1 + l)^2 / (4l)
 /// S_1 = 1 - S_0 - S_2
 /// ```
-/// Needs l <= 1/2. The box keeps its first size and direction (uniform GIMP, `space.basis = "gimp"`), or its sides follow
-/// the stretch (contiguous particle GIMP, `"cpgimp"`), so that the boxes of a body that is pulled still fill it:
+/// Needs l <= 1/2. The box keeps its first size and direction (uniform GIMP, `space.basis = "gimp"`), or its sides
+/// follow the stretch (contiguous particle GIMP, `"cpgimp"`), so that the boxes of a body that is pulled still fill it:
 ///
 /// ```text
 /// l_i = min(l sqrt(sum_j F_ij^2), 1/2)
 /// ```
-/// which is the stretch of the fibre that was laid along axis i before a rotation and is l for any rotation alone. It
-/// goes with F whenever positions change. (Coombs et al. 2020, Comput. Methods Appl. Mech. Eng. 358, compare what boxes
+/// l times the stretch of the fibre that the rotation in F has turned into axis i, so l for any rotation alone. It goes
+/// with F whenever positions change. (Coombs et al. 2020, Comput. Methods Appl. Mech. Eng. 358, compare what boxes
 /// may follow: diag(F) vanishes in rotation, det F shrinks what is pulled.)
 ///
 /// With l = 1/2, whatever the particle's size, they are the quadratic B-splines of its centre

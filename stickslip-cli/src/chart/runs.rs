@@ -13,8 +13,8 @@ pub struct MixedTimes {
     over_other: String,
 }
 
-/// The charts of some runs, each with the run's name, with all curves of a panel in one; known answers that all share are
-/// there once.
+/// The charts of some runs, each with the run's name, with all curves of a panel in one; known answers that all share
+/// are there once.
 ///
 /// # Errors
 /// They are drawn over different times.

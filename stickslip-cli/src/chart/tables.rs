@@ -128,13 +128,6 @@ pub fn panels(rows: &[NamedRow], columns: &[String], (most, times): (usize, &[f6
         panel.curves.sort_by(|a, b| size(b).total_cmp(&size(a)));
         panel.curves.truncate(most);
         panel.curves.iter_mut().enumerate().for_each(|(i, curve)| curve.color = body_color(i));
-        if let [curve] = &panel.curves[..] {
-            // With one curve its column can stand on the axis.
-            let column = curve.label.rsplit(' ').next().unwrap_or_default();
-            if panel.unit.is_empty() && panel.name == "value" {
-                panel.name = column.to_owned();
-            }
-        }
     }
     panels.retain(|panel| !panel.curves.is_empty());
     panels

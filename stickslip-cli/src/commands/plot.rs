@@ -108,7 +108,8 @@ impl Arguments {
     }
 }
 
-/// What runs are called in a chart: their folders without `.results`, or with the folders above where that is not clear.
+/// What runs are called in a chart: their folders without `.results`, or with the folders above where that is not
+/// clear.
 fn run_names(folders: &[PathBuf]) -> Vec<String> {
     let short = |folder: &PathBuf| {
         let name = folder

@@ -59,8 +59,8 @@ pub struct Arguments {
     #[arg(long, value_enum)]
     colors: Option<ColorMap>,
 
-    /// Average values over the neighbours of each particle within its body, as fringes do; without this, those that come
-    /// of the stress are, which differs between neighbours by more than it means, and others are not.
+    /// Average values over the neighbours of each particle within its body, as fringes do; without this, those that
+    /// come of the stress are, which differs between neighbours by more than it means, and others are not.
     #[arg(long, value_name = "yes|no", conflicts_with = "fringes")]
     smooth: Option<Answer>,
 
@@ -81,8 +81,8 @@ pub struct Arguments {
     #[arg(long, default_value = "auto", allow_hyphen_values = true)]
     view: ViewPath,
 
-    /// The part of the scene to show, by lengths in metres or with a unit: LEFT,BOTTOM,RIGHT,TOP, nothing beside which is
-    /// shown; in space the two corners of a box that is to fill the picture, X,Y,Z,X,Y,Z.
+    /// The part of the scene to show, by lengths in metres or with a unit: LEFT,BOTTOM,RIGHT,TOP, nothing beside which
+    /// is shown; in space the two corners of a box that is to fill the picture, X,Y,Z,X,Y,Z.
     #[arg(long, value_name = "CORNERS", value_parser = window, allow_hyphen_values = true, conflicts_with = "fringes")]
     window: Option<Window>,
 

@@ -92,8 +92,8 @@ impl Canvas {
     }
 }
 
-/// An image without its background, from what it is on white and on black: whatever was drawn over the background with an
-/// opacity a shows
+/// An image without its background, from what it is on white and on black: whatever was drawn over the background with
+/// an opacity a shows
 ///
 /// ```text
 /// on white = a color + (1 - a) 255,   on black = a color,   so   a = 1 - (on white - on black) / 255

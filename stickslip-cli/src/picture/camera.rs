@@ -141,8 +141,8 @@ impl Camera {
         self
     }
 
-    /// The camera zoomed so that so many metres across the view fill a rectangle (left, top, width, height) in pixels, whose
-    /// middle stays where it is.
+    /// The camera zoomed so that so many metres across the view fill a rectangle (left, top, width, height) in pixels,
+    /// whose middle stays where it is.
     pub fn scaled(mut self, [wide, high]: [f64; 2], [left, top, width, height]: [f64; 4]) -> Self {
         let middle = [left + 0.5 * width, top + 0.5 * height];
         let scale = (width / wide).min(height / high);

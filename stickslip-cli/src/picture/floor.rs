@@ -102,8 +102,8 @@ impl Slabs {
 }
 
 impl SlabsInView {
-    /// What the line of sight through a pixel meets first: it is in a slab between the last plane that it comes in by and
-    /// the first that it leaves by.
+    /// What the line of sight through a pixel meets first: it is in a slab between the last plane that it comes in by
+    /// and the first that it leaves by.
     pub fn hit(&self, [x, y]: [f64; 2]) -> Option<SlabHit> {
         let mut nearest: Option<SlabHit> = None;
         'slabs: for (number, (body, sides)) in self.slabs.iter().enumerate() {

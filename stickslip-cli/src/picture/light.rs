@@ -1,4 +1,5 @@
-//! Light on balls, surfaces and half-spaces: a lamp with shadows, light from the sky that corners get less of, and a dark rim where bodies end.
+//! Light on balls, surfaces and half-spaces: a lamp with shadows, light from the sky that corners get less of, and a
+//! dark rim where bodies end.
 
 use super::camera::{Camera, Point};
 use super::floor::{SlabHit, Slabs, SlabsInView};
@@ -16,7 +17,8 @@ const GRAININESS: f64 = 0.24;
 const PROBES: usize = 20;
 /// Distance over which corners darken, in ball radii.
 const CORNER: f64 = 5.0;
-/// Cosine of the angle between a triangle and the surface around a corner of it beyond which the body has an edge there.
+/// Cosine of the angle between a triangle and the surface around a corner of it beyond which the body has an edge
+/// there.
 const EDGE: f64 = 0.72;
 /// Light left where a body ends.
 const RIM: f64 = 0.55;
@@ -183,8 +185,8 @@ impl<'a> Lit<'a> {
         Some(Lighted { depth, normal, color: self.grains[ball.grain].color, rim: rim() })
     }
 
-    /// Normal and colour of a triangle at a pixel: those of its corners by their shares in the place, but for corners at
-    /// an edge of the body.
+    /// Normal and colour of a triangle at a pixel: those of its corners by their shares in the place, but for corners
+    /// at an edge of the body.
     fn face(&self, triangle: usize, sight: [f64; 2]) -> Option<(Point, Rgb)> {
         let corners = self.mesh.triangles[triangle].map(|corner| corner as usize);
         let shares = Shares::new(corners.map(|corner| self.seen[corner]))?.at(sight);

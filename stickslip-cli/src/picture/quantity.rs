@@ -92,8 +92,8 @@ enum ColorSource {
 }
 
 impl ColorQuantity {
-    /// What the value at a particle is made of, which can be averaged over neighbours: a velocity, a stress, or the value
-    /// itself.
+    /// What the value at a particle is made of, which can be averaged over neighbours: a velocity, a stress, or the
+    /// value itself.
     pub fn parts(&self, particles: &ParticleSnapshot, i: usize) -> Parts {
         match self {
             ColorQuantity::Body => [0.0; 6],

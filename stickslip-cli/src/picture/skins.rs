@@ -62,8 +62,8 @@ impl Skins {
         Skins(bodies.into_par_iter().filter_map(skin).collect())
     }
 
-    /// The surfaces in a snapshot of those bodies whose particles are all there, with a value at each corner: `value` tells
-    /// it from the body and the place, or gives nothing where it is that of the particles around.
+    /// The surfaces in a snapshot of those bodies whose particles are all there, with a value at each corner: `value`
+    /// tells it from the body and the place, or gives nothing where it is that of the particles around.
     pub fn mesh(
         &self,
         particles: &ParticleSnapshot,

@@ -146,8 +146,8 @@ impl FitSums {
         }
     }
 
-    /// The fitted function at the place itself: the sums of the parts times the first row of the inverse of the matrix of
-    /// moments, made regular by [`RIDGE`].
+    /// The fitted function at the place itself: the sums of the parts times the first row of the inverse of the matrix
+    /// of moments, made regular by [`RIDGE`].
     fn fit(&self, dimension: usize) -> Option<Parts> {
         let weight = self.moments[0][0];
         if weight <= 0.0 {

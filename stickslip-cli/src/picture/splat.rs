@@ -123,7 +123,8 @@ fn draw_triangle(
     }
 }
 
-/// Of a place in a triangle of the image, the share of each corner in it: they add up to one, and inside all are positive.
+/// Of a place in a triangle of the image, the share of each corner in it: they add up to one, and inside all are
+/// positive.
 pub struct Shares {
     origin: [f64; 2],
     rows: [[f64; 2]; 2],

@@ -207,8 +207,8 @@ pub fn home<T: Real, const D: usize, B: Basis<T>>(
     std::array::from_fn(|i| B::reach(x[i], half[i]).floor())
 }
 
-/// Whether a particle at a position, with a box of these half sides, is outside the domain, or so far away that its cell
-/// has no number.
+/// Whether a particle at a position, with a box of these half sides, is outside the domain, or so far away that its
+/// cell has no number.
 pub fn escaped<T: Real, const D: usize, B: Basis<T>>(
     (position, half_sides): (Vector<T, D>, Vector<T, D>),
     lattice: &Lattice<T, D>,

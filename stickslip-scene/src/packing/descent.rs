@@ -254,8 +254,8 @@ impl<'a> Descent<'a> {
         }
     }
 
-    /// Makes grains harder and heavier, by how many lie above each of them, about: so overlaps are alike everywhere, and
-    /// those on the open surface, under their own weight alone, need no more steps than those below.
+    /// Makes grains harder and heavier, by how many lie above each of them, about: so overlaps are alike everywhere,
+    /// and those on the open surface, under their own weight alone, need no more steps than those below.
     fn harden(&mut self, along: [f64; 3]) {
         let depth = |grain: &Grain| (0..3).map(|k| grain.position[k] * along[k]).sum::<f64>();
         let top = self.grains.iter().map(depth).fold(f64::INFINITY, f64::min);

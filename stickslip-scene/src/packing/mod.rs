@@ -15,8 +15,8 @@
 //! ```text
 //! E = 1/2 sum over contacts k d^2 - sum over grains w a . x,    w ~ volume, a = the direction of falling
 //! ```
-//! without friction, to rest: with less and less weight, until what they press into each other is less than what they are
-//! larger, then three thousandths. Stiffness k and mass grow with the depth below the open surface.
+//! without friction, to rest: with less and less weight, until what they press into each other is less than what they
+//! are larger, then three thousandths. Stiffness k and mass grow with the depth below the open surface.
 
 pub mod array;
 mod descent;

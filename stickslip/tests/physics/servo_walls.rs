@@ -8,8 +8,8 @@
 //! | an eighth of a cube, cut by three mirrors; plates that slide along the mirrors hold a pressure on two of its sides, and one presses the third in: a triaxial test | the pressure, and E eps + 2 nu p, within 2 % (1.4 and 0.9 %) |
 //! | a periodic layer, glued to two plates, of which one moves along and the other holds a pressure: simple shear to 5 % | in its middle third the pressure, at all times, and G gamma within 1 % (0.3 and 0.2 %) |
 //!
-//! Glue joins nodes, and the nodes at a glued face belong to both bodies: within a cell of it the layer carries less, so
-//! the mean over all of its rows is 7 % below the pressure.
+//! Glue joins nodes, and the nodes at a glued face belong to both bodies: within a cell of it the layer carries less,
+//! so the mean over all of its rows is 7 % below the pressure.
 
 use crate::trial::{mean_where, run_to, start};
 use stickslip::door::ParticleSnapshot;

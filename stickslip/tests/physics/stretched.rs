@@ -3,9 +3,9 @@
 //! Set-up: plane strain; a strip of rubber (E = 1 MPa, nu = 0.3, neo-Hookean), 50 by 8 cells with 3 particles a side,
 //! glued between two rigid grips, one of which moves away smoothly within 0.1 s (50 transits) and then stands.
 //!
-//! Expected: sigma_xx of F = diag(1.8, b, 1), where b is such that sigma_yy = 0, in the middle third: by `cpgimp`, whose
-//! boxes follow the stretch, within 3 % on the average (0.5 % found) and 10 % everywhere (5 %). `gimp` tears at 1.6
-//! (book, chapter 17).
+//! Expected: sigma_xx of F = diag(1.8, b, 1), where b is such that sigma_yy = 0, in the middle third: by `cpgimp`,
+//! whose boxes follow the stretch, within 3 % on the average (0.5 % found) and 10 % everywhere (5 %). `gimp` tears at
+//! 1.6 (book, chapter 17).
 
 use crate::trial::{mean_where, run_to, start};
 

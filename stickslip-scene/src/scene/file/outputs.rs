@@ -19,11 +19,11 @@ table! {
     /// What is written, and how often, in simulated time.
     Outputs {
         /// Interval between rows of bodies.csv, energy.csv and contacts.csv [s]; by default 1/200 of the run,
-        /// with more than 50 bodies longer, 1/50 of it from 200 bodies on; with time.relax at most that of 100 steps, or
-        /// of up to 400 with as many bodies.
+        /// with more than 50 bodies longer, 1/50 of it from 200 bodies on; with time.relax at most that of 100 steps,
+        /// or of up to 400 with as many bodies.
         tables: Option<QuantityInput<Duration>>,
-        /// Interval between snapshots of the particles for ParaView [s], or "never"; by default 1/20 of the run, with more
-        /// than 100 bodies longer, 1/10 of it from 200 bodies on.
+        /// Interval between snapshots of the particles for ParaView [s], or "never"; by default 1/20 of the run, with
+        /// more than 100 bodies longer, 1/10 of it from 200 bodies on.
         particles: Option<Interval>,
         /// Times of further snapshots of the particles [s].
         particles_at: Option<Vec<QuantityInput<Duration>>>,

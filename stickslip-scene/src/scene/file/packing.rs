@@ -54,8 +54,9 @@ table! {
         velocity: Option<VectorInput<Velocity>>,
         /// Angular velocity of each about its centre of mass at the start [rad/s]; by default none.
         spin: Option<SpinInput>,
-        /// Makes the grains rigid: rigid.free = {} lets forces move each of them, by the mass and the moments of inertia of
-        /// its shape and the material's density; without free their motion is prescribed. By default they deform.
+        /// Makes the grains rigid: rigid.free = {} lets forces move each of them, by the mass and the moments of
+        /// inertia of its shape and the material's density; without free their motion is prescribed. By default they
+        /// deform.
         rigid: Option<Rigid>,
     }
 }
