@@ -54,6 +54,10 @@ pub trait Number:
     fn max(self, other: Self) -> Self;
     /// How many stand side by side.
     const SIDE_BY_SIDE: usize;
+    /// Which lanes are not below another's, from the lowest bit on; none that is not a number.
+    fn at_least(self, other: Self) -> u32;
+    /// One number in the lanes whose bits are set, another in the rest.
+    fn select(lanes: u32, there: Self, elsewhere: Self) -> Self;
     /// The one in a lane.
     fn lane(self, lane: usize) -> f64;
     /// Each lane's number from a function: the nearest to what it returns.
@@ -109,6 +113,14 @@ macro_rules! real {
             const HALF: Self = 0.5;
             const EPSILON: Self = <$t>::EPSILON;
             const SIDE_BY_SIDE: usize = 1;
+            #[inline(always)]
+            fn at_least(self, other: Self) -> u32 {
+                u32::from(self >= other)
+            }
+            #[inline(always)]
+            fn select(lanes: u32, there: Self, elsewhere: Self) -> Self {
+                if lanes & 1 == 1 { there } else { elsewhere }
+            }
             #[inline(always)]
             fn lane(self, _lane: usize) -> f64 {
                 self as f64

@@ -43,9 +43,6 @@ pub trait Lanes: Number {
     /// There must be room for all of them, and nobody may use it meanwhile.
     unsafe fn store(self, first: *mut Self::Real);
 
-    /// Which lanes are not below another's, from the lowest bit on; none that is not a number.
-    fn at_least(self, other: Self) -> u32;
-
     /// At most `COUNT` numbers in a row, and `rest` in the lanes beyond.
     ///
     /// # Safety

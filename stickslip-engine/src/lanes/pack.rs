@@ -63,6 +63,14 @@ impl<T: Real, const N: usize> Number for Pack<T, N> {
     const EPSILON: Self = Pack([T::EPSILON; N]);
     const SIDE_BY_SIDE: usize = N;
     #[inline(always)]
+    fn at_least(self, other: Self) -> u32 {
+        (0..N).fold(0, |bits, i| bits | u32::from(self.0[i] >= other.0[i]) << i)
+    }
+    #[inline(always)]
+    fn select(lanes: u32, there: Self, elsewhere: Self) -> Self {
+        Pack(array(T::ZERO, |i| if lanes >> i & 1 == 1 { there.0[i] } else { elsewhere.0[i] }))
+    }
+    #[inline(always)]
     fn lane(self, lane: usize) -> f64 {
         Number::lane(self.numbers().0[lane], 0)
     }
@@ -131,10 +139,5 @@ impl<T: Real, const N: usize> Lanes for Pack<T, N> {
     unsafe fn store(self, first: *mut T) {
         // SAFETY: the caller has room for `N` numbers there; an array is aligned as its entries.
         unsafe { *first.cast::<Self>() = self }
-    }
-
-    #[inline(always)]
-    fn at_least(self, other: Self) -> u32 {
-        (0..N).fold(0, |bits, i| bits | u32::from(self.0[i] >= other.0[i]) << i)
     }
 }

@@ -46,6 +46,15 @@ impl<V: Lanes> Number for RegisterPair<V> {
     const EPSILON: Self = RegisterPair(V::EPSILON, V::EPSILON);
     const SIDE_BY_SIDE: usize = <Self as Lanes>::COUNT;
     #[inline(always)]
+    fn at_least(self, other: Self) -> u32 {
+        self.0.at_least(other.0) | self.1.at_least(other.1) << V::COUNT
+    }
+    #[inline(always)]
+    fn select(lanes: u32, there: Self, elsewhere: Self) -> Self {
+        let upper = lanes >> V::COUNT;
+        RegisterPair(V::select(lanes, there.0, elsewhere.0), V::select(upper, there.1, elsewhere.1))
+    }
+    #[inline(always)]
     fn lane(self, lane: usize) -> f64 {
         Number::lane(self.numbers().0[lane], 0)
     }
@@ -195,10 +204,5 @@ impl<V: Lanes> Lanes for RegisterPair<V> {
         for i in 0..V::COUNT / 2 {
             pairs[V::COUNT / 2 + i] = upper[i];
         }
-    }
-
-    #[inline(always)]
-    fn at_least(self, other: Self) -> u32 {
-        self.0.at_least(other.0) | self.1.at_least(other.1) << V::COUNT
     }
 }

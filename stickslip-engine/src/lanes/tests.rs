@@ -108,6 +108,8 @@ impl<T: Laned> Work for PartialRow<T> {
         parts_of::<M::Quad>();
         fourths_of::<M::Wide>();
         fourths_of::<M::Quad>();
+        selections_of::<M::Wide>();
+        selections_of::<M::Quad>();
         let wide = M::Wide::from_fn(|lane| T::of(lane as f64));
         assert_eq!(M::halves(wide).numbers().0[..4], [4.0, 6.0, 8.0, 10.0].map(T::of));
         let order = [6, 0, 2, 4, 1, 3, 5, 7];
@@ -121,6 +123,17 @@ fn fourths_of<V: Lanes>() {
     for n in 0..4 {
         let found = lanes.every_fourth(n).numbers();
         assert!((0..V::COUNT).all(|lane| found.0[lane] == V::Real::of((lane / 4 * 4 + n) as f64)), "{n}");
+    }
+}
+
+#[inline(always)]
+fn selections_of<V: Lanes>() {
+    let of = |lane: usize| V::Real::of(lane as f64);
+    let (lanes, others) = (V::from_fn(of), V::splat(of(55)));
+    for bits in 0..1 << V::COUNT {
+        let found = V::select(bits, lanes, others).numbers();
+        let expected = |lane: usize| if bits >> lane & 1 == 1 { of(lane) } else { of(55) };
+        assert!((0..V::COUNT).all(|lane| found.0[lane] == expected(lane)), "{bits:b}");
     }
 }
 
@@ -147,7 +160,7 @@ fn parts_of<V: Lanes>() {
 }
 
 #[test]
-fn parts_of_a_row_are_loaded_and_stored_and_nothing_beside_them() {
+fn parts_of_a_row_are_loaded_stored_and_selected_and_nothing_beside_them() {
     for processor in Processor::available() {
         f64::run(processor, PartialRow(0.0));
         f32::run(processor, PartialRow(0.0));

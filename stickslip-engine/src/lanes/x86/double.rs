@@ -33,6 +33,7 @@ lanes! { F64x8: __m512d as [f64; 8];
     _mm512_set1_pd _mm512_loadu_pd _mm512_storeu_pd;
     _mm512_add_pd _mm512_sub_pd _mm512_mul_pd _mm512_div_pd; _mm512_sqrt_pd _mm512_min_pd _mm512_max_pd _mm512_fmadd_pd apart_avx512;
     |a, b| u32::from(_mm512_cmp_pd_mask::<_CMP_GE_OQ>(a, b));
+    |lanes, there, elsewhere| _mm512_mask_blend_pd(lanes as u8, elsewhere, there);
     const MASKED: bool = true;
     #[inline(always)]
     fn inverse_cube_root_guess(self) -> Self {
@@ -131,6 +132,11 @@ lanes! { F64x4: __m256d as [f64; 4];
     _mm256_set1_pd _mm256_loadu_pd _mm256_storeu_pd;
     _mm256_add_pd _mm256_sub_pd _mm256_mul_pd _mm256_div_pd; _mm256_sqrt_pd _mm256_min_pd _mm256_max_pd _mm256_fmadd_pd apart_avx2;
     |a, b| _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_GE_OQ>(a, b)) as u32;
+    |lanes, there, elsewhere| {
+        let bits = _mm256_setr_epi64x(1, 2, 4, 8);
+        let set = _mm256_cmpeq_epi64(_mm256_and_si256(_mm256_set1_epi64x(i64::from(lanes)), bits), bits);
+        _mm256_blendv_pd(elsewhere, there, _mm256_castsi256_pd(set))
+    };
     #[inline(always)]
     fn inverse_cube_root_guess(self) -> Self {
         // SAFETY: values of this type exist only where the processor has the instructions.

@@ -95,7 +95,7 @@ macro_rules! lanes {
     ($name:ident $(<const $flag:ident>)?: $register:ty as [$t:ty; $count:literal];
      $set:ident $load:ident $store:ident; $add:ident $sub:ident $mul:ident $div:ident;
      $sqrt:ident $min:ident $max:ident $times_plus:ident $apart:ident;
-     |$a:ident, $b:ident| $at_least:expr; $($part:item)*) => {
+     |$a:ident, $b:ident| $at_least:expr; |$bits:ident, $there:ident, $elsewhere:ident| $select:expr; $($part:item)*) => {
         #[doc = concat!(stringify!($count), " numbers in a register.")]
         #[derive(Clone, Copy, Debug)]
         #[repr(transparent)]
@@ -128,6 +128,18 @@ macro_rules! lanes {
             const HALF: Self = Self::constant(0.5);
             const EPSILON: Self = Self::constant(<$t>::EPSILON);
             const SIDE_BY_SIDE: usize = <Self as Lanes>::COUNT;
+            #[inline(always)]
+            fn at_least(self, other: Self) -> u32 {
+                let ($a, $b) = (self.0, other.0);
+                // SAFETY: values of this type exist only where the processor has the instructions.
+                unsafe { $at_least }
+            }
+            #[inline(always)]
+            fn select(lanes: u32, there: Self, elsewhere: Self) -> Self {
+                let ($bits, $there, $elsewhere) = (lanes, there.0, elsewhere.0);
+                // SAFETY: values of this type exist only where the processor has the instructions.
+                unsafe { Self($select) }
+            }
             #[inline(always)]
             fn lane(self, lane: usize) -> f64 {
                 Number::lane(self.numbers().0[lane], 0)
@@ -202,12 +214,6 @@ macro_rules! lanes {
             unsafe fn store(self, first: *mut $t) {
                 // SAFETY: the caller's, and values of this type exist only where the processor has the instructions.
                 unsafe { $store(first, self.0) }
-            }
-            #[inline(always)]
-            fn at_least(self, other: Self) -> u32 {
-                let ($a, $b) = (self.0, other.0);
-                // SAFETY: values of this type exist only where the processor has the instructions.
-                unsafe { $at_least }
             }
             $($part)*
         }

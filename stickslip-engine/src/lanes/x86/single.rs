@@ -32,6 +32,11 @@ lanes! { F32x8<const MASKS>: __m256 as [f32; 8];
     _mm256_set1_ps _mm256_loadu_ps _mm256_storeu_ps;
     _mm256_add_ps _mm256_sub_ps _mm256_mul_ps _mm256_div_ps; _mm256_sqrt_ps _mm256_min_ps _mm256_max_ps _mm256_fmadd_ps apart_avx2;
     |a, b| _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_GE_OQ>(a, b)) as u32;
+    |lanes, there, elsewhere| {
+        let bits = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
+        let set = _mm256_cmpeq_epi32(_mm256_and_si256(_mm256_set1_epi32(lanes as i32), bits), bits);
+        _mm256_blendv_ps(elsewhere, there, _mm256_castsi256_ps(set))
+    };
     #[inline(always)]
     fn inverse_cube_root_guess(self) -> Self {
         // SAFETY: values of this type exist only where the processor has the instructions.
@@ -178,6 +183,11 @@ lanes! { F32x4: __m128 as [f32; 4];
     _mm_set1_ps _mm_loadu_ps _mm_storeu_ps;
     _mm_add_ps _mm_sub_ps _mm_mul_ps _mm_div_ps; _mm_sqrt_ps _mm_min_ps _mm_max_ps _mm_fmadd_ps apart_avx2;
     |a, b| _mm_movemask_ps(_mm_cmpge_ps(a, b)) as u32;
+    |lanes, there, elsewhere| {
+        let bits = _mm_setr_epi32(1, 2, 4, 8);
+        let set = _mm_cmpeq_epi32(_mm_and_si128(_mm_set1_epi32(lanes as i32), bits), bits);
+        _mm_blendv_ps(elsewhere, there, _mm_castsi128_ps(set))
+    };
     #[inline(always)]
     fn inverse_cube_root_guess(self) -> Self {
         // SAFETY: every x86-64 processor has the instructions.
