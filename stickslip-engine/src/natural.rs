@@ -106,9 +106,9 @@ impl<V: Number> Natural<V> {
         seen
     }
 
-    /// By how much a free thickness grows in a step, between what the law saw of F before and after it was found.
+    /// By how much a free thickness grows in a step in which the law sees this stretch of it.
     #[inline(always)]
-    pub fn thickening(&self, before: &Matrix<V>, after: &Matrix<V>) -> V {
-        after.0[2][2] / before.0[2][2] * self.growth
+    pub fn thickening(&self, stretch: V) -> V {
+        stretch * self.growth
     }
 }

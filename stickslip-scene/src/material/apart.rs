@@ -4,7 +4,7 @@
 //! make the program grow by as much as a transfer, and its build by a minute; [`Number::apart`] compiles it once for
 //! each kind of number.
 
-use super::{Law, Motion, Response, Thickness, plane_stress};
+use super::{Law, Motion, Response, Thickening, Thickness, plane_stress};
 use crate::number::Task;
 use crate::tensor::{Matrix, Number, Symmetric};
 
@@ -30,6 +30,26 @@ pub fn respond<T: Number, L: Law<T>>(
     history: &L::History,
 ) -> Response<T, L::History> {
     T::apart(Respond { law, motion, history })
+}
+
+struct Thicken<'a, T: Number, L: Law<T>> {
+    law: &'a L,
+    motion: &'a Motion<T>,
+    history: &'a L::History,
+}
+
+impl<T: Number, L: Law<T>> Task for Thicken<'_, T, L> {
+    type Output = Thickening<T>;
+    #[inline(always)]
+    fn run(self) -> Thickening<T> {
+        plane_stress::thickening(self.law, self.motion, self.history)
+    }
+}
+
+/// [`plane_stress::thickening`]
+#[inline(always)]
+pub fn thickening<T: Number, L: Law<T>>(law: &L, motion: &Motion<T>, history: &L::History) -> Thickening<T> {
+    T::apart(Thicken { law, motion, history })
 }
 
 struct StoredAndDissipated<'a, T: Number, L: Law<T>> {

@@ -21,7 +21,7 @@ pub use elastic::Isotropic;
 pub use history::{AtRest, Entries, History, Keep, MOST_HISTORY, Recall, history_entries};
 pub use initial::NoStretch;
 pub use outside::{LawArrays, LawOverArrays, OUTSIDE_CONSTANTS, outside_law};
-pub use plane_stress::Thickness;
+pub use plane_stress::{Thickening, Thickness};
 
 use crate::tensor::{Matrix, Number, Real, Symmetric};
 use serde::Serialize;
@@ -131,6 +131,18 @@ pub struct Motion<T> {
     pub dt: T,
 }
 
+impl<T: Number> Motion<T> {
+    /// The motion with another stretch out of the plane in its step.
+    #[inline(always)]
+    pub fn thickened(&self, stretch: T) -> Self {
+        let mut motion = *self;
+        motion.increment.0[2][2] *= stretch;
+        motion.deformation.0[2][2] *= stretch;
+        motion.jacobian *= stretch;
+        motion
+    }
+}
+
 /// What a law answers.
 #[derive(Clone, Copy, Debug)]
 pub struct Response<T, H> {
@@ -230,6 +242,13 @@ impl<T: Number> Material<T> {
         })
     }
 
+    /// By how much the thickness grows in a step that leaves no stress out of the plane; the motion has the thickness
+    /// before it.
+    #[inline(always)]
+    pub fn thickening(&self, motion: &Motion<T>, history: &impl Recall<T>) -> Thickening<T> {
+        of_law!(self, law => apart::thickening(law, motion, &history::recalled(law.history(), history)))
+    }
+
     /// [`Law::strain_energy`] and [`Law::dissipation`]
     #[inline(always)]
     pub fn energies(
@@ -273,18 +292,16 @@ impl<T: Real> Material<T> {
         motion: Motion<T>,
         history: &mut impl Keep<T>,
     ) -> Option<(Motion<T>, Symmetric<T>)> {
-        match thickness {
-            Thickness::Moved => {
-                let stress = self.respond(&motion, history);
-                Some((motion, stress))
+        let mut motion = motion;
+        if thickness == Thickness::Free {
+            let Thickening { stretch, found } = self.thickening(&motion, history);
+            if found == 0 {
+                return None;
             }
-            Thickness::Free => of_law!(self, law => {
-                let before = history::recalled(law.history(), history);
-                let (motion, response) = plane_stress::with_free_thickness(law, &motion, &before)?;
-                history::kept(law.history(), &response.history, history);
-                Some((motion, response.stress))
-            }),
+            motion = motion.thickened(stretch);
         }
+        let stress = self.respond(&motion, history);
+        Some((motion, stress))
     }
 }
 

@@ -8,8 +8,8 @@
 //! volume, and the in-plane force of a particle is -V0 det F sigma grad S as in every scene: the stress acts on the
 //! present thickness. F is block diagonal, so isotropic laws leave no shear out of the plane, and one unknown is left.
 
-use super::{Law, Motion, Response};
-use crate::tensor::{Number, Real};
+use super::{Law, Motion};
+use crate::tensor::Number;
 
 /// Which thickness a particle takes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -21,8 +21,14 @@ pub enum Thickness {
     Free,
 }
 
-/// A motion with its free thickness, and the response to it.
-type Moved<T, H> = (Motion<T>, Response<T, H>);
+/// By how much particles thicken in a step.
+#[derive(Clone, Copy, Debug)]
+pub struct Thickening<T> {
+    /// a [-]
+    pub stretch: T,
+    /// Lanes whose law has an answer, from the lowest bit on.
+    pub found: u32,
+}
 
 /// Trials before a law counts as one without an answer; a sound step takes two or three.
 const MOST_TRIALS: usize = 300;
@@ -36,72 +42,110 @@ struct TrialStretch<T> {
     stress: T,
 }
 
-/// The motion with its free thickness, and the response to it; `None` if the law has none.
+/// The stretch that frees the plane of stress, of every lane by itself.
 ///
 /// `motion` has the thickness of the start of the step, which its increment leaves alone. The first trial is Hooke's,
 /// `a = 1 - (1 - 2G/M) tr(dF - I)`, the next are Newton's with M and the secant's; once two trials enclose the answer,
 /// none leaves the bracket and every third one halves it, so the search ends for every law whose sigma_zz grows from
 /// compression to tension as the thickness does. What is left of sigma_zz is round-off of M; it stays in the stress, so
 /// that the next step of a law in rate form makes up for it.
-pub(super) fn with_free_thickness<T: Real, L: Law<T>>(
+///
+/// A lane that has its answer keeps it while others search on, so that it does not depend on them.
+#[inline(always)]
+pub(super) fn thickening<T: Number, L: Law<T>>(
     law: &L,
     motion: &Motion<T>,
     history: &L::History,
-) -> Option<Moved<T, L::History>> {
+) -> Thickening<T> {
     let (one, two) = (T::ONE, T::of(2.0));
     let waves = law.wave_modulus(&motion.deformation, motion.jacobian, history);
     let shear = law.shear_modulus(&motion.deformation, motion.jacobian, history);
     // sigma_zz by a relative change of thickness.
     let stiffness = waves * (one / motion.jacobian);
-    let round_off = T::of(64.0) * T::EPSILON;
+    let round_off = T::of(64.0) * T::EPSILON * stiffness;
     let increment = &motion.increment.0;
     let guess = one - (one - two * shear / waves) * (increment[0][0] + increment[1][1] - two);
     let mut stretch = guess.max(T::HALF).min(two);
-    let (mut before, mut too_thin, mut too_thick): (Option<TrialStretch<T>>, Option<T>, Option<T>) =
-        (None, None, None);
+    let mut before = TrialStretch { stretch: one, stress: T::ZERO };
+    let mut bracket = Bracket::new();
+    let (mut searching, mut found) = ((1 << T::SIDE_BY_SIDE) - 1, 0);
     for count in 1..=MOST_TRIALS {
-        let trial = stretched(motion, stretch);
-        let response = law.respond(&trial, history);
-        let now = TrialStretch { stretch, stress: response.stress.0[2] };
-        if !now.stress.is_finite() {
-            return None;
+        let stress = law.respond(&motion.thickened(stretch), history).stress.0[2];
+        let now = TrialStretch { stretch, stress };
+        bracket.narrow(now);
+        let sound = round_off.at_least(stress.abs()) | bracket.is_shut();
+        searching &= finite(stress);
+        found |= searching & sound;
+        searching &= !sound;
+        if searching == 0 {
+            break;
         }
-        *(if now.stress < T::ZERO { &mut too_thin } else { &mut too_thick }) = Some(stretch);
-        let enclosed = match (too_thin, too_thick) {
-            (Some(a), Some(b)) => (a - b).abs() <= T::of(4.0) * T::EPSILON * stretch,
-            _ => false,
-        };
-        if now.stress.abs() <= round_off * stiffness || enclosed {
-            return Some((trial, response));
-        }
-        let newton = stretch * (one - now.stress / stiffness);
-        let next =
-            before.map_or(newton, |before| secant(before, now)).max(stretch * T::HALF).min(stretch * two);
-        stretch = match (too_thin, too_thick) {
-            (Some(a), Some(b)) if count % 3 == 0 || !(next > a.min(b) && next < a.max(b)) => {
-                (a + b) * T::HALF
-            }
-            _ if next.is_finite() && next != stretch => next,
-            // A flat secant: thicker against compression, thinner against tension.
-            _ if now.stress < T::ZERO => stretch * two,
-            _ => stretch * T::HALF,
-        };
-        before = Some(now);
+        let newton = stretch * (one - stress / stiffness);
+        let next = if count == 1 { newton } else { secant(before, now) };
+        let next = next.max(stretch * T::HALF).min(stretch * two);
+        stretch = T::select(searching, bracket.next(now, next, count), stretch);
+        before = now;
     }
-    None
+    Thickening { stretch, found }
 }
 
-/// The motion with another stretch out of the plane.
-fn stretched<T: Real>(motion: &Motion<T>, stretch: T) -> Motion<T> {
-    let mut motion = *motion;
-    motion.increment.0[2][2] = stretch;
-    motion.deformation.0[2][2] *= stretch;
-    motion.jacobian *= stretch;
-    motion
+/// Lanes in which a number is finite.
+#[inline(always)]
+fn finite<T: Number>(x: T) -> u32 {
+    (x - x).at_least(T::ZERO)
 }
 
-fn secant<T: Real>(a: TrialStretch<T>, b: TrialStretch<T>) -> T {
+#[inline(always)]
+fn secant<T: Number>(a: TrialStretch<T>, b: TrialStretch<T>) -> T {
     b.stretch - b.stress * ((b.stretch - a.stretch) / (b.stress - a.stress))
+}
+
+/// The last stretches that left a lane in compression and in tension.
+struct Bracket<T> {
+    thin: T,
+    thick: T,
+    /// Lanes that have been in compression, and in tension.
+    known: [u32; 2],
+}
+
+impl<T: Number> Bracket<T> {
+    #[inline(always)]
+    fn new() -> Self {
+        Bracket { thin: T::ONE, thick: T::ONE, known: [0; 2] }
+    }
+
+    /// Lanes in which both ends are known.
+    #[inline(always)]
+    fn ends(&self) -> u32 {
+        self.known[0] & self.known[1]
+    }
+
+    #[inline(always)]
+    fn narrow(&mut self, now: TrialStretch<T>) {
+        let tension = now.stress.at_least(T::ZERO);
+        self.thin = T::select(tension, self.thin, now.stretch);
+        self.thick = T::select(tension, now.stretch, self.thick);
+        self.known = [self.known[0] | !tension, self.known[1] | tension];
+    }
+
+    /// Lanes in which nothing is left between the ends.
+    #[inline(always)]
+    fn is_shut(&self) -> u32 {
+        self.ends() & (T::of(4.0) * T::EPSILON * self.thin).at_least((self.thin - self.thick).abs())
+    }
+
+    /// The trial after `now`: `next`, if it is of use.
+    #[inline(always)]
+    fn next(&self, now: TrialStretch<T>, next: T, count: usize) -> T {
+        let (low, high) = (self.thin.min(self.thick), self.thin.max(self.thick));
+        let outside = low.at_least(next) | next.at_least(high) | !finite(next);
+        let halved = self.ends() & if count.is_multiple_of(3) { u32::MAX } else { outside };
+        // A flat secant: thicker against compression, thinner against tension.
+        let flat = (next.at_least(now.stretch) & now.stretch.at_least(next)) | !finite(next);
+        let away = T::select(now.stress.at_least(T::ZERO), T::HALF, T::of(2.0));
+        let free = T::select(flat, now.stretch * away, next);
+        T::select(halved, (self.thin + self.thick) * T::HALF, free)
+    }
 }
 
 /// Stiffness against the fastest wave of a thin plate, from those against longitudinal and shear waves,
@@ -119,8 +163,8 @@ pub(super) fn plate_modulus<T: Number>(waves: T, shear: T) -> T {
 mod tests {
     use super::*;
     use crate::material::tests::motion_of;
-    use crate::material::{History, Hypoelastic, Isotropic, Material, NeoHookean, VonMises};
-    use crate::tensor::{Matrix, Symmetric};
+    use crate::material::{History, Hypoelastic, Isotropic, Material, NeoHookean, Response, VonMises};
+    use crate::tensor::{Matrix, Real, Symmetric};
 
     const ELASTIC: Isotropic<f64> = Isotropic { bulk_modulus: 6.0, shear_modulus: 3.0 };
 
@@ -129,6 +173,17 @@ mod tests {
             Material::NeoHookean(NeoHookean { elastic: ELASTIC }),
             Material::Hypoelastic(Hypoelastic { elastic: ELASTIC }),
         ]
+    }
+
+    /// The motion with its free thickness, and the response to it.
+    fn with_free_thickness<T: Real, L: Law<T>>(
+        law: &L,
+        motion: &Motion<T>,
+        history: &L::History,
+    ) -> Option<(Motion<T>, Response<T, L::History>)> {
+        let Thickening { stretch, found } = thickening(law, motion, history);
+        let moved = motion.thickened(stretch);
+        (found == 1).then(|| (moved, law.respond(&moved, history)))
     }
 
     /// The motion with its free thickness and the stress, of a law without history.

@@ -1,13 +1,12 @@
 //! What a pass does to a group of particles: G2P of velocities, stress update, advection, P2G, in this order.
 
 use super::members::{HistoryOfGroup, Members};
-use super::thickness::free_thickness;
 use crate::basis::{Basis, BoxSide};
 use crate::body::Gyration;
 use crate::clock::{no_faster, signal_speed};
 use crate::damping::BulkViscosity;
 use crate::lanes::{Laned, Lanes, Machine};
-use crate::material::{Material, Motion, Recall, Thickness};
+use crate::material::{Material, Motion, Recall, Thickening, Thickness};
 use crate::natural::Natural;
 use crate::particles::{ColumnStart, stretched_half_side};
 use crate::step::pass::{FaultKind, Pass, Verbs, Visit};
@@ -192,20 +191,14 @@ pub fn group<
             };
         }
         if thickness_is_free {
-            let found = free_thickness(visit.body, (motion, dt), &mut history);
-            let found = found.ok_or(FaultKind::NoThickness)?;
-            stress = found.stress;
-            match &natural {
-                None => (deformation, jacobian) = (found.deformation, found.jacobian),
-                Some(natural) => {
-                    let thickening = natural.thickening(&motion.deformation, &found.deformation);
-                    deformation.0[2][2] *= thickening;
-                    jacobian *= thickening;
-                }
-            }
-        } else {
-            stress = constants.material.respond(&motion, &mut history);
+            let Thickening { stretch, found } = constants.material.thickening(&motion, &history);
+            sound.require(found, FaultKind::NoThickness);
+            motion = motion.thickened(stretch);
+            let stretch = natural.as_ref().map_or(stretch, |natural| natural.thickening(stretch));
+            deformation.0[2][2] *= stretch;
+            jacobian *= stretch;
         }
+        stress = constants.material.respond(&motion, &mut history);
         history.changed = true;
         if let Some(BulkViscosity { coefficients }) = viscosity {
             let seen = (&natural, &deformation, jacobian);

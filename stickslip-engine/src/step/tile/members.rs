@@ -385,19 +385,19 @@ impl<'a, 'b, T: Real, const D: usize, const WHOLE: bool> HistoryOfGroup<'a, 'b, 
 
     /// How many entries.
     #[inline(always)]
-    pub fn entries(&self) -> usize {
+    fn entries(&self) -> usize {
         self.members.history()
     }
 
     /// Where the lanes of an entry lie that was kept.
     #[inline(always)]
-    pub fn lanes(&mut self, entry: usize) -> *mut T {
+    fn lanes(&mut self, entry: usize) -> *mut T {
         self.after[entry].as_mut_ptr().cast()
     }
 
     /// The same to be read.
     #[inline(always)]
-    pub fn kept(&self, entry: usize) -> *const T {
+    fn kept(&self, entry: usize) -> *const T {
         self.after[entry].as_ptr().cast()
     }
 

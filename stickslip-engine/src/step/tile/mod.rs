@@ -7,7 +7,6 @@
 
 mod group;
 mod members;
-mod thickness;
 
 use super::pass::{FaultKind, Found, ParticleFault, Visit};
 use crate::basis::Basis;
