@@ -7,6 +7,8 @@
 //! A thin plate with free faces. Its particles have the reference thickness one; the thickness is F_zz, so det F is the
 //! volume, and the in-plane force of a particle is -V0 det F sigma grad S as in every scene: the stress acts on the
 //! present thickness. F is block diagonal, so isotropic laws leave no shear out of the plane, and one unknown is left.
+//!
+//! Several particles search side by side, over any [`Number`]; a law knows nothing of it.
 
 use super::{Law, Motion};
 use crate::tensor::Number;
@@ -92,7 +94,7 @@ pub(super) fn thickening<T: Number, L: Law<T>>(
 /// Lanes in which a number is finite.
 #[inline(always)]
 fn finite<T: Number>(x: T) -> u32 {
-    (x - x).at_least(T::ZERO)
+    (x * T::ZERO).at_least(T::ZERO)
 }
 
 #[inline(always)]
@@ -138,10 +140,10 @@ impl<T: Number> Bracket<T> {
     #[inline(always)]
     fn next(&self, now: TrialStretch<T>, next: T, count: usize) -> T {
         let (low, high) = (self.thin.min(self.thick), self.thin.max(self.thick));
-        let outside = low.at_least(next) | next.at_least(high) | !finite(next);
+        let outside = low.at_least(next) | next.at_least(high);
         let halved = self.ends() & if count.is_multiple_of(3) { u32::MAX } else { outside };
         // A flat secant: thicker against compression, thinner against tension.
-        let flat = (next.at_least(now.stretch) & now.stretch.at_least(next)) | !finite(next);
+        let flat = next.at_least(now.stretch) & now.stretch.at_least(next);
         let away = T::select(now.stress.at_least(T::ZERO), T::HALF, T::of(2.0));
         let free = T::select(flat, now.stretch * away, next);
         T::select(halved, (self.thin + self.thick) * T::HALF, free)
@@ -175,12 +177,15 @@ mod tests {
         ]
     }
 
-    /// The motion with its free thickness, and the response to it.
+    /// A motion with its free thickness, and the response to it.
+    type Moved<T, H> = (Motion<T>, Response<T, H>);
+
+    /// The motion with its free thickness, and the response to it; `None` if the law has none.
     fn with_free_thickness<T: Real, L: Law<T>>(
         law: &L,
         motion: &Motion<T>,
         history: &L::History,
-    ) -> Option<(Motion<T>, Response<T, L::History>)> {
+    ) -> Option<Moved<T, L::History>> {
         let Thickening { stretch, found } = thickening(law, motion, history);
         let moved = motion.thickened(stretch);
         (found == 1).then(|| (moved, law.respond(&moved, history)))

@@ -1,12 +1,16 @@
 //! A step that goes wrong says which particle of which body, where and when, and leaves what it saw.
 //!
 //! Set-ups: a block that spins with linear functions and the stress updated last; a block that flies out of the domain;
-//! rigid blocks whose prescribed motion leaves the domain or is no number. Expected: the failure of that
+//! one that turns in plane stress until its law has no answer; rigid blocks whose prescribed motion leaves the domain
+//! or is no number. Expected: the failure of that
 //! kind with the body's name; a place inside or at the edge of the body; the time of the step before;
 //! the simulation can still be looked at.
 
 use crate::trial::start;
 use stickslip::door::StepError;
+use stickslip::material::{CustomLaw, Isotropic, Law, Material, Motion, NeoHookean};
+use stickslip::tensor::{Matrix, Symmetric};
+use stickslip::{scene, step};
 
 fn scene(motion: &str) -> String {
     format!(
@@ -59,6 +63,57 @@ fn a_particle_that_inverts() {
     // What is drawn of it takes no room.
     let undeformed = snapshot.mass[p] / 1000.0;
     assert!((snapshot.volume[p] / undeformed - determinant).abs() < 1e-12, "{}", snapshot.volume[p]);
+}
+
+/// Neo-Hookean, but under pressure at any thickness once it is turned by more than a tenth.
+#[derive(Debug)]
+struct Pressed;
+
+const ELASTIC: Isotropic<f64> = Isotropic { bulk_modulus: 8e4, shear_modulus: 4e4 };
+
+impl CustomLaw for Pressed {
+    fn name(&self) -> &'static str {
+        "pressed"
+    }
+
+    fn elastic(&self) -> Isotropic<f64> {
+        ELASTIC
+    }
+
+    fn respond(&self, motion: &Motion<f64>, _: &mut [f64]) -> Symmetric<f64> {
+        let law = NeoHookean { elastic: ELASTIC };
+        if motion.deformation.0[1][0] < 0.1 { law.stress(motion) } else { Symmetric::isotropic(-1e4) }
+    }
+
+    fn strain_energy(&self, deformation: &Matrix<f64>, stress: &Symmetric<f64>, _: &[f64]) -> f64 {
+        NeoHookean { elastic: ELASTIC }.strain_energy(deformation, stress, &[])
+    }
+}
+
+#[test]
+fn a_particle_without_a_thickness() {
+    let text = scene("spin = 3").replace("plane-strain", "plane-stress");
+    let mut scene = scene::parse("trial.toml", &text, &[]).unwrap_or_else(|error| panic!("{error:?}")).scene;
+    scene.materials[0].law = Material::custom(&Pressed);
+    let mut simulation = step::build(&scene).unwrap_or_else(|problem| panic!("{problem:?}"));
+    let error = loop {
+        let before = simulation.time();
+        if let Err(error) = simulation.step(1.0) {
+            assert_eq!(simulation.time(), before, "a step that fails takes no time");
+            break error;
+        }
+        assert!(simulation.time() < 0.1, "the block must have turned");
+    };
+    println!("{error}");
+    let StepError::NoThickness { body, number, position, time } = error else { panic!("{error}") };
+    assert_eq!(body, "runaway");
+    assert_eq!(time, simulation.time());
+    let snapshot = simulation.snapshot();
+    let p = (0..snapshot.body.len()).find(|&p| snapshot.body[p] == 1 && snapshot.number[p] == number);
+    let p = p.expect("the particle exists");
+    assert_eq!(snapshot.position[p], position);
+    let turned = snapshot.deformation[p][3];
+    assert!(turned > 0.05 && turned < 0.1, "{turned}");
 }
 
 #[test]

@@ -170,6 +170,7 @@ fn in_the_plane() {
         .replace("max = [3, 0]", "max = [1.2, 0]");
     assert!(periodic.contains("periodic") && periodic.contains("max = [1.2, 0]"));
     compare("periodic", &periodic, 200);
+    compare("plane stress", &scene("plane-stress", "gimp", "modified-last"), 200);
     // Linear functions with the stress updated last do not live long, whatever the threads.
     compare("linear, modified-last", &scene("plane-strain", "linear", "modified-last"), 200);
 }

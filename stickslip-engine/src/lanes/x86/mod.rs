@@ -95,7 +95,8 @@ macro_rules! lanes {
     ($name:ident $(<const $flag:ident>)?: $register:ty as [$t:ty; $count:literal];
      $set:ident $load:ident $store:ident; $add:ident $sub:ident $mul:ident $div:ident;
      $sqrt:ident $min:ident $max:ident $times_plus:ident $apart:ident;
-     |$a:ident, $b:ident| $at_least:expr; |$bits:ident, $there:ident, $elsewhere:ident| $select:expr; $($part:item)*) => {
+     |$a:ident, $b:ident| $at_least:expr; |$bits:ident, $there:ident, $elsewhere:ident| $select:expr;
+     $($part:item)*) => {
         #[doc = concat!(stringify!($count), " numbers in a register.")]
         #[derive(Clone, Copy, Debug)]
         #[repr(transparent)]

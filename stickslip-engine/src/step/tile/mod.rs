@@ -7,6 +7,8 @@
 
 mod group;
 mod members;
+#[cfg(test)]
+mod tests;
 
 use super::pass::{FaultKind, Found, ParticleFault, Visit};
 use crate::basis::Basis;
