@@ -15,8 +15,13 @@ pub enum Failure {
     Doubtful(usize),
     /// A run that was made again did not end in the same bits.
     Differs,
-    /// Checks of the gallery do not hold for these scenes.
-    Untrue(String),
+    /// Scenes of the gallery failed, as each of them was told, or their checks do not hold.
+    Gallery {
+        /// Those that failed, and the exit code of the first one.
+        failed: (Vec<&'static str>, u8),
+        /// Those whose checks do not hold.
+        untrue: Vec<&'static str>,
+    },
     /// The user stopped it; everything written is valid.
     Interrupted,
     /// It took as long as it was given, by `--max-time`; everything written is valid.
@@ -51,7 +56,8 @@ impl Failure {
         match self {
             Failure::Input(_) => 2,
             Failure::Run(_) => 1,
-            Failure::Doubtful(_) | Failure::Differs | Failure::Untrue(_) => 3,
+            Failure::Gallery { failed: (scenes, code), .. } if !scenes.is_empty() => *code,
+            Failure::Doubtful(_) | Failure::Differs | Failure::Gallery { .. } => 3,
             Failure::OutOfTime => 4,
             Failure::Interrupted => Self::INTERRUPTED,
         }
@@ -62,7 +68,7 @@ impl Failure {
         match self {
             Failure::Interrupted => eprintln!("interrupted; everything written is valid"),
             Failure::OutOfTime => eprintln!("out of time; everything written is valid"),
-            Failure::Doubtful(_) | Failure::Differs | Failure::Untrue(_) => eprintln!("error: {self}"),
+            Failure::Doubtful(_) | Failure::Differs | Failure::Gallery { .. } => eprintln!("error: {self}"),
             Failure::Input(report) | Failure::Run(report) => {
                 let mut text = String::new();
                 let drawn = terminal()
@@ -84,7 +90,15 @@ impl std::fmt::Display for Failure {
             Failure::Interrupted => f.write_str("interrupted"),
             Failure::OutOfTime => f.write_str("out of time"),
             Failure::Differs => f.write_str("the run did not end in the same bits"),
-            Failure::Untrue(scenes) => write!(f, "the check does not hold: {scenes}"),
+            Failure::Gallery { failed: (failed, _), untrue } => {
+                let failed = Some(failed).filter(|scenes| !scenes.is_empty());
+                let untrue = Some(untrue).filter(|scenes| !scenes.is_empty());
+                let told = [("these scenes failed", failed), ("the check does not hold", untrue)];
+                let told = told.into_iter().filter_map(|(what, scenes)| Some((what, scenes?.join(", "))));
+                f.write_str(
+                    &told.map(|(what, scenes)| format!("{what}: {scenes}")).collect::<Vec<_>>().join("; "),
+                )
+            }
             Failure::Doubtful(1) => f.write_str("the results are doubtful: 1 warning, with --strict"),
             Failure::Doubtful(count) => {
                 write!(f, "the results are doubtful: {count} warnings, with --strict")

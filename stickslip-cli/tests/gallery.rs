@@ -26,6 +26,14 @@ fn a_scene_is_run_drawn_and_checked() {
     assert_eq!(&fs::read(file("wheel/picture.png")).unwrap()[1..4], b"PNG");
     assert_eq!(&fs::read(file("wheel/animation.gif")).unwrap()[..4], b"GIF8");
 
+    // A scene that fails does not hide those after it.
+    fs::create_dir(file("penetration")).unwrap();
+    fs::write(file("penetration/thesis.tex"), "years of work").unwrap();
+    let both = workplace.run(&["gallery", "run", "penetration", "wheel", "--out", "here"]);
+    assert!(both.code == Some(1) && both.stdout.contains("wheel: energy"), "{}{}", both.stdout, both.stderr);
+    assert!(both.stderr.contains("thesis.tex"), "{}", both.stderr);
+    assert!(both.stderr.ends_with("error: these scenes failed: penetration\n"), "{}", both.stderr);
+
     // Results that are there stand, and what they say is looked at again.
     let energy = fs::read_to_string(file("wheel/energy.csv")).unwrap();
     let less: Vec<&str> = energy.lines().take(30).collect();

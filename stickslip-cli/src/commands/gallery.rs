@@ -28,6 +28,7 @@ enum What {
         scene: &'static Exhibit,
     },
     /// Run scenes, draw the picture and the animation of each, and check their physics; exit code 3 if a check fails.
+    /// A scene that fails does not keep the others from it.
     Run(Run),
     /// Run all scenes and check their physics, without pictures; exit code 3 if a check fails.
     Check(Where),
@@ -91,18 +92,29 @@ impl Where {
         let folder = self.out.clone();
         let runner = JobRunner { folder, threads, stop: stop_on_interrupt()?, earlier: Earlier::Keep };
         let mut outcomes = runner.work(&jobs)?;
-        let mut wrong = Vec::new();
+        let (mut failed, mut untrue, mut code) = (Vec::new(), Vec::new(), None);
         for scene in &scenes {
             let Some(outcome) = outcomes.remove(scene.name) else { continue };
             let folder = self.out.join(scene.name);
-            let results = outcome
-                .map_err(|error| Failure::Run(miette!("{} did not run: {error}", folder.display())))?;
-            with_each(scene, &folder)?;
-            if !tell(scene, &results)? {
-                wrong.push(scene.name);
+            let judged = outcome
+                .map_err(|error| Failure::Run(miette!("{} did not run: {error}", folder.display())))
+                .and_then(|results| with_each(scene, &folder).and_then(|()| tell(scene, &results)));
+            match judged {
+                Ok(true) => {}
+                Ok(false) => untrue.push(scene.name),
+                Err(failure) if scenes.len() == 1 => return Err(failure),
+                // The others are looked at all the same.
+                Err(failure) => {
+                    failure.print();
+                    code.get_or_insert(failure.exit_code());
+                    failed.push(scene.name);
+                }
             }
         }
-        if wrong.is_empty() { Ok(()) } else { Err(Failure::Untrue(wrong.join(", "))) }
+        if failed.is_empty() && untrue.is_empty() {
+            return Ok(());
+        }
+        Err(Failure::Gallery { failed: (failed, code.unwrap_or_default()), untrue })
     }
 
     /// The scene, written with its files and read from there.
@@ -150,19 +162,15 @@ fn tell(scene: &Exhibit, results: &Results) -> Result<bool, Failure> {
     Ok(holds)
 }
 
-fn time(seconds: f64) -> String {
-    if seconds < 90.0 { format!("{seconds:.0} s") } else { format!("{:.0} min", seconds / 60.0) }
-}
-
 fn list() -> String {
     let width = EXHIBITS.iter().map(|exhibit| exhibit.name.len()).max().unwrap_or(0);
     let line = |exhibit: &Exhibit| {
-        let Exhibit { name, seconds, check, .. } = exhibit;
+        let Exhibit { name, check, .. } = exhibit;
         let [low, high] = check.bounds;
         let title = exhibit.title();
         format!(
             "{name:width$}  {:>6}  {title}\n{:width$}          {}, {low} to {high}",
-            time(*seconds),
+            exhibit.time(),
             "",
             check.what
         )

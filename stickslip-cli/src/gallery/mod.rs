@@ -142,6 +142,14 @@ impl Exhibit {
         found.map_or("", |(title, _)| title)
     }
 
+    /// How long it runs on two cores, as one reads it.
+    pub fn time(&self) -> String {
+        match self.seconds {
+            seconds if seconds < 90.0 => format!("{seconds:.0} s"),
+            seconds => format!("{:.0} min", seconds / 60.0),
+        }
+    }
+
     /// Writes the scene and its files into a folder, which may be there, and gives the path of the scene. Files that
     /// are there already stay, if they are the same.
     ///
@@ -200,7 +208,10 @@ mod tests {
         let chapter = fs::read_to_string(root.join("book/20-gallery.md")).expect("the chapter");
         // Lines may break anywhere.
         let chapter = chapter.split_whitespace().collect::<Vec<_>>().join(" ");
-        for Exhibit { name, check, .. } in EXHIBITS {
+        for exhibit in EXHIBITS {
+            let Exhibit { name, check, .. } = exhibit;
+            let run = format!("`stickslip gallery run {name}`: {}.", exhibit.time());
+            assert!(chapter.contains(&run), "{run}");
             for kind in ["png", "gif"] {
                 let file = format!("docs/gallery/{name}.{kind}");
                 assert!(chapter.contains(&file), "{file}");
