@@ -227,14 +227,26 @@ fn skins(results: &Results, (first, time): (&ParticleSnapshot, f64)) -> Option<A
 /// That, or what is to be drawn there, does not suit the dimension of the scene.
 fn fits(dimension: usize, choice: &PictureChoice) -> Result<Option<BoxCorners>, Failure> {
     let wrong = |what: String| Err(Failure::Input(miette!("{what}")));
-    if choice.contours > 0 && choice.quantity == ColorQuantity::Body {
-        return wrong(
-            "--contours: found no column of numbers; allowed: with --color and one of them".to_owned(),
-        );
+    let first =
+        |options: &[(&'static str, bool)]| options.iter().find(|(_, is_set)| *is_set).map(|(name, _)| *name);
+    let of_values = [
+        ("--contours", choice.contours > 0),
+        ("--smooth", choice.smooth == Some(true)),
+        ("--range", choice.range.is_some()),
+        ("--colors", choice.colors.is_some()),
+    ];
+    if let Some(option) = first(&of_values).filter(|_| choice.quantity == ColorQuantity::Body) {
+        return wrong(format!("{option}: found no column of numbers; allowed: with --color and one of them"));
     }
-    if dimension == 3 && (choice.contours > 0 || choice.arrows) {
-        let option = if choice.arrows { "--vectors" } else { "--contours" };
+    let [of_plane, of_space] = [
+        [("--vectors", choice.arrows), ("--contours", choice.contours > 0)],
+        [("--balls", choice.balls), ("--view", choice.view.0 != [Viewpoint::Auto])],
+    ];
+    if let Some(option) = first(&of_plane).filter(|_| dimension == 3) {
         return wrong(format!("{option}: found a scene in space; allowed: plane scenes"));
+    }
+    if let Some(option) = first(&of_space).filter(|_| dimension == 2) {
+        return wrong(format!("{option}: found a plane scene; allowed: scenes in space"));
     }
     let Some(numbers) = &choice.window else { return Ok(None) };
     if numbers.len() != 2 * dimension {

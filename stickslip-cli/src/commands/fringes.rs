@@ -12,7 +12,7 @@ use stickslip::scene::{Light, Overlay, Polariscope, PolariscopeField, Sensitivit
 #[command(next_help_heading = "Photoelastic fringes (without a flag: as in the scene's outputs.fringes)")]
 pub struct FringeArguments {
     /// Photoelastic fringes, as a polariscope shows them along the third axis.
-    #[arg(long, conflicts_with_all = ["color", "range", "view", "mirror"])]
+    #[arg(long, conflicts_with_all = ["color", "colors", "range", "view", "mirror"])]
     pub fringes: bool,
 
     /// The paper's s [Pa]: a circular polariscope shows cos((sigma_1 - sigma_2) / s).

@@ -51,11 +51,11 @@ pub struct Arguments {
     #[arg(long = "body", value_name = "NAME", conflicts_with = "fringes")]
     only: Vec<String>,
 
-    /// Values at the ends of the colours, in SI units: LOW,HIGH.
+    /// Values at the ends of the colours, in SI units, with --color: LOW,HIGH.
     #[arg(long, value_name = "LOW,HIGH", value_parser = pair, allow_hyphen_values = true)]
     range: Option<[f64; 2]>,
 
-    /// The colours that values run through; those that suit without this.
+    /// The colours that values run through, with --color; those that suit without this.
     #[arg(long, value_enum)]
     colors: Option<ColorMap>,
 
@@ -76,8 +76,9 @@ pub struct Arguments {
     #[arg(long, conflicts_with = "fringes")]
     balls: bool,
 
-    /// Where the camera stands: auto, an axis (x, -x, ...), or AZIMUTH,ELEVATION in degrees from the front. Several of
-    /// these, as 0,20:90,20, are passed at even pace from the first snapshot to the last with `--all` and `--animate`.
+    /// Where the camera stands in space: auto, an axis (x, -x, ...), or AZIMUTH,ELEVATION in degrees from the front.
+    /// Several of these, as 0,20:90,20, are passed at even pace from the first snapshot to the last with `--all` and
+    /// `--animate`.
     #[arg(long, default_value = "auto", allow_hyphen_values = true)]
     view: ViewPath,
 
