@@ -99,7 +99,7 @@ fn by_ffmpeg(
         let image = image?;
         let (child, size) = match &mut running {
             Some(running) => running,
-            None => running.insert((ffmpeg(path, codec, (image.size, rate))?, image.size)),
+            None => running.insert((ffmpeg(path, codec, (&image, rate))?, image.size)),
         };
         if image.size != *size {
             return Err(io::Error::new(ErrorKind::InvalidInput, "an animation of images of different sizes"));
@@ -119,15 +119,20 @@ fn by_ffmpeg(
     Err(io::Error::other(format!("ffmpeg says: {}", said.lines().last().unwrap_or("nothing"))))
 }
 
-fn ffmpeg(path: &Path, codec: &[&str], (size, rate): ([usize; 2], f64)) -> io::Result<Child> {
-    let [width, height] = size;
+/// Codecs want even sides: a line or a column more, of the colour that the image stands on.
+fn padding(first: &Image) -> String {
+    let [red, green, blue] = first.color(0, 0);
+    format!("pad=ceil(iw/2)*2:ceil(ih/2)*2:color=0x{red:02x}{green:02x}{blue:02x}")
+}
+
+fn ffmpeg(path: &Path, codec: &[&str], (first, rate): (&Image, f64)) -> io::Result<Child> {
+    let [width, height] = first.size;
     // An option's name may not stand where a file's should.
     let out = if path.is_absolute() { path.to_path_buf() } else { PathBuf::from(".").join(path) };
     let mut command = Command::new("ffmpeg");
     command.args(["-hide_banner", "-loglevel", "error", "-y", "-f", "rawvideo", "-pix_fmt", "rgb24"]);
     command.args(["-s", &format!("{width}x{height}"), "-r", &rate.to_string(), "-i", "-"]);
-    // Codecs want even sides.
-    command.args(["-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white"]).args(codec).arg(out);
+    command.args(["-vf", &padding(first)]).args(codec).arg(out);
     let child = command.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::piped()).spawn();
     child.map_err(|error| match error.kind() {
         ErrorKind::NotFound => io::Error::new(
@@ -162,6 +167,13 @@ mod tests {
         assert_eq!(delays, [5, 5, 5]);
         std::fs::write(&path, "precious").expect("written");
         assert!(write(&path, FilmKind::Gif, images(), 20.0).is_err(), "what is no GIF stays");
+    }
+
+    #[test]
+    fn even_sides_are_filled_with_the_background() {
+        let mut image = Image::new([9, 5], [0x10, 0x20, 0x03]);
+        image.pixels[3 * 8..3 * 9].fill(255);
+        assert_eq!(padding(&image), "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=0x102003");
     }
 
     #[test]

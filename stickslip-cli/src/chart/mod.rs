@@ -37,7 +37,7 @@ pub struct Panel {
     pub curves: Vec<Curve>,
 }
 
-/// A curve; one of few points has them marked.
+/// A curve; one of few points has them marked, and so has a point between two without values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
     /// Its name in the legend.

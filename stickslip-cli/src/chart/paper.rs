@@ -147,7 +147,8 @@ fn draw_panel<D: DrawingBackend>(
         // A line ends where there is no value.
         for (number, part) in curve.points.split(|point| !point[1].is_finite()).enumerate() {
             let points = part.iter().map(|[time, value]| (time / pace, value / size.factor));
-            if curve.points.len() <= FEW && !dashes {
+            // A single point makes no line.
+            if part.len() == 1 || (curve.points.len() <= FEW && !dashes) {
                 let mark = |point| Circle::new(point, 3 * pixel, style.filled());
                 chart.draw_series(points.clone().map(mark)).map_err(DrawError::ink)?;
             }
@@ -270,6 +271,20 @@ mod tests {
         let nothing =
             Chart { title: String::new(), over: String::new(), panels: Vec::new(), caption: String::new() };
         assert!(matches!(draw(&nothing, Path::new("x.png"), [64, 64]), Err(DrawError::Empty(_))));
+    }
+
+    #[test]
+    fn a_point_that_has_no_neighbours_is_marked() {
+        let gap = f64::NAN;
+        // Of many rows one, as of a pair that touches once, and of a known answer one.
+        let alone: Vec<[f64; 2]> = (0..30).map(|i| [f64::from(i), if i == 7 { 2.0 } else { gap }]).collect();
+        for (dashed, points) in [(false, alone), (true, vec![[0.0, 5.0]])] {
+            let curve = Curve { label: "gap".to_owned(), color: [0.0; 3], dashed, points };
+            let panel = Panel { name: "gap".to_owned(), unit: "m", curves: vec![curve] };
+            let chart = Chart { panels: vec![panel], ..chart() };
+            assert_eq!(svg(&chart, [640, 560]).unwrap().matches("<circle").count(), 1);
+        }
+        assert!(!svg(&chart(), [1280, 560]).unwrap().contains("<circle"), "lines have no marks");
     }
 
     #[test]
