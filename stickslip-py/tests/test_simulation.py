@@ -310,7 +310,9 @@ def test_other_threads_of_python_go_on_while_a_step_is_taken():
 
 
 INTERRUPTED = """
-import sys, stickslip as ss
+import signal, sys, stickslip as ss
+# Whoever runs the tests in the background may have Ctrl-C ignored, and a process begins as its parent is.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 sys.path.insert(0, {tests!r})
 from conftest import flying
 scene = flying("3d").time(end=1e3)
@@ -335,10 +337,15 @@ def test_ctrl_c_ends_a_run_between_two_steps(with_results, tmp_path):
     script = INTERRUPTED.format(tests=str(Path(__file__).parent))
     arguments = [sys.executable, "-c", script, *(["results"] if with_results else [])]
     process = subprocess.Popen(arguments, cwd=tmp_path, stdout=subprocess.PIPE, text=True)
-    assert process.stdout.readline() == "begun\n"
-    time.sleep(0.3)
-    process.send_signal(signal.SIGINT)
-    said, _ = process.communicate(timeout=60)
+    try:
+        assert process.stdout.readline() == "begun\n"
+        time.sleep(0.3)
+        process.send_signal(signal.SIGINT)
+        said, _ = process.communicate(timeout=60)
+    finally:
+        # One that does not end by itself would run for hours.
+        process.kill()
+        process.wait()
     assert process.returncode == 0 and said.startswith("interrupted") and said.split()[2] == "True", said
     if with_results:
         results = ss.Results(tmp_path / "results")
