@@ -588,6 +588,46 @@ fn motion_that_becomes_noise_is_found() {
     assert!(kinds(0.05).is_empty());
 }
 
+/// What free rigid bodies lose as they strike each other and the floor is booked as damping, and became no noise, nor
+/// does a block beside them change that.
+#[test]
+fn impacts_of_rigid_bodies_are_no_noise() {
+    let text = r#"
+        gravity = [0, -9.81]
+        space = { dimension = "plane-strain", cell = 0.05 }
+        time.end = 0.6
+        [materials.gel]
+        density = 1000
+        neo_hookean = { young_modulus = 1e5, poisson_ratio = 0.3 }
+        [[bodies]]
+        name = "floor"
+        material = "gel"
+        rigid = {}
+        shape.half_space = { point = [0, 0], normal = [0, 1] }
+        [[bodies]]
+        name = "grain {i}"
+        repeat.i = 3
+        material = "gel"
+        rigid.free = {}
+        shape.ball = { center = [0.02, "0.5 + 0.25 * i"], radius = 0.1 }
+        [[bodies]]
+        name = "block"
+        material = "gel"
+        shape.box = { min = [1, 0.2], max = [1.2, 0.4] }
+        [[contact]]
+        friction = 0.3
+        [outputs]
+        particles = "never"
+    "#;
+    let scene = scene::parse("grains.toml", text, &[]).expect("a scene").scene;
+    let mut simulation = stickslip::step::build(&scene).expect("no problem");
+    let kinds: Vec<String> =
+        judge(text, &mut *simulation).1.into_iter().map(|warning| warning.kind).collect();
+    let Ledger { damping, impacts, .. } = simulation.ledger();
+    assert!(impacts > 100.0 && (damping - impacts).abs() < 0.05 * impacts, "{damping} {impacts}");
+    assert!(!kinds.contains(&"noise".to_string()), "{kinds:?}");
+}
+
 /// Two rings that meet exactly head on have no angular momentum but that of round-off, of which some may come and go.
 #[test]
 fn rings_that_meet_head_on_are_not_doubted() {

@@ -194,8 +194,11 @@ pub struct Ledger {
     pub adhesion: f64,
     /// Dissipated by the materials: by plastic flow, viscosity and damage [J].
     pub plastic: f64,
-    /// Dissipated by damping [J].
+    /// Dissipated by damping, and by impacts of rigid bodies [J].
     pub damping: f64,
+    /// The part of it that impacts took, of free rigid bodies on each other and on prescribed ones [J].
+    #[serde(default)]
+    pub impacts: f64,
     /// kinetic + strain + potential + friction + adhesion + plastic + damping - external work [J];
     /// constant in an exact solution.
     pub total: f64,

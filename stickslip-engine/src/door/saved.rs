@@ -23,6 +23,9 @@ pub struct SavedState {
     pub(crate) signal: Option<f64>,
     /// Energy that damping took [J].
     pub(crate) damping: f64,
+    /// The part of it that impacts of rigid bodies took [J].
+    #[serde(default)]
+    pub(crate) impacts: f64,
     /// Work of gravity, where that varies [J].
     #[serde(default)]
     pub(crate) gravity_work: f64,
@@ -85,6 +88,7 @@ impl SavedState {
             bodies: names.iter().zip(rows).filter(|(_, rows)| !rows.is_empty()).map(body).collect(),
             signal: None,
             damping: 0.0,
+            impacts: 0.0,
             relaxation: RelaxationProgress::default(),
             loads: Vec::new(),
             contact_sums: ContactSums::default(),

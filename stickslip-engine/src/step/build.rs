@@ -189,6 +189,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                     if tallies { walls::<D>(scene).len() * scene.bodies.len() } else { 0 }
                 ],
                 damping: 0.0,
+                impacts: 0.0,
                 gravity_work: 0.0,
                 relaxation: RelaxationProgress::default(),
                 signal: None,

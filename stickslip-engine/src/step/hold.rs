@@ -23,6 +23,7 @@ impl<T: Real, const D: usize> State<T, D> {
             ref removed,
             longest_rigid,
             damping,
+            impacts,
             gravity_work,
             relaxation,
             signal,
@@ -42,7 +43,7 @@ impl<T: Real, const D: usize> State<T, D> {
         self.walls.clone_from(walls);
         self.removed.clone_from(removed);
         (self.longest_rigid, self.damping, self.relaxation) = (longest_rigid, damping, relaxation);
-        (self.gravity_work, self.signal) = (gravity_work, signal);
+        (self.impacts, self.gravity_work, self.signal) = (impacts, gravity_work, signal);
         (self.time, self.steps) = (time, steps);
     }
 }

@@ -20,7 +20,7 @@ use std::sync::Mutex;
 impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// The state as data.
     pub(super) fn saved(&self) -> SavedState {
-        let State { time, steps, signal, damping, gravity_work, relaxation, .. } = self.state;
+        let State { time, steps, signal, damping, impacts, gravity_work, relaxation, .. } = self.state;
         let bodies = self.state.bodies.iter().zip(&self.state.disorder).zip(&self.settings.filled);
         SavedState {
             time,
@@ -37,6 +37,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 .collect(),
             signal,
             damping,
+            impacts,
             gravity_work,
             relaxation,
             loads: self.state.loads.clone(),
@@ -74,7 +75,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         if saved.joints.len() != state.joints.len() || saved.springs.len() != state.springs.len() {
             return Err(RestoreError("it has other joints or springs than the scene".into()));
         }
-        let numbers = [saved.time, saved.damping, saved.gravity_work, saved.signal.unwrap_or(1.0)];
+        let numbers =
+            [saved.time, saved.damping, saved.impacts, saved.gravity_work, saved.signal.unwrap_or(1.0)];
         if !numbers.iter().all(|x| x.is_finite()) || saved.time < 0.0 || !saved.contact_sums.are_of(wanted) {
             return Err(RestoreError("it has numbers that no run has".to_string()));
         }
@@ -117,7 +119,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         (state.loads, state.joints, state.springs) = (saved.loads, saved.joints, saved.springs);
         state.longest_rigid = saved.longest_rigid.unwrap_or(state.longest_rigid);
         (state.damping, state.relaxation) = (saved.damping, saved.relaxation);
-        state.gravity_work = saved.gravity_work;
+        (state.impacts, state.gravity_work) = (saved.impacts, saved.gravity_work);
         // Outputs may be others.
         if saved.walls.len() == state.walls.len() {
             state.walls = saved.walls;

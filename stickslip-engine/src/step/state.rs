@@ -81,8 +81,10 @@ pub struct State<T, const D: usize> {
     pub springs: Vec<JointSums>,
     /// What bodies did to the domain's faces since the start, of each wall body by body; empty where nobody asks.
     pub walls: Vec<WallSums>,
-    /// What damping took since the start [J].
+    /// What damping took since the start, and impacts of rigid bodies [J].
     pub damping: f64,
+    /// The part of it that impacts took [J].
+    pub impacts: f64,
     /// Work of gravity since the start, where that varies [J].
     pub gravity_work: f64,
     /// How far dynamic relaxation has come.

@@ -178,6 +178,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> View for Engine<T, D, B> {
                 - removed(|removed| removed.energy),
             adhesion: self.state.contact_sums.adhesion,
             damping: self.state.damping,
+            impacts: self.state.impacts,
             scaled_impulses: self.state.contact_sums.scaled,
             unsettled_nodes: self.state.contact_sums.unsettled,
             plastic: removed(|removed| removed.plastic),

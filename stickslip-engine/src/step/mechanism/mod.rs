@@ -244,7 +244,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 |row: &Row| [0, 1].map(|side| row.impulse * six::dot(&row.directions[side], &means[side]));
             let lost = |row: &Row| -works(row).iter().sum::<f64>();
             let rubbed: f64 = touch.tangents.iter().map(lost).sum();
-            self.state.damping += lost(&touch.normal);
+            let impact = lost(&touch.normal);
+            self.state.damping += impact;
+            self.state.impacts += impact;
             // What prescribed bodies put in.
             for row in touch.rows() {
                 let prescribed = (0..2).filter(|side| row.bodies[*side].is_none());

@@ -4,7 +4,8 @@ use super::{Check, CheckInputs, Finding, asks_for_damping};
 use crate::scene::HealthCheck;
 use crate::transfer::pic_share;
 
-/// Holds what damping took against the bound on it. `rflip` takes noise from particles' own rotation;
+/// Holds what damping took from bodies that deform against the bound on it; what rigid bodies lose in impacts, which is
+/// booked with it, became no noise. `rflip` takes noise from particles' own rotation;
 /// what it takes came from motion that the grid did not carry on, so the ledger closes and the swing is gone.
 pub(super) struct NoiseCheck;
 
@@ -19,7 +20,8 @@ impl Check for NoiseCheck {
     }
 
     fn look(&mut self, look: &CheckInputs) -> Vec<Finding> {
-        let (damping, scale) = (look.ledger.damping, look.balance.scale);
+        let damping = look.ledger.damping - look.ledger.impacts;
+        let scale = look.balance.scale;
         let part = damping / scale;
         let time = &look.scene.time;
         let takes_velocities = pic_share(time.transfer, time.pic_share) > 0.0;
