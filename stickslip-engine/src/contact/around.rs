@@ -36,10 +36,12 @@ impl<T: Real, const D: usize> Near<'_, T, D> {
             for offset in offsets::<D>(MAX_WIDTH) {
                 let cell = std::array::from_fn(|i| image.node[i] - offset[i] as i32);
                 for &index in self.active.particles_in(body, cell) {
-                    let particle = &self.bodies[body].particles.get(index as usize);
+                    let particles = &self.bodies[body].particles;
+                    let particle = &particles.get(index as usize);
                     let arm = particle.position - seen;
-                    let reach = self.lattice.cell + self.lattice.half_box(particle.half_width);
-                    if (0..D).all(|i| arm[i].abs() < reach) {
+                    let sides = particles.half_sides(index as usize);
+                    let reach = |i: usize| self.lattice.cell + self.lattice.half_box(sides[i]);
+                    if (0..D).all(|i| arm[i].abs() < reach(i)) {
                         f(Vector::from_fn(|i| arm[i] * image.sign[i]), particle, mirror);
                     }
                 }

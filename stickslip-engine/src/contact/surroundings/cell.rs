@@ -19,7 +19,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
         let columns = self.near.bodies[self.body].particles.view();
         let order = self.near.active.order_of(self.body);
         let index = |chunk: &Chunk<D>| &order[chunk.first as usize..][..chunk.count as usize];
-        let mut copies = CellCopies([Numbers::ZERO; ColumnStart::<3>::COUNT]);
+        let mut copies = CellCopies([Numbers::ZERO; ColumnStart::<3>::COUNT + MOST_SIDES]);
         for place in 0..self.chunks.len() {
             if let Some(later) = self.chunks.get(place + AHEAD) {
                 let index = index(later);
@@ -40,14 +40,13 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
     ) {
         // No closure: the compiler may leave one of some size uninlined, and then its instructions are calls.
         let mut position = Vector::<V, D>::ZERO;
-        let half = members.load::<V>(ColumnStart::<D>::HALF_WIDTH) * seen.per_cell;
-        // Of its undeformed box, whatever the nodes see elsewhere: to find surfaces by.
-        let side = BoxSide::new(half);
-        let mut shapes = [B::shape(V::ZERO, &side); D];
+        // As the nodes see it everywhere: cells are listed by that box, and no other has its functions within them.
+        let sides = members.sides(self.near.lattice.whole_cells, seen.per_cell);
+        let mut shapes = [B::shape(V::ZERO, &sides[0]); D];
         for i in 0..D {
             position[i] = members.load(ColumnStart::<D>::POSITION + i);
             let r = (position[i] - seen.origin[i]) * seen.per_cell - V::splat(T::of(f64::from(cell[i])));
-            shapes[i] = B::shape(r, &side);
+            shapes[i] = B::shape(r, &sides[i]);
             // The node sees a particle move away as the particle sees the node move: grad at the node = -grad S(x_p).
             for difference in &mut shapes[i].difference {
                 *difference *= seen.per_cell * -seen.sign[i];
@@ -269,24 +268,34 @@ impl<V: Lanes, const D: usize> Seen<V, D> {
     }
 }
 
+/// Sides of a box, in space.
+const MOST_SIDES: usize = 3;
+/// Where the columns of boxes lie among copies.
+const BOXES: usize = ColumnStart::<3>::COUNT;
+
 /// How many chunks ahead of the present one numbers are fetched into the cache.
 const AHEAD: usize = 3;
 
-/// The columns that sums are made of.
+/// The columns that sums are made of, where all bodies have them, and those of boxes that follow the stretch.
 #[inline(always)]
-fn columns_read<const D: usize>(sought: Wanted) -> [Range<usize>; 3] {
+fn columns_read<T: Real, const D: usize>(columns: &Columns<T, D>, sought: Wanted) -> [Range<usize>; 4] {
     let (stress, start) = (ColumnStart::<D>::STRESS, ColumnStart::<D>::START);
     let [first, last] = match sought {
         Wanted::Places => [ColumnStart::<D>::VOLUME, stress],
         Wanted::Everything => [ColumnStart::<D>::MASS, start],
     };
-    [ColumnStart::<D>::POSITION..ColumnStart::<D>::VELOCITY, first..last, start..ColumnStart::<D>::COUNT]
+    [
+        ColumnStart::<D>::POSITION..ColumnStart::<D>::VELOCITY,
+        first..last,
+        start..ColumnStart::<D>::COUNT,
+        columns.box_columns(),
+    ]
 }
 
 /// Fetches what is read of two particles and those beside them.
 #[inline(always)]
 fn fetch<T: Real, const D: usize>(columns: &Columns<T, D>, particles: [u32; 2], sought: Wanted) {
-    for range in columns_read::<D>(sought) {
+    for range in columns_read(columns, sought) {
         for column in range {
             for particle in particles {
                 // SAFETY: the particle exists.
@@ -302,11 +311,13 @@ struct CellMembers<'a, T, const D: usize> {
     first: *const T,
     stride: usize,
     count: usize,
+    /// Where the columns of boxes that follow the stretch begin; `None` where boxes keep their sides.
+    boxes: Option<usize>,
     source: PhantomData<&'a T>,
 }
 
-/// Columns of particles that do not lie side by side.
-struct CellCopies<T>([Numbers<T>; ColumnStart::<3>::COUNT]);
+/// Columns of particles that do not lie side by side: those that all bodies have, and behind them those of boxes.
+struct CellCopies<T>([Numbers<T>; ColumnStart::<3>::COUNT + MOST_SIDES]);
 
 impl<'a, T: Real, const D: usize> CellMembers<'a, T, D> {
     #[inline(always)]
@@ -318,22 +329,39 @@ impl<'a, T: Real, const D: usize> CellMembers<'a, T, D> {
     ) -> Self {
         // Indices within a cell ascend.
         let in_a_row = (index[index.len() - 1] - index[0]) as usize == index.len() - 1;
-        let (first, stride) = if in_a_row {
+        let own = columns.box_columns();
+        let (first, stride, boxes) = if in_a_row {
             // SAFETY: the particle exists.
-            (unsafe { columns.at(0, index[0] as usize) }.cast_const(), columns.stride())
+            (unsafe { columns.at(0, index[0] as usize) }.cast_const(), columns.stride(), own.start)
         } else {
             let lanes = in_lanes(index);
-            for range in columns_read::<D>(sought) {
+            for range in columns_read(columns, sought) {
                 for column in range {
+                    let place = if own.contains(&column) { BOXES + column - own.start } else { column };
                     // SAFETY: the particles exist, and nobody writes to them in a survey.
-                    unsafe {
-                        V::gather(columns.at(column, 0), &lanes).store(copies.0[column].0.as_mut_ptr())
-                    };
+                    unsafe { V::gather(columns.at(column, 0), &lanes).store(copies.0[place].0.as_mut_ptr()) };
                 }
             }
-            (copies.0.as_ptr().cast(), size_of::<Numbers<T>>() / size_of::<T>())
+            (copies.0.as_ptr().cast(), size_of::<Numbers<T>>() / size_of::<T>(), BOXES)
         };
-        CellMembers { first, stride, count: index.len(), source: PhantomData }
+        let boxes = if own.is_empty() { None } else { Some(boxes) };
+        CellMembers { first, stride, count: index.len(), boxes, source: PhantomData }
+    }
+
+    /// Their boxes as the nodes see them, by cells along each axis.
+    #[inline(always)]
+    fn sides<V: Lanes<Real = T>>(&self, whole_cells: bool, per_cell: V) -> [BoxSide<V>; D] {
+        let mut sides = [BoxSide::new(V::HALF); D];
+        match self.boxes {
+            None if whole_cells => {}
+            None => sides = [BoxSide::new(self.load::<V>(ColumnStart::<D>::HALF_WIDTH) * per_cell); D],
+            Some(boxes) => {
+                for i in 0..D {
+                    sides[i] = BoxSide::new(self.load::<V>(boxes + i) * per_cell);
+                }
+            }
+        }
+        sides
     }
 
     /// Their numbers in a column.

@@ -8,12 +8,20 @@ use crate::geometry::{MirroredShape, Shape};
 use crate::grid::{ActiveBlocks, Field, Lattice, next_of, node_at};
 use crate::lanes::Processor;
 use crate::material::{Isotropic, Material, NeoHookean, Thickness};
-use crate::particles::{ColumnStart, Particles, deformation_entries, stress_entries};
+use crate::particles::{BOXES, ColumnStart, OwnColumns, Particles, deformation_entries, stress_entries};
 use crate::tensor::{Matrix, Number, Symmetric, Vector};
 use crate::transfer::{Stencil, offsets};
 
+/// The boxes as which nodes see particles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Boxes {
+    Own,
+    Stretched,
+    WholeCells,
+}
+
 /// Particles strewn over a few cells before two mirrors, deformed and stressed.
-fn body<const D: usize>() -> Body<f64, D> {
+fn body<const D: usize>(boxes: Boxes) -> Body<f64, D> {
     let random = |i: usize| (i as f64 * 0.754_877_666_2).fract();
     let place = |i: usize, n: usize| Vector::from_fn(|k| 5.0 * random((k + n) * i + k));
     let particle = |i: usize| {
@@ -36,10 +44,13 @@ fn body<const D: usize>() -> Body<f64, D> {
         }
     };
     // Where they were at first, and where they are now.
-    let mut particles = Particles::from_fn(300, crate::particles::OwnColumns::default(), particle);
+    let own =
+        OwnColumns { boxes: if boxes == Boxes::Stretched { BOXES } else { &[] }, ..OwnColumns::default() };
+    let mut particles = Particles::from_fn(300, own, particle);
     for i in 0..300 {
         particles.set(i, &Particle { position: place(i, 3), ..particle(i) });
     }
+    particles.stretch_boxes(0.5);
     Body {
         name: String::new(),
         material: Material::NeoHookean(NeoHookean {
@@ -79,7 +90,7 @@ fn plainly<const D: usize, B: Basis<f64>>(
         for (index, particle) in near.bodies[0].particles.iter().enumerate() {
             let stencil = Stencil::<f64, D, B>::new(
                 &near.lattice,
-                (particle.position, Vector([particle.half_width; D])),
+                (particle.position, near.bodies[0].particles.half_sides(index)),
             );
             let Some(offset) = offsets::<D>(B::WIDTH)
                 .find(|offset| (0..D).all(|i| stencil.base()[i] + offset[i] as i32 == image[i]))
@@ -120,12 +131,13 @@ fn plainly<const D: usize, B: Basis<f64>>(
     sums
 }
 
-fn particles_of_a_cell_side_by_side_give_the_sums<const D: usize, B: Basis<f64>>() {
-    let lattice = Lattice::new(Vector::ZERO, 1.0);
-    let bodies = [body::<D>()];
+fn particles_of_a_cell_side_by_side_give_the_sums<const D: usize, B: Basis<f64>>(boxes: Boxes) {
+    let lattice = Lattice { whole_cells: boxes == Boxes::WholeCells, ..Lattice::new(Vector::ZERO, 1.0) };
+    let bodies = [body::<D>(boxes)];
     let mut active = ActiveBlocks::<D>::default();
     active.update((1, |_| 300, B::WIDTH as i32 - 1), None, |_, particle| {
-        let (position, half) = bodies[0].particles.place(particle);
+        let (position, half_sides) = bodies[0].particles.place(particle);
+        let half = lattice.half_sides(half_sides);
         std::array::from_fn(|i| Number::max(B::reach(position[i], half[i]), -9.0).floor() as i32)
     });
     let wall = |axis, node, inward| Wall { axis, node, inward, face: Face::Symmetry };
@@ -166,10 +178,12 @@ fn particles_of_a_cell_side_by_side_give_the_sums<const D: usize, B: Basis<f64>>
 
 #[test]
 fn sums_are_those_of_the_equations() {
-    particles_of_a_cell_side_by_side_give_the_sums::<2, Linear>();
-    particles_of_a_cell_side_by_side_give_the_sums::<2, Gimp>();
-    particles_of_a_cell_side_by_side_give_the_sums::<3, Linear>();
-    particles_of_a_cell_side_by_side_give_the_sums::<3, Gimp>();
+    particles_of_a_cell_side_by_side_give_the_sums::<2, Linear>(Boxes::Own);
+    particles_of_a_cell_side_by_side_give_the_sums::<3, Linear>(Boxes::Own);
+    for boxes in [Boxes::Own, Boxes::Stretched, Boxes::WholeCells] {
+        particles_of_a_cell_side_by_side_give_the_sums::<2, Gimp>(boxes);
+        particles_of_a_cell_side_by_side_give_the_sums::<3, Gimp>(boxes);
+    }
 }
 
 #[test]
