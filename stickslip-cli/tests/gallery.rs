@@ -26,6 +26,10 @@ fn a_scene_is_run_drawn_and_checked() {
     assert_eq!(&fs::read(file("wheel/picture.png")).unwrap()[1..4], b"PNG");
     assert_eq!(&fs::read(file("wheel/animation.gif")).unwrap()[..4], b"GIF8");
 
+    // Pictures of bodies in space need the scene's file for their surfaces.
+    let record = fs::read_to_string(file("wheel/run.json")).unwrap();
+    assert!(record.contains("scenes/wheel.toml"), "where the scene came from");
+
     // A scene that fails does not hide those after it.
     fs::create_dir(file("penetration")).unwrap();
     fs::write(file("penetration/thesis.tex"), "years of work").unwrap();

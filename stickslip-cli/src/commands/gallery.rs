@@ -8,7 +8,7 @@ use clap::{Args, Subcommand};
 use miette::{IntoDiagnostic, miette};
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
-use stickslip::observe::Results;
+use stickslip::observe::{Results, SceneSource};
 
 /// List, show, run and check the scenes of the gallery.
 #[derive(Debug, Args)]
@@ -129,7 +129,8 @@ impl Where {
         })?;
         let path = std::path::absolute(path).into_diagnostic().map_err(Failure::Run)?;
         let loaded = super::load(&path, &[]).map_err(Failure::input)?;
-        Ok(Job { name: scene.name.to_owned(), loaded })
+        let source = Some(SceneSource { path, set: Vec::new(), until: None });
+        Ok(Job { name: scene.name.to_owned(), loaded, source })
     }
 }
 

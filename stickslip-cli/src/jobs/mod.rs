@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use stickslip::observe::{Manifest, Results, Status};
+use stickslip::observe::{Manifest, Results, SceneSource, Status};
 use stickslip::run::RunOptions;
 use stickslip::scene::{Loaded, Scene};
 
@@ -21,6 +21,8 @@ pub struct Job {
     pub name: String,
     /// The scene with its parameters.
     pub loaded: Loaded,
+    /// The file from which it came, for the record; none of a scene that the program makes.
+    pub source: Option<SceneSource>,
 }
 
 /// Where and how jobs are done.
@@ -95,7 +97,8 @@ impl JobRunner {
     fn run(&self, job: &Job, threads: usize, board: &Board) -> Result<Results, String> {
         let lane = board.start(&job.name);
         let folder = self.path(job);
-        let options = RunOptions { stop: Arc::clone(&self.stop), threads, ..RunOptions::new(&folder) };
+        let (stop, source) = (Arc::clone(&self.stop), job.source.clone());
+        let options = RunOptions { stop, threads, source, ..RunOptions::new(&folder) };
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         let outcome = pool.map_err(|error| error.to_string()).and_then(|pool| {
             pool.install(|| {
@@ -136,7 +139,7 @@ mod tests {
             short.iter().chain(overrides).map(|(key, value)| (key.to_string(), value.to_string()));
         let overrides: Vec<(String, String)> = overrides.collect();
         let loaded = stickslip::scene::parse("new.toml", SCENE, &overrides).unwrap();
-        Job { name: name.to_owned(), loaded }
+        Job { name: name.to_owned(), loaded, source: None }
     }
 
     fn jobs(folder: &Path) -> JobRunner {

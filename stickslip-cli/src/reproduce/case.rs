@@ -101,7 +101,7 @@ impl PaperCase {
     pub fn job(self) -> Result<Job, SceneError> {
         let file = format!("{}.toml", self.scene.name);
         let loaded = stickslip::scene::parse(&file, self.scene.text, &self.settings)?;
-        Ok(Job { name: self.name, loaded })
+        Ok(Job { name: self.name, loaded, source: None })
     }
 }
 
