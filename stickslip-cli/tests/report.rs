@@ -61,9 +61,21 @@ fn every_figure_of_the_paper_is_seen_in_a_browser() {
             "figure {number}: an image a rule, or a time and rule"
         );
     }
+    for number in 9..=11 {
+        let images = found["figures"][format!("experiment-of-figure-{number}")].as_array().map(Vec::len);
+        assert!(images >= Some(6), "the paper's frames, and the experiment's times: {images:?}");
+    }
     let text = found["text"].as_str().unwrap();
-    for word in ["traction", "surface", "2.097", "Poisson", "energy error", "time taken", "How this was made"]
-    {
+    for word in [
+        "The experiment",
+        "traction",
+        "surface",
+        "2.097",
+        "Poisson",
+        "energy error",
+        "time taken",
+        "How this was made",
+    ] {
         assert!(text.contains(word), "no word on {word}");
     }
     // The paper's frames of its simulation and of its experiment.

@@ -28,9 +28,10 @@ enum What {
         scene: &'static Exhibit,
     },
     /// Run scenes, draw the picture and the animation of each, and check their physics; exit code 3 if a check fails.
-    /// A scene that fails does not keep the others from it.
+    /// A scene that fails does not stop the others.
     Run(Run),
     /// Run all scenes and check their physics, without pictures; exit code 3 if a check fails.
+    /// A scene that fails does not stop the others.
     Check(Where),
 }
 

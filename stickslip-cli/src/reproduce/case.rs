@@ -24,27 +24,36 @@ pub struct PaperCase {
     settings: Vec<(String, String)>,
 }
 
-/// A scene of the paper, which the program carries with it.
+/// A scene of the paper or of its experiment, which the program carries with it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PaperScene {
     name: &'static str,
     text: &'static str,
 }
 
-/// The scene `scenes/paper/NAME.toml`.
+/// The scene `scenes/FOLDER/NAME.toml`.
 macro_rules! paper_scene {
-    ($name:literal) => {
-        PaperScene { name: $name, text: include_str!(concat!("../../../scenes/paper/", $name, ".toml")) }
+    ($folder:literal, $name:literal) => {
+        PaperScene {
+            name: $name,
+            text: include_str!(concat!("../../../scenes/", $folder, "/", $name, ".toml")),
+        }
     };
 }
 
 impl PaperScene {
-    pub const NO_SLIP: Self = paper_scene!("inclined_plane_no_slip");
-    pub const SLIP: Self = paper_scene!("inclined_plane_slip");
-    pub const BACKSPIN: Self = paper_scene!("backspin");
-    pub const COLLINEAR: Self = paper_scene!("disks_collinear");
-    pub const ZIGZAG: Self = paper_scene!("disks_zigzag");
-    pub const GLUED: Self = paper_scene!("disks_glued");
+    pub const NO_SLIP: Self = paper_scene!("paper", "inclined_plane_no_slip");
+    pub const SLIP: Self = paper_scene!("paper", "inclined_plane_slip");
+    pub const BACKSPIN: Self = paper_scene!("paper", "backspin");
+    pub const COLLINEAR: Self = paper_scene!("paper", "disks_collinear");
+    pub const ZIGZAG: Self = paper_scene!("paper", "disks_zigzag");
+    pub const GLUED: Self = paper_scene!("paper", "disks_glued");
+    pub const PLEXIGLAS_ROW: Self = paper_scene!("experiment", "plexiglas_row");
+    pub const PLEXIGLAS_SLIDING: Self = paper_scene!("experiment", "plexiglas_sliding");
+    pub const PLEXIGLAS_GLUED: Self = paper_scene!("experiment", "plexiglas_glued");
+    pub const PLEXIGLAS_STRIPS: Self = paper_scene!("experiment", "plexiglas_strips");
+    pub const PLEXIGLAS_FLATS: Self = paper_scene!("experiment", "plexiglas_flats");
+    pub const PLEXIGLAS_PLATE: Self = paper_scene!("experiment", "plexiglas_plate");
 }
 
 /// Which bodies count as touching.

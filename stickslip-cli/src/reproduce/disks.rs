@@ -16,7 +16,7 @@ pub struct Disks;
 pub struct DiskArrangement {
     pub figure: &'static str,
     scene: PaperScene,
-    title: &'static str,
+    pub title: &'static str,
     /// Its name in tables.
     pub short: &'static str,
     /// Of the paper's simulation.
@@ -103,6 +103,11 @@ impl Study for Disks {
 }
 
 impl DiskArrangement {
+    /// By which factor the times between the experiment's frames are longer than those of the paper's simulation.
+    pub fn measured_stretch(&self) -> f64 {
+        (self.measured[2] - self.measured[0]) / (self.simulated[2] - self.simulated[0])
+    }
+
     /// What is run of it.
     pub fn case(&self, rule: TouchRule, level: PaperResolution) -> PaperCase {
         let times = self.simulated.iter().chain(&self.measured);

@@ -11,6 +11,7 @@ mod case;
 mod chain;
 mod convergence;
 mod disks;
+mod experiment;
 mod frames;
 mod inclined_plane;
 mod momentum;
@@ -48,6 +49,7 @@ pub const STUDIES: &[&dyn Study] = &[
     &disks::Disks,
     &poisson::Poisson,
     &convergence::Convergence,
+    &experiment::Experiment,
 ];
 
 /// Runs studies and makes the report of them; whether all runs went well stands in [`Runs::failures`].

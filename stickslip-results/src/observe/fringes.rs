@@ -305,8 +305,13 @@ impl FringeWriter {
     }
 
     fn frame(&self, number: usize) -> PathBuf {
-        self.folder.join(&format!("{FRINGES}/{number:05}.png"))
+        self.folder.join(&format!("{FRINGES}/{}", frame_file(number)))
     }
+}
+
+/// Name of the file of a frame.
+pub(super) fn frame_file(number: usize) -> String {
+    format!("{number:05}.png")
 }
 
 impl Observer for FringesObserver {

@@ -6,7 +6,7 @@ use super::contacts::ContactRow;
 use super::energy::EnergyRow;
 use super::file::{ReadError, ReadProblem};
 use super::frames::{Frame, read_frames};
-use super::fringes::FringeRow;
+use super::fringes::{FringeRow, frame_file};
 use super::fronts::{FrontRow, FrontSpeedRow};
 use super::groups::{GroupContactRow, GroupRow};
 use super::joints::JointRow;
@@ -20,8 +20,8 @@ use super::removed::RemovedRow;
 use super::sections::SectionRow;
 use super::table::{TableRow, read_rows};
 use super::{
-    ARRIVALS, BODIES, CONTACTS, ENERGY, FRINGES_TABLE, FRONT_SPEEDS, FRONTS, GROUP_CONTACTS, GROUPS, JOINTS,
-    LOADS, PARTICLES, PROBES, REACTIONS, REMOVED, SECTIONS,
+    ARRIVALS, BODIES, CONTACTS, ENERGY, FRINGES, FRINGES_TABLE, FRONT_SPEEDS, FRONTS, GROUP_CONTACTS, GROUPS,
+    JOINTS, LOADS, PARTICLES, PROBES, REACTIONS, REMOVED, SECTIONS,
 };
 use crate::column::every;
 use crate::door::ParticleSnapshot;
@@ -181,6 +181,11 @@ impl Results {
     /// The file is damaged.
     pub fn fringes_table(&self) -> Result<Vec<FringeRow>, ReadError> {
         self.measured(FRINGES_TABLE)
+    }
+
+    /// Where the picture of a frame of the scene's camera is.
+    pub fn fringe_picture(&self, row: &FringeRow) -> PathBuf {
+        self.folder.join(FRINGES).join(frame_file(row.frame))
     }
 
     /// `probes.csv`: at each sample a row for each probe that has material around it; none if the scene has no probes.

@@ -40,7 +40,7 @@ const OPACITY: f64 = 0.85;
 /// The links of some bodies: from the centre of each to where it presses on another. Bodies that are not among
 /// `specimens`, such as walls, have no links of their own.
 pub fn links(particles: &ParticleSnapshot, pushes: &[Push], specimens: &[usize]) -> Vec<Link> {
-    let clouds = clouds(particles, REACH);
+    let clouds = clouds(particles, REACH, 0.0);
     let find = |body: usize| clouds.iter().find(|cloud| cloud.body == body);
     let mut links = Vec::new();
     for push in pushes.iter().filter(|push| push.force > 0.0) {

@@ -30,8 +30,9 @@ pub struct Cloud {
     points: Vec<CloudPoint>,
 }
 
-/// The bodies of a snapshot that have particles, in their order; `reach` is in distances between particles.
-pub fn clouds(particles: &ParticleSnapshot, reach: f64) -> Vec<Cloud> {
+/// The bodies of a snapshot that have particles, in their order; `reach` is in distances between particles, and at least
+/// `least` [m].
+pub fn clouds(particles: &ParticleSnapshot, reach: f64, least: f64) -> Vec<Cloud> {
     let mut clouds = Vec::new();
     let mut start = 0;
     for group in particles.body.chunk_by(|a, b| a == b) {
@@ -48,7 +49,7 @@ pub fn clouds(particles: &ParticleSnapshot, reach: f64) -> Vec<Cloud> {
         let moment =
             |axis: usize| range.clone().map(|i| particles.mass[i] * particles.position[i][axis]).sum::<f64>();
         let center = [moment(0) / mass, moment(1) / mass];
-        clouds.push(Cloud::sorted(group[0] as usize, points, (center, reach * spacing)));
+        clouds.push(Cloud::sorted(group[0] as usize, points, (center, (reach * spacing).max(least))));
     }
     clouds
 }

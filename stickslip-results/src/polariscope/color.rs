@@ -35,6 +35,12 @@ pub fn srgb_byte(linear: f64) -> u8 {
     (encoded * 255.0).round() as u8
 }
 
+/// The linear share of a colour, 0 to 1, that a byte of a picture stands for (IEC 61966-2-1).
+pub fn linear_of_srgb(byte: u8) -> f64 {
+    let encoded = f64::from(byte) / 255.0;
+    if encoded <= 0.040_45 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
+}
+
 /// [`srgb_byte`] without its power: where each byte begins, and the byte at the start of equal parts of 0 to 1.
 pub struct Screen {
     /// Byte `k + 1` begins at entry `k`.

@@ -29,6 +29,7 @@ mod window;
 
 pub use chains::{Link, Push, draw_links, links};
 pub use cloud::joined;
+pub use color::linear_of_srgb;
 pub use film::Film;
 pub use optics::{LinearRgb, Optics, Phase};
 pub use stress_map::{Ray, StressMap};
@@ -166,7 +167,7 @@ impl StressMap {
 
 /// The stress of every body that is in the window, on its pixels, in the order of the bodies.
 pub fn stress_maps(particles: &ParticleSnapshot, window: &ImageWindow) -> Vec<StressMap> {
-    cloud::clouds(particles, stress_map::REACH)
+    cloud::clouds(particles, stress_map::REACH, stress_map::LEAST_PIXELS / window.scale())
         .iter()
         .filter_map(|cloud| StressMap::new(cloud, window))
         .collect()
@@ -174,7 +175,7 @@ pub fn stress_maps(particles: &ParticleSnapshot, window: &ImageWindow) -> Vec<St
 
 /// Lower and upper corner of a rectangle around some bodies, with a little room [m]; `None` if they have no particles.
 pub fn bounds(particles: &ParticleSnapshot, specimens: &[usize]) -> Option<[[f64; 2]; 2]> {
-    let clouds = cloud::clouds(particles, stress_map::REACH);
+    let clouds = cloud::clouds(particles, stress_map::REACH, 0.0);
     let chosen = clouds.iter().filter(|cloud| specimens.contains(&cloud.body)).map(|cloud| cloud.bounds);
     let bounds = chosen.reduce(joined);
     bounds.map(|[low, high]| {

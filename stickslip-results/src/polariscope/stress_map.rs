@@ -46,6 +46,10 @@ pub struct StressMap {
 /// Reach of the kernel in distances between particles: a dozen of them, so that the steps of a lattice smooth out.
 pub const REACH: f64 = 2.0;
 
+/// Reach in pixels at least: the kernels of neighbouring pixels then leave no particle out, and the edge of a body is as
+/// sharp as the pixels.
+pub const LEAST_PIXELS: f64 = 1.5;
+
 /// Part of the points' mean square distance (in reaches) added to that of every fit: a single row of particles has no
 /// slope across itself.
 const RIDGE: f64 = 1e-3;

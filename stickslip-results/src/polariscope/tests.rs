@@ -136,6 +136,30 @@ fn coverage_finds_the_surface_and_the_area() {
     }
 }
 
+/// Pixels six particles wide: the body is where it is, and nothing beside it.
+#[test]
+fn a_small_picture_of_many_particles_has_all_its_light() {
+    let particles = lattice(0.01, in_disk, |_| [0.5 * FRINGE, 0.0, 0.0]);
+    let window = ImageWindow { low: [-1.2; 2], high: [1.2; 2], size: [40; 2] };
+    let bench = OpticalBench::new(&polariscope(Light::Grey), Stage { window, specimens: vec![0] });
+    let light = bench.light(&particles);
+    let background = BACKGROUND[0];
+    for (pixel, light) in light.iter().enumerate() {
+        let [x, y] = window.position(pixel % 40, pixel / 40);
+        // Beyond a pixel's diagonal and the reach.
+        let beside = x.hypot(y) - 1.0;
+        if beside > 0.12 {
+            assert_eq!(*light, background, "({x}, {y})");
+        } else if beside < -0.12 {
+            assert!((light[0] - 1.0).abs() < 1e-9, "half an order is bright: {light:?} at ({x}, {y})");
+        }
+        assert!(light.iter().all(|light| light.is_finite()), "({x}, {y})");
+    }
+    let [map] = &stress_maps(&particles, &window)[..] else { panic!("one body") };
+    let covered: f64 = map.rays.iter().map(|ray| ray.coverage).sum::<f64>() / window.scale().powi(2);
+    assert!((covered / PI - 1.0).abs() < 0.01, "{covered}");
+}
+
 #[test]
 fn uniform_stress_gives_uniform_light() {
     for (order, dark) in [(0.0, 0.0), (0.25, 0.5), (0.5, 1.0), (1.0, 0.0), (2.5, 1.0)] {
