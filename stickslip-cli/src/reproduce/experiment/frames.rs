@@ -11,6 +11,7 @@ use crate::page::{Cell, Column, EmbeddedImage, Figure, Section, Table};
 use crate::reproduce::case::PaperResolution;
 use crate::reproduce::drawn;
 use maud::{Markup, html};
+use std::collections::BTreeMap;
 
 /// Correlation from which on patterns are the same to the eye.
 pub const ALIKE: f64 = 0.8;
@@ -189,18 +190,22 @@ pub fn orders(answers: &Answers) -> Result<Table, Failure> {
     for (place, paper) in Place::KNOWN.into_iter().zip(Place::PAPER) {
         let arrangement = place.arrangement();
         let cases = [paper_case(paper, answers.level), as_known(place, cells(answers.level))];
+        let [paper, known] = [answers.orders(&cases[0])?, answers.orders(&cases[1])?];
+        let at = |orders: &BTreeMap<String, Vec<[f64; 2]>>, probe: String| {
+            orders.get(&probe).cloned().unwrap_or_default()
+        };
         let ends = [arrangement.simulated[2], arrangement.measured[2]];
         for disk in 1..=place.disks() {
             let mut row = vec![Cell::text(arrangement.short), Cell::count(disk)];
             for (probe, order) in [("centre", 0.25), ("contact", 1.0)] {
-                for case in &cases {
-                    let history = answers.order(case, &format!("{probe} {disk}"))?;
+                for orders in [&paper, &known] {
+                    let history = at(orders, format!("{probe} {disk}"));
                     let first = history.iter().find(|[_, there]| *there >= order);
                     row.push(first.map_or(Cell::text("not yet"), |[time, _]| Cell::number(*time, 2)));
                 }
             }
-            for (case, end) in cases.iter().zip(ends) {
-                let history = answers.order(case, &format!("centre {disk}"))?;
+            for (orders, end) in [&paper, &known].into_iter().zip(ends) {
+                let history = at(orders, format!("centre {disk}"));
                 let until = history.iter().filter(|[time, _]| *time <= end).map(|[_, order]| *order);
                 row.push(Cell::number(until.fold(f64::NAN, f64::max), 1));
             }
@@ -220,8 +225,9 @@ pub fn growth(answers: &Answers, place: Place) -> Result<Option<Figure>, Failure
     let cases = [(paper_case(paper, answers.level), true), (as_known(place, cells(answers.level)), false)];
     let mut curves = Vec::new();
     for (case, dashed) in &cases {
+        let mut orders = answers.orders(case)?;
         for disk in 1..=place.disks() {
-            let points = answers.order(case, &format!("centre {disk}"))?;
+            let points = orders.remove(&format!("centre {disk}")).unwrap_or_default();
             let label = if *dashed { String::new() } else { format!("disk {disk}") };
             curves.push(Curve { label, color: body_color(disk - 1), dashed: *dashed, points });
         }
