@@ -66,8 +66,8 @@ case "$1" in
 esac
 "#;
 
-/// Every command of a document runs, one after the other as a reader would type them,
-/// in a folder with the repository's scenes.
+/// Every command of a document runs, one after the other as a reader would type them, in a folder with the repository's
+/// scenes. Documents do not wait for each other.
 #[cfg(unix)]
 #[test]
 fn commands_run() {
@@ -76,25 +76,39 @@ fn commands_run() {
     tools.write("stickslip", SHORT);
     fs::set_permissions(tools.path("stickslip"), fs::Permissions::from_mode(0o755)).unwrap();
     let path = format!("{}:{}", tools.path("").display(), std::env::var("PATH").unwrap());
-    for (document, text) in documents() {
-        let workplace = Workplace::new();
-        std::os::unix::fs::symlink(repository().join("scenes"), workplace.path("scenes")).unwrap();
-        for block in fenced(&text, "sh") {
-            for line in block.lines() {
-                let command = line.replace("cargo run --release --bin stickslip -- ", "stickslip ");
-                if !command.starts_with("stickslip ") {
-                    continue;
+    let waiting = std::sync::Mutex::new(documents().into_iter());
+    let next = || waiting.lock().expect("no document fails while one is taken").next();
+    std::thread::scope(|scope| {
+        for _ in 0..std::thread::available_parallelism().map_or(1, usize::from) {
+            scope.spawn(|| {
+                while let Some((document, text)) = next() {
+                    commands_of(&document, &text, &path);
                 }
-                let output = std::process::Command::new("sh")
-                    .args(["-c", &command])
-                    .current_dir(workplace.path(""))
-                    .env("PATH", &path)
-                    .env("STICKSLIP", env!("CARGO_BIN_EXE_stickslip"))
-                    .output()
-                    .unwrap();
-                let said = String::from_utf8_lossy(&output.stderr);
-                assert!(output.status.success(), "{}: {line}\n{said}", document.display());
+            });
+        }
+    });
+}
+
+/// Runs the commands of a document, with `path` to find programs by.
+#[cfg(unix)]
+fn commands_of(document: &Path, text: &str, path: &str) {
+    let workplace = Workplace::new();
+    std::os::unix::fs::symlink(repository().join("scenes"), workplace.path("scenes")).unwrap();
+    for block in fenced(text, "sh") {
+        for line in block.lines() {
+            let command = line.replace("cargo run --release --bin stickslip -- ", "stickslip ");
+            if !command.starts_with("stickslip ") {
+                continue;
             }
+            let output = std::process::Command::new("sh")
+                .args(["-c", &command])
+                .current_dir(workplace.path(""))
+                .env("PATH", path)
+                .env("STICKSLIP", env!("CARGO_BIN_EXE_stickslip"))
+                .output()
+                .unwrap();
+            let said = String::from_utf8_lossy(&output.stderr);
+            assert!(output.status.success(), "{}: {line}\n{said}", document.display());
         }
     }
 }

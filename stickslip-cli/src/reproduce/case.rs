@@ -53,6 +53,7 @@ impl PaperScene {
     pub const PLEXIGLAS_GLUED: Self = paper_scene!("experiment", "plexiglas_glued");
     pub const PLEXIGLAS_STRIPS: Self = paper_scene!("experiment", "plexiglas_strips");
     pub const PLEXIGLAS_FLATS: Self = paper_scene!("experiment", "plexiglas_flats");
+    pub const PLEXIGLAS_SLIDING_FLATS: Self = paper_scene!("experiment", "plexiglas_sliding_flats");
     pub const PLEXIGLAS_PLATE: Self = paper_scene!("experiment", "plexiglas_plate");
 }
 

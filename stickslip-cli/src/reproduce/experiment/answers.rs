@@ -3,7 +3,7 @@
 use super::ingredients::{Basis, UNKNOWNS, as_known};
 use super::likeness::{Likeness, Sequence, Stretch};
 use super::place::Place;
-use super::{cells, paper_case, placed_cases};
+use super::{cells, cells_of_unknowns, paper_case, placed_cases};
 use crate::failure::Failure;
 use crate::reproduce::case::{PaperCase, PaperResolution, Runs};
 use crate::reproduce::chain::Chain;
@@ -68,17 +68,20 @@ impl<'a> Answers<'a> {
     }
 
     /// The lowest and the highest factor of an arrangement if what is not known lies anywhere in its range: of each
-    /// quantity the largest deviation on either side, of all quantities added in squares. With assumed ranges, or of
+    /// quantity the largest deviation on either side on the cells on which it is varied, of all quantities added in
+    /// squares. With assumed ranges, or of
     /// published ones alone; `None` if a run has no factor.
     pub fn band(&self, place: Place, assumed: bool) -> Option<[f64; 2]> {
         let factor = |case: &PaperCase| Some(self.of(case).stretch?.factor);
-        let known = factor(&as_known(place, cells(self.level)))?;
+        let coarse = cells_of_unknowns(self.level);
+        let [known, before] = [cells(self.level), coarse].map(|cells| factor(&as_known(place, cells)));
+        let (known, before) = (known?, before?);
         let mut largest: BTreeMap<&str, [f64; 2]> = BTreeMap::new();
         for unknown in &UNKNOWNS {
             let counts = unknown.basis == Basis::Published || (assumed && unknown.basis == Basis::Assumed);
             let same = |other: &&Place| other.arrangement_index() == place.arrangement_index();
             let Some(&there) = unknown.places.iter().find(same).filter(|_| counts) else { continue };
-            let off = factor(&unknown.case(there, cells(self.level)))? - known;
+            let off = factor(&unknown.case(there, coarse))? - before;
             let sides = largest.entry(unknown.quantity).or_default();
             let side = &mut sides[usize::from(off > 0.0)];
             *side = side.max(off.abs());

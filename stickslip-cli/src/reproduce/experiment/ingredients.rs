@@ -22,7 +22,7 @@ pub struct Unknown {
     /// What is not known; the ends of its range share it.
     pub quantity: &'static str,
     pub title: &'static str,
-    settings: &'static [(&'static str, &'static str)],
+    pub settings: &'static [(&'static str, &'static str)],
     pub basis: Basis,
     /// Where it matters, one place an arrangement.
     pub places: &'static [Place],
@@ -42,7 +42,7 @@ pub enum Basis {
 /// From the paper's simulation on. The first is that simulation in the experiment's scene, by a law that differs from
 /// its own by the square of the strain; its fringes are those of the other studies, s = 0.3 rho c_L V, and its camera
 /// next to no exposure.
-pub const INGREDIENTS: [Ingredient; 9] = [
+pub const INGREDIENTS: [Ingredient; 10] = [
     Ingredient {
         name: "paper",
         title: "the paper's simulation",
@@ -76,9 +76,16 @@ pub const INGREDIENTS: [Ingredient; 9] = [
         sharp: Some(2.097),
     },
     Ingredient { name: "plane-stress", title: "plane stress", settings: &[("dimension", None)], sharp: None },
+    // Of Plexiglas; the longitudinal waves are as fast as before.
+    Ingredient {
+        name: "poisson",
+        title: "Poisson's ratio 0.319 for 0.214",
+        settings: &[("bulk", Some("127.71 GPa")), ("shear", Some("52.72 GPa"))],
+        sharp: Some(2.41),
+    },
     Ingredient {
         name: "plexiglas",
-        title: "Plexiglas, elastic: Poisson's ratio 0.319 for 0.214",
+        title: "stiffness, density and size of Plexiglas disks, c = 2.72 km/s for the 2.67 km/s of a transit",
         settings: &[
             ("diameter", None),
             ("density", None),
@@ -114,9 +121,10 @@ pub const INGREDIENTS: [Ingredient; 9] = [
 const SIMULATED_FRINGES: &str = "wavelength / (2 * pi * 0.3 * pressure * thickness)";
 
 const ALL: &[Place] = &Place::KNOWN;
+const FLAT: &[Place] = &[Place::Flats, Place::SlidingFlats];
 
 /// What is not known, one end of its range after the other.
-pub const UNKNOWNS: [Unknown; 16] = [
+pub const UNKNOWNS: [Unknown; 25] = [
     Unknown {
         name: "friction-low",
         quantity: "friction of the disks",
@@ -131,6 +139,22 @@ pub const UNKNOWNS: [Unknown; 16] = [
         title: "friction 0.6",
         settings: &[("friction", "0.6")],
         basis: Basis::Published,
+        places: &[Place::Sliding],
+    },
+    Unknown {
+        name: "friction-falling",
+        quantity: "friction of the disks",
+        title: "friction that falls from 0.5 to 0.25 as disks slide at 1 m/s and faster",
+        settings: &[("kinetic_friction", "0.25"), ("decay_speed", "1 m/s")],
+        basis: Basis::Assumed,
+        places: &[Place::Sliding],
+    },
+    Unknown {
+        name: "friction-least",
+        quantity: "friction of the disks",
+        title: "friction 0.2, as at speed it may be",
+        settings: &[("friction", "0.2")],
+        basis: Basis::Assumed,
         places: &[Place::Sliding],
     },
     Unknown {
@@ -154,6 +178,30 @@ pub const UNKNOWNS: [Unknown; 16] = [
         quantity: "clearance",
         title: "50 µm of clearance",
         settings: &[("clearance", "50 um")],
+        basis: Basis::Assumed,
+        places: ALL,
+    },
+    Unknown {
+        name: "gaps",
+        quantity: "gaps between disks",
+        title: "25 µm between disks",
+        settings: &[("gap", "25 um")],
+        basis: Basis::Assumed,
+        places: &[Place::Row, Place::Sliding],
+    },
+    Unknown {
+        name: "rise",
+        quantity: "rise of the striker's speed",
+        title: "a striker that takes 10 µs to come to its speed",
+        settings: &[("rise", "10 us")],
+        basis: Basis::Assumed,
+        places: ALL,
+    },
+    Unknown {
+        name: "sharp",
+        quantity: "exposure",
+        title: "pictures that are not exposed for any time",
+        settings: &[("exposure", "transit / 1000")],
         basis: Basis::Assumed,
         places: ALL,
     },
@@ -186,6 +234,14 @@ pub const UNKNOWNS: [Unknown; 16] = [
         quantity: "stiffness",
         title: "as stiff as for ultrasound at all times",
         settings: &[("relaxing", "1e-9")],
+        basis: Basis::Published,
+        places: ALL,
+    },
+    Unknown {
+        name: "losses",
+        quantity: "stiffness",
+        title: "losses that fall as a power of the frequency to 0.012, as measured at 1.6 MHz, for 0.053",
+        settings: &[("losses", "0.24")],
         basis: Basis::Published,
         places: ALL,
     },
@@ -235,15 +291,39 @@ pub const UNKNOWNS: [Unknown; 16] = [
         title: "contacts 4 mm wide before the blow",
         settings: &[],
         basis: Basis::Hypothetical,
-        places: &[Place::Flats],
+        places: FLAT,
     },
     Unknown {
         name: "wide-contacts-ultrasound",
         quantity: "width of the contacts before the blow",
-        title: "contacts 4 mm wide before the blow, as stiff as for ultrasound",
+        title: "the same, as stiff as for ultrasound",
         settings: &[("relaxing", "1e-9")],
         basis: Basis::Hypothetical,
-        places: &[Place::Flats],
+        places: FLAT,
+    },
+    Unknown {
+        name: "wide-contacts-slipping",
+        quantity: "width of the contacts before the blow",
+        title: "the same, friction 0.2",
+        settings: &[("relaxing", "1e-9"), ("friction", "0.2")],
+        basis: Basis::Hypothetical,
+        places: &[Place::SlidingFlats],
+    },
+    Unknown {
+        name: "wide-contacts-losses",
+        quantity: "width of the contacts before the blow",
+        title: "contacts 4 mm wide before the blow, losses as measured at 1.6 MHz",
+        settings: &[("losses", "0.24")],
+        basis: Basis::Hypothetical,
+        places: FLAT,
+    },
+    Unknown {
+        name: "wide-glue-ultrasound",
+        quantity: "width of the glue",
+        title: "glue 6 mm wide, as stiff as for ultrasound",
+        settings: &[("glue", "6 mm"), ("relaxing", "1e-9")],
+        basis: Basis::Hypothetical,
+        places: &[Place::Strips],
     },
 ];
 

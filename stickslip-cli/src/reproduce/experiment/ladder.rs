@@ -1,10 +1,10 @@
 //! What the report says of the ingredients of the experiment, one after the other, and of what is not known.
 
 use super::answers::{Answer, Answers};
-use super::cells;
 use super::frames::{ALIKE, yes_or_no};
 use super::ingredients::{INGREDIENTS, Ingredient, UNKNOWNS, as_known};
 use super::place::Place;
+use super::{cells, cells_of_unknowns};
 use crate::failure::Failure;
 use crate::page::{Cell, Column, Table};
 use crate::reproduce::case::PaperCase;
@@ -90,22 +90,23 @@ fn crossings_in_a_transit(answers: &Answers, case: &PaperCase) -> Result<f64, Fa
 
 /// What is not known, and what it would change.
 pub fn unknowns(answers: &Answers) -> Table {
+    let coarse = cells_of_unknowns(answers.level);
     let mut columns = vec![Column::text("all as known but for"), Column::text("range")];
     columns.extend(factor_columns());
     let caption = format!(
-        "What is not known of the experiment: the factors with one thing at a time at an end of its range. In brackets where the mean correlation is below \
-         {ALIKE}."
+        "What is not known of the experiment: the factors with one thing at a time at an end of its range, on {coarse} cells across a disk. In brackets where \
+         the mean correlation is below {ALIKE}."
     );
     let mut table = Table::new(caption, columns);
     table = table.row(measured_factors("the experiment", 2));
     let mut row = vec![Cell::text("as known"), Cell::Empty];
-    row.extend(Place::KNOWN.map(|place| factor_cell(&answers.of(&as_known(place, cells(answers.level))))));
+    row.extend(Place::KNOWN.map(|place| factor_cell(&answers.of(&as_known(place, coarse)))));
     table = table.row(row);
     for unknown in &UNKNOWNS {
         let mut row = vec![Cell::text(unknown.title), Cell::text(unknown.basis.word())];
         for index in 0..Place::PAPER.len() {
             let place = unknown.places.iter().find(|place| place.arrangement_index() == index);
-            let answer = place.map(|&place| answers.of(&unknown.case(place, cells(answers.level))));
+            let answer = place.map(|&place| answers.of(&unknown.case(place, coarse)));
             row.push(answer.map_or(Cell::Empty, |answer| factor_cell(&answer)));
         }
         table = table.row(row);

@@ -69,11 +69,18 @@ fn placed_cases(level: PaperResolution) -> Vec<(Place, PaperCase)> {
     for number in 0..INGREDIENTS.len() {
         cases.extend(Place::PAPER.map(|place| (place, Ingredient::case(number, place, cells))));
     }
+    let coarse = cells_of_unknowns(level);
     for unknown in &UNKNOWNS {
-        cases.extend(unknown.places.iter().map(|&place| (place, unknown.case(place, cells))));
+        cases.extend(unknown.places.iter().map(|&place| (place, unknown.case(place, coarse))));
     }
+    cases.extend(Place::KNOWN.map(|place| (place, as_known(place, coarse))));
     cases.extend(Place::KNOWN.map(|place| (place, as_known(place, 2 * cells))));
     cases
+}
+
+/// Cells across a disk where what is not known is varied: what counts there are differences, and they are many.
+fn cells_of_unknowns(level: PaperResolution) -> usize {
+    cells(level).min(cells(PaperResolution::Quick))
 }
 
 /// The paper's simulation, whose fringes are the yardstick. It has the paper's 80 cells, since its contact is as wide

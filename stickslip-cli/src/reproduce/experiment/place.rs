@@ -16,9 +16,15 @@ pub enum Place {
     Strips,
     /// Four in a row that touch over flats.
     Flats,
+    /// Five in a zig-zag that slide on flats.
+    SlidingFlats,
 }
 
 impl Place {
+    /// All.
+    #[cfg(test)]
+    pub const ALL: [Place; 6] =
+        [Place::Row, Place::Sliding, Place::Glued, Place::Strips, Place::Flats, Place::SlidingFlats];
     /// The three of the paper's simulation.
     pub const PAPER: [Place; 3] = [Place::Row, Place::Sliding, Place::Glued];
     /// The three of the experiment as far as it is known.
@@ -31,6 +37,7 @@ impl Place {
             Place::Glued => PaperScene::PLEXIGLAS_GLUED,
             Place::Strips => PaperScene::PLEXIGLAS_STRIPS,
             Place::Flats => PaperScene::PLEXIGLAS_FLATS,
+            Place::SlidingFlats => PaperScene::PLEXIGLAS_SLIDING_FLATS,
         }
     }
 
@@ -38,7 +45,7 @@ impl Place {
     pub fn arrangement_index(self) -> usize {
         match self {
             Place::Row | Place::Flats => 0,
-            Place::Sliding => 1,
+            Place::Sliding | Place::SlidingFlats => 1,
             Place::Glued | Place::Strips => 2,
         }
     }
