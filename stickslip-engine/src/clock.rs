@@ -3,6 +3,7 @@
 use crate::body::{Body, Particle};
 use crate::lanes::Lanes;
 use crate::material::Recall;
+use crate::particles::ColumnStart;
 use crate::tensor::{Number, Real};
 use crate::threads::by_parts;
 use std::ops::Range;
@@ -41,22 +42,65 @@ pub fn signal<T: Real, const D: usize>(
     signal_speed([wave, velocity.dot(velocity)])
 }
 
-/// The fastest [`signal`] of all particles [m/s].
-pub fn fastest_signal<T: Real, const D: usize>(bodies: &[Body<T, D>]) -> f64 {
-    let of_body = |body: &Body<T, D>| {
-        let of_particle = |i: usize| {
+/// A particle that is faster than others.
+#[derive(Clone, Copy, Debug)]
+pub struct Fastest {
+    /// Its body.
+    pub body: usize,
+    /// Its place in memory there.
+    pub particle: usize,
+    /// How fast it is [m/s].
+    pub speed: f64,
+}
+
+impl Fastest {
+    /// The fastest of some, of equal ones the first.
+    fn of(some: impl Iterator<Item = Fastest>) -> Option<Fastest> {
+        some.fold(None, |fastest: Option<Fastest>, next| {
+            let faster = next.speed > fastest.map_or(-1.0, |fastest| fastest.speed);
+            if faster { Some(next) } else { fastest }
+        })
+    }
+
+    /// The fastest particle of a body by what `speed` says of each.
+    fn in_body(count: usize, body: usize, speed: impl Fn(usize) -> f64 + Sync) -> Option<Fastest> {
+        let of_particle = |particle: usize| Fastest { body, particle, speed: speed(particle) };
+        let of_part = |range: Range<usize>| Fastest::of(range.map(of_particle));
+        Fastest::of(by_parts(count, PARTICLES, of_part).into_iter().flatten())
+    }
+}
+
+/// The particle with the fastest [`signal`] of all; none where there are none.
+pub fn fastest_signal<T: Real, const D: usize>(bodies: &[Body<T, D>]) -> Option<Fastest> {
+    let of_body = |i: usize| {
+        let body = &bodies[i];
+        let of_particle = |p: usize| {
             // SAFETY: the particles are borrowed for reading.
-            let history = unsafe { body.particles.view().history_of(i) };
-            let mut particle = body.particles.get(i);
-            if let Some(natural) = body.particles.natural(i, body.expansion) {
+            let history = unsafe { body.particles.view().history_of(p) };
+            let mut particle = body.particles.get(p);
+            if let Some(natural) = body.particles.natural(p, body.expansion) {
                 particle.deformation = natural.elastic(&particle.deformation, T::ONE).0;
             }
             signal(body, &particle, &history).f64()
         };
-        let fastest = |range: Range<usize>| range.map(of_particle).fold(0.0, f64::max);
-        by_parts(body.particles.len(), PARTICLES, fastest).into_iter().fold(0.0, f64::max)
+        Fastest::in_body(body.particles.len(), i, of_particle)
     };
-    by_parts(bodies.len(), 1, |range| range.map(|i| of_body(&bodies[i])).fold(0.0, f64::max))
-        .into_iter()
-        .fold(0.0, f64::max)
+    let of_bodies = by_parts(bodies.len(), 1, |range| of_body(range.start));
+    Fastest::of(of_bodies.into_iter().flatten())
+}
+
+/// The particle of a body that moves fastest against a velocity [m/s].
+pub fn fastest_motion<T: Real, const D: usize>(
+    bodies: &[Body<T, D>],
+    body: usize,
+    against: [f64; 3],
+) -> Option<Fastest> {
+    let particles = &bodies[body].particles;
+    let velocity: [&[T]; D] = std::array::from_fn(|axis| particles.line(ColumnStart::<D>::VELOCITY + axis));
+    let square = |particle: usize| {
+        let along = |axis: usize| velocity[axis][particle].f64() - against[axis];
+        (0..D).map(|axis| along(axis) * along(axis)).sum()
+    };
+    let fastest = Fastest::in_body(particles.len(), body, square);
+    fastest.map(|fastest| Fastest { speed: fastest.speed.sqrt(), ..fastest })
 }

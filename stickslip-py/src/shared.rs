@@ -12,7 +12,7 @@ use stickslip::column::ColumnDescription;
 use stickslip::door::{
     BodyState, ColumnPlace, ColumnRef, ContactPatch, ContactSum, GridSnapshot, JointState, Ledger, LoadState,
     NoColumn, ParticleSnapshot, ParticleView, RelaxationState, RemovedParticles, RestoreError, SavedState,
-    Simulation, StepError, TracedParticle, View, WallState, WriteError,
+    Simulation, StepError, StepLimit, TracedParticle, View, WallState, WriteError,
 };
 use stickslip::rigid::Pose;
 use stickslip::scene::StartVelocities;
@@ -151,6 +151,10 @@ impl View for Handle {
         self.0.ask(|simulation| simulation.stable_step())
     }
 
+    fn step_limit(&self) -> Option<StepLimit> {
+        self.0.ask(|simulation| simulation.step_limit())
+    }
+
     fn bodies(&self) -> Vec<BodyState> {
         self.0.ask(|simulation| simulation.bodies())
     }
@@ -197,6 +201,10 @@ impl View for Handle {
 
     fn visit(&self, body: usize, look: &mut dyn FnMut(&ParticleView)) {
         self.0.lock().visit(body, look);
+    }
+
+    fn fastest(&self, body: usize, against: [f64; 3]) -> Option<ParticleView> {
+        self.0.ask(|simulation| simulation.fastest(body, against))
     }
 
     fn columns(&self, body: usize) -> Vec<ColumnDescription> {

@@ -45,6 +45,8 @@ struct Puppet {
     momentum: fn(f64) -> [f64; 3],
     /// The stable step at a time [s].
     stable: fn(f64) -> f64,
+    /// What makes it so short.
+    limit: Option<StepLimit>,
     /// Impulses of contact with a second body so far, and how many of them were reduced.
     pushes: [u64; 2],
     /// Bodies that all move so.
@@ -62,6 +64,7 @@ impl Puppet {
             energy: |_| [0.0, 0.0],
             momentum: |_| [0.0; 3],
             stable: |_| STEP,
+            limit: None,
             pushes: [0; 2],
             crowd: 1,
             time: 0.0,
@@ -100,6 +103,10 @@ impl View for Puppet {
 
     fn stable_step(&self) -> f64 {
         (self.stable)(self.time)
+    }
+
+    fn step_limit(&self) -> Option<StepLimit> {
+        self.limit
     }
 
     fn bodies(&self) -> Vec<BodyState> {
@@ -337,6 +344,15 @@ fn momentum_that_nothing_from_outside_gives_is_found() {
     let [warning] = &warnings[..] else { panic!("{warnings:?}") };
     assert_eq!((warning.kind.as_str(), &warning.body, notes.len()), ("momentum", &None, 1));
     assert!((warning.worst - 0.1).abs() < 1e-3 && warning.time > 0.1, "{warning:?}");
+    // Here it is the block that has more than it was given.
+    let faster: BodyMotion = |[x, y], t| ([x + t + 0.05 * t * t, y], [1.0 + 0.1 * t, 0.0], REST);
+    let momentum: fn(f64) -> [f64; 3] = |t| [400.0 + 40.0 * t, 0.0, 0.0];
+    let warnings = judge(SCENE, &mut Puppet { momentum, ..Puppet::new(faster) }).1;
+    let [warning] = &warnings[..] else { panic!("{warnings:?}") };
+    assert_eq!((warning.kind.as_str(), warning.body.as_deref()), ("momentum", Some("block")));
+    let place = warning.position.expect("it is somewhere");
+    assert!((place[0] - 1.05).abs() < 1e-9 && place[1].abs() < 1e-9, "{warning:?}");
+    assert!(warning.message.contains("; most of it is `block`'s, at (1.05, "), "{warning:?}");
     // Weight explains it, and a mirror takes what it likes across itself.
     let falling = SCENE.replace("space =", "gravity = [0, -9.81]\nspace =");
     let fall: fn(f64) -> [f64; 3] = |t| [400.0, -3924.0 * t, 0.0];
@@ -356,6 +372,18 @@ fn steps_that_shrink_without_end_are_found_though_time_hardly_goes_on() {
     assert_eq!((warning.kind.as_str(), warning.worst), ("small-step", 1e3));
     // Seen within 200 of its steps, though the next row is far.
     assert!(warning.time < 0.0112 && warning.count > 10, "{warning:?}");
+    // Named where it is known.
+    for (particle, who) in [(Some(17), "particle 17 of `block`"), (None, "the rigid body `block`")] {
+        let limit = Some(StepLimit { body: 0, particle, position: [0.25, -0.5, 0.0] });
+        let mut puppet = Puppet { stable, limit, ..Puppet::new(|x, _| (x, [0.0; 2], REST)) };
+        let (_, warnings) = judge(&shrinking, &mut puppet);
+        let [warning] = &warnings[..] else { panic!("{warnings:?}") };
+        assert_eq!((warning.body.as_deref(), warning.position), (Some("block"), Some([0.25, -0.5, 0.0])));
+        assert!(
+            warning.message.contains(who) && warning.message.contains("(0.25, -0.5, 0) m"),
+            "{warning:?}"
+        );
+    }
     let steady = Puppet { stable: |t| STEP * (1.0 - 0.9 * t), ..Puppet::new(|x, _| (x, [0.0; 2], REST)) };
     assert!(kinds(SCENE, steady).is_empty());
 }
@@ -487,7 +515,17 @@ fn linear_functions_are_named_where_stress_crosses_cells() {
     let linear = SCENE.replace("gimp", "linear");
     // 2 W / M V = 1e-5 with M = 33.3 kPa and V = 0.4 m^2
     let stressed = || Puppet { energy: |_| [0.0, 0.067], ..Puppet::new(flying) };
-    assert_eq!(kinds(&linear, stressed()), ["cell-crossing"]);
+    let warnings = judge(&linear, &mut stressed()).1;
+    let [warning] = &warnings[..] else { panic!("{warnings:?}") };
+    assert_eq!((warning.kind.as_str(), warning.body.as_deref()), ("cell-crossing", Some("block")));
+    assert!(warning.position.is_some(), "{warning:?}");
+    // Where it is strained most.
+    let pressed: BodyMotion = |[x, y], t| {
+        ([x + 0.2 * t, y], [0.2, 0.0], [[if x > 0.4 && y > 0.1 { 0.999 } else { 1.0 }, 0.0], [0.0, 1.0]])
+    };
+    let warnings = judge(&linear, &mut Puppet { energy: |_| [0.0, 0.067], ..Puppet::new(pressed) }).1;
+    let place = warnings.iter().find(|warning| warning.kind == "cell-crossing").and_then(|it| it.position);
+    assert!(place.is_some_and(|place| place[0] > 0.4 && place[1] > 0.1), "{warnings:?}");
     assert!(kinds(SCENE, stressed()).is_empty());
     assert!(kinds(&linear, Puppet::new(flying)).is_empty());
 }
@@ -499,6 +537,105 @@ fn a_part_that_moves_as_fast_as_waves_is_found() {
     assert_eq!(kinds(SCENE, Puppet::new(struck)), ["speed"]);
     let whole: BodyMotion = |[x, y], t| ([x + 40.0 * t, y], [40.0, 0.0], REST);
     assert!(kinds(SCENE, Puppet::new(whole)).is_empty());
+}
+
+/// Of 40,000 particles a few thousand have neighbours that are watched; speed is that of all.
+#[test]
+fn one_fast_particle_is_found_whichever_it_is() {
+    let text = r#"
+        space = { dimension = "plane-strain", cell = 0.01 }
+        time.end = 1e-7
+        health = { default = "ignore", speed = "warn" }
+        materials.gel = { density = 1000, neo_hookean = { bulk_modulus = 2e4, shear_modulus = 1e4 } }
+        [[bodies]]
+        name = "still"
+        material = "gel"
+        shape.box = { min = [2, 0], max = [2.1, 0.1] }
+        [[bodies]]
+        name = "block"
+        material = "gel"
+        shape.box = { min = [0, 0], max = [1, 1] }
+        [outputs]
+        particles = "never"
+    "#;
+    let scene = scene::parse("block.toml", text, &[]).expect("a scene").scene;
+    for number in [0, 7_919, 20_011, 31_337, 39_998] {
+        let mut simulation = stickslip::step::build(&scene).expect("no problem");
+        let column = simulation.column(1, "velocity").expect("all have one");
+        let place = column.numbers().iter().position(|&it| it == number).expect("there are so many");
+        let mut velocity = vec![0.0; 2 * column.len()];
+        // Waves: 5.8 m/s
+        velocity[2 * place] = -4.0;
+        drop(column);
+        simulation.write(1, "velocity", &velocity).expect("velocities can be written");
+        let limit = simulation.step_limit().expect("it is the fastest");
+        assert_eq!((limit.body, limit.particle), (1, Some(number)));
+        let warnings = judge(text, &mut *simulation).1;
+        let [warning] = &warnings[..] else { panic!("{number}: {warnings:?}") };
+        assert_eq!((warning.kind.as_str(), warning.body.as_deref()), ("speed", Some("block")));
+        let found = warning.position.expect("it is somewhere");
+        assert!((0..3).all(|k| (found[k] - limit.position[k]).abs() < 1e-6), "{number}: {found:?} {limit:?}");
+        assert!((warning.worst - 4.0 / (1e4_f64 / 300.0).sqrt()).abs() < 1e-2, "{warning:?}");
+    }
+}
+
+/// The fastest point of a free rigid body counts, by its flight and by its turning, and none of a prescribed one.
+#[test]
+fn free_rigid_bodies_that_run_away_are_found() {
+    // Waves in it: sqrt(33.3 kPa / 1000 kg/m^3) = 5.8 m/s
+    let kinds = |rigid: &str| -> Vec<(String, Option<String>)> {
+        let text = format!(
+            r#"
+            space = {{ dimension = "plane-strain", cell = 0.05 }}
+            time.end = 1e-3
+            materials.gel = {{ density = 1000, neo_hookean = {{ bulk_modulus = 2e4, shear_modulus = 1e4 }} }}
+            [[bodies]]
+            name = "ball"
+            material = "gel"
+            shape.ball = {{ center = [0, 0], radius = 0.2 }}
+            {rigid}
+            [outputs]
+            particles = "never"
+            "#
+        );
+        let scene = scene::parse("ball.toml", &text, &[]).expect("a scene").scene;
+        let warnings = judge(&text, &mut *stickslip::step::build(&scene).expect("no problem")).1;
+        warnings.into_iter().map(|warning| (warning.kind, warning.body)).collect()
+    };
+    let speed = [("speed".to_owned(), Some("ball".to_owned()))];
+    assert_eq!(kinds("rigid.free = {}\nvelocity = [4, 0]"), speed);
+    assert_eq!(kinds("rigid.free = {}\nspin = 20"), speed);
+    assert_eq!(kinds("rigid.free = {}\nvelocity = [2, 0]\nspin = 1"), []);
+    assert_eq!(kinds("rigid.velocity = [4, 0]"), []);
+}
+
+/// What makes steps short is a particle, a rigid body that turns, or the scene alone.
+#[test]
+fn who_makes_steps_short_is_known() {
+    let limit = |bodies: &str, time: &str| {
+        let text = format!(
+            r#"
+            space = {{ dimension = "plane-strain", cell = 0.05 }}
+            time = {{ end = 1{time} }}
+            materials.gel = {{ density = 1000, neo_hookean = {{ bulk_modulus = 2e4, shear_modulus = 1e4 }} }}
+            {bodies}
+            "#
+        );
+        let scene = scene::parse("bodies.toml", &text, &[]).expect("a scene").scene;
+        stickslip::step::build(&scene).expect("no problem").step_limit()
+    };
+    let ball = |name: &str, x: f64, rest: &str| {
+        format!(
+            "[[bodies]]\nname = \"{name}\"\nmaterial = \"gel\"\nshape.ball = {{ center = [{x}, 0], radius = 0.2 }}\n\
+             {rest}\n"
+        )
+    };
+    let both = ball("slow", 0.0, "") + &ball("fast", 1.0, "velocity = [3, 0]");
+    assert_eq!(limit(&both, "").map(|limit| (limit.body, limit.particle.is_some())), Some((1, true)));
+    assert_eq!(limit(&both, ", max_step = 1e-6"), None);
+    let turning = ball("slow", 0.0, "rigid.free = {}") + &ball("fast", 1.0, "rigid.free = {}\nspin = 1e6");
+    let limit = limit(&turning, "").expect("it turns");
+    assert_eq!((limit.body, limit.particle, limit.position), (1, None, [1.0, 0.0, 0.0]));
 }
 
 /// The share of impulses that were reduced counts, where there are enough of them to say something; and the scene's

@@ -30,6 +30,10 @@ pub trait View {
     fn particles(&self) -> usize;
     /// The step that [`Simulation::step`] would take now if nothing cut it short [s].
     fn stable_step(&self) -> f64;
+    /// What makes that step so short; `None` where only the scene does, or nobody knows. All particles are looked at.
+    fn step_limit(&self) -> Option<StepLimit> {
+        None
+    }
     /// Each body's mass, motion and energy now, in the order of the scene.
     fn bodies(&self) -> Vec<BodyState>;
     /// Where each body is that is rigid, in the order of the scene; of simulations that know none, nothing.
@@ -78,6 +82,18 @@ pub trait View {
                 stress: all.stress[i],
             });
         }
+    }
+    /// The particle of a body that moves fastest against a velocity [m/s]; none of a body without particles.
+    fn fastest(&self, body: usize, against: [f64; 3]) -> Option<ParticleView> {
+        let mut fastest: Option<(f64, ParticleView)> = None;
+        self.visit(body, &mut |particle| {
+            let along = |i: usize| particle.velocity[i] - against[i];
+            let square = (0..3).map(|i| along(i) * along(i)).sum();
+            if square > fastest.map_or(-1.0, |(most, _)| most) {
+                fastest = Some((square, *particle));
+            }
+        });
+        fastest.map(|(_, particle)| particle)
     }
     /// What each particle of a body has: the columns of [`crate::column::EVERY`], and what the body's law remembers.
     /// None where nobody knows.
@@ -456,6 +472,18 @@ pub struct ParticleView {
     pub velocity: [f64; 3],
     /// Cauchy stress xx, yy, zz, xy, yz, xz, tension positive [Pa].
     pub stress: [f64; 6],
+}
+
+/// What makes a stable step as short as it is: the particle whose wave and own speed are the fastest together, or the
+/// free rigid body that turns fastest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StepLimit {
+    /// Index of the body.
+    pub body: usize,
+    /// Number of the particle in its body, if it is one.
+    pub particle: Option<u32>,
+    /// Where it is [m].
+    pub position: [f64; 3],
 }
 
 /// A particle now, as [`Simulation::trace`] gives it, with what it did since the start.

@@ -33,6 +33,7 @@ mod gravity;
 mod heat;
 mod hold;
 mod leave;
+mod limit;
 mod loads;
 mod mechanism;
 #[cfg(test)]
@@ -62,7 +63,6 @@ pub(crate) use walls::WallSums;
 
 use crate::basis::Basis;
 use crate::boundary::Boundary;
-use crate::clock::fastest_signal;
 use crate::contact::ContactUse;
 use crate::door::{RestoreError, SavedState, Simulation, StepError, WriteError};
 use crate::lanes::Laned;
@@ -207,14 +207,6 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.account_loads(dt); //                                forces and works of supports and loads
         self.account_springs(dt); //                              and of springs
         Ok(())
-    }
-
-    /// Longest stable step now, courant h / max(c + |v_p|): the speed is the fastest *signal* ([`crate::clock`]) [s].
-    fn stable(&self) -> f64 {
-        let signal = self.state.signal.unwrap_or_else(|| fastest_signal(&self.state.bodies));
-        let step = self.settings.time.courant * self.settings.lattice.cell.f64() / signal;
-        let step = step.min(self.state.longest_rigid).min(self.longest_turn());
-        self.settings.time.max_step.map_or(step, |longest| step.min(longest))
     }
 }
 

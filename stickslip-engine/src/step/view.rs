@@ -6,13 +6,14 @@ use super::mechanism::JointSums;
 use super::relax::RelaxationProgress;
 use super::walls::WallSums;
 use crate::basis::Basis;
-use crate::body::{Body, Totals};
+use crate::body::{Body, Particle, Totals};
+use crate::clock::{Fastest, fastest_motion};
 use crate::column::{ColumnDescription, Kind};
 use crate::contact::Span;
 use crate::door::{
     BodyState, ColumnPlace, ColumnRef, ColumnSource, ContactPatch, ContactSum, GridSnapshot, JointState,
     Ledger, LoadState, NoColumn, ParticleSnapshot, ParticleView, RelaxationState, RemovedParticles,
-    SnapshotColumn, TracedParticle, View, WallState,
+    SnapshotColumn, StepLimit, TracedParticle, View, WallState,
 };
 use crate::grid::{node_at, nodes_per_block};
 use crate::lanes::Laned;
@@ -32,6 +33,17 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
 
 fn add(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     std::array::from_fn(|i| a[i] + b[i])
+}
+
+/// A particle as others see it.
+fn shown<T: Real, const D: usize>(particle: &Particle<T, D>) -> ParticleView {
+    ParticleView {
+        number: particle.number,
+        mass: particle.mass.f64(),
+        position: particle.position.space(),
+        velocity: particle.velocity.space(),
+        stress: particle.stress.0.map(Real::f64),
+    }
 }
 
 /// The particles of all bodies as a snapshot has them: by body, then by number.
@@ -118,6 +130,10 @@ impl<T: Laned, const D: usize, B: Basis<T>> View for Engine<T, D, B> {
 
     fn stable_step(&self) -> f64 {
         self.stable()
+    }
+
+    fn step_limit(&self) -> Option<StepLimit> {
+        self.limit()
     }
 
     fn bodies(&self) -> Vec<BodyState> {
@@ -284,15 +300,12 @@ impl<T: Laned, const D: usize, B: Basis<T>> View for Engine<T, D, B> {
     }
 
     fn visit(&self, body: usize, look: &mut dyn FnMut(&ParticleView)) {
-        for particle in self.state.bodies[body].particles.iter() {
-            look(&ParticleView {
-                number: particle.number,
-                mass: particle.mass.f64(),
-                position: particle.position.space(),
-                velocity: particle.velocity.space(),
-                stress: particle.stress.0.map(Real::f64),
-            });
-        }
+        self.state.bodies[body].particles.iter().for_each(|particle| look(&shown(&particle)));
+    }
+
+    fn fastest(&self, body: usize, against: [f64; 3]) -> Option<ParticleView> {
+        let Fastest { particle, .. } = fastest_motion(&self.state.bodies, body, against)?;
+        Some(shown(&self.state.bodies[body].particles.get(particle)))
     }
 
     fn columns(&self, body: usize) -> Vec<ColumnDescription> {

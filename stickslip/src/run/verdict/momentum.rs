@@ -1,6 +1,7 @@
 //! Momentum of all bodies that nothing from outside explains.
 
-use super::{Check, CheckInputs, Finding, asks_for_damping, norm};
+use super::{Check, CheckInputs, Finding, asks_for_damping, minus, norm, place};
+use crate::door::{BodyState, Ledger, View};
 use crate::observe::{Memory, OutputError};
 use crate::scene::{ContactLaw, Face, HealthCheck, Normal, Scene, Spring};
 use serde::{Deserialize, Serialize};
@@ -11,13 +12,20 @@ use serde::{Deserialize, Serialize};
 /// |p(t) - p(0) - J(t)| / max(|J|, sum over bodies of M v_rms),   J: gravity, loads, supports, joints to the ground or to
 ///                                                                prescribed bodies, contact with prescribed bodies
 /// ```
-/// along the axes along which no face of the domain acts.
+/// along the axes along which no face of the domain acts. Where the same of one body alone, with what other bodies gave
+/// it in J, is at least half of that, it is named.
 #[derive(Default)]
-pub(super) struct MomentumCheck {
+pub(super) struct MomentumCheck(MomentumBalance);
+
+/// What is known of momenta since the start.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub(super) struct MomentumBalance {
     account: Option<Account>,
+    /// Of each body that forces move; empty until the first look.
+    bodies: Vec<Account>,
 }
 
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 struct Account {
     /// p(0) - J(0) [kg m/s].
     start: [f64; 3],
@@ -26,8 +34,92 @@ struct Account {
     /// Time [s] and weight [N] at the last look.
     time: f64,
     force: [f64; 3],
-    /// Largest of what it is held against [kg m/s].
+    /// Largest of what it is held against, of all bodies together [kg m/s].
     scale: f64,
+}
+
+/// Bodies, and what moves them.
+pub(super) struct Moving<'a> {
+    pub scene: &'a Scene,
+    pub view: &'a dyn View,
+    pub ledger: &'a Ledger,
+    pub bodies: &'a [BodyState],
+}
+
+/// Momentum that is missing.
+pub(super) struct Missing {
+    /// How much [kg m/s].
+    momentum: f64,
+    /// The same over the most that there was [-].
+    pub share: f64,
+    /// The body that accounts for half of it or more.
+    body: Option<usize>,
+}
+
+/// Part of what is missing that a body accounts for, to be named.
+const MOST_OF_IT: f64 = 0.5;
+
+impl Account {
+    /// What is missing now, where `momentum` is that which gravity does not explain [kg m/s], and `force` the weight
+    /// [N].
+    fn missing(&mut self, momentum: [f64; 3], (time, force): (f64, [f64; 3])) -> [f64; 3] {
+        let elapsed = time - self.time;
+        for i in 0..3 {
+            self.weight[i] += elapsed * 0.5 * (force[i] + self.force[i]);
+        }
+        (self.time, self.force) = (time, force);
+        [0, 1, 2].map(|i| momentum[i] - self.weight[i] - self.start[i])
+    }
+}
+
+impl MomentumBalance {
+    /// What is missing now; none along axes along which something unknown may act.
+    pub(super) fn update(&mut self, now: &Moving) -> Option<Missing> {
+        let axes = free_axes(now.scene);
+        // Damping slows bodies down relative to the grid, as it should.
+        if asks_for_damping(now.scene) || axes == [false; 3] {
+            return None;
+        }
+        let along = |vector: [f64; 3]| [0, 1, 2].map(|i| if axes[i] { vector[i] } else { 0.0 });
+        let time = now.view.time();
+        let gravity = now.scene.gravity.constant().unwrap_or_default();
+        let moved: Vec<usize> = moved(now.scene).collect();
+        let given = impulses(now);
+        let outside = moved.iter().fold([0.0; 3], |sum, &i| add(sum, given[i]));
+
+        let mass: f64 = moved.iter().map(|&i| now.bodies[i].mass).sum();
+        let held = minus(add(now.ledger.momentum, now.ledger.removed_momentum), outside);
+        let weight = (time, gravity.map(|g| mass * g));
+        let (start, force) = (held, weight.1);
+        let account =
+            self.account.get_or_insert_with(|| Account { start, time, force, ..Account::default() });
+        let missing = along(account.missing(held, weight));
+        let speeds = moved.iter().map(|&i| &now.bodies[i]);
+        let size: f64 = speeds.map(|state| (2.0 * state.mass * state.kinetic).sqrt()).sum();
+        account.scale = account.scale.max(size).max(norm(along(add(outside, account.weight))));
+        let (momentum, scale) = (norm(missing), account.scale);
+
+        let removed = now.view.removed();
+        let begun = !self.bodies.is_empty();
+        self.bodies.resize_with(now.bodies.len(), Account::default);
+        let mut most = (MOST_OF_IT * momentum, None);
+        for i in moved {
+            let state = &now.bodies[i];
+            let gone = removed.get(i).map_or([0.0; 3], |removed| removed.momentum);
+            let held = minus(add(state.velocity.map(|v| state.mass * v), gone), given[i]);
+            let force = gravity.map(|g| state.mass * g);
+            if !begun {
+                self.bodies[i] = Account { start: held, time, force, ..Account::default() };
+            }
+            let own = along(self.bodies[i].missing(held, (time, force)));
+            // Along what is missing of all.
+            let part = (0..3).map(|k| own[k] * missing[k]).sum::<f64>() / momentum;
+            if part >= most.0 {
+                most = (part, Some(i));
+            }
+        }
+        Some(Missing { momentum, share: momentum / scale, body: most.1 })
+    }
 }
 
 impl Check for MomentumCheck {
@@ -41,51 +133,29 @@ impl Check for MomentumCheck {
     }
 
     fn look(&mut self, look: &CheckInputs) -> Vec<Finding> {
-        let axes = free_axes(look.scene);
-        // Damping slows bodies down relative to the grid, as it should.
-        if asks_for_damping(look.scene) || axes == [false; 3] {
-            return Vec::new();
-        }
-        let along = |vector: [f64; 3]| [0, 1, 2].map(|i| if axes[i] { vector[i] } else { 0.0 });
-        let (time, given) = (look.simulation.time(), outside(look));
-        let mass: f64 = moved(look.scene).map(|i| look.bodies[i].mass).sum();
-        let force = look.scene.gravity.constant().unwrap_or_default().map(|g| mass * g);
-        let held = |weight: [f64; 3]| {
-            let (momentum, gone) = (look.ledger.momentum, look.ledger.removed_momentum);
-            [0, 1, 2].map(|i| momentum[i] + gone[i] - given[i] - weight[i])
-        };
-        let account = self.account.get_or_insert_with(|| Account {
-            start: held([0.0; 3]),
-            weight: [0.0; 3],
-            time,
-            force,
-            scale: 0.0,
-        });
-        let elapsed = time - account.time;
-        let mean = [0, 1, 2].map(|i| 0.5 * (force[i] + account.force[i]));
-        account.weight.iter_mut().zip(mean).for_each(|(weight, mean)| *weight += elapsed * mean);
-        (account.time, account.force) = (time, force);
-        let now = held(account.weight);
-        let speeds = moved(look.scene).map(|i| &look.bodies[i]);
-        let size: f64 = speeds.map(|state| (2.0 * state.mass * state.kinetic).sqrt()).sum();
-        let impulse = norm(along([0, 1, 2].map(|i| given[i] + account.weight[i])));
-        account.scale = account.scale.max(size).max(impulse);
-        let missing = norm(along([0, 1, 2].map(|i| now[i] - account.start[i])));
-        let (share, bound) = (missing / account.scale, look.bound(self.kind()));
+        let CheckInputs { scene, simulation: view, ledger, bodies, .. } = *look;
+        let Some(missing) = self.0.update(&Moving { scene, view, ledger, bodies }) else { return Vec::new() };
+        let Missing { momentum, share, body } = missing;
+        let bound = look.bound(self.kind());
         if share.is_nan() || share <= bound {
             return Vec::new();
         }
+        let position = body.map(|body| bodies[body].position);
+        let most = body.zip(position).map_or_else(String::new, |(body, position)| {
+            format!("; most of it is `{}`'s, at {}", scene.bodies[body].name, place(position))
+        });
         let message = format!(
-            "the momentum of all bodies is off by {missing:.2e} kg m/s, {:.1} % of the most that there was, from what \
-             acts on them from outside, where {:.3} % is allowed",
+            "the momentum of all bodies is off by {momentum:.2e} kg m/s, {:.1} % of the most that there was, from what \
+             acts on them from outside, where {:.3} % is allowed{most}",
             100.0 * share,
             100.0 * bound
         );
-        vec![Finding { body: None, position: None, worst: share, message }]
+        vec![Finding { body, position, worst: share, message }]
     }
 
     fn remember(&mut self, memory: &mut Memory) -> Result<(), OutputError> {
-        memory.keep("account", &mut self.account)?;
+        memory.keep("account", &mut self.0.account)?;
+        memory.keep("bodies", &mut self.0.bodies)?;
         Ok(())
     }
 }
@@ -109,24 +179,35 @@ fn free_axes(scene: &Scene) -> [bool; 3] {
     })
 }
 
-/// Impulse from outside on all bodies that forces move since the start, but for gravity [N s].
-fn outside(look: &CheckInputs) -> [f64; 3] {
-    let mut sum = [0.0; 3];
-    let mut add = |impulse: [f64; 3], sign: f64| (0..3).for_each(|i| sum[i] += sign * impulse[i]);
-    let is_outside = |body: usize| look.scene.bodies[body].is_prescribed();
-    look.simulation.loads().iter().for_each(|load| add(load.impulse, 1.0));
-    for (joint, state) in look.scene.joints.iter().zip(look.simulation.joints()) {
-        if joint.to.is_none_or(is_outside) {
-            add(state.impulse, 1.0);
+/// Impulse on each body since the start, but for gravity [N s].
+fn impulses(now: &Moving) -> Vec<[f64; 3]> {
+    let (scene, view) = (now.scene, now.view);
+    let mut given = vec![[0.0; 3]; now.bodies.len()];
+    let mut give = |body: usize, impulse: [f64; 3]| given[body] = add(given[body], impulse);
+    for (load, state) in scene.loads.iter().zip(view.loads()) {
+        give(load.body, state.impulse);
+    }
+    let joints = view.joints();
+    for (joint, state) in scene.joints.iter().zip(&joints) {
+        give(joint.body, state.impulse);
+        if let Some(to) = joint.to {
+            give(to, state.impulse.map(|j| -j));
         }
     }
-    for contact in look.simulation.contact_sums() {
+    for (spring, state) in scene.springs.iter().zip(joints.iter().skip(scene.joints.len())) {
+        let [from, to] = [0, 1].map(|side| spring.ends[side].body);
+        give(from, state.impulse);
+        give(to, state.impulse.map(|j| -j));
+    }
+    for contact in view.contact_sums() {
         // The impulse of the first body on the second.
-        match contact.bodies.map(is_outside) {
-            [true, false] => add(contact.impulse, 1.0),
-            [false, true] => add(contact.impulse, -1.0),
-            _ => {}
-        }
+        let [first, second] = contact.bodies;
+        give(first, contact.impulse.map(|j| -j));
+        give(second, contact.impulse);
     }
-    sum
+    given
+}
+
+fn add(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    std::array::from_fn(|i| a[i] + b[i])
 }

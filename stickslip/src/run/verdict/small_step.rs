@@ -1,9 +1,11 @@
 //! Steps that shrink without end.
 
-use super::{Check, CheckInputs, Finding};
+use super::{Check, CheckInputs, Finding, place};
+use crate::door::StepLimit;
 use crate::scene::HealthCheck;
 
-/// Holds the step that is allowed against the first one: below the bound a run no longer comes forward.
+/// Holds the step that is allowed against the first one: below the bound a run no longer comes forward. Names who
+/// allows no longer ones.
 pub(super) struct SmallStepCheck;
 
 impl Check for SmallStepCheck {
@@ -22,10 +24,20 @@ impl Check for SmallStepCheck {
         if share.is_nan() || share >= bound {
             return Vec::new();
         }
-        let message = format!(
+        let shrunk = format!(
             "steps have shrunk to {step:.2e} s, {share:.1e} of the first one, where {bound} is allowed"
         );
         // The smallest share is the worst.
-        vec![Finding { body: None, position: None, worst: 1.0 / share, message }]
+        let worst = 1.0 / share;
+        let Some(StepLimit { body, particle, position }) = look.simulation.step_limit() else {
+            return vec![Finding { body: None, position: None, worst, message: shrunk }];
+        };
+        let name = &look.scene.bodies[body].name;
+        let who = match particle {
+            Some(number) => format!("particle {number} of `{name}`"),
+            None => format!("the rigid body `{name}`, which turns too fast"),
+        };
+        let message = format!("{shrunk}: {who}, at {}, allows no longer ones", place(position));
+        vec![Finding { body: Some(body), position: Some(position), worst, message }]
     }
 }

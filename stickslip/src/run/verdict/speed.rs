@@ -1,9 +1,11 @@
-//! Motion within a body that nears the speed of its waves.
+//! Motion that nears the speed of waves.
 
 use super::{Check, CheckInputs, Finding, minus, norm, place};
 use crate::scene::HealthCheck;
 
-/// Holds the speed of particles, relative to their body on the whole, against its waves.
+/// Holds the fastest particle of each body that deforms, relative to the body on the whole, against the body's waves;
+/// and the fastest point of each free rigid body, in the scene's frame, against those of its material, beyond which it
+/// would be far from rigid. Every particle is looked at.
 pub(super) struct SpeedCheck;
 
 impl Check for SpeedCheck {
@@ -12,32 +14,34 @@ impl Check for SpeedCheck {
     }
 
     fn advice(&self) -> &'static str {
-        "it strains by about as much at once: try slower motion, a stiffer material, a smaller time.courant"
+        "what moves so would strain by about as much at once: try slower motion, a stiffer material, a smaller time.courant"
     }
 
     fn look(&mut self, look: &CheckInputs) -> Vec<Finding> {
         let bound = look.bound(self.kind());
         let of_body = |body: usize| {
-            let whole = look.bodies[body].velocity;
-            let speed = |velocity| norm(minus(velocity, whole));
-            let by_speed = |a: &&_, b: &&_| f64::total_cmp(&speed(velocity(a)), &speed(velocity(b)));
-            let fastest = look.particles[body].iter().max_by(by_speed)?;
-            let share = speed(fastest.velocity) / look.wave_speed(body);
+            let rigid = look.scene.bodies[body].is_rigid();
+            let against = if rigid { [0.0; 3] } else { look.bodies[body].velocity };
+            let fastest = look.simulation.fastest(body, against)?;
+            let share = norm(minus(fastest.velocity, against)) / look.wave_speed(body);
             if share.is_nan() || share <= bound {
                 return None;
             }
-            let name = &look.scene.bodies[body].name;
-            let message = format!(
-                "a part of `{name}` moves against the rest by {share:.2} of its wave speed at {}, \
-                 where {bound} is allowed",
-                place(fastest.position)
-            );
+            let (name, place) = (&look.scene.bodies[body].name, place(fastest.position));
+            let message = if rigid {
+                format!(
+                    "the rigid body `{name}` moves by {share:.2} of the wave speed of its material at {place}, where \
+                     {bound} is allowed"
+                )
+            } else {
+                format!(
+                    "a part of `{name}` moves against the rest by {share:.2} of its wave speed at {place}, where \
+                     {bound} is allowed"
+                )
+            };
             Some(Finding { body: Some(body), position: Some(fastest.position), worst: share, message })
         };
-        look.free().filter_map(of_body).collect()
+        let moved = (0..look.bodies.len()).filter(|&body| !look.scene.bodies[body].is_prescribed());
+        moved.filter_map(of_body).collect()
     }
-}
-
-fn velocity(particle: &crate::door::TracedParticle) -> [f64; 3] {
-    particle.velocity
 }

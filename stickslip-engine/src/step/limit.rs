@@ -1,0 +1,45 @@
+//! How long the next step may be, and what makes it no longer.
+
+use super::Engine;
+use crate::basis::Basis;
+use crate::clock::{Fastest, fastest_signal};
+use crate::door::StepLimit;
+use crate::lanes::Laned;
+use crate::rigid::RigidMotion;
+use crate::tensor::Vector;
+
+impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
+    /// Longest stable step now, courant h / max(c + |v_p|): the speed is the fastest *signal* ([`crate::clock`]) [s].
+    pub(super) fn stable(&self) -> f64 {
+        let fastest = || fastest_signal(&self.state.bodies).map_or(0.0, |fastest| fastest.speed);
+        let signal = self.state.signal.unwrap_or_else(fastest);
+        self.step_of_signal(signal).min(self.longest_turn()).min(self.longest_whatever_moves())
+    }
+
+    /// What makes it so short; none where the scene alone does.
+    pub(super) fn limit(&self) -> Option<StepLimit> {
+        let (turn, longest) = (self.longest_turn(), self.longest_whatever_moves());
+        let shortest = |fastest: &Fastest| self.step_of_signal(fastest.speed) < turn.min(longest);
+        if let Some(Fastest { body, particle, .. }) = fastest_signal(&self.state.bodies).filter(shortest) {
+            let particle = self.state.bodies[body].particles.get(particle);
+            let (number, position) = (Some(particle.number), particle.position.space());
+            return Some(StepLimit { body, particle: number, position });
+        }
+        let motions = self.state.bodies.iter().map(|body| body.motion.as_ref()).enumerate();
+        let free =
+            motions.filter_map(|(body, motion)| Some((body, motion.filter(|it| it.as_free().is_some())?)));
+        let spin = |motion: &RigidMotion| Vector(motion.spin()).norm();
+        let (body, motion) = free.max_by(|(_, a), (_, b)| spin(a).total_cmp(&spin(b)))?;
+        (turn < longest).then_some(StepLimit { body, particle: None, position: motion.center })
+    }
+
+    /// The step in which a signal of this speed [m/s] crosses as much of a cell as is stable [s].
+    fn step_of_signal(&self, speed: f64) -> f64 {
+        self.settings.time.courant * self.settings.lattice.cell.f64() / speed
+    }
+
+    /// The longest step that the scene allows, whatever moves [s].
+    fn longest_whatever_moves(&self) -> f64 {
+        self.state.longest_rigid.min(self.settings.time.max_step.unwrap_or(f64::INFINITY))
+    }
+}
