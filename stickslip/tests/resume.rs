@@ -466,6 +466,7 @@ fn a_scene_begins_with_what_another_run_has_left() {
 #[test]
 fn a_finished_run_goes_on_to_a_later_end() {
     let mut scene = scene(PLANE);
+    assert_eq!(expected.remarks, found.remarks);
     let out = tempfile::tempdir().unwrap();
     scene.time.end = 0.1;
     let first = start(&scene, out.path()).unwrap();

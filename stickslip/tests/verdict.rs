@@ -334,6 +334,24 @@ fn steps_are_cut_where_energy_drifts() {
 }
 
 #[test]
+fn steps_are_cut_where_momentum_drifts() {
+    let cutting = SCENE.replace("[[bodies]]", "health = { momentum = \"cut-step\" }\n[[bodies]]");
+    let drifting = || Puppet {
+        momentum: |t| [400.0 + 40.0 * t, 0.0, 0.0],
+        ..Puppet::new(|[x, y], t| ([x + t, y], [1.0, 0.0], REST))
+    };
+    let (mut whole, mut cut) = (drifting(), drifting());
+    for (text, puppet) in [(SCENE, &mut whole), (&cutting[..], &mut cut)] {
+        let (notes, warnings) = judge(text, puppet);
+        assert_eq!((notes.len(), warnings.len(), warnings[0].kind.as_str()), (1, 1, "momentum"));
+    }
+    assert!(whole.steps == 1024 && cut.steps > 4 * whole.steps, "{} {}", whole.steps, cut.steps);
+    let sound = || Puppet::new(|[x, y], t| ([x + t, y], [1.0, 0.0], REST));
+    let mut sound = Puppet { momentum: |_| [400.0, 0.0, 0.0], ..sound() };
+    assert!(judge(&cutting, &mut sound).1.is_empty() && sound.steps == 1024, "{}", sound.steps);
+}
+
+#[test]
 fn momentum_that_nothing_from_outside_gives_is_found() {
     let pushed = |momentum| Puppet { momentum, ..Puppet::new(|[x, y], t| ([x + t, y], [1.0, 0.0], REST)) };
     let weight = DENSITY * 0.4 * 9.81;
@@ -636,6 +654,88 @@ fn who_makes_steps_short_is_known() {
     let turning = ball("slow", 0.0, "rigid.free = {}") + &ball("fast", 1.0, "rigid.free = {}\nspin = 1e6");
     let limit = limit(&turning, "").expect("it turns");
     assert_eq!((limit.body, limit.particle, limit.position), (1, None, [1.0, 0.0, 0.0]));
+}
+
+/// Two disks that touch by half a cell: the record has it, though nothing is doubted; the scene may doubt it.
+#[test]
+fn contact_that_the_grid_does_not_resolve_is_recorded() {
+    let text = |health: &str| {
+        format!(
+            r#"
+            space = {{ dimension = "plane-strain", cell = "2 cm" }}
+            time.end = "0.15 s"
+            {health}
+            materials.gel = {{ density = 1000, neo_hookean = {{ young_modulus = "1 MPa", poisson_ratio = 0.3 }} }}
+            [[bodies]]
+            name = "left"
+            material = "gel"
+            shape.ball = {{ center = [0, 0], radius = "10 cm" }}
+            velocity = ["5 cm/s", 0]
+            [[bodies]]
+            name = "right"
+            material = "gel"
+            shape.ball = {{ center = ["20.1 cm", 0], radius = "10 cm" }}
+            [outputs]
+            particles = "never"
+            tables = "1 ms"
+            "#
+        )
+    };
+    let run = |health: &str| {
+        let out = tempfile::tempdir().expect("a folder");
+        let scene = scene::parse("disks.toml", &text(health), &[]).expect("a scene").scene;
+        let simulation = &mut *stickslip::step::build(&scene).expect("no problem");
+        let options = RunOptions { threads: 1, ..RunOptions::new(out.path()) };
+        let mut notes = Vec::new();
+        let ended =
+            run::run(&scene, simulation, &options, &mut |progress| notes.extend(progress.notes.clone()));
+        let manifest = Manifest::read(out.path()).expect("a record");
+        let told = notes.iter().filter(|note| note.starts_with("contact not resolved: ")).count();
+        (ended, told, manifest)
+    };
+    let of =
+        |found: &[RunWarning]| found.iter().map(|it| (it.kind.clone(), it.count > 5)).collect::<Vec<_>>();
+    let contact = [("contact".to_owned(), true)];
+    for health in ["", "health.contact = \"record\""] {
+        let (ended, told, manifest) = run(health);
+        let summary = ended.expect("it goes through").to_string();
+        assert!(
+            told == 1 && !summary.contains("  warning  ") && summary.contains("  contact    not resolved")
+        );
+        assert_eq!(
+            (of(&manifest.warnings), &of(&manifest.remarks)[..]),
+            (Vec::new(), &contact[..]),
+            "{health}"
+        );
+        assert!(manifest.remarks[0].message.contains("left and right 0."), "{:?}", manifest.remarks);
+    }
+    let (ended, told, manifest) = run("health.contact = \"warn\"");
+    let summary = ended.expect("it goes through");
+    assert_eq!((told, &of(&manifest.warnings)[..], manifest.remarks.len()), (1, &contact[..], 0));
+    assert!(summary.to_string().contains("  warning    from t = "), "{summary}");
+    let (ended, told, manifest) = run("health.contact = \"ignore\"");
+    assert!(ended.is_ok() && told == 1 && manifest.warnings.is_empty() && manifest.remarks.is_empty());
+    let (ended, _, manifest) = run("health.contact = \"stop\"");
+    let Err(RunError::Unhealthy { warning, time }) = ended else { panic!("{ended:?}") };
+    assert_eq!((warning.kind.as_str(), warning.count, manifest.status), ("contact", 1, Status::Stopped));
+    assert!(time < 0.149 && manifest.error.is_some_and(|error| error.contains("by health.contact: ")));
+}
+
+/// Any check can be told to do no more than record.
+#[test]
+fn what_the_scene_only_records_is_no_warning() {
+    let out = tempfile::tempdir().expect("a folder");
+    let text = SCENE.replace("[[bodies]]", "health.energy = \"record\"\n[[bodies]]");
+    let scene = scene::parse("puppet.toml", &text, &[]).expect("a scene").scene;
+    let mut puppet = Puppet { energy: |t| [t * t, 1.0], ..Puppet::new(|x, _| (x, [0.0; 2], REST)) };
+    let options = RunOptions { threads: 1, ..RunOptions::new(out.path()) };
+    let mut notes = 0;
+    let mut progress = |progress: &run::Progress| notes += progress.notes.len();
+    let summary = run::run(&scene, &mut puppet, &options, &mut progress).expect("it goes through");
+    let manifest = Manifest::read(out.path()).expect("a record");
+    assert!(notes == 0 && summary.warnings.is_empty() && manifest.warnings.is_empty());
+    let [remark] = &manifest.remarks[..] else { panic!("{:?}", manifest.remarks) };
+    assert!(remark.kind == "energy" && remark.count > 2, "{remark:?}");
 }
 
 /// The share of impulses that were reduced counts, where there are enough of them to say something; and the scene's

@@ -42,6 +42,9 @@ pub struct Manifest {
     /// What is wrong with its results, in the order in which it was found.
     #[serde(default)]
     pub warnings: Vec<RunWarning>,
+    /// What checks found that the scene has only recorded, in the same order: no warnings.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub remarks: Vec<RunWarning>,
     /// How often the run was looked at for these.
     #[serde(default)]
     pub looks: u64,
@@ -190,6 +193,7 @@ impl Manifest {
             resumed: Vec::new(),
             state_sum: None,
             warnings: Vec::new(),
+            remarks: Vec::new(),
             looks: 0,
             tables: BTreeMap::new(),
             references: reference_curves(scene),

@@ -50,8 +50,10 @@ pub enum Response {
     Warn,
     /// It ends there, with all records and a checkpoint.
     Stop,
-    /// It says so, and takes shorter steps from there on; energy only.
+    /// It says so, and takes shorter steps from there on; energy and momentum only.
     CutStep,
+    /// It writes it into its record, and gives no warning.
+    Record,
     /// It gives no warning.
     Ignore,
 }
@@ -118,11 +120,16 @@ impl HealthCheck {
         }
     }
 
+    /// Whether shorter steps may help.
+    pub fn can_cut_step(self) -> bool {
+        matches!(self, Self::Energy | Self::Momentum)
+    }
+
     /// What it does if the scene says nothing. Contacts that are not resolved have a line of their own in each summary,
     /// and count as a warning only where the scene asks for it.
     pub fn usual_response(self) -> Response {
         match self {
-            Self::Contact => Response::Ignore,
+            Self::Contact => Response::Record,
             _ => Response::Warn,
         }
     }

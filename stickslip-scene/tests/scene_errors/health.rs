@@ -13,11 +13,11 @@ fn mistakes_in_health() {
         ),
         (
             "energy = \"halt\"",
-            "6:10: health.energy: found \"halt\"; allowed: \"warn\", \"stop\", \"cut-step\" or \"ignore\"",
+            "6:10: health.energy: found \"halt\"; allowed: \"warn\", \"stop\", \"cut-step\", \"record\" or \"ignore\"",
         ),
         (
             "energy = 0.1",
-            "6:10: health.energy: found 0.1; allowed: \"warn\", \"stop\", \"cut-step\" or \"ignore\", or a table with the keys then, bound",
+            "6:10: health.energy: found 0.1; allowed: \"warn\", \"stop\", \"cut-step\", \"record\" or \"ignore\", or a table with the keys then, bound",
         ),
         ("energy = { bound = 0 }", "6:20: health.energy.bound: found 0; allowed: a number above 0"),
         (
@@ -30,11 +30,11 @@ fn mistakes_in_health() {
         ),
         (
             "noise = \"cut-step\"",
-            "6:9: health.noise: found \"cut-step\"; allowed: \"cut-step\" for `energy` only; \"warn\", \"stop\" or \"ignore\"",
+            "6:9: health.noise: found \"cut-step\"; allowed: \"cut-step\" for `energy` and `momentum` only; \"warn\", \"stop\", \"record\" or \"ignore\"",
         ),
         (
             "default = \"cut-step\"",
-            "6:11: health.default: found \"cut-step\"; allowed: \"cut-step\" for `energy` only; \"warn\", \"stop\" or \"ignore\"",
+            "6:11: health.default: found \"cut-step\"; allowed: \"cut-step\" for `energy` and `momentum` only; \"warn\", \"stop\", \"record\" or \"ignore\"",
         ),
         ("retries = 21", "6:11: health.retries: found 21; allowed: a whole number from 0 to 20"),
         ("retries = 1.5", "6:11: health.retries: found 1.5; allowed: a whole number from 0 to 20"),
@@ -64,10 +64,15 @@ fn a_scene_says_what_each_check_does() {
     assert_eq!(said(HealthCheck::Contact), (Response::Ignore, f64::INFINITY));
     let plain = scene::parse("a.toml", MINIMAL, &set).expect("a scene").scene;
     assert_eq!(plain.health.response(HealthCheck::Speed), Response::Warn);
-    assert_eq!(plain.health.response(HealthCheck::Contact), Response::Ignore);
+    assert_eq!(plain.health.response(HealthCheck::Contact), Response::Record);
     let strict = MINIMAL.replacen("[time]", "[health]\ndefault = \"stop\"\nspeed = \"warn\"\n[time]", 1);
     let strict = scene::parse("a.toml", &strict, &[]).expect("a scene").scene.health;
     assert_eq!(strict.response(HealthCheck::Contact), Response::Stop);
     assert_eq!(strict.response(HealthCheck::Speed), Response::Warn);
     assert_eq!(plain.health_bound(HealthCheck::Energy), 0.3);
+    let cutting = "[health]\nenergy = \"cut-step\"\nmomentum = { then = \"cut-step\", bound = 0.1 }\n[time]";
+    let cutting =
+        scene::parse("a.toml", &MINIMAL.replacen("[time]", cutting, 1), &[]).expect("a scene").scene;
+    assert_eq!(cutting.health.response(HealthCheck::Momentum), Response::CutStep);
+    assert_eq!(cutting.health_bound(HealthCheck::Momentum), 0.1);
 }

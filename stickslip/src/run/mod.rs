@@ -251,7 +251,7 @@ fn drive(
     manifest.status = outcome.as_ref().map_or(Status::Failed, |(status, _)| *status);
     manifest.state_sum = outcome.as_ref().ok().and_then(|(_, sum)| sum.clone());
     manifest.relaxation = simulation.relaxation();
-    manifest.warnings = kept.verdict.warnings().to_vec();
+    [manifest.warnings, manifest.remarks] = kept.verdict.found(scene);
     // Whatever went wrong with files: if the folder is not where it was, that is why.
     let in_place = folder.is_in_place();
     let outcome = match (outcome, in_place) {

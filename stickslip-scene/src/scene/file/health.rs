@@ -11,10 +11,10 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use std::borrow::Cow;
 
 table! {
-    /// What a run watches while it goes on, and what it does where something is wrong: a check is "warn", "stop" or
-    /// "ignore", or a table of that and a bound, { then = "stop", bound = 0.05 }.
+    /// What a run watches while it goes on, and what it does where something is wrong: a check is "warn", "stop",
+    /// "record" or "ignore", or a table of that and a bound, { then = "stop", bound = 0.05 }.
     Health {
-        /// What holds for all that is not named here; by default "warn", of `contact` "ignore".
+        /// What holds for all that is not named here; by default "warn", of `contact` "record".
         default: Option<Word<Response>>,
         /// Energy that comes from nowhere or is lost; the bound is the drift of the total over the largest energy that
         /// moved, was stored or turned to heat, by default `time.energy_drift`.
@@ -42,7 +42,7 @@ table! {
         small_step: Option<Rule>,
         /// Steps that failed and were taken again, see `retries`.
         failed_step: Option<Rule>,
-        /// Contacts that the grid does not resolve, of which summaries tell in any case; by default "ignore".
+        /// Contacts that the grid does not resolve, of which summaries tell in any case; by default "record".
         contact: Option<Rule>,
         /// Impulses of contact that were reduced to the rule's `max_strain`; the bound is their share of all that two
         /// bodies gave each other, by default 0.5.
@@ -87,7 +87,12 @@ impl Choice for Response {
         (
             "cut-step",
             Response::CutStep,
-            "The run says so, and halves its steps for as long as it gets worse; for energy only.",
+            "The run says so, and halves its steps for as long as it gets worse; for energy and momentum only.",
+        ),
+        (
+            "record",
+            Response::Record,
+            "It stands in the record of the run with its count; there is no warning.",
         ),
         ("ignore", Response::Ignore, "There is no warning, and nothing is looked for."),
     ];
@@ -156,14 +161,16 @@ impl Rule {
     }
 }
 
-/// What to do; only energy cuts steps.
+/// What to do; shorter steps help few.
 fn allowed_for(
     (check, word): (Option<HealthCheck>, &Word<Response>),
     context: &Context,
 ) -> Result<Response, Fault> {
     let then = word.value(context)?;
-    if then == Response::CutStep && check != Some(HealthCheck::Energy) {
-        return Err(word.refused(context, "\"cut-step\" for `energy` only; \"warn\", \"stop\" or \"ignore\""));
+    if then == Response::CutStep && !check.is_some_and(HealthCheck::can_cut_step) {
+        let allowed =
+            "\"cut-step\" for `energy` and `momentum` only; \"warn\", \"stop\", \"record\" or \"ignore\"";
+        return Err(word.refused(context, allowed));
     }
     Ok(then)
 }

@@ -2,7 +2,7 @@
 
 use super::{Check, CheckInputs, Finding, STEPS};
 use crate::door::Ledger;
-use crate::scene::{HealthCheck, Response, Scene};
+use crate::scene::HealthCheck;
 use serde::{Deserialize, Serialize};
 
 /// The total of the ledger against its start, over the largest energy so far that moved, was stored, was set free by
@@ -60,40 +60,6 @@ impl WeighingTimes {
         self.count += 1;
         self.next = steps + STEPS + (SCATTER * (self.count as f64 * GOLDEN).fract()) as u64;
         true
-    }
-}
-
-/// Asks for shorter steps where energy drifts beyond the bound and further still. It looks at the weighings alone, which
-/// follow from the steps: no output changes a step.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub(super) struct StepCutting {
-    balance: EnergyBalance,
-    /// Largest relative drift for which steps were cut [-].
-    worst: f64,
-    asks: bool,
-}
-
-/// Steps are cut again where the drift has grown by this.
-const WORSE: f64 = 1.1;
-
-impl StepCutting {
-    /// That of a scene, if it wants any.
-    pub(super) fn of(scene: &Scene) -> Option<Self> {
-        (scene.health.response(HealthCheck::Energy) == Response::CutStep).then(Self::default)
-    }
-
-    /// Looks at the energies now.
-    pub(super) fn look(&mut self, now: &Ledger, bound: f64) {
-        self.balance.update(now);
-        let drift = self.balance.relative().abs();
-        if drift > bound && drift > WORSE * self.worst {
-            (self.worst, self.asks) = (drift, true);
-        }
-    }
-
-    /// Whether steps are to be shorter from now on; told once.
-    pub(super) fn asks_to_cut(&mut self) -> bool {
-        std::mem::take(&mut self.asks)
     }
 }
 

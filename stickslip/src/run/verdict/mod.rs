@@ -1,6 +1,7 @@
 //! During and after a run: what makes its results doubtful. One file a check, and the list of them.
 
 mod crossing;
+mod cutting;
 mod energy;
 mod leaving;
 mod max_strain;
@@ -19,7 +20,8 @@ use crate::door::{BodyState, Ledger, TracedParticle, View};
 use crate::observe::{Memory, OutputError, RunWarning};
 use crate::run::start::Remembered;
 use crate::scene::{Body, Damping, HealthCheck, Response, Scene};
-use energy::{EnergyBalance, StepCutting, WeighingTimes};
+use cutting::StepCuttings;
+use energy::{EnergyBalance, WeighingTimes};
 use neighbours::Neighbours;
 
 /// Every check of a run that the scene does not ignore.
@@ -141,12 +143,12 @@ pub(super) struct RunChecks {
     /// The stable step at the start [s].
     first_step: f64,
     looks: u64,
-    warnings: Vec<RunWarning>,
+    /// What was found, whatever the scene wants to be done about it.
+    found: Vec<RunWarning>,
     lines: usize,
     /// What ends the run.
     stop: Option<RunWarning>,
-    /// Where the scene asks for shorter steps as energy drifts.
-    cutting: Option<StepCutting>,
+    cuttings: StepCuttings,
 }
 
 /// Looks in a run, at most.
@@ -169,10 +171,10 @@ impl RunChecks {
             next_step: simulation.steps(),
             first_step: simulation.stable_step(),
             looks: 0,
-            warnings: Vec::new(),
+            found: Vec::new(),
             lines: 0,
             stop: None,
-            cutting: StepCutting::of(scene),
+            cuttings: StepCuttings::of(scene),
         }
     }
 
@@ -184,11 +186,9 @@ impl RunChecks {
         memory.keep("next_step", &mut self.next_step)?;
         memory.keep("first_step", &mut self.first_step)?;
         memory.keep("looks", &mut self.looks)?;
-        memory.keep("warnings", &mut self.warnings)?;
+        memory.keep("warnings", &mut self.found)?;
         memory.keep("lines", &mut self.lines)?;
-        if let Some(cutting) = &mut self.cutting {
-            memory.keep("cutting", cutting)?;
-        }
+        self.cuttings.remember(memory)?;
         for (body, neighbours) in self.neighbours.iter_mut().enumerate() {
             memory.part(&format!("neighbours {body}"), |memory| neighbours.remember(memory))?;
         }
@@ -223,11 +223,8 @@ impl RunChecks {
         (step, part): (f64, f64),
     ) -> Vec<String> {
         if self.weighing.come(simulation.steps()) {
-            let ledger = simulation.ledger();
-            self.balance.weigh(&ledger);
-            if let Some(cutting) = &mut self.cutting {
-                cutting.look(&ledger, scene.health_bound(HealthCheck::Energy));
-            }
+            self.balance.weigh(&simulation.ledger());
+            self.cuttings.look(scene, simulation);
         }
         // Where steps are that small simulated time hardly goes on, and the next look by it is far.
         let bound = scene.health_bound(HealthCheck::SmallStep) * self.first_step;
@@ -304,9 +301,9 @@ impl RunChecks {
         Finding { body, position, worst, message }: Finding,
     ) -> Option<String> {
         let body = body.map(|body| scene.bodies[body].name.clone());
-        let known = self.warnings.iter().position(|w| w.kind == check.word() && w.body == body);
+        let known = self.found.iter().position(|w| w.kind == check.word() && w.body == body);
         let place = known.unwrap_or_else(|| {
-            self.warnings.push(RunWarning {
+            self.found.push(RunWarning {
                 kind: check.word().to_owned(),
                 message: message.clone(),
                 advice: advice.to_owned(),
@@ -316,9 +313,9 @@ impl RunChecks {
                 count: 0,
                 worst,
             });
-            self.warnings.len() - 1
+            self.found.len() - 1
         });
-        let warning = &mut self.warnings[place];
+        let warning = &mut self.found[place];
         warning.count += 1;
         if worst.abs() > warning.worst.abs() {
             (warning.message, warning.position, warning.worst) = (message, position, worst);
@@ -327,7 +324,8 @@ impl RunChecks {
             self.stop = Some(warning.clone());
             return None;
         }
-        known.is_none().then(|| line(warning))
+        let told = known.is_none() && scene.health.response(check) != Response::Record;
+        told.then(|| line(warning))
     }
 
     /// Records what the run itself found, and says what there is to say.
@@ -361,7 +359,7 @@ impl RunChecks {
 
     /// Whether steps are to be shorter from now on; told once.
     pub(super) fn asks_to_cut(&mut self) -> bool {
-        self.cutting.as_mut().is_some_and(StepCutting::asks_to_cut)
+        self.cuttings.ask()
     }
 
     /// How often the run was looked at.
@@ -374,9 +372,14 @@ impl RunChecks {
         self.balance.scale
     }
 
-    /// What was wrong, in the order in which it was found.
-    pub(super) fn warnings(&self) -> &[RunWarning] {
-        &self.warnings
+    /// What was wrong, in the order in which it was found: warnings, and what the scene wants to be recorded only.
+    pub(super) fn found(&self, scene: &Scene) -> [Vec<RunWarning>; 2] {
+        let recorded = |warning: &RunWarning| {
+            let check = HealthCheck::ALL.into_iter().find(|check| check.word() == warning.kind);
+            check.is_some_and(|check| scene.health.response(check) == Response::Record)
+        };
+        let (remarks, warnings) = self.found.iter().cloned().partition(recorded);
+        [warnings, remarks]
     }
 }
 
