@@ -355,6 +355,52 @@ def test_ctrl_c_ends_a_run_between_two_steps(with_results, tmp_path):
         assert ss.resume(tmp_path / "results", until=end).performance.time == end
 
 
+ENDED = """
+import signal, sys, stickslip as ss
+number = getattr(signal, sys.argv[1])
+# A process begins with signals ignored as its parent has them.
+signal.signal(number, signal.SIG_DFL if sys.argv[2] == "default" else lambda *_: print("mine", flush=True))
+sys.path.insert(0, {tests!r})
+from conftest import flying
+flying("3d").time(end=1e-3).run(out="before")
+assert sys.argv[2] != "default" or signal.getsignal(number) is signal.SIG_DFL
+scene = flying("3d").time(end=1e3)
+scene.outputs(tables=1e-2, particles=10.0)
+scene.simulation().run(out="results", every=1e9, callback=lambda sim: print("begun", flush=True))
+print("went on", flush=True)
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows sends no signals")
+@pytest.mark.parametrize("handler", ["default", "own"])
+@pytest.mark.parametrize("name", ["SIGTERM", "SIGHUP"])
+def test_a_process_that_is_asked_to_end_leaves_whole_results(name, handler, tmp_path):
+    from pathlib import Path
+
+    number = getattr(signal, name)
+    script = ENDED.format(tests=str(Path(__file__).parent))
+    arguments = [sys.executable, "-c", script, name, handler]
+    process = subprocess.Popen(arguments, cwd=tmp_path, stdout=subprocess.PIPE, text=True)
+    try:
+        assert process.stdout.readline() == "begun\n"
+        time.sleep(0.3)
+        process.send_signal(number)
+        if handler == "own":
+            assert process.stdout.readline() == "mine\n"
+            time.sleep(0.2)
+            assert process.poll() is None and ss.Results(tmp_path / "results").status == "running"
+            return
+        said, _ = process.communicate(timeout=60)
+    finally:
+        # One that does not end by itself would run for hours.
+        process.kill()
+        process.wait()
+        process.stdout.close()
+    assert (process.returncode, said) == (-number, "")
+    results = ss.Results(tmp_path / "results")
+    assert results.status == "interrupted" and results.bodies["time"][-1] == results.record.performance.time > 0
+
+
 def test_many_bodies_are_asked_for_by_patterns():
     scene = flying("plane-strain")
     scene.body("disk {i}", repeat=dict(i=3), material="rubber", shape=ss.disk(("5 + i * 2", 5), 0.5))

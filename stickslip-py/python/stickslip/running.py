@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable, Mapping
+import signal
+import threading
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -75,7 +78,7 @@ def carry_out(
         "checkpoint_every": checkpoint_every,
         "max_time": max_time,
     }
-    with shown(progress) as show:
+    with _records_first(), shown(progress) as show:
         way = way_to(simulation.end if until is None else until, every, callback, show)
         said, values = _core.run(simulation.engine, way, request)
     return Summary(folder, said, Record.from_json(values))
@@ -119,9 +122,44 @@ def resume(
         "checkpoint_every": checkpoint_every,
         "max_time": max_time,
     }
-    with shown(progress) as show:
+    with _records_first(), shown(progress) as show:
         said, values = _core.run(read.simulation(threads), way_to(read.end, None, None, show), request)
     return Summary(folder, said, Record.from_json(values))
+
+
+class _Ended(BaseException):
+    """A signal came that ends the process."""
+
+
+@contextmanager
+def _records_first() -> Iterator[None]:
+    """Lets SIGTERM and SIGHUP end a run as Ctrl-C does, and then the process.
+
+    Those that the process ignores, or has functions of its own for, do what they did. As with Ctrl-C, only runs of the
+    main thread see any.
+    """
+
+    def end(number: int, _: Any) -> None:
+        raise _Ended(number)
+
+    seen = threading.current_thread() is threading.main_thread()
+    signals = [getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if seen and hasattr(signal, name)]
+    deadly = [number for number in signals if signal.getsignal(number) is signal.SIG_DFL]
+    for number in deadly:
+        signal.signal(number, end)
+    came = None
+    try:
+        yield
+    except _Ended as ended:
+        came = ended.args[0]
+        if came not in deadly:
+            # Of a run in whose callback this one is.
+            raise
+    finally:
+        for number in deadly:
+            signal.signal(number, signal.SIG_DFL)
+    if came is not None:
+        signal.raise_signal(came)
 
 
 def _record(folder: Path) -> dict[str, Any]:
