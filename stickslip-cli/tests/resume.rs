@@ -289,6 +289,19 @@ fn a_run_that_is_made_again_ends_in_the_same_bits_or_says_that_it_does_not() {
 }
 
 #[test]
+fn a_run_without_checkpoints_says_in_which_bits_it_ended() {
+    let workplace = Workplace::new();
+    workplace.write("scene.toml", &new_scene());
+    let run = ["run", "scene.toml", "--set", COARSE, "--set", "time.end=0.02"];
+    workplace.succeed(&[&run[..], &["--out", "with"]].concat());
+    workplace.succeed(&[&run[..], &["--out", "without", "--checkpoint-every", "never"]].concat());
+    assert!(has_checkpoint(&workplace.path("with")) && !has_checkpoint(&workplace.path("without")));
+    let [with, without] = ["with", "without"].map(|out| record(&workplace.path(out))["state_sum"].clone());
+    assert!(with.is_string() && with == without, "{with} {without}");
+    assert!(workplace.succeed(&["run", "--again", "without"]).contains("the same bits as without"));
+}
+
+#[test]
 fn a_finished_run_goes_on_to_a_later_end() {
     let workplace = Workplace::new();
     workplace.write("scene.toml", &new_scene());

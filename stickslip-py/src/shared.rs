@@ -11,8 +11,8 @@ use std::sync::{Arc, Mutex, MutexGuard};
 use stickslip::column::ColumnDescription;
 use stickslip::door::{
     BodyState, ColumnPlace, ColumnRef, ContactPatch, ContactSum, GridSnapshot, JointState, Ledger, LoadState,
-    NoColumn, ParticleSnapshot, ParticleView, RelaxationState, RemovedParticles, RestoreError, SavedState,
-    Simulation, StepError, StepLimit, TracedParticle, View, WallState, WriteError,
+    NoColumn, ParticleSnapshot, ParticleView, RelaxationState, RemovedParticles, RestoreError, SavedColumn,
+    SavedState, Simulation, StepError, StepLimit, TracedParticle, View, WallState, WriteError,
 };
 use stickslip::rigid::Pose;
 use stickslip::scene::StartVelocities;
@@ -122,6 +122,10 @@ impl Simulation for Handle {
 
     fn save(&self) -> Option<SavedState> {
         self.0.ask(|simulation| simulation.save())
+    }
+
+    fn save_columns(&self, body: usize, take: &mut dyn FnMut(&[u32], SavedColumn)) -> bool {
+        self.0.lock().save_columns(body, take)
     }
 
     /// The bodies have begun where the scene asks for it when the simulation was made; what was changed since stays.

@@ -179,8 +179,7 @@ impl Repeated {
         let lacks = |what: &str| Failure::Input(miette!("{} does not say {what}", results.display()));
         let source = manifest.source.clone().ok_or_else(|| lacks("which scene file it came from"))?;
         let sum = manifest.state_sum.clone();
-        let sum =
-            sum.ok_or_else(|| lacks("in which bits it ended: it did not end, or made no checkpoints"))?;
+        let sum = sum.ok_or_else(|| lacks("in which bits it ended: it failed, or was killed"))?;
         Ok(Repeated { results: results.to_path_buf(), source, manifest, sum })
     }
 

@@ -155,6 +155,11 @@ pub trait Simulation: View + Send {
     fn save(&self) -> Option<SavedState> {
         None
     }
+    /// The columns of a body in [`Simulation::save`], one after the other, so that no more than one is copied at a time,
+    /// and the numbers of its particles in the order of memory. False of a simulation that has no state as data.
+    fn save_columns(&self, _body: usize, _take: &mut dyn FnMut(&[u32], SavedColumn)) -> bool {
+        false
+    }
     /// Lets bodies begin as those of the same name were in the state of another run, before the first step. The others
     /// begin as they are.
     ///

@@ -64,7 +64,7 @@ pub(crate) use walls::WallSums;
 use crate::basis::Basis;
 use crate::boundary::Boundary;
 use crate::contact::ContactUse;
-use crate::door::{RestoreError, SavedState, Simulation, StepError, WriteError};
+use crate::door::{RestoreError, SavedColumn, SavedState, Simulation, StepError, WriteError};
 use crate::lanes::Laned;
 use crate::scene::{StartVelocities, StressUpdate};
 use crate::threads::each;
@@ -264,6 +264,12 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
 
     fn save(&self) -> Option<SavedState> {
         Some(self.saved())
+    }
+
+    fn save_columns(&self, body: usize, take: &mut dyn FnMut(&[u32], SavedColumn)) -> bool {
+        let particles = &self.state.bodies[body].particles;
+        saving::columns(particles).for_each(|column| take(particles.numbers(), column));
+        true
     }
 
     fn begin_from(&mut self, state: &SavedState, velocities: StartVelocities) -> Result<(), RestoreError> {

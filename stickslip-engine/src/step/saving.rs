@@ -29,7 +29,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 .map(|((body, &disorder), filled)| SavedBody {
                     name: body.name.clone(),
                     numbers: body.particles.numbers().to_vec(),
-                    columns: columns(&body.particles),
+                    columns: columns(&body.particles).collect(),
                     missing: filled.saturating_sub(body.particles.len()),
                     motion: body.motion.as_ref().map(|motion| motion.state()),
                     disorder,
@@ -415,8 +415,10 @@ impl<const D: usize> Unbounded<D> {
     }
 }
 
-fn columns<T: Real, const D: usize>(particles: &Particles<T, D>) -> Vec<SavedColumn> {
-    let saved = particles.described().map(|(first, column)| {
+pub(super) fn columns<T: Real, const D: usize>(
+    particles: &Particles<T, D>,
+) -> impl Iterator<Item = SavedColumn> {
+    particles.described().map(|(first, column)| {
         let entries = first..first + column.kind.entries(D);
         let mut bytes = Vec::with_capacity(entries.len() * particles.len() * size_of::<T>());
         for line in entries.map(|entry| particles.line(entry)) {
@@ -426,8 +428,7 @@ fn columns<T: Real, const D: usize>(particles: &Particles<T, D>) -> Vec<SavedCol
             }
         }
         SavedColumn { name: column.name.to_string(), width: size_of::<T>(), bytes }
-    });
-    saved.collect()
+    })
 }
 
 /// The particles of a body as they were saved, of so many at the start; those of a body without bounds may be any

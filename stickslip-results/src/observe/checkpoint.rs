@@ -10,7 +10,8 @@ use super::CHECKPOINTS;
 use super::file::{OutputError, ReadError, ReadProblem, read_bytes, replace_for_good};
 use super::folder::OutputFolder;
 use super::memory::{Memory, Values};
-use crate::door::SavedState;
+use crate::door::{SavedColumn, SavedState, Simulation};
+use crate::scene::Scene;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::fs;
@@ -196,26 +197,65 @@ pub(super) fn is_checkpoint(name: &str) -> bool {
     digits.is_some_and(|digits| digits.len() >= 10 && digits.bytes().all(|byte| byte.is_ascii_digit()))
 }
 
-/// A SHA-256 of the particles of a state, in hexadecimal: of each body its particles' numbers in ascending order, and
-/// each entry of each column in that order, then time and steps. Where particles lie in memory does not enter.
+/// A SHA-256 of the particles of a state, in hexadecimal: of each body its name, its particles' numbers in ascending
+/// order, and each entry of each column in that order, then time and steps. Where particles lie in memory does not enter.
 pub fn state_sum(state: &SavedState) -> String {
-    let mut sum = Sha256::new();
+    let mut sum = StateSum::default();
     for body in &state.bodies {
-        sum.update(body.name.as_bytes());
-        let mut order: Vec<u32> = (0..body.numbers.len() as u32).collect();
-        order.sort_unstable_by_key(|&place| body.numbers[place as usize]);
-        for column in &body.columns {
-            sum.update(column.name.as_bytes());
-            for line in column.bytes.chunks_exact((column.width * order.len()).max(1)) {
-                order
-                    .iter()
-                    .for_each(|&place| sum.update(&line[place as usize * column.width..][..column.width]));
+        sum.begin(&body.name, &body.numbers);
+        body.columns.iter().for_each(|column| sum.add(column));
+    }
+    sum.finish(state.time, state.steps)
+}
+
+/// The [`state_sum`] of a simulation of a scene as it is now, for which no more than one column is copied at a time; none
+/// of a simulation that has no state as data.
+pub fn present_state_sum(scene: &Scene, simulation: &dyn Simulation) -> Option<String> {
+    let mut sum = StateSum::default();
+    for (number, body) in scene.bodies.iter().enumerate() {
+        let mut begun = false;
+        let known = simulation.save_columns(number, &mut |numbers, column| {
+            if !std::mem::replace(&mut begun, true) {
+                sum.begin(&body.name, numbers);
             }
+            sum.add(&column);
+        });
+        if !known {
+            return None;
         }
     }
-    sum.update(state.time.to_le_bytes());
-    sum.update(state.steps.to_le_bytes());
-    sum.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+    Some(sum.finish(simulation.time(), simulation.steps()))
+}
+
+#[derive(Default)]
+struct StateSum {
+    sum: Sha256,
+    /// Places in memory of the particles of the body at hand, by their numbers.
+    order: Vec<u32>,
+}
+
+impl StateSum {
+    fn begin(&mut self, name: &str, numbers: &[u32]) {
+        self.sum.update(name.as_bytes());
+        self.order = (0..numbers.len() as u32).collect();
+        self.order.sort_unstable_by_key(|&place| numbers[place as usize]);
+    }
+
+    fn add(&mut self, column: &SavedColumn) {
+        let (sum, width) = (&mut self.sum, column.width);
+        sum.update(column.name.as_bytes());
+        // A state that was read may be anybody's; without a width or particles there is nothing to add.
+        let Some(length) = width.checked_mul(self.order.len()).filter(|&length| length > 0) else { return };
+        for line in column.bytes.chunks_exact(length) {
+            self.order.iter().for_each(|&place| sum.update(&line[place as usize * width..][..width]));
+        }
+    }
+
+    fn finish(mut self, time: f64, steps: u64) -> String {
+        self.sum.update(time.to_le_bytes());
+        self.sum.update(steps.to_le_bytes());
+        self.sum.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+    }
 }
 
 /// A file and the sum of what was written to it.

@@ -35,8 +35,8 @@ pub struct Manifest {
     /// Simulated times at which it was taken up from a checkpoint [s].
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub resumed: Vec<f64>,
-    /// SHA-256 of the particles at the end, if a checkpoint was made of it, see [`super::state_sum`]: the same for any
-    /// number of threads and however often the run was interrupted.
+    /// SHA-256 of the particles at the end, see [`super::state_sum`]: the same for any number of threads and however
+    /// often the run was interrupted. None of a run that failed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub state_sum: Option<String>,
     /// What is wrong with its results, in the order in which it was found.

@@ -168,32 +168,27 @@ impl Checkpoints {
     ///
     /// # Errors
     /// The folder is not where it was, or the disk takes nothing and the run is to stop.
-    pub(super) fn save(
-        &mut self,
-        simulation: &dyn Simulation,
-        memory: Memory,
-    ) -> Result<Option<Arc<Checkpoint>>, OutputError> {
+    pub(super) fn save(&mut self, simulation: &dyn Simulation, memory: Memory) -> Result<(), OutputError> {
         self.folder.is_in_place()?;
         // One at a time: each is a copy of the state in memory.
         self.finish()?;
         self.made(simulation.time());
         let path = self.path(simulation);
-        let Some(state) = simulation.save() else { return Ok(None) };
-        let checkpoint = Arc::new(Checkpoint::new(&self.scene, state, memory));
-        let written = Arc::clone(&checkpoint);
+        let Some(state) = simulation.save() else { return Ok(()) };
+        let checkpoint = Checkpoint::new(&self.scene, state, memory);
         let (folder, keep) = (self.folder.clone(), self.options.keep.max(1));
         let (trouble, first) = (Arc::clone(&self.trouble), !std::mem::replace(&mut self.prepared, true));
         self.writer.hand_over(0, move |()| {
             let prepared = if first { Checkpoint::prepare(&folder) } else { Ok(()) };
             let done = prepared
-                .and_then(|()| written.write(&path))
+                .and_then(|()| checkpoint.write(&path))
                 .and_then(|()| Checkpoint::keep_newest(folder.path(), keep));
             if let Err(error) = done {
                 *trouble.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
             }
             Ok(())
         });
-        Ok(Some(checkpoint))
+        Ok(())
     }
 
     /// Waits until the last one is on the disk; whether it could be written, [`Checkpoints::trouble`] says.

@@ -22,7 +22,7 @@ use crate::door::{Ledger, Simulation, View};
 use crate::march::{FailedStep, March, MarchEnd, Pace};
 use crate::observe::{
     Checkpoint, Manifest, Memory, Observer, OutputError, OutputFolder, Patience, Recorder, SceneSource,
-    Status, Waiting, Writer, state_sum,
+    Status, Waiting, Writer, present_state_sum,
 };
 use crate::scene::{HealthCheck, Scene};
 use checkpoints::Checkpoints;
@@ -394,7 +394,7 @@ impl Watched<'_> {
                 progress(&Progress { notes, ..kept.clock.progress(*simulation, end) });
             }
             if recorded.is_ok() && checkpoints.due(*simulation) {
-                recorded = save(*simulation, (recorder, kept, checkpoints), memory.as_ref()).map(drop);
+                recorded = save(*simulation, (recorder, kept, checkpoints), memory.as_ref());
             }
             let trouble = checkpoints.trouble();
             notes.extend(trouble.and_then(|error| kept.verdict.note_checkpoint(scene, *simulation, &error)));
@@ -410,11 +410,10 @@ impl Watched<'_> {
                 return Err(RunError::Step { error, unsaved: recorded.err() });
             }
         };
-        let mut sum = None;
+        let sum = present_state_sum(scene, *simulation);
         if options.checkpoints.at_end {
             // Before what is recorded at an end only: a run that goes on has none there.
-            let saved = save(*simulation, (recorder, kept, checkpoints), memory.as_ref())?;
-            sum = saved.map(|checkpoint| state_sum(&checkpoint.state));
+            save(*simulation, (recorder, kept, checkpoints), memory.as_ref())?;
         }
         notes.extend(kept.verdict.conclude(scene, *simulation, march.pace().part()));
         recorder.record_present(*simulation)?;
@@ -433,7 +432,7 @@ fn save(
     simulation: &dyn Simulation,
     (recorder, kept, checkpoints): (&mut Recorder, &mut Kept, &mut Checkpoints),
     before: Option<&Memory>,
-) -> Result<Option<Arc<Checkpoint>>, OutputError> {
+) -> Result<(), OutputError> {
     let path = checkpoints.path(simulation);
     let mut memory =
         before.map_or_else(|| Memory::keeping(&path), |before| Memory::keeping_beside(&path, before));
