@@ -223,6 +223,37 @@ fn a_run_that_can_go_on_is_not_begun_anew_by_mistake() {
     assert_eq!(workplace.run(&[&again[..], &["--overwrite"]].concat()).code, Some(4));
 }
 
+/// A check stops it, as the scene asks; the same scene would go on, and another one begins anew.
+#[test]
+fn a_run_that_did_not_finish_stays_until_another_has() {
+    let workplace = Workplace::new();
+    workplace.write("scene.toml", &new_scene());
+    let run = |more: &[&str]| {
+        workplace.run(&[&["run", "scene.toml", "--set", "time.end=0.05", "--set"][..], more].concat())
+    };
+    let stops = ["--set", "health.energy={ then = 'stop', bound = 1e-9 }"];
+    let stopped = run(&[&[COARSE][..], &stops].concat());
+    assert_eq!(stopped.code, Some(1), "{}", stopped.stderr);
+    let out = workplace.path("scene.results");
+    let before = fs::read(out.join("energy.csv")).unwrap();
+    assert_eq!((&record(&out)["status"], has_checkpoint(&out)), (&"stopped".into(), true));
+    // Health is no physics: resumed with another, the run goes on.
+    let refused = run(&[COARSE]);
+    assert_eq!(refused.code, Some(2), "{}", refused.stderr);
+    assert!(refused.stderr.contains("stickslip resume scene.results"), "{}", refused.stderr);
+    assert_eq!(fs::read(out.join("energy.csv")).unwrap(), before);
+
+    let changed = run(&[&["cells_per_radius=5"][..], &stops].concat());
+    assert_eq!(changed.code, Some(1), "{}", changed.stderr);
+    assert!(changed.stderr.contains("unfinished"), "{}", changed.stderr);
+    let kept = out.join("unfinished");
+    assert!(fs::read(kept.join("energy.csv")).unwrap() == before && has_checkpoint(&kept));
+    let finished = run(&[COARSE, "--overwrite"]);
+    assert_eq!(finished.code, Some(0), "{}", finished.stderr);
+    assert!(!kept.exists());
+    assert_eq!(run(&[COARSE]).code, Some(0), "a finished run is no reason to ask");
+}
+
 /// From the scene of a run that settled: what is new and what is left out is told before the run.
 #[test]
 fn check_says_what_begins_from_another_run_and_refuses_what_the_run_would() {

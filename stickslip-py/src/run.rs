@@ -229,10 +229,11 @@ pub fn command(words: Vec<OsString>) -> u8 {
     stickslip_cli::execute(words)
 }
 
-/// The newest checkpoint of a run that nobody asked to stop, and that can go on.
+/// The newest checkpoint of a run in a folder that did not finish, where a new one of this scene is likely a mistake.
 #[pyfunction]
-pub fn unfinished(py: Python<'_>, folder: PathBuf) -> PyResult<Option<PathBuf>> {
-    stickslip::run::unfinished(&folder).map_err(|error| errors::of_file(py, "ResultsError", &error))
+pub fn unfinished(py: Python<'_>, engine: &Bound<'_, Engine>, folder: PathBuf) -> PyResult<Option<PathBuf>> {
+    stickslip::run::unfinished(&folder, &engine.get().scene)
+        .map_err(|error| errors::of_file(py, "ResultsError", &error))
 }
 
 fn seconds(seconds: f64) -> PyResult<Duration> {

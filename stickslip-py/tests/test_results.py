@@ -269,7 +269,7 @@ def test_runs_refuse_what_the_command_refuses(tmp_path, monkeypatch):
         scene.run(max_time=0)
     long = flying().time(end=1e4)
     assert long.run(max_time=0.3).status == "out_of_time", "in scene.results"
-    with pytest.raises(ss.RunError, match=r"has not ended, with a checkpoint: .*overwrite=True begins anew"):
+    with pytest.raises(ss.RunError, match=r"did not finish, with a checkpoint: .*overwrite=True begins anew"):
         scene.run()
     assert scene.run(overwrite=True).status == "finished"
     with pytest.raises(ss.StepError, match="left the domain") as caught:

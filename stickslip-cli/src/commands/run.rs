@@ -38,7 +38,8 @@ pub struct Arguments {
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = assignment)]
     parameters: Vec<(String, String)>,
 
-    /// Begin anew in a folder whose run was killed or ran out of time, and could go on.
+    /// Begin anew in a folder whose run did not finish and could go on; its results stay in DIR/unfinished until the
+    /// new run has finished.
     #[arg(long)]
     overwrite: bool,
 
@@ -46,13 +47,14 @@ pub struct Arguments {
     how: How,
 }
 
-/// Refuses a folder with a run that nobody asked to stop, and that can go on.
-fn unfinished(folder: &Path) -> Result<(), Failure> {
-    let Some(newest) = stickslip::run::unfinished(folder).map_err(Failure::input)? else { return Ok(()) };
+/// Refuses a folder with a run that did not finish and can go on.
+fn unfinished(folder: &Path, scene: &Scene) -> Result<(), Failure> {
+    let newest = stickslip::run::unfinished(folder, scene).map_err(Failure::input)?;
+    let Some(newest) = newest else { return Ok(()) };
     let folder = folder.display();
     Err(Failure::Input(miette!(
         help = format!("`stickslip resume {folder}` goes on with it; --overwrite begins anew"),
-        "{folder} holds a run that has not ended, with a checkpoint: {}",
+        "{folder} holds a run that did not finish, with a checkpoint: {}",
         newest.display()
     )))
 }
@@ -155,7 +157,7 @@ impl Arguments {
             before.check(&mut loaded.scene)?;
         }
         if !self.overwrite {
-            unfinished(&out)?;
+            unfinished(&out, &loaded.scene)?;
         }
         self.how.make(&loaded, (source, out.clone()), |scene, simulation, options, progress| {
             stickslip::run::run(scene, simulation, options, progress)

@@ -68,7 +68,7 @@ def carry_out(
     """A run of a simulation from where it is, with results in the folder `out`."""
     folder = Path(out)
     if not overwrite:
-        _refuse_unfinished(folder)
+        _refuse_unfinished(simulation, folder)
     (path, given), text = simulation.scene._source(folder)
     request: _core.RunRequest = {
         "out": folder,
@@ -171,9 +171,9 @@ def _record(folder: Path) -> dict[str, Any]:
         raise ResultsError(f"cannot read {folder / 'run.json'}: {error}; {advice}", help=advice) from error
 
 
-def _refuse_unfinished(folder: Path) -> None:
-    """Refuses a folder with a run that nobody asked to stop, and that can go on."""
-    newest = _core.unfinished(folder)
+def _refuse_unfinished(simulation: Simulation, folder: Path) -> None:
+    """Refuses a folder with a run that did not finish and can go on."""
+    newest = _core.unfinished(simulation.engine, folder)
     if newest is not None:
         advice = f"stickslip.resume({str(folder)!r}) goes on with it; overwrite=True begins anew"
-        raise RunError(f"{folder} holds a run that has not ended, with a checkpoint: {newest}; {advice}", help=advice)
+        raise RunError(f"{folder} holds a run that did not finish, with a checkpoint: {newest}; {advice}", help=advice)

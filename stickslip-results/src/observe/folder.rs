@@ -1,8 +1,8 @@
 //! The folder that a run writes to: made, or cleared of the results of an earlier run, and of nothing else.
 
-use super::checkpoint::is_checkpoint;
+use super::checkpoint::{Checkpoint, is_checkpoint};
 use super::file::{OutputError, part_of};
-use super::manifest::Manifest;
+use super::manifest::{Manifest, Status};
 use super::waiting::Waiting;
 use super::{
     ARRIVALS, BODIES, CHECKPOINTS, CONTACTS, ENERGY, FRINGES, FRINGES_ANIMATION, FRINGES_TABLE, FRONT_SPEEDS,
@@ -45,6 +45,8 @@ const SNAPSHOTS: [&str; 5] = [PARTICLES, SURFACES, GRID, FRINGES, CHECKPOINTS];
 
 /// Where results of an earlier run stay until the next has its first record.
 const PREVIOUS: &str = "previous";
+/// Where those stay that can be gone on with, until the next run has finished.
+const UNFINISHED: &str = "unfinished";
 
 /// A folder that is ready to take the results of a run.
 #[derive(Clone, Debug)]
@@ -117,14 +119,32 @@ impl OutputFolder {
         self.path.join(PREVIOUS).exists()
     }
 
-    /// Removes the results of an earlier run: there are others now.
+    /// Removes the results of an earlier run: there are others now. Those of a run that did not finish and has a
+    /// checkpoint are moved into the folder `unfinished` instead, in the place of what is there, until
+    /// [`OutputFolder::finished`]; gives that folder then.
+    ///
+    /// # Errors
+    /// They cannot be removed or moved.
+    pub fn begun(&self) -> Result<Option<PathBuf>, FolderError> {
+        let previous = self.path.join(PREVIOUS);
+        let unfinished = Some(self.path.join(UNFINISHED)).filter(|_| can_go_on(&previous));
+        if let Some(unfinished) = &unfinished {
+            clear(unfinished)?;
+            move_results(&previous, unfinished)?;
+        }
+        clear(&previous)?;
+        remove_empty(&previous)?;
+        Ok(unfinished)
+    }
+
+    /// Removes the results of an earlier run that did not finish: this one has.
     ///
     /// # Errors
     /// They cannot be removed.
-    pub fn begun(&self) -> Result<(), FolderError> {
-        let previous = self.path.join(PREVIOUS);
-        clear(&previous)?;
-        remove_empty(&previous)
+    pub fn finished(&self) -> Result<(), FolderError> {
+        let unfinished = self.path.join(UNFINISHED);
+        clear(&unfinished)?;
+        remove_empty(&unfinished)
     }
 
     /// The folder of a run that goes on: everything in it stays.
@@ -235,28 +255,38 @@ fn put_aside(path: &Path) -> Result<(), FolderError> {
     if Manifest::read(&previous).is_ok() || Manifest::read(path).is_err() {
         return clear(path);
     }
-    let to = |source| FolderError::Unusable { path: previous.clone(), source };
     clear(&previous)?;
-    fs::create_dir_all(&previous).map_err(to)?;
+    move_results(path, &previous)
+}
+
+fn move_results(from: &Path, to: &Path) -> Result<(), FolderError> {
+    let unusable = |source| FolderError::Unusable { path: to.to_path_buf(), source };
+    fs::create_dir_all(to).map_err(unusable)?;
     for folder in SNAPSHOTS {
-        let snapshots = snapshots(&path.join(folder))?;
+        let snapshots = snapshots(&from.join(folder))?;
         if !snapshots.is_empty() {
-            fs::create_dir_all(previous.join(folder)).map_err(to)?;
+            fs::create_dir_all(to.join(folder)).map_err(unusable)?;
         }
         for name in snapshots {
-            fs::rename(path.join(folder).join(&name), previous.join(folder).join(&name)).map_err(to)?;
+            fs::rename(from.join(folder).join(&name), to.join(folder).join(&name)).map_err(unusable)?;
         }
-        remove_empty(&path.join(folder))?;
+        remove_empty(&from.join(folder))?;
     }
     // As in `clear`, the manifest goes last.
     for name in FILES {
-        match fs::rename(path.join(name), previous.join(name)) {
+        match fs::rename(from.join(name), to.join(name)) {
             Err(error) if error.kind() == io::ErrorKind::NotFound => {}
-            other => other.map_err(to)?,
+            other => other.map_err(unusable)?,
         }
-        remove(&part_of(&path.join(name)))?;
+        remove(&part_of(&from.join(name)))?;
     }
     Ok(())
+}
+
+/// Whether a folder holds a run that did not finish and has a checkpoint.
+fn can_go_on(path: &Path) -> bool {
+    Manifest::read(path).is_ok_and(|manifest| manifest.status != Status::Finished)
+        && Checkpoint::list(path).is_ok_and(|checkpoints| !checkpoints.is_empty())
 }
 
 fn clear(path: &Path) -> Result<(), FolderError> {
@@ -330,7 +360,7 @@ mod tests {
     #[test]
     fn earlier_results_stay_until_there_are_others() {
         let folder = tempfile::tempdir().unwrap();
-        let [out, inside] = ["", "previous"].map(|name| folder.path().join(name));
+        let [out, inside, kept] = ["", "previous", "unfinished"].map(|name| folder.path().join(name));
         let full: Vec<(String, String)> =
             (["bodies.csv", "particles/00000.vtu", "checkpoints/0000000012.checkpoint"])
                 .map(|name| (name.to_string(), format!("{name} of the first run")))
@@ -352,8 +382,25 @@ mod tests {
         fs::write(out.join("bodies.csv"), "half of the second run").unwrap();
         let folder = OutputFolder::prepare(&out).unwrap();
         assert!(exist(&inside) && !out.join("bodies.csv").exists() && folder.has_previous());
-        folder.begun().unwrap();
-        assert!(!folder.has_previous() && out.join("notes.txt").exists());
+        // It had not finished, and could be gone on with.
+        assert_eq!(folder.begun().unwrap(), Some(kept.clone()));
+        assert!(!folder.has_previous() && exist(&kept) && out.join("notes.txt").exists());
+        folder.finished().unwrap();
+        assert!(!kept.exists() && out.join("notes.txt").exists());
+    }
+
+    #[test]
+    fn results_of_a_finished_run_go_once_there_are_others() {
+        let folder = tempfile::tempdir().unwrap();
+        let out = folder.path();
+        fs::create_dir(out.join("checkpoints")).unwrap();
+        fs::write(out.join("checkpoints/0000000012.checkpoint"), "the last state").unwrap();
+        let scene = crate::scene::Scene::new(crate::scene::Dimension::Space, 1.0, 1.0);
+        let folder = OutputFolder { path: out.to_path_buf(), held: Arc::default(), waiting: Arc::default() };
+        let manifest = Manifest::new(&scene, Default::default());
+        Manifest { status: Status::Finished, ..manifest }.write(&folder).unwrap();
+        assert_eq!(OutputFolder::prepare(out).unwrap().begun().unwrap(), None);
+        assert_eq!(fs::read_dir(out).unwrap().count(), 0);
     }
 
     #[test]

@@ -210,16 +210,25 @@ impl Checkpoints {
     }
 }
 
-/// The newest checkpoint in a folder with a run that nobody asked to stop, and that can go on: none where there is no
-/// such run, or one is under way.
+/// The newest checkpoint of a run in a folder that did not finish, where a new run of `scene` there is likely a mistake:
+/// the run was killed or ran out of its time; or it was interrupted, failed or was stopped by a check, and could go on
+/// with `scene`, see [`same_physics`]. None where there is no such run, or one is under way.
 ///
 /// # Errors
 /// The folder cannot be read.
-pub fn unfinished(folder: &Path) -> Result<Option<PathBuf>, ReadError> {
+pub fn unfinished(folder: &Path, scene: &Scene) -> Result<Option<PathBuf>, ReadError> {
     let Ok(before) = Manifest::read(folder) else { return Ok(None) };
-    let stopped = matches!(before.status, Status::Running | Status::OutOfTime);
-    let newest = Checkpoint::list(folder)?.into_iter().next();
-    Ok(newest.filter(|_| stopped && OutputFolder::reopen(folder).is_ok()))
+    let could_go_on = match before.status {
+        Status::Finished => false,
+        Status::Running | Status::OutOfTime => true,
+        Status::Interrupted | Status::Stopped | Status::Failed => {
+            same_physics(folder, &before.scene, &Manifest::record(scene)).is_ok()
+        }
+    };
+    if !could_go_on || Checkpoint::list(folder)?.is_empty() || OutputFolder::reopen(folder).is_err() {
+        return Ok(None);
+    }
+    Ok(Checkpoint::newest(folder).ok().map(|(_, path, _)| path))
 }
 
 /// What of a scene may change where a run goes on.

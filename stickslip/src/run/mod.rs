@@ -269,6 +269,10 @@ fn drive(
     let saved = record(&manifest, &folder);
     ended?;
     saved?;
+    if manifest.status == Status::Finished {
+        // What cannot be removed stays: this run has its results.
+        let _ = folder.finished();
+    }
     let contacts = kept.contact_watch.widest(scene, simulation);
     let energies = Energies { start: kept.start, scale: kept.verdict.energy_scale() };
     Ok(Summary::new(scene, simulation, energies, (manifest, contacts)))
@@ -367,7 +371,13 @@ impl Watched<'_> {
                 if folder.has_previous() {
                     // Keeping waits until the first records are on the disk.
                     recorder.remember(*simulation, &mut Memory::keeping(folder.path()))?;
-                    folder.begun()?;
+                    if let Some(unfinished) = folder.begun()? {
+                        let place = unfinished.display();
+                        let told = format!(
+                            "the run before did not finish; its results stay in {place} until this has"
+                        );
+                        progress(&Progress { news: vec![told], ..kept.clock.progress(*simulation, end) });
+                    }
                 }
             }
         }
