@@ -478,7 +478,9 @@ fn memory_that_runs_out_in_a_run_names_the_checkpoint_and_the_run_goes_on() {
 fn a_flipped_bit_is_found_in_every_kind_of_file() {
     let workplace = workplace();
     let fringes = "\n[outputs.fringes]\ninterval = 0.02\nstress_parameter = 1e4\nwidth = 40\n";
-    workplace.write("scene.toml", &(new_scene() + fringes));
+    let groups = "\nreactions = [\"y_min\"]\n[[outputs.groups]]\nname = \"all\"\nbodies = [\"*\"]\n";
+    let scene = new_scene().replace("y_min = \"fixed\" }", "y_min = \"fixed\", leaving = \"remove\" }");
+    workplace.write("scene.toml", &(scene + groups + fringes));
     workplace.succeed(&run_into("out"));
     let whole = workplace.succeed(&["check", "out"]);
     assert!(whole.contains("are as the run wrote them"), "{whole}");
@@ -492,6 +494,9 @@ fn a_flipped_bit_is_found_in_every_kind_of_file() {
         "fringes.csv",
         "energy.csv",
         "contacts.csv",
+        "group_contacts.csv",
+        "reactions.csv",
+        "run.json",
         &newest,
     ] {
         let path = workplace.path("out").join(name);
@@ -504,6 +509,16 @@ fn a_flipped_bit_is_found_in_every_kind_of_file() {
             assert_eq!(ran.code, Some(2), "{name} at {place}: {}", ran.stdout);
             assert!(ran.stderr.contains(name), "{name}: {}", ran.stderr);
         }
+        fs::write(&path, &kept).unwrap();
+    }
+    // What is behind the checkpoint has no sum, and is read.
+    for name in ["reactions.csv", "groups.csv", "group_contacts.csv", "removed.csv"] {
+        let path = workplace.path("out").join(name);
+        let kept = fs::read(&path).unwrap();
+        fs::write(&path, [&kept[..], b"half a row\n"].concat()).unwrap();
+        let ran = workplace.run(&["check", "out"]);
+        assert_eq!(ran.code, Some(2), "{name}: {}", ran.stdout);
+        assert!(ran.stderr.contains(name), "{name}: {}", ran.stderr);
         fs::write(&path, &kept).unwrap();
     }
     assert_eq!(workplace.succeed(&["check", "out"]), whole);

@@ -70,6 +70,9 @@ impl TableRow for GroupContactRow {
     }
 }
 
+/// Where `group_contacts.csv` is in what is remembered of groups.
+pub(super) const PAIRS: &str = "contacts";
+
 /// Writes `groups.csv` and `group_contacts.csv`.
 pub(super) struct GroupsObserver {
     groups: Groups,
@@ -197,7 +200,7 @@ impl Observer for GroupsObserver {
         memory.keep("cursor", &mut self.cursor)?;
         self.schedule.remember(memory)?;
         self.sums.remember(memory)?;
-        memory.part("contacts", |memory| self.contacts.remember(memory))
+        memory.part(PAIRS, |memory| self.contacts.remember(memory))
     }
 }
 

@@ -170,6 +170,8 @@ pub struct ReferenceCurve {
     pub points: Vec<[f64; 2]>,
 }
 
+/// What stands before the sum of a record, its last entry: a CRC-32 of all bytes before this.
+const SUM: &str = ",\n  \"sum\": ";
 /// Samples of a reference curve over a run: smooth at the width of a page.
 const SAMPLES: usize = 201;
 
@@ -213,12 +215,30 @@ impl Manifest {
     /// The disk is full or refuses; then the old record stays.
     pub fn write(&self, folder: &OutputFolder) -> Result<(), OutputError> {
         replace_for_good(&folder.join(Self::FILE), |file| {
-            serde_json::to_writer_pretty(&mut *file, self)?;
-            writeln!(file)
+            let text = serde_json::to_string_pretty(self)?;
+            let text = text.strip_suffix("\n}").expect("a record has entries, each on a line of its own");
+            writeln!(file, "{text}{SUM}{}\n}}", crc32fast::hash(text.as_bytes()))
         })
     }
 
-    /// Reads the record of the run that wrote a folder.
+    /// Holds the record in a folder against its own sum; those of earlier versions have none.
+    ///
+    /// # Errors
+    /// It is missing, or bytes of it have changed.
+    pub(super) fn verify(folder: &Path) -> Result<(), ReadError> {
+        let path = folder.join(Self::FILE);
+        let bytes = read_bytes(&path).map_err(|error| ReadProblem::Io(error).at(&path))?;
+        let Some(end) = bytes.windows(SUM.len()).rposition(|found| found == SUM.as_bytes()) else {
+            return Ok(());
+        };
+        let same =
+            bytes[end + SUM.len()..] == *format!("{}\n}}\n", crc32fast::hash(&bytes[..end])).as_bytes();
+        let changed = || ReadProblem::Layout("bytes of it have changed since the run wrote it".to_string());
+        if same { Ok(()) } else { Err(changed().at(&path)) }
+    }
+
+    /// Reads the record of the run that wrote a folder. Control characters in it, which steer terminals and make XML
+    /// ill-formed, are replaced.
     ///
     /// # Errors
     /// There is none, or another program wrote it.

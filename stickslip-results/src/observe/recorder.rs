@@ -9,7 +9,7 @@ use super::folder::OutputFolder;
 use super::fringes::FringesObserver;
 use super::fronts::FrontsObserver;
 use super::grid::GridObserver;
-use super::groups::GroupsObserver;
+use super::groups::{GroupsObserver, PAIRS};
 use super::joints::JointsObserver;
 use super::loads::LoadsObserver;
 use super::memory::Memory;
@@ -20,15 +20,21 @@ use super::removed::RemovedObserver;
 use super::sections::SectionsObserver;
 use super::surfaces::SurfacesObserver;
 use super::{
-    ARRIVALS, BODIES, CONTACTS, ENERGY, FRINGES, FRONTS, GRID, GROUPS, JOINTS, LOADS, Observer, PARTICLES,
-    PROBES, REACTIONS, REMOVED, SECTIONS, SURFACES,
+    ARRIVALS, BODIES, CONTACTS, ENERGY, FRINGES, FRONTS, GRID, GROUP_CONTACTS, GROUPS, JOINTS, LOADS,
+    Observer, PARTICLES, PROBES, REACTIONS, REMOVED, SECTIONS, SURFACES,
 };
 use crate::door::View;
 use crate::scene::{Leaving, Scene};
 
-/// Tables that keep their own length over a checkpoint, under their name.
-pub(super) const TABLES: [&str; 12] =
-    [BODIES, ENERGY, CONTACTS, LOADS, JOINTS, REMOVED, SECTIONS, REACTIONS, GROUPS, PROBES, ARRIVALS, FRONTS];
+/// Tables that keep their own length over a checkpoint: the file, and the part of the memory where they do.
+pub(super) fn tables() -> impl Iterator<Item = (&'static str, String)> {
+    let under_their_name = [
+        BODIES, ENERGY, CONTACTS, LOADS, JOINTS, REMOVED, SECTIONS, REACTIONS, GROUPS, PROBES, ARRIVALS,
+        FRONTS,
+    ];
+    let of_groups = (GROUP_CONTACTS, format!("{GROUPS}/{PAIRS}"));
+    under_their_name.map(|name| (name, name.to_string())).into_iter().chain([of_groups])
+}
 
 /// The observers that a scene asks for, and those that are added.
 pub struct Recorder<'a> {
@@ -102,12 +108,8 @@ impl<'a> Recorder<'a> {
     /// # Errors
     /// One is not.
     pub fn find(folder: &OutputFolder, memory: &Memory) -> Result<(), OutputError> {
-        for path in
-            TABLES.iter().filter(|name| memory.has(&format!("{name}/length"))).map(|name| folder.join(name))
-        {
-            is_there(&path, None)?;
-        }
-        Ok(())
+        let mut known = tables().filter(|(_, part)| memory.has(&format!("{part}/length")));
+        known.try_for_each(|(name, _)| is_there(&folder.join(name), None))
     }
 
     /// Adds an observer, to be asked after those of the scene.

@@ -2,8 +2,9 @@
 
 use super::checkpoint::Checkpoint;
 use super::file::{FileSum, ReadError, ReadProblem};
+use super::manifest::Manifest;
 use super::memory::Memory;
-use super::recorder::TABLES;
+use super::recorder::tables;
 use super::results::Results;
 use super::vtu::PointArrays;
 use super::{FRINGES, FRINGES_TABLE, GRID, PARTICLES, SURFACES};
@@ -33,6 +34,7 @@ pub struct Verified {
 pub fn verify(folder: &Path) -> Result<Verified, ReadError> {
     let results = Results::open(folder)?;
     let mut verified = Verified::default();
+    verified.note(Manifest::verify(folder));
     let mut newest = None;
     for path in Checkpoint::list(folder)? {
         let read = Checkpoint::read(&path);
@@ -82,6 +84,10 @@ impl Verified {
             results.loads_table().err(),
             results.joints_table().err(),
             results.sections_table().err(),
+            results.reactions_table().err(),
+            results.groups_table().err(),
+            results.group_contacts_table().err(),
+            results.removed_table().err(),
             results.probes_table().err(),
             results.arrivals_table().err(),
             results.fronts_table().err(),
@@ -116,9 +122,9 @@ impl Sums {
     fn of(folder: &Path, memory: &mut Memory) -> Result<Self, ReadError> {
         let mut sums = Sums::default();
         let unreadable = |error: super::OutputError| ReadProblem::Io(error.source).at(&error.path);
-        for name in TABLES {
+        for (name, part) in tables() {
             let mut sum = FileSum::default();
-            let known = memory.part(name, |memory| {
+            let known = memory.part(&part, |memory| {
                 Ok(memory.keep("length", &mut sum.bytes)? && memory.keep("sum", &mut sum.crc)?)
             });
             if known.map_err(unreadable)? {
