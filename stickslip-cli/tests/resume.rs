@@ -305,18 +305,34 @@ fn a_run_that_is_made_again_ends_in_the_same_bits_or_says_that_it_does_not() {
 
     // A record of other bits, as another version of the program may have made.
     let path = workplace.path("scene.results/run.json");
-    let text = fs::read_to_string(&path).unwrap();
-    fs::write(&path, text.replace(&sum, &sum.replace(['0', '1', '2', '3'], "f"))).unwrap();
+    let whole = fs::read_to_string(&path).unwrap();
+    fs::write(&path, whole.replace(&sum, &sum.replace(['0', '1', '2', '3'], "f"))).unwrap();
     let differs = workplace.run(&["run", "--again", "scene.results", "--out", "third"]);
     assert_eq!(differs.code, Some(3));
     assert!(differs.stdout.contains("other bits than scene.results"), "{}", differs.stdout);
     workplace.write("scene.toml", &new_scene().replace("friction = 0.3\n", "friction = 0.4\n"));
     let text = fs::read_to_string(workplace.path("scene.toml")).unwrap();
     assert!(text != new_scene(), "the scene has such a line");
+    fs::write(&path, &whole).unwrap();
+    // What was run is run again, whatever became of its file.
+    for changed in ["scene.toml has changed since", "scene.toml cannot be read any more"] {
+        let again = workplace.run(&["run", "--again", "scene.results"]);
+        assert_eq!(again.code, Some(0), "{}", again.stderr);
+        assert!(again.stderr.contains(changed), "{}", again.stderr);
+        assert!(again.stdout.contains(&format!("the same bits as scene.results: {sum}")), "{}", again.stdout);
+        let _ = fs::remove_file(workplace.path("scene.toml"));
+    }
+    assert_eq!(workplace.run(&["run"]).code, Some(2));
+
+    // A record of an earlier version has no text.
+    let mut earlier: serde_json::Value = serde_json::from_str(&whole).unwrap();
+    earlier["source"].as_object_mut().unwrap().remove("text").unwrap();
+    fs::write(&path, earlier.to_string()).unwrap();
+    assert_eq!(workplace.run(&["run", "--again", "scene.results"]).code, Some(2));
+    workplace.write("scene.toml", &text);
     let changed = workplace.run(&["run", "--again", "scene.results"]);
     assert_eq!(changed.code, Some(2), "{}", changed.stderr);
     assert!(changed.stderr.contains("was made with another scene"), "{}", changed.stderr);
-    assert_eq!(workplace.run(&["run"]).code, Some(2));
 }
 
 #[test]
@@ -353,7 +369,7 @@ fn a_finished_run_goes_on_to_a_later_end() {
     let nothing = workplace.run(&["resume", "elsewhere"]);
     assert_eq!(nothing.code, Some(2));
 
-    // A scene that was changed since is told by its key, and one that has gone by its name.
+    // A scene that was changed since is told by its key; one that has gone is taken as it was run.
     let scene = new_scene();
     workplace
         .write("scene.toml", &scene.replacen("density = ", "density = 2 * ", 1).replace("2 * \"", "\"2 * "));
@@ -362,8 +378,11 @@ fn a_finished_run_goes_on_to_a_later_end() {
     assert!(changed.stderr.contains("density") || changed.stderr.contains("materials"), "{}", changed.stderr);
     fs::remove_file(workplace.path("scene.toml")).unwrap();
     let gone = workplace.run(&["resume", "scene.results", "--until", "50 ms"]);
-    assert_eq!(gone.code, Some(2));
-    assert!(gone.stderr.contains("scene.toml"), "{}", gone.stderr);
+    assert_eq!(gone.code, Some(0), "{}", gone.stderr);
+    assert!(gone.stderr.contains("scene.toml is not there; the run goes on"), "{}", gone.stderr);
+    let unknown = workplace.run(&["resume", "scene.results", "--until", "60 ms", "--scene", "moved.toml"]);
+    assert_eq!(unknown.code, Some(2));
+    assert!(unknown.stderr.contains("moved.toml is not there"), "{}", unknown.stderr);
     workplace.write("moved.toml", &scene);
-    workplace.succeed(&["resume", "scene.results", "--until", "50 ms", "--scene", "moved.toml"]);
+    workplace.succeed(&["resume", "scene.results", "--until", "60 ms", "--scene", "moved.toml"]);
 }

@@ -41,8 +41,10 @@ pub struct RunRequest {
     resumed: bool,
     /// Where the scene came from: file, and what was set.
     source: (PathBuf, Vec<(String, String)>, Option<String>),
-    /// The scene as text, to be written beside the results where it came from no file.
-    text: Option<String>,
+    /// The scene as text.
+    text: String,
+    /// Whether it came from no file, and is written beside the results.
+    is_new: bool,
     /// Wall time between checkpoints; none at all without it [s].
     checkpoint_every: Option<f64>,
     /// Wall time after which it stops [s].
@@ -190,15 +192,16 @@ pub fn run(
     let engine = engine.get();
     let scene = until(&engine.scene, way.until);
     let between = Between::new(way.show.take());
-    let RunRequest { out, resumed, source: (path, set, named), text, checkpoint_every, max_time } = request;
+    let RunRequest { out, resumed, source, text, is_new, checkpoint_every, max_time } = request;
+    let (path, set, named) = source;
     let every = checkpoint_every.map(seconds).transpose()?;
     let max_time = max_time.map(seconds).transpose()?;
     let at_end = every.is_some() || max_time.is_some() || scene.outputs.checkpoints.is_some();
-    let mut file = SceneFile { path: out.join("scene.toml"), text };
+    let mut file = SceneFile { path: out.join("scene.toml"), text: is_new.then(|| text.clone()) };
     let options = RunOptions {
         stop: Arc::clone(&between.stop),
         threads: engine.shared.threads(),
-        source: Some(SceneSource { path, set, until: named }),
+        source: Some(SceneSource { path, set, until: named, text: Some(text) }),
         checkpoints: Checkpointing { every, at_end, ..Checkpointing::default() },
         max_time,
         ..RunOptions::new(out)

@@ -58,16 +58,21 @@ impl ReadScene {
         loaded.map(|loaded| ReadScene { loaded }).map_err(|error| errors::of_scene(py, error))
     }
 
-    /// Reads the scene of a run again: its file, what was set, and to where it goes on.
+    /// Reads the scene of a run again: its file or, where that has gone, the recorded text; what was set, and to where it
+    /// goes on.
     #[staticmethod]
     fn again(
         py: Python<'_>,
-        path: PathBuf,
+        file: (PathBuf, Option<String>),
         set: Vec<(String, String)>,
         until: Option<String>,
         functions: &Bound<'_, PyDict>,
     ) -> PyResult<Self> {
-        ReadScene::given(py, py.detach(|| SceneSource { path, set, until }.load()), functions)
+        let (path, text) = file;
+        let source = SceneSource { path, set, until, text };
+        let recorded = || if source.is_gone() { source.recorded() } else { None };
+        let read = || recorded().unwrap_or_else(|| source.load());
+        ReadScene::given(py, py.detach(read), functions)
     }
 
     /// The text that was read.

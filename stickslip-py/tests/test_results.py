@@ -217,9 +217,14 @@ def test_the_bits_are_those_of_the_command(command, tmp_path, monkeypatch):
     assert sums["python.results"] == sums["command.results"] and sums["rings.python"] == sums["rings.command"]
     tables = [(tmp_path / name / "bodies.csv").read_bytes() for name in ("rings.python", "rings.command")]
     assert tables[0] == tables[1]
-    # The command goes on with what Python began, and Python with what the command did.
+    # The command goes on with what Python began, and Python with what the command did; where the scene has gone, by its
+    # recorded text.
     subprocess.run([command, "resume", "rings.python", "--until", "12 ms"], check=True, capture_output=True)
     ss.resume("rings.command", until=0.012, threads=1)
+    for scene in ("rings.toml", "rings.python/scene.toml"):
+        (tmp_path / scene).unlink()
+    subprocess.run([command, "resume", "rings.python", "--until", "13 ms"], check=True, capture_output=True)
+    ss.resume("rings.command", until=0.013, threads=1)
     sums = [
         json.loads((tmp_path / name / "run.json").read_text())["state_sum"]
         for name in ("rings.python", "rings.command")

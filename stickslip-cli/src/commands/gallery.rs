@@ -130,7 +130,8 @@ impl Where {
         })?;
         let path = std::path::absolute(path).into_diagnostic().map_err(Failure::Run)?;
         let loaded = super::load(&path, &[]).map_err(Failure::input)?;
-        let source = Some(SceneSource { path, set: Vec::new(), until: None });
+        let text = Some(loaded.source.text().to_owned());
+        let source = Some(SceneSource { path, set: Vec::new(), until: None, text });
         Ok(Job { name: scene.name.to_owned(), loaded, source })
     }
 }

@@ -20,7 +20,8 @@ pub struct Arguments {
     #[arg(long, value_name = "TIME")]
     until: Option<String>,
 
-    /// Scene file, with other outputs or another end; the one that was run, where it lay, without this.
+    /// Scene file, with other outputs or another end; without this, the one that was run, where it lay, or as it was run
+    /// if it is not there any more.
     #[arg(long, value_name = "FILE")]
     scene: Option<PathBuf>,
 
@@ -33,37 +34,38 @@ impl Arguments {
         self.how.use_threads()?;
         // Whoever names the scene does not need the record, which a power cut may have taken.
         let before = Manifest::read(&self.results);
-        let (path, set, mut until) = match (self.scene, before) {
+        let mut source = match (self.scene, before) {
             (Some(path), before) => {
                 let path = std::path::absolute(path).into_diagnostic().map_err(Failure::Run)?;
-                (
+                let source = before.ok().and_then(|before| before.source);
+                SceneSource {
                     path,
-                    before.ok().and_then(|before| before.source).map_or_else(Vec::new, |source| source.set),
-                    None,
-                )
+                    set: source.map_or_else(Vec::new, |source| source.set),
+                    until: None,
+                    text: None,
+                }
             }
             (None, Err(error)) => return Err(Failure::input(error)),
-            (None, Ok(before)) => match before.source {
-                Some(SceneSource { path, set, until }) => (path, set, until),
-                None => {
-                    return Err(Failure::Input(miette!(
-                        help = "name the scene file with --scene",
-                        "{} does not say which scene file it came from",
-                        self.results.display()
-                    )));
-                }
-            },
+            (None, Ok(before)) => before.source.ok_or_else(|| {
+                Failure::Input(miette!(
+                    help = "name the scene file with --scene",
+                    "{} does not say which scene file it came from",
+                    self.results.display()
+                ))
+            })?,
         };
-        until = self.until.or(until);
-        if !path.exists() {
-            return Err(Failure::Input(miette!(
-                help = "name it with --scene",
-                "the scene file {} is not there",
-                path.display()
-            )));
-        }
-        let source = SceneSource { path, set, until };
-        let loaded = source.load().map_err(Failure::input)?;
+        source.until = self.until.or(source.until);
+        let read = if source.is_gone() {
+            let gone = format!("the scene file {} is not there", source.path.display());
+            let Some(recorded) = source.recorded() else {
+                return Err(Failure::Input(miette!(help = "name it with --scene", "{gone}")));
+            };
+            self.how.note(&format!("{gone}; the run goes on with the scene as it was run"));
+            recorded
+        } else {
+            source.load()
+        };
+        let loaded = read.map_err(Failure::input)?;
         self.how.make(&loaded, (source, self.results), stickslip::run::resume)
     }
 }

@@ -25,8 +25,8 @@ pub struct Arguments {
     #[arg(required_unless_present = "again")]
     scene: Option<PathBuf>,
 
-    /// Run the scene of a folder of results again, beside it, and say whether it ends in the same bits; exit code 3 if
-    /// not.
+    /// Run the scene of a folder of results again, as it was then, beside it, and say whether it ends in the same bits;
+    /// exit code 3 if not.
     #[arg(long, value_name = "DIR", conflicts_with_all = ["scene", "parameters"])]
     again: Option<PathBuf>,
 
@@ -141,21 +141,17 @@ impl Arguments {
     pub fn execute(self) -> Result<(), Failure> {
         self.how.use_threads()?;
         let before = self.again.as_deref().map(Repeated::of).transpose()?;
-        let (scene, set) = match (&before, self.scene) {
-            (Some(before), _) => (before.source.path.clone(), before.source.set.clone()),
-            (None, scene) => (scene.unwrap_or_default(), self.parameters),
-        };
-        let mut loaded = load(&scene, &set).map_err(Failure::input)?;
-        let usual = match &before {
-            Some(before) => before.folder(),
-            None => default_folder(&scene, "results"),
+        let (loaded, source, usual) = match (&before, self.scene) {
+            (Some(before), _) => (before.scene(&self.how)?, before.source.clone(), before.folder()),
+            (None, scene) => {
+                let (scene, set) = (scene.unwrap_or_default(), self.parameters);
+                let loaded = load(&scene, &set).map_err(Failure::input)?;
+                let path = std::path::absolute(&scene).into_diagnostic().map_err(Failure::Run)?;
+                let source = SceneSource { path, set, until: None, text: None };
+                (loaded, source, default_folder(&scene, "results"))
+            }
         };
         let out = self.out.unwrap_or(usual);
-        let path = std::path::absolute(&scene).into_diagnostic().map_err(Failure::Run)?;
-        let source = SceneSource { path, set, until: None };
-        if let Some(before) = &before {
-            before.check(&mut loaded.scene)?;
-        }
         if !self.overwrite {
             unfinished(&out, &loaded.scene)?;
         }
@@ -180,6 +176,7 @@ impl Repeated {
         let manifest = Manifest::read(results).map_err(Failure::input)?;
         let lacks = |what: &str| Failure::Input(miette!("{} does not say {what}", results.display()));
         let source = manifest.source.clone().ok_or_else(|| lacks("which scene file it came from"))?;
+        let source = SceneSource { until: None, ..source };
         let sum = manifest.state_sum.clone();
         let sum = sum.ok_or_else(|| lacks("in which bits it ended: it failed, or was killed"))?;
         Ok(Repeated { results: results.to_path_buf(), source, manifest, sum })
@@ -192,11 +189,27 @@ impl Repeated {
         PathBuf::from(name)
     }
 
-    /// Gives the scene the end that the run had, and refuses one that is not that of the run any more.
-    fn check(&self, scene: &mut Scene) -> Result<(), Failure> {
-        scene.time.end = self.manifest.performance.time;
-        let now = Manifest::record(scene);
-        stickslip::run::same_physics(&self.results, &self.manifest.scene, &now).map_err(Failure::input)
+    /// The scene as it was run, to the end that the run had; of a record that does not have its text, that of the file.
+    ///
+    /// # Errors
+    /// It cannot be read, or is not that of the run any more.
+    fn scene(&self, how: &How) -> Result<Loaded, Failure> {
+        let SceneSource { path, text, .. } = &self.source;
+        if let Some(text) = text {
+            let changed = match std::fs::read_to_string(path) {
+                Ok(now) => Some("has changed since").filter(|_| now != *text),
+                Err(_) => Some("cannot be read any more"),
+            };
+            if let Some(changed) = changed {
+                how.note(&format!("{} {changed}; the scene is run again as it was then", path.display()));
+            }
+        }
+        let read = self.source.recorded().unwrap_or_else(|| self.source.load());
+        let mut loaded = read.map_err(Failure::input)?;
+        loaded.scene.time.end = self.manifest.performance.time;
+        let now = Manifest::record(&loaded.scene);
+        stickslip::run::same_physics(&self.results, &self.manifest.scene, &now).map_err(Failure::input)?;
+        Ok(loaded)
     }
 
     fn compare(&self, out: &Path) -> Result<(), Failure> {
@@ -224,6 +237,13 @@ impl How {
         pool.build_global().into_diagnostic().map_err(Failure::Run)
     }
 
+    /// Tells the user something that is no reason to stop.
+    pub(super) fn note(&self, text: &str) {
+        if !self.quiet {
+            eprintln!("note: {text}");
+        }
+    }
+
     /// Makes a run of a scene in a folder, from the warnings before it to the pictures behind it.
     pub(super) fn make(
         &self,
@@ -249,8 +269,8 @@ impl How {
                 size(limit)
             )));
         }
-        if let Some(pairs) = report.pairs_without_friction().filter(|_| !self.quiet) {
-            eprintln!("note: {pairs}");
+        if let Some(pairs) = report.pairs_without_friction() {
+            self.note(&pairs);
         }
         for warning in report.warnings {
             eprintln!("warning: {warning}");
@@ -261,7 +281,7 @@ impl How {
         let options = RunOptions {
             stop: stop_on_interrupt()?,
             threads,
-            source: Some(source),
+            source: Some(SceneSource { text: Some(loaded.source.text().to_owned()), ..source }),
             checkpoints: Checkpointing { every, at_end, keep: usize::from(self.keep_checkpoints) },
             max_time: self.max_time.0,
             patience: Patience { tell: tell_of_slow_disk, ..Patience::default() },

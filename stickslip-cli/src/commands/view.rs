@@ -137,7 +137,7 @@ impl Arguments {
         let simulation = stickslip::step::build(&scene);
         let mut simulation = simulation.map_err(|problem| Failure::input(source.locate(problem)))?;
         let path = std::path::absolute(&self.what).into_diagnostic().map_err(Failure::Run)?;
-        let source = SceneSource { path, set: self.parameters.clone(), until: None };
+        let source = SceneSource { path, set: self.parameters.clone(), until: None, text: None };
         let options = RunOptions { source: Some(source), ..RunOptions::new(folder.path()) };
         stickslip::run::run(&scene, simulation.as_mut(), &options, &mut |_| {}).map_err(Failure::input)?;
         Ok(folder)

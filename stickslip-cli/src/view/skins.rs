@@ -152,14 +152,16 @@ fn lacks(column: &str) -> NoSkins {
     NoSkins::Unknown(format!("the snapshots lack the column {column}"))
 }
 
-/// The scene that was run, read from its file again: the record does not hold shapes that can be read.
+/// The scene that was run, read again from its recorded text, else from its file: the record does not hold shapes that
+/// can be read.
 ///
 /// # Errors
-/// The file is gone, or says another thing than when it was run.
+/// A file is gone, or says another thing than when it was run.
 pub fn scene(results: &Results) -> Result<Scene, String> {
     let manifest = results.manifest();
     let source: &SceneSource = manifest.source.as_ref().ok_or("the run did not come from a scene file")?;
-    let loaded = source.load().map_err(|error| format!("the scene file cannot be read again: {error}"))?;
+    let read = source.recorded().unwrap_or_else(|| source.load());
+    let loaded = read.map_err(|error| format!("the scene cannot be read again: {error}"))?;
     let now = Manifest::record(&loaded.scene);
     same_physics(&source.path, &manifest.scene, &now).map_err(|error| error.to_string())?;
     Ok(loaded.scene)

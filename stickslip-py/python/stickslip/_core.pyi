@@ -19,7 +19,7 @@ class ReadScene:
     def load(path: Path, set: list[tuple[str, str]]) -> ReadScene: ...
     @staticmethod
     def again(
-        path: Path, set: list[tuple[str, str]], until: str | None, functions: dict[str, Any]
+        file: tuple[Path, str | None], set: list[tuple[str, str]], until: str | None, functions: dict[str, Any]
     ) -> ReadScene: ...
     @property
     def text(self) -> str: ...
@@ -75,7 +75,8 @@ class RunRequest(TypedDict):
     out: Path
     resumed: bool
     source: tuple[Path, list[tuple[str, str]], str | None]
-    text: str | None
+    text: str
+    is_new: bool
     checkpoint_every: float | None
     max_time: float | None
 

@@ -69,12 +69,13 @@ def carry_out(
     folder = Path(out)
     if not overwrite:
         _refuse_unfinished(simulation, folder)
-    (path, given), text = simulation.scene._source(folder)
+    (path, given), (text, is_new) = simulation.scene._source(folder)
     request: _core.RunRequest = {
         "out": folder,
         "resumed": False,
         "source": (path, given, None if until is None else repr(float(until))),
         "text": text,
+        "is_new": is_new,
         "checkpoint_every": checkpoint_every,
         "max_time": max_time,
     }
@@ -98,9 +99,9 @@ def resume(
     """Goes on with the run in a folder from its newest checkpoint, as `stickslip resume` does.
 
     It goes on to `until` [s], else to what was named last, else to the end of the scene. The scene is read again from
-    where it was, or from the file `scene`. A run that was stopped ends in the same bits as one that was not.
-    `functions` are the laws, loads and motions of your own that it names, as `Scene.functions` has them.
-    `checkpoint_every` and `max_time` are wall times [s], as of `Scene.run`.
+    where it was, as it was run if it is not there any more, or from the file `scene`. A run that was stopped ends in
+    the same bits as one that was not. `functions` are the laws, loads and motions of your own that it names, as
+    `Scene.functions` has them. `checkpoint_every` and `max_time` are wall times [s], as of `Scene.run`.
     """
     folder = Path(folder)
     before = _record(folder)
@@ -111,14 +112,16 @@ def resume(
     given = [(name, value) for name, value in source.get("set", [])]
     named = (source.get("until") if scene is None else None) if until is None else until
     named = named if named is None or isinstance(named, str) else repr(float(named))
-    if not path.exists():
+    recorded = source.get("text") if scene is None else None
+    if recorded is None and not path.exists():
         raise RunError(f"the scene file {path} is not there; name it with scene", help="name it with scene")
-    read = _core.ReadScene.again(path, given, named, dict(functions or {}))
+    read = _core.ReadScene.again((path, recorded), given, named, dict(functions or {}))
     request: _core.RunRequest = {
         "out": folder,
         "resumed": True,
         "source": (path, given, named),
-        "text": None,
+        "text": read.text,
+        "is_new": False,
         "checkpoint_every": checkpoint_every,
         "max_time": max_time,
     }

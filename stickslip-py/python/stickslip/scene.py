@@ -325,12 +325,12 @@ class Scene:
     def _simulation(self, read: _core.ReadScene, threads: int | None) -> Simulation:
         return Simulation(read.simulation(threads), copy.deepcopy(self))
 
-    def _source(self, out: Path) -> tuple[tuple[Path, list[tuple[str, str]]], str | None]:
-        """Where a run in the folder `out` comes from: file and what was set, and the text of a scene without a file."""
+    def _source(self, out: Path) -> tuple[tuple[Path, list[tuple[str, str]]], tuple[str, bool]]:
+        """Where a run in the folder `out` comes from: file and what was set, the text, and whether there is no file."""
         if self._file is not None and self._is_loaded():
-            return (self._file[0], list(self._set)), None
+            return (self._file[0], list(self._set)), (self._file[1], False)
         moved = _moved(self.document, self._folder(), out.absolute())
-        return (out.absolute() / "scene.toml", []), written(moved)
+        return (out.absolute() / "scene.toml", []), (written(moved), True)
 
     def _read(self, *further: tuple[str, str]) -> _core.ReadScene:
         """The scene as the one reader of scenes has it, with what is set besides."""

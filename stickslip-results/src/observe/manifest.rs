@@ -3,7 +3,7 @@
 use super::file::{OutputError, ReadError, ReadProblem, read_bytes, replace_for_good};
 use super::folder::OutputFolder;
 use crate::door::RelaxationState;
-use crate::scene::{Loaded, Scene, SceneError, load};
+use crate::scene::{Loaded, Scene, SceneError, load, parse};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -71,20 +71,45 @@ pub struct SceneSource {
     /// To where the run goes on, if not to the end of the scene, as the user wrote it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub until: Option<String>,
+    /// The text of the file when it was run.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub text: Option<String>,
 }
 
 impl SceneSource {
-    /// Reads the scene again, to be run to where `until` says.
+    /// Reads the scene from its file again, to be run to where `until` says.
     ///
     /// # Errors
     /// As [`load`].
     pub fn load(&self) -> Result<Loaded, SceneError> {
-        let mut loaded = load(&self.path, &self.set)?;
+        self.read(|set| load(&self.path, set))
+    }
+
+    /// Reads the scene from the recorded text, to be run to where `until` says; files that it names are looked for
+    /// beside where its own lay. None where no text was recorded.
+    ///
+    /// # Errors
+    /// As [`parse`].
+    pub fn recorded(&self) -> Option<Result<Loaded, SceneError>> {
+        let (name, text) = (self.path.display().to_string(), self.text.as_ref()?);
+        Some(self.read(|set| parse(&name, text, set)))
+    }
+
+    /// Whether the file is not there.
+    pub fn is_gone(&self) -> bool {
+        !self.path.exists()
+    }
+
+    fn read(
+        &self,
+        read: impl Fn(&[(String, String)]) -> Result<Loaded, SceneError>,
+    ) -> Result<Loaded, SceneError> {
+        let mut loaded = read(&self.set)?;
         if let Some(until) = &self.until {
             // Set after the file is read: intervals that follow from the end stay as they are.
             let with_end: Vec<_> =
                 self.set.iter().cloned().chain([("time.end".to_string(), until.clone())]).collect();
-            loaded.scene.time.end = load(&self.path, &with_end)?.scene.time.end;
+            loaded.scene.time.end = read(&with_end)?.scene.time.end;
         }
         Ok(loaded)
     }
