@@ -6,10 +6,11 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use stickslip::image::{Image, write_animation};
 
-const GIF: Kind<'static> = Kind { name: "GIF", starts: &[b"GIF8"] };
-const WEBM: Kind<'static> = Kind { name: "WebM", starts: &[b"\x1aE\xdf\xa3"] };
-const MP4: Kind<'static> =
-    Kind { name: "MP4", starts: &[b"\0\0\0\x18ftyp", b"\0\0\0\x1cftyp", b"\0\0\0\x20ftyp"] };
+/// What films say in a comment.
+const MARK: &str = "Stickslip";
+const GIF: Kind<'static> = Kind { name: "GIF", start: b"GIF8", mark: MARK.as_bytes() };
+const WEBM: Kind<'static> = Kind { name: "WebM", start: b"\x1aE\xdf\xa3", mark: MARK.as_bytes() };
+const MP4: Kind<'static> = Kind { name: "MP4", start: b"\0\0\0", mark: MARK.as_bytes() };
 
 /// Kinds of animations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,6 +68,8 @@ fn write_gif(
         if let Some(to) = to.take() {
             let mut begun = gif::Encoder::new(to, width, height, &[]).map_err(io::Error::other)?;
             begun.set_repeat(gif::Repeat::Infinite).map_err(io::Error::other)?;
+            let comment = gif::AnyExtension::from(gif::Extension::Comment);
+            begun.write_raw_extension(comment, &[MARK.as_bytes()]).map_err(io::Error::other)?;
             encoder = Some(begun);
         }
         let mut frame = if image.opacity.is_empty() {
@@ -132,7 +135,7 @@ fn ffmpeg(path: &Path, codec: &[&str], (first, rate): (&Image, f64)) -> io::Resu
     let mut command = Command::new("ffmpeg");
     command.args(["-hide_banner", "-loglevel", "error", "-y", "-f", "rawvideo", "-pix_fmt", "rgb24"]);
     command.args(["-s", &format!("{width}x{height}"), "-r", &rate.to_string(), "-i", "-"]);
-    command.args(["-vf", &padding(first)]).args(codec).arg(out);
+    command.args(["-vf", &padding(first), "-metadata", &format!("comment={MARK}")]).args(codec).arg(out);
     let child = command.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::piped()).spawn();
     child.map_err(|error| match error.kind() {
         ErrorKind::NotFound => io::Error::new(
@@ -165,6 +168,7 @@ mod tests {
             delays.push(frame.delay);
         }
         assert_eq!(delays, [5, 5, 5]);
+        write(&path, FilmKind::Gif, images(), 20.0).expect("its own it replaces");
         std::fs::write(&path, "precious").expect("written");
         assert!(write(&path, FilmKind::Gif, images(), 20.0).is_err(), "what is no GIF stays");
     }

@@ -126,20 +126,43 @@ fn files_of_others_are_not_replaced() {
         assert_eq!(ran.code, Some(2), "{arguments:?}: {}", ran.stderr);
         assert!(ran.stderr.contains("it is there already"), "{arguments:?}: {}", ran.stderr);
     }
+    // Files of the same kind, which others made.
+    let mut png = Vec::new();
+    let mut encoder = png::Encoder::new(&mut png, 1, 1);
+    encoder.add_text_chunk("Software".to_owned(), "Camera 1.0".to_owned()).unwrap();
+    encoder.write_header().unwrap().write_image_data(&[7]).unwrap();
+    let xml = b"<?xml version=\"1.0\"?>\n<graphml/>\n";
+    for (name, bytes, command) in [
+        ("own.png", &png[..], "render"),
+        ("own.svg", b"<svg xmlns=\"http://www.w3.org/2000/svg\"/>", "plot"),
+        ("own.pdf", b"%PDF-1.7\n1 0 obj\n<</Producer (Camera 1.0)>>\n", "plot"),
+        ("own.graphml", xml, "network"),
+        ("own.gif", b"GIF89a, and so on", "render --animate"),
+    ] {
+        fs::write(workplace.path(name), bytes).unwrap();
+        let words: Vec<&str> = command.split(' ').chain(["scene.results", "--out", name]).collect();
+        let ran = workplace.run(&words);
+        assert_eq!(ran.code, Some(2), "{name}: {}", ran.stderr);
+        assert!(ran.stderr.contains("does not say that Stickslip made it"), "{name}: {}", ran.stderr);
+        assert_eq!(fs::read(workplace.path(name)).unwrap(), bytes, "{name}");
+        fs::remove_file(workplace.path(name)).unwrap();
+        for _ in 0..2 {
+            workplace.succeed(&words);
+        }
+    }
     // Scenes of measurements are written by their names; one of them is somebody's own.
     let listed = workplace.succeed(&["bench", "--scenes", "scenes", "--only", "P1", "--tiny"]);
     let own = fs::read_dir(workplace.path("scenes")).unwrap().next().unwrap().unwrap().path();
-    fs::write(&own, "years of work").unwrap();
-    let again = workplace.run(&["bench", "--scenes", "scenes", "--only", "P1", "--tiny"]);
-    assert_eq!(again.code, Some(2), "{listed}{}", again.stderr);
-    assert_eq!(fs::read_to_string(&own).unwrap(), "years of work");
+    workplace.succeed(&["bench", "--scenes", "scenes", "--only", "P1", "--tiny"]);
+    let edited = fs::read_to_string(&own).unwrap().replacen("title = \"", "title = \"My \"", 1);
+    for mine in ["years of work", &edited] {
+        fs::write(&own, mine).unwrap();
+        let again = workplace.run(&["bench", "--scenes", "scenes", "--only", "P1", "--tiny"]);
+        assert_eq!(again.code, Some(2), "{listed}{}", again.stderr);
+        assert_eq!(fs::read_to_string(&own).unwrap(), mine);
+    }
     for name in ["thesis.graphml", "thesis.png", "thesis.svg", "index.html", "picture_00000.png"] {
         assert_eq!(fs::read_to_string(workplace.path(name)).unwrap(), "years of work", "{name}");
-    }
-    // Its own it replaces.
-    for _ in 0..2 {
-        workplace.succeed(&["network", "scene.results", "--out", "own.graphml"]);
-        workplace.succeed(&["plot", "scene.results", "--out", "own.svg"]);
     }
 }
 

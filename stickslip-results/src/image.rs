@@ -93,6 +93,8 @@ impl Image {
         encoder.set_color(if opaque { png::ColorType::Rgb } else { png::ColorType::Rgba });
         // Pictures are written while a run goes on: a little larger, but many times faster than with the default.
         encoder.set_compression(png::Compression::Fast);
+        let software = encoder.add_text_chunk("Software".to_string(), "Stickslip".to_string());
+        software.expect("any text is taken");
         encoder
     }
 }

@@ -53,6 +53,8 @@ pub fn svg(chart: &Chart, size: [usize; 2]) -> Result<String, DrawError> {
     page(&area, chart, 1)?;
     area.present().map_err(DrawError::ink)?;
     drop(area);
+    let inside = text.find('>').map_or(0, |end| end + 1);
+    text.insert_str(inside, files::COMMENT);
     Ok(text)
 }
 
@@ -264,6 +266,9 @@ mod tests {
         assert!(std::fs::read(folder.join("chart.PDF")).unwrap().starts_with(b"%PDF-"));
         let png = std::fs::read(folder.join("chart.png")).unwrap();
         assert_eq!(&png[1..4], b"PNG");
+        for name in ["chart.png", "chart.svg", "chart.PDF"] {
+            draw(&chart(), &folder.join(name), [1280, 560]).expect("its own it replaces");
+        }
     }
 
     #[test]

@@ -88,7 +88,7 @@ impl Arguments {
         say(&record.to_string())?;
         let Some(file) = self.json else { return Ok(()) };
         let text = serde_json::to_string_pretty(&record).expect("a record is plain data") + "\n";
-        files::write(&file, files::JSON, |file| file.write_all(text.as_bytes()))
+        files::write(&file, files::MEASUREMENTS, |file| file.write_all(text.as_bytes()))
             .map_err(|error| Failure::Input(miette!("cannot write {}: {error}", file.display())))?;
         say(&format!("{} is written", file.display()))
     }

@@ -31,7 +31,7 @@ impl Arguments {
         }
         let network = Network::read(&results, self.time).map_err(Failure::input)?;
         let out = self.out.unwrap_or_else(|| self.folder.join("network.graphml"));
-        files::write(&out, files::XML, |file| network.write(file))
+        files::write(&out, files::GRAPHML, |file| network.write(file))
             .map_err(|source| Failure::from(DrawError::Write { path: out.clone(), source }))?;
         say(&format!(
             "{} is written: {} bodies, {} contacts, {:.2} on a body that touches, t = {} s",

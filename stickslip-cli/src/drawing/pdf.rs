@@ -6,7 +6,7 @@ use super::DrawError;
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
 use pdf_writer::types::{CidFontType, FontFlags, LineCapStyle, LineJoinStyle, SystemInfo, UnicodeCmap};
-use pdf_writer::{Content, Filter, Finish, Name, Pdf, Rect, Ref, Str};
+use pdf_writer::{Content, Filter, Finish, Name, Pdf, Rect, Ref, Str, TextStr};
 use plotters::style::text_anchor::{HPos, VPos};
 use plotters_backend::{
     BackendColor, BackendCoord, BackendStyle, BackendTextStyle, DrawingBackend, DrawingErrorKind, FontStyle,
@@ -51,6 +51,7 @@ const CATALOG: Ref = Ref::new(1);
 const PAGES: Ref = Ref::new(2);
 const PAGE: Ref = Ref::new(3);
 const CONTENT: Ref = Ref::new(4);
+const INFORMATION: Ref = Ref::new(5);
 const FONT_NAMES: [Name; 2] = [Name(b"F0"), Name(b"F1")];
 const BASE_NAMES: [Name; 2] = [Name(b"STKSLP+DejaVuSans"), Name(b"STKSLP+DejaVuSans-Bold")];
 
@@ -80,6 +81,7 @@ impl PdfPage {
     pub fn finish(self) -> Result<Vec<u8>, DrawError> {
         let PdfPage { size, content, fonts, opacities } = self;
         let mut pdf = Pdf::new();
+        pdf.document_info(INFORMATION).producer(TextStr("Stickslip"));
         pdf.catalog(CATALOG).pages(PAGES);
         pdf.pages(PAGES).kids([PAGE]).count(1);
         let mut page = pdf.page(PAGE);

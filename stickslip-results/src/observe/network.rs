@@ -60,6 +60,7 @@ impl Network {
     pub fn write(&self, sink: impl Write) -> io::Result<()> {
         let mut xml = Writer::new_with_indent(sink, b' ', 1);
         xml.write_event(Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None)))?;
+        xml.write_event(Event::Comment(BytesText::new(" Stickslip ")))?;
         let root =
             xml.create_element("graphml").with_attribute(("xmlns", "http://graphml.graphdrawing.org/xmlns"));
         root.write_inner_content(|xml| {
