@@ -66,6 +66,39 @@ fn control_characters_do_not_reach_files_and_terminals() {
     assert!(!ran.stderr.contains('\u{1b}'), "{:?}", ran.stderr);
 }
 
+/// Of a folder that somebody else made.
+#[test]
+fn control_characters_in_results_do_not_reach_files_and_terminals() {
+    let workplace = workplace();
+    assert_eq!(run(&workplace, &[]).code, Some(0));
+    let replace = |name: &str, from: &str, to: &str| {
+        let path = workplace.path("scene.results").join(name);
+        let text = fs::read_to_string(&path).unwrap();
+        assert!(text.contains(from), "{name}");
+        fs::write(&path, text.replace(from, to)).unwrap();
+    };
+    replace("run.json", "disk", "di\\u001b[31msk");
+    for (words, out) in [
+        (&["plot", "scene.results", "--out", "plot.svg"][..], Some("plot.svg")),
+        (&["plot", "scene.results", "--out", "plot.pdf"], None),
+        (&["network", "scene.results", "--out", "n.graphml"], Some("n.graphml")),
+        (&["render", "scene.results"], None),
+        (&["resume", "scene.results", "--until", "1 ms"], None),
+    ] {
+        let ran = workplace.run(words);
+        assert!(!(ran.stdout + &ran.stderr).contains('\u{1b}'), "{words:?}");
+        if let Some(out) = out {
+            assert!(!fs::read_to_string(workplace.path(out)).unwrap().contains('\u{1b}'), "{words:?}");
+        }
+    }
+    replace("bodies.csv", ",disk,", ",di\u{1b}[31msk,");
+    for words in [&["network", "scene.results"][..], &["plot", "scene.results"]] {
+        let ran = workplace.run(words);
+        refused(&ran, "a name without control characters");
+        assert!(!ran.stderr.contains('\u{1b}'), "{:?}", ran.stderr);
+    }
+}
+
 #[test]
 #[cfg(unix)]
 fn a_pipe_in_the_place_of_a_mesh_is_refused_and_not_waited_for() {

@@ -2,6 +2,7 @@
 
 use miette::Diagnostic;
 use serde::{Deserialize, Serialize};
+use std::fmt::Display;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
@@ -63,17 +64,26 @@ pub enum ReadProblem {
     #[error("{0}")]
     Io(#[from] io::Error),
     /// A table is not as a run writes it.
-    #[error("{0}")]
+    #[error("{}", shown(.0))]
     Table(#[from] csv::Error),
     /// `run.json` is not as a run writes it.
-    #[error("{0}")]
+    #[error("{}", shown(.0))]
     Manifest(#[from] serde_json::Error),
     /// A `.pvd` or `.vtu` file is not XML.
-    #[error("{0}")]
+    #[error("{}", shown(.0))]
     Xml(#[from] quick_xml::Error),
     /// A `.pvd` or `.vtu` file holds something other than a run writes.
-    #[error("{0}")]
+    #[error("{}", shown(.0))]
     Layout(String),
+}
+
+/// A message that may have words of a file in it: what would steer a terminal is written as an escape.
+fn shown(message: &impl Display) -> String {
+    let letter = |letter: char| match letter.is_control() && letter != '\n' {
+        true => letter.escape_default().to_string(),
+        false => letter.to_string(),
+    };
+    message.to_string().chars().map(letter).collect()
 }
 
 impl ReadProblem {

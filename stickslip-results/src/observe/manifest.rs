@@ -269,13 +269,35 @@ impl Manifest {
     /// There is none, or another program wrote it.
     pub fn read(folder: &Path) -> Result<Self, ReadError> {
         let path = folder.join(Self::FILE);
-        let read = || -> Result<Manifest, ReadProblem> { Ok(serde_json::from_slice(&read_bytes(&path)?)?) };
+        let read = || -> Result<Manifest, ReadProblem> {
+            let mut record = serde_json::from_slice(&read_bytes(&path)?)?;
+            replace_control_characters(&mut record);
+            Ok(serde_json::from_value(record)?)
+        };
         let manifest = read().map_err(|problem| problem.at(&path))?;
         if manifest.program != "stickslip" {
             let found = format!("it is the record of `{}`, not of stickslip", manifest.program);
             return Err(ReadProblem::Layout(found).at(&path));
         }
         Ok(manifest)
+    }
+}
+
+/// Puts U+FFFD in the place of each control character in a text of a record; new lines and tabs stay.
+fn replace_control_characters(record: &mut serde_json::Value) {
+    use serde_json::Value;
+    let steers = |letter: char| letter.is_control() && !matches!(letter, '\n' | '\r' | '\t');
+    match record {
+        Value::String(text) if text.contains(steers) => *text = text.replace(steers, "\u{fffd}"),
+        Value::Array(list) => list.iter_mut().for_each(replace_control_characters),
+        Value::Object(map) => {
+            if map.keys().any(|key| key.contains(steers)) {
+                let entries = std::mem::take(map).into_iter();
+                map.extend(entries.map(|(key, value)| (key.replace(steers, "\u{fffd}"), value)));
+            }
+            map.values_mut().for_each(replace_control_characters);
+        }
+        _ => {}
     }
 }
 

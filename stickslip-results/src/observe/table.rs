@@ -66,14 +66,17 @@ impl<'a> From<&'a mut String> for CellValue<'a> {
 }
 
 impl CellValue<'_> {
-    /// Takes what a file has; `None` where that is no number.
-    fn take(self, text: &str) -> Option<()> {
+    /// Takes what a file has; the error says what is allowed there.
+    fn take(self, text: &str) -> Result<(), &'static str> {
         match self {
-            CellValue::Number(number) => *number = text.parse().ok()?,
-            CellValue::Count(count) => *count = text.parse().ok()?,
+            CellValue::Number(number) => *number = text.parse().map_err(|_| "a number")?,
+            CellValue::Count(count) => *count = text.parse().map_err(|_| "a whole number from 0")?,
+            CellValue::Name(_) if text.contains(char::is_control) => {
+                return Err("a name without control characters");
+            }
             CellValue::Name(name) => text.clone_into(name),
         }
-        Some(())
+        Ok(())
     }
 }
 
@@ -290,10 +293,9 @@ pub(super) fn read_rows<R: TableRow>(path: &Path) -> Result<Vec<R>, ReadError> {
             let record = record?;
             for ((name, entry), &place) in row.columns().into_iter().zip(&places) {
                 let (line, text) = (record.position().map_or(0, csv::Position::line), &record[place]);
-                let wrong = || {
-                    ReadProblem::Layout(format!("line {line}: found `{text}` as {name}; allowed: a number"))
-                };
-                entry.take(text).ok_or_else(wrong)?;
+                entry.take(text).map_err(|allowed| {
+                    ReadProblem::Layout(format!("line {line}: found `{text}` as {name}; allowed: {allowed}"))
+                })?;
             }
             Ok(row.clone())
         };
@@ -350,9 +352,11 @@ mod tests {
     fn what_is_no_table_of_such_rows_says_why() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("table.csv");
-        for (text, expected) in
-            [("time,name\n", "no column `body`"), ("body,time\na,1\nb,x\n", "line 3: found `x` as time")]
-        {
+        for (text, expected) in [
+            ("time,name\n", "no column `body`"),
+            ("body,time\na,1\nb,x\n", "line 3: found `x` as time; allowed: a number"),
+            ("body,time\nb\u{1b}[31m,0\n", "found `b\\u{1b}[31m` as body; allowed: a name without control"),
+        ] {
             fs::write(&path, text).unwrap();
             let error = read_rows::<FieldPlace>(&path).unwrap_err().to_string();
             assert!(error.contains(expected), "{error}");
