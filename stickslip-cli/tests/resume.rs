@@ -254,6 +254,75 @@ fn a_run_that_did_not_finish_stays_until_another_has() {
     assert_eq!(run(&[COARSE]).code, Some(0), "a finished run is no reason to ask");
 }
 
+/// Disks that were let fall into a box, and are stirred by its floor.
+const PACKING: &str = r#"
+gravity = [0, "-9.81 m/s^2"]
+[space]
+dimension = "plane-strain"
+cell = "2 mm"
+[time]
+end = "25 ms"
+[materials.rubber]
+density = "1100 kg/m^3"
+neo_hookean = { young_modulus = "100 kPa", poisson_ratio = 0.4 }
+[[packings]]
+name = "disk"
+material = "rubber"
+shape.ball = { center = [0, 0], radius = "5 mm" }
+sizes.numbers = [[1, 1], [1.4, 1]]
+within.box = { min = [0, 0], max = ["6 cm", "9 cm"] }
+count = 24
+settle = [0, -1]
+[[bodies]]
+name = "walls"
+material = "rubber"
+shape.union = [
+    { half_space = { point = [0, 0], normal = [0, 1] } },
+    { half_space = { point = [0, 0], normal = [1, 0] } },
+    { half_space = { point = ["6 cm", 0], normal = [-1, 0] } },
+]
+rigid = { velocity = [0, "0.1 * sin(500 * t)"] }
+[[contact]]
+between = ["disk *", "any"]
+friction = 0.3
+[outputs]
+tables = "1 ms"
+checkpoints = "1 ms"
+"#;
+
+/// Made, killed, gone on with, and the beginning of another scene.
+#[test]
+fn a_settled_packing_outlives_a_kill_and_begins_another_scene() {
+    let workplace = Workplace::new();
+    workplace.write("packing.toml", PACKING);
+    workplace.succeed(&["run", "packing.toml", "--out", "whole"]);
+    let mut child = workplace.command(&["run", "packing.toml", "--out", "parts"]);
+    let mut child = child.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+    let parts = workplace.path("parts");
+    let since = Instant::now();
+    while !has_checkpoint(&parts) {
+        assert!(since.elapsed() < Duration::from_secs(60), "no checkpoint");
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    assert_eq!(record(&parts)["status"], "running", "killed before its end");
+    workplace.succeed(&["resume", "parts"]);
+    assert_eq!(record(&parts)["resumed"].as_array().unwrap().len(), 1);
+    assert!(outcome(&workplace.path("whole")) == outcome(&parts));
+
+    let stamp = "[[bodies]]\nname = \"stamp\"\nmaterial = \"rubber\"\n\
+        shape.box = { min = [\"1 cm\", \"9 cm\"], max = [\"5 cm\", \"10 cm\"] }\n[start]\nfrom = \"parts\"\n";
+    workplace.write("pressed.toml", &(PACKING.to_owned() + stamp));
+    let pressed = workplace.run(&["run", "pressed.toml", "--set", "time.end=2 ms"]);
+    assert_eq!(pressed.code, Some(0), "{}", pressed.stderr);
+    assert!(
+        pressed.stderr.contains("25 of 26 bodies begin as they were at t = 0.025 s"),
+        "{}",
+        pressed.stderr
+    );
+}
+
 /// From the scene of a run that settled: what is new and what is left out is told before the run.
 #[test]
 fn check_says_what_begins_from_another_run_and_refuses_what_the_run_would() {
