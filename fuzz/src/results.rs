@@ -62,7 +62,7 @@ pub fn record_seeds() -> Vec<Vec<u8>> {
 }
 
 /// Tables of a run.
-const TABLES: [&str; 11] = [
+const TABLES: [&str; 15] = [
     "bodies.csv",
     "energy.csv",
     "contacts.csv",
@@ -74,6 +74,10 @@ const TABLES: [&str; 11] = [
     "fronts.csv",
     "front_speeds.csv",
     "fringes.csv",
+    "reactions.csv",
+    "groups.csv",
+    "group_contacts.csv",
+    "removed.csv",
 ];
 
 /// Reads a table: the first byte says which.
@@ -99,7 +103,11 @@ pub fn tables(bytes: &[u8]) {
             7 => drop(results.sections_table()),
             8 => drop(results.fronts_table()),
             9 => drop(results.front_speeds_table()),
-            _ => drop(results.fringes_table()),
+            10 => drop(results.fringes_table()),
+            11 => drop(results.reactions_table()),
+            12 => drop(results.groups_table()),
+            13 => drop(results.group_contacts_table()),
+            _ => drop(results.removed_table()),
         }
         if is_drawn(bytes) {
             let table = [

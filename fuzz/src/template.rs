@@ -11,7 +11,7 @@ use tempfile::TempDir;
 /// Some of every output.
 pub const SCENE: &str = r#"
 gravity = [0, -9.81]
-space = { dimension = "plane-strain", cell = 0.25 }
+space = { dimension = "plane-strain", cell = 0.25, domain = { min = [-2, -1], max = [2, 3], leaving = "remove" } }
 time.end = 0.02
 [materials.m]
 density = 1000
@@ -57,12 +57,19 @@ particles = 0.01
 grid = 0.02
 samples = 0.005
 checkpoints = 0.01
+reactions = ["floor"]
 [outputs.fringes]
 interval = 0.01
 samples = 2
 stress_parameter = 4e3
 width = 40
 bodies = ["low", "high"]
+[[outputs.groups]]
+name = "balls"
+bodies = ["low", "high"]
+[[outputs.groups]]
+name = "all"
+bodies = ["*"]
 [[outputs.sections]]
 name = "waist"
 point = [0, 0.3]
