@@ -12,7 +12,7 @@ use stickslip::column::ColumnDescription;
 use stickslip::door::{
     BodyState, ColumnPlace, ColumnRef, ContactPatch, ContactSum, GridSnapshot, JointState, Ledger, LoadState,
     NoColumn, ParticleSnapshot, ParticleView, RelaxationState, RemovedParticles, RestoreError, SavedColumn,
-    SavedState, Simulation, StepError, StepLimit, TracedParticle, View, WallState, WriteError,
+    SavedState, Simulation, StepError, StepLimit, TracedParticle, View, WallState, WriteError, WrittenValues,
 };
 use stickslip::rigid::Pose;
 use stickslip::scene::StartVelocities;
@@ -189,6 +189,10 @@ impl View for Handle {
 
     fn removed(&self) -> Vec<RemovedParticles> {
         self.0.lock().removed()
+    }
+
+    fn written(&self) -> Vec<WrittenValues> {
+        self.0.lock().written()
     }
 
     fn walls(&self) -> Vec<WallState> {

@@ -169,6 +169,48 @@ def test_velocities_are_written_between_steps():
     assert ball.state.mass == pytest.approx(0.25 * len(ball), rel=1e-12)
 
 
+def test_the_ledger_is_told_what_is_written(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    sim = flying().simulation()
+    sim.run(until=0.02)
+    ball = sim.bodies["ball"]
+    kinetic = sim.ledger().kinetic
+    for name, values in [("velocity", -2.0 * ball.velocity), ("spin", 100.0), ("mass", 1.5 * ball.mass)]:
+        before = sim.ledger()
+        ball.set(name, values)
+        after = sim.ledger()
+        assert after.kinetic > before.kinetic + 0.1 * kinetic
+        assert after.external_work > before.external_work
+        assert after.total == pytest.approx(before.total, abs=1e-12 * after.kinetic)
+    sim.save("written.checkpoint")
+    again = flying().simulation()
+    again.restore("written.checkpoint")
+    assert again.engine.ledger() == sim.engine.ledger(), "with what was written"
+
+
+def test_a_run_is_sound_though_velocities_and_masses_are_written(tmp_path):
+    writes = []
+
+    def write(sim):
+        if not 0.06 < sim.time < 0.14:
+            return
+        ball = sim.bodies["ball"]
+        arm = ball.position - ball.state.position[:2]
+        turn = 4.0 * np.stack([-arm[:, 1], arm[:, 0]], axis=1)
+        ball.set("velocity", ball.velocity + turn - (5.0, 0.0))
+        ball.set("mass", 1.1 * ball.mass)
+        writes.append(sim.time)
+
+    sim = flying().simulation()
+    sim.bodies["ball"].set("velocity", (6.0, 0.0))
+    summary = sim.run(out=tmp_path / "results", every=0.05, callback=write)
+    assert len(writes) == 1 and summary.warnings == []
+    assert abs(summary.relative_energy_drift) < 1e-3
+    assert abs(summary.end.external_work - summary.start.external_work) > 0.1 * summary.start.kinetic
+    energy = ss.Results(tmp_path / "results").energy
+    assert energy["external_work"][0] == summary.start.external_work > 0.0
+
+
 @pytest.mark.parametrize(
     ("name", "values", "message"),
     [

@@ -68,6 +68,11 @@ pub trait View {
     fn removed(&self) -> Vec<RemovedParticles> {
         Vec::new()
     }
+    /// What [`Simulation::write`] changed since the start, in the order of the bodies; nothing of simulations that
+    /// cannot be written to.
+    fn written(&self) -> Vec<WrittenValues> {
+        Vec::new()
+    }
     /// All particles now, ordered by body and then by the particle's number in its body.
     fn snapshot(&self) -> ParticleSnapshot;
     /// Shows every particle of a body to `look`, in no order that means anything.
@@ -143,7 +148,7 @@ pub trait Simulation: View + Send {
     fn settle(&mut self) {}
     /// Gives the particles of a body other values in a column: the entries that the motion leaves free of one particle
     /// after the other, in the order of memory. [`WRITABLE`] names the columns. The next step is as long as is stable
-    /// with them.
+    /// with them. The ledger counts the energy that comes in with them as external work, and [`View::written`] has it.
     ///
     /// # Errors
     /// There is no such column, or it is not writable; too many values or too few; one that is not finite, and a mass
@@ -206,8 +211,8 @@ pub struct Ledger {
     pub strain: f64,
     /// Potential energy in gravity, zero at the origin; zero where gravity varies in time, whose work is external [J].
     pub potential: f64,
-    /// Work done on the bodies by prescribed motion, loads and supports, less the energy that went with particles which
-    /// left the domain [J].
+    /// Work done on the bodies by prescribed motion, loads and supports, and what was written to particles between
+    /// steps, less the energy that went with particles which left the domain [J].
     pub external_work: f64,
     /// Dissipated by friction, cohesion and viscosity of contacts [J].
     pub friction: f64,
@@ -264,6 +269,20 @@ pub struct RemovedParticles {
     /// Their momentum [kg m/s].
     pub momentum: [f64; 3],
     /// Their angular momentum about the origin [kg m^2/s].
+    pub angular_momentum: [f64; 3],
+}
+
+/// What a body has more since the start by [`Simulation::write`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct WrittenValues {
+    /// How often values were written.
+    pub count: u64,
+    /// Kinetic, strain and potential energy, and what its material has dissipated [J]: the latter and the strain energy
+    /// are those of its mass.
+    pub energy: f64,
+    /// Momentum [kg m/s].
+    pub momentum: [f64; 3],
+    /// Angular momentum about the origin [kg m^2/s].
     pub angular_momentum: [f64; 3],
 }
 

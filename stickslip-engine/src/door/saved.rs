@@ -1,7 +1,6 @@
 //! The state of a simulation as data: what a checkpoint holds of it.
 
-use super::ParticleSnapshot;
-use super::RemovedParticles;
+use super::{ParticleSnapshot, RemovedParticles, WrittenValues};
 use crate::column::Kind;
 use crate::contact::ContactSums;
 use crate::load::LoadSums;
@@ -46,6 +45,9 @@ pub struct SavedState {
     /// What left the domain, body by body; nothing where nothing did.
     #[serde(default)]
     pub(crate) removed: Vec<RemovedParticles>,
+    /// What was written to particles between steps, body by body; nothing where nothing was.
+    #[serde(default)]
+    pub(crate) written: Vec<WrittenValues>,
     /// Whether it comes from a snapshot, which knows less.
     #[serde(skip)]
     pub(crate) of_snapshot: bool,
@@ -99,6 +101,7 @@ impl SavedState {
             walls: Vec::new(),
             gravity_work: 0.0,
             removed: Vec::new(),
+            written: Vec::new(),
             longest_rigid: None,
             of_snapshot: true,
         }

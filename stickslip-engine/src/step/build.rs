@@ -13,7 +13,7 @@ use crate::boundary::{Boundary, Wall};
 use crate::check;
 use crate::contact::{ContactSums, Rules};
 use crate::damping::{BulkViscosity, NodeDamping, viscosity_columns};
-use crate::door::{RemovedParticles, Simulation};
+use crate::door::{RemovedParticles, Simulation, WrittenValues};
 use crate::geometry::{Curved, Filling, Mirror, MirroredShape, ParticleSite, Shape, fill};
 use crate::grid::{Lattice, Periods, SIDE};
 use crate::initial_stress::{self, InitialStress};
@@ -148,6 +148,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let origin = scene.domain.as_ref().map_or([0.0; 3], |domain| domain.min);
         let filled = bodies.iter().map(|body: &Body<T, D>| body.particles.len()).collect();
         let removed = vec![RemovedParticles::default(); bodies.len()];
+        let written = vec![WrittenValues::default(); bodies.len()];
         let tallies = scene.outputs.measurements.faces().next().is_some();
         let points = |load: &scene::Load| LoadPoints::new(scene, load, bodies[load.body].particles.len());
         let loads = scene.loads.iter().map(points).collect();
@@ -183,6 +184,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 loads: vec![LoadSums::default(); scene.loads.len()],
                 joints: vec![JointSums::default(); scene.joints.len()],
                 removed,
+                written,
                 springs: vec![JointSums::default(); scene.springs.len()],
                 walls: vec![
                     WallSums::default();

@@ -21,6 +21,7 @@ impl<T: Real, const D: usize> State<T, D> {
             ref springs,
             ref walls,
             ref removed,
+            ref written,
             longest_rigid,
             damping,
             impacts,
@@ -42,6 +43,7 @@ impl<T: Real, const D: usize> State<T, D> {
         self.springs.clone_from(springs);
         self.walls.clone_from(walls);
         self.removed.clone_from(removed);
+        self.written.clone_from(written);
         (self.longest_rigid, self.damping, self.relaxation) = (longest_rigid, damping, relaxation);
         (self.impacts, self.gravity_work, self.signal) = (impacts, gravity_work, signal);
         (self.time, self.steps) = (time, steps);

@@ -7,7 +7,9 @@ use super::unbounded::Unbounded;
 use crate::basis::Basis;
 use crate::body::{Body, Particle};
 use crate::column::{HALF_SIDES, INITIAL_STRETCH};
-use crate::door::{RemovedParticles, RestoreError, SavedBody, SavedColumn, SavedState, SavedUnbounded};
+use crate::door::{
+    RemovedParticles, RestoreError, SavedBody, SavedColumn, SavedState, SavedUnbounded, WrittenValues,
+};
 use crate::lanes::Laned;
 use crate::load::{LoadPoints, place_of};
 use crate::particles::{ColumnStart, Particles};
@@ -49,12 +51,17 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             walls: self.state.walls.clone(),
             longest_rigid: Some(self.state.longest_rigid).filter(|step| step.is_finite()),
             removed: self.state.removed.iter().copied().filter(|_| self.has_removed()).collect(),
+            written: self.state.written.iter().copied().filter(|_| self.was_written()).collect(),
             of_snapshot: false,
         }
     }
 
     fn has_removed(&self) -> bool {
         self.state.removed.iter().any(|removed| removed.count > 0)
+    }
+
+    fn was_written(&self) -> bool {
+        self.state.written.iter().any(|written| written.count > 0)
     }
 
     /// Takes up a state of the same scene.
@@ -115,6 +122,10 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         state.removed = match saved.removed.len() {
             count if count == wanted => saved.removed,
             _ => vec![RemovedParticles::default(); wanted],
+        };
+        state.written = match saved.written.len() {
+            count if count == wanted => saved.written,
+            _ => vec![WrittenValues::default(); wanted],
         };
         (state.loads, state.joints, state.springs) = (saved.loads, saved.joints, saved.springs);
         state.longest_rigid = saved.longest_rigid.unwrap_or(state.longest_rigid);

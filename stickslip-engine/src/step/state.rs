@@ -14,7 +14,7 @@ use crate::body::{Body, Totals};
 use crate::boundary::{Boundary, Wall};
 use crate::contact::{ContactSums, Impulses, Rules, Survey};
 use crate::damping::{BulkViscosity, NodeDamping};
-use crate::door::RemovedParticles;
+use crate::door::{RemovedParticles, WrittenValues};
 use crate::grid::{ActiveBlocks, Field, Lattice, Periods};
 use crate::load::{LoadPoints, LoadSums, SpringPoints};
 use crate::scene::{Gravity, Joint, Leaving, Time, Transfer};
@@ -77,6 +77,8 @@ pub struct State<T, const D: usize> {
     pub joints: Vec<JointSums>,
     /// What left the domain with particles since the start, body by body.
     pub removed: Vec<RemovedParticles>,
+    /// What was written to particles between steps since the start, body by body.
+    pub written: Vec<WrittenValues>,
     /// What springs did since the start, on the first of their bodies.
     pub springs: Vec<JointSums>,
     /// What bodies did to the domain's faces since the start, of each wall body by body; empty where nobody asks.

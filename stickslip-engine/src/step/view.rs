@@ -13,7 +13,7 @@ use crate::contact::Span;
 use crate::door::{
     BodyState, ColumnPlace, ColumnRef, ColumnSource, ContactPatch, ContactSum, GridSnapshot, JointState,
     Ledger, LoadState, NoColumn, ParticleSnapshot, ParticleView, RelaxationState, RemovedParticles,
-    SnapshotColumn, StepLimit, TracedParticle, View, WallState,
+    SnapshotColumn, StepLimit, TracedParticle, View, WallState, WrittenValues,
 };
 use crate::grid::{node_at, nodes_per_block};
 use crate::lanes::Laned;
@@ -191,6 +191,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> View for Engine<T, D, B> {
                 + self.state.gravity_work
                 + loads::work(&self.state.loads)
                 + self.state.joints.iter().chain(&self.state.springs).map(|joint| joint.work).sum::<f64>()
+                + self.state.written.iter().map(|written| written.energy).sum::<f64>()
                 - removed(|removed| removed.energy),
             adhesion: self.state.contact_sums.adhesion,
             damping: self.state.damping,
@@ -280,6 +281,10 @@ impl<T: Laned, const D: usize, B: Basis<T>> View for Engine<T, D, B> {
 
     fn removed(&self) -> Vec<RemovedParticles> {
         if self.removes_leavers() { self.state.removed.clone() } else { Vec::new() }
+    }
+
+    fn written(&self) -> Vec<WrittenValues> {
+        self.state.written.clone()
     }
 
     fn poses(&self) -> Vec<Option<Pose>> {

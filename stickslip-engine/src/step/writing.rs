@@ -2,12 +2,14 @@
 
 use super::Engine;
 use crate::basis::Basis;
-use crate::door::{NoColumn, View, WRITABLE, WriteError};
+use crate::body::{Body, Totals};
+use crate::door::{NoColumn, View, WRITABLE, WriteError, WrittenValues};
 use crate::lanes::Laned;
 use std::sync::Mutex;
 
 impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
-    /// Gives the particles of a body other values in a column, see [`crate::door::Simulation::write`].
+    /// Gives the particles of a body other values in a column, see [`crate::door::Simulation::write`], and books what
+    /// that changed.
     ///
     /// # Errors
     /// What cannot be written; then nothing is changed.
@@ -35,12 +37,31 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         if let Some(at) = values.iter().position(|&value| !fits(kept(value))) {
             return Err(WriteError::Value { place: at / entries, value: values[at], allowed });
         }
+        let before = Body::totals(&self.state.bodies[number]);
         let particles = &mut self.state.bodies[number].particles;
         for entry in 0..entries {
             let line = particles.line_mut(first + entry).iter_mut();
             line.zip(values[entry..].iter().step_by(entries)).for_each(|(x, &value)| *x = T::of(value));
         }
+        let gravity = self.settings.gravity.constant().unwrap_or_default();
+        self.state.written[number].take((&before, &Body::totals(&self.state.bodies[number])), gravity);
         (self.state.signal, self.workspace.totals) = (None, Mutex::default());
         Ok(())
+    }
+}
+
+impl WrittenValues {
+    /// Books what a body has more.
+    fn take(&mut self, (before, after): (&Totals, &Totals), gravity: [f64; 3]) {
+        let gained = |of: fn(&Totals) -> f64| of(after) - of(before);
+        let gained3 = |of: fn(&Totals) -> [f64; 3]| [0, 1, 2].map(|i| of(after)[i] - of(before)[i]);
+        self.count += 1;
+        let moment = gained3(|totals| totals.first_moment);
+        let potential: f64 = (0..3).map(|i| -gravity[i] * moment[i]).sum();
+        self.energy += gained(|totals| totals.kinetic + totals.strain + totals.plastic) + potential;
+        let (momentum, angular) =
+            (gained3(|totals| totals.momentum), gained3(|totals| totals.angular_momentum));
+        (0..3).for_each(|i| self.momentum[i] += momentum[i]);
+        (0..3).for_each(|i| self.angular_momentum[i] += angular[i]);
     }
 }

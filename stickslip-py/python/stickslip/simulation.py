@@ -105,7 +105,8 @@ class Body:
 
         `values` have the shape and the order of the column, or are broadcast to it: `ball.set("velocity", (0, 1))`.
         They must be finite, and masses above zero; the next step is as long as is stable with the new velocities. It
-        follows from the density of the material: for particles far lighter than that, lower `time.courant`.
+        follows from the density of the material: for particles far lighter than that, lower `time.courant`. The energy
+        that comes in is external work of the ledger, whose total stays.
         """
         known = next((column for column in self.columns if column.name == name), None)
         values = np.asarray(values, dtype=float)

@@ -8,7 +8,8 @@
 //! after every step and every state that is taken up, once the simulation has settled, and there it has the same
 //! values. What is written is read back, moves the body as it should, and is refused where it cannot be.
 
-use stickslip::door::{NumberFormat, Simulation, WriteError};
+use stickslip::door::{Ledger, NumberFormat, Simulation, WriteError};
+use stickslip::scene::Scene;
 use stickslip::{scene, step};
 
 fn balls(dimension: &str, precision: &str) -> String {
@@ -138,6 +139,22 @@ fn columns_stay_where_they_are_once_settled() {
     }
 }
 
+/// The total stays within round-off, and what was written is part of the state, which older checkpoints lack.
+fn what_was_written_is_booked(scene: &Scene, simulation: &dyn Simulation, before: &Ledger) {
+    let (after, written) = (simulation.ledger(), simulation.written()[0]);
+    assert!((after.total - before.total).abs() < 1e-12 * after.kinetic, "{before:?} {after:?}");
+    assert_eq!((written.count, after.external_work - before.external_work), (2, written.energy));
+    let gained = [0, 1, 2].map(|i| after.momentum[i] - before.momentum[i]);
+    assert!((0..3).all(|i| (written.momentum[i] - gained[i]).abs() < 1e-12 * after.momentum[0].abs()));
+    let mut saved = serde_json::to_value(simulation.save().unwrap()).unwrap();
+    let mut other = step::build(scene).unwrap();
+    other.restore(serde_json::from_value(saved.clone()).unwrap()).unwrap();
+    assert_eq!(other.ledger(), after);
+    assert!(saved.as_object_mut().unwrap().remove("written").is_some());
+    other.restore(serde_json::from_value(saved).unwrap()).unwrap();
+    assert_eq!(other.ledger().external_work, before.external_work);
+}
+
 #[test]
 fn what_is_written_moves_bodies_and_nonsense_is_refused() {
     for (dimension, entries) in [("3d", 3), ("plane-strain", 2)] {
@@ -152,8 +169,10 @@ fn what_is_written_moves_bodies_and_nonsense_is_refused() {
         let count = simulation.column(0, "mass").unwrap().len();
 
         let velocities: Vec<f64> = (0..count * entries).map(|i| [40.0, -30.0, 0.0][i % entries]).collect();
+        let ledger = simulation.ledger();
         simulation.write(0, "velocity", &velocities).unwrap();
         simulation.write(0, "mass", &vec![0.5; count]).unwrap();
+        what_was_written_is_booked(&scene, &*simulation, &ledger);
         let now = &simulation.bodies()[0];
         let off = |found: f64, expected: f64| (found - expected).abs() > 1e-6 * expected.abs();
         assert!(!off(now.mass, 0.5 * count as f64) && !off(now.velocity[0], 40.0), "{now:?}");

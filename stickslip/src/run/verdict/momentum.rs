@@ -10,7 +10,8 @@ use serde::{Deserialize, Serialize};
 ///
 /// ```text
 /// |p(t) - p(0) - J(t)| / max(|J|, sum over bodies of M v_rms),   J: gravity, loads, supports, joints to the ground or to
-///                                                                prescribed bodies, contact with prescribed bodies
+///                                                                prescribed bodies, contact with prescribed bodies,
+///                                                                values written between steps
 /// ```
 /// along the axes along which no face of the domain acts. Where the same of one body alone, with what other bodies gave
 /// it in J, is at least half of that, it is named.
@@ -186,6 +187,9 @@ fn impulses(now: &Moving) -> Vec<[f64; 3]> {
     let mut give = |body: usize, impulse: [f64; 3]| given[body] = add(given[body], impulse);
     for (load, state) in scene.loads.iter().zip(view.loads()) {
         give(load.body, state.impulse);
+    }
+    for (body, written) in view.written().iter().enumerate() {
+        give(body, written.momentum);
     }
     let joints = view.joints();
     for (joint, state) in scene.joints.iter().zip(&joints) {

@@ -27,6 +27,9 @@ struct Alone {
     velocity: [f64; 3],
     angular_momentum: [f64; 3],
     time: f64,
+    /// How often values had been written to it.
+    #[serde(default)]
+    written: u64,
 }
 
 /// Bodies that only act on each other.
@@ -94,14 +97,14 @@ impl SpinCheck {
         let alone = |body: usize| {
             let state = &look.bodies[body];
             let (mass, velocity) = (state.mass, state.velocity);
-            Alone { body, mass, velocity, angular_momentum: own(state), time }
+            Alone { body, mass, velocity, angular_momentum: own(state), time, written: writes(look, body) }
         };
         let pushed = |&body: &usize| look.scene.loads.iter().any(|load| load.body == body);
         // One that is joined to its own images turns against them.
         let joined = |&body: &usize| look.scene.joined_ends(body).iter().any(Option::is_some);
         self.alone = look.free().filter(|body| !pushed(body) && !joined(body)).map(alone).collect();
         if look.bodies.len() > 1 && isolated(look.scene) {
-            self.together = Some(Together { angular_momentum: look.ledger.angular_momentum, scale: 0.0 });
+            self.together = Some(Together { angular_momentum: own_of_all(look), scale: 0.0 });
         }
     }
 }
@@ -116,6 +119,11 @@ fn isolated(scene: &Scene) -> bool {
         && faces.into_iter().all(|face| face == Face::Open)
 }
 
+/// How often values were written to a body between steps.
+fn writes(look: &CheckInputs, body: usize) -> u64 {
+    look.simulation.written().get(body).map_or(0, |written| written.count)
+}
+
 /// Angular momentum about the body's own centre of mass [kg m^2/s].
 fn own(state: &BodyState) -> [f64; 3] {
     minus(state.angular_momentum, cross(state.position, state.velocity.map(|v| state.mass * v)))
@@ -125,8 +133,8 @@ impl Alone {
     fn unpushed(&self, look: &CheckInputs) -> bool {
         let Some(gravity) = look.scene.gravity.constant() else { return false };
         let state = &look.bodies[self.body];
-        // What left the domain took its spin along.
-        if state.mass < self.mass {
+        // What left the domain took its spin along, and what was written brings its own.
+        if state.mass < self.mass || writes(look, self.body) != self.written {
             return false;
         }
         let fallen = look.simulation.time() - self.time;
@@ -179,9 +187,7 @@ impl Together {
         };
         let sizes = look.bodies.iter().map(|state| size(state).max(most(state)));
         self.scale = self.scale.max(sizes.sum());
-        let gone = look.ledger.removed_angular_momentum;
-        let now = [0, 1, 2].map(|i| look.ledger.angular_momentum[i] + gone[i]);
-        let change = norm(minus(now, self.angular_momentum)) / self.scale;
+        let change = norm(minus(own_of_all(look), self.angular_momentum)) / self.scale;
         if change.is_nan() || change <= look.bound(HealthCheck::AngularMomentum) {
             return None;
         }
@@ -191,6 +197,16 @@ impl Together {
         );
         Some(Finding { body: None, position: None, worst: change, message })
     }
+}
+
+/// Angular momentum of all bodies about the origin, with what left the domain and without what was written to them
+/// between steps [kg m^2/s].
+fn own_of_all(look: &CheckInputs) -> [f64; 3] {
+    let (momentum, gone) = (look.ledger.angular_momentum, look.ledger.removed_angular_momentum);
+    let written = look.simulation.written();
+    [0, 1, 2].map(|i| {
+        momentum[i] + gone[i] - written.iter().map(|written| written.angular_momentum[i]).sum::<f64>()
+    })
 }
 
 fn near_face(scene: &Scene, x: [f64; 3]) -> bool {
