@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
+import os
+import re
+import struct
 import subprocess
 import sys
 import types
@@ -12,6 +16,7 @@ import numpy as np
 import pytest
 import stickslip as ss
 from conftest import REPOSITORY, flying, rings, settling
+from stickslip.progress import Progress
 
 
 @pytest.fixture(scope="module")
@@ -299,6 +304,42 @@ def test_progress_is_shown_when_asked_for(tmp_path, capfd, monkeypatch):
     monkeypatch.setattr("stickslip.progress.BETWEEN_LINES", 0.0)
     flying("3d").run(out=tmp_path / "shown", progress=True)
     shown = capfd.readouterr().err
-    assert "t = 2.0000e-01 of 2.0000e-01 s, step " in shown and "particle-steps/s" in shown
+    assert "0 s left, t = 0.2000 of 0.2 s, step " in shown and "particle-steps/s" in shown
     flying().run(out=tmp_path / "quiet")
     assert capfd.readouterr().err == ""
+
+
+def on_a_terminal(columns: int, monkeypatch) -> str:
+    """What progress writes to a terminal of so many columns: at the start, and after 50 s of wall time."""
+    walls = iter([0.0, 0.0, 50.0])
+    monkeypatch.setattr("stickslip.progress.clock", types.SimpleNamespace(monotonic=lambda: next(walls)))
+    pty, termios, fcntl = (pytest.importorskip(name) for name in ("pty", "termios", "fcntl"))
+    other, end = pty.openpty()
+    fcntl.ioctl(end, termios.TIOCSWINSZ, struct.pack("HHHH", 24, columns, 0, 0))
+    with os.fdopen(end, "w") as terminal, contextlib.redirect_stderr(terminal):
+        show = Progress()
+        show(0.0, 1e-4, 0, 60_000, [])
+        show(1.25e-5, 1e-4, 123_456, 60_000, ["a note"])
+        show.close()
+    written = b""
+    # What has no writer any more has an end, which Linux tells as an error.
+    with contextlib.suppress(OSError):
+        while part := os.read(other, 4096):
+            written += part
+    os.close(other)
+    return written.decode()
+
+
+def test_progress_on_a_terminal_fits_and_a_dumb_one_gets_whole_lines(monkeypatch):
+    monkeypatch.setenv("TERM", "xterm")
+    for columns in (40, 80, 120):
+        written = on_a_terminal(columns, monkeypatch)
+        lines = [line for line in re.split(r"[\r\n]+", written.replace("\x1b[K", "")) if line]
+        assert lines[0].startswith("unknown time left") and lines[1] == "t = 1.2500e-05 s: warning: a note"
+        assert max(map(len, lines)) < columns, lines
+        parts = ["5 min 50 s left", "t = 1.250e-05 of 1.000e-04 s", "step 123456", "148.1 M particle-steps/s"]
+        assert lines[2] == ", ".join(parts[: {40: 1, 80: 3, 120: 4}[columns]])
+    monkeypatch.setenv("TERM", "dumb")
+    monkeypatch.setattr("stickslip.progress.BETWEEN_LINES", 0.0)
+    written = on_a_terminal(80, monkeypatch)
+    assert "\x1b" not in written and written.count("\n") == 3 and "particle-steps/s" in written
