@@ -1,0 +1,165 @@
+"""Files of a run are opened by the readers that people use, and tables go to the packages that they compute with.
+
+Set-up: the two rings in the plane, and a ball in space, each with snapshots of particles, surfaces and the grid.
+
+Expected: every reader finds all particles and columns bit for bit; triangles of surfaces enclose the area or the volume
+of the particles (those of the start: within 3 % in the plane and 6 % for the ball, whose surface lies within half a
+particle); the mass of the nodes is that of the particles (round-off). Before the first step the grid has no nodes, and meshio
+refuses files without points. Packages that are not installed are skipped; `./check` installs meshio and VTK, `./check
+--all` the others, too.
+"""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+import stickslip as ss
+from conftest import flying, rings
+
+Found = tuple[np.ndarray, dict[str, np.ndarray], dict[str, np.ndarray]]
+"""Points, cells by their kind, arrays of the points by their names."""
+KINDS = {1: "vertex", 5: "triangle"}
+"""VTK's numbers of the cells that there are."""
+
+
+def by_meshio(path: Path) -> Found:
+    mesh = pytest.importorskip("meshio").read(path)
+    return mesh.points, {block.type: block.data for block in mesh.cells}, mesh.point_data
+
+
+def by_vtk(path: Path) -> Found:
+    io = pytest.importorskip("vtkmodules.vtkIOXML")
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+
+    complaints: list[str] = []
+    reader = io.vtkXMLUnstructuredGridReader()
+    for event in ("ErrorEvent", "WarningEvent"):
+        reader.AddObserver(event, lambda _, name: complaints.append(name))
+    reader.SetFileName(str(path))
+    reader.Update()
+    assert complaints == []
+    grid = reader.GetOutput()
+    data, points = grid.GetPointData(), grid.GetPoints()
+    arrays = {data.GetArrayName(i): vtk_to_numpy(data.GetArray(i)) for i in range(data.GetNumberOfArrays())}
+    kinds = {grid.GetCellType(i) for i in range(grid.GetNumberOfCells())}
+    joined = vtk_to_numpy(grid.GetCells().GetConnectivityArray())
+    cells = {KINDS[kind]: joined.reshape(grid.GetNumberOfCells(), -1) for kind in kinds}
+    return vtk_to_numpy(points.GetData()), cells, arrays
+
+
+def by_pyvista(path: Path) -> Found:
+    mesh = pytest.importorskip("pyvista").read(path)
+    cells = {KINDS[kind]: cells for kind, cells in mesh.cells_dict.items()} if mesh.n_cells else {}
+    return np.asarray(mesh.points), cells, {name: np.asarray(mesh.point_data[name]) for name in mesh.point_data}
+
+
+READERS = [by_meshio, by_vtk, by_pyvista]
+
+
+@pytest.fixture(scope="module", params=["plane", "space"])
+def results(request, tmp_path_factory) -> ss.Results:
+    """Of a run with files of every kind."""
+    folder = tmp_path_factory.mktemp(request.param) / "results"
+    scene = rings() if request.param == "plane" else flying("3d").time(end="10 ms")
+    times = dict(particles="5 ms", surfaces="5 ms", grid="5 ms")
+    scene.outputs(tables="1 ms", snapshots=dict(precision="double"), **times).run(folder)
+    return ss.Results(folder)
+
+
+def files(results: ss.Results, kind: str) -> list[Path]:
+    """The files of a series, in the order of their times."""
+    entries = list(xml.etree.ElementTree.parse(results.folder / f"{kind}.pvd").getroot().iter("DataSet"))
+    times = [float(entry.attrib["timestep"]) for entry in entries]
+    assert times[0] == 0.0 and times[-1] == 0.01 and times == sorted(times)
+    return [results.folder / entry.attrib["file"] for entry in entries]
+
+
+def enclosed(corners: np.ndarray, triangles: np.ndarray, plane: bool) -> float:
+    """Area of triangles in the plane [m^2], volume within those in space, whose normals point outward [m^3]."""
+    a, b, c = (corners[triangles[:, k]] for k in range(3))
+    across = np.cross(b - a, c - a)
+    return float(np.linalg.norm(across, axis=1).sum() / 2 if plane else (a * across).sum() / 6)
+
+
+@pytest.mark.parametrize("read", READERS)
+def test_every_file_of_a_run_is_opened(results, read: Callable[[Path], Found]):
+    frames = [results.frame(number) for number in range(len(results.times))]
+    particles, surfaces, grids = (files(results, kind) for kind in ("particles", "surfaces", "grid"))
+    assert len(particles) == len(frames) == len(surfaces) == len(grids)
+    for frame, *paths in zip(frames, particles, surfaces, grids):
+        (points, cells, arrays), skin = map(read, paths[:2])
+        count = len(frame["number"])
+        assert np.array_equal(points, frame["position"]) and set(arrays) == set(frame) - {"position"}
+        assert np.array_equal(cells["vertex"].ravel(), np.arange(count))
+        for name, found in arrays.items():
+            assert np.array_equal(found.reshape(frame[name].shape), frame[name]), name
+
+        corners, triangles, at_corners = skin
+        plane, own = not corners[:, 2].any(), frame["volume"].sum()
+        assert enclosed(corners, triangles["triangle"], plane) == pytest.approx(own, rel=0.03 if plane else 0.06)
+        assert set(at_corners) == {"velocity", "von_mises", "body"}
+        assert set(at_corners["body"].ravel()) == set(frame["body"])
+
+        if frame.time == 0.0 and read is by_meshio:
+            continue
+        nodes, _, at_nodes = read(paths[2])
+        if frame.time == 0.0:
+            assert len(nodes) == 0, "no step, no nodes"
+            continue
+        assert len(nodes) == len(at_nodes["mass"]) == len(at_nodes["contact_impulse"])
+        assert at_nodes["mass"].sum() == pytest.approx(frame["mass"].sum(), rel=1e-9)
+
+
+def test_a_series_is_opened_by_pyvista(results):
+    pyvista = pytest.importorskip("pyvista")
+    for kind in ("particles", "surfaces", "grid"):
+        reader = pyvista.get_reader(results.folder / f"{kind}.pvd")
+        assert reader.time_values == [0.0, *reader.time_values[1:-1], 0.01]
+        reader.set_active_time_value(0.01)
+        assert reader.read()[0].n_points > 0
+
+
+def test_snapshots_are_clouds_of_pyvista(results):
+    pytest.importorskip("pyvista")
+    frame = results.frame(-1)
+    cloud = frame.to_pyvista()
+    assert cloud.n_points == len(frame["number"]) and np.array_equal(cloud.points, frame["position"])
+    assert np.array_equal(cloud.point_data["stress"], frame["stress"])
+    assert set(cloud.point_data) == set(frame) - {"position"}
+
+
+@pytest.mark.parametrize("package", ["pandas", "polars"])
+def test_tables_are_frames_of_pandas_and_polars(results, package):
+    pytest.importorskip(package)
+    bodies, name = results.bodies, results.names[0]
+    frame = getattr(bodies, f"to_{package}")()
+    assert list(frame.columns) == list(bodies.dtype.names) and len(frame) == len(bodies)
+    of_body = frame[frame["body"] == name] if package == "pandas" else frame.filter(frame["body"] == name)
+    assert np.array_equal(of_body["vx"].to_numpy(), bodies.where(body=name)["vx"])
+
+
+def test_tables_and_snapshots_are_datasets_of_xarray(results):
+    pytest.importorskip("xarray")
+    name = results.names[-1]
+    rows, bodies = results.bodies.where(body=name), results.bodies.to_xarray()
+    assert np.array_equal(bodies["vx"].sel(body=name), rows["vx"])
+    assert np.array_equal(bodies["time"], rows["time"])
+    frame = results.frame(-1)
+    particles = frame.to_xarray()
+    assert particles.attrs["time"] == 0.01 and particles["stress"].attrs == {"unit": "Pa"}
+    assert np.array_equal(particles["stress"], frame["stress"])
+
+
+def test_a_chart_is_drawn_by_matplotlib(results, tmp_path):
+    pytest.importorskip("matplotlib").use("Agg")
+    name = results.names[0]
+    axes = results.plot(name, "vx")
+    (line,) = axes.get_lines()
+    rows = results.bodies.where(body=name)
+    assert np.array_equal(line.get_xdata(), rows["time"]) and np.array_equal(line.get_ydata(), rows["vx"])
+    axes.figure.savefig(tmp_path / "vx.png")
+    assert (tmp_path / "vx.png").read_bytes()[:4] == b"\x89PNG"
