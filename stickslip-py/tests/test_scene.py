@@ -25,6 +25,15 @@ def record(scene: ss.Scene) -> dict:
     return {key: value for key, value in read.items() if key != "title"}
 
 
+def test_two_dimensions_are_plane_strain():
+    scene = ss.Scene(dimension="2d", cell="1 mm", gravity=(0, -9.81))
+    scene.material("steel", density=7800, neo_hookean=dict(bulk_modulus="160 GPa", shear_modulus="80 GPa"))
+    scene.body("ball", material="steel", shape=ss.disk((0, 0.02), 0.01), velocity=(0, -1))
+    read = record(scene.time(end="1 ms"))
+    scene.set(**{"space.dimension": "plane-strain"})
+    assert read == record(scene) and read["dimension"] == "plane-strain"
+
+
 def test_values_come_back_as_they_were_written():
     numbers = [0.1 + 0.2, 1e16, -1e-300, 5e-324, 1.7976931348623157e308, float("inf"), 3, -0.0, 2**62]
     texts = ['a "quoted" \\ word', "tab\tline\nfeed", "\x7f\x01", "ü µ 漢", "", "'''", '"""', "two\nlines", "a\r\nb"]

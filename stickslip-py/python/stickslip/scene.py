@@ -78,7 +78,7 @@ class Scene:
         parameters: Mapping[str, Any] | None = None,
         **space: Any,
     ) -> None:
-        """`dimension` is "plane-strain", "plane-stress" or "3d", `cell` the side of a grid cell [m].
+        """`dimension` is "plane-strain" or "2d", "plane-stress" or "3d", `cell` the side of a grid cell [m].
 
         `gravity` is the acceleration of every body (D,) [m/s^2]; `parameters` are names of your own for numbers and
         words; `space` are further keys of `[space]`, such as `basis`, `precision` and `particles_per_side`.

@@ -1,6 +1,7 @@
 //! Keys and tables: unknown, missing, misplaced; values of the wrong kind or unit.
 
-use crate::{MINIMAL, check};
+use crate::{MINIMAL, check, edited};
+use stickslip_scene::scene::{self, Dimension};
 
 #[test]
 fn keys() {
@@ -64,6 +65,14 @@ fn keys() {
     );
 }
 
+/// Two dimensions are plane strain where nothing else is said, as in other codes.
+#[test]
+fn the_plane_for_short() {
+    let plane = edited(&edited(MINIMAL, "3d", "2d"), "[0, 0, 0]", "[0, 0]");
+    let read = scene::parse("a.toml", &plane, &[]).expect("a scene in the plane");
+    assert_eq!(read.scene.dimension, Dimension::PlaneStrain);
+}
+
 #[test]
 fn types_and_units() {
     check(
@@ -109,13 +118,13 @@ fn types_and_units() {
             ),
             (
                 "\"3d\"",
-                "\"2d\"",
-                "2:13: space.dimension: found \"2d\"; allowed: \"plane-strain\", \"plane-stress\" or \"3d\"",
+                "\"2D\"",
+                "2:13: space.dimension: found \"2D\"; allowed: \"plane-strain\", \"plane-stress\", \"2d\" or \"3d\"; did you mean `2d`?",
             ),
             (
                 "\"3d\"",
                 "\"plane_strain\"",
-                "2:13: space.dimension: found \"plane_strain\"; allowed: \"plane-strain\", \"plane-stress\" or \"3d\"; did you mean `plane-strain`?",
+                "2:13: space.dimension: found \"plane_strain\"; allowed: \"plane-strain\", \"plane-stress\", \"2d\" or \"3d\"; did you mean `plane-strain`?",
             ),
             (
                 "\"1 s\"",

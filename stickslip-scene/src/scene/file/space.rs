@@ -64,6 +64,7 @@ impl Choice for Dimension {
     const WORDS: &'static [(&'static str, Self, &'static str)] = &[
         ("plane-strain", Dimension::PlaneStrain, "Two dimensions, no strain out of the plane."),
         ("plane-stress", Dimension::PlaneStress, "Two dimensions, no stress out of the plane: a thin plate."),
+        ("2d", Dimension::PlaneStrain, "Another word for `plane-strain`."),
         ("3d", Dimension::Space, "Three dimensions."),
     ];
 }
