@@ -114,6 +114,11 @@ impl ReadScene {
         Ok((text, serde_json::to_string(&report).expect("reports are tables of numbers and words")))
     }
 
+    /// Pairs of bodies that have no friction because no rule says how much.
+    fn pairs_without_friction(&self) -> Option<String> {
+        stickslip::check::pairs_without_friction(&self.loaded.scene)
+    }
+
     /// Its simulation, by so many threads or by all processors.
     #[pyo3(signature = (threads=None))]
     fn simulation(&self, py: Python<'_>, threads: Option<usize>) -> PyResult<Engine> {

@@ -45,4 +45,5 @@ def settling() -> ss.Scene:
     scene.material("rubber", density=1000, neo_hookean=dict(young_modulus=1e6, poisson_ratio=0.3))
     scene.body("disk", material="rubber", shape=ss.disk((0, 0.1), 0.1))
     scene.body("floor", material="rubber", shape=ss.half_space((0, 0), (0, 1)), rigid={})
+    scene.contact(friction=0)
     return scene.time(end=0.02)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import json
 import pickle
+import re
 import struct
 import subprocess
 import zlib
@@ -152,6 +153,18 @@ def test_check_is_the_report_of_the_command(command, tmp_path):
     assert ran.stdout.splitlines()[1:] == str(report).rstrip().splitlines()[1:], "all but the title"
     with pytest.raises(ss.SceneError, match="overlap"):
         settling().body("too much", material="rubber", shape=ss.disk((0, 0.1), 0.1)).check()
+
+
+def test_pairs_without_a_word_on_friction_are_warned_of(tmp_path):
+    scene = settling()
+    scene.outputs(particles="never")
+    del scene.document["contact"]
+    said = "the friction of `disk` and `floor` is 0, as no .*contact.* says what it is"
+    for begin in (scene.simulation, lambda: scene.run(tmp_path / "results")):
+        with pytest.warns(ss.StickslipWarning) as warned:
+            begin()
+        (about,) = [warning for warning in warned if "friction" in str(warning.message)]
+        assert re.fullmatch(said, str(about.message)) and about.filename == __file__
 
 
 def test_every_table_of_the_language_has_its_method(tmp_path):

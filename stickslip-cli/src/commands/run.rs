@@ -10,7 +10,7 @@ use clap::Args;
 use miette::{IntoDiagnostic, miette};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
-use stickslip::check::free_memory;
+use stickslip::check::{free_memory, pairs_without_friction};
 use stickslip::door::Simulation;
 use stickslip::observe::{
     ArrivalRow, FrontSpeedRow, Manifest, Patience, Performance, Results, SceneSource, Status,
@@ -269,7 +269,7 @@ impl How {
                 size(limit)
             )));
         }
-        if let Some(pairs) = report.pairs_without_friction() {
+        if let Some(pairs) = pairs_without_friction(scene) {
             self.note(&pairs);
         }
         for warning in report.warnings {

@@ -280,7 +280,10 @@ class Scene:
         return _report(self._read())
 
     def simulation(self, threads: int | None = None) -> Simulation:
-        """The simulation of this scene at time 0, by so many threads or by all processors; the bits are the same."""
+        """The simulation of this scene at time 0, by so many threads or by all processors; the bits are the same.
+
+        Where bodies have no friction because no rule says how much, it warns of them (`StickslipWarning`).
+        """
         return self._simulation(self._read(), threads)
 
     def run(
@@ -299,8 +302,8 @@ class Scene:
         Without `out` the folder is NAME.results here, NAME being that of the file, or `scene`. `checkpoint_every` is
         the wall time between checkpoints [s], None for none at all; `max_time` ends the run with one after so much wall
         time [s]; `max_memory` is what it may take [bytes], without it what is free. `overwrite` begins anew where a run
-        did not finish that could go on. What is doubtful before the run is warned of (`StickslipWarning`); what was
-        found doubtful during it is in `Summary.warnings`.
+        did not finish that could go on. What is doubtful before the run is warned of (`StickslipWarning`), and bodies that
+        have no friction because no rule says how much; what was found doubtful during it is in `Summary.warnings`.
         """
         name = "scene" if self._file is None else self._file[0].stem
         read = self._read()
@@ -323,7 +326,11 @@ class Scene:
         )
 
     def _simulation(self, read: _core.ReadScene, threads: int | None) -> Simulation:
-        return Simulation(read.simulation(threads), copy.deepcopy(self))
+        simulation = Simulation(read.simulation(threads), copy.deepcopy(self))
+        pairs = read.pairs_without_friction()
+        if pairs is not None:
+            warnings.warn(pairs, StickslipWarning, stacklevel=3)
+        return simulation
 
     def _source(self, out: Path) -> tuple[tuple[Path, list[tuple[str, str]]], tuple[str, bool]]:
         """Where a run in the folder `out` comes from: file and what was set, the text, and whether there is no file."""

@@ -34,7 +34,7 @@ pub use hertz::{Hertz, HertzPatch};
 pub use loads::LoadReport;
 pub use memory::Footprint;
 pub use report::{BodyReport, MachineSpeed, MaterialReport, Report, report};
-pub use rules::RuleReport;
+pub use rules::{RuleReport, pairs_without_friction};
 pub use warning::Warning;
 
 use crate::initial_stress;

@@ -74,6 +74,21 @@ pub(super) fn rule_reports(scene: &Scene, boxes: &[Bounds]) -> Vec<RuleReport> {
     reports.into_values().collect()
 }
 
+/// Pairs of bodies that have no friction because nobody said how much, by the first of them.
+pub fn pairs_without_friction(scene: &Scene) -> Option<String> {
+    let axes = scene.dimension.axes();
+    let boxes = scene.bodies.iter().map(|body| body.shape.bounds(axes).unwrap_or(Bounds::EVERYTHING));
+    let rules = rule_reports(scene, &boxes.collect::<Vec<_>>());
+    let pairs = || rules.iter().filter(|rule| rule.lacks_friction()).flat_map(|rule| &rule.pairs);
+    let [a, b] = pairs().next()?;
+    let others = match pairs().count() - 1 {
+        0 => String::new(),
+        1 => ", and of 1 more pair,".to_string(),
+        more => format!(", and of {more} more pairs,"),
+    };
+    Some(format!("the friction of `{a}` and `{b}`{others} is 0, as no [[contact]] says what it is"))
+}
+
 /// Pairs of bodies, not of materials, that contact rules name.
 pub(super) fn named_pairs(scene: &Scene) -> BTreeSet<[usize; 2]> {
     let number: BTreeMap<_, _> = scene.bodies.iter().enumerate().map(|(i, body)| (&body.name, i)).collect();

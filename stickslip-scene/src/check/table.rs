@@ -100,18 +100,6 @@ impl Report {
         }
     }
 
-    /// Pairs of bodies that have no friction because nobody said how much, by the first of them.
-    pub fn pairs_without_friction(&self) -> Option<String> {
-        let pairs = || self.rules.iter().filter(|rule| rule.lacks_friction()).flat_map(|rule| &rule.pairs);
-        let [a, b] = pairs().next()?;
-        let others = match pairs().count() - 1 {
-            0 => String::new(),
-            1 => ", and of 1 more pair,".to_string(),
-            more => format!(", and of {more} more pairs,"),
-        };
-        Some(format!("the friction of `{a}` and `{b}`{others} is 0, as no [[contact]] says what it is"))
-    }
-
     /// A line for each pair, or for each rule where there are too many.
     fn write_rules(&self, f: &mut Formatter<'_>) -> Result {
         if self.rules.is_empty() {
