@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import contextlib
 import json
 import os
@@ -190,11 +191,40 @@ def test_a_chart_has_the_run_and_its_known_answer(results, monkeypatch):
         results.plot("left", "vx")
 
 
-def test_notebooks_show_tables_and_results(results):
+def test_notebooks_show_tables_and_results(results, tmp_path, monkeypatch):
     shown = results.bodies._repr_html_()
     assert shown.startswith("<table><tr><th>time</th><th>body</th>") and "2 more rows" in shown
     assert results.bodies["x"]._repr_html_() is None
-    assert "finished at t = 0.01 s" in results._repr_html_() and "<img" not in results._repr_html_()
+    shown = results._repr_html_()
+    assert "finished at t = 0.01 s" in shown and picture_in(shown)[1] > 400
+    assert not (results.folder / "picture.png").exists(), "looking at results writes nothing to them"
+    drawn = ss.render(results, out=tmp_path / "picture.png")
+    assert base64.b64encode(drawn._repr_png_()).decode() in shown
+    monkeypatch.setattr("stickslip.commands.subprocess.run", None)
+    assert results._repr_html_() == shown, "drawn once"
+
+
+def test_notebooks_show_results_without_a_picture_and_say_why(tmp_path):
+    scene = rings().time(end="1 ms").outputs(particles="1 ms", snapshots=dict(columns=["mass"]))
+    scene.run(tmp_path / "results")
+    assert "no picture: " in ss.Results(tmp_path / "results")._repr_html_()
+
+
+def picture_in(html: str) -> tuple[int, int]:
+    """Width and height of the PNG that a piece of HTML has in itself."""
+    (encoded,) = re.findall(r'<img src="data:image/png;base64,([^"]+)">', html)
+    png = base64.b64decode(encoded)
+    assert png[:8] == b"\x89PNG\r\n\x1a\n"
+    return struct.unpack(">II", png[16:24])
+
+
+def test_notebooks_show_scenes_as_they_begin(monkeypatch):
+    shown = rings()._repr_html_()
+    assert picture_in(shown)[0] > 400 and "<pre>" in shown and "neo_hookean" in shown
+    incomplete = ss.Scene("3d", 1)
+    assert incomplete._repr_html_() == f"<pre>{incomplete.text()}</pre>".replace('"', "&quot;")
+    monkeypatch.setattr("stickslip.scene.MOST_DRAWN", 10)
+    assert "<img" not in rings()._repr_html_()
 
 
 def test_the_bits_are_those_of_the_command(command, tmp_path, monkeypatch):

@@ -267,7 +267,7 @@ def test_scenes_are_copied_pickled_compared_and_shown():
         twin.time(end=2)
         assert twin != scene and scene.document["time"]["end"] == "1 s"
     assert repr(rings()) == "<Scene 'rings': 2 bodies, plane-strain, cells of 4 mm>"
-    assert "&quot;plane-strain&quot;" in rings()._repr_html_() and rings()._repr_html_().startswith("<pre>")
+    assert "&quot;plane-strain&quot;" in rings()._repr_html_() and rings()._repr_html_().endswith("</pre>")
     assert "<pre>" in rings().check()._repr_html_()
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import csv
 import os
+import tempfile
 from collections.abc import Iterator, Mapping
 from html import escape
 from pathlib import Path
@@ -13,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from . import _core
-from .errors import ResultsError
+from .errors import ResultsError, StickslipError
 from .records import Record, Table, _needed
 from .running import _record
 
@@ -109,6 +110,7 @@ class Results:
         self._frames = _core.frames(self.folder)
         self.record = Record(_record(self.folder))
         """`run.json`: status, warnings, performance, the scene as run."""
+        self._drawn: str | None = None
 
     @property
     def status(self) -> str:
@@ -193,12 +195,23 @@ class Results:
         )
 
     def _repr_html_(self) -> str:
-        picture = self.folder / "picture.png"
-        drawn = ""
-        if picture.exists():
-            drawn = f'<br><img src="data:image/png;base64,{base64.b64encode(picture.read_bytes()).decode()}">'
         warned = "".join(f"<li>{escape(warning.message)}</li>" for warning in self.warnings)
-        return f"<code>{escape(repr(self))}</code><br>tables: {', '.join(self.tables)}<ul>{warned}</ul>{drawn}"
+        return f"<code>{escape(repr(self))}</code><br>tables: {', '.join(self.tables)}<ul>{warned}</ul>{self._shown()}"
+
+    def _shown(self) -> str:
+        """The picture that the run left, else its last snapshot, which is drawn once; why there is none."""
+        if self._drawn is None and self._frames:
+            from .commands import render
+
+            picture = self.folder / "picture.png"
+            try:
+                with tempfile.TemporaryDirectory() as folder:
+                    path = picture if picture.exists() else render(self, out=Path(folder) / "picture.png").path
+                    shown = base64.b64encode(path.read_bytes()).decode()
+                self._drawn = f'<img src="data:image/png;base64,{shown}">'
+            except StickslipError as error:
+                self._drawn = f"<code>no picture: {escape(str(error))}</code>"
+        return self._drawn or ""
 
 
 UNITS = {

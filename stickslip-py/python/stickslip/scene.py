@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import keyword
 import os
+import tempfile
 import warnings
 from collections.abc import Callable, Mapping
 from html import escape
@@ -13,14 +14,17 @@ from typing import Any, overload
 
 from . import _core
 from .document import plain, written, written_value
-from .errors import RunError, SceneError, StickslipWarning
+from .errors import RunError, SceneError, StickslipError, StickslipWarning
 from .functions import Function, Law, named
 from .records import Record
+from .results import Results
 from .running import Summary, carry_out
 from .simulation import Simulation
 
 IN_PYTHON = "<scene in Python>"
 """What stands for the file of a scene that has none."""
+MOST_DRAWN = 100_000
+"""Particles of a scene that is drawn where a notebook shows it: more take longer than a reader waits."""
 
 
 class Report(Record):
@@ -424,7 +428,23 @@ class Scene:
         return f"<Scene {title!r}: {len(bodies)} bodies, {space.get('dimension')}, cells of {space.get('cell')}>"
 
     def _repr_html_(self) -> str:
-        return f"<pre>{escape(self.text())}</pre>"
+        return f"{self._shown()}<pre>{escape(self.text())}</pre>"
+
+    def _shown(self) -> str:
+        """A picture of the scene as it begins; none of one that is not complete or has too many particles."""
+        scene = copy.deepcopy(self)
+        scene.document.pop("outputs", None)
+        try:
+            read = scene._read()
+            if _report(read).particles > MOST_DRAWN:
+                return ""
+            with tempfile.TemporaryDirectory() as folder:
+                start = Path(folder) / "start"
+                # That is no time for a step.
+                Simulation(read.simulation(None), scene).run(out=start, max_time=1e-9, checkpoint_every=None)
+                return Results(start)._shown()
+        except StickslipError:
+            return ""
 
 
 def _report(read: _core.ReadScene) -> Report:
