@@ -1,6 +1,7 @@
 """Uses the viewer as a reader would, in headless Chromium with graphics in software, and prints, as JSON, what it did.
 
 Usage: look_at_viewer.py ADDRESS [SCREENSHOT]
+       look_at_viewer.py --follow ADDRESS    looks on while a run goes on, says `followed`, and waits for its end
 """
 
 import json
@@ -9,6 +10,7 @@ import tempfile
 
 from browser import browser, requests
 from selenium.webdriver.common.action_chains import ActionChains
+from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.ui import Select, WebDriverWait
 
 FLAGS = ["use-angle=swiftshader", "enable-unsafe-swiftshader", "window-size=1280,860"]
@@ -59,7 +61,7 @@ def settled(driver):
     return driver.execute_script(LOOK)
 
 
-def use(driver, address, screenshot):
+def use(driver, address, screenshot=None):
     wait = WebDriverWait(driver, 60)
     driver.get(address)
     wait.until(lambda d: d.execute_script("return window.stickslip !== undefined && stickslip.state.shown >= 0"))
@@ -151,19 +153,57 @@ def use(driver, address, screenshot):
     return told
 
 
-def main(address, screenshot=None):
+def follow(driver, address):
+    # The run takes a processor all the time.
+    driver.set_script_timeout(120)
+    wait = WebDriverWait(driver, 120)
+    driver.get(address)
+    wait.until(lambda d: d.execute_script("return window.stickslip !== undefined && stickslip.state.shown >= 0"))
+    find = lambda name: driver.find_element("id", name)
+    shown = lambda: driver.execute_script("return stickslip.state.shown")
+    count = lambda: driver.execute_script("return stickslip.index().times.length")
+    more = lambda than: wait.until(lambda _: count() > than)
+    seen = [shown()]
+    for _ in range(2):
+        wait.until(lambda _: shown() > seen[-1])
+        seen.append(shown())
+    told = {"seen": seen, "looks": settled(driver)}
+    wait.until(lambda _: "running: " in find("status").text)
+    told["status"] = find("status").text
+    wait.until(lambda d: d.find_elements("css selector", "figure[data-chart=energy]"))
+
+    find("follow").click()
+    more(count())
+    told["stays"] = [shown()]
+    more(count())
+    told["stays"].append(shown())
+    # From the last frame on, it goes on.
+    find("follow").click()
+    ActionChains(driver).send_keys(Keys.END).perform()
+    last = count()
+    wait.until(lambda _: shown() >= last)
+    print("followed", flush=True)
+    wait.until(lambda _: find("status").text == "interrupted")
+    told["switch"] = find("follow-switch").is_displayed()
+    wait.until(lambda _: shown() == count() - 1)
+    told["frames"] = count()
+    return told
+
+
+def main(*words):
+    act, words = (follow, words[1:]) if words[0] == "--follow" else (use, words)
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
         driver = browser(profile, FLAGS)
         try:
             driver.get("about:blank")
             for log in ["browser", "performance"]:
                 driver.get_log(log)
-            told = use(driver, address, screenshot)
+            told = act(driver, *words)
             # What Chromium says of its graphics in software is no word of the page's.
             told["complaints"] = [
                 entry["message"] for entry in driver.get_log("browser") if "GPU stall" not in entry["message"]
             ]
-            told["requests"] = requests(driver, ("data:", "blob:", address))
+            told["requests"] = requests(driver, ("data:", "blob:", words[0]))
         finally:
             driver.quit()
     json.dump(told, sys.stdout)

@@ -9,19 +9,23 @@ use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
 use stickslip::{Workplace, new_scene};
+
+/// A process that ends with it.
+struct Ended(Child);
+
+impl Drop for Ended {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
 
 /// A server of the command, which ends with it.
 struct Server {
-    child: Child,
+    _process: Ended,
     address: String,
-}
-
-impl Drop for Server {
-    fn drop(&mut self) {
-        let _ = self.child.kill();
-        let _ = self.child.wait();
-    }
 }
 
 /// What a server answers: its code, its head and the rest.
@@ -38,7 +42,7 @@ impl Server {
         let mut line = String::new();
         BufReader::new(child.stdout.take().unwrap()).read_line(&mut line).unwrap();
         let address = line.split_whitespace().next().expect("the first word is the address").to_owned();
-        Server { child, address }
+        Server { _process: Ended(child), address }
     }
 
     fn host(&self) -> &str {
@@ -254,6 +258,51 @@ fn a_reader_plays_colours_picks_and_cuts_in_a_browser() {
     let told = use_viewer(&address).unwrap();
     assert_works(&told, &address);
     assert_surfaces(&told);
+}
+
+/// A disk that lies on a bar for as long as somebody looks: frames come by themselves, unless the reader looks back, and
+/// the end is told.
+#[test]
+fn a_run_that_goes_on_is_followed_in_a_browser() {
+    let Some(python) = stickslip::python_with_browser() else { return };
+    let workplace = Workplace::new();
+    workplace.write("scene.toml", &new_scene());
+    let long =
+        ["cells_per_radius=3", "bodies[0].velocity=[0, 0]", "time.end=1000 s", "outputs.particles=0.2 s"];
+    let set = long.iter().flat_map(|value| ["--set", value]);
+    let arguments: Vec<&str> =
+        ["run", "scene.toml", "--threads", "1", "--max-time", "5 min"].into_iter().chain(set).collect();
+    let mut run = workplace.command(&arguments);
+    let running = Ended(run.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap());
+    let start = Instant::now();
+    while !workplace.path("scene.results/particles.pvd").exists() {
+        assert!(start.elapsed() < Duration::from_secs(60), "the run has not begun");
+        std::thread::sleep(Duration::from_millis(50));
+    }
+    let server = Server::start(&workplace, &["scene.results"]);
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/look_at_viewer.py");
+    let mut look = Command::new(&python);
+    let mut look =
+        Ended(look.arg(script).args(["--follow", &server.address]).stdout(Stdio::piped()).spawn().unwrap());
+    let mut said = BufReader::new(look.0.stdout.take().unwrap());
+    let mut line = String::new();
+    said.read_line(&mut line).unwrap();
+    assert_eq!(line.trim(), "followed");
+    let interrupt = Command::new("kill").args(["-INT", &running.0.id().to_string()]).status();
+    assert!(interrupt.is_ok_and(|status| status.success()));
+    let told: Value = serde_json::from_reader(said).unwrap();
+    for nothing in ["complaints", "requests"] {
+        assert_eq!(told[nothing], Value::Array(Vec::new()), "{nothing}: {told}");
+    }
+    assert!(told["looks"]["inked"].as_f64() > Some(0.02), "{told}");
+    let status = told["status"].as_str().unwrap();
+    assert!(status.starts_with("running: ") && status.contains(" of 1"), "{told}");
+    assert_eq!(told["stays"][0], told["stays"][1], "a frame that is looked at stays: {told}");
+    assert_eq!(told["switch"], false, "what has ended is not followed: {told}");
+    assert_eq!(
+        server.json("/index")["times"].as_array().unwrap().len() as u64,
+        told["frames"].as_u64().unwrap()
+    );
 }
 
 #[test]
