@@ -49,8 +49,13 @@ fn every_combination_is_run_and_stands_in_the_table() {
     assert!(workplace.path("scene.sweep/plot.png").exists());
     workplace.succeed(&["plot", "scene.sweep", "--out", "sweep.svg"]);
     assert!(fs::read_to_string(workplace.path("sweep.svg")).unwrap().contains("friction"));
+    let chosen = ["plot", "scene.sweep", "--quantity", "kinetic_energy,energy_drift", "--out", "chosen.svg"];
+    workplace.succeed(&chosen);
+    let drawn = fs::read_to_string(workplace.path("chosen.svg")).unwrap();
+    assert!(drawn.contains("kinetic energy at the end") && drawn.contains("energy drift, relative"));
     let refused = workplace.run(&["plot", "scene.sweep", "--quantity", "x"]);
     assert_eq!(refused.code, Some(2), "{}", refused.stderr);
+    assert!(refused.stderr.contains("found `x`; allowed: time, steps"), "{}", refused.stderr);
 
     let alone = ["run", "scene.toml", "--set", "friction=0.5", "--set", "bodies[0].velocity=[0, 0]"];
     workplace.succeed(&[&alone[..], &short].concat());

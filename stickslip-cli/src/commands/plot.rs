@@ -26,7 +26,8 @@ pub struct Arguments {
     #[arg(long = "body", value_name = "NAME")]
     bodies: Vec<String>,
 
-    /// Columns of the table, separated by commas; those with exact solutions, or the table's usual one, without this.
+    /// Columns of the table, of a sweep those of sweep.csv, separated by commas; those with exact solutions, or the
+    /// table's usual one, without this.
     #[arg(long = "quantity", value_name = "COLUMN", value_delimiter = ',')]
     quantities: Vec<String>,
 
@@ -84,17 +85,19 @@ impl Arguments {
 
     fn sweep(&self, folder: &Path) -> Result<(), Failure> {
         let shown = folder.display();
-        if self.folders.len() > 1
-            || self.table.is_some()
-            || !self.bodies.is_empty()
-            || !self.quantities.is_empty()
-        {
+        if self.folders.len() > 1 || self.table.is_some() || !self.bodies.is_empty() {
             return Err(Failure::Input(miette!(
                 help = format!("draw some of its runs: stickslip plot {shown}/RUN ..."),
-                "{shown} is a sweep; allowed with it: --out"
+                "{shown} is a sweep; allowed with it: --quantity and --out"
             )));
         }
-        self.draw(&sweep::chart(&sweep::read(folder)?))
+        let sweep = sweep::read(folder)?;
+        let known = sweep.figures();
+        if let Some(unknown) = self.quantities.iter().find(|name| !known.contains(&name.as_str())) {
+            let allowed = known.join(", ");
+            return Err(Failure::Input(miette!("--quantity: found `{unknown}`; allowed: {allowed}")));
+        }
+        self.draw(&sweep::chart(&sweep, &self.quantities))
     }
 
     fn draw(&self, chart: &Chart) -> Result<(), Failure> {

@@ -114,7 +114,7 @@ impl Arguments {
 
 /// Draws the chart, says where everything is, and names what failed.
 fn conclude(crew: &Crew, table: &Sweep) -> Result<(), Failure> {
-    let chart = sweep::chart(table);
+    let chart = sweep::chart(table, &[]);
     let drawn = match draw(&chart, &crew.folder.join("plot.png"), chart.size()) {
         Ok(()) => ", plot.png",
         Err(DrawError::Empty(_)) => "",

@@ -45,6 +45,19 @@ pub struct Sweep {
     pub rows: Vec<SweepRow>,
 }
 
+impl Sweep {
+    /// Names of the numbers that its runs have, in the order of the columns.
+    pub fn figures(&self) -> Vec<&str> {
+        let mut names: Vec<&str> = Vec::new();
+        for (name, _) in self.rows.iter().flat_map(|row| &row.figures) {
+            if !names.contains(&name.as_str()) {
+                names.push(name);
+            }
+        }
+        names
+    }
+}
+
 const RECORD: &str = "sweep.json";
 const TABLE: &str = "sweep.csv";
 
@@ -95,12 +108,7 @@ pub fn prepare(folder: &Path, record: &SweepRecord) -> Result<(), Failure> {
 /// # Errors
 /// It cannot be written.
 pub fn write_table(folder: &Path, sweep: &Sweep) -> Result<(), Failure> {
-    let mut figures: Vec<&str> = Vec::new();
-    for (name, _) in sweep.rows.iter().flat_map(|row| &row.figures) {
-        if !figures.contains(&name.as_str()) {
-            figures.push(name);
-        }
-    }
+    let figures = sweep.figures();
     let mut writer = csv::Writer::from_writer(Vec::new());
     let parameters = sweep.record.parameters.iter().map(String::as_str);
     // A parameter may have the name of a figure.

@@ -10,13 +10,7 @@ pub fn table(sweep: &Sweep) -> String {
     for (i, name) in sweep.record.parameters.iter().enumerate() {
         columns.push(column(name, sweep, |row| row.parameters[i].clone()));
     }
-    let mut names: Vec<&str> = Vec::new();
-    for (name, _) in sweep.rows.iter().flat_map(|row| &row.figures) {
-        if !names.contains(&name.as_str()) {
-            names.push(name);
-        }
-    }
-    for name in names {
+    for name in sweep.figures() {
         let figure =
             |row: &SweepRow| row.figures.iter().find(|(other, _)| other == name).map(|(_, value)| *value);
         let first = sweep.rows.first().and_then(figure);
