@@ -306,8 +306,9 @@ class Scene:
         Without `out` the folder is NAME.results here, NAME being that of the file, or `scene`. `checkpoint_every` is
         the wall time between checkpoints [s], None for none at all; `max_time` ends the run with one after so much wall
         time [s]; `max_memory` is what it may take [bytes], without it what is free. `overwrite` begins anew where a run
-        did not finish that could go on. What is doubtful before the run is warned of (`StickslipWarning`), and bodies that
-        have no friction because no rule says how much; what was found doubtful during it is in `Summary.warnings`.
+        did not finish that could go on. What is doubtful before the run is warned of (`StickslipWarning`), and
+        bodies that have no friction because no rule says how much; what was found doubtful during it is in
+        `Summary.warnings`.
         """
         name = "scene" if self._file is None else self._file[0].stem
         read = self._read()
