@@ -113,3 +113,85 @@ fn a_folder_with_other_files_is_left_alone() {
     assert!(ran.stderr.contains("thesis.txt"), "{}", ran.stderr);
     assert_eq!(fs::read_dir(workplace.path("mine")).unwrap().count(), 1);
 }
+
+/// Runs that finished stand, bit for bit and untouched; those that were killed or failed are run, and the table is that
+/// of a sweep that was never interrupted.
+#[test]
+fn a_sweep_goes_on_where_it_was() {
+    let (workplace, short) = place();
+    let values = ["--set", "friction=0,0.3,0.6"];
+    workplace.succeed(&[&["sweep", "scene.toml", "--out", "whole"][..], &values, &short].concat());
+    workplace.succeed(&[&["sweep", "scene.toml", "--out", "part"][..], &values, &short].concat());
+    // As if the second had been killed, and the third had not begun.
+    let part = |file: &str| workplace.path("part").join(file);
+    fs::remove_file(part("rows/friction=0.3.csv")).unwrap();
+    let record = fs::read_to_string(part("friction=0.3/run.json")).unwrap();
+    fs::write(part("friction=0.3/run.json"), record.replace("\"finished\"", "\"running\"")).unwrap();
+    fs::remove_file(part("rows/friction=0.6.csv")).unwrap();
+    fs::remove_dir_all(part("friction=0.6")).unwrap();
+    let kept = fs::metadata(part("friction=0/bodies.csv")).unwrap().modified().unwrap();
+
+    let said = workplace.succeed(&["sweep", "part", "--gather"]);
+    assert!(said.contains("2 of 3 runs have not finished: stickslip sweep 'part'"), "{said}");
+    let statuses = |rows: &[BTreeMap<String, String>]| -> Vec<String> {
+        rows.iter().map(|row| row["status"].clone()).collect()
+    };
+    assert_eq!(statuses(&table(&workplace, "part")), ["finished", "pending", "pending"]);
+
+    let said = workplace.succeed(&["sweep", "part"]);
+    assert!(said.contains("3 of 3 runs finished"), "{said}");
+    assert_eq!(fs::metadata(part("friction=0/bodies.csv")).unwrap().modified().unwrap(), kept);
+    let [whole, part] = ["whole", "part"].map(|folder| table(&workplace, folder));
+    for (whole, part) in whole.iter().zip(&part) {
+        for (name, value) in whole.iter().filter(|(name, _)| *name != "wall_time") {
+            assert_eq!(&part[name], value, "{}: {name}", whole["run"]);
+        }
+    }
+    let resumed = fs::read_to_string(workplace.path("part/friction=0.3/run.json")).unwrap();
+    assert!(resumed.contains("\"resumed\": [\n"), "{resumed}");
+
+    let refused = [
+        (&["sweep", "part", "--set", "friction=0,1"][..], "goes on as it was begun"),
+        (&["sweep", "part", "--only", "3"], "numbers from 0 to 2"),
+        (&["sweep", "scene.toml", "--gather"], "the folder of a sweep"),
+        (&["sweep", "."], "is not the folder of a sweep"),
+    ];
+    for (arguments, expected) in refused {
+        let ran = workplace.run(arguments);
+        assert_eq!(ran.code, Some(2), "{arguments:?}: {}", ran.stderr);
+        assert!(ran.stderr.contains(expected), "{arguments:?}: {}", ran.stderr);
+    }
+}
+
+/// The script runs each run by its number, as a scheduler would; what failed is named, and how it is submitted again.
+#[cfg(unix)]
+#[test]
+fn a_job_array_makes_the_same_table() {
+    let (workplace, short) = place();
+    // The last is thrown out of the domain.
+    let values = ["--set", "bodies[0].velocity=[0, 0],[0, 1e-3],[0, \"100 m/s\"]"];
+    let said = workplace.succeed(&[&["sweep", "scene.toml", "--script"][..], &values, &short].concat());
+    assert!(said.contains("sbatch --array=0-2 'scene.sweep/array.sh'"), "{said}");
+    assert!(!workplace.path("scene.sweep/bodies_0_.velocity=_0,_0_").exists(), "nothing is run");
+    let script = fs::read_to_string(workplace.path("scene.sweep/array.sh")).unwrap();
+    assert!(script.contains("#SBATCH --array=0-2\n"), "{script}");
+    let job = |number: &str| {
+        let mut shell = std::process::Command::new("sh");
+        shell.arg("scene.sweep/array.sh").current_dir(workplace.path(""));
+        let output = shell.env("SLURM_ARRAY_TASK_ID", number).output().unwrap();
+        (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
+    };
+    assert_eq!([job("0"), job("1")].map(|(code, _)| code), [Some(0); 2]);
+    let (code, said) = job("2");
+    assert_eq!(code, Some(1), "{said}");
+    assert!(said.contains("left the domain"), "{said}");
+    let gathered = workplace.run(&["sweep", "scene.sweep", "--gather"]);
+    assert_eq!(gathered.code, Some(1), "{}", gathered.stderr);
+    assert!(gathered.stderr.contains("sbatch --array=2 "), "{}", gathered.stderr);
+    let rows = table(&workplace, "scene.sweep");
+    assert_eq!(
+        rows.iter().map(|row| row["status"].as_str()).collect::<Vec<_>>(),
+        ["finished", "finished", "failed"]
+    );
+    assert_eq!([&rows[0]["time"], &rows[1]["time"]], ["0.01"; 2]);
+}

@@ -1,4 +1,5 @@
-//! `stickslip sweep SCENE --set nu=0.22,0.30`: a family of runs, and one table of what they came to.
+//! `stickslip sweep SCENE --set nu=0.22,0.30`: a family of runs, and one table of what they came to; `stickslip sweep
+//! DIR` goes on with it.
 
 use super::run::default_folder;
 use super::{assignment, load, say, stop_on_interrupt};
@@ -6,27 +7,44 @@ use crate::chart::draw;
 use crate::drawing::DrawError;
 use crate::failure::Failure;
 use crate::progress::{Family, terminal};
-use crate::sweep::{self, Crew, Member, News, Sweep, SweepRecord, SweepRow, Variation};
+use crate::sweep::{self, Crew, Member, News, Plan, Sweep, SweepRecord, SweepRow, Variation};
 use clap::Args;
-use miette::miette;
+use miette::{IntoDiagnostic, miette};
 use std::num::NonZero;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 use stickslip::scene::Loaded;
 
 /// Run a scene with every combination of some values, each in a folder of its own, and write one table of the results.
+///
+/// Of the folder of a sweep, the runs that have not finished are run, those that were killed or stopped from their newest
+/// checkpoint.
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// Scene file.
+    /// Scene file, or the folder of a sweep to go on with.
+    #[arg(value_name = "SCENE|DIR")]
     scene: PathBuf,
 
     /// Values of a named parameter, separated by commas; a single value holds for all runs; may be repeated.
-    #[arg(long = "set", value_name = "NAME=VALUE,...", value_parser = variation, required = true)]
+    #[arg(long = "set", value_name = "NAME=VALUE,...", value_parser = variation)]
     variations: Vec<Variation>,
 
     /// Folder for the results; the name of the scene with `.sweep`, in this folder, without this.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+
+    /// Run nothing, but write array.sh into the folder, by which SLURM runs the sweep as a job array.
+    #[arg(long)]
+    script: bool,
+
+    /// Of a folder, only the runs of these numbers, from 0 in the order of sweep.csv, which is not written; for jobs of
+    /// an array.
+    #[arg(long, value_name = "NUMBER,...", value_delimiter = ',', conflicts_with_all = ["script", "gather"])]
+    only: Vec<usize>,
+
+    /// Of a folder, run nothing: make the table of the runs that have ended, and name the others.
+    #[arg(long, conflicts_with = "script")]
+    gather: bool,
 
     /// Runs at a time; as many as there are processors without this.
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
@@ -44,35 +62,143 @@ fn variation(text: &str) -> Result<Variation, String> {
 
 impl Arguments {
     pub fn execute(self) -> Result<(), Failure> {
-        let varied = sweep::varied(&self.variations);
-        self.check(&varied)?;
+        let (plan, folder) = self.plan()?;
+        let varied = sweep::varied(&plan.variations);
         // All scenes are read before anything is run or written: a mistake costs no time.
-        let read = |member: Member| match load(&self.scene, &member.settings) {
+        let read = |member: Member| match load(&plan.scene, &member.settings) {
             Ok(loaded) => Ok((member, loaded)),
             Err(error) => Err(Failure::input(error)),
         };
         let members: Result<Vec<(Member, Loaded)>, Failure> =
-            sweep::members(&self.variations).into_iter().map(read).collect();
+            sweep::members(&plan.variations).into_iter().map(read).collect();
         let members = members?;
+        if let Some(unknown) = self.only.iter().find(|&&number| number >= members.len()) {
+            let last = members.len() - 1;
+            return Err(Failure::Input(miette!(
+                "--only: found {unknown}; allowed: numbers from 0 to {last}"
+            )));
+        }
+        let scene = plan.scene.clone();
+        let record = SweepRecord::new(&members[0].1.scene.title, varied.clone(), Some(plan));
+        if !self.goes_on() {
+            sweep::prepare(&folder, &record)?;
+        }
         let pending = |(member, loaded): &(Member, Loaded)| SweepRow {
             run: member.folder.clone(),
             status: "pending".to_owned(),
             parameters: sweep::values(loaded, member, &varied),
             ..SweepRow::default()
         };
-        let record = SweepRecord::new(&members[0].1.scene.title, varied.clone());
-        let mut table = Sweep { record, rows: members.iter().map(pending).collect() };
-        let folder = self.out.clone().unwrap_or_else(|| default_folder(&self.scene, "sweep"));
-        sweep::prepare(&folder, &table.record)?;
-        sweep::write_table(&folder, &table)?;
+        let ended = |each: &(Member, Loaded)| match self.gather {
+            true => sweep::read_row(&folder, &record, &each.0.folder),
+            false => sweep::finished(&folder, &record, each),
+        };
+        let rows = members.iter().map(|each| ended(each).unwrap_or_else(|| pending(each))).collect();
+        let mut table = Sweep { record, rows };
+        if self.script {
+            return self.submit_later(&folder, &table);
+        }
+        let considered = if self.only.is_empty() { (0..members.len()).collect() } else { self.only.clone() };
+        let left = |table: &Sweep| -> Vec<usize> {
+            considered.iter().copied().filter(|&number| table.rows[number].status != "finished").collect()
+        };
+        let wanted = if self.gather { Vec::new() } else { left(&table) };
+        let crew = self.crew(folder, scene, wanted.len())?;
+        self.run(&crew, &members, &wanted, &mut table)?;
+        if self.only.is_empty() {
+            sweep::write_table(&crew.folder, &table)?;
+            draw_and_tell(&crew, &table)?;
+        }
+        conclude(&crew, &table, &left(&table))
+    }
 
+    /// Whether it goes on with a sweep that there is.
+    fn goes_on(&self) -> bool {
+        self.scene.is_dir()
+    }
+
+    /// What is run, and the folder of the sweep.
+    fn plan(&self) -> Result<(Plan, PathBuf), Failure> {
+        let folder = &self.scene;
+        if !self.goes_on() {
+            if self.gather || !self.only.is_empty() {
+                let option = if self.gather { "--gather" } else { "--only" };
+                return Err(Failure::Input(miette!(
+                    "{option}: found a scene file; allowed: the folder of a sweep"
+                )));
+            }
+            self.check()?;
+            let scene = std::path::absolute(&self.scene).into_diagnostic().map_err(Failure::Run)?;
+            let plan = Plan { scene, variations: self.variations.clone() };
+            return Ok((plan, self.out.clone().unwrap_or_else(|| default_folder(&self.scene, "sweep"))));
+        }
+        if !self.variations.is_empty() || self.out.is_some() {
+            let option = if self.out.is_some() { "--out" } else { "--set" };
+            return Err(Failure::Input(miette!(
+                "{option}: found the folder of a sweep, which goes on as it was begun; allowed: with a scene file"
+            )));
+        }
+        let record = sweep::read_record(folder).ok_or_else(|| {
+            Failure::Input(miette!(
+                help = "name a scene file, or a folder that `stickslip sweep` wrote",
+                "{} is not the folder of a sweep",
+                folder.display()
+            ))
+        })?;
+        let plan = record.plan.ok_or_else(|| {
+            Failure::Input(miette!(
+                help = "name the scene file and --set as it was begun, and this folder with --out",
+                "{} was begun by a version that did not record how",
+                folder.display()
+            ))
+        })?;
+        Ok((plan, folder.clone()))
+    }
+
+    fn check(&self) -> Result<(), Failure> {
+        let names: Vec<&str> = self.variations.iter().map(|variation| variation.name.as_str()).collect();
+        if names.is_empty() {
+            return Err(Failure::Input(miette!(
+                "--set: found none; allowed: at least one with several values, such as friction=0,0.3"
+            )));
+        }
+        if let Some(again) = (1..names.len()).find(|&i| names[..i].contains(&names[i])) {
+            return Err(Failure::Input(miette!(
+                "--set: found `{}` twice; allowed: each name once, its values separated by commas",
+                names[again]
+            )));
+        }
+        if sweep::varied(&self.variations).is_empty() {
+            return Err(Failure::Input(miette!(
+                help = "for a single run there is `stickslip run`",
+                "--set: found one value for each name; allowed: several for at least one, such as {}=1,2",
+                names[0]
+            )));
+        }
+        Ok(())
+    }
+
+    fn crew(&self, folder: PathBuf, scene: PathBuf, runs: usize) -> Result<Crew, Failure> {
         let processors = std::thread::available_parallelism().map_or(1, NonZero::get);
         let threads = self.threads.map_or(processors, usize::from);
-        let jobs = self.jobs.map_or(threads, usize::from).clamp(1, members.len());
-        let crew = Crew { jobs, threads: (threads / jobs).max(1), folder, stop: stop_on_interrupt()? };
+        let jobs = self.jobs.map_or(threads, usize::from).clamp(1, runs.max(1));
+        Ok(Crew { jobs, threads: (threads / jobs).max(1), folder, scene, stop: stop_on_interrupt()? })
+    }
+
+    /// Runs what is wanted, and writes what each run came to as it ends.
+    fn run(
+        &self,
+        crew: &Crew,
+        members: &[(Member, Loaded)],
+        wanted: &[usize],
+        table: &mut Sweep,
+    ) -> Result<(), Failure> {
         let mut written = Ok(());
-        let mut display = Family::new(members.len(), terminal());
-        crew.run(&members, |news| {
+        if self.only.is_empty() {
+            sweep::write_table(&crew.folder, table)?;
+        }
+        let mut display = Family::new(wanted.len(), terminal());
+        crew.run(members, wanted, |news| {
             for each in news {
                 match each {
                     News::Progress(number, share) => display.show(number, share),
@@ -82,60 +208,71 @@ impl Arguments {
                             SweepRow { run: place.run.clone(), parameters: place.parameters.clone(), ..*row };
                         display.ended(number, &format!("{}: {} {}", place.run, place.status, place.error));
                         if written.is_ok() {
-                            written = sweep::write_table(&crew.folder, &table);
+                            written = sweep::write_row(&crew.folder, &table.record, &table.rows[number]);
+                        }
+                        if written.is_ok() && self.only.is_empty() {
+                            written = sweep::write_table(&crew.folder, table);
                         }
                     }
                 }
             }
         });
         display.finish();
-        written?;
-        conclude(&crew, &table)
+        written
     }
 
-    fn check(&self, varied: &[String]) -> Result<(), Failure> {
-        let names: Vec<&str> = self.variations.iter().map(|variation| variation.name.as_str()).collect();
-        if let Some(again) = (1..names.len()).find(|&i| names[..i].contains(&names[i])) {
-            return Err(Failure::Input(miette!(
-                "--set: found `{}` twice; allowed: each name once, its values separated by commas",
-                names[again]
-            )));
-        }
-        if varied.is_empty() {
-            return Err(Failure::Input(miette!(
-                help = "for a single run there is `stickslip run`",
-                "--set: found one value for each name; allowed: several for at least one, such as {}=1,2",
-                names[0]
-            )));
-        }
-        Ok(())
+    /// Writes the script of a job array, and says how it is used.
+    fn submit_later(&self, folder: &Path, table: &Sweep) -> Result<(), Failure> {
+        sweep::write_table(folder, table)?;
+        let runs = table.rows.len();
+        sweep::write_script(folder, runs)?;
+        let all: Vec<usize> = (0..runs).filter(|&number| table.rows[number].status != "finished").collect();
+        say(&format!(
+            "{} of {runs} runs to do\n{}\nthen stickslip sweep {} --gather",
+            all.len(),
+            sweep::submit(folder, &all),
+            folder.display()
+        ))
     }
 }
 
-/// Draws the chart, says where everything is, and names what failed.
-fn conclude(crew: &Crew, table: &Sweep) -> Result<(), Failure> {
+/// Draws the chart, and says what the runs came to and where everything is.
+fn draw_and_tell(crew: &Crew, table: &Sweep) -> Result<(), Failure> {
     let chart = sweep::chart(table, &[]);
     let drawn = match draw(&chart, &crew.folder.join("plot.png"), chart.size()) {
         Ok(()) => ", plot.png",
         Err(DrawError::Empty(_)) => "",
         Err(error) => return Err(error.into()),
     };
-    let count = |status: &str| table.rows.iter().filter(|row| row.status == status).count();
-    let runs = table.rows.len();
+    let finished = table.rows.iter().filter(|row| row.status == "finished").count();
     say(&sweep::table(table))?;
     say(&format!(
-        "{} of {runs} runs finished\nresults in {}/: sweep.csv{drawn}, a folder for each run",
-        count("finished"),
+        "{finished} of {} runs finished\nresults in {}/: sweep.csv{drawn}, a folder for each run",
+        table.rows.len(),
         crew.folder.display()
-    ))?;
-    let failed = table.rows.iter().filter(|row| row.status == "failed");
-    let failed: Vec<String> = failed.map(|row| format!("{}: {}", row.run, row.error)).collect();
+    ))
+}
+
+/// Names what failed and what has not ended of the runs that are left, and how they are run again.
+fn conclude(crew: &Crew, table: &Sweep, left: &[usize]) -> Result<(), Failure> {
+    let again = sweep::submit(&crew.folder, left);
+    let rows = left.iter().map(|&number| &table.rows[number]);
+    let failed: Vec<String> =
+        rows.filter(|row| row.status == "failed").map(|row| format!("{}: {}", row.run, row.error)).collect();
+    let runs = table.rows.len();
     if !failed.is_empty() {
         return Err(Failure::Run(miette!(
+            help = format!("{again} runs what did not finish again"),
             "{} of {runs} runs failed\n  {}",
             failed.len(),
             failed.join("\n  ")
         )));
     }
-    if crew.stop.load(Ordering::Relaxed) { Err(Failure::Interrupted) } else { Ok(()) }
+    if crew.stop.load(Ordering::Relaxed) {
+        return Err(Failure::Interrupted);
+    }
+    if !left.is_empty() {
+        say(&format!("{} of {runs} runs have not finished: {again}", left.len()))?;
+    }
+    Ok(())
 }

@@ -118,7 +118,7 @@ impl JobRunner {
 }
 
 /// The finished results of just this scene by just this program, if they are there.
-fn finished(folder: &Path, scene: &Scene) -> Option<Results> {
+pub fn finished(folder: &Path, scene: &Scene) -> Option<Results> {
     let results = Results::open(folder).ok()?;
     let manifest = results.manifest();
     let same = manifest.version == env!("CARGO_PKG_VERSION")

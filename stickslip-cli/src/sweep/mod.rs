@@ -3,20 +3,26 @@
 mod chart;
 mod plan;
 mod record;
+mod script;
 mod table;
 
 pub use chart::chart;
-pub use plan::{Member, Variation, members, varied};
-pub use record::{Sweep, SweepRecord, SweepRow, is_sweep, prepare, read, write_table};
+pub use plan::{Member, Plan, Variation, members, varied};
+pub use record::{
+    Sweep, SweepRecord, SweepRow, is_sweep, prepare, read, read_record, read_row, write_row, write_table,
+};
+pub use script::{submit, write_script};
 pub use table::table;
 
 use crate::illustration::illustrate;
+use crate::jobs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
-use stickslip::observe::{ArrivalRow, ContactRow, Results, Status};
-use stickslip::run::{RunOptions, Summary};
+use std::time::Duration;
+use stickslip::observe::{ArrivalRow, ContactRow, Results, SceneSource, Status};
+use stickslip::run::{Checkpointing, RunError, RunOptions, Summary};
 use stickslip::scene::{Loaded, Parameter};
 
 /// How a family is run.
@@ -27,9 +33,14 @@ pub struct Crew {
     pub threads: usize,
     /// Folder of the sweep.
     pub folder: PathBuf,
+    /// The scene file, for the record of each run.
+    pub scene: PathBuf,
     /// Set by whoever wants the runs to stop.
     pub stop: Arc<AtomicBool>,
 }
+
+/// Wall time between checkpoints, as `stickslip run` has it.
+const CHECKPOINT_EVERY: Duration = Duration::from_secs(600);
 
 /// What happens to the run of this number.
 pub enum News {
@@ -51,10 +62,21 @@ pub fn values(loaded: &Loaded, member: &Member, varied: &[String]) -> Vec<String
     varied.iter().map(value).collect()
 }
 
+/// The row of a run that has finished as it would finish now: by this scene and this version of the program.
+pub fn finished(
+    folder: &Path,
+    record: &SweepRecord,
+    (member, loaded): &(Member, Loaded),
+) -> Option<SweepRow> {
+    let row = read_row(folder, record, &member.folder).filter(|row| row.status == "finished")?;
+    jobs::finished(&folder.join(&member.folder), &loaded.scene).map(|_| row)
+}
+
 impl Crew {
-    /// Runs scenes side by side, each in its folder, and tells `listen` what happens, on this thread. Runs that have
-    /// not begun when the user stops are not begun.
-    pub fn run(&self, scenes: &[(Member, Loaded)], listen: impl FnOnce(&Receiver<News>)) {
+    /// Runs those of the scenes that are `wanted`, by their numbers, side by side, each in its folder, and tells
+    /// `listen` what happens, on this thread. One that was killed or stopped goes on from its newest checkpoint. Runs
+    /// that have not begun when the user stops are not begun.
+    pub fn run(&self, scenes: &[(Member, Loaded)], wanted: &[usize], listen: impl FnOnce(&Receiver<News>)) {
         let next = AtomicUsize::new(0);
         let (sender, receiver) = channel();
         std::thread::scope(|scope| {
@@ -62,9 +84,8 @@ impl Crew {
                 let (sender, next) = (sender.clone(), &next);
                 scope.spawn(move || {
                     while !self.stop.load(Ordering::Relaxed) {
-                        let number = next.fetch_add(1, Ordering::Relaxed);
-                        let Some((member, loaded)) = scenes.get(number) else { break };
-                        let row = self.run_one(&self.folder.join(&member.folder), loaded, (number, &sender));
+                        let Some(&number) = wanted.get(next.fetch_add(1, Ordering::Relaxed)) else { break };
+                        let row = self.run_one(&scenes[number], (number, &sender));
                         // Nobody listens only if the listener has failed, which is told elsewhere.
                         let _ = sender.send(News::Ended(number, Box::new(row)));
                     }
@@ -75,20 +96,34 @@ impl Crew {
         });
     }
 
-    fn run_one(&self, out: &Path, loaded: &Loaded, (number, sender): (usize, &Sender<News>)) -> SweepRow {
+    fn run_one(
+        &self,
+        (member, loaded): &(Member, Loaded),
+        (number, sender): (usize, &Sender<News>),
+    ) -> SweepRow {
+        let out = &self.folder.join(&member.folder);
         let pool = match rayon::ThreadPoolBuilder::new().num_threads(self.threads).build() {
             Ok(pool) => pool,
             Err(error) => return failed(error.to_string()),
         };
+        let mut progress = |progress: &stickslip::run::Progress| {
+            let _ = sender.send(News::Progress(number, progress.time / progress.end));
+        };
         let outcome = pool.install(|| {
-            let mut simulation = stickslip::step::build(&loaded.scene)
-                .map_err(|problem| loaded.source.locate(problem).to_string())?;
-            let options =
-                RunOptions { stop: Arc::clone(&self.stop), threads: self.threads, ..RunOptions::new(out) };
-            let mut progress = |progress: &stickslip::run::Progress| {
-                let _ = sender.send(News::Progress(number, progress.time / progress.end));
+            let scene = &loaded.scene;
+            let build = || {
+                let built = stickslip::step::build(scene);
+                built.map_err(|problem| loaded.source.locate(problem).to_string())
             };
-            stickslip::run::run(&loaded.scene, &mut *simulation, &options, &mut progress)
+            let options = self.options(out, (member, loaded));
+            if matches!(stickslip::run::unfinished(out, scene), Ok(Some(_))) {
+                match stickslip::run::resume(scene, &mut *build()?, &options, &mut progress) {
+                    // Made by another scene: the run begins anew.
+                    Err(RunError::Resume(_)) => {}
+                    outcome => return outcome.map_err(|error| error.to_string()),
+                }
+            }
+            stickslip::run::run(scene, &mut *build()?, &options, &mut progress)
                 .map_err(|error| error.to_string())
         });
         let drawn = illustrate(out);
@@ -99,6 +134,19 @@ impl Crew {
                 (Err(failure), _) => failed(failure.to_string()),
                 (_, Err(error)) => failed(error.to_string()),
             },
+        }
+    }
+
+    /// As `stickslip run` makes a run of the scene with these settings.
+    fn options(&self, out: &Path, (member, loaded): (&Member, &Loaded)) -> RunOptions {
+        let text = Some(loaded.source.text().to_owned());
+        let (path, set) = (self.scene.clone(), member.settings.clone());
+        RunOptions {
+            stop: Arc::clone(&self.stop),
+            threads: self.threads,
+            source: Some(SceneSource { path, set, until: None, text }),
+            checkpoints: Checkpointing { every: Some(CHECKPOINT_EVERY), at_end: true, keep: 2 },
+            ..RunOptions::new(out)
         }
     }
 }

@@ -1,7 +1,19 @@
 //! Which runs a sweep is made of.
 
+use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
+
+/// What is run: all that a sweep needs to go on.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Plan {
+    /// The scene file; absolute, so that whoever goes on may stand elsewhere.
+    pub scene: PathBuf,
+    /// What is set.
+    pub variations: Vec<Variation>,
+}
+
 /// A parameter or key and the values that it takes.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Variation {
     /// As in `--set`.
     pub name: String,

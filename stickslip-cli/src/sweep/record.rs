@@ -1,11 +1,13 @@
-//! `sweep.json` and `sweep.csv`: what a sweep varied, and what each run came to.
+//! `sweep.json` and `sweep.csv`: what a sweep varied, and what each run came to. Each run that ends writes its row into a
+//! file of its own in `rows/`, of which the table is made: runs of a sweep may be those of several programs.
 
+use super::plan::Plan;
 use crate::failure::Failure;
 use miette::miette;
 use serde::{Deserialize, Serialize};
 use std::fs;
 use std::io;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use stickslip::observe::replace;
 
 /// What was swept.
@@ -19,6 +21,9 @@ pub struct SweepRecord {
     pub title: String,
     /// Names of the parameters that vary, in the order of the columns.
     pub parameters: Vec<String>,
+    /// What is run; sweeps before 0.2 did not say.
+    #[serde(default)]
+    pub plan: Option<Plan>,
 }
 
 /// One run; a row of `sweep.csv`.
@@ -60,11 +65,13 @@ impl Sweep {
 
 const RECORD: &str = "sweep.json";
 const TABLE: &str = "sweep.csv";
+/// Folder of the rows.
+const ROWS: &str = "rows";
 
 impl SweepRecord {
-    pub fn new(title: &str, parameters: Vec<String>) -> Self {
+    pub fn new(title: &str, parameters: Vec<String>, plan: Option<Plan>) -> Self {
         let (program, version) = ("stickslip".to_owned(), env!("CARGO_PKG_VERSION").to_owned());
-        SweepRecord { program, version, title: title.to_owned(), parameters }
+        SweepRecord { program, version, title: title.to_owned(), parameters, plan }
     }
 }
 
@@ -73,12 +80,14 @@ pub fn is_sweep(folder: &Path) -> bool {
     read_record(folder).is_some()
 }
 
-fn read_record(folder: &Path) -> Option<SweepRecord> {
+/// What was swept in a folder; `None` if it is not that of a sweep.
+pub fn read_record(folder: &Path) -> Option<SweepRecord> {
     let record: SweepRecord = serde_json::from_slice(&fs::read(folder.join(RECORD)).ok()?).ok()?;
     (record.program == "stickslip").then_some(record)
 }
 
-/// Makes the folder of a sweep, or takes over that of an earlier one; its runs are replaced as they are run again.
+/// Makes the folder of a sweep, or takes over that of an earlier one, of whose runs no row is left; they are replaced as
+/// they are run again.
 ///
 /// # Errors
 /// The folder holds files that are not those of a sweep, or cannot be written.
@@ -100,7 +109,31 @@ pub fn prepare(folder: &Path, record: &SweepRecord) -> Result<(), Failure> {
         )));
     }
     let text = serde_json::to_vec_pretty(record).expect("a record is plain data");
+    let rows = folder.join(ROWS);
+    if rows.exists() {
+        fs::remove_dir_all(&rows).map_err(unusable)?;
+    }
+    fs::create_dir(&rows).map_err(unusable)?;
     write(&folder.join(RECORD), &text).map_err(unusable)
+}
+
+/// Where the row of a run is.
+fn row_file(folder: &Path, run: &str) -> PathBuf {
+    folder.join(ROWS).join(format!("{run}.csv"))
+}
+
+/// Writes the row of a run, as `sweep.csv` has it.
+///
+/// # Errors
+/// It cannot be written.
+pub fn write_row(folder: &Path, record: &SweepRecord, row: &SweepRow) -> Result<(), Failure> {
+    let alone = Sweep { record: record.clone(), rows: vec![row.clone()] };
+    write_rows(&row_file(folder, &row.run), &alone)
+}
+
+/// The row of a run that has ended.
+pub fn read_row(folder: &Path, record: &SweepRecord, run: &str) -> Option<SweepRow> {
+    read_rows(&row_file(folder, run), record).ok()?.pop()
 }
 
 /// Writes `sweep.csv` as it stands.
@@ -108,6 +141,10 @@ pub fn prepare(folder: &Path, record: &SweepRecord) -> Result<(), Failure> {
 /// # Errors
 /// It cannot be written.
 pub fn write_table(folder: &Path, sweep: &Sweep) -> Result<(), Failure> {
+    write_rows(&folder.join(TABLE), sweep)
+}
+
+fn write_rows(path: &Path, sweep: &Sweep) -> Result<(), Failure> {
     let figures = sweep.figures();
     let mut writer = csv::Writer::from_writer(Vec::new());
     let parameters = sweep.record.parameters.iter().map(String::as_str);
@@ -130,9 +167,8 @@ pub fn write_table(folder: &Path, sweep: &Sweep) -> Result<(), Failure> {
         fields.push(row.error.clone());
         writer.write_record(fields).expect("rows are as long as the header");
     }
-    let path = folder.join(TABLE);
     let bytes = writer.into_inner().expect("a vector takes all bytes");
-    write(&path, &bytes).map_err(|source| Failure::Run(miette!("cannot write {}: {source}", path.display())))
+    write(path, &bytes).map_err(|source| Failure::Run(miette!("cannot write {}: {source}", path.display())))
 }
 
 /// Reads the folder of a sweep.
@@ -140,18 +176,23 @@ pub fn write_table(folder: &Path, sweep: &Sweep) -> Result<(), Failure> {
 /// # Errors
 /// It is none, or its table is damaged.
 pub fn read(folder: &Path) -> Result<Sweep, Failure> {
-    let damaged = |why: &str| Failure::Input(miette!("cannot read {}: {why}", folder.join(TABLE).display()));
+    let path = folder.join(TABLE);
+    let damaged = |why: &str| Failure::Input(miette!("cannot read {}: {why}", path.display()));
     let record = read_record(folder).ok_or_else(|| damaged("the folder is not that of a sweep"))?;
-    let mut reader =
-        csv::Reader::from_path(folder.join(TABLE)).map_err(|error| damaged(&error.to_string()))?;
-    let header = reader.headers().map_err(|error| damaged(&error.to_string()))?.clone();
+    let rows = read_rows(&path, &record).map_err(|why| damaged(&why))?;
+    Ok(Sweep { record, rows })
+}
+
+fn read_rows(path: &Path, record: &SweepRecord) -> Result<Vec<SweepRow>, String> {
+    let mut reader = csv::Reader::from_path(path).map_err(|error| error.to_string())?;
+    let header = reader.headers().map_err(|error| error.to_string())?.clone();
     let end = 2 + record.parameters.len();
     if header.len() <= end {
-        return Err(damaged("columns are missing"));
+        return Err("columns are missing".to_owned());
     }
     let mut rows = Vec::new();
     for line in reader.records() {
-        let line = line.map_err(|error| damaged(&error.to_string()))?;
+        let line = line.map_err(|error| error.to_string())?;
         let figures =
             (end..header.len() - 1).filter_map(|i| Some((header[i].to_owned(), line[i].parse().ok()?)));
         rows.push(SweepRow {
@@ -162,7 +203,7 @@ pub fn read(folder: &Path) -> Result<Sweep, Failure> {
             error: line[header.len() - 1].to_owned(),
         });
     }
-    Ok(Sweep { record, rows })
+    Ok(rows)
 }
 
 /// Under another name first: a reader sees the old file or the new one.
@@ -177,7 +218,7 @@ mod tests {
     #[test]
     fn a_table_comes_back_with_its_holes() {
         let folder = tempfile::tempdir().unwrap();
-        let record = SweepRecord::new("waves", vec!["nu".to_owned()]);
+        let record = SweepRecord::new("waves", vec!["nu".to_owned()], None);
         prepare(folder.path(), &record).unwrap();
         let row = |run: &str, figures: &[(&str, f64)], error: &str| SweepRow {
             run: run.to_owned(),
@@ -194,13 +235,16 @@ mod tests {
         let sweep = Sweep { record, rows };
         write_table(folder.path(), &sweep).unwrap();
         assert_eq!(read(folder.path()).unwrap(), sweep);
+        write_row(folder.path(), &sweep.record, &sweep.rows[1]).unwrap();
+        assert_eq!(read_row(folder.path(), &sweep.record, "0.4").as_ref(), Some(&sweep.rows[1]));
+        assert_eq!(read_row(folder.path(), &sweep.record, "0.5"), None);
         assert!(is_sweep(folder.path()));
     }
 
     #[test]
     fn a_parameter_with_the_name_of_a_figure_keeps_it() {
         let folder = tempfile::tempdir().unwrap();
-        let record = SweepRecord::new("waves", vec!["steps".to_owned()]);
+        let record = SweepRecord::new("waves", vec!["steps".to_owned()], None);
         let figures = vec![("steps".to_owned(), 7.0)];
         let row = SweepRow { parameters: vec!["3".to_owned()], figures, ..SweepRow::default() };
         write_table(folder.path(), &Sweep { record, rows: vec![row] }).unwrap();
@@ -212,7 +256,7 @@ mod tests {
     fn a_folder_with_other_files_is_refused_and_left_alone() {
         let folder = tempfile::tempdir().unwrap();
         fs::write(folder.path().join("thesis.tex"), "years of work").unwrap();
-        let refused = prepare(folder.path(), &SweepRecord::new("waves", Vec::new()));
+        let refused = prepare(folder.path(), &SweepRecord::new("waves", Vec::new(), None));
         assert!(matches!(refused, Err(Failure::Input(_))));
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
     }

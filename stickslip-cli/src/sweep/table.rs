@@ -66,7 +66,7 @@ mod tests {
             },
             ..SweepRow::default()
         };
-        let record = SweepRecord::new("laws", vec!["law".to_owned()]);
+        let record = SweepRecord::new("laws", vec!["law".to_owned()], None);
         let rows = vec![row("surface", -0.0312, false), row("gap", 4e-5, false)];
         let mut sweep = Sweep { record, rows };
         assert_eq!(table(&sweep), "    law  energy_drift\nsurface       -0.0312\n    gap      4.000e-5\n");
