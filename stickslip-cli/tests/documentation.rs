@@ -142,6 +142,61 @@ fn links_lead_to_files() {
     }
 }
 
+/// Files below a folder that end in `.rs`, but for what is built, by their paths in the repository.
+fn sources(folder: &Path, found: &mut Vec<String>) {
+    for entry in fs::read_dir(repository().join(folder)).unwrap().map(Result::unwrap) {
+        let (path, name) = (folder.join(entry.file_name()), entry.file_name());
+        if entry.file_type().unwrap().is_dir() {
+            if name != "target" && name != "corpus" {
+                sources(&path, found);
+            }
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            found.push(path.to_str().unwrap().replace('\\', "/"));
+        }
+    }
+}
+
+/// Whether a line of code has an unsafe block, function, implementation or type of function.
+fn is_unsafe(line: &str) -> bool {
+    let code = line.split("//").next().unwrap_or_default();
+    ["{", "fn", "impl", "extern"].iter().any(|next| code.contains(&["unsafe", next].join(" ")))
+}
+
+#[test]
+fn every_file_with_unsafe_code_has_a_row_in_the_architecture() {
+    let text = fs::read_to_string(repository().join("ARCHITECTURE.md")).unwrap();
+    let (_, section) = text.split_once("\n## Where code is unsafe\n").expect("the section is there");
+    let section = section.split("\n## ").next().unwrap();
+    let rooms = section
+        .lines()
+        .filter_map(|line| line.strip_prefix("| `"))
+        .map(|row| row.split(" | ").next().unwrap());
+    let rooms: Vec<String> =
+        rooms
+            .flat_map(|room| room.split(['`', ',', ' ']).filter(|path| !path.is_empty()))
+            .map(|path| {
+                if path.starts_with("stickslip") {
+                    path.into()
+                } else {
+                    format!("stickslip-engine/src/{path}")
+                }
+            })
+            .collect();
+    assert!(rooms.len() > 20, "{rooms:?}");
+    let mut files = Vec::new();
+    for entry in fs::read_dir(repository()).unwrap().map(Result::unwrap) {
+        if entry.path().join("Cargo.toml").is_file() {
+            sources(Path::new(&entry.file_name()), &mut files);
+        }
+    }
+    files.retain(|path| fs::read_to_string(repository().join(path)).unwrap().lines().any(is_unsafe));
+    let covers = |room: &str, file: &str| file == room || (room.ends_with('/') && file.starts_with(room));
+    let bare: Vec<_> = files.iter().filter(|file| !rooms.iter().any(|room| covers(room, file))).collect();
+    assert!(bare.is_empty(), "no row for {bare:?}");
+    let idle: Vec<_> = rooms.iter().filter(|room| !files.iter().any(|file| covers(room, file))).collect();
+    assert!(idle.is_empty(), "nothing is unsafe in {idle:?}");
+}
+
 /// Names of keys, of words to choose from, and of definitions that a JSON schema holds.
 fn collect(schema: &Value, keys: &mut BTreeSet<String>, words: &mut BTreeSet<String>) {
     match schema {

@@ -66,7 +66,9 @@ impl StepCuttings {
     pub(super) fn ask(&mut self) -> bool {
         let energy = self.energy.as_mut().map(|cutting| &mut cutting.asks);
         let momentum = self.momentum.as_mut().map(|cutting| &mut cutting.asks);
-        energy.into_iter().chain(momentum).fold(false, |asked, asks| std::mem::take(asks) || asked)
+        let mut asked = false;
+        energy.into_iter().chain(momentum).for_each(|asks| asked |= std::mem::take(asks));
+        asked
     }
 
     /// Keeps what is known of the run so far, or takes that up.

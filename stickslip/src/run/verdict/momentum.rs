@@ -65,9 +65,7 @@ impl Account {
     /// [N].
     fn missing(&mut self, momentum: [f64; 3], (time, force): (f64, [f64; 3])) -> [f64; 3] {
         let elapsed = time - self.time;
-        for i in 0..3 {
-            self.weight[i] += elapsed * 0.5 * (force[i] + self.force[i]);
-        }
+        self.weight = add(self.weight, add(force, self.force).map(|twice| 0.5 * elapsed * twice));
         (self.time, self.force) = (time, force);
         [0, 1, 2].map(|i| momentum[i] - self.weight[i] - self.start[i])
     }
