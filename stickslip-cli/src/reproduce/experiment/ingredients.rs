@@ -124,7 +124,7 @@ const ALL: &[Place] = &Place::KNOWN;
 const FLAT: &[Place] = &[Place::Flats, Place::SlidingFlats];
 
 /// What is not known, one end of its range after the other.
-pub const UNKNOWNS: [Unknown; 25] = [
+pub const UNKNOWNS: [Unknown; 27] = [
     Unknown {
         name: "friction-low",
         quantity: "friction of the disks",
@@ -302,9 +302,17 @@ pub const UNKNOWNS: [Unknown; 25] = [
         places: FLAT,
     },
     Unknown {
+        name: "wide-contacts-clear",
+        quantity: "width of the contacts before the blow",
+        title: "the same, 50 µm of clearance",
+        settings: &[("relaxing", "1e-9"), ("clearance", "50 um")],
+        basis: Basis::Hypothetical,
+        places: FLAT,
+    },
+    Unknown {
         name: "wide-contacts-slipping",
         quantity: "width of the contacts before the blow",
-        title: "the same, friction 0.2",
+        title: "contacts 4 mm wide before the blow, as stiff as for ultrasound, friction 0.2",
         settings: &[("relaxing", "1e-9"), ("friction", "0.2")],
         basis: Basis::Hypothetical,
         places: &[Place::SlidingFlats],
@@ -322,6 +330,14 @@ pub const UNKNOWNS: [Unknown; 25] = [
         quantity: "width of the glue",
         title: "glue 6 mm wide, as stiff as for ultrasound",
         settings: &[("glue", "6 mm"), ("relaxing", "1e-9")],
+        basis: Basis::Hypothetical,
+        places: &[Place::Strips],
+    },
+    Unknown {
+        name: "wide-glue-clear",
+        quantity: "width of the glue",
+        title: "the same, 50 µm of clearance",
+        settings: &[("glue", "6 mm"), ("relaxing", "1e-9"), ("clearance", "50 um")],
         basis: Basis::Hypothetical,
         places: &[Place::Strips],
     },
