@@ -198,15 +198,19 @@ impl Arguments {
             sweep::write_table(&crew.folder, table)?;
         }
         let mut display = Family::new(wanted.len(), terminal());
+        let place_in_family = |number: usize| wanted.iter().position(|&other| other == number).unwrap_or(0);
         crew.run(members, wanted, |news| {
             for each in news {
                 match each {
-                    News::Progress(number, share) => display.show(number, share),
+                    News::Progress(number, share) => display.show(place_in_family(number), share),
                     News::Ended(number, row) => {
                         let place = &mut table.rows[number];
                         *place =
                             SweepRow { run: place.run.clone(), parameters: place.parameters.clone(), ..*row };
-                        display.ended(number, &format!("{}: {} {}", place.run, place.status, place.error));
+                        display.ended(
+                            place_in_family(number),
+                            &format!("{}: {} {}", place.run, place.status, place.error),
+                        );
                         if written.is_ok() {
                             written = sweep::write_row(&crew.folder, &table.record, &table.rows[number]);
                         }
