@@ -192,8 +192,10 @@ fn one_file_names_its_size_and_replaces_no_others() {
     workplace.succeed(&["view", "scene.results", "--html", "seen.html", "--columns", "stress.xy"]);
 
     workplace.write("thesis.html", "years of work");
+    workplace.write("homepage.html", "<!DOCTYPE html><title>mine</title>");
     for (wrong, word) in [
-        (&["scene.results", "--html", "thesis.html"][..], "no page of Stickslip"),
+        (&["scene.results", "--html", "thesis.html"][..], "no page in HTML"),
+        (&["scene.results", "--html", "homepage.html"], "does not say that Stickslip made it"),
         (&["scene.results", "--html", "seen.html", "--columns", "charm"], "allowed: velocity"),
         (&["scene.results", "--set", "cells_per_radius=2"], "allowed with a scene file"),
         (&["nowhere"], "nowhere"),
