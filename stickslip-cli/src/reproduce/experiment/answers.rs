@@ -68,9 +68,8 @@ impl<'a> Answers<'a> {
     }
 
     /// The lowest and the highest factor of an arrangement if what is not known lies anywhere in its range: of each
-    /// quantity the largest deviation on either side on the cells on which it is varied, of all quantities added in
-    /// squares. With assumed ranges, or of
-    /// published ones alone; `None` if a run has no factor.
+    /// quantity the largest deviation on either side, on the cells on which it is varied, of all quantities added in
+    /// squares. With assumed ranges, or of published ones alone; `None` if a run has no factor.
     pub fn band(&self, place: Place, assumed: bool) -> Option<[f64; 2]> {
         let factor = |case: &PaperCase| Some(self.of(case).stretch?.factor);
         let coarse = cells_of_unknowns(self.level);

@@ -23,7 +23,7 @@ pub fn introduction(level: PaperResolution) -> Markup {
          fitted. The yardstick is the fringes of the paper's simulation at the times of its frames, remade with its numbers and its rule (a common normal \
          for each pair, particles that follow the edge). A run is like them where the light in all disks correlates best. The paper matched its three \
          frames together, with the times between them stretched alike; so does the factor here, with an offset of at most " (format!("{CLOCK:.2}")) " \
-         transits, since the experiment's clock began within 10 µs of the impact. Times are in transits of 19 µs."
+         transits, since the experiment knows the time of its impact to 10 µs. Times are in transits of 19 µs."
     }
 }
 
@@ -46,8 +46,8 @@ pub fn stretches(answers: &Answers) -> Table {
         Column::text("the experiment within"),
     ];
     let caption = "By which factor the times of the paper's simulated frames must be stretched to find the same fringes. As good: the mean correlation of the \
-                   frames is less by at most 0.02. What ranges allow: each quantity that is not known at the ends of its range, all else as known; the \
-                   largest deviations on either side, added in squares.";
+                   frames is less by at most 0.02. What ranges allow: each quantity that is not known at the ends of its range, all else as known, on \
+                   the cells of the table of what is not known; the largest deviations on either side, added in squares.";
     let mut table = Table::new(caption, columns);
     for place in Place::KNOWN {
         let arrangement = place.arrangement();

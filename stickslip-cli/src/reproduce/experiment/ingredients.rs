@@ -144,7 +144,7 @@ pub const UNKNOWNS: [Unknown; 27] = [
     Unknown {
         name: "friction-falling",
         quantity: "friction of the disks",
-        title: "friction that falls from 0.5 to 0.25 as disks slide at 1 m/s and faster",
+        title: "friction that falls from 0.5 towards 0.25 as disks slide, to 0.34 at 1 m/s",
         settings: &[("kinetic_friction", "0.25"), ("decay_speed", "1 m/s")],
         basis: Basis::Assumed,
         places: &[Place::Sliding],
@@ -240,7 +240,7 @@ pub const UNKNOWNS: [Unknown; 27] = [
     Unknown {
         name: "losses",
         quantity: "stiffness",
-        title: "losses that fall as a power of the frequency to 0.012, as measured at 1.6 MHz, for 0.053",
+        title: "losses that fall as a power of the frequency to 0.012 at 1.6 MHz, as measured near there, for 0.053",
         settings: &[("losses", "0.24")],
         basis: Basis::Published,
         places: ALL,
@@ -320,7 +320,7 @@ pub const UNKNOWNS: [Unknown; 27] = [
     Unknown {
         name: "wide-contacts-losses",
         quantity: "width of the contacts before the blow",
-        title: "contacts 4 mm wide before the blow, losses as measured at 1.6 MHz",
+        title: "contacts 4 mm wide before the blow, losses that fall to those of ultrasound",
         settings: &[("losses", "0.24")],
         basis: Basis::Hypothetical,
         places: FLAT,
