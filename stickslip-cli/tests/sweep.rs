@@ -150,6 +150,15 @@ fn a_sweep_goes_on_where_it_was() {
     let resumed = fs::read_to_string(workplace.path("part/friction=0.3/run.json")).unwrap();
     assert!(resumed.contains("\"resumed\": [\n"), "{resumed}");
 
+    // Killed between its end and its row: it takes no step again.
+    let steps =
+        |folder: &str| table(&workplace, folder).iter().map(|row| row["steps"].clone()).collect::<Vec<_>>();
+    fs::remove_file(workplace.path("part/rows/friction=0.csv")).unwrap();
+    workplace.succeed(&["sweep", "part"]);
+    assert_eq!(steps("part"), steps("whole"));
+    let again = fs::read_to_string(workplace.path("part/friction=0/run.json")).unwrap();
+    assert!(again.contains("\"resumed\": [\n"), "{again}");
+
     let refused = [
         (&["sweep", "part", "--set", "friction=0,1"][..], "goes on as it was begun"),
         (&["sweep", "part", "--only", "3"], "numbers from 0 to 2"),

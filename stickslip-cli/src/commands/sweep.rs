@@ -89,16 +89,18 @@ impl Arguments {
             parameters: sweep::values(loaded, member, &varied),
             ..SweepRow::default()
         };
-        let ended = |each: &(Member, Loaded)| match self.gather {
-            true => sweep::read_row(&folder, &record, &each.0.folder),
-            false => sweep::finished(&folder, &record, each),
+        let ended = |each: &(Member, Loaded)| {
+            let unfinished = || sweep::read_row(&folder, &record, &each.0.folder).filter(|_| self.gather);
+            let finished = sweep::finished(&folder, &record, each);
+            finished.or_else(|| unfinished().filter(|row| row.status != "finished"))
         };
         let rows = members.iter().map(|each| ended(each).unwrap_or_else(|| pending(each))).collect();
         let mut table = Sweep { record, rows };
         if self.script {
             return self.submit_later(&folder, &table);
         }
-        let considered = if self.only.is_empty() { (0..members.len()).collect() } else { self.only.clone() };
+        let is_considered = |number: &usize| self.only.is_empty() || self.only.contains(number);
+        let considered: Vec<usize> = (0..members.len()).filter(is_considered).collect();
         let left = |table: &Sweep| -> Vec<usize> {
             considered.iter().copied().filter(|&number| table.rows[number].status != "finished").collect()
         };
@@ -211,11 +213,13 @@ impl Arguments {
                             place_in_family(number),
                             &format!("{}: {} {}", place.run, place.status, place.error),
                         );
-                        if written.is_ok() {
-                            written = sweep::write_row(&crew.folder, &table.record, &table.rows[number]);
-                        }
-                        if written.is_ok() && self.only.is_empty() {
-                            written = sweep::write_table(&crew.folder, table);
+                        let row = sweep::write_row(&crew.folder, &table.record, &table.rows[number]);
+                        let whole = self.only.is_empty().then(|| sweep::write_table(&crew.folder, table));
+                        // The first trouble counts; what can be written is, all the same.
+                        if let Err(trouble) = row.and(whole.unwrap_or(Ok(())))
+                            && written.is_ok()
+                        {
+                            written = Err(trouble);
                         }
                     }
                 }

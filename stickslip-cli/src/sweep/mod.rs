@@ -9,7 +9,8 @@ mod table;
 pub use chart::chart;
 pub use plan::{Member, Plan, Variation, members, varied};
 pub use record::{
-    Sweep, SweepRecord, SweepRow, is_sweep, prepare, read, read_record, read_row, write_row, write_table,
+    Sweep, SweepRecord, SweepRow, forget_row, is_sweep, prepare, read, read_record, read_row, write_row,
+    write_table,
 };
 pub use script::{submit, write_script};
 pub use table::table;
@@ -102,6 +103,7 @@ impl Crew {
         (number, sender): (usize, &Sender<News>),
     ) -> SweepRow {
         let out = &self.folder.join(&member.folder);
+        forget_row(&self.folder, &member.folder);
         let pool = match rayon::ThreadPoolBuilder::new().num_threads(self.threads).build() {
             Ok(pool) => pool,
             Err(error) => return failed(error.to_string()),
@@ -116,7 +118,9 @@ impl Crew {
                 built.map_err(|problem| loaded.source.locate(problem).to_string())
             };
             let options = self.options(out, (member, loaded));
-            if matches!(stickslip::run::unfinished(out, scene), Ok(Some(_))) {
+            // One that finished and has no row was ended while its row was made, and takes no further step.
+            let has_finished = jobs::finished(out, scene).is_some();
+            if has_finished || matches!(stickslip::run::unfinished(out, scene), Ok(Some(_))) {
                 match stickslip::run::resume(scene, &mut *build()?, &options, &mut progress) {
                     // Made by another scene: the run begins anew.
                     Err(RunError::Resume(_)) => {}

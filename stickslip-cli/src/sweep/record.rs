@@ -131,6 +131,12 @@ pub fn write_row(folder: &Path, record: &SweepRecord, row: &SweepRow) -> Result<
     write_rows(&row_file(folder, &row.run), &alone)
 }
 
+/// Removes the row of a run that begins.
+pub fn forget_row(folder: &Path, run: &str) {
+    // One that stays is that of another scene or program, and is not believed.
+    let _ = fs::remove_file(row_file(folder, run));
+}
+
 /// The row of a run that has ended.
 pub fn read_row(folder: &Path, record: &SweepRecord, run: &str) -> Option<SweepRow> {
     read_rows(&row_file(folder, run), record).ok()?.pop()

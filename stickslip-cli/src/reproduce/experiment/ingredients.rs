@@ -42,7 +42,7 @@ pub enum Basis {
 /// From the paper's simulation on. The first is that simulation in the experiment's scene, by a law that differs from
 /// its own by the square of the strain; its fringes are those of the other studies, s = 0.3 rho c_L V, and its camera
 /// next to no exposure.
-pub const INGREDIENTS: [Ingredient; 10] = [
+pub const INGREDIENTS: [Ingredient; 11] = [
     Ingredient {
         name: "paper",
         title: "the paper's simulation",
@@ -70,9 +70,15 @@ pub const INGREDIENTS: [Ingredient; 10] = [
         sharp: None,
     },
     Ingredient {
+        name: "transfer",
+        title: "particles that keep their spin (rflip for FLIP)",
+        settings: &[("transfer", None)],
+        sharp: None,
+    },
+    Ingredient {
         name: "surfaces",
         title: "contact where surfaces touch (of the glued disks, with striker and frame)",
-        settings: &[("contact", None), ("transfer", None)],
+        settings: &[("contact", None)],
         sharp: Some(2.097),
     },
     Ingredient { name: "plane-stress", title: "plane stress", settings: &[("dimension", None)], sharp: None },

@@ -28,10 +28,11 @@ pub fn table(level: PaperResolution, runs: &Runs) -> Result<Table, Failure> {
     let frames = ARRANGEMENTS[0].measured;
     let mut columns = vec![Column::text(""), Column::number("longitudinal waves [km/s]")];
     columns.extend((1..=4).map(|disk| Column::number(format!("at the centre of disk {disk}"))));
+    columns.push(Column::number("from disk to disk"));
     columns.extend(frames.map(|time| Column::number(format!("most like the plates at {time}"))));
     let caption = "The row of Plexiglas disks in the plane and in space, where plates of the experiment's thickness, half of it above a mirror, have the \
                    same cells: speed of longitudinal waves of ultrasound (none is given for plates: in them long waves run as in plane stress, and \
-                   only the very front as in plane strain); arrival of 0.3 of the pressure behind a plane wave in transits; and when the fringes are most like those of the plates at the \
+                   only the very front as in plane strain); arrival of 0.3 of the pressure behind a plane wave, and the mean interval from disk to disk, in transits; and when the fringes are most like those of the plates at the \
                    experiment's times, with their correlation.";
     let mut table = Table::new(caption, columns);
     let plates = sequence(runs, &space)?;
@@ -58,6 +59,10 @@ pub fn table(level: PaperResolution, runs: &Runs) -> Result<Table, Failure> {
             Some(time) => Cell::number(time, 2),
             None => Cell::text("not yet"),
         }));
+        row.push(match arrivals[..] {
+            [Some(first), .., Some(last)] => Cell::number((last - first) / (arrivals.len() - 1) as f64, 2),
+            _ => Cell::text("not yet"),
+        });
         if let (Some(run), Some(plates)) = (sequence(runs, &case)?, &plates) {
             row.extend(frames.map(|time| match run.most_like(plates, time, [0.5 * time, 2.0 * time]) {
                 Some(alike) => Cell::Number(format!("{:.2}, {:.2}", alike.time, alike.correlation)),
