@@ -42,7 +42,9 @@ class Progress:
         """The time left, and as much of the rest as has room in so many columns."""
         began, first_time, first_step = self._began or (now, time, steps)
         wall = max(now - began, 1e-9)
-        line = f"{_duration(wall * (end - time) / (time - first_time) if time > first_time else inf)} left"
+        left = wall * (end - time) / (time - first_time) if time > first_time else inf
+        # Of a run that ends before it is asked again, nobody knows the pace.
+        line = f"{_duration(left if time < end else 0.0)} left"
         reached = f"{time:.3e} of {end:.3e}" if end < 1e-2 else f"{time:.4f} of {end:g}"
         pace = _with_prefix((steps - first_step) * particles / wall)
         for part in (f"t = {reached} s", f"step {steps}", f"{pace}particle-steps/s"):
