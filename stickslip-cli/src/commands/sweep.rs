@@ -108,7 +108,6 @@ impl Arguments {
         let crew = self.crew(folder, scene, wanted.len())?;
         self.run(&crew, &members, &wanted, &mut table)?;
         if self.only.is_empty() {
-            sweep::write_table(&crew.folder, &table)?;
             draw_and_tell(&crew, &table)?;
         }
         conclude(&crew, &table, &left(&table))
