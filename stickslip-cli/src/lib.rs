@@ -24,6 +24,25 @@ mod view;
 
 use clap::Parser;
 use std::ffi::OsString;
+use std::sync::OnceLock;
+
+/// How another program is called that brings the command along.
+static CALLED: OnceLock<Vec<OsString>> = OnceLock::new();
+
+/// Says how the command is called where that is not a program of its own: `python -m stickslip`, by absolute paths. Of
+/// scripts that the command writes.
+pub fn is_called(words: Vec<OsString>) {
+    // The process has one answer, the first.
+    let _ = CALLED.set(words);
+}
+
+/// What a script calls the command by: a program, and the words that go before the command's own.
+fn program() -> std::io::Result<Vec<OsString>> {
+    match CALLED.get() {
+        Some(words) => Ok(words.clone()),
+        None => Ok(vec![std::path::absolute(std::env::current_exe()?)?.into_os_string()]),
+    }
+}
 
 /// Does what the words of a command line ask for, the program's name first, and gives the exit code.
 ///

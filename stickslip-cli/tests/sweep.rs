@@ -203,4 +203,57 @@ fn a_job_array_makes_the_same_table() {
         ["finished", "finished", "failed"]
     );
     assert_eq!([&rows[0]["time"], &rows[1]["time"]], ["0.01"; 2]);
+
+    // What has finished stands when the script is written once more; the rest is submitted.
+    let script = [&["sweep", "scene.toml", "--script"][..], &values, &short].concat();
+    let said = workplace.succeed(&script);
+    assert!(said.contains("1 of 3 runs to do\nsbatch --array=2 'scene.sweep/array.sh'"), "{said}");
+    let statuses: Vec<String> =
+        table(&workplace, "scene.sweep").iter().map(|row| row["status"].clone()).collect();
+    assert_eq!(statuses, ["finished", "finished", "pending"]);
+    let sound = ["--set", "bodies[0].velocity=[0, 0],[0, 1e-3]"];
+    let said = workplace.succeed(&[&["sweep", "scene.toml", "--script"][..], &sound, &short].concat());
+    assert!(said.contains("all 2 runs have finished: stickslip sweep scene.sweep --gather"), "{said}");
+
+    for (option, value) in [("--jobs", "2"), ("--threads", "2")] {
+        for mode in ["--script", "--gather"] {
+            let refused = workplace.run(&["sweep", "scene.sweep", mode, option, value]);
+            assert_eq!(refused.code, Some(2), "{}", refused.stderr);
+            assert!(refused.stderr.contains("cannot be used with"), "{}", refused.stderr);
+        }
+    }
+}
+
+/// The scene lies in the folder of its sweep, which is moved; SLURM runs a copy of the script, which asks it where the
+/// script came from.
+#[cfg(unix)]
+#[test]
+fn a_folder_that_was_moved_goes_on_where_it_lies() {
+    use std::os::unix::fs::PermissionsExt;
+    let (workplace, short) = place();
+    fs::create_dir(workplace.path("first")).unwrap();
+    fs::rename(workplace.path("scene.toml"), workplace.path("first/scene.toml")).unwrap();
+    let values = ["--set", "friction=0,0.5", "--script", "--out", "first"];
+    workplace.succeed(&[&["sweep", "first/scene.toml"][..], &values, &short].concat());
+    fs::rename(workplace.path("first"), workplace.path("moved here")).unwrap();
+
+    fs::create_dir(workplace.path("spool")).unwrap();
+    fs::copy(workplace.path("moved here/array.sh"), workplace.path("spool/job")).unwrap();
+    let origin = workplace.path("moved here/array.sh");
+    let scontrol =
+        format!("#!/bin/sh\necho 'JobId=7 JobName=stickslip'\necho '   Command={}'\n", origin.display());
+    workplace.write("spool/scontrol", &scontrol);
+    fs::set_permissions(workplace.path("spool/scontrol"), fs::Permissions::from_mode(0o755)).unwrap();
+    let path = format!("{}:{}", workplace.path("spool").display(), std::env::var("PATH").unwrap());
+    let mut shell = std::process::Command::new("sh");
+    shell.arg("spool/job").current_dir(workplace.path(""));
+    shell.env("SLURM_ARRAY_TASK_ID", "0").env("SLURM_JOB_ID", "7").env("PATH", path);
+    assert!(shell.status().unwrap().success());
+    assert!(workplace.path("moved here/rows/friction=0.csv").exists());
+    shell.env("PATH", "/usr/bin:/bin");
+    assert_eq!(shell.status().unwrap().code(), Some(2), "nobody says where the script came from");
+
+    let said = workplace.succeed(&["sweep", "moved here"]);
+    assert!(said.contains("2 of 2 runs finished"), "{said}");
+    assert!(!workplace.path("first").exists());
 }

@@ -226,9 +226,10 @@ pub fn run(
 }
 
 /// Does what the words of a command line ask for, the program's name first, and gives the exit code; for processes that
-/// do nothing else.
+/// do nothing else. `called` are the words by which scripts call the command.
 #[pyfunction]
-pub fn command(words: Vec<OsString>) -> u8 {
+pub fn command(words: Vec<OsString>, called: Vec<OsString>) -> u8 {
+    stickslip_cli::is_called(called);
     stickslip_cli::execute(words)
 }
 

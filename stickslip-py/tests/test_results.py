@@ -7,6 +7,7 @@ import contextlib
 import json
 import os
 import re
+import shutil
 import struct
 import subprocess
 import sys
@@ -17,6 +18,7 @@ import numpy as np
 import pytest
 import stickslip as ss
 from conftest import REPOSITORY, flying, rings, settling
+from stickslip import commands
 from stickslip.progress import Progress
 
 
@@ -154,7 +156,41 @@ def test_a_sweep_has_a_row_and_results_for_each_run(tmp_path):
     assert [round(float(run.bodies["vx"][-1]), 6) for run in runs] == [1, 3]
     assert "<table>" in runs._repr_html_()
     with pytest.raises(ss.SceneError, match="found functions of Python"):
-        ss.sweep(scene.load("ball", force=lambda t, x, x0: (0, 1)), tmp_path / "none", speed=(1, 3))
+        ss.sweep(flying().load("ball", force=lambda t, x, x0: (0, 1)), tmp_path / "none", speed=(1, 3))
+
+    # As if the second had been killed before it began, and the folder moved.
+    moved = (tmp_path / "sweep").rename(tmp_path / "moved")
+    (moved / "rows/speed=3.csv").unlink()
+    shutil.rmtree(moved / "speed=3")
+    assert "2 of 2 runs finished" in commands.command("sweep", moved)
+    assert (moved / "speed=3/run.json").exists() and (moved / "scene.toml").read_text() == scene.text()
+
+
+def test_a_sweep_that_is_refused_leaves_no_trace(tmp_path):
+    scene = flying().parameter(speed=2)
+    with pytest.raises(ss.RunError, match="sped"):
+        ss.sweep(scene, tmp_path / "new", sped=(1, 3))
+    assert not (tmp_path / "new").exists()
+    mine = tmp_path / "mine"
+    mine.mkdir()
+    (mine / "thesis.txt").write_text("years of work")
+    with pytest.raises(ss.RunError, match="thesis.txt"):
+        ss.sweep(scene, mine, speed=(1, 3))
+    (mine / "scene.toml").write_text("mine")
+    with pytest.raises(ss.RunError, match="would be replaced"):
+        ss.sweep(scene, mine, speed=(1, 3))
+    assert sorted(path.name for path in mine.iterdir()) == ["scene.toml", "thesis.txt"]
+    assert (mine / "scene.toml").read_text() == "mine"
+
+
+def test_the_script_of_a_sweep_calls_the_command_as_it_was_called(tmp_path):
+    scene = flying().parameter(speed=2)
+    scene.document["bodies"][0]["velocity"] = ["speed", 0]
+    scene.save(tmp_path / "scene.toml")
+    folder = tmp_path / "it's array"
+    commands.command("sweep", tmp_path / "scene.toml", set="speed=1,3", script=True, out=folder)
+    job = subprocess.run(["sh", folder / "array.sh"], env={**os.environ, "SLURM_ARRAY_TASK_ID": "1"}, check=False)
+    assert job.returncode == 0 and (folder / "rows/speed=3.csv").exists()
 
 
 def test_frames_go_to_other_packages_with_all_columns(results, tmp_path):

@@ -47,11 +47,11 @@ pub struct Arguments {
     gather: bool,
 
     /// Runs at a time; as many as there are processors without this.
-    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024), conflicts_with_all = ["script", "gather"])]
     jobs: Option<u16>,
 
     /// Threads of all runs together; as many as there are processors without this.
-    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024), conflicts_with_all = ["script", "gather"])]
     threads: Option<u16>,
 }
 
@@ -65,7 +65,8 @@ impl Arguments {
         let (plan, folder) = self.plan()?;
         let varied = sweep::varied(&plan.variations);
         // All scenes are read before anything is run or written: a mistake costs no time.
-        let read = |member: Member| match load(&plan.scene, &member.settings) {
+        let scene = std::path::absolute(plan.scene_file(&folder)).into_diagnostic().map_err(Failure::Run)?;
+        let read = |member: Member| match load(&scene, &member.settings) {
             Ok(loaded) => Ok((member, loaded)),
             Err(error) => Err(Failure::input(error)),
         };
@@ -78,11 +79,7 @@ impl Arguments {
                 "--only: found {unknown}; allowed: numbers from 0 to {last}"
             )));
         }
-        let scene = plan.scene.clone();
         let record = SweepRecord::new(&members[0].1.scene.title, varied.clone(), Some(plan));
-        if !self.goes_on() {
-            sweep::prepare(&folder, &record)?;
-        }
         let pending = |(member, loaded): &(Member, Loaded)| SweepRow {
             run: member.folder.clone(),
             status: "pending".to_owned(),
@@ -92,18 +89,22 @@ impl Arguments {
         let ended = |each: &(Member, Loaded)| {
             let unfinished = || sweep::read_row(&folder, &record, &each.0.folder).filter(|_| self.gather);
             let finished = sweep::finished(&folder, &record, each);
-            finished.or_else(|| unfinished().filter(|row| row.status != "finished"))
+            finished.or_else(|| unfinished().filter(|row| !row.is_finished()))
         };
-        let rows = members.iter().map(|each| ended(each).unwrap_or_else(|| pending(each))).collect();
+        // One that begins runs everything; a script is for what is left of it.
+        let stands = self.goes_on() || self.script;
+        let row = |each| Some(each).filter(|_| stands).and_then(ended).unwrap_or_else(|| pending(each));
+        let rows: Vec<SweepRow> = members.iter().map(row).collect();
+        if !self.goes_on() {
+            let kept = rows.iter().filter(|row| row.is_finished()).map(|row| row.run.as_str());
+            sweep::prepare(&folder, &record, &kept.collect::<Vec<_>>())?;
+        }
         let mut table = Sweep { record, rows };
         if self.script {
             return self.submit_later(&folder, &table);
         }
         let is_considered = |number: &usize| self.only.is_empty() || self.only.contains(number);
-        let considered: Vec<usize> = (0..members.len()).filter(is_considered).collect();
-        let left = |table: &Sweep| -> Vec<usize> {
-            considered.iter().copied().filter(|&number| table.rows[number].status != "finished").collect()
-        };
+        let left = |table: &Sweep| table.unfinished().into_iter().filter(is_considered).collect::<Vec<_>>();
         let wanted = if self.gather { Vec::new() } else { left(&table) };
         let crew = self.crew(folder, scene, wanted.len())?;
         self.run(&crew, &members, &wanted, &mut table)?;
@@ -129,9 +130,9 @@ impl Arguments {
                 )));
             }
             self.check()?;
-            let scene = std::path::absolute(&self.scene).into_diagnostic().map_err(Failure::Run)?;
-            let plan = Plan { scene, variations: self.variations.clone() };
-            return Ok((plan, self.out.clone().unwrap_or_else(|| default_folder(&self.scene, "sweep"))));
+            let folder = self.out.clone().unwrap_or_else(|| default_folder(&self.scene, "sweep"));
+            let plan = Plan::new(&self.scene, &folder, self.variations.clone());
+            return Ok((plan.into_diagnostic().map_err(Failure::Run)?, folder));
         }
         if !self.variations.is_empty() || self.out.is_some() {
             let option = if self.out.is_some() { "--out" } else { "--set" };
@@ -233,13 +234,11 @@ impl Arguments {
         sweep::write_table(folder, table)?;
         let runs = table.rows.len();
         sweep::write_script(folder, runs)?;
-        let all: Vec<usize> = (0..runs).filter(|&number| table.rows[number].status != "finished").collect();
-        say(&format!(
-            "{} of {runs} runs to do\n{}\nthen stickslip sweep {} --gather",
-            all.len(),
-            sweep::submit(folder, &all),
-            folder.display()
-        ))
+        let (left, gather) = (table.unfinished(), format!("stickslip sweep {} --gather", folder.display()));
+        if left.is_empty() {
+            return say(&format!("all {runs} runs have finished: {gather}"));
+        }
+        say(&format!("{} of {runs} runs to do\n{}\nthen {gather}", left.len(), sweep::submit(folder, &left)))
     }
 }
 
@@ -251,11 +250,11 @@ fn draw_and_tell(crew: &Crew, table: &Sweep) -> Result<(), Failure> {
         Err(DrawError::Empty(_)) => "",
         Err(error) => return Err(error.into()),
     };
-    let finished = table.rows.iter().filter(|row| row.status == "finished").count();
+    let runs = table.rows.len();
     say(&sweep::table(table))?;
     say(&format!(
-        "{finished} of {} runs finished\nresults in {}/: sweep.csv{drawn}, a folder for each run",
-        table.rows.len(),
+        "{} of {runs} runs finished\nresults in {}/: sweep.csv{drawn}, a folder for each run",
+        runs - table.unfinished().len(),
         crew.folder.display()
     ))
 }

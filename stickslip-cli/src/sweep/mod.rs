@@ -69,7 +69,7 @@ pub fn finished(
     record: &SweepRecord,
     (member, loaded): &(Member, Loaded),
 ) -> Option<SweepRow> {
-    let row = read_row(folder, record, &member.folder).filter(|row| row.status == "finished")?;
+    let row = read_row(folder, record, &member.folder).filter(SweepRow::is_finished)?;
     jobs::finished(&folder.join(&member.folder), &loaded.scene).map(|_| row)
 }
 

@@ -1,12 +1,14 @@
 //! Which runs a sweep is made of.
 
 use serde::{Deserialize, Serialize};
-use std::path::PathBuf;
+use std::io;
+use std::path::{Path, PathBuf};
 
 /// What is run: all that a sweep needs to go on.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Plan {
-    /// The scene file; absolute, so that whoever goes on may stand elsewhere.
+    /// The scene file; absolute, so that whoever goes on may stand elsewhere, or relative to the folder of the sweep where
+    /// it lies in there, and goes with it.
     pub scene: PathBuf,
     /// What is set.
     pub variations: Vec<Variation>,
@@ -48,6 +50,23 @@ impl Variation {
 
     fn varies(&self) -> bool {
         self.values.len() > 1
+    }
+}
+
+impl Plan {
+    /// For a scene file and the folder of the sweep.
+    ///
+    /// # Errors
+    /// There is no folder in which the program works.
+    pub fn new(scene: &Path, folder: &Path, variations: Vec<Variation>) -> io::Result<Self> {
+        let [scene, folder] = [std::path::absolute(scene)?, std::path::absolute(folder)?];
+        let scene = scene.strip_prefix(&folder).map_or(scene.clone(), Path::to_path_buf);
+        Ok(Plan { scene, variations })
+    }
+
+    /// The scene file of a sweep in this folder.
+    pub fn scene_file(&self, folder: &Path) -> PathBuf {
+        folder.join(&self.scene)
     }
 }
 

@@ -50,7 +50,19 @@ pub struct Sweep {
     pub rows: Vec<SweepRow>,
 }
 
+impl SweepRow {
+    /// Whether the run came to its end.
+    pub fn is_finished(&self) -> bool {
+        self.status == "finished"
+    }
+}
+
 impl Sweep {
+    /// Numbers of the runs that have not come to their end.
+    pub fn unfinished(&self) -> Vec<usize> {
+        (0..self.rows.len()).filter(|&number| !self.rows[number].is_finished()).collect()
+    }
+
     /// Names of the numbers that its runs have, in the order of the columns.
     pub fn figures(&self) -> Vec<&str> {
         let mut names: Vec<&str> = Vec::new();
@@ -86,34 +98,44 @@ pub fn read_record(folder: &Path) -> Option<SweepRecord> {
     (record.program == "stickslip").then_some(record)
 }
 
-/// Makes the folder of a sweep, or takes over that of an earlier one, of whose runs no row is left; they are replaced as
-/// they are run again.
+/// Makes the folder of a sweep, which may hold its scene already, or takes over that of an earlier one. There, of the runs
+/// only those rows are left that are `kept`; the others are replaced as they are run again.
 ///
 /// # Errors
 /// The folder holds files that are not those of a sweep, or cannot be written.
-pub fn prepare(folder: &Path, record: &SweepRecord) -> Result<(), Failure> {
+pub fn prepare(folder: &Path, record: &SweepRecord, kept: &[&str]) -> Result<(), Failure> {
     let unusable = |source: io::Error| {
         let help = "give a folder that you may write to with --out";
         Failure::Input(miette!(help = help, "cannot write results to {}: {source}", folder.display()))
     };
     fs::create_dir_all(folder).map_err(unusable)?;
-    let first = fs::read_dir(folder).map_err(unusable)?.next().transpose().map_err(unusable)?;
-    if let Some(entry) = first
-        && !is_sweep(folder)
-    {
-        return Err(Failure::Input(miette!(
-            help = "give a folder that is new or empty, or one that `stickslip sweep` wrote, with --out",
-            "{} holds files that are not the results of a sweep, such as `{}`",
-            folder.display(),
-            entry.file_name().display()
-        )));
+    let own = record.plan.as_ref().map(|plan| plan.scene_file(folder));
+    if !is_sweep(folder) {
+        for entry in fs::read_dir(folder).map_err(unusable)? {
+            let entry = entry.map_err(unusable)?;
+            if Some(entry.path()) == own {
+                continue;
+            }
+            return Err(Failure::Input(miette!(
+                help = "give a folder that is new or empty, or one that `stickslip sweep` wrote, with --out",
+                "{} holds files that are not the results of a sweep, such as `{}`",
+                folder.display(),
+                entry.file_name().display()
+            )));
+        }
     }
     let text = serde_json::to_vec_pretty(record).expect("a record is plain data");
     let rows = folder.join(ROWS);
     if rows.exists() {
-        fs::remove_dir_all(&rows).map_err(unusable)?;
+        for entry in fs::read_dir(&rows).map_err(unusable)? {
+            let path = entry.map_err(unusable)?.path();
+            if !kept.iter().any(|run| path == row_file(folder, run)) {
+                fs::remove_file(&path).map_err(unusable)?;
+            }
+        }
+    } else {
+        fs::create_dir(&rows).map_err(unusable)?;
     }
-    fs::create_dir(&rows).map_err(unusable)?;
     write(&folder.join(RECORD), &text).map_err(unusable)
 }
 
@@ -196,6 +218,9 @@ fn read_rows(path: &Path, record: &SweepRecord) -> Result<Vec<SweepRow>, String>
     if header.len() <= end {
         return Err("columns are missing".to_owned());
     }
+    if !header.iter().skip(2).zip(&record.parameters).all(|(found, name)| found == name) {
+        return Err("its parameters are those of another sweep".to_owned());
+    }
     let mut rows = Vec::new();
     for line in reader.records() {
         let line = line.map_err(|error| error.to_string())?;
@@ -225,7 +250,7 @@ mod tests {
     fn a_table_comes_back_with_its_holes() {
         let folder = tempfile::tempdir().unwrap();
         let record = SweepRecord::new("waves", vec!["nu".to_owned()], None);
-        prepare(folder.path(), &record).unwrap();
+        prepare(folder.path(), &record, &[]).unwrap();
         let row = |run: &str, figures: &[(&str, f64)], error: &str| SweepRow {
             run: run.to_owned(),
             status: "finished".to_owned(),
@@ -244,6 +269,12 @@ mod tests {
         write_row(folder.path(), &sweep.record, &sweep.rows[1]).unwrap();
         assert_eq!(read_row(folder.path(), &sweep.record, "0.4").as_ref(), Some(&sweep.rows[1]));
         assert_eq!(read_row(folder.path(), &sweep.record, "0.5"), None);
+        let other = SweepRecord::new("waves", vec!["cell".to_owned()], None);
+        assert_eq!(read_row(folder.path(), &other, "0.4"), None, "of another sweep");
+        write_row(folder.path(), &sweep.record, &sweep.rows[0]).unwrap();
+        prepare(folder.path(), &sweep.record, &["0.3"]).unwrap();
+        let left = ["0.3", "0.4"].map(|run| read_row(folder.path(), &sweep.record, run).is_some());
+        assert_eq!(left, [true, false], "only what is kept");
         assert!(is_sweep(folder.path()));
     }
 
@@ -262,7 +293,7 @@ mod tests {
     fn a_folder_with_other_files_is_refused_and_left_alone() {
         let folder = tempfile::tempdir().unwrap();
         fs::write(folder.path().join("thesis.tex"), "years of work").unwrap();
-        let refused = prepare(folder.path(), &SweepRecord::new("waves", Vec::new(), None));
+        let refused = prepare(folder.path(), &SweepRecord::new("waves", Vec::new(), None), &[]);
         assert!(matches!(refused, Err(Failure::Input(_))));
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
     }

@@ -2,6 +2,7 @@
 
 use crate::failure::Failure;
 use miette::{IntoDiagnostic, miette};
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use stickslip::observe::replace;
 
@@ -12,9 +13,8 @@ const SCRIPT: &str = "array.sh";
 /// # Errors
 /// It cannot be written.
 pub fn write_script(folder: &Path, runs: usize) -> Result<PathBuf, Failure> {
-    let absolute = |path: &Path| std::path::absolute(path).into_diagnostic().map_err(Failure::Run);
-    let program = absolute(&std::env::current_exe().into_diagnostic().map_err(Failure::Run)?)?;
-    let text = script(&program, &absolute(folder)?, runs);
+    let program = crate::program().into_diagnostic().map_err(Failure::Run)?;
+    let text = script(&program, runs);
     let path = folder.join(SCRIPT);
     replace(&path, |file| file.write_all(text.as_bytes()))
         .map_err(|error| Failure::Run(miette!("cannot write {}: {}", path.display(), error.source)))?;
@@ -31,8 +31,8 @@ pub fn submit(folder: &Path, runs: &[usize]) -> String {
     }
 }
 
-fn script(program: &Path, folder: &Path, runs: usize) -> String {
-    let [program, folder] = [program, folder].map(quoted);
+fn script(program: &[OsString], runs: usize) -> String {
+    let program = program.iter().map(|word| quoted(Path::new(word))).collect::<Vec<_>>().join(" ");
     let all = ranges(&(0..runs).collect::<Vec<_>>());
     format!(
         r#"#!/bin/sh
@@ -43,7 +43,15 @@ fn script(program: &Path, folder: &Path, runs: usize) -> String {
 #SBATCH --cpus-per-task=1
 # Early enough for a last checkpoint, from which the run goes on when it is submitted again.
 #SBATCH --signal=B:TERM@120
-exec {program} sweep {folder} --only "$SLURM_ARRAY_TASK_ID" --threads "${{SLURM_CPUS_PER_TASK:-1}}"
+# The sweep is that of the folder where this script lies: SLURM runs a copy of it, and knows where that came from.
+for script in "$0" "$(scontrol show job "$SLURM_JOB_ID" 2>/dev/null | sed -n '/^ *Command=/{{s///p;q;}}')"; do
+    folder=$(dirname "$script")
+    if [ -n "$script" ] && [ -f "$folder/sweep.json" ]; then
+        exec {program} sweep "$folder" --only "$SLURM_ARRAY_TASK_ID" --threads "${{SLURM_CPUS_PER_TASK:-1}}"
+    fi
+done
+echo "array.sh: found no sweep.json beside $0 or the script that was submitted" >&2
+exit 2
 "#
     )
 }

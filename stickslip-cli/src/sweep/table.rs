@@ -18,7 +18,7 @@ pub fn table(sweep: &Sweep) -> String {
             columns.push(column(name, sweep, |row| figure(row).map_or("-".to_owned(), short)));
         }
     }
-    if sweep.rows.iter().any(|row| row.status != "finished") {
+    if !sweep.unfinished().is_empty() {
         columns.push(column("status", sweep, |row| row.status.clone()));
     }
     let mut text = String::new();

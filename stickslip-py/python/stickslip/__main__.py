@@ -9,7 +9,7 @@ from . import _core
 
 def main() -> int:
     """Does what the command line asks for, and gives the exit code."""
-    return _core.command(["stickslip", *sys.argv[1:]])
+    return _core.command(["stickslip", *sys.argv[1:]], [sys.executable, "-m", "stickslip"])
 
 
 if __name__ == "__main__":

@@ -9,7 +9,6 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -23,6 +22,8 @@ if TYPE_CHECKING:
 
 Folder = str | os.PathLike[str]
 """A path."""
+REFUSED = 2
+"""Exit code of a command that asks for what cannot be, and did nothing."""
 
 
 class Picture:
@@ -107,7 +108,9 @@ def sweep(
 ) -> Sweep:
     """Runs a scene with every combination of values of its parameters: `sweep(scene, "out", friction=(0, 0.3))`.
 
-    Scenes with functions of Python are not for it: run them one after the other.
+    `out` is a new folder, or that of an earlier sweep, which is run anew; the scene is written there, as scene.toml. A
+    sweep that was stopped goes on by `stickslip sweep out`. Scenes with functions of Python are not for it: run them
+    one after the other.
     """
     if scene.functions:
         names = ", ".join(scene.functions)
@@ -116,11 +119,24 @@ def sweep(
     for name, value in values.items():
         listed = value if isinstance(value, (list, tuple)) else [value]
         given.append(f"{name}={','.join(map(str, listed))}")
-    with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder) / "scene.toml"
-        scene.save(file)
-        command("sweep", file, set=given, out=out, jobs=jobs, threads=threads)
-    return Sweep(Path(out))
+    folder, file = Path(out), Path(out) / "scene.toml"
+    before = file.read_bytes() if file.exists() else None
+    if before is not None and not (folder / "sweep.json").exists():
+        advice = "give a folder that is new or empty, or that of a sweep"
+        raise RunError(f"{file} is not that of a sweep, and would be replaced; {advice}", help=advice)
+    # What is wrong with the scene itself is said before anything is written.
+    scene._read()
+    is_new = not folder.exists()
+    folder.mkdir(parents=True, exist_ok=True)
+    scene.save(file)
+    done = _carried_out("sweep", file, set=given, out=out, jobs=jobs, threads=threads)
+    if done.returncode == REFUSED:
+        # Nothing was run: the folder is what it was.
+        file.unlink() if before is None else file.write_bytes(before)
+        if is_new:
+            folder.rmdir()
+    _said(done, RunError)
+    return Sweep(folder)
 
 
 def validate(*, out: Folder, **options: Any) -> str:
@@ -140,10 +156,20 @@ def command(name: str, *words: Any, failure: type[StickslipError] = RunError, **
         for entry in value if isinstance(value, list) else [value]:
             if entry is None or entry is False:
                 continue
+    return _said(_carried_out(name, *words, **options), failure)
+
+
+def _carried_out(name: str, *words: Any, **options: Any) -> subprocess.CompletedProcess[str]:
+    """A command in a process of its own."""
             text = ",".join(map(str, entry)) if isinstance(entry, tuple) else str(entry)
             flag = f"--{option.rstrip('_').replace('_', '-')}"
             line.append(flag if entry is True else f"{flag}={text}")
-    done = subprocess.run(line, capture_output=True, text=True, encoding="utf-8", check=False)
+    return subprocess.run(line, capture_output=True, text=True, encoding="utf-8", check=False)
+
+
+def _said(done: subprocess.CompletedProcess[str], failure: type[StickslipError]) -> str:
+    """What a command printed; raises `failure` with what it says of what is wrong."""
     if done.returncode not in (0, 3):
-        raise failure(done.stderr.strip().removeprefix("error: ") or f"stickslip {name} ended with {done.returncode}")
+        said = done.stderr.strip().removeprefix("error: ")
+        raise failure(said or f"{' '.join(map(str, done.args[2:4]))} ended with {done.returncode}")
     return done.stdout
