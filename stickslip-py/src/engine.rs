@@ -142,9 +142,10 @@ impl Engine {
     /// Contacts since they were asked for before, or since the start.
     fn contacts(&self, py: Python<'_>) -> String {
         let found = py.detach(|| self.contacts_since());
-        let row = |ContactState { body_a, body_b, mean }: &ContactState| {
+        let row = |ContactState { body_a, body_b, direction, mean }: &ContactState| {
             let ContactMean { force, normal, tangential, nodes, position, area, gap, slip, friction } = *mean;
-            json!([[body_a, body_b], force, normal, tangential, position, area, gap, slip, friction, nodes])
+            let vectors = [force, *direction, position];
+            json!([[body_a, body_b], vectors, normal, tangential, area, gap, slip, friction, nodes])
         };
         json(&found.iter().map(row).collect::<Vec<_>>())
     }
@@ -188,7 +189,12 @@ impl Engine {
         py.detach(|| self.shared.count(body))
     }
 
-    /// Gives the particles of a body other values in a column, in the order of memory.
+    /// Whether a body is rigid.
+    fn is_rigid(&self, body: usize) -> bool {
+        self.scene.bodies[body].is_rigid()
+    }
+
+    /// Gives the particles of a body other values in a column, in the order of memory, or a free rigid body one as a whole.
     fn write(
         &self,
         py: Python<'_>,

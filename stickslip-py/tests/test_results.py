@@ -115,9 +115,10 @@ def test_frames_of_pandas_and_polars_have_all_columns(results, monkeypatch):
     assert {"body_a", "body_b", "fx", "fy", "fz", "normal"} <= set(made[1])
 
 
-def test_contacts_of_simulations_and_of_tables_have_the_same_columns(results):
+def test_contacts_of_simulations_have_the_columns_of_tables_and_the_normal(results):
     live, table = results.sim.contacts(), results.contacts
-    assert list(live.dtype.names) == [name for name in table.dtype.names if name != "time"]
+    recorded = [name for name in table.dtype.names if name != "time"]
+    assert list(live.dtype.names) == [*recorded, "nx", "ny", "nz"]
     assert table.rows("fx", "fy", "fz").shape == (len(table), 3)
 
 
@@ -252,6 +253,17 @@ def picture_in(html: str) -> tuple[int, int]:
     png = base64.b64decode(encoded)
     assert png[:8] == b"\x89PNG\r\n\x1a\n"
     return struct.unpack(">II", png[16:24])
+
+
+def test_a_resumed_run_warns_of_friction_that_nobody_gave(tmp_path):
+    scene = settling()
+    del scene.document["contact"]
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ss.StickslipWarning)
+        scene.run(tmp_path / "results")
+    with pytest.warns(ss.StickslipWarning, match="disk.*floor|floor.*disk") as warned:
+        ss.resume(tmp_path / "results", until=0.03)
+    assert warned[0].filename == __file__, "it names the line that resumes"
 
 
 def test_notebooks_show_scenes_as_they_begin(monkeypatch):

@@ -79,6 +79,10 @@ def test_contacts_are_means_since_the_last_reading():
     force = np.array([row["fx"], row["fy"], row["fz"]])
     assert force * (sim.time - before) == pytest.approx(change, rel=1e-9, abs=1e-12), "force times time"
     assert row["normal"] > 0.0 and row["area"] > 0.0 and row["nodes"] > 0 and row["slip"] > 0.0
+    normal = np.array([row["nx"], row["ny"], row["nz"]])
+    assert np.linalg.norm(normal) == pytest.approx(1.0) and normal[0] > 0.5, "from the left to the right"
+    across = np.linalg.norm(force - normal * (force @ normal))
+    assert 0.0 < across <= 0.3 * row["normal"] * (1.0 + 1e-9), "no more than friction holds"
     assert len(sim.contacts()) == 0, "no time has passed"
 
 
@@ -229,6 +233,63 @@ def test_nonsense_is_not_written(name, values, message):
     assert np.array_equal(ball.by_number(name), before)
     with pytest.raises(ValueError, match="body `floor` is rigid"):
         settling().simulation().bodies["floor"].set("mass", 1.0)
+
+
+def test_a_normal_leads_from_the_first_body_to_the_second():
+    sim = settling().simulation()
+    sim.run(until=0.02)
+    (row,) = sim.contacts()
+    assert (row["body_a"], row["body_b"]) == ("disk", "floor") and row["normal"] > 0.0
+    assert (row["nx"], row["ny"], row["nz"]) == pytest.approx((0.0, -1.0, 0.0), abs=1e-9), "down, as the disk pushes"
+
+
+@pytest.mark.parametrize("dimension", ["plane-strain", "3d"])
+def test_a_free_rigid_body_takes_velocity_and_spin_and_the_ledger_is_told(dimension, tmp_path):
+    scene = flying(dimension)
+    scene.document["bodies"][0]["rigid"] = dict(free={})
+    space = dimension == "3d"
+    velocity, spin = ((1.0, -2.0, 0.5), (3.0, 2.0, 10.0)) if space else ((1.0, -2.0), 10.0)
+    sim = scene.simulation()
+    sim.run(until=0.02)
+    ball = sim.bodies["ball"]
+    first = sim.ledger()
+    ball.set("velocity", velocity)
+    assert np.array_equal(ball.velocity, np.broadcast_to(velocity, ball.velocity.shape)), "of each point"
+    ball.set("spin", spin)
+    after, state = sim.ledger(), ball.state
+    whole = np.zeros(3)
+    whole[: len(velocity)] = velocity
+    assert state.velocity == pytest.approx(whole) and state.spin == pytest.approx(spin if space else (0, 0, spin))
+    assert after.external_work - first.external_work == pytest.approx(after.kinetic - first.kinetic, rel=1e-12)
+    assert after.total == pytest.approx(first.total, abs=1e-12 * abs(after.kinetic))
+    time = sim.time
+    summary = sim.run(until=0.1, out=tmp_path / "results")
+    gone, fall = sim.time - time, np.array([0.0, -GRAVITY, 0.0])
+    assert ball.state.velocity == pytest.approx(whole + fall * gone, rel=1e-9)
+    assert ball.state.spin == pytest.approx(state.spin, rel=1e-9), "nothing turns a ball"
+    assert summary.warnings == [] and abs(summary.end.total - first.total) < 1e-3 * after.kinetic
+    before = sim.engine.ledger()
+    for name, values, message in [
+        ("mass", 1.0, "its mass is that of the scene; allowed: velocity, spin"),
+        ("velocity", (1.0, float("nan"), 0.0)[: len(velocity)], "found .*NaN.* for body `ball`, which is rigid"),
+        ("velocity", np.ones((5, len(velocity))), "allowed: "),
+    ]:
+        with pytest.raises(ValueError, match=message):
+            ball.set(name, values)
+    assert sim.engine.ledger() == before
+
+
+def test_joints_take_away_what_they_do_not_allow_of_what_is_written():
+    scene = ss.Scene("plane-strain", 0.1)
+    scene.material("steel", density=1000, neo_hookean=dict(young_modulus=1e6, poisson_ratio=0.3))
+    scene.body("wheel", material="steel", shape=ss.disk((0, 0), 0.2), rigid=dict(free=dict(mass=50, inertia=1)))
+    sim = scene.joint("wheel", name="axle", hinge=dict(point=(0, 0))).time(end=0.5).simulation()
+    wheel, before = sim.bodies["wheel"], sim.ledger().total
+    wheel.set("velocity", (1.0, 0.0))
+    wheel.set("spin", 4.0)
+    sim.step()
+    assert wheel.state.velocity == pytest.approx((0.0, 0.0, 0.0), abs=1e-9)
+    assert wheel.state.spin[2] == pytest.approx(4.0) and sim.ledger().total == pytest.approx(before, abs=1e-9)
 
 
 def test_supports_and_loads_say_what_they_did():

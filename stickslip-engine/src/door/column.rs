@@ -93,10 +93,28 @@ pub enum WriteError {
         name: String,
     },
     /// The body moves as the scene prescribes.
-    #[error("body `{body}` is rigid and moves as the scene prescribes; allowed: bodies that deform")]
-    Rigid {
+    #[error("body `{body}` is rigid and moves as the scene prescribes; allowed: bodies that forces move")]
+    Prescribed {
         /// Name of the body.
         body: String,
+    },
+    /// The mass of a rigid body is that of the scene.
+    #[error("body `{body}` is rigid, and its mass is that of the scene; allowed: velocity, spin")]
+    RigidMass {
+        /// Name of the body.
+        body: String,
+    },
+    /// Not one value for a rigid body, or one that is not finite.
+    #[error(
+        "found {found:?} for body `{body}`, which is rigid; allowed: {entries} finite numbers for the whole"
+    )]
+    Whole {
+        /// Name of the body.
+        body: String,
+        /// What was found.
+        found: Vec<f64>,
+        /// Entries of its value.
+        entries: usize,
     },
     /// Other numbers than the particles have.
     #[error("found {found} values; allowed: {wanted}, {entries} for each particle")]

@@ -147,12 +147,14 @@ pub trait Simulation: View + Send {
     /// hold, and in which order, stays.
     fn settle(&mut self) {}
     /// Gives the particles of a body other values in a column: the entries that the motion leaves free of one particle
-    /// after the other, in the order of memory. [`WRITABLE`] names the columns. The next step is as long as is stable
-    /// with them. The ledger counts the energy that comes in with them as external work, and [`View::written`] has it.
+    /// after the other, in the order of memory. [`WRITABLE`] names the columns. A free rigid body takes one value, that of
+    /// the whole: the `velocity` of its centre of mass [m/s], or its `spin` [rad/s]; what joints do not allow of it, the
+    /// next step takes away. The next step is as long as is stable with them. The ledger counts the energy that comes in
+    /// with them as external work, and [`View::written`] has it.
     ///
     /// # Errors
-    /// There is no such column, or it is not writable; too many values or too few; one that is not finite, and a mass
-    /// that is not above zero. Then nothing is changed.
+    /// There is no such column, or it is not writable; the body is rigid and moves as the scene prescribes; too many
+    /// values or too few; one that is not finite, and a mass that is not above zero. Then nothing is changed.
     fn write(&mut self, body: usize, name: &str, _values: &[f64]) -> Result<(), WriteError> {
         Err(NoColumn::among(&self.columns(body), name).into())
     }
@@ -411,9 +413,13 @@ impl ContactSum {
         };
         let magnitude = self.magnitude - before.magnitude;
         let [area, gap] = [self.area - before.area, self.gap - before.gap];
+        // The impulse on the second without what is across the normals, which is counted on the first.
+        let push = [0, 1, 2].map(|i| since(|sum| sum.impulse)[i] + since(|sum| sum.tangential)[i]);
+        let pushed = push.iter().map(|j| j * j).sum::<f64>().sqrt().copysign(self.normal - before.normal);
         (magnitude > 0.0).then(|| ContactState {
             body_a: self.bodies[0],
             body_b: self.bodies[1],
+            direction: push.map(|j| j / pushed),
             mean: ContactMean {
                 force: since(|sum| sum.impulse).map(|j| j / elapsed),
                 normal: (self.normal - before.normal) / elapsed,
@@ -436,6 +442,9 @@ pub struct ContactState {
     pub body_a: usize,
     /// Index of the second body.
     pub body_b: usize,
+    /// Direction of the normal, from the first body to the second: that of the sum of all forces along nodes' normals,
+    /// turned round where the bodies hold each other more than they push. Not a number where these forces cancel [-].
+    pub direction: [f64; 3],
     /// How they pressed on each other.
     pub mean: ContactMean,
 }

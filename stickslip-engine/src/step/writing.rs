@@ -1,11 +1,24 @@
-//! Values that others than steps give to particles.
+//! Values that others than steps give to particles, and to free rigid bodies.
 
 use super::Engine;
+use super::build::spin;
 use crate::basis::Basis;
 use crate::body::{Body, Totals};
 use crate::door::{NoColumn, View, WRITABLE, WriteError, WrittenValues};
 use crate::lanes::Laned;
+use crate::rigid::{FreeMotion, RigidMotion};
+use crate::tensor::{Vector, cross};
 use std::sync::Mutex;
+
+/// What of a body writing changes.
+struct Holding {
+    /// Kinetic, strain and potential energy, and what its material has dissipated [J].
+    energy: f64,
+    /// [kg m/s]
+    momentum: [f64; 3],
+    /// About the origin [kg m^2/s].
+    angular_momentum: [f64; 3],
+}
 
 impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// Gives the particles of a body other values in a column, see [`crate::door::Simulation::write`], and books what
@@ -21,7 +34,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             return Err(WriteError::Fixed { name: name.to_string() });
         }
         if body.is_rigid() {
-            return Err(WriteError::Rigid { body: body.name.clone() });
+            return self.put_rigid(number, name, (values, column.kind.entries(D)));
         }
         let entries = column.kind.entries(D);
         let (found, wanted) = (values.len(), entries * body.particles.len());
@@ -37,31 +50,93 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         if let Some(at) = values.iter().position(|&value| !fits(kept(value))) {
             return Err(WriteError::Value { place: at / entries, value: values[at], allowed });
         }
-        let before = Body::totals(&self.state.bodies[number]);
+        let gravity = self.settings.gravity.constant().unwrap_or_default();
+        let before = Holding::of_particles(&Body::totals(&self.state.bodies[number]), gravity);
         let particles = &mut self.state.bodies[number].particles;
         for entry in 0..entries {
             let line = particles.line_mut(first + entry).iter_mut();
             line.zip(values[entry..].iter().step_by(entries)).for_each(|(x, &value)| *x = T::of(value));
         }
-        let gravity = self.settings.gravity.constant().unwrap_or_default();
-        self.state.written[number].take((&before, &Body::totals(&self.state.bodies[number])), gravity);
+        let after = Holding::of_particles(&Body::totals(&self.state.bodies[number]), gravity);
+        self.state.written[number].take(&before, &after);
+        (self.state.signal, self.workspace.totals) = (None, Mutex::default());
+        Ok(())
+    }
+
+    /// Gives a free rigid body another velocity of its centre, or another spin.
+    fn put_rigid(
+        &mut self,
+        number: usize,
+        name: &str,
+        (values, entries): (&[f64], usize),
+    ) -> Result<(), WriteError> {
+        let body = &mut self.state.bodies[number];
+        let named = || body.name.clone();
+        let Some((motion, free)) = body.motion.as_ref().and_then(|motion| Some((motion, motion.as_free()?)))
+        else {
+            return Err(WriteError::Prescribed { body: named() });
+        };
+        if name == "mass" {
+            return Err(WriteError::RigidMass { body: named() });
+        }
+        if values.len() != entries || !values.iter().all(|&value| T::of(value).f64().is_finite()) {
+            return Err(WriteError::Whole { body: named(), found: values.to_vec(), entries });
+        }
+        let before = Holding::of_rigid(motion, free);
+        let mut momenta = [free.state.momentum, free.state.angular_momentum];
+        let mut given = [0.0; 3];
+        if name == "velocity" {
+            given[..entries].copy_from_slice(values);
+            momenta[0] = given.map(|v| free.mass * v);
+        } else {
+            given[3 - entries..].copy_from_slice(values);
+            momenta[1] = free.inertia().times(given);
+        }
+        let mut moving = motion.clone();
+        moving.set_momenta(momenta, 0.0);
+        for i in 0..body.particles.len() {
+            let mut particle = body.particles.get(i);
+            particle.velocity = Vector::of(moving.velocity_at(particle.position.space()));
+            particle.spin = spin::<T, D>(moving.spin());
+            body.particles.set(i, &particle);
+        }
+        let after = moving.as_free().map(|free| Holding::of_rigid(&moving, free)).expect("it is free");
+        body.motion = Some(moving);
+        self.state.written[number].take(&before, &after);
         (self.state.signal, self.workspace.totals) = (None, Mutex::default());
         Ok(())
     }
 }
 
+impl Holding {
+    fn of_particles(totals: &Totals, gravity: [f64; 3]) -> Self {
+        let potential: f64 = (0..3).map(|i| -gravity[i] * totals.first_moment[i]).sum();
+        Holding {
+            energy: totals.kinetic + totals.strain + totals.plastic + potential,
+            momentum: totals.momentum,
+            angular_momentum: totals.angular_momentum,
+        }
+    }
+
+    /// Its potential energy stays.
+    fn of_rigid(motion: &RigidMotion, free: &FreeMotion) -> Self {
+        let orbit = cross(motion.center, free.state.momentum);
+        Holding {
+            energy: free.kinetic(),
+            momentum: free.state.momentum,
+            angular_momentum: [0, 1, 2].map(|i| orbit[i] + free.state.angular_momentum[i]),
+        }
+    }
+}
+
 impl WrittenValues {
     /// Books what a body has more.
-    fn take(&mut self, (before, after): (&Totals, &Totals), gravity: [f64; 3]) {
-        let gained = |of: fn(&Totals) -> f64| of(after) - of(before);
-        let gained3 = |of: fn(&Totals) -> [f64; 3]| [0, 1, 2].map(|i| of(after)[i] - of(before)[i]);
+    fn take(&mut self, before: &Holding, after: &Holding) {
         self.count += 1;
-        let moment = gained3(|totals| totals.first_moment);
-        let potential: f64 = (0..3).map(|i| -gravity[i] * moment[i]).sum();
-        self.energy += gained(|totals| totals.kinetic + totals.strain + totals.plastic) + potential;
-        let (momentum, angular) =
-            (gained3(|totals| totals.momentum), gained3(|totals| totals.angular_momentum));
-        (0..3).for_each(|i| self.momentum[i] += momentum[i]);
-        (0..3).for_each(|i| self.angular_momentum[i] += angular[i]);
+        self.energy += after.energy - before.energy;
+        for i in 0..3 {
+            self.momentum[i] += after.momentum[i] - before.momentum[i];
+            self.angular_momentum[i] += after.angular_momentum[i] - before.angular_momentum[i];
+        }
     }
 }

@@ -6,6 +6,7 @@ import json
 import os
 import signal
 import threading
+import warnings
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from html import escape
@@ -13,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from . import _core
-from .errors import ResultsError, RunError
+from .errors import ResultsError, RunError, StickslipWarning
 from .progress import Progress, shown
 from .records import Record
 
@@ -51,6 +52,13 @@ def way_to(until: float, every: float | None, callback: Callable[[], Any] | None
     if not every >= 0.0:
         raise ValueError(f"found every={every}; allowed: a time from 0 [s], or None for every step")
     return {"until": float(until), "every": every, "callback": callback, "show": show}
+
+
+def warn_of_missing_friction(read: _core.ReadScene, stacklevel: int) -> None:
+    """Warns where bodies have no friction because no rule says how much; from where, as of `warnings.warn`."""
+    pairs = read.pairs_without_friction()
+    if pairs is not None:
+        warnings.warn(pairs, StickslipWarning, stacklevel=stacklevel)
 
 
 def carry_out(
@@ -101,7 +109,8 @@ def resume(
     It goes on to `until` [s], else to what was named last, else to the end of the scene. The scene is read again from
     where it was, as it was run if it is not there any more, or from the file `scene`. A run that was stopped ends in
     the same bits as one that was not. `functions` are the laws, loads and motions of your own that it names, as
-    `Scene.functions` has them. `checkpoint_every` and `max_time` are wall times [s], as of `Scene.run`.
+    `Scene.functions` has them. `checkpoint_every` and `max_time` are wall times [s], as of `Scene.run`. Bodies that
+    have no friction because no rule says how much are warned of (`StickslipWarning`).
     """
     folder = Path(folder)
     before = _record(folder)
@@ -116,6 +125,7 @@ def resume(
     if recorded is None and not path.exists():
         raise RunError(f"the scene file {path} is not there; name it with scene", help="name it with scene")
     read = _core.ReadScene.again((path, recorded), given, named, dict(functions or {}))
+    warn_of_missing_friction(read, stacklevel=3)
     request: _core.RunRequest = {
         "out": folder,
         "resumed": True,

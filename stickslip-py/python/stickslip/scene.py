@@ -18,7 +18,7 @@ from .errors import RunError, SceneError, StickslipError, StickslipWarning
 from .functions import Function, Law, named
 from .records import Record
 from .results import Results
-from .running import Summary, carry_out
+from .running import Summary, carry_out, warn_of_missing_friction
 from .simulation import Simulation
 
 IN_PYTHON = "<scene in Python>"
@@ -332,9 +332,7 @@ class Scene:
 
     def _simulation(self, read: _core.ReadScene, threads: int | None) -> Simulation:
         simulation = Simulation(read.simulation(threads), copy.deepcopy(self))
-        pairs = read.pairs_without_friction()
-        if pairs is not None:
-            warnings.warn(pairs, StickslipWarning, stacklevel=3)
+        warn_of_missing_friction(read, stacklevel=4)
         return simulation
 
     def _source(self, out: Path) -> tuple[tuple[Path, list[tuple[str, str]]], tuple[str, bool]]:

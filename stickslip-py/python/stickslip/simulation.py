@@ -107,11 +107,16 @@ class Body:
         They must be finite, and masses above zero; the next step is as long as is stable with the new velocities. It
         follows from the density of the material: for particles far lighter than that, lower `time.courant`. The energy
         that comes in is external work of the ledger, whose total stays.
+
+        A free rigid body (`rigid=dict(free={})`) takes one value for the whole, the "velocity" of its centre of mass
+        (D,) or its "spin" (3,), in the plane a number: `wheel.set("spin", 20)`. What joints do not allow of it, the
+        next step takes away. A prescribed one takes none.
         """
         known = next((column for column in self.columns if column.name == name), None)
         values = np.asarray(values, dtype=float)
         if known is not None and name != NUMBER:
-            wanted = (len(self), len(known.components)) if known.components else (len(self),)
+            each = (len(known.components),) if known.components else ()
+            wanted = each if self._engine.is_rigid(self.index) else (len(self), *each)
             try:
                 values = np.broadcast_to(values, wanted)
             except ValueError as error:
@@ -269,7 +274,10 @@ class Simulation:
 
         Columns are those of contacts.csv: body_a, body_b, force of the first on the second fx fy fz [N], normal: force
         that pushes them apart [N], tangential [N], nodes, centre x y z [m], area [m^2], gap between the surfaces [m],
-        slip [m] and work of friction [J] in that time. `contacts.rows("fx", "fy", "fz")` is (n, 3).
+        slip [m] and work of friction [J] in that time; and nx ny nz, the unit normal from the first body to the second,
+        the direction in which the first pushes: the mean over nodes and time, each with its force along its normal. It
+        is NaN where these forces cancel, as around a pin that is pressed from all sides. `contacts.rows("fx", "fy",
+        "fz")` is (n, 3).
         """
         names = list(self.bodies)
         text = f"U{max(map(len, names), default=1)}"
@@ -277,10 +285,9 @@ class Simulation:
         fields = [("body_a", text), ("body_b", text)]
         fields += [(name, int if name == "nodes" else float) for name in numbers]
         rows = []
-        for (a, b), force, normal, tangential, place, area, gap, slip, friction, nodes in json.loads(
-            self.engine.contacts()
-        ):
-            found = [*force, normal, tangential, nodes, *place, area, gap, slip, friction]
+        for (a, b), vectors, normal, tangential, *rest, nodes in json.loads(self.engine.contacts()):
+            force, direction, place = vectors
+            found = [*force, normal, tangential, nodes, *place, *rest, *direction]
             rows.append((names[a], names[b], *(np.nan if x is None else x for x in found)))
         return Table.of(np.array(rows, np.dtype(fields)))
 

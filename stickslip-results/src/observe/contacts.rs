@@ -63,7 +63,7 @@ impl Observer for ContactsObserver {
         let time = view.time();
         let name = |body: usize| self.names[body].clone();
         let contacts = self.cursor.read(view).into_iter();
-        self.table.append(contacts.map(|ContactState { body_a, body_b, mean }| ContactRow {
+        self.table.append(contacts.map(|ContactState { body_a, body_b, mean, .. }| ContactRow {
             time,
             body_a: name(body_a),
             body_b: name(body_b),

@@ -134,7 +134,7 @@ impl Groups {
     /// A row for each pair of groups that touch, in their order.
     fn contacts(&self, time: f64, contacts: &[ContactState]) -> Vec<GroupContactRow> {
         let mut rows: BTreeMap<[usize; 2], GroupContactRow> = BTreeMap::new();
-        for ContactState { body_a, body_b, mean } in contacts {
+        for ContactState { body_a, body_b, mean, .. } in contacts {
             // Of each pair of groups, which way the force of the first on the second goes.
             let mut ways: BTreeMap<[usize; 2], f64> = BTreeMap::new();
             for &a in &self.of_body[*body_a] {
@@ -220,6 +220,7 @@ mod tests {
         let contact = |body_a, body_b, fx: f64| ContactState {
             body_a,
             body_b,
+            direction: [1.0, 0.0, 0.0],
             mean: ContactMean {
                 force: [fx, 0.0, 0.0],
                 normal: fx.abs(),

@@ -155,6 +155,42 @@ fn what_was_written_is_booked(scene: &Scene, simulation: &dyn Simulation, before
     assert_eq!(other.ledger().external_work, before.external_work);
 }
 
+/// The wall takes one velocity and one spin, in either order, and what they change is booked.
+fn what_is_written_to_a_rigid_body_is_that_of_the_whole(scene: &Scene, entries: usize) {
+    let mut simulation = step::build(scene).unwrap();
+    (0..3).for_each(|_| _ = simulation.step(f64::INFINITY).unwrap());
+    let before = simulation.ledger();
+    let spin = if entries == 3 { vec![1.0, -2.0, 3.0] } else { vec![3.0] };
+    simulation.write(2, "spin", &spin).unwrap();
+    simulation.write(2, "velocity", &[4.0, 5.0, 6.0][..entries]).unwrap();
+    let (wall, after, written) = (&simulation.bodies()[2], simulation.ledger(), simulation.written()[2]);
+    let close = |a: f64, b: f64| (a - b).abs() < 1e-9 * (1.0 + b.abs());
+    assert!((0..entries).all(|i| close(wall.velocity[i], [4.0, 5.0, 6.0][i])), "{wall:?}");
+    assert!((3 - spin.len()..3).all(|i| close(wall.spin[i], spin[i + spin.len() - 3])), "{wall:?}");
+    assert!(close(after.total, before.total) && written.count == 2);
+    assert!(close(written.energy, after.kinetic - before.kinetic));
+    for i in 0..3 {
+        assert!(close(written.momentum[i], after.momentum[i] - before.momentum[i]));
+        let turned = after.angular_momentum[i] - before.angular_momentum[i];
+        assert!(close(written.angular_momentum[i], turned), "{written:?}");
+    }
+    // Each point of the body has its velocity.
+    let [x, v] = ["position", "velocity"].map(|name| simulation.column(2, name).unwrap().by_number::<3>());
+    let of_point = |i: usize| {
+        let arm: [f64; 3] = std::array::from_fn(|k| x[i][k] - wall.position[k]);
+        let turn = stickslip::tensor::cross(wall.spin, arm);
+        (0..3).all(|k| (v[i][k] - wall.velocity[k] - turn[k]).abs() < 1e-5)
+    };
+    assert!((0..x.len()).all(of_point));
+    for (name, values) in [("velocity", &[1.0][..]), ("spin", &[f64::NAN; 3][..spin.len()])] {
+        let error = simulation.write(2, name, values).unwrap_err().to_string();
+        assert!(error.contains("for body `wall`, which is rigid"), "{error}");
+    }
+    let error = simulation.write(2, "mass", &[1.0]).unwrap_err().to_string();
+    assert!(error.contains("its mass is that of the scene"), "{error}");
+    assert_eq!(simulation.ledger(), after);
+}
+
 #[test]
 fn what_is_written_moves_bodies_and_nonsense_is_refused() {
     for (dimension, entries) in [("3d", 3), ("plane-strain", 2)] {
@@ -204,6 +240,9 @@ fn what_is_written_moves_bodies_and_nonsense_is_refused() {
                 "for the particle at 3 in memory; allowed: finite numbers above zero",
             );
         }
+        let free = text.replace("rigid = {}", "rigid = { free = {} }");
+        let free = scene::parse("columns.toml", &free, &[]).unwrap_or_else(|e| panic!("{e:?}")).scene;
+        what_is_written_to_a_rigid_body_is_that_of_the_whole(&free, entries);
         let mut values = vec![0.0; entries * count];
         values[2 * entries + 1] = f64::NAN;
         refused(0, "velocity", &values, "found NaN for the particle at 2 in memory");
