@@ -74,6 +74,10 @@ class Sweep:
         return f"<Sweep {self.folder}: {len(self)} runs>"
 
 
+def _folder(results: Results | Folder) -> Path:
+    return Path(results.folder if isinstance(results, Results) else results)
+
+
 def render(results: Results | Folder, *, out: Folder | None = None, **options: Any) -> Picture:
     """Draws a snapshot of a run, the last without `frame` or `time`; `stickslip render --help` lists the options.
 
@@ -81,7 +85,7 @@ def render(results: Results | Folder, *, out: Folder | None = None, **options: A
     `background="transparent"`, `contours=8`, `vectors="velocity"`, `hide=("title", "axes")`, `animate=True`, ...
     Without `out` it is DIR/picture.png, of an animation DIR/animation.png.
     """
-    folder = Path(getattr(results, "folder", results))
+    folder = _folder(results)
     name = "animation.png" if options.get("animate") else "picture.png"
     path = folder / name if out is None else Path(out)
     command("render", folder, out=path, failure=ResultsError, **options)
@@ -96,7 +100,7 @@ def plot(
     PNG, SVG or PDF, by the name of `out`; without it plot.png, in the folder of a single run. `Results.plot` draws with
     matplotlib instead.
     """
-    folders = [Path(getattr(each, "folder", each)) for each in (results, *others)]
+    folders = [_folder(each) for each in (results, *others)]
     usual = Path("plot.png") if others else folders[0] / "plot.png"
     path = usual if out is None else Path(out)
     command("plot", *folders, out=path, failure=ResultsError, **options)
@@ -151,17 +155,17 @@ def command(name: str, *words: Any, failure: type[StickslipError] = RunError, **
     one out, tuples are joined by commas, and each entry of a list repeats it. Raises `failure` with what the command
     says of what is wrong.
     """
-    line = [sys.executable, "-m", "stickslip", name, *map(os.fspath, words)]
-    for option, value in options.items():
-        for entry in value if isinstance(value, list) else [value]:
-            if entry is None or entry is False:
-                continue
     return _said(_carried_out(name, *words, **options), failure)
 
 
 def _carried_out(name: str, *words: Any, **options: Any) -> subprocess.CompletedProcess[str]:
     """A command in a process of its own."""
             text = ",".join(map(str, entry)) if isinstance(entry, tuple) else str(entry)
+    line = [sys.executable, "-m", "stickslip", name, *map(os.fspath, words)]
+    for option, value in options.items():
+        for entry in value if isinstance(value, list) else [value]:
+            if entry is None or entry is False:
+                continue
             flag = f"--{option.rstrip('_').replace('_', '-')}"
             line.append(flag if entry is True else f"{flag}={text}")
     return subprocess.run(line, capture_output=True, text=True, encoding="utf-8", check=False)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import threading
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any
 
@@ -41,7 +41,7 @@ def refuse_asking() -> None:
 
 def _address(function: Any) -> int | None:
     """Where compiled code is: of numba's `cfunc`, or of a function pointer of ctypes."""
-    if isinstance(function, ctypes._CFuncPtr):
+    if isinstance(function, ctypes._CFuncPtr):  # type: ignore[attr-defined]
         return ctypes.cast(function, ctypes.c_void_p).value
     address = getattr(function, "address", None)
     return address if isinstance(address, int) else None
@@ -151,8 +151,9 @@ class Law(_Given):
     @staticmethod
     def signature() -> Any:
         """The signature of a compiled law, for `numba.cfunc`; needs numba."""
-        from numba import types
+        import numba
 
+        types: Any = numba.types
         numbers = types.CPointer(types.float64)
         return types.void(numbers, numbers, types.float64, numbers, numbers, numbers, numbers)
 
@@ -177,8 +178,8 @@ class Law(_Given):
 
 
 def _column(name: str, declared: Any) -> tuple[str, str, str, float]:
-    given = (declared,) if isinstance(declared, str) else tuple(declared)
-    kind, unit, start = (*given, *("number", "", 0.0)[len(given) :])
+    given: list[Any] = [declared] if isinstance(declared, str) else list(declared)
+    kind, unit, start = given + ["number", "", 0.0][len(given) :]
     if kind not in COMPONENTS:
         raise ValueError(f"found a history `{name}` of kind {kind!r}; allowed: {', '.join(COMPONENTS)}")
     return name, kind, unit, float(start)
@@ -201,8 +202,9 @@ class Function(_Given):
     @staticmethod
     def signature() -> Any:
         """The signature of a compiled function, for `numba.cfunc`; needs numba."""
-        from numba import types
+        import numba
 
+        types: Any = numba.types
         numbers = types.CPointer(types.float64)
         return types.void(types.float64, numbers, numbers, numbers)
 
@@ -229,9 +231,9 @@ class Function(_Given):
         return values
 
 
-def made(given: Any, kind: str) -> _Given:
+def made(given: Any, kind: str) -> Law | Function:
     """A function as a "law" or as a "function" of time and place."""
-    wanted = Law if kind == "law" else Function
+    wanted: type[Law] | type[Function] = Law if kind == "law" else Function
     if isinstance(given, wanted):
         return given
     if isinstance(given, _Given):
@@ -239,7 +241,7 @@ def made(given: Any, kind: str) -> _Given:
     return wanted(given)
 
 
-def named(value: Any, key: str, functions: dict[str, _Given]) -> Any:
+def named(value: Any, key: str, functions: dict[str, Law | Function | Callable[..., Any]]) -> Any:
     """A value in which each function is the name under which it is kept in `functions`."""
     if isinstance(value, Mapping):
         return {name: named(entry, name, functions) for name, entry in value.items()}
@@ -247,7 +249,7 @@ def named(value: Any, key: str, functions: dict[str, _Given]) -> Any:
         return value
     given = made(value, "law" if key == "law" else "function")
     name, number = given.name, 1
-    while functions.get(name, given).function is not given.function:
+    while getattr(known := functions.get(name, given), "function", known) is not given.function:
         number += 1
         name = f"{given.name}_{number}"
     functions.setdefault(name, given)

@@ -281,8 +281,8 @@ class Simulation:
         """
         names = list(self.bodies)
         text = f"U{max(map(len, names), default=1)}"
-        numbers = "fx fy fz normal tangential nodes x y z area gap slip friction".split()
-        fields = [("body_a", text), ("body_b", text)]
+        numbers = "fx fy fz normal tangential nodes x y z area gap slip friction nx ny nz".split()
+        fields: list[tuple[str, Any]] = [("body_a", text), ("body_b", text)]
         fields += [(name, int if name == "nodes" else float) for name in numbers]
         rows = []
         for (a, b), vectors, normal, tangential, *rest, nodes in json.loads(self.engine.contacts()):
