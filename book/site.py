@@ -1,19 +1,26 @@
-"""The book as a site: a page for each chapter, and the reference of the scene file from its schema.
+"""The book as a site: a page for each chapter and each notebook, and the reference of the scene file from its schema.
 
-    python book/site.py OUT [--stickslip PROGRAM]
+    python book/site.py OUT [--stickslip PROGRAM] [--run]
 
-Formulas become MathML, which browsers draw without a script. A link that leads nowhere ends it with exit code 1.
-Needs markdown-it-py, mdit-py-plugins and latex2mathml; the schema is that of PROGRAM, by default `stickslip`.
+With --run the notebooks are executed, and their pages have what their cells show; this takes the package installed, and
+a while. Formulas become MathML, which browsers draw without a script. A link that leads nowhere ends it with exit code
+1. Needs markdown-it-py, mdit-py-plugins and latex2mathml; the schema is that of PROGRAM, by default `stickslip`.
 """
 
 from __future__ import annotations
 
 import argparse
+import ast
+import base64
+import contextlib
+import io
 import json
+import os
 import re
 import shutil
 import subprocess
 import sys
+import tempfile
 from collections.abc import Iterator
 from html import escape
 from pathlib import Path
@@ -26,6 +33,8 @@ from mdit_py_plugins.dollarmath import dollarmath_plugin
 
 BOOK = Path(__file__).parent
 REPOSITORY = BOOK.parent
+OUTPUT = "output of a cell"
+"""Marks blocks that are HTML as it is."""
 STYLE = """
 :root { color-scheme: light dark; --line: #8884; }
 body { font: 16px/1.55 system-ui, sans-serif; margin: 0; display: flex; }
@@ -68,6 +77,9 @@ class Page:
     def __init__(self, name: str, text: str) -> None:
         self.name = name
         self.tokens = reader().parse(text)
+        for token in self.tokens:
+            if token.type == "fence" and token.info == OUTPUT:
+                token.type = "html_block"
         self.anchors: set[str] = set()
         self.title = name
         for opening, inline in zip(self.tokens, self.tokens[1:]):
@@ -77,6 +89,11 @@ class Page:
                 self.anchors.add(anchor)
                 if opening.tag == "h1":
                     self.title = inline.content
+
+    @property
+    def file(self) -> str:
+        """Its file in the site."""
+        return "index.html" if self.name == "SUMMARY.md" else f"{Path(self.name).stem}.html"
 
     def links(self) -> Iterator[tuple[Token, str]]:
         """What leads elsewhere, and the attribute that says where."""
@@ -88,6 +105,55 @@ class Page:
         """Its contents."""
         markdown = reader()
         return markdown.renderer.render(self.tokens, markdown.options, {})
+
+
+def displayed(value: Any) -> str:
+    """What a notebook shows of a value, as HTML."""
+    for way in ("_repr_html_", "_repr_svg_"):
+        shown = getattr(value, way, lambda: None)()
+        if shown is not None:
+            return str(shown)
+    png = getattr(value, "_repr_png_", lambda: None)()
+    if png is not None:
+        return f'<img src="data:image/png;base64,{base64.b64encode(png).decode()}">'
+    return "" if value is None else f"<pre>{escape(repr(value))}</pre>"
+
+
+def output(source: str, names: dict[str, Any]) -> str:
+    """Executes a cell with the names that those before it made, and gives what it shows, as HTML."""
+    code = ast.parse(source)
+    last = code.body.pop() if code.body and isinstance(code.body[-1], ast.Expr) else None
+    printed = io.StringIO()
+    with contextlib.redirect_stdout(printed):
+        exec(compile(code, "cell", "exec"), names)
+        value = eval(compile(ast.Expression(last.value), "cell", "eval"), names) if last else None
+    text = printed.getvalue()
+    return (f"<pre>{escape(text)}</pre>" if text else "") + displayed(value)
+
+
+def text_of(name: str, run: bool) -> str:
+    """A chapter, or a notebook as one: its code in blocks, and the notebook itself behind a link."""
+    text = (BOOK / name).read_text(encoding="utf-8")
+    if not name.endswith(".ipynb"):
+        return text
+    parts: list[str] = []
+    names: dict[str, Any] = {}
+    here = Path.cwd()
+    with tempfile.TemporaryDirectory() as folder:
+        os.chdir(folder)
+        try:
+            for cell in json.loads(text)["cells"]:
+                source = "".join(cell["source"])
+                if cell["cell_type"] == "markdown":
+                    parts.append(source)
+                    continue
+                parts.append(f"```python\n{source}\n```")
+                shown = output(source, names) if run else ""
+                parts += [f"```{OUTPUT}\n{shown}\n```"] if shown else []
+        finally:
+            os.chdir(here)
+    file = Path(name).name
+    return "\n\n".join([*parts, f"This page is a notebook, [{file}]({file}), which the tests run."])
 
 
 def reference(schema: dict[str, Any]) -> str:
@@ -142,11 +208,12 @@ def reference(schema: dict[str, Any]) -> str:
     return "\n".join(lines)
 
 
-def site(out: Path, program: str) -> list[str]:
-    """Writes the site, and tells which links lead nowhere."""
+def site(out: Path, program: str, run: bool = False) -> list[str]:
+    """Writes the site, its notebooks executed or as they are, and tells which links lead nowhere."""
     summary = (BOOK / "SUMMARY.md").read_text(encoding="utf-8")
     names = re.findall(r"^- \[[^\]]*\]\(([^)]*\.md)\)", summary, re.MULTILINE)
-    pages = [Page("SUMMARY.md", summary), *(Page(name, (BOOK / name).read_text(encoding="utf-8")) for name in names)]
+    names += re.findall(r"\]\(([^)]*\.ipynb)\)", summary)
+    pages = [Page("SUMMARY.md", summary), *(Page(name, text_of(name, run)) for name in names)]
     schema = subprocess.run([program, "schema"], capture_output=True, text=True, encoding="utf-8", check=True)
     pages.append(Page("reference.md", reference(json.loads(schema.stdout))))
     by_name = {page.name: page for page in pages}
@@ -158,13 +225,14 @@ def site(out: Path, program: str) -> list[str]:
             if re.match(r"[a-z]+:", target):
                 continue
             path, _, anchor = target.partition("#")
-            other = by_name.get(path) if path else page
-            file = (BOOK / path).resolve()
-            if other is not None:
+            place = os.path.normpath(Path(page.name).parent / path)
+            other = by_name.get(place) if path else page
+            file = (BOOK / place).resolve()
+            # A notebook's link to itself leads to its file.
+            if other is not None and (other is not page or not path):
                 if anchor and anchor not in other.anchors:
                     wrong.append(f"{page.name}: {target} has no such heading")
-                name = "index" if other.name == "SUMMARY.md" else other.name.removesuffix(".md")
-                token.attrSet(attribute, f"{name}.html" + (f"#{anchor}" if anchor else ""))
+                token.attrSet(attribute, other.file + (f"#{anchor}" if anchor else ""))
             elif not file.exists() or not file.is_relative_to(REPOSITORY.resolve()):
                 wrong.append(f"{page.name}: {target} is not there")
             elif file.is_file():
@@ -174,8 +242,7 @@ def site(out: Path, program: str) -> list[str]:
                 shutil.copyfile(file, copy)
                 token.attrSet(attribute, copy.relative_to(out).as_posix())
     for page in pages:
-        name = "index" if page.name == "SUMMARY.md" else page.name.removesuffix(".md")
-        (out / f"{name}.html").write_text(whole(page, pages), encoding="utf-8")
+        (out / page.file).write_text(whole(page, pages), encoding="utf-8")
     return wrong
 
 
@@ -183,9 +250,8 @@ def whole(page: Page, pages: list[Page]) -> str:
     """A page with the list of all beside it."""
 
     def entry(other: Page) -> str:
-        name = "index" if other.name == "SUMMARY.md" else other.name.removesuffix(".md")
         here = ' class="here"' if other is page else ""
-        return f'<a href="{name}.html"{here}>{escape(other.title)}</a>'
+        return f'<a href="{other.file}"{here}>{escape(other.title)}</a>'
 
     head = f"<!DOCTYPE html><html lang=en><meta charset=utf-8><title>{escape(page.title)}</title>"
     view = '<meta name=viewport content="width=device-width, initial-scale=1">'
@@ -197,8 +263,9 @@ def main() -> int:
     parser = argparse.ArgumentParser(description="The book as a site")
     parser.add_argument("out", type=Path, help="folder of the site")
     parser.add_argument("--stickslip", default="stickslip", help="the program whose schema is shown")
+    parser.add_argument("--run", action="store_true", help="execute the notebooks, and show what their cells do")
     given = parser.parse_args()
-    wrong = site(given.out, given.stickslip)
+    wrong = site(given.out.absolute(), given.stickslip, given.run)
     for line in wrong:
         print(f"error: {line}", file=sys.stderr)
     print(f"{given.out / 'index.html'} is written")
