@@ -248,5 +248,9 @@ def test_a_scene_keeps_the_names_of_its_functions(tmp_path: Path) -> None:
         again.check()
     again.functions.update(scene.functions)
     assert again.check().particles > 0
+    mine = flying()
+    mine.functions["lambda"] = lambda t, x, x0: (0, 3)
+    mine.load("ball", force=lambda t, x, x0: (0, 1))
+    assert mine.document["loads"][0]["force"] == {"outside": "lambda_2"}, "the name that a user gave stays"
     with pytest.raises(TypeError, match="found <Function 'lambda'> where a law is wanted"):
         own(flying(), ss.Function(lambda t: 0)).check()
