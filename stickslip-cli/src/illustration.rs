@@ -4,7 +4,7 @@ use crate::chart::{ChartChoice, chart};
 use crate::drawing::{Background, ColorMap, DrawError, Scale, save};
 use crate::failure::Failure;
 use crate::picture::{
-    self, BoxCorners, ColorQuantity, PicturePart, PictureStyle, Quarters, Setting, Skins, Subject,
+    self, BoxCorners, ColorQuantity, Model, PicturePart, PictureStyle, Quarters, Setting, Skins, Subject,
     SymmetryPlane, ViewPath, Viewpoint,
 };
 use crate::view;
@@ -179,6 +179,48 @@ impl<'a> Album<'a> {
         speeds.fold(0.0, f64::max).sqrt()
     }
 
+    /// The surfaces of the bodies in a snapshot.
+    ///
+    /// # Errors
+    /// There are none: the scene is one of the plane, its file or the snapshot of its start is not there, or all bodies
+    /// lost particles.
+    pub fn model(&self, frame: &Frame) -> Result<Model, Failure> {
+        let missing = |why: &str| {
+            let allowed = "runs in space whose scene is there, with a snapshot of the start; outputs.surfaces has others";
+            Failure::Input(miette!("--out: found {why}; allowed for a model: {allowed}"))
+        };
+        if self.results.manifest().dimension == 2 {
+            return Err(missing("a plane scene"));
+        }
+        let particles = particles(self.results, &self.shown, frame)?;
+        let subject = self.subject(&particles);
+        let model = picture::model(&subject, &self.setting, (frame.time, &self.style(&subject, frame)));
+        if model.bodies() == 0 {
+            return Err(missing("no surface of any body"));
+        }
+        Ok(model)
+    }
+
+    /// How the picture of a snapshot is to look.
+    fn style(&self, subject: &Subject, frame: &Frame) -> PictureStyle {
+        let number = self.results.frames().iter().position(|other| other.path == frame.path);
+        let choice = &self.choice;
+        PictureStyle {
+            scale: self.scale(subject),
+            view: self.views().nth(number.unwrap_or_default()).unwrap_or(Viewpoint::Auto),
+            mirror: self.mirror,
+            size: choice.size,
+            bounds: self.bounds,
+            window: self.window,
+            path: if choice.view.is_path() { self.views().collect() } else { Vec::new() },
+            background: choice.background,
+            contours: choice.contours,
+            fastest: choice.arrows.then(|| self.fastest.unwrap_or_else(|| self.fastest(subject.particles))),
+            hidden: choice.hidden.clone(),
+            skins: self.skins.clone(),
+        }
+    }
+
     /// Where the camera stands in each of the run's snapshots.
     fn views(&self) -> impl Iterator<Item = Viewpoint> {
         let count = self.results.frames().len();
@@ -191,22 +233,7 @@ impl Pictures for Album<'_> {
     fn picture(&self, frame: &Frame) -> Result<Image, Failure> {
         let particles = particles(self.results, &self.shown, frame)?;
         let subject = self.subject(&particles);
-        let number = self.results.frames().iter().position(|other| other.path == frame.path);
-        let choice = &self.choice;
-        let look = PictureStyle {
-            scale: self.scale(&subject),
-            view: self.views().nth(number.unwrap_or_default()).unwrap_or(Viewpoint::Auto),
-            mirror: self.mirror,
-            size: choice.size,
-            bounds: self.bounds,
-            window: self.window,
-            path: if choice.view.is_path() { self.views().collect() } else { Vec::new() },
-            background: choice.background,
-            contours: choice.contours,
-            fastest: choice.arrows.then(|| self.fastest.unwrap_or_else(|| self.fastest(&particles))),
-            hidden: choice.hidden.clone(),
-            skins: self.skins.clone(),
-        };
+        let look = self.style(&subject, frame);
         Ok(picture::draw(&subject, &self.setting, &self.quarters, (frame.time, &look))?)
     }
 }

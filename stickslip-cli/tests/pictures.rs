@@ -211,3 +211,59 @@ fn in_space_half_spaces_have_clean_edges_and_the_camera_moves() {
         assert!(ran.code == Some(2) && ran.stderr.contains(words), "{flags:?}: {}", ran.stderr);
     }
 }
+
+const BALLS: &str = r#"
+    space = { dimension = "3d", cell = "2 cm" }
+    gravity = [0, 0, "-9.81 m/s^2"]
+    time.end = "2 ms"
+    outputs.particles = "1 ms"
+    materials.rubber = { density = 1000, neo_hookean = { young_modulus = "1 MPa", poisson_ratio = 0.3 } }
+    bodies = [
+        { name = "left", material = "rubber", shape.ball = { center = [0, 0, 0], radius = "5 cm" } },
+        { name = "right", material = "rubber", shape.ball = { center = [0.2, 0, 0], radius = "5 cm" } },
+        { name = "floor", material = "rubber", shape.half_space = { point = [0, 0, -1], normal = [0, 0, 1] }, rigid = {} },
+    ]
+    contact = [{ between = ["*", "*"], friction = 0 }]
+"#;
+
+/// The file is read back with VTK in stickslip-py/tests/test_readers.py.
+#[test]
+fn surfaces_of_bodies_in_space_are_a_model() {
+    let workplace = Workplace::new();
+    workplace.write("balls.toml", BALLS);
+    workplace.succeed(&["run", "balls.toml", "--quiet"]);
+    let render = |flags: &[&str]| {
+        workplace.run(&[&["render", "balls.results", "--out", "balls.glb"][..], flags].concat())
+    };
+    let ran = render(&[]);
+    assert!(ran.stdout.contains("holds the surfaces of 2 bodies at t = 0.002000 s"), "{}", ran.stderr);
+    let by_body = std::fs::read(workplace.path("balls.glb")).unwrap();
+    let ran = render(&["--frame", "0", "--body", "left", "--color", "velocity"]);
+    assert!(ran.stdout.contains("holds the surface of one body at t = 0.000000 s"), "{}", ran.stderr);
+    let by_value = std::fs::read(workplace.path("balls.glb")).unwrap();
+    let has = |file: &[u8], word: &str| file.windows(word.len()).any(|bytes| bytes == word.as_bytes());
+    assert!(has(&by_body, "\"right\"") && !has(&by_body, "COLOR_0"));
+    assert!(has(&by_value, "COLOR_0") && !has(&by_value, "\"right\""));
+    for (flags, expected) in [
+        (&["--size", "800x600"][..], "--size: found a model"),
+        (&["--view", "x"], "--view: found a model"),
+        (&["--frame", "0,1"], "for one snapshot in .glb"),
+        (&["--animate"], "ends in .png, .gif, .mp4 or .webm"),
+    ] {
+        let refused = render(flags);
+        assert_eq!(refused.code, Some(2), "{flags:?}: {}", refused.stderr);
+        assert!(refused.stderr.contains(expected), "{flags:?}: {}", refused.stderr);
+    }
+    assert_eq!(
+        std::fs::read(workplace.path("balls.glb")).unwrap(),
+        by_value,
+        "what is refused changes nothing"
+    );
+    workplace.write("balls.glb", "mine");
+    assert!(render(&[]).code != Some(0), "and what is no model stays");
+
+    let flat = thrown_disk();
+    let refused = flat.run(&["render", "scene.results", "--out", "disk.glb"]);
+    assert_eq!(refused.code, Some(2));
+    assert!(refused.stderr.contains("--out: found a plane scene"), "{}", refused.stderr);
+}

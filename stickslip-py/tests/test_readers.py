@@ -114,6 +114,41 @@ def test_every_file_of_a_run_is_opened(results, read: Callable[[Path], Found]):
         assert at_nodes["mass"].sum() == pytest.approx(frame["mass"].sum(), rel=1e-9)
 
 
+def test_a_model_is_opened_with_its_surfaces_and_colours(results, tmp_path):
+    pytest.importorskip("vtkmodules.vtkIOGeometry")
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+    from vtkmodules.vtkIOGeometry import vtkGLTFReader
+
+    if not results.frame(0)["position"][:, 2].any():
+        with pytest.raises(ss.ResultsError, match="--out: found a plane scene"):
+            ss.render(results, out=tmp_path / "ball.glb")
+        return
+    ss.render(results, color="von_mises", out=tmp_path / "ball.glb")
+    reader = vtkGLTFReader()
+    reader.SetFileName(str(tmp_path / "ball.glb"))
+    reader.Update()
+    surface = meshes(reader.GetOutput())
+    assert len(surface) == 1, "one body"
+    polygons = surface[0].GetPolys()
+    corners = vtk_to_numpy(surface[0].GetPoints().GetData())
+    triangles = vtk_to_numpy(polygons.GetConnectivityArray()).reshape(-1, 3)
+    own = results.frame(-1)["volume"].sum()
+    assert enclosed(corners, triangles, plane=False) == pytest.approx(own, rel=0.06), "triangles face outward"
+    data = surface[0].GetPointData()
+    names = [data.GetArrayName(i) for i in range(data.GetNumberOfArrays())]
+    assert any("COLOR_0" in name.upper() for name in names) and any("NORMAL" in name.upper() for name in names)
+    # The frame is the last: the ball has flown and fallen; up, in the scene as in the model, is y.
+    assert corners.mean(axis=0) == pytest.approx(results.frame(-1)["position"].mean(axis=0), abs=0.02)
+
+
+def meshes(data) -> list:
+    """The surfaces in what VTK read."""
+    if data.IsA("vtkPolyData"):
+        return [data]
+    blocks = [data.GetBlock(i) for i in range(data.GetNumberOfBlocks())] if data.IsA("vtkMultiBlockDataSet") else []
+    return [mesh for block in blocks if block is not None for mesh in meshes(block)]
+
+
 def test_a_series_is_opened_by_pyvista(results):
     pyvista = pytest.importorskip("pyvista")
     for kind in ("particles", "surfaces", "grid"):

@@ -4,10 +4,11 @@ use super::fringes::FringeArguments;
 use super::{are_names, open, recorded, say};
 use crate::drawing::{Background, ColorMap, DrawError, save};
 use crate::failure::Failure;
+use crate::files;
 use crate::film::{self, FilmKind};
 use crate::frame_pictures::FramePictures;
 use crate::illustration::{Album, PictureChoice, Pictures, snapshots};
-use crate::picture::{ColorQuantity, PicturePart, QuantityParser, ViewPath};
+use crate::picture::{ColorQuantity, PicturePart, QuantityParser, ViewPath, Viewpoint};
 use clap::{Args, Parser, ValueEnum};
 use miette::miette;
 use std::ffi::OsStr;
@@ -105,7 +106,8 @@ pub struct Arguments {
     hide: Vec<PicturePart>,
 
     /// The picture, .png, the animation, .png, .gif, .mp4 or .webm, or the folder for `--all`; DIR/picture.png,
-    /// DIR/animation.png or DIR/pictures without this, and fringes in the place of picture.
+    /// DIR/animation.png or DIR/pictures without this, and fringes in the place of picture. With .glb the surfaces of
+    /// bodies in space are written as a model in glTF, with their colours.
     #[arg(long)]
     out: Option<PathBuf>,
 
@@ -242,6 +244,9 @@ impl Arguments {
             )));
         }
         let chosen = self.chosen(frames)?;
+        if let (Some(out), [frame]) = (self.out.as_ref().filter(|out| is_model(out)), &chosen[..]) {
+            return self.write_model(out, &results, frame);
+        }
         let out = self.file("picture.png")?;
         let pictures = self.pictures(&results, &chosen)?;
         let drawn: Result<Vec<Image>, Failure> = chosen.iter().map(|frame| pictures.picture(frame)).collect();
@@ -262,6 +267,12 @@ impl Arguments {
             say(&pictures.scale())?;
             return Ok(Box::new(pictures));
         }
+        let album = self.album(results)?;
+        Ok(Box::new(if frames.len() > 1 { album.steadied()? } else { album }))
+    }
+
+    /// The snapshots as the user wants to see them.
+    fn album<'a>(&self, results: &'a Results) -> Result<Album<'a>, Failure> {
         are_names(&self.only, results.body_names())?;
         let choice = PictureChoice {
             bodies: self.only.clone(),
@@ -279,8 +290,38 @@ impl Arguments {
             background: self.background,
             hidden: self.hide.clone(),
         };
-        let album = Album::open(results, choice)?;
-        Ok(Box::new(if frames.len() > 1 { album.steadied()? } else { album }))
+        Album::open(results, choice)
+    }
+
+    /// Writes the surfaces of the bodies, which are no picture: nobody looks at them from somewhere.
+    fn write_model(&self, out: &Path, results: &Results, frame: &Frame) -> Result<(), Failure> {
+        let of_pictures = [
+            ("--fringes", self.fringes.fringes),
+            ("--balls", self.balls),
+            ("--contours", self.contours.is_some()),
+            ("--vectors", self.vectors.is_some()),
+            ("--view", self.view != ViewPath(vec![Viewpoint::Auto])),
+            ("--window", self.window.is_some()),
+            ("--size", self.size.is_some()),
+            ("--background", self.background != Background::Color([255; 3])),
+            ("--hide", !self.hide.is_empty()),
+        ];
+        if let Some((option, _)) = of_pictures.iter().find(|(_, is_set)| *is_set) {
+            let found = out.display();
+            return Err(Failure::Input(miette!(
+                "{option}: found a model, `{found}`; allowed: --frame, --time, --color, --range, --colors, --smooth, \
+                 --body and --mirror, or a picture"
+            )));
+        }
+        let model = self.album(results)?.model(frame)?;
+        let written =
+            model.encode().and_then(|bytes| files::write(out, files::GLB, |file| file.write_all(&bytes)));
+        written.map_err(|source| DrawError::Write { path: out.to_path_buf(), source })?;
+        let bodies = match model.bodies() {
+            1 => "surface of one body".to_owned(),
+            several => format!("surfaces of {several} bodies"),
+        };
+        say(&format!("{} holds the {bodies} at t = {} s", out.display(), significant(frame.time)))
     }
 
     /// Where a picture goes: where the user says, or to a file of this name in the folder of results.
@@ -289,7 +330,7 @@ impl Arguments {
         if out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
             return Ok(out);
         }
-        let allowed = "a file name that ends in .png, or a folder with --all";
+        let allowed = "a file name that ends in .png, or for one snapshot in .glb, or a folder with --all";
         Err(Failure::Input(miette!("--out: found `{}`; allowed: {allowed}", out.display())))
     }
 
@@ -352,6 +393,11 @@ impl Arguments {
             (Ok(()), None) => say(&format!("{} plays {} pictures", out.display(), frames.len())),
         }
     }
+}
+
+/// Whether a name is that of a model.
+fn is_model(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("glb"))
 }
 
 /// Pictures of one size in rows, two or three in each; as the corner of the first where a row has none.

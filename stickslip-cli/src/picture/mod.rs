@@ -7,6 +7,7 @@ mod floor;
 mod furniture;
 mod grains;
 mod light;
+mod model;
 mod plane;
 mod quantity;
 #[cfg(test)]
@@ -20,6 +21,7 @@ mod surface;
 
 pub use camera::{ViewPath, Viewpoint};
 pub use grains::{Quarters, quarters};
+pub use model::{GENERATOR, Model};
 pub use quantity::{ColorQuantity, QuantityParser, determinant};
 pub use setting::{Floor, Setting, SymmetryPlane};
 pub use skins::Skins;
@@ -419,7 +421,7 @@ impl Scene<'_> {
             camera = camera.scaled([width, height], area.map(|length| length as f64));
         }
         let radius = surface::COVERING * grains.iter().map(Grain::size).sum::<f64>() / grains.len() as f64;
-        let mesh = self.mesh();
+        let mesh = mesh(subject, look);
         let surfaces = mesh.bodies();
         let is_ball = |grain: &&Grain| {
             !surfaces.contains(&grain.body) && (floors.is_empty() || !setting.has_floor(grain.body))
@@ -456,23 +458,6 @@ impl Scene<'_> {
         Ok(canvas)
     }
 
-    /// The surfaces of bodies, with mirror images where the user wants them.
-    fn mesh(&self) -> Mesh {
-        let Some(skins) = &self.look.skins else { return Mesh::default() };
-        let Subject { particles, quantity, values, .. } = self.subject;
-        let fitted = |body: u32, place: [f64; 3]| {
-            self.subject
-                .smoother()
-                .and_then(|smoother| smoother.at(body, place))
-                .map(|parts| quantity.value_of(parts))
-        };
-        let mesh = skins.mesh(particles, values, fitted);
-        match self.look.mirror {
-            Some(mirror) => mesh.mirrored(mirror),
-            None => mesh,
-        }
-    }
-
     /// The box around all that there is, whatever of it the picture shows.
     fn around(&self, grains: &[Grain]) -> [Point; 2] {
         let whole = PictureStyle { window: None, ..self.look.clone() };
@@ -482,12 +467,31 @@ impl Scene<'_> {
     }
 }
 
+/// The surfaces of bodies, with mirror images where the user wants them.
+fn mesh(subject: &Subject, look: &PictureStyle) -> Mesh {
+    let Some(skins) = &look.skins else { return Mesh::default() };
+    let Subject { particles, quantity, values, .. } = subject;
+    let fitted = |body: u32, place: [f64; 3]| {
+        subject.smoother().and_then(|smoother| smoother.at(body, place)).map(|parts| quantity.value_of(parts))
+    };
+    let mesh = skins.mesh(particles, values, fitted);
+    match look.mirror {
+        Some(mirror) => mesh.mirrored(mirror),
+        None => mesh,
+    }
+}
+
+/// The surfaces of bodies in a snapshot in space at a time [s].
+pub fn model(subject: &Subject, setting: &Setting, (time, look): (f64, &PictureStyle)) -> Model {
+    Model::new(&mesh(subject, look), (subject, setting), (time, look))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::drawing::save;
 
-    fn look(subject: &Subject) -> PictureStyle {
+    pub fn look(subject: &Subject) -> PictureStyle {
         PictureStyle {
             scale: subject.quantity.scale(&subject.values),
             view: Viewpoint::Auto,

@@ -83,6 +83,7 @@ def render(results: Results | Folder, *, out: Folder | None = None, **options: A
 
     `color="pressure"`, `range=(-1e5, 1e5)`, `view=(30, 10)`, `size="1200x800"`, `window=("-2 cm", 0, "2 cm", "4 cm")`,
     `background="transparent"`, `contours=8`, `vectors="velocity"`, `hide=("title", "axes")`, `animate=True`, ...
+    Where `out` ends in .glb it is the surfaces of bodies in space, as a model in glTF.
     Without `out` it is DIR/picture.png, of an animation DIR/animation.png.
     """
     folder = _folder(results)
@@ -160,12 +161,12 @@ def command(name: str, *words: Any, failure: type[StickslipError] = RunError, **
 
 def _carried_out(name: str, *words: Any, **options: Any) -> subprocess.CompletedProcess[str]:
     """A command in a process of its own."""
-            text = ",".join(map(str, entry)) if isinstance(entry, tuple) else str(entry)
     line = [sys.executable, "-m", "stickslip", name, *map(os.fspath, words)]
     for option, value in options.items():
         for entry in value if isinstance(value, list) else [value]:
             if entry is None or entry is False:
                 continue
+            text = ",".join(map(str, entry)) if isinstance(entry, tuple) else str(entry)
             flag = f"--{option.rstrip('_').replace('_', '-')}"
             line.append(flag if entry is True else f"{flag}={text}")
     return subprocess.run(line, capture_output=True, text=True, encoding="utf-8", check=False)
