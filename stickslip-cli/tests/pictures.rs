@@ -267,3 +267,49 @@ fn surfaces_of_bodies_in_space_are_a_model() {
     assert_eq!(refused.code, Some(2));
     assert!(refused.stderr.contains("--out: found a plane scene"), "{}", refused.stderr);
 }
+
+/// Films are made by the user's ffmpeg, which reads them back here: every picture, in its colours, with even sides.
+#[test]
+fn films_play_every_picture() {
+    let ffmpeg = |arguments: &[&str], folder: &std::path::Path| {
+        std::process::Command::new("ffmpeg").args(arguments).current_dir(folder).output()
+    };
+    let workplace = thrown_disk();
+    if ffmpeg(&["-version"], &workplace.path("")).is_err() {
+        eprintln!("skipped: ffmpeg is not on the path");
+        let refused = workplace.run(&["render", "scene.results", "--animate", "--out", "film.mp4"]);
+        assert_eq!(refused.code, Some(2), "{}", refused.stderr);
+        assert!(refused.stderr.contains("ffmpeg, which is not on the path"), "{}", refused.stderr);
+        return;
+    }
+    let size = ["--size", "401x301"];
+    workplace.succeed(&[&["render", "scene.results", "--all", "--out", "pictures"][..], &size].concat());
+    let mut pictures: Vec<_> = std::fs::read_dir(workplace.path("pictures")).unwrap().collect();
+    pictures.sort_by_key(|entry| entry.as_ref().unwrap().path());
+    for film in ["film.mp4", "film.webm"] {
+        for _ in 0..2 {
+            // Its own it replaces.
+            let said = workplace
+                .succeed(&[&["render", "scene.results", "--animate", "--out", film][..], &size].concat());
+            assert!(said.contains(&format!("{film} plays {} pictures", pictures.len())), "{said}");
+        }
+        let read = ["-loglevel", "error", "-i", film, "-f", "rawvideo", "-pix_fmt", "rgb24", "-"];
+        let decoded = ffmpeg(&read, &workplace.path("")).unwrap();
+        assert!(decoded.status.success(), "{}", String::from_utf8_lossy(&decoded.stderr));
+        let frames: Vec<&[u8]> = decoded.stdout.chunks_exact(3 * 402 * 302).collect();
+        assert_eq!((frames.len(), decoded.stdout.len()), (pictures.len(), pictures.len() * 3 * 402 * 302));
+        for (frame, picture) in frames.iter().zip(&pictures) {
+            let picture = Image::read_png(&picture.as_ref().unwrap().path()).unwrap();
+            let off: u64 = (0..301)
+                .flat_map(|y| (0..3 * 401).map(move |x| (3 * 402 * y + x, 3 * 401 * y + x)))
+                .map(|(a, b)| u64::from(frame[a].abs_diff(picture.pixels[b])))
+                .sum();
+            // Films keep half of the colours' pixels, and lose a little of each.
+            let mean = off as f64 / picture.pixels.len() as f64;
+            assert!(mean < 4.0, "{film}: {mean} of 255");
+        }
+        workplace.write(film, "mine");
+        let refused = workplace.run(&["render", "scene.results", "--animate", "--out", film]);
+        assert!(refused.code != Some(0) && std::fs::read(workplace.path(film)).unwrap() == b"mine");
+    }
+}
