@@ -9,6 +9,7 @@ mod curved;
 mod distance;
 mod filling;
 mod fitted;
+mod from_file;
 mod image;
 mod inside;
 mod mesh;

@@ -51,7 +51,7 @@ pub enum ResumeError {
     #[error("{} was made with another scene: {key} was {then}, and is {now}", path.display())]
     #[diagnostic(help(
         "a run goes on with other outputs, but of the same fringes and unit of time, another end and other threads \
-         only; run the changed scene anew, or put back what was changed"
+         only; run the changed scene anew, or put back what was changed: where it is a sha256, the file"
     ))]
     Changed {
         /// The checkpoint.
@@ -305,6 +305,12 @@ fn first_difference<'a>(key: String, then: &'a Value, now: &'a Value) -> Option<
             let new = || b.iter().find(|item| lacks(a, item)).map(|item| (place(item), None, Some(item)));
             gone.or_else(new).or(Some((key, Some(then), Some(now))))
         }
+        // Earlier versions recorded the names of files alone.
+        (Value::String(name), Value::Object(shape))
+            if shape.get("file").and_then(Value::as_str) == Some(name) =>
+        {
+            None
+        }
         _ if then == now => None,
         _ => Some((key, Some(then), Some(now))),
     }
@@ -341,5 +347,9 @@ mod tests {
         assert_eq!(with("/bodies", json!([1, 2])), Some("bodies[\"a\"]".to_string()));
         assert_eq!(with("/time", json!({"courant": 0.4, "later": null, "keys": {"of": []}})), None);
         assert_eq!(with("/time", json!({"courant": 0.4, "later": 1})), Some("time.later".to_string()));
+        let [earlier, other] = ["a.stl", "b.stl"].map(|file| json!({"mesh": file}));
+        let now = json!({"mesh": {"file": "a.stl", "sha256": "00"}});
+        assert!(first_difference(String::new(), &earlier, &now).is_none());
+        assert!(first_difference(String::new(), &other, &now).is_some());
     }
 }

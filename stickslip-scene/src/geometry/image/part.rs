@@ -4,6 +4,7 @@ use super::lattice::Lattice;
 use crate::geometry::Bounds;
 use crate::geometry::curved::{Curved, Solid};
 use crate::geometry::distance::SignedDistance;
+use crate::geometry::from_file::FromFile;
 use crate::tensor::Vector;
 use serde::{Serialize, Serializer};
 use std::sync::Arc;
@@ -104,6 +105,10 @@ impl Solid for ImagePart {
 
 impl Serialize for ImagePart {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_str(&self.name)
+        let Levels { coefficients, held } = &*self.levels;
+        let counts = coefficients.counts.iter().map(|&count| count as f64);
+        let place = held.iter().flatten().chain(&self.first).chain([&self.pixel]).copied();
+        let values = coefficients.values.iter().map(|&value| f64::from(value));
+        FromFile::new(&self.name, counts.chain(place).chain(values)).serialize(serializer)
     }
 }

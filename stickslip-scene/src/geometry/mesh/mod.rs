@@ -10,6 +10,7 @@ mod triangle;
 
 pub use fault::MeshFault;
 
+use super::from_file::FromFile;
 use super::rotation::Rotation;
 use super::{Bounds, Mirror, SignedDistance};
 use crate::tensor::{Vector, cross};
@@ -244,7 +245,9 @@ impl Mesh {
 
 impl Serialize for Mesh {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_str(&self.0.name)
+        let MeshParts { name, corners, triangles, .. } = &*self.0;
+        let ends = triangles.iter().flat_map(|triangle| triangle.corners).map(f64::from);
+        FromFile::new(name, corners.iter().flatten().copied().chain(ends)).serialize(serializer)
     }
 }
 
