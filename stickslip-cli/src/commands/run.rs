@@ -331,7 +331,7 @@ impl How {
     }
 }
 
-/// Where the time of a run went: a line for each part of the step, and one for the rest.
+/// Where the time of a run went: a line for each part of the step, for what a run does beside, and for the rest.
 fn times(performance: &Performance) -> String {
     let Performance { wall_time, timings, .. } = performance;
     let rest = wall_time - timings.iter().map(|timing| timing.seconds).sum::<f64>();
@@ -342,7 +342,7 @@ fn times(performance: &Performance) -> String {
             100.0 * seconds / wall_time.max(f64::MIN_POSITIVE)
         )
     };
-    parts.chain([("outputs and the rest", rest)]).map(line).collect::<Vec<_>>().join("\n")
+    parts.chain([("the rest", rest)]).map(line).collect::<Vec<_>>().join("\n")
 }
 
 /// Tells the user of a disk that takes nothing.

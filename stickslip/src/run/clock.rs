@@ -36,6 +36,22 @@ impl Progress {
 /// Wall time between two reports of progress.
 const REPORT: Duration = Duration::from_millis(100);
 
+/// What a run does beside the steps.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Beside {
+    /// Taking records, and waiting where the writer has too many.
+    Outputs,
+    /// Of [`crate::scene::HealthCheck`], and whether contact is resolved.
+    Checks,
+    /// Taking the state for a checkpoint.
+    Checkpoints,
+}
+
+impl Beside {
+    /// Their names among the timings.
+    const NAMES: [&str; 3] = ["outputs", "checks", "checkpoints"];
+}
+
 /// When and where a run started.
 pub(super) struct RunClock {
     start: Instant,
@@ -44,6 +60,8 @@ pub(super) struct RunClock {
     first_step: u64,
     /// What was done before this was taken up.
     before: Work,
+    /// How long the run did what [`Beside`] lists.
+    beside: [Duration; Beside::NAMES.len()],
 }
 
 /// Steps taken, the wall time that they took, and that of each verb [s].
@@ -62,7 +80,13 @@ impl RunClock {
             first_time: view.time(),
             first_step: view.steps(),
             before: Work::default(),
+            beside: [Duration::ZERO; Beside::NAMES.len()],
         }
+    }
+
+    /// Counts what was done since a moment.
+    pub(super) fn count(&mut self, what: Beside, since: Instant) {
+        self.beside[what as usize] += since.elapsed();
     }
 
     /// Keeps what was done so far, or counts from there.
@@ -95,6 +119,7 @@ impl RunClock {
     pub(super) fn performance(&self, view: &dyn View) -> Performance {
         let wall_time = self.before.wall_time + self.start.elapsed().as_secs_f64();
         let earlier = |verb: &str| self.before.timings.iter().find(|timing| timing.verb == verb);
+        let beside = Beside::NAMES.into_iter().zip(self.beside.map(|time| time.as_secs_f64()));
         let timing = |(verb, seconds): (&str, f64)| {
             let seconds = seconds + earlier(verb).map_or(0.0, |timing| timing.seconds);
             Timing { verb: verb.to_string(), seconds }
@@ -106,7 +131,7 @@ impl RunClock {
             steps: view.steps(),
             wall_time,
             particle_steps_per_second: self.rate(view, wall_time),
-            timings: view.timings().into_iter().map(timing).collect(),
+            timings: view.timings().into_iter().chain(beside).map(timing).collect(),
         }
     }
 

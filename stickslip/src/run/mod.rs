@@ -26,7 +26,7 @@ use crate::observe::{
 };
 use crate::scene::{HealthCheck, Scene};
 use checkpoints::Checkpoints;
-use clock::RunClock;
+use clock::{Beside, RunClock};
 use contact_watch::ContactWatch;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -397,14 +397,20 @@ impl Watched<'_> {
                 Ok(None) => break Ok(MarchEnd::Arrived),
                 Err(error) => break Err(error),
             };
+            let taken = Instant::now();
             recorded = recorder.record_due(*simulation);
+            kept.clock.count(Beside::Outputs, taken);
+            let written = Instant::now();
             notes.extend(kept.look(scene, *simulation, (&mut march, step)));
+            kept.clock.count(Beside::Checks, written);
             if reports.due() || !notes.is_empty() {
                 let notes = std::mem::take(&mut notes);
                 progress(&Progress { notes, ..kept.clock.progress(*simulation, end) });
             }
             if recorded.is_ok() && checkpoints.due(*simulation) {
+                let looked = Instant::now();
                 recorded = save(*simulation, (recorder, kept, checkpoints), memory.as_ref());
+                kept.clock.count(Beside::Checkpoints, looked);
             }
             let trouble = checkpoints.trouble();
             notes.extend(trouble.and_then(|error| kept.verdict.note_checkpoint(scene, *simulation, &error)));

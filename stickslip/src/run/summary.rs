@@ -197,7 +197,7 @@ impl Summary {
             .iter()
             .map(|timing| format!("{} {:.0} %", timing.verb, 100.0 * timing.seconds / total))
             .collect();
-        writeln!(f, "  step       {}", shares.join(", "))
+        writeln!(f, "  time       {}", shares.join(", "))
     }
 
     fn write_warnings(&self, f: &mut Formatter) -> fmt::Result {
