@@ -1,9 +1,10 @@
 //! Shape functions: how much of a particle each grid node sees.
 //!
-//! A basis is a product over axes of one-dimensional functions. Along an axis, a particle reaches `WIDTH` nodes from a
-//! base node on. Coordinates are in cells.
+//! A basis is a product over axes of one-dimensional functions, or a mean of such products over the corners of a
+//! particle's domain. Along an axis, a particle reaches `WIDTH` nodes from a base node on. Coordinates are in cells.
 
 use crate::tensor::{Number, Real};
+use crate::transfer::{CornerTable, NodeTable};
 
 /// Most nodes that any basis reaches along an axis.
 pub const MAX_WIDTH: usize = 3;
@@ -70,6 +71,12 @@ pub trait Basis<T: Real>: Copy + Send + Sync + 'static {
     /// ```
     const BOX_SPREAD: f64;
 
+    /// Whether it is a mean over the corners of domains that deform with their particles, and no product over the axes.
+    const CORNERS: bool = false;
+
+    /// Weights and slopes node by node, where it is no product; else nothing.
+    type Table<N: Number, const D: usize>: NodeTable<N, D>;
+
     /// Where the reach of a particle at `x` with the half side `half` begins: its base node is the next one below
     /// [cells].
     fn reach<N: Number>(x: N, half: N) -> N;
@@ -112,6 +119,7 @@ pub struct Linear;
 impl<T: Real> Basis<T> for Linear {
     const WIDTH: usize = 2;
     const BOX_SPREAD: f64 = 0.0;
+    type Table<N: Number, const D: usize> = ();
 
     /// Slopes: the limit of the quotient where a particle sits on a node, and the same elsewhere.
     #[inline(always)]
@@ -138,15 +146,7 @@ impl<T: Real> Basis<T> for Linear {
 /// else:        S_0 = (1 + l - r)^2 / (4l),  S_2 = (r - 1 + l)^2 / (4l)
 /// S_1 = 1 - S_0 - S_2
 /// ```
-/// Needs l <= 1/2. The box keeps its first size and direction (uniform GIMP, `space.basis = "gimp"`), or its sides
-/// follow the stretch (contiguous particle GIMP, `"cpgimp"`), so that the boxes of a body that is pulled still fill it:
-///
-/// ```text
-/// l_i = min(l sqrt(sum_j F_ij^2), 1/2)
-/// ```
-/// l times the stretch of the fibre that the rotation in F has turned into axis i, so l for any rotation alone. It goes
-/// with F whenever positions change. (Coombs et al. 2020, Comput. Methods Appl. Mech. Eng. 358, compare what boxes
-/// may follow: diag(F) vanishes in rotation, det F shrinks what is pulled.)
+/// Needs l <= 1/2. The box keeps its first size and direction (uniform GIMP, `space.basis = "gimp"`).
 ///
 /// With l = 1/2, whatever the particle's size, they are the quadratic B-splines of its centre
 /// (Steffen, Kirby and Berzins 2008, Int. J. Numer. Meth. Eng. 76), the tent averaged over a cell:
@@ -162,6 +162,7 @@ pub struct Gimp;
 impl<T: Real> Basis<T> for Gimp {
     const WIDTH: usize = 3;
     const BOX_SPREAD: f64 = 1.0 / 3.0;
+    type Table<N: Number, const D: usize> = ();
 
     #[inline(always)]
     fn reach<N: Number>(x: N, half: N) -> N {
@@ -179,6 +180,39 @@ impl<T: Real> Basis<T> for Gimp {
         let first = N::HALF * near * falling + (before - near);
         let last = N::HALF * beyond * rising;
         ShapeFunctions { weight: [first, N::ONE - first - last, last], difference: [falling, rising] }
+    }
+}
+
+/// Mean tent functions of the corners of a domain that deforms with its particle (CPDI): equations in
+/// `transfer/corners.rs`. Along the axes, of a domain that lies along them, with l half of its side and
+/// r = x - base in [l, 1 + l):
+///
+/// ```text
+/// S_0 = (max(1 + l - r, 0) + max(1 - l - r, 0)) / 2,   S_2 = max(r - 1 + l, 0) / 2,   S_1 = 1 - S_0 - S_2
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Cpdi;
+
+impl<T: Real> Basis<T> for Cpdi {
+    const WIDTH: usize = 3;
+    const BOX_SPREAD: f64 = 1.0;
+    const CORNERS: bool = true;
+    type Table<N: Number, const D: usize> = CornerTable<N>;
+
+    #[inline(always)]
+    fn reach<N: Number>(x: N, half: N) -> N {
+        x - half
+    }
+
+    #[inline(always)]
+    fn shape<N: Number>(r: N, &BoxSide { half, per_side }: &BoxSide<N>) -> ShapeFunctions<N> {
+        let before = (N::ONE + half) - r;
+        let near = before.min(half + half);
+        let beyond = (r - (N::ONE - half)).max(N::ZERO);
+        let first = N::HALF * near + (before - near);
+        let last = N::HALF * beyond;
+        let difference = [near * per_side, beyond * per_side];
+        ShapeFunctions { weight: [first, N::ONE - first - last, last], difference }
     }
 }
 
@@ -208,6 +242,11 @@ mod tests {
     #[test]
     fn gimp_reproduces_linear_fields() {
         reproduces_linear_fields::<Gimp>();
+    }
+
+    #[test]
+    fn corners_reproduce_linear_fields() {
+        reproduces_linear_fields::<Cpdi>();
     }
 
     /// Against the formulas of the splines.
@@ -276,6 +315,7 @@ mod tests {
     fn both_spread_as_stated() {
         spreads_over_the_nodes::<Linear>();
         spreads_over_the_nodes::<Gimp>();
+        spreads_over_the_nodes::<Cpdi>();
     }
 
     #[test]

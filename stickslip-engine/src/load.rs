@@ -13,8 +13,8 @@ use crate::body::Particle;
 use crate::grid::Lattice;
 use crate::part::{self, PartPoint, PartPoints};
 use crate::scene::{Action, Dashpot, Expression, Extent, Load, Moment, RIGID, Scene, Spring, SupportMotion};
-use crate::tensor::{Real, Vector};
-use crate::transfer::offsets;
+use crate::tensor::{Matrix, Real, Vector};
+use crate::transfer::{NodeTable, extent, offsets};
 use serde::{Deserialize, Serialize};
 
 /// A load or a support with the points on which it acts.
@@ -305,23 +305,29 @@ fn deformed_area<T: Real, const D: usize>(particle: &Particle<T, D>, point: &Par
     })
 }
 
-/// The nodes that move a point of a particle with a box of these half sides [m], each with its S_i and N_i [-].
+/// The nodes that move a point of a particle whose domain has these half edges [m], each with its S_i and N_i [-].
 pub fn nodes_of<T: Real, const D: usize, B: Basis<T>>(
     lattice: &Lattice<T, D>,
-    (particle, half_sides): (&Particle<T, D>, Vector<T, D>),
+    (particle, edges): (&Particle<T, D>, &Matrix<T>),
     point: &PartPoint,
 ) -> impl Iterator<Item = ([i32; D], [T; 2])> + use<T, D, B> {
     let x = lattice.cells(particle.position);
-    let half = lattice.half_sides(half_sides);
+    let half = lattice.half_sides(extent(edges));
     let axes: [_; D] = std::array::from_fn(|i| B::axis(x[i], half[i]));
+    let r = Vector::from_fn(|i| x[i] - T::of(f64::from(axes[i].base)));
+    let table = B::Table::<T, D>::new(&r, &(*edges * lattice.per_cell));
     let arm = arm::<T, D>(particle, point) * lattice.per_cell;
-    offsets::<D>(B::WIDTH).map(move |offset| {
+    offsets::<D>(B::WIDTH).zip(0..).map(move |(offset, n)| {
+        let node = std::array::from_fn(|i| axes[i].base + offset[i] as i32);
+        if B::CORNERS {
+            let own = table.weight(n);
+            return (node, [own, (0..D).fold(own, |sum, i| sum + table.slope(n, i) * arm[i])]);
+        }
         let weight = |i: usize| axes[i].shape.weight[offset[i]];
         let except =
             |skip: usize| (0..D).filter(|&i| i != skip).fold(T::ONE, |product, i| product * weight(i));
         let beside = |i: usize| except(i) * axes[i].shape.slope(offset[i]) * arm[i];
         let own = (0..D).fold(T::ONE, |product, i| product * weight(i));
-        let node = std::array::from_fn(|i| axes[i].base + offset[i] as i32);
         (node, [own, (0..D).fold(own, |sum, i| sum + beside(i))])
     })
 }

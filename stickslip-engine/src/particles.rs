@@ -1,13 +1,14 @@
 //! Particles of one body as columns, so that a processor can take several at a time; seen from outside, they are rows.
 
 use crate::body::Particle;
-use crate::column::{ColumnDescription, EVERY, HALF_SIDES, Kind, NUMBER, same};
+use crate::column::{ColumnDescription, EVERY, HALF_EDGES, Kind, NUMBER, same};
 use crate::grid::Disjoint;
 use crate::material::{History, Keep, Recall, history_entries};
 use crate::natural::{self, Natural};
 use crate::pages::ask_for_large;
-use crate::tensor::{Matrix, Number, Real, Symmetric, Vector};
+use crate::tensor::{Matrix, Real, Symmetric, Vector};
 use crate::threads::each_range;
+use crate::transfer::{convected_edges, extent};
 use std::ops::Range;
 
 /// Place of the first entry of a column of [`EVERY`], or, of a name that it does not have, of the history.
@@ -96,22 +97,15 @@ pub struct Particles<T, const D: usize> {
     viscosity: &'static [History],
     /// What initial stress and heat need.
     natural: &'static [History],
-    /// Boxes that follow the stretch.
-    boxes: &'static [History],
+    /// Domains that deform with their particles.
+    domains: &'static [History],
 }
 
-/// Half the sides of boxes that follow the stretch of their particles [m].
-pub const BOXES: &[History] = &[History::new(HALF_SIDES, "m", Kind::Vector)];
-
-/// Half the side of a box along an axis, of that row of F and the undeformed one, see [`crate::basis::Gimp`].
-#[inline(always)]
-pub fn stretched_half_side<N: Number>(row: &[N; 3], half_width: N, most: N) -> N {
-    let square = row[0].times_plus(row[0], row[1].times_plus(row[1], row[2] * row[2]));
-    (half_width * square.sqrt()).min(most)
-}
+/// Half the edges of domains that deform with their particles, one in each column of the tensor [m].
+pub const DOMAINS: &[History] = &[History::new(HALF_EDGES, "m", Kind::Tensor)];
 
 /// Columns that not all bodies have: what a law remembers, behind that what a transfer carries, what bulk viscosity
-/// needs, what initial stress and heat need, and boxes that follow the stretch.
+/// needs, what initial stress and heat need, and domains that deform.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct OwnColumns {
     /// Of the law.
@@ -122,15 +116,15 @@ pub struct OwnColumns {
     pub viscosity: &'static [History],
     /// Of the state without stress, see [`crate::natural`].
     pub natural: &'static [History],
-    /// Of the boxes, if they follow the stretch.
-    pub boxes: &'static [History],
+    /// Of the domains, if they deform with their particles.
+    pub domains: &'static [History],
 }
 
 impl OwnColumns {
     /// All of them.
     fn all(self) -> impl Iterator<Item = &'static History> {
         let first = self.history.iter().chain(self.transfer).chain(self.viscosity);
-        first.chain(self.natural).chain(self.boxes)
+        first.chain(self.natural).chain(self.domains)
     }
 
     /// Their entries.
@@ -139,7 +133,7 @@ impl OwnColumns {
             + history_entries(self.transfer, dimension)
             + history_entries(self.viscosity, dimension)
             + history_entries(self.natural, dimension)
-            + history_entries(self.boxes, dimension)
+            + history_entries(self.domains, dimension)
     }
 }
 
@@ -203,7 +197,7 @@ impl<T: Real, const D: usize> Particles<T, D> {
         let columns = vec![T::ZERO; stride * Self::columns_of(own)];
         ask_for_large(columns.as_ptr(), columns.len());
         let numbers = vec![0; 2 * count];
-        let OwnColumns { history, transfer, viscosity, natural, boxes } = own;
+        let OwnColumns { history, transfer, viscosity, natural, domains } = own;
         let mut particles = Particles {
             len: count,
             columns,
@@ -214,7 +208,7 @@ impl<T: Real, const D: usize> Particles<T, D> {
             transfer,
             viscosity,
             natural,
-            boxes,
+            domains,
         };
         for i in 0..count {
             let particle = f(i);
@@ -230,9 +224,10 @@ impl<T: Real, const D: usize> Particles<T, D> {
                 column += 1;
             }
         }
-        for entry in particles.view().box_columns() {
+        for (column, [row, edge]) in particles.view().domain_columns().zip(deformation_entries(D)) {
             for i in 0..count {
-                particles.line_mut(entry)[i] = particles.line(ColumnStart::<D>::HALF_WIDTH)[i];
+                let half_width = particles.line(ColumnStart::<D>::HALF_WIDTH)[i];
+                particles.line_mut(column)[i] = if row == edge { half_width } else { T::ZERO };
             }
         }
         particles
@@ -255,7 +250,7 @@ impl<T: Real, const D: usize> Particles<T, D> {
             transfer: self.transfer,
             viscosity: self.viscosity,
             natural: self.natural,
-            boxes: self.boxes,
+            domains: self.domains,
         }
     }
 
@@ -330,22 +325,28 @@ impl<T: Real, const D: usize> Particles<T, D> {
         (Vector::from_fn(|k| at(ColumnStart::<D>::POSITION + k)), self.half_sides(i))
     }
 
-    /// Half the sides of the box of particle `i`: the undeformed ones, or those that follow its stretch [m].
+    /// Half the sides of the box of particle `i`: the undeformed ones, or those of the box that holds its domain [m].
     #[inline]
     pub fn half_sides(&self, i: usize) -> Vector<T, D> {
-        assert!(i < self.len(), "a particle of the body");
-        // SAFETY: in range, and borrowed for reading.
-        unsafe { self.view().half_sides(i) }
+        extent(&self.edges(i))
     }
 
-    /// Lets boxes that follow the stretch of particles be those of their deformation; `most`: the longest half side
-    /// [m].
-    pub fn stretch_boxes(&mut self, most: T) {
-        for (entry, row) in self.view().box_columns().zip(0..) {
+    /// Half the edges of the domain of particle `i`, one in each column: of the undeformed box, or of the domain that
+    /// deforms with it [m].
+    #[inline]
+    pub fn edges(&self, i: usize) -> Matrix<T> {
+        assert!(i < self.len(), "a particle of the body");
+        // SAFETY: in range, and borrowed for reading.
+        unsafe { self.view().edges(i) }
+    }
+
+    /// Lets domains that deform with their particles be those of their deformation; `most`: how far one reaches [m].
+    pub fn deform_domains(&mut self, most: T) {
+        for (column, [row, edge]) in self.view().domain_columns().zip(deformation_entries(D)) {
             for i in 0..self.len() {
                 let particle = self.get(i);
-                self.line_mut(entry)[i] =
-                    stretched_half_side(&particle.deformation.0[row], particle.half_width, most);
+                let edges = convected_edges::<T, D>(&particle.deformation, particle.half_width, most);
+                self.line_mut(column)[i] = edges.0[*row][*edge];
             }
         }
     }
@@ -394,7 +395,7 @@ impl<T: Real, const D: usize> Particles<T, D> {
             transfer: history_entries(self.transfer, D),
             viscosity: history_entries(self.viscosity, D),
             natural: history_entries(self.natural, D),
-            boxes: history_entries(self.boxes, D),
+            domains: history_entries(self.domains, D),
         }
     }
 
@@ -408,7 +409,7 @@ impl<T: Real, const D: usize> Particles<T, D> {
             transfer: history_entries(self.transfer, D),
             viscosity: history_entries(self.viscosity, D),
             natural: history_entries(self.natural, D),
-            boxes: history_entries(self.boxes, D),
+            domains: history_entries(self.domains, D),
         }
     }
 
@@ -468,13 +469,23 @@ impl<T: Real, const D: usize> Particles<T, D> {
 
     /// Becomes a copy of the particles of the same body, in the memory that is there.
     pub fn become_copy_of(&mut self, other: &Self) {
-        let Particles { len, columns, stride, numbers, later, history, transfer, viscosity, natural, boxes } =
-            self;
+        let Particles {
+            len,
+            columns,
+            stride,
+            numbers,
+            later,
+            history,
+            transfer,
+            viscosity,
+            natural,
+            domains,
+        } = self;
         columns.clone_from(&other.columns);
         numbers.clone_from(&other.numbers);
         (*len, *stride, *later) = (other.len, other.stride, other.later);
         (*history, *transfer) = (other.history, other.transfer);
-        (*viscosity, *natural, *boxes) = (other.viscosity, other.natural, other.boxes);
+        (*viscosity, *natural, *domains) = (other.viscosity, other.natural, other.domains);
     }
 
     /// Where a column lies as long as nothing is sorted, and after it once they are settled; `number` is one, too.
@@ -554,8 +565,8 @@ pub struct Columns<T, const D: usize> {
     viscosity: usize,
     /// Entries of what initial stress and heat need.
     natural: usize,
-    /// Entries of the boxes.
-    boxes: usize,
+    /// Entries of the domains.
+    domains: usize,
 }
 
 // SAFETY: entries are only reached through unsafe functions, whose callers keep threads apart.
@@ -597,25 +608,30 @@ impl<T: Real, const D: usize> Columns<T, D> {
         first..first + self.natural
     }
 
-    /// Places of the columns of the boxes, if these follow the stretch.
+    /// Places of the columns of the domains, if these deform with their particles.
     #[inline(always)]
-    pub fn box_columns(&self) -> Range<usize> {
+    pub fn domain_columns(&self) -> Range<usize> {
         let first = self.natural_columns().end;
-        first..first + self.boxes
+        first..first + self.domains
     }
 
-    /// Half the sides of the box of particle `i`: the undeformed ones, or those that follow its stretch [m].
+    /// Half the edges of the domain of particle `i`, see [`Particles::edges`] [m].
     ///
     /// # Safety
     /// The particle must exist, and nobody may write to it meanwhile.
     #[inline]
-    pub unsafe fn half_sides(&self, i: usize) -> Vector<T, D> {
+    pub unsafe fn edges(&self, i: usize) -> Matrix<T> {
         // SAFETY: the caller's.
         let at = |column: usize| unsafe { *self.at(column, i) };
-        match self.box_columns() {
-            boxes if boxes.is_empty() => Vector([at(ColumnStart::<D>::HALF_WIDTH); D]),
-            boxes => Vector::from_fn(|k| at(boxes.start + k)),
+        let columns = self.domain_columns();
+        let mut edges = Matrix::ZERO;
+        if columns.is_empty() {
+            (0..3).for_each(|k| edges.0[k][k] = at(ColumnStart::<D>::HALF_WIDTH));
         }
+        for (column, &[row, edge]) in columns.zip(deformation_entries(D)) {
+            edges.0[row][edge] = at(column);
+        }
+        edges
     }
 
     /// The entry of particle `i` in a column.
@@ -624,7 +640,7 @@ impl<T: Real, const D: usize> Columns<T, D> {
     /// The column and the particle must exist, and nobody may use the entry but by this pointer.
     #[inline(always)]
     pub unsafe fn at(&self, column: usize, i: usize) -> *mut T {
-        debug_assert!(column < self.box_columns().end && i < self.stride, "an entry");
+        debug_assert!(column < self.domain_columns().end && i < self.stride, "an entry");
         // SAFETY: the caller's.
         unsafe { self.start.add(column * self.stride + i) }
     }

@@ -166,7 +166,7 @@ fn bodies_may_begin_at_rest_and_with_another_density() {
 fn the_basis_may_be_another() {
     let folder = tempfile::tempdir().unwrap();
     let with = |basis: &str| PACKING.replacen("cell = 0.1", &format!("cell = 0.1\nbasis = \"{basis}\""), 1);
-    for [first, second] in [["gimp", "cpgimp"], ["cpgimp", "gimp"]] {
+    for [first, second] in [["gimp", "cpdi"], ["cpdi", "gimp"]] {
         let [packing, next] = ["packing", "next"].map(|name| folder.path().join(format!("{first}-{name}")));
         make(&scene(&with(first)), &packing).unwrap();
         let mut begun = from(&with(second), &packing, "");

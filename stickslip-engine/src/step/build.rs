@@ -7,7 +7,7 @@ use super::unbounded::Unbounded;
 use super::walls::WallSums;
 use super::watch::Stopwatch;
 use super::{Engine, ParticleLoop};
-use crate::basis::{Basis, Gimp, Linear};
+use crate::basis::{Basis, Cpdi, Gimp, Linear};
 use crate::body::{Body, Particle};
 use crate::boundary::{Boundary, Wall};
 use crate::check;
@@ -21,7 +21,7 @@ use crate::lanes::{Laned, Processor};
 use crate::load::{LoadPoints, LoadSums, SpringPoints};
 use crate::material::{BadConstants, Material};
 use crate::natural;
-use crate::particles::{BOXES, OwnColumns, Particles, stress_entries};
+use crate::particles::{DOMAINS, OwnColumns, Particles, stress_entries};
 use crate::rigid::{MassProperties, RigidMotion, longest_step};
 use crate::scene::{
     self, Action, BasisKind, BodyMotion, Dimension, Face, NamedMaterial, Precision, Problem, Scene,
@@ -62,10 +62,9 @@ fn with_basis<T: Laned, const D: usize>(
 ) -> Result<Box<dyn Simulation>, Problem> {
     Ok(match scene.discretization.basis {
         BasisKind::Linear => Box::new(Engine::<T, D, Linear>::new(scene, path)?),
-        // Boxes of a cell, or that follow the stretch: see `Gimp`.
-        BasisKind::Gimp | BasisKind::Cpgimp | BasisKind::Spline => {
-            Box::new(Engine::<T, D, Gimp>::new(scene, path)?)
-        }
+        // Boxes of a cell: see `Gimp`.
+        BasisKind::Gimp | BasisKind::Spline => Box::new(Engine::<T, D, Gimp>::new(scene, path)?),
+        BasisKind::Cpdi => Box::new(Engine::<T, D, Cpdi>::new(scene, path)?),
     })
 }
 
@@ -294,7 +293,7 @@ pub fn own_columns(scene: &Scene, body: &scene::Body, heated: bool) -> OwnColumn
         transfer: crate::transfer::columns(scene.time.transfer),
         viscosity,
         natural,
-        boxes: if scene.discretization.basis == BasisKind::Cpgimp { BOXES } else { &[] },
+        domains: if scene.discretization.basis == BasisKind::Cpdi { DOMAINS } else { &[] },
     }
 }
 

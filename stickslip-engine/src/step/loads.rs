@@ -236,11 +236,11 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 return;
             }
             let mut particle = body.particles.get(place as usize);
-            let half_sides = body.particles.half_sides(place as usize);
+            let edges = body.particles.edges(place as usize);
             let (mut velocity, mut moves) = (Vector::ZERO, Vector::ZERO);
             // A rigid body feels the force itself, see `mechanism/`.
             let moved_by_nodes = !body.is_rigid();
-            let nodes_near = || nodes_of::<T, D, B>(lattice, (&particle, half_sides), point);
+            let nodes_near = || nodes_of::<T, D, B>(lattice, (&particle, &edges), point);
             for (node, [own, weight]) in moved_by_nodes.then(nodes_near).into_iter().flatten() {
                 let Some((index, mirrored)) = find(active, boundary, (load.body, node)) else { continue };
                 if nodes[index as usize].mass > T::ZERO {

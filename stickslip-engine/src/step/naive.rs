@@ -7,9 +7,10 @@ use crate::clock::signal;
 use crate::damping::BulkViscosity;
 use crate::lanes::Any;
 use crate::material::Motion;
+use crate::particles::deformation_entries;
 use crate::scene::Transfer;
 use crate::tensor::{Matrix, Real, Symmetric, Vector};
-use crate::transfer::{Share, Stencil, has_spin};
+use crate::transfer::{Share, Stencil, extent, has_spin};
 
 impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
     /// Takes the tile's particles one by one through the pass.
@@ -46,8 +47,8 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
         // SAFETY: the caller's.
         let mut particle = unsafe { self.columns.get(index as usize) };
         // SAFETY: as above.
-        let half_sides = unsafe { self.columns.half_sides(index as usize) };
-        let stencil = Stencil::<T, D, B>::new(&self.pass.lattice, (particle.position, half_sides));
+        let edges = unsafe { self.columns.edges(index as usize) };
+        let stencil = Stencil::<T, D, B>::new(&self.pass.lattice, (particle.position, edges));
         let outcome = self.change_naively((&mut particle, index as usize), &stencil);
         // SAFETY: the caller's.
         unsafe { self.columns.set(index as usize, &particle) };
@@ -66,7 +67,7 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
         }
         if self.pass.verbs.advect {
             // SAFETY: as above.
-            let place = (particle.position, unsafe { self.columns.half_sides(index as usize) });
+            let place = (particle.position, unsafe { self.columns.edges(index as usize) });
             let moved = Stencil::<T, D, B>::new(&self.pass.lattice, place).base() != stencil.base();
             self.left |= u64::from(moved) << cell;
             self.moved += u32::from(moved);
@@ -167,13 +168,19 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
                 return Err(FaultKind::NotFinite);
             }
             particle.position = position;
-            for (row, column) in self.columns.box_columns().enumerate() {
-                let half = particle.half_width * Vector::<T, 3>(particle.deformation.0[row]).norm();
+            let mut edges = particle.deformation * particle.half_width;
+            let reach = |i: usize| (0..D).fold(T::ZERO, |sum, j| sum + edges.0[i][j].abs());
+            let longest = (0..D).map(reach).fold(T::ZERO, T::max);
+            if longest > T::HALF * lattice.cell {
+                edges = edges * (T::HALF * lattice.cell / longest);
+            }
+            edges.0[2][2] = if D == 2 { particle.half_width } else { edges.0[2][2] };
+            for (column, &[row, edge]) in self.columns.domain_columns().zip(deformation_entries(D)) {
                 // SAFETY: the caller of this pass keeps others away from the tile's particles.
-                unsafe { *self.columns.at(column, index) = half.min(T::HALF * lattice.cell) };
+                unsafe { *self.columns.at(column, index) = edges.0[row][edge] };
             }
             // SAFETY: as above.
-            let half_sides = unsafe { self.columns.half_sides(index) };
+            let half_sides = extent(&unsafe { self.columns.edges(index) });
             if escaped::<T, D, B>((position, half_sides), lattice, domain) {
                 return Err(FaultKind::Escaped);
             }
@@ -344,7 +351,7 @@ mod tests {
     #[test]
     fn one_lane_and_several_do_what_the_equations_say() {
         for dimension in ["plane-strain", "3d"] {
-            for (basis, steps) in [("gimp", 40), ("cpgimp", 40), ("linear", 12), ("spline", 40)] {
+            for (basis, steps) in [("gimp", 40), ("cpdi", 40), ("linear", 12), ("spline", 40)] {
                 for update in ["first", "last", "modified-last"] {
                     let kinds = ["flip", "rflip", "pic", "apic", "xpic"].map(|transfer| (transfer, "own"));
                     for (transfer, volume_change) in kinds.into_iter().chain([("rflip", "averaged")]) {

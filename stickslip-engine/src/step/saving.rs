@@ -6,7 +6,7 @@ use super::state::{Disorder, State};
 use super::unbounded::Unbounded;
 use crate::basis::Basis;
 use crate::body::{Body, Particle};
-use crate::column::{HALF_SIDES, INITIAL_STRETCH};
+use crate::column::{HALF_EDGES, INITIAL_STRETCH};
 use crate::door::{
     RemovedParticles, RestoreError, SavedBody, SavedColumn, SavedState, SavedUnbounded, WrittenValues,
 };
@@ -284,10 +284,10 @@ fn begun<T: Laned, const D: usize>(
     body.particles.remove(&gone);
     let numbers = body.particles.numbers().to_vec();
     let density = body.density;
-    // What carries velocities follows from the transfer, and boxes from F by the basis; both may be others.
+    // What carries velocities follows from the transfer, and domains from F by the basis; both may be others.
     let of_scheme = |name: &str| {
         let of_motion = |way: &Transfer| columns_of(*way).iter().any(|own| own.column.name == name);
-        name == HALF_SIDES || TRANSFERS.iter().any(of_motion)
+        name == HALF_EDGES || TRANSFERS.iter().any(of_motion)
     };
     let known = |name: &str| fresh.particles.described().any(|(_, column)| column.name == name);
     let forgotten = saved.columns.iter().find(|saved| {
@@ -341,7 +341,7 @@ fn begun<T: Laned, const D: usize>(
         }
         body.particles.set(i, &particle);
     }
-    body.particles.stretch_boxes(most);
+    body.particles.deform_domains(most);
     if velocities == StartVelocities::Zero && body.motion.is_none() {
         body.particles.stop();
     }

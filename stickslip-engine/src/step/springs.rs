@@ -135,8 +135,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         for point in &end.points {
             let (particles, place) =
                 (&self.state.bodies[end.body].particles, places[point.particle] as usize);
-            let (lattice, seen) =
-                (&self.settings.lattice, (&particles.get(place), particles.half_sides(place)));
+            let (lattice, seen) = (&self.settings.lattice, (&particles.get(place), &particles.edges(place)));
             let share = T::of(point.measure / end.measure);
             for (node, [_, weight]) in nodes_of::<T, D, B>(lattice, seen, point) {
                 let Some((index, mirrored)) = find(active, boundary, (end.body, node)) else { continue };

@@ -7,6 +7,7 @@
 // Sums over nodes and components read better by their indices.
 #![allow(clippy::needless_range_loop)]
 
+use super::corners::NodeTable;
 use crate::basis::{Basis, BoxSide, MAX_WIDTH, ShapeFunctions};
 use crate::grid::{NODE_VALUES, NodeSums, NodeValues, WINDOW, WINDOW_NODES, Window};
 use crate::lanes::{Lanes, MOST_LANES, Machine, Numbers};
@@ -109,8 +110,10 @@ impl Start for Own {
 
 /// Several particles of one tile with their shape functions.
 #[derive(Clone, Copy, Debug)]
-pub struct Group<V, const D: usize, B, S> {
+pub struct Group<V: Lanes, const D: usize, B: Basis<V::Real>, S> {
     shapes: [ShapeFunctions<V>; D],
+    /// Weights and slopes of bases that are no product over the axes, see [`Basis::CORNERS`].
+    table: B::Table<V, D>,
     /// Places after the base nodes [cells].
     r: Vector<V, D>,
     start: S,
@@ -151,16 +154,21 @@ const fn last_start(dimension: usize) -> usize {
 }
 
 impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
-    /// Particles at `r` from their base nodes [cells] with boxes of these sides, `count` of them; `start` has the base
-    /// nodes' places in the window.
+    /// Particles at `r` from their base nodes [cells], `count` of them, with boxes of these sides, or with domains that
+    /// have these half edges [cells]; `start` has the base nodes' places in the window.
     #[inline(always)]
-    pub fn new(r: Vector<V, D>, sides: &[BoxSide<V>; D], start: S, count: usize) -> Self {
+    pub fn new(
+        r: Vector<V, D>,
+        (sides, edges): (&[BoxSide<V>; D], &Matrix<V>),
+        start: S,
+        count: usize,
+    ) -> Self {
         // No closure: the compiler may leave one of this size uninlined, and then its instructions are calls.
         let mut shapes = [B::shape(r[0], &sides[0]); D];
         for i in 1..D {
             shapes[i] = B::shape(r[i], &sides[i]);
         }
-        Group { shapes, r, start, count, basis: PhantomData }
+        Group { shapes, table: B::Table::<V, D>::new(&r, edges), r, start, count, basis: PhantomData }
     }
 
     /// Place of a node in the window, after that of the base node.
@@ -175,8 +183,17 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
     /// G2P: sum S_i of a value at the nodes.
     #[inline(always)]
     pub fn interpolate(&self, nodes: &[NodeValues<V::Real>; WINDOW_NODES]) -> Vector<V, D> {
-        let [x, y, z] = [&self.shapes[0], &self.shapes[1], &self.shapes[D - 1]];
         let mut sum = [V::NOTHING; D];
+        if B::CORNERS {
+            for (n, [i, j, k]) in Self::nodes() {
+                for c in 0..D {
+                    let value: V = self.start.value(nodes, Self::offset(i, j, k), c);
+                    sum[c] = self.table.weight(n).times_plus(value, sum[c]);
+                }
+            }
+            return Vector(sum);
+        }
+        let [x, y, z] = [&self.shapes[0], &self.shapes[1], &self.shapes[D - 1]];
         for i in 0..B::WIDTH {
             let mut plane = [V::NOTHING; D];
             for j in 0..B::WIDTH {
@@ -202,13 +219,9 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
     #[inline(always)]
     pub fn interpolate_mean(&self, nodes: &[NodeValues<V::Real>; WINDOW_NODES]) -> V {
         let mut sum = V::NOTHING;
-        for i in 0..B::WIDTH {
-            for j in 0..B::WIDTH {
-                for k in 0..Self::DEPTH {
-                    let value: V = self.start.value(nodes, Self::offset(i, j, k), NODE_VALUES - 1);
-                    sum = (self.shapes[0].weight[i] * self.across(j, k)).times_plus(value, sum);
-                }
-            }
+        for (n, [i, j, k]) in Self::nodes() {
+            let value: V = self.start.value(nodes, Self::offset(i, j, k), NODE_VALUES - 1);
+            sum = self.weight(n, [i, j, k]).times_plus(value, sum);
         }
         sum
     }
@@ -216,7 +229,7 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
     /// G2P: h L = sum v_i (x) h grad S_i, embedded in space, and sum S_i v_i of the same velocities [m/s].
     #[inline(always)]
     pub fn flow(&self, nodes: &[NodeValues<V::Real>; WINDOW_NODES]) -> (Matrix<V>, Vector<V, D>) {
-        self.sums(nodes, &self.slopes())
+        if B::CORNERS { self.sums_of_slopes(nodes) } else { self.sums(nodes, &self.slopes()) }
     }
 
     #[inline(always)]
@@ -233,6 +246,9 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
     /// G2P: sum v_i (x) S_i (x_i - x_p) over h, embedded in space, and sum S_i v_i [m/s].
     #[inline(always)]
     pub fn moments(&self, nodes: &[NodeValues<V::Real>; WINDOW_NODES]) -> (Matrix<V>, Vector<V, D>) {
+        if B::CORNERS {
+            return self.sums_of_arms(nodes);
+        }
         let mut arms = [[V::ZERO; MAX_WIDTH]; D];
         for axis in 0..D {
             for i in 0..B::WIDTH {
@@ -249,6 +265,9 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
         nodes: &[NodeValues<V::Real>; WINDOW_NODES],
         affine: bool,
     ) -> (Matrix<V>, Vector<V, D>) {
+        if B::CORNERS {
+            return if affine { self.affine_part(nodes) } else { self.sums_of_slopes(nodes) };
+        }
         let mut factors = self.slopes();
         if affine {
             for axis in 0..D {
@@ -311,6 +330,61 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
         (sums, sum)
     }
 
+    /// [`Group::flow`] by slopes node by node.
+    #[inline(always)]
+    fn sums_of_slopes(&self, nodes: &[NodeValues<V::Real>; WINDOW_NODES]) -> (Matrix<V>, Vector<V, D>) {
+        let (mut sums, mut sum) = (Matrix::<V>::ZERO, Vector::ZERO);
+        for (n, [i, j, k]) in Self::nodes() {
+            for c in 0..D {
+                let value: V = self.start.value(nodes, Self::offset(i, j, k), c);
+                sum[c] = self.table.weight(n).times_plus(value, sum[c]);
+                for axis in 0..D {
+                    sums.0[c][axis] = self.table.slope(n, axis).times_plus(value, sums.0[c][axis]);
+                }
+            }
+        }
+        (sums, sum)
+    }
+
+    /// [`Group::moments`] by weights node by node.
+    #[inline(always)]
+    fn sums_of_arms(&self, nodes: &[NodeValues<V::Real>; WINDOW_NODES]) -> (Matrix<V>, Vector<V, D>) {
+        let (mut sums, mut sum) = (Matrix::<V>::ZERO, Vector::ZERO);
+        for (n, at) in Self::nodes() {
+            for c in 0..D {
+                let value: V = self.start.value(nodes, Self::offset(at[0], at[1], at[2]), c);
+                let value = self.table.weight(n) * value;
+                sum[c] += value;
+                for axis in 0..D {
+                    let arm = V::of(at[axis] as f64) - self.r[axis];
+                    sums.0[c][axis] = arm.times_plus(value, sums.0[c][axis]);
+                }
+            }
+        }
+        (sums, sum)
+    }
+
+    /// h times the affine part of the velocities, (sum v_i (x) S_i (x_i - x_p)) (sum S_i (x_i - x_p) (x) (x_i -
+    /// x_p))^-1, whose second factor is not diagonal where a domain has turned.
+    #[inline(always)]
+    fn affine_part(&self, nodes: &[NodeValues<V::Real>; WINDOW_NODES]) -> (Matrix<V>, Vector<V, D>) {
+        let (moments, mean) = self.sums_of_arms(nodes);
+        let mut spread = Matrix::<V>::IDENTITY;
+        for a in 0..D {
+            spread.0[a][a] = V::ZERO;
+        }
+        for (n, at) in Self::nodes() {
+            for a in 0..D {
+                let share = self.table.weight(n) * (V::of(at[a] as f64) - self.r[a]);
+                for b in 0..D {
+                    let arm = V::of(at[b] as f64) - self.r[b];
+                    spread.0[a][b] = share.times_plus(arm, spread.0[a][b]);
+                }
+            }
+        }
+        (moments * spread.inverse(), mean)
+    }
+
     /// P2G: adds what the particles scatter to the window, two particles at a time.
     ///
     /// ```text
@@ -352,6 +426,7 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
             pairs.stress = Some([x, y, z]);
         }
         match self.start.shared() {
+            Some(start) if B::CORNERS => self.scatter_by_nodes::<M>(window, start, &pairs),
             // A number that the compiler knows, so that loops over pairs are unrolled.
             Some(start) if n == V::COUNT => {
                 Group { count: V::COUNT, ..*self }.scatter_together::<M>(window, start, &pairs);
@@ -496,6 +571,40 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
         (forces, above)
     }
 
+    /// For particles that share their nodes, by weights and slopes node by node.
+    #[inline(always)]
+    fn scatter_by_nodes<M: Machine<V::Real>>(
+        &self,
+        window: &mut Window<V::Real, D>,
+        start: usize,
+        PairLoad { momentum, stress }: &PairLoad<V::Real>,
+    ) {
+        for (n, at) in Self::nodes() {
+            let [mut given, mut force] = [M::Wide::NOTHING; 2];
+            if let Some(MomentumRows { first, steps }) = momentum {
+                let weights = self.weight(n, at).numbers();
+                for pair in 0..self.pairs() {
+                    let mut row = first.get::<M>(pair);
+                    for axis in 0..D {
+                        row = steps[axis].get::<M>(pair).times_plus(M::Wide::of(at[axis] as f64), row);
+                    }
+                    given = row.times_plus(factors::<M, _>(&weights, pair), given);
+                }
+            }
+            if let Some(stress) = stress {
+                for axis in 0..D {
+                    let slopes = (-self.table.slope(n, axis)).numbers();
+                    for pair in 0..self.pairs() {
+                        let row = stress[axis].get::<M>(pair);
+                        force = row.times_plus(factors::<M, _>(&slopes, pair), force);
+                    }
+                }
+            }
+            let [i, j, k] = at;
+            add::<M, _>(&mut window.sums[start + Self::offset(i, j, k)], given, force);
+        }
+    }
+
     /// For particles that share no nodes.
     #[inline(always)]
     fn scatter_singly<M: Machine<V::Real>>(
@@ -508,9 +617,13 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
         let mut slopes = [[Numbers::ZERO; D]; MAX_WIDTH.pow(3)];
         for (n, [i, j, k]) in Self::nodes() {
             if momentum.is_some() {
-                weights[n] = (x.weight[i] * self.across(j, k)).numbers();
+                weights[n] = self.weight(n, [i, j, k]).numbers();
             }
-            if stress.is_some() {
+            if stress.is_some() && B::CORNERS {
+                for axis in 0..D {
+                    slopes[n][axis] = self.table.slope(n, axis).numbers();
+                }
+            } else if stress.is_some() {
                 let depth = if D == 2 { V::ONE } else { z.weight[k] };
                 slopes[n][0] = (x.slope(i) * self.across(j, k)).numbers();
                 slopes[n][1] = (x.weight[i] * y.slope(j) * depth).numbers();
@@ -561,6 +674,12 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
     #[inline(always)]
     fn pairs(&self) -> usize {
         pairs(self.count)
+    }
+
+    /// S_i of the `n`-th node, `i`, `j` and `k` after the base node.
+    #[inline(always)]
+    fn weight(&self, n: usize, [i, j, k]: [usize; 3]) -> V {
+        if B::CORNERS { self.table.weight(n) } else { self.shapes[0].weight[i] * self.across(j, k) }
     }
 
     /// Product of the weights across the first axis.

@@ -15,18 +15,21 @@ pub struct Stencil<T, const D: usize, B> {
     r: [T; D],
     /// 1/cell [1/m]
     per_cell: T,
+    /// Half the edges of its domain, one in each column [cells].
+    edges: Matrix<T>,
     basis: PhantomData<B>,
 }
 
 impl<T: Real, const D: usize, B: Basis<T>> Stencil<T, D, B> {
-    /// The stencil of a particle at a position with a box of these half sides [m].
+    /// The stencil of a particle at a position with a domain of these half edges [m].
     #[inline(always)]
-    pub fn new(lattice: &Lattice<T, D>, (position, half_sides): (Vector<T, D>, Vector<T, D>)) -> Self {
+    pub fn new(lattice: &Lattice<T, D>, (position, edges): (Vector<T, D>, Matrix<T>)) -> Self {
         let x = lattice.cells(position);
-        let half = lattice.half_sides(half_sides);
+        let reach = Vector::from_fn(|i| (0..D).fold(T::ZERO, |sum, j| sum + edges.0[i][j].abs()));
+        let half = lattice.half_sides(reach);
         let axes: [Axis<T>; D] = std::array::from_fn(|i| B::axis(x[i], half[i]));
         let r = std::array::from_fn(|i| x[i] - T::of(f64::from(axes[i].base)));
-        Stencil { axes, r, per_cell: lattice.per_cell, basis: PhantomData }
+        Stencil { axes, r, per_cell: lattice.per_cell, edges: edges * lattice.per_cell, basis: PhantomData }
     }
 
     /// Base node: the first that the particle reaches along each axis.
@@ -38,6 +41,9 @@ impl<T: Real, const D: usize, B: Basis<T>> Stencil<T, D, B> {
     /// Weight [-] and gradient [1/m] of the node at `base + offset`.
     #[inline(always)]
     pub fn at(&self, offset: [usize; D]) -> (T, Vector<T, D>) {
+        if B::CORNERS {
+            return self.at_by_corners(offset);
+        }
         let weight = |skip: usize| {
             let axis =
                 |w, i: usize| w * if i == skip { T::ONE } else { self.axes[i].shape.weight[offset[i]] };
@@ -45,6 +51,22 @@ impl<T: Real, const D: usize, B: Basis<T>> Stencil<T, D, B> {
         };
         let gradient = Vector::from_fn(|i| weight(i) * self.axes[i].shape.slope(offset[i]) * self.per_cell);
         (weight(D), gradient)
+    }
+
+    /// The same as means over the corners of the domain: the tent functions there, and their differences across it.
+    fn at_by_corners(&self, offset: [usize; D]) -> (T, Vector<T, D>) {
+        let (mut weight, mut across) = (T::ZERO, [T::ZERO; D]);
+        for corner in offsets::<D>(2) {
+            let sign = corner.map(|side| T::of(2.0 * side as f64 - 1.0));
+            let place = |i: usize| (0..D).fold(self.r[i], |x, a| x + sign[a] * self.edges.0[i][a]);
+            let tent = |i: usize| (T::ONE - (place(i) - T::of(offset[i] as f64)).abs()).max(T::ZERO);
+            let there = (0..D).fold(T::ONE, |product, i| product * tent(i)) * T::of(0.5_f64.powi(D as i32));
+            weight += there;
+            (0..D).for_each(|a| across[a] += sign[a] * there);
+        }
+        let inverse = self.edges.inverse();
+        let along = |i: usize| (0..D).fold(T::ZERO, |sum, a| sum + across[a] * inverse.0[a][i]);
+        (weight, Vector::from_fn(|i| along(i) * self.per_cell))
     }
 
     /// From the particle to the node at `base + offset` [m].
@@ -147,21 +169,21 @@ impl<T: Real, const D: usize, B: Basis<T>> Stencil<T, D, B> {
         sum
     }
 
-    /// (sum v_i (x) S_i (x_i - x_p)) D^-1 with D = sum S_i (x_i - x_p) (x) (x_i - x_p), which is diagonal; for linear
-    /// functions, where D may be zero, its limit L. Embedded in space [1/s].
+    /// (sum v_i (x) S_i (x_i - x_p)) D^-1 with D = sum S_i (x_i - x_p) (x) (x_i - x_p); for linear functions, where D may
+    /// be zero, its limit L. Embedded in space [1/s].
     pub fn affine(&self, nodes: &[NodeValues<T>; WINDOW_NODES], block: [i32; D]) -> Matrix<T> {
         if B::WIDTH == 2 {
             return self.velocity_gradient(nodes, block);
         }
-        let mut spread = [T::ONE; 3];
-        let mut sum = Vector::<T, D>::ZERO;
+        let mut spread = Matrix::IDENTITY;
+        (0..D).for_each(|i| spread.0[i][i] = T::ZERO);
         self.each(block, |_, offset| {
             let (weight, arm) = (self.at(offset).0, self.arm(offset));
-            sum += Vector::from_fn(|i| weight * arm[i] * arm[i]);
+            for i in 0..D {
+                (0..D).for_each(|j| spread.0[i][j] += weight * arm[i] * arm[j]);
+            }
         });
-        spread[..D].copy_from_slice(&sum.0);
-        let moments = self.moments(nodes, block);
-        Matrix::from_fn(|i, j| moments.0[i][j] / spread[j])
+        self.moments(nodes, block) * spread.inverse()
     }
 
     /// L = sum v_i (x) grad S_i, embedded in space [1/s].

@@ -217,8 +217,9 @@ pub enum BasisKind {
     /// Tent functions averaged over the particle's undeformed box (uniform GIMP; Bardenhagen and Kober 2004).
     #[default]
     Gimp,
-    /// The same over a box that follows the particle's stretch (contiguous particle GIMP; Bardenhagen and Kober 2004).
-    Cpgimp,
+    /// Mean tent functions of the corners of a domain that deforms with the particle (convected particle domain
+    /// interpolation; Sadeghirad, Brannon and Burghardt 2011).
+    Cpdi,
     /// Quadratic B-splines of the particle's centre (Steffen, Kirby and Berzins 2008).
     Spline,
 }

@@ -2,12 +2,13 @@
 
 use super::sums::{FIRST, FORCE, MASS, MaterialSums, Wanted, placed_rows, stress_rows};
 use super::{Around, Chunk};
-use crate::basis::{Basis, BoxSide, ShapeFunctions};
+use crate::basis::{Basis, BoxSide, MAX_WIDTH, ShapeFunctions};
+use crate::column::Kind;
 use crate::grid::{Nodes, SIDE, next_of, node_at};
 use crate::lanes::{Laned, Lanes, MOST_LANES, Machine, Numbers, in_lanes, prefetch};
 use crate::particles::{ColumnStart, Columns, deformation_entries, stress_entries};
 use crate::tensor::{Matrix, Number, Real, Symmetric, Vector, array};
-use crate::transfer::pairs;
+use crate::transfer::{NodeTable, pairs};
 use std::marker::PhantomData;
 use std::ops::Range;
 
@@ -19,7 +20,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
         let columns = self.near.bodies[self.body].particles.view();
         let order = self.near.active.order_of(self.body);
         let index = |chunk: &Chunk<D>| &order[chunk.first as usize..][..chunk.count as usize];
-        let mut copies = CellCopies([Numbers::ZERO; ColumnStart::<3>::COUNT + MOST_SIDES]);
+        let mut copies = CellCopies([Numbers::ZERO; ColumnStart::<3>::COUNT + MOST_EDGES]);
         for place in 0..self.chunks.len() {
             if let Some(later) = self.chunks.get(place + AHEAD) {
                 let index = index(later);
@@ -41,17 +42,26 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
         // No closure: the compiler may leave one of some size uninlined, and then its instructions are calls.
         let mut position = Vector::<V, D>::ZERO;
         // As the nodes see it everywhere: cells are listed by that box, and no other has its functions within them.
-        let sides = members.sides(self.near.lattice.whole_cells, seen.per_cell);
-        let mut shapes = [B::shape(V::ZERO, &sides[0]); D];
+        let side = members.side(self.near.lattice.whole_cells, seen.per_cell);
+        let (mut shapes, mut r) = ([B::shape(V::ZERO, &side); D], Vector::<V, D>::ZERO);
+        // The node sees a particle move away as the particle sees the node move: grad at the node = -grad S(x_p).
+        let mut turned = Vector::<V, D>::ZERO;
         for i in 0..D {
             position[i] = members.load(ColumnStart::<D>::POSITION + i);
-            let r = (position[i] - seen.origin[i]) * seen.per_cell - V::splat(T::of(f64::from(cell[i])));
-            shapes[i] = B::shape(r, &sides[i]);
-            // The node sees a particle move away as the particle sees the node move: grad at the node = -grad S(x_p).
-            for difference in &mut shapes[i].difference {
-                *difference *= seen.per_cell * -seen.sign[i];
+            r[i] = (position[i] - seen.origin[i]) * seen.per_cell - V::splat(T::of(f64::from(cell[i])));
+            turned[i] = seen.per_cell * -seen.sign[i];
+            if !B::CORNERS {
+                shapes[i] = B::shape(r[i], &side);
+                for difference in &mut shapes[i].difference {
+                    *difference *= turned[i];
+                }
             }
         }
+        let mut edges = Matrix::ZERO;
+        if B::CORNERS {
+            edges = members.edges(seen.per_cell);
+        }
+        let seen_by = NodeFunctions { shapes, table: B::Table::<V, D>::new(&r, &edges), turned };
         let volume: V = members.load(ColumnStart::<D>::VOLUME);
         let mut f = Matrix::ZERO;
         for (k, &[row, column]) in deformation_entries(D).iter().enumerate() {
@@ -100,7 +110,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
         let rooms = room.first(members.count);
         let mut left = nodes;
         while let Some(node) = next_of(&mut left) {
-            let shares = self.shares(&shapes, base, node, rooms);
+            let shares = self.shares(&seen_by, base, node, rooms);
             let mut added = [M::Wide::NOTHING; FIRST + MOST_PLACED];
             for pair in 0..pairs(members.count) {
                 let share = shares.pair::<M>(pair);
@@ -116,7 +126,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
             }
         }
         if self.sought == Wanted::Everything {
-            self.stress_and_mass::<M, V>(seen, members, (&shapes, base, nodes), [room, volume]);
+            self.stress_and_mass::<M, V>(seen, members, (&seen_by, base, nodes), [room, volume]);
         }
     }
 
@@ -126,7 +136,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
         &mut self,
         seen: &Seen<V, D>,
         members: &CellMembers<'_, T, D>,
-        (shapes, base, mut nodes): (&[ShapeFunctions<V>; D], [i32; D], Nodes),
+        (seen_by, base, mut nodes): (&NodeFunctions<V, D, B>, [i32; D], Nodes),
         [room, filled]: [V; 2],
     ) {
         let mut stress = Symmetric::<V>::ZERO;
@@ -156,7 +166,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
         masses.fill([mass; 4]);
         let here = V::ONE.first(members.count);
         while let Some(node) = next_of(&mut nodes) {
-            let shares = self.shares(shapes, base, node, here);
+            let shares = self.shares(seen_by, base, node, here);
             let mut added = [M::Wide::NOTHING; MOST_STRESS];
             let [mut weighed, mut pushed] = [M::Wide::NOTHING; 2];
             for pair in 0..pairs(members.count) {
@@ -183,13 +193,24 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
     #[inline(always)]
     fn shares<V: Lanes<Real = T>>(
         &self,
-        shapes: &[ShapeFunctions<V>; D],
+        NodeFunctions { shapes, table, turned }: &NodeFunctions<V, D, B>,
         base: [i32; D],
         node: usize,
         factor: V,
     ) -> Rows<T> {
         let steps = node_at([0; D], node);
         let offset: [usize; D] = array(0, |i| (self.along(i, steps[i]) - base[i]) as usize);
+        if B::CORNERS {
+            let n = offset.iter().fold(0, |n, &step| n * MAX_WIDTH + step);
+            let mut columns = [V::ZERO; 4];
+            for axis in 0..D {
+                columns[axis] = table.slope(n, axis) * (turned[axis] * factor);
+            }
+            columns[3] = table.weight(n) * factor;
+            let mut shares = Rows::<T>::EMPTY;
+            shares.fill(columns);
+            return shares;
+        }
         let [x, dx] = [shapes[0].weight[offset[0]] * factor, shapes[0].slope(offset[0]) * factor];
         let [y, dy] = [shapes[1].weight[offset[1]], shapes[1].slope(offset[1])];
         let mut shares = Rows::<T>::EMPTY;
@@ -208,6 +229,16 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
     fn sums_at(&mut self, node: usize) -> &mut MaterialSums<T, D> {
         &mut self.sums[(self.wanted & ((1 << node) - 1)).count_ones() as usize]
     }
+}
+
+/// What nodes see of a group of particles.
+struct NodeFunctions<V: Lanes, const D: usize, B: Basis<V::Real>> {
+    /// Along each axis, where the basis is a product.
+    shapes: [ShapeFunctions<V>; D],
+    /// Node by node, where it is none.
+    table: B::Table<V, D>,
+    /// What turns its slopes into gradients at the node [1/m].
+    turned: Vector<V, D>,
 }
 
 /// Rows of place, centre and inverse of F, in space.
@@ -268,15 +299,15 @@ impl<V: Lanes, const D: usize> Seen<V, D> {
     }
 }
 
-/// Sides of a box, in space.
-const MOST_SIDES: usize = 3;
-/// Where the columns of boxes lie among copies.
-const BOXES: usize = ColumnStart::<3>::COUNT;
+/// Entries of a domain, in space.
+const MOST_EDGES: usize = Kind::Tensor.entries(3);
+/// Where the columns of domains lie among copies.
+const DOMAINS: usize = ColumnStart::<3>::COUNT;
 
 /// How many chunks ahead of the present one numbers are fetched into the cache.
 const AHEAD: usize = 3;
 
-/// The columns that sums are made of, where all bodies have them, and those of boxes that follow the stretch.
+/// The columns that sums are made of, where all bodies have them, and those of domains that deform.
 #[inline(always)]
 fn columns_read<T: Real, const D: usize>(columns: &Columns<T, D>, sought: Wanted) -> [Range<usize>; 4] {
     let (stress, start) = (ColumnStart::<D>::STRESS, ColumnStart::<D>::START);
@@ -288,7 +319,7 @@ fn columns_read<T: Real, const D: usize>(columns: &Columns<T, D>, sought: Wanted
         ColumnStart::<D>::POSITION..ColumnStart::<D>::VELOCITY,
         first..last,
         start..ColumnStart::<D>::COUNT,
-        columns.box_columns(),
+        columns.domain_columns(),
     ]
 }
 
@@ -311,13 +342,13 @@ struct CellMembers<'a, T, const D: usize> {
     first: *const T,
     stride: usize,
     count: usize,
-    /// Where the columns of boxes that follow the stretch begin; `None` where boxes keep their sides.
-    boxes: Option<usize>,
+    /// Where the columns of domains that deform begin; `None` where none does.
+    domains: Option<usize>,
     source: PhantomData<&'a T>,
 }
 
-/// Columns of particles that do not lie side by side: those that all bodies have, and behind them those of boxes.
-struct CellCopies<T>([Numbers<T>; ColumnStart::<3>::COUNT + MOST_SIDES]);
+/// Columns of particles that do not lie side by side: those that all bodies have, and behind them those of domains.
+struct CellCopies<T>([Numbers<T>; ColumnStart::<3>::COUNT + MOST_EDGES]);
 
 impl<'a, T: Real, const D: usize> CellMembers<'a, T, D> {
     #[inline(always)]
@@ -329,39 +360,46 @@ impl<'a, T: Real, const D: usize> CellMembers<'a, T, D> {
     ) -> Self {
         // Indices within a cell ascend.
         let in_a_row = (index[index.len() - 1] - index[0]) as usize == index.len() - 1;
-        let own = columns.box_columns();
-        let (first, stride, boxes) = if in_a_row {
+        let own = columns.domain_columns();
+        let (first, stride, domains) = if in_a_row {
             // SAFETY: the particle exists.
             (unsafe { columns.at(0, index[0] as usize) }.cast_const(), columns.stride(), own.start)
         } else {
             let lanes = in_lanes(index);
             for range in columns_read(columns, sought) {
                 for column in range {
-                    let place = if own.contains(&column) { BOXES + column - own.start } else { column };
+                    let place = if own.contains(&column) { DOMAINS + column - own.start } else { column };
                     // SAFETY: the particles exist, and nobody writes to them in a survey.
                     unsafe { V::gather(columns.at(column, 0), &lanes).store(copies.0[place].0.as_mut_ptr()) };
                 }
             }
-            (copies.0.as_ptr().cast(), size_of::<Numbers<T>>() / size_of::<T>(), BOXES)
+            (copies.0.as_ptr().cast(), size_of::<Numbers<T>>() / size_of::<T>(), DOMAINS)
         };
-        let boxes = if own.is_empty() { None } else { Some(boxes) };
-        CellMembers { first, stride, count: index.len(), boxes, source: PhantomData }
+        let domains = if own.is_empty() { None } else { Some(domains) };
+        CellMembers { first, stride, count: index.len(), domains, source: PhantomData }
     }
 
-    /// Their boxes as the nodes see them, by cells along each axis.
+    /// A side of their boxes as the nodes see them.
     #[inline(always)]
-    fn sides<V: Lanes<Real = T>>(&self, whole_cells: bool, per_cell: V) -> [BoxSide<V>; D] {
-        let mut sides = [BoxSide::new(V::HALF); D];
-        match self.boxes {
-            None if whole_cells => {}
-            None => sides = [BoxSide::new(self.load::<V>(ColumnStart::<D>::HALF_WIDTH) * per_cell); D],
-            Some(boxes) => {
-                for i in 0..D {
-                    sides[i] = BoxSide::new(self.load::<V>(boxes + i) * per_cell);
-                }
-            }
+    fn side<V: Lanes<Real = T>>(&self, whole_cells: bool, per_cell: V) -> BoxSide<V> {
+        if whole_cells {
+            BoxSide::new(V::HALF)
+        } else {
+            BoxSide::new(self.load::<V>(ColumnStart::<D>::HALF_WIDTH) * per_cell)
         }
-        sides
+    }
+
+    /// Half the edges of their domains, one in each column [cells].
+    #[inline(always)]
+    fn edges<V: Lanes<Real = T>>(&self, per_cell: V) -> Matrix<V> {
+        let Some(first) = self.domains else {
+            return Matrix::IDENTITY * (self.load::<V>(ColumnStart::<D>::HALF_WIDTH) * per_cell);
+        };
+        let mut edges = Matrix::ZERO;
+        for (k, &[row, edge]) in deformation_entries(D).iter().enumerate() {
+            edges.0[row][edge] = self.load::<V>(first + k) * per_cell;
+        }
+        edges
     }
 
     /// Their numbers in a column.

@@ -1,6 +1,6 @@
 use super::sums::{FIRST, FORCE, MASS, placed_rows};
 use super::*;
-use crate::basis::{Gimp, Linear};
+use crate::basis::{Cpdi, Gimp, Linear};
 use crate::body::{Body, Gyration, Particle};
 use crate::boundary::{Boundary, reflect};
 use crate::contact::{Rules, rules};
@@ -8,7 +8,7 @@ use crate::geometry::{MirroredShape, Shape};
 use crate::grid::{ActiveBlocks, Field, Lattice, next_of, node_at};
 use crate::lanes::Processor;
 use crate::material::{Isotropic, Material, NeoHookean, Thickness};
-use crate::particles::{BOXES, ColumnStart, OwnColumns, Particles, deformation_entries, stress_entries};
+use crate::particles::{ColumnStart, DOMAINS, OwnColumns, Particles, deformation_entries, stress_entries};
 use crate::tensor::{Matrix, Number, Symmetric, Vector};
 use crate::transfer::{Stencil, offsets};
 
@@ -16,7 +16,7 @@ use crate::transfer::{Stencil, offsets};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Boxes {
     Own,
-    Stretched,
+    Deformed,
     WholeCells,
 }
 
@@ -45,12 +45,12 @@ fn body<const D: usize>(boxes: Boxes) -> Body<f64, D> {
     };
     // Where they were at first, and where they are now.
     let own =
-        OwnColumns { boxes: if boxes == Boxes::Stretched { BOXES } else { &[] }, ..OwnColumns::default() };
+        OwnColumns { domains: if boxes == Boxes::Deformed { DOMAINS } else { &[] }, ..OwnColumns::default() };
     let mut particles = Particles::from_fn(300, own, particle);
     for i in 0..300 {
         particles.set(i, &Particle { position: place(i, 3), ..particle(i) });
     }
-    particles.stretch_boxes(0.5);
+    particles.deform_domains(0.5);
     Body {
         name: String::new(),
         material: Material::NeoHookean(NeoHookean {
@@ -90,7 +90,7 @@ fn plainly<const D: usize, B: Basis<f64>>(
         for (index, particle) in near.bodies[0].particles.iter().enumerate() {
             let stencil = Stencil::<f64, D, B>::new(
                 &near.lattice,
-                (particle.position, near.bodies[0].particles.half_sides(index)),
+                (particle.position, near.bodies[0].particles.edges(index)),
             );
             let Some(offset) = offsets::<D>(B::WIDTH)
                 .find(|offset| (0..D).all(|i| stencil.base()[i] + offset[i] as i32 == image[i]))
@@ -180,9 +180,13 @@ fn particles_of_a_cell_side_by_side_give_the_sums<const D: usize, B: Basis<f64>>
 fn sums_are_those_of_the_equations() {
     particles_of_a_cell_side_by_side_give_the_sums::<2, Linear>(Boxes::Own);
     particles_of_a_cell_side_by_side_give_the_sums::<3, Linear>(Boxes::Own);
-    for boxes in [Boxes::Own, Boxes::Stretched, Boxes::WholeCells] {
+    for boxes in [Boxes::Own, Boxes::WholeCells] {
         particles_of_a_cell_side_by_side_give_the_sums::<2, Gimp>(boxes);
         particles_of_a_cell_side_by_side_give_the_sums::<3, Gimp>(boxes);
+    }
+    for boxes in [Boxes::Own, Boxes::Deformed] {
+        particles_of_a_cell_side_by_side_give_the_sums::<2, Cpdi>(boxes);
+        particles_of_a_cell_side_by_side_give_the_sums::<3, Cpdi>(boxes);
     }
 }
 

@@ -8,12 +8,12 @@ use crate::damping::BulkViscosity;
 use crate::lanes::{Laned, Lanes, Machine};
 use crate::material::{Material, Motion, Recall, Thickening, Thickness};
 use crate::natural::Natural;
-use crate::particles::{ColumnStart, stretched_half_side};
+use crate::particles::ColumnStart;
 use crate::step::pass::{FaultKind, Pass, Verbs, Visit};
 use crate::tensor::{Matrix, Real, Symmetric, Vector};
 use crate::transfer::{
-    Group, Momentum, ScatterTerms, Share, Start, TransferRule, VelocityState, has_spin, is_affine,
-    of_transfer,
+    Group, Momentum, ScatterTerms, Share, Start, TransferRule, VelocityState, convected_edges, extent,
+    has_spin, is_affine, of_transfer,
 };
 
 /// What all particles of a tile have in common.
@@ -75,14 +75,18 @@ pub fn group<
     let Verbs { smooth, update_velocity, update_stress, advect, scatter } = verbs;
     let position = members.vector::<V>(ColumnStart::<D>::POSITION);
     let half_width = members.load::<V>(ColumnStart::<D>::HALF_WIDTH);
-    let own_sides = members.half_sides::<V>();
-    let mut sides = match own_sides {
-        None if visit.pass.lattice.whole_cells => [BoxSide::new(V::HALF); D],
-        None => [BoxSide::new(half_width * constants.per_cell); D],
-        Some(own) => own.0.map(|half| BoxSide::new(half * constants.per_cell)),
-    };
+    let mut sides = [BoxSide::new(V::HALF); D];
+    if !visit.pass.lattice.whole_cells {
+        sides = [BoxSide::new(half_width * constants.per_cell); D];
+    }
+    let mut edges = Matrix::ZERO;
+    if B::CORNERS {
+        edges = members.edges(half_width);
+        sides = sides_of(&edges, constants.per_cell);
+    }
+    let shape = (&sides, &(edges * constants.per_cell));
     let group =
-        Group::<V, D, B, S>::new(constants.in_cells(&position) - base, &sides, start, members.count::<V>());
+        Group::<V, D, B, S>::new(constants.in_cells(&position) - base, shape, start, members.count::<V>());
     let mut sound = Sound::EVERYTHING;
 
     let mut state =
@@ -230,13 +234,9 @@ pub fn group<
         let moved = position + flow * V::splat(dt);
         sound.require(finite(&moved.0), FaultKind::NotFinite);
         let cells = constants.in_cells(&moved);
-        let mut stretched = Vector::<V, D>::ZERO;
-        if own_sides.is_some() {
-            for (i, side) in sides.iter_mut().enumerate() {
-                let most = V::HALF * constants.cell;
-                stretched[i] = stretched_half_side(&deformation.0[i], half_width, most);
-                side.half = stretched[i] * constants.per_cell;
-            }
+        if B::CORNERS {
+            edges = convected_edges::<V, D>(&deformation, half_width, V::HALF * constants.cell);
+            sides = sides_of(&edges, constants.per_cell);
         }
         for i in 0..D {
             let reach = B::reach(cells[i], sides[i].half);
@@ -260,10 +260,8 @@ pub fn group<
         }
         members.store_vector(ColumnStart::<D>::POSITION, &moved);
         members.give_back::<V>(ColumnStart::<D>::POSITION..ColumnStart::<D>::VELOCITY);
-        if own_sides.is_some() {
-            for i in 0..D {
-                members.store_half_side(i, stretched[i]);
-            }
+        if B::CORNERS {
+            members.store_edges(&edges);
         }
         let seen = (&natural, &deformation, jacobian);
         let modulus = wave_modulus(&constants.material, visit.body.thickness, seen, &history);
@@ -343,6 +341,17 @@ pub fn group<
         group.scatter::<M>(visit.window, &load);
     }
     Ok(inside)
+}
+
+/// Sides of the boxes that hold domains with these half edges [m].
+#[inline(always)]
+fn sides_of<V: Lanes, const D: usize>(edges: &Matrix<V>, per_cell: V) -> [BoxSide<V>; D] {
+    let reach = extent::<V, D>(edges);
+    let mut sides = [BoxSide::new(V::HALF); D];
+    for i in 0..D {
+        sides[i] = BoxSide::new(reach[i] * per_cell);
+    }
+    sides
 }
 
 /// Stiffness against the fastest wave, times J [Pa].

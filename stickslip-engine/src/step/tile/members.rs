@@ -1,5 +1,6 @@
 //! The particles of a group in memory: side by side, or copied so that they are.
 
+use crate::column::Kind;
 use crate::lanes::{Lanes, MOST_LANES, Numbers, prefetch};
 use crate::material::{Keep, MOST_HISTORY, Recall};
 use crate::natural::{self, Natural};
@@ -38,8 +39,8 @@ struct Reads {
     viscosity: usize,
     /// Entries of what initial stress and heat need.
     natural: usize,
-    /// Entries of the boxes.
-    boxes: usize,
+    /// Entries of the domains.
+    domains: usize,
 }
 
 impl Reads {
@@ -63,7 +64,7 @@ impl Reads {
                 0
             },
             natural: if verbs.update_stress || verbs.advect { columns.natural_columns().len() } else { 0 },
-            boxes: columns.box_columns().len(),
+            domains: columns.domain_columns().len(),
         }
     }
 
@@ -79,7 +80,7 @@ impl Reads {
             of.transfer_columns().start..of.transfer_columns().start + self.transfer,
             of.viscosity_columns().start..of.viscosity_columns().start + self.viscosity,
             of.natural_columns().start..of.natural_columns().start + self.natural,
-            of.box_columns(),
+            of.domain_columns(),
         ]
     }
 }
@@ -143,8 +144,12 @@ impl ParticleRuns {
 }
 
 /// Columns of a particle in space.
-const MOST_COLUMNS: usize =
-    ColumnStart::<3>::HISTORY + MOST_HISTORY + stress_entries(3) + 1 + natural::most_entries(3) + 3;
+const MOST_COLUMNS: usize = ColumnStart::<3>::HISTORY
+    + MOST_HISTORY
+    + stress_entries(3)
+    + 1
+    + natural::most_entries(3)
+    + Kind::Tensor.entries(3);
 
 impl<'a, T: Real, const D: usize, const WHOLE: bool> Members<'a, T, D, WHOLE> {
     /// Particles that lie side by side.
@@ -291,18 +296,28 @@ impl<'a, T: Real, const D: usize, const WHOLE: bool> Members<'a, T, D, WHOLE> {
         self.give_back::<V>(self.columns.viscosity_columns());
     }
 
-    /// Half the sides of the boxes that follow the stretch [m]; `None` where boxes keep theirs.
+    /// Half the edges of the particles' domains, one in each column: of those that deform, or of boxes with this half
+    /// side [m].
     #[inline(always)]
-    pub fn half_sides<V: Lanes<Real = T>>(&self) -> Option<Vector<V, D>> {
-        let columns = self.columns.box_columns();
-        if columns.is_empty() { None } else { Some(self.vector(columns.start)) }
+    pub fn edges<V: Lanes<Real = T>>(&self, half_width: V) -> Matrix<V> {
+        let columns = self.columns.domain_columns();
+        if columns.is_empty() {
+            return Matrix::IDENTITY * half_width;
+        }
+        let mut edges = Matrix::ZERO;
+        for (k, &[row, edge]) in deformation_entries(D).iter().enumerate() {
+            edges.0[row][edge] = self.load(columns.start + k);
+        }
+        edges
     }
 
     #[inline(always)]
-    pub fn store_half_side<V: Lanes<Real = T>>(&self, axis: usize, half: V) {
-        let column = self.columns.box_columns().start + axis;
-        self.store(column, half);
-        self.give_back::<V>(column..column + 1);
+    pub fn store_edges<V: Lanes<Real = T>>(&self, edges: &Matrix<V>) {
+        let columns = self.columns.domain_columns();
+        for (column, &[row, edge]) in columns.clone().zip(deformation_entries(D)) {
+            self.store(column, edges.0[row][edge]);
+        }
+        self.give_back::<V>(columns);
     }
 
     /// The state without stress; `None` where that is the one in which the body is drawn.
@@ -482,8 +497,8 @@ impl<T: Real> Copies<T> {
                 if reads.natural > 0 {
                     self.take_run::<V, D>(columns, run, columns.natural_columns());
                 }
-                if reads.boxes > 0 {
-                    self.take_run::<V, D>(columns, run, columns.box_columns());
+                if reads.domains > 0 {
+                    self.take_run::<V, D>(columns, run, columns.domain_columns());
                 }
             }
         }

@@ -73,9 +73,10 @@ impl Choice for BasisKind {
     const WORDS: &'static [(&'static str, Self, &'static str)] = &[
         ("gimp", BasisKind::Gimp, "Tent functions averaged over the particle's box (uniform GIMP)."),
         (
-            "cpgimp",
-            BasisKind::Cpgimp,
-            "Tent functions averaged over a box that follows the particle's stretch (contiguous particles).",
+            "cpdi",
+            BasisKind::Cpdi,
+            "Mean tent functions of the corners of a domain that deforms with the particle: for bodies that are stretched \
+             or turned far.",
         ),
         ("linear", BasisKind::Linear, "Tent functions at the particle's centre."),
         ("spline", BasisKind::Spline, "Quadratic B-splines of the particle's centre: smooth slopes."),

@@ -15,7 +15,7 @@ impl Check for NoiseCheck {
     }
 
     fn advice(&self) -> &'static str {
-        "what bends, twists or spins loses its motion to it: try space.basis = \"spline\", smaller cells, smaller \
+        "what bends, twists or spins loses its motion to it: try space.basis = \"cpdi\", smaller cells, smaller \
          deflections; see the column `damping` of energy.csv"
     }
 

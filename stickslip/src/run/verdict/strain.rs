@@ -57,7 +57,8 @@ impl Check for StrainCheck {
     }
 
     fn advice(&self) -> &'static str {
-        "particles move without straining, or strain without moving: try another time.stress_update, smaller cells"
+        "particles move without straining, or strain without moving: try space.basis = \"cpdi\", another \
+         time.stress_update, smaller cells"
     }
 
     fn look(&mut self, look: &CheckInputs) -> Vec<Finding> {

@@ -21,8 +21,8 @@ impl Check for TearingCheck {
     }
 
     fn advice(&self) -> &'static str {
-        "no law tears it, the grid lost it: try basis = \"cpgimp\" with 3 particles_per_side or more, which reaches 1.8 of \
-         the length, or a smaller load"
+        "no law tears it, the grid lost it: try basis = \"cpdi\", whose domains stretch with the particles, \
+         more particles_per_side, or a smaller load"
     }
 
     fn look(&mut self, look: &CheckInputs) -> Vec<Finding> {
@@ -93,7 +93,7 @@ fn reach(look: &CheckInputs, a: &TracedParticle, b: &TracedParticle) -> [f64; 3]
     let cell = look.scene.discretization.cell;
     match look.scene.discretization.basis {
         BasisKind::Linear => [cell; 3],
-        BasisKind::Gimp | BasisKind::Cpgimp | BasisKind::Spline => {
+        BasisKind::Gimp | BasisKind::Cpdi | BasisKind::Spline => {
             std::array::from_fn(|i| cell + a.half_sides[i] + b.half_sides[i])
         }
     }
