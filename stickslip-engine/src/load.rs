@@ -71,6 +71,9 @@ impl SpringPoints {
 pub struct LoadSums {
     /// Impulse on the body [N s].
     pub impulse: [f64; 3],
+    /// Impulse of moments about the middle of its part, where that is in each step [N m s].
+    #[serde(default)]
+    pub moment: [f64; 3],
     /// Work on the body [J].
     pub work: f64,
     /// How far a support of prescribed velocity has moved [m].
@@ -86,14 +89,25 @@ pub struct PointForce<T, const D: usize> {
     pub inertia: Vector<T, D>,
     /// Stiffness k of a support [N/m].
     pub spring: Vector<T, D>,
-    /// Velocity that a support prescribes [m/s].
+    /// What of the force its springs are [N].
+    pub pull: Vector<T, D>,
+    /// Velocity that a support prescribes, the mean over the step [m/s].
     pub speed: Vector<T, D>,
+    /// That velocity where the step begins [m/s].
+    pub begun: Vector<T, D>,
 }
 
 impl<T: Real, const D: usize> Default for PointForce<T, D> {
     fn default() -> Self {
         let nothing = Vector::ZERO;
-        PointForce { force: nothing, inertia: nothing, spring: nothing, speed: nothing }
+        PointForce {
+            force: nothing,
+            inertia: nothing,
+            spring: nothing,
+            pull: nothing,
+            speed: nothing,
+            begun: nothing,
+        }
     }
 }
 
@@ -212,19 +226,25 @@ impl LoadPoints {
                 let mut slips = [0.0; 3];
                 for i in 0..D {
                     let Some(motion) = &support.motion[i] else { continue };
-                    let (displacement, speed) = match motion {
+                    let (displacement, speed, begun) = match motion {
                         SupportMotion::Displacement(displacement) => {
                             let at = |time: f64| displacement.at_moment(&moment(time));
-                            (at(now), (at(time + dt) - at(time)) / dt)
+                            let [before, here, after] = [(time - dt).max(0.0), time, time + dt].map(at);
+                            let span = time + dt - (time - dt).max(0.0);
+                            (at(now), (after - here) / dt, (after - before) / span)
                         }
-                        SupportMotion::Velocity(velocity) => (sums.driven[i], velocity.at(time + 0.5 * dt)),
+                        SupportMotion::Velocity(velocity) => {
+                            (sums.driven[i], velocity.at(time + 0.5 * dt), velocity.at(time))
+                        }
                     };
                     let k = self.stiffness * point.measure;
                     let away = (place[i] - start[i]).f64() - displacement;
                     slips[i] = velocity[i].f64() - speed;
                     felt.force[i] = T::of(-k * away);
+                    felt.pull[i] = felt.force[i];
                     felt.spring[i] = T::of(k);
                     felt.speed[i] = T::of(speed);
+                    felt.begun[i] = T::of(begun);
                     felt.inertia[i] = T::of(dt * dt * k);
                 }
                 // c = c_T I + (c_L - c_T) n (x) n; the inertia is the sum of a row, see the step's `loads.rs`.

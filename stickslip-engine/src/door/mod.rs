@@ -308,6 +308,9 @@ pub struct WallState {
 pub struct LoadState {
     /// Impulse on the body [N s].
     pub impulse: [f64; 3],
+    /// Impulse of moments about the middle of its part, where that is in each step [N m s].
+    #[serde(default)]
+    pub moment: [f64; 3],
     /// Work on the body [J].
     pub work: f64,
     /// How far its part is from where it was at the start, the mean over the part [m].

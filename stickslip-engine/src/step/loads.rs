@@ -19,7 +19,7 @@ use crate::load::{CarriedPoint, LoadPoints, LoadSums, PointForce, nodes_of, plac
 use crate::outside::OutsidePoints;
 use crate::part::PartPoint;
 use crate::scene::{Face, OutsideValue};
-use crate::tensor::{Real, Vector};
+use crate::tensor::{Real, Vector, cross};
 use crate::threads::each;
 use std::time::Instant;
 
@@ -92,8 +92,10 @@ struct NodeLoad<T, const D: usize> {
     momentum: Vector<T, D>,
     /// Acceleration [m/s^2]: M_i times this is what supports keep from the node.
     acceleration: Vector<T, D>,
-    /// What supports took from the velocity when they held it [m/s].
+    /// What supports took from the velocity when they held it, and what they would take from that at the start of the
+    /// step [m/s].
     held: Vector<T, D>,
+    held_before: Vector<T, D>,
 }
 
 impl<T: Real, const D: usize> Default for NodeLoad<T, D> {
@@ -107,6 +109,7 @@ impl<T: Real, const D: usize> Default for NodeLoad<T, D> {
             momentum: nothing,
             acceleration: nothing,
             held: nothing,
+            held_before: nothing,
         }
     }
 }
@@ -260,28 +263,35 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         });
     }
 
-    /// Books what loads did in this step, once particles have moved: forces, and their work along the points' way.
+    /// Books what loads did in this step, once particles have moved: forces, moments, and works.
     ///
     /// ```text
-    /// W = sum_s (f_s -+ k_s (du_s - v*_s dt)/2) . du_s - sum_i |N_is| dt^2 k_s a_i . v*_s dt
+    /// springs    W = sum_s (f_s -+ k_s (du_s - v*_s dt)/2) . du_s - sum_si |N_is| dt^2 k_s a_i . v^0_s dt
+    /// others     W = sum_s f_s . (du_s + v_s dt)/2 - sum_si |N_is| dt c_s a_i . (u_i + v_i) dt/2
     /// ```
-    /// du_s: change of the place of a point; f_s with what a dashpot's force falls by in the step; the last sum is over
-    /// what springs keep from nodes while they move.
-    /// Minus where f_s was taken before the points moved, plus where it was taken after. For springs this is exactly
-    /// what they lose. Along axes without springs du_s is the mean of this and of what the velocities at the start of
-    /// the step would have made: with it a force gives what nodes gain. The ledger swings a little in each step, and does
-    /// not drift.
+    /// du_s: change of the place of a point; u_i: velocities of nodes that move points; v_s, v_i: those at the start of
+    /// the step, held by supports as u_i are; a_i: acceleration; v*_s: the velocity that a support prescribes, the
+    /// mean over the step, and v^0_s where the step begins. Minus where f_s was taken before the points moved, plus where
+    /// it was taken after.
+    ///
+    /// A step changes the kinetic energy by the forces at the nodes times the mean of their velocities interpolated
+    /// before and after, and the strain energy by the stress times u_i. As all forces at a node together are m_i a_i,
+    /// these works are the sum of both, but for the difference of a number at the end of the step and at its start,
+    /// dt/2 (m_i a_i - f_s) . u_i. So the ledger swings a little in each step, and does not drift.
     pub(super) fn account_loads(&mut self, dt: T) {
         if self.settings.loads.is_empty() {
             return;
         }
         let start = Instant::now();
         let room = &self.workspace.loads;
+        let field = &self.workspace.field;
         let half = if room.late { T::HALF } else { -T::HALF };
-        let mut points = room.points.iter();
+        let mut rest = &room.points[..];
         for (load, sums) in self.settings.loads.iter().zip(&mut self.state.loads) {
             let body = &self.state.bodies[load.body];
-            for (point, loaded) in load.points.iter().zip(points.by_ref()) {
+            let points = rest.split_off(..load.points.len()).expect("each load has its points");
+            let center = middle(load, points, &room.places[load.body]);
+            for (point, loaded) in load.points.iter().zip(points) {
                 let LoadedPoint { felt, before, begun, nodes } = loaded;
                 let place = room.places[load.body][point.particle];
                 if place == NOWHERE {
@@ -289,30 +299,35 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 }
                 let particle = body.particles.get(place as usize);
                 let way = place_of(&particle, point) - *before;
-                let mut force = felt.force;
-                if body.is_rigid() {
-                    let given = force.space();
-                    (0..3).for_each(|i| sums.impulse[i] += given[i] * dt.f64());
-                }
+                let mut held = Vector::ZERO;
+                let mut given = if body.is_rigid() { felt.force } else { Vector::ZERO };
                 for &LoadedNode { index, mirrored, weight } in nodes {
-                    let acceleration = mirror(room.nodes[index as usize].acceleration, mirrored);
-                    let mut given = felt.force * weight;
+                    let (taken, node) = (&room.nodes[index as usize], &field.nodes[index as usize]);
+                    let acceleration = mirror(taken.acceleration, mirrored);
+                    let mean = mirror(node.velocity + node.start - taken.held_before, mirrored) * T::HALF;
+                    held += mirror(taken.held_before, mirrored) * weight;
+                    given += felt.force * weight;
                     for i in 0..D {
                         let share = weight.abs() * acceleration[i];
                         let springs = felt.spring[i] * share * dt * dt;
-                        given[i] -= felt.inertia[i] * share;
-                        force[i] -= felt.inertia[i] * share - springs;
-                        sums.work -= (springs * felt.speed[i] * dt).f64();
+                        let dashpots = felt.inertia[i] * share - springs;
+                        given[i] -= springs + dashpots;
+                        sums.work -= ((springs * felt.begun[i] + dashpots * mean[i]) * dt).f64();
                     }
-                    let given = given.space();
-                    (0..3).for_each(|i| sums.impulse[i] += given[i] * dt.f64());
                 }
+                let mean = (way + (*begun - held) * dt) * T::HALF;
                 for i in 0..D {
+                    let pushed = if body.is_rigid() { way[i] } else { mean[i] };
                     let closer = way[i] - felt.speed[i] * dt;
-                    let is_pushed = felt.spring[i] == T::ZERO && !body.is_rigid();
-                    let moved = if is_pushed { (way[i] + begun[i] * dt) * T::HALF } else { way[i] };
-                    sums.work += ((force[i] + felt.spring[i] * closer * half) * moved).f64();
+                    let springs = (felt.pull[i] + felt.spring[i] * closer * half) * way[i];
+                    sums.work += (springs + (felt.force[i] - felt.pull[i]) * pushed).f64();
                 }
+                let (arm, given) = (Vector(before.space()) - center, Vector(given.space()) * dt.f64());
+                let moment = cross(arm.0, given.0);
+                (0..3).for_each(|i| {
+                    sums.impulse[i] += given.0[i];
+                    sums.moment[i] += moment[i];
+                });
             }
         }
         self.watch.lap("loads", start);
@@ -401,12 +416,16 @@ impl<T: Real, const D: usize> NodeLoad<T, D> {
 
     /// Gives the node the velocity that it and the inertia of springs have together.
     fn hold(&mut self, node: &mut Node<T, D>) {
-        let before = node.velocity;
-        for i in 0..D {
-            let momentum = node.mass * node.velocity[i] + self.momentum[i];
-            node.velocity[i] = momentum / (node.mass + self.held_by[i]);
-        }
-        self.held = before - node.velocity;
+        let held = |velocity: Vector<T, D>| {
+            Vector::from_fn(|i| {
+                let momentum = node.mass * velocity[i] + self.momentum[i];
+                momentum / (node.mass + self.held_by[i])
+            })
+        };
+        let velocity = held(node.velocity);
+        self.held = node.velocity - velocity;
+        self.held_before = node.start - held(node.start);
+        node.velocity = velocity;
     }
 }
 
@@ -449,6 +468,19 @@ pub(super) fn find<const D: usize>(
 /// A vector's image across axes, a bit each.
 pub(super) fn mirror<T: Real, const D: usize>(v: Vector<T, D>, axes: u32) -> Vector<T, D> {
     (0..D).filter(|axis| axes >> axis & 1 == 1).fold(v, reflect)
+}
+
+/// The middle of a load's part: the mean place of its points that are there [m].
+fn middle<T: Real, const D: usize>(
+    load: &LoadPoints,
+    points: &[LoadedPoint<T, D>],
+    places: &[u32],
+) -> Vector<f64, 3> {
+    let there = load.points.iter().zip(points).filter(|(point, _)| places[point.particle] != NOWHERE);
+    let (sum, measure) = there.fold((Vector::ZERO, 0.0), |(sum, measure), (point, loaded)| {
+        (sum + Vector(loaded.before.space()) * point.measure, measure + point.measure)
+    });
+    if measure > 0.0 { sum / measure } else { sum }
 }
 
 /// Work of all loads since the start [J].

@@ -247,6 +247,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> View for Engine<T, D, B> {
     fn loads(&self) -> Vec<LoadState> {
         let state = |(load, sums): (&LoadPoints, &LoadSums)| LoadState {
             impulse: sums.impulse,
+            moment: sums.moment,
             work: sums.work,
             displacement: self.load_displacement(load),
         };

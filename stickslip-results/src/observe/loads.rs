@@ -1,4 +1,4 @@
-//! `loads.csv`: forces of supports and loads, and how far their parts have moved.
+//! `loads.csv`: forces and moments of supports and loads, and how far their parts have moved.
 
 use super::file::OutputError;
 use super::folder::OutputFolder;
@@ -18,6 +18,8 @@ pub struct LoadRow {
     pub load: String,
     /// Mean force on the body since the row before [N].
     pub force: [f64; 3],
+    /// Mean moment on it about the middle of its part since the row before [N m].
+    pub moment: [f64; 3],
     /// Mean displacement of its part now [m].
     pub displacement: [f64; 3],
     /// Work on the body since the start [J].
@@ -26,8 +28,9 @@ pub struct LoadRow {
 
 impl TableRow for LoadRow {
     fn columns(&mut self) -> Vec<(&'static str, CellValue<'_>)> {
-        let Self { time, load, force: [fx, fy, fz], displacement: [ux, uy, uz], work } = self;
-        columns![time, load, fx, fy, fz, ux, uy, uz, work]
+        let Self { time, load, force: [fx, fy, fz], moment: [mx, my, mz], .. } = self;
+        let Self { displacement: [ux, uy, uz], work, .. } = self;
+        columns![time, load, fx, fy, fz, mx, my, mz, ux, uy, uz, work]
     }
 }
 
@@ -62,10 +65,13 @@ impl Observer for LoadsObserver {
         let elapsed = time - since;
         // The start has no time before it to average over.
         if elapsed > 0.0 {
+            let mean =
+                |now: [f64; 3], before: [f64; 3]| std::array::from_fn(|i| (now[i] - before[i]) / elapsed);
             let rows = self.names.iter().zip(now.iter().zip(&before)).map(|(name, (now, before))| LoadRow {
                 time,
                 load: name.clone(),
-                force: std::array::from_fn(|i| (now.impulse[i] - before.impulse[i]) / elapsed),
+                force: mean(now.impulse, before.impulse),
+                moment: mean(now.moment, before.moment),
                 displacement: now.displacement,
                 work: now.work,
             });

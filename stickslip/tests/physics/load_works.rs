@@ -4,9 +4,8 @@
 //! nothing and falls to nothing in 4 ms, then the bar swings on for some periods. Energies lie half a step apart, so that
 //! their sum swings with the bar: what counts is its mean after the load, by Hann's window, over the largest work.
 //!
-//! Expected, at steps of the usual length: within 1e-3 for forces, tractions, accelerations, springs and dashpots. Known
-//! misses, in proportion to the step: 0.0012 of a prescribed velocity and 0.013 of a displacement, whose stiff springs
-//! give way within a step, 0.0014 beside an absorbing end, and 0.04 of a pressure all around a bar of two cells.
+//! Expected, at steps of the usual length: all of the work is there within 1e-3. A free body under a force gains it to
+//! round-off.
 
 use crate::trial::{run_to, start};
 use std::f64::consts::PI;
@@ -72,7 +71,7 @@ fn the_work_of_every_load_and_support_is_in_the_ledger() {
             1e-3,
             "[[loads]]\nbody = \"bar\"\non = \"x_max\"\ntraction = [\"100 kPa * PULSE\", \"2 kPa * PULSE\"]",
         ),
-        ("pressure", true, 0.06, "[[loads]]\nbody = \"bar\"\npressure = \"200 kPa * PULSE\""),
+        ("pressure", true, 1e-3, "[[loads]]\nbody = \"bar\"\npressure = \"200 kPa * PULSE\""),
         (
             "acceleration",
             true,
@@ -82,19 +81,19 @@ fn the_work_of_every_load_and_support_is_in_the_ledger() {
         (
             "displacement",
             true,
-            0.02,
+            1e-3,
             "[[supports]]\nbody = \"bar\"\non = \"x_max\"\ndisplacement = [\"1 mm * PULSE\", \"0.2 mm * PULSE\"]",
         ),
         (
             "velocity",
             true,
-            2e-3,
+            1e-3,
             "[[supports]]\nbody = \"bar\"\non = \"x_max\"\nvelocity = [\"0.2 m/s * PULSE\", \"free\"]",
         ),
         (
             "spring",
             true,
-            2e-3,
+            1e-3,
             "[[supports]]\nbody = \"bar\"\non = \"x_max\"\nstiffness = \"1 MN/m\"\ndisplacement = [\"1 mm * PULSE\", \"free\"]",
         ),
         (
@@ -106,7 +105,7 @@ fn the_work_of_every_load_and_support_is_in_the_ledger() {
         (
             "absorbing",
             false,
-            3e-3,
+            1e-3,
             "[[supports]]\nbody = \"bar\"\non = \"x_max\"\ndashpot = \"absorbing\"\n[[loads]]\nbody = \"bar\"\non = \"x_min\"\nforce = [\"2 kN * PULSE\", 0]",
         ),
     ];

@@ -10,11 +10,11 @@
 //! linear functions); swings over 90 periods whose energy changes by less than 3 % between the first and the last ten,
 //! with and without what the supports' springs hold of it; momentum equal to the impulse to round-off; works within
 //! 1e-3 of the energy; the period of a mass on a spring within 1e-3; an absorbing end gives back less than 1 % of a
-//! pulse's energy; the same bits for any number of threads.
+//! pulse's energy; moments of loads and supports at rest within 1 %; the same bits for any number of threads.
 
 use crate::trial::{STRESS_UPDATES, largest_difference, run_to, start, take_steps};
 use rayon::ThreadPoolBuilder;
-use stickslip::door::Simulation;
+use stickslip::door::{LoadState, Simulation};
 
 /// A bar 8 by 2 cells in plane stress, off the grid by part of a cell, with more tables.
 fn bar(offset: f64, (basis, time): (&str, &str), more: &str) -> String {
@@ -261,6 +261,42 @@ fn an_absorbing_end_lets_waves_go() {
     let (left, total) = run("[[supports]]\nbody = \"bar\"\non = \"x_max\"\ndashpot = \"absorbing\"");
     println!("a free end keeps {kept:.4}, an absorbing one {left:.1e}; ledger {total:.1e}");
     assert!(kept > 0.97 && left < 0.01 && total.abs() < 0.01, "{kept} {left} {total}");
+}
+
+/// A cantilever whose end a force and a traction that grows across it bend: the moment of the traction about the middle
+/// of the end is its integral, that of a force that is shared out evenly is none, and at rest the support holds against
+/// both, and against the force by the length of the bar.
+#[test]
+fn loads_and_supports_say_their_moments() {
+    let rest = r#"
+        [[supports]]
+        body = "bar"
+        on = "x_min"
+        [[loads]]
+        body = "bar"
+        on = "x_max"
+        force = [0, -20]
+        [[loads]]
+        body = "bar"
+        on = "x_max"
+        traction = ["1 kPa * (y0 - 1 cm) / 1 cm", 0]
+        "#;
+    let text = bar(0.0, ("gimp", "relax.residual = 1e-6"), rest);
+    let mut simulation = start(&text);
+    run_to(&mut *simulation, 0.4, |_| {});
+    let before = simulation.loads();
+    run_to(&mut *simulation, 0.41, |_| {});
+    let after = simulation.loads();
+    let mean = |(after, before): (&LoadState, &LoadState)| (after.moment[2] - before.moment[2]) / 0.01;
+    let still: Vec<f64> = after.iter().zip(&before).map(mean).collect();
+    // Per metre of depth: the integral of p (y/c) y over the face from -c to c, as a sum over the middles of its four
+    // parts, and the force times 8 cells.
+    let (c, length) = (0.01, 0.08);
+    let traction = -2.0 / 3.0 * 1e3 * c * c * (1.0 - 1.0 / 16.0);
+    let support = 20.0 * length - traction;
+    println!("moments {still:?} N m/m, expected {support}, 0, {traction}");
+    assert!((still[0] / support - 1.0).abs() < 0.01, "{still:?}");
+    assert!(still[1].abs() < 1e-3 * support && (still[2] / traction - 1.0).abs() < 0.01, "{still:?}");
 }
 
 /// Loads of every kind on a body that deforms and turns, near a mirror.
