@@ -420,6 +420,42 @@ fn snapshots_hold_what_is_asked_for() {
     assert!(run(&[("outputs.snapshots.every", "1")]).1);
     let (found, _, all) = run(&[("outputs.snapshots.precision", "double")]);
     assert_eq!(found.unwrap().stress, rows.iter().map(|&i| all.stress[i]).collect::<Vec<_>>());
+    // Without compression a file holds the same.
+    let plain = ("outputs.snapshots.compression", "none");
+    let (found, _, all) = run(&[("outputs.snapshots.precision", "double"), plain]);
+    assert_eq!(found.unwrap().stress, rows.iter().map(|&i| all.stress[i]).collect::<Vec<_>>());
     let (found, whole, _) = run(&[("outputs.snapshots.columns", "[\"velocity\"]")]);
     assert!(!whole && found.unwrap_err().to_string().contains("stress"));
+}
+
+/// Of the bodies of choice, and of that of which an answer is known, and of no other.
+#[test]
+fn the_table_of_bodies_has_rows_of_choice() {
+    let text = r#"
+        space = { dimension = "plane-strain", cell = 0.1 }
+        time.end = 0.01
+        outputs.bodies = ["disk 0", "disk *2"]
+        materials.clay = { density = 1, neo_hookean = { young_modulus = 1, poisson_ratio = 0.3 } }
+        [[bodies]]
+        name = "disk {i}"
+        repeat.i = 5
+        material = "clay"
+        shape.ball = { center = ["i * 2", 0], radius = 0.5 }
+        velocity = [1, 0]
+        [[references]]
+        body = "disk 3"
+        quantity = "x"
+        value = "6 + t"
+        label = "free flight"
+    "#;
+    let scene = stickslip::scene::parse("disks.toml", text, &[]).expect("a scene").scene;
+    let folder = tempfile::tempdir().unwrap();
+    let mut simulation = stickslip::step::build(&scene).unwrap();
+    let options = RunOptions::new(folder.path());
+    stickslip::run::run(&scene, &mut *simulation, &options, &mut |_| {}).unwrap();
+    let rows = Results::open(folder.path()).unwrap().bodies_table().unwrap();
+    let names: Vec<&str> = rows.iter().take(4).map(|row| row.body.as_str()).collect();
+    assert_eq!(names, ["disk 0", "disk 2", "disk 3", "disk 0"]);
+    let last = rows.last().unwrap();
+    assert!((last.time - 0.01).abs() < 1e-12 && (last.state.position[0] - 6.01).abs() < 1e-9, "{last:?}");
 }

@@ -7,7 +7,8 @@ use super::schedule::Schedule;
 use super::table::{CellValue, CsvTable, TableRow, columns};
 use super::{BODIES, Observer};
 use crate::door::{BodyState, View};
-use crate::scene::Scene;
+use crate::scene::{Body, Scene};
+use std::collections::HashSet;
 
 /// One body at one time, in SI units; the columns of `bodies.csv`.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -32,13 +33,21 @@ impl TableRow for BodyRow {
 /// Writes `bodies.csv`.
 pub(super) struct BodiesObserver {
     names: Vec<String>,
+    /// Which of them have rows.
+    wanted: Vec<bool>,
     schedule: Schedule,
     table: CsvTable<BodyRow>,
 }
 
 impl BodiesObserver {
     pub(super) fn create(scene: &Scene, folder: &OutputFolder) -> Result<Self, OutputError> {
+        let of_choice = scene.outputs.bodies.as_ref().map(|names| {
+            let answered = scene.references.iter().map(|reference| &reference.body);
+            names.iter().chain(answered).collect::<HashSet<_>>()
+        });
+        let is_wanted = |body: &Body| of_choice.as_ref().is_none_or(|wanted| wanted.contains(&body.name));
         Ok(BodiesObserver {
+            wanted: scene.bodies.iter().map(is_wanted).collect(),
             names: scene.bodies.iter().map(|body| body.name.clone()).collect(),
             schedule: Schedule::every(scene.outputs.tables),
             table: CsvTable::create(folder, BODIES, scene.outputs.measurements.unit())?,
@@ -53,8 +62,9 @@ impl Observer for BodiesObserver {
 
     fn observe(&mut self, view: &dyn View) -> Result<(), OutputError> {
         let time = view.time();
-        let bodies = self.names.iter().zip(view.bodies());
-        self.table.append(bodies.map(|(body, state)| BodyRow { time, body: body.clone(), state }))?;
+        let bodies = self.names.iter().zip(view.bodies()).zip(&self.wanted);
+        let wanted = bodies.filter(|(_, wanted)| **wanted);
+        self.table.append(wanted.map(|((body, state), _)| BodyRow { time, body: body.clone(), state }))?;
         self.schedule.recorded(time);
         Ok(())
     }

@@ -8,7 +8,7 @@ use super::schedule::Schedule;
 use super::vtu::{NUMBER, VECTOR, Vtu};
 use super::{GRID, Observer};
 use crate::door::{GridSnapshot, View};
-use crate::scene::{Precision, Scene};
+use crate::scene::{Scene, SnapshotContent};
 
 /// Bytes of a node in a snapshot: 13 numbers and a whole one.
 const NODE_BYTES: usize = 13 * size_of::<f64>() + size_of::<u32>();
@@ -17,8 +17,8 @@ const NODE_BYTES: usize = 13 * size_of::<f64>() + size_of::<u32>();
 pub(super) struct GridObserver {
     schedule: Schedule,
     frames: Frames,
-    /// Of what files hold.
-    precision: Precision,
+    /// How files hold it.
+    content: SnapshotContent,
     /// Steps taken at the checkpoint from which the run went on, and the grid there, which nobody can make anew.
     taken_up: Option<(u64, GridSnapshot)>,
 }
@@ -28,7 +28,7 @@ impl GridObserver {
         Ok(GridObserver {
             schedule: Schedule::every(scene.outputs.grid.unwrap_or(f64::INFINITY)),
             frames: Frames::create(folder, GRID)?,
-            precision: scene.outputs.snapshots.precision,
+            content: scene.outputs.snapshots.clone(),
             taken_up: None,
         })
     }
@@ -54,8 +54,8 @@ impl Observer for GridObserver {
         self.frames.make_room()?;
         let snapshot = self.grid(view);
         let bytes = NODE_BYTES * snapshot.mass.len();
-        let precision = self.precision;
-        self.frames.push(time, bytes, move || encode_grid(&snapshot, time, precision));
+        let content = self.content.clone();
+        self.frames.push(time, bytes, move || encode_grid(&snapshot, time, &content));
         self.schedule.recorded(time);
         Ok(())
     }
@@ -82,10 +82,10 @@ impl Observer for GridObserver {
 /// The nodes of the last step's grid at a time [s] as a file for ParaView, ready to be written.
 ///
 /// Node by node and body by body: `mass` [kg], `velocity` [m/s], internal `force` [N], `contact_impulse` [N s] and the
-/// index of the `body`; the side of a `cell` [m] holds for the whole file.
-pub fn encode_grid(snapshot: &GridSnapshot, time: f64, precision: Precision) -> Vtu {
+/// index of the `body`; the side of a `cell` [m] holds for the whole file. Of the `content` precision and compression count.
+pub fn encode_grid(snapshot: &GridSnapshot, time: f64, content: &SnapshotContent) -> Vtu {
     let body: Vec<i32> = snapshot.body.iter().map(|&body| body as i32).collect();
-    let mut file = Vtu::new(time, &snapshot.position, precision);
+    let mut file = Vtu::new(time, &snapshot.position, content);
     file.field("dimension", snapshot.dimension as f64);
     file.field("cell", snapshot.cell);
     file.real("mass", NUMBER, &snapshot.mass);

@@ -29,7 +29,8 @@ const OF_CONTACT: [&str; 12] =
     ["fx", "fy", "fz", "normal", "tangential", "x", "y", "z", "area", "gap", "slip", "friction"];
 
 impl Network {
-    /// The network at the recorded time nearest to `time` [s], the last one for `None`.
+    /// The network at the recorded time nearest to `time` [s], the last one for `None`, of the bodies that have rows in
+    /// `bodies.csv` then.
     ///
     /// # Errors
     /// `bodies.csv` or `contacts.csv` is missing or damaged.
@@ -39,11 +40,13 @@ impl Network {
         let distance = |row: &BodyRow| time.map_or(-row.time, |time| (row.time - time).abs());
         let nearest =
             bodies.iter().min_by(|a, b| distance(a).total_cmp(&distance(b))).map_or(0.0, |row| row.time);
-        Ok(Network {
-            time: nearest,
-            bodies: bodies.into_iter().filter(|row| row.time == nearest).collect(),
-            contacts: contacts.into_iter().filter(|row| row.time == nearest).collect(),
-        })
+        let bodies: Vec<_> = bodies.into_iter().filter(|row| row.time == nearest).collect();
+        let known: BTreeSet<&str> = bodies.iter().map(|row| row.body.as_str()).collect();
+        let is_between = |row: &ContactRow| {
+            row.time == nearest && [&row.body_a, &row.body_b].iter().all(|name| known.contains(name.as_str()))
+        };
+        let contacts = contacts.into_iter().filter(is_between).collect();
+        Ok(Network { time: nearest, bodies, contacts })
     }
 
     /// Mean number of contacts of a body that has any: the coordination number without rattlers [-].

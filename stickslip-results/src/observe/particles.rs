@@ -75,9 +75,9 @@ impl Observer for ParticlesObserver {
 ///
 /// It holds the columns of the snapshot, and behind each those of [`DERIVED`] that follow from it; first vectors and
 /// tensors, then whose each particle is, then numbers, then history. What a reader cannot know, the units of history,
-/// the file says. Of the `content` the precision and the columns count here.
+/// the file says. Of the `content` all but bodies and `every` count here.
 pub fn encode_particles(snapshot: &ParticleSnapshot, time: f64, content: &SnapshotContent) -> Vtu {
-    let mut file = Vtu::new(time, &snapshot.position, content.precision);
+    let mut file = Vtu::new(time, &snapshot.position, content);
     file.field("dimension", snapshot.dimension as f64);
     let wanted =
         |name: &str| content.columns.as_ref().is_none_or(|wanted| wanted.iter().any(|wanted| wanted == name));
@@ -169,7 +169,7 @@ impl ColumnSource for PointArrays {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Precision;
+    use crate::scene::{Compression, Precision};
     use std::fs;
 
     /// Enough particles for several blocks of every array, with values that use all their bits.
@@ -241,8 +241,15 @@ mod tests {
         // 16384 numbers of eight bytes fill a block exactly; the others leave a partial block, one block, or none.
         for particles in [0, 1, 1000, 16384, 40001] {
             let written = snapshot(particles);
-            encode_particles(&written, 0.25, &double()).write(&path).unwrap();
-            assert_eq!(read_particles(&path).unwrap(), written, "{particles} particles");
+            for compression in [Compression::Zlib, Compression::None] {
+                let content = SnapshotContent { compression, ..double() };
+                encode_particles(&written, 0.25, &content).write(&path).unwrap();
+                assert_eq!(read_particles(&path).unwrap(), written, "{particles} particles, {compression:?}");
+            }
+            // What is cut short is no file.
+            let bytes = std::fs::read(&path).unwrap();
+            std::fs::write(&path, &bytes[..bytes.len() - 60]).unwrap();
+            assert!(particles == 0 || PointArrays::open(&path).unwrap().check().is_err(), "{particles}");
         }
     }
 

@@ -11,7 +11,7 @@ use crate::column::DERIVED;
 use crate::door::{ParticleSnapshot, View};
 use crate::geometry::{Bounds, Shape, sites};
 use crate::rigid::Pose;
-use crate::scene::{Precision, Scene};
+use crate::scene::{Scene, SnapshotContent};
 use crate::surface::{CarriedSkin, Skin};
 use crate::tensor::cross;
 use rayon::prelude::*;
@@ -23,7 +23,7 @@ pub(super) struct SurfacesObserver {
     frames: Frames,
     surfaces: Arc<Vec<Surface>>,
     /// Of what files hold.
-    precision: Precision,
+    content: SnapshotContent,
 }
 
 /// The surface of a body.
@@ -59,7 +59,7 @@ impl SurfacesObserver {
             schedule: Schedule::every(scene.outputs.surfaces.unwrap_or(f64::INFINITY)),
             frames: Frames::create(folder, SURFACES)?,
             surfaces: Arc::new(surfaces_of(scene)),
-            precision: scene.outputs.snapshots.precision,
+            content: scene.outputs.snapshots.clone(),
         })
     }
 }
@@ -75,9 +75,9 @@ impl Observer for SurfacesObserver {
         let (snapshot, poses) = (view.snapshot(), view.poses());
         let spins: Vec<[[f64; 3]; 2]> = view.bodies().iter().map(|body| [body.velocity, body.spin]).collect();
         let corners = self.surfaces.iter().map(|surface| surface.moved.skin().corners.len()).sum::<usize>();
-        let (surfaces, precision) = (self.surfaces.clone(), self.precision);
+        let (surfaces, content) = (self.surfaces.clone(), self.content.clone());
         self.frames.push(time, snapshot.bytes() + CORNER_BYTES * corners, move || {
-            encode_surfaces(&corners_of(&surfaces, &snapshot, (&poses, &spins)), time, precision)
+            encode_surfaces(&corners_of(&surfaces, &snapshot, (&poses, &spins)), time, &content)
         });
         self.schedule.recorded(time);
         Ok(())
@@ -204,8 +204,8 @@ fn von_mises(stress: &[f64; 6]) -> f64 {
 
 /// Surfaces at a time [s] as a file for ParaView: triangles, and at each corner the `velocity` [m/s], the `von_mises`
 /// stress [Pa] and the index of the `body`.
-fn encode_surfaces(corners: &Corners, time: f64, precision: Precision) -> Vtu {
-    let mut file = Vtu::of_triangles(time, (&corners.position, &corners.triangles), precision);
+fn encode_surfaces(corners: &Corners, time: f64, content: &SnapshotContent) -> Vtu {
+    let mut file = Vtu::of_triangles(time, (&corners.position, &corners.triangles), content);
     file.real("velocity", VECTOR, corners.velocity.as_flattened());
     file.real("von_mises", NUMBER, &corners.von_mises);
     file.whole("body", &corners.body);
@@ -216,7 +216,7 @@ fn encode_surfaces(corners: &Corners, time: f64, precision: Precision) -> Vtu {
 mod tests {
     use super::*;
     use crate::observe::vtu::PointArrays;
-    use crate::scene;
+    use crate::scene::{self, Precision};
 
     /// A plate of prescribed motion, a free one, a disk that deforms and a floor, after half a second without forces.
     #[test]
@@ -289,7 +289,8 @@ mod tests {
         // And back from the disk.
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("00000.vtu");
-        encode_surfaces(&corners, end, Precision::Double).write(&path).unwrap();
+        let content = SnapshotContent { precision: Precision::Double, ..SnapshotContent::default() };
+        encode_surfaces(&corners, end, &content).write(&path).unwrap();
         let file = PointArrays::open(&path).unwrap();
         assert_eq!(file.positions::<3>().unwrap(), corners.position);
         assert_eq!(file.whole::<i32>("body").unwrap(), corners.body);

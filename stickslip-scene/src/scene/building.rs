@@ -107,6 +107,7 @@ impl Outputs {
     pub fn of_run(end: f64) -> Self {
         Outputs {
             tables: end / ROWS[0],
+            bodies: None,
             particles: Some(end / SNAPSHOTS[0]),
             particles_at: Vec::new(),
             snapshots: SnapshotContent::default(),

@@ -197,6 +197,17 @@ pub enum Precision {
     Double,
 }
 
+/// How the arrays of files for ParaView are packed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Compression {
+    /// In blocks, by zlib.
+    #[default]
+    Zlib,
+    /// Not at all.
+    None,
+}
+
 /// Cells, particles and shape functions.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Discretization {
@@ -521,6 +532,8 @@ pub enum Normal {
 pub struct Outputs {
     /// Rows of `bodies.csv`, `energy.csv` and `contacts.csv`.
     pub tables: f64,
+    /// Names of the bodies that have rows in `bodies.csv`; `None`: all. Those of which answers are known have them, too.
+    pub bodies: Option<Vec<String>>,
     /// Particles for ParaView.
     pub particles: Option<f64>,
     /// Times of further snapshots of the particles, ascending [s].
@@ -544,6 +557,8 @@ pub struct Outputs {
 pub struct SnapshotContent {
     /// Number format of what files hold, whatever the run computes with.
     pub precision: Precision,
+    /// How files are packed.
+    pub compression: Compression,
     /// Names of the columns of particles beside their positions, body and number; `None`: all.
     pub columns: Option<Vec<String>>,
     /// Names of the bodies whose particles they hold; `None`: all.
@@ -554,7 +569,13 @@ pub struct SnapshotContent {
 
 impl Default for SnapshotContent {
     fn default() -> Self {
-        SnapshotContent { precision: Precision::Single, columns: None, bodies: None, every: 1 }
+        SnapshotContent {
+            precision: Precision::Single,
+            compression: Compression::Zlib,
+            columns: None,
+            bodies: None,
+            every: 1,
+        }
     }
 }
 

@@ -442,6 +442,13 @@ fn mistakes() {
         content("precision = \"half\""),
         "a.toml:63:13: outputs.snapshots.precision: found \"half\"; allowed: \"double\" or \"single\""
     );
+    assert_eq!(
+        content("compression = \"gzip\""),
+        "a.toml:63:15: outputs.snapshots.compression: found \"gzip\"; allowed: \"zlib\" or \"none\""
+    );
+    let rows = message(&format!("{MANY}\n[outputs]\nbodies = [\"pebble *\"]\n"));
+    let start = "a.toml:63:11: outputs.bodies[0]: found \"pebble *\"; allowed: ";
+    assert!(rows.starts_with(start), "{rows}");
     let dense = message(&MANY.replace("solid_fraction = 0.7", "solid_fraction = 0.9"));
     let start = "a.toml:28:18: packings[0].solid_fraction: found grains that fill 0.900 of the container, and jam; allowed: about 0.";
     assert!(dense.starts_with(start) && dense.contains("fewer or smaller grains"), "{dense}");

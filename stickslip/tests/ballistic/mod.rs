@@ -248,6 +248,7 @@ pub fn scene() -> Scene {
         springs: Vec::new(),
         contact: vec![ContactRule { friction: f64::INFINITY, ..Default::default() }],
         outputs: Outputs {
+            bodies: None,
             tables: 0.1,
             surfaces: None,
             particles: Some(0.25),

@@ -1,4 +1,4 @@
-//! VTK's file of points or triangles in XML (`.vtu`), with appended raw data in blocks compressed by zlib.
+//! VTK's file of points or triangles in XML (`.vtu`), with appended raw data, in blocks compressed by zlib or as it is.
 //!
 //! Layout of the data of one array, all little-endian (VTK file formats, "Appended data" and "Compression"):
 //!
@@ -6,7 +6,7 @@
 //! u64 blocks, u64 bytes of a full block, u64 bytes of a partial last block (0: none),
 //! u64 compressed bytes of each block, the blocks
 //! ```
-//! Blocks are independent. Numbers have the format that the file is made with; in double precision they keep all their
+//! Without compression it is a u64 of all bytes, and these. Blocks are independent. Numbers have the format that the file is made with; in double precision they keep all their
 //! bits, and reading gives exactly what was written.
 
 mod read;

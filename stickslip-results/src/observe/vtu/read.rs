@@ -18,6 +18,8 @@ pub(in crate::observe) struct PointArrays {
     bytes: Vec<u8>,
     /// Where the appended data starts.
     appended: usize,
+    /// Whether it is packed.
+    compressed: bool,
     count: usize,
     fields: BTreeMap<String, f64>,
     /// Where the points are.
@@ -44,6 +46,7 @@ impl PointArrays {
             path: path.to_path_buf(),
             bytes: Vec::new(),
             appended: 0,
+            compressed: false,
             count: 0,
             fields: BTreeMap::new(),
             positions: None,
@@ -68,7 +71,10 @@ impl PointArrays {
         loop {
             match reader.read_event()? {
                 Event::Start(tag) if tag.name().0 == "VTKFile" => {
-                    expect(&tag, "compressor", "vtkZLibDataCompressor")?;
+                    self.compressed = attribute::<String>(&tag, "compressor").is_ok();
+                    if self.compressed {
+                        expect(&tag, "compressor", "vtkZLibDataCompressor")?;
+                    }
                     expect(&tag, "header_type", "UInt64")?;
                 }
                 Event::Start(tag) if tag.name().0 == "Piece" => {
@@ -202,6 +208,11 @@ impl PointArrays {
         let start = self.appended.checked_add(place.offset).ok_or_else(cut)?;
         let bytes = self.bytes.get(start..).ok_or_else(cut)?;
         let total = self.count.checked_mul(each).ok_or_else(cut)?;
+        if !self.compressed {
+            let (size, bytes) = bytes.split_first_chunk().ok_or_else(cut)?;
+            let whole = bytes.get(..total).filter(|_| u64::from_le_bytes(*size) == total as u64);
+            return Ok(vec![read(whole.ok_or_else(cut)?)]);
+        }
         let blocks = split(bytes, total).ok_or_else(cut)?;
         let unpacked: Option<Vec<R>> = blocks
             .into_par_iter()

@@ -3,8 +3,7 @@
 use super::{BLOCK, Scalar};
 use crate::column::Kind;
 use crate::observe::file::{FileSum, OutputError, replace_summed};
-use crate::scene::Precision;
-use flate2::Compression;
+use crate::scene::{Compression, Precision, SnapshotContent};
 use flate2::write::ZlibEncoder;
 use rayon::prelude::*;
 use std::borrow::Cow;
@@ -20,6 +19,7 @@ const VTK_TRIANGLE: u8 = 5;
 /// another thread may write it.
 pub struct Vtu {
     precision: Precision,
+    compression: Compression,
     points: usize,
     /// Of cells.
     count: usize,
@@ -35,25 +35,33 @@ struct Array {
     unit: String,
     kind: &'static str,
     components: &'static [&'static str],
-    /// As it stands in the file: sizes of blocks, then blocks.
+    /// As it stands in the file: sizes of blocks, then blocks; without compression its size, then its numbers.
     bytes: Vec<u8>,
 }
 
 impl Array {
-    fn new<T: Scalar>(name: &'static str, components: &'static [&'static str], values: &[T]) -> Self {
-        Array { name: name.into(), unit: String::new(), kind: T::NAME, components, bytes: compress(values) }
+    fn new<T: Scalar>(
+        name: &'static str,
+        components: &'static [&'static str],
+        (values, compression): (&[T], Compression),
+    ) -> Self {
+        let bytes = match compression {
+            Compression::Zlib => compress(values),
+            Compression::None => plain(values),
+        };
+        Array { name: name.into(), unit: String::new(), kind: T::NAME, components, bytes }
     }
 
     fn real(
         name: &'static str,
         components: &'static [&'static str],
-        (values, precision): (&[f64], Precision),
+        (values, precision, compression): (&[f64], Precision, Compression),
     ) -> Self {
         match precision {
-            Precision::Double => Array::new(name, components, values),
+            Precision::Double => Array::new(name, components, (values, compression)),
             Precision::Single => {
                 let short: Vec<f32> = values.iter().map(|&value| value as f32).collect();
-                Array::new(name, components, &short)
+                Array::new(name, components, (&short, compression))
             }
         }
     }
@@ -79,40 +87,43 @@ const SYMMETRIC: &[&str] = &["XX", "YY", "ZZ", "XY", "YZ", "XZ"];
 const TENSOR: &[&str] = &["XX", "XY", "XZ", "YX", "YY", "YZ", "ZX", "ZY", "ZZ"];
 
 impl Vtu {
-    /// Points at a time [s], each a cell of its own, so that ParaView can threshold and select them one by one.
-    pub(in crate::observe) fn new(time: f64, positions: &[[f64; 3]], precision: Precision) -> Self {
+    /// Points at a time [s], each a cell of its own, so that ParaView can threshold and select them one by one; of the
+    /// content precision and compression count here.
+    pub(in crate::observe) fn new(time: f64, positions: &[[f64; 3]], content: &SnapshotContent) -> Self {
         let numbers: Vec<i64> = (0..positions.len() as i64).collect();
-        Vtu::of_cells(time, (positions, precision), (&numbers, 1, VTK_VERTEX))
+        Vtu::of_cells(time, (positions, content), (&numbers, 1, VTK_VERTEX))
     }
 
     /// Triangles at a time [s], between points.
     pub(in crate::observe) fn of_triangles(
         time: f64,
         (positions, triangles): (&[[f64; 3]], &[[u32; 3]]),
-        precision: Precision,
+        content: &SnapshotContent,
     ) -> Self {
         let corners: Vec<i64> = triangles.as_flattened().iter().map(|&corner| i64::from(corner)).collect();
-        Vtu::of_cells(time, (positions, precision), (&corners, 3, VTK_TRIANGLE))
+        Vtu::of_cells(time, (positions, content), (&corners, 3, VTK_TRIANGLE))
     }
 
     /// Cells of so many points each, by the numbers of these, and all of one type.
     fn of_cells(
         time: f64,
-        (positions, precision): (&[[f64; 3]], Precision),
+        (positions, content): (&[[f64; 3]], &SnapshotContent),
         (corners, each, kind): (&[i64], usize, u8),
     ) -> Self {
+        let &SnapshotContent { precision, compression, .. } = content;
         let cells = corners.len() / each;
         let ends: Vec<i64> = (1..=cells).map(|cell| (cell * each) as i64).collect();
         Vtu {
             precision,
+            compression,
             points: positions.len(),
             count: cells,
             fields: vec![("TimeValue", time)],
-            geometry: vec![Array::real("points", VECTOR, (positions.as_flattened(), precision))],
+            geometry: vec![Array::real("points", VECTOR, (positions.as_flattened(), precision, compression))],
             cells: vec![
-                Array::new("connectivity", NUMBER, corners),
-                Array::new("offsets", NUMBER, &ends),
-                Array::new("types", NUMBER, &vec![kind; cells]),
+                Array::new("connectivity", NUMBER, (corners, compression)),
+                Array::new("offsets", NUMBER, (&ends, compression)),
+                Array::new("types", NUMBER, (&vec![kind; cells], compression)),
             ],
             point_data: Vec::new(),
         }
@@ -126,7 +137,7 @@ impl Vtu {
     /// Adds an array with a whole number for each point.
     pub(in crate::observe) fn whole<T: Scalar>(&mut self, name: &'static str, values: &[T]) {
         assert_eq!(values.len(), self.points, "`{name}` has a value for each point");
-        self.point_data.push(Array::new(name, NUMBER, values));
+        self.point_data.push(Array::new(name, NUMBER, (values, self.compression)));
     }
 
     /// Adds an array with a value of so many components for each point, in the file's precision.
@@ -137,7 +148,7 @@ impl Vtu {
         values: &[f64],
     ) {
         assert_eq!(values.len(), self.points * components.len(), "`{name}` has a value for each point");
-        self.point_data.push(Array::real(name, components, (values, self.precision)));
+        self.point_data.push(Array::real(name, components, (values, self.precision, self.compression)));
     }
 
     /// Adds an array that is described: its name, its unit and what each point has.
@@ -175,9 +186,13 @@ impl Vtu {
     fn header(&self) -> String {
         let mut xml = String::from(concat!(
             "<?xml version=\"1.0\"?>\n",
-            "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\" ",
-            "compressor=\"vtkZLibDataCompressor\">\n<UnstructuredGrid>\n<FieldData>\n",
+            "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\"",
         ));
+        xml += match self.compression {
+            Compression::Zlib => " compressor=\"vtkZLibDataCompressor\">\n",
+            Compression::None => ">\n",
+        };
+        xml += "<UnstructuredGrid>\n<FieldData>\n";
         for (name, value) in &self.fields {
             xml += &format!(
                 "<DataArray type=\"Float64\" Name=\"{name}\" NumberOfTuples=\"1\" format=\"ascii\">{value:e}</DataArray>\n"
@@ -220,6 +235,13 @@ impl Array {
     }
 }
 
+fn plain<T: Scalar>(values: &[T]) -> Vec<u8> {
+    let mut bytes = Vec::with_capacity(size_of::<u64>() + size_of_val(values));
+    u64::write(&[size_of_val(values) as u64], &mut bytes);
+    T::write(values, &mut bytes);
+    bytes
+}
+
 fn compress<T: Scalar>(values: &[T]) -> Vec<u8> {
     let blocks: Vec<Vec<u8>> = values
         .par_chunks(BLOCK / size_of::<T>())
@@ -239,10 +261,10 @@ fn compress<T: Scalar>(values: &[T]) -> Vec<u8> {
 
 /// How hard to look for what repeats: reals, which use all their bits, repeat next to nothing, however long one looks;
 /// whole numbers do.
-const OF_REALS: Compression = Compression::fast();
-const OF_WHOLE: Compression = Compression::new(6);
+const OF_REALS: flate2::Compression = flate2::Compression::fast();
+const OF_WHOLE: flate2::Compression = flate2::Compression::new(6);
 
-fn block(bytes: &[u8], effort: Compression) -> Vec<u8> {
+fn block(bytes: &[u8], effort: flate2::Compression) -> Vec<u8> {
     let mut packed = ZlibEncoder::new(Vec::with_capacity(bytes.len()), effort);
     packed.write_all(bytes).and_then(|()| packed.finish()).expect("memory takes all bytes")
 }

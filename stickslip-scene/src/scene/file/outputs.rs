@@ -11,7 +11,7 @@ use crate::scene::error::Fault;
 use crate::scene::parameters::Dependence;
 use crate::scene::source::{DocumentNode, Value};
 use crate::scene::units::Powers;
-use crate::scene::{self, Body, NamedMaterial, Precision, SnapshotContent};
+use crate::scene::{self, Body, Compression, NamedMaterial, Precision, SnapshotContent};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use std::borrow::Cow;
 
@@ -22,6 +22,9 @@ table! {
         /// with more than 50 bodies longer, 1/50 of it from 200 bodies on; with time.relax at most that of 100 steps,
         /// or of up to 400 with as many bodies.
         tables: Option<QuantityInput<Duration>>,
+        /// Names of the bodies that have rows in bodies.csv, or patterns in which `*` is any letters; by default all.
+        /// Bodies of [[references]] have them in any case.
+        bodies: Option<Vec<Text>>,
         /// Interval between snapshots of the particles for ParaView [s], or "never"; by default 1/20 of the run, with
         /// more than 100 bodies longer, 1/10 of it from 200 bodies on.
         particles: Option<Interval>,
@@ -69,6 +72,9 @@ table! {
         /// Number format of files, whatever the run computes with.
         #[schemars(extend("default" = "single"))]
         precision: Option<Word<Precision>>,
+        /// How files are packed; other programs read both.
+        #[schemars(extend("default" = "zlib"))]
+        compression: Option<Word<Compression>>,
         /// Columns of the particles beside positions, body and number: velocity, stress, pressure, von_mises,
         /// deformation, mass, volume, and what laws remember; by default all. Pictures, and fringes of a finished run,
         /// need the first of these but for pressure and von_mises.
@@ -133,6 +139,10 @@ pub fn resolve(
     if let Some(interval) = &outputs.tables {
         resolved.tables = interval.positive(context)?;
     }
+    if let Some(names) = &outputs.bodies {
+        let known: Vec<&str> = bodies.iter().map(|body| body.name.as_str()).collect();
+        resolved.bodies = Some(names_in(names, ("the name of a body", &known), context)?);
+    }
     if let Some(interval) = &outputs.particles {
         resolved.particles = interval.value(context)?;
     }
@@ -169,6 +179,9 @@ impl Snapshots {
         let mut content = SnapshotContent::default();
         if let Some(precision) = &self.precision {
             content.precision = precision.value(context)?;
+        }
+        if let Some(compression) = &self.compression {
+            content.compression = compression.value(context)?;
         }
         if let Some(columns) = &self.columns {
             let mut known: Vec<&str> = column::optional_in_files().collect();

@@ -6,7 +6,7 @@ use super::read::table;
 use super::text::{Choice, Count, Word};
 use super::vector::VectorInput;
 use crate::scene::error::Fault;
-use crate::scene::{self, BasisKind, Dimension, Discretization, Face, Leaving, Precision};
+use crate::scene::{self, BasisKind, Compression, Dimension, Discretization, Face, Leaving, Precision};
 
 table! {
     /// Dimensions, cells, particles and domain.
@@ -86,6 +86,13 @@ impl Choice for BasisKind {
 impl Choice for Precision {
     const WORDS: &'static [(&'static str, Self, &'static str)] =
         &[("double", Precision::Double, "64-bit numbers."), ("single", Precision::Single, "32-bit numbers.")];
+}
+
+impl Choice for Compression {
+    const WORDS: &'static [(&'static str, Self, &'static str)] = &[
+        ("zlib", Compression::Zlib, "In blocks, by zlib."),
+        ("none", Compression::None, "Not at all: larger files, sooner written and read."),
+    ];
 }
 
 impl Choice for Face {
