@@ -22,8 +22,10 @@ const FLAT: f64 = 0.9998;
 /// Steps of the search for the nearest point at most, and where it ends, over the distance between points.
 const MAX_STEPS: usize = 40;
 const FOUND: f64 = 1e-9;
-/// Points of a surface that one thread looks at together.
-const PART: usize = 64;
+/// A point that is moved onto a surface is on it if it was no farther off than this, over the distance between points.
+const NEARLY_ON: f64 = 1e-5;
+/// Points of a surface that one thread looks at together: those near another body lie side by side.
+const PART: usize = 16;
 /// From this part of the way on that a point may take it would have gone on, if the slope is more than the second.
 const AT_END: f64 = 0.999;
 const LEVEL: f64 = 1e-6;
@@ -145,11 +147,9 @@ impl RigidSurfaces {
         let [a, b] = pair;
         let away = (Vector(a.center) - Vector(b.center)).norm();
         let margin = AHEAD * (a.way(dt) + b.way(dt));
+        // So a grain in the middle of a container looks at none of its points.
         let far = |one: &PlacedSurface<T, D>, other: &PlacedSurface<T, D>| {
-            other.reach.is_infinite() && one.reach.is_finite() && {
-                let level = other.level(one.center);
-                level.distance > one.reach + margin
-            }
+            one.reach.is_finite() && other.level(one.center).distance > one.reach + margin
         };
         if away > a.reach + b.reach + margin || far(a, b) || far(b, a) {
             return;
@@ -227,6 +227,9 @@ impl<'a, T, const D: usize> PlacedSurface<'a, T, D> {
                 break;
             }
             place -= Vector(level.gradient) * level.distance;
+            if level.distance.abs() < NEARLY_ON * self.surface.spacing {
+                break;
+            }
         }
         place
     }
@@ -249,6 +252,10 @@ impl<'a, T, const D: usize> PlacedSurface<'a, T, D> {
             slope - normal * slope.dot(normal)
         };
         let mut slope = along(at, &level);
+        let goes_on = |at: Vector<f64, 3>, slope: Vector<f64, 3>| {
+            let off = at - first;
+            off.norm() > AT_END * spacing && slope.dot(off) < -LEVEL * spacing
+        };
         for _ in 0..MAX_STEPS {
             if slope.norm() * step < FOUND * spacing {
                 break;
@@ -270,12 +277,11 @@ impl<'a, T, const D: usize> PlacedSurface<'a, T, D> {
             let curved = moved.dot(change);
             step = if curved > 0.0 { moved.dot(moved) / curved } else { 4.0 * step };
             (at, level, slope) = (to, there, turned);
-            if moved.norm() < FOUND * spacing {
+            if moved.norm() < FOUND * spacing || goes_on(at, slope) {
                 break;
             }
         }
-        let goes_on = (at - first).norm() > AT_END * spacing && slope.norm() > LEVEL;
-        (!goes_on).then_some((at, level))
+        (!goes_on(at, slope)).then_some((at, level))
     }
 }
 
