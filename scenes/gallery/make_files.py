@@ -111,6 +111,48 @@ def tread():
     write_stl("tread.stl", triangles)
 
 
+def gear(name, teeth, module=2.0, width=8.0, bore=6.0, backlash=0.05, sides=8):
+    """A spur gear with involute teeth, pressure angle 20 degrees, around z: a ring between bore and roots, and strips
+    between the flanks of each tooth. Lengths are in millimetres; a flank of the teeth has so many sides."""
+    pitch, angle = teeth * module / 2, np.radians(20)
+    base, tip, root = pitch * np.cos(angle), pitch + module, pitch - 1.25 * module
+    involute = lambda radius: np.sqrt((radius / base) ** 2 - 1) - np.arctan(np.sqrt((radius / base) ** 2 - 1))
+    half = np.pi / (2 * teeth) - backlash / (2 * pitch) + involute(pitch)
+    # As long sides at the foot, where the involute curves most, as at the tip.
+    radii = base * np.sqrt(1 + np.linspace(0, np.sqrt((tip / base) ** 2 - 1), sides + 1) ** 2)
+    flank = [(root, half)] + [(radius, half - involute(radius)) for radius in radii]
+    triangles = []
+    corner = lambda radius, turn, z: (radius * np.cos(turn), radius * np.sin(turn), z)
+
+    def square(a, b, c, d):
+        triangles.extend([[a, b, c], [a, c, d]])
+
+    def wall(p, q):
+        square(corner(*p, 0), corner(*q, 0), corner(*q, width), corner(*p, width))
+
+    def face(p, q, r, s):
+        square(*(corner(*point, width) for point in (p, q, r, s)))
+        square(*(corner(*point, 0) for point in (s, r, q, p)))
+
+    for tooth in range(teeth):
+        # The ends of a turn have the same corners to the last digit.
+        turn = lambda number: 2 * np.pi * (number % teeth) / teeth
+        left = [(radius, turn(tooth) + at) for radius, at in flank]
+        right = [(radius, turn(tooth) - at) for radius, at in flank]
+        onward = (root, turn(tooth + 1) - half)
+        for i in range(len(flank) - 1):
+            wall(right[i], right[i + 1])
+            wall(left[i + 1], left[i])
+            face(right[i], right[i + 1], left[i + 1], left[i])
+        wall(right[-1], left[-1])
+        wall(left[0], onward)
+        for p, q in ((right[0], left[0]), (left[0], onward)):
+            inner = [(bore, p[1]), (bore, q[1])]
+            face(inner[0], p, q, inner[1])
+            wall(inner[1], inner[0])
+    write_stl(name, triangles)
+
+
 def valley():
     """A slope of 35 degrees with a trough along it that runs out into a plain, closed below. The slope's corner is
     rounded over 20 m."""
@@ -142,3 +184,5 @@ if __name__ == "__main__":
     foam()
     tread()
     valley()
+    gear("pinion.stl", 18)
+    gear("gear.stl", 27)

@@ -2,7 +2,7 @@
 //! chapter on the gallery says where its bounds come from.
 
 use stickslip::door::{Ledger, ParticleSnapshot};
-use stickslip::observe::{BodyRow, ReadError, Results};
+use stickslip::observe::{BodyRow, JointRow, ReadError, Results};
 
 type Measured = Result<f64, ReadError>;
 
@@ -146,6 +146,21 @@ pub fn moment_of_mill(results: &Results) -> Measured {
     let groups = results.groups_table()?;
     let balls = groups.iter().filter(|row| row.time > half);
     Ok(moment / mean(balls.map(|row| -row.mass * GRAVITY * row.position[0])))
+}
+
+/// Power that a pair of gears of 18 and 27 teeth gives to its brake over that of its motor [-], from a fifth of the run
+/// on; not a number if their mean speeds have not the ratio of the teeth within 1e-3.
+pub fn efficiency_of_gears(results: &Results) -> Measured {
+    let joints = results.joints_table()?;
+    let end = results.manifest().performance.time;
+    let over = |joint: &str, value: fn(&JointRow) -> f64| {
+        let mut rows = joints.iter().filter(|row| row.joint == joint && row.time >= 0.2 * end);
+        let first = rows.next().map_or(f64::NAN, value);
+        rows.next_back().map_or(f64::NAN, value) - first
+    };
+    let ratio = -over("brake", |row| row.way) / over("motor", |row| row.way);
+    let efficiency = -over("brake", |row| row.work) / over("motor", |row| row.work);
+    Ok(if (ratio * 27.0 / 18.0 - 1.0).abs() < 1e-3 { efficiency } else { f64::NAN })
 }
 
 /// Friction's work on a slide over its weight times how far its middle went forward [-].

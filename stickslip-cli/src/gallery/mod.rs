@@ -119,6 +119,10 @@ pub const EXHIBITS: &[Exhibit] = exhibits! {
         seconds: 60.0, look: [], picture: "560x560", animation: "360x360",
         check: "the motor's moment over that of the balls' weight", moment_of_mill, [0.93, 1.07]
     }
+    "gears" ["pinion.stl", "gear.stl"] {
+        seconds: 60.0, look: [], picture: "560x340", animation: "420x255",
+        check: "power of the brake over that of the motor", efficiency_of_gears, [0.965, 0.985]
+    }
     "force_chains" [] {
         seconds: 42.0, look: ["--fringes", "--stress-parameter", "8e3", "--force-chains"],
         picture: "500x500", animation: "250x250",

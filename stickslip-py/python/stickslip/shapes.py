@@ -123,12 +123,13 @@ def revolved(center: Any, axis: Any, polygon: Any = None, spline: Any = None) ->
     return {"revolved": {"polygon": polygon, "spline": spline, "center": center, "axis": axis}}
 
 
-def mesh(file: Any, scale: Any = None, translation: Any = None) -> Shape:
-    """A closed surface of triangles in an STL, OBJ or PLY file; space only.
+def mesh(file: Any, scale: Any = None, translation: Any = None, section: Any = None) -> Shape:
+    """A closed surface of triangles in an STL, OBJ or PLY file; in the plane, a section of it.
 
-    `scale` is the length of its unit [m], by default 1 m; `translation` (3,) moves it [m].
+    `scale` is the length of its unit [m], by default 1 m; `translation` (2,) or (3,) moves it [m]; `section` is the
+    height z at which the plane cuts it, after it is scaled [m].
     """
-    return {"mesh": {"file": file, "scale": scale, "translation": translation}}
+    return {"mesh": {"file": file, "scale": scale, "translation": translation, "section": section}}
 
 
 def union(*shapes: Shape) -> Shape:

@@ -75,3 +75,43 @@ fn what_is_no_mesh_is_told_with_line_key_and_place() {
         assert!(found.contains(expected), "{found}\n  not {expected}");
     }
 }
+
+/// In the plane a scene says where the plane cuts the mesh, in space it does not.
+#[test]
+fn sections_of_meshes_are_of_the_plane() {
+    let faces = format!("{CORNERS}{}\n", FACES.join("\n"));
+    let folder = tempfile::tempdir().expect("a folder");
+    fs::write(folder.path().join("part.obj"), faces).expect("written");
+    let found = |dimension: &str, section: &str| {
+        let text = format!(
+            r#"
+space = {{ dimension = "{dimension}", cell = 0.1 }}
+time.end = 1
+materials.clay = {{ density = 1, neo_hookean = {{ young_modulus = 1, poisson_ratio = 0.3 }} }}
+bodies = [{{ name = "part", material = "clay", shape.mesh = {{ file = "part.obj"{section} }} }}]
+"#
+        );
+        let name = folder.path().join("a.toml").display().to_string();
+        let loaded = scene::parse(&name, &text, &[]).map_err(|error| error.to_string());
+        loaded.map(|loaded| loaded.scene.bodies[0].shape.volume(2))
+    };
+    // A triangle whose sides are half as long.
+    let area = found("plane-strain", ", section = 0.5").expect("it is cut").expect("it has an area");
+    assert!((area - 0.125).abs() < 1e-12, "{area}");
+    for (dimension, section, expected) in [
+        ("plane-strain", "", "shape.mesh.section: found nothing, the key is missing; allowed: the height z"),
+        (
+            "plane-stress",
+            ", section = 1.5",
+            "shape.mesh.section: found 1.5; allowed: a height within the mesh, 0 m to 1 m",
+        ),
+        (
+            "3d",
+            ", section = 0.5",
+            "shape.mesh.section: found 0.5; allowed: no section, as the scene is in space",
+        ),
+    ] {
+        let error = found(dimension, section).expect_err("no body");
+        assert!(error.contains(expected), "{error}\n  not {expected}");
+    }
+}

@@ -5,6 +5,7 @@
 //! surface more than it enters it.
 
 mod fault;
+mod section;
 mod tree;
 mod triangle;
 

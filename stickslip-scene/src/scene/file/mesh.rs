@@ -4,15 +4,16 @@ use super::Context;
 use super::files::read_file;
 use super::quantity::{Length, QuantityInput};
 use super::read::table;
+use super::solid::beside;
 use super::text::Text;
 use super::vector::VectorInput;
-use crate::geometry::{self, MeshFault};
+use crate::geometry::{self, Bounds, MeshFault, Shape};
 use crate::scene::error::Fault;
 use std::io::Cursor;
 use std::path::Path;
 
 table! {
-    /// What a closed surface of triangles holds, read from a file; three dimensions only.
+    /// What a closed surface of triangles holds, read from a file; in the plane a section of it.
     Mesh {
         /// An STL or PLY file (text or binary) or an OBJ file; a relative path starts at the folder of the scene file.
         file: Text,
@@ -20,6 +21,8 @@ table! {
         scale: Option<QuantityInput<Length>>,
         /// How far it is moved after it is scaled [m]. By default not at all.
         translation: Option<VectorInput<Length>>,
+        /// Height z at which the plane of the scene cuts it, after it is scaled [m]; plane scenes only.
+        section: Option<QuantityInput<Length>>,
     }
 }
 
@@ -38,12 +41,28 @@ enum Unread {
 }
 
 impl Mesh {
-    /// The mesh in SI units.
-    pub fn resolve(&self, context: &Context) -> Result<geometry::Mesh, Fault> {
-        let name = self.file.value(context)?;
-        if context.dimension.is_plane() {
-            return Err(self.file.refused(&name, "shapes other than a mesh, as the scene is plane"));
+    /// The mesh in SI units; in the plane, what that cuts out of it.
+    pub fn resolve(&self, context: &Context) -> Result<Shape, Fault> {
+        match (&self.section, context.dimension.is_plane()) {
+            (None, false) => Ok(Shape::Mesh(self.solid(context)?)),
+            (Some(section), false) => Err(section.node().fault("no section, as the scene is in space")),
+            (None, true) => {
+                let allowed = "the height z at which the plane of the scene cuts the mesh: \"1 mm\"";
+                Err(Fault::new(&beside(self.file.node(), "section"), "nothing, the key is missing", allowed))
+            }
+            (Some(section), true) => {
+                let (solid, height) = (self.solid(context)?, section.value(context)?);
+                solid.section(height).ok_or_else(|| {
+                    let Bounds { min, max } = solid.bounds();
+                    section.refused(height, format!("a height within the mesh, {} m to {} m", min[2], max[2]))
+                })
+            }
         }
+    }
+
+    /// The mesh in SI units.
+    fn solid(&self, context: &Context) -> Result<geometry::Mesh, Fault> {
+        let name = self.file.value(context)?;
         let scale = self.scale.as_ref().map_or(Ok(1.0), |scale| scale.positive(context))?;
         let translation = self.translation.as_ref().map_or(Ok([0.0; 3]), |vector| vector.value(context))?;
         let path = context.folder.join(&name);

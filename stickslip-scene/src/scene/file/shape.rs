@@ -48,7 +48,7 @@ pub enum ShapeInput {
     Spline(Spline),
     /// What a polygon or a curve sweeps that is turned around an axis; three dimensions only.
     Revolved(Revolved),
-    /// What a closed surface of triangles holds, read from a file; three dimensions only.
+    /// What a closed surface of triangles holds, read from a file; in the plane a section of it.
     Mesh(Mesh),
     /// Points in any of the shapes.
     Union(Vec<ShapeInput>),
@@ -169,7 +169,7 @@ impl ShapeInput {
             ShapeInput::Polygon(polygon) => polygon.resolve(context)?,
             ShapeInput::Spline(spline) => spline.resolve(context)?,
             ShapeInput::Revolved(revolved) => revolved.resolve(context)?,
-            ShapeInput::Mesh(mesh) => geometry::Shape::Mesh(mesh.resolve(context)?),
+            ShapeInput::Mesh(mesh) => mesh.resolve(context)?,
             ShapeInput::Union(shapes) => geometry::Shape::Union(all(shapes)?),
             ShapeInput::Intersection(shapes) => geometry::Shape::Intersection(all(shapes)?),
             ShapeInput::Difference(shapes) => geometry::Shape::Difference(all(shapes)?),

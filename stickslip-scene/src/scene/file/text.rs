@@ -131,6 +131,11 @@ impl Text {
         if is_pattern(name) { Err(self.refused(name, allowed)) } else { Ok(()) }
     }
 
+    /// Where it stands.
+    pub fn node(&self) -> &DocumentNode {
+        &self.0
+    }
+
     /// The fault of a text that is not allowed.
     pub fn refused(&self, value: &str, allowed: impl Into<String>) -> Fault {
         let mut fault = self.0.fault(allowed);
