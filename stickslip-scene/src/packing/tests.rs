@@ -67,6 +67,38 @@ fn balls_fill_the_part_of_a_box_that_is_asked_for_and_none_overlaps() {
     }
 }
 
+/// Balls in a cylinder, and in a mesh that is no box and lies askew: the part that is asked for, inside, and none in
+/// another.
+#[test]
+fn balls_fill_cylinders_and_meshes() {
+    let cylinder = Shape::Cylinder { start: [0.1, 0.0, 0.0], end: [0.3, 0.9, 0.2], radius: 0.4 };
+    // Two pyramids on a common square, their tips at z = -0.6 and 0.8.
+    let corner = |i: usize| {
+        let (x, y) = [(0.7, 0.1), (-0.1, 0.7), (-0.7, -0.1), (0.1, -0.7)][i % 4];
+        [x, y, 0.0]
+    };
+    let sides = (0..4).flat_map(|i| {
+        [[corner(i), corner(i + 1), [0.0, 0.0, 0.8]], [corner(i + 1), corner(i), [0.0, 0.0, -0.6]]]
+    });
+    let mesh = Shape::Mesh(crate::geometry::Mesh::new("test", sides).expect("closed"));
+    for (container, fraction) in [(cylinder, 0.5), (mesh, 0.35)] {
+        let ball = Shape::ball([0.0; 3], 0.05);
+        let packing = request(&container, &ball, fraction, 3);
+        let placements = packing.place().expect("room");
+        let volume = |shape: &Shape| shape.volume(3).expect("it has one");
+        let filled: f64 = shapes(&packing, &placements).iter().map(volume).sum();
+        let found = filled / volume(&container);
+        let overlap = overlap_of_balls(&packing, &placements);
+        println!(
+            "{} balls, solid fraction {found:.6} of {fraction}, overlap {overlap:e} of a radius",
+            placements.len()
+        );
+        assert!((found / fraction - 1.0).abs() < 1e-9, "{found} for {fraction}");
+        assert!(overlap <= 1e-9, "{overlap:e} of a radius");
+        assert!(placements.len() > 200);
+    }
+}
+
 #[test]
 fn the_same_seed_gives_the_same_packing_for_any_number_of_threads() {
     // So many that several threads have work.

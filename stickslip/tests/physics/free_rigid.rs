@@ -14,7 +14,7 @@
 use crate::trial::{distance, run_to, start, take_steps};
 use rayon::ThreadPoolBuilder;
 use std::f64::consts::PI;
-use stickslip::door::Simulation;
+use stickslip::door::{BodyState, Simulation};
 
 const STEEL: &str =
     "materials.steel = { density = 7800, neo_hookean = { young_modulus = 2e11, poisson_ratio = 0.3 } }";
@@ -451,7 +451,8 @@ fn a_rigid_ball_rolls_and_slides_down_a_rigid_slope() {
     }
 }
 
-/// Two free bodies in oblique impact: momentum to round-off, and they part with the restitution of the rule.
+/// Two free bodies in oblique impact: momentum to round-off, and where they touch they part along the normal with the
+/// restitution of the rule, that many times the speed at which they met, within what two steps move the normal.
 #[test]
 fn rigid_bodies_bounce_with_the_restitution_of_their_rule() {
     for (dimension, shape) in [
@@ -476,24 +477,58 @@ fn rigid_bodies_bounce_with_the_restitution_of_their_rule() {
                 start(&rigid_scene(dimension, &format!("[0, 0{third}]"), [0.6, 1e-3], &rest));
             let before = simulation.ledger();
             let mut sums = Vec::new();
-            run_to(&mut *simulation, 0.6, |view| sums = view.contact_sums());
+            let (mut met, mut after_steps) = (simulation.bodies(), 0);
+            let mut parted = f64::NAN;
+            run_to(&mut *simulation, 0.6, |view| {
+                sums = view.contact_sums();
+                match sums.iter().any(|sum| sum.magnitude > 0.0) {
+                    false => met = view.bodies(),
+                    true => after_steps += 1,
+                }
+                // In the first step they come together, and part from the second on.
+                if after_steps == 2 {
+                    parted = parting(&met, &view.bodies(), shape.starts_with("ball"));
+                }
+            });
             let after = simulation.ledger();
             let lost = distance(before.momentum, after.momentum) / before.momentum[0];
             let turned = distance(before.angular_momentum, after.angular_momentum) / before.momentum[0];
             let drift = (after.total - before.total) / before.kinetic;
             let kept = (after.kinetic + after.friction) / before.kinetic;
             println!(
-                "{shape}, e = {restitution}: momentum {lost:.1e}, angular {turned:.1e}, energy kept {kept:.10}, drift {drift:.1e}, {:?}",
+                "{shape}, e = {restitution}: parted with {parted:.6}, momentum {lost:.1e}, angular {turned:.1e}, energy kept {kept:.10}, drift {drift:.1e}, {:?}",
                 sums[0].impulse
             );
             assert!(lost < 1e-13 && turned < 1e-3 && drift.abs() < 1e-6);
             assert!(sums[0].magnitude > 1.0);
+            assert!((parted - restitution).abs() < 1e-3, "{shape}, e = {restitution}: {parted}");
             match restitution {
                 1.0 => assert!((kept - 1.0).abs() < 1e-6),
                 _ => assert!(after.damping > 0.01 * before.kinetic),
             }
         }
     }
+}
+
+/// The speed at which a ball of 0.3 m and another body part over that at which they met, along the normal where they
+/// touch: between the centres of two balls, else along x.
+fn parting(before: &[BodyState], after: &[BodyState], balls: bool) -> f64 {
+    let centers = [0, 1].map(|i| before[i].position);
+    let apart = distance(centers[0], centers[1]);
+    let normal: [f64; 3] = match balls {
+        true => std::array::from_fn(|k| (centers[1][k] - centers[0][k]) / apart),
+        false => [1.0, 0.0, 0.0],
+    };
+    let place: [f64; 3] = std::array::from_fn(|k| centers[0][k] + 0.3 * normal[k]);
+    let approach = |bodies: &[BodyState]| {
+        let speed = |i: usize| {
+            let (w, arm): (_, [f64; 3]) = (bodies[i].spin, std::array::from_fn(|k| place[k] - centers[i][k]));
+            let turning = |k: usize| w[(k + 1) % 3] * arm[(k + 2) % 3] - w[(k + 2) % 3] * arm[(k + 1) % 3];
+            (0..3).map(|k| (bodies[i].velocity[k] + turning(k)) * normal[k]).sum::<f64>()
+        };
+        speed(0) - speed(1)
+    };
+    -approach(after) / approach(before)
 }
 
 /// Balls that hit a wall straight on come back with exactly e times their speed, and one that bounces on a floor without

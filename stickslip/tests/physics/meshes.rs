@@ -2,13 +2,17 @@
 //!
 //! Source: identity. Set-ups: a block set down on a slope and sliding, both from STL files, against the same two boxes;
 //! a ball that rolls down a slab from an OBJ file, scaled, moved and turned, against the same slab;
-//! a ball of 5120 triangles, filled.
+//! a ball of 5120 triangles, filled. Rigid and free, mesh on mesh: the block slides down the slab, and a ball of 80
+//! triangles strikes a cube with a corner, straight on and beside its middle.
 //!
 //! Expected: corners have few binary digits, so files say exactly what scenes say, and the motion is the same but for
 //! round-off: 1e-9 of the way. The filled ball has the volume of its polyhedron, 0.4 % below the ball's,
-//! within the stairs of its lattice: 1 %.
+//! within the stairs of its lattice: 1 %. A rigid block slides with the acceleration that friction leaves to 1e-4: it is set down on five
+//! points of one of its faces, and rocks by as little; a
+//! rigid ball and a cube part with the restitution of their rule to 1e-6 if they meet straight on, and keep momentum to
+//! round-off and angular momentum to what a step moves where they touch.
 
-use crate::trial::{RUBBER, distance, run_to, start_in};
+use crate::trial::{RUBBER, distance, norm, run_to, start_in};
 use std::fs;
 use stickslip::door::Simulation;
 
@@ -171,6 +175,90 @@ fn a_ball_rolls_on_a_turned_and_scaled_slab_as_on_a_box() {
     let exact = scene("{ box = { min = [-0.5, -0.5, -0.5], max = [1.5, 0.5, 0] } }");
     let meshed = scene("{ mesh = { file = \"slab.obj\", scale = \"1 mm\", translation = [0, 0, -0.5] } }");
     alike("ball", [exact, meshed], 0.3);
+}
+
+#[test]
+fn a_rigid_block_slides_mesh_on_mesh() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let [slab, block] = [([-0.5, -0.5, -0.5], [2.0, 1.0, 0.0]), ([0.0, 0.0, 0.0], [0.5, 0.5, 0.25])];
+    fs::write(folder.path().join("slab.stl"), binary(&cuboid(slab.0, slab.1))).expect("written");
+    fs::write(folder.path().join("block.stl"), binary(&cuboid(block.0, block.1))).expect("written");
+    let text = format!(
+        r#"
+        gravity = [5, 0, -8]
+        space = {{ dimension = "3d", cell = 0.125 }}
+        time = {{ end = 1, max_step = 1e-3 }}
+        {RUBBER}
+        contact = [{{ friction = 0.2 }}]
+        [[bodies]]
+        name = "slab"
+        material = "rubber"
+        shape.mesh.file = "slab.stl"
+        rigid = {{}}
+        [[bodies]]
+        name = "block"
+        material = "rubber"
+        shape.mesh.file = "block.stl"
+        rigid.free = {{}}
+        "#
+    );
+    let mut simulation = start_in(folder.path(), &text);
+    run_to(&mut *simulation, 0.5, |_| {});
+    let block = simulation.bodies()[1].clone();
+    let off = block.velocity[0] / (0.5 * (5.0 - 0.2 * 8.0)) - 1.0;
+    println!("rigid block: speed off by {off:.1e}, at {:?}, turning with {:?}", block.position, block.spin);
+    assert!(off.abs() < 1e-4 && norm(block.spin) < 1e-4, "{block:?}");
+    assert!((block.position[2] - 0.125).abs() < 1e-7, "{block:?}");
+}
+
+#[test]
+fn rigid_meshes_strike_each_other() {
+    let folder = tempfile::tempdir().expect("a folder");
+    fs::write(folder.path().join("ball.stl"), binary(&icosphere(1))).expect("written");
+    fs::write(folder.path().join("cube.stl"), binary(&cuboid([0.0; 3], [0.5; 3]))).expect("written");
+    for (restitution, beside) in [(0.0, 0.0), (0.6, 0.0), (1.0, 0.0), (0.6, 0.125), (1.0, 0.125)] {
+        let text = format!(
+            r#"
+            space = {{ dimension = "3d", cell = 0.125 }}
+            time = {{ end = 1, max_step = 1e-3 }}
+            {RUBBER}
+            contact = [{{ friction = 0, restitution = {restitution} }}]
+            [[bodies]]
+            name = "ball"
+            material = "rubber"
+            shape.mesh = {{ file = "ball.stl", scale = 0.25, translation = [0, {beside}, 0] }}
+            velocity = [2, 0, 0]
+            rigid.free = {{}}
+            [[bodies]]
+            name = "cube"
+            material = "rubber"
+            shape.mesh = {{ file = "cube.stl", translation = [0.5, -0.25, -0.25] }}
+            velocity = [-1, 0, 0]
+            rigid.free = {{}}
+            "#
+        );
+        let mut simulation = start_in(folder.path(), &text);
+        let before = simulation.ledger();
+        run_to(&mut *simulation, 0.3, |_| {});
+        let (after, bodies) = (simulation.ledger(), simulation.bodies());
+        let parted = (bodies[1].velocity[0] - bodies[0].velocity[0]) / 3.0;
+        let scale = norm(before.momentum);
+        let lost = distance(before.momentum, after.momentum) / scale;
+        let turned = distance(before.angular_momentum, after.angular_momentum) / scale;
+        let kept = after.kinetic / before.kinetic;
+        println!(
+            "e = {restitution}, {beside} m beside: parted with {parted:.8}, momentum {lost:.1e}, angular {turned:.1e}, energy {kept:.8}"
+        );
+        assert!(lost < 1e-12 && turned < 1e-3, "{lost:e} {turned:e}");
+        if beside == 0.0 {
+            assert!((parted - restitution).abs() < 1e-6, "{parted} of {restitution}");
+        } else {
+            assert!(norm(bodies[1].spin) > 0.1, "the cube turns: {:?}", bodies[1]);
+        }
+        if restitution == 1.0 {
+            assert!((kept - 1.0).abs() < 1e-3, "{kept}");
+        }
+    }
 }
 
 #[test]
