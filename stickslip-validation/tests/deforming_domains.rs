@@ -8,9 +8,9 @@
 //! The benchmarks themselves: each states its source.
 //!
 //! # Expected
-//! The targets of these benchmarks, which are 3 % for stresses of the disk, 4 and 2 % for drop and reach of the beam, and
-//! 5 % for the force of the strip, with no allowance for known misses; but for the disk in plane stress, which is 3.3 %
-//! high and may be 4 %.
+//! The targets of these benchmarks, which are 3 % for stresses of the disk, 4 and 2 % for drop and reach of the beam,
+//! and 5 % for the force of the strip, with no allowance for known misses; but for the disk in plane stress, which is
+//! 3.3 % high and may be 4 %.
 
 use stickslip_validation::{BENCHMARKS, Suite, Tier, schemes};
 

@@ -1047,6 +1047,9 @@ fn a_run_of_version_1_goes_on_and_scenes_begin_from_it() {
     let begun = recorded.performance.steps;
     let found = go_on(&scene, &out).unwrap();
     assert!(found.performance.steps > begun && found.performance.time == 0.2, "{found}");
+    // Its tables go on with the columns that they had; what came later is nothing.
+    let loads = stickslip::observe::Results::open(&out).unwrap().loads_table().unwrap();
+    assert!(loads.iter().all(|row| row.moment == [0.0; 3]) && loads.last().unwrap().time == 0.2);
 
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/version_1/results");
     scene.start = Some(stickslip::scene::Start {

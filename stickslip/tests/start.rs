@@ -161,7 +161,7 @@ fn bodies_may_begin_at_rest_and_with_another_density() {
     assert_eq!(from(PACKING, &packing, "").start.unwrap().velocities, StartVelocities::Kept);
 }
 
-/// Boxes that follow the stretch are those of the deformation, whatever the basis of the run that left it.
+/// Domains are those of the deformation, whatever the basis of the run that left it.
 #[test]
 fn the_basis_may_be_another() {
     let folder = tempfile::tempdir().unwrap();

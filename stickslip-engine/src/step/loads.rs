@@ -270,9 +270,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// others     W = sum_s f_s . (du_s + v_s dt)/2 - sum_si |N_is| dt c_s a_i . (u_i + v_i) dt/2
     /// ```
     /// du_s: change of the place of a point; u_i: velocities of nodes that move points; v_s, v_i: those at the start of
-    /// the step, held by supports as u_i are; a_i: acceleration; v*_s: the velocity that a support prescribes, the
-    /// mean over the step, and v^0_s where the step begins. Minus where f_s was taken before the points moved, plus where
-    /// it was taken after.
+    /// the step, held by supports as u_i are (not with `first`, where closing is not shown); a_i: acceleration; v*_s:
+    /// the velocity that a support prescribes, the mean over the step, and v^0_s where the step begins. Minus where f_s
+    /// was taken before the points moved, plus where it was taken after.
     ///
     /// A step changes the kinetic energy by the forces at the nodes times the mean of their velocities interpolated
     /// before and after, and the strain energy by the stress times u_i. As all forces at a node together are m_i a_i,

@@ -15,9 +15,10 @@
 //! ```text
 //! d(x_p + sum_a s_a r_a)/dt = sum_i v_i (S_i + sum_a s_a d_ia)
 //! ```
-//! which along an axis is exactly v at the corner, and nearly elsewhere, for a parallelogram has fewer ways to move than
-//! its corners. So neighbours go on sharing their corners: no gap opens between them, a uniform stress gives no force
-//! within a body, and places and deformation gradients go together.
+//! which along an axis is exactly v at the corner, and nearly elsewhere, for a parallelogram has fewer ways to move
+//! than its corners. So neighbours go on sharing their corners: no gap opens between them, a uniform stress gives no
+//! force within a body, and places and deformation gradients go together. (Not where L is changed on its way, as by
+//! averages of the volume, nor where a domain is shortened.)
 
 // Sums over nodes and components read better by their indices.
 #![allow(clippy::needless_range_loop)]

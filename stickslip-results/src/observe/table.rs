@@ -14,6 +14,9 @@ use std::sync::Arc;
 
 /// A row of a table through time. The list of its columns serves writing, reading and looking up.
 pub trait TableRow: Clone + Default {
+    /// Columns that tables of earlier versions lack.
+    const LATER: &'static [&'static str] = &[];
+
     /// Its columns in the order of the file, the time among them: name, and where the row keeps the entry.
     fn columns(&mut self) -> Vec<(&'static str, CellValue<'_>)>;
 
@@ -91,6 +94,8 @@ pub(super) struct CsvTable<R> {
     header: u64,
     /// Length of the scene's unit of time [s].
     unit: Option<f64>,
+    /// Columns that it goes on without, as an earlier version began it.
+    without: &'static [&'static str],
     row: PhantomData<R>,
 }
 
@@ -108,12 +113,17 @@ impl<R: TableRow> CsvTable<R> {
     }
 
     fn open(path: &Path, unit: Option<f64>, waiting: &Arc<Waiting>) -> Result<Self, OutputError> {
-        let mut row = R::default();
-        let names = row.columns().into_iter().map(|(name, _)| name).chain(unit.map(|_| TIME_UNITS));
-        let header = names.collect::<Vec<_>>().join(",") + "\n";
+        let header = |without: &[&str]| {
+            let mut row = R::default();
+            let names = row.columns().into_iter().map(|(name, _)| name).chain(unit.map(|_| TIME_UNITS));
+            names.filter(|name| !without.contains(name)).collect::<Vec<_>>().join(",") + "\n"
+        };
+        let earlier = header(R::LATER);
+        let without = if begins_with(path, &earlier) { R::LATER } else { &[] };
+        let header = header(without);
         let sheet = Sheet::open(path, &header)?;
         let header = header.len() as u64;
-        Ok(CsvTable { writer: Writer::start(sheet, path, waiting)?, header, unit, row: PhantomData })
+        Ok(CsvTable { writer: Writer::start(sheet, path, waiting)?, header, unit, without, row: PhantomData })
     }
 
     /// Keeps how long it is and what is in it, or cuts off what was written later.
@@ -166,7 +176,7 @@ impl<R: TableRow> CsvTable<R> {
     /// The disk was full or refused when rows were added before; then the file ends with those before them.
     pub(super) fn append(&mut self, rows: impl IntoIterator<Item = R>) -> Result<(), OutputError> {
         self.writer.make_room()?;
-        let bytes = encode(rows, self.unit);
+        let bytes = encode(rows, self.unit, self.without);
         self.writer.hand_over(bytes.len(), move |sheet| sheet.write(&bytes));
         Ok(())
     }
@@ -257,19 +267,28 @@ impl Sheet {
     }
 }
 
-/// The lines of rows, each with its time in the scene's own unit [s] if there is one.
-fn encode<R: TableRow>(rows: impl IntoIterator<Item = R>, unit: Option<f64>) -> Vec<u8> {
+/// Whether a file is there and begins with this text.
+fn begins_with(path: &Path, text: &str) -> bool {
+    let mut found = vec![0; text.len()];
+    let read = File::open(path).and_then(|mut file| file.read_exact(&mut found));
+    read.is_ok() && found == text.as_bytes()
+}
+
+/// The lines of rows, each with its time in the scene's own unit [s] if there is one, without some columns.
+fn encode<R: TableRow>(rows: impl IntoIterator<Item = R>, unit: Option<f64>, without: &[&str]) -> Vec<u8> {
     let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new());
     for mut row in rows {
         let mut in_units = unit.map(|unit| row.number("time").expect("every row has its time") / unit);
-        let entries = row.columns().into_iter().map(|(_, entry)| entry);
-        let entries: Vec<CellValue> = entries.chain(in_units.as_mut().map(CellValue::Number)).collect();
+        let columns = row.columns().into_iter().filter(|(name, _)| !without.contains(name));
+        let entries: Vec<CellValue> =
+            columns.map(|(_, entry)| entry).chain(in_units.as_mut().map(CellValue::Number)).collect();
         writer.serialize(entries).expect("entries are numbers and names");
     }
     writer.into_inner().expect("a vector takes all bytes")
 }
 
-/// All whole rows of a table. Columns are found by their names, and others passed over.
+/// All whole rows of a table. Columns are found by their names, and others passed over; those that an earlier version
+/// did not write are nothing.
 ///
 /// # Errors
 /// The file is missing or is not a table of such rows. A last line that is cut short is ignored:
@@ -285,13 +304,19 @@ pub(super) fn read_rows<R: TableRow>(path: &Path) -> Result<Vec<R>, ReadError> {
         let header = reader.headers()?.clone();
         let mut row = R::default();
         let place = |(name, _): (&str, CellValue)| {
-            let missing = || ReadProblem::Layout(format!("it has no column `{name}`"));
-            header.iter().position(|found| found == name).ok_or_else(missing)
+            let found = header.iter().position(|found| found == name);
+            match found {
+                None if !R::LATER.contains(&name) => {
+                    Err(ReadProblem::Layout(format!("it has no column `{name}`")))
+                }
+                found => Ok(found),
+            }
         };
-        let places: Vec<usize> = row.columns().into_iter().map(place).collect::<Result<_, _>>()?;
+        let places: Vec<Option<usize>> = row.columns().into_iter().map(place).collect::<Result<_, _>>()?;
         let read = |record: csv::Result<csv::StringRecord>| {
             let record = record?;
             for ((name, entry), &place) in row.columns().into_iter().zip(&places) {
+                let Some(place) = place else { continue };
                 let (line, text) = (record.position().map_or(0, csv::Position::line), &record[place]);
                 entry.take(text).map_err(|allowed| {
                     ReadProblem::Layout(format!("line {line}: found `{text}` as {name}; allowed: {allowed}"))
@@ -384,6 +409,7 @@ mod tests {
         let mut table = CsvTable::<FieldPlace> {
             writer: Writer::start(sheet, &path, &Arc::default()).unwrap(),
             header: 0,
+            without: &[],
             unit: None,
             row: PhantomData,
         };

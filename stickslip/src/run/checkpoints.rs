@@ -51,7 +51,8 @@ pub enum ResumeError {
     #[error("{} was made with another scene: {key} was {then}, and is {now}", path.display())]
     #[diagnostic(help(
         "a run goes on with other outputs, but of the same fringes and unit of time, another end and other threads \
-         only; run the changed scene anew, or put back what was changed: where it is a sha256, the file"
+         only; run the changed scene anew, or put back what was changed: where it is a sha256, the file, \
+         unless another version or machine reads it otherwise"
     ))]
     Changed {
         /// The checkpoint.

@@ -39,11 +39,11 @@ const REPORT: Duration = Duration::from_millis(100);
 /// What a run does beside the steps.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Beside {
-    /// Taking records, and waiting where the writer has too many.
+    /// Taking records, and waiting where the writer has too many, and for all of them at the end.
     Outputs,
     /// Of [`crate::scene::HealthCheck`], and whether contact is resolved.
     Checks,
-    /// Taking the state for a checkpoint.
+    /// Taking the state for a checkpoint, and waiting for the last one.
     Checkpoints,
 }
 

@@ -397,20 +397,20 @@ impl Watched<'_> {
                 Ok(None) => break Ok(MarchEnd::Arrived),
                 Err(error) => break Err(error),
             };
-            let taken = Instant::now();
+            let begun = Instant::now();
             recorded = recorder.record_due(*simulation);
-            kept.clock.count(Beside::Outputs, taken);
-            let written = Instant::now();
+            kept.clock.count(Beside::Outputs, begun);
+            let begun = Instant::now();
             notes.extend(kept.look(scene, *simulation, (&mut march, step)));
-            kept.clock.count(Beside::Checks, written);
+            kept.clock.count(Beside::Checks, begun);
             if reports.due() || !notes.is_empty() {
                 let notes = std::mem::take(&mut notes);
                 progress(&Progress { notes, ..kept.clock.progress(*simulation, end) });
             }
             if recorded.is_ok() && checkpoints.due(*simulation) {
-                let looked = Instant::now();
+                let begun = Instant::now();
                 recorded = save(*simulation, (recorder, kept, checkpoints), memory.as_ref());
-                kept.clock.count(Beside::Checkpoints, looked);
+                kept.clock.count(Beside::Checkpoints, begun);
             }
             let trouble = checkpoints.trouble();
             notes.extend(trouble.and_then(|error| kept.verdict.note_checkpoint(scene, *simulation, &error)));
@@ -429,12 +429,20 @@ impl Watched<'_> {
         let sum = present_state_sum(scene, *simulation);
         if options.checkpoints.at_end {
             // Before what is recorded at an end only: a run that goes on has none there.
+            let begun = Instant::now();
             save(*simulation, (recorder, kept, checkpoints), memory.as_ref())?;
+            kept.clock.count(Beside::Checkpoints, begun);
         }
+        let begun = Instant::now();
         notes.extend(kept.verdict.conclude(scene, *simulation, march.pace().part()));
+        kept.clock.count(Beside::Checks, begun);
+        let begun = Instant::now();
         recorder.record_present(*simulation)?;
         recorder.conclude()?;
+        kept.clock.count(Beside::Outputs, begun);
+        let begun = Instant::now();
         checkpoints.finish()?;
+        kept.clock.count(Beside::Checkpoints, begun);
         let trouble = checkpoints.trouble();
         notes.extend(trouble.and_then(|error| kept.verdict.note_checkpoint(scene, *simulation, &error)));
         let status = if kept.verdict.stop().is_some() { Status::Stopped } else { status };

@@ -132,7 +132,7 @@ impl RecordedBodies<'_> {
             .collect();
         for (i, body) in carried().filter(|(_, body)| !body.is_rigid()) {
             let own = view.columns(i).into_iter().map(|column| column.name);
-            // Boxes follow from the deformation.
+            // Domains follow from the deformation.
             let own =
                 own.filter(|name| *name != HALF_EDGES && !EVERY.iter().any(|every| every.name == *name));
             wanted.extend(own.filter(|name| written.iter().all(|column| column != name)));

@@ -45,15 +45,15 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
         let side = members.side(self.near.lattice.whole_cells, seen.per_cell);
         let (mut shapes, mut r) = ([B::shape(V::ZERO, &side); D], Vector::<V, D>::ZERO);
         // The node sees a particle move away as the particle sees the node move: grad at the node = -grad S(x_p).
-        let mut turned = Vector::<V, D>::ZERO;
+        let mut to_gradient = Vector::<V, D>::ZERO;
         for i in 0..D {
             position[i] = members.load(ColumnStart::<D>::POSITION + i);
             r[i] = (position[i] - seen.origin[i]) * seen.per_cell - V::splat(T::of(f64::from(cell[i])));
-            turned[i] = seen.per_cell * -seen.sign[i];
+            to_gradient[i] = seen.per_cell * -seen.sign[i];
             if !B::CORNERS {
                 shapes[i] = B::shape(r[i], &side);
                 for difference in &mut shapes[i].difference {
-                    *difference *= turned[i];
+                    *difference *= to_gradient[i];
                 }
             }
         }
@@ -61,7 +61,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
         if B::CORNERS {
             edges = members.edges(seen.per_cell);
         }
-        let seen_by = NodeFunctions { shapes, table: B::Table::<V, D>::new(&r, &edges), turned };
+        let seen_by = NodeFunctions { shapes, table: B::Table::<V, D>::new(&r, &edges), to_gradient };
         let volume: V = members.load(ColumnStart::<D>::VOLUME);
         let mut f = Matrix::ZERO;
         for (k, &[row, column]) in deformation_entries(D).iter().enumerate() {
@@ -193,7 +193,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
     #[inline(always)]
     fn shares<V: Lanes<Real = T>>(
         &self,
-        NodeFunctions { shapes, table, turned }: &NodeFunctions<V, D, B>,
+        NodeFunctions { shapes, table, to_gradient }: &NodeFunctions<V, D, B>,
         base: [i32; D],
         node: usize,
         factor: V,
@@ -204,7 +204,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
             let n = offset.iter().fold(0, |n, &step| n * MAX_WIDTH + step);
             let mut columns = [V::ZERO; 4];
             for axis in 0..D {
-                columns[axis] = table.slope(n, axis) * (turned[axis] * factor);
+                columns[axis] = table.slope(n, axis) * (to_gradient[axis] * factor);
             }
             columns[3] = table.weight(n) * factor;
             let mut shares = Rows::<T>::EMPTY;
@@ -238,7 +238,7 @@ struct NodeFunctions<V: Lanes, const D: usize, B: Basis<V::Real>> {
     /// Node by node, where it is none.
     table: B::Table<V, D>,
     /// What turns its slopes into gradients at the node [1/m].
-    turned: Vector<V, D>,
+    to_gradient: Vector<V, D>,
 }
 
 /// Rows of place, centre and inverse of F, in space.
@@ -302,7 +302,7 @@ impl<V: Lanes, const D: usize> Seen<V, D> {
 /// Entries of a domain, in space.
 const MOST_EDGES: usize = Kind::Tensor.entries(3);
 /// Where the columns of domains lie among copies.
-const DOMAINS: usize = ColumnStart::<3>::COUNT;
+const FIRST_EDGE: usize = ColumnStart::<3>::COUNT;
 
 /// How many chunks ahead of the present one numbers are fetched into the cache.
 const AHEAD: usize = 3;
@@ -368,12 +368,12 @@ impl<'a, T: Real, const D: usize> CellMembers<'a, T, D> {
             let lanes = in_lanes(index);
             for range in columns_read(columns, sought) {
                 for column in range {
-                    let place = if own.contains(&column) { DOMAINS + column - own.start } else { column };
+                    let place = if own.contains(&column) { FIRST_EDGE + column - own.start } else { column };
                     // SAFETY: the particles exist, and nobody writes to them in a survey.
                     unsafe { V::gather(columns.at(column, 0), &lanes).store(copies.0[place].0.as_mut_ptr()) };
                 }
             }
-            (copies.0.as_ptr().cast(), size_of::<Numbers<T>>() / size_of::<T>(), DOMAINS)
+            (copies.0.as_ptr().cast(), size_of::<Numbers<T>>() / size_of::<T>(), FIRST_EDGE)
         };
         let domains = if own.is_empty() { None } else { Some(domains) };
         CellMembers { first, stride, count: index.len(), domains, source: PhantomData }

@@ -75,8 +75,8 @@ impl Choice for BasisKind {
         (
             "cpdi",
             BasisKind::Cpdi,
-            "Mean tent functions of the corners of a domain that deforms with the particle: for bodies that are stretched \
-             or turned far.",
+            "Mean tent functions of the corners of a domain that deforms with the particle: for bodies that \
+             are stretched or turned far.",
         ),
         ("linear", BasisKind::Linear, "Tent functions at the particle's centre."),
         ("spline", BasisKind::Spline, "Quadratic B-splines of the particle's centre: smooth slopes."),

@@ -21,8 +21,8 @@ impl Check for TearingCheck {
     }
 
     fn advice(&self) -> &'static str {
-        "no law tears it, the grid lost it: try basis = \"cpdi\", whose domains stretch with the particles, \
-         more particles_per_side, or a smaller load"
+        "no law tears it, the grid lost it: try basis = \"cpdi\"; if it is that already, more \
+         particles_per_side; or a smaller load"
     }
 
     fn look(&mut self, look: &CheckInputs) -> Vec<Finding> {
