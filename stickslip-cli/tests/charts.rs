@@ -29,7 +29,7 @@ fn several_runs_share_a_chart() {
     let file = fs::read(workplace.path("c.pdf")).unwrap();
     assert!(file.starts_with(b"%PDF-") && file.ends_with(b"%%EOF"));
     let columns = workplace.run(&["plot", "rough.results", "--table", "loads", "--quantity", "force"]);
-    assert!(columns.code == Some(2) && columns.stderr.contains("fx, fy, fz, ux, uy, uz, work"));
+    assert!(columns.code == Some(2) && columns.stderr.contains("fx, fy, fz, mx, my, mz, ux, uy, uz, work"));
     let none = workplace.run(&["plot", "rough.results", "--table", "joints"]);
     assert!(none.code != Some(0) && none.stderr.contains("nothing to draw"), "{}", none.stderr);
     let missing = workplace.run(&["plot", "rough.results", "nowhere"]);
