@@ -60,7 +60,7 @@ pub struct BenchSample {
     pub steps: u64,
     /// Wall time of each repetition [s].
     pub repetitions: Vec<f64>,
-    /// Wall time in each verb of the step, in all repetitions [s].
+    /// Wall time in each verb of the step, in all repetitions, and in what a run does beside [s].
     pub verbs: Vec<(String, f64)>,
     /// Processor time of a run from end to end, that of threads which write outputs included [s].
     pub processor_time: Option<f64>,
@@ -146,13 +146,14 @@ fn take(order: &Order) -> Result<BenchSample, Failure> {
         BenchTask::Steps(effort) => step(&mut *simulation, *effort, &mut sample)?,
         BenchTask::Run(folder) => {
             let options = RunOptions { threads: order.threads, ..RunOptions::new(folder) };
-            stickslip::run::run(&loaded.scene, &mut *simulation, &options, &mut |_| {})
+            let summary = stickslip::run::run(&loaded.scene, &mut *simulation, &options, &mut |_| {})
                 .map_err(Failure::run)?;
             sample.steps = simulation.steps();
             sample.repetitions = vec![start.elapsed().as_secs_f64()];
             let spent = memory::processor_time().zip(processor_time);
             sample.processor_time = spent.map(|(after, before)| after - before);
-            sample.verbs = verbs(&*simulation);
+            let timings = summary.performance.timings;
+            sample.verbs = timings.into_iter().map(|timing| (timing.verb, timing.seconds)).collect();
         }
     }
     Ok(sample)

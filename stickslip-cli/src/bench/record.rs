@@ -111,7 +111,7 @@ pub struct EndToEnd {
     pub without_outputs: Vec<f64>,
     /// The fastest with over the fastest without outputs.
     pub ratio: f64,
-    /// Processor time with the checks of a run over that without, least of each.
+    /// Wall time with the checks of a run over that without, as the run counts them.
     pub checks: f64,
     /// Processor time with a checkpoint each minute of it over that without, by what a checkpoint adds.
     pub checkpoints: f64,

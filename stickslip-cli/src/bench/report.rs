@@ -138,8 +138,8 @@ impl BenchRecord {
             ]);
         }
         format!(
-            "P6, whole runs with and without outputs; ratios of processor time with and without checks, and with and without a \
-             checkpoint each minute.\n{table}\n"
+            "P6, whole runs with and without outputs; ratios of time with and without checks, and of processor time \
+             with and without a checkpoint each minute.\n{table}\n"
         )
     }
 
