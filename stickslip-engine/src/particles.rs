@@ -342,10 +342,14 @@ impl<T: Real, const D: usize> Particles<T, D> {
 
     /// Lets domains that deform with their particles be those of their deformation; `most`: how far one reaches [m].
     pub fn deform_domains(&mut self, most: T) {
-        for (column, [row, edge]) in self.view().domain_columns().zip(deformation_entries(D)) {
-            for i in 0..self.len() {
-                let particle = self.get(i);
-                let edges = convected_edges::<T, D>(&particle.deformation, particle.half_width, most);
+        let columns = self.view().domain_columns();
+        if columns.is_empty() {
+            return;
+        }
+        for i in 0..self.len() {
+            let particle = self.get(i);
+            let edges = convected_edges::<T, D>(&particle.deformation, particle.half_width, most);
+            for (column, [row, edge]) in columns.clone().zip(deformation_entries(D)) {
                 self.line_mut(column)[i] = edges.0[*row][*edge];
             }
         }

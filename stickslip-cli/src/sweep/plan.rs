@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 /// What is run: all that a sweep needs to go on.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Plan {
-    /// The scene file; absolute, so that whoever goes on may stand elsewhere, or relative to the folder of the sweep where
-    /// it lies in there, and goes with it.
+    /// The scene file; absolute, so that whoever goes on may stand elsewhere, or relative to the folder of the sweep
+    /// where it lies in there, and goes with it.
     pub scene: PathBuf,
     /// What is set.
     pub variations: Vec<Variation>,

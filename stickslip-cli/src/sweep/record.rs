@@ -98,8 +98,8 @@ pub fn read_record(folder: &Path) -> Option<SweepRecord> {
     (record.program == "stickslip").then_some(record)
 }
 
-/// Makes the folder of a sweep, which may hold its scene already, or takes over that of an earlier one. There, of the runs
-/// only those rows are left that are `kept`; the others are replaced as they are run again.
+/// Makes the folder of a sweep, which may hold its scene already, or takes over that of an earlier one. There, of the
+/// runs only those rows are left that are `kept`; the others are replaced as they are run again.
 ///
 /// # Errors
 /// The folder holds files that are not those of a sweep, or cannot be written.

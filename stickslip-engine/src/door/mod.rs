@@ -147,10 +147,10 @@ pub trait Simulation: View + Send {
     /// hold, and in which order, stays.
     fn settle(&mut self) {}
     /// Gives the particles of a body other values in a column: the entries that the motion leaves free of one particle
-    /// after the other, in the order of memory. [`WRITABLE`] names the columns. A free rigid body takes one value, that of
-    /// the whole: the `velocity` of its centre of mass [m/s], or its `spin` [rad/s]; what joints do not allow of it, the
-    /// next step takes away. The next step is as long as is stable with them. The ledger counts the energy that comes in
-    /// with them as external work, and [`View::written`] has it.
+    /// after the other, in the order of memory. [`WRITABLE`] names the columns. A free rigid body takes one value, that
+    /// of the whole: the `velocity` of its centre of mass [m/s], or its `spin` [rad/s]; what joints do not allow of it,
+    /// the next step takes away. The next step is as long as is stable with them. The ledger counts the energy that
+    /// comes in with them as external work, and [`View::written`] has it.
     ///
     /// # Errors
     /// There is no such column, or it is not writable; the body is rigid and moves as the scene prescribes; too many

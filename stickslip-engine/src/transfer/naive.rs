@@ -169,8 +169,8 @@ impl<T: Real, const D: usize, B: Basis<T>> Stencil<T, D, B> {
         sum
     }
 
-    /// (sum v_i (x) S_i (x_i - x_p)) D^-1 with D = sum S_i (x_i - x_p) (x) (x_i - x_p); for linear functions, where D may
-    /// be zero, its limit L. Embedded in space [1/s].
+    /// (sum v_i (x) S_i (x_i - x_p)) D^-1 with D = sum S_i (x_i - x_p) (x) (x_i - x_p); for linear functions, where D
+    /// may be zero, its limit L. Embedded in space [1/s].
     pub fn affine(&self, nodes: &[NodeValues<T>; WINDOW_NODES], block: [i32; D]) -> Matrix<T> {
         if B::WIDTH == 2 {
             return self.velocity_gradient(nodes, block);

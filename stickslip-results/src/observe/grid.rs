@@ -82,7 +82,8 @@ impl Observer for GridObserver {
 /// The nodes of the last step's grid at a time [s] as a file for ParaView, ready to be written.
 ///
 /// Node by node and body by body: `mass` [kg], `velocity` [m/s], internal `force` [N], `contact_impulse` [N s] and the
-/// index of the `body`; the side of a `cell` [m] holds for the whole file. Of the `content` precision and compression count.
+/// index of the `body`; the side of a `cell` [m] holds for the whole file. Of the `content` precision and compression
+/// count.
 pub fn encode_grid(snapshot: &GridSnapshot, time: f64, content: &SnapshotContent) -> Vtu {
     let body: Vec<i32> = snapshot.body.iter().map(|&body| body as i32).collect();
     let mut file = Vtu::new(time, &snapshot.position, content);

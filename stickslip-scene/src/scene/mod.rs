@@ -532,7 +532,8 @@ pub enum Normal {
 pub struct Outputs {
     /// Rows of `bodies.csv`, `energy.csv` and `contacts.csv`.
     pub tables: f64,
-    /// Names of the bodies that have rows in `bodies.csv`; `None`: all. Those of which answers are known have them, too.
+    /// Names of the bodies that have rows in `bodies.csv`; `None`: all. Those of which answers are known have them,
+    /// too.
     pub bodies: Option<Vec<String>>,
     /// Particles for ParaView.
     pub particles: Option<f64>,

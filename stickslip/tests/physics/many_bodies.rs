@@ -7,8 +7,9 @@
 //! most twelve a disk, its first and second ring. The time for four times the bodies is printed, and near four times as
 //! long: nothing is quadratic. It is not asserted, because a test cannot know what else the machine does.
 //!
-//! A hundred thousand disks of one table are read, checked and filled with particles in seconds, of 1.9 million particles in
-//! 0.5 s, 3.9 s and 3.6 s on two cores of an EPYC that had other work. Asserted is a minute, which a machine that does much else keeps, and which what is quadratic does not.
+//! A hundred thousand disks of one table are read, checked and filled with particles in seconds, of 1.9 million
+//! particles in 0.5 s, 3.9 s and 3.6 s on two cores of an EPYC that had other work. Asserted is a minute, which a
+//! machine that does much else keeps, and which what is quadratic does not.
 
 use crate::trial::{distance, start, take_steps};
 use std::fmt::Write;

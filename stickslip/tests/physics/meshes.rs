@@ -7,10 +7,10 @@
 //!
 //! Expected: corners have few binary digits, so files say exactly what scenes say, and the motion is the same but for
 //! round-off: 1e-9 of the way. The filled ball has the volume of its polyhedron, 0.4 % below the ball's,
-//! within the stairs of its lattice: 1 %. A rigid block slides with the acceleration that friction leaves to 1e-4: it is set down on five
-//! points of one of its faces, and rocks by as little; a
-//! rigid ball and a cube part with the restitution of their rule to 1e-6 if they meet straight on, and keep momentum to
-//! round-off and angular momentum to what a step moves where they touch.
+//! within the stairs of its lattice: 1 %. A rigid block slides with the acceleration that friction leaves to 1e-4: it
+//! is set down on five points of one of its faces, and rocks by as little; a rigid ball and a cube part with the
+//! restitution of their rule to 1e-6 if they meet straight on, and keep momentum to round-off and angular momentum to
+//! what a step moves where they touch.
 
 use crate::trial::{RUBBER, distance, norm, run_to, start_in};
 use std::fs;

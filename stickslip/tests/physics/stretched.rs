@@ -4,11 +4,11 @@
 //! glued between two rigid grips, one of which moves away smoothly within 0.1 s (60 transits) and then stands; along
 //! x to 2.4 of its length, and along a line at 30 degrees to it to 1.8.
 //!
-//! Expected: sigma along the strip of F = diag(a, b, 1), a as pulled, where b is such that that across it is zero, in the
-//! middle third: by `cpdi`, whose domains deform with the particles, within 2 % on the average; the ends, which cannot
-//! become narrow, make 1 % of it. Along x no particle is off by more than 10 %; particles at the stairs of slanted sides
-//! are. Along x `gimp` tears at 1.6; along the slanted line, where neighbours share their corners only nearly, `cpdi`
-//! tears from 1.9 on (book, chapter 3).
+//! Expected: sigma along the strip of F = diag(a, b, 1), a as pulled, where b is such that that across it is zero, in
+//! the middle third: by `cpdi`, whose domains deform with the particles, within 2 % on the average; the ends, which
+//! cannot become narrow, make 1 % of it. Along x no particle is off by more than 10 %; particles at the stairs of
+//! slanted sides are. Along x `gimp` tears at 1.6; along the slanted line, where neighbours share their corners only
+//! nearly, `cpdi` tears from 1.9 on (book, chapter 3).
 
 use crate::trial::{mean_where, run_to, start};
 

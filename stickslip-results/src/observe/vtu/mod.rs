@@ -6,8 +6,8 @@
 //! u64 blocks, u64 bytes of a full block, u64 bytes of a partial last block (0: none),
 //! u64 compressed bytes of each block, the blocks
 //! ```
-//! Without compression it is a u64 of all bytes, and these. Blocks are independent. Numbers have the format that the file is made with; in double precision they keep all their
-//! bits, and reading gives exactly what was written.
+//! Without compression it is a u64 of all bytes, and these. Blocks are independent. Numbers have the format that the
+//! file is made with; in double precision they keep all their bits, and reading gives exactly what was written.
 
 mod read;
 mod write;
