@@ -153,6 +153,13 @@ class Scene:
         """
         return self._append("bodies", {"name": name, **keys})
 
+    def shape(self, name: str, shape: Any) -> Scene:
+        """A shape by name, to be used wherever a shape is: `shape="tooth"`, `within="clamp"`.
+
+        It may name those that were given before it.
+        """
+        return self._update("shapes", {name: shape})
+
     def packing(self, name: str, **keys: Any) -> Scene:
         """Bodies `name` 1, 2 ... at random places: `material`, `shape`, `within`, `count` or `solid_fraction` ...
 

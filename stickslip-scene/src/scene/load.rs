@@ -139,6 +139,24 @@ mod tests {
         assert_eq!((scene.outputs.tables, scene.outputs.particles), (0.005, Some(0.05)));
     }
 
+    /// A named shape is what it is where it is written out.
+    #[test]
+    fn shapes_have_names() {
+        let text = MINIMAL.replace(
+            "[space]",
+            "[shapes]\nhole.ball = { center = [0, 0, 1], radius = 1 }\n\
+             bored.difference = [{ box = { min = [-2, -2, -2], max = [2, 2, 2] } }, \"hole\"]\n[space]",
+        );
+        let shape =
+            text.lines().find(|line| line.starts_with("shape")).expect("a body has a shape").to_string();
+        let named = scene(&text.replace(&shape, "shape = \"bored\""), &[]);
+        let hole = Shape::Ball { center: [0.0, 0.0, 1.0], radius: 1.0 };
+        let cube = Shape::Box { min: [-2.0; 3], max: [2.0; 3] };
+        assert_eq!(named.bodies[0].shape, Shape::Difference(vec![cube, hole]));
+        let wider = scene(&text.replace(&shape, "shape = \"hole\""), &[("shapes.hole.ball.radius", "3")]);
+        assert_eq!(wider.bodies[0].shape, Shape::Ball { center: [0.0, 0.0, 1.0], radius: 3.0 });
+    }
+
     #[test]
     fn overrides_replace_parameters_and_keys() {
         let changed = scene(

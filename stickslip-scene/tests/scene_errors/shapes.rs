@@ -1,6 +1,6 @@
 //! Shapes that are none.
 
-use crate::{MINIMAL, check, edited};
+use crate::{MINIMAL, check, edited, message};
 
 /// Each mistake in a shape of a scene in space, with the message that it must give after the place and the shape's key.
 fn wrong(cases: &[(&str, &str)]) {
@@ -107,4 +107,40 @@ fn outlines_that_are_none() {
         "revolved = { polygon = [[1, 0], [2, 0], [2, 1]], center = [0, 0], axis = [0, 1] }",
         "65: bodies[0].shape.revolved.center: found [0, 0]; allowed: shapes other than one that is revolved, as the scene is plane",
     )]);
+}
+
+#[test]
+fn names_of_shapes_that_are_none() {
+    let shape = MINIMAL.lines().find(|line| line.starts_with("shape")).expect("a body has a shape");
+    let named = |written: &str| edited(MINIMAL, "[space]", &format!("[shapes]\n{written}\n\n[space]"));
+    let ball = named("tip.ball = { center = [0, 0, 0], radius = 1 }");
+    check(
+        &ball,
+        &[(
+            shape,
+            "shape = \"tipp\"",
+            "18:9: bodies[0].shape: found \"tipp\"; allowed: a shape such as shape.ball = { center = [0, 0, 1], \
+             radius = 1 }, or the name of one above it in [shapes] (\"tip\"); did you mean `tip`?",
+        )],
+    );
+    // Only those above: so no shape is made of itself.
+    let itself = "2:14: shapes.tip.union[0]: found \"tip\"; allowed: a shape such as shape.ball = { center = [0, 0, \
+                  1], radius = 1 }, or the name of one above it in [shapes]";
+    check(&named("tip.union = [\"tip\"]"), &[("", "", itself)]);
+}
+
+/// A few lines that would be more shapes than memory holds, or deeper than the stack.
+#[test]
+fn named_shapes_are_bounded() {
+    let named = |written: &str| edited(MINIMAL, "[space]", &format!("[shapes]\n{written}\n\n[space]"));
+    let begin = "s0.ball = { center = [0, 0, 0], radius = 1 }\n".to_string();
+    let ten = |k: usize| format!("s{}.union = [{}]\n", k + 1, vec![format!("\"s{k}\""); 10].join(", "));
+    let many = named(&(begin.clone() + &(0..8).map(ten).collect::<String>()));
+    let found = message(&many);
+    assert!(found.ends_with("allowed: names whose shapes take 400 MB of memory at most together"), "{found}");
+    let one = |k: usize| format!("s{}.union = [\"s{k}\"]\n", k + 1);
+    let deep = named(&(begin + &(0..40).map(one).collect::<String>()));
+    let nearer = "18:1: shapes.s16: found a shape that names others 16 deep; allowed: shapes that are nearer to those \
+                  they are made of";
+    check(&deep, &[("", "", nearer)]);
 }

@@ -14,6 +14,7 @@ mod loads;
 mod material;
 mod measurements;
 mod mesh;
+mod named_shapes;
 mod obj;
 mod outline;
 mod outputs;
@@ -40,6 +41,7 @@ use super::error::Fault;
 use super::parameters::{Dependence, Parameters};
 use super::source::{Declared, DocumentNode, Source, Value};
 use super::{Damping, Dimension, Gravity, Scene};
+use named_shapes::NamedShapes;
 use quantity::Acceleration;
 use read::{Read, table};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
@@ -53,6 +55,8 @@ pub struct Context<'a> {
     pub parameters: &'a Parameters<'a>,
     /// How many components vectors have.
     pub dimension: Dimension,
+    /// Shapes by name.
+    pub shapes: &'a NamedShapes,
     /// Where the file lies, and those that it names.
     pub folder: &'a Path,
     /// What reads those.
@@ -72,6 +76,8 @@ table! {
         gravity: Option<loads::VaryingVector<Acceleration>>,
         /// Named numbers, formulas and words for the rest of the file; `--set name=value` replaces one.
         parameters: Option<ParameterTable>,
+        /// Shapes by name, for use wherever a shape is: shape = "tooth", within = "clamp". Each may name those above it.
+        shapes: Option<named_shapes::ShapeTable>,
         /// Dimensions, cells, particles and domain.
         space: space::Space,
         /// Duration and time step.
@@ -122,9 +128,12 @@ pub(super) fn resolve(source: &Source, files: &dyn SceneFiles) -> Result<(Scene,
     let parameters = Parameters::new(source, file.parameters.as_ref().map_or(&[], |table| &table.0))?;
     let values = parameters.resolved()?;
     let folder = Path::new(source.name()).parent().unwrap_or(Path::new(""));
-    let mut context = Context { parameters: &parameters, dimension: Dimension::Space, folder, files };
+    let shapes = NamedShapes::default();
+    let mut context =
+        Context { parameters: &parameters, dimension: Dimension::Space, shapes: &shapes, folder, files };
     context.dimension = file.space.dimension.value(&context)?;
     let context = &context;
+    file.shapes.map_or(Ok(()), |table| table.resolve(context))?;
 
     let time = file.time.resolve(context)?;
     let materials = file.materials.resolve(context)?;

@@ -7,6 +7,7 @@ use super::quantity::{Angle, Length, QuantityInput, Ratio};
 use super::read::{Read, table};
 use super::solid::{Capsule, Cone, Ellipsoid, Ring, RoundedBox, Superquadric, Torus};
 use super::space::corners;
+use super::text::Text;
 use super::vector::VectorInput;
 use crate::geometry;
 use crate::scene::Dimension;
@@ -58,6 +59,9 @@ pub enum ShapeInput {
     Difference(Vec<ShapeInput>),
     /// A shape turned about a point.
     Rotated(Rotated),
+    /// The name of one of [shapes].
+    #[schemars(untagged)]
+    Named(Text),
 }
 
 /// Keys of the shapes.
@@ -174,6 +178,7 @@ impl ShapeInput {
             ShapeInput::Intersection(shapes) => geometry::Shape::Intersection(all(shapes)?),
             ShapeInput::Difference(shapes) => geometry::Shape::Difference(all(shapes)?),
             ShapeInput::Rotated(rotated) => rotated.resolve(context)?,
+            ShapeInput::Named(name) => context.shapes.named(name, context)?,
         })
     }
 }
@@ -225,10 +230,16 @@ pub(super) fn direction(vector: &VectorInput<Ratio>, context: &Context) -> Resul
 
 impl Read for ShapeInput {
     fn wanted() -> String {
-        format!("a shape ({}), like shape.ball = {{ center = [0, 0, 1], radius = 1 }}", KINDS.join(", "))
+        format!(
+            "a shape ({}), like shape.ball = {{ center = [0, 0, 1], radius = 1 }}, or a name from [shapes]",
+            KINDS.join(", ")
+        )
     }
 
     fn read(node: &DocumentNode) -> Result<Self, Fault> {
+        if let Value::Text(_) = node.value {
+            return Text::read(node).map(ShapeInput::Named);
+        }
         let Value::Table(children) = &node.value else { return Err(node.fault(Self::wanted())) };
         let child = match &children[..] {
             [child] => child,

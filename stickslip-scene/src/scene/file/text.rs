@@ -85,7 +85,10 @@ impl Text {
         if known.len() > MOST_LISTED {
             quoted.push(format!("and {} more", known.len() - MOST_LISTED));
         }
-        let allowed = format!("{what} ({})", quoted.join(", "));
+        let allowed = match &quoted[..] {
+            [] => what.to_string(),
+            _ => format!("{what} ({})", quoted.join(", ")),
+        };
         let begins = |other: &&str| other.strip_prefix(name).is_some_and(|rest| rest.starts_with(' '));
         let help = match is_pattern(name) {
             true => Some("in a pattern, `*` is any letters: none of these names match it".to_string()),
