@@ -2,7 +2,7 @@
 
 use crate::body::Body;
 use crate::contact::Rules;
-use crate::geometry::{Bounds, SignedDistance};
+use crate::geometry::{Bounds, Shape, SignedDistance};
 use crate::rigid::{Pose, RigidMotion};
 use crate::scene::{ContactLaw, Scene};
 use crate::tensor::{Real, Vector, cross};
@@ -40,6 +40,8 @@ struct RigidSurface {
     reach: f64,
     /// How far apart the points are [m].
     spacing: f64,
+    /// Its radius, if it is a ball or a disk [m].
+    ball: Option<f64>,
 }
 
 /// The surfaces of all rigid bodies that may touch others of them.
@@ -80,6 +82,7 @@ impl RigidSurfaces {
                     center: [0.0; 3],
                     reach: f64::INFINITY,
                     spacing,
+                    ball: None,
                 };
                 return unbounded;
             };
@@ -94,7 +97,11 @@ impl RigidSurfaces {
             let points: Vec<_> = points.into_iter().map(|point| point.position).collect();
             let far = |point: &[f64; 3]| (Vector(*point) - Vector(center)).norm();
             let reach = points.iter().map(far).fold(0.0, f64::max) + spacing;
-            RigidSurface { body: index, points, center, reach, spacing }
+            let ball = match body.shape {
+                Shape::Ball { radius, .. } => Some(radius),
+                _ => None,
+            };
+            RigidSurface { body: index, points, center, reach, spacing, ball }
         };
         let rigid = scene.bodies.iter().enumerate().filter(|(_, body)| body.is_rigid());
         let joined = (scene.joints.iter().filter(|joint| joint.holds()))
@@ -107,7 +114,7 @@ impl RigidSurfaces {
     ///
     /// Each point of a body's surface that is near another body is moved along its own surface, by no more than points
     /// are apart, to where it is nearest to the other one. Of a flat contact the points at its rim stay, which carry any
-    /// force and moment that all of them can.
+    /// force and moment that all of them can. Two balls touch on the line of their centres, and no point is looked at.
     pub fn contacts<T: Real, const D: usize>(
         &self,
         bodies: &[Body<T, D>],
@@ -147,6 +154,10 @@ impl RigidSurfaces {
         let [a, b] = pair;
         let away = (Vector(a.center) - Vector(b.center)).norm();
         let margin = AHEAD * (a.way(dt) + b.way(dt));
+        if let [Some(r), Some(s)] = pair.map(PlacedSurface::ball) {
+            found.extend(between_balls(pair, [r, s]).into_iter().filter(|contact| contact.gap <= margin));
+            return;
+        }
         // So a grain in the middle of a container looks at none of its points.
         let far = |one: &PlacedSurface<T, D>, other: &PlacedSurface<T, D>| {
             one.reach.is_finite() && other.level(one.center).distance > one.reach + margin
@@ -186,6 +197,21 @@ impl RigidSurfaces {
     }
 }
 
+/// Where two balls or disks of these radii are nearest: on the line of their centres, in the middle of the gap
+/// |a - b| - r - s. `None` where the centres are the same.
+fn between_balls<T, const D: usize>(
+    [a, b]: [&PlacedSurface<T, D>; 2],
+    [r, s]: [f64; 2],
+) -> Option<RigidContact> {
+    let off: [f64; 3] = std::array::from_fn(|k| if k < D { a.center[k] - b.center[k] } else { 0.0 });
+    let normal = Vector(off).direction()?;
+    let gap = Vector(off).norm() - r - s;
+    let middle = (Vector(b.center) + normal * (s + 0.5 * gap)).0;
+    // A disk is as high as its centre of mass.
+    let place = std::array::from_fn(|k| if k < D { middle[k] } else { b.motion.center[k] });
+    Some(RigidContact { bodies: [a, b].map(|placed| placed.surface.body), place, normal: normal.0, gap })
+}
+
 /// A surface where its body is now.
 struct PlacedSurface<'a, T, const D: usize> {
     surface: &'a RigidSurface,
@@ -201,6 +227,11 @@ impl<'a, T, const D: usize> PlacedSurface<'a, T, D> {
         let motion = body.motion.as_ref().expect("it is rigid");
         let pose = motion.pose();
         PlacedSurface { surface, body, motion, pose, center: pose.now(surface.center), reach: surface.reach }
+    }
+
+    /// Its radius, if it is a ball or a disk and not joined to itself [m].
+    fn ball(&self) -> Option<f64> {
+        self.surface.ball.filter(|_| !(0..D).any(|axis| self.body.whole.is_joined(axis)))
     }
 
     /// The longest way of its points in a step [m].
