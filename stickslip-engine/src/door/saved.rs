@@ -5,7 +5,7 @@ use crate::column::Kind;
 use crate::contact::ContactSums;
 use crate::load::LoadSums;
 use crate::rigid::{Pose, RigidState};
-use crate::step::{Disorder, JointSums, RelaxationProgress, WallSums};
+use crate::step::{Disorder, JointSums, RelaxationProgress, TouchForce, WallSums};
 use serde::{Deserialize, Serialize};
 
 /// All that a simulation is between two steps, whatever its dimension and precision. A simulation of the same scene
@@ -42,6 +42,9 @@ pub struct SavedState {
     pub(crate) walls: Vec<WallSums>,
     #[serde(default)]
     pub(crate) longest_rigid: Option<f64>,
+    /// What rigid bodies pushed each other with; nothing where none did.
+    #[serde(default)]
+    pub(crate) touch_forces: Vec<TouchForce>,
     /// What left the domain, body by body; nothing where nothing did.
     #[serde(default)]
     pub(crate) removed: Vec<RemovedParticles>,
@@ -98,6 +101,7 @@ impl SavedState {
             moved: Vec::new(),
             joints: Vec::new(),
             springs: Vec::new(),
+            touch_forces: Vec::new(),
             walls: Vec::new(),
             gravity_work: 0.0,
             removed: Vec::new(),

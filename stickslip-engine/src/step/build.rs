@@ -184,6 +184,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 joints: vec![JointSums::default(); scene.joints.len()],
                 removed,
                 written,
+                touch_forces: Vec::new(),
                 springs: vec![JointSums::default(); scene.springs.len()],
                 walls: vec![
                     WallSums::default();

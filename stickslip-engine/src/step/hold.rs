@@ -19,6 +19,7 @@ impl<T: Real, const D: usize> State<T, D> {
             ref loads,
             ref joints,
             ref springs,
+            ref touch_forces,
             ref walls,
             ref removed,
             ref written,
@@ -41,6 +42,7 @@ impl<T: Real, const D: usize> State<T, D> {
         self.loads.clone_from(loads);
         self.joints.clone_from(joints);
         self.springs.clone_from(springs);
+        self.touch_forces.clone_from(touch_forces);
         self.walls.clone_from(walls);
         self.removed.clone_from(removed);
         self.written.clone_from(written);

@@ -54,7 +54,7 @@ mod writing;
 
 pub use build::{build, build_on};
 pub(crate) use build::{heated_bodies, own_columns};
-pub(crate) use mechanism::JointSums;
+pub(crate) use mechanism::{JointSums, TouchForce};
 pub use pass::ParticleLoop;
 pub(crate) use relax::RelaxationProgress;
 pub(crate) use state::Disorder;

@@ -48,6 +48,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             moved: self.settings.loads.iter().map(moved).collect(),
             joints: self.state.joints.clone(),
             springs: self.state.springs.clone(),
+            touch_forces: self.state.touch_forces.clone(),
             walls: self.state.walls.clone(),
             longest_rigid: Some(self.state.longest_rigid).filter(|step| step.is_finite()),
             removed: self.state.removed.iter().copied().filter(|_| self.has_removed()).collect(),
@@ -84,7 +85,11 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         }
         let numbers =
             [saved.time, saved.damping, saved.impacts, saved.gravity_work, saved.signal.unwrap_or(1.0)];
-        if !numbers.iter().all(|x| x.is_finite()) || saved.time < 0.0 || !saved.contact_sums.are_of(wanted) {
+        let forces = saved.touch_forces.iter().flat_map(|touch| touch.place.iter().chain(&touch.force));
+        if !numbers.iter().chain(forces).all(|x| x.is_finite())
+            || saved.time < 0.0
+            || !saved.contact_sums.are_of(wanted)
+        {
             return Err(RestoreError("it has numbers that no run has".to_string()));
         }
         for (body, saved) in state.bodies.iter().zip(&saved.bodies) {
@@ -128,6 +133,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             _ => vec![WrittenValues::default(); wanted],
         };
         (state.loads, state.joints, state.springs) = (saved.loads, saved.joints, saved.springs);
+        state.touch_forces = saved.touch_forces;
         state.longest_rigid = saved.longest_rigid.unwrap_or(state.longest_rigid);
         (state.damping, state.relaxation) = (saved.damping, saved.relaxation);
         (state.impacts, state.gravity_work) = (saved.impacts, saved.gravity_work);

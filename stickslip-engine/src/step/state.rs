@@ -4,7 +4,7 @@ use super::account::NodeTotals;
 use super::cpu::Threads;
 use super::heat::Warmed;
 use super::loads::LoadRoom;
-use super::mechanism::{JointSums, Mechanism, RigidSurfaces};
+use super::mechanism::{JointSums, Mechanism, RigidSurfaces, TouchForce};
 use super::relax::RelaxationProgress;
 use super::springs::SpringRoom;
 use super::together::LawRoom;
@@ -75,6 +75,8 @@ pub struct State<T, const D: usize> {
     pub loads: Vec<LoadSums>,
     /// What joints did since the start.
     pub joints: Vec<JointSums>,
+    /// What rigid bodies pushed each other with in the last step.
+    pub touch_forces: Vec<TouchForce>,
     /// What left the domain with particles since the start, body by body.
     pub removed: Vec<RemovedParticles>,
     /// What was written to particles between steps since the start, body by body.

@@ -23,6 +23,7 @@ mod free_rigid;
 mod friction;
 mod glued_identity;
 mod gravity;
+mod heap;
 mod heat;
 mod images;
 mod initial_stress;

@@ -1,10 +1,11 @@
 //! Velocities of free rigid bodies, impulses of contact and those of joints, found together.
 
 use super::joint::poses;
-use super::row::{JointRow, Row, TOUCHING, solve};
+use super::row::{JointRow, Row};
 use super::six::{self, Six, SixFactor, SixMatrix, at, join};
 use super::surfaces::RigidSurfaces;
-use super::touch::Touch;
+use super::sweeps::{solve, tolerance as tolerance_of};
+use super::touch::{Touch, TouchForce};
 use super::{FreeBody, Mechanism, slot};
 use crate::body::Body;
 use crate::contact::{Impulses, Solve, Span};
@@ -128,7 +129,7 @@ impl<T: Real, const D: usize> Coupling<'_, T, D> {
             self.find_off(bodies, mechanism, dt);
             mechanism.rows.iter_mut().for_each(|held| held.row.respond(&factors));
             mechanism.touches.iter_mut().flat_map(Touch::rows_mut).for_each(|row| row.respond(&factors));
-            let held = solve(&mut mechanism.rows, &mut mechanism.touches, &mut changes, round_off);
+            let held = solve(&mut mechanism.rows, &mut mechanism.touches, (&mut changes, D), round_off);
             let (mut moved, mut speed) = (0.0_f64, 0.0_f64);
             for (free, change) in mechanism.bodies.iter_mut().zip(&changes) {
                 let gained = free.inertia.times(change);
@@ -139,7 +140,7 @@ impl<T: Real, const D: usize> Coupling<'_, T, D> {
                 speed = speed.max(free.speed(bodies)).max(free.size(&free.start)).max(free.pushed());
             }
             if round == 0 && !mechanism.touches.is_empty() {
-                first = 10.0 * TOUCHING * moved;
+                first = 10.0 * tolerance_of(mechanism.touches.len()) * moved;
             }
             if moved <= tolerance * speed + if placed { round_off + first } else { 0.0 } {
                 return held;
@@ -293,6 +294,17 @@ impl<T: Real, const D: usize> Coupling<'_, T, D> {
                 (slots, centers, start),
                 (D, dt, mechanism.gravity),
             ));
+        }
+        // Each force of the step before goes to the contact of its pair that is next to where it was.
+        let Mechanism { touches, before, .. } = mechanism;
+        for TouchForce { bodies, place, force } in before.iter() {
+            let first = touches.partition_point(|touch| touch.contact.bodies < *bodies);
+            let count = touches[first..].iter().take_while(|touch| touch.contact.bodies == *bodies).count();
+            let far = |touch: &Touch| (Vector(touch.contact.place) - Vector(*place)).norm();
+            let of_pair = touches[first..first + count].iter_mut();
+            if let Some(touch) = of_pair.min_by(|a, b| far(a).total_cmp(&far(b))) {
+                touch.expect((Vector(*force) * dt).0);
+            }
         }
     }
 

@@ -17,6 +17,7 @@ mod joint;
 mod row;
 mod six;
 mod surfaces;
+mod sweeps;
 mod touch;
 
 pub use coupling::Coupling;
@@ -35,6 +36,7 @@ use row::{JointRow, Row};
 use six::{Six, SixMatrix, join};
 use std::time::Instant;
 use touch::Touch;
+pub use touch::TouchForce;
 
 /// A step turns free rigid bodies by so much at most [rad].
 const TURN: f64 = 0.05;
@@ -50,6 +52,8 @@ pub struct Mechanism {
     rows: Vec<JointRow>,
     /// Where rigid bodies touch each other.
     touches: Vec<Touch>,
+    /// What they pushed each other with in the step before, in the order of pairs.
+    before: Vec<TouchForce>,
     /// When the step began [s].
     time: f64,
     /// Magnitude of gravity [m/s^2].
@@ -158,6 +162,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let mechanism = &mut self.workspace.mechanism;
         mechanism.time = self.state.time;
         mechanism.gravity = gravity;
+        mechanism.before.clone_from(&self.state.touch_forces);
         mechanism.bodies.clear();
         mechanism.bodies.extend((0..bodies.len()).filter_map(of));
         mechanism.links.clear();
@@ -237,6 +242,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 None => after,
             }
         };
+        self.state.touch_forces.clear();
+        let forces = mechanism.touches.iter().filter_map(|touch| touch.force(dt.f64()));
+        self.state.touch_forces.extend(forces);
         let mut work = 0.0;
         for touch in mechanism.touches.iter().filter(|touch| touch.normal.impulse > 0.0) {
             let means = touch.contact.bodies.map(mean);

@@ -5,9 +5,21 @@ use super::six::{Six, at};
 use super::surfaces::{RigidContact, tangents};
 use crate::contact::{RigidTouch, Rule};
 use crate::tensor::{Real, Vector};
+use serde::{Deserialize, Serialize};
 
 /// Part of an overlap that a step takes away, where gravity would give as much speed over that way.
 const RECOVERY: f64 = 0.2;
+
+/// What two rigid bodies push each other with at a place: with this the next step begins to look for its own.
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
+pub struct TouchForce {
+    /// Indices of the bodies, the smaller first.
+    pub bodies: [usize; 2],
+    /// Where [m].
+    pub place: [f64; 3],
+    /// On the first body [N].
+    pub force: [f64; 3],
+}
 
 /// A contact between two rigid bodies in a step. With the velocities v after the step, along its normal n and across,
 ///
@@ -61,6 +73,18 @@ impl Touch {
         }
     }
 
+    /// Lets it begin with a part of an impulse that is likely [N s].
+    pub fn expect(&mut self, impulse: [f64; 3]) {
+        let along = |row: &Row| Vector(super::six::parts(row.directions[0])[0]).dot(Vector(impulse));
+        self.normal.impulse += along(&self.normal).max(0.0);
+        // Where normals have turned, a part of a push is along the surface.
+        if self.friction > 0.0 {
+            for row in &mut self.tangents {
+                row.impulse += along(row);
+            }
+        }
+    }
+
     /// Its equations.
     pub fn rows(&self) -> impl Iterator<Item = &Row> {
         std::iter::once(&self.normal).chain(&self.tangents)
@@ -69,6 +93,13 @@ impl Touch {
     /// Its equations, to change.
     pub fn rows_mut(&mut self) -> impl Iterator<Item = &mut Row> {
         std::iter::once(&mut self.normal).chain(&mut self.tangents)
+    }
+
+    /// What it pushes the first body with in a step of `dt` [s], if it does.
+    pub fn force(&self, dt: f64) -> Option<TouchForce> {
+        let RigidTouch { bodies, push, rub, place, .. } = self.sum(0.0);
+        let force = ((Vector(push) + Vector(rub)) / dt).0;
+        (self.normal.impulse > 0.0).then_some(TouchForce { bodies, place, force })
     }
 
     /// What it did in the step, with the work that friction took [J].
@@ -80,10 +111,5 @@ impl Touch {
         let RigidContact { bodies, place, .. } = self.contact;
         let (push, rub) = (push.0, rub.0);
         RigidTouch { bodies, push, rub, place, friction }
-    }
-
-    /// The largest impulse of friction now; one of infinite friction sticks where it is pressed.
-    pub fn strength(&self) -> f64 {
-        if self.normal.impulse > 0.0 { self.friction * self.normal.impulse } else { 0.0 }
     }
 }

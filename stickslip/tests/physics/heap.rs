@@ -1,0 +1,93 @@
+//! A heap of rigid disks comes to rest and stays.
+//!
+//! Set-up: 168 rigid disks of diameter 0.9 to 1 fall into a bin and lie on each other at some three hundred places, with
+//! friction. So many contacts are solved with a tolerance, and a step begins with the impulses of the one before.
+//!
+//! Expected: at rest nothing overlaps by more than 1e-3 of a diameter, the heap sinks by less than that in the last
+//! seconds, and the floor bears its weight. A run that is taken up in between ends with the same bits.
+
+use crate::trial::{distance, run_to, start, take_steps};
+use stickslip::door::{ContactCursor, Simulation};
+
+const COLUMNS: usize = 12;
+const COUNT: usize = 14 * COLUMNS;
+
+fn radius(number: usize) -> f64 {
+    0.45 + 0.005 * ((7 * (number % COLUMNS) + 5 * (number / COLUMNS)) % 11) as f64
+}
+
+fn heap() -> Box<dyn Simulation> {
+    start(
+        r#"
+        gravity = [0, -1]
+        space = { dimension = "plane-strain", cell = 1 }
+        time = { end = 40, max_step = 0.02 }
+        materials.stone = { density = 1, neo_hookean = { young_modulus = 1e3, poisson_ratio = 0.3 } }
+        [[bodies]]
+        name = "bin"
+        material = "stone"
+        rigid = {}
+        shape.union = [
+            { box = { min = [-8, -1], max = [8, 0] } },
+            { box = { min = [-8, -1], max = [-6.4, 40] } },
+            { box = { min = [6.4, -1], max = [8, 40] } },
+        ]
+        [[bodies]]
+        name = "disk {j} {i}"
+        repeat = { j = 14, i = 12 }
+        material = "stone"
+        rigid.free = {}
+        [bodies.shape.ball]
+        center = ["(i - 5.5) * 1.05 + 0.03 * sin(7 * j + 3 * i)", "0.6 + j * 1.02"]
+        radius = "0.45 + 0.005 * mod(7 * i + 5 * j, 11)"
+        [[contact]]
+        friction = 0.5
+        "#,
+    )
+}
+
+fn centers(simulation: &dyn Simulation) -> Vec<[f64; 3]> {
+    simulation.bodies().iter().skip(1).map(|body| body.position).collect()
+}
+
+#[test]
+fn a_heap_of_rigid_disks_rests() {
+    let mut simulation = heap();
+    run_to(&mut *simulation, 30.0, |_| {});
+    let before = centers(&*simulation);
+    let mut cursor = ContactCursor::default();
+    cursor.read(&*simulation);
+    run_to(&mut *simulation, 35.0, |_| {});
+    let after = centers(&*simulation);
+    let sunk = before.iter().zip(&after).map(|(a, b)| distance(*a, *b)).fold(0.0, f64::max);
+    let mut overlap = 0.0_f64;
+    for i in 0..COUNT {
+        for j in 0..i {
+            overlap = overlap.max(radius(i) + radius(j) - distance(after[i], after[j]));
+        }
+    }
+    let weight: f64 = simulation.bodies().iter().skip(1).map(|body| body.mass).sum();
+    let contacts = cursor.read(&*simulation);
+    let borne: f64 = contacts.iter().filter(|pair| pair.body_a == 0).map(|pair| pair.mean.force[1]).sum();
+    println!(
+        "moved by {sunk:.1e}, overlap {overlap:.1e}, the bin bears {:.5} of the weight",
+        -borne / weight
+    );
+    assert!(overlap < 1e-3, "{overlap}");
+    assert!(sunk < 1e-3, "{sunk}");
+    assert!((borne.abs() / weight - 1.0).abs() < 1e-3, "{borne} {weight}");
+}
+
+#[test]
+fn a_heap_goes_on_as_if_nothing_had_been() {
+    let mut simulation = heap();
+    run_to(&mut *simulation, 5.0, |_| {});
+    let saved = simulation.save().expect("it has a state");
+    let mut other = heap();
+    other.restore(saved).expect("it is the same scene");
+    for simulation in [&mut simulation, &mut other] {
+        take_steps(&mut **simulation, 50);
+    }
+    let [whole, taken_up] = [&simulation, &other].map(|simulation| centers(&**simulation));
+    assert_eq!(whole, taken_up);
+}
