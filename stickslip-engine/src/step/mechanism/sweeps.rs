@@ -174,7 +174,8 @@ pub fn tolerance(touches: usize) -> f64 {
 
 /// Finds the impulses with which all equations hold, and adds what they change to the bodies' changes of velocity
 /// (projected Gauss-Seidel; friction on the disc of De Saxce and Feng 1998; of many contacts along conjugate
-/// directions from sweep to sweep); says whether they came to rest, down to velocities of `round_off`. In the plane, `dimension` 2, bodies move and turn in it.
+/// directions from sweep to sweep); says whether they came to rest, down to velocities of `round_off`. In the plane,
+/// `dimension` 2, bodies move and turn in it.
 pub fn solve(
     held: &mut [JointRow],
     touches: &mut [Touch],
@@ -205,7 +206,7 @@ fn sweep_until<const N: usize>(
     let mut direction = Direction::new(rows.len(), changes.len());
     let (mut begun, mut begun_changes) = (Vec::new(), Vec::new());
     let mut rests = false;
-    for _ in 0..MAX_SWEEPS {
+    for number in 1..=MAX_SWEEPS {
         if packed {
             begun.clear();
             begun.extend(rows.iter().map(|row| row.impulse));
@@ -230,7 +231,8 @@ fn sweep_until<const N: usize>(
         if rests {
             break;
         }
-        if packed {
+        // What the last sweep found holds all limits.
+        if packed && number < MAX_SWEEPS {
             direction.follow((&mut rows, &mut changes), (&begun, &begun_changes));
         }
     }
