@@ -226,6 +226,7 @@ fn every_key_and_word_of_scene_files_is_explained() {
         "damping",
         "health",
         "materials",
+        "shapes",
         "bodies",
         "packings",
         "images",

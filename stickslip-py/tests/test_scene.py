@@ -173,7 +173,8 @@ def test_every_table_of_the_language_has_its_method(tmp_path):
     scene.parameter(radius="5 cm").domain(("-20 cm", -0.2), (0.2, 0.2), x_min="symmetry")
     scene.material("rubber", density=1000, neo_hookean=dict(young_modulus=1e6, poisson_ratio=0.3))
     corner = ss.rotated(ss.polygon([(0.1, 0.1), (0.15, 0.1), (0.1, 0.15)]), (0.1, 0.1), "5 deg")
-    scene.body("disk", material="rubber", shape=ss.difference(ss.disk((0, 0), "radius"), ss.disk((0, 0), "2 cm")))
+    scene.shape("hole", ss.disk((0, 0), "2 cm"))
+    scene.body("disk", material="rubber", shape=ss.difference(ss.disk((0, 0), "radius"), "hole"))
     scene.body("corner", material="rubber", shape=ss.union(corner, ss.box((0.12, 0), (0.15, 0.03))))
     scene.body(
         "half", material="rubber", shape=ss.intersection(ss.disk((-0.1, 0.1), 0.03), ss.half_space((-0.1, 0.1), (0, 1)))
@@ -187,6 +188,7 @@ def test_every_table_of_the_language_has_its_method(tmp_path):
     scene.front("f", quantity="speed", threshold="1 mm/s", from_=(0, 0), direction=(1, 0), bodies=["disk"])
     scene.reference("disk", "x", "0 m/s * t", "at rest")
     found = record(scene)
+    assert found["bodies"][0]["shape"]["difference"][1] == {"ball": {"center": [0.0, 0.0, 0.0], "radius": 0.02}}
     assert [load["name"] for load in found["loads"]] == ["support 1", "load 1"]
     assert [len(found[key]) for key in ("bodies", "joints", "contact", "references")] == [4, 1, 2, 1]
     measured = found["outputs"]["measurements"]

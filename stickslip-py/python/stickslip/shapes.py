@@ -2,7 +2,7 @@
 
 Lengths are numbers [m], or text with a unit or a formula; angles are numbers [rad], or text (`"30 deg"`). Places and
 directions are sequences of two of them in the plane, (2,), and of three in space, (3,); directions may have any length.
-What is None has the default of the scene file.
+What is None has the default of the scene file. A shape that is text is the name of one that `Scene.shape` gave.
 """
 
 from __future__ import annotations
@@ -132,22 +132,22 @@ def mesh(file: Any, scale: Any = None, translation: Any = None, section: Any = N
     return {"mesh": {"file": file, "scale": scale, "translation": translation, "section": section}}
 
 
-def union(*shapes: Shape) -> Shape:
+def union(*shapes: Shape | str) -> Shape:
     """All that lies in any of them."""
     return {"union": list(shapes)}
 
 
-def intersection(*shapes: Shape) -> Shape:
+def intersection(*shapes: Shape | str) -> Shape:
     """What lies in all of them."""
     return {"intersection": list(shapes)}
 
 
-def difference(first: Shape, *others: Shape) -> Shape:
+def difference(first: Shape | str, *others: Shape | str) -> Shape:
     """The first without the others."""
     return {"difference": [first, *others]}
 
 
-def rotated(shape: Shape, center: Any, angle: Any, axis: Any = None) -> Shape:
+def rotated(shape: Shape | str, center: Any, angle: Any, axis: Any = None) -> Shape:
     """A shape turned by an `angle` [rad] about the point `center`, (2,) or (3,) [m].
 
     In space it turns about an `axis` (3,) through that point.
