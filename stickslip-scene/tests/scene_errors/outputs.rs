@@ -139,7 +139,7 @@ fn measurements() {
         (
             "arrivals = [{ quantity = \"vx\", threshold = 1, probes = [\"p\"] }]",
             "outputs.arrivals[0].probes[0]: found \"p\"",
-            "the name of a probe ()",
+            "allowed: the name of a probe",
         ),
         (
             "fronts = [{ name = \"f\", quantity = \"xx\", threshold = 1, from = [0, 0, 0], direction = [0, 0, 0] }]",
