@@ -1,8 +1,17 @@
 //! Requests to the viewer: an address, and headers.
 
+use crate::is_one_in;
 use crate::template::Template;
 use std::sync::OnceLock;
 use stickslip_cli::door::{PORT, Viewer};
+
+/// Of requests for what takes long, one in so many is answered, all where they are replayed: the page, which is packed,
+/// and fringes, which are drawn.
+const ANSWERED: [(&str, u64); 2] = if cfg!(feature = "libfuzzer") {
+    [("/", 50), ("/fringes/", 10_000)]
+} else {
+    [("/", 1), ("/fringes/", 1)]
+};
 
 /// Answers a request: its first line is the address, the others are headers.
 pub fn run(bytes: &[u8]) {
@@ -10,6 +19,13 @@ pub fn run(bytes: &[u8]) {
     let Ok(text) = str::from_utf8(bytes) else { return };
     let mut lines = text.lines();
     let address = lines.next().unwrap_or_default();
+    let takes_long = |(kind, count): &(&str, u64)| {
+        let is_asked = address == *kind || (kind.len() > 1 && address.starts_with(kind));
+        is_asked && !is_one_in(*count, bytes)
+    };
+    if ANSWERED.iter().any(takes_long) {
+        return;
+    }
     let headers: Vec<(&str, &str)> =
         lines.filter_map(|line| line.split_once(':')).map(|(name, value)| (name, value.trim())).collect();
     let viewer =

@@ -16,6 +16,9 @@ pub struct Quantity {
     pub unit: String,
     /// The value that is special (zero, or a volume that did not change), if there is one for sure.
     pub middle: Option<f64>,
+    /// The column that it follows from.
+    #[serde(skip)]
+    column: FileColumn,
     #[serde(skip)]
     measure: Measure,
 }
@@ -48,6 +51,7 @@ fn of_column(column: &FileColumn) -> Vec<Quantity> {
         label,
         unit: column.unit.clone(),
         middle: None,
+        column: column.clone(),
         measure,
     };
     let components = |names: &[&str]| -> Vec<Quantity> {
@@ -74,20 +78,13 @@ fn of_column(column: &FileColumn) -> Vec<Quantity> {
 }
 
 impl Quantity {
-    /// The column that it follows from.
-    fn column(&self) -> &str {
-        self.id.split('.').next().unwrap_or_default()
-    }
-
     /// Its value at every particle of a file, in the order of the file.
     ///
     /// # Errors
-    /// The file is cut short.
+    /// The file has no such column, or is cut short.
     pub fn values(&self, file: &ParticleFile) -> Result<Vec<f32>, ReadError> {
-        let column = file.columns().find(|column| column.name == self.column());
-        let Some(column) = column else { return Ok(Vec::new()) };
-        let components = column.kind.components();
-        let held = file.column(column)?;
+        let components = self.column.kind.components();
+        let held = file.column(self.column.clone())?;
         Ok(held.values.chunks_exact(components).map(|numbers| self.measure.of(numbers) as f32).collect())
     }
 }
@@ -120,7 +117,7 @@ mod tests {
             "stress.xx stress.yy stress.zz stress.xy stress.yz stress.xz stress"
         );
         let volume = &of_column(&column("deformation", Kind::Tensor))[0];
-        assert_eq!((volume.column(), volume.middle), ("deformation", Some(1.0)));
+        assert_eq!((&volume.column.name[..], volume.middle), ("deformation", Some(1.0)));
         assert_eq!(volume.measure.of(&[2.0, 0.0, 0.0, 0.0, 3.0, 0.0, 0.0, 0.0, 0.5]), 3.0);
         assert_eq!(Measure::Norm.of(&[3.0, 4.0, 0.0]), 5.0);
     }
