@@ -24,7 +24,7 @@ pub const PNG: Kind<'static> = Kind { name: "PNG", start: b"\x89PNG", mark: b"So
 pub const SVG: Kind<'static> = Kind { name: "SVG", start: b"<svg", mark: COMMENT.as_bytes() };
 pub const PDF: Kind<'static> = Kind { name: "PDF", start: b"%PDF", mark: b"/Producer (Stickslip)" };
 pub const GLB: Kind<'static> =
-    Kind { name: "model in glTF", start: b"glTF", mark: crate::picture::GENERATOR.as_bytes() };
+    Kind { name: "model in glTF", start: b"glTF", mark: stickslip::surface::model::GENERATOR.as_bytes() };
 pub const GRAPHML: Kind<'static> = Kind { name: "GraphML", start: b"<?xml", mark: COMMENT.as_bytes() };
 /// As [`crate::page`] writes them.
 pub const PAGE: Kind<'static> =

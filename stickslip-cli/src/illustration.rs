@@ -4,7 +4,7 @@ use crate::chart::{ChartChoice, chart};
 use crate::drawing::{Background, ColorMap, DrawError, Scale, save};
 use crate::failure::Failure;
 use crate::picture::{
-    self, BoxCorners, ColorQuantity, Model, PicturePart, PictureStyle, Quarters, Setting, Skins, Subject,
+    self, BoxCorners, ColorQuantity, PicturePart, PictureStyle, Quarters, Setting, Skins, Subject,
     SymmetryPlane, ViewPath, Viewpoint,
 };
 use crate::view;
@@ -15,6 +15,7 @@ use stickslip::door::ParticleSnapshot;
 use stickslip::image::Image;
 use stickslip::observe::{Frame, Results};
 use stickslip::scene::NamePattern;
+use stickslip::surface::model::Model;
 
 /// A way to draw snapshots.
 pub trait Pictures {
@@ -195,7 +196,7 @@ impl<'a> Album<'a> {
         let particles = particles(self.results, &self.shown, frame)?;
         let subject = self.subject(&particles);
         let model = picture::model(&subject, &self.setting, (frame.time, &self.style(&subject, frame)));
-        if model.bodies() == 0 {
+        if model.parts().is_empty() {
             return Err(missing("no surface of any body"));
         }
         Ok(model)

@@ -5,7 +5,7 @@ Set-up: the two rings in the plane, and a ball in space, each with snapshots of 
 Expected: every reader finds all particles and columns bit for bit; triangles of surfaces enclose the area or the volume
 of the particles (those of the start: within 3 % in the plane and 6 % for the ball, whose surface lies within half a
 particle); the mass of the nodes is that of the particles (round-off). Before the first step the grid has no nodes, and meshio
-refuses files without points. Packages that are not installed are skipped; `./check` installs meshio and VTK, `./check
+refuses files without points; it knows no polygons (`.vtp`), for which a run can write grids (`.vtu`). Packages that are not installed are skipped; `./check` installs meshio and VTK, `./check
 --all` the others, too.
 """
 
@@ -36,7 +36,8 @@ def by_vtk(path: Path) -> Found:
     from vtkmodules.util.numpy_support import vtk_to_numpy
 
     complaints: list[str] = []
-    reader = io.vtkXMLUnstructuredGridReader()
+    polygons = path.suffix == ".vtp"
+    reader = io.vtkXMLPolyDataReader() if polygons else io.vtkXMLUnstructuredGridReader()
     for event in ("ErrorEvent", "WarningEvent"):
         reader.AddObserver(event, lambda _, name: complaints.append(name))
     reader.SetFileName(str(path))
@@ -46,28 +47,47 @@ def by_vtk(path: Path) -> Found:
     data, points = grid.GetPointData(), grid.GetPoints()
     arrays = {data.GetArrayName(i): vtk_to_numpy(data.GetArray(i)) for i in range(data.GetNumberOfArrays())}
     kinds = {grid.GetCellType(i) for i in range(grid.GetNumberOfCells())}
-    joined = vtk_to_numpy(grid.GetCells().GetConnectivityArray())
+    joined = vtk_to_numpy((grid.GetPolys() if polygons else grid.GetCells()).GetConnectivityArray())
     cells = {KINDS[kind]: joined.reshape(grid.GetNumberOfCells(), -1) for kind in kinds}
     return vtk_to_numpy(points.GetData()), cells, arrays
 
 
 def by_pyvista(path: Path) -> Found:
     mesh = pytest.importorskip("pyvista").read(path)
-    cells = {KINDS[kind]: cells for kind, cells in mesh.cells_dict.items()} if mesh.n_cells else {}
+    if path.suffix == ".vtp":
+        cells = {"triangle": mesh.regular_faces}
+    else:
+        cells = {KINDS[kind]: cells for kind, cells in mesh.cells_dict.items()} if mesh.n_cells else {}
     return np.asarray(mesh.points), cells, {name: np.asarray(mesh.point_data[name]) for name in mesh.point_data}
 
 
 READERS = [by_meshio, by_vtk, by_pyvista]
 
 
+def run(space: str, folder: Path, **outputs) -> ss.Results:
+    """Of a run with files of every kind."""
+    scene = rings() if space == "plane" else flying("3d").time(end="10 ms")
+    times = dict(particles="5 ms", surfaces="5 ms", grid="5 ms")
+    scene.outputs(tables="1 ms", snapshots=dict(precision="double"), **times, **outputs).run(folder)
+    return ss.Results(folder)
+
+
 @pytest.fixture(scope="module", params=["plane", "space"])
 def results(request, tmp_path_factory) -> ss.Results:
-    """Of a run with files of every kind."""
-    folder = tmp_path_factory.mktemp(request.param) / "results"
-    scene = rings() if request.param == "plane" else flying("3d").time(end="10 ms")
-    times = dict(particles="5 ms", surfaces="5 ms", grid="5 ms")
-    scene.outputs(tables="1 ms", snapshots=dict(precision="double"), **times).run(folder)
-    return ss.Results(folder)
+    """With surfaces as polygons."""
+    return run(request.param, tmp_path_factory.mktemp(request.param) / "results")
+
+
+@pytest.fixture(scope="module", params=["plane", "space"])
+def with_grids(request, tmp_path_factory) -> ss.Results:
+    """With surfaces as unstructured grids."""
+    return run(request.param, tmp_path_factory.mktemp(request.param) / "grids", surface_format="vtu")
+
+
+@pytest.fixture(scope="module", params=["plane", "space"])
+def with_models(request, tmp_path_factory) -> ss.Results:
+    """With surfaces as models."""
+    return run(request.param, tmp_path_factory.mktemp(request.param) / "models", surface_format="glb")
 
 
 def files(results: ss.Results, kind: str) -> list[Path]:
@@ -86,7 +106,8 @@ def enclosed(corners: np.ndarray, triangles: np.ndarray, plane: bool) -> float:
 
 
 @pytest.mark.parametrize("read", READERS)
-def test_every_file_of_a_run_is_opened(results, read: Callable[[Path], Found]):
+def test_every_file_of_a_run_is_opened(with_grids, read: Callable[[Path], Found]):
+    results = with_grids
     frames = [results.frame(number) for number in range(len(results.times))]
     particles, surfaces, grids = (files(results, kind) for kind in ("particles", "surfaces", "grid"))
     assert len(particles) == len(frames) == len(surfaces) == len(grids)
@@ -98,11 +119,7 @@ def test_every_file_of_a_run_is_opened(results, read: Callable[[Path], Found]):
         for name, found in arrays.items():
             assert np.array_equal(found.reshape(frame[name].shape), frame[name]), name
 
-        corners, triangles, at_corners = skin
-        plane, own = not corners[:, 2].any(), frame["volume"].sum()
-        assert enclosed(corners, triangles["triangle"], plane) == pytest.approx(own, rel=0.03 if plane else 0.06)
-        assert set(at_corners) == {"velocity", "von_mises", "body"}
-        assert set(at_corners["body"].ravel()) == set(frame["body"])
+        are_surfaces(skin, frame)
 
         if frame.time == 0.0 and read is by_meshio:
             continue
@@ -114,28 +131,65 @@ def test_every_file_of_a_run_is_opened(results, read: Callable[[Path], Found]):
         assert at_nodes["mass"].sum() == pytest.approx(frame["mass"].sum(), rel=1e-9)
 
 
-def test_a_model_is_opened_with_its_surfaces_and_colours(results, tmp_path):
+def are_surfaces(skin: Found, frame: ss.Frame) -> None:
+    """Whether triangles are the surfaces of the bodies in a snapshot."""
+    corners, triangles, at_corners = skin
+    plane, own = not corners[:, 2].any(), frame["volume"].sum()
+    assert enclosed(corners, triangles["triangle"], plane) == pytest.approx(own, rel=0.03 if plane else 0.06)
+    assert set(at_corners) == {"velocity", "von_mises", "body"}
+    assert set(at_corners["body"].ravel()) == set(frame["body"])
+
+
+@pytest.mark.parametrize("read", [by_vtk, by_pyvista])
+def test_polygons_are_opened(results, read: Callable[[Path], Found]):
+    paths = files(results, "surfaces")
+    assert [path.suffix for path in paths] == [".vtp"] * len(results.times)
+    for number, path in enumerate(paths):
+        are_surfaces(read(path), results.frame(number))
+
+
+def test_models_of_a_run_are_opened(with_models):
+    rows = np.genfromtxt(with_models.folder / "surfaces.csv", delimiter=",", names=True, dtype=None, encoding=None)
+    assert np.array_equal(rows["time"], with_models.times) and not (with_models.folder / "surfaces.pvd").exists()
+    for number, path in enumerate(rows["path"]):
+        frame = with_models.frame(number)
+        bodies = model(with_models.folder / path)
+        assert len(bodies) == len(with_models.names)
+        total = 0.0
+        for corners, triangles, at_corners in bodies:
+            plane = not corners[:, 2].any()
+            total += enclosed(corners, triangles["triangle"], plane)
+            assert len(at_corners["_VELOCITY"]) == len(at_corners["_VON_MISES"]) == len(corners)
+        assert total == pytest.approx(frame["volume"].sum(), rel=0.03 if plane else 0.06)
+
+
+def model(path: Path) -> list[Found]:
+    """The surface of each body in a model."""
     pytest.importorskip("vtkmodules.vtkIOGeometry")
     from vtkmodules.util.numpy_support import vtk_to_numpy
     from vtkmodules.vtkIOGeometry import vtkGLTFReader
 
+    reader = vtkGLTFReader()
+    reader.SetFileName(str(path))
+    reader.Update()
+    found = []
+    for mesh in meshes(reader.GetOutput()):
+        data = mesh.GetPointData()
+        arrays = {data.GetArrayName(i): vtk_to_numpy(data.GetArray(i)) for i in range(data.GetNumberOfArrays())}
+        triangles = vtk_to_numpy(mesh.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+        found.append((vtk_to_numpy(mesh.GetPoints().GetData()), {"triangle": triangles}, arrays))
+    return found
+
+
+def test_a_model_is_opened_with_its_surfaces_and_colours(results, tmp_path):
     if not results.frame(0)["position"][:, 2].any():
         with pytest.raises(ss.ResultsError, match="--out: found a plane scene"):
             ss.render(results, out=tmp_path / "ball.glb")
         return
     ss.render(results, color="von_mises", out=tmp_path / "ball.glb")
-    reader = vtkGLTFReader()
-    reader.SetFileName(str(tmp_path / "ball.glb"))
-    reader.Update()
-    surface = meshes(reader.GetOutput())
-    assert len(surface) == 1, "one body"
-    polygons = surface[0].GetPolys()
-    corners = vtk_to_numpy(surface[0].GetPoints().GetData())
-    triangles = vtk_to_numpy(polygons.GetConnectivityArray()).reshape(-1, 3)
+    ((corners, triangles, names),) = model(tmp_path / "ball.glb")
     own = results.frame(-1)["volume"].sum()
-    assert enclosed(corners, triangles, plane=False) == pytest.approx(own, rel=0.06), "triangles face outward"
-    data = surface[0].GetPointData()
-    names = [data.GetArrayName(i) for i in range(data.GetNumberOfArrays())]
+    assert enclosed(corners, triangles["triangle"], plane=False) == pytest.approx(own, rel=0.06), "triangles face outward"
     assert any("COLOR_0" in name.upper() for name in names) and any("NORMAL" in name.upper() for name in names)
     # The frame is the last: the ball has flown and fallen; up, in the scene as in the model, is y.
     assert corners.mean(axis=0) == pytest.approx(results.frame(-1)["position"].mean(axis=0), abs=0.02)

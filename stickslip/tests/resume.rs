@@ -375,6 +375,7 @@ friction = 0.3
 tables = 0.005
 particles = 0.1
 surfaces = 0.05
+surface_format = "glb"
 checkpoints = 0.02
 "#;
 
@@ -745,6 +746,30 @@ fn outputs_that_are_left_out_for_a_while_come_back_as_they_were() {
 }
 
 /// Outputs that the checkpoint does not know begin there, also where a run that had them was killed before its own.
+/// The format of the scene is for runs that begin.
+#[test]
+fn surfaces_go_on_in_the_format_that_they_have() {
+    let folder = tempfile::tempdir().unwrap();
+    let formatted = |format: &str| {
+        let surfaces = format!("surfaces = 0.01\nsurface_format = \"{format}\"");
+        scene(&TORN.replace("surfaces = 0.01", &surfaces))
+    };
+    for (first, then) in [("vtu", "glb"), ("glb", "vtp")] {
+        let [whole, parts] = ["whole", "parts"].map(|part| folder.path().join(first).join(part));
+        start(&formatted(first), &whole).unwrap();
+        start_and_stop(&formatted(first), &parts, 30);
+        go_on(&formatted(then), &parts).unwrap();
+        assert_same_run(&whole, &parts);
+        let verified = stickslip::observe::verify(&parts).unwrap();
+        assert!(verified.wrong.is_empty(), "{verified:?}");
+        let damaged = parts.join(format!("surfaces/00001.{first}"));
+        let mut bytes = fs::read(&damaged).unwrap();
+        *bytes.last_mut().unwrap() ^= 1;
+        fs::write(&damaged, bytes).unwrap();
+        assert_eq!(stickslip::observe::verify(&parts).unwrap().wrong[0].path, damaged);
+    }
+}
+
 #[test]
 fn outputs_that_the_checkpoint_does_not_know_begin_there() {
     let folder = tempfile::tempdir().unwrap();

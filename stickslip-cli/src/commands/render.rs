@@ -317,7 +317,7 @@ impl Arguments {
         let written =
             model.encode().and_then(|bytes| files::write(out, files::GLB, |file| file.write_all(&bytes)));
         written.map_err(|source| DrawError::Write { path: out.to_path_buf(), source })?;
-        let bodies = match model.bodies() {
+        let bodies = match model.parts().len() {
             1 => "surface of one body".to_owned(),
             several => format!("surfaces of {several} bodies"),
         };

@@ -3,25 +3,6 @@
 /// Red, green and blue from 0 to 1.
 pub type Rgb = [f32; 3];
 
-/// Colours that stay apart for colour-blind readers, in the order of the bodies.
-const BODIES: [[u8; 3]; 10] = [
-    [224, 122, 63],
-    [126, 150, 176],
-    [88, 158, 120],
-    [232, 184, 76],
-    [150, 110, 170],
-    [196, 88, 100],
-    [80, 164, 190],
-    [166, 136, 106],
-    [214, 140, 170],
-    [142, 148, 96],
-];
-
-/// The colour of a body.
-pub fn body_color(body: usize) -> Rgb {
-    BODIES[body % BODIES.len()].map(|c| f32::from(c) / 255.0)
-}
-
 /// The colour times a factor, or mixed towards white where the factor is over 1.
 pub fn shaded(color: Rgb, factor: f32) -> Rgb {
     if factor <= 1.0 { color.map(|c| c * factor) } else { color.map(|c| 1.0 - (1.0 - c) * (2.0 - factor)) }

@@ -8,8 +8,9 @@ mod ticks;
 
 pub use background::Background;
 pub use canvas::{Canvas, Ink, SAMPLES, register_font, save, without_background};
-pub use colors::{ColorMap, Rgb, Scale, body_color, shaded};
+pub use colors::{ColorMap, Rgb, Scale, shaded};
 pub use pdf::PdfPage;
+pub use stickslip::surface::body_color;
 pub use ticks::{Prefix, axis_prefix, label, prefix, ticks};
 
 use std::path::PathBuf;

@@ -21,7 +21,6 @@ mod surface;
 
 pub use camera::{ViewPath, Viewpoint};
 pub use grains::{Quarters, quarters};
-pub use model::{GENERATOR, Model};
 pub use quantity::{ColorQuantity, QuantityParser, determinant};
 pub use setting::{Floor, Setting, SymmetryPlane};
 pub use skins::Skins;
@@ -41,6 +40,7 @@ use skins::Mesh;
 use std::sync::Arc;
 use stickslip::door::ParticleSnapshot;
 use stickslip::image::Image;
+use stickslip::surface::model::Model;
 use stickslip::tensor::Vector;
 
 /// How a picture is to look.
@@ -483,7 +483,7 @@ fn mesh(subject: &Subject, look: &PictureStyle) -> Mesh {
 
 /// The surfaces of bodies in a snapshot in space at a time [s].
 pub fn model(subject: &Subject, setting: &Setting, (time, look): (f64, &PictureStyle)) -> Model {
-    Model::new(&mesh(subject, look), (subject, setting), (time, look))
+    model::model(&mesh(subject, look), (subject, setting), (time, look))
 }
 
 #[cfg(test)]

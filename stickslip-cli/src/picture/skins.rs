@@ -7,8 +7,8 @@ use std::collections::HashSet;
 use stickslip::door::ParticleSnapshot;
 use stickslip::geometry::Bounds;
 use stickslip::scene::Scene;
-use stickslip::surface::{CarriedSkin, Skin};
-use stickslip::tensor::{Vector, cross};
+use stickslip::surface::{self, CarriedSkin, Skin};
+use stickslip::tensor::Vector;
 
 /// The surfaces of a run's bodies, tied to the particles of its first snapshot.
 #[derive(Clone, Debug)]
@@ -166,23 +166,13 @@ impl Mesh {
 
     /// Unit normal of a triangle; zero of one without area.
     pub fn face(&self, triangle: usize) -> Point {
-        self.area(triangle).direction().unwrap_or(Vector::ZERO)
-    }
-
-    /// Twice a triangle's area along its normal [m^2].
-    fn area(&self, triangle: usize) -> Point {
-        let [a, b, c] = self.triangles[triangle].map(|corner| self.corners[corner as usize]);
-        Vector(cross((b - a).0, (c - a).0))
+        let corners = self.triangles[triangle].map(|corner| self.corners[corner as usize]);
+        surface::area(corners).direction().unwrap_or(Vector::ZERO)
     }
 
     /// Normals at the corners: those of the triangles around, by their areas.
     fn turn_outwards(&mut self) {
-        let mut sums = vec![Vector::ZERO; self.corners.len()];
-        for (triangle, corners) in self.triangles.iter().enumerate() {
-            let area = self.area(triangle);
-            corners.iter().for_each(|&corner| sums[corner as usize] += area);
-        }
-        self.normals = sums.into_iter().map(|sum| sum.direction().unwrap_or(Vector::ZERO)).collect();
+        self.normals = surface::normals(&self.corners, &self.triangles);
     }
 }
 

@@ -69,10 +69,10 @@ pub enum ReadProblem {
     /// `run.json` is not as a run writes it.
     #[error("{}", shown(.0))]
     Manifest(#[from] serde_json::Error),
-    /// A `.pvd` or `.vtu` file is not XML.
+    /// A file for ParaView is not XML.
     #[error("{}", shown(.0))]
     Xml(#[from] quick_xml::Error),
-    /// A `.pvd` or `.vtu` file holds something other than a run writes.
+    /// A file of a series, or its list, holds something other than a run writes.
     #[error("{}", shown(.0))]
     Layout(String),
 }

@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Files that a run may leave in its folder.
-const FILES: [&str; 20] = [
+const FILES: [&str; 21] = [
     BODIES,
     ENERGY,
     CONTACTS,
@@ -37,6 +37,7 @@ const FILES: [&str; 20] = [
     FRINGES_ANIMATION,
     "particles.pvd",
     "surfaces.pvd",
+    "surfaces.csv",
     "grid.pvd",
     Manifest::FILE,
 ];
@@ -328,10 +329,11 @@ fn remove_empty(path: &Path) -> Result<(), FolderError> {
     }
 }
 
-/// `00012.vtu`, `00012.png`, a checkpoint, or the same not yet renamed.
+/// `00012.vtu`, `00012.vtp`, `00012.glb`, `00012.png`, a checkpoint, or the same not yet renamed.
 fn is_snapshot(name: &str) -> bool {
     let name = name.strip_suffix(".part").or_else(|| name.strip_suffix(".damaged")).unwrap_or(name);
-    let numbered = (name.strip_suffix(".vtu").or_else(|| name.strip_suffix(".png")))
+    let numbered = (["vtu", "vtp", "glb", "png"].iter())
+        .find_map(|kind| name.strip_suffix(kind)?.strip_suffix('.'))
         .is_some_and(|number| number.len() >= 5 && number.bytes().all(|b| b.is_ascii_digit()));
     numbered || is_checkpoint(name)
 }
@@ -424,6 +426,7 @@ mod tests {
     fn snapshots_are_known_by_name() {
         assert!(is_snapshot("00000.vtu") && is_snapshot("123456.vtu") && is_snapshot("00003.vtu.part"));
         assert!(is_snapshot("00004.png") && is_snapshot("0000000012.checkpoint.part"));
-        assert!(!is_snapshot("mine.vtu") && !is_snapshot("1.vtu") && !is_snapshot("00000.vtp"));
+        assert!(!is_snapshot("mine.vtu") && !is_snapshot("1.vtu") && !is_snapshot("00000.stl"));
+        assert!(is_snapshot("00001.vtp") && is_snapshot("00002.glb") && !is_snapshot("00002vtp"));
     }
 }

@@ -1,13 +1,17 @@
-//! Snapshots through time: numbered `.vtu` files, and the `.pvd` file that tells ParaView their times.
+//! Snapshots through time: numbered files, and the list that tells their times: for ParaView's own a `.pvd`, else a
+//! table.
 
 use super::file::{
-    FileSum, OutputError, ReadError, ReadProblem, is_there, read_bytes, remove_from, replace, secure,
+    FileSum, OutputError, ReadError, ReadProblem, is_there, read_bytes, remove_from, replace, replace_summed,
+    secure,
 };
 use super::folder::OutputFolder;
 use super::memory::Memory;
-use super::vtu::Vtu;
+use super::vtk::{PointArrays, VtkFile};
 use super::writer::Writer;
 use super::xml::attribute;
+use crate::scene::SeriesFormat;
+use crate::surface::model::Model;
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 use std::fs;
@@ -19,25 +23,73 @@ use std::path::{Component, Path, PathBuf};
 pub struct Frame {
     /// Simulated time [s].
     pub time: f64,
-    /// The `.vtu` file.
+    /// The file.
     pub path: PathBuf,
 }
 
-/// A growing series of snapshots, written by a thread of its own. The `.pvd` file lists those that are complete,
-/// at any time.
+/// A snapshot as a file, ready to be written: it borrows nothing, so that another thread may write it.
+pub(super) enum FrameFile {
+    /// For ParaView.
+    Vtk(VtkFile),
+    /// In glTF.
+    Model(Model),
+}
+
+impl FrameFile {
+    /// Writes it; it appears under its name once complete.
+    ///
+    /// # Errors
+    /// The disk is full or refuses, or the file would be larger than its format allows; then no file of this name
+    /// appears.
+    fn put(&self, path: &Path) -> Result<FileSum, OutputError> {
+        match self {
+            FrameFile::Vtk(file) => file.put(path),
+            FrameFile::Model(model) => {
+                let bytes = model.encode().map_err(OutputError::at(path))?;
+                replace_summed(path, |file| file.write_all(&bytes))
+            }
+        }
+    }
+
+    /// Reads all of a file, as far as it can tell by itself whether it is whole.
+    ///
+    /// # Errors
+    /// Something is cut short or damaged.
+    pub(super) fn check(path: &Path) -> Result<(), ReadError> {
+        if path.extension().is_none_or(|kind| kind != ending(SeriesFormat::Glb)) {
+            return PointArrays::open(path)?.check();
+        }
+        let bytes = read_bytes(path).map_err(|error| ReadProblem::Io(error).at(path))?;
+        Model::check(&bytes).map_err(|what| ReadProblem::Layout(format!("no {what}")).at(path))
+    }
+}
+
+impl From<VtkFile> for FrameFile {
+    fn from(file: VtkFile) -> Self {
+        FrameFile::Vtk(file)
+    }
+}
+
+/// A growing series of snapshots, written by a thread of its own. Its list has those that are complete, at any time.
 pub(super) struct Frames {
     writer: Writer<Series>,
 }
 
 impl Frames {
-    /// A series, `name.pvd` and files in the folder `name`: empty, or what is there of a run that goes on.
-    pub(super) fn create(folder: &OutputFolder, name: &'static str) -> Result<Self, OutputError> {
+    /// A series, the list `name.pvd` or `name.csv` and files in the folder `name`: empty, or what is there of a run that
+    /// goes on, in its format.
+    pub(super) fn create(
+        folder: &OutputFolder,
+        name: &'static str,
+        format: SeriesFormat,
+    ) -> Result<Self, OutputError> {
         let path = folder.join(name);
         fs::create_dir_all(&path).map_err(OutputError::at(&path))?;
-        let series = Series { folder: folder.clone(), name, times: Vec::new(), sums: Vec::new(), secured: 0 };
+        let files = SeriesFiles::find(folder.path(), name, format);
+        let series = Series { files, times: Vec::new(), sums: Vec::new(), secured: 0 };
         // That of a run that goes on stays until it is cut.
-        if !series.collection().exists() {
-            series.write_collection()?;
+        if !series.files.list().exists() {
+            series.write_list()?;
         }
         Ok(Frames { writer: Writer::start(series, &path, folder.waiting())? })
     }
@@ -50,10 +102,18 @@ impl Frames {
         self.writer.make_room()
     }
 
-    /// Hands over a snapshot at a time [s] that takes so many bytes; a second one at the time of the last takes its
-    /// place.
-    pub(super) fn push(&mut self, time: f64, bytes: usize, encode: impl FnOnce() -> Vtu + Send + 'static) {
-        self.writer.hand_over(bytes, move |series| series.push(time, &encode()));
+    /// Hands over a snapshot at a time [s] that takes so many bytes, to be made in the format of the series; a second
+    /// one at the time of the last takes its place.
+    pub(super) fn push(
+        &mut self,
+        time: f64,
+        bytes: usize,
+        encode: impl FnOnce(SeriesFormat) -> FrameFile + Send + 'static,
+    ) {
+        self.writer.hand_over(bytes, move |series| {
+            let file = encode(series.files.format);
+            series.push(time, &file)
+        });
     }
 
     /// Keeps which snapshots there are, or takes away those that were made later.
@@ -88,10 +148,62 @@ impl Frames {
     }
 }
 
-/// The files of a series.
-struct Series {
-    folder: OutputFolder,
+/// Where the files of a series lie.
+pub(super) struct SeriesFiles {
+    /// That of the run.
+    folder: PathBuf,
     name: &'static str,
+    format: SeriesFormat,
+}
+
+/// How names of files of a format end.
+fn ending(format: SeriesFormat) -> &'static str {
+    match format {
+        SeriesFormat::Vtu => "vtu",
+        SeriesFormat::Vtp => "vtp",
+        SeriesFormat::Glb => "glb",
+    }
+}
+
+impl SeriesFiles {
+    /// Those that are there, or else those in a format: the list tells which a run wrote.
+    pub(super) fn find(folder: &Path, name: &'static str, otherwise: SeriesFormat) -> Self {
+        let of = |format| SeriesFiles { folder: folder.to_path_buf(), name, format };
+        let is_there = |files: &SeriesFiles| {
+            let frames = files.frames().unwrap_or_default();
+            frames.first().is_some_and(|frame| files.path(0) == frame.path)
+        };
+        let known = [SeriesFormat::Vtu, SeriesFormat::Vtp, SeriesFormat::Glb].map(of);
+        known.into_iter().find(is_there).unwrap_or_else(|| of(otherwise))
+    }
+
+    /// The list of files and their times.
+    pub(super) fn list(&self) -> PathBuf {
+        let kind = if self.format == SeriesFormat::Glb { "csv" } else { "pvd" };
+        self.folder.join(format!("{}.{kind}", self.name))
+    }
+
+    /// The snapshots that the list has.
+    ///
+    /// # Errors
+    /// It is missing, or not as a run writes it.
+    pub(super) fn frames(&self) -> Result<Vec<Frame>, ReadError> {
+        if self.format == SeriesFormat::Glb { read_table(&self.list()) } else { read_frames(&self.list()) }
+    }
+
+    /// The file of a snapshot.
+    pub(super) fn path(&self, number: usize) -> PathBuf {
+        self.folder.join(self.file(number))
+    }
+
+    fn file(&self, number: usize) -> String {
+        format!("{}/{number:05}.{}", self.name, ending(self.format))
+    }
+}
+
+/// A series that grows.
+struct Series {
+    files: SeriesFiles,
     times: Vec<f64>,
     /// Of each, what is in its file; unknown of those that are older than sums.
     sums: Vec<Option<FileSum>>,
@@ -101,17 +213,17 @@ struct Series {
 
 impl Series {
     /// Adds a snapshot; after an error the series is as it was.
-    fn push(&mut self, time: f64, snapshot: &Vtu) -> Result<(), OutputError> {
+    fn push(&mut self, time: f64, snapshot: &FrameFile) -> Result<(), OutputError> {
         if self.times.last() == Some(&time) {
             let last = self.times.len() - 1;
             self.secured = self.secured.min(last);
-            self.sums[last] = Some(snapshot.put(&self.path(last))?);
+            self.sums[last] = Some(snapshot.put(&self.files.path(last))?);
             return Ok(());
         }
-        let path = self.path(self.times.len());
+        let path = self.files.path(self.times.len());
         self.sums.push(Some(snapshot.put(&path)?));
         self.times.push(time);
-        self.write_collection().inspect_err(|_| {
+        self.write_list().inspect_err(|_| {
             // A snapshot that no list names only takes the room that the record of the failed run needs.
             let _ = fs::remove_file(&path);
             self.times.pop();
@@ -121,12 +233,12 @@ impl Series {
 
     /// Waits until all of it is on the disk.
     fn secure(&mut self) -> Result<(), OutputError> {
-        for path in (self.secured..self.times.len()).map(|number| self.path(number)) {
+        for path in (self.secured..self.times.len()).map(|number| self.files.path(number)) {
             secure(&path)?;
         }
         self.secured = self.times.len();
-        secure(&self.collection())?;
-        secure(&self.folder.join(self.name))
+        secure(&self.files.list())?;
+        secure(&self.files.folder.join(self.files.name))
     }
 
     /// Takes away all but the snapshots at these times.
@@ -136,35 +248,30 @@ impl Series {
         in_earnest: bool,
     ) -> Result<(), OutputError> {
         sums.resize(times.len(), None);
-        (sums.iter().enumerate()).try_for_each(|(number, sum)| is_there(&self.path(number), sum.as_ref()))?;
+        (sums.iter().enumerate())
+            .try_for_each(|(number, sum)| is_there(&self.files.path(number), sum.as_ref()))?;
         if !in_earnest {
             return Ok(());
         }
         (self.times, self.sums) = (times, sums);
         self.secured = self.secured.min(self.times.len());
-        remove_from((self.times.len()..).map(|number| self.path(number)))?;
-        self.write_collection()
+        remove_from((self.times.len()..).map(|number| self.files.path(number)))?;
+        self.write_list()
     }
 
-    fn collection(&self) -> PathBuf {
-        self.folder.join(&format!("{}.pvd", self.name))
-    }
-
-    fn path(&self, number: usize) -> PathBuf {
-        self.folder.join(&self.file(number))
-    }
-
-    fn file(&self, number: usize) -> String {
-        format!("{}/{number:05}.vtu", self.name)
-    }
-
-    fn write_collection(&self) -> Result<(), OutputError> {
-        replace(&self.collection(), |xml| {
+    fn write_list(&self) -> Result<(), OutputError> {
+        let files = self.times.iter().enumerate().map(|(number, time)| (time, self.files.file(number)));
+        if self.files.format == SeriesFormat::Glb {
+            return replace(&self.files.list(), |table| {
+                writeln!(table, "{TABLE_HEADER}")?;
+                files.into_iter().try_for_each(|(time, file)| writeln!(table, "{time:e},{file}"))
+            });
+        }
+        replace(&self.files.list(), |xml| {
             writeln!(xml, "<?xml version=\"1.0\"?>")?;
             writeln!(xml, "<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">")?;
             writeln!(xml, "<Collection>")?;
-            for (number, time) in self.times.iter().enumerate() {
-                let file = self.file(number);
+            for (time, file) in files {
                 writeln!(xml, "<DataSet timestep=\"{time:e}\" part=\"0\" file=\"{file}\"/>")?;
             }
             writeln!(xml, "</Collection>")?;
@@ -190,13 +297,33 @@ pub(super) fn read_frames(path: &Path) -> Result<Vec<Frame>, ReadError> {
     read().map_err(|problem| problem.at(path))
 }
 
-fn frame(tag: &BytesStart, collection: &Path) -> Result<Frame, ReadProblem> {
+/// The first line of a list that is a table.
+const TABLE_HEADER: &str = "time,path";
+
+/// The snapshots that such a list has.
+fn read_table(path: &Path) -> Result<Vec<Frame>, ReadError> {
+    let read = || -> Result<Vec<Frame>, ReadProblem> {
+        let bytes = read_bytes(path)?;
+        let mut reader = csv::Reader::from_reader(&bytes[..]);
+        let rows: Result<Vec<(f64, String)>, csv::Error> = reader.deserialize().collect();
+        let frame = |(time, file): (f64, String)| Ok(Frame { time, path: listed(&file, path)? });
+        rows?.into_iter().map(frame).collect()
+    };
+    read().map_err(|problem| problem.at(path))
+}
+
+fn frame(tag: &BytesStart, list: &Path) -> Result<Frame, ReadProblem> {
     let file: String = attribute(tag, "file")?;
-    let inside = Path::new(&file).components().all(|part| matches!(part, Component::Normal(_)));
+    Ok(Frame { time: attribute(tag, "timestep")?, path: listed(&file, list)? })
+}
+
+/// A file that a list names: one of its folder.
+fn listed(file: &str, list: &Path) -> Result<PathBuf, ReadProblem> {
+    let inside = Path::new(file).components().all(|part| matches!(part, Component::Normal(_)));
     if !inside || file.is_empty() {
         return Err(ReadProblem::Layout(format!("it lists `{file}`, which is no file of the folder")));
     }
-    Ok(Frame { time: attribute(tag, "timestep")?, path: collection.with_file_name(file) })
+    Ok(list.with_file_name(file))
 }
 
 #[cfg(test)]
@@ -217,6 +344,21 @@ mod tests {
             let error = list(file).unwrap_err().to_string();
             assert!(error.contains("no file of the folder"), "{file}: {error}");
         }
+    }
+
+    #[test]
+    fn the_format_of_a_series_is_that_of_its_files() {
+        let folder = tempfile::tempdir().unwrap();
+        let find = || SeriesFiles::find(folder.path(), "surfaces", SeriesFormat::Vtp).format;
+        assert_eq!(find(), SeriesFormat::Vtp, "as wanted where there are none");
+        fs::write(folder.path().join("surfaces.csv"), "time,path\n0e0,surfaces/00000.glb\n").unwrap();
+        assert_eq!(find(), SeriesFormat::Glb);
+        let files = SeriesFiles::find(folder.path(), "surfaces", SeriesFormat::Vtu);
+        assert_eq!(files.frames().unwrap(), [Frame { time: 0.0, path: files.path(0) }]);
+        fs::remove_file(files.list()).unwrap();
+        let entry = "<DataSet timestep=\"0\" part=\"0\" file=\"surfaces/00000.vtu\"/>";
+        fs::write(folder.path().join("surfaces.pvd"), format!("<Collection>{entry}</Collection>")).unwrap();
+        assert_eq!(find(), SeriesFormat::Vtu, "as earlier versions wrote them");
     }
 
     #[test]

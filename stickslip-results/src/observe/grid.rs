@@ -5,10 +5,10 @@ use super::folder::OutputFolder;
 use super::frames::Frames;
 use super::memory::Memory;
 use super::schedule::Schedule;
-use super::vtu::{NUMBER, VECTOR, Vtu};
+use super::vtk::{NUMBER, VECTOR, VtkFile};
 use super::{GRID, Observer};
 use crate::door::{GridSnapshot, View};
-use crate::scene::{Scene, SnapshotContent};
+use crate::scene::{Scene, SeriesFormat, SnapshotContent};
 
 /// Bytes of a node in a snapshot: 13 numbers and a whole one.
 const NODE_BYTES: usize = 13 * size_of::<f64>() + size_of::<u32>();
@@ -27,7 +27,7 @@ impl GridObserver {
     pub(super) fn create(scene: &Scene, folder: &OutputFolder) -> Result<Self, OutputError> {
         Ok(GridObserver {
             schedule: Schedule::every(scene.outputs.grid.unwrap_or(f64::INFINITY)),
-            frames: Frames::create(folder, GRID)?,
+            frames: Frames::create(folder, GRID, SeriesFormat::Vtu)?,
             content: scene.outputs.snapshots.clone(),
             taken_up: None,
         })
@@ -55,7 +55,7 @@ impl Observer for GridObserver {
         let snapshot = self.grid(view);
         let bytes = NODE_BYTES * snapshot.mass.len();
         let content = self.content.clone();
-        self.frames.push(time, bytes, move || encode_grid(&snapshot, time, &content));
+        self.frames.push(time, bytes, move |_| encode_grid(&snapshot, time, &content).into());
         self.schedule.recorded(time);
         Ok(())
     }
@@ -84,9 +84,9 @@ impl Observer for GridObserver {
 /// Node by node and body by body: `mass` [kg], `velocity` [m/s], internal `force` [N], `contact_impulse` [N s] and the
 /// index of the `body`; the side of a `cell` [m] holds for the whole file. Of the `content` precision and compression
 /// count.
-pub fn encode_grid(snapshot: &GridSnapshot, time: f64, content: &SnapshotContent) -> Vtu {
+pub fn encode_grid(snapshot: &GridSnapshot, time: f64, content: &SnapshotContent) -> VtkFile {
     let body: Vec<i32> = snapshot.body.iter().map(|&body| body as i32).collect();
-    let mut file = Vtu::new(time, &snapshot.position, content);
+    let mut file = VtkFile::new(time, &snapshot.position, content);
     file.field("dimension", snapshot.dimension as f64);
     file.field("cell", snapshot.cell);
     file.real("mass", NUMBER, &snapshot.mass);

@@ -38,7 +38,7 @@ mod sections;
 mod surfaces;
 mod table;
 mod verify;
-mod vtu;
+mod vtk;
 mod waiting;
 mod writer;
 mod xml;
@@ -75,7 +75,7 @@ pub use schedule::Schedule;
 pub use sections::SectionRow;
 pub use table::{CellValue, TableRow};
 pub use verify::{Verified, verify};
-pub use vtu::Vtu;
+pub use vtk::VtkFile;
 pub use waiting::{Patience, Waiting};
 pub use writer::Writer;
 

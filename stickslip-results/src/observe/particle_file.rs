@@ -1,7 +1,7 @@
 //! A file of particles, opened: who needs few of its columns reads those, one by one.
 
 use super::file::ReadError;
-use super::vtu::PointArrays;
+use super::vtk::PointArrays;
 use crate::column::{DERIVED, EVERY, IDENTITY, Kind};
 use crate::door::SnapshotColumn;
 use std::path::Path;

@@ -6,11 +6,11 @@ use super::frames::Frames;
 use super::memory::Memory;
 use super::particle_file::ParticleFile;
 use super::schedule::Schedule;
-use super::vtu::{PointArrays, Vtu};
+use super::vtk::{PointArrays, VtkFile};
 use super::{Observer, PARTICLES};
 use crate::column::{ColumnDescription, DERIVED, IDENTITY, Kind, every, in_files};
 use crate::door::{ColumnSource, ParticleSnapshot, SnapshotColumn, View};
-use crate::scene::{Body, Scene, SnapshotContent};
+use crate::scene::{Body, Scene, SeriesFormat, SnapshotContent};
 use std::collections::HashSet;
 use std::path::Path;
 use std::sync::Arc;
@@ -32,7 +32,12 @@ impl ParticlesObserver {
         let wanted: Option<HashSet<&String>> = content.bodies.as_ref().map(|names| names.iter().collect());
         let is_wanted = |body: &Body| wanted.as_ref().is_none_or(|names| names.contains(&body.name));
         let bodies = scene.bodies.iter().map(is_wanted).collect();
-        Ok(ParticlesObserver { schedule, frames: Frames::create(folder, PARTICLES)?, content, bodies })
+        Ok(ParticlesObserver {
+            schedule,
+            frames: Frames::create(folder, PARTICLES, SeriesFormat::Vtu)?,
+            content,
+            bodies,
+        })
     }
 }
 
@@ -52,7 +57,7 @@ impl Observer for ParticlesObserver {
             false => snapshot.only(|body, number| self.bodies[body as usize] && number % every == 0),
         };
         let content = self.content.clone();
-        self.frames.push(time, snapshot.bytes(), move || encode_particles(&snapshot, time, &content));
+        self.frames.push(time, snapshot.bytes(), move |_| encode_particles(&snapshot, time, &content).into());
         self.schedule.recorded(time);
         Ok(())
     }
@@ -76,12 +81,12 @@ impl Observer for ParticlesObserver {
 /// It holds the columns of the snapshot, and behind each those of [`DERIVED`] that follow from it; first vectors and
 /// tensors, then whose each particle is, then numbers, then history. What a reader cannot know, the units of history,
 /// the file says. Of the `content` all but bodies and `every` count here.
-pub fn encode_particles(snapshot: &ParticleSnapshot, time: f64, content: &SnapshotContent) -> Vtu {
-    let mut file = Vtu::new(time, &snapshot.position, content);
+pub fn encode_particles(snapshot: &ParticleSnapshot, time: f64, content: &SnapshotContent) -> VtkFile {
+    let mut file = VtkFile::new(time, &snapshot.position, content);
     file.field("dimension", snapshot.dimension as f64);
     let wanted =
         |name: &str| content.columns.as_ref().is_none_or(|wanted| wanted.iter().any(|wanted| wanted == name));
-    let add_with_derived = |file: &mut Vtu, (column, values): (ColumnDescription, &[f64])| {
+    let add_with_derived = |file: &mut VtkFile, (column, values): (ColumnDescription, &[f64])| {
         if wanted(column.name) {
             file.described((column.name, ""), column.kind, values);
         }

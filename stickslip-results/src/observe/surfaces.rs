@@ -1,29 +1,43 @@
-//! `surfaces.pvd`: the surfaces of bodies through time, for ParaView.
+//! `surfaces.pvd` or `surfaces.csv`: the surfaces of bodies through time, for ParaView or as models.
 
 use super::file::OutputError;
 use super::folder::OutputFolder;
-use super::frames::Frames;
+use super::frames::{FrameFile, Frames};
 use super::memory::Memory;
 use super::schedule::Schedule;
-use super::vtu::{NUMBER, VECTOR, Vtu};
+use super::vtk::{NUMBER, VECTOR, VtkFile};
 use super::{Observer, SURFACES};
 use crate::column::DERIVED;
 use crate::door::{ParticleSnapshot, View};
 use crate::geometry::{Bounds, Shape, sites};
 use crate::rigid::Pose;
-use crate::scene::{Scene, SnapshotContent};
-use crate::surface::{CarriedSkin, Skin};
-use crate::tensor::cross;
+use crate::scene::{Scene, SeriesFormat, SnapshotContent};
+use crate::surface::model::{Model, ModelPart, upright};
+use crate::surface::{self, CarriedSkin, Skin};
+use crate::tensor::{Vector, cross};
 use rayon::prelude::*;
+use serde_json::json;
 use std::sync::Arc;
 
-/// Writes `surfaces.pvd` and `surfaces/`.
+/// Writes `surfaces.pvd` or `surfaces.csv`, and `surfaces/`.
 pub(super) struct SurfacesObserver {
     schedule: Schedule,
     frames: Frames,
     surfaces: Arc<Vec<Surface>>,
-    /// Of what files hold.
+    labels: Arc<Labels>,
+}
+
+/// What files say beside the surfaces, and how they say it.
+struct Labels {
+    /// Number format and packing of what ParaView reads.
     content: SnapshotContent,
+    title: String,
+    /// Names of all bodies.
+    bodies: Vec<String>,
+    /// Of space.
+    dimension: usize,
+    /// Directions that lead right, up and to the viewer; up is against gravity at the start.
+    directions: [[f64; 3]; 3],
 }
 
 /// The surface of a body.
@@ -41,7 +55,7 @@ enum Moved {
 }
 
 /// The surfaces at one time.
-#[derive(Default)]
+#[derive(Clone, Default)]
 struct Corners {
     position: Vec<[f64; 3]>,
     velocity: Vec<[f64; 3]>,
@@ -57,9 +71,9 @@ impl SurfacesObserver {
     pub(super) fn create(scene: &Scene, folder: &OutputFolder) -> Result<Self, OutputError> {
         Ok(SurfacesObserver {
             schedule: Schedule::every(scene.outputs.surfaces.unwrap_or(f64::INFINITY)),
-            frames: Frames::create(folder, SURFACES)?,
+            frames: Frames::create(folder, SURFACES, scene.outputs.surface_format)?,
             surfaces: Arc::new(surfaces_of(scene)),
-            content: scene.outputs.snapshots.clone(),
+            labels: Arc::new(Labels::of(scene)),
         })
     }
 }
@@ -75,9 +89,10 @@ impl Observer for SurfacesObserver {
         let (snapshot, poses) = (view.snapshot(), view.poses());
         let spins: Vec<[[f64; 3]; 2]> = view.bodies().iter().map(|body| [body.velocity, body.spin]).collect();
         let corners = self.surfaces.iter().map(|surface| surface.moved.skin().corners.len()).sum::<usize>();
-        let (surfaces, content) = (self.surfaces.clone(), self.content.clone());
-        self.frames.push(time, snapshot.bytes() + CORNER_BYTES * corners, move || {
-            encode_surfaces(&corners_of(&surfaces, &snapshot, (&poses, &spins)), time, &content)
+        let (surfaces, labels) = (self.surfaces.clone(), self.labels.clone());
+        self.frames.push(time, snapshot.bytes() + CORNER_BYTES * corners, move |format| {
+            let parts = corners_of(&surfaces, &snapshot, (&poses, &spins));
+            labels.encode(parts, time, format)
         });
         self.schedule.recorded(time);
         Ok(())
@@ -133,13 +148,13 @@ impl Moved {
     }
 }
 
-/// All surfaces as they are now: of rigid bodies by their poses, velocities and spins, of others by their particles.
-/// Bodies that lost particles have none any more.
+/// Each surface as it is now: of rigid bodies by their poses, velocities and spins, of others by their particles. Bodies
+/// that lost particles have none any more.
 fn corners_of(
     surfaces: &[Surface],
     snapshot: &ParticleSnapshot,
     (poses, spins): (&[Option<Pose>], &[[[f64; 3]; 2]]),
-) -> Corners {
+) -> Vec<Corners> {
     let part = |surface: &Surface| -> Corners {
         let body = surface.body;
         let skin = surface.moved.skin();
@@ -183,7 +198,11 @@ fn corners_of(
         corners.body = vec![body as i32; corners.position.len()];
         corners
     };
-    let parts: Vec<Corners> = surfaces.par_iter().map(part).collect();
+    surfaces.par_iter().map(part).filter(|part| !part.body.is_empty()).collect()
+}
+
+/// All of them together.
+fn joined(parts: Vec<Corners>) -> Corners {
     let mut all = Corners::default();
     for part in parts {
         let first = all.position.len() as u32;
@@ -202,21 +221,82 @@ fn von_mises(stress: &[f64; 6]) -> f64 {
     (derived.expect("it is a derived column").value)(stress)
 }
 
+impl Labels {
+    fn of(scene: &Scene) -> Self {
+        Labels {
+            content: scene.outputs.snapshots.clone(),
+            title: scene.title.clone(),
+            bodies: scene.bodies.iter().map(|body| body.name.clone()).collect(),
+            dimension: scene.dimension.axes(),
+            directions: upright(scene.gravity.at(0.0), scene.dimension.axes()),
+        }
+    }
+
+    /// Surfaces at a time [s] as a file.
+    fn encode(&self, parts: Vec<Corners>, time: f64, format: SeriesFormat) -> FrameFile {
+        match format {
+            SeriesFormat::Vtu => {
+                encode_surfaces(&joined(parts), time, (VtkFile::of_triangles, &self.content))
+            }
+            SeriesFormat::Vtp => encode_surfaces(&joined(parts), time, (VtkFile::of_polygons, &self.content)),
+            SeriesFormat::Glb => FrameFile::Model(self.model(&parts, time)),
+        }
+    }
+
+    /// Surfaces at a time [s] as a model: each body in its colour, and at each corner its velocity [m/s] and the von
+    /// Mises stress [Pa].
+    fn model(&self, parts: &[Corners], time: f64) -> Model {
+        let short = |vectors: &[[f64; 3]]| vectors.iter().map(|v| v.map(|x| x as f32)).collect::<Vec<_>>();
+        let part = |corners: &Corners| {
+            let body = corners.body[0] as usize;
+            let places: Vec<Vector<f64, 3>> = corners.position.iter().copied().map(Vector).collect();
+            // Areas in the plane face the viewer; slivers among their triangles may be turned over by rounding.
+            let flat = Vector([0.0, 0.0, 1.0]);
+            let mut normals = surface::normals(&places, &corners.triangles);
+            normals.iter_mut().filter(|n| self.dimension == 2 || **n == Vector::ZERO).for_each(|n| *n = flat);
+            let normals: Vec<[f64; 3]> = normals.into_iter().map(|normal| normal.0).collect();
+            ModelPart {
+                name: self.bodies[body].clone(),
+                color: surface::body_color(body),
+                positions: short(&corners.position),
+                normals: short(&normals),
+                colors: Vec::new(),
+                triangles: corners.triangles.clone(),
+                vectors: vec![("_VELOCITY", short(&corners.velocity))],
+                numbers: vec![(
+                    "_VON_MISES",
+                    corners.von_mises.iter().map(|&stress| stress as f32).collect(),
+                )],
+            }
+        };
+        let units = json!({ "POSITION": "m", "_VELOCITY": "m/s", "_VON_MISES": "Pa" });
+        let extras = json!({ "title": self.title, "time": time, "units": units });
+        Model::new(parts.iter().map(part).collect(), self.directions, extras)
+    }
+}
+
+/// A file for ParaView of points and triangles at a time [s].
+type OfTriangles = fn(f64, (&[[f64; 3]], &[[u32; 3]]), &SnapshotContent) -> VtkFile;
+
 /// Surfaces at a time [s] as a file for ParaView: triangles, and at each corner the `velocity` [m/s], the `von_mises`
 /// stress [Pa] and the index of the `body`.
-fn encode_surfaces(corners: &Corners, time: f64, content: &SnapshotContent) -> Vtu {
-    let mut file = Vtu::of_triangles(time, (&corners.position, &corners.triangles), content);
+fn encode_surfaces(
+    corners: &Corners,
+    time: f64,
+    (made, content): (OfTriangles, &SnapshotContent),
+) -> FrameFile {
+    let mut file = made(time, (&corners.position, &corners.triangles), content);
     file.real("velocity", VECTOR, corners.velocity.as_flattened());
     file.real("von_mises", NUMBER, &corners.von_mises);
     file.whole("body", &corners.body);
-    file
+    file.into()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::observe::vtu::PointArrays;
-    use crate::scene::{self, Precision};
+    use crate::observe::vtk::PointArrays;
+    use crate::scene;
 
     /// A plate of prescribed motion, a free one, a disk that deforms and a floor, after half a second without forces.
     #[test]
@@ -224,6 +304,7 @@ mod tests {
         let text = r#"
             space = { dimension = "plane-strain", cell = 0.1, domain = { min = [-2, -1], max = [6, 5] } }
             time.end = 1
+            outputs.snapshots.precision = "double"
             materials.gel = { density = 1000, neo_hookean = { young_modulus = 1e4, poisson_ratio = 0.3 } }
             [[bodies]]
             name = "plate"
@@ -256,7 +337,8 @@ mod tests {
         }
         let surfaces = surfaces_of(&scene);
         let motions: Vec<_> = simulation.bodies().iter().map(|body| [body.velocity, body.spin]).collect();
-        let corners = corners_of(&surfaces, &simulation.snapshot(), (&simulation.poses(), &motions));
+        let parts = corners_of(&surfaces, &simulation.snapshot(), (&simulation.poses(), &motions));
+        let corners = joined(parts.clone());
         let mut first = 0;
         for (surface, (center, velocity, spin, area)) in surfaces.iter().zip([
             ([0.5, 0.25], [1.0, 2.0], 3.0, 0.5),
@@ -288,13 +370,34 @@ mod tests {
         assert_eq!(first, corners.position.len(), "all of them");
         // And back from the disk.
         let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("00000.vtu");
-        let content = SnapshotContent { precision: Precision::Double, ..SnapshotContent::default() };
-        encode_surfaces(&corners, end, &content).write(&path).unwrap();
-        let file = PointArrays::open(&path).unwrap();
-        assert_eq!(file.positions::<3>().unwrap(), corners.position);
-        assert_eq!(file.whole::<i32>("body").unwrap(), corners.body);
-        file.check().unwrap();
+        let labels = Labels::of(&scene);
+        for (format, kind) in [(SeriesFormat::Vtp, "vtp"), (SeriesFormat::Vtu, "vtu")] {
+            let path = folder.path().join("00000").with_extension(kind);
+            let FrameFile::Vtk(file) = labels.encode(parts.clone(), end, format) else { panic!("{kind}") };
+            file.write(&path).unwrap();
+            let file = PointArrays::open(&path).unwrap();
+            assert_eq!(file.positions::<3>().unwrap(), corners.position);
+            assert_eq!(file.whole::<i32>("body").unwrap(), corners.body);
+            FrameFile::check(&path).unwrap();
+        }
+        let model = labels.model(&parts, end);
+        let names: Vec<&str> = model.parts().iter().map(|part| &part.name[..]).collect();
+        assert_eq!(names, ["plate", "sledge", "disk", "floor"]);
+        for (part, corners) in model.parts().iter().zip(&parts) {
+            let places: Vec<[f32; 3]> = corners.position.iter().map(|x| x.map(|x| x as f32)).collect();
+            assert_eq!((&part.positions, &part.triangles), (&places, &corners.triangles));
+            assert!(
+                part.normals.iter().all(|normal| *normal == [0.0, 0.0, 1.0]),
+                "plane areas face the viewer"
+            );
+            assert_eq!(part.vectors[0].1[0], corners.velocity[0].map(|v| v as f32));
+        }
+        let path = folder.path().join("00000.glb");
+        std::fs::write(&path, model.encode().unwrap()).unwrap();
+        FrameFile::check(&path).unwrap();
+        std::fs::write(&path, &model.encode().unwrap()[..900]).unwrap();
+        let error = FrameFile::check(&path).unwrap_err().to_string();
+        assert!(error.contains("00000.glb: no model of the length that it says"), "{error}");
     }
 
     #[test]
@@ -316,7 +419,7 @@ mod tests {
         let simulation = stickslip_engine::step::build(&scene).unwrap();
         let surfaces = surfaces_of(&scene);
         let (poses, motions) = (simulation.poses(), vec![[[0.0; 3]; 2]; 2]);
-        let whole = corners_of(&surfaces, &simulation.snapshot(), (&poses, &motions));
+        let whole = joined(corners_of(&surfaces, &simulation.snapshot(), (&poses, &motions)));
         // The normals of the triangles look out of the ball.
         let ball = |triangle: &&[u32; 3]| whole.body[triangle[0] as usize] == 0;
         for triangle in whole.triangles.iter().filter(ball) {
@@ -326,7 +429,7 @@ mod tests {
             assert!(out > 0.0, "{triangle:?}");
         }
         let less = simulation.snapshot().only(|body, number| (body, number) != (0, 17));
-        let left = corners_of(&surfaces, &less, (&poses, &motions));
+        let left = joined(corners_of(&surfaces, &less, (&poses, &motions)));
         assert!(left.body.iter().all(|&body| body == 1) && !left.body.is_empty());
         assert!(left.triangles.iter().flatten().all(|&corner| (corner as usize) < left.position.len()));
     }

@@ -2,13 +2,14 @@
 
 use super::checkpoint::Checkpoint;
 use super::file::{FileSum, ReadError, ReadProblem};
+use super::frames::{FrameFile, SeriesFiles};
 use super::manifest::Manifest;
 use super::memory::Memory;
 use super::recorder::tables;
 use super::results::Results;
-use super::vtu::PointArrays;
 use super::{FRINGES, FRINGES_TABLE, GRID, PARTICLES, SURFACES};
 use crate::image::Image;
+use crate::scene::SeriesFormat;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -49,11 +50,10 @@ pub fn verify(folder: &Path) -> Result<Verified, ReadError> {
         verified.summed += 1;
     }
     let later = |path: &Path| !sums.files.contains_key(path);
-    let series =
-        |name: &str| super::frames::read_frames(&folder.join(format!("{name}.pvd"))).unwrap_or_default();
+    let series = |name| SeriesFiles::find(folder, name, SeriesFormat::Vtu).frames().unwrap_or_default();
     let others = [SURFACES, GRID].map(series).concat();
     for frame in results.frames().iter().chain(&others).filter(|frame| later(&frame.path)) {
-        verified.note(PointArrays::open(&frame.path).and_then(|arrays| arrays.check()));
+        verified.note(FrameFile::check(&frame.path));
     }
     let pictures = results.fringes_table().unwrap_or_default();
     for path in pictures.iter().map(|row| picture(folder, row.frame)).filter(|path| later(path)) {
@@ -142,9 +142,10 @@ impl Sums {
         for name in [PARTICLES, SURFACES, GRID, FRINGES] {
             let mut files: Vec<Option<FileSum>> = Vec::new();
             memory.part(name, |memory| memory.keep("sums", &mut files)).map_err(unreadable)?;
+            let series = SeriesFiles::find(folder, name, SeriesFormat::Vtu);
             let path = |number: usize| match name {
                 FRINGES => picture(folder, number),
-                _ => folder.join(format!("{name}/{number:05}.vtu")),
+                _ => series.path(number),
             };
             let known = files.into_iter().enumerate().filter_map(|(number, sum)| Some((path(number), sum?)));
             sums.files.extend(known);

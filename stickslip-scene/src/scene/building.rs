@@ -7,7 +7,8 @@
 use super::{
     BasisKind, Body, BodyMotion, ContactLaw, ContactRule, Damping, Dimension, Discretization, Domain,
     Expression, Face, FreeRigid, Gravity, Health, Leaving, Measurements, NamedMaterial, Normal, Outputs,
-    Precision, Problem, Relaxation, Scene, SnapshotContent, StressUpdate, Time, Transfer, VolumeChange,
+    Precision, Problem, Relaxation, Scene, SeriesFormat, SnapshotContent, StressUpdate, Time, Transfer,
+    VolumeChange,
 };
 use crate::geometry::{Arrangement, Shape};
 use crate::material::LAWS;
@@ -112,6 +113,7 @@ impl Outputs {
             particles_at: Vec::new(),
             snapshots: SnapshotContent::default(),
             surfaces: None,
+            surface_format: SeriesFormat::default(),
             grid: None,
             fringes: None,
             checkpoints: None,

@@ -208,6 +208,19 @@ pub enum Compression {
     None,
 }
 
+/// Format of the files of a series of snapshots.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum SeriesFormat {
+    /// VTK's unstructured grid.
+    Vtu,
+    /// VTK's polygons.
+    #[default]
+    Vtp,
+    /// A model in glTF.
+    Glb,
+}
+
 /// Cells, particles and shape functions.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Discretization {
@@ -541,8 +554,10 @@ pub struct Outputs {
     pub particles_at: Vec<f64>,
     /// What snapshots hold.
     pub snapshots: SnapshotContent,
-    /// Surfaces of bodies for ParaView.
+    /// Surfaces of bodies.
     pub surfaces: Option<f64>,
+    /// Of the files that have them.
+    pub surface_format: SeriesFormat,
     /// Grid nodes for ParaView.
     pub grid: Option<f64>,
     /// Photoelastic fringes.

@@ -446,6 +446,11 @@ fn mistakes() {
         content("compression = \"gzip\""),
         "a.toml:63:15: outputs.snapshots.compression: found \"gzip\"; allowed: \"zlib\" or \"none\""
     );
+    let outputs = |keys: &str| message(&format!("{MANY}\n[outputs]\n{keys}\n"));
+    assert_eq!(
+        outputs("surfaces = \"1 ms\"\nsurface_format = \"stl\""),
+        "a.toml:64:18: outputs.surface_format: found \"stl\"; allowed: \"vtp\", \"vtu\" or \"glb\""
+    );
     let rows = message(&format!("{MANY}\n[outputs]\nbodies = [\"pebble *\"]\n"));
     let start = "a.toml:63:11: outputs.bodies[0]: found \"pebble *\"; allowed: ";
     assert!(rows.starts_with(start), "{rows}");

@@ -251,6 +251,7 @@ pub fn scene() -> Scene {
             bodies: None,
             tables: 0.1,
             surfaces: None,
+            surface_format: Default::default(),
             particles: Some(0.25),
             particles_at: Vec::new(),
             snapshots: SnapshotContent { precision: Precision::Double, ..Default::default() },

@@ -5,13 +5,13 @@ use super::fringes::Fringes;
 use super::measurements::{self, Arrival, Front, Group, Probe, Sampling, Section};
 use super::quantity::{Duration, QuantityInput, evaluate};
 use super::read::{Read, table};
-use super::text::{Count, Text, Word, names_in};
+use super::text::{Choice, Count, Text, Word, names_in};
 use crate::column;
 use crate::scene::error::Fault;
 use crate::scene::parameters::Dependence;
 use crate::scene::source::{DocumentNode, Value};
 use crate::scene::units::Powers;
-use crate::scene::{self, Body, Compression, NamedMaterial, Precision, SnapshotContent};
+use crate::scene::{self, Body, Compression, NamedMaterial, Precision, SeriesFormat, SnapshotContent};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use std::borrow::Cow;
 
@@ -32,10 +32,13 @@ table! {
         particles_at: Option<Vec<QuantityInput<Duration>>>,
         /// What snapshots hold; by default all columns of all particles, in single precision.
         snapshots: Option<Snapshots>,
-        /// Interval between snapshots of the bodies' surfaces for ParaView [s], or "never": triangles that move with the
-        /// bodies, rigid ones too. Half-spaces have one where the domain has bounds.
+        /// Interval between snapshots of the bodies' surfaces [s], or "never": triangles that move with the bodies, rigid
+        /// ones too. Half-spaces have one where the domain has bounds.
         #[schemars(extend("default" = "never"))]
         surfaces: Option<Interval>,
+        /// What files of the bodies' surfaces are for.
+        #[schemars(extend("default" = "vtp"))]
+        surface_format: Option<Word<SeriesFormat>>,
         /// Interval between snapshots of the grid for ParaView [s], or "never".
         #[schemars(extend("default" = "never"))]
         grid: Option<Interval>,
@@ -156,6 +159,9 @@ pub fn resolve(
     if let Some(interval) = &outputs.surfaces {
         resolved.surfaces = interval.value(context)?;
     }
+    if let Some(format) = &outputs.surface_format {
+        resolved.surface_format = format.value(context)?;
+    }
     if let Some(interval) = &outputs.grid {
         resolved.grid = interval.value(context)?;
     }
@@ -234,6 +240,18 @@ impl Interval {
             Interval::Every(interval) => interval.positive(context).map(Some),
         }
     }
+}
+
+impl Choice for SeriesFormat {
+    const WORDS: &'static [(&'static str, Self, &'static str)] = &[
+        ("vtp", SeriesFormat::Vtp, "ParaView and PyVista, as polygons."),
+        ("vtu", SeriesFormat::Vtu, "The same, as an unstructured grid, which meshio reads, too."),
+        (
+            "glb",
+            SeriesFormat::Glb,
+            "Blender, browsers and slides: models in glTF, in the colours of the bodies.",
+        ),
+    ];
 }
 
 impl Read for Interval {

@@ -15,9 +15,17 @@ use std::path::Path;
 const VTK_VERTEX: u8 = 1;
 const VTK_TRIANGLE: u8 = 5;
 
-/// A file of points, or of triangles between points, encoded and ready to be written: it borrows nothing, so that
+/// What VTK calls a file's data: cells of any type, each with its own, or polygons.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum DataSet {
+    UnstructuredGrid,
+    PolyData,
+}
+
+/// A file of points, or of triangles between points (`.vtu`, or `.vtp` as polygons), encoded and ready to be written: it borrows nothing, so that
 /// another thread may write it.
-pub struct Vtu {
+pub struct VtkFile {
+    data_set: DataSet,
     precision: Precision,
     compression: Compression,
     points: usize,
@@ -86,12 +94,14 @@ pub(in crate::observe) const VECTOR: &[&str] = &["X", "Y", "Z"];
 const SYMMETRIC: &[&str] = &["XX", "YY", "ZZ", "XY", "YZ", "XZ"];
 const TENSOR: &[&str] = &["XX", "XY", "XZ", "YX", "YY", "YZ", "ZX", "ZY", "ZZ"];
 
-impl Vtu {
+impl VtkFile {
     /// Points at a time [s], each a cell of its own, so that ParaView can threshold and select them one by one; of the
     /// content precision and compression count here.
     pub(in crate::observe) fn new(time: f64, positions: &[[f64; 3]], content: &SnapshotContent) -> Self {
         let numbers: Vec<i64> = (0..positions.len() as i64).collect();
-        Vtu::of_cells(time, (positions, content), (&numbers, 1, VTK_VERTEX))
+        let mut file = VtkFile::of_cells(time, (positions, content), (&numbers, 1));
+        file.typed(VTK_VERTEX);
+        file
     }
 
     /// Triangles at a time [s], between points.
@@ -101,19 +111,38 @@ impl Vtu {
         content: &SnapshotContent,
     ) -> Self {
         let corners: Vec<i64> = triangles.as_flattened().iter().map(|&corner| i64::from(corner)).collect();
-        Vtu::of_cells(time, (positions, content), (&corners, 3, VTK_TRIANGLE))
+        let mut file = VtkFile::of_cells(time, (positions, content), (&corners, 3));
+        file.typed(VTK_TRIANGLE);
+        file
     }
 
-    /// Cells of so many points each, by the numbers of these, and all of one type.
+    /// The same as polygons (`.vtp`).
+    pub(in crate::observe) fn of_polygons(
+        time: f64,
+        (positions, triangles): (&[[f64; 3]], &[[u32; 3]]),
+        content: &SnapshotContent,
+    ) -> Self {
+        let corners: Vec<i64> = triangles.as_flattened().iter().map(|&corner| i64::from(corner)).collect();
+        VtkFile::of_cells(time, (positions, content), (&corners, 3))
+    }
+
+    /// Says that all cells are of one type, which makes a grid of them.
+    fn typed(&mut self, kind: u8) {
+        self.data_set = DataSet::UnstructuredGrid;
+        self.cells.push(Array::new("types", NUMBER, (&vec![kind; self.count], self.compression)));
+    }
+
+    /// Polygons of so many points each, by the numbers of these.
     fn of_cells(
         time: f64,
         (positions, content): (&[[f64; 3]], &SnapshotContent),
-        (corners, each, kind): (&[i64], usize, u8),
+        (corners, each): (&[i64], usize),
     ) -> Self {
         let &SnapshotContent { precision, compression, .. } = content;
         let cells = corners.len() / each;
         let ends: Vec<i64> = (1..=cells).map(|cell| (cell * each) as i64).collect();
-        Vtu {
+        VtkFile {
+            data_set: DataSet::PolyData,
             precision,
             compression,
             points: positions.len(),
@@ -123,7 +152,6 @@ impl Vtu {
             cells: vec![
                 Array::new("connectivity", NUMBER, (corners, compression)),
                 Array::new("offsets", NUMBER, (&ends, compression)),
-                Array::new("types", NUMBER, (&vec![kind; cells], compression)),
             ],
             point_data: Vec::new(),
         }
@@ -169,7 +197,7 @@ impl Vtu {
     /// The same, with what went into the file.
     ///
     /// # Errors
-    /// As [`Vtu::write`].
+    /// As [`VtkFile::write`].
     pub(in crate::observe) fn put(&self, path: &Path) -> Result<FileSum, OutputError> {
         replace_summed(path, |file| {
             file.write_all(self.header().as_bytes())?;
@@ -184,25 +212,32 @@ impl Vtu {
 
     /// Everything before the first byte of the appended data.
     fn header(&self) -> String {
-        let mut xml = String::from(concat!(
-            "<?xml version=\"1.0\"?>\n",
-            "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\"",
-        ));
+        let (points, cells) = (self.points, self.count);
+        let (data_set, members, counts) = match self.data_set {
+            DataSet::UnstructuredGrid => ("UnstructuredGrid", "Cells", format!("NumberOfCells=\"{cells}\"")),
+            DataSet::PolyData => {
+                let others = "NumberOfVerts=\"0\" NumberOfLines=\"0\" NumberOfStrips=\"0\"";
+                ("PolyData", "Polys", format!("{others} NumberOfPolys=\"{cells}\""))
+            }
+        };
+        let mut xml = format!(
+            "<?xml version=\"1.0\"?>\n\
+             <VTKFile type=\"{data_set}\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\""
+        );
         xml += match self.compression {
             Compression::Zlib => " compressor=\"vtkZLibDataCompressor\">\n",
             Compression::None => ">\n",
         };
-        xml += "<UnstructuredGrid>\n<FieldData>\n";
+        xml += &format!("<{data_set}>\n<FieldData>\n");
         for (name, value) in &self.fields {
             xml += &format!(
                 "<DataArray type=\"Float64\" Name=\"{name}\" NumberOfTuples=\"1\" format=\"ascii\">{value:e}</DataArray>\n"
             );
         }
-        let (points, cells) = (self.points, self.count);
-        xml += &format!("</FieldData>\n<Piece NumberOfPoints=\"{points}\" NumberOfCells=\"{cells}\">\n");
+        xml += &format!("</FieldData>\n<Piece NumberOfPoints=\"{points}\" {counts}>\n");
         let mut offset = 0;
         for (tag, arrays) in
-            [("Points", &self.geometry), ("Cells", &self.cells), ("PointData", &self.point_data)]
+            [("Points", &self.geometry), (members, &self.cells), ("PointData", &self.point_data)]
         {
             xml += &format!("<{tag}>\n");
             for array in arrays {
@@ -211,7 +246,7 @@ impl Vtu {
             }
             xml += &format!("</{tag}>\n");
         }
-        xml + "</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_"
+        xml + &format!("</Piece>\n</{data_set}>\n<AppendedData encoding=\"raw\">\n_")
     }
 }
 

@@ -1,4 +1,4 @@
-//! Reading back files of points that a run wrote; it is no reader for the `.vtu` files of other programs.
+//! Reading back files of points that a run wrote; it is no reader for the files of other programs.
 
 use super::{BLOCK, Scalar};
 use crate::column::Kind;

@@ -1,4 +1,5 @@
-//! VTK's file of points or triangles in XML (`.vtu`), with appended raw data, in blocks compressed by zlib or as it is.
+//! VTK's files of points or triangles in XML (`.vtu`, `.vtp`), with appended raw data, in blocks compressed by zlib or as
+//! it is.
 //!
 //! Layout of the data of one array, all little-endian (VTK file formats, "Appended data" and "Compression"):
 //!
@@ -13,7 +14,7 @@ mod read;
 mod write;
 
 pub(super) use read::PointArrays;
-pub use write::Vtu;
+pub use write::VtkFile;
 pub(super) use write::{NUMBER, VECTOR};
 
 /// Bytes of a full block before compression: a multiple of every number's size, small enough to stay in a core's cache.
