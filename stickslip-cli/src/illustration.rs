@@ -266,13 +266,7 @@ fn fits(dimension: usize, choice: &PictureChoice) -> Result<Option<BoxCorners>, 
     if let Some(option) = first(&of_values).filter(|_| choice.quantity == ColorQuantity::Body) {
         return wrong(format!("{option}: found no column of numbers; allowed: with --color and one of them"));
     }
-    let [of_plane, of_space] = [
-        [("--vectors", choice.arrows), ("--contours", choice.contours > 0)],
-        [("--balls", choice.balls), ("--view", choice.view.0 != [Viewpoint::Auto])],
-    ];
-    if let Some(option) = first(&of_plane).filter(|_| dimension == 3) {
-        return wrong(format!("{option}: found a scene in space; allowed: plane scenes"));
-    }
+    let of_space = [("--balls", choice.balls), ("--view", choice.view.0 != [Viewpoint::Auto])];
     if let Some(option) = first(&of_space).filter(|_| dimension == 2) {
         return wrong(format!("{option}: found a plane scene; allowed: scenes in space"));
     }

@@ -65,11 +65,12 @@ pub struct Arguments {
     #[arg(long, value_name = "yes|no", conflicts_with = "fringes")]
     smooth: Option<Answer>,
 
-    /// Lines along which the values are the same, so many at equal steps between the ends of the colours; in the plane.
+    /// Lines along which the values are the same, so many at equal steps between the ends of the colours; in space on the
+    /// surfaces that the camera sees.
     #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u16).range(1..=100), conflicts_with = "fringes")]
     contours: Option<u16>,
 
-    /// Arrows on a regular raster, averaged over neighbours; in the plane.
+    /// Arrows on a regular raster, averaged over neighbours; in space from the surfaces that the camera sees.
     #[arg(long, value_enum, value_name = "COLUMN", conflicts_with = "fringes")]
     vectors: Option<VectorColumn>,
 

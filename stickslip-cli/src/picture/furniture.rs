@@ -1,7 +1,7 @@
 //! What stands around the bodies in a picture: title, time, colour bar, names, axes,
 //! a scale and the directions of space.
 
-use super::arrows::{Arrows, outline, round_below};
+use super::arrows::{Arrows, Outline, round_below};
 use super::camera::{Camera, unit};
 use super::plane::PlaneView;
 use super::{Legend, PicturePart, Rgb, Setting};
@@ -129,7 +129,7 @@ pub fn legend(pen: &Pen, (legend, levels): (&Legend, &[f64]), column: i32) -> Re
     }
 }
 
-/// Arrows, whose area has its corner at `(left, top)`.
+/// Arrows of the plane, whose area has its corner at `(left, top)`.
 pub fn arrows(pen: &Pen, arrows: &Arrows, (left, top): (i32, i32)) -> Result<(), DrawError> {
     for ends in &arrows.each {
         let ends = ends.map(|[x, y]| [x + f64::from(left), y + f64::from(top)]);
@@ -138,9 +138,8 @@ pub fn arrows(pen: &Pen, arrows: &Arrows, (left, top): (i32, i32)) -> Result<(),
     Ok(())
 }
 
-/// An arrow as long as its speed says, in the column that ends at the right edge.
-pub fn arrow_legend(pen: &Pen, arrows: &Arrows, column: i32) -> Result<(), DrawError> {
-    let [speed, length] = arrows.legend;
+/// An arrow of a speed [m/s] and of the length that says so [drawn pixels], in the column that ends at the right edge.
+pub fn arrow_legend(pen: &Pen, [speed, length]: [f64; 2], column: i32) -> Result<(), DrawError> {
     if length <= 0.0 {
         return Ok(());
     }
@@ -153,7 +152,7 @@ pub fn arrow_legend(pen: &Pen, arrows: &Arrows, column: i32) -> Result<(), DrawE
 
 /// A dark arrow with a pale rim, to be seen on any colour.
 fn arrow(pen: &Pen, ends: [[f64; 2]; 2]) -> Result<(), DrawError> {
-    let shape = outline(ends, 1.8 * SAMPLES as f64);
+    let shape = Outline::new(ends, 1.8 * SAMPLES as f64).corners();
     let shape: Vec<(i32, i32)> = shape.iter().map(|[x, y]| (x.round() as i32, y.round() as i32)).collect();
     let rim = RGBColor(244, 246, 248).stroke_width(PIXEL as u32);
     let closed = shape.iter().chain(&shape[..1]).copied().collect::<Vec<_>>();

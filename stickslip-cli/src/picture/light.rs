@@ -39,6 +39,7 @@ pub struct Lit<'a> {
     shadows: Layer,
     radius: f64,
     contrast: f64,
+    mirrored: bool,
     slabs: SlabsInView,
     /// The colour of half-spaces; that of their bodies, without it.
     slab_color: Option<Rgb>,
@@ -69,6 +70,19 @@ struct Lighted {
     rim: f64,
 }
 
+/// A point of a body that a pixel sees.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sight {
+    /// Index of the body.
+    pub body: u32,
+    /// Where it is [m].
+    pub place: Point,
+    /// Towards the eye [m].
+    pub depth: f64,
+    /// Whether it is the mirror image of another.
+    pub is_image: bool,
+}
+
 /// What colours surfaces have.
 pub enum Tint {
     /// Those of bodies, which in every other quarter of a round one are paler; of each body the centre if it is round.
@@ -91,6 +105,8 @@ pub struct Surroundings {
     pub slab_color: Option<Rgb>,
     /// 1 for light as it falls, 0 for colours as they are.
     pub contrast: f64,
+    /// Whether the second half of the balls and of the triangles is the mirror image of the first.
+    pub mirrored: bool,
 }
 
 impl<'a> Lit<'a> {
@@ -102,7 +118,7 @@ impl<'a> Lit<'a> {
         size: [usize; 2],
         surroundings: Surroundings,
     ) -> Self {
-        let Surroundings { mesh, tint, radius, slabs, slab_color, contrast } = surroundings;
+        let Surroundings { mesh, tint, radius, slabs, slab_color, contrast, mirrored } = surroundings;
         let toward = camera.toward * 0.62 + camera.up * 0.66 - camera.right * 0.42;
         let lamp = Camera::facing(toward.direction().expect("the eye is not opposite the lamp"), camera.up);
         let side = SHADOW_MAP as f64;
@@ -134,6 +150,7 @@ impl<'a> Lit<'a> {
             seen,
             radius,
             contrast,
+            mirrored,
             slabs: slabs.seen(&camera),
             slab_color,
             probes: (0..PROBES).map(probe).collect(),
@@ -160,6 +177,46 @@ impl<'a> Lit<'a> {
         };
         let here = coarse.filter(alike).unwrap_or_else(|| self.illumination([x, y], &point));
         Some(self.shine(&point, here))
+    }
+
+    /// The point of a body that a pixel sees; half-spaces are none.
+    pub fn sight(&self, [x, y]: [usize; 2]) -> Option<Sight> {
+        let place = y * self.layer.size[0] + x;
+        let depth = f64::from(self.layer.depth[place]);
+        let sight = [x as f64 + 0.5, y as f64 + 0.5];
+        if self.slabs.hit(sight).is_some_and(|hit| hit.depth > depth) {
+            return None;
+        }
+        let body = self.body(self.layer.ball[place])?;
+        let index = self.layer.ball[place] as usize;
+        let is_second = match index.checked_sub(self.balls.len()) {
+            None => self.balls[index].grain >= self.grains.len() / 2,
+            Some(triangle) => triangle >= self.mesh.triangles.len() / 2,
+        };
+        let place = self.camera.unproject([sight[0], sight[1], depth]);
+        Some(Sight { body, place, depth, is_image: self.mirrored && is_second })
+    }
+
+    /// Width and height in drawn pixels.
+    pub fn size(&self) -> [usize; 2] {
+        self.layer.size
+    }
+
+    /// Where neighbouring pixels of the file differ by more in depth, a body is in front of itself [m].
+    pub fn step(&self) -> f64 {
+        self.radius.max(8.0 * SAMPLES as f64 / self.camera.scale)
+    }
+
+    /// Whether another body, or a half-space, is in front of a point of a body at a pixel, so deep towards the eye [m].
+    pub fn hides(&self, [x, y]: [usize; 2], (body, depth): (u32, f64)) -> bool {
+        let place = y * self.layer.size[0] + x;
+        let is_before =
+            |other: u32, at: f64| other != body && at > depth + f64::from(f32::EPSILON) * depth.abs();
+        let slab = self.slabs.hit([x as f64 + 0.5, y as f64 + 0.5]);
+        slab.is_some_and(|hit| is_before(hit.body, hit.depth))
+            || self
+                .body(self.layer.ball[place])
+                .is_some_and(|other| is_before(other, f64::from(self.layer.depth[place])))
     }
 
     /// The surface that a pixel sees.
@@ -340,6 +397,7 @@ mod tests {
                 slabs,
                 slab_color: Some([0.8; 3]),
                 contrast: 1.0,
+                mirrored: false,
             };
             Lit::new(&grains, &balls, camera, [200, 200], surroundings)
         };

@@ -30,7 +30,7 @@ use crate::drawing::{Background, Canvas, DrawError, Rgb, SAMPLES, Scale, body_co
 use arrows::Arrows;
 use camera::{Camera, Point, unit};
 use clap::ValueEnum;
-use field::{PlaneField, Source};
+use field::{PixelField, Source};
 use floor::Slabs;
 use furniture::Pen;
 use grains::Grain;
@@ -62,9 +62,9 @@ pub struct PictureStyle {
     pub path: Vec<Viewpoint>,
     /// What the picture stands on.
     pub background: Background,
-    /// How many lines are drawn along which the values are the same, in the plane.
+    /// How many lines are drawn along which the values are the same.
     pub contours: usize,
-    /// Velocities are drawn as arrows in the plane, of which the longest stands for so much [m/s].
+    /// Velocities are drawn as arrows, of which the longest stands for so much [m/s].
     pub fastest: Option<f64>,
     /// What is left out.
     pub hidden: Vec<PicturePart>,
@@ -340,7 +340,7 @@ impl Scene<'_> {
         let count = drawn.count(look.mirror.is_some());
         let source = |smoother| Source { smoother, quantity: subject.quantity, count, mirror: look.mirror };
         let field = subject.smoother().or(own.as_ref());
-        let field = field.map(|smoother| PlaneField::new(&drawn, &window, &source(smoother)));
+        let field = field.map(|smoother| PixelField::new(&drawn, &window, &source(smoother)));
         let shaded = field.as_ref().filter(|_| subject.smoother().is_some());
         let color = |grain: &Grain, pixel: [usize; 2]| {
             let value = shaded.and_then(|field| field.value(grain.body, pixel));
@@ -355,16 +355,8 @@ impl Scene<'_> {
             drawn.color(x, y, |grain| color(grain, [x, y])).or_else(|| floor(x, y))
         });
         let levels = field::levels(look.scale.range, look.contours);
-        let lines = levels.iter().flat_map(|level| field.iter().flat_map(|field| field.isolines(*level)));
-        for [from, to] in lines {
-            // Close enough to run into one another.
-            let [dx, dy] = [to[0] - from[0], to[1] - from[1]];
-            let steps = (2.0 * dx.hypot(dy)).ceil().max(1.0) as usize;
-            for step in 0..=steps {
-                let share = step as f64 / steps as f64;
-                let at = [from[0] + share * dx + left as f64, from[1] + share * dy + top as f64];
-                canvas.dot(at, 0.5 * ISOLINE_WIDTH * SAMPLES as f64, furniture::ISOLINE);
-            }
+        if let Some(field) = &field {
+            isolines(&mut canvas, (field, &levels), [left, top]);
         }
         let arrows = velocities.as_ref().map_or_else(Arrows::default, |(fastest, smoother)| {
             arrows::arrows(&drawn, &window, &source(smoother), *fastest)
@@ -381,7 +373,7 @@ impl Scene<'_> {
         }
         if look.shows(PicturePart::Legend) {
             furniture::legend(&pen, (&self.legend, &levels), column)?;
-            furniture::arrow_legend(&pen, &arrows, column)?;
+            furniture::arrow_legend(&pen, arrows.legend, column)?;
         }
         drop(pen);
         Ok(canvas)
@@ -438,14 +430,31 @@ impl Scene<'_> {
             slabs,
             slab_color: (!is_body).then_some(FLOOR),
             contrast: if is_body { 1.0 } else { VALUE_CONTRAST },
+            mirrored: look.mirror.is_some(),
         };
         let lit = Lit::new(grains, &balls, camera, canvas.size, surroundings);
         let [width, height] = canvas.size;
         let shown = if look.window.is_some() { area } else { [0, 0, width, height] };
         canvas.paint(shown, |x, y| lit.color(x + shown[0], y + shown[1]));
+        let levels = field::levels(look.scale.range, look.contours);
+        let own = (look.contours > 0 && subject.smoother().is_none())
+            .then(|| subject::smoother(subject.particles, subject.quantity));
+        let count = if look.mirror.is_some() { grains.len() / 2 } else { grains.len() };
+        let source = |smoother| Source { smoother, quantity: subject.quantity, count, mirror: look.mirror };
+        if let Some(smoother) = subject.smoother().or(own.as_ref()).filter(|_| look.contours > 0) {
+            let field = PixelField::of_surfaces(&lit, shown, &source(smoother));
+            isolines(&mut canvas, (&field, &levels), [0, 0]);
+        }
+        if let Some(fastest) = look.fastest {
+            let velocities = subject::velocities(subject.particles);
+            let arrows = arrows::space_arrows((&lit, &camera), shown, &source(&velocities), fastest);
+            arrows::draw_space_arrows(&mut canvas, &arrows, &lit);
+        }
         let pen = Pen::new(canvas.ink(), look.background);
         if look.shows(PicturePart::Legend) {
-            furniture::legend(&pen, (&self.legend, &[]), (width - COLUMN * SAMPLES) as i32)?;
+            let column = (width - COLUMN * SAMPLES) as i32;
+            furniture::legend(&pen, (&self.legend, &levels), column)?;
+            furniture::arrow_legend(&pen, arrows::legend(look.fastest.unwrap_or_default()), column)?;
         }
         if look.shows(PicturePart::Axes) {
             furniture::triad(&pen, &camera)?;
@@ -464,6 +473,20 @@ impl Scene<'_> {
         let points = extent(grains, &whole);
         let spans = [0, 1, 2].map(|axis| span(&points, unit(axis)));
         [0, 1].map(|end| Vector(spans.map(|span| span[end])))
+    }
+}
+
+/// Draws the lines along which a field has some values, in an area whose corner stands at `(left, top)`.
+fn isolines(canvas: &mut Canvas, (field, levels): (&PixelField, &[f64]), [left, top]: [usize; 2]) {
+    for [from, to] in levels.iter().flat_map(|level| field.isolines(*level)) {
+        // Close enough to run into one another.
+        let [dx, dy] = [to[0] - from[0], to[1] - from[1]];
+        let steps = (2.0 * dx.hypot(dy)).ceil().max(1.0) as usize;
+        for step in 0..=steps {
+            let share = step as f64 / steps as f64;
+            let at = [from[0] + share * dx + left as f64, from[1] + share * dy + top as f64];
+            canvas.dot(at, 0.5 * ISOLINE_WIDTH * SAMPLES as f64, furniture::ISOLINE);
+        }
     }
 }
 
@@ -547,6 +570,76 @@ mod tests {
                 let path = keep.as_deref().unwrap_or(folder.path());
                 save(&image, &path.join(format!("{dimension}_{quantity:?}.png"))).unwrap();
             }
+        }
+    }
+
+    /// Pixels, column and row, in which two pictures differ.
+    fn differing(a: &Image, b: &Image) -> Vec<[usize; 2]> {
+        let [width, height] = a.size;
+        let all = (0..width * height).map(|place| [place % width, place / width]);
+        all.filter(|&[x, y]| a.color(x, y) != b.color(x, y)).collect()
+    }
+
+    /// A ball of radius 1 that rolls on a slab, from the side, where its vx is 2 m/s (1 + height over its centre), as
+    /// balls and by its surface.
+    #[test]
+    fn isolines_and_arrows_lie_on_what_the_camera_sees() {
+        let particles = sample::ball_on_slab(3, 0.1);
+        let setting = Setting { round: vec![None; 2], ..setting([0.0, 0.0, -9.81], [-1.0, 0.0, 1.0]) };
+        let quantity = ColorQuantity::Vx;
+        let text = r#"
+            space = { dimension = "3d", cell = 0.2 }
+            time.end = 1
+            materials.rubber = { density = 1, neo_hookean = { young_modulus = 1, poisson_ratio = 0.3 } }
+            bodies = [{ name = "ball", material = "rubber", shape.ball = { center = [-1, 0, 1], radius = 1 } },
+                { name = "slab", material = "rubber", shape.box = { min = [-3, -2, -0.5], max = [3, 2, 0] } }]
+        "#;
+        let scene =
+            stickslip::scene::parse("a.toml", text, &[]).unwrap_or_else(|error| panic!("{error}")).scene;
+        let skins = Some(Arc::new(Skins::new(&scene, &particles)));
+        for skins in [None, skins] {
+            let subject = Subject::new(&particles, &quantity, false);
+            let plain = PictureStyle {
+                scale: quantity.scale_between([0.0, 4.0]),
+                view: Viewpoint::Axis(1, true),
+                size: Some([700, 400]),
+                hidden: PicturePart::value_variants().to_vec(),
+                skins,
+                ..look(&subject)
+            };
+            let picture =
+                |look: &PictureStyle| draw(&subject, &setting, &Quarters::default(), (0.5, look)).unwrap();
+            let (bare, lines) = (picture(&plain), picture(&PictureStyle { contours: 3, ..plain.clone() }));
+            let different = differing(&bare, &lines);
+            // The ball is left of the middle; it ends at height 2.
+            let is_ball = |x: usize, y: usize| bare.color(x, y) != [255; 3];
+            let top = (0..400).find(|&y| (0..700).any(|x| is_ball(x, y))).unwrap();
+            let middle: Vec<usize> = (0..700).filter(|&x| is_ball(x, top + 1)).collect();
+            let middle = middle[middle.len() / 2];
+            let rows: Vec<usize> = different.iter().filter(|[x, _]| *x == middle).map(|[_, y]| *y).collect();
+            let groups: Vec<&[usize]> = rows.chunk_by(|a, b| b - a <= 2).collect();
+            let heights: Vec<f64> =
+                groups.iter().map(|rows| rows.iter().sum::<usize>() as f64 / rows.len() as f64).collect();
+            let [first, second, third] = heights[..] else { panic!("three lines: {heights:?}") };
+            let half = (third - first) / 2.0;
+            assert!((second - first - half).abs() < 2.0, "vx of 3, 2 and 1 m/s: {heights:?}");
+            assert!((first - top as f64 - half).abs() < 0.1 * half, "{top} {heights:?}");
+
+            let arrows = picture(&PictureStyle { fastest: Some(1.0), ..plain.clone() });
+            let different = differing(&bare, &arrows);
+            assert!(different.len() > 1000, "{}", different.len());
+            // The slab is at rest, and in front of arrows that point down behind it.
+            let slab = top as f64 + 4.0 * half;
+            assert!(different.iter().all(|[_, y]| (*y as f64) < slab + 2.0));
+            // Without it they are seen: they reach below the ball.
+            let ball = particles.only(|body, _| body == 0);
+            let alone = Subject::new(&ball, &quantity, false);
+            let around = PictureStyle { bounds: Some(bounds(&particles)), ..plain };
+            let picture =
+                |look: &PictureStyle| draw(&alone, &setting, &Quarters::default(), (0.5, look)).unwrap();
+            let bare = picture(&around);
+            let different = differing(&bare, &picture(&PictureStyle { fastest: Some(1.0), ..around }));
+            assert!(different.iter().any(|[_, y]| *y as f64 > slab + 4.0));
         }
     }
 

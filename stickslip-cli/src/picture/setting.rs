@@ -58,6 +58,14 @@ pub struct SymmetryPlane {
     pub position: f64,
 }
 
+impl SymmetryPlane {
+    /// Where a place is in the mirror [m].
+    pub fn image(self, mut place: [f64; 3]) -> [f64; 3] {
+        place[self.axis] = 2.0 * self.position - place[self.axis];
+        place
+    }
+}
+
 impl Setting {
     /// The setting of a scene that was run.
     pub fn of(scene: &RecordedScene) -> Self {
