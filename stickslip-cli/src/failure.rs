@@ -2,6 +2,7 @@
 
 use crate::drawing::DrawError;
 use crate::progress::terminal;
+use crate::tell::tell;
 use miette::{Diagnostic, GraphicalReportHandler, Report};
 
 /// Why a command did not do what it was asked.
@@ -66,9 +67,9 @@ impl Failure {
     /// Prints to standard error: with the lines at fault on a terminal, as `file:line:column: error: ...` elsewhere.
     pub fn print(&self) {
         match self {
-            Failure::Interrupted => eprintln!("interrupted; everything written is valid"),
-            Failure::OutOfTime => eprintln!("out of time; everything written is valid"),
-            Failure::Doubtful(_) | Failure::Differs | Failure::Gallery { .. } => eprintln!("error: {self}"),
+            Failure::Interrupted => tell!("interrupted; everything written is valid"),
+            Failure::OutOfTime => tell!("out of time; everything written is valid"),
+            Failure::Doubtful(_) | Failure::Differs | Failure::Gallery { .. } => tell!("error: {self}"),
             Failure::Input(report) | Failure::Run(report) => {
                 let mut text = String::new();
                 let drawn = terminal()
@@ -78,7 +79,7 @@ impl Failure {
                 if !drawn {
                     text = plain(report.as_ref());
                 }
-                eprintln!("{}", text.trim_end());
+                tell!("{}", text.trim_end());
             }
         }
     }

@@ -1,6 +1,8 @@
 //! The command `stickslip`, for the program of this name, and for others that bring it along, as the Python package does.
 //! What stands in [`door`] is for tests that feed it what nobody means to (`fuzz/`).
 
+#![deny(clippy::print_stderr, clippy::print_stdout)]
+
 mod bench;
 mod chart;
 mod commands;
@@ -19,6 +21,7 @@ mod picture;
 mod progress;
 mod reproduce;
 mod sweep;
+mod tell;
 mod validation;
 mod view;
 

@@ -1,6 +1,7 @@
 //! How far a run has come: a bar on a terminal, a line now and then elsewhere, or lines for programs.
 
 use crate::drawing::prefix;
+use crate::tell::tell;
 use clap::ValueEnum;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::json;
@@ -67,7 +68,7 @@ impl Display {
                 ProgressForm::Json => (record(progress), BETWEEN_RECORDS),
                 _ => (line(progress, usize::MAX), BETWEEN_LINES),
             };
-            eprintln!("{line}");
+            tell!("{line}");
             self.next_line.set(Instant::now() + pause);
         }
     }
@@ -76,8 +77,8 @@ impl Display {
     fn say(&self, line: &str) {
         match &self.bar {
             Some(bar) => bar.println(line),
-            None if self.form == ProgressForm::Json => eprintln!("{}", json!({ "message": line })),
-            None => eprintln!("{line}"),
+            None if self.form == ProgressForm::Json => tell!("{}", json!({ "message": line })),
+            None => tell!("{line}"),
         }
     }
 
@@ -133,7 +134,7 @@ impl Family {
         let line = format!("{} of {} runs, {}", self.ended, self.shares.len(), line.trim_end());
         match &self.bar {
             Some(bar) => bar.set_message(line),
-            None => eprintln!("{line}"),
+            None => tell!("{line}"),
         }
     }
 

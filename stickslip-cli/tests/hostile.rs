@@ -64,6 +64,41 @@ fn control_characters_do_not_reach_files_and_terminals() {
     let ran = workplace.run(&["check", "scene.toml"]);
     refused(&ran, "control character");
     assert!(!ran.stderr.contains('\u{1b}'), "{:?}", ran.stderr);
+    // Keys, parameters and formulas are shown where they are wrong, with the lines around them.
+    for (place, words) in [
+        ("\"k\\u001b]0;x\\u0007\" = 1\n", ""),
+        ("", "\"p\\u001b[31m\" = 1\n"),
+        ("title2 = \"\u{9b}31m\"\n", ""),
+        ("", "p = \"\\u001b[31m 1 +\"\n"),
+    ] {
+        let scene = new_scene().replacen("[parameters]\n", &format!("[parameters]\n{words}"), 1);
+        workplace.write("scene.toml", &(place.to_owned() + &scene));
+        let ran = workplace.run(&["check", "scene.toml"]);
+        assert_eq!(ran.code, Some(2), "{place}{words}");
+        assert!(!ran.stderr.contains(['\u{1b}', '\u{7}', '\u{9b}']), "{place}{words}: {:?}", ran.stderr);
+    }
+    // What is no letter in XML.
+    workplace.write("scene.toml", &new_scene().replace("name = \"disk\"", "name = \"di\\uFFFEsk\""));
+    refused(&workplace.run(&["check", "scene.toml"]), "control character");
+}
+
+/// Of a log that lies on a full disk, or goes through a pipe that is closed.
+#[test]
+#[cfg(unix)]
+fn a_log_that_takes_nothing_does_not_end_a_run() {
+    let workplace = workplace();
+    for progress in ["auto", "json"] {
+        let full = fs::File::options().write(true).open("/dev/full").unwrap();
+        let words = [&["run", "scene.toml", "--out", progress, "--progress", progress][..], &QUICK].concat();
+        let status = workplace.command(&words).stdout(Stdio::null()).stderr(full).status().unwrap();
+        assert_eq!(status.code(), Some(0), "{progress}");
+        let record = fs::read_to_string(workplace.path(progress).join("run.json")).unwrap();
+        assert!(record.contains("\"finished\"") && workplace.path(progress).join("picture.png").exists());
+    }
+    let (reader, writer) = std::io::pipe().unwrap();
+    drop(reader);
+    let refused = workplace.command(&["check", "nowhere.toml"]).stderr(writer).status().unwrap();
+    assert_eq!(refused.code(), Some(2));
 }
 
 /// Of a folder that somebody else made.
@@ -118,6 +153,24 @@ fn a_pipe_in_the_place_of_a_mesh_is_refused_and_not_waited_for() {
     workplace.write("nan.obj", "v 0 0 0\nv 1 0 nan\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
     workplace.write("scene.toml", &solid("nan.obj"));
     refused(&workplace.run(&["check", "scene.toml"]), "which is no place");
+}
+
+/// Nor is a file without an end read to its end.
+#[test]
+#[cfg(unix)]
+fn a_pipe_among_results_is_named_and_not_waited_for() {
+    let workplace = workplace();
+    assert_eq!(run(&workplace, &[]).code, Some(0));
+    for name in ["energy.csv", "particles/00000.vtu"] {
+        let place = workplace.path("scene.results").join(name);
+        let kept = fs::read(&place).unwrap();
+        fs::remove_file(&place).unwrap();
+        assert!(std::process::Command::new("mkfifo").arg(&place).status().unwrap().success());
+        refused(&workplace.run(&["check", "scene.results"]), "it is no file");
+        fs::remove_file(&place).unwrap();
+        fs::write(&place, kept).unwrap();
+    }
+    refused(&workplace.run(&["check", "/dev/zero"]), "more than 256 MiB");
 }
 
 #[test]

@@ -4,6 +4,7 @@ use super::measure::Effort;
 use super::problems::BenchExtent;
 use super::record::PeerResult;
 use crate::failure::Failure;
+use crate::tell::tell;
 use miette::miette;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -32,7 +33,7 @@ impl Peers {
     pub fn measure(&self, python: &Path) -> Result<Vec<PeerResult>, Failure> {
         let mut results = Vec::new();
         for (program, script) in SCRIPTS {
-            eprintln!("{program} ...");
+            tell!("{program} ...");
             results.extend(self.run(python, program, script)?);
         }
         Ok(results)
@@ -46,7 +47,7 @@ impl Peers {
         let python = self.environment.join(if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" });
         let ready = quiet(&python).args(["-c", "import numpy, taichi, warp"]).status();
         if !ready.is_ok_and(|status| status.success()) {
-            eprintln!("installing {} into {} ...", PACKAGES.join(", "), self.environment.display());
+            tell!("installing {} into {} ...", PACKAGES.join(", "), self.environment.display());
             let made = Command::new("python3").args(["-m", "venv"]).arg(&self.environment).status();
             succeeded(made, "cannot make a Python environment", "install Python 3 with its `venv`")?;
             let installed = Command::new(&python)

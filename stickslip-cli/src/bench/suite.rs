@@ -11,6 +11,7 @@ use super::problems::{BenchCase, BenchExtent, cases};
 use super::record::{BenchRecord, Computer, Measured, Skipped};
 use crate::failure::Failure;
 use crate::files;
+use crate::tell::tell;
 use miette::miette;
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -66,7 +67,7 @@ impl BenchSuite {
         }
         if self.wants("P6") {
             for whole in wholes(self.extent) {
-                eprintln!("P6 {}, with and without outputs ...", whole.name);
+                tell!("P6 {}, with and without outputs ...", whole.name);
                 record.end_to_end.push(whole.measure(self.threads)?);
             }
         }
@@ -88,7 +89,7 @@ impl BenchSuite {
     }
 
     fn machine(&self) -> Computer {
-        eprintln!("the machine's limits ...");
+        tell!("the machine's limits ...");
         let care = match self.extent {
             BenchExtent::Full => Care { bytes: 512 << 20, duration: Duration::from_secs(1) },
             BenchExtent::Quick => Care { bytes: 256 << 20, duration: Duration::from_millis(300) },
@@ -120,7 +121,7 @@ impl BenchSuite {
         for turn in 0..turns {
             for (i, case) in compared.iter().enumerate() {
                 if turn == 0 {
-                    eprintln!("{} ...", case.label());
+                    tell!("{} ...", case.label());
                 }
                 let sample = order(case, effort).measure()?;
                 match samples.get_mut(i) {

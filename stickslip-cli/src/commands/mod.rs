@@ -19,6 +19,7 @@ mod validate;
 mod view;
 
 use crate::failure::Failure;
+use crate::tell::tell;
 use clap::Parser;
 use miette::miette;
 use std::io::Write;
@@ -198,7 +199,7 @@ fn stop_on_interrupt() -> Result<Arc<AtomicBool>, Failure> {
         if flag.swap(true, Ordering::Relaxed) {
             std::process::exit(i32::from(Failure::INTERRUPTED));
         }
-        eprintln!("\nstopping after this step; Ctrl-C again ends at once");
+        tell!("\nstopping after this step; Ctrl-C again ends at once");
     });
     installed.map_err(|error| Failure::Run(miette!("cannot watch for Ctrl-C: {error}")))?;
     #[cfg(unix)]

@@ -22,7 +22,10 @@ const SCENE: &str = include_str!("new.toml");
 impl Arguments {
     pub fn execute(self) -> Result<(), Failure> {
         let file = self.file.display();
-        let created = File::create_new(&self.file).and_then(|mut file| file.write_all(SCENE.as_bytes()));
+        let created = File::create_new(&self.file).and_then(|mut file| {
+            // Half a scene is better not there; the first error is the one to report.
+            file.write_all(SCENE.as_bytes()).inspect_err(|_| drop(std::fs::remove_file(&self.file)))
+        });
         created.map_err(|error| {
             Failure::Input(match error.kind() {
                 ErrorKind::AlreadyExists => {

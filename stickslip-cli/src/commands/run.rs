@@ -5,6 +5,7 @@ use crate::failure::Failure;
 use crate::illustration::illustrate;
 use crate::memory;
 use crate::progress::{Display, ProgressForm};
+use crate::tell::tell;
 use bytesize::ByteSize;
 use clap::Args;
 use miette::{IntoDiagnostic, miette};
@@ -240,7 +241,7 @@ impl How {
     /// Tells the user something that is no reason to stop.
     pub(super) fn note(&self, text: &str) {
         if !self.quiet {
-            eprintln!("note: {text}");
+            tell!("note: {text}");
         }
     }
 
@@ -273,7 +274,7 @@ impl How {
             self.note(&pairs);
         }
         for warning in report.warnings {
-            eprintln!("warning: {warning}");
+            tell!("warning: {warning}");
         }
         let mut simulation =
             stickslip::step::build(scene).map_err(|problem| Failure::input(loaded.source.locate(problem)))?;
@@ -320,7 +321,7 @@ impl How {
             say(&format!("go on with: stickslip resume {}", out.display()))?;
         }
         if self.quiet {
-            summary.warning_lines().iter().for_each(|line| eprintln!("warning: {line}"));
+            summary.warning_lines().iter().for_each(|line| tell!("warning: {line}"));
         }
         match (summary.status, summary.warnings.len()) {
             (Status::Interrupted, _) => Err(Failure::Interrupted),
@@ -348,7 +349,7 @@ fn times(performance: &Performance) -> String {
 /// Tells the user of a disk that takes nothing.
 fn tell_of_slow_disk(path: &Path, waited: Duration) {
     let (path, waited) = (path.display(), waited.as_secs());
-    eprintln!(
+    tell!(
         "\nwarning: the disk has taken nothing for {path} in {waited} s; the run waits for it, and Ctrl-C or --max-time \
          end it"
     );

@@ -3,6 +3,7 @@
 use super::say;
 use crate::failure::Failure;
 use crate::files;
+use crate::tell::tell;
 use crate::validation::{broken, line, page, table, write_scenes};
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
@@ -112,7 +113,7 @@ impl Arguments {
         files::replaceable(&file, files::PAGE).map_err(|error| unwritable(&file, &error))?;
         let mut written: Result<(), Failure> = Ok(());
         let report = suite.run(&mut |finished, report| {
-            eprintln!("{}", line(finished));
+            tell!("{}", line(finished));
             // The page stands after each case: who stops the rest keeps what there is.
             let write = || -> Result<(), Failure> {
                 write_scenes(finished.entry, finished.run, &scenes)

@@ -1,6 +1,7 @@
 //! How far many runs have come: bars on a terminal, a line for each run that ends elsewhere.
 
 use crate::progress::{PARTS, duration, style, terminal};
+use crate::tell::tell;
 use indicatif::{MultiProgress, ProgressBar};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
@@ -25,7 +26,7 @@ impl Board {
     /// A board for runs that are to be done, besides others whose results are there already.
     pub fn new(runs: usize, kept: usize) -> Self {
         if kept > 0 {
-            eprintln!("{kept} runs are there already");
+            tell!("{kept} runs are there already");
         }
         let bars = terminal().then(MultiProgress::new);
         Board { bars, ended: AtomicUsize::new(0), all: runs }
@@ -52,7 +53,7 @@ impl Board {
         match &self.bars {
             // A terminal that does not take the line is no reason to fail.
             Some(bars) => drop(bars.println(line)),
-            None => eprintln!("{line}"),
+            None => tell!("{line}"),
         }
     }
 }

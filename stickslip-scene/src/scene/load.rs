@@ -5,6 +5,8 @@ use super::error::SceneError;
 use super::file::{self, Disk, SceneFiles};
 use super::source::Source;
 use super::suggestion::did_you_mean;
+use std::fs::File;
+use std::io::{self, Read as _};
 use std::path::Path;
 
 /// A scene and the text that it came from.
@@ -21,7 +23,7 @@ pub struct Loaded {
 /// # Errors
 /// A file that cannot be read, and what [`parse`] finds.
 pub fn load(path: &Path, overrides: &[(String, String)]) -> Result<Loaded, SceneError> {
-    let text = std::fs::read_to_string(path).map_err(|reason| SceneError::Unreadable {
+    let text = read_text(path).map_err(|reason| SceneError::Unreadable {
         path: path.to_path_buf(),
         help: neighbour(path),
         reason,
@@ -55,6 +57,19 @@ pub fn parse_beside(
     let (scene, declared) = file::resolve(&source, files).map_err(|fault| source.show(fault))?;
     source.declare(declared);
     Ok(Loaded { scene, source })
+}
+
+/// Bytes of a scene file at most: a million bodies written one by one.
+const MOST_BYTES: u64 = 1 << 28;
+
+/// The text of a file, which may be a device that has no end.
+fn read_text(path: &Path) -> io::Result<String> {
+    let mut text = String::new();
+    File::open(path)?.take(MOST_BYTES + 1).read_to_string(&mut text)?;
+    if text.len() as u64 > MOST_BYTES {
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, "it has more than 256 MiB"));
+    }
+    Ok(text)
 }
 
 /// A scene beside a missing file with almost its name.

@@ -195,7 +195,8 @@ impl<'s> Parameters<'s> {
             at = open + length + 2;
         }
         result.push_str(&text[at..]);
-        match result.chars().find(|letter| letter.is_control()) {
+        // The last two letters of Unicode's first plane are none, and XML does not take them.
+        match result.chars().find(|letter| letter.is_control() || matches!(letter, '\u{fffe}' | '\u{ffff}')) {
             Some(letter) => {
                 let found = format!("text with the control character {letter:?}");
                 Err(Fault::new(&node.key, found, "text of letters, digits, signs and spaces")

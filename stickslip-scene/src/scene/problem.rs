@@ -14,3 +14,18 @@ pub struct Problem {
     /// What to try, if there is more to say.
     pub help: Option<String>,
 }
+
+impl Problem {
+    /// The same with escapes for letters that would steer a terminal: parts of it are words of a file.
+    pub(super) fn shown(self) -> Self {
+        let shown = |text: String| -> String {
+            let letter = |letter: char| match letter.is_control() && letter != '\n' {
+                true => letter.escape_default().to_string(),
+                false => letter.to_string(),
+            };
+            text.chars().map(letter).collect()
+        };
+        let Problem { key, found, allowed, help } = self;
+        Problem { key: shown(key), found: shown(found), allowed: shown(allowed), help: help.map(shown) }
+    }
+}

@@ -144,12 +144,12 @@ impl Source {
         let (document, start, end) = self.within(&span);
         let [line, column] = document.line_and_column(start);
         SceneError::Mistake(Box::new(Mistake {
-            problem: *fault.problem,
+            problem: fault.problem.shown(),
             file: document.name.clone(),
             line,
             column,
             span: start..end,
-            text: document.text.clone(),
+            text: without_control(&document.text),
         }))
     }
 
@@ -233,6 +233,15 @@ impl DocumentNode {
             _ => self.span.clone(),
         }
     }
+}
+
+/// A text of the same length without what would steer a terminal.
+fn without_control(text: &str) -> String {
+    let letter = |letter: char| match letter.is_control() && !matches!(letter, '\n' | '\r' | '\t') {
+        true => "?".repeat(letter.len_utf8()),
+        false => letter.to_string(),
+    };
+    text.chars().map(letter).collect()
 }
 
 /// Is `outer` the key `inner` or a key around it?

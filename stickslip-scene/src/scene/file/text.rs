@@ -50,7 +50,8 @@ impl Text {
 
     /// Prose of any number of lines, as it stands in the file but for what steers terminals.
     pub fn as_prose(&self) -> String {
-        let seen = |letter: &char| !letter.is_control() || matches!(letter, '\n' | '\t');
+        let is_none = |letter: &char| letter.is_control() || matches!(letter, '\u{fffe}' | '\u{ffff}');
+        let seen = |letter: &char| !is_none(letter) || matches!(letter, '\n' | '\t');
         self.as_written().trim().chars().filter(seen).collect()
     }
 
