@@ -489,7 +489,9 @@ fn a_flipped_bit_is_found_in_every_kind_of_file() {
     let newest = newest.unwrap().strip_prefix(workplace.path("out")).unwrap().to_str().unwrap().to_owned();
     for name in [
         "particles/00003.vtu",
+        "particles.pvd",
         "grid/00002.vtu",
+        "grid.pvd",
         "fringes/00001.png",
         "fringes.csv",
         "energy.csv",
@@ -511,6 +513,16 @@ fn a_flipped_bit_is_found_in_every_kind_of_file() {
         }
         fs::write(&path, &kept).unwrap();
     }
+    // A list with another time is a list all the same.
+    let list = workplace.path("out/particles.pvd");
+    let kept = fs::read_to_string(&list).unwrap();
+    let time = kept.split("timestep=\"").nth(3).and_then(|rest| rest.split('"').next()).unwrap();
+    let other = format!("{:e}", 1.5 * time.parse::<f64>().unwrap());
+    fs::write(&list, kept.replace(time, &other)).unwrap();
+    let ran = workplace.run(&["check", "out"]);
+    assert_eq!(ran.code, Some(2), "{}", ran.stdout);
+    assert!(ran.stderr.contains("it has 00002.vtu at t = "), "{}", ran.stderr);
+    fs::write(&list, &kept).unwrap();
     // What is behind the checkpoint has no sum, and is read.
     for name in ["reactions.csv", "groups.csv", "group_contacts.csv", "removed.csv"] {
         let path = workplace.path("out").join(name);

@@ -124,7 +124,7 @@ impl FileSum {
     /// # Errors
     /// It is missing, or not as it was.
     pub(super) fn check(&self, path: &Path) -> Result<(), ReadError> {
-        let found = File::open(path).and_then(|mut file| FileSum::of(&mut file, u64::MAX));
+        let found = open_file(path).and_then(|mut file| FileSum::of(&mut file, u64::MAX));
         match found.map_err(|error| ReadProblem::Io(error).at(path))? {
             found if found == *self => Ok(()),
             found => Err(self.differs(found).at(path)),
@@ -226,15 +226,25 @@ fn put(
     })
 }
 
-/// The bytes of a file. Pipes and devices are refused: who reads them may wait for ever.
+/// The bytes of a file.
+///
+/// # Errors
+/// As [`open_file`].
+pub(super) fn read_bytes(path: &Path) -> io::Result<Vec<u8>> {
+    let (mut file, mut bytes) = (open_file(path)?, Vec::new());
+    file.read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+/// Opens a file. Pipes and devices are refused: who reads them may wait for ever.
 ///
 /// # Errors
 /// It is missing, or no file, or the disk refuses.
-pub(super) fn read_bytes(path: &Path) -> io::Result<Vec<u8>> {
+pub(super) fn open_file(path: &Path) -> io::Result<File> {
     if !fs::metadata(path)?.is_file() {
         return Err(io::Error::new(io::ErrorKind::InvalidInput, "it is no file"));
     }
-    fs::read(path)
+    File::open(path)
 }
 
 /// Waits until a file or a folder is on the disk.

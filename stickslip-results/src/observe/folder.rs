@@ -130,7 +130,7 @@ impl OutputFolder {
         let previous = self.path.join(PREVIOUS);
         let unfinished = Some(self.path.join(UNFINISHED)).filter(|_| can_go_on(&previous));
         if let Some(unfinished) = &unfinished {
-            clear(unfinished)?;
+            make_room(unfinished)?;
             move_results(&previous, unfinished)?;
         }
         clear(&previous)?;
@@ -250,14 +250,20 @@ fn place(held: &File) -> Option<String> {
 }
 
 /// Moves results into the folder `previous`. If there are results in it already, those outside are of a run that never
-/// came as far as its first record, and are removed.
+/// came as far as its first record, and are removed; if it holds a part without a manifest, a run was stopped while it
+/// moved them, and the rest follows.
 fn put_aside(path: &Path) -> Result<(), FolderError> {
     let previous = path.join(PREVIOUS);
     if Manifest::read(&previous).is_ok() || Manifest::read(path).is_err() {
         return clear(path);
     }
-    clear(&previous)?;
     move_results(path, &previous)
+}
+
+/// Removes results that others are to be moved over. Without a manifest they are the first half of those others: the
+/// manifest is moved last, and a run was stopped in between.
+fn make_room(path: &Path) -> Result<(), FolderError> {
+    if Manifest::read(path).is_ok() { clear(path) } else { Ok(()) }
 }
 
 fn move_results(from: &Path, to: &Path) -> Result<(), FolderError> {
@@ -322,7 +328,13 @@ fn snapshots(path: &Path) -> Result<Vec<OsString>, FolderError> {
 /// Removes a folder that holds nothing.
 fn remove_empty(path: &Path) -> Result<(), FolderError> {
     match fs::remove_dir(path) {
-        Err(error) if matches!(error.kind(), io::ErrorKind::DirectoryNotEmpty | io::ErrorKind::NotFound) => {
+        // A link to a folder elsewhere stays.
+        Err(error)
+            if matches!(
+                error.kind(),
+                io::ErrorKind::DirectoryNotEmpty | io::ErrorKind::NotFound | io::ErrorKind::NotADirectory
+            ) =>
+        {
             Ok(())
         }
         other => other.map_err(|source| FolderError::Unusable { path: path.to_path_buf(), source }),
@@ -389,6 +401,49 @@ mod tests {
         assert!(!folder.has_previous() && exist(&kept) && out.join("notes.txt").exists());
         folder.finished().unwrap();
         assert!(!kept.exists() && out.join("notes.txt").exists());
+    }
+
+    /// Which a kill leaves.
+    #[test]
+    fn results_that_were_moved_in_part_are_not_lost() {
+        let folder = tempfile::tempdir().unwrap();
+        let [out, inside, kept] = ["", "previous", "unfinished"].map(|name| folder.path().join(name));
+        let put = |place: &Path, name: &str| {
+            fs::create_dir_all(place.join(name).parent().unwrap()).unwrap();
+            fs::write(place.join(name), name).unwrap();
+        };
+        let names = ["particles/00000.vtu", "particles/00001.vtu", "checkpoints/0000000012.checkpoint"];
+        let all_in = |place: &Path| {
+            names.iter().all(|name| fs::read_to_string(place.join(name)).is_ok_and(|text| text == **name))
+        };
+        put(&inside, names[0]);
+        names[1..].iter().for_each(|name| put(&out, name));
+        let scene = crate::scene::Scene::new(crate::scene::Dimension::Space, 1.0, 1.0);
+        let folder = OutputFolder { path: out.clone(), held: Arc::default(), waiting: Arc::default() };
+        Manifest::new(&scene, Default::default()).write(&folder).unwrap();
+        let folder = OutputFolder::prepare(&out).unwrap();
+        assert!(all_in(&inside));
+        // The same on the way to where what has not finished is kept.
+        fs::create_dir_all(kept.join("particles")).unwrap();
+        fs::rename(inside.join(names[0]), kept.join(names[0])).unwrap();
+        assert_eq!(folder.begun().unwrap(), Some(kept.clone()));
+        assert!(all_in(&kept));
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn results_behind_a_link_are_put_aside() {
+        let (folder, elsewhere) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+        let out = folder.path();
+        std::os::unix::fs::symlink(elsewhere.path(), out.join("particles")).unwrap();
+        fs::write(elsewhere.path().join("00000.vtu"), "the first").unwrap();
+        let scene = crate::scene::Scene::new(crate::scene::Dimension::Space, 1.0, 1.0);
+        let folder = OutputFolder { path: out.to_path_buf(), held: Arc::default(), waiting: Arc::default() };
+        Manifest::new(&scene, Default::default()).write(&folder).unwrap();
+        for _ in 0..2 {
+            drop(OutputFolder::prepare(out).unwrap());
+            assert_eq!(fs::read_to_string(out.join("previous/particles/00000.vtu")).unwrap(), "the first");
+        }
     }
 
     #[test]

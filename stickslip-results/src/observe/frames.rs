@@ -7,7 +7,7 @@ use super::file::{
 };
 use super::folder::OutputFolder;
 use super::memory::Memory;
-use super::vtk::{PointArrays, VtkFile};
+use super::vtk::{PointArrays, TIME, VtkFile};
 use super::writer::Writer;
 use super::xml::attribute;
 use crate::scene::SeriesFormat;
@@ -191,6 +191,51 @@ impl SeriesFiles {
         if self.format == SeriesFormat::Glb { read_table(&self.list()) } else { read_frames(&self.list()) }
     }
 
+    /// Whether the list is what a run writes for its snapshots, with the times that these have.
+    ///
+    /// # Errors
+    /// It is not, or cannot be read.
+    pub(super) fn check_list(&self) -> Result<(), ReadError> {
+        let list = self.list();
+        let wrong = |what: String| ReadProblem::Layout(what).at(&list);
+        let frames = self.frames()?;
+        let times: Vec<f64> = frames.iter().map(|frame| frame.time).collect();
+        let found = read_bytes(&list).map_err(|error| ReadProblem::Io(error).at(&list))?;
+        if found != self.listing(&times).as_bytes() {
+            return Err(wrong("it is no list that a run wrote: bytes of it have changed".to_string()));
+        }
+        if self.format == SeriesFormat::Glb {
+            return Ok(());
+        }
+        for frame in &frames {
+            // What is wrong with a snapshot is told of it.
+            let Ok(time) = PointArrays::open(&frame.path).and_then(|points| points.field(TIME)) else {
+                continue;
+            };
+            if time != frame.time {
+                let name = frame.path.file_name().unwrap_or_default().display();
+                return Err(wrong(format!("it has {name} at t = {:e} s, which says {time:e} s", frame.time)));
+            }
+        }
+        Ok(())
+    }
+
+    /// The list for snapshots at these times.
+    fn listing(&self, times: &[f64]) -> String {
+        let files = times.iter().enumerate().map(|(number, time)| (time, self.file(number)));
+        if self.format == SeriesFormat::Glb {
+            let rows = files.map(|(time, file)| format!("{time:e},{file}\n"));
+            return format!("{TABLE_HEADER}\n{}", rows.collect::<String>());
+        }
+        let rows = files
+            .map(|(time, file)| format!("<DataSet timestep=\"{time:e}\" part=\"0\" file=\"{file}\"/>\n"));
+        format!(
+            "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" \
+             byte_order=\"LittleEndian\">\n<Collection>\n{}</Collection>\n</VTKFile>\n",
+            rows.collect::<String>()
+        )
+    }
+
     /// The file of a snapshot.
     pub(super) fn path(&self, number: usize) -> PathBuf {
         self.folder.join(self.file(number))
@@ -260,23 +305,8 @@ impl Series {
     }
 
     fn write_list(&self) -> Result<(), OutputError> {
-        let files = self.times.iter().enumerate().map(|(number, time)| (time, self.files.file(number)));
-        if self.files.format == SeriesFormat::Glb {
-            return replace(&self.files.list(), |table| {
-                writeln!(table, "{TABLE_HEADER}")?;
-                files.into_iter().try_for_each(|(time, file)| writeln!(table, "{time:e},{file}"))
-            });
-        }
-        replace(&self.files.list(), |xml| {
-            writeln!(xml, "<?xml version=\"1.0\"?>")?;
-            writeln!(xml, "<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">")?;
-            writeln!(xml, "<Collection>")?;
-            for (time, file) in files {
-                writeln!(xml, "<DataSet timestep=\"{time:e}\" part=\"0\" file=\"{file}\"/>")?;
-            }
-            writeln!(xml, "</Collection>")?;
-            writeln!(xml, "</VTKFile>")
-        })
+        let text = self.files.listing(&self.times);
+        replace(&self.files.list(), |list| list.write_all(text.as_bytes()))
     }
 }
 

@@ -1,7 +1,7 @@
 //! Whether the files of results are as the run wrote them.
 
 use super::checkpoint::Checkpoint;
-use super::file::{FileSum, ReadError, ReadProblem};
+use super::file::{FileSum, ReadError, ReadProblem, open_file};
 use super::frames::{FrameFile, SeriesFiles};
 use super::manifest::Manifest;
 use super::memory::Memory;
@@ -12,7 +12,6 @@ use crate::image::Image;
 use crate::scene::SeriesFormat;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::fs::File;
 use std::path::{Path, PathBuf};
 
 /// What was found of the files of results.
@@ -50,8 +49,12 @@ pub fn verify(folder: &Path) -> Result<Verified, ReadError> {
         verified.summed += 1;
     }
     let later = |path: &Path| !sums.files.contains_key(path);
-    let series = |name| SeriesFiles::find(folder, name, SeriesFormat::Vtu).frames().unwrap_or_default();
-    let others = [SURFACES, GRID].map(series).concat();
+    let [particles, surfaces, grid] =
+        [PARTICLES, SURFACES, GRID].map(|name| SeriesFiles::find(folder, name, SeriesFormat::Vtu));
+    for files in [&particles, &surfaces, &grid].into_iter().filter(|files| files.list().exists()) {
+        verified.note(files.check_list());
+    }
+    let others = [surfaces, grid].map(|files| files.frames().unwrap_or_default()).concat();
     for frame in results.frames().iter().chain(&others).filter(|frame| later(&frame.path)) {
         verified.note(FrameFile::check(&frame.path));
     }
@@ -71,7 +74,7 @@ impl Verified {
     /// Each table by its sum, as far as that reaches, and all of it by reading it.
     fn tables(&mut self, results: &Results, sums: &Sums) {
         for (path, sum) in &sums.tables {
-            let start = File::open(path).and_then(|mut file| FileSum::of(&mut file, sum.bytes));
+            let start = open_file(path).and_then(|mut file| FileSum::of(&mut file, sum.bytes));
             let start = start.map_err(ReadProblem::Io);
             let found = start.and_then(|start| if start == *sum { Ok(()) } else { Err(sum.differs(start)) });
             self.note(found.map_err(|problem| problem.at(path)));

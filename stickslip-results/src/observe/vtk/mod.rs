@@ -17,6 +17,9 @@ pub(super) use read::PointArrays;
 pub use write::VtkFile;
 pub(super) use write::{NUMBER, VECTOR};
 
+/// The name that ParaView has for a field with the time.
+pub(super) const TIME: &str = "TimeValue";
+
 /// Bytes of a full block before compression: a multiple of every number's size, small enough to stay in a core's cache.
 const BLOCK: usize = 1 << 17;
 

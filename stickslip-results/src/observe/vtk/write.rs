@@ -1,6 +1,6 @@
 //! Writing points and their data.
 
-use super::{BLOCK, Scalar};
+use super::{BLOCK, Scalar, TIME};
 use crate::column::Kind;
 use crate::observe::file::{FileSum, OutputError, replace_summed};
 use crate::scene::{Compression, Precision, SnapshotContent};
@@ -147,7 +147,7 @@ impl VtkFile {
             compression,
             points: positions.len(),
             count: cells,
-            fields: vec![("TimeValue", time)],
+            fields: vec![(TIME, time)],
             geometry: vec![Array::real("points", VECTOR, (positions.as_flattened(), precision, compression))],
             cells: vec![
                 Array::new("connectivity", NUMBER, (corners, compression)),
