@@ -4,7 +4,7 @@ use super::verdict::Noted;
 use super::widest::{LargestForces, WidestContacts};
 use crate::check::ContactResolution;
 use crate::door::{ContactPatch, View};
-use crate::scene::{HealthCheck, Scene};
+use crate::scene::{HealthCheck, Response, Scene};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 
@@ -70,7 +70,10 @@ impl ContactWatch {
         let pair = |patch: &ContactPatch| [patch.body_a, patch.body_b];
         let newly = new.iter().map(pair).filter(|pair| poor.contains(&pair.map(name))).collect::<Vec<_>>();
         self.reported.extend(newly);
-        let line = found.0.first().filter(|_| self.lines < MOST_LINES).map(|narrowest| {
+        // Said without being asked for; a scene that wants no warning of it gets none.
+        let rule = scene.health.rules.get(&HealthCheck::Contact);
+        let is_told = rule.is_none_or(|rule| !matches!(rule.then, Response::Record | Response::Ignore));
+        let line = found.0.first().filter(|_| is_told && self.lines < MOST_LINES).map(|narrowest| {
             self.lines += 1;
             let last = if self.lines == MOST_LINES { "; no more of this until the summary" } else { "" };
             format!("contact not resolved: {}, {}; {}{last}", found.named(), found.borne(), narrowest.off)
