@@ -70,9 +70,8 @@ impl ContactWatch {
         let pair = |patch: &ContactPatch| [patch.body_a, patch.body_b];
         let newly = new.iter().map(pair).filter(|pair| poor.contains(&pair.map(name))).collect::<Vec<_>>();
         self.reported.extend(newly);
-        // Said without being asked for; a scene that wants no warning of it gets none.
-        let rule = scene.health.rules.get(&HealthCheck::Contact);
-        let is_told = rule.is_none_or(|rule| !matches!(rule.then, Response::Record | Response::Ignore));
+        // Said without being asked for.
+        let is_told = scene.health.response(HealthCheck::Contact) != Response::Ignore;
         let line = found.0.first().filter(|_| is_told && self.lines < MOST_LINES).map(|narrowest| {
             self.lines += 1;
             let last = if self.lines == MOST_LINES { "; no more of this until the summary" } else { "" };
