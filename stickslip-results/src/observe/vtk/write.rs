@@ -22,8 +22,8 @@ enum DataSet {
     PolyData,
 }
 
-/// A file of points, or of triangles between points (`.vtu`, or `.vtp` as polygons), encoded and ready to be written: it borrows nothing, so that
-/// another thread may write it.
+/// A file of points, or of triangles between points (`.vtu`, or `.vtp` as polygons), encoded and ready to be written:
+/// it borrows nothing, so that another thread may write it.
 pub struct VtkFile {
     data_set: DataSet,
     precision: Precision,
