@@ -4,6 +4,8 @@ use crate::drawing::DrawError;
 use crate::progress::terminal;
 use crate::tell::tell;
 use miette::{Diagnostic, GraphicalReportHandler, Report};
+use std::io::{self, ErrorKind};
+use std::path::Path;
 
 /// Why a command did not do what it was asked.
 #[derive(Debug)]
@@ -41,6 +43,22 @@ impl Failure {
     /// The run went wrong.
     pub fn run(error: impl Diagnostic + Send + Sync + 'static) -> Self {
         Failure::Run(Report::new(error))
+    }
+
+    /// A file could not be written: the path is at fault, or the disk.
+    pub fn unwritten(path: &Path, error: &io::Error) -> Self {
+        let report = miette::miette!("cannot write {}: {error}", path.display());
+        match error.kind() {
+            ErrorKind::NotFound
+            | ErrorKind::PermissionDenied
+            | ErrorKind::ReadOnlyFilesystem
+            | ErrorKind::AlreadyExists
+            | ErrorKind::IsADirectory
+            | ErrorKind::NotADirectory
+            | ErrorKind::InvalidInput
+            | ErrorKind::InvalidFilename => Failure::Input(report),
+            _ => Failure::Run(report),
+        }
     }
 
     /// The same where the run is over: its input was sound, or it would not have begun.
@@ -112,7 +130,8 @@ impl std::fmt::Display for Failure {
 impl From<DrawError> for Failure {
     fn from(error: DrawError) -> Self {
         match error {
-            DrawError::Write { .. } | DrawError::Empty(_) => Failure::Input(miette::miette!("{error}")),
+            DrawError::Write { path, source } => Failure::unwritten(&path, &source),
+            DrawError::Empty(_) => Failure::Input(miette::miette!("{error}")),
             DrawError::Ink(_) => Failure::Run(miette::miette!("{error}")),
         }
     }

@@ -13,7 +13,7 @@ use std::path::Path;
 use std::sync::Arc;
 use stickslip::door::ParticleSnapshot;
 use stickslip::image::Image;
-use stickslip::observe::{Frame, Results};
+use stickslip::observe::{Frame, ParticleFile, Results};
 use stickslip::scene::NamePattern;
 use stickslip::surface::model::Model;
 
@@ -382,10 +382,13 @@ fn draw_chart(results: &Results, folder: &Path) -> Result<bool, Failure> {
     }
 }
 
-/// Draws the last snapshot into `picture.png`; false if there is none, or not all of one.
+/// Draws the last snapshot into `picture.png`; false if there is none, or not all of one, or nothing is left in it.
 fn draw_last(results: &Results, folder: &Path) -> Result<bool, Failure> {
     let last = results.frames().last().filter(|_| results.has_whole_snapshots());
     let Some(last) = last else { return Ok(false) };
+    if ParticleFile::open(&last.path).map_err(Failure::input)?.particles() == 0 {
+        return Ok(false);
+    }
     let picture = Album::open(results, PictureChoice::default())?.picture(last)?;
     save(&picture, &folder.join("picture.png"))?;
     Ok(true)

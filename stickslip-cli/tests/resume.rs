@@ -3,7 +3,8 @@
 mod stickslip;
 
 use std::fs;
-use std::path::Path;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 use std::process::{Child, Stdio};
 use std::time::{Duration, Instant};
 use stickslip::{Workplace, new_scene};
@@ -31,11 +32,21 @@ fn record(folder: &Path) -> serde_json::Value {
     serde_json::from_slice(&fs::read(folder.join("run.json")).unwrap()).unwrap()
 }
 
-/// The tables and the sum of the last state.
-fn outcome(folder: &Path) -> (Vec<String>, serde_json::Value) {
-    let tables = ["bodies.csv", "energy.csv", "contacts.csv"];
-    let tables = tables.map(|name| fs::read_to_string(folder.join(name)).unwrap());
-    (tables.to_vec(), record(folder)["state_sum"].clone())
+/// All files of results but the record and the checkpoints, and the sum of the last state.
+fn outcome(folder: &Path) -> (BTreeMap<PathBuf, Vec<u8>>, serde_json::Value) {
+    let mut files = BTreeMap::new();
+    let mut open = vec![folder.to_path_buf()];
+    while let Some(inside) = open.pop() {
+        for entry in fs::read_dir(inside).unwrap().flatten() {
+            let name = entry.path().strip_prefix(folder).unwrap().to_path_buf();
+            if entry.path().is_dir() {
+                open.extend((name != Path::new("checkpoints")).then(|| entry.path()));
+            } else if name != Path::new("run.json") {
+                files.insert(name, fs::read(entry.path()).unwrap());
+            }
+        }
+    }
+    (files, record(folder)["state_sum"].clone())
 }
 
 fn has_checkpoint(folder: &Path) -> bool {
@@ -146,7 +157,7 @@ fn hangups_are_ignored() -> bool {
 #[test]
 #[cfg(unix)]
 fn a_run_that_is_asked_to_end_leaves_a_checkpoint_and_goes_on() {
-    for signal in ["TERM", "HUP", "INT"] {
+    for signal in ["TERM", "HUP", "INT", "USR1", "USR2", "XCPU"] {
         if signal == "HUP" && hangups_are_ignored() {
             continue;
         }
@@ -432,6 +443,14 @@ fn a_finished_run_goes_on_to_a_later_end() {
     let past = workplace.run(&["resume", "scene.results", "--until", "10 ms"]);
     assert_eq!(past.code, Some(2));
     assert!(past.stderr.contains("past its new end"), "{}", past.stderr);
+    let twice = workplace.succeed(&["resume", "scene.results", "--until", "0.05 s"]);
+    assert!(twice.contains("t = 0.050000 s"), "{twice}");
+    // Its steps ended at 20 ms and at 40 ms, and do so again.
+    let again = workplace.succeed(&["run", "--again", "scene.results"]);
+    assert!(again.contains("the same bits as scene.results"), "{again}");
+    let ends = &record(&workplace.path("scene.results"))["ends"];
+    assert_eq!(ends.as_array().map(Vec::len), Some(2), "{ends}");
+
     let wrong = workplace.run(&["resume", "scene.results", "--until", "soon"]);
     assert_eq!(wrong.code, Some(2));
     assert!(wrong.stderr.contains("soon"), "{}", wrong.stderr);
@@ -442,11 +461,11 @@ fn a_finished_run_goes_on_to_a_later_end() {
     let scene = new_scene();
     workplace
         .write("scene.toml", &scene.replacen("density = ", "density = 2 * ", 1).replace("2 * \"", "\"2 * "));
-    let changed = workplace.run(&["resume", "scene.results", "--until", "50 ms"]);
+    let changed = workplace.run(&["resume", "scene.results", "--until", "55 ms"]);
     assert_eq!(changed.code, Some(2), "{}", changed.stderr);
     assert!(changed.stderr.contains("density") || changed.stderr.contains("materials"), "{}", changed.stderr);
     fs::remove_file(workplace.path("scene.toml")).unwrap();
-    let gone = workplace.run(&["resume", "scene.results", "--until", "50 ms"]);
+    let gone = workplace.run(&["resume", "scene.results", "--until", "55 ms"]);
     assert_eq!(gone.code, Some(0), "{}", gone.stderr);
     assert!(gone.stderr.contains("scene.toml is not there; the run goes on"), "{}", gone.stderr);
     let unknown = workplace.run(&["resume", "scene.results", "--until", "60 ms", "--scene", "moved.toml"]);

@@ -679,8 +679,12 @@ fn a_damaged_checkpoint_is_told_of_and_the_one_before_is_taken() {
         assert!(Checkpoint::read(&all[0]).is_err());
     }
     let mut progress = |progress: &Progress| told.extend(progress.notes.clone());
-    resume(&scene, &mut *stickslip::step::build(&scene).unwrap(), &options(&parts), &mut progress).unwrap();
-    assert!(told[0].contains(all[0].file_name().unwrap().to_str().unwrap()), "{told:?}");
+    let simulation = &mut *stickslip::step::build(&scene).unwrap();
+    let summary = resume(&scene, simulation, &options(&parts), &mut progress).unwrap();
+    let name = all[0].file_name().unwrap().to_str().unwrap();
+    assert!(told[0].contains(name), "{told:?}");
+    let warning = summary.warnings.iter().find(|warning| warning.kind == "checkpoint").expect("it is recorded");
+    assert!(warning.message.contains(name) && warning.count == 1, "{warning:?}");
     assert_same_run(&whole, &parts);
 
     // It is out of the way, and does not count among those that are kept.

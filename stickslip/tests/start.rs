@@ -323,6 +323,25 @@ fn last_frame(out: &Path) -> (std::path::PathBuf, f64) {
     (frame.path, frame.time)
 }
 
+/// A snapshot without compression has no sums of its own; the newest checkpoint has them.
+#[test]
+fn a_changed_snapshot_is_no_beginning() {
+    let plain = packing_with("[outputs.snapshots]\ncompression = \"none\"\n").replace("end = 0.3", "end = 0.1");
+    let folder = tempfile::tempdir().unwrap();
+    let [packing, next] = ["packing", "next"].map(|name| folder.path().join(name));
+    make(&scene(&plain), &packing).unwrap();
+    let file = Results::open(&packing).unwrap().frames()[1].path.clone();
+    make(&from(&plain, &file, ""), &next).unwrap();
+    let mut bytes = std::fs::read(&file).unwrap();
+    let middle = bytes.len() / 2;
+    bytes[middle] ^= 1;
+    std::fs::write(&file, bytes).unwrap();
+    for scene in [from(&plain, &file, ""), from(&plain, &packing, "at = 0.05")] {
+        let error = make(&scene, &folder.path().join("last")).map(drop).unwrap_err().to_string();
+        assert!(error.contains("00001.vtu") && error.contains("bytes of it have changed"), "{error}");
+    }
+}
+
 /// From the snapshot of the end as from the checkpoint there: bodies that deform to the bit in double precision, rigid
 /// ones as their particles say; in single precision to that. At rest nothing else is missing, and the runs stay together.
 #[test]

@@ -5,7 +5,6 @@ use crate::bench::{BenchExtent, BenchSuite, PROBLEMS, Peers, answer, write_scene
 use crate::failure::Failure;
 use crate::files;
 use clap::Args;
-use miette::miette;
 use std::path::PathBuf;
 
 /// Measure this machine's limits, and how near the program comes to them.
@@ -89,7 +88,7 @@ impl Arguments {
         let Some(file) = self.json else { return Ok(()) };
         let text = serde_json::to_string_pretty(&record).expect("a record is plain data") + "\n";
         files::write(&file, files::MEASUREMENTS, |file| file.write_all(text.as_bytes()))
-            .map_err(|error| Failure::Input(miette!("cannot write {}: {error}", file.display())))?;
+            .map_err(|error| Failure::unwritten(&file, &error))?;
         say(&format!("{} is written", file.display()))
     }
 }

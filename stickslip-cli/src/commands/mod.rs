@@ -189,8 +189,8 @@ fn say(text: &str) -> Result<(), Failure> {
     }
 }
 
-/// A flag that is set by the first Ctrl-C, by SIGTERM, and by SIGHUP unless `nohup` has it ignored. The second Ctrl-C
-/// ends the program at once.
+/// A flag that is set by the first Ctrl-C, and by the signals by which batch systems and shells ask a program to end,
+/// but for those that whoever started it has ignored (`nohup`). The second Ctrl-C ends the program at once.
 fn stop_on_interrupt() -> Result<Arc<AtomicBool>, Failure> {
     let stop = Arc::new(AtomicBool::new(false));
     let flag = Arc::clone(&stop);
@@ -203,7 +203,9 @@ fn stop_on_interrupt() -> Result<Arc<AtomicBool>, Failure> {
     });
     installed.map_err(|error| Failure::Run(miette!("cannot watch for Ctrl-C: {error}")))?;
     #[cfg(unix)]
-    for signal in [libc::SIGTERM, libc::SIGHUP].into_iter().filter(|&signal| !is_ignored(signal)) {
+    const ASKED: [libc::c_int; 5] = [libc::SIGTERM, libc::SIGHUP, libc::SIGXCPU, libc::SIGUSR1, libc::SIGUSR2];
+    #[cfg(unix)]
+    for signal in ASKED.into_iter().filter(|&signal| !is_ignored(signal)) {
         let watched = signal_hook::flag::register(signal, Arc::clone(&stop));
         watched.map_err(|error| Failure::Run(miette!("cannot watch for signals: {error}")))?;
     }

@@ -1,7 +1,6 @@
 //! `stickslip network DIR`: who presses on whom, as a graph.
 
 use super::{open, recorded, say};
-use crate::drawing::DrawError;
 use crate::failure::Failure;
 use crate::files;
 use clap::Args;
@@ -32,7 +31,7 @@ impl Arguments {
         let network = Network::read(&results, self.time).map_err(Failure::input)?;
         let out = self.out.unwrap_or_else(|| self.folder.join("network.graphml"));
         files::write(&out, files::GRAPHML, |file| network.write(file))
-            .map_err(|source| Failure::from(DrawError::Write { path: out.clone(), source }))?;
+            .map_err(|error| Failure::unwritten(&out, &error))?;
         say(&format!(
             "{} is written: {} bodies, {} contacts, {:.2} on a body that touches, t = {} s",
             out.display(),

@@ -26,13 +26,11 @@ impl Arguments {
             // Half a scene is better not there; the first error is the one to report.
             file.write_all(SCENE.as_bytes()).inspect_err(|_| drop(std::fs::remove_file(&self.file)))
         });
-        created.map_err(|error| {
-            Failure::Input(match error.kind() {
-                ErrorKind::AlreadyExists => {
-                    miette!(help = "give another name: stickslip new other.toml", "{file} is there already")
-                }
-                _ => miette!("cannot write {file}: {error}"),
-            })
+        created.map_err(|error| match error.kind() {
+            ErrorKind::AlreadyExists => Failure::Input(
+                miette!(help = "give another name: stickslip new other.toml", "{file} is there already"),
+            ),
+            _ => Failure::unwritten(&self.file, &error),
         })?;
         say(&format!("{file} is written; now: stickslip run {file}"))
     }

@@ -10,7 +10,7 @@ use bytesize::ByteSize;
 use clap::Args;
 use miette::{IntoDiagnostic, miette};
 use std::path::{Path, PathBuf};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 use stickslip::check::{free_memory, pairs_without_friction};
 use stickslip::door::Simulation;
 use stickslip::observe::{
@@ -76,9 +76,13 @@ pub(super) struct How {
     #[arg(long, value_name = "NUMBER", default_value_t = 2, value_parser = clap::value_parser!(u16).range(1..))]
     keep_checkpoints: u16,
 
-    /// Stop after this wall time, with a checkpoint and exit code 4: "8h", or "never".
+    /// Stop after this wall time, from the start of the program, with a checkpoint and exit code 4: "8h", or "never".
     #[arg(long, value_name = "TIME", default_value = "never", value_parser = wall_time)]
     max_time: WallTime,
+
+    /// When the program was started, about.
+    #[arg(skip = Instant::now())]
+    begun: Instant,
 
     /// Memory that the run may take, as `stickslip check` estimates it, such as "40 GB"; what is free without this.
     #[arg(long, value_name = "SIZE")]
@@ -142,7 +146,7 @@ impl Arguments {
     pub fn execute(self) -> Result<(), Failure> {
         self.how.use_threads()?;
         let before = self.again.as_deref().map(Repeated::of).transpose()?;
-        let (loaded, source, usual) = match (&before, self.scene) {
+        let (mut loaded, source, usual) = match (&before, self.scene) {
             (Some(before), _) => (before.scene(&self.how)?, before.source.clone(), before.folder()),
             (None, scene) => {
                 let (scene, set) = (scene.unwrap_or_default(), self.parameters);
@@ -156,10 +160,17 @@ impl Arguments {
         if !self.overwrite {
             unfinished(&out, &loaded.scene)?;
         }
-        self.how.make(&loaded, (source, out.clone()), |scene, simulation, options, progress| {
-            stickslip::run::run(scene, simulation, options, progress)
-        })?;
-        before.map_or(Ok(()), |before| before.compare(&out))
+        let mut make: Make = |scene, simulation, options, progress| stickslip::run::run(scene, simulation, options, progress);
+        // A run that was continued has steps that end where it ended before.
+        for end in before.iter().flat_map(|before| before.ends()) {
+            loaded.scene.time.end = end;
+            self.how.make(&loaded, (source.clone(), out.clone()), make)?;
+            make = stickslip::run::resume;
+        }
+        match before {
+            Some(before) => before.compare(&out),
+            None => self.how.make(&loaded, (source, out), make),
+        }
     }
 }
 
@@ -213,6 +224,11 @@ impl Repeated {
         Ok(loaded)
     }
 
+    /// The ends to which it went, one after the other [s].
+    fn ends(&self) -> impl Iterator<Item = f64> {
+        self.manifest.ends.iter().copied().chain([self.manifest.performance.time])
+    }
+
     fn compare(&self, out: &Path) -> Result<(), Failure> {
         let now = Manifest::read(out).map_err(Failure::input)?;
         if now.state_sum.as_ref() == Some(&self.sum) {
@@ -222,6 +238,10 @@ impl Repeated {
         say(&format!("other bits than {}, after {steps} steps and {before}", self.results.display()))?;
         if now.version != self.manifest.version {
             say(&format!("  version {} made it, and this is {}", self.manifest.version, now.version))?;
+        }
+        if let Some(then) = self.manifest.begun_from.as_ref().filter(|then| now.begun_from.as_ref() != Some(then)) {
+            let (path, time) = (then.path.display(), then.time);
+            say(&format!("  its bodies began from {path} at t = {time} s, which is another state now"))?;
         }
         Err(Failure::Differs)
     }
@@ -284,7 +304,7 @@ impl How {
             threads,
             source: Some(SceneSource { text: Some(loaded.source.text().to_owned()), ..source }),
             checkpoints: Checkpointing { every, at_end, keep: usize::from(self.keep_checkpoints) },
-            max_time: self.max_time.0,
+            max_time: self.max_time.0.map(|longest| longest.saturating_sub(self.begun.elapsed())),
             patience: Patience { tell: tell_of_slow_disk, ..Patience::default() },
             ..RunOptions::new(&out)
         };
@@ -355,8 +375,7 @@ fn tell_of_slow_disk(path: &Path, waited: Duration) {
     );
 }
 
-/// A line for each arrival, each front's speed and each probe that saw nothing; a threshold that was not passed has
-/// none.
+/// A line for each arrival and each front's speed; a threshold that was not passed has none.
 fn measured(folder: &Path, scene: &Scene) -> Result<String, Failure> {
     let results = Results::open(folder).map_err(Failure::run)?;
     let unit = scene.outputs.measurements.unit();
@@ -371,10 +390,5 @@ fn measured(folder: &Path, scene: &Scene) -> Result<String, Failure> {
     };
     let arrivals = results.arrivals_table().map_err(Failure::run)?;
     let speeds = results.front_speeds_table().map_err(Failure::run)?;
-    let probed = results.probes_table().map_err(Failure::run)?;
-    let probes = scene.outputs.measurements.probes.iter();
-    let idle = probes.filter(|probe| probed.iter().all(|row| row.probe != probe.name));
-    let idle =
-        idle.map(|probe| format!("  warning    no material ever came to the probe `{}`\n", probe.name));
-    Ok(arrivals.iter().map(arrival).chain(speeds.iter().map(speed)).chain(idle).collect())
+    Ok(arrivals.iter().map(arrival).chain(speeds.iter().map(speed)).collect())
 }

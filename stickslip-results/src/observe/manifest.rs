@@ -35,6 +35,12 @@ pub struct Manifest {
     /// Simulated times at which it was taken up from a checkpoint [s].
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub resumed: Vec<f64>,
+    /// Ends that it had reached, and beyond which it was continued [s]: its steps end there, too.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub ends: Vec<f64>,
+    /// What its bodies began from, if from another run.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub begun_from: Option<BegunFrom>,
     /// SHA-256 of the particles at the end, see [`super::state_sum`]: the same for any number of threads and however
     /// often the run was interrupted. None of a run that failed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -59,6 +65,17 @@ pub struct Manifest {
     /// The scene as run, in SI units, parameters resolved; numbers that are infinite stand as `null`.
     /// [`Results::scene`](super::Results::scene) reads it.
     pub scene: serde_json::Value,
+}
+
+/// The state of another run, from which bodies begin.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BegunFrom {
+    /// The checkpoint or the snapshot.
+    pub path: PathBuf,
+    /// Simulated time there [s].
+    pub time: f64,
+    /// What was read: its [`super::state_sum`].
+    pub state_sum: String,
 }
 
 /// A scene file with what was set on the command line.
@@ -218,6 +235,8 @@ impl Manifest {
             performance,
             relaxation: None,
             resumed: Vec::new(),
+            ends: Vec::new(),
+            begun_from: None,
             state_sum: None,
             warnings: Vec::new(),
             remarks: Vec::new(),

@@ -57,7 +57,7 @@ pub use grid::encode_grid;
 pub use groups::{GroupContactRow, GroupRow};
 pub use joints::JointRow;
 pub use loads::LoadRow;
-pub use manifest::{Manifest, Performance, ReferenceCurve, RunWarning, SceneSource, Status, Timing};
+pub use manifest::{BegunFrom, Manifest, Performance, ReferenceCurve, RunWarning, SceneSource, Status, Timing};
 pub use memory::Memory;
 pub use network::Network;
 pub use particle_file::{FileColumn, ParticleFile};
@@ -74,7 +74,7 @@ pub use results::Results;
 pub use schedule::Schedule;
 pub use sections::SectionRow;
 pub use table::{CellValue, TableRow};
-pub use verify::{Verified, verify};
+pub use verify::{Verified, verify, verify_snapshot};
 pub use vtk::VtkFile;
 pub use waiting::{Patience, Waiting};
 pub use writer::Writer;
@@ -124,6 +124,11 @@ pub trait Observer {
         Ok(())
     }
 
+    /// What makes its records doubtful, known after [`Observer::conclude`]: a sentence each.
+    fn doubts(&self) -> Vec<String> {
+        Vec::new()
+    }
+
     /// Keeps what it needs to go on in a resumed run, or takes that up, see [`Memory`]. When it keeps, all that was
     /// handed over is on the disk on return; when it takes up, what was written after the checkpoint is cut off.
     ///
@@ -151,6 +156,10 @@ impl<O: Observer + ?Sized> Observer for &mut O {
 
     fn conclude(&mut self) -> Result<(), OutputError> {
         (**self).conclude()
+    }
+
+    fn doubts(&self) -> Vec<String> {
+        (**self).doubts()
     }
 
     fn remember(&mut self, view: &dyn View, memory: &mut Memory) -> Result<(), OutputError> {

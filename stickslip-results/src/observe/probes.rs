@@ -9,6 +9,7 @@ use super::table::{CellValue, CsvTable, TableRow, columns};
 use super::{Observer, PROBES};
 use crate::door::View;
 use crate::scene::{Observable, Probe, Scene};
+use std::collections::BTreeSet;
 
 /// A probe at one time, in SI units; the columns of `probes.csv`. A probe without material around has no row.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -85,6 +86,8 @@ pub(super) fn points<'a>(
 pub(super) struct ProbesObserver {
     names: Vec<String>,
     points: Points,
+    /// Names of those that had material around them at some time.
+    seen: BTreeSet<String>,
     schedule: Schedule,
     table: CsvTable<ProbeRow>,
 }
@@ -95,6 +98,7 @@ impl ProbesObserver {
         Ok(ProbesObserver {
             names: wanted.probes.iter().map(|probe| probe.name.clone()).collect(),
             points: Points::new(scene, points(scene, wanted.probes.iter())),
+            seen: BTreeSet::new(),
             schedule: Schedule::every(wanted.samples),
             table: CsvTable::create(folder, PROBES, wanted.unit())?,
         })
@@ -109,7 +113,14 @@ impl Observer for ProbesObserver {
     fn observe(&mut self, view: &dyn View) -> Result<(), OutputError> {
         let time = view.time();
         let samples = self.names.iter().zip(self.points.sample(view));
-        self.table.append(samples.filter_map(|(name, sample)| Some(ProbeRow::new(time, name, sample?))))?;
+        let rows: Vec<_> =
+            samples.filter_map(|(name, sample)| Some(ProbeRow::new(time, name, sample?))).collect();
+        for row in &rows {
+            if !self.seen.contains(&row.probe) {
+                self.seen.insert(row.probe.clone());
+            }
+        }
+        self.table.append(rows)?;
         self.schedule.recorded(time);
         Ok(())
     }
@@ -118,8 +129,17 @@ impl Observer for ProbesObserver {
         self.table.finish()
     }
 
+    fn doubts(&self) -> Vec<String> {
+        let idle = self.names.iter().filter(|name| !self.seen.contains(*name));
+        idle.map(|name| format!("no material ever came to the probe `{name}`")).collect()
+    }
+
     fn remember(&mut self, _: &dyn View, memory: &mut Memory) -> Result<(), OutputError> {
         self.points.remember(memory)?;
+        if !memory.keep("seen", &mut self.seen)? {
+            // Earlier versions did not keep it: nothing can be said.
+            self.seen = self.names.iter().cloned().collect();
+        }
         self.schedule.remember(memory)?;
         self.table.remember(memory)
     }

@@ -171,6 +171,11 @@ impl<'a> Recorder<'a> {
         self.scheduled.iter_mut().try_for_each(|output| output.observer.conclude())
     }
 
+    /// What makes records doubtful, once they are concluded: see [`Observer::doubts`].
+    pub fn doubts(&self) -> impl Iterator<Item = String> {
+        self.scheduled.iter().flat_map(|output| output.observer.doubts())
+    }
+
     fn record_where(
         &mut self,
         view: &dyn View,

@@ -65,6 +65,17 @@ pub fn verify(folder: &Path) -> Result<Verified, ReadError> {
     Ok(verified)
 }
 
+/// Holds a snapshot against the sum that the newest checkpoint of its run has of it: of those that are written without
+/// compression, whose blocks have no sums of their own. Without a checkpoint that knows it nothing is told.
+///
+/// # Errors
+/// It is not as the run wrote it.
+pub fn verify_snapshot(folder: &Path, snapshot: &Path) -> Result<(), ReadError> {
+    let Ok((mut checkpoint, path, _)) = Checkpoint::newest(folder) else { return Ok(()) };
+    let sums = Sums::of(folder, &mut checkpoint.memory(&path))?;
+    sums.files.get(snapshot).map_or(Ok(()), |sum| sum.check(snapshot))
+}
+
 impl Verified {
     fn note(&mut self, found: Result<(), ReadError>) {
         self.files += 1;

@@ -38,8 +38,10 @@ pub enum HealthCheck {
     Relaxation,
     /// Particles that left the domain and were taken out.
     Leaving,
-    /// Checkpoints that could not be written.
+    /// Checkpoints that could not be written, or read.
     Checkpoint,
+    /// Probes that never had material around them.
+    Probe,
 }
 
 /// What a run does where something is wrong.
@@ -79,7 +81,7 @@ pub struct Health {
 
 impl HealthCheck {
     /// Every check in the order in which a run looks.
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 17] = [
         Self::Energy,
         Self::Noise,
         Self::Momentum,
@@ -96,6 +98,7 @@ impl HealthCheck {
         Self::Relaxation,
         Self::Leaving,
         Self::Checkpoint,
+        Self::Probe,
     ];
 
     /// Its name in records; scene files have `_` for `-`.
@@ -117,6 +120,7 @@ impl HealthCheck {
             Self::Relaxation => "relaxation",
             Self::Leaving => "leaving",
             Self::Checkpoint => "checkpoint",
+            Self::Probe => "probe",
         }
     }
 
@@ -144,7 +148,7 @@ impl HealthCheck {
             Self::Strain => Some(0.25),
             Self::Speed | Self::MaxStrain => Some(0.5),
             Self::Tearing | Self::FailedStep | Self::Contact => None,
-            Self::Relaxation | Self::Leaving | Self::Checkpoint => None,
+            Self::Relaxation | Self::Leaving | Self::Checkpoint | Self::Probe => None,
         }
     }
 }

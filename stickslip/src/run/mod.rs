@@ -21,7 +21,7 @@ pub use widest::{WidestContact, WidestContacts};
 use crate::door::{Ledger, Simulation, View};
 use crate::march::{FailedStep, March, MarchEnd, Pace};
 use crate::observe::{
-    Checkpoint, Manifest, Memory, Observer, OutputError, OutputFolder, Patience, Recorder, SceneSource,
+    BegunFrom, Checkpoint, Manifest, Memory, Observer, OutputError, OutputFolder, Patience, Recorder, SceneSource,
     Status, Waiting, Writer, present_state_sum,
 };
 use crate::scene::{HealthCheck, Scene};
@@ -115,6 +115,8 @@ pub fn run_with(
     let folder = options.patient(OutputFolder::prepare(&options.out)?);
     let beginning = Beginning {
         news: carried.iter().map(CarriedBodies::to_string).collect(),
+        passed_over: carried.iter().filter_map(CarriedBodies::damage).collect(),
+        begun_from: carried.as_ref().map(CarriedBodies::record),
         remembered: remembered.flatten(),
         ..Beginning::default()
     };
@@ -154,8 +156,9 @@ pub fn resume(
         return Err(ResumeError::Past { time, end: scene.time.end }.into());
     }
     let memory = checkpoint.memory(&path);
-    let mut notes: Vec<String> =
+    let passed_over: Vec<String> =
         damaged.iter().map(|error| format!("{error}; an earlier checkpoint is taken")).collect();
+    let mut notes = passed_over.clone();
     let version = env!("CARGO_PKG_VERSION");
     if checkpoint.program != version {
         let program = &checkpoint.program;
@@ -163,12 +166,19 @@ pub fn resume(
     }
     let restored = simulation.restore(checkpoint.state);
     restored.map_err(|problem| ResumeError::Other { path: path.clone(), problem })?;
-    let mut resumed = before.map_or_else(|_| Vec::new(), |before| before.resumed);
+    let before = before.ok();
+    let ended = before.as_ref().filter(|before| before.status == Status::Finished);
+    let ended = ended.map(|before| before.performance.time).filter(|&end| end == time);
+    let (mut resumed, mut ends, begun_from) =
+        before.map_or_else(Default::default, |before| (before.resumed, before.ends, before.begun_from));
     resumed.push(time);
+    ends.extend(ended);
     let damaged = damaged.into_iter().map(|error| error.path).collect();
     let (steps, end, from) = (simulation.steps(), scene.time.end, path.display());
     let news = vec![format!("goes on at t = {time} s, step {steps}, to t = {end} s, from {from}")];
-    let beginning = Beginning { memory: Some(memory), resumed, damaged, news, notes, remembered: None };
+    let memory = Some(memory);
+    let beginning =
+        Beginning { memory, resumed, ends, begun_from, damaged, passed_over, news, notes, remembered: None };
     drive(scene, simulation, (options, folder), (&mut [], beginning), progress)
 }
 
@@ -179,8 +189,14 @@ struct Beginning {
     memory: Option<Memory>,
     /// Times at which it was taken up, the last of them now [s].
     resumed: Vec<f64>,
+    /// Ends at which it was finished before, and beyond which it goes on [s].
+    ends: Vec<f64>,
+    /// What its bodies begin from, if that is another run.
+    begun_from: Option<BegunFrom>,
     /// Newer checkpoints, which cannot be read.
     damaged: Vec<PathBuf>,
+    /// What is wrong with those, of this run or of the one from which it begins: for the record.
+    passed_over: Vec<String>,
     /// From where.
     news: Vec<String>,
     /// What the user should know of the checkpoints.
@@ -214,6 +230,8 @@ fn drive(
     let mut manifest = Manifest::new(scene, kept.clock.performance(simulation));
     manifest.source.clone_from(&options.source);
     manifest.resumed = std::mem::take(&mut beginning.resumed);
+    manifest.ends = std::mem::take(&mut beginning.ends);
+    manifest.begun_from = beginning.begun_from.take();
     if beginning.memory.is_none() {
         record(&manifest, &folder)?;
     }
@@ -233,6 +251,10 @@ fn drive(
         }
         beginning.damaged.iter().try_for_each(|path| Checkpoint::put_away(path))?;
         record(&manifest, &folder)?;
+    }
+    for passed_over in std::mem::take(&mut beginning.passed_over) {
+        let noted = (HealthCheck::Checkpoint, passed_over, "look at the disk and the memory of the machine");
+        kept.verdict.note_each((scene, simulation), noted);
     }
     if !beginning.news.is_empty() {
         let news = std::mem::take(&mut beginning.news);
@@ -339,6 +361,9 @@ impl Kept {
     }
 }
 
+/// What to try where a probe has no rows.
+const MOVE_PROBE: &str = "move it, or let a body carry it (`fixed_in`)";
+
 /// A run under way.
 struct Watched<'a> {
     scene: &'a Scene,
@@ -413,7 +438,7 @@ impl Watched<'_> {
                 kept.clock.count(Beside::Checkpoints, begun);
             }
             let trouble = checkpoints.trouble();
-            notes.extend(trouble.and_then(|error| kept.verdict.note_checkpoint(scene, *simulation, &error)));
+            notes.extend(trouble.and_then(|error| kept.verdict.note_checkpoint((scene, *simulation), &error)));
             stopped = recorded.is_err() || stop() || kept.verdict.stop().is_some();
         };
         recorded?;
@@ -439,12 +464,15 @@ impl Watched<'_> {
         let begun = Instant::now();
         recorder.record_present(*simulation)?;
         recorder.conclude()?;
+        for doubt in recorder.doubts() {
+            notes.extend(kept.verdict.note_each((scene, *simulation), (HealthCheck::Probe, doubt, MOVE_PROBE)));
+        }
         kept.clock.count(Beside::Outputs, begun);
         let begun = Instant::now();
         checkpoints.finish()?;
         kept.clock.count(Beside::Checkpoints, begun);
         let trouble = checkpoints.trouble();
-        notes.extend(trouble.and_then(|error| kept.verdict.note_checkpoint(scene, *simulation, &error)));
+        notes.extend(trouble.and_then(|error| kept.verdict.note_checkpoint((scene, *simulation), &error)));
         let status = if kept.verdict.stop().is_some() { Status::Stopped } else { status };
         progress(&Progress { notes, ..kept.clock.progress(*simulation, end) });
         Ok((status, sum))

@@ -3,7 +3,9 @@
 use super::ResumeError;
 use crate::column::{EVERY, HALF_EDGES, optional_in_files};
 use crate::door::{RestoreError, SavedState, View};
-use crate::observe::{Checkpoint, Frame, Manifest, Memory, ParticleFile, ReadError, ReadProblem, Results};
+use crate::observe::{
+    Checkpoint, Frame, Manifest, Memory, ParticleFile, ReadError, ReadProblem, Results, verify_snapshot,
+};
 use crate::scene::{BodyMotion, Expression, Scene, Start};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -33,7 +35,8 @@ impl Origin {
         if start.from.extension().is_some_and(|kind| kind == "vtu") {
             let folder =
                 start.from.parent().and_then(Path::parent).filter(|folder| !folder.as_os_str().is_empty());
-            let results = Results::open(folder.unwrap_or(Path::new(".")))?;
+            let folder = folder.unwrap_or(Path::new("."));
+            let results = Results::open(folder)?;
             let same = |frame: &&Frame| frame.path.file_name() == start.from.file_name();
             let named =
                 results.frames().iter().find(same).filter(|frame| is_one_file(&frame.path, &start.from));
@@ -41,11 +44,14 @@ impl Origin {
                 let listed = "it is none of the snapshots of particles that the run around it lists";
                 ReadError { path: start.from.clone(), problem: ReadProblem::Layout(listed.to_string()) }
             })?;
+            verify_snapshot(folder, &frame.path)?;
             return Self::of_frame(scene, (&results, frame), view);
         }
         if let Some(at) = start.at {
             let results = Results::open(&start.from)?;
-            return Self::of_frame(scene, (&results, frame_at(&results, &start.from, at)?), view);
+            let frame = frame_at(&results, &start.from, at)?;
+            verify_snapshot(&start.from, &frame.path)?;
+            return Self::of_frame(scene, (&results, frame), view);
         }
         let (checkpoint, from, damaged) = match start.from.is_file() {
             true => (Checkpoint::read(&start.from)?, start.from.clone(), Vec::new()),

@@ -3,7 +3,7 @@
 use super::ResumeError;
 use super::origin::Origin;
 use crate::door::Simulation;
-use crate::observe::Memory;
+use crate::observe::{BegunFrom, Memory, state_sum};
 use crate::scene::{BodyMotion, Scene};
 use std::collections::HashSet;
 use std::fmt::{self, Display, Formatter};
@@ -18,6 +18,8 @@ pub struct CarriedBodies {
     pub rounded: bool,
     /// Simulated time there [s].
     pub time: f64,
+    /// The [`state_sum`] of what was read.
+    pub sum: String,
     /// How many bodies begin so, and how many the scene has.
     pub count: [usize; 2],
     /// Names of those of the scene that are not there, and begin as their shapes are filled.
@@ -68,6 +70,7 @@ pub(super) fn carry(
         from,
         rounded: is_snapshot,
         time: state.time,
+        sum: state_sum(&state),
         count: [carried.len(), scene.bodies.len()],
         new: named(&mut new.into_iter()),
         left_out: names.iter().filter(|name| !here.contains(name.as_str())).cloned().collect(),
@@ -75,6 +78,19 @@ pub(super) fn carry(
         passed_over: named(&mut carried.into_iter().filter(|body| moves(&body.motion))),
     };
     Ok(Some((bodies, memory.map(|memory| (memory, names)))))
+}
+
+impl CarriedBodies {
+    /// As the record of a run has it.
+    pub(super) fn record(&self) -> BegunFrom {
+        BegunFrom { path: self.from.clone(), time: self.time, state_sum: self.sum.clone() }
+    }
+
+    /// What is wrong with checkpoints there, if something is.
+    pub(super) fn damage(&self) -> Option<String> {
+        let newest = self.damaged.first()?;
+        Some(format!("{} is damaged, and an earlier checkpoint is taken", newest.display()))
+    }
 }
 
 /// Names that are listed; beyond, how many more.
@@ -98,8 +114,8 @@ impl Display for CarriedBodies {
             let what = "from a snapshot: in its precision, and each particle turns as its body does";
             write!(f, "\n  rounded     {what}")?;
         }
-        if let Some(newest) = self.damaged.first() {
-            write!(f, "\n  warning     {} is damaged, and an earlier one is taken", newest.display())?;
+        if let Some(damage) = self.damage() {
+            write!(f, "\n  warning     {damage}")?;
         }
         for name in &self.passed_over {
             write!(f, "\n  warning     `{name}` begins with the velocities it had there, not with its own")?;

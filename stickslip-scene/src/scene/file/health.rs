@@ -53,8 +53,10 @@ table! {
         relaxation: Option<Rule>,
         /// Particles that left the domain and were taken out, see `space.domain.leaving`.
         leaving: Option<Rule>,
-        /// Checkpoints that could not be written.
+        /// Checkpoints that could not be written, or could not be read where a run goes on from an earlier one.
         checkpoint: Option<Rule>,
+        /// Probes that never had material around them.
+        probe: Option<Rule>,
         /// How often a step that fails is taken again from memory, with half of its length and half of that, before
         /// the run gives up: 0 to 20. Steps grow back after it. The particles are copied before each step.
         #[schemars(extend("default" = 0))]
@@ -117,6 +119,7 @@ impl Health {
             (HealthCheck::Relaxation, &self.relaxation),
             (HealthCheck::Leaving, &self.leaving),
             (HealthCheck::Checkpoint, &self.checkpoint),
+            (HealthCheck::Probe, &self.probe),
         ]
     }
 

@@ -338,18 +338,21 @@ impl RunChecks {
         self.take_note((scene, view), (check, &advice), finding)
     }
 
-    /// Records a checkpoint that could not be written, of which each is told.
-    pub(super) fn note_checkpoint(
+    /// Records something of which each is told: a checkpoint that could not be written or read, a probe without rows.
+    pub(super) fn note_each(
         &mut self,
-        scene: &Scene,
-        view: &dyn View,
-        error: &OutputError,
+        (scene, view): (&Scene, &dyn View),
+        (check, message, advice): (HealthCheck, String, &str),
     ) -> Option<String> {
-        let message = format!("no checkpoint: {error}");
-        let advice = "free some space; the next one is tried in its time".to_owned();
-        let noted = Noted { check: HealthCheck::Checkpoint, message: message.clone(), worst: 1.0, advice };
+        let noted = Noted { check, message: message.clone(), worst: 1.0, advice: advice.to_owned() };
         self.note(scene, view, noted);
-        (scene.health.response(HealthCheck::Checkpoint) == Response::Warn).then_some(message)
+        (scene.health.response(check) == Response::Warn).then_some(message)
+    }
+
+    /// Records a checkpoint that could not be written.
+    pub(super) fn note_checkpoint(&mut self, told: (&Scene, &dyn View), error: &OutputError) -> Option<String> {
+        let advice = "free some space; the next one is tried in its time";
+        self.note_each(told, (HealthCheck::Checkpoint, format!("no checkpoint: {error}"), advice))
     }
 
     /// What ends the run, if something does.
