@@ -683,7 +683,8 @@ fn a_damaged_checkpoint_is_told_of_and_the_one_before_is_taken() {
     let summary = resume(&scene, simulation, &options(&parts), &mut progress).unwrap();
     let name = all[0].file_name().unwrap().to_str().unwrap();
     assert!(told[0].contains(name), "{told:?}");
-    let warning = summary.warnings.iter().find(|warning| warning.kind == "checkpoint").expect("it is recorded");
+    let warning =
+        summary.warnings.iter().find(|warning| warning.kind == "checkpoint").expect("it is recorded");
     assert!(warning.message.contains(name) && warning.count == 1, "{warning:?}");
     assert_same_run(&whole, &parts);
 

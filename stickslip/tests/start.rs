@@ -326,7 +326,8 @@ fn last_frame(out: &Path) -> (std::path::PathBuf, f64) {
 /// A snapshot without compression has no sums of its own; the newest checkpoint has them.
 #[test]
 fn a_changed_snapshot_is_no_beginning() {
-    let plain = packing_with("[outputs.snapshots]\ncompression = \"none\"\n").replace("end = 0.3", "end = 0.1");
+    let plain =
+        packing_with("[outputs.snapshots]\ncompression = \"none\"\n").replace("end = 0.3", "end = 0.1");
     let folder = tempfile::tempdir().unwrap();
     let [packing, next] = ["packing", "next"].map(|name| folder.path().join(name));
     make(&scene(&plain), &packing).unwrap();

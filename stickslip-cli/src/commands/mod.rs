@@ -203,7 +203,8 @@ fn stop_on_interrupt() -> Result<Arc<AtomicBool>, Failure> {
     });
     installed.map_err(|error| Failure::Run(miette!("cannot watch for Ctrl-C: {error}")))?;
     #[cfg(unix)]
-    const ASKED: [libc::c_int; 5] = [libc::SIGTERM, libc::SIGHUP, libc::SIGXCPU, libc::SIGUSR1, libc::SIGUSR2];
+    const ASKED: [libc::c_int; 5] =
+        [libc::SIGTERM, libc::SIGHUP, libc::SIGXCPU, libc::SIGUSR1, libc::SIGUSR2];
     #[cfg(unix)]
     for signal in ASKED.into_iter().filter(|&signal| !is_ignored(signal)) {
         let watched = signal_hook::flag::register(signal, Arc::clone(&stop));

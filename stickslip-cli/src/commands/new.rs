@@ -27,9 +27,10 @@ impl Arguments {
             file.write_all(SCENE.as_bytes()).inspect_err(|_| drop(std::fs::remove_file(&self.file)))
         });
         created.map_err(|error| match error.kind() {
-            ErrorKind::AlreadyExists => Failure::Input(
-                miette!(help = "give another name: stickslip new other.toml", "{file} is there already"),
-            ),
+            ErrorKind::AlreadyExists => Failure::Input(miette!(
+                help = "give another name: stickslip new other.toml",
+                "{file} is there already"
+            )),
             _ => Failure::unwritten(&self.file, &error),
         })?;
         say(&format!("{file} is written; now: stickslip run {file}"))

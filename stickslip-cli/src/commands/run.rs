@@ -160,7 +160,8 @@ impl Arguments {
         if !self.overwrite {
             unfinished(&out, &loaded.scene)?;
         }
-        let mut make: Make = |scene, simulation, options, progress| stickslip::run::run(scene, simulation, options, progress);
+        let mut make: Make =
+            |scene, simulation, options, progress| stickslip::run::run(scene, simulation, options, progress);
         // A run that was continued has steps that end where it ended before.
         for end in before.iter().flat_map(|before| before.ends()) {
             loaded.scene.time.end = end;
@@ -239,7 +240,9 @@ impl Repeated {
         if now.version != self.manifest.version {
             say(&format!("  version {} made it, and this is {}", self.manifest.version, now.version))?;
         }
-        if let Some(then) = self.manifest.begun_from.as_ref().filter(|then| now.begun_from.as_ref() != Some(then)) {
+        if let Some(then) =
+            self.manifest.begun_from.as_ref().filter(|then| now.begun_from.as_ref() != Some(then))
+        {
             let (path, time) = (then.path.display(), then.time);
             say(&format!("  its bodies began from {path} at t = {time} s, which is another state now"))?;
         }

@@ -1,5 +1,6 @@
 //! Files that are whole at any time, and what can go wrong with them.
 
+use crate::scene::escaped;
 use miette::Diagnostic;
 use serde::{Deserialize, Serialize};
 use std::fmt::Display;
@@ -77,13 +78,9 @@ pub enum ReadProblem {
     Layout(String),
 }
 
-/// A message that may have words of a file in it: what would steer a terminal is written as an escape.
+/// A message that may have words of a file in it.
 fn shown(message: &impl Display) -> String {
-    let letter = |letter: char| match letter.is_control() && letter != '\n' {
-        true => letter.escape_default().to_string(),
-        false => letter.to_string(),
-    };
-    message.to_string().chars().map(letter).collect()
+    escaped(&message.to_string())
 }
 
 impl ReadProblem {

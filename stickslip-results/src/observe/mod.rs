@@ -57,7 +57,9 @@ pub use grid::encode_grid;
 pub use groups::{GroupContactRow, GroupRow};
 pub use joints::JointRow;
 pub use loads::LoadRow;
-pub use manifest::{BegunFrom, Manifest, Performance, ReferenceCurve, RunWarning, SceneSource, Status, Timing};
+pub use manifest::{
+    BegunFrom, Manifest, Performance, ReferenceCurve, RunWarning, SceneSource, Status, Timing,
+};
 pub use memory::Memory;
 pub use network::Network;
 pub use particle_file::{FileColumn, ParticleFile};

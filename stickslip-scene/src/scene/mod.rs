@@ -12,6 +12,7 @@ mod fringes;
 mod gravity;
 mod health;
 mod joints;
+mod letters;
 mod load;
 mod loads;
 mod measurements;
@@ -34,6 +35,7 @@ pub use fringes::{Fringes, Light, Overlay, Polariscope, PolariscopeField, Sensit
 pub use gravity::Gravity;
 pub use health::{Health, HealthCheck, HealthRule, Response};
 pub use joints::{Joint, JointKind, Motor};
+pub use letters::escaped;
 pub use load::{Loaded, load, parse, parse_beside};
 pub use loads::{Action, Dashpot, Extent, Load, Part, RIGID, Support, SupportMotion};
 pub use measurements::{

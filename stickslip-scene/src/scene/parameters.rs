@@ -4,6 +4,7 @@ use super::Parameter;
 use super::error::Fault;
 use super::expression::{Expression, PLACE};
 use super::formula::{self, Formula, FormulaError, FormulaNumber, Meaning, Names, NumberKind};
+use super::letters::is_no_letter;
 use super::source::{DocumentNode, Source, Value};
 use super::suggestion::did_you_mean;
 use super::units::Powers;
@@ -195,8 +196,7 @@ impl<'s> Parameters<'s> {
             at = open + length + 2;
         }
         result.push_str(&text[at..]);
-        // The last two letters of Unicode's first plane are none, and XML does not take them.
-        match result.chars().find(|letter| letter.is_control() || matches!(letter, '\u{fffe}' | '\u{ffff}')) {
+        match result.chars().find(|&letter| is_no_letter(letter)) {
             Some(letter) => {
                 let found = format!("text with the control character {letter:?}");
                 Err(Fault::new(&node.key, found, "text of letters, digits, signs and spaces")

@@ -1,5 +1,7 @@
 //! What is wrong with a scene, said so that the user can mend it.
 
+use super::letters::escaped;
+
 /// A mistake in a scene, tied to the key that holds it.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{key}: {found}; allowed: {allowed}")]
@@ -18,14 +20,8 @@ pub struct Problem {
 impl Problem {
     /// The same with escapes for letters that would steer a terminal: parts of it are words of a file.
     pub(super) fn shown(self) -> Self {
-        let shown = |text: String| -> String {
-            let letter = |letter: char| match letter.is_control() && letter != '\n' {
-                true => letter.escape_default().to_string(),
-                false => letter.to_string(),
-            };
-            text.chars().map(letter).collect()
-        };
         let Problem { key, found, allowed, help } = self;
-        Problem { key: shown(key), found: shown(found), allowed: shown(allowed), help: help.map(shown) }
+        let [key, found, allowed] = [key, found, allowed].map(|text| escaped(&text));
+        Problem { key, found, allowed, help: help.as_deref().map(escaped) }
     }
 }

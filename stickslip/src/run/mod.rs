@@ -21,8 +21,8 @@ pub use widest::{WidestContact, WidestContacts};
 use crate::door::{Ledger, Simulation, View};
 use crate::march::{FailedStep, March, MarchEnd, Pace};
 use crate::observe::{
-    BegunFrom, Checkpoint, Manifest, Memory, Observer, OutputError, OutputFolder, Patience, Recorder, SceneSource,
-    Status, Waiting, Writer, present_state_sum,
+    BegunFrom, Checkpoint, Manifest, Memory, Observer, OutputError, OutputFolder, Patience, Recorder,
+    SceneSource, Status, Waiting, Writer, present_state_sum,
 };
 use crate::scene::{HealthCheck, Scene};
 use checkpoints::Checkpoints;
@@ -438,7 +438,8 @@ impl Watched<'_> {
                 kept.clock.count(Beside::Checkpoints, begun);
             }
             let trouble = checkpoints.trouble();
-            notes.extend(trouble.and_then(|error| kept.verdict.note_checkpoint((scene, *simulation), &error)));
+            notes
+                .extend(trouble.and_then(|error| kept.verdict.note_checkpoint((scene, *simulation), &error)));
             stopped = recorded.is_err() || stop() || kept.verdict.stop().is_some();
         };
         recorded?;
@@ -465,7 +466,9 @@ impl Watched<'_> {
         recorder.record_present(*simulation)?;
         recorder.conclude()?;
         for doubt in recorder.doubts() {
-            notes.extend(kept.verdict.note_each((scene, *simulation), (HealthCheck::Probe, doubt, MOVE_PROBE)));
+            notes.extend(
+                kept.verdict.note_each((scene, *simulation), (HealthCheck::Probe, doubt, MOVE_PROBE)),
+            );
         }
         kept.clock.count(Beside::Outputs, begun);
         let begun = Instant::now();

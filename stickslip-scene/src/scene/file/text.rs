@@ -4,6 +4,7 @@ use super::Context;
 use super::quantity::{QuantityInput, Ratio};
 use super::read::Read;
 use crate::scene::error::Fault;
+use crate::scene::letters::is_no_letter;
 use crate::scene::source::{DocumentNode, Value};
 use crate::scene::suggestion::{did_you_mean, listed};
 use crate::scene::{NamePattern, is_pattern};
@@ -50,8 +51,7 @@ impl Text {
 
     /// Prose of any number of lines, as it stands in the file but for what steers terminals.
     pub fn as_prose(&self) -> String {
-        let is_none = |letter: &char| letter.is_control() || matches!(letter, '\u{fffe}' | '\u{ffff}');
-        let seen = |letter: &char| !is_none(letter) || matches!(letter, '\n' | '\t');
+        let seen = |&letter: &char| !is_no_letter(letter) || matches!(letter, '\n' | '\t');
         self.as_written().trim().chars().filter(seen).collect()
     }
 

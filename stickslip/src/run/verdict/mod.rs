@@ -350,7 +350,11 @@ impl RunChecks {
     }
 
     /// Records a checkpoint that could not be written.
-    pub(super) fn note_checkpoint(&mut self, told: (&Scene, &dyn View), error: &OutputError) -> Option<String> {
+    pub(super) fn note_checkpoint(
+        &mut self,
+        told: (&Scene, &dyn View),
+        error: &OutputError,
+    ) -> Option<String> {
         let advice = "free some space; the next one is tried in its time";
         self.note_each(told, (HealthCheck::Checkpoint, format!("no checkpoint: {error}"), advice))
     }
