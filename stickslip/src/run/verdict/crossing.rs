@@ -2,7 +2,7 @@
 
 use super::{Check, CheckInputs, Finding, place};
 use crate::door::TracedParticle;
-use crate::scene::{BasisKind, HealthCheck};
+use crate::scene::{BasisKind, HealthCheck, Scene};
 use crate::tensor::{Matrix, Symmetric};
 
 /// Counts the particles that have left their first cell while their body is under stress.
@@ -16,7 +16,7 @@ impl Check for CrossingCheck {
         HealthCheck::CellCrossing
     }
 
-    fn advice(&self) -> &'static str {
+    fn advice(&self, _: &Scene) -> &'static str {
         "forces jump at each crossing: take space.basis = \"gimp\""
     }
 

@@ -2,7 +2,7 @@
 
 use super::{Check, CheckInputs, Finding, STEPS};
 use crate::door::Ledger;
-use crate::scene::HealthCheck;
+use crate::scene::{BasisKind, HealthCheck, Scene};
 use serde::{Deserialize, Serialize};
 
 /// The total of the ledger against its start, over the largest energy so far that moved, was stored, was set free by
@@ -71,8 +71,13 @@ impl Check for EnergyCheck {
         HealthCheck::Energy
     }
 
-    fn advice(&self) -> &'static str {
-        "try smaller cells, the gimp basis, a smaller time.courant; health.energy sets what is allowed"
+    fn advice(&self, scene: &Scene) -> &'static str {
+        match scene.discretization.basis {
+            BasisKind::Linear => {
+                "try space.basis = \"gimp\", smaller cells, a smaller time.courant; health.energy sets what is allowed"
+            }
+            _ => "try smaller cells, a smaller time.courant; health.energy sets what is allowed",
+        }
     }
 
     fn look(&mut self, look: &CheckInputs) -> Vec<Finding> {

@@ -2,7 +2,7 @@
 
 use super::{Check, CheckInputs, Finding, place};
 use crate::observe::{Memory, OutputError};
-use crate::scene::HealthCheck;
+use crate::scene::{HealthCheck, Scene};
 
 /// Tells of each body that loses particles, at each look at which it has lost more.
 #[derive(Default)]
@@ -16,7 +16,7 @@ impl Check for LeavingCheck {
         HealthCheck::Leaving
     }
 
-    fn advice(&self) -> &'static str {
+    fn advice(&self, _: &Scene) -> &'static str {
         "the run goes on without them; if none should leave, make the domain larger or put a face in the way"
     }
 

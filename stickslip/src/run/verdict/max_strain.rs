@@ -2,7 +2,7 @@
 
 use super::{Check, CheckInputs, Finding};
 use crate::door::ContactSum;
-use crate::scene::HealthCheck;
+use crate::scene::{HealthCheck, Scene};
 
 /// Holds those of two bodies against all that they gave each other since the start. A reduced impulse leaves a part of
 /// the approach, and bodies go into each other.
@@ -16,7 +16,7 @@ impl Check for MaxStrainCheck {
         HealthCheck::MaxStrain
     }
 
-    fn advice(&self) -> &'static str {
+    fn advice(&self, _: &Scene) -> &'static str {
         "what is left of the approach drives the bodies into each other: try a smaller time.courant, a slower impact, \
          or a larger max_strain in [[contact]]"
     }

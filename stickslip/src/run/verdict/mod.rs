@@ -49,8 +49,8 @@ trait Check {
     /// Which it is.
     fn kind(&self) -> HealthCheck;
 
-    /// What to try.
-    fn advice(&self) -> &'static str;
+    /// What to try in a run of this scene.
+    fn advice(&self, scene: &Scene) -> &'static str;
 
     /// What is wrong now.
     fn look(&mut self, look: &CheckInputs) -> Vec<Finding>;
@@ -264,8 +264,9 @@ impl RunChecks {
             particles: &particles,
             steps: [part * simulation.stable_step(), self.first_step],
         };
-        let found: Vec<_> =
-            (self.checks.iter_mut()).map(|check| (check.kind(), check.advice(), check.look(&look))).collect();
+        let found: Vec<_> = (self.checks.iter_mut())
+            .map(|check| (check.kind(), check.advice(scene), check.look(&look)))
+            .collect();
         let mut lines = Vec::new();
         for (check, advice, found) in found {
             let mut new: Vec<(f64, String)> = Vec::new();
@@ -417,4 +418,43 @@ fn norm(a: [f64; 3]) -> f64 {
 fn place(position: [f64; 3]) -> String {
     let short = |x: f64| format!("{x:.3e}").parse().unwrap_or(x).to_string();
     format!("({}) m", position.map(short).join(", "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{BasisKind, Transfer, parse};
+
+    const SCENE: &str = r#"
+[space]
+dimension = "plane-strain"
+cell = 1
+[time]
+end = 1
+[materials.rubber]
+density = 1
+neo_hookean = { young_modulus = 1, poisson_ratio = 0.3 }
+[[bodies]]
+name = "block"
+material = "rubber"
+shape.box = { min = [0, 0], max = [1, 1] }
+"#;
+
+    #[test]
+    fn no_advice_names_what_the_scene_has_already() {
+        let mut scene = parse("scene", SCENE, &[]).unwrap().scene;
+        let bases = [(BasisKind::Gimp, "gimp"), (BasisKind::Cpdi, "cpdi"), (BasisKind::Spline, "spline")];
+        let transfers = [(Transfer::Rflip, "rflip"), (Transfer::Apic, "apic"), (Transfer::Flip, "flip")];
+        for (basis, word) in bases {
+            for (transfer, transfer_word) in transfers {
+                scene.discretization.basis = basis;
+                scene.time.transfer = transfer;
+                for check in checks(&scene).iter().filter(|check| check.kind() != HealthCheck::CellCrossing) {
+                    let advice = check.advice(&scene);
+                    let named = [word, transfer_word].map(|word| advice.contains(&format!("\"{word}\"")));
+                    assert_eq!(named, [false; 2], "{word}, {transfer_word}: {advice}");
+                }
+            }
+        }
+    }
 }

@@ -126,7 +126,7 @@ impl Check for MomentumCheck {
         HealthCheck::Momentum
     }
 
-    fn advice(&self) -> &'static str {
+    fn advice(&self, _: &Scene) -> &'static str {
         "two bodies should push each other alike: take normal = \"common\" in [[contact]]; smaller cells, a smaller \
          time.courant"
     }

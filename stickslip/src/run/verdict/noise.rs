@@ -1,7 +1,7 @@
 //! Energy that became noise and was damped, though the scene asks for no damping.
 
 use super::{Check, CheckInputs, Finding, asks_for_damping};
-use crate::scene::HealthCheck;
+use crate::scene::{BasisKind, HealthCheck, Scene};
 use crate::transfer::pic_share;
 
 /// Holds what damping took from bodies that deform against the bound on it; what rigid bodies lose in impacts, which is
@@ -14,9 +14,17 @@ impl Check for NoiseCheck {
         HealthCheck::Noise
     }
 
-    fn advice(&self) -> &'static str {
-        "what bends, twists or spins loses its motion to it: try space.basis = \"cpdi\", smaller cells, smaller \
-         deflections; see the column `damping` of energy.csv"
+    fn advice(&self, scene: &Scene) -> &'static str {
+        match scene.discretization.basis {
+            BasisKind::Cpdi => {
+                "what bends, twists or spins loses its motion to it: try smaller cells, smaller deflections; see the \
+                 column `damping` of energy.csv"
+            }
+            _ => {
+                "what bends, twists or spins loses its motion to it: try space.basis = \"cpdi\", smaller cells, \
+                 smaller deflections; see the column `damping` of energy.csv"
+            }
+        }
     }
 
     fn look(&mut self, look: &CheckInputs) -> Vec<Finding> {

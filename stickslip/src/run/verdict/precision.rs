@@ -2,7 +2,7 @@
 
 use super::{Check, CheckInputs, Finding, norm};
 use crate::observe::{Memory, OutputError};
-use crate::scene::{self, HealthCheck};
+use crate::scene::{self, HealthCheck, Scene};
 
 /// Adds up the way of bodies whose steps are about as short as the spacing of numbers where they are.
 #[derive(Default)]
@@ -20,7 +20,7 @@ impl Check for PrecisionCheck {
         HealthCheck::Precision
     }
 
-    fn advice(&self) -> &'static str {
+    fn advice(&self, _: &Scene) -> &'static str {
         "take space.precision = \"double\", or bring the bodies nearer to the origin"
     }
 

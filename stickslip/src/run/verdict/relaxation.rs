@@ -1,7 +1,7 @@
 //! Dynamic relaxation that came to its end before the bodies were at rest.
 
 use super::{Check, CheckInputs, EARLY, Finding};
-use crate::scene::HealthCheck;
+use crate::scene::{HealthCheck, Scene};
 
 /// Looks whether the bodies are at rest when the run ends.
 pub(super) struct RelaxationCheck;
@@ -11,7 +11,7 @@ impl Check for RelaxationCheck {
         HealthCheck::Relaxation
     }
 
-    fn advice(&self) -> &'static str {
+    fn advice(&self, _: &Scene) -> &'static str {
         "try damping.local = 0.3 where there were thousands of peaks, a later time.end, a larger time.relax.residual; \
          what nothing holds never comes to rest"
     }

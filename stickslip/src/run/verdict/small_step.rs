@@ -2,7 +2,7 @@
 
 use super::{Check, CheckInputs, Finding, place};
 use crate::door::StepLimit;
-use crate::scene::HealthCheck;
+use crate::scene::{HealthCheck, Scene};
 
 /// Holds the step that is allowed against the first one: below the bound a run no longer comes forward. Names who
 /// allows no longer ones.
@@ -13,7 +13,7 @@ impl Check for SmallStepCheck {
         HealthCheck::SmallStep
     }
 
-    fn advice(&self) -> &'static str {
+    fn advice(&self, _: &Scene) -> &'static str {
         "a particle is far too fast or far too compressed: look at the last frame with --color velocity; try smaller \
          cells, a smaller time.courant, a stiffer material"
     }

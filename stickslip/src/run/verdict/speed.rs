@@ -1,7 +1,7 @@
 //! Motion that nears the speed of waves.
 
 use super::{Check, CheckInputs, Finding, minus, norm, place};
-use crate::scene::HealthCheck;
+use crate::scene::{HealthCheck, Scene};
 
 /// Holds the fastest particle of each body that deforms, relative to the body on the whole, against the body's waves;
 /// and the fastest point of each free rigid body, in the scene's frame, against those of its material, beyond which it
@@ -13,7 +13,7 @@ impl Check for SpeedCheck {
         HealthCheck::Speed
     }
 
-    fn advice(&self) -> &'static str {
+    fn advice(&self, _: &Scene) -> &'static str {
         "what moves so would strain by about as much at once: try slower motion, a stiffer material, a smaller time.courant"
     }
 

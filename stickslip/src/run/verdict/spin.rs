@@ -3,7 +3,7 @@
 use super::{Check, CheckInputs, Finding, asks_for_damping, minus, norm};
 use crate::door::BodyState;
 use crate::observe::{Memory, OutputError};
-use crate::scene::{Face, HealthCheck, Scene};
+use crate::scene::{Face, HealthCheck, Scene, Transfer};
 use crate::tensor::cross;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
@@ -59,8 +59,11 @@ impl Check for SpinCheck {
         HealthCheck::AngularMomentum
     }
 
-    fn advice(&self) -> &'static str {
-        "try smaller cells; time.transfer = \"rflip\" or \"apic\"; compare with another stress_update"
+    fn advice(&self, scene: &Scene) -> &'static str {
+        match scene.time.transfer {
+            Transfer::Rflip | Transfer::Apic => "try smaller cells; compare with another time.stress_update",
+            _ => "try time.transfer = \"rflip\" or \"apic\", smaller cells",
+        }
     }
 
     fn look(&mut self, look: &CheckInputs) -> Vec<Finding> {

@@ -3,7 +3,7 @@
 use super::{Check, CheckInputs, Finding, minus, place};
 use crate::door::TracedParticle;
 use crate::observe::{Memory, OutputError};
-use crate::scene::{BasisKind, HealthCheck};
+use crate::scene::{BasisKind, HealthCheck, Scene};
 
 /// Looks for neighbours that no longer share a node of the grid.
 #[derive(Default)]
@@ -20,9 +20,13 @@ impl Check for TearingCheck {
         HealthCheck::Tearing
     }
 
-    fn advice(&self) -> &'static str {
-        "no law tears it, the grid lost it: try basis = \"cpdi\"; if it is that already, more \
-         particles_per_side; or a smaller load"
+    fn advice(&self, scene: &Scene) -> &'static str {
+        match scene.discretization.basis {
+            BasisKind::Cpdi => {
+                "no law tears it, the grid lost it: try more particles_per_side, a smaller load"
+            }
+            _ => "no law tears it, the grid lost it: try space.basis = \"cpdi\", a smaller load",
+        }
     }
 
     fn look(&mut self, look: &CheckInputs) -> Vec<Finding> {
