@@ -29,7 +29,8 @@ pub struct Impulse<T, const D: usize> {
     pub velocity: [Vector<T, D>; 2],
     /// Whether a later use of the same step takes it back and judges the whole.
     pub span: Span,
-    /// Work that a rigid body's prescribed motion did on the other [J].
+    /// Work that a rigid body's prescribed motion did on the other [J]: the impulse times the mean of the velocities in
+    /// the step before and in this one, for forces are those of the moment between the two.
     pub work: T,
 }
 
@@ -234,8 +235,12 @@ impl<T: Real, const D: usize> Solve<'_, T, D> {
                     moved = moved.max((new - old[i]).norm());
                     largest = largest.max(new.norm());
                     speed = speed.max(free[i].norm());
-                    if self.is_prescribed(&part.sides[encounter.sides[i]]) {
-                        impulse.work += impulse.change.impulse[1 - i].dot(free[i]);
+                    let side = &part.sides[encounter.sides[i]];
+                    if self.is_prescribed(side) {
+                        // SAFETY: a node of a body belongs to one site.
+                        let before = unsafe { self.nodes.get(side.index) }.start;
+                        let mean = (before + free[i]) * T::HALF;
+                        impulse.work += impulse.change.impulse[1 - i].dot(mean);
                     }
                 }
             }

@@ -10,8 +10,7 @@ use super::vtk::{PointArrays, VtkFile};
 use super::{Observer, PARTICLES};
 use crate::column::{ColumnDescription, DERIVED, IDENTITY, Kind, every, in_files};
 use crate::door::{ColumnSource, ParticleSnapshot, SnapshotColumn, View};
-use crate::scene::{Body, Scene, SeriesFormat, SnapshotContent};
-use std::collections::HashSet;
+use crate::scene::{Scene, SeriesFormat, SnapshotContent};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -29,9 +28,7 @@ impl ParticlesObserver {
         let interval = scene.outputs.particles.unwrap_or(f64::INFINITY);
         let schedule = Schedule::every(interval).and_at(&scene.outputs.particles_at);
         let content = Arc::new(scene.outputs.snapshots.clone());
-        let wanted: Option<HashSet<&String>> = content.bodies.as_ref().map(|names| names.iter().collect());
-        let is_wanted = |body: &Body| wanted.as_ref().is_none_or(|names| names.contains(&body.name));
-        let bodies = scene.bodies.iter().map(is_wanted).collect();
+        let bodies = content.held(&scene.bodies);
         Ok(ParticlesObserver {
             schedule,
             frames: Frames::create(folder, PARTICLES, SeriesFormat::Vtu)?,

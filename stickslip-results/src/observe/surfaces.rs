@@ -112,7 +112,7 @@ impl Observer for SurfacesObserver {
     }
 }
 
-/// The surfaces of all bodies that have one. What has no bounds ends with the domain; without one it has no surface.
+/// The surfaces of all bodies that have one and that snapshots hold. What has no bounds ends with the domain; without one it has no surface.
 fn surfaces_of(scene: &Scene) -> Vec<Surface> {
     let dimension = scene.dimension.axes();
     let domain = scene.domain.as_ref().map(|domain| Bounds { min: domain.min, max: domain.max });
@@ -136,7 +136,8 @@ fn surfaces_of(scene: &Scene) -> Vec<Surface> {
         let carried = CarriedSkin::new(skin, reference, lattice.spacing);
         Some(Surface { body: number, moved: Moved::ByParticles(carried) })
     };
-    (0..scene.bodies.len()).into_par_iter().filter_map(surface).collect()
+    let held = scene.outputs.snapshots.held(&scene.bodies);
+    (0..scene.bodies.len()).into_par_iter().filter(|&body| held[body]).filter_map(surface).collect()
 }
 
 impl Moved {
@@ -428,6 +429,9 @@ mod tests {
             let out: f64 = cross(edge(b), edge(c)).iter().zip(a).map(|(n, x)| n * x).sum();
             assert!(out > 0.0, "{triangle:?}");
         }
+        let mut one = scene.clone();
+        one.outputs.snapshots.bodies = Some(vec!["cube".to_string()]);
+        assert_eq!(surfaces_of(&one).iter().map(|surface| surface.body).collect::<Vec<_>>(), [1]);
         let less = simulation.snapshot().only(|body, number| (body, number) != (0, 17));
         let left = joined(corners_of(&surfaces, &less, (&poses, &motions)));
         assert!(left.body.iter().all(|&body| body == 1) && !left.body.is_empty());

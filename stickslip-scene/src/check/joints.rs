@@ -6,7 +6,7 @@ use super::table::short;
 use super::warning::Warning;
 use crate::geometry::Bounds;
 use crate::rigid::MassProperties;
-use crate::scene::{ContactLaw, Face, JointKind, Problem, Scene};
+use crate::scene::{ContactLaw, Face, Joint, JointKind, Problem, Scene};
 use crate::tensor::Vector;
 
 /// A joint holds a body at points this far from it at most, over the size of the larger of its bodies: a bob on a thread
@@ -61,7 +61,10 @@ pub(super) fn check(scene: &Scene, extents: &[FillingExtent]) -> Result<(), Prob
         let (key, points) = match &joint.kind {
             JointKind::Hinge { point, .. } | JointKind::Ball { point } => ("point", [*point; 2]),
             JointKind::Spring { points, .. } => ("from", *points),
-            JointKind::Slider { .. } | JointKind::Weld => continue,
+            JointKind::Slider { .. } | JointKind::Weld => {
+                apart(i, joint, extents)?;
+                continue;
+            }
         };
         let held =
             bodies.iter().zip(points).filter_map(|(body, point)| Some((&extents[(*body)?].bounds, point)));
@@ -82,6 +85,28 @@ pub(super) fn check(scene: &Scene, extents: &[FillingExtent]) -> Result<(), Prob
         }
     }
     glued(scene, extents)
+}
+
+/// # Errors
+/// A slider or a weld between bodies far from each other.
+fn apart(i: usize, joint: &Joint, extents: &[FillingExtent]) -> Result<(), Problem> {
+    let Some(to) = joint.to else { return Ok(()) };
+    let [a, b] = [joint.body, to].map(|body| &extents[body].bounds);
+    if !(a.is_finite() && b.is_finite()) {
+        return Ok(());
+    }
+    let gap = |k: usize| (a.min[k] - b.max[k]).max(b.min[k] - a.max[k]).max(0.0);
+    let gap = Vector(std::array::from_fn::<f64, 3, _>(gap)).norm();
+    let size = [a, b].map(|bounds| Vector(bounds.size()).norm()).into_iter().fold(0.0, f64::max);
+    if gap <= FARTHEST * size {
+        return Ok(());
+    }
+    Err(Problem {
+        key: format!("joints[{i}].to"),
+        found: format!("a body {} m away from the other one", short(gap)),
+        allowed: format!("a body no farther than {FARTHEST} times their size, {} m", short(size)),
+        help: Some("lengths without a unit are metres".to_string()),
+    })
 }
 
 /// Free rigid bodies go through the faces of the domain.

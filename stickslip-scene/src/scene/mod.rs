@@ -579,10 +579,18 @@ pub struct SnapshotContent {
     pub compression: Compression,
     /// Names of the columns of particles beside their positions, body and number; `None`: all.
     pub columns: Option<Vec<String>>,
-    /// Names of the bodies whose particles they hold; `None`: all.
+    /// Names of the bodies whose particles, or surfaces, they hold; `None`: all.
     pub bodies: Option<Vec<String>>,
     /// Of each body, the particles whose number is a multiple of this.
     pub every: usize,
+}
+
+impl SnapshotContent {
+    /// Of each of these bodies, whether files hold it.
+    pub fn held(&self, bodies: &[Body]) -> Vec<bool> {
+        let named: Option<HashSet<&String>> = self.bodies.as_ref().map(|names| names.iter().collect());
+        bodies.iter().map(|body| named.as_ref().is_none_or(|names| names.contains(&body.name))).collect()
+    }
 }
 
 impl Default for SnapshotContent {

@@ -239,6 +239,12 @@ fn joints_hold_near_their_bodies() {
             ("joints[0].hinge.point", "a point 499 m away from a body that it holds"),
         ),
         (
+            "body = \"wheel\"\nto = \"cart\"\nhinge = { point = [1, 0.5], speed = \"20 rad/s\", limit = \"500 N m\" }",
+            "body = \"wheel\"\nto = \"far\"\nweld = {}\n[[bodies]]\nname = \"far\"\nmaterial = \"steel\"\nrigid.free = {}\n\
+             shape.ball = { center = [900, 0], radius = 0.5 }",
+            ("joints[0].to", "a body 898 m away from the other one"),
+        ),
+        (
             "shape.box = { min = [0, 1], max = [2, 1.5] }",
             "shape.half_space = { point = [0, 0], normal = [0, -1] }",
             ("bodies[0].rigid.free", "`cart`, which has no finite mass or inertia"),

@@ -72,6 +72,11 @@ fn supports_and_loads() {
             ),
             (
                 "displacement = [0, \"free\"]",
+                "velocity = [\"1 Hz * x0\", 0]",
+                "22:13: supports[0].velocity[0]: found unknown name `x0`; allowed: t",
+            ),
+            (
+                "displacement = [0, \"free\"]",
                 "stiffness = \"-1 N/m\"",
                 "22:13: supports[0].stiffness: found \"-1 N/m\"; allowed: a stiffness or an energy per area [N/m] above 0, \
                  like \"100 N/m\"",

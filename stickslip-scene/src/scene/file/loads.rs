@@ -300,7 +300,12 @@ impl Support {
                 displacement.resolve(context, SupportMotion::Displacement, Dependence::TimeAndPlace)?;
         }
         if let Some(velocity) = &self.velocity {
-            support.motion = velocity.resolve(context, SupportMotion::Velocity, Dependence::Time)?;
+            let by_place =
+                "one that varies from place to place is written as a displacement: \"0.1 Hz * t * x0\"";
+            let motion = velocity.resolve(context, SupportMotion::Velocity, Dependence::Time);
+            let varies =
+                || velocity.resolve(context, SupportMotion::Velocity, Dependence::TimeAndPlace).is_ok();
+            support.motion = motion.map_err(|fault| if varies() { fault.remark(by_place) } else { fault })?;
         }
         support.stiffness =
             self.stiffness.as_ref().map(|stiffness| positive(stiffness, context)).transpose()?;

@@ -82,7 +82,8 @@ table! {
         /// deformation, mass, volume, and what laws remember; by default all. Pictures, and fringes of a finished run,
         /// need the first of these but for pressure and von_mises.
         columns: Option<Vec<Text>>,
-        /// Names of the bodies whose particles they hold, or patterns in which `*` is any letters; by default all.
+        /// Names of the bodies whose particles they hold, or patterns in which `*` is any letters; by default all. Files
+        /// of surfaces have the same bodies.
         bodies: Option<Vec<Text>>,
         /// Of each body only each so many-th particle; then there are no pictures, and no fringes of a finished run.
         #[schemars(extend("default" = 1))]
