@@ -177,6 +177,7 @@ fn warnings(
         .chain(rigid_pairs::warning(scene, extents))
         .chain(joints::warning(scene))
         .chain(locking::warning(scene))
+        .chain(locking::bending(scene))
         .chain(loads::warning(scene, loads))
         .chain(thin_rigid_bodies(scene))
         .chain(thickness::warning(scene))

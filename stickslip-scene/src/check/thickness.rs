@@ -41,7 +41,7 @@ pub(super) fn warning(scene: &Scene) -> Option<Warning> {
 /// particles furthest from its surface.
 ///
 /// A ring or shell is as thick as its wall. What a mirror completes counts whole; so does what goes on in a fixed face.
-fn thickness(scene: &Scene, body: usize, enough: f64) -> Option<f64> {
+pub(super) fn thickness(scene: &Scene, body: usize, enough: f64) -> Option<f64> {
     let (axes, cell) = (scene.dimension.axes(), scene.discretization.cell);
     let shape = &scene.bodies[body].shape;
     let whole = MirroredShape::new(shape, continuing_faces(scene), axes);

@@ -142,10 +142,10 @@ impl HealthCheck {
     /// another key sets it.
     pub fn usual_bound(self) -> Option<f64> {
         match self {
-            Self::Energy | Self::Noise | Self::CellCrossing | Self::Precision => Some(0.1),
+            Self::Energy | Self::Strain | Self::CellCrossing | Self::Precision => Some(0.1),
+            Self::Noise => Some(0.05),
             Self::Momentum | Self::SmallStep => Some(0.01),
             Self::AngularMomentum => Some(0.02),
-            Self::Strain => Some(0.25),
             Self::Speed | Self::MaxStrain => Some(0.5),
             Self::Tearing | Self::FailedStep | Self::Contact => None,
             Self::Relaxation | Self::Leaving | Self::Checkpoint | Self::Probe => None,
@@ -167,12 +167,13 @@ impl Health {
 
 impl Scene {
     /// The bound of a check, beyond which it answers; infinite of those that have none, see
-    /// [`HealthCheck::usual_bound`]. `time.energy_drift` is that of energy and of noise where these have none of their
-    /// own.
+    /// [`HealthCheck::usual_bound`]. `time.energy_drift` is that of energy, and half of it that of noise, where these have none
+    /// of their own.
     pub fn health_bound(&self, check: HealthCheck) -> f64 {
         let own = self.health.rules.get(&check).and_then(|rule| rule.bound);
         let usual = match check {
-            HealthCheck::Energy | HealthCheck::Noise => Some(self.time.energy_drift),
+            HealthCheck::Energy => Some(self.time.energy_drift),
+            HealthCheck::Noise => Some(0.5 * self.time.energy_drift),
             other => other.usual_bound(),
         };
         own.or(usual).unwrap_or(f64::INFINITY)

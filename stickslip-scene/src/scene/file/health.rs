@@ -19,8 +19,8 @@ table! {
         /// Energy that comes from nowhere or is lost; the bound is the drift of the total over the largest energy that
         /// moved, was stored or turned to heat, by default `time.energy_drift`.
         energy: Option<Rule>,
-        /// Motion that becomes noise and is damped though the scene asks for no damping; the bound is as that of
-        /// energy.
+        /// Motion that becomes noise and is damped though the scene asks for no damping; the bound is what damping
+        /// took, over the same energy, by default half of `time.energy_drift`.
         noise: Option<Rule>,
         /// Momentum of all bodies that nothing from outside explains; the bound is the difference over the largest
         /// momentum so far, by default 0.01.
@@ -28,7 +28,7 @@ table! {
         /// Angular momentum of bodies that no torque acts on; the bound is its relative change, by default 0.02.
         angular_momentum: Option<Rule>,
         /// Distances of particles against their deformation gradients; the bound is the difference over the body's
-        /// stretch, by default 0.25, and twice that where material flows.
+        /// stretch, by default 0.1, and twice that where material flows.
         strain: Option<Rule>,
         /// Numerical fracture: neighbours further apart than the grid joins them.
         tearing: Option<Rule>,
