@@ -328,7 +328,7 @@ fn a_run_of_which_nothing_is_left_is_no_failure() {
         [[bodies]]\nname = \"ball\"\nmaterial = \"rubber\"\nshape.ball = { center = [0.5, 0.5], radius = 0.2 }\n\
         velocity = [5, 0]\n";
     workplace.write("scene.toml", scene);
-    let ran = run(&workplace, &[]);
+    let ran = workplace.run(&["run", "scene.toml"]);
     assert_eq!(ran.code, Some(0), "{}{}", ran.stdout, ran.stderr);
     assert!(!workplace.path("scene.results/picture.png").exists());
 }

@@ -25,7 +25,7 @@ use miette::miette;
 use std::io::Write;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, LazyLock};
+use std::sync::{Arc, LazyLock, OnceLock};
 use stickslip::check::{Report, free_memory};
 use stickslip::lanes::Processor;
 use stickslip::observe::Results;
@@ -192,7 +192,11 @@ fn say(text: &str) -> Result<(), Failure> {
 /// A flag that is set by the first Ctrl-C, and by the signals by which batch systems and shells ask a program to end,
 /// but for those that whoever started it has ignored (`nohup`). The second Ctrl-C ends the program at once.
 fn stop_on_interrupt() -> Result<Arc<AtomicBool>, Failure> {
-    let stop = Arc::new(AtomicBool::new(false));
+    static STOP: OnceLock<Arc<AtomicBool>> = OnceLock::new();
+    if let Some(watched) = STOP.get() {
+        return Ok(Arc::clone(watched));
+    }
+    let stop = Arc::clone(STOP.get_or_init(Arc::default));
     let flag = Arc::clone(&stop);
     outlive_file_limits();
     let installed = ctrlc::set_handler(move || {
