@@ -23,6 +23,7 @@ pub static KEYS: &[Key] = &[
             ("cpdi", "mean tent functions of the corners of a domain that deforms with the particle"),
             ("linear", "tent functions at the particle's centre"),
             ("spline", "quadratic B-splines of the particle's centre"),
+            ("cubic", "cubic B-splines of the particle's centre"),
         ],
     },
     Key {

@@ -1,7 +1,6 @@
 //! The particles of a body around one node, one after the other, for laws that look at more than sums.
 
 use super::Near;
-use crate::basis::MAX_WIDTH;
 use crate::body::Particle;
 use crate::grid::SIDE;
 use crate::scene::Face;
@@ -33,7 +32,7 @@ impl<T: Real, const D: usize> Near<'_, T, D> {
                 (true, false) => T::ONE,
                 _ => T::ZERO,
             });
-            for offset in offsets::<D>(MAX_WIDTH) {
+            for offset in offsets::<D>(self.lattice.most_reached()) {
                 let cell = std::array::from_fn(|i| image.node[i] - offset[i] as i32);
                 for &index in self.active.particles_in(body, cell) {
                     let particles = &self.bodies[body].particles;
@@ -51,10 +50,8 @@ impl<T: Real, const D: usize> Near<'_, T, D> {
 
     /// A node and its images in the mirrors near it, each mirror turning around all that those before it gave.
     fn images(&self, node: [i32; D]) -> impl Iterator<Item = MirroredNode<T, D>> {
-        let walls = &self.boundary.walls;
-        let near = walls
-            .iter()
-            .filter(move |wall| wall.face == Face::Symmetry && wall.depth(node) < MAX_WIDTH as i32);
+        let (walls, reach) = (&self.boundary.walls, self.lattice.most_reached() as i32);
+        let near = walls.iter().filter(move |wall| wall.face == Face::Symmetry && wall.depth(node) < reach);
         (0..1_usize << near.clone().count()).map(move |turned| {
             let mut image = MirroredNode { node, sign: [T::ONE; D] };
             for (_, wall) in near.clone().enumerate().filter(|(i, _)| turned >> i & 1 == 1) {

@@ -2,7 +2,7 @@
 //!
 //! A particle's *home* is the cell of its base node. Particles that share a home block form a tile; a tile writes to
 //! its own block and to the next one along each axis, as far as its particles reach,
-//! since no basis reaches more than three nodes.
+//! since no basis reaches more than four nodes.
 
 use super::cell_list::{CellList, block_of, corner_block, key};
 use super::{Periods, locate, nodes_per_block};

@@ -210,11 +210,13 @@ impl<T: Real, const D: usize> Field<T, D> {
     }
 }
 
-/// Nodes along a side of a window: what a tile's particles reach.
-pub const WINDOW: usize = SIDE as usize + MAX_WIDTH - 1;
+/// Nodes along a side of a tile's window: what its particles reach, so many nodes each.
+pub const fn window_side(width: usize) -> usize {
+    SIDE as usize + width - 1
+}
 
-/// Nodes of a window in space; in the plane the first [`WINDOW`] squared are used.
-pub const WINDOW_NODES: usize = WINDOW * WINDOW * WINDOW;
+/// Nodes of the largest window in space; the first side^D of them are used.
+pub const WINDOW_NODES: usize = window_side(MAX_WIDTH).pow(3);
 
 /// What a gather takes from the nodes, see [`Window::load`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -238,7 +240,8 @@ pub type NodeValues<T> = [T; NODE_VALUES];
 /// Numbers of that.
 pub const NODE_VALUES: usize = 4;
 
-/// A tile's part of the field in one place: nodes `block * 4` to `block * 4 + 5` along each axis, the last fastest.
+/// A tile's part of the field in one place: nodes from `block * 4` on, [`window_side`] of them along each axis, the last
+/// fastest.
 #[derive(Clone, Debug)]
 pub struct Window<T, const D: usize> {
     /// Change of the velocities in the step [m/s].
@@ -272,7 +275,7 @@ struct NodeRun {
     count: usize,
 }
 
-/// The `side`^D first nodes of a tile's window. An iterator, for loops over it are compiled where they stand.
+/// The nodes of a tile's window with this side. An iterator, for loops over it are compiled where they stand.
 struct NodeRuns<'a, const D: usize> {
     tile: &'a Tile<D>,
     side: usize,
@@ -304,8 +307,8 @@ impl<const D: usize> Iterator for NodeRuns<'_, D> {
             _ => [x + 1, 0, 0],
         };
         let (place, corner, local) = match D {
-            2 => (x * WINDOW, x / S * 2, x % S * S),
-            _ => ((x * WINDOW + y) * WINDOW, x / S * 4 + y / S * 2, (x % S * S + y % S) * S),
+            2 => (x * self.side, x / S * 2, x % S * S),
+            _ => ((x * self.side + y) * self.side, x / S * 4 + y / S * 2, (x % S * S + y % S) * S),
         };
         Some(NodeRun {
             place: place + half * S,
@@ -330,13 +333,13 @@ fn store_vector<V: Lanes>(place: &mut NodeValues<V::Real>, vector: V) {
 }
 
 impl<T: Real, const D: usize> Window<T, D> {
-    /// Empties what particles scatter into.
+    /// Empties what particles scatter into, of a window with this side.
     #[inline(always)]
-    pub fn clear(&mut self) {
-        self.sums[..WINDOW.pow(D as u32)].fill([[T::ZERO; 2]; 4]);
+    pub fn clear(&mut self, side: usize) {
+        self.sums[..side.pow(D as u32)].fill([[T::ZERO; 2]; 4]);
     }
 
-    /// Takes from the field what is sought at the `side`^D first nodes.
+    /// Takes from the field what is sought at the nodes of a window with this side.
     ///
     /// # Safety
     /// No other thread may write to the tile's slots meanwhile.
@@ -376,7 +379,7 @@ impl<T: Real, const D: usize> Window<T, D> {
         }
     }
 
-    /// Adds to the field what was scattered into the `side`^D first nodes.
+    /// Adds to the field what was scattered into a window with this side.
     ///
     /// # Safety
     /// No other thread may touch the tile's slots meanwhile.
@@ -392,7 +395,7 @@ impl<T: Real, const D: usize> Window<T, D> {
 }
 
 impl<T: Real, const D: usize> Disjoint<'_, Node<T, D>> {
-    /// Fetches the `side`^D first nodes of a tile's window into the cache.
+    /// Fetches the nodes of a tile's window with this side into the cache.
     #[inline(always)]
     pub fn fetch(&self, tile: &Tile<D>, side: usize) {
         for NodeRun { node, count, .. } in NodeRuns::new(tile, side) {

@@ -11,7 +11,7 @@ mod periods;
 pub use active_blocks::{ActiveBlocks, Blocks, SharedBlock, Tile};
 pub use cell_list::{MOST_CELLS, addressable};
 pub use field::{
-    Disjoint, Field, NODE_VALUES, Node, NodeSums, NodeValues, Sought, WINDOW, WINDOW_NODES, Window,
+    Disjoint, Field, NODE_VALUES, Node, NodeSums, NodeValues, Sought, WINDOW_NODES, Window, window_side,
 };
 
 pub use periods::Periods;
@@ -49,8 +49,9 @@ pub struct Lattice<T, const D: usize> {
     pub cell: T,
     /// Its inverse [1/m].
     pub per_cell: T,
-    /// Whether the nodes see each particle as a box of a cell, see [`crate::basis::Gimp`], and not as its own box.
-    pub whole_cells: bool,
+    /// Half the side of the box as which the nodes see every particle [cells]: 1/2 by quadratic splines, see
+    /// [`crate::basis::Gimp`], 1 by cubic ones; `None` where they see each as its own box.
+    pub half_side: Option<T>,
     /// After how many blocks it repeats.
     pub periods: Periods<D>,
 }
@@ -58,19 +59,24 @@ pub struct Lattice<T, const D: usize> {
 impl<T: Real, const D: usize> Lattice<T, D> {
     /// A grid with a node at `origin` and cells of side `cell` [m].
     pub fn new(origin: Vector<T, D>, cell: T) -> Self {
-        Lattice { origin, cell, per_cell: T::ONE / cell, whole_cells: false, periods: Periods::default() }
+        Lattice { origin, cell, per_cell: T::ONE / cell, half_side: None, periods: Periods::default() }
     }
 
     /// Half the sides of the box as which the nodes see a particle with a box of these half sides [m], in cells.
     #[inline(always)]
     pub fn half_sides(&self, half_sides: Vector<T, D>) -> Vector<T, D> {
-        if self.whole_cells { Vector([T::HALF; D]) } else { half_sides * self.per_cell }
+        self.half_side.map_or_else(|| half_sides * self.per_cell, |half| Vector([half; D]))
     }
 
     /// The same in metres.
     #[inline(always)]
     pub fn half_box(&self, half_width: T) -> T {
-        if self.whole_cells { T::HALF * self.cell } else { half_width }
+        self.half_side.map_or(half_width, |half| half * self.cell)
+    }
+
+    /// Nodes that a particle reaches along an axis, at most.
+    pub fn most_reached(&self) -> usize {
+        if self.half_side.is_some_and(|half| half > T::HALF) { 4 } else { 3 }
     }
 
     /// Position in cells from the origin.

@@ -3,11 +3,11 @@
 use super::mechanism::{JointSums, RigidSurfaces};
 use super::relax::RelaxationProgress;
 use super::state::{Disorder, Settings, State, Workspace};
-use super::unbounded::Unbounded;
+use super::unbounded::{Unbounded, reach};
 use super::walls::WallSums;
 use super::watch::Stopwatch;
 use super::{Engine, ParticleLoop};
-use crate::basis::{Basis, Cpdi, Gimp, Linear};
+use crate::basis::{Basis, Cpdi, Cubic, Gimp, Linear};
 use crate::body::{Body, Particle};
 use crate::boundary::{Boundary, Wall};
 use crate::check;
@@ -64,6 +64,7 @@ fn with_basis<T: Laned, const D: usize>(
         BasisKind::Linear => Box::new(Engine::<T, D, Linear>::new(scene, path)?),
         // Boxes of a cell: see `Gimp`.
         BasisKind::Gimp | BasisKind::Spline => Box::new(Engine::<T, D, Gimp>::new(scene, path)?),
+        BasisKind::Cubic => Box::new(Engine::<T, D, Cubic>::new(scene, path)?),
         BasisKind::Cpdi => Box::new(Engine::<T, D, Cpdi>::new(scene, path)?),
     })
 }
@@ -76,7 +77,11 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     pub fn new(scene: &Scene, path: ParticleLoop) -> Result<Self, Problem> {
         check::problems(scene)?;
         let cell = scene.discretization.cell;
-        let whole_cells = scene.discretization.basis == BasisKind::Spline;
+        let half_side = match scene.discretization.basis {
+            BasisKind::Linear | BasisKind::Gimp | BasisKind::Cpdi => None,
+            BasisKind::Spline => Some(0.5),
+            BasisKind::Cubic => Some(1.0),
+        };
         let mut bodies = Vec::new();
         let mut unbounded = Vec::new();
         let heated = heated_bodies(scene);
@@ -90,6 +95,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                     shape: body.shape.clone(),
                     sites,
                     cell,
+                    reach: reach(scene.discretization.basis),
                     periods: periods::<D>(scene),
                     mirrors: mirrors::<D>(scene),
                     served: Vec::new(),
@@ -139,7 +145,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 motion,
                 whole: whole::<D>(scene, number),
                 thickness: scene.dimension.thickness(),
-                gyration: rotation::gyration::<T, B>(cell, whole_cells),
+                gyration: rotation::gyration::<T, B>(cell, half_side),
                 volume_change: scene.materials[body.material].volume_change,
             });
         }
@@ -154,7 +160,11 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let disorder = bodies.iter().map(|body: &Body<T, D>| Disorder::any(body.particles.len())).collect();
         Ok(Engine {
             settings: Settings {
-                lattice: Lattice { whole_cells, periods, ..Lattice::new(Vector::of(origin), T::of(cell)) },
+                lattice: Lattice {
+                    half_side: half_side.map(T::of),
+                    periods,
+                    ..Lattice::new(Vector::of(origin), T::of(cell))
+                },
                 domain: scene.domain.as_ref().map(|domain| [domain.min, domain.max].map(Vector::of)),
                 held: scene.domain.as_ref().map(held),
                 leaving: scene.domain.as_ref().map_or_else(Default::default, |domain| domain.leaving),

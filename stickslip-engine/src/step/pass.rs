@@ -3,7 +3,7 @@
 use crate::basis::Basis;
 use crate::body::Body;
 use crate::damping::BulkViscosity;
-use crate::grid::{Disjoint, Lattice, Node, SIDE, Sought, Tile, Window, addressable};
+use crate::grid::{Disjoint, Lattice, Node, Sought, Tile, Window, addressable, window_side};
 use crate::lanes::{Machine, Processor};
 use crate::particles::Columns;
 use crate::scene::Transfer;
@@ -161,8 +161,8 @@ pub struct Visit<'a, T, const D: usize, B> {
 }
 
 impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
-    /// Nodes along a side of the window that particles reach.
-    const REACHED: usize = SIDE as usize + B::WIDTH - 1;
+    /// Nodes along a side of the window.
+    pub(super) const WINDOW: usize = window_side(B::WIDTH);
 
     /// Takes from the field what the pass seeks, and makes room for what it scatters.
     ///
@@ -174,14 +174,14 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
             // SAFETY: the caller's.
             unsafe {
                 let field = (self.nodes, self.filtered, self.means);
-                self.window.load::<M>(field, self.tile, Self::REACHED, self.pass.sought());
+                self.window.load::<M>(field, self.tile, Self::WINDOW, self.pass.sought());
             }
         }
         if self.pass.verbs.scatter.is_some() {
-            self.window.clear();
-            self.nodes.fetch(self.tile, Self::REACHED);
+            self.window.clear(Self::WINDOW);
+            self.nodes.fetch(self.tile, Self::WINDOW);
         } else if let Some(next) = self.next {
-            self.nodes.fetch(next, Self::REACHED);
+            self.nodes.fetch(next, Self::WINDOW);
         }
     }
 
@@ -193,7 +193,7 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
     pub unsafe fn close<M: Machine<T>>(&mut self) {
         if self.pass.verbs.scatter.is_some() {
             // SAFETY: the caller's.
-            unsafe { self.window.add_to::<M>(self.nodes, self.tile, Self::REACHED) };
+            unsafe { self.window.add_to::<M>(self.nodes, self.tile, Self::WINDOW) };
         }
     }
 }

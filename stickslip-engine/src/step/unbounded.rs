@@ -15,7 +15,7 @@ use crate::grid::{Blocks, Periods, SIDE, addressable, locate};
 use crate::lanes::Laned;
 use crate::particles::{OwnColumns, Particles};
 use crate::rigid::{Pose, RigidMotion};
-use crate::scene::{Expression, Scene};
+use crate::scene::{BasisKind, Expression, Scene};
 use crate::tensor::{Matrix, Symmetric, Vector};
 
 /// Where a rigid body without bounds has particles.
@@ -29,6 +29,8 @@ pub(super) struct Unbounded<const D: usize> {
     pub sites: SiteLattice,
     /// Side of a cell [m].
     pub cell: f64,
+    /// How far shape functions reach, see [`reach`] [cells].
+    pub reach: f64,
     /// After how many blocks the grid repeats: it has particles in the first period.
     pub periods: Periods<D>,
     /// What is behind them is no part of it.
@@ -39,22 +41,31 @@ pub(super) struct Unbounded<const D: usize> {
     pub pose: Option<Pose>,
 }
 
-/// Depth of the layer of particles: nodes one and a half cells deep see all that they would see of the whole body
-/// [cells].
-const DEPTH: f64 = 3.0;
-/// Particles reach this far beyond the blocks that are served: shape functions reach 1.5 at most [cells].
-const MARGIN: f64 = 2.0;
+/// How far functions of a basis reach at most [cells].
+pub(super) fn reach(basis: BasisKind) -> f64 {
+    match basis {
+        BasisKind::Linear | BasisKind::Gimp | BasisKind::Cpdi | BasisKind::Spline => 1.5,
+        BasisKind::Cubic => 2.0,
+    }
+}
+
 /// The body may move by this before it gets new particles [cells].
 const DRIFT: f64 = 0.5;
 
 impl<const D: usize> Unbounded<D> {
+    /// Depth of the layer of particles: nodes as deep as functions reach see all that they would see of the whole
+    /// body [m].
+    fn depth(&self) -> f64 {
+        2.0 * self.reach * self.cell
+    }
+
     /// Whether its surface may be met in a block, in its pose.
     fn meets(&self, block: [i32; D], pose: &Pose) -> bool {
         let [min, max] = self.corners(block);
         let center = std::array::from_fn(|k| 0.5 * (min[k] + max[k]));
         let half_diagonal = 0.5 * (Vector(max) - Vector(min)).norm();
         let distance = self.shape.distance(pose.start(center), D);
-        distance.abs() <= half_diagonal + DEPTH * self.cell
+        distance.abs() <= half_diagonal + self.depth()
     }
 
     /// Lower and upper corner of a block's cells [m].
@@ -89,7 +100,8 @@ impl<const D: usize> Unbounded<D> {
             let cell = std::array::from_fn(|k| ((x[k] - self.sites.origin[k]) / self.cell).floor() as i32);
             (addressable::<D>(cell)).then(|| locate(cell).0)
         };
-        let margin = MARGIN * self.cell;
+        // Particles lie this far beyond the blocks that are served.
+        let margin = (self.reach + DRIFT) * self.cell;
         let served = |x: [f64; 3]| {
             (0..1_usize << D).any(|corner| {
                 let side = |k: usize| if corner >> k & 1 == 1 { margin } else { -margin };
@@ -110,7 +122,7 @@ impl<const D: usize> Unbounded<D> {
                     && served(x)
                     && before_mirrors(x)
                     && self.sites.contains_site(&self.shape, site)
-                    && self.shape.distance(site, D) > -DEPTH * self.cell
+                    && self.shape.distance(site, D) > -self.depth()
             }));
         }
         found
@@ -141,9 +153,6 @@ pub(crate) fn particles_around(scene: &Scene, body: usize, boxes: &[Bounds]) -> 
 
 const ONLY_RIGID: &str = "only rigid bodies may be without bounds";
 
-/// Nodes beyond a box that its particles reach [cells].
-const REACH: f64 = 1.5;
-
 fn count<const D: usize>(scene: &Scene, body: usize, boxes: &[Bounds]) -> usize {
     let cell = scene.discretization.cell;
     let shape = scene.bodies[body].shape.clone();
@@ -151,13 +160,23 @@ fn count<const D: usize>(scene: &Scene, body: usize, boxes: &[Bounds]) -> usize 
     let still = || [0.0; 3].map(Expression::Constant);
     let pose = RigidMotion::new(shape.anchor(D), still(), still()).pose();
     let (mirrors, periods) = (mirrors::<D>(scene), periods::<D>(scene));
-    let mut layer =
-        Unbounded::<D> { body, shape, sites, cell, periods, mirrors, served: Vec::new(), pose: Some(pose) };
+    let reach = reach(scene.discretization.basis);
+    let mut layer = Unbounded::<D> {
+        body,
+        shape,
+        sites,
+        cell,
+        reach,
+        periods,
+        mirrors,
+        served: Vec::new(),
+        pose: Some(pose),
+    };
     let mut served = Vec::new();
     for bounds in boxes {
         let block = |k: usize, x: f64| ((x - sites.origin[k]) / (cell * f64::from(SIDE))).floor() as i32;
-        let first: [i32; D] = std::array::from_fn(|k| block(k, bounds.min[k] - REACH * cell));
-        let last: [i32; D] = std::array::from_fn(|k| block(k, bounds.max[k] + REACH * cell));
+        let first: [i32; D] = std::array::from_fn(|k| block(k, bounds.min[k] - reach * cell));
+        let last: [i32; D] = std::array::from_fn(|k| block(k, bounds.max[k] + reach * cell));
         let count: [i64; D] = std::array::from_fn(|k| i64::from(last[k] - first[k]) + 1);
         for number in 0..count.iter().product() {
             let mut rest = number;

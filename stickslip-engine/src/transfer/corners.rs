@@ -23,14 +23,15 @@
 // Sums over nodes and components read better by their indices.
 #![allow(clippy::needless_range_loop)]
 
-use crate::basis::MAX_WIDTH;
 use crate::tensor::{Matrix, Number, Vector};
 
-/// Nodes that a particle reaches, in space.
-const NODES: usize = MAX_WIDTH.pow(3);
+/// Nodes that a particle reaches along an axis.
+const WIDTH: usize = 3;
+/// The same in space.
+const NODES: usize = WIDTH.pow(3);
 
 /// Weights and slopes of a particle at each of the nodes that it reaches, where they are no product over the axes.
-/// Nodes are counted with the last axis fastest, `MAX_WIDTH` along each.
+/// Nodes are counted with the last axis fastest, as many along each as the basis reaches.
 pub trait NodeTable<N, const D: usize>: Copy {
     /// Of a particle at `r` from its base node, with the half edges of its domain in the columns of `edges` [cells].
     fn new(r: &Vector<N, D>, edges: &Matrix<N>) -> Self;
@@ -68,11 +69,11 @@ pub struct CornerTable<N> {
 impl<N: Number, const D: usize> NodeTable<N, D> for CornerTable<N> {
     #[inline(always)]
     fn new(r: &Vector<N, D>, edges: &Matrix<N>) -> Self {
-        let count = MAX_WIDTH.pow(D as u32);
+        let count = WIDTH.pow(D as u32);
         let mut table = CornerTable { weight: [N::ZERO; NODES], slope: [[N::ZERO; NODES]; 3] };
         let share = N::of(0.5_f64.powi(D as i32));
         for corner in 0..1_usize << D {
-            let mut tents = [[N::ONE; MAX_WIDTH]; 3];
+            let mut tents = [[N::ONE; WIDTH]; 3];
             for axis in 0..D {
                 let mut place = r[axis];
                 for edge in 0..D {
@@ -122,7 +123,7 @@ impl<N: Number, const D: usize> NodeTable<N, D> for CornerTable<N> {
 
 /// Tent functions of three nodes in a row, at a place from the first one on [cells].
 #[inline(always)]
-fn tents_at<N: Number>(place: N) -> [N; MAX_WIDTH] {
+fn tents_at<N: Number>(place: N) -> [N; WIDTH] {
     // Rounding may leave a corner beside the cells that its particle reaches.
     let first = (N::ONE - place.max(N::ZERO)).max(N::ZERO);
     let last = (place - N::ONE).max(N::ZERO);
@@ -135,10 +136,10 @@ pub const fn step<const D: usize>(node: usize, axis: usize) -> usize {
     let mut rest = node;
     let mut behind = D - 1;
     while behind > axis {
-        rest /= MAX_WIDTH;
+        rest /= WIDTH;
         behind -= 1;
     }
-    rest % MAX_WIDTH
+    rest % WIDTH
 }
 
 /// The half edges of a particle's domain [m], (a), in the columns; shortened together where a domain would reach
@@ -206,7 +207,7 @@ mod tests {
             let table = <CornerTable<f64> as NodeTable<f64, D>>::new(&r, &edges);
             let of = |node: usize| NodeTable::<f64, D>::weight(&table, node);
             let slope = |node: usize, axis: usize| NodeTable::<f64, D>::slope(&table, node, axis);
-            let nodes = 0..MAX_WIDTH.pow(D as u32);
+            let nodes = 0..WIDTH.pow(D as u32);
             assert!((nodes.clone().map(of).sum::<f64>() - 1.0).abs() < 1e-14, "{trial}");
             for axis in 0..D {
                 assert!(reach[axis] <= 0.5 + 1e-15);

@@ -8,8 +8,8 @@
 #![allow(clippy::needless_range_loop)]
 
 use super::corners::NodeTable;
-use crate::basis::{Basis, BoxSide, MAX_WIDTH, ShapeFunctions};
-use crate::grid::{NODE_VALUES, NodeSums, NodeValues, WINDOW, WINDOW_NODES, Window};
+use crate::basis::{Basis, BoxSide, Entries, Line, Plane, ShapeFunctions, Space};
+use crate::grid::{NODE_VALUES, NodeSums, NodeValues, SIDE, WINDOW_NODES, Window, window_side};
 use crate::lanes::{Lanes, MOST_LANES, Machine, Numbers};
 use crate::tensor::{Matrix, Number, Real, Symmetric, Vector};
 use std::marker::PhantomData;
@@ -40,20 +40,20 @@ pub struct CellGroup(usize);
 pub struct Own([usize; MOST_LANES]);
 
 impl CellGroup {
-    /// Particles whose base node has a place in the window.
+    /// Particles whose base node has a place in a window with this side.
     #[inline(always)]
-    pub fn new<const D: usize>(start: usize) -> Self {
-        assert!(start <= last_start(D), "a tile's cells lie in its block");
+    pub fn new<const D: usize>(start: usize, window: usize) -> Self {
+        assert!(start <= last_start(D, window), "a tile's cells lie in its block");
         CellGroup(start)
     }
 }
 
 impl Own {
-    /// Particles whose base nodes have places in the window.
+    /// Particles whose base nodes have places in a window with this side.
     #[inline(always)]
-    pub fn new<const D: usize>(starts: [usize; MOST_LANES]) -> Self {
+    pub fn new<const D: usize>(starts: [usize; MOST_LANES], window: usize) -> Self {
         for start in starts {
-            assert!(start <= last_start(D), "a tile's cells lie in its block");
+            assert!(start <= last_start(D, window), "a tile's cells lie in its block");
         }
         Own(starts)
     }
@@ -111,7 +111,7 @@ impl Start for Own {
 /// Several particles of one tile with their shape functions.
 #[derive(Clone, Copy, Debug)]
 pub struct Group<V: Lanes, const D: usize, B: Basis<V::Real>, S> {
-    shapes: [ShapeFunctions<V>; D],
+    shapes: [ShapeFunctions<V, B::Width>; D],
     /// Weights and slopes of bases that are no product over the axes, see [`Basis::CORNERS`].
     table: B::Table<V, D>,
     /// Places after the base nodes [cells].
@@ -142,12 +142,13 @@ pub struct Momentum<V, const D: usize> {
     pub mass: V,
 }
 
-/// Nodes of a window that come before the last reach of a particle.
-const fn last_start(dimension: usize) -> usize {
+/// Place of the last base node that a particle may have in a window with this side.
+#[inline(always)]
+const fn last_start(dimension: usize, window: usize) -> usize {
     let mut place = 0;
     let mut axis = 0;
     while axis < dimension {
-        place = place * WINDOW + WINDOW - MAX_WIDTH;
+        place = place * window + SIDE as usize - 1;
         axis += 1;
     }
     place
@@ -174,8 +175,11 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
     /// Place of a node in the window, after that of the base node.
     #[inline(always)]
     fn offset(i: usize, j: usize, k: usize) -> usize {
-        if D == 2 { i * WINDOW + j } else { (i * WINDOW + j) * WINDOW + k }
+        if D == 2 { i * Self::WINDOW + j } else { (i * Self::WINDOW + j) * Self::WINDOW + k }
     }
+
+    /// Nodes along a side of the window.
+    const WINDOW: usize = window_side(B::WIDTH);
 
     /// Nodes along the third axis.
     const DEPTH: usize = if D == 2 { 1 } else { B::WIDTH };
@@ -233,8 +237,8 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
     }
 
     #[inline(always)]
-    fn slopes(&self) -> [[V; MAX_WIDTH]; D] {
-        let mut slopes = [[V::ZERO; MAX_WIDTH]; D];
+    fn slopes(&self) -> [Line<B, V::Real, V>; D] {
+        let mut slopes = [Line::<B, V::Real, V>::all(V::ZERO); D];
         for axis in 0..D {
             for i in 0..B::WIDTH {
                 slopes[axis][i] = self.shapes[axis].slope(i);
@@ -249,7 +253,7 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
         if B::CORNERS {
             return self.sums_of_arms(nodes);
         }
-        let mut arms = [[V::ZERO; MAX_WIDTH]; D];
+        let mut arms = [Line::<B, V::Real, V>::all(V::ZERO); D];
         for axis in 0..D {
             for i in 0..B::WIDTH {
                 arms[axis][i] = self.shapes[axis].weight[i] * (V::of(i as f64) - self.r[axis]);
@@ -283,7 +287,7 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
     fn sums(
         &self,
         nodes: &[NodeValues<V::Real>; WINDOW_NODES],
-        others: &[[V; MAX_WIDTH]; D],
+        others: &[Line<B, V::Real, V>; D],
     ) -> (Matrix<V>, Vector<V, D>) {
         let [x, y, z] = [&self.shapes[0], &self.shapes[1], &self.shapes[D - 1]];
         let [other_x, other_y, other_z] = [&others[0], &others[1], &others[D - 1]];
@@ -444,9 +448,9 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
         start: usize,
         PairLoad { momentum, stress }: &PairLoad<V::Real>,
     ) {
-        let mut below = [M::Wide::ZERO; MAX_WIDTH * MAX_WIDTH];
+        let mut below = Plane::<B, V::Real, _>::all(M::Wide::ZERO);
         for i in 0..B::WIDTH {
-            let [mut momenta, mut forces] = [[M::Wide::ZERO; MAX_WIDTH * MAX_WIDTH]; 2];
+            let [mut momenta, mut forces] = [Plane::<B, V::Real, _>::all(M::Wide::ZERO); 2];
             if let Some(momentum) = momentum {
                 momenta = self.momenta::<M>(i, momentum);
             }
@@ -468,14 +472,14 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
         &self,
         i: usize,
         load: &MomentumRows<V::Real>,
-    ) -> [M::Wide; MAX_WIDTH * MAX_WIDTH] {
-        let mut weights = [Numbers::ZERO; MAX_WIDTH * MAX_WIDTH];
+    ) -> Plane<B, V::Real, M::Wide> {
+        let mut weights = Plane::<B, V::Real, _>::all(Numbers::ZERO);
         for j in 0..B::WIDTH {
             for k in 0..Self::DEPTH {
                 weights[j * Self::DEPTH + k] = (self.shapes[0].weight[i] * self.across(j, k)).numbers();
             }
         }
-        let mut sums = [M::Wide::NOTHING; MAX_WIDTH * MAX_WIDTH];
+        let mut sums = Plane::<B, V::Real, _>::all(M::Wide::NOTHING);
         for pair in 0..self.pairs() {
             let along_x = load.steps[0].get::<M>(pair);
             let along_y = load.steps[1].get::<M>(pair);
@@ -506,13 +510,11 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
         &self,
         i: usize,
         load: &[RowsOfLanes<V::Real>; 3],
-        below: &[M::Wide; MAX_WIDTH * MAX_WIDTH],
-    ) -> ([M::Wide; MAX_WIDTH * MAX_WIDTH], [M::Wide; MAX_WIDTH * MAX_WIDTH]) {
+        below: &Plane<B, V::Real, M::Wide>,
+    ) -> (Plane<B, V::Real, M::Wide>, Plane<B, V::Real, M::Wide>) {
         let [x, y, z] = [&self.shapes[0], &self.shapes[1], &self.shapes[D - 1]];
         // To the next plane of nodes, and within this one.
-        let mut along_x = [Numbers::ZERO; MAX_WIDTH * MAX_WIDTH];
-        let mut along_y = [Numbers::ZERO; MAX_WIDTH * (MAX_WIDTH - 1)];
-        let mut along_z = [Numbers::ZERO; MAX_WIDTH * (MAX_WIDTH - 1)];
+        let [mut along_x, mut along_y, mut along_z] = [Plane::<B, V::Real, _>::all(Numbers::ZERO); 3];
         for j in 0..B::WIDTH {
             for k in 0..Self::DEPTH {
                 if i + 1 < B::WIDTH {
@@ -528,7 +530,7 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
                 }
             }
         }
-        let mut above = [M::Wide::NOTHING; MAX_WIDTH * MAX_WIDTH];
+        let mut above = Plane::<B, V::Real, _>::all(M::Wide::NOTHING);
         if i + 1 < B::WIDTH {
             for pair in 0..self.pairs() {
                 let row = load[0].get::<M>(pair);
@@ -537,8 +539,7 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
                 }
             }
         }
-        let mut right = [M::Wide::NOTHING; MAX_WIDTH * (MAX_WIDTH - 1)];
-        let mut back = [M::Wide::NOTHING; MAX_WIDTH * (MAX_WIDTH - 1)];
+        let [mut right, mut back] = [Plane::<B, V::Real, _>::all(M::Wide::NOTHING); 2];
         for pair in 0..self.pairs() {
             let (row_y, row_z) = (load[1].get::<M>(pair), load[2].get::<M>(pair));
             for n in 0..(B::WIDTH - 1) * Self::DEPTH {
@@ -548,7 +549,7 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
                 back[n] = row_z.times_plus(factors::<M, _>(&along_z[n], pair), back[n]);
             }
         }
-        let mut forces = [M::Wide::ZERO; MAX_WIDTH * MAX_WIDTH];
+        let mut forces = Plane::<B, V::Real, _>::all(M::Wide::ZERO);
         for j in 0..B::WIDTH {
             for k in 0..Self::DEPTH {
                 let n = j * Self::DEPTH + k;
@@ -613,8 +614,8 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
         PairLoad { momentum, stress }: &PairLoad<V::Real>,
     ) {
         let [x, y, z] = [&self.shapes[0], &self.shapes[1], &self.shapes[D - 1]];
-        let mut weights = [Numbers::ZERO; MAX_WIDTH.pow(3)];
-        let mut slopes = [[Numbers::ZERO; D]; MAX_WIDTH.pow(3)];
+        let mut weights = Space::<B, V::Real, _>::all(Numbers::ZERO);
+        let mut slopes = Space::<B, V::Real, _>::all([Numbers::ZERO; D]);
         for (n, [i, j, k]) in Self::nodes() {
             if momentum.is_some() {
                 weights[n] = self.weight(n, [i, j, k]).numbers();

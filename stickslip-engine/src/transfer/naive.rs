@@ -3,14 +3,14 @@
 use super::offsets;
 use crate::basis::{Axis, Basis};
 use crate::body::Particle;
-use crate::grid::{Lattice, NodeValues, SIDE, WINDOW, WINDOW_NODES, Window};
+use crate::grid::{Lattice, NodeValues, SIDE, WINDOW_NODES, Window, window_side};
 use crate::tensor::{Matrix, Real, Symmetric, Vector};
 use std::marker::PhantomData;
 
 /// The nodes that one particle reaches, with its shape functions there.
 #[derive(Clone, Copy, Debug)]
-pub struct Stencil<T, const D: usize, B> {
-    axes: [Axis<T>; D],
+pub struct Stencil<T: Real, const D: usize, B: Basis<T>> {
+    axes: [Axis<T, B::Width>; D],
     /// Place after the base node [cells].
     r: [T; D],
     /// 1/cell [1/m]
@@ -27,7 +27,7 @@ impl<T: Real, const D: usize, B: Basis<T>> Stencil<T, D, B> {
         let x = lattice.cells(position);
         let reach = Vector::from_fn(|i| (0..D).fold(T::ZERO, |sum, j| sum + edges.0[i][j].abs()));
         let half = lattice.half_sides(reach);
-        let axes: [Axis<T>; D] = std::array::from_fn(|i| B::axis(x[i], half[i]));
+        let axes: [Axis<T, B::Width>; D] = std::array::from_fn(|i| B::axis(x[i], half[i]));
         let r = std::array::from_fn(|i| x[i] - T::of(f64::from(axes[i].base)));
         Stencil { axes, r, per_cell: lattice.per_cell, edges: edges * lattice.per_cell, basis: PhantomData }
     }
@@ -78,7 +78,8 @@ impl<T: Real, const D: usize, B: Basis<T>> Stencil<T, D, B> {
     /// Calls `f(place in the window of a block, offset from the base node)` for every node.
     #[inline(always)]
     fn each(&self, block: [i32; D], mut f: impl FnMut(usize, [usize; D])) {
-        let place = |node: [i32; D]| node.iter().fold(0, |place, &n| place * WINDOW + n as usize);
+        let side = window_side(B::WIDTH);
+        let place = |node: [i32; D]| node.iter().fold(0, |place, &n| place * side + n as usize);
         let start = place(std::array::from_fn(|i| self.axes[i].base - block[i] * SIDE));
         for offset in offsets::<D>(B::WIDTH) {
             f(start + place(offset.map(|o| o as i32)), offset);

@@ -248,6 +248,8 @@ pub enum BasisKind {
     Cpdi,
     /// Quadratic B-splines of the particle's centre (Steffen, Kirby and Berzins 2008).
     Spline,
+    /// Cubic ones.
+    Cubic,
 }
 
 /// A box that holds all material.

@@ -144,6 +144,7 @@ fn in_the_plane() {
     let plane = scene("plane-strain", "gimp", "modified-last");
     let with = |time: &str| plane.replace("end = 1\n", &format!("end = 1\n{time}\n"));
     compare("apic", &with("transfer = \"apic\"").replace("\"gimp\"", "\"spline\""), 200);
+    compare("cubic", &plane.replace("\"gimp\"", "\"cubic\""), 200);
     compare("xpic", &with("transfer = \"xpic\"\nxpic_order = 3"), 200);
     let averaged = plane.replace("density = 2000,", "density = 2000, volume_change = \"averaged\",");
     assert!(averaged.contains("averaged"));
@@ -179,4 +180,5 @@ fn in_the_plane() {
 fn in_space() {
     compare("gimp, modified-last", &scene("3d", "gimp", "modified-last"), 200);
     compare("linear, first", &scene("3d", "linear", "first"), 60);
+    compare("cubic, first", &scene("3d", "cubic", "first"), 60);
 }

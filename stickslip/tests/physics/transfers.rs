@@ -17,7 +17,7 @@ use stickslip::door::{Ledger, ParticleSnapshot};
 /// Rim speed over the speed of waves sqrt(E/rho) of 0.1, for a radius of 1 m [rad/s].
 const SPIN: f64 = 1.0;
 const TRANSFERS: [&str; 5] = ["rflip", "flip", "apic", "xpic", "pic"];
-const BASES: [&str; 4] = ["gimp", "cpdi", "spline", "linear"];
+const BASES: [&str; 5] = ["gimp", "cpdi", "spline", "cubic", "linear"];
 
 fn run(basis: &str, transfer: &str, motion: &str, end: f64) -> ([Ledger; 2], ParticleSnapshot) {
     let scene = format!(
@@ -77,7 +77,7 @@ fn each_keeps_momentum_and_books_what_it_takes() {
 
 #[test]
 fn some_keep_the_spin() {
-    for basis in ["gimp", "cpdi", "spline"] {
+    for basis in ["gimp", "cpdi", "spline", "cubic"] {
         let kept = TRANSFERS.map(|transfer| {
             let ([before, after], _) =
                 run(basis, &named(transfer), &format!("spin = {SPIN}"), 2.0 * PI / SPIN);

@@ -7,9 +7,9 @@
 //! ```
 //! Nairn (2013), Comput. Model. Eng. Sci. 92, 271, extrapolates the positions; the power law that turns them into edges
 //! is that of Nairn, Hammerquist and Smith (2020), Comput. Methods Appl. Mech. Eng. 362, 112859, for particles that
-//! fill their domains, with the reach r of a particle: 1.25 cells where its box is half a cell wide, 1.5 by splines.
-//! Extrapolated positions see a body through its mass around the node,
-//! so the gap is known to a fraction of a cell.
+//! fill their domains, with the reach r of a particle: 1.25 cells where its box is half a cell wide, 1.5 by quadratic
+//! splines, 1.75 by cubic ones. Extrapolated positions see a body through its mass around the node, so the gap is known
+//! to a fraction of a cell.
 
 use super::traction::joint;
 use super::{NearParticle, PairLaw};
@@ -19,11 +19,16 @@ use crate::tensor::{Real, Vector};
 /// Contact of extrapolated positions.
 pub struct Separation;
 
-/// Reach of a particle that fills a quarter of a cell, and of one that nodes see as a whole cell [cells].
+/// Reach of a particle that fills a quarter of a cell; one that nodes see as a box of a whole side, or of two, reaches
+/// further by a quarter of that side [cells].
 const REACH: f64 = 1.25;
-const REACH_OF_SPLINES: f64 = 1.5;
 /// Power of the extrapolated position that gives the edge.
 const POWER: f64 = 0.58;
+
+/// Reach of particles of which nodes see each as a box of this half side, or as its own box [cells].
+fn reach<T: Real>(half_side: Option<T>) -> f64 {
+    REACH + half_side.map_or(0.0, |half| 0.5 * half.f64())
+}
 
 /// Distance from the node to the edge of a body whose centre is `center` away along the normal, for particles of some
 /// reach; positive inside [cells].
@@ -38,7 +43,7 @@ impl<T: Real, const D: usize> PairLaw<T, D> for Separation {
             return Some(Facing { normal: None, gap: T::ONE });
         };
         let lattice = &look.near.lattice;
-        let reach = if lattice.whole_cells { REACH_OF_SPLINES } else { REACH };
+        let reach = reach(lattice.half_side);
         let edges = [a, b].map(|side| edge(side.surface.place.center.dot(normal) / lattice.cell, reach));
         Some(Facing { normal: Some(normal), gap: -(edges[0] + edges[1]) })
     }
@@ -65,8 +70,13 @@ mod tests {
         if x.abs() < 0.5 { 0.75 - x * x } else { 0.5 * (1.5 - x.abs()).powi(2) }
     }
 
-    /// A shape function, how far it reaches, and the reach of its particles [cells].
-    struct Function(fn(f64) -> f64, f64, f64);
+    fn cubic(x: f64) -> f64 {
+        let x = x.abs();
+        if x < 1.0 { 2.0 / 3.0 - x * x * (1.0 - 0.5 * x) } else { (2.0 - x).powi(3) / 6.0 }
+    }
+
+    /// A shape function, how far it reaches, and the boxes of its particles [cells].
+    struct Function(fn(f64) -> f64, f64, Option<f64>);
 
     /// Material behind a plane at distance `surface` from a node, weighted by a function: where its centre seems.
     fn center(surface: f64, &Function(weight, end, _): &Function) -> f64 {
@@ -82,8 +92,10 @@ mod tests {
 
     #[test]
     fn the_edge_of_a_half_space_is_found_within_a_fraction_of_a_cell() {
-        for function in [Function(tent, 1.0, REACH), Function(spline, 1.5, REACH_OF_SPLINES)] {
-            let found = |surface: f64| edge::<f64>(center(surface, &function), function.2);
+        let functions =
+            [Function(tent, 1.0, None), Function(spline, 1.5, Some(0.5)), Function(cubic, 2.0, Some(1.0))];
+        for function in functions {
+            let found = |surface: f64| edge::<f64>(center(surface, &function), reach(function.2));
             for surface in [-0.8, -0.5, -0.2, 0.0, 0.2, 0.5, 0.8] {
                 assert!((found(surface) - surface).abs() < 0.26, "{surface}: {}", found(surface));
             }

@@ -2,7 +2,7 @@
 
 use super::sums::{FIRST, FORCE, MASS, MaterialSums, Wanted, placed_rows, stress_rows};
 use super::{Around, Chunk};
-use crate::basis::{Basis, BoxSide, MAX_WIDTH, ShapeFunctions};
+use crate::basis::{Basis, BoxSide, ShapeFunctions};
 use crate::column::Kind;
 use crate::grid::{Nodes, SIDE, next_of, node_at};
 use crate::lanes::{Laned, Lanes, MOST_LANES, Machine, Numbers, in_lanes, prefetch};
@@ -42,7 +42,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
         // No closure: the compiler may leave one of some size uninlined, and then its instructions are calls.
         let mut position = Vector::<V, D>::ZERO;
         // As the nodes see it everywhere: cells are listed by that box, and no other has its functions within them.
-        let side = members.side(self.near.lattice.whole_cells, seen.per_cell);
+        let side = members.side(self.near.lattice.half_side, seen.per_cell);
         let (mut shapes, mut r) = ([B::shape(V::ZERO, &side); D], Vector::<V, D>::ZERO);
         // The node sees a particle move away as the particle sees the node move: grad at the node = -grad S(x_p).
         let mut to_gradient = Vector::<V, D>::ZERO;
@@ -52,8 +52,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
             to_gradient[i] = seen.per_cell * -seen.sign[i];
             if !B::CORNERS {
                 shapes[i] = B::shape(r[i], &side);
-                for difference in &mut shapes[i].difference {
-                    *difference *= to_gradient[i];
+                for k in 0..B::WIDTH {
+                    shapes[i].difference[k] *= to_gradient[i];
                 }
             }
         }
@@ -201,7 +201,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
         let steps = node_at([0; D], node);
         let offset: [usize; D] = array(0, |i| (self.along(i, steps[i]) - base[i]) as usize);
         if B::CORNERS {
-            let n = offset.iter().fold(0, |n, &step| n * MAX_WIDTH + step);
+            let n = offset.iter().fold(0, |n, &step| n * B::WIDTH + step);
             let mut columns = [V::ZERO; 4];
             for axis in 0..D {
                 columns[axis] = table.slope(n, axis) * (to_gradient[axis] * factor);
@@ -234,7 +234,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
 /// What nodes see of a group of particles.
 struct NodeFunctions<V: Lanes, const D: usize, B: Basis<V::Real>> {
     /// Along each axis, where the basis is a product.
-    shapes: [ShapeFunctions<V>; D],
+    shapes: [ShapeFunctions<V, B::Width>; D],
     /// Node by node, where it is none.
     table: B::Table<V, D>,
     /// What turns its slopes into gradients at the node [1/m].
@@ -381,12 +381,11 @@ impl<'a, T: Real, const D: usize> CellMembers<'a, T, D> {
 
     /// A side of their boxes as the nodes see them.
     #[inline(always)]
-    fn side<V: Lanes<Real = T>>(&self, whole_cells: bool, per_cell: V) -> BoxSide<V> {
-        if whole_cells {
-            BoxSide::new(V::HALF)
-        } else {
-            BoxSide::new(self.load::<V>(ColumnStart::<D>::HALF_WIDTH) * per_cell)
-        }
+    fn side<V: Lanes<Real = T>>(&self, half_side: Option<T>, per_cell: V) -> BoxSide<V> {
+        BoxSide::new(match half_side {
+            Some(half) => V::splat(half),
+            None => self.load::<V>(ColumnStart::<D>::HALF_WIDTH) * per_cell,
+        })
     }
 
     /// Half the edges of their domains, one in each column [cells].

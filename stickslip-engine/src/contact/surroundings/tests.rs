@@ -1,6 +1,6 @@
 use super::sums::{FIRST, FORCE, MASS, placed_rows};
 use super::*;
-use crate::basis::{Cpdi, Gimp, Linear};
+use crate::basis::{Cpdi, Cubic, Gimp, Linear};
 use crate::body::{Body, Gyration, Particle};
 use crate::boundary::{Boundary, reflect};
 use crate::contact::{Rules, rules};
@@ -18,6 +18,7 @@ enum Boxes {
     Own,
     Deformed,
     WholeCells,
+    TwoCells,
 }
 
 /// Particles strewn over a few cells before two mirrors, deformed and stressed.
@@ -132,7 +133,12 @@ fn plainly<const D: usize, B: Basis<f64>>(
 }
 
 fn particles_of_a_cell_side_by_side_give_the_sums<const D: usize, B: Basis<f64>>(boxes: Boxes) {
-    let lattice = Lattice { whole_cells: boxes == Boxes::WholeCells, ..Lattice::new(Vector::ZERO, 1.0) };
+    let half_side = match boxes {
+        Boxes::Own | Boxes::Deformed => None,
+        Boxes::WholeCells => Some(0.5),
+        Boxes::TwoCells => Some(1.0),
+    };
+    let lattice = Lattice { half_side, ..Lattice::new(Vector::ZERO, 1.0) };
     let bodies = [body::<D>(boxes)];
     let mut active = ActiveBlocks::<D>::default();
     active.update((1, |_| 300, B::WIDTH as i32 - 1), None, |_, particle| {
@@ -184,6 +190,8 @@ fn sums_are_those_of_the_equations() {
         particles_of_a_cell_side_by_side_give_the_sums::<2, Gimp>(boxes);
         particles_of_a_cell_side_by_side_give_the_sums::<3, Gimp>(boxes);
     }
+    particles_of_a_cell_side_by_side_give_the_sums::<2, Cubic>(Boxes::TwoCells);
+    particles_of_a_cell_side_by_side_give_the_sums::<3, Cubic>(Boxes::TwoCells);
     for boxes in [Boxes::Own, Boxes::Deformed] {
         particles_of_a_cell_side_by_side_give_the_sums::<2, Cpdi>(boxes);
         particles_of_a_cell_side_by_side_give_the_sums::<3, Cpdi>(boxes);

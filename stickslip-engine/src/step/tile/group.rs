@@ -75,10 +75,11 @@ pub fn group<
     let Verbs { smooth, update_velocity, update_stress, advect, scatter } = verbs;
     let position = members.vector::<V>(ColumnStart::<D>::POSITION);
     let half_width = members.load::<V>(ColumnStart::<D>::HALF_WIDTH);
-    let mut sides = [BoxSide::new(V::HALF); D];
-    if !visit.pass.lattice.whole_cells {
-        sides = [BoxSide::new(half_width * constants.per_cell); D];
-    }
+    let half_side = match visit.pass.lattice.half_side {
+        Some(half) => V::splat(half),
+        None => half_width * constants.per_cell,
+    };
+    let mut sides = [BoxSide::new(half_side); D];
     let mut edges = Matrix::ZERO;
     if B::CORNERS {
         edges = members.edges(half_width);

@@ -13,7 +13,7 @@ mod tests;
 use super::pass::{FaultKind, Found, ParticleFault, Visit};
 use crate::basis::Basis;
 use crate::body::Gyration;
-use crate::grid::{WINDOW, node_at};
+use crate::grid::node_at;
 use crate::lanes::{Any, Laned, Lanes, MOST_LANES, Machine, Pack, Work};
 use crate::tensor::Vector;
 use crate::transfer::{CellGroup, Own, Start};
@@ -72,9 +72,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
     #[inline(never)]
     fn one(&mut self, index: u32, cell: usize) {
         let (columns, indices) = (self.columns, [index]);
-        let place = CellStart::new(self.tile.block, cell);
+        let place = CellStart::new((self.tile.block, cell), Self::WINDOW);
         let base = Vector::from_fn(|i| Pack([T::of(f64::from(place.base[i]))]));
-        let start = CellGroup::new::<D>(place.start);
+        let start = CellGroup::new::<D>(place.start, Self::WINDOW);
         let members = Members::in_a_row(&columns, &indices);
         let constants = self.constants::<Pack<T, 1>>();
         match group::<T, Pack<T, 1>, Any, D, B, _, true>(self, &constants, &members, (base, start)) {
@@ -135,9 +135,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
                 }
                 // Indices within a cell ascend.
                 let in_a_row = index[index.len() - 1] as usize - index[0] as usize == index.len() - 1;
-                let place = CellStart::new(visit.tile.block, cell);
+                let place = CellStart::new((visit.tile.block, cell), Self::WINDOW);
                 let base = Vector::from_fn(|i| V::splat(T::of(f64::from(place.base[i]))));
-                let start = CellGroup::new::<D>(place.start);
+                let start = CellGroup::new::<D>(place.start, Self::WINDOW);
                 match visit.group::<M, V, _>(&constants, (index, in_a_row), (base, start), &mut copies) {
                     Ok(inside) => {
                         visit.left |= u64::from(!every::<V>(inside)) << cell;
@@ -204,7 +204,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
                 } else {
                     homes[lane] = homes[0];
                 }
-                let place = CellStart::new(visit.tile.block, homes[lane]);
+                let place = CellStart::new((visit.tile.block, homes[lane]), Self::WINDOW);
                 starts[lane] = place.start;
                 for (bases, base) in bases.iter_mut().zip(place.base) {
                     bases[lane] = T::of(f64::from(base));
@@ -212,7 +212,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
             }
             // SAFETY: as many numbers as any machine has lanes.
             let base = Vector::from_fn(|i| unsafe { V::load(bases[i].as_ptr()) });
-            let start = Own::new::<D>(starts);
+            let start = Own::new::<D>(starts, Self::WINDOW);
             match visit.group::<M, V, _>(&constants, (index, in_a_row), (base, start), &mut copies) {
                 Ok(inside) => {
                     visit.moved += outside(inside, index.len());
@@ -243,8 +243,8 @@ struct CellStart<const D: usize> {
 
 impl<const D: usize> CellStart<D> {
     #[inline(always)]
-    fn new(block: [i32; D], cell: usize) -> Self {
-        let start = node_at([0; D], cell).iter().fold(0, |place, &n| place * WINDOW + n as usize);
+    fn new((block, cell): ([i32; D], usize), window: usize) -> Self {
+        let start = node_at([0; D], cell).iter().fold(0, |place, &n| place * window + n as usize);
         CellStart { base: node_at(block, cell), start }
     }
 }

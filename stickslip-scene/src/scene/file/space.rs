@@ -80,6 +80,7 @@ impl Choice for BasisKind {
         ),
         ("linear", BasisKind::Linear, "Tent functions at the particle's centre."),
         ("spline", BasisKind::Spline, "Quadratic B-splines of the particle's centre: smooth slopes."),
+        ("cubic", BasisKind::Cubic, "Cubic B-splines of the particle's centre: slopes without kinks."),
     ];
 }
 

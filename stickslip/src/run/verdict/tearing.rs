@@ -97,7 +97,7 @@ fn reach(look: &CheckInputs, a: &TracedParticle, b: &TracedParticle) -> [f64; 3]
     let cell = look.scene.discretization.cell;
     match look.scene.discretization.basis {
         BasisKind::Linear => [cell; 3],
-        BasisKind::Gimp | BasisKind::Cpdi | BasisKind::Spline => {
+        BasisKind::Gimp | BasisKind::Cpdi | BasisKind::Spline | BasisKind::Cubic => {
             std::array::from_fn(|i| cell + a.half_sides[i] + b.half_sides[i])
         }
     }
