@@ -8,7 +8,7 @@
 //! Nairn (2013), Comput. Model. Eng. Sci. 92, 271, extrapolates the positions; the power law that turns them into edges
 //! is that of Nairn, Hammerquist and Smith (2020), Comput. Methods Appl. Mech. Eng. 362, 112859, for particles that
 //! fill their domains, with the reach r of a particle: 1.25 cells where its box is half a cell wide, 1.5 by quadratic
-//! splines, 1.75 by cubic ones. Extrapolated positions see a body through its mass around the node, so the gap is known
+//! splines, 1.6 by cubic ones. Extrapolated positions see a body through its mass around the node, so the gap is known
 //! to a fraction of a cell.
 
 use super::traction::joint;
@@ -19,15 +19,20 @@ use crate::tensor::{Real, Vector};
 /// Contact of extrapolated positions.
 pub struct Separation;
 
-/// Reach of a particle that fills a quarter of a cell; one that nodes see as a box of a whole side, or of two, reaches
-/// further by a quarter of that side [cells].
+/// Reach of a particle that fills a quarter of a cell, and by quadratic and cubic splines [cells].
 const REACH: f64 = 1.25;
+const REACH_OF_QUADRATIC: f64 = 1.5;
+const REACH_OF_CUBIC: f64 = 1.6;
 /// Power of the extrapolated position that gives the edge.
 const POWER: f64 = 0.58;
 
 /// Reach of particles of which nodes see each as a box of this half side, or as its own box [cells].
 fn reach<T: Real>(half_side: Option<T>) -> f64 {
-    REACH + half_side.map_or(0.0, |half| 0.5 * half.f64())
+    match half_side {
+        None => REACH,
+        Some(half) if half > T::HALF => REACH_OF_CUBIC,
+        Some(_) => REACH_OF_QUADRATIC,
+    }
 }
 
 /// Distance from the node to the edge of a body whose centre is `center` away along the normal, for particles of some
