@@ -48,7 +48,7 @@ const ENOUGH: f64 = 8.0;
 /// Bodies of few cells across and with a Poisson's ratio from 0.4 to 0.49, which do not bend as they should.
 pub(super) fn bending(scene: &Scene) -> Option<Warning> {
     let plane_stress = scene.dimension == Dimension::PlaneStress;
-    if plane_stress || scene.discretization.basis == BasisKind::Spline {
+    if plane_stress || matches!(scene.discretization.basis, BasisKind::Spline | BasisKind::Cubic) {
         return None;
     }
     let cell = scene.discretization.cell;
