@@ -17,6 +17,7 @@ mod neighbours;
 mod overlap;
 mod penetration;
 mod periodic;
+mod precision;
 mod report;
 mod rigid_pairs;
 mod rules;
@@ -62,6 +63,7 @@ fn examine(scene: &Scene) -> Result<(Vec<bodies::FillingExtent>, Vec<LoadReport>
     if scene.start.is_none() {
         overlap::check(scene, &extents)?;
     }
+    precision::check(scene, &extents)?;
     joints::check(scene, &extents)?;
     springs::check(scene)?;
     (0..scene.bodies.len()).try_for_each(|body| initial_stress::of_body(scene, body).map(|_| ()))?;

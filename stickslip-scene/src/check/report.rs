@@ -223,7 +223,7 @@ fn half_diagonal(extent: &FillingExtent, extents: &[FillingExtent]) -> f64 {
 }
 
 /// courant h / max(c + |v|) at the start, at most the longest step that the scene allows [s].
-fn time_step(scene: &Scene, extents: &[FillingExtent]) -> f64 {
+pub(super) fn time_step(scene: &Scene, extents: &[FillingExtent]) -> f64 {
     let signal = |(body, extent): (&Body, &FillingExtent)| {
         let (wave, spin) = match &body.motion {
             BodyMotion::Free { spin, .. } => {
