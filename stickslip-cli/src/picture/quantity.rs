@@ -14,6 +14,7 @@ pub enum ColorQuantity {
     /// The body it belongs to; round bodies get quarters, so that turning shows
     Body,
     /// Speed
+    #[value(alias = "speed")]
     Velocity,
     /// Velocity along x
     Vx,
@@ -170,7 +171,7 @@ impl ColorQuantity {
         let words: Vec<String> = words.map(|word| word.get_name().to_owned()).collect();
         let history = particles.history.iter().map(|column| column.name.clone());
         let all: Vec<String> = words.into_iter().chain(history).collect();
-        Err(format!("found `{name}`, which no law of the scene remembers; allowed: {}", all.join(", ")))
+        Err(format!("found `{name}`, a quantity that the results do not have; allowed: {}", all.join(", ")))
     }
 
     /// Colours that suit these values. The outermost thousandth of the values at either end do not stretch the scale.

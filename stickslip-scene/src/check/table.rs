@@ -132,7 +132,7 @@ impl Report {
 
     fn write_contacts(&self, f: &mut Formatter<'_>) -> Result {
         if self.contacts.is_empty() {
-            return Ok(());
+            return self.write_unjudged(f);
         }
         let name = |contact: &ContactEstimate| contact.bodies.join(" on ");
         let names: Vec<_> = self.contacts.iter().take(CONTACTS).map(name).collect();
@@ -155,6 +155,20 @@ impl Report {
             writeln!(f, "in all {}: {}", self.contacts.len(), counts.join(", "))?;
         }
         Ok(())
+    }
+
+    /// Why there is no verdict, where bodies could touch.
+    fn write_unjudged(&self, f: &mut Formatter<'_>) -> Result {
+        let deforms = self.bodies.iter().any(|body| !body.rigid);
+        let may_push = self.rules.is_empty() || self.rules.iter().any(RuleReport::rubs);
+        if self.bodies.len() < 2 || !deforms || !may_push || !self.contacts_unknown.is_empty() {
+            return Ok(());
+        }
+        writeln!(
+            f,
+            "\ncontact (Hertz): not judged, as no bodies within a cell of each other are pressed together at the start; \
+             a contact rule whose `between` names two bodies that approach has them judged however far apart"
+        )
     }
 
     fn write_unknown(&self, f: &mut Formatter<'_>) -> Result {
@@ -265,6 +279,23 @@ mod tests {
         assert!(text(1).contains("\nno estimate for 1 contact, pillar 0 on floor: "), "{}", text(1));
         let four = "\nno estimate for 4 contacts, pillar 0 on floor, pillar 1 on floor, pillar 2 on floor and 1 more: ";
         assert!(text(4).contains(four), "{}", text(4));
+    }
+
+    #[test]
+    fn contacts_that_are_not_judged_are_said_to_be_so() {
+        let disks = |gap: f64, law: ContactLaw| {
+            let disk = |i: usize| {
+                let center = [i as f64 * (1.0 + gap), 0.0, 0.0];
+                free(&format!("disk {i}"), 0, Shape::Ball { center, radius: 0.5 })
+            };
+            let mut scene = scene(Dimension::PlaneStrain, 0.05, (0..2).map(disk).collect());
+            scene.contact = vec![ContactRule { law, ..Default::default() }];
+            report(&scene).expect("no problem").to_string()
+        };
+        let said = disks(1.0, ContactLaw::Surface);
+        assert!(said.contains("\ncontact (Hertz): not judged, as no bodies within a cell"), "{said}");
+        let alone = disks(1.0, ContactLaw::None);
+        assert!(!alone.contains("Hertz"), "{alone}");
     }
 
     /// Each pair by itself where there are few, by rules where there are many.

@@ -1,11 +1,32 @@
 //! The word that a misspelt word was meant to be.
 
+/// Words of other programs and of the blackboard, and what they are here.
+const ELSEWHERE: &[(&str, &str)] = &[
+    ("duration", "end"),
+    ("t_end", "end"),
+    ("dt", "max_step"),
+    ("cfl", "courant"),
+    ("every", "tables"),
+    ("mu", "friction"),
+    ("rho", "density"),
+    ("e", "young_modulus"),
+    ("nu", "poisson_ratio"),
+    ("elastic", "neo_hookean"),
+    ("linear_elastic", "hypoelastic"),
+    ("plastic", "von_mises"),
+];
+
 /// The candidate nearest to `word`, if one is near enough to be what was meant.
 ///
-/// Near enough: the same but for upper and lower case, about a third of the letters wrong (Damerau and Levenshtein), or
+/// Near enough: its word elsewhere, the same but for upper and lower case, about a third of the letters wrong (Damerau and Levenshtein), or
 /// the one the beginning of the other.
 pub(super) fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let plain = word.to_lowercase();
+    let candidates: Vec<&str> = candidates.into_iter().collect();
+    let mut here = ELSEWHERE.iter().filter(|(elsewhere, _)| *elsewhere == plain);
+    if let Some(meant) = here.find_map(|(_, here)| candidates.iter().find(|known| *known == here)) {
+        return Some(*meant);
+    }
     let distance = |candidate: &str| {
         let candidate = candidate.to_lowercase();
         let edits = strsim::damerau_levenshtein(&plain, &candidate);
@@ -61,6 +82,15 @@ mod tests {
         ] {
             assert_eq!(nearest(word, keys), meant, "{word}");
         }
+    }
+
+    #[test]
+    fn words_of_other_programs_lead_to_those_of_scene_files() {
+        let keys = ["end", "courant", "friction", "neo_hookean", "hypoelastic"];
+        let of = |word| nearest(word, keys);
+        assert_eq!(["duration", "mu", "CFL"].map(of), [Some("end"), Some("friction"), Some("courant")]);
+        assert_eq!(["elastic", "linear_elastic"].map(of), [Some("neo_hookean"), Some("hypoelastic")]);
+        assert_eq!(nearest("mu", ["density"]), None, "not where there is none of them");
     }
 
     #[test]
