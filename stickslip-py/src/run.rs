@@ -181,14 +181,15 @@ pub fn walk(py: Python<'_>, engine: &Bound<'_, Engine>, mut way: Way) -> PyResul
     marched.map_err(|error| errors::of_march(py, &error))
 }
 
-/// A run that leaves results, begun now or gone on with: what it came to, as text and as JSON.
+/// A run that leaves results, begun now or gone on with: what it came to as text, its warnings as lines of that, and
+/// all as JSON.
 #[pyfunction]
 pub fn run(
     py: Python<'_>,
     engine: &Bound<'_, Engine>,
     mut way: Way,
     request: RunRequest,
-) -> PyResult<(String, String)> {
+) -> PyResult<(String, Vec<String>, String)> {
     let engine = engine.get();
     let scene = until(&engine.scene, way.until);
     let between = Between::new(way.show.take());
@@ -246,8 +247,8 @@ fn seconds(seconds: f64) -> PyResult<Duration> {
     duration.ok_or_else(|| pyo3::exceptions::PyValueError::new_err(wrong()))
 }
 
-/// A summary as the command prints it, and as JSON.
-fn described(summary: &Summary) -> (String, String) {
+/// A summary as the command prints it, the warnings in it, and all as JSON.
+fn described(summary: &Summary) -> (String, Vec<String>, String) {
     let reference = |reference: &ReferenceResult| {
         let ReferenceResult { body, quantity, label, value, exact } = reference;
         json!({ "body": body, "quantity": quantity, "label": label, "value": value, "exact": exact })
@@ -263,5 +264,5 @@ fn described(summary: &Summary) -> (String, String) {
         "warnings": summary.warnings,
         "references": summary.references.iter().map(reference).collect::<Vec<_>>(),
     });
-    (summary.to_string(), record.to_string())
+    (summary.to_string(), summary.warning_lines(), record.to_string())
 }

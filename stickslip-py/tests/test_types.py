@@ -60,10 +60,13 @@ def test_wrong_uses_are_found(tmp_path):
             sim.bodies["a"].position.nothing
             ss.Results("folder").frame("last")
             ss.resume("folder", until=[1])
+            sim.bodies["a"].velocity = (0, 1)
+            sim.ledger().kinetic = 0.0
+            sim.contacts().fx
             """
         ).lstrip(),
         encoding="utf-8",
     )
     lines = [line for line in complaints(str(module)) if ": error: " in line]
     found = [int(line.split(":")[1]) for line in lines]
-    assert found == [2, 3, 4, 5, 6, 7, 8]
+    assert found == [2, 3, 4, 5, 6, 7, 8, 9, 10, 11]

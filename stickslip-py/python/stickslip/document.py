@@ -19,6 +19,8 @@ def plain(value: Any, key: str = "") -> Any:
 
     `key` is where it stands, for the message of a TypeError.
     """
+    if isinstance(value, PathLike):
+        return str(fspath(value))
     if isinstance(value, Mapping):
         entries = ((str(name), entry) for name, entry in value.items() if entry is not None)
         return {name: plain(entry, f"{key}.{name}".lstrip(".")) for name, entry in entries}
@@ -28,8 +30,6 @@ def plain(value: Any, key: str = "") -> Any:
         return [plain(entry, f"{key}[{number}]") for number, entry in enumerate(value)]
     if isinstance(value, np.generic):
         return plain(value.item(), key)
-    if isinstance(value, PathLike):
-        return str(fspath(value))
     if isinstance(value, (bool, int, float, str)):
         return value
     kind = type(value).__name__

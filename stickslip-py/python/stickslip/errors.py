@@ -40,11 +40,12 @@ class SceneError(StickslipError, ValueError):
     allowed: str | None = None
     """What is allowed."""
 
-    def at(self, key: str, file: str | None = None) -> SceneError:
-        """The same mistake at another key, which stands in no line."""
+    def at(self, key: str, file: str | None = None, help: str | None = None) -> SceneError:
+        """The same mistake at another key, which stands in no line; with other advice if that is given."""
         place = key if file is None else f"{file}: {key}"
-        advice = f"; {self.help}" if self.help else ""
-        facts = dict(file=file, key=key, found=self.found, allowed=self.allowed, help=self.help)
+        help = help or self.help
+        advice = f"; {help}" if help else ""
+        facts = dict(file=file, key=key, found=self.found, allowed=self.allowed, help=help)
         return SceneError(f"{place}: found {self.found}; allowed: {self.allowed}{advice}", **facts)
 
 
@@ -70,4 +71,4 @@ class ResultsError(StickslipError, OSError):
 
 
 class StickslipWarning(UserWarning):
-    """Something doubtful in a scene that is about to run."""
+    """Something doubtful in a scene that is about to run, or in the results of one that has run."""

@@ -6,6 +6,7 @@ import ctypes
 import threading
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
+from os import PathLike
 from typing import Any
 
 import numpy as np
@@ -243,7 +244,7 @@ def made(given: Any, kind: str) -> Law | Function:
 
 def named(value: Any, key: str, functions: dict[str, Law | Function | Callable[..., Any]]) -> Any:
     """A value in which each function is the name under which it is kept in `functions`."""
-    if isinstance(value, Mapping):
+    if isinstance(value, Mapping) and not isinstance(value, PathLike):
         return {name: named(entry, name, functions) for name, entry in value.items()}
     if not (isinstance(value, _Given) or callable(value) or _address(value) is not None):
         return value

@@ -6,16 +6,19 @@ import json
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from html import escape
-from typing import Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 
 
 class Record(Mapping[str, Any]):
-    """Named values: `record.kinetic` and `record["kinetic"]` are the same. Rows of numbers are arrays."""
+    """Named values: `record.kinetic` and `record["kinetic"]` are the same. Rows of numbers are arrays.
 
-    def __init__(self, values: Mapping[str, Any]) -> None:
-        self._values = {name: _kept(value) for name, value in values.items()}
+    It says how things were when it was asked for, and is read only.
+    """
+
+    def __init__(self, values: Mapping[str, Any], **further: Any) -> None:
+        self.__dict__.update(further, _values={name: _kept(value) for name, value in values.items()})
 
     @classmethod
     def from_json(cls, text: str) -> Record:
@@ -35,7 +38,11 @@ class Record(Mapping[str, Any]):
         values = self.__dict__.get("_values", {})
         if name in values:
             return values[name]
-        raise AttributeError(f"found no `{name}`; allowed: {', '.join(values)}")
+        further = (known for known in self.__dict__ if not known.startswith("_"))
+        raise AttributeError(f"found no `{name}`; allowed: {', '.join([*values, *further])}")
+
+    def __setattr__(self, name: str, value: NoReturn) -> NoReturn:
+        raise AttributeError(f"found a value for `{name}`; records are read only: they are copies of what was")
 
     def __dir__(self) -> Iterable[str]:
         return [*super().__dir__(), *self._values]
@@ -49,7 +56,11 @@ def _kept(value: Any) -> Any:
         return Record(value)
     if isinstance(value, list):
         numbers = value and all(isinstance(entry, (int, float)) and not isinstance(entry, bool) for entry in value)
-        return np.array(value, dtype=float) if numbers else [_kept(entry) for entry in value]
+        if not numbers:
+            return [_kept(entry) for entry in value]
+        array = np.array(value, dtype=float)
+        array.flags.writeable = False
+        return array
     return value
 
 
@@ -59,15 +70,22 @@ def matches(pattern: str, name: str) -> bool:
 
 
 class Table(np.ndarray):
-    """A structured array: `table["x"]` is a column, `table[3]` a row.
+    """A structured array: `table["x"]` is a column, `table[3]` a row, `table.dtype.names` are the columns.
 
     `table.where(body="ball")` are the rows with that body; `table.to_pandas()` and `table.to_polars()` are frames.
     """
 
+    _bodies: Sequence[str] | None = None
+
+    def __array_finalize__(self, parent: Any) -> None:
+        self._bodies = getattr(parent, "_bodies", None)
+
     @classmethod
-    def of(cls, array: np.ndarray) -> Table:
-        """A structured array as a table; nothing is copied."""
-        return array.view(cls)
+    def of(cls, array: np.ndarray, bodies: Sequence[str] | None = None) -> Table:
+        """A structured array as a table; nothing is copied. `bodies` are all that the scene has, by their names."""
+        table = array.view(cls)
+        table._bodies = bodies
+        return table
 
     @classmethod
     def of_columns(cls, columns: Mapping[str, Sequence[str]]) -> Table:
@@ -81,16 +99,25 @@ class Table(np.ndarray):
         return cls.of(array)
 
     def where(self, **equal: Any) -> Table:
-        """The rows whose columns have these values: `contacts.where(body_a="ball")`; in text `*` is any letters."""
+        """The rows whose columns have these values: `contacts.where(body_a="ball")`; in text `*` is any letters.
+
+        There may be none; a column or a body that there is not raises `ValueError`.
+        """
         rows = np.ones(len(self), dtype=bool)
         for name, value in equal.items():
             column = np.asarray(self[name])
+            if isinstance(value, str) and name in BODIES and self._bodies is not None:
+                known = [*self._bodies, *map(str, np.unique(column))]
+                if not any(matches(value, body) for body in known):
+                    allowed = ", ".join(self._bodies)
+                    raise ValueError(f"found {name}={value!r}; allowed: {allowed}, or a pattern of them with `*`")
             if isinstance(value, str) and "*" in value:
                 fits = {entry: matches(value, str(entry)) for entry in np.unique(column)}
                 rows &= np.array([fits[entry] for entry in column], dtype=bool)
             else:
                 rows &= column == value
-        return self[rows].view(Table)
+        found: Table = self[rows].view(Table)
+        return found
 
     def rows(self, *names: str) -> np.ndarray:
         """Some columns of numbers side by side (n, number of names): `contacts.rows("fx", "fy", "fz")`."""
@@ -124,6 +151,26 @@ class Table(np.ndarray):
             data[name] = (tuple(labels), whole)
         return _needed("xarray").Dataset(data, axes)
 
+    def __getitem__(self, key: Any) -> Any:
+        names = self.dtype.names
+        if isinstance(key, str) and names is not None and key not in names:
+            raise ValueError(f"found a column `{key}`, which the table does not have; allowed: {', '.join(names)}")
+        return super().__getitem__(key)
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> NoReturn:
+            names = self.dtype.names or ()
+            if name in names:
+                raise AttributeError(f'found `.{name}`; columns of tables are in brackets: table["{name}"]')
+            raise AttributeError(f"found no `{name}`; columns of tables are in brackets: {', '.join(names)}")
+
+    def __repr__(self) -> str:
+        if self.dtype.names is None or self.ndim != 1 or len(self) <= SHOWN:
+            return super().__repr__()
+        with np.printoptions(threshold=1):
+            return f"{super().__repr__()}\n# {len(self)} rows"
+
     def _repr_html_(self) -> str | None:
         if self.dtype.names is None or self.ndim != 1:
             return None
@@ -137,7 +184,9 @@ class Table(np.ndarray):
 
 
 SHOWN = 20
-"""Rows of a table that a notebook shows."""
+"""Rows of a table that are shown; a notebook shows as many of a longer one, Python its first and its last three."""
+BODIES = ("body", "body_a", "body_b")
+"""Columns that name bodies."""
 
 
 def _cell(value: Any) -> str:

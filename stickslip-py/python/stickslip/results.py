@@ -99,14 +99,18 @@ class Results:
     """What a run left in a folder, finished or not.
 
     `results.bodies` is bodies.csv, and so for every table there: `energy`, `contacts`, `loads`, `joints`, `sections`,
-    `removed`, `groups`, `group_contacts`, `probes`, `arrivals`, `fronts`, `front_speeds`, `fringes` (chapter 7 of the
-    book names their columns). Tables and snapshots are read when they are asked for.
+    `removed`, `groups`, `group_contacts`, `probes`, `arrivals`, `fronts`, `front_speeds`, `fringes`.
+    `results.bodies.dtype.names` are the columns; what each is, with its unit, stands in the book, book/07-outputs.md of
+    the repository. Tables and snapshots are read when they are asked for.
     """
 
     def __init__(self, folder: str | os.PathLike[str]) -> None:
-        """`folder` is that of `out` of a run, or NAME.results of the command."""
+        """`folder` is that of `out` of a run, the run's summary, or NAME.results of the command."""
         self.folder = Path(folder)
         """Where they are."""
+        if self.folder.is_file():
+            advice = f"give the folder that the run left: ss.Results({str(self.folder.parent)!r})"
+            raise ResultsError(f"{self.folder} is a file; {advice}", help=advice)
         self._frames = _core.frames(self.folder)
         self.record = Record(_record(self.folder))
         """`run.json`: status, warnings, performance, the scene as run."""
@@ -141,10 +145,16 @@ class Results:
         """The table of this name. A last row that is cut short is left out: a run may be writing it."""
         if name not in self.tables:
             raise AttributeError(f"found no table `{name}` in {self.folder}; allowed: {', '.join(self.tables)}")
-        return read_table(self.folder / f"{name}.csv")
+        return Table.of(read_table(self.folder / f"{name}.csv"), self.names)
 
     def frame(self, number: int) -> Frame:
-        """The snapshot of this number, from 0; -1 is the last."""
+        """The snapshot of this number, from 0; -1 is the last. `times` has their times."""
+        if not isinstance(number, (int, np.integer)):
+            last = len(self._frames) - 1
+            raise TypeError(
+                f"found snapshot {number!r}; allowed: a number from 0 to {last}, or -1 for the last; `times` has their "
+                "times [s], and abs(results.times - t).argmin() is the number of the one nearest to t"
+            )
         if not -len(self._frames) <= number < len(self._frames):
             raise IndexError(f"found snapshot {number}; allowed: 0 to {len(self._frames) - 1}")
         time, path = self._frames[number]

@@ -27,7 +27,8 @@ class Summary(Record):
 
     `status` is "finished", "interrupted" or "out_of_time"; `warnings` lists what makes the results doubtful, `start`
     and `end` are ledgers, `energy_drift` is in J, `references` compares with known answers, `performance` has the time
-    that was reached [s], steps and wall times. `folder` is where the results are.
+    that was reached [s], steps and wall times. `folder` is where the results are; the summary stands for it wherever a
+    folder is asked for: `ss.Results(summary)`, `ss.render(summary)`.
     """
 
     folder: Path
@@ -36,8 +37,10 @@ class Summary(Record):
     """What the command prints."""
 
     def __init__(self, folder: Path, said: str, values: Mapping[str, Any]) -> None:
-        super().__init__(values)
-        self.folder, self.text = folder, said
+        super().__init__(values, folder=folder, text=said)
+
+    def __fspath__(self) -> str:
+        return str(self.folder)
 
     def __str__(self) -> str:
         return self.text
@@ -59,6 +62,19 @@ def warn_of_missing_friction(read: _core.ReadScene, stacklevel: int) -> None:
     pairs = read.pairs_without_friction()
     if pairs is not None:
         warnings.warn(pairs, StickslipWarning, stacklevel=stacklevel)
+
+
+def warn_of_doubts(lines: list[str], stacklevel: int) -> None:
+    """Warns of what makes the results of a run doubtful, as the command says it; from where, as of `warnings.warn`."""
+    for line in lines:
+        warnings.warn(line, StickslipWarning, stacklevel=stacklevel)
+
+
+def threads_of(threads: int | None) -> int | None:
+    """So many threads, or all processors."""
+    if threads is not None and not threads >= 1:
+        raise ValueError(f"found threads={threads}; allowed: a whole number from 1, or None for all processors")
+    return threads
 
 
 def carry_out(
@@ -89,7 +105,8 @@ def carry_out(
     }
     with _records_first(), shown(progress) as show:
         way = way_to(simulation.end if until is None else until, every, callback, show)
-        said, values = _core.run(simulation.engine, way, request)
+        said, doubts, values = _core.run(simulation.engine, way, request)
+    warn_of_doubts(doubts, stacklevel=4)
     return Summary(folder, said, Record.from_json(values))
 
 
@@ -109,8 +126,9 @@ def resume(
     It goes on to `until` [s], else to what was named last, else to the end of the scene. The scene is read again from
     where it was, as it was run if it is not there any more, or from the file `scene`. A run that was stopped ends in
     the same bits as one that was not. `functions` are the laws, loads and motions of your own that it names, as
-    `Scene.functions` has them. `checkpoint_every` and `max_time` are wall times [s], as of `Scene.run`. Bodies that
-    have no friction because no rule says how much are warned of (`StickslipWarning`).
+    `Scene.functions` has them. `threads` are as many as are to step it, None for all processors. `checkpoint_every` and
+    `max_time` are wall times [s], as of `Scene.run`. Bodies that have no friction because no rule says how much are
+    warned of, and what makes the results doubtful (`StickslipWarning`).
     """
     folder = Path(folder)
     before = _record(folder)
@@ -136,7 +154,9 @@ def resume(
         "max_time": max_time,
     }
     with _records_first(), shown(progress) as show:
-        said, values = _core.run(read.simulation(threads), way_to(read.end, None, None, show), request)
+        engine = read.simulation(threads_of(threads))
+        said, doubts, values = _core.run(engine, way_to(read.end, None, None, show), request)
+    warn_of_doubts(doubts, stacklevel=3)
     return Summary(folder, said, Record.from_json(values))
 
 

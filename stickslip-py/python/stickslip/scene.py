@@ -18,7 +18,7 @@ from .errors import RunError, SceneError, StickslipError, StickslipWarning
 from .functions import Function, Law, named
 from .records import Record
 from .results import Results
-from .running import Summary, carry_out, warn_of_missing_friction
+from .running import Summary, carry_out, threads_of, warn_of_missing_friction
 from .simulation import Simulation
 
 IN_PYTHON = "<scene in Python>"
@@ -34,8 +34,7 @@ class Report(Record):
     """What the command prints."""
 
     def __init__(self, said: str, values: Mapping[str, Any]) -> None:
-        super().__init__(values)
-        self.text = said
+        super().__init__(values, text=said)
 
     def __str__(self) -> str:
         return self.text
@@ -232,6 +231,13 @@ class Scene:
         """What slows bodies down: `viscous` [1/s], `local`, `bulk_linear`, `bulk_quadratic` [-]."""
         return self._update("damping", keys)
 
+    def health(self, **keys: Any) -> Scene:
+        """What a run watches, and what it does where something is wrong: `contact="ignore"`, `energy="stop"` ...
+
+        It warns by default. What is only recorded or ignored is not warned of (`StickslipWarning`) either.
+        """
+        return self._update("health", keys)
+
     def outputs(self, **keys: Any) -> Scene:
         """What runs write: intervals of `tables`, `particles`, `grid`, `samples`, `checkpoints` [s], `fringes` ..."""
         return self._update("outputs", keys)
@@ -310,12 +316,14 @@ class Scene:
     ) -> Summary:
         """Runs the scene to its end as `stickslip run` does, in the same bits, and leaves results in a folder.
 
-        Without `out` the folder is NAME.results here, NAME being that of the file, or `scene`. `checkpoint_every` is
-        the wall time between checkpoints [s], None for none at all; `max_time` ends the run with one after so much wall
-        time [s]; `max_memory` is what it may take [bytes], without it what is free. `overwrite` begins anew where a run
-        did not finish that could go on. What is doubtful before the run is warned of (`StickslipWarning`), and
-        bodies that have no friction because no rule says how much; what was found doubtful during it is in
-        `Summary.warnings`.
+        Without `out` the folder is NAME.results here, NAME being that of the file, or `scene`. A finished run that is
+        there is replaced; where one did not finish that could go on, `overwrite` begins anew. `threads` are as many as
+        are to step it, None for all processors. `checkpoint_every` is the wall time between checkpoints [s], None for
+        none at all; `max_time` ends the run with one after so much wall time [s]; `max_memory` is what it may take
+        [bytes], without it what is free.
+
+        What is doubtful before the run is warned of (`StickslipWarning`), and bodies that have no friction because no
+        rule says how much; and at its end what makes the results doubtful, which `Summary.warnings` has, too.
         """
         name = "scene" if self._file is None else self._file[0].stem
         read = self._read()
@@ -338,7 +346,7 @@ class Scene:
         )
 
     def _simulation(self, read: _core.ReadScene, threads: int | None) -> Simulation:
-        simulation = Simulation(read.simulation(threads), copy.deepcopy(self))
+        simulation = Simulation(read.simulation(threads_of(threads)), copy.deepcopy(self))
         warn_of_missing_friction(read, stacklevel=4)
         return simulation
 
@@ -444,7 +452,8 @@ class Scene:
             read = scene._read()
             if _report(read).particles > MOST_DRAWN:
                 return ""
-            with tempfile.TemporaryDirectory() as folder:
+            with tempfile.TemporaryDirectory() as folder, warnings.catch_warnings():
+                warnings.simplefilter("ignore", StickslipWarning)
                 start = Path(folder) / "start"
                 # That is no time for a step.
                 Simulation(read.simulation(None), scene).run(out=start, max_time=1e-9, checkpoint_every=None)

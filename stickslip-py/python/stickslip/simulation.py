@@ -7,7 +7,7 @@ import os
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from math import inf
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, NoReturn
 
 import numpy as np
 
@@ -22,6 +22,13 @@ if TYPE_CHECKING:
 
 NUMBER = "number"
 """The column that names a body's particles."""
+WRITABLE = ("velocity", "spin", "mass")
+"""Columns that may be set between steps."""
+DERIVED = {
+    "pressure": "minus the mean of xx, yy and zz of `stress`",
+    "von_mises": "the equivalent stress of `stress`",
+}
+"""What snapshots have beside the columns of bodies, and what it comes from."""
 
 
 class Column(NamedTuple):
@@ -30,7 +37,7 @@ class Column(NamedTuple):
     name: str
     """One word, as files call it."""
     unit: str
-    """SI unit; empty for a number without one."""
+    """SI unit; empty for a number without one. In the plane masses [kg] and volumes [m^3] are per metre of depth."""
     components: tuple[str, ...]
     """Components that a row of the array has: those that the plane leaves free; none of a number."""
 
@@ -39,20 +46,23 @@ class Body:
     """A body of a simulation: its particles by columns.
 
     `body.position` and all other columns are arrays over the engine's own memory, to be read only: nothing is copied,
-    and they show the present state, step after step. Vectors are (n, D), `stress` and other symmetric tensors (n, xx yy
-    zz xy yz xz), in the plane (n, xx yy zz xy); `deformation` is (n, 9) row by row, in the plane (n, xx xy yx yy zz);
-    numbers are (n,). `columns` says which, with units. Rows are in the order of memory, the same in all columns at a
-    time, which changes where a step sorts particles: `body.number` has the particle's number for each row. Use
-    `by_number` for a copy in an order that stays. While a step is taken, another thread that reads may see numbers of
-    two moments.
+    and they show the present state, step after step. What they hold is changed by `set`: `body.set("velocity",
+    body.velocity + (0, 1))`. In the plane masses and volumes are per metre of depth. Vectors are (n, D), `stress` and
+    other symmetric tensors (n, xx yy zz xy yz xz), in the plane (n, xx yy zz xy); `deformation` is (n, 9) row by row,
+    in the plane (n, xx xy yx yy zz); numbers are (n,). `columns` says which, with units. Rows are in the order of
+    memory, the same in all columns at a time, which changes where a step sorts particles: `body.number` has the
+    particle's number for each row. Use `by_number` for a copy in an order that stays. While a step is taken, another
+    thread that reads may see numbers of two moments.
     """
 
+    _own: _core.Engine
+    index: int
+    """Place of the body in the scene, from 0."""
+    name: str
+    """Name of the body."""
+
     def __init__(self, engine: _core.Engine, index: int, name: str) -> None:
-        self._own = engine
-        self.index = index
-        """Place of the body in the scene, from 0."""
-        self.name = name
-        """Name of the body."""
+        self.__dict__.update(_own=engine, index=index, name=name)
 
     @property
     def _engine(self) -> _core.Engine:
@@ -69,7 +79,8 @@ class Body:
     def state(self) -> Record:
         """The body as a whole: mass [kg], position of its centre of mass [m], velocity [m/s], spin [rad/s],
 
-        angular_momentum about the origin [kg m^2/s], kinetic and strain energy [J]; vectors have three components.
+        angular_momentum about the origin [kg m^2/s], kinetic and strain energy [J]; vectors have three components. In
+        the plane masses, momenta and energies are per metre of depth. It is a copy; `set` changes the body.
         """
         return Record(json.loads(self._engine.states())[self.index])
 
@@ -84,8 +95,9 @@ class Body:
                 f"the particles of `{self.name}`, which is rigid and without bounds, come and go with the bodies near "
                 f"it; allowed: by_number({name!r}), a copy"
             )
+        advice = f"; `{name}` is in snapshots, see Results.frame, and is {DERIVED[name]}" if name in DERIVED else ""
         raise AttributeError(
-            f"found a column `{name}`, which body `{self.name}` does not have; allowed: {', '.join(known)}"
+            f"found a column `{name}`, which body `{self.name}` does not have; allowed: {', '.join(known)}{advice}"
         )
 
     def by_number(self, name: str) -> np.ndarray:
@@ -103,18 +115,25 @@ class Body:
     def set(self, name: str, values: Any) -> None:
         """Gives all particles other values in a column: "velocity" [m/s], "spin" [rad/s] or "mass" [kg].
 
-        `values` have the shape and the order of the column, or are broadcast to it: `ball.set("velocity", (0, 1))`.
-        They must be finite, and masses above zero; the next step is as long as is stable with the new velocities. It
-        follows from the density of the material: for particles far lighter than that, lower `time.courant`. The energy
-        that comes in is external work of the ledger, whose total stays.
+        `values` have the shape and the order of the column, or are broadcast to it: `ball.set("velocity", (0, 1))` is
+        for all particles, and a single number is for all components, too: `ball.set("velocity", 1)` is (1, 1). They are
+        numbers, not text; they must be finite, and masses above zero; the next step is as long as is stable with the
+        new velocities. It follows from the density of the material: for particles far lighter than that, lower
+        `time.courant`. The energy that comes in is external work of the ledger, whose total stays.
 
         A free rigid body (`rigid=dict(free={})`) takes one value for the whole, the "velocity" of its centre of mass
         (D,) or its "spin" (3,), in the plane a number: `wheel.set("spin", 20)`. What joints do not allow of it, the
         next step takes away. A prescribed one takes none.
         """
         known = next((column for column in self.columns if column.name == name), None)
+        if known is None:
+            problem = f"found a column `{name}`, which body `{self.name}` does not have"
+            raise ValueError(f"{problem}; allowed: {', '.join(WRITABLE)}")
+        if np.asarray(values).dtype.kind not in "biuf":
+            unit = f" [{known.unit}]" if known.unit else ""
+            raise ValueError(f"found {values!r} for `{name}`; allowed: numbers{unit}, without text or units")
         values = np.asarray(values, dtype=float)
-        if known is not None and name != NUMBER:
+        if name != NUMBER:
             each = (len(known.components),) if known.components else ()
             wanted = each if self._engine.is_rigid(self.index) else (len(self), *each)
             try:
@@ -134,6 +153,12 @@ class Body:
             raise AttributeError(name)
         return self.column(name)
 
+    def __setattr__(self, name: str, value: NoReturn) -> NoReturn:
+        raise AttributeError(f"found values for `{name}`; {_how_to_set(name)}")
+
+    def __setitem__(self, name: str, values: NoReturn) -> NoReturn:
+        raise TypeError(f"found values for `{name}`; {_how_to_set(name)}")
+
     def __dir__(self) -> Iterable[str]:
         return [*super().__dir__(), *(column.name for column in self.columns)]
 
@@ -141,8 +166,14 @@ class Body:
         return f"<Body {self.name!r}: {len(self)} particles>"
 
 
+def _how_to_set(name: str) -> str:
+    """What to do instead of an assignment."""
+    others = "" if name in WRITABLE else f"; allowed: {', '.join(WRITABLE)}"
+    return f'columns are read only; use body.set("{name if name in WRITABLE else WRITABLE[0]}", values){others}'
+
+
 class Bodies(Mapping[str, Body]):
-    """The bodies of a simulation by their names, in the order of the scene."""
+    """The bodies of a simulation by their names, in the order of the scene: `bodies["ball"]`."""
 
     def __init__(self, engine: _core.Engine) -> None:
         self._bodies = {name: Body(engine, index, name) for index, name in enumerate(engine.names)}
@@ -153,8 +184,17 @@ class Bodies(Mapping[str, Body]):
 
     def __getitem__(self, name: str) -> Body:
         if name not in self._bodies:
-            raise KeyError(f"found a body `{name}`, which the scene does not have; allowed: {', '.join(self._bodies)}")
+            known = ", ".join(self._bodies)
+            advice = "; bodies are by name; list(bodies.values()) is by number" if isinstance(name, int) else ""
+            raise KeyError(f"found a body `{name}`, which the scene does not have; allowed: {known}{advice}")
         return self._bodies[name]
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> NoReturn:
+            if name in self.__dict__.get("_bodies", {}):
+                raise AttributeError(f'found `.{name}`; bodies are in brackets: bodies["{name}"]')
+            raise AttributeError(f"found no `{name}`; bodies are in brackets, by their names")
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._bodies)
@@ -215,9 +255,15 @@ class Simulation:
         """Length of the step that `step` would take now [s]."""
         return self.engine.stable_step
 
-    def step(self, longest: float = inf) -> float:
-        """Takes one step, at most so long [s], and returns its length [s]. Raises `StepError`."""
-        return self.engine.step(longest)
+    def step(self, longest: float | str = inf) -> float:
+        """Takes one step, at most so long [s], and returns its length [s]. Raises `StepError`.
+
+        Text may have a unit, which takes longer to read than a number: `sim.step("1 us")`.
+        """
+        seconds = self.scene._seconds("longest", longest)
+        if not seconds > 0.0:
+            raise ValueError(f"found a step of at most {longest} s; allowed: a time above zero [s]")
+        return self.engine.step(seconds)
 
     def run(
         self,
@@ -233,16 +279,19 @@ class Simulation:
     ) -> Summary | None:
         """Steps to a simulated time [s], without `until` to the end of the scene, where the last step ends exactly.
 
-        Times may be text with a unit: `sim.run(until="5 ms", every="1 ms", callback=look)`.
+        It is the time of the simulation, not how long to go on: for that, `until=sim.time + 1e-3`. One that has passed
+        raises `ValueError`. Times may be text with a unit: `sim.run(until="5 ms", every="1 ms", callback=look)`.
 
         `callback` is called with the simulation at the start, after the first step that reaches each multiple of
         `every` [s], and at the end; without `every` after each step. It may look at all there is, and change it; an
-        exception ends the run. With `out` the run leaves results in that folder, as `Scene.run` does, and returns a
-        summary.
+        exception ends the run. With `out` the run leaves results in that folder, as `Scene.run` does with the same
+        `checkpoint_every`, `max_time` and `overwrite`, warns of what makes them doubtful, and returns a summary.
+        Without `out` nothing is looked for.
         """
         call = None if callback is None else lambda: callback(self)
         until = None if until is None else self.scene._seconds("until", until)
         every = None if every is None else self.scene._seconds("every", every)
+        self._refuse_passed(until)
         if out is not None:
             return carry_out(
                 self,
@@ -261,11 +310,20 @@ class Simulation:
             _core.walk(self.engine, way_to(self.end if until is None else until, every, call, show))
         return None
 
+    def _refuse_passed(self, until: float | None) -> None:
+        """Refuses a time that has passed, but for round-off."""
+        given, now = self.end if until is None else until, self.time
+        if not given >= now - 1e-12 * abs(now):
+            found = f"the end of the scene at {given:g} s" if until is None else f"until = {given:g} s"
+            advice = "give `until`" if until is None else "until=sim.time + 1e-3 goes on for a millisecond"
+            raise ValueError(f"found {found}, and the simulation is at {now:g} s; allowed: from there on; {advice}")
+
     def ledger(self) -> Record:
         """Energies [J] and momenta of all bodies that deform.
 
         kinetic, strain, potential, external_work, friction, adhesion, plastic, damping, and total, which stays in an
-        exact solution; momentum [kg m/s] and angular_momentum about the origin [kg m^2/s], of three components.
+        exact solution; momentum [kg m/s] and angular_momentum about the origin [kg m^2/s], of three components. In the
+        plane all are per metre of depth.
         """
         return Record.from_json(self.engine.ledger())
 
@@ -289,7 +347,7 @@ class Simulation:
             force, direction, place = vectors
             found = [*force, normal, tangential, nodes, *place, *rest, *direction]
             rows.append((names[a], names[b], *(np.nan if x is None else x for x in found)))
-        return Table.of(np.array(rows, np.dtype(fields)))
+        return Table.of(np.array(rows, np.dtype(fields)), names)
 
     def loads(self) -> dict[str, Record]:
         """What supports and loads did since the start, by their names.
@@ -312,7 +370,13 @@ class Simulation:
         return None if state is None else Record(state)
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes a checkpoint of the present state, from which `restore` goes on, and scenes may `start`."""
+        """Writes a checkpoint of the present state, from which `restore` goes on, and scenes may `start`.
+
+        That is no scene file; `sim.scene.save(path)` writes one.
+        """
+        if Path(path).suffix == ".toml":
+            advice = "sim.scene.save(path) writes a scene file"
+            raise ValueError(f"found {str(path)!r}; allowed: a name for a checkpoint, as 'here.checkpoint'; {advice}")
         self.engine.save(Path(path).absolute())
 
     def restore(self, path: str | os.PathLike[str]) -> None:
