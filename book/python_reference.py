@@ -18,7 +18,7 @@ from typing import Any
 import stickslip
 
 CHAPTER = Path(__file__).parent / "19-python-reference.md"
-ORDER = ("scene", "shapes", "simulation", "functions", "running", "results", "records", "commands", "errors")
+ORDER = ("scene", "language", "shapes", "simulation", "functions", "running", "results", "records", "commands", "errors")
 """Modules in the order of the chapter; others follow."""
 WIDTH = 116
 """Characters of a line of code."""

@@ -38,7 +38,7 @@ mod _core {
     #[pymodule_export]
     use crate::run::{command, run, unfinished, walk};
     #[pymodule_export]
-    use crate::scene::{ReadScene, document, free_memory};
+    use crate::scene::{ReadScene, document, free_memory, schema};
 
     /// Version of the package and of the library.
     #[pymodule_export]

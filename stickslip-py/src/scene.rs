@@ -132,6 +132,12 @@ pub fn free_memory() -> f64 {
     stickslip::check::free_memory()
 }
 
+/// The JSON schema of scene files: their keys, with what they mean, their units and their defaults.
+#[pyfunction]
+pub fn schema() -> String {
+    stickslip::scene::schema().to_string()
+}
+
 /// A text that [`ReadScene`] has read, as a dictionary of what stands there, in its order.
 #[pyfunction]
 pub fn document<'py>(py: Python<'py>, text: &str) -> PyResult<Bound<'py, PyAny>> {

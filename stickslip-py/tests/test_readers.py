@@ -183,7 +183,7 @@ def model(path: Path) -> list[Found]:
 
 def test_a_model_is_opened_with_its_surfaces_and_colours(results, tmp_path):
     if not results.frame(0)["position"][:, 2].any():
-        with pytest.raises(ss.ResultsError, match="--out: found a plane scene"):
+        with pytest.raises(ss.ResultsError, match="^out: found a plane scene"):
             ss.render(results, out=tmp_path / "ball.glb")
         return
     ss.render(results, color="von_mises", out=tmp_path / "ball.glb")

@@ -145,7 +145,7 @@ def test_pictures_and_charts_are_those_of_the_command(results, tmp_path):
     look = dict(background="transparent", window=(0, 0, "1 m", 1), hide=("title", "time"))
     clear = ss.render(results, out=tmp_path / "clear.png", **look)
     assert clear._repr_png_()[25] == 6, "colour with opacity"
-    with pytest.raises(ss.ResultsError, match="--color: found `nonsense`"):
+    with pytest.raises(ss.ResultsError, match="^color: found `nonsense`"):
         ss.render(results, color="nonsense", out=tmp_path / "none.png")
 
 

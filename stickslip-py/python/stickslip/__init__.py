@@ -1,26 +1,52 @@
 """Stickslip in Python: many deformable bodies in frictional contact, by the material point method.
 
-A scene is the words of a scene file; numbers are in SI units, or text with units::
+From a scene to a picture; numbers are in SI units, or text with units::
 
     import stickslip as ss
 
-    scene = ss.Scene(dimension="plane-strain", cell="1 mm", gravity=(0, -9.81))
-    scene.material("steel", density=7800, neo_hookean=dict(bulk_modulus="160 GPa", shear_modulus="80 GPa"))
-    scene.body("ball", material="steel", shape=ss.ball((0, 0.02), 0.01), velocity=(0, -1))
-    scene.time(end="1 ms")
+    scene = ss.Scene(dimension="plane-strain", cell="4 mm", basis="spline", title="Two rings collide")
+    scene.material("rubber", density=1000, neo_hookean=dict(young_modulus="1 MPa", poisson_ratio=0.3))
+    scene.body("left", material="rubber", shape=ss.ring((-0.05, 0), 0.024, 0.04), velocity=(2, 0))
+    scene.body("right", material="rubber", shape=ss.ring((0.05, 0.03), 0.024, 0.04), velocity=(-2, 0))
+    scene.contact(("left", "right"), friction=0.3)
+    scene.time(end="20 ms")
 
-    sim = scene.simulation()
-    sim.run(until=0.5e-3)
-    sim.bodies["ball"].position       # (n, 2), the engine's own memory [m]
+    print(scene.check())                                # particles, steps, wall time, and what is doubtful
+    summary = scene.run(out="rings.results")            # a folder of tables and snapshots, as of `stickslip run`
+    results = ss.Results("rings.results")
+    print(results.bodies.where(body="left")["vx"])      # a column of bodies.csv [m/s]
+    ss.render(results, color="pressure")                # rings.results/picture.png
 
-`Scene` builds, loads and saves scenes, `Simulation` steps them, `Results` reads what runs left. All that comes out is
-in SI units; stress is positive in tension, and forces and energies of plane scenes are per metre of depth.
+    sim = scene.simulation()                            # or step by step, without a folder
+    sim.run(until="5 ms")
+    print(sim.bodies["left"].position)                  # (n, 2), the engine's own memory [m]
+
+Where to begin:
+
+    Scene           a scene, by the words of scene files; Scene.load reads one
+    ball, box ...   shapes; also disk, ring, polygon, mesh, union, difference ...
+    keys            what a table of a scene may hold: ss.keys("material"), ss.keys("time")
+    Scene.check     what is wrong or doubtful, and what the run will be
+    Scene.run       runs it and leaves results in a folder; resume goes on with such a run
+    Results         reads them: tables, snapshots, charts
+    render, plot    pictures and charts in files
+    Scene.simulation  a Simulation, to be stepped: bodies, contacts and energies between steps
+    Law, Function   laws, loads and motion of your own
+    sweep           every combination of values of parameters
+    validate        problems with known answers
+    StickslipError  what all errors are; StickslipWarning is what is doubtful
+
+All that comes out is in SI units; stress is positive in tension, and masses, forces and energies of plane scenes are
+per metre of depth. Results replace finished ones of the same folder.
 """
+
+from typing import TYPE_CHECKING as _TYPE_CHECKING
 
 from . import _core
 from .commands import Picture, Sweep, plot, render, sweep, validate
 from .errors import ResultsError, RunError, SceneError, StepError, StickslipError, StickslipWarning
 from .functions import Function, Law, Step
+from .language import keys
 from .records import Record, Table
 from .results import Frame, Results
 from .running import Summary, resume
@@ -84,6 +110,7 @@ __all__ = [
     "ellipsoid",
     "half_space",
     "intersection",
+    "keys",
     "mesh",
     "plot",
     "polygon",
@@ -100,3 +127,11 @@ __all__ = [
     "union",
     "validate",
 ]
+
+if not _TYPE_CHECKING:
+
+    def __getattr__(name: str) -> None:
+        """Says where what others call so is."""
+        places = {"load": "Scene.load", "run": "Scene.run", "simulate": "Scene.simulation", "help": "keys"}
+        advice = f"; did you mean ss.{places[name]}?" if name in places else ""
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}{advice}")

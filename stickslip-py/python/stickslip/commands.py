@@ -7,6 +7,7 @@ Each is the command in a process of its own. Its options are keywords: `render(f
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -81,10 +82,12 @@ def _folder(results: Results | Folder) -> Path:
 def render(results: Results | Folder, *, out: Folder | None = None, **options: Any) -> Picture:
     """Draws a snapshot of a run, the last without `frame` or `time`; `stickslip render --help` lists the options.
 
-    `color="pressure"`, `range=(-1e5, 1e5)`, `view=(30, 10)`, `size="1200x800"`, `window=("-2 cm", 0, "2 cm", "4 cm")`,
-    `background="transparent"`, `contours=8`, `vectors="velocity"`, `hide=("title", "axes")`, `animate=True`, ...
-    Where `out` ends in .glb it is the surfaces of bodies in space, as a model in glTF.
-    Without `out` it is DIR/picture.png, of an animation DIR/animation.png.
+    `color` is "body" by default, or "velocity" (the speed), "vx", "vy", "vz", "pressure", "von_mises", a component of
+    stress as "xx", "jacobian", or what a law remembers. By body, round bodies, rings among them, have quarters in two
+    shades, so that turning shows. Further options are `range=(-1e5, 1e5)`, `view=(30, 10)`, `size="1200x800"`,
+    `window=("-2 cm", 0, "2 cm", "4 cm")`, `background="transparent"`, `contours=8`, `vectors="velocity"`,
+    `hide=("title", "axes")`, `animate=True`, ... Where `out` ends in .glb it is the surfaces of bodies in space, as a
+    model in glTF. Without `out` it is DIR/picture.png, of an animation DIR/animation.png.
     """
     folder = _folder(results)
     name = "animation.png" if options.get("animate") else "picture.png"
@@ -98,8 +101,8 @@ def plot(
 ) -> Picture:
     """Draws the chart of a run, of several runs or of a sweep: `table="energy"`, `body="ball"`, `quantity="x,y"`.
 
-    PNG, SVG or PDF, by the name of `out`; without it plot.png, in the folder of a single run. `Results.plot` draws with
-    matplotlib instead.
+    `body` is one, or many by a pattern, such as "*" for all; `quantity` takes several with commas. PNG, SVG or PDF, by
+    the name of `out`; without it plot.png, in the folder of a single run. `Results.plot` draws with matplotlib instead.
     """
     folders = [_folder(each) for each in (results, *others)]
     usual = Path("plot.png") if others else folders[0] / "plot.png"
@@ -175,6 +178,19 @@ def _carried_out(name: str, *words: Any, **options: Any) -> subprocess.Completed
 def _said(done: subprocess.CompletedProcess[str], failure: type[StickslipError]) -> str:
     """What a command printed; raises `failure` with what it says of what is wrong."""
     if done.returncode not in (0, 3):
-        said = done.stderr.strip().removeprefix("error: ")
+        said = _in_python(done.stderr.strip().removeprefix("error: "))
         raise failure(said or f"{' '.join(map(str, done.args[2:4]))} ended with {done.returncode}")
     return done.stdout
+
+
+def _in_python(said: str) -> str:
+    """What a command says of its options, of which Python has keywords."""
+    said = re.split(r"\n+(?:Usage:|For more information)", said)[0]
+    said = re.sub(r"\s*\n\s*tip: ", "; ", said)
+    said = re.sub(r"^--set (\S+):\d+:\d+: ", r"\1: ", said)
+    return re.sub(r"^--([a-z][a-z-]*)(?=:)|'--([a-z][a-z-]*)[^']*'", _keyword, said)
+
+
+def _keyword(option: re.Match[str]) -> str:
+    name = (option[1] or option[2]).replace("-", "_")
+    return name if option[1] else f"`{name}`"

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import copy
+import functools
+import inspect
 import keyword
 import os
 import tempfile
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from html import escape
 from pathlib import Path
-from typing import Any, overload
+from typing import Any, TypeVar, cast, overload
 
 from . import _core
 from .document import plain, written, written_value
@@ -25,6 +27,37 @@ IN_PYTHON = "<scene in Python>"
 """What stands for the file of a scene that has none."""
 MOST_DRAWN = 100_000
 """Particles of a scene that is drawn where a notebook shows it: more take longer than a reader waits."""
+CHECKPOINT = b"stickslip checkpoint"
+"""How a checkpoint begins."""
+CALLS = {
+    "time": "call scene.time(end=...)",
+    "materials": "call scene.material(NAME, density=..., LAW=dict(...)), see ss.keys('material')",
+    "bodies": "call scene.body(NAME, material=..., shape=...)",
+}
+"""What gives the tables that no scene can do without."""
+MISSING = ("nothing, the key is missing", "no body", "no law")
+"""What the reader finds where there is nothing."""
+
+Method = TypeVar("Method", bound=Callable[..., Any])
+
+
+def _such_as(example: str) -> Callable[[Method], Method]:
+    """Of a method: arguments that do not fit are refused with an example of what does."""
+
+    def told(method: Method) -> Method:
+        signature = inspect.signature(method)
+
+        @functools.wraps(method)
+        def call(*arguments: Any, **keys: Any) -> Any:
+            try:
+                signature.bind(*arguments, **keys)
+            except TypeError as error:
+                raise TypeError(f"{method.__qualname__}: {error}; allowed: {example}") from None
+            return method(*arguments, **keys)
+
+        return cast(Method, call)
+
+    return told
 
 
 class Report(Record):
@@ -57,9 +90,10 @@ class _Load:
 class Scene:
     """A scene: bodies, materials, how they touch, what holds and loads them, time, and outputs.
 
-    Its methods take the keys of the scene file (chapter 2 of the book) as keywords: numbers in SI units, or text with a
-    unit or a formula (`"0.5 mm"`, `"radius / 8"`); vectors are sequences of two numbers in the plane, of three in
-    space, written (D,) below. A key that is a word of Python gets an underscore behind it: `from_`. All methods that
+    Its methods take the keys of the scene file as keywords, all of which `ss.keys` lists: `ss.keys("body")` those of
+    `Scene.body`. Values are numbers in SI units, or text with a unit or a formula (`"0.5 mm"`, `"radius / 8"`); vectors
+    are sequences of two numbers in the plane, of three in space, written (D,) below. In the plane forces and masses are
+    per metre of depth. A key that is a word of Python gets an underscore behind it: `from_`. All methods that
     add something return the scene. What is wrong is said by `check`, `simulation`, `run` and `save`, as `SceneError`.
 
     `document` is the scene as nested dictionaries and lists, as the file has it; it may be changed at will.
@@ -70,6 +104,7 @@ class Scene:
     functions: dict[str, Law | Function | Callable[..., Any]]
     """Laws, loads and motions of your own by the names that `{ outside = NAME }` of the document has for them."""
 
+    @_such_as('ss.Scene(dimension="plane-strain", cell="1 mm"); ss.Scene.load("scene.toml") reads a file')
     def __init__(
         self,
         dimension: str,
@@ -84,7 +119,9 @@ class Scene:
         """`dimension` is "plane-strain" or "2d", "plane-stress" or "3d", `cell` the side of a grid cell [m].
 
         `gravity` is the acceleration of every body (D,) [m/s^2]; `parameters` are names of your own for numbers and
-        words; `space` are further keys of `[space]`, such as `basis`, `precision` and `particles_per_side`.
+        words; `space` are further keys of `[space]`: `basis`, the shape functions between particles and grid ("gimp" by
+        default, "cpdi", "linear", "spline" or "cubic"), `precision` ("double" by default, or "single"),
+        `particles_per_side` of a cell (2 by default).
         """
         top = {"title": title, "about": about, "gravity": gravity, "parameters": parameters}
         table = {"dimension": dimension, "cell": cell, **_keys(space)}
@@ -102,10 +139,13 @@ class Scene:
         """Reads a scene file; keywords replace parameters, as `--set` does.
 
         `Scene.load("backspin.toml", cells_per_radius=4)`; other keys by their path, in a dictionary:
-        `Scene.load("backspin.toml", **{"time.end": "0.5 s"})`.
+        `Scene.load("backspin.toml", **{"time.end": "0.5 s", "contact[0].friction": 0.1})`.
         """
         given = [(name, written_value(plain(value, name))) for name, value in parameters.items()]
-        words = _core.ReadScene.load(path, given).text
+        try:
+            words = _core.ReadScene.load(path, given).text
+        except SceneError as error:
+            raise _of_loading(error, Path(path)) from None
         scene = cls.__new__(cls)
         scene.document, scene.functions = _core.document(words), {}
         scene._file, scene._loaded, scene._set = (Path(path).absolute(), words), copy.deepcopy(scene.document), []
@@ -122,7 +162,7 @@ class Scene:
             if "." not in name and "[" not in name and name not in known:
                 choices = ", ".join(known) or "there are none"
                 problem = f"found no parameter `{name}`; allowed: a parameter of the scene ({choices})"
-                advice = 'other keys are set by their path with dots: {"time.end": "1 s"}'
+                advice = _by_path(self.document, name)
                 raise SceneError(f"{problem}; {advice}", key=name, allowed=choices, help=advice)
         before = self._is_loaded()
         for name, value in given:
@@ -138,9 +178,16 @@ class Scene:
         return self._update("parameters", values)
 
     def material(self, name: str, **keys: Any) -> Scene:
-        """A material: `density` [kg/m^3], and a law with its constants, such as `neo_hookean=dict(...)`.
+        """A material: `density` [kg/m^3], and a law with its constants [Pa].
 
-        A law of your own is `outside=dict(law=function, bulk_modulus=..., shear_modulus=...)`, see `Law`.
+        `scene.material("rubber", density=1000, neo_hookean=dict(young_modulus="1 MPa", poisson_ratio=0.3))`
+
+        Laws are `neo_hookean` for rubber and whatever else is elastic at large strains, `hypoelastic` for small strains
+        and large rotations, `von_mises` for metals and clay (`yield_stress`, `hardening_modulus`), `viscoelastic` for
+        polymers and gels, `damage` for rock, concrete and glass. Elastic constants are any two of `bulk_modulus`,
+        `shear_modulus`, `young_modulus`, `poisson_ratio` and `p_wave_modulus`. `ss.keys("materials.von_mises")` lists
+        what one takes. A law of your own is `outside=dict(law=function, bulk_modulus=..., shear_modulus=...)`, see
+        `Law`.
         """
         return self._update("materials", {name: _keys(keys)})
 
@@ -177,8 +224,13 @@ class Scene:
         """A body, or one for each value of `body`, of the particles in a CSV file: `material`, `unit` [m] ..."""
         return self._append("point_clouds", {"name": name, "file": file, **keys})
 
+    @_such_as('scene.contact(("left", "right"), friction=0.3), of which the pair may be left out')
     def contact(self, between: Any = None, **keys: Any) -> Scene:
-        """A contact rule: `between` names two bodies or materials, `friction`, `law` ... The first that fits holds."""
+        """A contact rule: `scene.contact(("left", "right"), friction=0.3)`. The first that fits a pair holds.
+
+        `between` names two bodies or materials, or patterns of them with `*`; without it the rule is for all pairs.
+        `friction` is a coefficient [-], `law` is "surface" by default; `ss.keys("contact")` lists the rest.
+        """
         return self._append("contact", {"between": between, **keys})
 
     def support(self, body: str, **keys: Any) -> Scene:
@@ -219,14 +271,20 @@ class Scene:
         self.document["space"] = space
         return self
 
+    @_such_as('scene.time(end="10 ms")')
     def time(self, **keys: Any) -> Scene:
-        """Time and step: `end` of the run [s], `courant` [-], `max_step` [s], `transfer`, `relax` ..."""
+        """Time and step: `end` of the run [s], `courant` [-], `max_step` [s], `relax=dict()` ...
+
+        `transfer` between particles and grid is "rflip" by default, which keeps the spin of bodies; "flip", "apic",
+        "xpic" and "pic" are others. `ss.keys("time")` says what each does.
+        """
         return self._update("time", keys)
 
     def start(self, folder: str | os.PathLike[str], **keys: Any) -> Scene:
         """Bodies begin as the run in `folder`, or a checkpoint, left those of the same names."""
         return self._update("start", {"from": folder, **keys})
 
+    @_such_as("scene.damping(local=0.1)")
     def damping(self, **keys: Any) -> Scene:
         """What slows bodies down: `viscous` [1/s], `local`, `bulk_linear`, `bulk_quadratic` [-]."""
         return self._update("damping", keys)
@@ -238,6 +296,7 @@ class Scene:
         """
         return self._update("health", keys)
 
+    @_such_as('scene.outputs(tables="0.1 ms", particles="1 ms")')
     def outputs(self, **keys: Any) -> Scene:
         """What runs write: intervals of `tables`, `particles`, `grid`, `samples`, `checkpoints` [s], `fringes` ..."""
         return self._update("outputs", keys)
@@ -297,7 +356,7 @@ class Scene:
         return _report(self._read())
 
     def simulation(self, threads: int | None = None) -> Simulation:
-        """The simulation of this scene at time 0, by so many threads or by all processors; the bits are the same.
+        """The simulation of this scene at time 0, by so many threads, None for all processors; the bits are the same.
 
         Where bodies have no friction because no rule says how much, it warns of them (`StickslipWarning`).
         """
@@ -366,7 +425,13 @@ class Scene:
         if self._file is not None:
             # Lines are those of the text in Python.
             name = _shown(self._file[0].with_name(f"<{self._file[0].name} in Python>"))
-        return _core.ReadScene((name, written(self.document)), list(further), self.functions)
+        try:
+            return _core.ReadScene((name, written(self.document)), list(further), self.functions)
+        except SceneError as error:
+            call = CALLS.get((error.key or "").partition(".")[0])
+            if call is None or error.found not in MISSING:
+                raise
+            raise error.at(error.key or "", name, call) from None
 
     def _seconds(self, name: str, time: float | str) -> float:
         """The time that is given as `name` [s]; text may have a unit or be a formula, as `time.end` of a file."""
@@ -479,6 +544,43 @@ def _keys(keys: Mapping[str, Any]) -> dict[str, Any]:
 def _shown(path: Path) -> str:
     """A path as a user would write it from here."""
     return str(path.relative_to(Path.cwd())) if path.is_relative_to(Path.cwd()) else str(path)
+
+
+def _of_loading(error: SceneError, path: Path) -> SceneError:
+    """What is wrong with a file that was to be loaded, in words of Python."""
+    place, name = error.file or "", (error.file or "").removeprefix("--set ")
+    if name != place:
+        is_parameter = (error.found or "").startswith("no parameter") and not (error.help or "").startswith("did you")
+        document = _core.document(path.read_text(encoding="utf-8")) if is_parameter else {}
+        return error.at(name, help=_by_path(document, name) if is_parameter else None)
+    try:
+        with open(path, "rb") as file:
+            is_checkpoint = file.read(len(CHECKPOINT)) == CHECKPOINT
+    except OSError:
+        return error
+    if not is_checkpoint:
+        return error
+    advice = f"scene.simulation().restore({str(path)!r}) goes on from it, for the scene that it is of"
+    return SceneError(f"{path} is a checkpoint, as Simulation.save writes them, and no scene; {advice}", help=advice)
+
+
+def _by_path(document: Mapping[str, Any], name: str) -> str:
+    """How to set keys that are no parameters: those of this name, if there are any."""
+    found = [*_places(document, name)][:3] or ["time.end"]
+    return "other keys are set by their path: " + ", ".join(f'**{{"{path}": ...}}' for path in found)
+
+
+def _places(value: Any, name: str, path: str = "") -> Iterator[str]:
+    """Paths of all keys that are called so."""
+    if isinstance(value, Mapping):
+        for key, entry in value.items():
+            inner = f"{path}.{key}".lstrip(".")
+            if key == name:
+                yield inner
+            yield from _places(entry, name, inner)
+    elif isinstance(value, list):
+        for number, entry in enumerate(value):
+            yield from _places(entry, name, f"{path}[{number}]")
 
 
 def _put(document: dict[str, Any], path: str, value: Any) -> None:
