@@ -1,9 +1,9 @@
 //! Results depend neither on the number of threads nor on what is kept from step to step, bit for bit.
 //!
 //! Set-up: soft bodies that fall on each other and on a rigid floor with friction, cut by a symmetry face, a third body
-//! glued on; in the plane and in space, for all stress updates, bases, and a transfer of
-//! each kind, damped and relaxed as well; 200 steps on one, two and five threads,
-//! and on one with grid, lists and room to work in dropped every 23 steps, and with steps that are taken back.
+//! glued on; in the plane and in space, for all stress updates, bases and transfers, damped and relaxed as well; 200
+//! steps on one, two and five threads, and on one with grid, lists and room to work in dropped every 23 steps, and with
+//! steps that are taken back.
 //!
 //! Expected: the same bits everywhere: particles, grid, contact forces, energies. No tolerance: sums are taken in an
 //! order that does not depend on who takes them, and follow from the state alone.
@@ -146,6 +146,9 @@ fn in_the_plane() {
     compare("apic", &with("transfer = \"apic\"").replace("\"gimp\"", "\"spline\""), 200);
     compare("cubic", &plane.replace("\"gimp\"", "\"cubic\""), 200);
     compare("xpic", &with("transfer = \"xpic\"\nxpic_order = 3"), 200);
+    compare("flip", &with("transfer = \"flip\"\npic_share = 0.01"), 200);
+    compare("pic", &with("transfer = \"pic\""), 200);
+    compare("cpdi", &plane.replace("\"gimp\"", "\"cpdi\""), 200);
     let averaged = plane.replace("density = 2000,", "density = 2000, volume_change = \"averaged\",");
     assert!(averaged.contains("averaged"));
     for update in STRESS_UPDATES {
@@ -179,6 +182,7 @@ fn in_the_plane() {
 #[test]
 fn in_space() {
     compare("gimp, modified-last", &scene("3d", "gimp", "modified-last"), 200);
+    compare("cpdi, modified-last", &scene("3d", "cpdi", "modified-last"), 60);
     compare("linear, first", &scene("3d", "linear", "first"), 60);
     compare("cubic, first", &scene("3d", "cubic", "first"), 60);
 }
