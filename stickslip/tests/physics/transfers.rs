@@ -6,6 +6,11 @@
 //! spinning disk keeps its angular momentum by `rflip` and `apic`, and loses it by the others; `xpic` takes the less
 //! the higher its order, and is `pic` at 1.
 //!
+//! By `apic` angular momentum is exact, 1e-14 in a turn, where particles move by the velocities that they take
+//! (`last`) and D_p is the same wherever a particle is (`spline`). By `modified-last` they move by those of the second
+//! scatter, which leaves 4e-6 in a turn. By `gimp` and `cpdi` D_p changes on a particle's way, while it keeps C_p from
+//! where it took it: 3e-6 and 1.5e-5 in a turn.
+//!
 //! The sum of energies is exact to the first order of the step, by which the energy of motion and that of strain stand
 //! apart; where strain dies away by damping within a few steps, that is as large as the strain energy so far: 4 % of
 //! all energy by `pic` and 18 % by `xpic` at the default Courant number, 0.6 % and 11 % at a quarter of it.
@@ -86,9 +91,19 @@ fn some_keep_the_spin() {
         println!("{basis}: {kept:?}");
         let [rflip, flip, apic, xpic, pic] = kept;
         assert!((rflip - 1.0).abs() < 5e-4, "{basis}: {kept:?}");
-        assert!((apic - 1.0).abs() < 1e-4, "{basis}: {kept:?}");
+        let bound = if basis == "cpdi" { 2e-5 } else { 1e-5 };
+        assert!((apic - 1.0).abs() < bound, "{basis}: {kept:?}");
         assert!(flip < 0.99 && pic < 0.5 && xpic < 0.9, "{basis}: {kept:?}");
     }
+}
+
+#[test]
+fn apic_keeps_the_spin_to_round_off_where_particles_move_by_their_own_velocities() {
+    let time = "transfer = \"apic\"\nstress_update = \"last\"";
+    let ([before, after], _) = run("spline", time, &format!("spin = {SPIN}"), 2.0 * PI / SPIN);
+    let gained = after.angular_momentum[2] / before.angular_momentum[2] - 1.0;
+    println!("{gained:.1e}");
+    assert!(gained.abs() < 1e-12, "{gained}");
 }
 
 #[test]
