@@ -163,7 +163,8 @@ fn a_grip_that_goes_to_and_fro_gets_back_what_it_gave() {
         });
         drifts.push(simulation.ledger().total - first);
     }
-    let a_cycle = (drifts[4] - drifts[0]) / 4.0 / most;
+    // It sets off at once, which rings in the first cycle.
+    let a_cycle = (drifts[4] - drifts[1]) / 3.0 / most;
     println!("energy that is missing after each cycle, over the most that was stored: {a_cycle:+.1e}");
     assert!(a_cycle.abs() < 2e-4, "{drifts:?} of {most}");
 }
