@@ -37,7 +37,7 @@ struct Stretch {
 /// two gradients says less.
 const FLOW: f64 = 2.0;
 /// Stretch that counts at least: with less, positions that are off by a part of it harm nobody.
-const LEAST_STRETCH: f64 = 5e-4;
+const LEAST_STRETCH: f64 = 1e-3;
 /// Cells along the side of a region.
 const REGION: f64 = 4.0;
 
