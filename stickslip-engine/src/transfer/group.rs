@@ -455,7 +455,7 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
                 momenta = self.momenta::<M>(i, momentum);
             }
             if let Some(stress) = stress {
-                (forces, below) = self.forces::<M>(i, stress, &below);
+                [forces, below] = self.forces::<M>(i, stress, &below);
             }
             for j in 0..B::WIDTH {
                 for k in 0..Self::DEPTH {
@@ -511,7 +511,7 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
         i: usize,
         load: &[RowsOfLanes<V::Real>; 3],
         below: &Plane<B, V::Real, M::Wide>,
-    ) -> (Plane<B, V::Real, M::Wide>, Plane<B, V::Real, M::Wide>) {
+    ) -> [Plane<B, V::Real, M::Wide>; 2] {
         let [x, y, z] = [&self.shapes[0], &self.shapes[1], &self.shapes[D - 1]];
         // To the next plane of nodes, and within this one.
         let [mut along_x, mut along_y, mut along_z] = [Plane::<B, V::Real, _>::all(Numbers::ZERO); 3];
@@ -569,7 +569,7 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
                 forces[n] = sum;
             }
         }
-        (forces, above)
+        [forces, above]
     }
 
     /// For particles that share their nodes, by weights and slopes node by node.
