@@ -58,7 +58,7 @@ fn a_scene_says_what_each_check_does() {
     let scene = scene::parse("a.toml", &text, &set).expect("a scene").scene;
     let said = |check| (scene.health.response(check), scene.health_bound(check));
     assert_eq!(said(HealthCheck::Energy), (Response::Stop, 0.01));
-    assert_eq!(said(HealthCheck::Noise), (Response::Ignore, 0.3));
+    assert_eq!(said(HealthCheck::Noise), (Response::Ignore, 0.15));
     assert_eq!(said(HealthCheck::Speed), (Response::Ignore, 0.1));
     assert_eq!(said(HealthCheck::Tearing), (Response::Ignore, f64::INFINITY));
     assert_eq!(said(HealthCheck::Contact), (Response::Ignore, f64::INFINITY));

@@ -73,7 +73,8 @@ fn supports_and_loads() {
             (
                 "displacement = [0, \"free\"]",
                 "velocity = [\"1 Hz * x0\", 0]",
-                "22:13: supports[0].velocity[0]: found unknown name `x0`; allowed: t",
+                "22:21: supports[0].velocity[0]: found unknown name `x0`; allowed: a parameter (there are none), pi or inf; \
+                 one that varies from place to place is written as a displacement: \"0.1 Hz * t * x0\"",
             ),
             (
                 "displacement = [0, \"free\"]",
