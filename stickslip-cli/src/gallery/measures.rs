@@ -131,11 +131,25 @@ pub fn rate_of_silo(results: &Results) -> Measured {
     // Grains' diameter and opening [m], density of the grains times their share of the filling [kg/m³].
     let [d, opening, density] = [0.01, 0.06, 1100.0 * 0.8];
     let law = 0.874 * density * GRAVITY.sqrt() * f64::powf(opening - d, 1.5);
-    let within = |rows: &[BodyRow]| -> f64 {
+    Ok(rate_below_zero(results, [0.2, 0.6])? / law)
+}
+
+/// Rate at which grains leave a hopper, from 0.3 s after it opened to the end, over Beverloo's for slots [-],
+/// W = 1.03 rho sqrt(g) (D - 1.4 d)^(3/2), with constants as Nedderman (1992) gives them.
+pub fn rate_of_hopper(results: &Results) -> Measured {
+    // Grains' mean diameter and opening [m], density of the grains times their share of the filling [kg/m³].
+    let [d, opening, density] = [0.01, 0.1, 2500.0 * 0.82];
+    let law = 1.03 * density * GRAVITY.sqrt() * f64::powf(opening - 1.4 * d, 1.5);
+    Ok(rate_below_zero(results, [1.0, 2.5])? / law)
+}
+
+/// Rate at which grains fall below a height of zero between two times [kg/s].
+fn rate_below_zero(results: &Results, times: [f64; 2]) -> Measured {
+    let above = |rows: &[BodyRow]| -> f64 {
         grains(rows).filter(|row| row.state.position[1] > 0.0).map(|row| row.state.mass).sum()
     };
-    let [early, late] = [bodies_at(results, 0.2)?, bodies_at(results, 0.6)?];
-    Ok((within(&early) - within(&late)) / (late[0].time - early[0].time) / law)
+    let [early, late] = [bodies_at(results, times[0])?, bodies_at(results, times[1])?];
+    Ok((above(&early) - above(&late)) / (late[0].time - early[0].time))
 }
 
 /// Moment that turns a mill over the moment of the balls' weight about its axis [-], means over its second half.

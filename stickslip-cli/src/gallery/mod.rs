@@ -107,6 +107,10 @@ pub const EXHIBITS: &[Exhibit] = exhibits! {
         seconds: 90.0, look: ["--color", "velocity"], picture: "430x490", animation: "300x340",
         check: "rate over that of a free-fall arch", rate_of_silo, [0.85, 1.25]
     }
+    "hopper" [] {
+        seconds: 240.0, look: ["--color", "velocity"], picture: "560x640", animation: "360x410",
+        check: "rate over Beverloo's", rate_of_hopper, [0.8, 1.2]
+    }
     "landslide" ["valley.obj"] {
         seconds: 18.0, look: [], picture: "560x380", animation: "380x260",
         check: "friction's work over weight times way", friction_of_slide, [0.24, 0.31]

@@ -5,8 +5,6 @@ use crate::basis::Basis;
 use crate::clock::{Fastest, fastest_signal};
 use crate::door::StepLimit;
 use crate::lanes::Laned;
-use crate::rigid::RigidMotion;
-use crate::tensor::Vector;
 
 impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// Longest stable step now, courant h / max(c + |v_p|): the speed is the fastest *signal* ([`crate::clock`]) [s].
@@ -25,11 +23,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             let (number, position) = (Some(particle.number), particle.position.space());
             return Some(StepLimit { body, particle: number, position });
         }
-        let motions = self.state.bodies.iter().map(|body| body.motion.as_ref()).enumerate();
-        let free =
-            motions.filter_map(|(body, motion)| Some((body, motion.filter(|it| it.as_free().is_some())?)));
-        let spin = |motion: &RigidMotion| Vector(motion.spin()).norm();
-        let (body, motion) = free.max_by(|(_, a), (_, b)| spin(a).total_cmp(&spin(b)))?;
+        let (body, _) = self.longest_turns().min_by(|(_, a), (_, b)| a.total_cmp(b))?;
+        let motion = self.state.bodies[body].motion.as_ref()?;
         (turn < longest).then_some(StepLimit { body, particle: None, position: motion.center })
     }
 

@@ -22,7 +22,7 @@ use crate::tensor::Vector;
 use serde::{Deserialize, Serialize};
 use std::sync::{Arc, Mutex};
 
-use super::pass::ParticleLoop;
+use super::pass::{Found, ParticleLoop};
 
 /// What the scene says, the same in every step.
 pub struct Settings<T, const D: usize> {
@@ -132,6 +132,8 @@ pub struct Workspace<T, const D: usize> {
     pub springs: SpringRoom<T, D>,
     /// Room for what heat does to the particles of a body.
     pub warmed: Vec<Warmed<T>>,
+    /// What each rigid body found as it moved, and how many of its particles changed their cells.
+    pub displaced: Vec<Option<(Found<T>, u32)>>,
     /// Free rigid bodies in a step.
     pub mechanism: Mechanism,
     /// Impulses of damping at the nodes in the last step, where there is damping [N s].
@@ -164,6 +166,7 @@ impl<T, const D: usize> Workspace<T, D> {
             laws: LawRoom::default(),
             springs: SpringRoom::default(),
             warmed: Vec::new(),
+            displaced: Vec::new(),
             mechanism: Mechanism::default(),
             damping_impulses: Vec::new(),
             weights: Vec::new(),

@@ -6,18 +6,21 @@ use super::Engine;
 use super::build::spin;
 use super::mechanism::Coupling;
 use super::pass::{FaultKind, Found, ParticleFault, ParticleLoop, Pass, Verbs, escaped, home};
-use super::state::{Disorder, Workspace};
+use super::state::{Disorder, Settings, Workspace};
 use crate::basis::Basis;
 use crate::body::Body;
 use crate::clock::signal_speed;
 use crate::contact::{ContactUse, Near, Solve, TimeStep};
 use crate::door::StepError;
-use crate::grid::{Blocks, Disjoint, Node, node_at, nodes_per_block};
+use crate::grid::{Blocks, Disjoint, Lattice, Node, node_at, nodes_per_block};
 use crate::lanes::{Laned, Processor};
 use crate::tensor::{Matrix, Vector};
 use crate::threads::each;
 use crate::transfer::{Share, begin_filter, end_filter, filter_once_more, filters};
 use std::time::Instant;
+
+/// Bodies that a thread takes at a time.
+const BODIES: usize = 16;
 
 impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// Brings the cell lists of the particles up to date, and with them the blocks of nodes that bodies have.
@@ -25,13 +28,16 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let start = Instant::now();
         let (bodies, lattice) = (&self.state.bodies, &self.settings.lattice);
         let left = self.workspace.listed.then_some(&self.workspace.left[..]);
-        let count = |body: usize| bodies[body].particles.len();
+        let idle = self.needs_no_grid();
+        let count = |body: usize| if idle { 0 } else { bodies[body].particles.len() };
         let reach = B::WIDTH as i32 - 1;
         let blocks = self.workspace.active.update((bodies.len(), count, reach), left, |body, particle| {
             home::<T, D, B>(lattice, bodies[body].particles.place(particle))
         });
         let blocks = blocks.max(self.spread(blocks));
-        self.sort_particles();
+        if !idle {
+            self.sort_particles();
+        }
         let Workspace { active, field, boundary, left, moved, damped, listed, .. } = &mut self.workspace;
         if blocks == Blocks::New {
             boundary.find_nodes(active);
@@ -48,12 +54,19 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.watch.lap("blocks", start);
     }
 
+    /// Whether no body deforms, and nothing acts on parts of bodies: rigid bodies alone move without a grid.
+    pub(super) fn needs_no_grid(&self) -> bool {
+        self.state.bodies.iter().all(Body::is_rigid)
+            && self.settings.loads.is_empty()
+            && self.settings.springs.is_empty()
+    }
+
     /// Sorts particles in memory into the order in which tiles visit them,
     /// where disorder has cost as much as that does.
     fn sort_particles(&mut self) {
         let (active, disorder) = (&self.workspace.active, &self.state.disorder);
         let costly = |body: usize, count: usize| disorder[body].is_costly(count);
-        each(&mut self.state.bodies, 16, |i, body| {
+        each(&mut self.state.bodies, BODIES, |i, body| {
             if costly(i, body.particles.len()) {
                 body.particles.permute(active.order_of(i));
             }
@@ -324,50 +337,26 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// Moves rigid bodies by the velocities that they have.
     pub(super) fn move_rigid_bodies(&mut self, dt: T) -> Result<(), StepError> {
         let start = Instant::now();
-        let mut found = Found { signal: T::of(self.state.signal.unwrap_or(0.0)), ..Found::NOTHING };
-        for (i, body) in self.state.bodies.iter_mut().enumerate() {
-            // Taken out while the particles change, and put back moved on.
-            let Some(mut motion) = body.motion.take() else { continue };
-            let dt = dt.f64();
-            let rotation = motion.rotation(dt);
+        let Settings { lattice, held, .. } = &self.settings;
+        let (bodies, unbounded) = (&mut self.state.bodies, &self.state.unbounded);
+        let room = &mut self.workspace.displaced;
+        room.clear();
+        room.resize(bodies.len(), None);
+        let displaced = Disjoint::new(room);
+        each(bodies, BODIES, |i, body| {
             // One without bounds is everywhere: its particles stand for what the others are near.
-            let domain = self
-                .settings
-                .held
-                .filter(|_| !self.state.unbounded.iter().any(|unbounded| unbounded.body == i));
-            let turn = Matrix::from_fn(|i, j| T::of(rotation.0[i][j]));
-            let mut moved_on = 0;
-            for p in 0..body.particles.len() {
-                let mut particle = body.particles.get(p);
-                let (start, half_sides) = body.particles.place(p);
-                let before = home::<T, D, B>(&self.settings.lattice, (start, half_sides));
-                let position = particle.position.space();
-                let moved = Vector::of(motion.moved(position, &rotation, dt));
-                let kind = if !moved.is_finite() {
-                    Some(FaultKind::NotFinite)
-                } else {
-                    particle.velocity = Vector::of(motion.velocity_at(position));
-                    particle.spin = spin::<T, D>(motion.spin());
-                    particle.position = moved;
-                    particle.deformation = turn * particle.deformation;
-                    escaped::<T, D, B>((moved, half_sides), &self.settings.lattice, domain)
-                        .then_some(FaultKind::Escaped)
-                };
-                body.particles.set(p, &particle);
-                moved_on += u32::from(
-                    home::<T, D, B>(&self.settings.lattice, (particle.position, half_sides)) != before,
-                );
-                let fault = kind.map(|kind| ParticleFault { body: i, particle: p, kind });
-                // No wave runs in a rigid body.
-                let speed = particle.velocity.dot(particle.velocity);
-                found = found.and(Found { fault, signal: signal_speed([T::ZERO, speed]) });
-            }
-            motion.advance(&rotation, dt);
-            body.motion = Some(motion);
+            let domain = held.filter(|_| !unbounded.iter().any(|unbounded| unbounded.body == i));
+            // SAFETY: every body has a place of its own.
+            unsafe { *displaced.get(i) = move_rigid_body::<T, D, B>((i, body), (lattice, domain), dt) };
+        });
+        let mut found = Found { signal: T::of(self.state.signal.unwrap_or(0.0)), ..Found::NOTHING };
+        for (i, displaced) in self.workspace.displaced.iter().enumerate() {
+            let Some((of_body, moved_on)) = displaced else { continue };
+            found = found.and(*of_body);
             let tiles = self.workspace.active.tiles_of_body(i);
             self.workspace.left[tiles.clone()].fill(u64::MAX);
             if let [first, ..] = &mut self.workspace.moved[tiles] {
-                *first = moved_on;
+                *first = *moved_on;
             }
         }
         self.state.signal = Some(found.signal.f64());
@@ -399,4 +388,43 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             FaultKind::NotFinite => StepError::NotFinite { body: name, number, position, time },
         }
     }
+}
+
+/// Moves a body, if it is rigid, with its particles; says what it found, and how many of them changed their cells.
+fn move_rigid_body<T: Laned, const D: usize, B: Basis<T>>(
+    (number, body): (usize, &mut Body<T, D>),
+    (lattice, domain): (&Lattice<T, D>, Option<[Vector<T, D>; 2]>),
+    dt: T,
+) -> Option<(Found<T>, u32)> {
+    // Taken out while the particles change, and put back moved on.
+    let mut motion = body.motion.take()?;
+    let dt = dt.f64();
+    let rotation = motion.rotation(dt);
+    let turn = Matrix::from_fn(|i, j| T::of(rotation.0[i][j]));
+    let (mut found, mut moved_on) = (Found::NOTHING, 0);
+    for p in 0..body.particles.len() {
+        let mut particle = body.particles.get(p);
+        let (start, half_sides) = body.particles.place(p);
+        let before = home::<T, D, B>(lattice, (start, half_sides));
+        let position = particle.position.space();
+        let moved = Vector::of(motion.moved(position, &rotation, dt));
+        let kind = if !moved.is_finite() {
+            Some(FaultKind::NotFinite)
+        } else {
+            particle.velocity = Vector::of(motion.velocity_at(position));
+            particle.spin = spin::<T, D>(motion.spin());
+            particle.position = moved;
+            particle.deformation = turn * particle.deformation;
+            escaped::<T, D, B>((moved, half_sides), lattice, domain).then_some(FaultKind::Escaped)
+        };
+        body.particles.set(p, &particle);
+        moved_on += u32::from(home::<T, D, B>(lattice, (particle.position, half_sides)) != before);
+        let fault = kind.map(|kind| ParticleFault { body: number, particle: p, kind });
+        // No wave runs in a rigid body.
+        let speed = particle.velocity.dot(particle.velocity);
+        found = found.and(Found { fault, signal: signal_speed([T::ZERO, speed]) });
+    }
+    motion.advance(&rotation, dt);
+    body.motion = Some(motion);
+    Some((found, moved_on))
 }

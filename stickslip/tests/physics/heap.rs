@@ -4,7 +4,9 @@
 //! friction. So many contacts are solved with a tolerance, and a step begins with the impulses of the one before.
 //!
 //! Expected: at rest nothing overlaps by more than 1e-3 of a diameter, the heap sinks by less than that in the last
-//! seconds, and the floor bears its weight. A run that is taken up in between ends with the same bits.
+//! seconds, and the floor bears its weight. A run that is taken up in between ends with the same bits. Two packings that
+//! strike each other keep their momentum and angular momentum to round-off, gain no energy, and overlap by less than 0.02
+//! of a diameter, however early the sweeps over their contacts end.
 
 use crate::trial::{distance, run_to, start, take_steps};
 use stickslip::door::{ContactCursor, Simulation};
@@ -90,4 +92,55 @@ fn a_heap_goes_on_as_if_nothing_had_been() {
     }
     let [whole, taken_up] = [&simulation, &other].map(|simulation| centers(&**simulation));
     assert_eq!(whole, taken_up);
+}
+
+#[test]
+fn packings_that_strike_each_other_keep_their_momentum() {
+    let mut simulation = start(
+        r#"
+        space = { dimension = "plane-strain", cell = 1 }
+        time = { end = 5, max_step = 0.02 }
+        materials.stone = { density = 1, neo_hookean = { young_modulus = 1e3, poisson_ratio = 0.3 } }
+        [[bodies]]
+        name = "left {j} {i}"
+        repeat = { j = 12, i = 12 }
+        material = "stone"
+        velocity = [1, 0]
+        rigid.free = {}
+        shape.ball = { center = ["i - 12 + 0.5 * mod(j, 2)", "0.87 * j"], radius = "0.47 + 0.005 * mod(7 * i + 5 * j, 6)" }
+        [[bodies]]
+        name = "right {j} {i}"
+        repeat = { j = 8, i = 8 }
+        material = "stone"
+        rigid.free = {}
+        shape.ball = { center = ["i + 1.1 + 0.5 * mod(j, 2)", "0.87 * j"], radius = "0.47 + 0.005 * mod(7 * i + 5 * j, 6)" }
+        [[contact]]
+        friction = 0.5
+        restitution = 0.3
+        "#,
+    );
+    let radii: Vec<f64> =
+        simulation.bodies().iter().map(|body| (body.mass / std::f64::consts::PI).sqrt()).collect();
+    let before = simulation.ledger();
+    let mut deepest = 0.0_f64;
+    run_to(&mut *simulation, 5.0, |simulation| {
+        let places: Vec<[f64; 3]> = simulation.bodies().iter().map(|body| body.position).collect();
+        for i in 0..places.len() {
+            for j in 0..i {
+                deepest = deepest.max(radii[i] + radii[j] - distance(places[i], places[j]));
+            }
+        }
+    });
+    let after = simulation.ledger();
+    let lost = 1.0 - after.kinetic / before.kinetic;
+    println!("overlap {deepest:.1e}, {lost:.3} of the energy lost, unsettled {}", after.unsettled_nodes);
+    assert!(deepest < 0.02, "{deepest}");
+    assert!(lost > 0.1, "they have struck each other: {lost}");
+    assert!((after.total / before.total - 1.0).abs() < 1e-9, "{} {}", before.total, after.total);
+    for k in 0..3 {
+        let [p, l] =
+            [after.momentum[k] - before.momentum[k], after.angular_momentum[k] - before.angular_momentum[k]];
+        assert!(p.abs() < 1e-10 * before.momentum[0], "{p}");
+        assert!(l.abs() < 1e-10 * before.angular_momentum[2].abs(), "{l}");
+    }
 }

@@ -4,7 +4,7 @@ use super::joint::poses;
 use super::row::{JointRow, Row};
 use super::six::{self, Six, SixFactor, SixMatrix, at, join};
 use super::surfaces::RigidSurfaces;
-use super::sweeps::{solve, tolerance as tolerance_of};
+use super::sweeps::{packed, solve, tolerance as tolerance_of};
 use super::touch::{Touch, TouchForce};
 use super::{FreeBody, Mechanism, slot};
 use crate::body::Body;
@@ -36,6 +36,8 @@ pub struct Coupling<'a, T, const D: usize> {
 /// Searches for contacts of rigid bodies at most, and how much faster than it was looked ahead for a body may become.
 const MAX_SEARCHES: usize = 3;
 const FASTER: f64 = 1.5;
+/// Contacts of a packing are searched once more where a body would sink in by more than this part of its radius.
+const MISSED: f64 = 0.01;
 /// Rounds at most.
 const MAX_ROUNDS: usize = 60;
 /// From this round on a node in contact counts as one that sticks: velocities then come closer in each round.
@@ -90,6 +92,13 @@ impl<T: Real, const D: usize> Coupling<'_, T, D> {
             {
                 break;
             }
+            // Something always does in a packing; rarely it meets what was not looked at.
+            if packed(mechanism.touches.len()) {
+                if !self.missed(bodies, mechanism, dt) {
+                    break;
+                }
+                mechanism.before = mechanism.touches.iter().filter_map(|touch| touch.force(dt)).collect();
+            }
         }
         self.finish(bodies, mechanism, (&parts, listed));
         self.move_nodes(bodies, (&mechanism.bodies, &touched));
@@ -115,6 +124,7 @@ impl<T: Real, const D: usize> Coupling<'_, T, D> {
         let round_off = ROUND_OFF * f64::EPSILON * far.fold(0.0, f64::max) / dt;
         let placed = !(self.joints.is_empty() && mechanism.touches.is_empty());
         let tolerance = TOLERANCE.max(ROUND_OFF * T::EPSILON.f64());
+        let alone = packed(mechanism.touches.len()) && touched.is_empty() && mechanism.rows.is_empty();
         let mut first = 0.0;
         for round in 0..MAX_ROUNDS {
             self.move_nodes(bodies, (&mechanism.bodies, touched));
@@ -138,6 +148,10 @@ impl<T: Real, const D: usize> Coupling<'_, T, D> {
                 motion.set_momenta(six::parts(free.momenta), dt);
                 moved = moved.max(free.size(change));
                 speed = speed.max(free.speed(bodies)).max(free.size(&free.start)).max(free.pushed());
+            }
+            // Nothing but contacts of rigid bodies: another round would only sweep on, as the next step does.
+            if alone {
+                return held;
             }
             if round == 0 && !mechanism.touches.is_empty() {
                 first = 10.0 * tolerance_of(mechanism.touches.len()) * moved;
@@ -272,6 +286,20 @@ impl<T: Real, const D: usize> Coupling<'_, T, D> {
                 row.off = along(row);
             }
         }
+    }
+
+    /// Whether rigid bodies, with the velocities found, would overlap by the end of the step where no contact was found.
+    fn missed(&self, bodies: &[Body<T, D>], mechanism: &Mechanism, dt: f64) -> bool {
+        let Some(surfaces) = self.surfaces else { return false };
+        surfaces.contacts(bodies, self.solve.rules, dt).iter().any(|contact| {
+            let motions = contact.bodies.map(|body| bodies[body].motion.as_ref().expect("it is rigid"));
+            let velocities = motions.map(|motion| join(motion.velocity(), motion.spin()));
+            let relative = contact.relative(velocities.each_ref(), motions.map(|motion| motion.center));
+            let after = contact.gap + Vector(relative).dot(Vector(contact.normal)) * dt;
+            let slots = contact.bodies.iter().filter_map(|body| mechanism.slot(*body));
+            let radius = slots.map(|slot| mechanism.bodies[slot].radius).fold(f64::INFINITY, f64::min);
+            after < contact.gap.min(0.0) - MISSED * radius
+        })
     }
 
     /// Where rigid bodies touch in this step.

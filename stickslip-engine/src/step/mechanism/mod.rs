@@ -40,6 +40,8 @@ pub use touch::TouchForce;
 
 /// A step turns free rigid bodies by so much at most [rad].
 const TURN: f64 = 0.05;
+/// The same of balls and disks in a packing, which touch wherever they have turned to.
+const TURN_OF_BALLS: f64 = 0.5;
 
 /// Free rigid bodies and joints in a step.
 #[derive(Clone, Debug, Default)]
@@ -214,16 +216,28 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
 
     /// The longest step in which no free rigid body, and no motor of a joint, turns by more than a part of a radian [s].
     pub(super) fn longest_turn(&self) -> f64 {
-        let bodies = self.state.bodies.iter().filter_map(|body| body.motion.as_ref());
-        let spins =
-            bodies.filter(|motion| motion.as_free().is_some()).map(|motion| Vector(motion.spin()).norm());
         let motors = self.settings.joints.iter().map(|joint| match &joint.kind {
             JointKind::Hinge { motor: Motor { speed: Some(speed), .. }, .. } => {
                 speed.at(self.state.time).abs()
             }
             _ => 0.0,
         });
-        TURN / spins.chain(motors).fold(0.0, f64::max)
+        let motors = TURN / motors.fold(0.0, f64::max);
+        self.longest_turns().map(|(_, longest)| longest).fold(motors, f64::min)
+    }
+
+    /// The free rigid bodies, each with the longest step by how fast it turns [s].
+    pub(super) fn longest_turns(&self) -> impl Iterator<Item = (usize, f64)> {
+        let packed = self.settings.joints.is_empty()
+            && self.needs_no_grid()
+            && sweeps::packed(self.state.touch_forces.len());
+        let motions = self.state.bodies.iter().map(|body| body.motion.as_ref()).enumerate();
+        let free =
+            motions.filter_map(|(body, motion)| Some((body, motion.filter(|it| it.as_free().is_some())?)));
+        free.map(move |(body, motion)| {
+            let turn = if packed && self.settings.surfaces.is_ball(body) { TURN_OF_BALLS } else { TURN };
+            (body, turn / Vector(motion.spin()).norm())
+        })
     }
 
     /// Books what joints and the contacts of rigid bodies did in the step, once velocities are known. Works are those of

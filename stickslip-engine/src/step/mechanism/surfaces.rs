@@ -44,6 +44,18 @@ struct RigidSurface {
     ball: Option<f64>,
 }
 
+impl RigidSurface {
+    /// The longest way of its points in a step, where the ball around it has this centre [m].
+    fn way(&self, (motion, center): (&RigidMotion, [f64; 3]), dt: f64) -> f64 {
+        let speed = Vector(motion.velocity()).norm();
+        let turn = Vector(motion.spin()).norm();
+        let off = (Vector(center) - Vector(motion.center)).norm();
+        let reach = if self.reach.is_finite() { self.reach + off } else { 0.0 };
+        // What gravity and pushes add in a step is less than what a point is apart from the next.
+        dt * (speed + turn * reach) + ALIKE * self.spacing
+    }
+}
+
 /// The surfaces of all rigid bodies that may touch others of them.
 #[derive(Clone, Debug, Default)]
 pub struct RigidSurfaces {
@@ -110,6 +122,12 @@ impl RigidSurfaces {
         RigidSurfaces { all: rigid.map(surface).collect(), joined, dimension: axes }
     }
 
+    /// Whether a rigid body is a ball or a disk, whose turn says nothing of where its surface is.
+    pub fn is_ball(&self, body: usize) -> bool {
+        let place = self.all.binary_search_by_key(&body, |surface| surface.body);
+        place.is_ok_and(|place| self.all[place].ball.is_some())
+    }
+
     /// Where free rigid bodies touch other rigid bodies or may within a step, ordered by pair.
     ///
     /// Each point of a body's surface that is near another body is moved along its own surface, by no more than points
@@ -122,21 +140,21 @@ impl RigidSurfaces {
         dt: f64,
     ) -> Vec<RigidContact> {
         let placed: Vec<PlacedSurface<T, D>> =
-            self.all.iter().map(|surface| PlacedSurface::new(surface, &bodies[surface.body])).collect();
+            self.all.iter().map(|surface| PlacedSurface::new(surface, &bodies[surface.body], dt)).collect();
         // Along x, then by the balls around them.
         let mut order: Vec<usize> = (0..placed.len()).collect();
-        let lower = |i: usize| placed[i].center[0] - placed[i].reach - placed[i].way(dt);
+        let lower = |i: usize| placed[i].center[0] - placed[i].reach - placed[i].way;
         order.sort_by(|&i, &j| lower(i).total_cmp(&lower(j)));
         let mut found = Vec::new();
         for (rank, &i) in order.iter().enumerate() {
-            let upper = placed[i].center[0] + placed[i].reach + placed[i].way(dt);
+            let upper = placed[i].center[0] + placed[i].reach + placed[i].way;
             for &j in order[rank + 1..].iter().take_while(|&&j| lower(j) <= upper) {
                 let pair = [&placed[i.min(j)], &placed[i.max(j)]];
                 let [a, b] = pair.map(|placed| placed.surface.body);
                 let free = pair.iter().any(|placed| placed.motion.as_free().is_some());
                 let acts = || rules.rule(rules.number(a, b)).law != ContactLaw::None;
-                if free && !self.joined.contains(&[a, b]) && acts() {
-                    self.between(pair, dt, &mut found);
+                if free && may_touch(pair) && !self.joined.contains(&[a, b]) && acts() {
+                    self.between(pair, &mut found);
                 }
             }
         }
@@ -148,12 +166,10 @@ impl RigidSurfaces {
     fn between<T: Sync, const D: usize>(
         &self,
         pair: [&PlacedSurface<T, D>; 2],
-        dt: f64,
         found: &mut Vec<RigidContact>,
     ) {
         let [a, b] = pair;
-        let away = (Vector(a.center) - Vector(b.center)).norm();
-        let margin = AHEAD * (a.way(dt) + b.way(dt));
+        let margin = margin(pair);
         if let [Some(r), Some(s)] = pair.map(PlacedSurface::ball) {
             found.extend(between_balls(pair, [r, s]).into_iter().filter(|contact| contact.gap <= margin));
             return;
@@ -162,7 +178,7 @@ impl RigidSurfaces {
         let far = |one: &PlacedSurface<T, D>, other: &PlacedSurface<T, D>| {
             one.reach.is_finite() && other.level(one.center).distance > one.reach + margin
         };
-        if away > a.reach + b.reach + margin || far(a, b) || far(b, a) {
+        if far(a, b) || far(b, a) {
             return;
         }
         let bodies = pair.map(|placed| placed.surface.body);
@@ -197,6 +213,18 @@ impl RigidSurfaces {
     }
 }
 
+/// How far apart two surfaces may be for the next step to matter [m].
+fn margin<T, const D: usize>([a, b]: [&PlacedSurface<T, D>; 2]) -> f64 {
+    AHEAD * (a.way + b.way)
+}
+
+/// Whether the balls around two surfaces are near enough.
+fn may_touch<T, const D: usize>(pair: [&PlacedSurface<T, D>; 2]) -> bool {
+    let [a, b] = pair;
+    let square: f64 = (0..D).map(|k| (a.center[k] - b.center[k]).powi(2)).sum();
+    square <= (a.reach + b.reach + margin(pair)).powi(2)
+}
+
 /// Where two balls or disks of these radii are nearest: on the line of their centres, in the middle of the gap
 /// |a - b| - r - s. `None` where the centres are the same.
 fn between_balls<T, const D: usize>(
@@ -220,28 +248,22 @@ struct PlacedSurface<'a, T, const D: usize> {
     pose: Pose,
     center: [f64; 3],
     reach: f64,
+    /// The longest way of its points in the step [m].
+    way: f64,
 }
 
 impl<'a, T, const D: usize> PlacedSurface<'a, T, D> {
-    fn new(surface: &'a RigidSurface, body: &'a Body<T, D>) -> Self {
+    fn new(surface: &'a RigidSurface, body: &'a Body<T, D>, dt: f64) -> Self {
         let motion = body.motion.as_ref().expect("it is rigid");
         let pose = motion.pose();
-        PlacedSurface { surface, body, motion, pose, center: pose.now(surface.center), reach: surface.reach }
+        let (center, reach) = (pose.now(surface.center), surface.reach);
+        let way = surface.way((motion, center), dt);
+        PlacedSurface { surface, body, motion, pose, center, reach, way }
     }
 
     /// Its radius, if it is a ball or a disk and not joined to itself [m].
     fn ball(&self) -> Option<f64> {
         self.surface.ball.filter(|_| !(0..D).any(|axis| self.body.whole.is_joined(axis)))
-    }
-
-    /// The longest way of its points in a step [m].
-    fn way(&self, dt: f64) -> f64 {
-        let speed = Vector(self.motion.velocity()).norm();
-        let turn = Vector(self.motion.spin()).norm();
-        let off = (Vector(self.center) - Vector(self.motion.center)).norm();
-        let reach = if self.reach.is_finite() { self.reach + off } else { 0.0 };
-        // What gravity and pushes add in a step is less than what a point is apart from the next.
-        dt * (speed + turn * reach) + ALIKE * self.surface.spacing
     }
 
     /// Signed distance to its surface where it is now.

@@ -62,6 +62,8 @@ impl<const N: usize> Packed<N> {
 /// What a sweep over all equations changed.
 #[derive(Default)]
 struct Sweep {
+    /// Whether its contacts are those of a packing.
+    packed: bool,
     /// The largest change of a velocity, and the largest velocity that an impulse makes.
     moved: f64,
     largest: f64,
@@ -85,7 +87,8 @@ impl Sweep {
         self.set(normal, push, changes);
         let strength = if push > 0.0 { friction * push } else { 0.0 };
         let yields = tangents.iter().map(|row| row.yields).fold(0.0, f64::max);
-        if friction == 0.0 || yields == 0.0 {
+        let open = self.packed && push == 0.0 && tangents.iter().all(|row| row.impulse == 0.0);
+        if friction == 0.0 || yields == 0.0 || open {
             return;
         }
         let mut wanted = [0.0; 2];
@@ -151,8 +154,9 @@ impl<const N: usize> Direction<N> {
     }
 }
 
-/// Sweeps over all equations at most.
+/// Sweeps over all equations at most, and over those of a packing: its next step goes on with the impulses of this one.
 const MAX_SWEEPS: usize = 2000;
+const MAX_PACKED_SWEEPS: usize = 200;
 /// They end where no impulse changes a velocity by more than this part of the largest change.
 const TOLERANCE: f64 = 1e-14;
 /// The same where rigid bodies touch: many points of a face share a load in many ways, between which sweeps go on for
@@ -162,6 +166,11 @@ const TOUCHING: f64 = 1e-9;
 /// and the next step, which begins with these impulses, takes it up; momentum is exact whatever is left.
 const PACKED: f64 = 1e-5;
 const FEW: usize = 100;
+
+/// Whether so many contacts are those of a packing.
+pub fn packed(touches: usize) -> bool {
+    touches > FEW
+}
 
 /// Where sweeps end that find the impulses of so many contacts.
 pub fn tolerance(touches: usize) -> f64 {
@@ -202,29 +211,30 @@ fn sweep_until<const N: usize>(
         .collect();
     rows.iter().for_each(|row| row.give(row.impulse, &mut changes));
     let tolerance = tolerance(touches.len());
-    let packed = touches.len() > FEW;
+    let packed = packed(touches.len());
+    let width = touches.first().map_or(1, |touch| 1 + touch.tangents.len());
+    let frictions: Vec<f64> = touches.iter().map(|touch| touch.friction).collect();
+    let most = if packed { MAX_PACKED_SWEEPS } else { MAX_SWEEPS };
     let mut direction = Direction::new(rows.len(), changes.len());
     let (mut begun, mut begun_changes) = (Vec::new(), Vec::new());
     let mut rests = false;
-    for number in 1..=MAX_SWEEPS {
+    for number in 1..=most {
         if packed {
             begun.clear();
             begun.extend(rows.iter().map(|row| row.impulse));
             begun_changes.clone_from(&changes);
         }
-        let mut sweep = Sweep::default();
-        let (of_joints, mut of_touches) = rows.split_at_mut(held.len());
+        let mut sweep = Sweep { packed, ..Sweep::default() };
+        let (of_joints, of_touches) = rows.split_at_mut(held.len());
         for (row, JointRow { limit, .. }) in of_joints.iter_mut().zip(&*held) {
             if row.yields > 0.0 {
                 let wanted = row.wanted(&changes, row.yields).clamp(-*limit, *limit);
                 sweep.set(row, wanted, &mut changes);
             }
         }
-        for touch in &*touches {
-            let (own, rest) = of_touches.split_at_mut(1 + touch.tangents.len());
-            of_touches = rest;
+        for (own, friction) in of_touches.chunks_exact_mut(width).zip(&frictions) {
             if own[0].yields > 0.0 {
-                sweep.push(touch.friction, own, &mut changes);
+                sweep.push(*friction, own, &mut changes);
             }
         }
         rests = sweep.moved <= tolerance * sweep.largest + round_off;
@@ -232,7 +242,7 @@ fn sweep_until<const N: usize>(
             break;
         }
         // What the last sweep found holds all limits.
-        if packed && number < MAX_SWEEPS {
+        if packed && number < most {
             direction.follow((&mut rows, &mut changes), (&begun, &begun_changes));
         }
     }
