@@ -108,7 +108,7 @@ pub const EXHIBITS: &[Exhibit] = exhibits! {
         check: "rate over that of a free-fall arch", rate_of_silo, [0.85, 1.25]
     }
     "hopper" [] {
-        seconds: 240.0, look: ["--color", "velocity"], picture: "560x640", animation: "360x410",
+        seconds: 140.0, look: ["--color", "velocity"], picture: "560x640", animation: "360x410",
         check: "rate over Beverloo's", rate_of_hopper, [0.8, 1.2]
     }
     "landslide" ["valley.obj"] {

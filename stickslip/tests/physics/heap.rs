@@ -3,7 +3,7 @@
 //! Set-up: 168 rigid disks of diameter 0.9 to 1 fall into a bin and lie on each other at some three hundred places, with
 //! friction. So many contacts are solved with a tolerance, and a step begins with the impulses of the one before.
 //!
-//! Expected: at rest nothing overlaps by more than 1e-3 of a diameter, the heap sinks by less than that in the last
+//! Expected: at rest nothing overlaps by more than 1e-3 of a diameter, the heap sinks by less than 1e-4 in the last
 //! seconds, and the floor bears its weight. A run that is taken up in between ends with the same bits. Two packings that
 //! strike each other keep their momentum and angular momentum to round-off, gain no energy, and overlap by less than 0.02
 //! of a diameter, however early the sweeps over their contacts end.
@@ -61,7 +61,9 @@ fn a_heap_of_rigid_disks_rests() {
     cursor.read(&*simulation);
     run_to(&mut *simulation, 35.0, |_| {});
     let after = centers(&*simulation);
-    let sunk = before.iter().zip(&after).map(|(a, b)| distance(*a, *b)).fold(0.0, f64::max);
+    let sunk = before.iter().zip(&after).map(|(a, b)| (a[1] - b[1]).abs()).fold(0.0, f64::max);
+    // A disk on the floor that bears no other may roll on: nothing resists it.
+    let moved = before.iter().zip(&after).filter(|(a, b)| distance(**a, **b) > 1e-4).count();
     let mut overlap = 0.0_f64;
     for i in 0..COUNT {
         for j in 0..i {
@@ -72,11 +74,11 @@ fn a_heap_of_rigid_disks_rests() {
     let contacts = cursor.read(&*simulation);
     let borne: f64 = contacts.iter().filter(|pair| pair.body_a == 0).map(|pair| pair.mean.force[1]).sum();
     println!(
-        "moved by {sunk:.1e}, overlap {overlap:.1e}, the bin bears {:.5} of the weight",
+        "sunk by {sunk:.1e}, {moved} moved, overlap {overlap:.1e}, the bin bears {:.5} of the weight",
         -borne / weight
     );
     assert!(overlap < 1e-3, "{overlap}");
-    assert!(sunk < 1e-3, "{sunk}");
+    assert!(sunk < 1e-4 && moved <= COUNT / 100, "{sunk} {moved}");
     assert!((borne.abs() / weight - 1.0).abs() < 1e-3, "{borne} {weight}");
 }
 
