@@ -11,8 +11,8 @@
 //!
 //! # Expected
 //! The targets of these benchmarks, which are 3 % for stresses of the disk, 4 and 2 % for drop and reach of the beam,
-//! 5 % for the force of the strip and 1 % for friction, with no allowance for known misses; but for the disk in plane stress, which is
-//! 3.3 % high and may be 4 %.
+//! 5 % for the force of the strip and 1 % for friction, with no allowance for known misses; but for the disk in plane
+//! stress, which is 3.3 % high and may be 4 %.
 
 use stickslip_validation::{BENCHMARKS, Suite, Tier, schemes};
 

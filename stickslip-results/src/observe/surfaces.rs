@@ -112,7 +112,8 @@ impl Observer for SurfacesObserver {
     }
 }
 
-/// The surfaces of all bodies that have one and that snapshots hold. What has no bounds ends with the domain; without one it has no surface.
+/// The surfaces of all bodies that have one and that snapshots hold. What has no bounds ends with the domain; without
+/// one it has no surface.
 fn surfaces_of(scene: &Scene) -> Vec<Surface> {
     let dimension = scene.dimension.axes();
     let domain = scene.domain.as_ref().map(|domain| Bounds { min: domain.min, max: domain.max });

@@ -167,8 +167,8 @@ impl Health {
 
 impl Scene {
     /// The bound of a check, beyond which it answers; infinite of those that have none, see
-    /// [`HealthCheck::usual_bound`]. `time.energy_drift` is that of energy, and half of it that of noise, where these have none
-    /// of their own.
+    /// [`HealthCheck::usual_bound`]. `time.energy_drift` is that of energy, and half of it that of noise, where these
+    /// have none of their own.
     pub fn health_bound(&self, check: HealthCheck) -> f64 {
         let own = self.health.rules.get(&check).and_then(|rule| rule.bound);
         let usual = match check {

@@ -18,8 +18,8 @@ const ELSEWHERE: &[(&str, &str)] = &[
 
 /// The candidate nearest to `word`, if one is near enough to be what was meant.
 ///
-/// Near enough: its word elsewhere, the same but for upper and lower case, about a third of the letters wrong (Damerau and Levenshtein), or
-/// the one the beginning of the other.
+/// Near enough: its word elsewhere, the same but for upper and lower case, about a third of the letters wrong (Damerau
+/// and Levenshtein), or the one the beginning of the other.
 pub(super) fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let plain = word.to_lowercase();
     let candidates: Vec<&str> = candidates.into_iter().collect();
