@@ -134,4 +134,12 @@ fn a_rule_that_never_holds_is_told_of_by_check_and_before_a_run() {
     let ran = workplace.run(&["run", "scene.toml", "--set", "time.end=1 ms", "--set", "cells_per_radius=4"]);
     assert_eq!(ran.code, Some(0), "{}", ran.stderr);
     assert!(ran.stderr.contains(&warning), "{}", ran.stderr);
+    let record = fs::read_to_string(workplace.path("scene.results/run.json")).unwrap();
+    let record: serde_json::Value = serde_json::from_str(&record).unwrap();
+    let found = &record["scene_warnings"][0];
+    assert_eq!(
+        (&found["key"], &found["place"]),
+        (&"contact[1]".into(), &format!("scene.toml:{line}:1").into())
+    );
+    assert!(found["text"].as_str().unwrap().starts_with("never holds: contact[0]"), "{found}");
 }

@@ -350,7 +350,9 @@ fn a_run_that_is_killed_inside_a_write_goes_on() {
         assert!(Command::new("mkfifo").arg(&part).status().unwrap().success());
         let mut child = spawn(workplace.command(&["resume", "out"]));
         let mut half = vec![0; 1000];
-        fs::File::open(&part).unwrap().read_exact(&mut half).unwrap();
+        // Open until the run is dead: a pipe that nobody can read any more is a failed write.
+        let mut pipe = fs::File::open(&part).unwrap();
+        pipe.read_exact(&mut half).unwrap();
         assert!(child.try_wait().unwrap().is_none(), "it waits until the rest is taken");
         child.kill().unwrap();
         child.wait().unwrap();

@@ -5,7 +5,7 @@
 #![forbid(unsafe_code)]
 
 use stickslip_engine::door;
-use stickslip_scene::{column, geometry, rigid, scene, tensor};
+use stickslip_scene::{check, column, geometry, rigid, scene, tensor};
 
 // RGB images: PNG files and animations.
 pub mod image;

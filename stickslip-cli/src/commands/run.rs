@@ -296,7 +296,7 @@ impl How {
         if let Some(pairs) = pairs_without_friction(scene) {
             self.note(&pairs);
         }
-        for warning in report.warnings {
+        for warning in &report.warnings {
             tell!("warning: {warning}");
         }
         let mut simulation =
@@ -305,6 +305,7 @@ impl How {
         let options = RunOptions {
             stop: stop_on_interrupt()?,
             threads,
+            scene_warnings: report.warnings,
             source: Some(SceneSource { text: Some(loaded.source.text().to_owned()), ..source }),
             checkpoints: Checkpointing { every, at_end, keep: usize::from(self.keep_checkpoints) },
             max_time: self.max_time.0.map(|longest| longest.saturating_sub(self.begun.elapsed())),

@@ -2,6 +2,7 @@
 
 use super::file::{OutputError, ReadError, ReadProblem, read_bytes, replace_for_good};
 use super::folder::OutputFolder;
+use crate::check::Warning;
 use crate::door::RelaxationState;
 use crate::scene::{Loaded, Scene, SceneError, load, parse};
 use serde::{Deserialize, Serialize};
@@ -45,6 +46,9 @@ pub struct Manifest {
     /// often the run was interrupted. None of a run that failed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub state_sum: Option<String>,
+    /// What was doubtful about the scene before it began.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub scene_warnings: Vec<Warning>,
     /// What is wrong with its results, in the order in which it was found.
     #[serde(default)]
     pub warnings: Vec<RunWarning>,
@@ -238,6 +242,7 @@ impl Manifest {
             ends: Vec::new(),
             begun_from: None,
             state_sum: None,
+            scene_warnings: Vec::new(),
             warnings: Vec::new(),
             remarks: Vec::new(),
             looks: 0,

@@ -1,11 +1,11 @@
 //! What is doubtful with a scene but allowed.
 
 use crate::scene::Source;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::fmt::{Display, Formatter, Result};
 
 /// Something doubtful that a run may start with.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Warning {
     /// Path of the key that it is about, such as `contact[1]`; empty where there is none.
     pub key: String,

@@ -18,6 +18,7 @@ use start::{Remembered, carry};
 pub use summary::{ReferenceResult, Summary};
 pub use widest::{WidestContact, WidestContacts};
 
+use crate::check::Warning;
 use crate::door::{Ledger, Simulation, View};
 use crate::march::{FailedStep, March, MarchEnd, Pace};
 use crate::observe::{
@@ -46,6 +47,8 @@ pub struct RunOptions {
     pub threads: usize,
     /// Where the scene came from, for the record.
     pub source: Option<SceneSource>,
+    /// What was doubtful about the scene before the run, for the record.
+    pub scene_warnings: Vec<Warning>,
     /// When checkpoints are written, from which [`resume`] goes on.
     pub checkpoints: Checkpointing,
     /// Wall time after which the run stops with a checkpoint; as long as it takes without it.
@@ -63,6 +66,7 @@ impl RunOptions {
             stop: Arc::default(),
             threads,
             source: None,
+            scene_warnings: Vec::new(),
             checkpoints: Checkpointing::default(),
             max_time: None,
             patience: Patience::default(),
@@ -229,6 +233,7 @@ fn drive(
     }
     let mut manifest = Manifest::new(scene, kept.clock.performance(simulation));
     manifest.source.clone_from(&options.source);
+    manifest.scene_warnings.clone_from(&options.scene_warnings);
     manifest.resumed = std::mem::take(&mut beginning.resumed);
     manifest.ends = std::mem::take(&mut beginning.ends);
     manifest.begun_from = beginning.begun_from.take();

@@ -44,14 +44,12 @@ impl Origin {
                 let listed = "it is none of the snapshots of particles that the run around it lists";
                 ReadError { path: start.from.clone(), problem: ReadProblem::Layout(listed.to_string()) }
             })?;
-            verify_snapshot(folder, &frame.path)?;
-            return Self::of_frame(scene, (&results, frame), view);
+            return Self::of_frame(scene, (folder, &results, frame), view);
         }
         if let Some(at) = start.at {
             let results = Results::open(&start.from)?;
             let frame = frame_at(&results, &start.from, at)?;
-            verify_snapshot(&start.from, &frame.path)?;
-            return Self::of_frame(scene, (&results, frame), view);
+            return Self::of_frame(scene, (&start.from, &results, frame), view);
         }
         let (checkpoint, from, damaged) = match start.from.is_file() {
             true => (Checkpoint::read(&start.from)?, start.from.clone(), Vec::new()),
@@ -65,9 +63,10 @@ impl Origin {
 
     fn of_frame(
         scene: &Scene,
-        (results, frame): (&Results, &Frame),
+        (folder, results, frame): (&Path, &Results, &Frame),
         view: &dyn View,
     ) -> Result<Self, ResumeError> {
+        verify_snapshot(folder, &frame.path)?;
         let (from, names) = (frame.path.clone(), results.body_names());
         let recorded = RecordedBodies { record: &results.manifest().scene, names };
         let missing = recorded.missing(scene, &ParticleFile::open(&from)?, view);
