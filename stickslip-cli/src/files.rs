@@ -29,6 +29,9 @@ pub const GRAPHML: Kind<'static> = Kind { name: "GraphML", start: b"<?xml", mark
 /// As [`crate::page`] writes them.
 pub const PAGE: Kind<'static> =
     Kind { name: "page in HTML", start: b"<!DOCTYPE html>", mark: COMMENT.as_bytes() };
+/// As `stickslip manual` writes them.
+pub const MAN_PAGE: Kind<'static> =
+    Kind { name: "page for man", start: b".ie \\n(.g .ds Aq", mark: b"\n.TH stickslip" };
 /// What `stickslip bench` measured.
 pub const MEASUREMENTS: Kind<'static> = Kind {
     name: "record of measurements",

@@ -21,6 +21,12 @@ fn shells_complete_and_man_has_pages() {
     workplace.succeed(&["manual", "pages"]);
     let page = std::fs::read_to_string(workplace.path("pages/stickslip-run.1")).unwrap();
     assert!(page.contains("checkpoint") && workplace.path("pages/stickslip.1").exists());
+    // Its own are made anew; another's stay.
+    workplace.succeed(&["manual", "pages"]);
+    workplace.write("pages/stickslip-run.1", ".ie \\n(.g .ds Aq \\(aq\n.TH runner 1\n");
+    let refused = workplace.run(&["manual", "pages"]);
+    assert_eq!(refused.code, Some(2));
+    assert!(refused.stderr.contains("stickslip-run.1: it is there already"), "{}", refused.stderr);
 }
 
 #[test]

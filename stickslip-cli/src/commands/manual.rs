@@ -2,9 +2,10 @@
 
 use super::Command;
 use crate::failure::Failure;
+use crate::files;
 use clap::{Args, CommandFactory};
-use miette::miette;
-use std::path::PathBuf;
+use clap_mangen::Man;
+use std::path::{Path, PathBuf};
 
 /// Write pages for `man`: one for each command, and one for all.
 #[derive(Debug, Args)]
@@ -16,10 +17,21 @@ pub struct Arguments {
 
 impl Arguments {
     pub fn execute(self) -> Result<(), Failure> {
-        let failed =
-            |error| Failure::Run(miette!("cannot write pages into {}: {error}", self.folder.display()));
-        std::fs::create_dir_all(&self.folder).map_err(failed)?;
-        let command = Command::command().disable_help_subcommand(true);
-        clap_mangen::generate_to(command, &self.folder).map_err(failed)
+        std::fs::create_dir_all(&self.folder).map_err(|error| Failure::unwritten(&self.folder, &error))?;
+        let mut command = Command::command().disable_help_subcommand(true);
+        command.build();
+        write_pages(&command, &self.folder)
     }
+}
+
+/// The page of a command, and those of the commands below it.
+fn write_pages(command: &clap::Command, folder: &Path) -> Result<(), Failure> {
+    let page = Man::new(command.clone());
+    let path = folder.join(page.get_filename());
+    files::write(&path, files::MAN_PAGE, |file| page.render(file))
+        .map_err(|error| Failure::unwritten(&path, &error))?;
+    command
+        .get_subcommands()
+        .filter(|below| !below.is_hide_set())
+        .try_for_each(|below| write_pages(below, folder))
 }
