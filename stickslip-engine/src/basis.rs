@@ -19,6 +19,8 @@ pub trait Width: Copy + Debug + Send + Sync + 'static {
     type Line<X: Copy + Debug>: Entries<X>;
     /// An entry for each node of a plane.
     type Plane<X: Copy + Debug>: Entries<X>;
+    /// An entry for each two nodes of a plane that are neighbours along one axis.
+    type Neighbours<X: Copy + Debug>: Entries<X>;
     /// An entry for each node in space.
     type Space<X: Copy + Debug>: Entries<X>;
 }
@@ -54,6 +56,7 @@ macro_rules! width {
             const NODES: usize = $nodes;
             type Line<X: Copy + Debug> = [X; $nodes];
             type Plane<X: Copy + Debug> = [X; $nodes * $nodes];
+            type Neighbours<X: Copy + Debug> = [X; $nodes * ($nodes - 1)];
             type Space<X: Copy + Debug> = [X; $nodes * $nodes * $nodes];
         }
     };
@@ -67,6 +70,8 @@ width!(Four: 4);
 pub type Line<B, T, X> = <<B as Basis<T>>::Width as Width>::Line<X>;
 /// The same in a plane.
 pub type Plane<B, T, X> = <<B as Basis<T>>::Width as Width>::Plane<X>;
+/// An entry for each two of them that are neighbours along one axis.
+pub type Neighbours<B, T, X> = <<B as Basis<T>>::Width as Width>::Neighbours<X>;
 /// The same in space.
 pub type Space<B, T, X> = <<B as Basis<T>>::Width as Width>::Space<X>;
 

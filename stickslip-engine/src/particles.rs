@@ -328,6 +328,16 @@ impl<T: Real, const D: usize> Particles<T, D> {
     /// Half the sides of the box of particle `i`: the undeformed ones, or those of the box that holds its domain [m].
     #[inline]
     pub fn half_sides(&self, i: usize) -> Vector<T, D> {
+        if self.domains.is_empty() {
+            let half = self.columns[self.first() + ColumnStart::<D>::HALF_WIDTH * self.stride + i];
+            return Vector([half; D]);
+        }
+        self.domain_half_sides(i)
+    }
+
+    /// The same of a domain that deforms; apart, for the others are asked for often.
+    #[inline(never)]
+    fn domain_half_sides(&self, i: usize) -> Vector<T, D> {
         extent(&self.edges(i))
     }
 

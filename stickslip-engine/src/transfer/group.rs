@@ -8,7 +8,7 @@
 #![allow(clippy::needless_range_loop)]
 
 use super::corners::NodeTable;
-use crate::basis::{Basis, BoxSide, Entries, Line, Plane, ShapeFunctions, Space};
+use crate::basis::{Basis, BoxSide, Entries, Line, Neighbours, Plane, ShapeFunctions, Space};
 use crate::grid::{NODE_VALUES, NodeSums, NodeValues, SIDE, WINDOW_NODES, Window, window_side};
 use crate::lanes::{Lanes, MOST_LANES, Machine, Numbers};
 use crate::tensor::{Matrix, Number, Real, Symmetric, Vector};
@@ -455,7 +455,7 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
                 momenta = self.momenta::<M>(i, momentum);
             }
             if let Some(stress) = stress {
-                [forces, below] = self.forces::<M>(i, stress, &below);
+                (forces, below) = self.forces::<M>(i, stress, &below);
             }
             for j in 0..B::WIDTH {
                 for k in 0..Self::DEPTH {
@@ -511,10 +511,11 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
         i: usize,
         load: &[RowsOfLanes<V::Real>; 3],
         below: &Plane<B, V::Real, M::Wide>,
-    ) -> [Plane<B, V::Real, M::Wide>; 2] {
+    ) -> (Plane<B, V::Real, M::Wide>, Plane<B, V::Real, M::Wide>) {
         let [x, y, z] = [&self.shapes[0], &self.shapes[1], &self.shapes[D - 1]];
         // To the next plane of nodes, and within this one.
-        let [mut along_x, mut along_y, mut along_z] = [Plane::<B, V::Real, _>::all(Numbers::ZERO); 3];
+        let mut along_x = Plane::<B, V::Real, _>::all(Numbers::ZERO);
+        let [mut along_y, mut along_z] = [Neighbours::<B, V::Real, _>::all(Numbers::ZERO); 2];
         for j in 0..B::WIDTH {
             for k in 0..Self::DEPTH {
                 if i + 1 < B::WIDTH {
@@ -539,7 +540,7 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
                 }
             }
         }
-        let [mut right, mut back] = [Plane::<B, V::Real, _>::all(M::Wide::NOTHING); 2];
+        let [mut right, mut back] = [Neighbours::<B, V::Real, _>::all(M::Wide::NOTHING); 2];
         for pair in 0..self.pairs() {
             let (row_y, row_z) = (load[1].get::<M>(pair), load[2].get::<M>(pair));
             for n in 0..(B::WIDTH - 1) * Self::DEPTH {
@@ -569,7 +570,7 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
                 forces[n] = sum;
             }
         }
-        [forces, above]
+        (forces, above)
     }
 
     /// For particles that share their nodes, by weights and slopes node by node.
