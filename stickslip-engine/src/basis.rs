@@ -153,26 +153,6 @@ pub trait Basis<T: Real>: Copy + Send + Sync + 'static {
     /// Weights and slopes of a particle at `r` from its base node.
     fn shape<N: Number>(r: N, side: &BoxSide<N>) -> ShapeFunctions<N, Self::Width>;
 
-    /// Factors that make the affine part of a field of its values at the nodes of an axis [1/cell]:
-    ///
-    /// ```text
-    /// a_i = S_i (x_i - x_p) / sum_j S_j (x_j - x_p)^2
-    /// ```
-    #[inline(always)]
-    fn affine<N: Number>(shape: &ShapeFunctions<N, Self::Width>, r: N) -> Line<Self, T, N> {
-        let mut factors = Line::<Self, T, N>::all(N::ZERO);
-        let mut spread = N::ZERO;
-        for i in 0..Self::WIDTH {
-            let arm = N::of(i as f64) - r;
-            factors[i] = shape.weight[i] * arm;
-            spread += factors[i] * arm;
-        }
-        for i in 0..Self::WIDTH {
-            factors[i] /= spread;
-        }
-        factors
-    }
-
     /// Base node, weights and slopes of a particle at `x` with the half side `half` [cells].
     #[inline(always)]
     fn axis(x: T, half: T) -> Axis<T, Self::Width> {
@@ -189,12 +169,6 @@ impl<T: Real> Basis<T> for Linear {
     type Width = Two;
     const BOX_SPREAD: f64 = 0.0;
     type Table<N: Number, const D: usize> = ();
-
-    /// Slopes: the limit of the quotient where a particle sits on a node, and the same elsewhere.
-    #[inline(always)]
-    fn affine<N: Number>(shape: &ShapeFunctions<N, Two>, _r: N) -> [N; 2] {
-        [shape.slope(0), shape.slope(1)]
-    }
 
     #[inline(always)]
     fn reach<N: Number>(x: N, _half: N) -> N {
@@ -415,25 +389,6 @@ mod tests {
                 assert!(jump.abs() < 1e-8, "{node} {crossing}: {jump}");
             }
         }
-    }
-
-    /// A linear field u = 0.3 + 0.7 x of the nodes has this slope by the factors of APIC, too.
-    fn finds_the_affine_part<B: Basis<f64>>(half: f64) {
-        for i in 0..200 {
-            let x = 0.01 * f64::from(i) + 1e-3;
-            let axis = B::axis(x, half);
-            let factors = B::affine(&axis.shape, x - f64::from(axis.base));
-            let value = |k: usize| 0.3 + 0.7 * (f64::from(axis.base) + k as f64);
-            let found: f64 = (0..B::WIDTH).map(|k| factors[k] * value(k)).sum();
-            assert!((found - 0.7).abs() < 1e-12, "{x}: {found}");
-        }
-    }
-
-    #[test]
-    fn all_find_the_affine_part() {
-        finds_the_affine_part::<Linear>(0.25);
-        finds_the_affine_part::<Gimp>(0.25);
-        finds_the_affine_part::<Cubic>(1.0);
     }
 
     fn spreads_over_the_nodes<B: Basis<f64>>(half_sides: &[f64]) {

@@ -91,10 +91,12 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
             let moments = stencil.moments(&self.window.change, block);
             let torque = stencil.torque(&self.window.change, block);
             let gyration = self.body.gyration.squared(particle.half_width);
+            let spin = particle.spin;
             if has_spin(transfer) {
                 particle.spin += torque * (T::ONE / gyration);
             }
             let mut rate = self.strain_rate(index);
+            let given = skew(&spin) + rate.matrix();
             if transfer == Transfer::Apic {
                 rate += moments.symmetric_part() * (T::of(2.0) / gyration);
             }
@@ -111,7 +113,8 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
                 }
             }
             if transfer == Transfer::Apic {
-                let affine = stencil.affine(&self.window.integrated, block);
+                let others = stencil.moments(&self.window.integrated, block) - given * stencil.spread();
+                let affine = given + others * (T::ONE / inertia(gyration, &stencil.spread()));
                 particle.spin = half_curl(&affine);
                 rate = affine.symmetric_part();
             }
@@ -132,6 +135,14 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
                 let before = self.body.kinetic(particle);
                 let share = (T::of(0.3) * particle.spin.norm() * dt).min(T::ONE);
                 particle.spin += (half_curl(&gradient) - particle.spin) * share;
+                self.damped += (before - self.body.kinetic(particle)).f64();
+            }
+            if transfer == Transfer::Apic && !verbs.update_velocity && verbs.advect {
+                let before = self.body.kinetic(particle);
+                let given = skew(&particle.spin) + self.strain_rate(index).matrix();
+                let turned = given * stencil.moments(&self.window.flow, block).transpose();
+                let gyration = self.body.gyration.squared(particle.half_width);
+                particle.spin += half_curl(&turned) * (T::of(2.0) * dt / gyration);
                 self.damped += (before - self.body.kinetic(particle)).f64();
             }
             let increment = Matrix::IDENTITY + gradient * dt;
@@ -252,6 +263,13 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
 /// Mean of the normal stresses along the axes that there are [Pa].
 fn mean_stress<T: Real, const D: usize>(stress: &Symmetric<T>) -> T {
     (0..D).fold(T::ZERO, |sum, i| sum + stress.0[i]) / T::of(D as f64)
+}
+
+/// Inertia of the affine velocities around a particle, from the square of its radius of gyration and its spread over the
+/// nodes: at least 2/3 of the latter [m^2].
+fn inertia<T: Real>(gyration: T, spread: &Matrix<T>) -> T {
+    let rows = spread.0.map(|row| row.into_iter().fold(T::ZERO, |sum, entry| sum + entry.abs()));
+    rows.into_iter().fold(gyration * T::HALF, |most, row| most.max(row * T::of(2.0 / 3.0)))
 }
 
 /// Half of the curl of velocities with a gradient [rad/s].

@@ -262,23 +262,30 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
         self.sums(nodes, &arms)
     }
 
-    /// G2P: the same as [`Group::flow`], or h times the affine part of the velocities, [`Basis::affine`].
+    /// sum S_i (x_i - x_p) (x) (x_i - x_p) over h^2, embedded in space.
     #[inline(always)]
-    pub fn gradient(
-        &self,
-        nodes: &[NodeValues<V::Real>; WINDOW_NODES],
-        affine: bool,
-    ) -> (Matrix<V>, Vector<V, D>) {
+    pub fn spread(&self) -> Matrix<V> {
+        let mut spread = Matrix::<V>::ZERO;
         if B::CORNERS {
-            return if affine { self.affine_part(nodes) } else { self.sums_of_slopes(nodes) };
+            for (n, at) in Self::nodes() {
+                for a in 0..D {
+                    let share = self.table.weight(n) * (V::of(at[a] as f64) - self.r[a]);
+                    for b in 0..D {
+                        let arm = V::of(at[b] as f64) - self.r[b];
+                        spread.0[a][b] = share.times_plus(arm, spread.0[a][b]);
+                    }
+                }
+            }
+            return spread;
         }
-        let mut factors = self.slopes();
-        if affine {
-            for axis in 0..D {
-                factors[axis] = B::affine(&self.shapes[axis], self.r[axis]);
+        for axis in 0..D {
+            for i in 0..B::WIDTH {
+                let arm = V::of(i as f64) - self.r[axis];
+                let share = self.shapes[axis].weight[i] * arm;
+                spread.0[axis][axis] = share.times_plus(arm, spread.0[axis][axis]);
             }
         }
-        self.sums(nodes, &factors)
+        spread
     }
 
     /// Sums of v_i, by components, with the shape function's factor along each axis in turn replaced by another one,
@@ -366,27 +373,6 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
             }
         }
         (sums, sum)
-    }
-
-    /// h times the affine part of the velocities, (sum v_i (x) S_i (x_i - x_p)) (sum S_i (x_i - x_p) (x) (x_i -
-    /// x_p))^-1, whose second factor is not diagonal where a domain has turned.
-    #[inline(always)]
-    fn affine_part(&self, nodes: &[NodeValues<V::Real>; WINDOW_NODES]) -> (Matrix<V>, Vector<V, D>) {
-        let (moments, mean) = self.sums_of_arms(nodes);
-        let mut spread = Matrix::<V>::IDENTITY;
-        for a in 0..D {
-            spread.0[a][a] = V::ZERO;
-        }
-        for (n, at) in Self::nodes() {
-            for a in 0..D {
-                let share = self.table.weight(n) * (V::of(at[a] as f64) - self.r[a]);
-                for b in 0..D {
-                    let arm = V::of(at[b] as f64) - self.r[b];
-                    spread.0[a][b] = share.times_plus(arm, spread.0[a][b]);
-                }
-            }
-        }
-        (moments * spread.inverse(), mean)
     }
 
     /// P2G: adds what the particles scatter to the window, two particles at a time.

@@ -7,7 +7,7 @@
 //! |---|---|
 //! | [`Group::interpolate`] | G2P of velocities: sum S_i v_i, sum S_i dv_i |
 //! | [`Group::flow`] | G2P of the velocity gradient L, and of the velocity with it |
-//! | [`Group::moments`], [`Group::gradient`] | G2P of rotation and of affine velocities |
+//! | [`Group::moments`], [`Group::spread`] | G2P of rotation and of affine velocities |
 //! | [`Group::scatter`] | P2G of mass, momentum and force |
 //!
 //! Where shape functions are no product over the axes, `corners.rs` has them.
@@ -66,8 +66,8 @@ pub trait TransferRule {
     /// Whether these velocities are v(m) + dv of [`Xpic`].
     const FILTERS: bool = false;
 
-    /// Whether they take the gradient of the nodes' velocities from their moments, [`crate::basis::Basis::affine`], and
-    /// not by the gradients of the shape functions.
+    /// Whether they take the gradient of the nodes' velocities from their moments, by [`Apic::taken`], and not by the
+    /// gradients of the shape functions.
     const AFFINE: bool = false;
 
     /// G2P of the changes of the nodes' velocities: v_p += sum_i S_ip dv_i = `change`, and what else particles carry,

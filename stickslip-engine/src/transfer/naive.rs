@@ -170,21 +170,16 @@ impl<T: Real, const D: usize, B: Basis<T>> Stencil<T, D, B> {
         sum
     }
 
-    /// (sum v_i (x) S_i (x_i - x_p)) D^-1 with D = sum S_i (x_i - x_p) (x) (x_i - x_p); for linear functions, where D
-    /// may be zero, its limit L. Embedded in space [1/s].
-    pub fn affine(&self, nodes: &[NodeValues<T>; WINDOW_NODES], block: [i32; D]) -> Matrix<T> {
-        if B::WIDTH == 2 {
-            return self.velocity_gradient(nodes, block);
-        }
-        let mut spread = Matrix::IDENTITY;
-        (0..D).for_each(|i| spread.0[i][i] = T::ZERO);
-        self.each(block, |_, offset| {
+    /// D = sum S_i (x_i - x_p) (x) (x_i - x_p), embedded in space [m^2].
+    pub fn spread(&self) -> Matrix<T> {
+        let mut spread = Matrix::ZERO;
+        for offset in offsets::<D>(B::WIDTH) {
             let (weight, arm) = (self.at(offset).0, self.arm(offset));
             for i in 0..D {
                 (0..D).for_each(|j| spread.0[i][j] += weight * arm[i] * arm[j]);
             }
-        });
-        self.moments(nodes, block) * spread.inverse()
+        }
+        spread
     }
 
     /// L = sum v_i (x) grad S_i, embedded in space [1/s].

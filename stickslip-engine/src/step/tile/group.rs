@@ -12,7 +12,7 @@ use crate::particles::ColumnStart;
 use crate::step::pass::{FaultKind, Pass, Verbs, Visit};
 use crate::tensor::{Matrix, Real, Symmetric, Vector};
 use crate::transfer::{
-    Group, Momentum, ScatterTerms, Share, Start, TransferRule, VelocityState, convected_edges, extent,
+    Apic, Group, Momentum, ScatterTerms, Share, Start, TransferRule, VelocityState, convected_edges, extent,
     has_spin, is_affine, of_transfer,
 };
 
@@ -113,18 +113,26 @@ pub fn group<
     if !smooth && (update_velocity || gives_momentum || (update_stress && rotates)) {
         state.spin = members.spin::<V>();
     }
-    if !smooth && (update_velocity || gives_momentum) {
+    // By velocities of a second P2G, which are not quite their own.
+    let carries = advect && !update_velocity && is_affine(transfer);
+    if !smooth && (update_velocity || gives_momentum || carries) {
         state.strain_rate = members.strain_rate::<V>();
     }
     // v_p += sum S_i dv_i, or what else the transfer takes.
     if update_velocity {
         let scale = constants.cell / gyration_squared;
+        let given = of_transfer!(transfer, Rule => Rule::gradient::<V, D>(&state, V::ZERO));
         of_transfer!(transfer, Rule => Rule::take_change(&mut state, change, (&moments, scale)));
         if pic > T::ZERO {
             let before = kinetic(&state, gyration_squared);
-            let (gradient, mean) = group.gradient(&visit.window.integrated, is_affine(transfer));
-            let around = (mean, &(gradient * constants.per_cell));
-            of_transfer!(transfer, Rule => Rule::take_share(&mut state, around, V::splat(pic)));
+            let (gradient, mean) = if is_affine(transfer) {
+                let (moments, mean) = group.moments(&visit.window.integrated);
+                (Apic::taken(&given, (&moments, &group.spread()), (constants.cell, scale)), mean)
+            } else {
+                let (gradient, mean) = group.flow(&visit.window.integrated);
+                (gradient * constants.per_cell, mean)
+            };
+            of_transfer!(transfer, Rule => Rule::take_share(&mut state, (mean, &gradient), V::splat(pic)));
             damped = before - kinetic(&state, gyration_squared);
         }
         let VelocityState { velocity, spin, strain_rate } = &state;
@@ -158,7 +166,7 @@ pub fn group<
         (gradient, mean) = group.flow(&visit.window.flow);
     }
     if update_stress {
-        let scale = V::splat(dt) * constants.per_cell;
+        let step = V::splat(dt) * constants.per_cell;
         flow = mean;
         if !visit.means.is_empty() {
             let rate = group.interpolate_mean(&visit.window.flow) * constants.cell;
@@ -171,10 +179,15 @@ pub fn group<
             let spin = state.spin;
             let gradient = gradient * constants.per_cell;
             state.spin = of_transfer!(transfer, Rule => Rule::settle::<V, D>(spin, &gradient, V::splat(dt)));
+            if carries {
+                let (moments, _) = group.moments(&visit.window.flow);
+                state.spin =
+                    Apic::carried(&state, &moments, V::splat(dt) * constants.cell / gyration_squared);
+            }
             damped += gyration_squared * spin.dot(spin) - gyration_squared * state.spin.dot(state.spin);
             sound.require(finite(&state.spin.0), FaultKind::NotFinite);
         }
-        let increment = Matrix::IDENTITY + gradient * scale;
+        let increment = Matrix::IDENTITY + gradient * step;
         deformation = increment * deformation;
         jacobian = deformation.det();
         sound.require(finite(&[jacobian]), FaultKind::NotFinite);
@@ -213,7 +226,7 @@ pub fn group<
             // The forces of this step were made with the one before, those of the next are made with this one.
             let before = bulk * constants.per_density;
             bulk = over_density / (constants.per_density * jacobian);
-            damped -= (before * jacobian + over_density) * (rate * scale);
+            damped -= (before * jacobian + over_density) * (rate * step);
         }
         sound.require(finite(&stress.0), FaultKind::NotFinite);
         volume = members.load::<V>(ColumnStart::<D>::MASS) * constants.per_density * jacobian;

@@ -53,7 +53,7 @@ impl Reads {
             stress: verbs.update_stress
                 || verbs.scatter.is_some_and(|share| share.has_force() || share == Share::MeanStress),
             history: if verbs.update_stress || verbs.advect { columns.history() } else { 0 },
-            transfer: if verbs.update_velocity || gives_momentum {
+            transfer: if verbs.update_velocity || gives_momentum || verbs.advect {
                 columns.transfer_columns().len()
             } else {
                 0
