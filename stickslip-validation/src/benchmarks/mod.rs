@@ -8,6 +8,7 @@ mod b13_disk;
 mod b13_sphere;
 mod b14_partial_slip;
 mod b17_manufactured;
+mod b19_vortex;
 mod b1_incline;
 mod b20_spinning_disk;
 mod b21_cantilever;
@@ -79,6 +80,7 @@ pub static BENCHMARKS: &[Benchmark] = &[
     b14_partial_slip::BENCHMARK,
     b29_stack::BENCHMARK,
     b17_manufactured::BENCHMARK,
+    b19_vortex::BENCHMARK,
     b20_spinning_disk::BENCHMARK,
     spinning_ring::BENCHMARK,
     b21_cantilever::BENCHMARK,
