@@ -2,7 +2,9 @@
 
 use crate::is_one_in;
 use crate::template::Template;
+use flate2::bufread::ZlibDecoder;
 use sha2::{Digest, Sha256};
+use std::io::Read;
 use std::path::Path;
 use stickslip::door::View;
 use stickslip::march::March;
@@ -10,7 +12,7 @@ use stickslip::observe::{Checkpoint, Memory, OutputFolder, Recorder, state_sum};
 use stickslip::scene::StartVelocities;
 use stickslip::step::build;
 
-/// Bytes before what is written in MessagePack, and behind it.
+/// Bytes before the content, and behind it.
 const HEAD: usize = 25;
 const SUM: usize = 32;
 
@@ -18,7 +20,7 @@ const SUM: usize = 32;
 const REMEMBERED: u64 = 20;
 
 /// Reads a checkpoint: the first byte says whether the bytes behind it are all of it, or its content, to which the head
-/// and the sum are added.
+/// of version 1, which has it uncompressed, and the sum are added.
 pub fn run(bytes: &[u8]) {
     let Some((&way, content)) = bytes.split_first() else { return };
     let template = Template::get();
@@ -76,6 +78,7 @@ pub fn seeds() -> Vec<Vec<u8>> {
     let template = Template::get();
     let newest = Checkpoint::list(&template.path()).unwrap_or_else(|error| panic!("{error}")).swap_remove(0);
     let bytes = std::fs::read(newest).expect("it is there");
-    let content = &bytes[HEAD..bytes.len() - SUM];
-    vec![[&[0], &bytes[..]].concat(), [&[1], content].concat()]
+    let mut seed = vec![1];
+    ZlibDecoder::new(&bytes[HEAD..bytes.len() - SUM]).read_to_end(&mut seed).expect("it was compressed");
+    vec![[&[0], &bytes[..]].concat(), seed]
 }

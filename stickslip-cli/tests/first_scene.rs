@@ -181,3 +181,58 @@ fn doubtful_results_are_told_and_with_strict_are_an_error() {
     let sound = workplace.run(&[&["run", "scene.toml"][..], &sound].concat());
     assert_eq!(sound.code, Some(0), "{} {}", sound.stdout, sound.stderr);
 }
+
+/// 200 disks of 118 particles, which fall and lie for 0.15 s, leave at most 13 MB in a run that asks for no outputs: its
+/// pictures, its record and the checkpoint at its end included.
+#[test]
+fn two_hundred_disks_leave_thirteen_megabytes() {
+    let workplace = Workplace::new();
+    workplace.write(
+        "disks.toml",
+        r#"
+gravity = [0, "-9.81 m/s^2"]
+time.end = "0.15 s"
+parameters = { radius = "5 mm", width = "20 cm" }
+space = { dimension = "plane-strain", cell = "radius / 2.77" }
+materials.rubber = { density = "1000 kg/m^3", neo_hookean = { young_modulus = "25 kPa", poisson_ratio = 0.3 } }
+contact = [{ friction = 0.3 }]
+
+[[packings]]
+name = "disk"
+material = "rubber"
+shape.ball = { center = [0, 0], radius = "radius" }
+within.box = { min = [0, 0], max = ["width", "16 cm"] }
+count = 200
+
+[[bodies]]
+name = "walls"
+material = "rubber"
+rigid = {}
+shape.union = [
+    { half_space = { point = [0, 0], normal = [0, 1] } },
+    { half_space = { point = [0, 0], normal = [1, 0] } },
+    { half_space = { point = ["width", 0], normal = [-1, 0] } },
+]
+"#,
+    );
+    workplace.succeed(&["run", "disks.toml"]);
+    let mut parts = std::collections::BTreeMap::<String, u64>::new();
+    let mut folders = vec![workplace.path("disks.results")];
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(&folder).unwrap().map(Result::unwrap) {
+            if entry.path().is_dir() {
+                folders.push(entry.path());
+                continue;
+            }
+            let kind = entry.path().extension().unwrap_or_default().to_string_lossy().into_owned();
+            *parts.entry(kind).or_default() += entry.metadata().unwrap().len();
+        }
+    }
+    let all: u64 = parts.values().sum();
+    println!("{all} bytes: {parts:?}");
+    let run: serde_json::Value =
+        serde_json::from_slice(&fs::read(workplace.path("disks.results/run.json")).unwrap()).unwrap();
+    // Those of the walls among them.
+    assert!(run["performance"]["particles"].as_f64().unwrap() > 200.0 * 118.0);
+    assert!(all <= 13_000_000, "{all} bytes: {parts:?}");
+}

@@ -2,9 +2,10 @@
 //!
 //! ```text
 //! "stickslip checkpoint", a zero, the version of the format as u32, little-endian
-//! a map in MessagePack: program, scene, state, memory
+//! a map in MessagePack, compressed by zlib: program, scene, state, memory
 //! SHA-256 of all bytes before it
 //! ```
+//! In version 1 the map is not compressed.
 
 use super::CHECKPOINTS;
 use super::file::{OutputError, ReadError, ReadProblem, read_bytes, replace_for_good};
@@ -12,10 +13,13 @@ use super::folder::OutputFolder;
 use super::memory::{Memory, Values};
 use crate::door::{SavedColumn, SavedState, Simulation};
 use crate::scene::Scene;
+use flate2::Compression;
+use flate2::bufread::ZlibDecoder;
+use flate2::write::ZlibEncoder;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::fs;
-use std::io::{self, Write};
+use std::io::{self, BufReader, Write};
 use std::path::{Path, PathBuf};
 
 /// A moment of a run from which it can go on.
@@ -34,7 +38,7 @@ pub struct Checkpoint {
 /// The beginning of every checkpoint.
 const MAGIC: &[u8; 21] = b"stickslip checkpoint\0";
 /// The version of the format that is written; older ones are read.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 /// Bytes of a sum.
 const SUM: usize = 32;
 
@@ -79,8 +83,10 @@ impl Checkpoint {
             let mut summed = Summed { file, sum: Sha256::new() };
             summed.write_all(MAGIC)?;
             summed.write_all(&VERSION.to_le_bytes())?;
-            let mut encoder = rmp_serde::Serializer::new(&mut summed).with_struct_map();
+            let mut packed = ZlibEncoder::new(&mut summed, Compression::fast());
+            let mut encoder = rmp_serde::Serializer::new(&mut packed).with_struct_map();
             self.serialize(&mut encoder).map_err(io_error)?;
+            packed.finish()?;
             let Summed { file, sum } = summed;
             file.write_all(&sum.finalize())
         })
@@ -103,12 +109,16 @@ impl Checkpoint {
                 return Err(layout("it is damaged: its bytes do not add up to its sum"));
             }
             let version = content[MAGIC.len()..head].try_into().map(u32::from_le_bytes).unwrap_or_default();
-            if version != VERSION {
-                let found = format!("it is of version {version} of the format; this program reads {VERSION}");
-                return Err(ReadProblem::Layout(found));
-            }
-            rmp_serde::from_slice(&content[head..])
-                .map_err(|error| layout(&format!("it is damaged: {error}")))
+            let map = &content[head..];
+            let decoded = match version {
+                1 => rmp_serde::from_slice(map),
+                VERSION => rmp_serde::from_read(BufReader::new(ZlibDecoder::new(map))),
+                _ => {
+                    let known = format!("this program reads up to {VERSION}");
+                    return Err(layout(&format!("it is of version {version} of the format; {known}")));
+                }
+            };
+            decoded.map_err(|error| layout(&format!("it is damaged: {error}")))
         };
         read().map_err(|problem| problem.at(path))
     }

@@ -15,11 +15,11 @@ use crate::material::LAWS;
 
 /// Rows of each body in the tables of a run: as many where bodies are few, and down to so many where they are many, so
 /// that they make up no more than [`ALL_ROWS`].
-const ROWS: [f64; 2] = [200.0, 50.0];
-const ALL_ROWS: f64 = 10_000.0;
+const ROWS: [f64; 2] = [200.0, 30.0];
+const ALL_ROWS: f64 = 6_000.0;
 /// Snapshots of the particles in a run, likewise: of all bodies together no more than [`ALL_SNAPSHOTS`].
-const SNAPSHOTS: [f64; 2] = [20.0, 10.0];
-const ALL_SNAPSHOTS: f64 = 2_000.0;
+const SNAPSHOTS: [f64; 2] = [20.0, 4.0];
+const ALL_SNAPSHOTS: f64 = 800.0;
 /// Steps from one row of the tables to the next where the run ends at rest, long before its end, of few bodies.
 const ROW_STEPS: f64 = 100.0;
 /// Samples of probes, arrivals and fronts in a run.

@@ -275,14 +275,14 @@ fn intervals_of_outputs_follow_from_bodies_and_rest() {
     let few = &MANY[..MANY.find("[[packings]]").expect("it has some")];
     assert_eq!((outputs(few).tables, outputs(few).particles), (1.0 / 200.0, Some(1.0 / 20.0)));
     let many = MANY.replace("solid_fraction = 0.7", "count = 193");
-    assert_eq!((outputs(&many).tables, outputs(&many).particles), (1.0 / 50.0, Some(1.0 / 10.0)));
+    assert_eq!((outputs(&many).tables, outputs(&many).particles), (1.0 / 30.0, Some(1.0 / 4.0)));
     // 0.4 of the time in which a wave of sqrt(M / rho), M = 1.346 E, crosses a cell.
     let step = 0.4 * 1e-3 / (1e3_f64 * 0.7 / (1.3 * 0.4)).sqrt();
     let relaxed = |text: &str, end: &str| {
         outputs(&text.replace("time.end = 1", &format!("time = {{ end = {end}, relax = {{}} }}")))
     };
     assert!((relaxed(few, "1000").tables / (100.0 * step) - 1.0).abs() < 1e-12);
-    assert!((relaxed(&many, "1000").tables / (400.0 * step) - 1.0).abs() < 1e-12);
+    assert!((relaxed(&many, "1000").tables / (100.0 * 200.0 / 30.0 * step) - 1.0).abs() < 1e-12);
     assert_eq!(relaxed(few, "1e-4").tables, 1e-4 / 200.0);
     let asked = few.to_string() + "[outputs]\ntables = 2";
     assert_eq!(relaxed(&asked, "1000").tables, 2.0);

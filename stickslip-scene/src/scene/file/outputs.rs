@@ -19,14 +19,14 @@ table! {
     /// What is written, and how often, in simulated time.
     Outputs {
         /// Interval between rows of bodies.csv, energy.csv and contacts.csv [s]; by default 1/200 of the run,
-        /// with more than 50 bodies longer, 1/50 of it from 200 bodies on; with time.relax at most that of 100 steps,
-        /// or of up to 400 with as many bodies.
+        /// with more than 30 bodies longer, 1/30 of it from 200 bodies on; with time.relax at most that of 100 steps,
+        /// or of up to 667 with as many bodies.
         tables: Option<QuantityInput<Duration>>,
         /// Names of the bodies that have rows in bodies.csv, or patterns in which `*` is any letters; by default all.
         /// Bodies of [[references]] have them in any case.
         bodies: Option<Vec<Text>>,
         /// Interval between snapshots of the particles for ParaView [s], or "never"; by default 1/20 of the run, with
-        /// more than 100 bodies longer, 1/10 of it from 200 bodies on.
+        /// more than 40 bodies longer, 1/4 of it from 200 bodies on.
         particles: Option<Interval>,
         /// Times of further snapshots of the particles [s].
         particles_at: Option<Vec<QuantityInput<Duration>>>,
