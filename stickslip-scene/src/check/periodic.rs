@@ -3,7 +3,7 @@
 use super::bodies::FillingExtent;
 use super::table::short;
 use crate::geometry::{Bounds, Shape};
-use crate::scene::{BodyMotion, ContactLaw, Expression, JointKind, Problem, Scene};
+use crate::scene::{BodyMotion, Expression, JointKind, Problem, Scene};
 use std::borrow::Cow;
 
 /// A body leaves as much room as this between itself and its next image: nearer, they have nodes in common [cells].
@@ -21,7 +21,7 @@ pub(super) fn check(scene: &Scene, extents: &[FillingExtent]) -> Result<(), Prob
             if extent.bounds.is_finite() { bounded(scene, body, k)? } else { unbounded(scene, body, k)? }
         }
     }
-    if periodic.is_empty() { Ok(()) } else { rigid_pairs(scene, extents, &periodic) }
+    Ok(())
 }
 
 fn bounded(scene: &Scene, body: usize, k: usize) -> Result<(), Problem> {
@@ -124,35 +124,6 @@ fn is_endless(shape: &Shape, k: usize) -> bool {
         }
         _ => false,
     }
-}
-
-/// Surfaces of rigid bodies see each other where they are, and not their images; so one of two that may meet, one of
-/// them free, must be there everywhere.
-fn rigid_pairs(scene: &Scene, extents: &[FillingExtent], periodic: &[usize]) -> Result<(), Problem> {
-    let everywhere = |body: usize| {
-        let ends = scene.joined_ends(body);
-        !extents[body].bounds.is_finite() || periodic.iter().all(|&k| ends[k].is_some())
-    };
-    let joined = scene.joined_pairs();
-    let local: Vec<usize> =
-        (0..scene.bodies.len()).filter(|&body| scene.bodies[body].is_rigid() && !everywhere(body)).collect();
-    for (i, &b) in local.iter().enumerate() {
-        for &a in &local[..i] {
-            let touch =
-                scene.may_touch([a, b], &joined) && scene.contact_between(a, b).law != ContactLaw::None;
-            if touch {
-                let [first, second] = [a, b].map(|body| &scene.bodies[body].name);
-                return Err(Problem {
-                    key: format!("bodies[{b}].rigid"),
-                    found: format!("`{second}` and `{first}`, rigid bodies of which one is free, in a periodic domain"),
-                    allowed: "pairs of which one is as long as the period: others would miss each other at the faces"
-                        .to_string(),
-                    help: Some("let one of them deform, or give them the contact law \"none\"".to_string()),
-                });
-            }
-        }
-    }
-    Ok(())
 }
 
 /// A scene with the images of its bodies that come near others.

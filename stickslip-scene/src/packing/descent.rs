@@ -62,7 +62,7 @@ const SHAKE: f64 = 0.1;
 /// Grains times steps, those with points of their surfaces by half as many times as these are.
 const MOST_WORK: usize = 400_000_000;
 
-/// Longest time step where balls and other grains go down, and where they settle, over the period of a grain of
+/// Longest time step where balls and other grains go down, and where balls settle, over the period of a grain of
 /// stiffness 1 over its 2 pi.
 const LONGEST: [f64; 2] = [0.35, 0.15];
 const SETTLING_LONGEST: f64 = 0.5;
@@ -273,7 +273,9 @@ impl<'a> Descent<'a> {
     /// left on a grain, over its weight. Takes the steps from those that are `left`.
     fn fall(&mut self, weight: [f64; 3], most: usize, left: &mut usize) -> f64 {
         let mut roll = Roll::new(self);
-        roll.longest *= SETTLING_LONGEST / LONGEST[0];
+        if self.shape.points.is_empty() {
+            roll.longest *= SETTLING_LONGEST / LONGEST[0];
+        }
         let size = Vector(weight).norm();
         let mut largest = f64::INFINITY;
         for _ in 0..most {
@@ -282,6 +284,7 @@ impl<'a> Descent<'a> {
             for (Acting { force: Motion(force), .. }, grain) in acting.iter_mut().zip(&self.grains) {
                 let heavy = grain.scale.powi(self.packing.dimension as i32);
                 (0..3).for_each(|k| force[k] += heavy * weight[k]);
+                // Moments, over a part of the radius, among them.
                 let sum = force.iter().map(|f| f * f).sum::<f64>();
                 largest = largest.max(sum.sqrt() / (heavy * size));
             }

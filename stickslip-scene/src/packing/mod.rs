@@ -10,7 +10,7 @@
 //! of balls and 0.84 of disks of about two sizes, they find room; above it they jam, and that is an error. On the way
 //! each grain is a thousandth of its size larger than it is to be, so that nothing overlaps in the end, by no digit.
 //!
-//! Balls that are to settle then fall, down the same energy and that of their weight,
+//! Grains that are to settle then fall, down the same energy and that of their weight,
 //!
 //! ```text
 //! E = 1/2 sum over contacts k d^2 - sum over grains w a . x,    w ~ volume, a = the direction of falling
@@ -51,7 +51,7 @@ pub struct Packing<'a> {
     pub turned: bool,
     /// Distance that surfaces keep at least [m].
     pub gap: f64,
-    /// Unit vector along which the grains, balls, fall and come to rest; `None` where they stay wherever they are [-].
+    /// Unit vector along which the grains fall and come to rest; `None` where they stay wherever they are [-].
     pub settle: Option<[f64; 3]>,
     /// Another number, another packing.
     pub seed: u64,
@@ -122,8 +122,6 @@ pub enum NoPacking {
         /// Has room.
         room: f64,
     },
-    /// Grains that are to settle are no balls.
-    SettleOfNoBalls,
     /// They do not come to rest: the largest force that is left on one, over its weight [-].
     Restless(f64),
 }
@@ -151,9 +149,6 @@ impl Packing<'_> {
         let far = bounds.corners().flatten().fold(0.0, |far: f64, x| far.max(x.abs()));
         if far > MOST_RADII * shape.radius * self.sizes.range()[0] {
             return Err(NoPacking::Far);
-        }
-        if self.settle.is_some() && !shape.points.is_empty() {
-            return Err(NoPacking::SettleOfNoBalls);
         }
         let mut random = ChaCha8Rng::seed_from_u64(self.seed);
         let scales = self.scales(room / volume, &mut random)?;

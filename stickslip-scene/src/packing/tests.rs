@@ -1,4 +1,5 @@
 use super::*;
+use crate::tensor::Vector;
 use proptest::prelude::*;
 
 fn cube(side: f64) -> Shape {
@@ -323,9 +324,57 @@ fn settled_grains_rest_as_dense_as_random_packings_are() {
         pool.install(|| packing.place()).expect("room")
     };
     assert_eq!(with(1), with(3));
-    let square = Shape::rectangle([0.0; 2], [0.1, 0.1]);
-    let squares = Packing { settle, ..request(&container, &square, 0.3, 2) };
-    assert_eq!(squares.place(), Err(NoPacking::SettleOfNoBalls));
+}
+
+/// Squares, slabs and wedges in the plane, boxes and cans in space: settled, none overlaps, and each is held from below.
+#[test]
+fn grains_of_other_shapes_settle() {
+    let wedge = Shape::Polygon { points: vec![[0.0, 0.0], [0.06, 0.0], [0.0, 0.05]], height: [0.0, 0.04] };
+    let can = Shape::Cylinder { start: [0.0; 3], end: [0.0, 0.0, 0.06], radius: 0.02 };
+    let cases = [
+        (Shape::rectangle([0.0; 2], [0.04, 0.04]), 40, 2),
+        (Shape::rectangle([0.0; 2], [0.06, 0.02]), 40, 2),
+        (wedge, 40, 2),
+        (cube(0.05), 16, 3),
+        (can, 16, 3),
+    ];
+    for (grain, count, dimension) in cases {
+        let (container, up) = (cube(if dimension == 2 { 0.4 } else { 0.2 }), dimension - 1);
+        let along = std::array::from_fn(|k| if k == up { -1.0 } else { 0.0 });
+        let loose = Packing { amount: Amount::Count(count), ..request(&container, &grain, 0.3, dimension) };
+        let packing = Packing { settle: Some(along), ..loose.clone() };
+        let start = std::time::Instant::now();
+        let placements = packing.place().unwrap_or_else(|problem| panic!("{grain:?}: {problem:?}"));
+        let seconds = start.elapsed().as_secs_f64();
+        let height = |of: &[Placement]| of.iter().map(|p| p.position[up]).sum::<f64>() / count as f64;
+        let [before, after] = [height(&loose.place().expect("room")), height(&placements)];
+        let placed = shapes(&packing, &placements);
+        let bounds = container.bounds(dimension).expect("a box").grown(1.0);
+        let spacing = if dimension == 2 { 0.0008 } else { 0.002 };
+        let surfaces: Vec<Vec<[f64; 3]>> = placed
+            .iter()
+            .map(|a| a.surface(spacing, dimension, &bounds).into_iter().map(|point| point.position).collect())
+            .collect();
+        let moved = |x: &[f64; 3], by: f64| std::array::from_fn(|k| x[k] + by * along[k]);
+        let deepest = |i: usize, by: f64| {
+            let out = surfaces[i].iter().map(|x| container.distance(moved(x, by), dimension));
+            let others = (0..count).filter(|&j| j != i).flat_map(|j| {
+                let (a, b) = (&placed[i], &placed[j]);
+                let there = surfaces[i].iter().map(move |x| -b.distance(moved(x, by), dimension));
+                there.chain(surfaces[j].iter().map(move |x| -a.distance(moved(x, -by), dimension)))
+            });
+            out.chain(others).fold(f64::NEG_INFINITY, f64::max)
+        };
+        // As much as grains keep apart for what lies between the points of their surfaces, and somewhat more.
+        let radius = 0.5 * Vector(grain.bounds(dimension).expect("bounds").size()).norm();
+        let slack = radius * if dimension == 2 { 0.06 } else { 0.2 };
+        let overlap = (0..count).map(|i| deepest(i, 0.0)).fold(f64::NEG_INFINITY, f64::max);
+        let held = (0..count).filter(|&i| deepest(i, slack) > 0.0).count();
+        println!(
+            "{count} of {grain:?} in {seconds:.1} s: from {before:.3} to {after:.3} m, {held} held, overlap {overlap:.1e}"
+        );
+        assert!(overlap < 1e-9 && held == count && after < 0.8 * before, "{grain:?}");
+    }
 }
 
 /// Some eighty disks or twenty balls upon each other.

@@ -250,6 +250,11 @@ impl Pose {
         self.start
     }
 
+    /// The same, moved on [m].
+    pub fn moved(&self, by: [f64; 3]) -> Pose {
+        Pose { center: std::array::from_fn(|k| self.center[k] + by[k]), ..*self }
+    }
+
     /// Where a point of the body is now that was at `place` at the start [m].
     pub fn now(&self, place: [f64; 3]) -> [f64; 3] {
         let turn = &self.orientation.0;

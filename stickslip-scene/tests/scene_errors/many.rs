@@ -381,11 +381,6 @@ fn mistakes() {
                 "29:10: packings[0].settle: found [0, 0]; allowed: a direction: a vector that is not zero",
             ),
             (
-                "shape.ball = { center = [0, 0], radius = \"1 mm\" }\nsizes = { uniform = [0.9, 1.1] }",
-                "shape.box = { min = [0, 0], max = [\"2 mm\", \"2 mm\"] }\nsettle = [0, -1]",
-                "26:10: packings[0].settle: found a packing of other shapes that is to settle; allowed: `settle` with shape.ball; other grains settle in a run of their own, see [start]",
-            ),
-            (
                 "solid_fraction = 0.7",
                 "solid_fraction = 1.2",
                 "28:18: packings[0].solid_fraction: found 1.2; allowed: a number above 0 and below 1",

@@ -294,7 +294,8 @@ impl<T: Real, const D: usize> Coupling<'_, T, D> {
         surfaces.contacts(bodies, self.solve.rules, dt).iter().any(|contact| {
             let motions = contact.bodies.map(|body| bodies[body].motion.as_ref().expect("it is rigid"));
             let velocities = motions.map(|motion| join(motion.velocity(), motion.spin()));
-            let relative = contact.relative(velocities.each_ref(), motions.map(|motion| motion.center));
+            let centers = contact.centers(motions.map(|motion| motion.center));
+            let relative = contact.relative(velocities.each_ref(), centers);
             let after = contact.gap + Vector(relative).dot(Vector(contact.normal)) * dt;
             let slots = contact.bodies.iter().filter_map(|body| mechanism.slot(*body));
             let radius = slots.map(|slot| mechanism.bodies[slot].radius).fold(f64::INFINITY, f64::min);
@@ -315,7 +316,8 @@ impl<T: Real, const D: usize> Coupling<'_, T, D> {
                 None => join(motions[side].velocity(), motions[side].spin()),
             });
             let [a, b] = contact.bodies;
-            let (rule, centers) = (rules.rule(rules.number(a, b)), motions.map(|motion| motion.center));
+            let centers = contact.centers(motions.map(|motion| motion.center));
+            let rule = rules.rule(rules.number(a, b));
             mechanism.touches.push(Touch::new(
                 contact,
                 rule,

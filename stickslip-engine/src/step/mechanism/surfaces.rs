@@ -62,6 +62,10 @@ pub struct RigidSurfaces {
     all: Vec<RigidSurface>,
     /// Bodies that a joint holds together do not touch each other.
     joined: HashSet<[usize; 2]>,
+    /// After which length everything repeats along each axis [m]; 0 where nothing does.
+    periods: [f64; 3],
+    /// Lower corner of the domain, from which the first period begins [m].
+    corner: [f64; 3],
     dimension: usize,
 }
 
@@ -70,7 +74,9 @@ pub struct RigidSurfaces {
 pub struct RigidContact {
     /// Indices of the bodies, the smaller first.
     pub bodies: [usize; 2],
-    /// Where [m].
+    /// From the second body to that of its images in a periodic domain which touches [m].
+    pub away: [f64; 3],
+    /// Where, on the first body and that image [m].
     pub place: [f64; 3],
     /// Unit normal from the second body to the first.
     pub normal: [f64; 3],
@@ -119,7 +125,9 @@ impl RigidSurfaces {
         let joined = (scene.joints.iter().filter(|joint| joint.holds()))
             .filter_map(|joint| Some([joint.body.min(joint.to?), joint.body.max(joint.to?)]))
             .collect();
-        RigidSurfaces { all: rigid.map(surface).collect(), joined, dimension: axes }
+        let corner = scene.domain.as_ref().map_or([0.0; 3], |domain| domain.min);
+        let (all, periods) = (rigid.map(surface).collect(), scene.periods());
+        RigidSurfaces { all, joined, periods, corner, dimension: axes }
     }
 
     /// Whether a rigid body is a ball or a disk, whose turn says nothing of where its surface is.
@@ -142,25 +150,86 @@ impl RigidSurfaces {
         let placed: Vec<PlacedSurface<T, D>> =
             self.all.iter().map(|surface| PlacedSurface::new(surface, &bodies[surface.body], dt)).collect();
         // Along x, then by the balls around them.
-        let mut order: Vec<usize> = (0..placed.len()).collect();
-        let lower = |i: usize| placed[i].center[0] - placed[i].reach - placed[i].way;
-        order.sort_by(|&i, &j| lower(i).total_cmp(&lower(j)));
-        let mut found = Vec::new();
-        for (rank, &i) in order.iter().enumerate() {
-            let upper = placed[i].center[0] + placed[i].reach + placed[i].way;
-            for &j in order[rank + 1..].iter().take_while(|&&j| lower(j) <= upper) {
-                let pair = [&placed[i.min(j)], &placed[i.max(j)]];
+        let order = self.along_x(&placed);
+        let (mut found, mut seen) = (Vec::new(), HashSet::new());
+        for (rank, one) in order.iter().enumerate() {
+            for other in order[rank + 1..].iter().take_while(|other| other.lower <= one.upper) {
+                let [i, j] = [one.place.min(other.place), one.place.max(other.place)];
+                let pair = [&placed[i], &placed[j]];
                 let [a, b] = pair.map(|placed| placed.surface.body);
                 let free = pair.iter().any(|placed| placed.motion.as_free().is_some());
                 let acts = || rules.rule(rules.number(a, b)).law != ContactLaw::None;
-                if free && may_touch(pair) && !self.joined.contains(&[a, b]) && acts() {
-                    self.between(pair, &mut found);
+                let near = i != j && free && may_touch(pair, self.nearest(pair));
+                // Where there are images, a pair may be met twice.
+                let mut met = || self.periods[0] > 0.0 && !seen.insert([i, j]);
+                if near && !self.joined.contains(&[a, b]) && acts() && !met() {
+                    self.between_images(pair, &mut found);
                 }
             }
         }
         // The sort is stable: contacts of a pair stay in the order in which they were found.
         found.sort_by_key(|contact| contact.bodies);
         found
+    }
+
+    /// The parts of x that surfaces and, across its faces, their images take, in ascending order of where they begin.
+    fn along_x<T: Real, const D: usize>(&self, placed: &[PlacedSurface<T, D>]) -> Vec<AlongX> {
+        let (period, corner) = (self.periods[0], self.corner[0]);
+        let mut all = Vec::with_capacity(placed.len());
+        for (place, surface) in placed.iter().enumerate() {
+            let half = surface.reach + surface.way;
+            let RigidSurface { reach, .. } = *surface.surface;
+            let part =
+                |x: f64| AlongX { lower: x - reach - surface.way, upper: x + reach + surface.way, place };
+            let x = surface.center[0];
+            if period == 0.0 || !half.is_finite() {
+                all.push(part(x));
+            } else if surface.body.whole.is_joined(0) {
+                all.push(AlongX { lower: f64::NEG_INFINITY, upper: f64::INFINITY, place });
+            } else {
+                let x = corner + (x - corner).rem_euclid(period);
+                all.push(part(x));
+                all.extend((x - half < corner).then(|| part(x + period)));
+                all.extend((x + half > corner + period).then(|| part(x - period)));
+            }
+        }
+        all.sort_by(|a, b| a.lower.total_cmp(&b.lower));
+        all
+    }
+
+    /// From the second of two bodies to its image that is nearest to the first [m]. What has no bounds is everywhere.
+    fn nearest<T, const D: usize>(&self, [a, b]: [&PlacedSurface<T, D>; 2]) -> [f64; 3] {
+        let bounded = a.reach.is_finite() && b.reach.is_finite();
+        std::array::from_fn(|k| match self.periods[k] {
+            period if period > 0.0 && bounded => -period * ((b.center[k] - a.center[k]) / period).round(),
+            _ => 0.0,
+        })
+    }
+
+    /// Contacts of the first body with all images of the second one that it may touch: where both end along an axis,
+    /// these are on both sides, if they are long.
+    fn between_images<T: Real, const D: usize>(
+        &self,
+        [a, b]: [&PlacedSurface<T, D>; 2],
+        found: &mut Vec<RigidContact>,
+    ) {
+        let mut ways = vec![self.nearest([a, b])];
+        for axis in (0..D).filter(|&axis| self.periods[axis] > 0.0) {
+            let ends = [a, b].iter().all(|one| one.reach.is_finite() && !one.body.whole.is_joined(axis));
+            for number in 0..if ends { ways.len() } else { 0 } {
+                for period in [-self.periods[axis], self.periods[axis]] {
+                    let mut next = ways[number];
+                    next[axis] += period;
+                    ways.push(next);
+                }
+            }
+        }
+        for away in ways.into_iter().filter(|away| may_touch([a, b], *away)) {
+            match away {
+                [0.0, 0.0, 0.0] => self.between([a, b], found),
+                _ => self.between([a, &b.moved(away)], found),
+            }
+        }
     }
 
     fn between<T: Sync, const D: usize>(
@@ -200,7 +269,7 @@ impl RigidSurfaces {
                 // In the middle between the surfaces, where either body's points find the same place.
                 let place = (place - normal * (0.5 * level.distance)).0;
                 let normal = normal.0.map(|n| sign * n);
-                let contact = RigidContact { bodies, place, normal, gap: level.distance };
+                let contact = RigidContact { bodies, away: b.away, place, normal, gap: level.distance };
                 (level.distance <= margin).then_some(contact)
             };
             let points = &one.surface.points;
@@ -218,10 +287,10 @@ fn margin<T, const D: usize>([a, b]: [&PlacedSurface<T, D>; 2]) -> f64 {
     AHEAD * (a.way + b.way)
 }
 
-/// Whether the balls around two surfaces are near enough.
-fn may_touch<T, const D: usize>(pair: [&PlacedSurface<T, D>; 2]) -> bool {
+/// Whether the balls around a surface and an image of another one, so far from that [m], are near enough.
+fn may_touch<T, const D: usize>(pair: [&PlacedSurface<T, D>; 2], away: [f64; 3]) -> bool {
     let [a, b] = pair;
-    let square: f64 = (0..D).map(|k| (a.center[k] - b.center[k]).powi(2)).sum();
+    let square: f64 = (0..D).map(|k| (a.center[k] - (b.center[k] + away[k])).powi(2)).sum();
     square <= (a.reach + b.reach + margin(pair)).powi(2)
 }
 
@@ -237,15 +306,26 @@ fn between_balls<T, const D: usize>(
     let middle = (Vector(b.center) + normal * (s + 0.5 * gap)).0;
     // A disk is as high as its centre of mass.
     let place = std::array::from_fn(|k| if k < D { middle[k] } else { b.motion.center[k] });
-    Some(RigidContact { bodies: [a, b].map(|placed| placed.surface.body), place, normal: normal.0, gap })
+    let bodies = [a, b].map(|placed| placed.surface.body);
+    Some(RigidContact { bodies, away: b.away, place, normal: normal.0, gap })
 }
 
-/// A surface where its body is now.
+/// A part of x in which a surface, or an image of it, is.
+struct AlongX {
+    lower: f64,
+    upper: f64,
+    /// Place of the surface among all of them.
+    place: usize,
+}
+
+/// A surface where its body, or an image of it in a periodic domain, is now.
 struct PlacedSurface<'a, T, const D: usize> {
     surface: &'a RigidSurface,
     body: &'a Body<T, D>,
     motion: &'a RigidMotion,
     pose: Pose,
+    /// From the body to the image [m].
+    away: [f64; 3],
     center: [f64; 3],
     reach: f64,
     /// The longest way of its points in the step [m].
@@ -258,7 +338,14 @@ impl<'a, T, const D: usize> PlacedSurface<'a, T, D> {
         let pose = motion.pose();
         let (center, reach) = (pose.now(surface.center), surface.reach);
         let way = surface.way((motion, center), dt);
-        PlacedSurface { surface, body, motion, pose, center, reach, way }
+        PlacedSurface { surface, body, motion, pose, away: [0.0; 3], center, reach, way }
+    }
+
+    /// An image of it.
+    fn moved(&self, away: [f64; 3]) -> Self {
+        let center = std::array::from_fn(|k| self.center[k] + away[k]);
+        let PlacedSurface { surface, body, motion, pose, reach, way, .. } = *self;
+        PlacedSurface { surface, body, motion, pose: pose.moved(away), away, center, reach, way }
     }
 
     /// Its radius, if it is a ball or a disk and not joined to itself [m].
@@ -384,7 +471,13 @@ fn around(tangents: &[[f64; 3]]) -> Vec<[f64; 3]> {
 }
 
 impl RigidContact {
-    /// Velocity of the first body against the second there [m/s].
+    /// Where the centres of the first body and of the second one's image are [m].
+    pub fn centers(&self, [a, b]: [[f64; 3]; 2]) -> [[f64; 3]; 2] {
+        [a, std::array::from_fn(|k| b[k] + self.away[k])]
+    }
+
+    /// Velocity of the first body against the second there, with these centres as [`RigidContact::centers`] gives them
+    /// [m/s].
     pub fn relative(&self, velocities: [&super::Six; 2], centers: [[f64; 3]; 2]) -> [f64; 3] {
         let [v, w] = [0, 1].map(|side| {
             let [v, spin] = super::six::parts(*velocities[side]);

@@ -37,8 +37,8 @@ table! {
         /// Distance that grains keep at least from each other and from the container [m].
         #[schemars(extend("default" = 0))]
         gap: Option<QuantityInput<Length>>,
-        /// Lets the grains, disks or balls, fall along this direction, of any length, and come to rest on each other and
-        /// on the container, without friction: settle = [0, -1]. By default they stay at their random places.
+        /// Lets the grains fall along this direction, of any length, and come to rest on each other and on the container,
+        /// without friction: settle = [0, -1]. By default they stay at their random places.
         settle: Option<VectorInput<Ratio>>,
         /// Whether each grain is turned at random.
         #[schemars(extend("default" = "random"))]
@@ -179,15 +179,11 @@ impl Packing {
                 )
                 .help(Some(help))
             }
-            NoPacking::SettleOfNoBalls => Fault::new(
-                &key("settle"),
-                "a packing of other shapes that is to settle",
-                "`settle` with shape.ball; other grains settle in a run of their own, see [start]",
-            ),
             NoPacking::Restless(left) => Fault::new(
                 &key("settle"),
                 format!("grains that do not come to rest: a force of {left:.2} weights is left on one"),
-                "grains that rest: some thousands; more settle in a run of their own, see [start]",
+                "grains that rest: some thousands of balls, some hundreds of other shapes; more settle in a run of \
+                 their own, see [start]",
             ),
             NoPacking::Overfull(ratio) => {
                 let gap = if self.gap.is_some() { ", with half of the gap around each" } else { "" };
