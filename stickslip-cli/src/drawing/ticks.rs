@@ -49,9 +49,11 @@ pub fn prefix(magnitude: f64) -> Prefix {
     Prefix { letter, factor: 10f64.powi(exponent) }
 }
 
-/// The prefix for an axis up to this magnitude: none where the numbers read well without, or where there is no unit.
+/// The prefix for an axis up to this magnitude: none where the numbers read well without, where there is no unit, or
+/// where it has one.
 pub fn axis_prefix(magnitude: f64, unit: &str) -> Prefix {
-    if unit.is_empty() || (0.05..1000.0).contains(&magnitude) { prefix(1.0) } else { prefix(magnitude) }
+    let bare = unit.is_empty() || unit.starts_with("kg");
+    if bare || (0.05..1000.0).contains(&magnitude) { prefix(1.0) } else { prefix(magnitude) }
 }
 
 #[cfg(test)]
@@ -77,5 +79,6 @@ mod tests {
         assert_eq!(prefix(999.0).letter, "");
         assert_eq!(prefix(0.02).letter, "m");
         assert_eq!(prefix(0.0).letter, "");
+        assert_eq!(["Pa", "kg/m³", ""].map(|unit| axis_prefix(2.5e3, unit).letter), ["k", "", ""]);
     }
 }

@@ -162,6 +162,27 @@ pub fn moment_of_mill(results: &Results) -> Measured {
     Ok(moment / mean(balls.map(|row| -row.mass * GRAVITY * row.position[0])))
 }
 
+/// Contacts between unlike grains of a mixer over those of a random mixture, half of all [-], in the last second; not a
+/// number if the paddle's work, the moment on it times its speed, is not that of the ledger within a hundredth.
+pub fn mixing_of_grains(results: &Results) -> Measured {
+    /// Of the paddle [rad/s].
+    const SPEED: f64 = std::f64::consts::PI;
+    let energy = results.energy_table()?;
+    let steady = || energy.iter().filter(|row| row.time >= 1.0);
+    let ends = (steady().next(), steady().next_back());
+    let (Some(first), Some(last)) = ends else { return Ok(f64::NAN) };
+    let reactions = results.reactions_table()?;
+    let moment = mean(reactions.iter().filter(|row| row.time > first.time).map(|row| row.moment[2]));
+    let work = SPEED * moment * (last.time - first.time);
+    let booked = last.ledger.external_work - first.ledger.external_work;
+    let contacts = results.contacts_table()?;
+    let kind = |name: &str| ["left", "right"].iter().position(|kind| name.starts_with(kind));
+    let pairs = contacts.iter().filter(|row| row.time > last.time - 1.0);
+    let pairs = pairs.filter_map(|row| Some([kind(&row.body_a)?, kind(&row.body_b)?]));
+    let unlike = mean(pairs.map(|[a, b]| f64::from(u8::from(a != b))));
+    Ok(if (work / booked - 1.0).abs() < 0.01 { unlike / 0.5 } else { f64::NAN })
+}
+
 /// Power that a pair of gears of 18 and 27 teeth gives to its brake over that of its motor [-], from a fifth of the run
 /// on; not a number if their mean speeds have not the ratio of the teeth within 1e-3.
 pub fn efficiency_of_gears(results: &Results) -> Measured {

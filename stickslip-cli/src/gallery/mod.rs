@@ -123,6 +123,11 @@ pub const EXHIBITS: &[Exhibit] = exhibits! {
         seconds: 60.0, look: [], picture: "560x560", animation: "360x360",
         check: "the motor's moment over that of the balls' weight", moment_of_mill, [0.93, 1.07]
     }
+    "mixer" [] {
+        seconds: 35.0, look: ["--color", "density", "--range", "2500,2600", "--hide", "legend"],
+        picture: "480x480", animation: "300x300",
+        check: "contacts of unlike grains over those by chance", mixing_of_grains, [0.8, 1.05]
+    }
     "gears" ["pinion.stl", "gear.stl"] {
         seconds: 60.0, look: [], picture: "560x340", animation: "420x255",
         check: "power of the brake over that of the motor", efficiency_of_gears, [0.965, 0.985]

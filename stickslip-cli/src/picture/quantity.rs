@@ -38,6 +38,8 @@ pub enum ColorQuantity {
     Yz,
     /// Shear stress in the plane of x and z
     Xz,
+    /// Mass over volume now, which tells materials apart
+    Density,
     /// Volume over undeformed volume
     Jacobian,
     /// What a material's law remembers, by the name of its column: a number itself,
@@ -102,6 +104,7 @@ impl ColorQuantity {
                 let [x, y, z] = particles.velocity[i];
                 [x, y, z, 0.0, 0.0, 0.0]
             }
+            ColorQuantity::Density => [particles.mass[i] / particles.volume[i], 0.0, 0.0, 0.0, 0.0, 0.0],
             ColorQuantity::Jacobian => [determinant(&particles.deformation[i]), 0.0, 0.0, 0.0, 0.0, 0.0],
             ColorQuantity::History(name) => {
                 let value = particles.remembered(name).map_or(0.0, |column| column.magnitude(i));
@@ -120,6 +123,7 @@ impl ColorQuantity {
             ColorQuantity::Body
             | ColorQuantity::Vx
             | ColorQuantity::Xx
+            | ColorQuantity::Density
             | ColorQuantity::Jacobian
             | ColorQuantity::History(_) => parts[0],
             ColorQuantity::Vy | ColorQuantity::Yy => parts[1],
@@ -152,6 +156,7 @@ impl ColorQuantity {
             ColorQuantity::Xy => ("stress xy", "Pa"),
             ColorQuantity::Yz => ("stress yz", "Pa"),
             ColorQuantity::Xz => ("stress xz", "Pa"),
+            ColorQuantity::Density => ("density", "kg/m³"),
             ColorQuantity::Jacobian => ("volume ratio J", ""),
             ColorQuantity::History(name) => {
                 let unit = particles.remembered(name).map_or("", |column| &column.unit);
@@ -202,7 +207,10 @@ impl ColorQuantity {
     /// Where the colours come from if values go down to this.
     fn kind(&self, low: f64) -> ColorSource {
         match self {
-            ColorQuantity::Body | ColorQuantity::Velocity | ColorQuantity::VonMises => ColorSource::Magnitude,
+            ColorQuantity::Body
+            | ColorQuantity::Velocity
+            | ColorQuantity::VonMises
+            | ColorQuantity::Density => ColorSource::Magnitude,
             ColorQuantity::History(_) if low >= 0.0 => ColorSource::Magnitude,
             ColorQuantity::Jacobian => ColorSource::Around(1.0),
             _ => ColorSource::Around(0.0),

@@ -83,11 +83,11 @@ def render(results: Results | Folder, *, out: Folder | None = None, **options: A
     """Draws a snapshot of a run, the last without `frame` or `time`; `stickslip render --help` lists the options.
 
     `color` is "body" by default, or "velocity" (the speed), "vx", "vy", "vz", "pressure", "von_mises", a component of
-    stress as "xx", "jacobian", or what a law remembers. By body, round bodies, rings among them, have quarters in two
-    shades, so that turning shows. Further options are `range=(-1e5, 1e5)`, `view=(30, 10)`, `size="1200x800"`,
-    `window=("-2 cm", 0, "2 cm", "4 cm")`, `background="transparent"`, `contours=8`, `vectors="velocity"`,
-    `hide=("title", "axes")`, `animate=True`, ... Where `out` ends in .glb it is the surfaces of bodies in space, as a
-    model in glTF. Without `out` it is DIR/picture.png, of an animation DIR/animation.png.
+    stress as "xx", "density", "jacobian", or what a law remembers. By body, round bodies, rings among them, have
+    quarters in two shades, so that turning shows. Further options are `range=(-1e5, 1e5)`, `view=(30, 10)`,
+    `size="1200x800"`, `window=("-2 cm", 0, "2 cm", "4 cm")`, `background="transparent"`, `contours=8`,
+    `vectors="velocity"`, `hide=("title", "axes")`, `animate=True`, ... Where `out` ends in .glb it is the surfaces of
+    bodies in space, as a model in glTF. Without `out` it is DIR/picture.png, of an animation DIR/animation.png.
     """
     folder = _folder(results)
     name = "animation.png" if options.get("animate") else "picture.png"
