@@ -58,7 +58,7 @@ fn boxes_that_keep_their_width_are_of_second_order_until_their_width_counts() {
 #[test]
 fn domains_that_stretch_are_of_second_order() {
     let orders = orders(&errors("B17", Tier::Full, "cpdi"));
-    assert!(orders.into_iter().all(|order| order >= 1.8), "{orders:?}");
+    assert!(orders.iter().all(|&order| order >= 1.8), "{orders:?}");
 }
 
 #[test]

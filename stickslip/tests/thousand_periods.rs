@@ -409,10 +409,13 @@ fn silently_missed(name: &str, stuff: &Stuff, trial: &Trial) -> Option<String> {
     (told.is_empty() && !answers.iter().all(reached)).then_some(line)
 }
 
+/// What makes a trial of what.
+type Maker = fn(&Stuff) -> Trial;
+
 #[test]
 #[ignore = "slow: seven minutes"]
 fn answers_stay_for_a_thousand_periods_or_the_run_says_that_they_do_not() {
-    let trials: [(&str, fn(&Stuff) -> Trial); 8] = [
+    let trials: [(&str, Maker); 8] = [
         ("hang", hang),
         ("hold", hold),
         ("stretch", stretch),

@@ -142,6 +142,9 @@ pub struct Momentum<V, const D: usize> {
     pub mass: V,
 }
 
+/// An entry for each node of one plane, and of another.
+type TwoPlanes<B, T, X> = (Plane<B, T, X>, Plane<B, T, X>);
+
 /// Place of the last base node that a particle may have in a window with this side.
 #[inline(always)]
 const fn last_start(dimension: usize, window: usize) -> usize {
@@ -497,7 +500,7 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
         i: usize,
         load: &[RowsOfLanes<V::Real>; 3],
         below: &Plane<B, V::Real, M::Wide>,
-    ) -> (Plane<B, V::Real, M::Wide>, Plane<B, V::Real, M::Wide>) {
+    ) -> TwoPlanes<B, V::Real, M::Wide> {
         let [x, y, z] = [&self.shapes[0], &self.shapes[1], &self.shapes[D - 1]];
         // To the next plane of nodes, and within this one.
         let mut along_x = Plane::<B, V::Real, _>::all(Numbers::ZERO);

@@ -2,10 +2,10 @@
 //!
 //! ```text
 //! "stickslip checkpoint", a zero, the version of the format as u32, little-endian
-//! a map in MessagePack, compressed by zlib: program, scene, state, memory
+//! a map in MessagePack: program, scene, state, memory
 //! SHA-256 of all bytes before it
 //! ```
-//! In version 1 the map is not compressed.
+//! In version 2 the map is compressed by zlib, in version 1 it is not; both are written.
 
 use super::CHECKPOINTS;
 use super::file::{OutputError, ReadError, ReadProblem, read_bytes, replace_for_good};
@@ -37,8 +37,9 @@ pub struct Checkpoint {
 
 /// The beginning of every checkpoint.
 const MAGIC: &[u8; 21] = b"stickslip checkpoint\0";
-/// The version of the format that is written; older ones are read.
-const VERSION: u32 = 2;
+/// Versions of the format, by whether the map is compressed.
+const PLAIN: u32 = 1;
+const PACKED: u32 = 2;
 /// Bytes of a sum.
 const SUM: usize = 32;
 
@@ -79,17 +80,39 @@ impl Checkpoint {
     /// # Errors
     /// The disk is full or refuses; then nothing is left of it.
     pub fn write(&self, path: &Path) -> Result<(), OutputError> {
+        self.write_as(PLAIN, path, |file| self.encode(file))
+    }
+
+    /// The same with its content compressed, which takes longer.
+    ///
+    /// # Errors
+    /// As [`Checkpoint::write`].
+    pub fn write_packed(&self, path: &Path) -> Result<(), OutputError> {
+        self.write_as(PACKED, path, |file| {
+            let mut packed = ZlibEncoder::new(file, Compression::fast());
+            self.encode(&mut packed)?;
+            packed.finish().map(drop)
+        })
+    }
+
+    fn write_as(
+        &self,
+        version: u32,
+        path: &Path,
+        write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+    ) -> Result<(), OutputError> {
         replace_for_good(path, |file| {
             let mut summed = Summed { file, sum: Sha256::new() };
             summed.write_all(MAGIC)?;
-            summed.write_all(&VERSION.to_le_bytes())?;
-            let mut packed = ZlibEncoder::new(&mut summed, Compression::fast());
-            let mut encoder = rmp_serde::Serializer::new(&mut packed).with_struct_map();
-            self.serialize(&mut encoder).map_err(io_error)?;
-            packed.finish()?;
+            summed.write_all(&version.to_le_bytes())?;
+            write(&mut summed)?;
             let Summed { file, sum } = summed;
             file.write_all(&sum.finalize())
         })
+    }
+
+    fn encode(&self, file: &mut dyn Write) -> io::Result<()> {
+        self.serialize(&mut rmp_serde::Serializer::new(file).with_struct_map()).map_err(io_error)
     }
 
     /// Reads one.
@@ -111,10 +134,10 @@ impl Checkpoint {
             let version = content[MAGIC.len()..head].try_into().map(u32::from_le_bytes).unwrap_or_default();
             let map = &content[head..];
             let decoded = match version {
-                1 => rmp_serde::from_slice(map),
-                VERSION => rmp_serde::from_read(BufReader::new(ZlibDecoder::new(map))),
+                PLAIN => rmp_serde::from_slice(map),
+                PACKED => rmp_serde::from_read(BufReader::new(ZlibDecoder::new(map))),
                 _ => {
-                    let known = format!("this program reads up to {VERSION}");
+                    let known = format!("this program reads {PLAIN} and {PACKED}");
                     return Err(layout(&format!("it is of version {version} of the format; {known}")));
                 }
             };

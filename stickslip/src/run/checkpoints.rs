@@ -117,6 +117,15 @@ pub enum ResumeError {
     },
 }
 
+/// When a checkpoint is made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Moment {
+    /// While the run goes on.
+    OnTheWay,
+    /// Where it ends.
+    End,
+}
+
 /// Writes the checkpoints of a run, by a thread of its own, one at a time.
 pub(super) struct Checkpoints {
     options: Checkpointing,
@@ -164,12 +173,17 @@ impl Checkpoints {
         Checkpoint::path(self.folder.path(), view.steps())
     }
 
-    /// Saves the present state, and what is remembered beside it. Of a simulation that cannot be saved there is none.
+    /// Saves the present state, and what is remembered beside it; compressed where the run ends, for that one stays. Of a simulation that cannot be saved there is none.
     /// One that cannot be written does not end the run, see [`Checkpoints::trouble`].
     ///
     /// # Errors
     /// The folder is not where it was, or the disk takes nothing and the run is to stop.
-    pub(super) fn save(&mut self, simulation: &dyn Simulation, memory: Memory) -> Result<(), OutputError> {
+    pub(super) fn save(
+        &mut self,
+        simulation: &dyn Simulation,
+        memory: Memory,
+        moment: Moment,
+    ) -> Result<(), OutputError> {
         self.folder.is_in_place()?;
         // One at a time: each is a copy of the state in memory.
         self.finish()?;
@@ -182,7 +196,10 @@ impl Checkpoints {
         self.writer.hand_over(0, move |()| {
             let prepared = if first { Checkpoint::prepare(&folder) } else { Ok(()) };
             let done = prepared
-                .and_then(|()| checkpoint.write(&path))
+                .and_then(|()| match moment {
+                    Moment::OnTheWay => checkpoint.write(&path),
+                    Moment::End => checkpoint.write_packed(&path),
+                })
                 .and_then(|()| Checkpoint::keep_newest(folder.path(), keep));
             if let Err(error) = done {
                 *trouble.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);

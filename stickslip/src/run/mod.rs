@@ -26,7 +26,7 @@ use crate::observe::{
     SceneSource, Status, Waiting, Writer, present_state_sum,
 };
 use crate::scene::{HealthCheck, Scene};
-use checkpoints::Checkpoints;
+use checkpoints::{Checkpoints, Moment};
 use clock::{Beside, RunClock};
 use contact_watch::ContactWatch;
 use std::path::{Path, PathBuf};
@@ -439,7 +439,8 @@ impl Watched<'_> {
             }
             if recorded.is_ok() && checkpoints.due(*simulation) {
                 let begun = Instant::now();
-                recorded = save(*simulation, (recorder, kept, checkpoints), memory.as_ref());
+                recorded =
+                    save(*simulation, (recorder, kept, checkpoints, Moment::OnTheWay), memory.as_ref());
                 kept.clock.count(Beside::Checkpoints, begun);
             }
             let trouble = checkpoints.trouble();
@@ -461,7 +462,7 @@ impl Watched<'_> {
         if options.checkpoints.at_end {
             // Before what is recorded at an end only: a run that goes on has none there.
             let begun = Instant::now();
-            save(*simulation, (recorder, kept, checkpoints), memory.as_ref())?;
+            save(*simulation, (recorder, kept, checkpoints, Moment::End), memory.as_ref())?;
             kept.clock.count(Beside::Checkpoints, begun);
         }
         let begun = Instant::now();
@@ -490,7 +491,7 @@ impl Watched<'_> {
 /// Has a checkpoint of the present moment written, and shows it; none of a simulation that cannot be saved.
 fn save(
     simulation: &dyn Simulation,
-    (recorder, kept, checkpoints): (&mut Recorder, &mut Kept, &mut Checkpoints),
+    (recorder, kept, checkpoints, moment): (&mut Recorder, &mut Kept, &mut Checkpoints, Moment),
     before: Option<&Memory>,
 ) -> Result<(), OutputError> {
     let path = checkpoints.path(simulation);
@@ -498,5 +499,5 @@ fn save(
         before.map_or_else(|| Memory::keeping(&path), |before| Memory::keeping_beside(&path, before));
     kept.remember(simulation, &mut memory)?;
     recorder.remember(simulation, &mut memory)?;
-    checkpoints.save(simulation, memory)
+    checkpoints.save(simulation, memory, moment)
 }
