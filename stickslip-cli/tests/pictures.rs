@@ -193,7 +193,8 @@ fn in_space_half_spaces_have_clean_edges_and_the_camera_moves() {
     assert_eq!(without_file(), alone);
     let record = workplace.path("scene.results/run.json");
     let whole = std::fs::read_to_string(&record).unwrap();
-    std::fs::write(&record, whole.replace("\"text\": ", "\"unread\": ")).unwrap();
+    let (before, behind) = whole.rsplit_once("\"text\": ").unwrap();
+    std::fs::write(&record, format!("{before}\"unread\": {behind}")).unwrap();
     assert_eq!(without_file(), balls);
     std::fs::write(&record, whole).unwrap();
     std::fs::rename(workplace.path("gone.toml"), workplace.path("scene.toml")).unwrap();
