@@ -216,7 +216,10 @@ impl RigidSurfaces {
         let mut ways = vec![self.nearest([a, b])];
         for axis in (0..D).filter(|&axis| self.periods[axis] > 0.0) {
             let ends = [a, b].iter().all(|one| one.reach.is_finite() && !one.body.whole.is_joined(axis));
-            for number in 0..if ends { ways.len() } else { 0 } {
+            if !ends {
+                continue;
+            }
+            for number in 0..ways.len() {
                 for period in [-self.periods[axis], self.periods[axis]] {
                     let mut next = ways[number];
                     next[axis] += period;
