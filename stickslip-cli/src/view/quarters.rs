@@ -8,6 +8,9 @@ use stickslip::observe::{ReadError, RecordedScene};
 #[derive(Clone, Debug, Default)]
 pub struct Quarters(Vec<Option<Vec<bool>>>);
 
+/// Numbers that a frame may leave out for each that it has; of particles beyond none is paler.
+const SPARSE: usize = 1000;
+
 impl Quarters {
     /// By the first frame of a run, in a space of so many dimensions.
     ///
@@ -24,10 +27,13 @@ impl Quarters {
         for run in &first.runs {
             let end = start + run.count as usize;
             if let Some(Some(center)) = centers.get(run.body as usize) {
-                let mut pale = vec![false; first.numbers[end - 1] as usize + 1];
+                let most = first.numbers[end - 1] as usize + 1;
+                let mut pale = vec![false; most.min(SPARSE * (end - start))];
                 for (x, &number) in positions[start..end].iter().zip(&first.numbers[start..end]) {
                     let negative = (0..dimension).filter(|&axis| x[axis] < center[axis]).count();
-                    pale[number as usize] = negative % 2 == 1;
+                    if let Some(pale) = pale.get_mut(number as usize) {
+                        *pale = negative % 2 == 1;
+                    }
                 }
                 quarters[run.body as usize] = Some(pale);
             }

@@ -290,7 +290,7 @@ impl Manifest {
     /// ill-formed, are replaced.
     ///
     /// # Errors
-    /// There is none, or another program wrote it.
+    /// There is none, another program wrote it, or its dimension or cell is none.
     pub fn read(folder: &Path) -> Result<Self, ReadError> {
         let path = folder.join(Self::FILE);
         let read = || -> Result<Manifest, ReadProblem> {
@@ -301,6 +301,12 @@ impl Manifest {
         let manifest = read().map_err(|problem| problem.at(&path))?;
         if manifest.program != "stickslip" {
             let found = format!("it is the record of `{}`, not of stickslip", manifest.program);
+            return Err(ReadProblem::Layout(found).at(&path));
+        }
+        let Manifest { dimension, cell, .. } = manifest;
+        if !matches!(dimension, 2 | 3) || !(cell > 0.0 && cell.is_finite()) {
+            let found =
+                format!("found dimension {dimension} and cell {cell} m; allowed: 2 or 3, and a length");
             return Err(ReadProblem::Layout(found).at(&path));
         }
         Ok(manifest)
