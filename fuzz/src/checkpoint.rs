@@ -2,9 +2,11 @@
 
 use crate::is_one_in;
 use crate::template::Template;
+use flate2::Compression;
 use flate2::bufread::ZlibDecoder;
+use flate2::write::ZlibEncoder;
 use sha2::{Digest, Sha256};
-use std::io::Read;
+use std::io::{Read, Write};
 use std::path::Path;
 use stickslip::door::View;
 use stickslip::march::March;
@@ -19,16 +21,24 @@ const SUM: usize = 32;
 /// With one of so many outputs look whether they fit, which opens all files.
 const REMEMBERED: u64 = 20;
 
-/// Reads a checkpoint: the first byte says whether the bytes behind it are all of it, or its content, to which the head
-/// of version 1, which has it uncompressed, and the sum are added.
+/// Reads a checkpoint: the first byte says whether the bytes behind it are all of it; or its content, to which the head
+/// of version 1, which has it uncompressed, and the sum are added; or the same of version 2, compressed already or by
+/// us.
 pub fn run(bytes: &[u8]) {
     let Some((&way, content)) = bytes.split_first() else { return };
     let template = Template::get();
     let whole = match way {
         0 => content.to_vec(),
         _ => {
-            let mut whole = b"stickslip checkpoint\0\x01\0\0\0".to_vec();
-            whole.extend(content);
+            let mut whole = b"stickslip checkpoint\0".to_vec();
+            whole.extend(u32::from(way.clamp(1, 2)).to_le_bytes());
+            if way == 3 {
+                let mut compressed = ZlibEncoder::new(&mut whole, Compression::fast());
+                compressed.write_all(content).expect("it is memory");
+                compressed.finish().expect("it is memory");
+            } else {
+                whole.extend(content);
+            }
             let sum = Sha256::digest(&whole);
             whole.extend(sum);
             whole
@@ -78,7 +88,9 @@ pub fn seeds() -> Vec<Vec<u8>> {
     let template = Template::get();
     let newest = Checkpoint::list(&template.path()).unwrap_or_else(|error| panic!("{error}")).swap_remove(0);
     let bytes = std::fs::read(newest).expect("it is there");
-    let mut seed = vec![1];
-    ZlibDecoder::new(&bytes[HEAD..bytes.len() - SUM]).read_to_end(&mut seed).expect("it was compressed");
-    vec![[&[0], &bytes[..]].concat(), seed]
+    let compressed = &bytes[HEAD..bytes.len() - SUM];
+    let mut content = Vec::new();
+    ZlibDecoder::new(compressed).read_to_end(&mut content).expect("it was compressed");
+    let ways: [(u8, &[u8]); 4] = [(0, &bytes), (1, &content), (2, compressed), (3, &content)];
+    ways.map(|(way, bytes)| [&[way], bytes].concat()).into()
 }

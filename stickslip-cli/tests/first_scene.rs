@@ -182,8 +182,8 @@ fn doubtful_results_are_told_and_with_strict_are_an_error() {
     assert_eq!(sound.code, Some(0), "{} {}", sound.stdout, sound.stderr);
 }
 
-/// 200 disks of 118 particles, which fall and lie for 0.15 s, leave at most 13 MB in a run that asks for no outputs: its
-/// pictures, its record and the checkpoint at its end included.
+/// 200 disks of 118 particles, which fall and lie for 0.15 s, leave at most 13 MB in a run that asks for no outputs:
+/// its pictures, its record and the checkpoint at its end included.
 #[test]
 fn two_hundred_disks_leave_thirteen_megabytes() {
     let workplace = Workplace::new();

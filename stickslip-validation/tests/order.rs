@@ -1,9 +1,9 @@
 //! How fast the error of places falls with the cells, by each basis.
 //!
 //! # Source
-//! B17 and B19, whose files state them: a square that a manufactured body force stretches and squeezes by 31 % along the
-//! axes (after Wallstedt and Guilkey 2008), and a ring that turns and is sheared by up to 71 % (after Kamojjala, Brannon,
-//! Sadeghirad and Guilkey 2015).
+//! B17 and B19, whose files state them: a square that a manufactured body force stretches and squeezes by 31 % along
+//! the axes (after Wallstedt and Guilkey 2008), and a ring that turns and is sheared by up to 71 % (after Kamojjala,
+//! Brannon, Sadeghirad and Guilkey 2015).
 //!
 //! # Set-up
 //! B17 with 8, 16 and 32 cells on a side, B19 with R/16 and R/32, by each basis with `modified-last` and `rflip`.
@@ -15,8 +15,8 @@
 //! them. B19 is of second order by all but `linear` (`gimp` 1.85, `spline` 1.8, `cpdi` 2.0), which has the order 0.2.
 //!
 //! # Known miss
-//! In B17 from 16 to 32 cells `gimp` has the order 0.9 and `spline` 0.8, held above 0.5. In B19 from R/32 to R/64 `gimp`
-//! has 0.66, whose error the benchmark bounds.
+//! In B17 from 16 to 32 cells `gimp` has the order 0.9 and `spline` 0.8, held above 0.5. In B19 from R/32 to R/64
+//! `gimp` has 0.66, whose error the benchmark bounds.
 
 use stickslip_validation::{BENCHMARKS, Run, Suite, Tier, schemes};
 

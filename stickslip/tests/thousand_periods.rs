@@ -2,8 +2,8 @@
 //! default settings: each answer is within its bound, or the run's verdict says that the run is doubtful.
 //!
 //! # Set-up
-//! A soft body (E = 100 kPa, 1000 kg/m^3, neo-Hookean) and one of metal (E = 200 GPa, 7800 kg/m^3, yield stress 300 MPa,
-//! hardening 2 GPa), nu = 0.3, four cells across, in plane strain, the shaft in space. c^2 = E/((1 - nu^2) rho).
+//! A soft body (E = 100 kPa, 1000 kg/m^3, neo-Hookean) and one of metal (E = 200 GPa, 7800 kg/m^3, yield stress 300
+//! MPa, hardening 2 GPa), nu = 0.3, four cells across, in plane strain, the shaft in space. c^2 = E/((1 - nu^2) rho).
 //!
 //! | scene | body | a period |
 //! |---|---|---|
@@ -12,15 +12,15 @@
 //! | stretch, squeeze | the same, all the time, to 20 % (2 %, which flows) | 2L/c |
 //! | bend | cantilever of 10 cells before a fixed face, gravity at once | the first of a thin beam |
 //! | twist | shaft of 6 cells on a fixed face, a torque per length at once | the first of torsion |
-//! | bounce | disk that falls by a fifth (two hundredth) of a cell on a rigid floor | of the fall and back, 40 h/c |
+//! | bounce | disk that falls by a fifth (a two-hundredth) of a cell on a rigid floor | of the fall and back, 40 h/c |
 //! | spin | disk whose rim moves at a tenth (a hundredth) of the wave speed | a turn |
 //!
 //! # Expected
 //! Over the exact: mean sag in the last third within 5 % (bend, as B21-loaded) and 10 % (hang, as B30 with five cells
 //! across), mean work of the torque within 10 %; force within 3 % where held or stretched (B31) and 5 % where squeezed
-//! (die); the floor bears the weight within 1 %. What is steady stays within 2 % from the first third to the last, within
-//! 0.5 % when held. Angular momentum stays within 2 %, and energy drifts by no more than 10 % of the largest that there
-//! was, where the verdict speaks. A run that misses one of its answers must end with a warning.
+//! (die); the floor bears the weight within 1 %. What is steady stays within 2 % from the first third to the last,
+//! within 0.5 % when held. Angular momentum stays within 2 %, and energy drifts by no more than 10 % of the largest
+//! that there was, where the verdict speaks. A run that misses one of its answers must end with a warning.
 
 use std::f64::consts::TAU;
 use stickslip::observe::Results;

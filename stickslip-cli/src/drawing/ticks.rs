@@ -50,7 +50,7 @@ pub fn prefix(magnitude: f64) -> Prefix {
 }
 
 /// The prefix for an axis up to this magnitude: none where the numbers read well without, where there is no unit, or
-/// where it has one.
+/// where that has a prefix already, as kg has.
 pub fn axis_prefix(magnitude: f64, unit: &str) -> Prefix {
     let bare = unit.is_empty() || unit.starts_with("kg");
     if bare || (0.05..1000.0).contains(&magnitude) { prefix(1.0) } else { prefix(magnitude) }

@@ -265,8 +265,8 @@ fn mean_stress<T: Real, const D: usize>(stress: &Symmetric<T>) -> T {
     (0..D).fold(T::ZERO, |sum, i| sum + stress.0[i]) / T::of(D as f64)
 }
 
-/// Inertia of the affine velocities around a particle, from the square of its radius of gyration and its spread over the
-/// nodes: at least 2/3 of the latter [m^2].
+/// Inertia of the affine velocities around a particle, from the square of its radius of gyration and its spread over
+/// the nodes: at least 2/3 of the latter [m^2].
 fn inertia<T: Real>(gyration: T, spread: &Matrix<T>) -> T {
     let rows = spread.0.map(|row| row.into_iter().fold(T::ZERO, |sum, entry| sum + entry.abs()));
     rows.into_iter().fold(gyration * T::HALF, |most, row| most.max(row * T::of(2.0 / 3.0)))

@@ -6,8 +6,8 @@
 //! v_p = sum_i S_ip v_i
 //! q C_p += sum_i S_ip v_i (x) (x_i - x_p) - C_p D_p,   D_p = sum_i S_ip (x_i - x_p) (x) (x_i - x_p)              (b)
 //! ```
-//! In the paper q is D_p, so that C_p on the right of (b) is that on the left. But D_p changes while a particle moves, by
-//! a third to either side with GIMP, and a particle that keeps C_p until the next scatter then gives another angular
+//! In the paper q is D_p, so that C_p on the right of (b) is that on the left. But D_p changes while a particle moves,
+//! by a third to either side with GIMP, and a particle that keeps C_p until the next scatter then gives another angular
 //! momentum than it took. Here q = k^2/2 of [`super::Rflip`], the mean of D_p over all places, stays. With splines,
 //! whose D_p is the same everywhere, nothing differs. (b) is the transpose of (a) for what the nodes' velocities are
 //! beside those that the particle gave, so particles and nodes change their angular momentum by the same,
@@ -47,8 +47,8 @@ use crate::tensor::{Matrix, Vector};
 pub struct Apic;
 
 impl Apic {
-    /// C_p of (b) from the one that was given [1/s], `moments` = sum_i S_ip v_i (x) (x_i - x_p) / h, `spread` = D_p / h^2,
-    /// `cell` = h and `scale` = h / k^2.
+    /// C_p of (b) from the one that was given [1/s], `moments` = sum_i S_ip v_i (x) (x_i - x_p) / h, `spread` = D_p /
+    /// h^2, `cell` = h and `scale` = h / k^2.
     #[inline(always)]
     pub fn taken<V: Lanes>(
         given: &Matrix<V>,

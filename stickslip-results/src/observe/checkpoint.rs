@@ -19,7 +19,7 @@ use flate2::write::ZlibEncoder;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::fs;
-use std::io::{self, BufReader, Write};
+use std::io::{self, BufReader, Read, Write};
 use std::path::{Path, PathBuf};
 
 /// A moment of a run from which it can go on.
@@ -35,11 +35,23 @@ pub struct Checkpoint {
     memory: Values,
 }
 
+/// How a checkpoint is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CheckpointForm {
+    /// As it is, which takes little time.
+    Plain,
+    /// By zlib, in two thirds of the space.
+    Compressed,
+}
+
 /// The beginning of every checkpoint.
 const MAGIC: &[u8; 21] = b"stickslip checkpoint\0";
 /// Versions of the format, by whether the map is compressed.
 const PLAIN: u32 = 1;
-const PACKED: u32 = 2;
+const COMPRESSED: u32 = 2;
+/// Bytes that one of a compressed map may stand for: of one that would be smaller, the file is plain, so that no file
+/// takes more memory out of proportion to its size.
+const MOST_COMPRESSED: u64 = 50;
 /// Bytes of a sum.
 const SUM: usize = 32;
 
@@ -79,20 +91,20 @@ impl Checkpoint {
     ///
     /// # Errors
     /// The disk is full or refuses; then nothing is left of it.
-    pub fn write(&self, path: &Path) -> Result<(), OutputError> {
-        self.write_as(PLAIN, path, |file| self.encode(file))
-    }
-
-    /// The same with its content compressed, which takes longer.
-    ///
-    /// # Errors
-    /// As [`Checkpoint::write`].
-    pub fn write_packed(&self, path: &Path) -> Result<(), OutputError> {
-        self.write_as(PACKED, path, |file| {
-            let mut packed = ZlibEncoder::new(file, Compression::fast());
-            self.encode(&mut packed)?;
-            packed.finish().map(drop)
-        })
+    pub fn write(&self, path: &Path, form: CheckpointForm) -> Result<(), OutputError> {
+        let plain = || self.write_as(PLAIN, path, |file| self.encode(file));
+        if form == CheckpointForm::Plain {
+            return plain();
+        }
+        let mut most = false;
+        self.write_as(COMPRESSED, path, |file| {
+            let mut compressed = ZlibEncoder::new(file, Compression::fast());
+            self.encode(&mut compressed)?;
+            compressed.try_finish()?;
+            most = compressed.total_in() > MOST_COMPRESSED * compressed.total_out();
+            Ok(())
+        })?;
+        if most { plain() } else { Ok(()) }
     }
 
     fn write_as(
@@ -135,9 +147,12 @@ impl Checkpoint {
             let map = &content[head..];
             let decoded = match version {
                 PLAIN => rmp_serde::from_slice(map),
-                PACKED => rmp_serde::from_read(BufReader::new(ZlibDecoder::new(map))),
+                COMPRESSED => {
+                    let most = MOST_COMPRESSED * map.len() as u64;
+                    rmp_serde::from_read(BufReader::new(ZlibDecoder::new(map).take(most)))
+                }
                 _ => {
-                    let known = format!("this program reads {PLAIN} and {PACKED}");
+                    let known = format!("this program reads {PLAIN} and {COMPRESSED}");
                     return Err(layout(&format!("it is of version {version} of the format; {known}")));
                 }
             };
@@ -319,4 +334,43 @@ fn io_error(error: impl std::error::Error + Send + Sync + 'static) -> io::Error 
         cause = this.source();
     }
     io::Error::other(error.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn file(version: u32, map: &[u8]) -> Vec<u8> {
+        let mut bytes = [&MAGIC[..], &version.to_le_bytes(), map].concat();
+        let sum = Sha256::digest(&bytes);
+        bytes.extend(sum);
+        bytes
+    }
+
+    fn zipped(bytes: &[u8]) -> Vec<u8> {
+        let mut zipped = ZlibEncoder::new(Vec::new(), Compression::fast());
+        zipped.write_all(bytes).unwrap();
+        zipped.finish().unwrap()
+    }
+
+    fn refused(path: &Path) -> String {
+        Checkpoint::read(path).map(drop).unwrap_err().to_string()
+    }
+
+    /// With a sum that is right: what is no map, cut short, or stands for far more bytes than it has.
+    #[test]
+    fn compressed_files_of_others_are_damaged() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("0000000001.checkpoint");
+        // An array of a million zeros.
+        let many = [&[0xdd, 0x00, 0x0f, 0x42, 0x40][..], &[0; 1_000_000]].concat();
+        let whole = zipped(&many);
+        assert!(many.len() > 100 * whole.len());
+        for map in [&b"no zlib"[..], &[], &whole, &whole[..whole.len() / 2], &zipped(b"\xc0")] {
+            fs::write(&path, file(COMPRESSED, map)).unwrap();
+            assert!(refused(&path).contains("it is damaged"), "{}", refused(&path));
+        }
+        fs::write(&path, file(3, &whole)).unwrap();
+        assert!(refused(&path).contains("this program reads 1 and 2"), "{}", refused(&path));
+    }
 }

@@ -304,7 +304,8 @@ impl Manifest {
             return Err(ReadProblem::Layout(found).at(&path));
         }
         let Manifest { dimension, cell, .. } = manifest;
-        if !matches!(dimension, 2 | 3) || !(cell > 0.0 && cell.is_finite()) {
+        let is_length = cell > 0.0 && cell.is_finite();
+        if !matches!(dimension, 2 | 3) || !is_length {
             let found =
                 format!("found dimension {dimension} and cell {cell} m; allowed: 2 or 3, and a length");
             return Err(ReadProblem::Layout(found).at(&path));

@@ -45,7 +45,7 @@ mod xml;
 
 pub use arrivals::ArrivalRow;
 pub use bodies::BodyRow;
-pub use checkpoint::{Checkpoint, present_state_sum, state_sum};
+pub use checkpoint::{Checkpoint, CheckpointForm, present_state_sum, state_sum};
 pub use contacts::ContactRow;
 pub use energy::EnergyRow;
 pub use file::{OutputError, ReadError, ReadProblem, replace};

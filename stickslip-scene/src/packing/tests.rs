@@ -326,8 +326,8 @@ fn settled_grains_rest_as_dense_as_random_packings_are() {
     assert_eq!(with(1), with(3));
 }
 
-/// Squares, slabs and wedges in the plane, boxes and cans in space: settled, none overlaps, and each is held from below,
-/// but for one in twenty that steep sides hold, which a short way down hardly finds.
+/// Squares, slabs and wedges in the plane, boxes and cans in space: settled, none overlaps, and each is held from
+/// below. Of twenty one may not seem so: a short way down hardly finds what steep sides hold.
 #[test]
 fn grains_of_other_shapes_settle() {
     let wedge = Shape::Polygon { points: vec![[0.0, 0.0], [0.06, 0.0], [0.0, 0.05]], height: [0.0, 0.04] };

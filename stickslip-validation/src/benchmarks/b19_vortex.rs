@@ -1,4 +1,4 @@
-//! B19: a ring of material turns to and fro inside of a body at rest, by a body force that makes it so.
+//! B19: a ring of material turns inside of a body at rest, by a body force that makes it so.
 
 use crate::benchmark::{Allowed, Benchmark, Case, Laws, Miss, Reason, Resolution, Target};
 use crate::failure::CaseFailure;

@@ -2,7 +2,8 @@
 
 use crate::door::{RestoreError, Simulation, View};
 use crate::observe::{
-    Checkpoint, Manifest, Memory, OutputError, OutputFolder, ReadError, Schedule, Status, Writer,
+    Checkpoint, CheckpointForm, Manifest, Memory, OutputError, OutputFolder, ReadError, Schedule, Status,
+    Writer,
 };
 use crate::scene::Scene;
 use miette::Diagnostic;
@@ -117,15 +118,6 @@ pub enum ResumeError {
     },
 }
 
-/// When a checkpoint is made.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Moment {
-    /// While the run goes on.
-    OnTheWay,
-    /// Where it ends.
-    End,
-}
-
 /// Writes the checkpoints of a run, by a thread of its own, one at a time.
 pub(super) struct Checkpoints {
     options: Checkpointing,
@@ -173,7 +165,7 @@ impl Checkpoints {
         Checkpoint::path(self.folder.path(), view.steps())
     }
 
-    /// Saves the present state, and what is remembered beside it; compressed where the run ends, for that one stays. Of a simulation that cannot be saved there is none.
+    /// Saves the present state, and what is remembered beside it. Of a simulation that cannot be saved there is none.
     /// One that cannot be written does not end the run, see [`Checkpoints::trouble`].
     ///
     /// # Errors
@@ -182,7 +174,7 @@ impl Checkpoints {
         &mut self,
         simulation: &dyn Simulation,
         memory: Memory,
-        moment: Moment,
+        form: CheckpointForm,
     ) -> Result<(), OutputError> {
         self.folder.is_in_place()?;
         // One at a time: each is a copy of the state in memory.
@@ -196,10 +188,7 @@ impl Checkpoints {
         self.writer.hand_over(0, move |()| {
             let prepared = if first { Checkpoint::prepare(&folder) } else { Ok(()) };
             let done = prepared
-                .and_then(|()| match moment {
-                    Moment::OnTheWay => checkpoint.write(&path),
-                    Moment::End => checkpoint.write_packed(&path),
-                })
+                .and_then(|()| checkpoint.write(&path, form))
                 .and_then(|()| Checkpoint::keep_newest(folder.path(), keep));
             if let Err(error) = done {
                 *trouble.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);

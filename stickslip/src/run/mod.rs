@@ -22,11 +22,11 @@ use crate::check::Warning;
 use crate::door::{Ledger, Simulation, View};
 use crate::march::{FailedStep, March, MarchEnd, Pace};
 use crate::observe::{
-    BegunFrom, Checkpoint, Manifest, Memory, Observer, OutputError, OutputFolder, Patience, Recorder,
-    SceneSource, Status, Waiting, Writer, present_state_sum,
+    BegunFrom, Checkpoint, CheckpointForm, Manifest, Memory, Observer, OutputError, OutputFolder, Patience,
+    Recorder, SceneSource, Status, Waiting, Writer, present_state_sum,
 };
 use crate::scene::{HealthCheck, Scene};
-use checkpoints::{Checkpoints, Moment};
+use checkpoints::Checkpoints;
 use clock::{Beside, RunClock};
 use contact_watch::ContactWatch;
 use std::path::{Path, PathBuf};
@@ -173,16 +173,28 @@ pub fn resume(
     let before = before.ok();
     let ended = before.as_ref().filter(|before| before.status == Status::Finished);
     let ended = ended.map(|before| before.performance.time).filter(|&end| end == time);
-    let (mut resumed, mut ends, begun_from) =
-        before.map_or_else(Default::default, |before| (before.resumed, before.ends, before.begun_from));
+    let (mut resumed, mut ends, begun_from, scene_warnings) = before
+        .map_or_else(Default::default, |before| {
+            (before.resumed, before.ends, before.begun_from, before.scene_warnings)
+        });
     resumed.push(time);
     ends.extend(ended);
     let damaged = damaged.into_iter().map(|error| error.path).collect();
     let (steps, end, from) = (simulation.steps(), scene.time.end, path.display());
     let news = vec![format!("goes on at t = {time} s, step {steps}, to t = {end} s, from {from}")];
     let memory = Some(memory);
-    let beginning =
-        Beginning { memory, resumed, ends, begun_from, damaged, passed_over, news, notes, remembered: None };
+    let beginning = Beginning {
+        memory,
+        resumed,
+        ends,
+        begun_from,
+        scene_warnings,
+        damaged,
+        passed_over,
+        news,
+        notes,
+        remembered: None,
+    };
     drive(scene, simulation, (options, folder), (&mut [], beginning), progress)
 }
 
@@ -197,6 +209,8 @@ struct Beginning {
     ends: Vec<f64>,
     /// What its bodies begin from, if that is another run.
     begun_from: Option<BegunFrom>,
+    /// What was doubtful about the scene when the run began.
+    scene_warnings: Vec<Warning>,
     /// Newer checkpoints, which cannot be read.
     damaged: Vec<PathBuf>,
     /// What is wrong with those, of this run or of the one from which it begins: for the record.
@@ -233,7 +247,10 @@ fn drive(
     }
     let mut manifest = Manifest::new(scene, kept.clock.performance(simulation));
     manifest.source.clone_from(&options.source);
-    manifest.scene_warnings.clone_from(&options.scene_warnings);
+    manifest.scene_warnings = match options.scene_warnings.is_empty() {
+        true => std::mem::take(&mut beginning.scene_warnings),
+        false => options.scene_warnings.clone(),
+    };
     manifest.resumed = std::mem::take(&mut beginning.resumed);
     manifest.ends = std::mem::take(&mut beginning.ends);
     manifest.begun_from = beginning.begun_from.take();
@@ -440,7 +457,7 @@ impl Watched<'_> {
             if recorded.is_ok() && checkpoints.due(*simulation) {
                 let begun = Instant::now();
                 recorded =
-                    save(*simulation, (recorder, kept, checkpoints, Moment::OnTheWay), memory.as_ref());
+                    save(*simulation, (recorder, kept, checkpoints, CheckpointForm::Plain), memory.as_ref());
                 kept.clock.count(Beside::Checkpoints, begun);
             }
             let trouble = checkpoints.trouble();
@@ -462,7 +479,12 @@ impl Watched<'_> {
         if options.checkpoints.at_end {
             // Before what is recorded at an end only: a run that goes on has none there.
             let begun = Instant::now();
-            save(*simulation, (recorder, kept, checkpoints, Moment::End), memory.as_ref())?;
+            // That of a finished run stays; who stops one may not wait for it.
+            let form = match status {
+                Status::Finished => CheckpointForm::Compressed,
+                _ => CheckpointForm::Plain,
+            };
+            save(*simulation, (recorder, kept, checkpoints, form), memory.as_ref())?;
             kept.clock.count(Beside::Checkpoints, begun);
         }
         let begun = Instant::now();
@@ -491,7 +513,7 @@ impl Watched<'_> {
 /// Has a checkpoint of the present moment written, and shows it; none of a simulation that cannot be saved.
 fn save(
     simulation: &dyn Simulation,
-    (recorder, kept, checkpoints, moment): (&mut Recorder, &mut Kept, &mut Checkpoints, Moment),
+    (recorder, kept, checkpoints, form): (&mut Recorder, &mut Kept, &mut Checkpoints, CheckpointForm),
     before: Option<&Memory>,
 ) -> Result<(), OutputError> {
     let path = checkpoints.path(simulation);
@@ -499,5 +521,5 @@ fn save(
         before.map_or_else(|| Memory::keeping(&path), |before| Memory::keeping_beside(&path, before));
     kept.remember(simulation, &mut memory)?;
     recorder.remember(simulation, &mut memory)?;
-    checkpoints.save(simulation, memory, moment)
+    checkpoints.save(simulation, memory, form)
 }

@@ -154,7 +154,7 @@ impl RigidSurfaces {
         let (mut found, mut seen) = (Vec::new(), HashSet::new());
         for (rank, one) in order.iter().enumerate() {
             for other in order[rank + 1..].iter().take_while(|other| other.lower <= one.upper) {
-                let [i, j] = [one.place.min(other.place), one.place.max(other.place)];
+                let [i, j] = [one.rank.min(other.rank), one.rank.max(other.rank)];
                 let pair = [&placed[i], &placed[j]];
                 let [a, b] = pair.map(|placed| placed.surface.body);
                 let free = pair.iter().any(|placed| placed.motion.as_free().is_some());
@@ -176,16 +176,18 @@ impl RigidSurfaces {
     fn along_x<T: Real, const D: usize>(&self, placed: &[PlacedSurface<T, D>]) -> Vec<AlongX> {
         let (period, corner) = (self.periods[0], self.corner[0]);
         let mut all = Vec::with_capacity(placed.len());
-        for (place, surface) in placed.iter().enumerate() {
+        for (rank, surface) in placed.iter().enumerate() {
             let half = surface.reach + surface.way;
-            let RigidSurface { reach, .. } = *surface.surface;
-            let part =
-                |x: f64| AlongX { lower: x - reach - surface.way, upper: x + reach + surface.way, place };
+            let part = |x: f64| AlongX {
+                lower: x - surface.reach - surface.way,
+                upper: x + surface.reach + surface.way,
+                rank,
+            };
             let x = surface.center[0];
             if period == 0.0 || !half.is_finite() {
                 all.push(part(x));
             } else if surface.body.whole.is_joined(0) {
-                all.push(AlongX { lower: f64::NEG_INFINITY, upper: f64::INFINITY, place });
+                all.push(AlongX { lower: f64::NEG_INFINITY, upper: f64::INFINITY, rank });
             } else {
                 let x = corner + (x - corner).rem_euclid(period);
                 all.push(part(x));
@@ -213,21 +215,24 @@ impl RigidSurfaces {
         [a, b]: [&PlacedSurface<T, D>; 2],
         found: &mut Vec<RigidContact>,
     ) {
-        let mut ways = vec![self.nearest([a, b])];
+        if self.periods == [0.0; 3] {
+            return self.between([a, b], found);
+        }
+        let mut images = vec![self.nearest([a, b])];
         for axis in (0..D).filter(|&axis| self.periods[axis] > 0.0) {
             let ends = [a, b].iter().all(|one| one.reach.is_finite() && !one.body.whole.is_joined(axis));
             if !ends {
                 continue;
             }
-            for number in 0..ways.len() {
+            for number in 0..images.len() {
                 for period in [-self.periods[axis], self.periods[axis]] {
-                    let mut next = ways[number];
+                    let mut next = images[number];
                     next[axis] += period;
-                    ways.push(next);
+                    images.push(next);
                 }
             }
         }
-        for away in ways.into_iter().filter(|away| may_touch([a, b], *away)) {
+        for away in images.into_iter().filter(|away| may_touch([a, b], *away)) {
             match away {
                 [0.0, 0.0, 0.0] => self.between([a, b], found),
                 _ => self.between([a, &b.moved(away)], found),
@@ -317,8 +322,8 @@ fn between_balls<T, const D: usize>(
 struct AlongX {
     lower: f64,
     upper: f64,
-    /// Place of the surface among all of them.
-    place: usize,
+    /// Rank of the surface among all of them.
+    rank: usize,
 }
 
 /// A surface where its body, or an image of it in a periodic domain, is now.
