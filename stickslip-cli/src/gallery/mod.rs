@@ -124,7 +124,7 @@ pub const EXHIBITS: &[Exhibit] = exhibits! {
         check: "the motor's moment over that of the balls' weight", moment_of_mill, [0.93, 1.07]
     }
     "mixer" [] {
-        seconds: 35.0, look: ["--color", "density", "--range", "2500,2600", "--hide", "legend"],
+        seconds: 70.0, look: ["--color", "density", "--range", "2500,2600", "--hide", "legend"],
         picture: "480x480", animation: "300x300",
         check: "contacts of unlike grains over those by chance", mixing_of_grains, [0.8, 1.05]
     }
