@@ -49,8 +49,8 @@ const MAGIC: &[u8; 21] = b"stickslip checkpoint\0";
 /// Versions of the format, by whether the map is compressed.
 const PLAIN: u32 = 1;
 const COMPRESSED: u32 = 2;
-/// Bytes that one of a compressed map may stand for: of one that would be smaller, the file is plain, so that no file
-/// takes more memory out of proportion to its size.
+/// Bytes that one of a compressed map may stand for, so that no file takes memory out of proportion to its size; a map
+/// that would be smaller is written plain.
 const MOST_COMPRESSED: u64 = 50;
 /// Bytes of a sum.
 const SUM: usize = 32;
