@@ -99,6 +99,9 @@ pub struct Particles<T, const D: usize> {
     natural: &'static [History],
     /// Domains that deform with their particles.
     domains: &'static [History],
+    /// Mass [kg] and half the side of the undeformed box [m] of every particle, where it is known that they are alike:
+    /// then nobody needs to read these columns.
+    alike: Option<[T; 2]>,
 }
 
 /// Half the edges of domains that deform with their particles, one in each column of the tensor [m].
@@ -209,6 +212,7 @@ impl<T: Real, const D: usize> Particles<T, D> {
             viscosity,
             natural,
             domains,
+            alike: None,
         };
         for i in 0..count {
             let particle = f(i);
@@ -230,7 +234,17 @@ impl<T: Real, const D: usize> Particles<T, D> {
                 particles.line_mut(column)[i] = if row == edge { half_width } else { T::ZERO };
             }
         }
+        particles.compare();
         particles
+    }
+
+    /// Finds out whether all particles are alike, once their masses and boxes are written.
+    pub fn compare(&mut self) {
+        let same = |column: usize| {
+            let (first, others) = self.line(column).split_first()?;
+            others.iter().all(|other| other == first).then_some(*first)
+        };
+        self.alike = same(ColumnStart::<D>::MASS).zip(same(ColumnStart::<D>::HALF_WIDTH)).map(<[T; 2]>::from);
     }
 
     /// How many.
@@ -284,8 +298,11 @@ impl<T: Real, const D: usize> Particles<T, D> {
         &self.columns[self.first() + entry * self.stride..][..self.len]
     }
 
-    /// The same, to be written.
+    /// The same, to be written. Who writes masses or boxes [compares](Particles::compare) the particles then.
     pub fn line_mut(&mut self, entry: usize) -> &mut [T] {
+        if entry == ColumnStart::<D>::MASS || entry == ColumnStart::<D>::HALF_WIDTH {
+            self.alike = None;
+        }
         let first = self.first() + entry * self.stride;
         &mut self.columns[first..][..self.len]
     }
@@ -381,6 +398,7 @@ impl<T: Real, const D: usize> Particles<T, D> {
         assert!(i < self.len(), "a particle of the body");
         let first = self.first_number();
         self.numbers[first + i] = particle.number;
+        self.alike = self.alike.filter(|alike| *alike == [particle.mass, particle.half_width]);
         // SAFETY: in range, and borrowed for writing.
         unsafe { self.open().set(i, particle) };
     }
@@ -410,6 +428,7 @@ impl<T: Real, const D: usize> Particles<T, D> {
             viscosity: history_entries(self.viscosity, D),
             natural: history_entries(self.natural, D),
             domains: history_entries(self.domains, D),
+            alike: self.alike,
         }
     }
 
@@ -424,6 +443,7 @@ impl<T: Real, const D: usize> Particles<T, D> {
             viscosity: history_entries(self.viscosity, D),
             natural: history_entries(self.natural, D),
             domains: history_entries(self.domains, D),
+            alike: self.alike,
         }
     }
 
@@ -451,8 +471,9 @@ impl<T: Real, const D: usize> Particles<T, D> {
 
     /// Takes out particles by their places, which must ascend; the others keep their order, and all their memory.
     pub fn remove(&mut self, gone: &[u32]) {
-        let columns = ColumnStart::<D>::HISTORY + self.own().entries(D);
+        let (columns, alike) = (ColumnStart::<D>::HISTORY + self.own().entries(D), self.alike);
         (0..columns).for_each(|entry| close_gaps(self.line_mut(entry), gone));
+        self.alike = alike;
         let (first, len) = (self.first_number(), self.len);
         close_gaps(&mut self.numbers[first..first + len], gone);
         self.len -= gone.len();
@@ -494,12 +515,14 @@ impl<T: Real, const D: usize> Particles<T, D> {
             viscosity,
             natural,
             domains,
+            alike,
         } = self;
         columns.clone_from(&other.columns);
         numbers.clone_from(&other.numbers);
         (*len, *stride, *later) = (other.len, other.stride, other.later);
         (*history, *transfer) = (other.history, other.transfer);
         (*viscosity, *natural, *domains) = (other.viscosity, other.natural, other.domains);
+        *alike = other.alike;
     }
 
     /// Where a column lies as long as nothing is sorted, and after it once they are settled; `number` is one, too.
@@ -581,6 +604,8 @@ pub struct Columns<T, const D: usize> {
     natural: usize,
     /// Entries of the domains.
     domains: usize,
+    /// Mass and half the side of the box of all particles, see [`Particles`].
+    alike: Option<[T; 2]>,
 }
 
 // SAFETY: entries are only reached through unsafe functions, whose callers keep threads apart.
@@ -593,6 +618,12 @@ impl<T: Real, const D: usize> Columns<T, D> {
     #[inline(always)]
     pub fn stride(&self) -> usize {
         self.stride
+    }
+
+    /// Mass [kg] and half the side of the undeformed box [m] of every particle, if they are known to be alike.
+    #[inline(always)]
+    pub fn alike(&self) -> Option<[T; 2]> {
+        self.alike
     }
 
     /// Entries of the history.

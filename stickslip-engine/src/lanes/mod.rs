@@ -162,14 +162,20 @@ pub trait Lanes: Number {
     }
 
     /// Writes the lanes of four registers by pairs: first the lanes 0 and 1 of all four, then the lanes 2 and 3,
-    /// and so on.
+    /// and so on; a single lane has zero beside it.
+    ///
+    /// # Safety
+    /// There must be room for eight numbers a pair, which nobody else may use meanwhile.
     #[inline(always)]
-    fn store_pairs(columns: [Self; 4], pairs: &mut [[[Self::Real; 2]; 4]; MOST_LANES / 2]) {
+    unsafe fn store_pairs(columns: [Self; 4], pairs: *mut Self::Real) {
         let columns =
             [columns[0].numbers(), columns[1].numbers(), columns[2].numbers(), columns[3].numbers()];
-        for (i, pair) in pairs.iter_mut().enumerate().take(Self::COUNT.div_ceil(2)) {
-            for (entry, column) in pair.iter_mut().zip(&columns) {
-                *entry = [column.0[2 * i], column.0[2 * i + 1]];
+        for pair in 0..Self::COUNT.div_ceil(2) {
+            for (entry, column) in columns.iter().enumerate() {
+                for lane in 0..2 {
+                    // SAFETY: the caller's.
+                    unsafe { pairs.add(8 * pair + 2 * entry + lane).write(column.0[2 * pair + lane]) };
+                }
             }
         }
     }

@@ -197,12 +197,13 @@ impl<V: Lanes> Lanes for RegisterPair<V> {
     }
 
     #[inline(always)]
-    fn store_pairs(columns: [Self; 4], pairs: &mut [[[V::Real; 2]; 4]; MOST_LANES / 2]) {
-        let mut upper = *pairs;
-        V::store_pairs([columns[0].0, columns[1].0, columns[2].0, columns[3].0], pairs);
-        V::store_pairs([columns[0].1, columns[1].1, columns[2].1, columns[3].1], &mut upper);
-        for i in 0..V::COUNT / 2 {
-            pairs[V::COUNT / 2 + i] = upper[i];
+    unsafe fn store_pairs(columns: [Self; 4], pairs: *mut V::Real) {
+        const { assert!(V::COUNT.is_multiple_of(2)) };
+        // SAFETY: the caller's; a lane takes four numbers.
+        unsafe {
+            V::store_pairs([columns[0].0, columns[1].0, columns[2].0, columns[3].0], pairs);
+            let upper = pairs.add(4 * V::COUNT);
+            V::store_pairs([columns[0].1, columns[1].1, columns[2].1, columns[3].1], upper);
         }
     }
 }

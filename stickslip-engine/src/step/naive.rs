@@ -131,9 +131,9 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
                     (stencil.interpolate_mean(&self.window.flow, block) - gradient.trace()) / T::of(D as f64);
                 (0..D).for_each(|i| gradient.0[i][i] += more);
             }
-            if transfer == Transfer::Rflip {
+            if transfer == Transfer::Rflip && verbs.settle {
                 let before = self.body.kinetic(particle);
-                let share = (T::of(0.3) * particle.spin.norm() * dt).min(T::ONE);
+                let share = (T::of(8.0 * 0.3) * particle.spin.norm() * dt).min(T::ONE);
                 particle.spin += (half_curl(&gradient) - particle.spin) * share;
                 self.damped += (before - self.body.kinetic(particle)).f64();
             }

@@ -33,6 +33,8 @@ pub struct Verbs {
     pub update_velocity: bool,
     /// G2P:  F = (I + L dt) F,  V = V_0 det F,  sigma = law(F)
     pub update_stress: bool,
+    /// With that, spins take their part of the rotation around them since they last did, see [`crate::transfer::Rflip`].
+    pub settle: bool,
     /// G2P:  x += dt sum S_i v_i
     pub advect: bool,
     /// P2G: gives this share to the nodes.
@@ -61,7 +63,7 @@ pub struct Pass<T, const D: usize> {
 impl<T: Real, const D: usize> Pass<T, D> {
     /// What it takes from the nodes.
     pub fn sought(&self) -> Sought {
-        let Verbs { smooth, update_velocity, update_stress, advect, scatter } = self.verbs;
+        let Verbs { smooth, update_velocity, update_stress, advect, scatter, .. } = self.verbs;
         Sought {
             change: update_velocity,
             integrated: smooth || (update_velocity && self.pic > T::ZERO),
@@ -72,7 +74,7 @@ impl<T: Real, const D: usize> Pass<T, D> {
 
     /// Whether it takes anything from the nodes.
     pub fn gathers(&self) -> bool {
-        let Verbs { smooth, update_velocity, update_stress, advect, scatter } = self.verbs;
+        let Verbs { smooth, update_velocity, update_stress, advect, scatter, .. } = self.verbs;
         smooth || update_velocity || update_stress || advect || scatter == Some(Share::Dilatation)
     }
 }

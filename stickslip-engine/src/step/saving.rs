@@ -323,6 +323,7 @@ fn begun<T: Laned, const D: usize>(
             line.iter_mut().zip(&numbers).for_each(|(x, &number)| *x = values[places[number as usize]]);
         }
     }
+    body.particles.compare();
     if !same_start(&body.particles, &fresh.particles, NEAR) {
         return Err(off("began elsewhere than it does in the scene: its shape or its filling is another"));
     }
@@ -498,6 +499,7 @@ fn particles<T: Real, const D: usize>(
             particles.line_mut(entry).iter_mut().zip(&mut numbers).for_each(|(x, saved)| *x = saved);
         }
     }
+    particles.compare();
     if filled.is_some() && !same_start(&particles, fresh, 0.0) {
         return Err(off("began elsewhere than it does in the scene".into()));
     }

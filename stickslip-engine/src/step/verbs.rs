@@ -16,7 +16,7 @@ use crate::grid::{Blocks, Disjoint, Lattice, Node, node_at, nodes_per_block};
 use crate::lanes::{Laned, Processor};
 use crate::tensor::{Matrix, Vector};
 use crate::threads::each;
-use crate::transfer::{Share, begin_filter, end_filter, filter_once_more, filters};
+use crate::transfer::{SETTLES_EVERY, Share, begin_filter, end_filter, filter_once_more, filters, settles};
 use std::time::Instant;
 
 /// Bodies that a thread takes at a time.
@@ -153,6 +153,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
 
     pub(super) fn run_pass(&mut self, name: &'static str, verbs: Verbs, dt: T) -> Result<(), StepError> {
         let start = Instant::now();
+        let settles = verbs.update_stress && settles(self.settings.transfer);
+        let verbs = Verbs { settle: settles && self.state.steps.is_multiple_of(SETTLES_EVERY), ..verbs };
         let found = self.pass(&Pass {
             verbs,
             dt,

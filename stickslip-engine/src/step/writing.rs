@@ -57,6 +57,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             let line = particles.line_mut(first + entry).iter_mut();
             line.zip(values[entry..].iter().step_by(entries)).for_each(|(x, &value)| *x = T::of(value));
         }
+        particles.compare();
         let after = Holding::of_particles(&Body::totals(&self.state.bodies[number]), gravity);
         self.state.written[number].take(&before, &after);
         (self.state.signal, self.workspace.totals) = (None, Mutex::default());

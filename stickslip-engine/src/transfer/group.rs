@@ -10,9 +10,10 @@
 use super::corners::NodeTable;
 use crate::basis::{Basis, BoxSide, Entries, Line, Neighbours, Plane, ShapeFunctions, Space};
 use crate::grid::{NODE_VALUES, NodeSums, NodeValues, SIDE, WINDOW_NODES, Window, window_side};
-use crate::lanes::{Lanes, MOST_LANES, Machine, Numbers};
+use crate::lanes::{Lanes, MOST_LANES, Machine};
 use crate::tensor::{Matrix, Number, Real, Symmetric, Vector};
 use std::marker::PhantomData;
+use std::mem::MaybeUninit;
 
 /// Where in the window the nodes of a group's particles begin: the place of their base node.
 pub trait Start: Copy {
@@ -236,7 +237,7 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
     /// G2P: h L = sum v_i (x) h grad S_i, embedded in space, and sum S_i v_i of the same velocities [m/s].
     #[inline(always)]
     pub fn flow(&self, nodes: &[NodeValues<V::Real>; WINDOW_NODES]) -> (Matrix<V>, Vector<V, D>) {
-        if B::CORNERS { self.sums_of_slopes(nodes) } else { self.sums(nodes, &self.slopes()) }
+        if B::CORNERS { self.sums_of_slopes(nodes) } else { self.sums::<true>(nodes, &self.slopes()) }
     }
 
     #[inline(always)]
@@ -250,9 +251,13 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
         slopes
     }
 
-    /// G2P: sum v_i (x) S_i (x_i - x_p) over h, embedded in space, and sum S_i v_i [m/s].
+    /// G2P: sum v_i (x) S_i (x_i - x_p) over h, embedded in space, and sum S_i v_i [m/s]; without the diagonal, which
+    /// turns nothing, if that is not asked for.
     #[inline(always)]
-    pub fn moments(&self, nodes: &[NodeValues<V::Real>; WINDOW_NODES]) -> (Matrix<V>, Vector<V, D>) {
+    pub fn moments<const DIAGONAL: bool>(
+        &self,
+        nodes: &[NodeValues<V::Real>; WINDOW_NODES],
+    ) -> (Matrix<V>, Vector<V, D>) {
         if B::CORNERS {
             return self.sums_of_arms(nodes);
         }
@@ -262,7 +267,7 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
                 arms[axis][i] = self.shapes[axis].weight[i] * (V::of(i as f64) - self.r[axis]);
             }
         }
-        self.sums(nodes, &arms)
+        self.sums::<DIAGONAL>(nodes, &arms)
     }
 
     /// sum S_i (x_i - x_p) (x) (x_i - x_p) over h^2, embedded in space.
@@ -292,9 +297,9 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
     }
 
     /// Sums of v_i, by components, with the shape function's factor along each axis in turn replaced by another one,
-    /// and with none.
+    /// and with none; those of a component along its own axis are zero without the diagonal.
     #[inline(always)]
-    fn sums(
+    fn sums<const DIAGONAL: bool>(
         &self,
         nodes: &[NodeValues<V::Real>; WINDOW_NODES],
         others: &[Line<B, V::Real, V>; D],
@@ -304,7 +309,7 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
         let mut sums = Matrix::<V>::ZERO;
         for c in 0..D {
             for axis in 0..D {
-                sums.0[c][axis] = V::NOTHING;
+                sums.0[c][axis] = if DIAGONAL || c != axis { V::NOTHING } else { V::ZERO };
             }
         }
         let mut sum = Vector([V::NOTHING; D]);
@@ -320,23 +325,31 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
                             row[c] = value;
                         } else {
                             row[c] = z.weight[k].times_plus(value, row[c]);
-                            other[c] = other_z[k].times_plus(value, other[c]);
+                            if DIAGONAL || c != 2 {
+                                other[c] = other_z[k].times_plus(value, other[c]);
+                            }
                         }
                     }
                 }
                 for c in 0..D {
                     plane[0][c] = y.weight[j].times_plus(row[c], plane[0][c]);
-                    plane[1][c] = other_y[j].times_plus(row[c], plane[1][c]);
-                    if D == 3 {
+                    if DIAGONAL || c != 1 {
+                        plane[1][c] = other_y[j].times_plus(row[c], plane[1][c]);
+                    }
+                    if D == 3 && (DIAGONAL || c != 2) {
                         plane[2][c] = y.weight[j].times_plus(other[c], plane[2][c]);
                     }
                 }
             }
             for c in 0..D {
                 sum[c] = x.weight[i].times_plus(plane[0][c], sum[c]);
-                sums.0[c][0] = other_x[i].times_plus(plane[0][c], sums.0[c][0]);
-                sums.0[c][1] = x.weight[i].times_plus(plane[1][c], sums.0[c][1]);
-                if D == 3 {
+                if DIAGONAL || c != 0 {
+                    sums.0[c][0] = other_x[i].times_plus(plane[0][c], sums.0[c][0]);
+                }
+                if DIAGONAL || c != 1 {
+                    sums.0[c][1] = x.weight[i].times_plus(plane[1][c], sums.0[c][1]);
+                }
+                if D == 3 && (DIAGONAL || c != 2) {
                     sums.0[c][2] = x.weight[i].times_plus(plane[2][c], sums.0[c][2]);
                 }
             }
@@ -386,8 +399,9 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
     #[inline(always)]
     pub fn scatter<M: Machine<V::Real>>(&self, window: &mut Window<V::Real, D>, load: &ScatterTerms<V, D>) {
         let n = self.count;
-        // No closures, see `Group::new`.
-        let mut pairs = PairLoad { momentum: None, stress: None };
+        // Written where they stay, without closures (see `Group::new`): copies of them would cost as much as the sums.
+        let mut momentum = [RowsOfLanes::EMPTY; 4];
+        let mut stress = [RowsOfLanes::EMPTY; 3];
         if let Some(Momentum { own, per_cell: Matrix(m), mass }) = load.momentum {
             // At the base node.
             let mut first = own;
@@ -396,28 +410,23 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
                     first[c] = (-m[c][axis]).times_plus(self.r[axis], first[c]);
                 }
             }
-            pairs.momentum = Some(MomentumRows {
-                first: RowsOfLanes::of::<V, D>([first[0], first[1], first[D - 1], mass], n),
-                steps: [
-                    RowsOfLanes::of::<V, D>([m[0][0], m[1][0], m[2][0], V::ZERO], n),
-                    RowsOfLanes::of::<V, D>([m[0][1], m[1][1], m[2][1], V::ZERO], n),
-                    if D == 2 {
-                        RowsOfLanes::ZERO
-                    } else {
-                        RowsOfLanes::of::<V, D>([m[0][2], m[1][2], m[2][2], V::ZERO], n)
-                    },
-                ],
-            });
+            momentum[0].put::<V, D>([first[0], first[1], first[D - 1], mass], n);
+            for axis in 0..D {
+                momentum[axis + 1].put::<V, D>([m[0][axis], m[1][axis], m[2][axis], V::ZERO], n);
+            }
         }
-        if let Some(stress) = load.stress {
-            let [xx, yy, zz, xy, yz, xz] = stress.0;
-            let [xx, yy, zz] = [xx.first(n), yy.first(n), zz.first(n)];
-            let [xy, yz, xz] = [xy.first(n), yz.first(n), xz.first(n)];
-            let x = RowsOfLanes::new([xx, xy, xz, V::ZERO]);
-            let y = RowsOfLanes::new([xy, yy, yz, V::ZERO]);
-            let z = if D == 2 { y } else { RowsOfLanes::new([xz, yz, zz, V::ZERO]) };
-            pairs.stress = Some([x, y, z]);
+        if let Some(load) = load.stress {
+            let [xx, yy, zz, xy, yz, xz] = load.0;
+            stress[0].put::<V, D>([xx, xy, xz, V::ZERO], n);
+            stress[1].put::<V, D>([xy, yy, yz, V::ZERO], n);
+            if D == 3 {
+                stress[2].put::<V, D>([xz, yz, zz, V::ZERO], n);
+            }
         }
+        let pairs = PairLoad {
+            momentum: load.momentum.is_some().then_some(&momentum),
+            stress: load.stress.is_some().then_some(&stress),
+        };
         match self.start.shared() {
             Some(start) if B::CORNERS => self.scatter_by_nodes::<M>(window, start, &pairs),
             // A number that the compiler knows, so that loops over pairs are unrolled.
@@ -435,7 +444,7 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
         &self,
         window: &mut Window<V::Real, D>,
         start: usize,
-        PairLoad { momentum, stress }: &PairLoad<V::Real>,
+        PairLoad { momentum, stress }: &PairLoad<'_, V::Real>,
     ) {
         let mut below = Plane::<B, V::Real, _>::all(M::Wide::ZERO);
         for i in 0..B::WIDTH {
@@ -460,26 +469,25 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
     fn momenta<M: Machine<V::Real>>(
         &self,
         i: usize,
-        load: &MomentumRows<V::Real>,
+        load: &[RowsOfLanes<V::Real>; 4],
     ) -> Plane<B, V::Real, M::Wide> {
-        let mut weights = Plane::<B, V::Real, _>::all(Numbers::ZERO);
+        let mut weights = Plane::<B, V::Real, _>::all(Factors::EMPTY);
         for j in 0..B::WIDTH {
             for k in 0..Self::DEPTH {
-                weights[j * Self::DEPTH + k] = (self.shapes[0].weight[i] * self.across(j, k)).numbers();
+                weights[j * Self::DEPTH + k].put(self.shapes[0].weight[i] * self.across(j, k));
             }
         }
         let mut sums = Plane::<B, V::Real, _>::all(M::Wide::NOTHING);
         for pair in 0..self.pairs() {
-            let along_x = load.steps[0].get::<M>(pair);
-            let along_y = load.steps[1].get::<M>(pair);
-            let along_z = load.steps[2].get::<M>(pair);
+            let (along_x, along_y) = (load[1].get::<M>(pair), load[2].get::<M>(pair));
+            let along_z = load[D].get::<M>(pair);
             // From node to node.
-            let mut line = along_x.times_plus(M::Wide::of(i as f64), load.first.get::<M>(pair));
+            let mut line = along_x.times_plus(M::Wide::of(i as f64), load[0].get::<M>(pair));
             for j in 0..B::WIDTH {
                 let mut row = line;
                 for k in 0..Self::DEPTH {
                     let n = j * Self::DEPTH + k;
-                    sums[n] = row.times_plus(factors::<M, _>(&weights[n], pair), sums[n]);
+                    sums[n] = row.times_plus(weights[n].get::<M>(pair), sums[n]);
                     if k + 1 < Self::DEPTH {
                         row += along_z;
                     }
@@ -503,20 +511,19 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
     ) -> TwoPlanes<B, V::Real, M::Wide> {
         let [x, y, z] = [&self.shapes[0], &self.shapes[1], &self.shapes[D - 1]];
         // To the next plane of nodes, and within this one.
-        let mut along_x = Plane::<B, V::Real, _>::all(Numbers::ZERO);
-        let [mut along_y, mut along_z] = [Neighbours::<B, V::Real, _>::all(Numbers::ZERO); 2];
+        let mut along_x = Plane::<B, V::Real, _>::all(Factors::EMPTY);
+        let [mut along_y, mut along_z] = [Neighbours::<B, V::Real, _>::all(Factors::EMPTY); 2];
         for j in 0..B::WIDTH {
             for k in 0..Self::DEPTH {
                 if i + 1 < B::WIDTH {
-                    along_x[j * Self::DEPTH + k] = (self.across(j, k) * x.difference[i]).numbers();
+                    along_x[j * Self::DEPTH + k].put(self.across(j, k) * x.difference[i]);
                 }
                 if j + 1 < B::WIDTH {
                     let weight = if D == 2 { x.weight[i] } else { x.weight[i] * z.weight[k] };
-                    along_y[j * Self::DEPTH + k] = (weight * y.difference[j]).numbers();
+                    along_y[j * Self::DEPTH + k].put(weight * y.difference[j]);
                 }
                 if k + 1 < Self::DEPTH {
-                    along_z[j * (Self::DEPTH - 1) + k] =
-                        (x.weight[i] * y.weight[j] * z.difference[k]).numbers();
+                    along_z[j * (Self::DEPTH - 1) + k].put(x.weight[i] * y.weight[j] * z.difference[k]);
                 }
             }
         }
@@ -525,18 +532,18 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
             for pair in 0..self.pairs() {
                 let row = load[0].get::<M>(pair);
                 for n in 0..B::WIDTH * Self::DEPTH {
-                    above[n] = row.times_plus(factors::<M, _>(&along_x[n], pair), above[n]);
+                    above[n] = row.times_plus(along_x[n].get::<M>(pair), above[n]);
                 }
             }
         }
         let [mut right, mut back] = [Neighbours::<B, V::Real, _>::all(M::Wide::NOTHING); 2];
         for pair in 0..self.pairs() {
-            let (row_y, row_z) = (load[1].get::<M>(pair), load[2].get::<M>(pair));
+            let (row_y, row_z) = (load[1].get::<M>(pair), load[D - 1].get::<M>(pair));
             for n in 0..(B::WIDTH - 1) * Self::DEPTH {
-                right[n] = row_y.times_plus(factors::<M, _>(&along_y[n], pair), right[n]);
+                right[n] = row_y.times_plus(along_y[n].get::<M>(pair), right[n]);
             }
             for n in 0..B::WIDTH * (Self::DEPTH - 1) {
-                back[n] = row_z.times_plus(factors::<M, _>(&along_z[n], pair), back[n]);
+                back[n] = row_z.times_plus(along_z[n].get::<M>(pair), back[n]);
             }
         }
         let mut forces = Plane::<B, V::Real, _>::all(M::Wide::ZERO);
@@ -568,26 +575,26 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
         &self,
         window: &mut Window<V::Real, D>,
         start: usize,
-        PairLoad { momentum, stress }: &PairLoad<V::Real>,
+        PairLoad { momentum, stress }: &PairLoad<'_, V::Real>,
     ) {
         for (n, at) in Self::nodes() {
             let [mut given, mut force] = [M::Wide::NOTHING; 2];
-            if let Some(MomentumRows { first, steps }) = momentum {
-                let weights = self.weight(n, at).numbers();
+            if let Some([first, steps @ ..]) = momentum {
+                let weights = Factors::of(self.weight(n, at));
                 for pair in 0..self.pairs() {
                     let mut row = first.get::<M>(pair);
                     for axis in 0..D {
                         row = steps[axis].get::<M>(pair).times_plus(M::Wide::of(at[axis] as f64), row);
                     }
-                    given = row.times_plus(factors::<M, _>(&weights, pair), given);
+                    given = row.times_plus(weights.get::<M>(pair), given);
                 }
             }
             if let Some(stress) = stress {
                 for axis in 0..D {
-                    let slopes = (-self.table.slope(n, axis)).numbers();
+                    let slopes = Factors::of(-self.table.slope(n, axis));
                     for pair in 0..self.pairs() {
                         let row = stress[axis].get::<M>(pair);
-                        force = row.times_plus(factors::<M, _>(&slopes, pair), force);
+                        force = row.times_plus(slopes.get::<M>(pair), force);
                     }
                 }
             }
@@ -601,31 +608,31 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
     fn scatter_singly<M: Machine<V::Real>>(
         &self,
         window: &mut Window<V::Real, D>,
-        PairLoad { momentum, stress }: &PairLoad<V::Real>,
+        PairLoad { momentum, stress }: &PairLoad<'_, V::Real>,
     ) {
         let [x, y, z] = [&self.shapes[0], &self.shapes[1], &self.shapes[D - 1]];
-        let mut weights = Space::<B, V::Real, _>::all(Numbers::ZERO);
-        let mut slopes = Space::<B, V::Real, _>::all([Numbers::ZERO; D]);
+        let mut weights = Space::<B, V::Real, _>::all(Factors::EMPTY);
+        let mut slopes = Space::<B, V::Real, _>::all([Factors::EMPTY; D]);
         for (n, [i, j, k]) in Self::nodes() {
             if momentum.is_some() {
-                weights[n] = self.weight(n, [i, j, k]).numbers();
+                weights[n].put(self.weight(n, [i, j, k]));
             }
             if stress.is_some() && B::CORNERS {
                 for axis in 0..D {
-                    slopes[n][axis] = self.table.slope(n, axis).numbers();
+                    slopes[n][axis].put(self.table.slope(n, axis));
                 }
             } else if stress.is_some() {
                 let depth = if D == 2 { V::ONE } else { z.weight[k] };
-                slopes[n][0] = (x.slope(i) * self.across(j, k)).numbers();
-                slopes[n][1] = (x.weight[i] * y.slope(j) * depth).numbers();
+                slopes[n][0].put(x.slope(i) * self.across(j, k));
+                slopes[n][1].put(x.weight[i] * y.slope(j) * depth);
                 if D == 3 {
-                    slopes[n][2] = (x.weight[i] * y.weight[j] * z.slope(k)).numbers();
+                    slopes[n][2].put(x.weight[i] * y.weight[j] * z.slope(k));
                 }
             }
         }
         for p in 0..self.count.min(MOST_LANES) {
             let (mut rows, mut momenta) = ([M::Wide::ZERO; 3], [M::Wide::ZERO; 4]);
-            if let Some(MomentumRows { first, steps }) = momentum {
+            if let Some([first, steps @ ..]) = momentum {
                 momenta[0] = first.one::<M>(p);
                 for axis in 0..D {
                     momenta[axis + 1] = steps[axis].one::<M>(p);
@@ -643,11 +650,11 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
                     for (axis, steps) in [i, j, k].into_iter().enumerate().take(D) {
                         row = momenta[axis + 1].times_plus(M::Wide::of(steps as f64), row);
                     }
-                    given = row * factors::<M, _>(&weights[n], p / 2);
+                    given = row * weights[n].get::<M>(p / 2);
                 }
                 if stress.is_some() {
                     for axis in 0..D {
-                        force = (-rows[axis]).times_plus(factors::<M, _>(&slopes[n][axis], p / 2), force);
+                        force = (-rows[axis]).times_plus(slopes[n][axis].get::<M>(p / 2), force);
                     }
                 }
                 add::<M, _>(&mut window.sums[self.start.of(p) + Self::offset(i, j, k)], given, force);
@@ -688,45 +695,40 @@ pub fn pairs(count: usize) -> usize {
 }
 
 /// What a group scatters, by pairs of particles.
-struct PairLoad<T> {
-    /// Momentum and mass.
-    momentum: Option<MomentumRows<T>>,
+struct PairLoad<'a, T> {
+    /// Momentum and mass at the base node, and by how much they change to the next node along each axis.
+    momentum: Option<&'a [RowsOfLanes<T>; 4]>,
     /// Columns of V sigma/h.
-    stress: Option<[RowsOfLanes<T>; 3]>,
-}
-
-/// Momentum and mass at the base node, and by how much they change to the next node along each axis.
-struct MomentumRows<T> {
-    first: RowsOfLanes<T>,
-    steps: [RowsOfLanes<T>; 3],
+    stress: Option<&'a [RowsOfLanes<T>; 3]>,
 }
 
 /// Four numbers of each particle of a group: of two particles the first, then the second and so on.
-#[derive(Clone, Copy)]
 #[repr(align(64))]
-struct RowsOfLanes<T>([[[T; 2]; 4]; MOST_LANES / 2]);
+struct RowsOfLanes<T>(MaybeUninit<[[[T; 2]; 4]; MOST_LANES / 2]>);
 
 impl<T: Real> RowsOfLanes<T> {
-    const ZERO: Self = RowsOfLanes([[[T::ZERO; 2]; 4]; MOST_LANES / 2]);
+    /// To be [put](RowsOfLanes::put).
+    const EMPTY: Self = RowsOfLanes(MaybeUninit::uninit());
 
+    /// Those of the first `n` particles, and zeros for the partner of a last one without; in the plane the third number
+    /// is zero.
     #[inline(always)]
-    fn new<V: Lanes<Real = T>>(columns: [V; 4]) -> Self {
-        let mut rows = Self::ZERO;
-        V::store_pairs(columns, &mut rows.0);
-        rows
-    }
-
-    /// Those of the first `n` particles, and zeros; in the plane the third number is zero.
-    #[inline(always)]
-    fn of<V: Lanes<Real = T>, const D: usize>([x, y, z, rest]: [V; 4], n: usize) -> Self {
-        let z = if D == 2 { V::ZERO } else { z.first(n) };
-        Self::new([x.first(n), y.first(n), z, rest.first(n)])
+    fn put<V: Lanes<Real = T>, const D: usize>(&mut self, [x, y, z, rest]: [V; 4], n: usize) {
+        let mut columns = [x, y, if D == 2 { V::ZERO } else { z }, rest];
+        if !n.is_multiple_of(2) {
+            for column in &mut columns {
+                *column = column.first(n);
+            }
+        }
+        // SAFETY: there is room for the lanes of any register.
+        unsafe { V::store_pairs(columns, self.0.as_mut_ptr().cast()) };
     }
 
     #[inline(always)]
     fn get<M: Machine<T>>(&self, pair: usize) -> M::Wide {
-        // SAFETY: a row is eight numbers.
-        unsafe { M::Wide::load(self.0[pair].as_ptr().cast()) }
+        debug_assert!(pair < MOST_LANES / 2, "a pair of the group");
+        // SAFETY: a row is eight numbers, and those of all pairs of a group were put.
+        unsafe { M::Wide::load(self.0.as_ptr().cast::<T>().add(8 * pair)) }
     }
 
     /// The row of a particle, with zeros in the place of its partner.
@@ -737,11 +739,41 @@ impl<T: Real> RowsOfLanes<T> {
     }
 }
 
-/// What multiplies the rows of two particles.
-#[inline(always)]
-fn factors<M: Machine<T>, T: Real>(numbers: &Numbers<T>, pair: usize) -> M::Wide {
-    let [a, b] = [numbers.0[2 * pair], numbers.0[2 * pair + 1]];
-    M::Wide::alternate([a, b])
+/// What multiplies the rows of a group's particles.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
+struct Factors<T: Copy>(MaybeUninit<[T; MOST_LANES]>);
+
+impl<T: Real> Factors<T> {
+    /// To be [put](Factors::put).
+    const EMPTY: Self = Factors(MaybeUninit::uninit());
+
+    #[inline(always)]
+    fn of<V: Lanes<Real = T>>(lanes: V) -> Self {
+        let mut factors = Self::EMPTY;
+        factors.put(lanes);
+        factors
+    }
+
+    #[inline(always)]
+    fn put<V: Lanes<Real = T>>(&mut self, lanes: V) {
+        if V::COUNT == 1 {
+            // Its partner has zero.
+            self.0.write(lanes.numbers().0);
+        } else {
+            // SAFETY: there is room for the lanes of any register.
+            unsafe { lanes.store(self.0.as_mut_ptr().cast()) };
+        }
+    }
+
+    /// Those of two particles.
+    #[inline(always)]
+    fn get<M: Machine<T>>(&self, pair: usize) -> M::Wide {
+        debug_assert!(pair < MOST_LANES / 2, "a pair of the group");
+        // SAFETY: those of all pairs of a group were put.
+        let [a, b] = unsafe { self.0.as_ptr().cast::<[T; 2]>().add(pair).read() };
+        M::Wide::alternate([a, b])
+    }
 }
 
 /// Adds momentum and force, each of two particles, to a node.

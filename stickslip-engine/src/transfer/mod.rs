@@ -30,7 +30,7 @@ pub use group::{CellGroup, Group, Momentum, Own, ScatterTerms, Start, pairs};
 #[cfg(test)]
 pub use naive::Stencil;
 pub use pic::Pic;
-pub use rflip::Rflip;
+pub use rflip::{Rflip, SETTLES_EVERY};
 pub use xpic::{Xpic, begin_filter, end_filter, filter_once_more};
 
 use crate::lanes::Lanes;
@@ -92,7 +92,11 @@ pub trait TransferRule {
         state.velocity = state.velocity * (V::ONE - share) + mean * share;
     }
 
-    /// The spin after a step in which velocities had this gradient, embedded in space [1/s]; `dt` in [s].
+    /// Whether spins [settle](TransferRule::settle).
+    const SETTLES: bool = false;
+
+    /// The spin after a time [s] in which velocities had this gradient, embedded in space [1/s]. Asked for once in
+    /// [`SETTLES_EVERY`] steps.
     #[inline(always)]
     fn settle<N: Number, const D: usize>(spin: Vector<N, 3>, _gradient: &Matrix<N>, _dt: N) -> Vector<N, 3> {
         spin
@@ -137,6 +141,11 @@ pub fn columns(transfer: Transfer) -> &'static [History] {
 /// [`TransferRule::FILTERS`]
 pub fn filters(transfer: Transfer) -> bool {
     of_transfer!(transfer, Rule => Rule::FILTERS)
+}
+
+/// [`TransferRule::SETTLES`]
+pub fn settles(transfer: Transfer) -> bool {
+    of_transfer!(transfer, Rule => Rule::SETTLES)
 }
 
 /// [`TransferRule::AFFINE`]

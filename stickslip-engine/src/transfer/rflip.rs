@@ -37,7 +37,9 @@
 //! ```text
 //! w_p += NOISE |w_p| dt (curl v / 2 - w_p)                                                                      (d)
 //! ```
-//! which takes next to nothing from a body that only vibrates. The ledger's damping counts what it takes.
+//! which takes next to nothing from a body that only vibrates. The ledger's damping counts what it takes. It is taken
+//! in every eighth step, with dt the time of eight: so little changes in the others that they would wait for the memory
+//! of w_p in vain.
 
 use super::{TransferRule, VelocityState, rotation};
 use crate::lanes::Lanes;
@@ -49,6 +51,7 @@ pub struct Rflip;
 
 impl TransferRule for Rflip {
     const HAS_SPIN: bool = true;
+    const SETTLES: bool = true;
 
     #[inline(always)]
     fn take_change<V: Lanes, const D: usize>(
@@ -81,3 +84,6 @@ impl TransferRule for Rflip {
 /// a disk of eight cells a radius, whose rim moves at a tenth of the wave speed, doubles in ten turns;
 /// three times as much takes no more noise [-].
 const NOISE: f64 = 0.3;
+
+/// Once in so many steps particles take it.
+pub const SETTLES_EVERY: u64 = 8;

@@ -12,24 +12,32 @@ struct Respond<'a, T: Number, L: Law<T>> {
     law: &'a L,
     motion: &'a Motion<T>,
     history: &'a L::History,
+    waves: bool,
 }
 
 impl<T: Number, L: Law<T>> Task for Respond<'_, T, L> {
-    type Output = Response<T, L::History>;
+    type Output = (Response<T, L::History>, T);
     #[inline(always)]
     fn run(self) -> Self::Output {
-        self.law.respond(self.motion, self.history)
+        let Respond { law, motion, history, waves } = self;
+        let response = law.respond(motion, history);
+        // Both need the same roots and powers of J.
+        let modulus = match waves {
+            true => law.wave_modulus(&motion.deformation, motion.jacobian, &response.history),
+            false => T::ZERO,
+        };
+        (response, modulus)
     }
 }
 
-/// [`Law::respond`]
+/// [`Law::respond`], and [`Law::wave_modulus`] of the state after it if `waves` are asked for.
 #[inline(always)]
 pub fn respond<T: Number, L: Law<T>>(
     law: &L,
-    motion: &Motion<T>,
+    (motion, waves): (&Motion<T>, bool),
     history: &L::History,
-) -> Response<T, L::History> {
-    T::apart(Respond { law, motion, history })
+) -> (Response<T, L::History>, T) {
+    T::apart(Respond { law, motion, history, waves })
 }
 
 struct Thicken<'a, T: Number, L: Law<T>> {

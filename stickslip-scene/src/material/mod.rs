@@ -235,10 +235,22 @@ impl<T: Number> Material<T> {
     /// [`Law::respond`] with a history where it is kept.
     #[inline(always)]
     pub fn respond(&self, motion: &Motion<T>, history: &mut impl Keep<T>) -> Symmetric<T> {
+        self.respond_with_modulus((motion, false), history).0
+    }
+
+    /// The same, with [`Law::wave_modulus`] of the state after it if `waves` are asked for, else zero: for less than
+    /// the two one after the other.
+    #[inline(always)]
+    pub fn respond_with_modulus(
+        &self,
+        (motion, waves): (&Motion<T>, bool),
+        history: &mut impl Keep<T>,
+    ) -> (Symmetric<T>, T) {
         of_law!(self, law => {
-            let response = apart::respond(law, motion, &history::recalled(law.history(), history));
+            let recalled = history::recalled(law.history(), history);
+            let (response, modulus) = apart::respond(law, (motion, waves), &recalled);
             history::kept(law.history(), &response.history, history);
-            response.stress
+            (response.stress, modulus)
         })
     }
 

@@ -93,9 +93,8 @@ lanes! { F64x8: __m512d as [f64; 8];
         unsafe { F64x8(_mm512_maskz_mov_pd(mask(count), self.0)) }
     }
     #[inline(always)]
-    fn store_pairs([a, b, c, d]: [Self; 4], pairs: &mut [[[f64; 2]; 4]; MOST_LANES / 2]) {
-        let pairs: *mut f64 = pairs.as_mut_ptr().cast();
-        // SAFETY: values of this type exist only where the processor has the instructions.
+    unsafe fn store_pairs([a, b, c, d]: [Self; 4], pairs: *mut f64) {
+        // SAFETY: values of this type exist only where the processor has the instructions; the caller has the room.
         unsafe {
             // Quarters 0, 1 and 2, 3 of two columns, then of all four.
             let [ab, cd] = [_mm512_shuffle_f64x2::<0x44>(a.0, b.0), _mm512_shuffle_f64x2::<0x44>(c.0, d.0)];
@@ -219,9 +218,8 @@ lanes! { F64x4: __m256d as [f64; 4];
         }
     }
     #[inline(always)]
-    fn store_pairs([a, b, c, d]: [Self; 4], pairs: &mut [[[f64; 2]; 4]; MOST_LANES / 2]) {
-        let pairs: *mut f64 = pairs.as_mut_ptr().cast();
-        // SAFETY: values of this type exist only where the processor has the instructions.
+    unsafe fn store_pairs([a, b, c, d]: [Self; 4], pairs: *mut f64) {
+        // SAFETY: values of this type exist only where the processor has the instructions; the caller has the room.
         unsafe {
             _mm256_storeu_pd(pairs, _mm256_permute2f128_pd::<0x20>(a.0, b.0));
             _mm256_storeu_pd(pairs.add(4), _mm256_permute2f128_pd::<0x20>(c.0, d.0));

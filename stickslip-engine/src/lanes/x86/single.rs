@@ -149,13 +149,13 @@ lanes! { F32x8<const MASKS>: __m256 as [f32; 8];
         }
     }
     #[inline(always)]
-    fn store_pairs([a, b, c, d]: [Self; 4], pairs: &mut [[[f32; 2]; 4]; MOST_LANES / 2]) {
+    unsafe fn store_pairs([a, b, c, d]: [Self; 4], pairs: *mut f32) {
         let wide = |x: Self| {
             // SAFETY: values of this type exist only where the processor has the instructions.
             unsafe { _mm256_castps_pd(x.0) }
         };
-        // SAFETY: values of this type exist only where the processor has the instructions.
-        unsafe { turn_pd([wide(a), wide(b), wide(c), wide(d)], pairs.as_mut_ptr().cast()) }
+        // SAFETY: as above, and the caller has room for four pairs.
+        unsafe { turn_pd([wide(a), wide(b), wide(c), wide(d)], pairs.cast()) }
     }
     #[inline(always)]
     fn store_rows([a, b, c, d]: [Self; 4], rows: &mut [[f32; 4]; MOST_LANES]) {

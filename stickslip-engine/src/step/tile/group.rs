@@ -12,8 +12,8 @@ use crate::particles::ColumnStart;
 use crate::step::pass::{FaultKind, Pass, Verbs, Visit};
 use crate::tensor::{Matrix, Real, Symmetric, Vector};
 use crate::transfer::{
-    Apic, Group, Momentum, ScatterTerms, Share, Start, TransferRule, VelocityState, convected_edges, extent,
-    has_spin, is_affine, of_transfer,
+    Apic, Group, Momentum, SETTLES_EVERY, ScatterTerms, Share, Start, TransferRule, VelocityState,
+    convected_edges, extent, has_spin, is_affine, of_transfer,
 };
 
 /// What all particles of a tile have in common.
@@ -72,9 +72,9 @@ pub fn group<
     (base, start): (Vector<V, D>, S),
 ) -> Result<u32, FaultKind> {
     let Pass { verbs, dt, transfer, pic, viscosity, .. } = *visit.pass;
-    let Verbs { smooth, update_velocity, update_stress, advect, scatter } = verbs;
+    let Verbs { smooth, update_velocity, update_stress, settle, advect, scatter } = verbs;
     let position = members.vector::<V>(ColumnStart::<D>::POSITION);
-    let half_width = members.load::<V>(ColumnStart::<D>::HALF_WIDTH);
+    let half_width = members.half_width::<V>();
     let half_side = match visit.pass.lattice.half_side {
         Some(half) => V::splat(half),
         None => half_width * constants.per_cell,
@@ -100,8 +100,10 @@ pub fn group<
     let gives_momentum = scatter.is_some_and(Share::has_momentum);
     // G2P: sum S_i u_i, in the place of v_p, or sum S_i dv_i with its moments.
     let (mut moments, mut change) = (Matrix::ZERO, Vector::ZERO);
-    if update_velocity && rotates {
-        (moments, change) = group.moments(&visit.window.change);
+    if update_velocity && is_affine(transfer) {
+        (moments, change) = group.moments::<true>(&visit.window.change);
+    } else if update_velocity && rotates {
+        (moments, change) = group.moments::<false>(&visit.window.change);
     } else if update_velocity || smooth {
         change = group.interpolate(if smooth { &visit.window.integrated } else { &visit.window.change });
     }
@@ -110,11 +112,12 @@ pub fn group<
     } else if update_velocity || advect || gives_momentum {
         state.velocity = members.vector::<V>(ColumnStart::<D>::VELOCITY);
     }
-    if !smooth && (update_velocity || gives_momentum || (update_stress && rotates)) {
-        state.spin = members.spin::<V>();
-    }
     // By velocities of a second P2G, which are not quite their own.
     let carries = advect && !update_velocity && is_affine(transfer);
+    let turns = update_stress && (settle || carries);
+    if !smooth && (update_velocity || gives_momentum || turns) {
+        state.spin = members.spin::<V>();
+    }
     if !smooth && (update_velocity || gives_momentum || carries) {
         state.strain_rate = members.strain_rate::<V>();
     }
@@ -126,7 +129,7 @@ pub fn group<
         if pic > T::ZERO {
             let before = kinetic(&state, gyration_squared);
             let (gradient, mean) = if is_affine(transfer) {
-                let (moments, mean) = group.moments(&visit.window.integrated);
+                let (moments, mean) = group.moments::<true>(&visit.window.integrated);
                 (Apic::taken(&given, (&moments, &group.spread()), (constants.cell, scale)), mean)
             } else {
                 let (gradient, mean) = group.flow(&visit.window.integrated);
@@ -143,7 +146,9 @@ pub fn group<
     let mut deformation = Matrix::ZERO;
     let mut stress = Symmetric::ZERO;
     let mut history = HistoryOfGroup::new(members);
-    let [mut jacobian, mut volume] = [V::ZERO; 2];
+    let [mut jacobian, mut volume, mut modulus] = [V::ZERO; 3];
+    // Whether the law says with the stress how fast waves are: where it sees F as it is.
+    let mut stiffens = false;
     // sum S_i v_i of the velocities that strain and move.
     let mut flow = Vector::ZERO;
     // Whether the stress gives forces to the nodes.
@@ -175,12 +180,15 @@ pub fn group<
                 gradient.0[i][i] += more;
             }
         }
-        if rotates {
+        if turns {
             let spin = state.spin;
-            let gradient = gradient * constants.per_cell;
-            state.spin = of_transfer!(transfer, Rule => Rule::settle::<V, D>(spin, &gradient, V::splat(dt)));
+            if settle {
+                let gradient = gradient * constants.per_cell;
+                let time = V::splat(dt * T::of(SETTLES_EVERY as f64));
+                state.spin = of_transfer!(transfer, Rule => Rule::settle::<V, D>(spin, &gradient, time));
+            }
             if carries {
-                let (moments, _) = group.moments(&visit.window.flow);
+                let (moments, _) = group.moments::<true>(&visit.window.flow);
                 state.spin =
                     Apic::carried(&state, &moments, V::splat(dt) * constants.cell / gyration_squared);
             }
@@ -192,7 +200,7 @@ pub fn group<
         jacobian = deformation.det();
         sound.require(finite(&[jacobian]), FaultKind::NotFinite);
         sound.require(jacobian.at_least(V::splat(T::TINY)), FaultKind::Inverted);
-        volume = members.load::<V>(ColumnStart::<D>::MASS) * constants.per_density * jacobian;
+        volume = members.mass::<V>() * constants.per_density * jacobian;
         if V::COUNT == 1
             && let Some(kind) = sound.fault::<V>()
         {
@@ -216,7 +224,8 @@ pub fn group<
             deformation.0[2][2] *= stretch;
             jacobian *= stretch;
         }
-        stress = constants.material.respond(&motion, &mut history);
+        stiffens = advect && natural.is_none() && !thickness_is_free;
+        (stress, modulus) = constants.material.respond_with_modulus((&motion, stiffens), &mut history);
         history.changed = true;
         if let Some(BulkViscosity { coefficients }) = viscosity {
             let seen = (&natural, &deformation, jacobian);
@@ -229,7 +238,7 @@ pub fn group<
             damped -= (before * jacobian + over_density) * (rate * step);
         }
         sound.require(finite(&stress.0), FaultKind::NotFinite);
-        volume = members.load::<V>(ColumnStart::<D>::MASS) * constants.per_density * jacobian;
+        volume = members.mass::<V>() * constants.per_density * jacobian;
     } else {
         if advect {
             jacobian = deformation.det();
@@ -278,7 +287,9 @@ pub fn group<
             members.store_edges(&edges);
         }
         let seen = (&natural, &deformation, jacobian);
-        let modulus = wave_modulus(&constants.material, visit.body.thickness, seen, &history);
+        if !stiffens {
+            modulus = wave_modulus(&constants.material, visit.body.thickness, seen, &history);
+        }
         let squares = [modulus * constants.per_density, state.velocity.dot(state.velocity)];
         if !every::<V>(no_faster(squares, V::splat(visit.found.signal))) {
             let signals = signal_speed(squares).numbers();
@@ -296,13 +307,13 @@ pub fn group<
         members.give_back::<V>(ColumnStart::<D>::VELOCITY..ColumnStart::<D>::SPIN);
         members.store_strain_rate(&state.strain_rate);
     }
-    if (update_velocity && pic > T::ZERO) || (update_stress && (rotates || viscosity.is_some())) {
-        let energies = (damped * members.load::<V>(ColumnStart::<D>::MASS)).numbers();
+    if (update_velocity && pic > T::ZERO) || turns || (update_stress && viscosity.is_some()) {
+        let energies = (damped * members.mass::<V>()).numbers();
         for &energy in &energies.0[..members.count::<V>().min(V::COUNT)] {
             visit.damped += 0.5 * energy.f64();
         }
     }
-    if update_velocity || (update_stress && rotates) {
+    if update_velocity || turns {
         members.store_spin(&state.spin);
         members.give_back::<V>(ColumnStart::<D>::SPIN..ColumnStart::<D>::MASS);
     }
@@ -319,7 +330,7 @@ pub fn group<
     if let Some(share) = scatter {
         let mut load = ScatterTerms { momentum: None, stress: None };
         if gives_momentum {
-            let mass = members.load::<V>(ColumnStart::<D>::MASS);
+            let mass = members.mass::<V>();
             let half_step = V::splat(T::HALF * dt);
             let gradient = of_transfer!(transfer, Rule => Rule::gradient::<V, D>(&state, half_step));
             load.momentum = Some(Momentum {
@@ -336,7 +347,7 @@ pub fn group<
                 }
             }
             if !visit.means.is_empty() {
-                let mass = members.load::<V>(ColumnStart::<D>::MASS);
+                let mass = members.mass::<V>();
                 let more =
                     mass * group.interpolate_mean(&visit.window.flow) - mean_stress::<V, D>(&stress, volume);
                 for i in 0..D {
@@ -348,7 +359,7 @@ pub fn group<
         if share.is_averaged() {
             let sum = match share {
                 Share::MeanStress => mean_stress::<V, D>(&stress, volume),
-                _ => members.load::<V>(ColumnStart::<D>::MASS) * (gradient.trace() * constants.per_cell),
+                _ => members.mass::<V>() * (gradient.trace() * constants.per_cell),
             };
             load.momentum = Some(Momentum { own: Vector::ZERO, per_cell: Matrix::ZERO, mass: sum });
         }

@@ -29,6 +29,10 @@ pub fn fetch<T: Real, const D: usize>(columns: &Columns<T, D>, particle: usize, 
 /// What a pass reads of particles besides the columns that every pass reads.
 #[derive(Clone, Copy)]
 struct Reads {
+    spin: bool,
+    volume: bool,
+    /// Mass and half the side of the box, where particles are not alike.
+    mass: bool,
     deformation: bool,
     stress: bool,
     /// Entries of the history.
@@ -48,10 +52,14 @@ impl Reads {
     #[inline(always)]
     fn of<T: Real, const D: usize>(verbs: &Verbs, columns: &Columns<T, D>) -> Self {
         let gives_momentum = verbs.scatter.is_some_and(Share::has_momentum);
+        let gives_stress = verbs.scatter.is_some_and(|share| share.has_force() || share == Share::MeanStress);
+        let carries = verbs.advect && !columns.transfer_columns().is_empty();
         Reads {
+            spin: verbs.update_velocity || gives_momentum || verbs.settle || carries,
+            volume: verbs.update_stress || gives_stress,
+            mass: columns.alike().is_none(),
             deformation: verbs.update_stress || verbs.advect,
-            stress: verbs.update_stress
-                || verbs.scatter.is_some_and(|share| share.has_force() || share == Share::MeanStress),
+            stress: verbs.update_stress || gives_stress,
             history: if verbs.update_stress || verbs.advect { columns.history() } else { 0 },
             transfer: if verbs.update_velocity || gives_momentum || verbs.advect {
                 columns.transfer_columns().len()
@@ -70,10 +78,14 @@ impl Reads {
 
     /// All columns that are read.
     #[inline(always)]
-    fn columns<T: Real, const D: usize>(self, of: &Columns<T, D>) -> [Range<usize>; 8] {
+    fn columns<T: Real, const D: usize>(self, of: &Columns<T, D>) -> [Range<usize>; 12] {
         let only = |read: bool, columns: Range<usize>| if read { columns } else { 0..0 };
         [
-            0..ColumnStart::<D>::DEFORMATION,
+            0..ColumnStart::<D>::SPIN,
+            only(self.spin, ColumnStart::<D>::SPIN..ColumnStart::<D>::MASS),
+            only(self.mass, ColumnStart::<D>::MASS..ColumnStart::<D>::VOLUME),
+            only(self.volume, ColumnStart::<D>::VOLUME..ColumnStart::<D>::HALF_WIDTH),
+            only(self.mass, ColumnStart::<D>::HALF_WIDTH..ColumnStart::<D>::DEFORMATION),
             only(self.deformation, ColumnStart::<D>::DEFORMATION..ColumnStart::<D>::STRESS),
             only(self.stress, ColumnStart::<D>::STRESS..ColumnStart::<D>::START),
             ColumnStart::<D>::HISTORY..ColumnStart::<D>::HISTORY + self.history,
@@ -223,6 +235,24 @@ impl<'a, T: Real, const D: usize, const WHOLE: bool> Members<'a, T, D, WHOLE> {
                     copy.store_part(self.columns.at(column, run.first), run.count);
                 }
             }
+        }
+    }
+
+    /// Their masses [kg].
+    #[inline(always)]
+    pub fn mass<V: Lanes<Real = T>>(&self) -> V {
+        match self.columns.alike() {
+            Some([mass, _]) => V::splat(mass),
+            None => self.load(ColumnStart::<D>::MASS),
+        }
+    }
+
+    /// Half the sides of their undeformed boxes [m].
+    #[inline(always)]
+    pub fn half_width<V: Lanes<Real = T>>(&self) -> V {
+        match self.columns.alike() {
+            Some([_, half_width]) => V::splat(half_width),
+            None => self.load(ColumnStart::<D>::HALF_WIDTH),
         }
     }
 
@@ -473,7 +503,22 @@ impl<T: Real> Copies<T> {
             let run = self.runs.runs[i];
             // SAFETY: the caller's.
             unsafe {
-                self.take_run::<V, D>(columns, run, 0..ColumnStart::<D>::DEFORMATION);
+                self.take_run::<V, D>(columns, run, 0..ColumnStart::<D>::SPIN);
+                if reads.spin {
+                    self.take_run::<V, D>(columns, run, ColumnStart::<D>::SPIN..ColumnStart::<D>::MASS);
+                }
+                if reads.mass {
+                    self.take_run::<V, D>(columns, run, ColumnStart::<D>::MASS..ColumnStart::<D>::VOLUME);
+                    let half_width = ColumnStart::<D>::HALF_WIDTH..ColumnStart::<D>::DEFORMATION;
+                    self.take_run::<V, D>(columns, run, half_width);
+                }
+                if reads.volume {
+                    self.take_run::<V, D>(
+                        columns,
+                        run,
+                        ColumnStart::<D>::VOLUME..ColumnStart::<D>::HALF_WIDTH,
+                    );
+                }
                 if reads.deformation {
                     self.take_run::<V, D>(
                         columns,
