@@ -16,6 +16,9 @@ pub struct SavedState {
     pub time: f64,
     /// Steps taken.
     pub steps: u64,
+    /// How many more count for when spins settle; none in runs that began from no other.
+    #[serde(default)]
+    pub(crate) phase: u64,
     /// The bodies in the order of the scene.
     pub bodies: Vec<SavedBody>,
     /// Fastest signal [m/s]; unknown before the first step.
@@ -90,6 +93,7 @@ impl SavedState {
         SavedState {
             time,
             steps: 0,
+            phase: 0,
             bodies: names.iter().zip(rows).filter(|(_, rows)| !rows.is_empty()).map(body).collect(),
             signal: None,
             damping: 0.0,

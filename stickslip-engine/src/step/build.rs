@@ -207,6 +207,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 signal: None,
                 time: 0.0,
                 steps: 0,
+                phase: 0,
             },
             workspace: Workspace::new(
                 if tallies {

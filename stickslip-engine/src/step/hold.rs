@@ -31,6 +31,7 @@ impl<T: Real, const D: usize> State<T, D> {
             signal,
             time,
             steps,
+            phase,
         } = other;
         each(&mut self.bodies, 1, |i, body| {
             body.particles.become_copy_of(&bodies[i].particles);
@@ -48,7 +49,7 @@ impl<T: Real, const D: usize> State<T, D> {
         self.written.clone_from(written);
         (self.longest_rigid, self.damping, self.relaxation) = (longest_rigid, damping, relaxation);
         (self.impacts, self.gravity_work, self.signal) = (impacts, gravity_work, signal);
-        (self.time, self.steps) = (time, steps);
+        (self.time, self.steps, self.phase) = (time, steps, phase);
     }
 }
 

@@ -15,18 +15,19 @@ use crate::load::{LoadPoints, place_of};
 use crate::particles::{ColumnStart, Particles};
 use crate::scene::{ContactLaw, StartVelocities, Transfer};
 use crate::tensor::{Matrix, Real, Symmetric, Vector, cross};
-use crate::transfer::columns as columns_of;
+use crate::transfer::{SETTLES_EVERY, columns as columns_of};
 use std::collections::HashMap;
 use std::sync::Mutex;
 
 impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// The state as data.
     pub(super) fn saved(&self) -> SavedState {
-        let State { time, steps, signal, damping, impacts, gravity_work, relaxation, .. } = self.state;
+        let State { time, steps, phase, signal, damping, impacts, gravity_work, relaxation, .. } = self.state;
         let bodies = self.state.bodies.iter().zip(&self.state.disorder).zip(&self.settings.filled);
         SavedState {
             time,
             steps,
+            phase,
             bodies: bodies
                 .map(|((body, &disorder), filled)| SavedBody {
                     name: body.name.clone(),
@@ -141,7 +142,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         if saved.walls.len() == state.walls.len() {
             state.walls = saved.walls;
         }
-        (state.signal, state.time, state.steps) = (saved.signal, saved.time, saved.steps);
+        (state.signal, state.time) = (saved.signal, saved.time);
+        (state.steps, state.phase) = (saved.steps, saved.phase % SETTLES_EVERY);
         Ok(())
     }
 
@@ -197,6 +199,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             sums.begin(joint, &self.state.bodies);
         }
         self.begin_springs();
+        self.state.phase = (saved.phase % SETTLES_EVERY + saved.steps % SETTLES_EVERY) % SETTLES_EVERY;
         (self.state.signal, self.workspace.totals) = (None, Mutex::default());
         Ok(())
     }

@@ -99,6 +99,8 @@ pub struct State<T, const D: usize> {
     pub time: f64,
     /// Steps taken.
     pub steps: u64,
+    /// How many more count for when spins settle: in a run that begins from another one they go on to as there.
+    pub phase: u64,
 }
 
 /// Lists, grids and room to work in, all of which follow from the state: dropping them changes no step.

@@ -154,7 +154,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     pub(super) fn run_pass(&mut self, name: &'static str, verbs: Verbs, dt: T) -> Result<(), StepError> {
         let start = Instant::now();
         let settles = verbs.update_stress && settles(self.settings.transfer);
-        let verbs = Verbs { settle: settles && self.state.steps.is_multiple_of(SETTLES_EVERY), ..verbs };
+        let now = (self.state.steps % SETTLES_EVERY + self.state.phase).is_multiple_of(SETTLES_EVERY);
+        let verbs = Verbs { settle: settles && now, ..verbs };
         let found = self.pass(&Pass {
             verbs,
             dt,
