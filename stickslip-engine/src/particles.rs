@@ -880,6 +880,44 @@ mod tests {
         sorted_again_and_again::<3>(0, &[]);
     }
 
+    /// Known as long as they are, whatever is done to them; one other mass or box, and each has its own.
+    #[test]
+    fn particles_are_alike_until_one_is_not() {
+        let of = |mass: f64, half_width: f64| Particle {
+            position: Vector::ZERO,
+            velocity: Vector::ZERO,
+            spin: Vector::ZERO,
+            mass,
+            volume: 1.0,
+            half_width,
+            deformation: Matrix::IDENTITY,
+            stress: Symmetric::ZERO,
+            number: 0,
+        };
+        let alike = Some([2.0, 0.5]);
+        let mut particles = Particles::<f64, 2>::from_fn(5, own(&[]), |_| of(2.0, 0.5));
+        assert_eq!(particles.view().alike(), alike);
+        particles.permute(&[4, 2, 0, 1, 3]);
+        particles.settle();
+        particles.remove(&[1]);
+        particles.set(2, &of(2.0, 0.5));
+        assert_eq!((particles.len(), particles.view().alike()), (4, alike));
+        let before = particles.clone();
+        for other in [of(3.0, 0.5), of(2.0, 0.25)] {
+            particles.set(3, &other);
+            assert_eq!(particles.open().alike(), None);
+            particles.compare();
+            assert_eq!(particles.open().alike(), None);
+            particles.become_copy_of(&before);
+            assert_eq!(particles.open().alike(), alike);
+        }
+        particles.line_mut(ColumnStart::<2>::MASS)[0] = 4.0;
+        assert_eq!(particles.view().alike(), None);
+        particles.line_mut(ColumnStart::<2>::MASS).fill(4.0);
+        particles.compare();
+        assert_eq!(particles.view().alike(), Some([4.0, 0.5]));
+    }
+
     #[test]
     fn those_who_stay_keep_their_order() {
         for later in [false, true] {
