@@ -33,7 +33,8 @@ pub struct Verbs {
     pub update_velocity: bool,
     /// G2P:  F = (I + L dt) F,  V = V_0 det F,  sigma = law(F)
     pub update_stress: bool,
-    /// With that, spins take their part of the rotation around them since they last did, see [`crate::transfer::Rflip`].
+    /// With that, spins take their part of the rotation around them, for as many steps as lie between two times, see
+    /// [`crate::transfer::Rflip`].
     pub settle: bool,
     /// G2P:  x += dt sum S_i v_i
     pub advect: bool,

@@ -99,7 +99,8 @@ pub struct State<T, const D: usize> {
     pub time: f64,
     /// Steps taken.
     pub steps: u64,
-    /// How many more count for when spins settle: in a run that begins from another one they go on to as there.
+    /// How many more count for when spins settle, so that they do in a run that begins from another one when they would
+    /// have in that; a snapshot does not know.
     pub phase: u64,
 }
 

@@ -38,8 +38,8 @@
 //! w_p += NOISE |w_p| dt (curl v / 2 - w_p)                                                                      (d)
 //! ```
 //! which takes next to nothing from a body that only vibrates. The ledger's damping counts what it takes. It is taken
-//! in every eighth step, with dt the time of eight: so little changes in the others that they would wait for the memory
-//! of w_p in vain.
+//! in every eighth step, with dt eight times that step: in a single one w_p changes by less than reading and writing it
+//! is worth.
 
 use super::{TransferRule, VelocityState, rotation};
 use crate::lanes::Lanes;

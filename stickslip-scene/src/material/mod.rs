@@ -239,7 +239,7 @@ impl<T: Number> Material<T> {
     }
 
     /// The same, with [`Law::wave_modulus`] of the state after it if `waves` are asked for, else zero: for less than
-    /// the two one after the other.
+    /// the two one after the other. It sees the history as the law gave it, also what a plane scene does not keep.
     #[inline(always)]
     pub fn respond_with_modulus(
         &self,
