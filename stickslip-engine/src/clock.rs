@@ -23,10 +23,12 @@ pub fn signal_speed<N: Number>([wave, speed]: [N; 2]) -> N {
     wave.sqrt() + speed.sqrt()
 }
 
-/// Lanes in which [`signal_speed`] is at most this, told without a root:  2 sqrt(a b) <= most^2 - a - b.
+/// Lanes in which [`signal_speed`] is at most this, told without a root:  2 sqrt(a b) <= most^2 - a - b. Those that may
+/// be faster by round-off only are not among them, so that the fastest is found whatever comes first.
 #[inline(always)]
 pub fn no_faster<V: Lanes>([wave, speed]: [V; 2], most: V) -> u32 {
-    let rest = most * most - wave - speed;
+    let surely = V::splat(V::Real::ONE - V::Real::EPSILON * V::Real::of(16.0));
+    let rest = most * most * surely - wave - speed;
     let product = wave * speed;
     rest.at_least(V::ZERO) & (rest * rest).at_least((product + product) + (product + product))
 }
@@ -49,24 +51,28 @@ pub struct Fastest {
     pub body: usize,
     /// Its place in memory there.
     pub particle: usize,
+    /// Its number there.
+    pub number: u32,
     /// How fast it is [m/s].
     pub speed: f64,
 }
 
 impl Fastest {
-    /// The fastest of some, of equal ones the first.
+    /// The fastest of some, of equal ones the first by body and number.
     fn of(some: impl Iterator<Item = Fastest>) -> Option<Fastest> {
         some.fold(None, |fastest: Option<Fastest>, next| {
-            let faster = next.speed > fastest.map_or(-1.0, |fastest| fastest.speed);
-            if faster { Some(next) } else { fastest }
+            let Some(now) = fastest else { return (next.speed > -1.0).then_some(next) };
+            let first = (next.body, next.number) < (now.body, now.number);
+            Some(if next.speed > now.speed || next.speed == now.speed && first { next } else { now })
         })
     }
 
-    /// The fastest particle of a body by what `speed` says of each.
-    fn in_body(count: usize, body: usize, speed: impl Fn(usize) -> f64 + Sync) -> Option<Fastest> {
-        let of_particle = |particle: usize| Fastest { body, particle, speed: speed(particle) };
+    /// The fastest of the particles of a body, which have these numbers, by what `speed` says of each.
+    fn in_body(numbers: &[u32], body: usize, speed: impl Fn(usize) -> f64 + Sync) -> Option<Fastest> {
+        let of_particle =
+            |particle: usize| Fastest { body, particle, number: numbers[particle], speed: speed(particle) };
         let of_part = |range: Range<usize>| Fastest::of(range.map(of_particle));
-        Fastest::of(by_parts(count, PARTICLES, of_part).into_iter().flatten())
+        Fastest::of(by_parts(numbers.len(), PARTICLES, of_part).into_iter().flatten())
     }
 }
 
@@ -83,7 +89,7 @@ pub fn fastest_signal<T: Real, const D: usize>(bodies: &[Body<T, D>]) -> Option<
             }
             signal(body, &particle, &history).f64()
         };
-        Fastest::in_body(body.particles.len(), i, of_particle)
+        Fastest::in_body(body.particles.numbers(), i, of_particle)
     };
     let of_bodies = by_parts(bodies.len(), 1, |range| of_body(range.start));
     Fastest::of(of_bodies.into_iter().flatten())
@@ -101,6 +107,6 @@ pub fn fastest_motion<T: Real, const D: usize>(
         let along = |axis: usize| velocity[axis][particle].f64() - against[axis];
         (0..D).map(|axis| along(axis) * along(axis)).sum()
     };
-    let fastest = Fastest::in_body(particles.len(), body, square);
+    let fastest = Fastest::in_body(particles.numbers(), body, square);
     fastest.map(|fastest| Fastest { speed: fastest.speed.sqrt(), ..fastest })
 }

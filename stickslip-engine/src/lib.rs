@@ -12,6 +12,9 @@ pub mod lanes;
 // Loops over threads.
 pub mod threads;
 
+// Sums that do not depend on the order of what is added.
+pub mod exact;
+
 // Shape functions: linear, GIMP.
 pub mod basis;
 

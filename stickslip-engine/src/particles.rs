@@ -559,6 +559,12 @@ pub fn by_number(numbers: &[u32]) -> Vec<u32> {
     places
 }
 
+/// Whether particles with these indices lie side by side in memory, in this order.
+#[inline(always)]
+pub fn follow_one_another(index: &[u32]) -> bool {
+    index.iter().zip(index[0]..).fold(true, |all, (&i, next)| all & (i == next))
+}
+
 /// Moves what is not gone to the front, in its order.
 fn close_gaps<X: Copy>(line: &mut [X], gone: &[u32]) {
     let Some(&first) = gone.first() else { return };

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use std::path::Path;
 use stickslip::observe::{ParticleFile, ReadError};
 
-/// A snapshot in which particles stand body by body, by their numbers; files hold them in the order of memory.
+/// A snapshot in which particles stand body by body, by their numbers.
 pub struct OpenFrame {
     /// The file.
     pub file: ParticleFile,

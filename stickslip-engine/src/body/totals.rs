@@ -1,6 +1,7 @@
 //! Sums over the particles of a body, several at a time.
 
 use super::{Body, Gyration};
+use crate::exact::ExactSum;
 use crate::lanes::{Laned, Lanes, MOST_LANES, Machine, Processor, Work};
 use crate::material::{Material, Recall};
 use crate::natural::{self, Natural};
@@ -28,26 +29,49 @@ pub struct Totals {
     pub plastic: f64,
 }
 
-/// Particles that are summed up by one thread, whatever the number of threads.
-const PART: usize = 4096;
+/// Particles that are summed up by one thread.
+const PART: usize = 1 << 14;
 
-impl Totals {
+/// The sums of [`Totals`] before they are rounded.
+#[derive(Clone, Default)]
+struct TotalSums {
+    mass: ExactSum,
+    first_moment: [ExactSum; 3],
+    momentum: [ExactSum; 3],
+    angular_momentum: [ExactSum; 3],
+    kinetic: ExactSum,
+    strain: ExactSum,
+    plastic: ExactSum,
+}
+
+impl TotalSums {
+    fn all(&mut self) -> impl Iterator<Item = &mut ExactSum> {
+        let TotalSums { mass, first_moment, momentum, angular_momentum, kinetic, strain, plastic } = self;
+        let vectors = first_moment.iter_mut().chain(momentum).chain(angular_momentum);
+        [mass, kinetic, strain, plastic].into_iter().chain(vectors)
+    }
+
     /// The sums of both.
-    fn plus(self, other: &Totals) -> Totals {
-        let vector = |a: [f64; 3], b: [f64; 3]| std::array::from_fn(|i| a[i] + b[i]);
+    fn with(mut self, mut other: Self) -> Self {
+        self.all().zip(other.all()).for_each(|(sum, other)| sum.merge(other));
+        self
+    }
+
+    fn rounded(&self) -> Totals {
+        let vector = |sums: &[ExactSum; 3]| std::array::from_fn(|i| sums[i].value());
         Totals {
-            mass: self.mass + other.mass,
-            first_moment: vector(self.first_moment, other.first_moment),
-            momentum: vector(self.momentum, other.momentum),
-            angular_momentum: vector(self.angular_momentum, other.angular_momentum),
-            kinetic: self.kinetic + other.kinetic,
-            strain: self.strain + other.strain,
-            plastic: self.plastic + other.plastic,
+            mass: self.mass.value(),
+            first_moment: vector(&self.first_moment),
+            momentum: vector(&self.momentum),
+            angular_momentum: vector(&self.angular_momentum),
+            kinetic: self.kinetic.value(),
+            strain: self.strain.value(),
+            plastic: self.plastic.value(),
         }
     }
 }
 
-/// A number in each lane: of each particle of a chunk, or the sum over those that stood there.
+/// A number of each particle of a chunk.
 type Each = [f64; MOST_LANES];
 
 /// Mass and motion of a few particles that lie side by side in memory; zero in the lanes beyond.
@@ -140,38 +164,38 @@ struct SumOfRange<'a, T, const D: usize> {
 
 impl<T: Laned, const D: usize> Work for SumOfRange<'_, T, D> {
     type Real = T;
-    type Output = Totals;
+    type Output = TotalSums;
 
     #[inline(always)]
-    fn run<M: Machine<T>>(self) -> Totals {
-        let mut mass: Each = [0.0; MOST_LANES];
-        let [mut first_moment, mut momentum, mut angular_momentum] = [[[0.0; MOST_LANES]; 3]; 3];
-        let [mut kinetic, mut strain, mut plastic]: [Each; 3] = [[0.0; MOST_LANES]; 3];
+    fn run<M: Machine<T>>(self) -> TotalSums {
+        let mut sums = TotalSums::default();
         let material = self.material.map(|material| material.map(M::Wide::splat));
         let carries_strain = !self.columns.transfer_columns().is_empty();
         for (first, count) in chunks::<M::Wide>(&self.part) {
             // SAFETY: the particles are the body's, which is borrowed for reading.
             let some =
                 unsafe { ParticleChunk::new::<M::Wide, D>(&self.columns, &self.gyration, (first, count)) };
-            for lane in 0..MOST_LANES {
-                let m = some.mass[lane];
-                mass[lane] += m;
-                let l = some.angular_momentum(lane, [0.0; 3], [0.0; 3]);
-                for i in 0..3 {
-                    let v = some.velocity[i][lane];
-                    first_moment[i][lane] += m * some.position[i][lane];
-                    momentum[i][lane] += m * v;
-                    angular_momentum[i][lane] += l[i];
-                    let w = some.spin[i][lane];
-                    kinetic[lane] += 0.5 * (m * v * v + some.inertia[lane] * w * w);
-                }
-            }
-            if carries_strain {
+            let rates = if carries_strain {
                 // SAFETY: as above.
-                let rates = unsafe { strain_rates::<M::Wide, D>(&self.columns, (first, count)) };
-                for lane in 0..count {
-                    kinetic[lane] += 0.25 * some.inertia[lane] * rates[lane];
+                unsafe { strain_rates::<M::Wide, D>(&self.columns, (first, count)) }
+            } else {
+                [0.0; MOST_LANES]
+            };
+            for (lane, rate) in rates.into_iter().enumerate().take(count) {
+                let (m, inertia) = (some.mass[lane], some.inertia[lane]);
+                let l = some.angular_momentum(lane, [0.0; 3], [0.0; 3]);
+                let mut kinetic = 0.25 * inertia * rate;
+                sums.mass.add(m);
+                for i in 0..3 {
+                    let (v, w) = (some.velocity[i][lane], some.spin[i][lane]);
+                    sums.angular_momentum[i].add(l[i]);
+                    kinetic += 0.5 * (m * v * v + inertia * w * w);
+                    if i < D {
+                        sums.first_moment[i].add(m * some.position[i][lane]);
+                        sums.momentum[i].add(m * v);
+                    }
                 }
+                sums.kinetic.add(kinetic);
             }
             if let Some(material) = &material {
                 // SAFETY: as above.
@@ -182,22 +206,13 @@ impl<T: Laned, const D: usize> Work for SumOfRange<'_, T, D> {
                     // A particle that turned inside out has stopped the run and has no energy.
                     if jacobian[lane] > 0.0 {
                         let undeformed = some.mass[lane] / self.density;
-                        strain[lane] += undeformed * energy[lane];
-                        plastic[lane] += undeformed * dissipation[lane];
+                        sums.strain.add(undeformed * energy[lane]);
+                        sums.plastic.add(undeformed * dissipation[lane]);
                     }
                 }
             }
         }
-        let sum = |lanes: Each| lanes.iter().sum::<f64>();
-        Totals {
-            mass: sum(mass),
-            first_moment: first_moment.map(sum),
-            momentum: momentum.map(sum),
-            angular_momentum: angular_momentum.map(sum),
-            kinetic: sum(kinetic),
-            strain: sum(strain),
-            plastic: sum(plastic),
-        }
+        sums
     }
 }
 
@@ -283,36 +298,45 @@ struct Turning<T, const D: usize> {
 
 impl<T: Laned, const D: usize> Work for Turning<T, D> {
     type Real = T;
-    type Output = (Matrix<f64>, [f64; 3]);
+    type Output = TurningSums;
 
     #[inline(always)]
-    fn run<M: Machine<T>>(self) -> (Matrix<f64>, [f64; 3]) {
-        // sum m x x, sum m x cross v
-        let mut moments = [[0.0; MOST_LANES]; 6];
-        let mut angular = [[0.0; MOST_LANES]; 3];
+    fn run<M: Machine<T>>(self) -> TurningSums {
+        let TurningSums { mut moments, mut angular } = TurningSums::default();
         for (first, count) in chunks::<M::Wide>(&self.part) {
             // SAFETY: the particles are the body's, which is borrowed for reading.
             let some =
                 unsafe { ParticleChunk::new::<M::Wide, D>(&self.columns, &self.gyration, (first, count)) };
-            for lane in 0..MOST_LANES {
+            for lane in 0..count {
                 let (m, l) = (some.mass[lane], some.angular_momentum(lane, self.center, self.mean));
                 let [x, y, z] = [0, 1, 2].map(|i| some.position[i][lane] - self.center[i]);
                 // Moments of the particle itself: half of its k^2 along each axis.
                 let own = 0.5 * some.inertia[lane];
-                for (sum, product) in moments.iter_mut().zip([x * x, y * y, z * z, x * y, y * z, x * z]) {
-                    sum[lane] += m * product;
-                }
-                for sum in &mut moments[..3] {
-                    sum[lane] += own;
-                }
-                for (sum, l) in angular.iter_mut().zip(l) {
-                    sum[lane] += l;
-                }
+                let squares = [x * x, y * y, z * z].map(|square| m * square + own);
+                let products = [x * y, y * z, x * z].map(|product| m * product);
+                moments.iter_mut().zip(squares.into_iter().chain(products)).for_each(|(sum, x)| sum.add(x));
+                angular.iter_mut().zip(l).for_each(|(sum, l)| sum.add(l));
             }
         }
-        let [xx, yy, zz, xy, yz, xz] = moments.map(|lanes| lanes.iter().sum::<f64>());
-        let inertia = Matrix([[yy + zz, -xy, -xz], [-xy, xx + zz, -yz], [-xz, -yz, xx + yy]]);
-        (inertia, angular.map(|lanes| lanes.iter().sum()))
+        TurningSums { moments, angular }
+    }
+}
+
+/// Sums over particles about a point that moves.
+#[derive(Clone, Default)]
+struct TurningSums {
+    /// sum m x x: xx, yy, zz, xy, yz, xz.
+    moments: [ExactSum; 6],
+    /// sum m x cross v
+    angular: [ExactSum; 3],
+}
+
+impl TurningSums {
+    /// The sums of both.
+    fn with(mut self, other: Self) -> Self {
+        let all = self.moments.iter_mut().chain(&mut self.angular);
+        all.zip(other.moments.iter().chain(&other.angular)).for_each(|(sum, other)| sum.merge(other));
+        self
     }
 }
 
@@ -333,7 +357,7 @@ const ON_A_LINE: f64 = 1e-6;
 const OWN_SHARE: f64 = 1e-3;
 
 impl<T: Laned, const D: usize> Body<T, D> {
-    /// Mass, momentum and energy, summed in the order of memory, part by part.
+    /// Mass, momentum and energy.
     pub fn totals(&self) -> Totals {
         let sum = |part| {
             let material = (!self.is_rigid()).then_some(&self.material);
@@ -341,7 +365,11 @@ impl<T: Laned, const D: usize> Body<T, D> {
             let (columns, gyration, expansion) = (self.particles.view(), self.gyration(), self.expansion);
             T::run(Processor::best(), SumOfRange { columns, part, gyration, material, density, expansion })
         };
-        self.by_parts(sum).iter().fold(Totals::default(), Totals::plus)
+        by_parts(self.particles.len(), PART, sum)
+            .into_iter()
+            .reduce(TotalSums::with)
+            .unwrap_or_default()
+            .rounded()
     }
 
     /// Angular velocity: the inverse of the inertia tensor times the angular momentum,
@@ -371,20 +399,14 @@ impl<T: Laned, const D: usize> Body<T, D> {
             let columns = self.particles.view();
             T::run(Processor::best(), Turning { columns, part, gyration, center, mean })
         };
-        let (mut inertia, mut angular) = (Matrix::<f64>::ZERO, [0.0; 3]);
-        for (some_inertia, some_angular) in self.by_parts(turning) {
-            inertia = inertia + some_inertia;
-            angular = std::array::from_fn(|i| angular[i] + some_angular[i]);
-        }
-        (inertia, angular)
+        let parts = by_parts(self.particles.len(), PART, turning);
+        let sums = parts.into_iter().reduce(TurningSums::with).unwrap_or_default();
+        let [xx, yy, zz, xy, yz, xz] = sums.moments.map(|sum| sum.value());
+        let inertia = Matrix([[yy + zz, -xy, -xz], [-xy, xx + zz, -yz], [-xz, -yz, xx + yy]]);
+        (inertia, sums.angular.map(|sum| sum.value()))
     }
 
     fn gyration(&self) -> Gyration<f64> {
         Gyration { cell: self.gyration.cell.f64(), share: self.gyration.share.f64() }
-    }
-
-    /// What comes of each part of the particles, in their order.
-    fn by_parts<R: Default + Clone + Send>(&self, f: impl Fn(Range<usize>) -> R + Sync) -> Vec<R> {
-        by_parts(self.particles.len(), PART, f)
     }
 }

@@ -5,7 +5,7 @@ use crate::column::Kind;
 use crate::contact::ContactSums;
 use crate::load::LoadSums;
 use crate::rigid::{Pose, RigidState};
-use crate::step::{Disorder, JointSums, RelaxationProgress, TouchForce, WallSums};
+use crate::step::{JointSums, RelaxationProgress, TouchForce, WallSums};
 use serde::{Deserialize, Serialize};
 
 /// All that a simulation is between two steps, whatever its dimension and precision. A simulation of the same scene
@@ -87,7 +87,6 @@ impl SavedState {
                 .map(|column| SavedColumn::of(*column, &rows, snapshot.dimension))
                 .collect(),
             motion: None,
-            disorder: Disorder::any(rows.len()),
             missing: 0,
         };
         SavedState {
@@ -132,7 +131,7 @@ impl SavedColumn {
 pub struct SavedBody {
     /// Its name in the scene.
     pub name: String,
-    /// Each particle's number in its body, in the order of memory, which sums follow.
+    /// Each particle's number in its body, in the order of memory.
     pub numbers: Vec<u32>,
     /// What its particles have.
     pub columns: Vec<SavedColumn>,
@@ -141,7 +140,6 @@ pub struct SavedBody {
     pub(crate) missing: usize,
     /// Where it is and how it moves, if it is rigid.
     pub(crate) motion: Option<RigidState>,
-    pub(crate) disorder: Disorder,
 }
 
 /// A column of particles.

@@ -39,10 +39,14 @@ pub struct ActiveBlocks<const D: usize> {
     cell_lists: Vec<CellList>,
     /// Tiles of all bodies, by body and block.
     pub tiles: Vec<Tile<D>>,
-    /// Tiles of small bodies, all tiles of several bodies in each range: ranges never write to the same slot.
+    /// Indices of the tiles of small bodies, by body and colour.
+    pub small: Vec<u32>,
+    /// All tiles of several small bodies in each range of these: ranges never write to the same slot.
     pub portions: Vec<Range<usize>>,
     /// Indices of the other tiles by colour: tiles of one colour never write to the same slot.
     pub colors: Vec<Vec<u32>>,
+    /// Room for the tiles of a body with their colours.
+    colored: Vec<(usize, u32)>,
     /// Body and block of each field slot.
     pub slots: Vec<(u32, [i32; D])>,
     /// First slot of each body, and the number of slots.
@@ -86,7 +90,7 @@ impl<const D: usize> ActiveBlocks<D> {
 
     /// Covers so many bodies of so many particles each, which reach so many nodes beyond their base nodes, and says
     /// whether their blocks are others than before; `base(body, particle)` is a particle's base node,
-    /// which must be [`addressable`].
+    /// which must be [`addressable`], `number(body, particle)` its number in the body.
     ///
     /// `left` says which cells of each tile particles have left since the last time, from the lowest bit on; without it
     /// all particles are looked at, as always of bodies that were [forgotten](ActiveBlocks::forget).
@@ -94,18 +98,19 @@ impl<const D: usize> ActiveBlocks<D> {
         &mut self,
         (bodies, count, reach): (usize, impl Fn(usize) -> usize + Sync, i32),
         left: Option<&[u64]>,
-        base: impl Fn(usize, usize) -> [i32; D] + Sync,
+        (base, number): (impl Fn(usize, usize) -> [i32; D] + Sync, impl Fn(usize, usize) -> u32 + Sync),
     ) -> Blocks {
         self.cell_lists.resize_with(bodies, CellList::default);
         let first_tile = &self.first_tile;
         let changed = AtomicBool::new(false);
         each(&mut self.cell_lists, 16, |body, cell_list| {
+            let looks = (|particle| base(body, particle), |particle| number(body, particle));
             let blocks = match left {
                 Some(left) if !cell_list.forgotten => {
                     let left = &left[first_tile[body]..first_tile[body + 1]];
-                    cell_list.update(left, |particle| base(body, particle))
+                    cell_list.update(left, looks)
                 }
-                _ => cell_list.start((count(body), reach), |particle| base(body, particle)),
+                _ => cell_list.start((count(body), reach), looks),
             };
             if blocks == Blocks::New {
                 changed.store(true, Ordering::Relaxed);
@@ -124,8 +129,12 @@ impl<const D: usize> ActiveBlocks<D> {
     }
 
     /// Covers a body anew: all its particles are others than before. Counts as [`ActiveBlocks::update`] does.
-    pub fn replace(&mut self, (body, count, reach): (usize, usize, i32), base: impl Fn(usize) -> [i32; D]) {
-        self.cell_lists[body].start((count, reach), base);
+    pub fn replace(
+        &mut self,
+        (body, count, reach): (usize, usize, i32),
+        looks: (impl Fn(usize) -> [i32; D], impl Fn(usize) -> u32 + Sync),
+    ) {
+        self.cell_lists[body].start((count, reach), looks);
         self.rebuild();
     }
 
@@ -194,42 +203,50 @@ impl<const D: usize> ActiveBlocks<D> {
         }
     }
 
-    /// Small bodies together make portions, each for one thread; the tiles of large ones get colours.
+    /// Small bodies together make portions, each for one thread; the tiles of large ones get colours. In both, a slot is
+    /// given what its tiles have in the order of their colours: whether a body is small changes no bit.
     fn share_out(&mut self) {
+        self.small.clear();
         self.portions.clear();
         self.colors.resize_with(1 << D, Vec::new);
         self.colors.iter_mut().for_each(Vec::clear);
-        let mut open = false;
         for body in 0..self.cell_lists.len() {
             let tiles = self.tiles_of_body(body);
             let small = tiles.len() <= MOST_SMALL && tiles.len() * LEAST_SMALL <= self.tiles.len();
-            if !small && self.periods.any() {
-                self.color_images(tiles);
-            } else if !small {
-                for i in tiles {
-                    let block = self.tiles[i].block;
-                    let color = block.iter().fold(0, |color, b| color << 1 | (b & 1) as usize);
-                    self.colors[color].push(i as u32);
+            self.color(tiles);
+            if !small {
+                for &(color, tile) in &self.colored {
+                    self.colors.resize_with(self.colors.len().max(color + 1), Vec::new);
+                    self.colors[color].push(tile);
                 }
-            } else if open && let Some(portion) = self.portions.last_mut() {
-                portion.end = tiles.end;
             } else {
-                self.portions.push(tiles);
+                self.colored.sort_unstable();
+                let first = self.small.len();
+                self.small.extend(self.colored.iter().map(|&(_, tile)| tile));
+                match self.portions.last_mut() {
+                    Some(portion) if portion.len() < PORTION => portion.end = self.small.len(),
+                    _ => self.portions.push(first..self.small.len()),
+                }
             }
-            open = small && self.portions.last().is_some_and(|portion| portion.len() < PORTION);
         }
     }
 
-    /// Where the grid repeats, several tiles of a body may have the same nodes: each of them gets other colours.
-    fn color_images(&mut self, tiles: Range<usize>) {
-        let first = |i: usize| key(self.periods.wrapped(self.tiles[i].block));
+    /// Finds the colours of a body's tiles: those of one colour have no slot in common. Where the grid repeats, several
+    /// tiles may have the same nodes: each of them gets other colours.
+    fn color(&mut self, tiles: Range<usize>) {
+        let ActiveBlocks { colored, tiles: all, periods, .. } = self;
+        colored.clear();
+        if !periods.any() {
+            let color = |i: usize| all[i].block.iter().fold(0, |color, b| color << 1 | (b & 1) as usize);
+            colored.extend(tiles.map(|i| (color(i), i as u32)));
+            return;
+        }
+        let first = |i: usize| key(periods.wrapped(all[i].block));
         let mut places: Vec<(u64, u32)> = tiles.map(|i| (first(i), i as u32)).collect();
         places.sort_unstable();
         for images in places.chunk_by(|a, b| a.0 == b.0) {
             for (number, &(block, tile)) in images.iter().enumerate() {
-                let color = number * 3_usize.pow(D as u32) + self.periods.color(block_of(block));
-                self.colors.resize_with(self.colors.len().max(color + 1), Vec::new);
-                self.colors[color].push(tile);
+                colored.push((number * 3_usize.pow(D as u32) + periods.color(block_of(block)), tile));
             }
         }
     }
@@ -260,7 +277,7 @@ impl<const D: usize> ActiveBlocks<D> {
         &self.cell_lists[tile.body].cells[tile.number * n..=(tile.number + 1) * n]
     }
 
-    /// Indices of a body's particles by tile, cell and index.
+    /// Indices of a body's particles by tile, cell and number.
     pub fn order_of(&self, body: usize) -> &[u32] {
         &self.cell_lists[body].order
     }

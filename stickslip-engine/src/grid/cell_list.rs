@@ -47,7 +47,7 @@ fn corners_of<const D: usize>(cell: usize, reach: i32) -> CornerBlocks {
 /// The blocks of one body.
 #[derive(Clone, Debug, Default)]
 pub(super) struct CellList {
-    /// Indices of the particles, by tile, then cell, then index.
+    /// Indices of the particles, by tile, then cell, then number.
     pub order: Vec<u32>,
     /// Place in `order` of each cell of each tile, and the end.
     pub cells: Vec<u32>,
@@ -94,18 +94,20 @@ struct NextTile {
 /// Tiles that a thread takes at a time.
 const TILES: usize = 32;
 
-/// A particle and its new home, ordered by home.
+/// A particle and its new home, ordered by home and number.
 #[derive(Clone, Copy, Debug)]
 struct Mover {
     block: u64,
     cell: u32,
     particle: u32,
+    /// Its number in its body, wherever it lies in memory.
+    number: u32,
 }
 
 impl Mover {
     /// Their order as one number, which is compared without branches.
     fn rank(&self) -> u128 {
-        u128::from(self.block) << 64 | u128::from(self.cell) << 32 | u128::from(self.particle)
+        u128::from(self.block) << 64 | u128::from(self.cell) << 32 | u128::from(self.number)
     }
 }
 
@@ -113,15 +115,16 @@ impl Mover {
 const GONE: u32 = u32::MAX;
 
 impl CellList {
-    /// Looks at all particles.
+    /// Looks at all particles: their base nodes and numbers.
     pub fn start<const D: usize>(
         &mut self,
         (count, reach): (usize, i32),
-        base: impl Fn(usize) -> [i32; D],
+        (base, number): (impl Fn(usize) -> [i32; D], impl Fn(usize) -> u32 + Sync),
     ) -> Blocks {
         *self = CellList { reach, ..CellList::default() };
-        self.movers.extend((0..count).map(|particle| mover(base(particle), particle as u32)));
-        self.settle::<D>();
+        let movers = (0..count).map(|i| mover(base(i), (i as u32, number(i))));
+        self.movers.extend(movers);
+        self.settle::<D>(&number);
         Blocks::New
     }
 
@@ -129,7 +132,7 @@ impl CellList {
     pub fn update<const D: usize>(
         &mut self,
         left: &[u64],
-        base: impl Fn(usize) -> [i32; D] + Sync,
+        (base, number): (impl Fn(usize) -> [i32; D] + Sync, impl Fn(usize) -> u32 + Sync),
     ) -> Blocks {
         let n = nodes_per_block(D);
         self.gone.clear();
@@ -147,7 +150,8 @@ impl CellList {
                     for place in cells[tile * n + cell]..cells[tile * n + cell + 1] {
                         // SAFETY: every place belongs to one tile, and every tile to one part.
                         let particle = unsafe { order.get(place as usize) };
-                        let new = mover(base(*particle as usize), *particle);
+                        let i = *particle as usize;
+                        let new = mover(base(i), (*particle, number(i)));
                         if (new.block, new.cell as usize) != (homes[tile], cell) {
                             leaving.push(new);
                             // SAFETY: as above.
@@ -162,11 +166,11 @@ impl CellList {
         for leaving in &self.leaving[..count] {
             self.movers.extend_from_slice(leaving);
         }
-        if self.movers.is_empty() { Blocks::Same } else { self.settle::<D>() }
+        if self.movers.is_empty() { Blocks::Same } else { self.settle::<D>(&number) }
     }
 
     /// Gives the movers their places in the order.
-    fn settle<const D: usize>(&mut self) -> Blocks {
+    fn settle<const D: usize>(&mut self, number: &(impl Fn(usize) -> u32 + Sync)) -> Blocks {
         let n = nodes_per_block(D);
         // No two are equal, so their order does not depend on who sorts them.
         self.movers.par_sort_unstable_by_key(Mover::rank);
@@ -180,10 +184,10 @@ impl CellList {
         let old_reached = &self.reached;
         let places = Disjoint::new(order);
         let (tiles, places_of_cells) = (&*tiles, Disjoint::new(&mut cells[..]));
-        each(&mut reached[..tiles.len()], TILES, |number, reached| {
-            let tile = &tiles[number];
+        each(&mut reached[..tiles.len()], TILES, |place_of_tile, reached| {
+            let tile = &tiles[place_of_tile];
             // SAFETY: every tile has cells of its own.
-            let cells = unsafe { places_of_cells.part(number * n, n) };
+            let cells = unsafe { places_of_cells.part(place_of_tile * n, n) };
             let mut place = tile.start;
             let mut put = |particle: u32| {
                 // SAFETY: every place belongs to one tile.
@@ -214,7 +218,7 @@ impl CellList {
                 let old = starts
                     .get(cell..cell + 2)
                     .map_or(&[][..], |ends| &old_order[ends[0] as usize..ends[1] as usize]);
-                merge(old, new, |particle| end = put(particle));
+                merge(old, new, (number, |particle| end = put(particle)));
                 if end > first {
                     *reached |= corners[cell];
                 }
@@ -275,16 +279,16 @@ impl CellList {
     }
 }
 
-fn mover<const D: usize>(base: [i32; D], particle: u32) -> Mover {
+fn mover<const D: usize>(base: [i32; D], (particle, number): (u32, u32)) -> Mover {
     let (block, cell) = locate(base);
-    Mover { block: key(block), cell: cell as u32, particle }
+    Mover { block: key(block), cell: cell as u32, particle, number }
 }
 
-/// Hands out those who stayed and those who came, in the order of their indices.
-fn merge(old: &[u32], mut new: &[Mover], mut put: impl FnMut(u32)) {
+/// Hands out those who stayed and those who came, in the order of their numbers.
+fn merge(old: &[u32], mut new: &[Mover], (number, mut put): (&impl Fn(usize) -> u32, impl FnMut(u32))) {
     for &particle in old.iter().filter(|&&particle| particle != GONE) {
         while let Some((first, rest)) = new.split_first()
-            && first.particle < particle
+            && first.number < number(particle as usize)
         {
             put(first.particle);
             new = rest;
@@ -299,9 +303,15 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
+    /// Of a particle at a place in memory.
+    fn number(i: usize) -> u32 {
+        (i as u32 * 37) % 61
+    }
+
     /// What the lists say, found by sorting all particles.
     fn sorted(bases: &[[i32; 2]]) -> (Vec<u32>, Vec<u64>, Vec<u32>) {
-        let mut all: Vec<Mover> = bases.iter().enumerate().map(|(i, &base)| mover(base, i as u32)).collect();
+        let seen = |(i, &base): (usize, &[i32; 2])| mover(base, (i as u32, number(i)));
+        let mut all: Vec<Mover> = bases.iter().enumerate().map(seen).collect();
         all.sort_unstable_by_key(Mover::rank);
         let mut homes: Vec<u64> = all.iter().map(|mover| mover.block).collect();
         homes.dedup();
@@ -323,12 +333,12 @@ mod tests {
         ) {
             let mut bases = start;
             let mut cell_list = CellList::default();
-            cell_list.start((bases.len(), 1), |i| bases[i]);
+            cell_list.start((bases.len(), 1), (|i: usize| bases[i], number));
             for jumps in jumps {
                 let mut left = vec![0; cell_list.homes.len()];
                 for (i, to) in jumps {
                     let i = i % bases.len();
-                    let home = mover(bases[i], 0);
+                    let home = mover(bases[i], (0, 0));
                     // Only cells known before the step are marked, as the engine does.
                     if let Ok(tile) = cell_list.homes.binary_search(&home.block) {
                         left[tile] |= 1 << home.cell;
@@ -336,7 +346,7 @@ mod tests {
                     }
                 }
                 let (homes, blocks_before) = (cell_list.homes.clone(), cell_list.blocks.clone());
-                let blocks = cell_list.update(&left, |i| bases[i]);
+                let blocks = cell_list.update(&left, (|i: usize| bases[i], number));
                 let (order, expected, cells) = sorted(&bases);
                 prop_assert_eq!(&cell_list.order, &order);
                 prop_assert_eq!(&cell_list.cells, &cells);

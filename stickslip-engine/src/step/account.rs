@@ -5,6 +5,7 @@ use super::state::Workspace;
 use crate::basis::Basis;
 use crate::body::Body;
 use crate::contact::{Change, Span};
+use crate::exact::ExactSum;
 use crate::grid::{Node, next_of, node_at, nodes_per_block};
 use crate::lanes::Laned;
 use crate::scene::ContactLaw;
@@ -142,7 +143,7 @@ fn damping_work<T: Real, const D: usize>(node: &Node<T, D>, impulse: Vector<T, D
 
 impl<T: Real, const D: usize> Workspace<T, D> {
     /// Sums over the nodes of deformable bodies that have mass and repeat no other behind a mirror. `of_node` is told
-    /// where the node is, and the impulse of damping there. Block after block, whoever took them.
+    /// where the node is, and the impulse of damping there. Blocks in any order.
     fn sum_over_nodes(
         &mut self,
         bodies: &[Body<T, D>],
@@ -172,11 +173,9 @@ impl<T: Real, const D: usize> Workspace<T, D> {
                 }
             }
         });
-        let mut total = NodeTotals::default();
-        for sum in &sums {
-            total.iter_mut().zip(sum).for_each(|(total, sum)| *total += sum);
-        }
+        let total = |i: usize| sums.iter().map(|sum| sum[i]).sum::<ExactSum>().value();
+        let totals = [0, 1, 2, 3, 4].map(total);
         self.block_sums = sums;
-        total
+        totals
     }
 }

@@ -2,7 +2,7 @@
 
 use super::mechanism::{JointSums, RigidSurfaces};
 use super::relax::RelaxationProgress;
-use super::state::{Disorder, Settings, State, Workspace};
+use super::state::{Settings, State, Workspace};
 use super::unbounded::{Unbounded, reach};
 use super::walls::WallSums;
 use super::watch::Stopwatch;
@@ -157,7 +157,6 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let tallies = scene.outputs.measurements.faces().next().is_some();
         let points = |load: &scene::Load| LoadPoints::new(scene, load, bodies[load.body].particles.len());
         let loads = scene.loads.iter().map(points).collect();
-        let disorder = bodies.iter().map(|body: &Body<T, D>| Disorder::any(body.particles.len())).collect();
         Ok(Engine {
             settings: Settings {
                 lattice: Lattice {
@@ -186,7 +185,6 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             },
             state: State {
                 bodies,
-                disorder,
                 unbounded,
                 longest_rigid: longest_step(scene),
                 contact_sums: ContactSums::default(),

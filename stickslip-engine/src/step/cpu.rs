@@ -1,7 +1,8 @@
 //! Passes over tiles on threads, with the same bits for any number of them.
 //!
 //! Small bodies scatter each on one thread, tile after tile. Tiles of one colour of large bodies scatter side by side,
-//! colours one after the other, and a tile's particles in their own order: no sum depends on which thread comes first.
+//! colours one after the other, and a tile's particles in the order of their numbers: no sum depends on which thread
+//! comes first, nor on where particles lie in memory.
 
 use super::Engine;
 use super::pass::{Found, ParticleLoop, Pass, Verbs, Visit};
@@ -13,7 +14,6 @@ use crate::particles::Columns;
 use crate::threads::each_range;
 use crate::transfer::Share;
 use std::marker::PhantomData;
-use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 
 /// What threads work with, kept from pass to pass.
@@ -50,7 +50,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let (active, bodies, room, path) =
             (&self.workspace.active, &self.state.bodies, &self.workspace.threads, self.settings.path);
         // Fed with the fastest signal of the tiles before it in its list, which spares it the roots of slower ones.
-        // Lists do not depend on threads.
+        // It changes no bit of what is found.
         let visit = |index: u32, window: &mut Window<T, D>, signal: T| -> Found<T> {
             let tile = &active.tiles[index as usize];
             let body = &bodies[tile.body];
@@ -109,12 +109,13 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             // The first fault and the fastest signal, whoever comes first.
             *all = all.and(found);
         };
-        let tiles = |range: Range<usize>| range.map(|tile| tile as u32);
         if pass.verbs.scatter.is_none() {
-            each_range(active.tiles.len(), TILES, &|range| several(&mut tiles(range)));
+            each_range(active.tiles.len(), TILES, &|range| several(&mut range.map(|tile| tile as u32)));
         } else {
             each_range(active.portions.len(), 1, &|portions| {
-                active.portions[portions].iter().for_each(|portion| several(&mut tiles(portion.clone())));
+                for portion in &active.portions[portions] {
+                    several(&mut active.small[portion.clone()].iter().copied());
+                }
             });
             for color in &active.colors {
                 each_range(color.len(), TILES, &|range| several(&mut color[range].iter().copied()));

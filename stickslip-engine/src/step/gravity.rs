@@ -10,6 +10,7 @@
 use super::Engine;
 use crate::basis::Basis;
 use crate::body::Body;
+use crate::exact::ExactSum;
 use crate::lanes::Laned;
 use crate::particles::ColumnStart;
 use crate::tensor::{Real, Vector};
@@ -29,23 +30,25 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         if self.settings.gravity.constant().is_some() {
             return None;
         }
+        let mut sums: [ExactSum; 3] = Default::default();
         let mut parts = std::mem::take(&mut self.workspace.weights);
-        let mut sum = Vector::ZERO;
         for body in &self.state.bodies {
             if let Some(motion) = &body.motion {
                 let mass = motion.as_free().map_or(0.0, |free| free.mass);
-                sum += Vector(motion.center) * mass;
+                sums.iter_mut().zip(motion.center).for_each(|(sum, x)| sum.add(mass * x));
                 continue;
             }
             parts.clear();
-            parts.resize(body.particles.len().div_ceil(PART), [0.0; D]);
+            parts.resize_with(body.particles.len().div_ceil(PART), || {
+                std::array::from_fn(|_| ExactSum::default())
+            });
             each(&mut parts, 1, |part, moment| *moment = first_moment(body, part));
             for moment in &parts {
-                (0..D).for_each(|i| sum[i] += moment[i]);
+                sums.iter_mut().zip(moment).for_each(|(sum, moment)| sum.merge(moment));
             }
         }
         self.workspace.weights = parts;
-        Some(sum)
+        Some(Vector(sums.map(|sum| sum.value())))
     }
 
     /// Books the work of gravity in a step of `dt` that began with these moments, while `time` is still its start.
@@ -58,7 +61,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
 }
 
 /// sum m x of a part of a body's particles [kg m].
-fn first_moment<T: Real, const D: usize>(body: &Body<T, D>, part: usize) -> [f64; D] {
+fn first_moment<T: Real, const D: usize>(body: &Body<T, D>, part: usize) -> [ExactSum; D] {
     let end = body.particles.len().min((part + 1) * PART);
     let line = |column: usize| &body.particles.line(column)[part * PART..end];
     let masses = line(ColumnStart::<D>::MASS);

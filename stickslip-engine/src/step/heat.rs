@@ -11,6 +11,7 @@
 use super::Engine;
 use crate::basis::Basis;
 use crate::body::Body;
+use crate::exact::ExactSum;
 use crate::lanes::Laned;
 use crate::load::LoadPoints;
 use crate::natural::heat_in;
@@ -54,7 +55,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             };
             set(body.particles.line_mut(first), |warmed| warmed.temperature);
             set(body.particles.line_mut(first + 1), |warmed| warmed.strain);
-            sums.work += room.iter().map(|warmed| warmed.work).sum::<f64>();
+            sums.work += room.iter().map(|warmed| warmed.work).sum::<ExactSum>().value();
             self.watch.lap("heat", start);
         }
     }

@@ -13,7 +13,6 @@ impl<T: Real, const D: usize> State<T, D> {
         // Each field by name: a new one cannot be forgotten.
         let &State {
             ref bodies,
-            ref disorder,
             ref unbounded,
             ref contact_sums,
             ref loads,
@@ -37,7 +36,6 @@ impl<T: Real, const D: usize> State<T, D> {
             body.particles.become_copy_of(&bodies[i].particles);
             body.motion.clone_from(&bodies[i].motion);
         });
-        self.disorder.clone_from(disorder);
         self.unbounded.clone_from(unbounded);
         self.contact_sums.clone_from(contact_sums);
         self.loads.clone_from(loads);

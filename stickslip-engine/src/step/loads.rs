@@ -13,6 +13,7 @@ use super::Engine;
 use crate::basis::Basis;
 use crate::boundary::{Boundary, reflect};
 use crate::door::StepError;
+use crate::exact::ExactSum;
 use crate::grid::{ActiveBlocks, Node};
 use crate::lanes::Laned;
 use crate::load::{CarriedPoint, LoadPoints, LoadSums, PointForce, nodes_of, place_of};
@@ -338,22 +339,20 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let particles = &self.state.bodies[load.body].particles;
         let mut wanted: Vec<_> = load.points.iter().map(|point| (point.particle as u32, point)).collect();
         wanted.sort_by_key(|(number, _)| *number);
-        let (mut sum, mut there) = ([0.0; 3], (0, 0.0));
+        let (mut sum, mut measure, mut count) = ([0; 3].map(|_| ExactSum::default()), ExactSum::default(), 0);
         for (place, number) in particles.numbers().iter().enumerate() {
             let first = wanted.partition_point(|(wanted, _)| wanted < number);
             let here = wanted[first..].iter().take_while(|(wanted, _)| wanted == number);
             for (_, point) in here {
                 let particle = particles.get(place);
                 let now = place_of(&particle, point).space();
-                (0..D).for_each(|i| sum[i] += point.measure * (now[i] - load.start(point)[i]));
-                there = (there.0 + 1, there.1 + point.measure);
+                (0..D).for_each(|i| sum[i].add(point.measure * (now[i] - load.start(point)[i])));
+                measure.add(point.measure);
+                count += 1;
             }
         }
-        match there {
-            (0, _) => [0.0; 3],
-            (count, _) if count == load.points.len() => sum.map(|sum| sum / load.measure),
-            (_, measure) => sum.map(|sum| sum / measure),
-        }
+        let measure = if count == load.points.len() { load.measure } else { measure.value() };
+        if count == 0 { [0.0; 3] } else { sum.map(|sum| sum.value() / measure) }
     }
 }
 

@@ -57,7 +57,6 @@ pub(crate) use build::{heated_bodies, own_columns};
 pub(crate) use mechanism::{JointSums, TouchForce};
 pub use pass::ParticleLoop;
 pub(crate) use relax::RelaxationProgress;
-pub(crate) use state::Disorder;
 pub(crate) use unbounded::particles_around;
 pub(crate) use walls::WallSums;
 

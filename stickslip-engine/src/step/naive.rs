@@ -1,6 +1,6 @@
 //! A pass as the equations read, one particle and one node after the other: an oracle for the tests.
 
-use super::pass::{FaultKind, Found, ParticleFault, Pass, Visit, escaped};
+use super::pass::{FaultKind, Pass, Visit, escaped};
 use crate::basis::Basis;
 use crate::body::Particle;
 use crate::clock::signal;
@@ -60,10 +60,7 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
                 stencil.scatter_momentum(self.window, self.tile.block, given);
             }
             Ok(()) => self.scatter_naively((&particle, index as usize), &stencil),
-            Err(kind) => {
-                let fault = ParticleFault { body: self.tile.body, particle: index as usize, kind };
-                self.found = self.found.and(Found { fault: Some(fault), signal: T::ZERO });
-            }
+            Err(kind) => self.find_fault(index, kind),
         }
         if self.pass.verbs.advect {
             // SAFETY: as above.

@@ -87,6 +87,8 @@ pub struct ParticleFault {
     pub body: usize,
     /// Index of the particle in memory.
     pub particle: usize,
+    /// Its number in the body.
+    pub number: u32,
     /// What is wrong with it.
     pub kind: FaultKind,
 }
@@ -107,7 +109,7 @@ pub enum FaultKind {
 /// What a pass found out.
 #[derive(Clone, Copy, Debug)]
 pub struct Found<T> {
-    /// The first fault by body and particle.
+    /// The first fault by body and number of the particle.
     pub fault: Option<ParticleFault>,
     /// Fastest signal of the particles that it displaced [m/s].
     pub signal: T,
@@ -120,7 +122,7 @@ impl<T: Real> Found<T> {
     /// What two found.
     pub fn and(self, other: Self) -> Self {
         let fault = match (self.fault, other.fault) {
-            (Some(a), Some(b)) => Some(if (b.body, b.particle) < (a.body, a.particle) { b } else { a }),
+            (Some(a), Some(b)) => Some(if (b.body, b.number) < (a.body, a.number) { b } else { a }),
             (a, b) => a.or(b),
         };
         Found { fault, signal: self.signal.max(other.signal) }
@@ -137,7 +139,7 @@ pub struct Visit<'a, T, const D: usize, B> {
     pub body: &'a Body<T, D>,
     /// The body's particles.
     pub columns: Columns<T, D>,
-    /// Indices of the body's particles, by tile, cell and index.
+    /// Indices of the body's particles, by tile, cell and number.
     pub order: &'a [u32],
     /// Places in the order where the tile's cells begin and end.
     pub cells: &'a [u32],
@@ -166,6 +168,13 @@ pub struct Visit<'a, T, const D: usize, B> {
 impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
     /// Nodes along a side of the window.
     pub(super) const WINDOW: usize = window_side(B::WIDTH);
+
+    /// Takes note of what is wrong with a particle.
+    pub(super) fn find_fault(&mut self, particle: u32, kind: FaultKind) {
+        let (body, particle) = (self.tile.body, particle as usize);
+        let fault = ParticleFault { body, particle, number: self.body.particles.numbers()[particle], kind };
+        self.found = self.found.and(Found { fault: Some(fault), signal: T::ZERO });
+    }
 
     /// Takes from the field what the pass seeks, and makes room for what it scatters.
     ///

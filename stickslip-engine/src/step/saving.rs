@@ -2,7 +2,7 @@
 
 use super::Engine;
 use super::build::spin;
-use super::state::{Disorder, State};
+use super::state::State;
 use super::unbounded::Unbounded;
 use crate::basis::Basis;
 use crate::body::{Body, Particle};
@@ -23,19 +23,18 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// The state as data.
     pub(super) fn saved(&self) -> SavedState {
         let State { time, steps, phase, signal, damping, impacts, gravity_work, relaxation, .. } = self.state;
-        let bodies = self.state.bodies.iter().zip(&self.state.disorder).zip(&self.settings.filled);
+        let bodies = self.state.bodies.iter().zip(&self.settings.filled);
         SavedState {
             time,
             steps,
             phase,
             bodies: bodies
-                .map(|((body, &disorder), filled)| SavedBody {
+                .map(|(body, filled)| SavedBody {
                     name: body.name.clone(),
                     numbers: body.particles.numbers().to_vec(),
                     columns: columns(&body.particles).collect(),
                     missing: filled.saturating_sub(body.particles.len()),
                     motion: body.motion.as_ref().map(|motion| motion.state()),
-                    disorder,
                 })
                 .collect(),
             signal,
@@ -115,7 +114,6 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 motion.restore(saved);
             }
         }
-        state.disorder = saved.bodies.iter().map(|body| body.disorder).collect();
         state
             .unbounded
             .iter_mut()
@@ -172,7 +170,6 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.find_overlap(&carried)?;
         for (i, body) in carried.into_iter().enumerate() {
             let Some(body) = body else { continue };
-            self.state.disorder[i] = Disorder::any(body.particles.len());
             let here = &mut self.state.bodies[i];
             here.motion = body.motion;
             here.particles.become_others(body.particles);

@@ -15,11 +15,11 @@ use crate::boundary::{Boundary, Wall};
 use crate::contact::{ContactSums, Impulses, Rules, Survey};
 use crate::damping::{BulkViscosity, NodeDamping};
 use crate::door::{RemovedParticles, WrittenValues};
+use crate::exact::ExactSum;
 use crate::grid::{ActiveBlocks, Field, Lattice, Periods};
 use crate::load::{LoadPoints, LoadSums, SpringPoints};
 use crate::scene::{Gravity, Joint, Leaving, Time, Transfer};
 use crate::tensor::Vector;
-use serde::{Deserialize, Serialize};
 use std::sync::{Arc, Mutex};
 
 use super::pass::{Found, ParticleLoop};
@@ -60,11 +60,9 @@ pub struct Settings<T, const D: usize> {
 /// All that a copied, stored or resumed simulation needs: the same state takes the same steps, bit for bit.
 #[derive(Clone)]
 pub struct State<T, const D: usize> {
-    /// Bodies with their particles, in the order in which these lie in memory: sums follow that order. Rigid ones have
-    /// their motion and pose.
+    /// Bodies with their particles, wherever these lie in memory: no sum follows that order. Rigid ones have their motion
+    /// and pose.
     pub bodies: Vec<Body<T, D>>,
-    /// How far each body's order in memory is from that of tiles and cells.
-    pub disorder: Vec<Disorder>,
     /// Rigid bodies without bounds, with the blocks around which they have particles.
     pub unbounded: Vec<Unbounded<D>>,
     /// What contact did, pair by pair, and works since the start.
@@ -108,6 +106,8 @@ pub struct State<T, const D: usize> {
 pub struct Workspace<T, const D: usize> {
     /// Cell lists of the particles, and the active blocks.
     pub active: ActiveBlocks<D>,
+    /// How far each body's order in memory is from that of tiles and cells; nothing is known of bodies beyond.
+    pub disorder: Vec<Disorder>,
     /// Whether there are cell lists that hold for all particles but those that `left` their cells; else they are made
     /// from nothing.
     pub listed: bool,
@@ -142,7 +142,7 @@ pub struct Workspace<T, const D: usize> {
     /// Impulses of damping at the nodes in the last step, where there is damping [N s].
     pub damping_impulses: Vec<Vector<T, D>>,
     /// Room for sums of mass times place over parts of a body's particles.
-    pub weights: Vec<[f64; D]>,
+    pub weights: Vec<[ExactSum; D]>,
     /// Room for sums over the nodes of each block.
     pub block_sums: Vec<NodeTotals>,
     /// What the particles of each body add up to since the last step, once somebody has asked.
@@ -156,6 +156,7 @@ impl<T, const D: usize> Workspace<T, D> {
     pub fn new(boundary: Boundary, periods: Periods<D>) -> Self {
         Workspace {
             active: ActiveBlocks::new(periods),
+            disorder: Vec::new(),
             listed: false,
             field: Field { nodes: Vec::new(), present: Vec::new(), filtered: Vec::new(), means: Vec::new() },
             boundary,
@@ -181,7 +182,7 @@ impl<T, const D: usize> Workspace<T, D> {
 }
 
 /// How far the order of a body's particles in memory is from that in which tiles visit them.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Disorder {
     /// Particles that changed their cell since they were last sorted.
     moved: usize,

@@ -269,10 +269,12 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         }
         let body = &mut self.state.bodies[number];
         body.particles = particles;
-        self.state.disorder[number] = Disorder::any(body.particles.len());
         let (particles, grid) = (&body.particles, &self.settings.lattice);
-        self.workspace.active.replace((number, particles.len(), B::WIDTH as i32 - 1), |particle| {
-            home::<T, D, B>(grid, particles.place(particle))
-        });
+        if let Some(disorder) = self.workspace.disorder.get_mut(number) {
+            *disorder = Disorder::any(particles.len());
+        }
+        let base = |particle: usize| home::<T, D, B>(grid, particles.place(particle));
+        let counts = (number, particles.len(), B::WIDTH as i32 - 1);
+        self.workspace.active.replace(counts, (base, |particle: usize| particles.numbers()[particle]));
     }
 }

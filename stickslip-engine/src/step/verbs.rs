@@ -12,6 +12,7 @@ use crate::body::Body;
 use crate::clock::signal_speed;
 use crate::contact::{ContactUse, Near, Solve, TimeStep};
 use crate::door::StepError;
+use crate::exact::ExactSum;
 use crate::grid::{Blocks, Disjoint, Lattice, Node, node_at, nodes_per_block};
 use crate::lanes::{Laned, Processor};
 use crate::tensor::{Matrix, Vector};
@@ -31,9 +32,10 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let idle = self.needs_no_grid();
         let count = |body: usize| if idle { 0 } else { bodies[body].particles.len() };
         let reach = B::WIDTH as i32 - 1;
-        let blocks = self.workspace.active.update((bodies.len(), count, reach), left, |body, particle| {
-            home::<T, D, B>(lattice, bodies[body].particles.place(particle))
-        });
+        let base =
+            |body: usize, particle: usize| home::<T, D, B>(lattice, bodies[body].particles.place(particle));
+        let number = |body: usize, particle: usize| bodies[body].particles.numbers()[particle];
+        let blocks = self.workspace.active.update((bodies.len(), count, reach), left, (base, number));
         let blocks = blocks.max(self.spread(blocks));
         if !idle {
             self.sort_particles();
@@ -64,25 +66,28 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// Sorts particles in memory into the order in which tiles visit them,
     /// where disorder has cost as much as that does.
     fn sort_particles(&mut self) {
-        let (active, disorder) = (&self.workspace.active, &self.state.disorder);
+        let Workspace { active, disorder, .. } = &mut self.workspace;
+        let unknown = self.state.bodies.iter().skip(disorder.len());
+        disorder.extend(unknown.map(|body| Disorder::any(body.particles.len())));
         let costly = |body: usize, count: usize| disorder[body].is_costly(count);
         each(&mut self.state.bodies, BODIES, |i, body| {
             if costly(i, body.particles.len()) {
                 body.particles.permute(active.order_of(i));
             }
         });
-        for (i, disorder) in self.state.disorder.iter_mut().enumerate() {
+        for (i, disorder) in disorder.iter_mut().enumerate() {
             if disorder.is_costly(self.state.bodies[i].particles.len()) {
                 *disorder = Disorder::default();
-                self.workspace.active.tidied(i);
+                active.tidied(i);
             }
         }
     }
 
     /// Counts the particles that changed their cells in the step.
     pub(super) fn count_disorder(&mut self) {
-        for (body, disorder) in self.state.disorder.iter_mut().enumerate() {
-            let moved = &self.workspace.moved[self.workspace.active.tiles_of_body(body)];
+        let Workspace { disorder, moved, active, .. } = &mut self.workspace;
+        for (body, disorder) in disorder.iter_mut().enumerate() {
+            let moved = &moved[active.tiles_of_body(body)];
             disorder.add(moved.iter().map(|&moved| moved as usize).sum());
         }
     }
@@ -166,8 +171,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             domain: self.settings.held.filter(|_| !self.removes_leavers()),
         });
         if verbs.update_velocity || verbs.update_stress {
-            // Tile after tile, whoever took them.
-            self.state.damping += self.workspace.damped.iter().sum::<f64>();
+            self.state.damping += self.workspace.damped.iter().copied().sum::<ExactSum>().value();
         }
         if verbs.advect {
             self.state.signal = Some(found.signal.f64());
@@ -422,7 +426,8 @@ fn move_rigid_body<T: Laned, const D: usize, B: Basis<T>>(
         };
         body.particles.set(p, &particle);
         moved_on += u32::from(home::<T, D, B>(lattice, (particle.position, half_sides)) != before);
-        let fault = kind.map(|kind| ParticleFault { body: number, particle: p, kind });
+        let fault =
+            kind.map(|kind| ParticleFault { body: number, particle: p, number: particle.number, kind });
         // No wave runs in a rigid body.
         let speed = particle.velocity.dot(particle.velocity);
         found = found.and(Found { fault, signal: signal_speed([T::ZERO, speed]) });

@@ -351,7 +351,10 @@ impl<T: Laned, const D: usize, B: Basis<T>> View for Engine<T, D, B> {
             }
         };
         let numbers = particles.numbers().iter().enumerate();
-        numbers.filter(|&(_, &number)| wanted(number)).map(|(i, _)| traced(i)).collect()
+        let mut all: Vec<_> =
+            numbers.filter(|&(_, &number)| wanted(number)).map(|(i, _)| traced(i)).collect();
+        all.sort_unstable_by_key(|particle| particle.number);
+        all
     }
 
     fn grid_snapshot(&self) -> GridSnapshot {

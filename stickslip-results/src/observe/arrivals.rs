@@ -9,6 +9,7 @@ use super::schedule::Schedule;
 use super::table::{CellValue, CsvTable, TableRow, columns};
 use super::{ARRIVALS, Observer};
 use crate::door::View;
+use crate::exact::ExactSum;
 use crate::scene::{Anchor, Arrival, Observable, Reading, Scene};
 use serde::{Deserialize, Serialize};
 
@@ -267,26 +268,29 @@ impl ArrivalWatch {
 
 /// The value furthest to the threshold's side in a body, and where it is.
 fn furthest(view: &dyn View, body: usize, watch: &ArrivalWatch) -> Option<(f64, [f64; 3])> {
-    let mut furthest: Option<(f64, [f64; 3])> = None;
+    let mut furthest: Option<(f64, u32, [f64; 3])> = None;
     let side = watch.crossing.threshold.signum();
     view.visit(body, &mut |particle| {
-        let value = watch.value(&particle.velocity, &particle.stress);
-        if furthest.is_none_or(|(most, _)| side * value > side * most) {
-            furthest = Some((value, particle.position));
+        let (value, number) = (watch.value(&particle.velocity, &particle.stress), particle.number);
+        // Of equal ones the first by number: nobody knows in which order they are shown.
+        if furthest.is_none_or(|(most, of, _)| side * value > side * most || value == most && number < of) {
+            furthest = Some((value, number, particle.position));
         }
     });
-    furthest
+    furthest.map(|(value, _, position)| (value, position))
 }
 
 /// The mean of the values over the mass of a body, and its centre of mass.
 fn mean(view: &dyn View, body: usize, watch: &ArrivalWatch) -> Option<(f64, [f64; 3])> {
-    let (mut mass, mut sum, mut moment) = (0.0, 0.0, [0.0; 3]);
+    let (mut mass, mut sum, mut moment) =
+        (ExactSum::default(), ExactSum::default(), [0; 3].map(|_| ExactSum::default()));
     view.visit(body, &mut |particle| {
-        mass += particle.mass;
-        sum += particle.mass * watch.value(&particle.velocity, &particle.stress);
-        moment = std::array::from_fn(|k| moment[k] + particle.mass * particle.position[k]);
+        mass.add(particle.mass);
+        sum.add(particle.mass * watch.value(&particle.velocity, &particle.stress));
+        moment.iter_mut().zip(particle.position).for_each(|(moment, x)| moment.add(particle.mass * x));
     });
-    (mass > 0.0).then(|| (sum / mass, moment.map(|x| x / mass)))
+    let mass = mass.value();
+    (mass > 0.0).then(|| (sum.value() / mass, moment.map(|x| x.value() / mass)))
 }
 
 #[cfg(test)]

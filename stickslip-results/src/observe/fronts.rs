@@ -137,18 +137,17 @@ impl Observer for FrontsObserver {
 impl Track {
     /// Where the front is now, if anywhere.
     fn follow(&mut self, view: &dyn View) -> Option<FrontRow> {
-        let mut first: Option<(f64, [f64; 3])> = None;
+        let mut first: Option<(f64, u32, [f64; 3])> = None;
         for &body in &self.bodies {
             view.visit(body, &mut |particle| {
-                let way = way(&self.front, particle);
-                first = match (way, first) {
-                    (Some(way), None) => Some((way, particle.position)),
-                    (Some(way), Some((most, _))) if way > most => Some((way, particle.position)),
-                    _ => first,
-                };
+                let Some(way) = way(&self.front, particle) else { return };
+                // Of equal ones the first by number: nobody knows in which order they are shown.
+                if first.is_none_or(|(most, of, _)| way > most || way == most && particle.number < of) {
+                    first = Some((way, particle.number, particle.position));
+                }
             });
         }
-        let (distance, position) = first?;
+        let (distance, _, position) = first?;
         let time = view.time();
         let before = self.furthest.last().map_or(f64::NEG_INFINITY, |[_, distance]| *distance);
         self.furthest.push([time, distance.max(before)]);

@@ -3,6 +3,7 @@
 use super::file::OutputError;
 use super::memory::Memory;
 use crate::door::{ParticleView, View};
+use crate::exact::ExactSum;
 use crate::scene::{Anchor, Domain, Scene};
 use serde::{Deserialize, Serialize};
 
@@ -196,29 +197,29 @@ fn wendland(a: &[f64; 3], b: &[f64; 3], radius: f64) -> f64 {
 /// Weighted sums over particles.
 #[derive(Clone, Debug, Default)]
 pub(super) struct WeightedSum {
-    weight: f64,
-    sample: PointSample,
+    weight: ExactSum,
+    position: [ExactSum; 3],
+    velocity: [ExactSum; 3],
+    stress: [ExactSum; 6],
 }
 
 impl WeightedSum {
     /// Adds a particle.
     pub(super) fn add(&mut self, weight: f64, particle: &ParticleView) {
-        self.weight += weight;
-        for k in 0..3 {
-            self.sample.position[k] += weight * particle.position[k];
-            self.sample.velocity[k] += weight * particle.velocity[k];
-        }
-        for k in 0..6 {
-            self.sample.stress[k] += weight * particle.stress[k];
-        }
+        self.weight.add(weight);
+        let vectors = self.position.iter_mut().zip(particle.position);
+        let vectors = vectors.chain(self.velocity.iter_mut().zip(particle.velocity));
+        vectors.chain(self.stress.iter_mut().zip(particle.stress)).for_each(|(sum, x)| sum.add(weight * x));
     }
 
     /// The mean; `None` of nothing.
     pub(super) fn mean(&self) -> Option<PointSample> {
-        (self.weight > 0.0).then(|| PointSample {
-            position: self.sample.position.map(|x| x / self.weight),
-            velocity: self.sample.velocity.map(|v| v / self.weight),
-            stress: self.sample.stress.map(|s| s / self.weight),
+        let weight = self.weight.value();
+        let mean = |sum: &ExactSum| sum.value() / weight;
+        (weight > 0.0).then(|| PointSample {
+            position: self.position.each_ref().map(mean),
+            velocity: self.velocity.each_ref().map(mean),
+            stress: self.stress.each_ref().map(mean),
         })
     }
 }

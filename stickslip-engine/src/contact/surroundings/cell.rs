@@ -6,7 +6,7 @@ use crate::basis::{Basis, BoxSide, ShapeFunctions};
 use crate::column::Kind;
 use crate::grid::{Nodes, SIDE, next_of, node_at};
 use crate::lanes::{Laned, Lanes, MOST_LANES, Machine, Numbers, in_lanes, prefetch};
-use crate::particles::{ColumnStart, Columns, deformation_entries, stress_entries};
+use crate::particles::{ColumnStart, Columns, deformation_entries, follow_one_another, stress_entries};
 use crate::tensor::{Matrix, Number, Real, Symmetric, Vector, array};
 use crate::transfer::{NodeTable, pairs};
 use std::marker::PhantomData;
@@ -358,8 +358,7 @@ impl<'a, T: Real, const D: usize> CellMembers<'a, T, D> {
         sought: Wanted,
         copies: &'a mut CellCopies<T>,
     ) -> Self {
-        // Indices within a cell ascend.
-        let in_a_row = (index[index.len() - 1] - index[0]) as usize == index.len() - 1;
+        let in_a_row = follow_one_another(index);
         let own = columns.domain_columns();
         let (first, stride, domains) = if in_a_row {
             // SAFETY: the particle exists.

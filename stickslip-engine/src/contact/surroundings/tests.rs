@@ -141,11 +141,13 @@ fn particles_of_a_cell_side_by_side_give_the_sums<const D: usize, B: Basis<f64>>
     let lattice = Lattice { half_side, ..Lattice::new(Vector::ZERO, 1.0) };
     let bodies = [body::<D>(boxes)];
     let mut active = ActiveBlocks::<D>::default();
-    active.update((1, |_| 300, B::WIDTH as i32 - 1), None, |_, particle| {
+    let base = |_, particle| {
         let (position, half_sides) = bodies[0].particles.place(particle);
         let half = lattice.half_sides(half_sides);
         std::array::from_fn(|i| Number::max(B::reach(position[i], half[i]), -9.0).floor() as i32)
-    });
+    };
+    let number = |_, particle: usize| bodies[0].particles.numbers()[particle];
+    active.update((1, |_| 300, B::WIDTH as i32 - 1), None, (base, number));
     let wall = |axis, node, inward| Wall { axis, node, inward, face: Face::Symmetry };
     let boundary = Boundary::new(vec![wall(0, 0, 1), wall(D - 1, 5, -1)]);
     let rules = Rules::listed(1, vec![rules::Rule::from(&crate::scene::ContactRule::default())]);

@@ -10,11 +10,12 @@ mod members;
 #[cfg(test)]
 mod tests;
 
-use super::pass::{FaultKind, Found, ParticleFault, Visit};
+use super::pass::{FaultKind, Visit};
 use crate::basis::Basis;
 use crate::body::Gyration;
 use crate::grid::node_at;
 use crate::lanes::{Any, Laned, Lanes, MOST_LANES, Machine, Pack, Work};
+use crate::particles::follow_one_another;
 use crate::tensor::Vector;
 use crate::transfer::{CellGroup, Own, Start};
 use group::{Constants, every, group, splat};
@@ -82,10 +83,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
                 self.left |= u64::from(inside & 1 == 0) << cell;
                 self.moved += outside(inside, 1);
             }
-            Err(kind) => {
-                let fault = ParticleFault { body: self.tile.body, particle: index as usize, kind };
-                self.found = self.found.and(Found { fault: Some(fault), signal: T::ZERO });
-            }
+            Err(kind) => self.find_fault(index, kind),
         }
     }
 
@@ -133,8 +131,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
                         fetch(&columns, other as usize, &visit.pass.verbs);
                     }
                 }
-                // Indices within a cell ascend.
-                let in_a_row = index[index.len() - 1] as usize - index[0] as usize == index.len() - 1;
+                let in_a_row = follow_one_another(index);
                 let place = CellStart::new((visit.tile.block, cell), Self::WINDOW);
                 let base = Vector::from_fn(|i| V::splat(T::of(f64::from(place.base[i]))));
                 let start = CellGroup::new::<D>(place.start, Self::WINDOW);
@@ -192,11 +189,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
             }
             let mut homes = [0; MOST_LANES];
             let (mut starts, mut bases) = ([0; MOST_LANES], [[T::ZERO; MOST_LANES]; D]);
-            let mut in_a_row = true;
             for lane in 0..V::COUNT {
                 // Lanes beyond repeat the first.
                 if lane < index.len() {
-                    in_a_row &= index[lane] as usize == index[0] as usize + lane;
                     while cells[cell + 1] as usize <= first + lane {
                         cell += 1;
                     }
@@ -213,6 +208,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
             // SAFETY: as many numbers as any machine has lanes.
             let base = Vector::from_fn(|i| unsafe { V::load(bases[i].as_ptr()) });
             let start = Own::new::<D>(starts, Self::WINDOW);
+            let in_a_row = follow_one_another(index);
             match visit.group::<M, V, _>(&constants, (index, in_a_row), (base, start), &mut copies) {
                 Ok(inside) => {
                     visit.moved += outside(inside, index.len());
