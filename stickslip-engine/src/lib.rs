@@ -15,6 +15,9 @@ pub mod threads;
 // Sums that do not depend on the order of what is added.
 pub mod exact;
 
+// Processes that share a simulation.
+pub mod ranks;
+
 // Shape functions: linear, GIMP.
 pub mod basis;
 

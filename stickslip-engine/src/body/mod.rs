@@ -2,7 +2,7 @@
 
 mod totals;
 
-pub use totals::Totals;
+pub use totals::{TotalSums, Totals, TurningSums};
 
 use crate::geometry::MirroredShape;
 use crate::material::{Keep, Material, Motion, Recall, Thickness};

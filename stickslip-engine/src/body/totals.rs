@@ -34,7 +34,7 @@ const PART: usize = 1 << 14;
 
 /// The sums of [`Totals`] before they are rounded.
 #[derive(Clone, Default)]
-struct TotalSums {
+pub struct TotalSums {
     mass: ExactSum,
     first_moment: [ExactSum; 3],
     momentum: [ExactSum; 3],
@@ -45,7 +45,8 @@ struct TotalSums {
 }
 
 impl TotalSums {
-    fn all(&mut self) -> impl Iterator<Item = &mut ExactSum> {
+    /// All of them.
+    pub fn all(&mut self) -> impl Iterator<Item = &mut ExactSum> {
         let TotalSums { mass, first_moment, momentum, angular_momentum, kinetic, strain, plastic } = self;
         let vectors = first_moment.iter_mut().chain(momentum).chain(angular_momentum);
         [mass, kinetic, strain, plastic].into_iter().chain(vectors)
@@ -57,7 +58,8 @@ impl TotalSums {
         self
     }
 
-    fn rounded(&self) -> Totals {
+    /// The totals.
+    pub fn rounded(&self) -> Totals {
         let vector = |sums: &[ExactSum; 3]| std::array::from_fn(|i| sums[i].value());
         Totals {
             mass: self.mass.value(),
@@ -186,9 +188,9 @@ impl<T: Laned, const D: usize> Work for SumOfRange<'_, T, D> {
                 let l = some.angular_momentum(lane, [0.0; 3], [0.0; 3]);
                 let mut kinetic = 0.25 * inertia * rate;
                 sums.mass.add(m);
-                for i in 0..3 {
+                for (i, &l) in l.iter().enumerate() {
                     let (v, w) = (some.velocity[i][lane], some.spin[i][lane]);
-                    sums.angular_momentum[i].add(l[i]);
+                    sums.angular_momentum[i].add(l);
                     kinetic += 0.5 * (m * v * v + inertia * w * w);
                     if i < D {
                         sums.first_moment[i].add(m * some.position[i][lane]);
@@ -324,7 +326,7 @@ impl<T: Laned, const D: usize> Work for Turning<T, D> {
 
 /// Sums over particles about a point that moves.
 #[derive(Clone, Default)]
-struct TurningSums {
+pub struct TurningSums {
     /// sum m x x: xx, yy, zz, xy, yz, xz.
     moments: [ExactSum; 6],
     /// sum m x cross v
@@ -332,10 +334,27 @@ struct TurningSums {
 }
 
 impl TurningSums {
+    /// All of them.
+    pub fn all(&mut self) -> impl Iterator<Item = &mut ExactSum> {
+        self.moments.iter_mut().chain(&mut self.angular)
+    }
+
+    /// Inertia tensor [kg m^2] and angular momentum [kg m^2/s].
+    fn rounded(&self) -> (Matrix<f64>, [f64; 3]) {
+        let [xx, yy, zz, xy, yz, xz] = self.moments.each_ref().map(|sum| sum.value());
+        let inertia = Matrix([[yy + zz, -xy, -xz], [-xy, xx + zz, -yz], [-xz, -yz, xx + yy]]);
+        (inertia, self.angular.each_ref().map(|sum| sum.value()))
+    }
+
+    /// Angular velocity [rad/s].
+    pub fn spin<const D: usize>(&self) -> [f64; 3] {
+        let (inertia, angular) = self.rounded();
+        quotient::<D>(&inertia, angular)
+    }
+
     /// The sums of both.
-    fn with(mut self, other: Self) -> Self {
-        let all = self.moments.iter_mut().chain(&mut self.angular);
-        all.zip(other.moments.iter().chain(&other.angular)).for_each(|(sum, other)| sum.merge(other));
+    fn with(mut self, mut other: Self) -> Self {
+        self.all().zip(other.all()).for_each(|(sum, other)| sum.merge(other));
         self
     }
 }
@@ -359,24 +378,24 @@ const OWN_SHARE: f64 = 1e-3;
 impl<T: Laned, const D: usize> Body<T, D> {
     /// Mass, momentum and energy.
     pub fn totals(&self) -> Totals {
+        self.total_sums().rounded()
+    }
+
+    /// The same before it is rounded.
+    pub fn total_sums(&self) -> TotalSums {
         let sum = |part| {
             let material = (!self.is_rigid()).then_some(&self.material);
             let density = self.density.f64();
             let (columns, gyration, expansion) = (self.particles.view(), self.gyration(), self.expansion);
             T::run(Processor::best(), SumOfRange { columns, part, gyration, material, density, expansion })
         };
-        by_parts(self.particles.len(), PART, sum)
-            .into_iter()
-            .reduce(TotalSums::with)
-            .unwrap_or_default()
-            .rounded()
+        by_parts(self.particles.len(), PART, sum).into_iter().reduce(TotalSums::with).unwrap_or_default()
     }
 
     /// Angular velocity: the inverse of the inertia tensor times the angular momentum,
     /// both about the centre of mass [rad/s].
     pub fn spin(&self, totals: &Totals) -> [f64; 3] {
-        let (inertia, angular) = self.turning(totals, self.gyration());
-        quotient::<D>(&inertia, angular)
+        self.turning_sums(totals, self.gyration()).spin::<D>()
     }
 
     /// Angular velocity of a body whose particles have velocities and no spins yet: as if they were points. Where these
@@ -393,20 +412,25 @@ impl<T: Laned, const D: usize> Body<T, D> {
 
     /// Inertia tensor [kg m^2] and angular momentum [kg m^2/s] about the centre of mass, for particles of this size.
     fn turning(&self, totals: &Totals, gyration: Gyration<f64>) -> (Matrix<f64>, [f64; 3]) {
+        self.turning_sums(totals, gyration).rounded()
+    }
+
+    /// The same before it is rounded, of these particles of a body with these totals.
+    pub fn turning_sums(&self, totals: &Totals, gyration: Gyration<f64>) -> TurningSums {
         let center = totals.first_moment.map(|x| x / totals.mass);
         let mean = totals.momentum.map(|p| p / totals.mass);
         let turning = |part| {
             let columns = self.particles.view();
             T::run(Processor::best(), Turning { columns, part, gyration, center, mean })
         };
-        let parts = by_parts(self.particles.len(), PART, turning);
-        let sums = parts.into_iter().reduce(TurningSums::with).unwrap_or_default();
-        let [xx, yy, zz, xy, yz, xz] = sums.moments.map(|sum| sum.value());
-        let inertia = Matrix([[yy + zz, -xy, -xz], [-xy, xx + zz, -yz], [-xz, -yz, xx + yy]]);
-        (inertia, sums.angular.map(|sum| sum.value()))
+        by_parts(self.particles.len(), PART, turning)
+            .into_iter()
+            .reduce(TurningSums::with)
+            .unwrap_or_default()
     }
 
-    fn gyration(&self) -> Gyration<f64> {
+    /// How large its particles are against turning.
+    pub fn gyration(&self) -> Gyration<f64> {
         Gyration { cell: self.gyration.cell.f64(), share: self.gyration.share.f64() }
     }
 }

@@ -1,6 +1,6 @@
 //! What contact did to each pair of bodies, summed over nodes and steps.
 
-use super::Impulse;
+use super::BlockSums;
 use super::spread::Spread;
 use crate::boundary::Boundary;
 use crate::door::{ContactPatch, ContactSum};
@@ -34,8 +34,8 @@ struct ImpulseSums {
     /// Magnitudes of the nodes' impulses, and with their places [N s, N s m].
     magnitude: f64,
     moment: [f64; 3],
-    /// Where the grid repeats, the place that was added last: the next one is that image which is nearest to it, so that
-    /// a contact through a face is in one piece, and one that travels through it goes on [m].
+    /// Where the grid repeats, the place of the block that was added last: the next one is that image which is nearest
+    /// to it, so that a contact through a face is in one piece, and one that travels through it goes on [m].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     place: Option<[f64; 3]>,
     /// Of the impulse, about the origin [N m s].
@@ -71,10 +71,6 @@ struct Touching {
     gap: f64,
     slip: f64,
 }
-
-/// Surfaces closer than this are part of the area over which bodies touch, pushing in this step or not:
-/// single nodes push by turns [cells].
-const CLOSE: f64 = 0.01;
 
 /// Impulses and works of contact since the start, by pair.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
@@ -165,70 +161,47 @@ impl ContactSums {
         }) && self.present.iter().all(|&place| place < self.pairs.len())
     }
 
-    /// Adds the impulses of one use of contact; surfaces count as touching for `duration` [s].
-    pub fn add<'a, T: Real, const D: usize>(
+    /// Adds what pairs did in one use of contact, ordered by pair and block; surfaces count as touching for `duration`
+    /// [s].
+    pub fn add<T: Real, const D: usize>(
         &mut self,
-        impulses: impl Iterator<Item = &'a Impulse<T, D>>,
+        touches: &[BlockSums],
         (lattice, boundary): (&Lattice<T, D>, &Boundary),
         duration: f64,
     ) {
         self.uses += 1;
         self.present.clear();
-        let mut last: Option<([usize; 2], usize)> = None;
-        for impulse in impulses {
-            let [on_a, on_b] = impulse.change.impulse.map(|j| j.space());
-            let pushes = impulse.change.pushes();
-            if !pushes && impulse.gap > T::of(CLOSE) {
-                continue;
-            }
-            // Pairs follow one another at the nodes of a block.
-            let place = match last {
-                Some((bodies, place)) if bodies == impulse.bodies => place,
-                _ => self.place(impulse.bodies),
-            };
-            last = Some((impulse.bodies, place));
+        for touch in touches {
+            let place = self.place(touch.bodies);
             let sum = &mut self.pairs[place].sum;
             if sum.last_use != self.uses {
                 sum.close(self.uses);
                 sum.last.duration = duration;
                 self.present.push(place);
             }
-            // A node on a mirror sees the whole of the surface around it, and half of that is the image's.
-            let mirrors = boundary.mirrors_through(impulse.node);
-            let area = impulse.area.f64() / f64::from(1_u32 << mirrors.count_ones());
-            sum.last.mirrors |= mirrors;
-            let place = match sum.place {
-                Some(last) => lattice.position_near(impulse.node, last),
-                None => lattice.position(impulse.node).space(),
-            };
+            let (touch, there) = touch.near(lattice, sum.place);
             if lattice.periods.any() {
-                sum.place = Some(place);
+                sum.place = Some(there);
             }
-            sum.last.spread.add(area, place);
-            sum.last.gap += area * (impulse.gap * lattice.cell).f64();
-            sum.last.slip += area * impulse.slip.f64();
-            if !pushes {
-                continue;
-            }
-            sum.last.nodes += 1;
-            let tangential = impulse.change.tangential.space();
-            let magnitude =
-                impulse.change.impulse[0].norm().f64().max(impulse.change.impulse[1].norm().f64());
-            sum.magnitude += magnitude;
-            let on_second = std::array::from_fn(|i| 0.5 * (on_b[i] - on_a[i]));
-            let turn = cross(place, on_second);
+            sum.last.mirrors |= touch.mirrors;
+            sum.last.spread.merge(&touch.spread);
+            sum.last.gap += touch.gap;
+            sum.last.slip += touch.slip;
+            sum.last.nodes += touch.nodes as usize;
             for i in 0..3 {
-                sum.turn[i] += turn[i];
-                sum.tangential[i] += tangential[i];
-                // The paper's own normals give impulses that are not quite opposite; the force is their mean.
-                sum.impulse[i] += on_second[i];
-                sum.moment[i] += magnitude * place[i];
+                sum.turn[i] += touch.turn[i];
+                sum.tangential[i] += touch.tangential[i];
+                sum.impulse[i] += touch.impulse[i];
+                sum.moment[i] += touch.moment[i];
             }
-            sum.normal -= impulse.change.normal.f64();
-            let reduced = u64::from(impulse.change.scale < T::ONE);
-            (sum.pushes, sum.reduced) = (sum.pushes + 1, sum.reduced + reduced);
-            self.scaled += reduced;
-            self.work += impulse.work.f64();
+            sum.magnitude += touch.magnitude;
+            sum.normal += touch.normal;
+            sum.friction += touch.friction;
+            (sum.pushes, sum.reduced) = (sum.pushes + touch.nodes, sum.reduced + touch.reduced);
+            self.friction += touch.friction;
+            self.adhesion += touch.adhesion;
+            self.scaled += touch.reduced;
+            self.work += touch.work;
         }
         for &place in &self.present {
             let TouchedPair { bodies: [body_a, body_b], sum: ImpulseSums { last, .. }, largest, .. } =
@@ -250,13 +223,12 @@ impl ContactSums {
     }
 
     /// Counts the impulses of a use that enters no sum, and how many of them were reduced.
-    pub fn count<'a, T: Real, const D: usize>(&mut self, impulses: impl Iterator<Item = &'a Impulse<T, D>>) {
-        for impulse in impulses.filter(|impulse| impulse.change.pushes()) {
-            let reduced = u64::from(impulse.change.scale < T::ONE);
-            self.scaled += reduced;
-            if let Some(&place) = self.places.get(&impulse.bodies) {
+    pub fn count(&mut self, touches: &[BlockSums]) {
+        for touch in touches {
+            self.scaled += touch.reduced;
+            if let Some(&place) = self.places.get(&touch.bodies) {
                 let sum = &mut self.pairs[place].sum;
-                (sum.pushes, sum.reduced) = (sum.pushes + 1, sum.reduced + reduced);
+                (sum.pushes, sum.reduced) = (sum.pushes + touch.nodes, sum.reduced + touch.reduced);
             }
         }
     }
@@ -283,7 +255,7 @@ impl ContactSums {
     }
 
     /// Adds work that friction took from two bodies [J].
-    pub fn rub(&mut self, bodies: [usize; 2], work: f64) {
+    fn rub(&mut self, bodies: [usize; 2], work: f64) {
         let place = self.place(bodies);
         self.pairs[place].sum.friction += work;
         self.friction += work;
@@ -339,7 +311,7 @@ impl ContactSums {
 mod tests {
     use super::*;
     use crate::boundary::Wall;
-    use crate::contact::{Change, Span};
+    use crate::contact::{Change, Impulse, Span};
     use crate::scene::Face;
     use crate::tensor::Vector;
 
@@ -359,15 +331,27 @@ mod tests {
         }
     }
 
+    /// Adds the impulses of one use of contact.
+    fn add<const D: usize>(
+        sums: &mut ContactSums,
+        impulses: &[Impulse<f64, D>],
+        place: (&Lattice<f64, D>, &Boundary),
+        duration: f64,
+    ) {
+        let mut touches = Vec::new();
+        BlockSums::list(&mut touches, impulses.iter(), place, |_| [0.0; 2]);
+        sums.add(&touches, place, duration);
+    }
+
     /// Two nodes of 0.5 m touch for a quarter of the time: mean force and mean area have the pressure of that quarter.
     /// The first use of a step counts for no time.
     #[test]
     fn area_and_gap_are_means_over_time() {
         let (mut contact_sums, lattice) = (ContactSums::default(), Lattice::new(Vector::ZERO, 0.5));
         let nodes = [pushing([3, 0]), pushing([4, 0])];
-        contact_sums.add(nodes.iter(), (&lattice, &Boundary::default()), 0.0);
-        contact_sums.add(nodes.iter(), (&lattice, &Boundary::default()), 0.1);
-        contact_sums.add([].iter(), (&lattice, &Boundary::default()), 0.3);
+        add(&mut contact_sums, &nodes, (&lattice, &Boundary::default()), 0.0);
+        add(&mut contact_sums, &nodes, (&lattice, &Boundary::default()), 0.1);
+        add(&mut contact_sums, &[], (&lattice, &Boundary::default()), 0.3);
         let found = &contact_sums.sums()[0];
         assert!((found.area - 0.1).abs() < 1e-15 && (found.gap + 0.01).abs() < 1e-15, "{found:?}");
         assert_eq!(contact_sums.patches()[0].area, 1.0);
@@ -379,7 +363,7 @@ mod tests {
     fn surfaces_that_only_touch_are_summed() {
         let (mut sums, lattice) = (ContactSums::default(), Lattice::new(Vector::ZERO, 0.5));
         let near = Impulse { change: Change::NONE, ..pushing([3, 0]) };
-        sums.add([near].iter(), (&lattice, &Boundary::default()), 0.1);
+        add(&mut sums, &[near], (&lattice, &Boundary::default()), 0.1);
         let found = sums.sums();
         assert!(found.len() == 1 && found[0].area > 0.0 && found[0].magnitude == 0.0, "{found:?}");
     }
@@ -390,10 +374,10 @@ mod tests {
         let (mut contact_sums, lattice) = (ContactSums::default(), Lattice::new(Vector::ZERO, 0.5));
         let mirror = Wall { axis: 0, node: 3, inward: 1, face: Face::Symmetry };
         let boundary = Boundary::new(vec![mirror]);
-        contact_sums.add([pushing([3, 0]), pushing([4, 0])].iter(), (&lattice, &boundary), 1.0);
+        add(&mut contact_sums, &[pushing([3, 0]), pushing([4, 0])], (&lattice, &boundary), 1.0);
         assert_eq!((contact_sums.sums()[0].area, contact_sums.patches()[0].area), (0.75, 1.5));
         let (mut aside, far) = (ContactSums::default(), pushing([4, 0]));
-        aside.add([far].iter(), (&lattice, &boundary), 1.0);
+        add(&mut aside, &[far], (&lattice, &boundary), 1.0);
         assert_eq!(aside.patches()[0].area, 0.5);
     }
 
@@ -405,7 +389,7 @@ mod tests {
             let row = |y: i32| (first..=23).map(move |x| Impulse { area: 0.25, ..pushing([x, y, 0]) });
             let nodes: Vec<_> = (0..4).flat_map(row).collect();
             let mut contact_sums = ContactSums::default();
-            contact_sums.add(nodes.iter(), (&lattice, boundary), 1.0);
+            add(&mut contact_sums, &nodes, (&lattice, boundary), 1.0);
             contact_sums.patches()[0]
         };
         let mirror = Wall { axis: 0, node: 3, inward: 1, face: Face::Symmetry };

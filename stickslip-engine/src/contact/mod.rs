@@ -6,6 +6,7 @@
 //! share one survey. [`ContactUse`] says what the velocities of a use are for.
 
 mod around;
+mod block_sums;
 mod contact_sums;
 mod exchange;
 mod friction;
@@ -18,6 +19,7 @@ mod spread;
 mod surroundings;
 mod survey;
 
+pub use block_sums::BlockSums;
 pub use contact_sums::{ContactSums, RigidTouch};
 pub use exchange::{common_normal, own_normals};
 pub use friction::{Friction, SurfaceLoad};

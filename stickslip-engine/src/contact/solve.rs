@@ -69,8 +69,8 @@ struct List<T, const D: usize> {
     impulses: Vec<Impulse<T, D>>,
     /// Velocities of the bodies at a node while it is being solved [m/s].
     velocities: Vec<Vector<T, D>>,
-    /// At how many nodes pairs still changed each other after [`MAX_SWEEPS`].
-    unsettled: u64,
+    /// At which nodes pairs still changed each other after [`MAX_SWEEPS`].
+    unsettled: Vec<[i32; D]>,
 }
 
 impl<T, const D: usize> Default for Impulses<T, D> {
@@ -81,7 +81,7 @@ impl<T, const D: usize> Default for Impulses<T, D> {
 
 impl<T, const D: usize> Default for List<T, D> {
     fn default() -> Self {
-        List { impulses: Vec::new(), velocities: Vec::new(), unsettled: 0 }
+        List { impulses: Vec::new(), velocities: Vec::new(), unsettled: Vec::new() }
     }
 }
 
@@ -91,9 +91,9 @@ impl<T, const D: usize> Impulses<T, D> {
         self.parts.iter().flat_map(|list| &list.impulses)
     }
 
-    /// At how many nodes pairs still changed each other when the last sweep was done.
-    pub fn unsettled(&self) -> u64 {
-        self.parts.iter().map(|list| list.unsettled).sum()
+    /// At which nodes pairs still changed each other when the last sweep was done.
+    pub fn unsettled(&self) -> impl Iterator<Item = &[i32; D]> {
+        self.parts.iter().flat_map(|list| &list.unsettled)
     }
 
     /// Those of a part and in its order of encounters; none if nothing was solved yet.
@@ -149,7 +149,7 @@ impl<T: Real, const D: usize> Solve<'_, T, D> {
         let (used, unused) = listed.parts.split_at_mut(parts);
         for list in unused {
             list.impulses.clear();
-            list.unsettled = 0;
+            list.unsettled.clear();
         }
         used
     }
@@ -172,7 +172,7 @@ impl<T: Real, const D: usize> Solve<'_, T, D> {
     fn part(&self, (number, part): (usize, &SurveyPart<T, D>), list: &mut List<T, D>) {
         let given = self.given.map_or(&[][..], |given| given.of(number));
         list.impulses.clear();
-        list.unsettled = 0;
+        list.unsettled.clear();
         for site in &part.sites {
             let given = if given.is_empty() { given } else { &given[site.encounters.clone()] };
             self.site((part, site), given, list);
@@ -253,7 +253,7 @@ impl<T: Real, const D: usize> Solve<'_, T, D> {
             }
         }
         if !settled {
-            *unsettled += 1;
+            unsettled.push(site.node);
             let share = harmless(encounters, impulses, (site.sides.start, velocities));
             for (encounter, impulse) in encounters.iter().zip(&mut *impulses) {
                 let whole = impulse.velocity;
@@ -454,7 +454,7 @@ mod tests {
         solve.impulses(&mut impulses);
         let after = velocities(&nodes);
         let masses = state.iter().map(|body| body.0).collect();
-        let unsettled = impulses.unsettled();
+        let unsettled = impulses.unsettled().count() as u64;
         SolveOutcome {
             masses,
             before,

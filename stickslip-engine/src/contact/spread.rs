@@ -14,8 +14,8 @@ use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
 /// Shares of a contact's area and where they lie.
-#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
-pub(super) struct Spread {
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Spread {
     /// [m^2]
     pub area: f64,
     /// Area times place [m^3].
@@ -33,6 +33,28 @@ impl Spread {
             for j in 0..3 {
                 self.second[i][j] += area * place[i] * place[j];
             }
+        }
+    }
+
+    /// Adds others.
+    pub fn merge(&mut self, other: &Spread) {
+        self.area += other.area;
+        for i in 0..3 {
+            self.first[i] += other.first[i];
+            (0..3).for_each(|j| self.second[i][j] += other.second[i][j]);
+        }
+    }
+
+    /// The same elsewhere, so far away [m].
+    pub fn moved(&self, way: [f64; 3]) -> Spread {
+        let Spread { area, first, second } = *self;
+        let product = |i: usize, j: usize| {
+            second[i][j] + first[i] * way[j] + way[i] * first[j] + area * way[i] * way[j]
+        };
+        Spread {
+            area,
+            first: std::array::from_fn(|i| first[i] + area * way[i]),
+            second: std::array::from_fn(|i| std::array::from_fn(|j| product(i, j))),
         }
     }
 

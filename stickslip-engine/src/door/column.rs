@@ -86,6 +86,9 @@ pub enum WriteError {
     /// There is no such column.
     #[error(transparent)]
     Unknown(#[from] NoColumn),
+    /// Several ranks share the simulation.
+    #[error("several ranks share the simulation; allowed: one that one rank has")]
+    Shared,
     /// It follows from others, or the engine relies on it.
     #[error("found `{name}`, which only steps write to; allowed: {}", WRITABLE.join(", "))]
     Fixed {

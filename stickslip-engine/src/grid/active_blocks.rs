@@ -4,8 +4,10 @@
 //! its own block and to the next one along each axis, as far as its particles reach,
 //! since no basis reaches more than four nodes.
 
-use super::cell_list::{CellList, block_of, corner_block, key};
+use super::border::{Border, ForeignTile, Mirrors, Traffic};
+use super::cell_list::{CellList, GuestList, block_of, corner_block, key, reached_blocks};
 use super::{Periods, locate, nodes_per_block};
+use crate::ranks::{Message, message_to};
 use crate::threads::each;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -45,8 +47,14 @@ pub struct ActiveBlocks<const D: usize> {
     pub portions: Vec<Range<usize>>,
     /// Indices of the other tiles by colour: tiles of one colour never write to the same slot.
     pub colors: Vec<Vec<u32>>,
-    /// Room for the tiles of a body with their colours.
+    /// Room for the tiles of a body with their colours; foreign ones are numbered behind those of this rank.
     colored: Vec<(usize, u32)>,
+    /// Colour of each tile, where there are other ranks.
+    color_of: Vec<usize>,
+    /// What other ranks share, where there are any.
+    pub border: Option<Box<Border>>,
+    /// Faces behind which images lie.
+    mirrors: Mirrors,
     /// Body and block of each field slot.
     pub slots: Vec<(u32, [i32; D])>,
     /// First slot of each body, and the number of slots.
@@ -62,6 +70,17 @@ pub struct ActiveBlocks<const D: usize> {
     /// Where the grid repeats, for each body how far away from the first period blocks are that its particles reach, in
     /// blocks, sorted.
     images: Vec<Vec<[i32; D]>>,
+}
+
+/// A particle on the move to another rank.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Emigrant {
+    /// Index of its body.
+    pub body: usize,
+    /// Its index there.
+    pub particle: u32,
+    /// Where it goes.
+    pub rank: usize,
 }
 
 /// Most tiles of a small body.
@@ -86,6 +105,56 @@ impl<const D: usize> ActiveBlocks<D> {
     /// No blocks, on a grid that repeats.
     pub fn new(periods: Periods<D>) -> Self {
         ActiveBlocks { periods, ..ActiveBlocks::default() }
+    }
+
+    /// The same between mirrors, for one of several ranks.
+    pub fn among_ranks(self, mirrors: Mirrors) -> Self {
+        ActiveBlocks { mirrors, border: Some(Box::default()), ..self }
+    }
+
+    /// Whether what is at a block is booked by this rank; by one that is alone, always.
+    pub fn books(&self, block: [i32; D]) -> bool {
+        self.border.as_ref().is_none_or(|border| border.books(block))
+    }
+
+    /// Names the tiles of this rank to those who may have to do with them, which `owners` tells for blocks of the first
+    /// period: by rank, each tile as [`ForeignTile::read`] reads it.
+    pub fn named(&self, rank: usize, owner: impl Fn([i32; D]) -> usize) -> Vec<Message> {
+        let mut messages: Vec<Message> = Vec::new();
+        let mut near: Vec<usize> = Vec::new();
+        for tile in &self.tiles_now() {
+            near.clear();
+            let radius = self.mirrors.radius(tile.0);
+            let count = radius.iter().map(|radius| 2 * radius + 1).product();
+            for n in 0..count {
+                let mut rest: i32 = n;
+                let block = std::array::from_fn(|i| {
+                    let side = 2 * radius[i] + 1;
+                    let step = rest % side - radius[i];
+                    rest /= side;
+                    tile.0[i] + step
+                });
+                near.push(owner(self.periods.wrapped(block)));
+            }
+            near.sort_unstable();
+            near.dedup();
+            for &to in near.iter().filter(|&&to| to != rank) {
+                message_to(&mut messages, to).extend(tile.1);
+            }
+        }
+        messages
+    }
+
+    /// Home block of each tile, and the bytes that name it.
+    fn tiles_now(&self) -> Vec<([i32; D], [u8; ForeignTile::BYTES])> {
+        let lists = self.cell_lists.iter().enumerate();
+        let of_list = |(body, list): (usize, &CellList)| {
+            let tiles = list.homes.iter().zip(&list.reached);
+            let name =
+                tiles.map(|(&home, &reached)| (block_of(home), ForeignTile::write(body, home, reached)));
+            name.collect::<Vec<_>>()
+        };
+        lists.flat_map(of_list).collect()
     }
 
     /// Covers so many bodies of so many particles each, which reach so many nodes beyond their base nodes, and says
@@ -121,6 +190,80 @@ impl<const D: usize> ActiveBlocks<D> {
             return Blocks::New;
         }
         Blocks::Same
+    }
+
+    /// The same for the particles of one of several ranks, in steps: finds those on the move. Then follow
+    /// [`ActiveBlocks::emigrants`], [`ActiveBlocks::renumber`], [`ActiveBlocks::arrive`] and [`ActiveBlocks::settle`].
+    pub fn find_movers(
+        &mut self,
+        (bodies, count, reach): (usize, impl Fn(usize) -> usize + Sync, i32),
+        left: Option<&[u64]>,
+        (base, number): (impl Fn(usize, usize) -> [i32; D] + Sync, impl Fn(usize, usize) -> u32 + Sync),
+    ) {
+        self.cell_lists.resize_with(bodies, CellList::default);
+        let first_tile = &self.first_tile;
+        each(&mut self.cell_lists, 16, |body, cell_list| {
+            let looks = (|particle| base(body, particle), |particle| number(body, particle));
+            match left {
+                Some(left) if !cell_list.forgotten => {
+                    cell_list.find_movers(&left[first_tile[body]..first_tile[body + 1]], looks);
+                }
+                _ => cell_list.find_all((count(body), reach), looks),
+            }
+        });
+    }
+
+    /// Those on the move to other ranks, which are in no list from now on, by body and index; `abroad` tells whose a
+    /// block of the first period is, if not this rank's.
+    pub fn emigrants(&mut self, abroad: impl Fn([i32; D]) -> Option<usize>) -> Vec<Emigrant> {
+        let periods = self.periods;
+        let mut all = Vec::new();
+        for (body, cell_list) in self.cell_lists.iter_mut().enumerate() {
+            let gone = cell_list.emigrants(|block| abroad(periods.wrapped(block)));
+            all.extend(gone.into_iter().map(|(particle, rank)| Emigrant { body, particle, rank }));
+        }
+        all
+    }
+
+    /// Takes note that particles of a body lie elsewhere in memory, from where to where; `base` knows them there.
+    pub fn renumber(&mut self, body: usize, moves: &[[u32; 2]], base: impl Fn(usize) -> [i32; D]) {
+        self.cell_lists[body].renumber(moves, base);
+    }
+
+    /// Takes note of more particles of a body, with these indices.
+    pub fn arrive(
+        &mut self,
+        (body, particles): (usize, Range<usize>),
+        looks: (impl Fn(usize) -> [i32; D], impl Fn(usize) -> u32),
+    ) {
+        self.cell_lists[body].arrive(particles, looks);
+    }
+
+    /// Brings the lists up to date, and says whether the blocks under this rank's particles are others than before.
+    pub fn settle(&mut self, number: impl Fn(usize, usize) -> u32 + Sync) -> Blocks {
+        let changed = AtomicBool::new(false);
+        each(&mut self.cell_lists, 16, |body, cell_list| {
+            let settled =
+                cell_list.is_stale().then(|| cell_list.settle::<D>(&|particle| number(body, particle)));
+            if settled == Some(Blocks::New) {
+                changed.store(true, Ordering::Relaxed);
+            }
+        });
+        if changed.into_inner() { Blocks::New } else { Blocks::Same }
+    }
+
+    /// Covers the tiles of this rank and of others at the same blocks, which those have named.
+    pub fn cover(&mut self, named: &[ForeignTile], rank: usize) {
+        let mut border = self.border.take().unwrap_or_default();
+        self.cell_lists.iter_mut().for_each(CellList::find_blocks::<D>);
+        border.find((named, rank), &self.cell_lists, (self.periods, &self.mirrors));
+        for (body, cell_list) in self.cell_lists.iter_mut().enumerate() {
+            cell_list.blocks.extend(border.blocks_of(body, self.periods));
+            cell_list.blocks.sort_unstable();
+            cell_list.blocks.dedup();
+        }
+        self.border = Some(border);
+        self.rebuild();
     }
 
     /// Takes note that a body has other particles: the next update looks at all of them.
@@ -176,18 +319,32 @@ impl<const D: usize> ActiveBlocks<D> {
         self.first_tile.push(self.tiles.len());
         self.share_out();
         self.meet();
+        self.share();
+    }
+
+    /// Finds what this rank shares with others.
+    fn share(&mut self) {
+        let Some(mut border) = self.border.take() else { return };
+        let slot = |body: usize, block: u64| {
+            let place = self.cell_lists[body].blocks.binary_search(&block).ok()?;
+            Some((self.first_slot[body] + place) as u32)
+        };
+        let (own, places) = ((&self.tiles[..], &self.cell_lists[..]), (self.periods, &self.mirrors));
+        border.share(own, (slot, &self.color_of), places);
+        self.border = Some(border);
     }
 
     /// Finds the images of blocks that bodies reach, and gives these blocks the nodes of those in the first period.
     fn find_images(&mut self) {
         let periods = self.periods;
         self.images.resize_with(self.cell_lists.len(), Vec::new);
-        for (cell_list, images) in self.cell_lists.iter_mut().zip(&mut self.images) {
+        let border = self.border.as_deref();
+        for (body, (cell_list, images)) in self.cell_lists.iter_mut().zip(&mut self.images).enumerate() {
             images.clear();
-            for (&home, &reached) in cell_list.homes.iter().zip(&cell_list.reached) {
-                let corners = (0..1 << D).filter(|&corner| reached >> corner & 1 == 1);
-                images.extend(corners.map(|corner| {
-                    let block = corner_block::<D>(block_of(home), corner);
+            let foreign = border.map_or(&[][..], |border| &border.foreign[border.of_body(body)]);
+            let own = cell_list.homes.iter().zip(&cell_list.reached).map(|(&home, &reached)| (home, reached));
+            for (home, reached) in own.chain(foreign.iter().map(|tile| (tile.home, tile.reached))) {
+                images.extend(reached_blocks::<D>(block_of(home), reached).map(|block| {
                     let first = periods.wrapped(block);
                     std::array::from_fn(|i| block[i] - first[i])
                 }));
@@ -203,17 +360,32 @@ impl<const D: usize> ActiveBlocks<D> {
         }
     }
 
-    /// Small bodies together make portions, each for one thread; the tiles of large ones get colours. In both, a slot is
-    /// given what its tiles have in the order of their colours: whether a body is small changes no bit.
+    /// Small bodies together make portions, each for one thread; the tiles of large ones get colours. In both, a slot
+    /// is given what its tiles have in the order of their colours: whether a body is small changes no bit.
     fn share_out(&mut self) {
         self.small.clear();
         self.portions.clear();
         self.colors.resize_with(1 << D, Vec::new);
         self.colors.iter_mut().for_each(Vec::clear);
+        let mut border = self.border.take();
+        let count = self.tiles.len();
+        if let Some(border) = &mut border {
+            self.color_of.resize(count, 0);
+            border.colors.resize(border.foreign.len(), 0);
+        }
         for body in 0..self.cell_lists.len() {
             let tiles = self.tiles_of_body(body);
-            let small = tiles.len() <= MOST_SMALL && tiles.len() * LEAST_SMALL <= self.tiles.len();
-            self.color(tiles);
+            let small = tiles.len() <= MOST_SMALL && tiles.len() * LEAST_SMALL <= count;
+            self.color(body, border.as_deref());
+            if let Some(border) = &mut border {
+                for &(color, tile) in &self.colored {
+                    match (tile as usize).checked_sub(count) {
+                        Some(foreign) => border.colors[foreign] = color,
+                        None => self.color_of[tile as usize] = color,
+                    }
+                }
+                self.colored.retain(|&(_, tile)| (tile as usize) < count);
+            }
             if !small {
                 for &(color, tile) in &self.colored {
                     self.colors.resize_with(self.colors.len().max(color + 1), Vec::new);
@@ -229,23 +401,31 @@ impl<const D: usize> ActiveBlocks<D> {
                 }
             }
         }
+        self.border = border;
     }
 
-    /// Finds the colours of a body's tiles: those of one colour have no slot in common. Where the grid repeats, several
-    /// tiles may have the same nodes: each of them gets other colours.
-    fn color(&mut self, tiles: Range<usize>) {
-        let ActiveBlocks { colored, tiles: all, periods, .. } = self;
+    /// Finds the colours of a body's tiles, foreign ones among them: those of one colour have no slot in common. Where
+    /// the grid repeats, several tiles may have the same nodes: each of them gets other colours.
+    fn color(&mut self, body: usize, border: Option<&Border>) {
+        let (tiles, periods) = (self.tiles_of_body(body), self.periods);
+        let ActiveBlocks { colored, tiles: all, .. } = self;
+        let own = tiles.map(|i| (all[i].block, i as u32));
+        let foreign = border.map(|border| (&border.foreign[..], border.of_body(body)));
+        let foreign = foreign.into_iter().flat_map(|(tiles, range)| {
+            range.map(|place| (block_of(tiles[place].home), (all.len() + place) as u32))
+        });
+        let everyone = own.chain(foreign);
         colored.clear();
         if !periods.any() {
-            let color = |i: usize| all[i].block.iter().fold(0, |color, b| color << 1 | (b & 1) as usize);
-            colored.extend(tiles.map(|i| (color(i), i as u32)));
+            let color = |block: [i32; D]| block.iter().fold(0, |color, b| color << 1 | (b & 1) as usize);
+            colored.extend(everyone.map(|(block, tile)| (color(block), tile)));
             return;
         }
-        let first = |i: usize| key(periods.wrapped(all[i].block));
-        let mut places: Vec<(u64, u32)> = tiles.map(|i| (first(i), i as u32)).collect();
+        let mut places: Vec<(u64, u64, u32)> =
+            everyone.map(|(block, tile)| (key(periods.wrapped(block)), key(block), tile)).collect();
         places.sort_unstable();
         for images in places.chunk_by(|a, b| a.0 == b.0) {
-            for (number, &(block, tile)) in images.iter().enumerate() {
+            for (number, &(block, _, tile)) in images.iter().enumerate() {
                 colored.push((number * 3_usize.pow(D as u32) + periods.color(block_of(block)), tile));
             }
         }
@@ -254,6 +434,7 @@ impl<const D: usize> ActiveBlocks<D> {
     fn meet(&mut self) {
         self.shared_blocks.clear();
         self.shared.clear();
+        self.border.iter_mut().for_each(|border| border.shared.clear());
         if self.cell_lists.len() < 2 {
             return;
         }
@@ -266,6 +447,9 @@ impl<const D: usize> ActiveBlocks<D> {
                 start,
                 end: self.shared.len(),
             });
+            if let Some(border) = &mut self.border {
+                border.shared.push(group[0].0);
+            }
         }
         // By first body: its particles stay in the cache from block to block.
         self.shared_blocks.sort_unstable_by_key(|meeting| self.shared[meeting.start]);
@@ -277,9 +461,52 @@ impl<const D: usize> ActiveBlocks<D> {
         &self.cell_lists[tile.body].cells[tile.number * n..=(tile.number + 1) * n]
     }
 
+    /// The tiles whose particles others see: those that go there and reach a block where bodies meet.
+    pub fn tiles_near_others<'a>(&'a self, traffic: &'a Traffic) -> impl Iterator<Item = &'a Tile<D>> {
+        let border = self.border.as_deref().into_iter();
+        border.flat_map(move |border| {
+            let tiles =
+                traffic.windows.iter().map(|&place| &self.tiles[border.kept[place as usize] as usize]);
+            tiles.filter(|tile| {
+                let mut blocks = self.cell_lists[tile.body].reached_by(tile.number);
+                blocks.any(|block| border.is_shared(key(self.periods.wrapped(block))))
+            })
+        })
+    }
+
+    /// The key of a tile's home.
+    pub fn home_of(&self, tile: &Tile<D>) -> u64 {
+        key(tile.block)
+    }
+
+    /// Indices of a body's own particles, or of those that are guests of other ranks, by tile, cell and number.
+    pub fn order(&self, body: usize, guests: bool) -> &[u32] {
+        let cell_list = &self.cell_lists[body];
+        if guests { &cell_list.guests.order } else { &cell_list.order }
+    }
+
+    /// Sends the guests of all bodies away.
+    pub fn dismiss_guests(&mut self) {
+        self.cell_lists.iter_mut().for_each(|list| list.guests = GuestList::default());
+    }
+
+    /// Takes note of guests of a body in a tile of another rank, by its home: the particles of each cell, with these
+    /// indices from `first` on. Tiles come in their order.
+    pub fn invite(&mut self, (body, home): (usize, u64), first: usize, counts: impl Iterator<Item = usize>) {
+        let GuestList { order, cells, homes } = &mut self.cell_lists[body].guests;
+        homes.push(home);
+        let mut end = first;
+        for count in counts {
+            cells.push(order.len() as u32);
+            order.extend(end as u32..(end + count) as u32);
+            end += count;
+        }
+        cells.push(order.len() as u32);
+    }
+
     /// Indices of a body's particles by tile, cell and number.
     pub fn order_of(&self, body: usize) -> &[u32] {
-        &self.cell_lists[body].order
+        self.order(body, false)
     }
 
     /// The slots of a body.
@@ -316,20 +543,23 @@ impl<const D: usize> ActiveBlocks<D> {
         if self.periods.any() { &self.images[body] } else { &[[0; D]] }
     }
 
-    /// A body's particles whose home is a block: indices of all its particles, and places there where those of each
-    /// cell begin, and where the last ends.
+    /// A body's particles whose home is a block: whether they are guests, and the places where those of each cell begin
+    /// and where the last ends, in the [order](ActiveBlocks::order) of its own particles or its guests.
     #[inline]
-    pub fn tile_at(&self, body: usize, block: [i32; D]) -> Option<(&[u32], &[u32])> {
-        let cell_list = &self.cell_lists[body];
-        let tile = cell_list.homes.binary_search(&key(block)).ok()?;
-        let n = nodes_per_block(D);
-        Some((&cell_list.order, &cell_list.cells[tile * n..=(tile + 1) * n]))
+    pub fn tile_at(&self, body: usize, block: [i32; D]) -> Option<(bool, &[u32])> {
+        let (cell_list, n) = (&self.cell_lists[body], nodes_per_block(D));
+        if let Ok(tile) = cell_list.homes.binary_search(&key(block)) {
+            return Some((false, &cell_list.cells[tile * n..=(tile + 1) * n]));
+        }
+        let GuestList { cells, homes, .. } = &cell_list.guests;
+        let tile = homes.binary_search(&key(block)).ok()?;
+        Some((true, &cells[tile * (n + 1)..][..=n]))
     }
 
     /// Indices of a body's particles whose home is a cell.
     pub fn particles_in(&self, body: usize, cell: [i32; D]) -> &[u32] {
         let (block, local) = locate(cell);
-        let Some((order, cells)) = self.tile_at(body, block) else { return &[] };
-        &order[cells[local] as usize..cells[local + 1] as usize]
+        let Some((guests, cells)) = self.tile_at(body, block) else { return &[] };
+        &self.order(body, guests)[cells[local] as usize..cells[local + 1] as usize]
     }
 }

@@ -44,6 +44,16 @@ fn corners_of<const D: usize>(cell: usize, reach: i32) -> CornerBlocks {
     (0..1 << D).filter(|&corner| reaches(corner)).fold(0, |corners, corner| corners | 1 << corner)
 }
 
+/// The blocks at `home` + {0, 1}^D that are reached.
+pub(super) fn reached_blocks<const D: usize>(
+    home: [i32; D],
+    reached: CornerBlocks,
+) -> impl Iterator<Item = [i32; D]> {
+    (0..1 << D)
+        .filter(move |&corner| reached >> corner & 1 == 1)
+        .map(move |corner| corner_block(home, corner))
+}
+
 /// The blocks of one body.
 #[derive(Clone, Debug, Default)]
 pub(super) struct CellList {
@@ -59,6 +69,8 @@ pub(super) struct CellList {
     pub blocks: Vec<u64>,
     /// Whether it knows nothing of the particles that there are now.
     pub forgotten: bool,
+    /// Particles that belong to other ranks.
+    pub guests: GuestList,
     /// Nodes that a particle reaches beyond its base node, along each axis.
     reach: i32,
     /// Particles on the move, by their new homes.
@@ -69,6 +81,17 @@ pub(super) struct CellList {
     gone: Vec<u32>,
     /// What the lists above become next.
     next: Next,
+}
+
+/// Particles of other ranks by tile and cell.
+#[derive(Clone, Debug, Default)]
+pub(super) struct GuestList {
+    /// Indices of the particles, by tile, then cell, then number.
+    pub order: Vec<u32>,
+    /// Place in `order` of each cell of a tile, and its end, one tile after the other.
+    pub cells: Vec<u32>,
+    /// Home blocks with particles, sorted.
+    pub homes: Vec<u64>,
 }
 
 #[derive(Clone, Debug, Default)]
@@ -121,11 +144,20 @@ impl CellList {
         (count, reach): (usize, i32),
         (base, number): (impl Fn(usize) -> [i32; D], impl Fn(usize) -> u32 + Sync),
     ) -> Blocks {
+        self.find_all((count, reach), (base, &number));
+        self.settle::<D>(&number);
+        Blocks::New
+    }
+
+    /// Looks at all particles, which are all on the move.
+    pub fn find_all<const D: usize>(
+        &mut self,
+        (count, reach): (usize, i32),
+        (base, number): (impl Fn(usize) -> [i32; D], impl Fn(usize) -> u32),
+    ) {
         *self = CellList { reach, ..CellList::default() };
         let movers = (0..count).map(|i| mover(base(i), (i as u32, number(i))));
         self.movers.extend(movers);
-        self.settle::<D>(&number);
-        Blocks::New
     }
 
     /// Looks at the particles in cells that particles have left.
@@ -134,6 +166,16 @@ impl CellList {
         left: &[u64],
         (base, number): (impl Fn(usize) -> [i32; D] + Sync, impl Fn(usize) -> u32 + Sync),
     ) -> Blocks {
+        self.find_movers(left, (base, &number));
+        if self.movers.is_empty() { Blocks::Same } else { self.settle::<D>(&number) }
+    }
+
+    /// Finds those on the move among the particles in cells that particles have left.
+    pub fn find_movers<const D: usize>(
+        &mut self,
+        left: &[u64],
+        (base, number): (impl Fn(usize) -> [i32; D] + Sync, impl Fn(usize) -> u32 + Sync),
+    ) {
         let n = nodes_per_block(D);
         self.gone.clear();
         self.gone.resize(left.len(), 0);
@@ -166,11 +208,77 @@ impl CellList {
         for leaving in &self.leaving[..count] {
             self.movers.extend_from_slice(leaving);
         }
-        if self.movers.is_empty() { Blocks::Same } else { self.settle::<D>(&number) }
+    }
+
+    /// Takes those on the move to other ranks out of the list, whose owners `abroad` tells: each with its new owner, by
+    /// index.
+    pub fn emigrants<const D: usize>(
+        &mut self,
+        abroad: impl Fn([i32; D]) -> Option<usize>,
+    ) -> Vec<(u32, usize)> {
+        let mut gone = Vec::new();
+        self.movers.retain(|mover| {
+            let owner = abroad(block_of(mover.block));
+            gone.extend(owner.map(|owner| (mover.particle, owner)));
+            owner.is_none()
+        });
+        gone.sort_unstable();
+        gone
+    }
+
+    /// Takes note that particles lie elsewhere in memory, from where to where; `base` knows them where they are now.
+    pub fn renumber<const D: usize>(&mut self, moves: &[[u32; 2]], base: impl Fn(usize) -> [i32; D]) {
+        let n = nodes_per_block(D);
+        let mut still: Vec<[u32; 2]> = moves.to_vec();
+        still.sort_unstable();
+        let place = |particle: u32| still.binary_search_by_key(&particle, |&[from, _]| from);
+        let mut found = vec![false; still.len()];
+        for mover in self.movers.iter_mut().filter(|_| !still.is_empty()) {
+            if let Ok(at) = place(mover.particle) {
+                (mover.particle, found[at]) = (still[at][1], true);
+            }
+        }
+        for &[from, to] in still.iter().zip(&found).filter(|(_, found)| !**found).map(|(moved, _)| moved) {
+            let (block, cell) = locate(base(to as usize));
+            let tile = self.homes.binary_search(&key(block)).expect("who does not move has a home");
+            let ends = &self.cells[tile * n + cell..][..2];
+            let here = &mut self.order[ends[0] as usize..ends[1] as usize];
+            *here.iter_mut().find(|particle| **particle == from).expect("it is in its cell") = to;
+        }
+    }
+
+    /// Takes note of more particles, with these indices.
+    pub fn arrive<const D: usize>(
+        &mut self,
+        particles: Range<usize>,
+        (base, number): (impl Fn(usize) -> [i32; D], impl Fn(usize) -> u32),
+    ) {
+        self.movers.extend(particles.map(|i| mover(base(i), (i as u32, number(i)))));
+    }
+
+    /// Whether particles came, moved or left since the lists were made.
+    pub fn is_stale(&self) -> bool {
+        !self.movers.is_empty() || self.gone.iter().any(|&gone| gone > 0)
+    }
+
+    /// The blocks at `home` + {0, 1}^D that the particles of a tile reach.
+    pub fn reached_by<const D: usize>(&self, tile: usize) -> impl Iterator<Item = [i32; D]> {
+        reached_blocks(block_of(self.homes[tile]), self.reached[tile])
+    }
+
+    /// Finds the blocks that the particles reach.
+    pub fn find_blocks<const D: usize>(&mut self) {
+        self.blocks.clear();
+        for tile in 0..self.homes.len() {
+            let reached = reached_blocks::<D>(block_of(self.homes[tile]), self.reached[tile]);
+            self.blocks.extend(reached.map(key));
+        }
+        self.blocks.sort_unstable();
+        self.blocks.dedup();
     }
 
     /// Gives the movers their places in the order.
-    fn settle<const D: usize>(&mut self, number: &(impl Fn(usize) -> u32 + Sync)) -> Blocks {
+    pub fn settle<const D: usize>(&mut self, number: &(impl Fn(usize) -> u32 + Sync)) -> Blocks {
         let n = nodes_per_block(D);
         // No two are equal, so their order does not depend on who sorts them.
         self.movers.par_sort_unstable_by_key(Mover::rank);
@@ -232,13 +340,7 @@ impl CellList {
         if same {
             return Blocks::Same;
         }
-        self.blocks.clear();
-        for (&home, &reached) in self.homes.iter().zip(&self.reached) {
-            let corners = (0..1 << D).filter(|&corner| reached >> corner & 1 == 1);
-            self.blocks.extend(corners.map(|corner| key(corner_block::<D>(block_of(home), corner))));
-        }
-        self.blocks.sort_unstable();
-        self.blocks.dedup();
+        self.find_blocks::<D>();
         Blocks::New
     }
 

@@ -2,7 +2,7 @@
 
 use super::{ActiveBlocks, Nodes, SIDE, Tile, next_of, nodes_per_block};
 use crate::basis::MAX_WIDTH;
-use crate::lanes::{Lanes, MOST_LANES, Machine, prefetch};
+use crate::lanes::{Any, Lanes, MOST_LANES, Machine, prefetch};
 use crate::pages::ask_for_large;
 use crate::tensor::{Real, Vector};
 use crate::threads::{each, each_range};
@@ -273,11 +273,14 @@ struct NodeRun {
     node: usize,
     /// How many.
     count: usize,
+    /// Which of the tile's blocks it is.
+    corner: usize,
 }
 
 /// The nodes of a tile's window with this side. An iterator, for loops over it are compiled where they stand.
 struct NodeRuns<'a, const D: usize> {
-    tile: &'a Tile<D>,
+    /// Slots of the blocks at the window, as [`Tile::slots`].
+    slots: &'a [u32; 8],
     side: usize,
     /// Along the first two axes, and which half of the row.
     next: [usize; 3],
@@ -285,8 +288,8 @@ struct NodeRuns<'a, const D: usize> {
 
 impl<'a, const D: usize> NodeRuns<'a, D> {
     #[inline(always)]
-    fn new(tile: &'a Tile<D>, side: usize) -> Self {
-        NodeRuns { tile, side, next: [0; 3] }
+    fn new(slots: &'a [u32; 8], side: usize) -> Self {
+        NodeRuns { slots, side, next: [0; 3] }
     }
 }
 
@@ -312,8 +315,9 @@ impl<const D: usize> Iterator for NodeRuns<'_, D> {
         };
         Some(NodeRun {
             place: place + half * S,
-            node: self.tile.slots[corner + half] as usize * nodes_per_block(D) + local,
+            node: self.slots[corner + half] as usize * nodes_per_block(D) + local,
             count: if half == 0 { S } else { self.side - S },
+            corner: corner + half,
         })
     }
 }
@@ -351,7 +355,7 @@ impl<T: Real, const D: usize> Window<T, D> {
         side: usize,
         sought: Sought,
     ) {
-        for NodeRun { place, node, count } in NodeRuns::new(tile, side) {
+        for NodeRun { place, node, count, .. } in NodeRuns::<D>::new(&tile.slots, side) {
             for k in 0..count {
                 let (start, mean) = (filtered.get(node + k), means.get(node + k));
                 // SAFETY: the caller keeps writers away from the tile's slots.
@@ -379,13 +383,22 @@ impl<T: Real, const D: usize> Window<T, D> {
         }
     }
 
-    /// Adds to the field what was scattered into a window with this side.
+    /// Adds to the field what was scattered into a window with this side, but for the tile's blocks that are left out,
+    /// a bit each.
     ///
     /// # Safety
-    /// No other thread may touch the tile's slots meanwhile.
+    /// No other thread may touch the tile's other slots meanwhile.
     #[inline(always)]
-    pub unsafe fn add_to<M: Machine<T>>(&self, field: &Disjoint<Node<T, D>>, tile: &Tile<D>, side: usize) {
-        for NodeRun { place, node, count } in NodeRuns::new(tile, side) {
+    pub unsafe fn add_to<M: Machine<T>>(
+        &self,
+        field: &Disjoint<Node<T, D>>,
+        (tile, left_out): (&Tile<D>, u8),
+        side: usize,
+    ) {
+        for NodeRun { place, node, count, corner } in NodeRuns::<D>::new(&tile.slots, side) {
+            if left_out >> corner & 1 == 1 {
+                continue;
+            }
             for k in 0..count {
                 // SAFETY: the caller keeps other threads away from the tile's slots.
                 unsafe { Node::take::<M>(field.get(node + k), &self.sums[place + k]) };
@@ -394,11 +407,32 @@ impl<T: Real, const D: usize> Window<T, D> {
     }
 }
 
+/// Adds to a slot what a tile gave it: the part of its sums, of a window with this side, that is this one of its
+/// blocks.
+///
+/// # Safety
+/// No other thread may touch the slot meanwhile.
+pub unsafe fn add_corner<T: Real, const D: usize>(
+    sums: &[NodeSums<T>],
+    field: &Disjoint<Node<T, D>>,
+    (slot, corner): (u32, u8),
+    side: usize,
+) {
+    let slots = [slot; 8];
+    let runs = NodeRuns::<D>::new(&slots, side);
+    for NodeRun { place, node, count, .. } in runs.filter(|run| run.corner == usize::from(corner)) {
+        for k in 0..count {
+            // SAFETY: the caller keeps other threads away from the slot.
+            unsafe { Node::take::<Any>(field.get(node + k), &sums[place + k]) };
+        }
+    }
+}
+
 impl<T: Real, const D: usize> Disjoint<'_, Node<T, D>> {
     /// Fetches the nodes of a tile's window with this side into the cache.
     #[inline(always)]
     pub fn fetch(&self, tile: &Tile<D>, side: usize) {
-        for NodeRun { node, count, .. } in NodeRuns::new(tile, side) {
+        for NodeRun { node, count, .. } in NodeRuns::<D>::new(&tile.slots, side) {
             let (mut line, end) = (self.place(node).cast::<u8>(), self.place(node + count).cast::<u8>());
             while line < end {
                 prefetch(line);

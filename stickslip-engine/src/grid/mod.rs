@@ -4,14 +4,17 @@
 //! particles reach, so memory and time follow the particles, never bodies x grid nor the size of the domain.
 
 mod active_blocks;
+mod border;
 mod cell_list;
 mod field;
 mod periods;
 
-pub use active_blocks::{ActiveBlocks, Blocks, SharedBlock, Tile};
+pub use active_blocks::{ActiveBlocks, Blocks, Emigrant, SharedBlock, Tile};
+pub use border::{Border, BorderSlot, ForeignTile, Giver, Mirrors, Traffic};
 pub use cell_list::{MOST_CELLS, addressable};
 pub use field::{
-    Disjoint, Field, NODE_VALUES, Node, NodeSums, NodeValues, Sought, WINDOW_NODES, Window, window_side,
+    Disjoint, Field, NODE_VALUES, Node, NodeSums, NodeValues, Sought, WINDOW_NODES, Window, add_corner,
+    window_side,
 };
 
 pub use periods::Periods;

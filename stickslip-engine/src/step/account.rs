@@ -4,9 +4,9 @@ use super::Engine;
 use super::state::Workspace;
 use crate::basis::Basis;
 use crate::body::Body;
-use crate::contact::{Change, Span};
+use crate::contact::{BlockSums, Change, Impulse, Impulses, Span};
 use crate::exact::ExactSum;
-use crate::grid::{Node, next_of, node_at, nodes_per_block};
+use crate::grid::{Node, locate, next_of, node_at, nodes_per_block};
 use crate::lanes::Laned;
 use crate::scene::ContactLaw;
 use crate::tensor::{Real, Vector};
@@ -19,6 +19,27 @@ const BLOCKS: usize = 16;
 /// Sums over nodes: unbalanced force, force of the stress and other forces [N], kinetic energy at the step's start and
 /// what damping took [J].
 pub(super) type NodeTotals = [f64; 5];
+
+/// What a step adds up, before it is rounded.
+#[derive(Clone, Debug, Default)]
+pub(super) struct StepSums {
+    /// Over the nodes; to the last one passes add what they took from the particles' kinetic energy [J].
+    pub nodes: [ExactSum; 5],
+    /// Nodes at which pairs had not come to rest.
+    unsettled: ExactSum,
+}
+
+impl StepSums {
+    /// What damping took from the particles' kinetic energy [J].
+    pub fn damped(&mut self) -> &mut ExactSum {
+        &mut self.nodes[4]
+    }
+
+    /// At how many nodes pairs had not come to rest when the last sweep over them was done.
+    pub fn unsettled(&mut self) -> &mut ExactSum {
+        &mut self.unsettled
+    }
+}
 
 /// How often a step interpolates velocities: after the second time u^1 is at the nodes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,39 +59,42 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let twice = interpolated == Interpolated::Twice;
         self.book_contact(dt, twice);
         self.account_walls(dt);
-        let damps = self.settings.damping.acts();
-        if damps || self.settings.time.relax.is_some() {
+        if self.measures_balance() {
             let start = Instant::now();
-            let [unbalanced, internal, external, kinetic, damped] = self.workspace.sum_over_nodes(
-                &self.state.bodies,
-                |Workspace { boundary, .. }, place, node| {
-                    let (node, impulse) = node;
-                    let [unbalanced, internal, external] =
-                        balance(node, impulse, dt, boundary.is_fixed(place));
-                    let kinetic = 0.5 * (node.start.dot(node.start) * node.mass).f64();
-                    [unbalanced, internal, external, kinetic, damping_work(node, impulse, twice)]
-                },
-            );
-            self.state.damping += damped;
-            self.state.relaxation.take([unbalanced, internal, external], kinetic);
+            self.workspace.sum_over_nodes(&self.state.bodies, |Workspace { boundary, .. }, place, node| {
+                let (node, impulse) = node;
+                let [unbalanced, internal, external] = balance(node, impulse, dt, boundary.is_fixed(place));
+                let kinetic = 0.5 * (node.start.dot(node.start) * node.mass).f64();
+                [unbalanced, internal, external, kinetic, damping_work(node, impulse, twice)]
+            });
             self.watch.lap("accounts", start);
         }
     }
 
-    /// Books what contact did: impulses by pair of bodies, and the work of friction.
-    fn book_contact(&mut self, dt: T, twice: bool) {
-        let start = Instant::now();
-        let Workspace { impulses: [first, second, _], boundary, .. } = &self.workspace;
-        let place = (&self.settings.lattice, boundary);
-        // How long surfaces touch is counted once a step.
-        self.state.contact_sums.add(first.iter().filter(|impulse| impulse.span == Span::EachUse), place, 0.0);
-        self.state.contact_sums.add(second.iter(), place, dt.f64());
-        self.book_friction(dt, twice);
-        self.watch.lap("contact", start);
+    /// Books the sums of the step, over all ranks.
+    pub(super) fn book_sums(&mut self) {
+        let StepSums { nodes: [unbalanced, internal, external, kinetic, damped], unsettled } =
+            std::mem::take(&mut self.workspace.sums);
+        let mut sums = [unbalanced, internal, external, kinetic, damped, unsettled];
+        if let Some(among) = &self.among {
+            among.ranks.add_up(&mut sums);
+            self.state.signal = self.state.signal.map(|signal| among.ranks.largest(signal));
+        }
+        let [unbalanced, internal, external, kinetic, damped, unsettled] = sums.map(|sum| sum.value());
+        self.state.damping += damped;
+        self.state.contact_sums.unsettled += unsettled as u64;
+        if self.measures_balance() {
+            self.state.relaxation.take([unbalanced, internal, external], kinetic);
+        }
     }
 
-    /// Books the work of friction in this step, what its impulses took from the particles' kinetic energy,
-    /// and likewise that of bonds that give way.
+    /// Whether a step looks how far its forces are from balance.
+    fn measures_balance(&self) -> bool {
+        self.settings.damping.acts() || self.settings.time.relax.is_some()
+    }
+
+    /// Books what contact did: impulses by pair of bodies, and the work of friction in this step, what its impulses
+    /// took from the particles' kinetic energy, and likewise that of bonds that give way.
     ///
     /// ```text
     /// W = -sum J . (w^0 + w^1)/2,   w = u_a - u_b of the particles' velocities, interpolated before and after the step
@@ -78,15 +102,15 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// This is exact for FLIP, where particles take changes at nodes: sum_p m_p v_p . sum_i S_i dv_i = sum_i m_i dv_i .
     /// v_i, with v_i interpolated from the v_p. The velocity of a node with next to no mass is mostly what forces do to
     /// it within the step, and says little of how particles move.
-    fn book_friction(&mut self, dt: T, twice: bool) {
+    fn book_contact(&mut self, dt: T, twice: bool) {
+        let start = Instant::now();
+        let mut touches = std::mem::take(&mut self.workspace.touches);
         let (nodes, rules) = (&self.workspace.field.nodes, &self.settings.rules);
         let seen = |node: usize| {
             let node = &nodes[node];
             if twice { (node.start + node.velocity) * T::HALF } else { node.start }
         };
-        let [first, second, _] = &self.workspace.impulses;
-        let first = first.iter().filter(|impulse| impulse.span == Span::EachUse);
-        for impulse in first.chain(second.iter()) {
+        let works = |impulse: &Impulse<T, D>| {
             let [a, b] = impulse.bodies;
             let rule = rules.rule(rules.number(a, b));
             let Change { impulse: [on_a, _], normal, tangential, .. } = impulse.change;
@@ -95,15 +119,36 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             let strength = rule.friction.adhesion * impulse.area * dt;
             let pulls = strength > T::ZERO && normal >= strength * T::of(0.999);
             if !rubs && !pulls {
-                continue;
+                return [0.0; 2];
             }
             let [v, w] = impulse.nodes.map(seen);
-            if rubs {
-                self.state.contact_sums.rub(impulse.bodies, -tangential.dot(v - w).f64());
-            }
-            if pulls {
-                self.state.contact_sums.adhesion -= (on_a - tangential).dot(v - w).f64();
-            }
+            let took = |impulse: Vector<T, D>| -impulse.dot(v - w).f64();
+            [if rubs { took(tangential) } else { 0.0 }, if pulls { took(on_a - tangential) } else { 0.0 }]
+        };
+        let [first, second, _] = &self.workspace.impulses;
+        let place = (&self.settings.lattice, &self.workspace.boundary);
+        // How long surfaces touch is counted once a step.
+        self.list_touches(&mut touches, (first, |impulse| impulse.span == Span::EachUse), works);
+        self.state.contact_sums.add(&touches, place, 0.0);
+        self.list_touches(&mut touches, (second, |_| true), works);
+        self.state.contact_sums.add(&touches, place, dt.f64());
+        self.workspace.touches = touches;
+        self.watch.lap("contact", start);
+    }
+
+    /// Lists what pairs did in a use of contact, on all ranks, by those of the impulses that count.
+    pub(super) fn list_touches(
+        &self,
+        touches: &mut Vec<BlockSums>,
+        (impulses, counts): (&Impulses<T, D>, impl Fn(&Impulse<T, D>) -> bool),
+        works: impl Fn(&Impulse<T, D>) -> [f64; 2],
+    ) {
+        let Workspace { active, boundary, .. } = &self.workspace;
+        let here = |impulse: &&Impulse<T, D>| counts(impulse) && active.books(locate(impulse.node).0);
+        let here = impulses.iter().filter(here);
+        BlockSums::list(touches, here, (&self.settings.lattice, boundary), works);
+        if let Some(among) = &self.among {
+            among.gather_touches(touches);
         }
     }
 }
@@ -142,14 +187,13 @@ fn damping_work<T: Real, const D: usize>(node: &Node<T, D>, impulse: Vector<T, D
 }
 
 impl<T: Real, const D: usize> Workspace<T, D> {
-    /// Sums over the nodes of deformable bodies that have mass and repeat no other behind a mirror. `of_node` is told
-    /// where the node is, and the impulse of damping there. Blocks in any order.
+    /// Adds to the sums of the step what there is of the nodes of deformable bodies that have mass, that this rank books,
+    /// and that repeat no other behind a mirror. `of_node` is told where the node is, and the impulse of damping there.
     fn sum_over_nodes(
         &mut self,
         bodies: &[Body<T, D>],
         of_node: impl Fn(&Self, [i32; D], (&Node<T, D>, Vector<T, D>)) -> NodeTotals + Sync,
-    ) -> NodeTotals
-    where
+    ) where
         Self: Sync,
     {
         let n = nodes_per_block(D);
@@ -159,7 +203,7 @@ impl<T: Real, const D: usize> Workspace<T, D> {
         let workspace = &*self;
         each(&mut sums, BLOCKS, |slot, sum| {
             let (body, block) = workspace.active.slots[slot];
-            if bodies[body as usize].is_rigid() {
+            if bodies[body as usize].is_rigid() || !workspace.active.books(block) {
                 return;
             }
             let mut places = workspace.field.present[slot];
@@ -173,9 +217,9 @@ impl<T: Real, const D: usize> Workspace<T, D> {
                 }
             }
         });
-        let total = |i: usize| sums.iter().map(|sum| sum[i]).sum::<ExactSum>().value();
-        let totals = [0, 1, 2, 3, 4].map(total);
+        for (i, total) in self.sums.nodes.iter_mut().enumerate() {
+            sums.iter().for_each(|sum| total.add(sum[i]));
+        }
         self.block_sums = sums;
-        totals
     }
 }

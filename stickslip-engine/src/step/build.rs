@@ -22,6 +22,7 @@ use crate::load::{LoadPoints, LoadSums, SpringPoints};
 use crate::material::{BadConstants, Material};
 use crate::natural;
 use crate::particles::{DOMAINS, OwnColumns, Particles, stress_entries};
+use crate::ranks::Ranks;
 use crate::rigid::{MassProperties, RigidMotion, longest_step};
 use crate::scene::{
     self, Action, BasisKind, BodyMotion, Dimension, Face, NamedMaterial, Precision, Problem, Scene,
@@ -30,6 +31,7 @@ use crate::tensor::{Matrix, Real, Symmetric, Vector, cross};
 use crate::transfer::{has_spin, pic_share, rotation};
 use std::collections::HashSet;
 use std::marker::PhantomData;
+use std::sync::Arc;
 
 /// The simulation of a scene.
 ///
@@ -44,29 +46,66 @@ pub fn build(scene: &Scene) -> Result<Box<dyn Simulation>, Problem> {
 /// # Errors
 /// What [`check::problems`] finds.
 pub fn build_on(scene: &Scene, path: ParticleLoop) -> Result<Box<dyn Simulation>, Problem> {
+    build_for(scene, path, None)
+}
+
+/// One rank's part of the simulation of a scene, see [`Ranks`]. All ranks make the same calls of it in the same order:
+/// `step`, `bodies`, `ledger`, `contact_sums` and what else is of the whole ask the others. What is of single particles
+/// is of those that this rank has: `particles`, `snapshot`, `grid_snapshot`, `visit`, `fastest`, `trace`, `column`,
+/// `step_limit`. Nobody can write to it, save it or give it another state yet.
+///
+/// # Errors
+/// What [`check::problems`] finds, and what ranks cannot share yet.
+pub fn build_among(
+    scene: &Scene,
+    path: ParticleLoop,
+    ranks: Arc<dyn Ranks>,
+) -> Result<Box<dyn Simulation>, Problem> {
+    super::among::can_be_shared(scene)?;
+    build_for(scene, path, Some(ranks))
+}
+
+fn build_for(
+    scene: &Scene,
+    path: ParticleLoop,
+    ranks: Option<Arc<dyn Ranks>>,
+) -> Result<Box<dyn Simulation>, Problem> {
     match (scene.dimension, scene.precision) {
         (Dimension::PlaneStrain | Dimension::PlaneStress, Precision::Double) => {
-            with_basis::<f64, 2>(scene, path)
+            with_basis::<f64, 2>(scene, path, ranks)
         }
         (Dimension::PlaneStrain | Dimension::PlaneStress, Precision::Single) => {
-            with_basis::<f32, 2>(scene, path)
+            with_basis::<f32, 2>(scene, path, ranks)
         }
-        (Dimension::Space, Precision::Double) => with_basis::<f64, 3>(scene, path),
-        (Dimension::Space, Precision::Single) => with_basis::<f32, 3>(scene, path),
+        (Dimension::Space, Precision::Double) => with_basis::<f64, 3>(scene, path, ranks),
+        (Dimension::Space, Precision::Single) => with_basis::<f32, 3>(scene, path, ranks),
     }
 }
 
 fn with_basis<T: Laned, const D: usize>(
     scene: &Scene,
     path: ParticleLoop,
+    ranks: Option<Arc<dyn Ranks>>,
 ) -> Result<Box<dyn Simulation>, Problem> {
-    Ok(match scene.discretization.basis {
-        BasisKind::Linear => Box::new(Engine::<T, D, Linear>::new(scene, path)?),
+    match scene.discretization.basis {
+        BasisKind::Linear => with_ranks::<T, D, Linear>(scene, path, ranks),
         // Boxes of a cell: see `Gimp`.
-        BasisKind::Gimp | BasisKind::Spline => Box::new(Engine::<T, D, Gimp>::new(scene, path)?),
-        BasisKind::Cubic => Box::new(Engine::<T, D, Cubic>::new(scene, path)?),
-        BasisKind::Cpdi => Box::new(Engine::<T, D, Cpdi>::new(scene, path)?),
-    })
+        BasisKind::Gimp | BasisKind::Spline => with_ranks::<T, D, Gimp>(scene, path, ranks),
+        BasisKind::Cubic => with_ranks::<T, D, Cubic>(scene, path, ranks),
+        BasisKind::Cpdi => with_ranks::<T, D, Cpdi>(scene, path, ranks),
+    }
+}
+
+fn with_ranks<T: Laned, const D: usize, B: Basis<T>>(
+    scene: &Scene,
+    path: ParticleLoop,
+    ranks: Option<Arc<dyn Ranks>>,
+) -> Result<Box<dyn Simulation>, Problem> {
+    let mut engine = Engine::<T, D, B>::new(scene, path)?;
+    if let Some(ranks) = ranks {
+        engine.divide(ranks);
+    }
+    Ok(Box::new(engine))
 }
 
 impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
@@ -216,6 +255,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 periods,
             ),
             held: None,
+            among: None,
             watch: Stopwatch::default(),
             basis: PhantomData,
         })

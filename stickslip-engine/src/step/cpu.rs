@@ -8,7 +8,7 @@ use super::Engine;
 use super::pass::{Found, ParticleLoop, Pass, Verbs, Visit};
 use super::tile::SeveralAtATime;
 use crate::basis::Basis;
-use crate::grid::{Disjoint, Field, Window};
+use crate::grid::{Disjoint, Field, NodeSums, Window, window_side};
 use crate::lanes::Laned;
 use crate::particles::Columns;
 use crate::threads::each_range;
@@ -42,6 +42,14 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             .resize_with(threads.max(self.workspace.threads.windows.len()), Mutex::default);
         self.workspace.threads.columns.clear();
         self.workspace.threads.columns.extend(self.state.bodies.iter_mut().map(|body| body.particles.open()));
+        let mut among = self.among.take();
+        let side = window_side(B::WIDTH).pow(D as u32);
+        let mut nothing = Vec::new();
+        let windows = match (&mut among, pass.verbs.scatter) {
+            (Some(among), Some(_)) => among.make_room(self.workspace.active.border.as_deref(), side),
+            _ => &mut nothing,
+        };
+        let windows = Disjoint::new(windows);
         let Field { nodes, filtered, means, .. } = &mut self.workspace.field;
         let nodes = Disjoint::new(nodes);
         let left = Disjoint::new(&mut self.workspace.left);
@@ -55,7 +63,13 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             let tile = &active.tiles[index as usize];
             let body = &bodies[tile.body];
             let averages = pass.verbs.scatter.is_some_and(Share::is_averaged);
+            let (place, waiting) =
+                active.border.as_ref().map_or((None, 0), |border| border.of_tile[index as usize]);
+            let place = place.filter(|_| pass.verbs.scatter.is_some());
+            // SAFETY: every tile has a place of its own.
+            let kept = place.map(|place| unsafe { windows.part(place as usize * side, side) });
             if averages && !body.averages_volume() {
+                kept.into_iter().for_each(|kept| kept.fill(NodeSums::default()));
                 return Found { signal, ..Found::NOTHING };
             }
             let for_rigid = Verbs { scatter: pass.verbs.scatter, ..Verbs::default() };
@@ -71,6 +85,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 filtered,
                 means: if body.averages_volume() && !averages { means } else { &[] },
                 window,
+                kept: (kept, waiting),
                 next: active.tiles.get(index as usize + 1),
                 left: 0,
                 moved: 0,
@@ -121,6 +136,11 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 each_range(color.len(), TILES, &|range| several(&mut color[range].iter().copied()));
             }
         }
-        all.into_inner().unwrap_or_else(PoisonError::into_inner)
+        let found = all.into_inner().unwrap_or_else(PoisonError::into_inner);
+        if let (Some(among), Some(border), Some(_)) = (&mut among, &active.border, pass.verbs.scatter) {
+            among.exchange_windows(border, &nodes, window_side(B::WIDTH));
+        }
+        self.among = among;
+        found
     }
 }

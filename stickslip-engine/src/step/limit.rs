@@ -9,7 +9,10 @@ use crate::lanes::Laned;
 impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// Longest stable step now, courant h / max(c + |v_p|): the speed is the fastest *signal* ([`crate::clock`]) [s].
     pub(super) fn stable(&self) -> f64 {
-        let fastest = || fastest_signal(&self.state.bodies).map_or(0.0, |fastest| fastest.speed);
+        let fastest = || {
+            let here = fastest_signal(&self.state.bodies).map_or(0.0, |fastest| fastest.speed);
+            self.among.as_ref().map_or(here, |among| among.ranks.largest(here))
+        };
         let signal = self.state.signal.unwrap_or_else(fastest);
         self.step_of_signal(signal).min(self.longest_turn()).min(self.longest_whatever_moves())
     }

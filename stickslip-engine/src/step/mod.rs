@@ -25,6 +25,7 @@
 //! | contact at a node | `contact/solve.rs`, by a law of `contact/law/` |
 
 mod account;
+mod among;
 mod average;
 mod build;
 mod cpu;
@@ -52,7 +53,7 @@ mod walls;
 mod watch;
 mod writing;
 
-pub use build::{build, build_on};
+pub use build::{build, build_among, build_on};
 pub(crate) use build::{heated_bodies, own_columns};
 pub(crate) use mechanism::{JointSums, TouchForce};
 pub use pass::ParticleLoop;
@@ -68,7 +69,8 @@ use crate::lanes::Laned;
 use crate::scene::{StartVelocities, StressUpdate};
 use crate::threads::each;
 use crate::transfer::Share;
-use account::Interpolated;
+use account::{Interpolated, StepSums};
+use among::Among;
 use state::{Settings, State, Workspace};
 use std::marker::PhantomData;
 use std::sync::PoisonError;
@@ -82,6 +84,8 @@ pub struct Engine<T, const D: usize, B> {
     /// The state before the last step, of simulations that take failed steps again.
     held: Option<State<T, D>>,
     watch: Stopwatch,
+    /// The ranks that share the simulation, if there are any.
+    among: Option<Among<T>>,
     basis: PhantomData<B>,
 }
 
@@ -221,10 +225,16 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
                 StepError::Outside { what, time, reason }
             })?;
         }
+        self.workspace.sums = StepSums::default();
+        self.among.iter_mut().for_each(Among::begin);
         // One of the pool's threads takes the whole step: handing it every loop from outside would cost more than many
         // a loop.
         let weights = self.weigh();
         rayon::scope(|_| self.advance(T::of(dt)))?;
+        if let Some(fault) = self.among.as_mut().and_then(Among::first_fault) {
+            return Err(self.error(&fault));
+        }
+        self.book_sums();
         self.book_gravity(T::of(dt), weights);
         self.count_disorder();
         self.relax();
@@ -239,6 +249,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
         let tallies = !self.state.walls.is_empty();
         let boundary = if tallies { boundary.tallied() } else { boundary };
         self.workspace = Workspace::new(boundary, self.settings.lattice.periods);
+        self.watch_borders();
     }
 
     fn hold(&mut self) {
@@ -262,22 +273,28 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
     }
 
     fn save(&self) -> Option<SavedState> {
-        Some(self.saved())
+        // A rank has but a part of it.
+        self.among.is_none().then(|| self.saved())
     }
 
     fn save_columns(&self, body: usize, take: &mut dyn FnMut(&[u32], SavedColumn)) -> bool {
+        if self.among.is_some() {
+            return false;
+        }
         let particles = &self.state.bodies[body].particles;
         saving::columns(particles).for_each(|column| take(particles.numbers(), column));
         true
     }
 
     fn begin_from(&mut self, state: &SavedState, velocities: StartVelocities) -> Result<(), RestoreError> {
+        self.is_whole()?;
         self.carry_over(state, velocities)?;
         self.rebuild_workspace();
         Ok(())
     }
 
     fn restore(&mut self, state: SavedState) -> Result<(), RestoreError> {
+        self.is_whole()?;
         self.take_up(state)?;
         self.rebuild_workspace();
         Ok(())

@@ -3,12 +3,13 @@
 use crate::basis::Basis;
 use crate::body::Body;
 use crate::damping::BulkViscosity;
-use crate::grid::{Disjoint, Lattice, Node, Sought, Tile, Window, addressable, window_side};
+use crate::grid::{Disjoint, Lattice, Node, NodeSums, Sought, Tile, Window, addressable, window_side};
 use crate::lanes::{Machine, Processor};
 use crate::particles::Columns;
 use crate::scene::Transfer;
 use crate::tensor::{Real, Vector};
 use crate::transfer::{Share, filters};
+use serde::{Deserialize, Serialize};
 use std::marker::PhantomData;
 
 /// Who does the work on particles.
@@ -93,8 +94,23 @@ pub struct ParticleFault {
     pub kind: FaultKind,
 }
 
+/// What there is to say of a fault, wherever the particle is.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub struct FaultReport {
+    /// Index of the body.
+    pub body: usize,
+    /// Number of the particle in it.
+    pub number: u32,
+    /// What is wrong with it.
+    pub kind: FaultKind,
+    /// Where it is [m].
+    pub position: [f64; 3],
+    /// Determinant of its deformation gradient [-].
+    pub determinant: f64,
+}
+
 /// What can be wrong with a particle.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum FaultKind {
     /// Its deformation gradient has no positive determinant.
     Inverted,
@@ -151,6 +167,9 @@ pub struct Visit<'a, T, const D: usize, B> {
     pub means: &'a [T],
     /// The tile's nodes.
     pub window: &'a mut Window<T, D>,
+    /// Where what it scatters is kept, for other ranks or until theirs has come, and its blocks that wait for that, a
+    /// bit each.
+    pub kept: (Option<&'a mut [NodeSums<T>]>, u8),
     /// The tile that is likely to come next.
     pub next: Option<&'a Tile<D>>,
     /// Which cells have particles that left them, from the lowest bit on.
@@ -204,8 +223,12 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
     #[inline(always)]
     pub unsafe fn close<M: Machine<T>>(&mut self) {
         if self.pass.verbs.scatter.is_some() {
+            let (kept, waiting) = &mut self.kept;
+            if let Some(kept) = kept {
+                kept.copy_from_slice(&self.window.sums[..kept.len()]);
+            }
             // SAFETY: the caller's.
-            unsafe { self.window.add_to::<M>(self.nodes, self.tile, Self::WINDOW) };
+            unsafe { self.window.add_to::<M>(self.nodes, (self.tile, *waiting), Self::WINDOW) };
         }
     }
 }

@@ -12,7 +12,7 @@ use crate::door::{
 };
 use crate::lanes::Laned;
 use crate::load::{LoadPoints, place_of};
-use crate::particles::{ColumnStart, Particles};
+use crate::particles::{ColumnStart, Particles, number_of};
 use crate::scene::{ContactLaw, StartVelocities, Transfer};
 use crate::tensor::{Matrix, Real, Symmetric, Vector, cross};
 use crate::transfer::{SETTLES_EVERY, columns as columns_of};
@@ -55,6 +55,14 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             written: self.state.written.iter().copied().filter(|_| self.was_written()).collect(),
             of_snapshot: false,
         }
+    }
+
+    /// Refuses to give one of several ranks the state of all of them.
+    pub(super) fn is_whole(&self) -> Result<(), RestoreError> {
+        let whole = self.among.is_none();
+        whole
+            .then_some(())
+            .ok_or_else(|| RestoreError("it is of one rank, and several share this simulation".into()))
     }
 
     fn has_removed(&self) -> bool {
@@ -408,11 +416,7 @@ fn places(numbers: &[u32], filled: usize) -> Option<Vec<usize>> {
 impl SavedColumn {
     /// Its numbers, one entry behind the other.
     fn numbers<T: Real>(&self) -> impl Iterator<Item = T> {
-        self.bytes.chunks_exact(self.width.max(1)).map(|bytes| match *bytes {
-            [a, b, c, d] => T::of(f64::from(f32::from_le_bytes([a, b, c, d]))),
-            [a, b, c, d, e, f, g, h] => T::of(f64::from_le_bytes([a, b, c, d, e, f, g, h])),
-            _ => T::ZERO,
-        })
+        self.bytes.chunks_exact(self.width.max(1)).map(number_of)
     }
 }
 

@@ -1,6 +1,6 @@
 //! What a simulation is between two steps, and what can be made anew from that.
 
-use super::account::NodeTotals;
+use super::account::{NodeTotals, StepSums};
 use super::cpu::Threads;
 use super::heat::Warmed;
 use super::loads::LoadRoom;
@@ -12,7 +12,7 @@ use super::unbounded::Unbounded;
 use super::walls::WallSums;
 use crate::body::{Body, Totals};
 use crate::boundary::{Boundary, Wall};
-use crate::contact::{ContactSums, Impulses, Rules, Survey};
+use crate::contact::{BlockSums, ContactSums, Impulses, Rules, Survey};
 use crate::damping::{BulkViscosity, NodeDamping};
 use crate::door::{RemovedParticles, WrittenValues};
 use crate::exact::ExactSum;
@@ -60,8 +60,8 @@ pub struct Settings<T, const D: usize> {
 /// All that a copied, stored or resumed simulation needs: the same state takes the same steps, bit for bit.
 #[derive(Clone)]
 pub struct State<T, const D: usize> {
-    /// Bodies with their particles, wherever these lie in memory: no sum follows that order. Rigid ones have their motion
-    /// and pose.
+    /// Bodies with their particles, wherever these lie in memory: no sum follows that order. Rigid ones have their
+    /// motion and pose.
     pub bodies: Vec<Body<T, D>>,
     /// Rigid bodies without bounds, with the blocks around which they have particles.
     pub unbounded: Vec<Unbounded<D>>,
@@ -127,6 +127,8 @@ pub struct Workspace<T, const D: usize> {
     pub moved: Vec<u32>,
     /// What the last pass took from the kinetic energy of each tile's particles [J].
     pub damped: Vec<f64>,
+    /// Sums over the step, which are booked at its end.
+    pub sums: StepSums,
     /// Room for loads and supports.
     pub loads: LoadRoom<T, D>,
     /// Room for laws that take a body at once.
@@ -141,6 +143,8 @@ pub struct Workspace<T, const D: usize> {
     pub mechanism: Mechanism,
     /// Impulses of damping at the nodes in the last step, where there is damping [N s].
     pub damping_impulses: Vec<Vector<T, D>>,
+    /// Room for what pairs of bodies did in a use of contact.
+    pub touches: Vec<BlockSums>,
     /// Room for sums of mass times place over parts of a body's particles.
     pub weights: Vec<[ExactSum; D]>,
     /// Room for sums over the nodes of each block.
@@ -166,6 +170,7 @@ impl<T, const D: usize> Workspace<T, D> {
             left: Vec::new(),
             moved: Vec::new(),
             damped: Vec::new(),
+            sums: StepSums::default(),
             loads: LoadRoom::default(),
             laws: LawRoom::default(),
             springs: SpringRoom::default(),
@@ -173,6 +178,7 @@ impl<T, const D: usize> Workspace<T, D> {
             displaced: Vec::new(),
             mechanism: Mechanism::default(),
             damping_impulses: Vec::new(),
+            touches: Vec::new(),
             weights: Vec::new(),
             block_sums: Vec::new(),
             totals: Mutex::new(None),

@@ -52,12 +52,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             )?;
             if let Some(particle) = room.give(&custom, &mut body.particles) {
                 let of_particle = body.particles.numbers()[particle];
-                return Err(self.error(&ParticleFault {
-                    body: number,
-                    particle,
-                    number: of_particle,
-                    kind: FaultKind::NotFinite,
-                }));
+                let kind = FaultKind::NotFinite;
+                let fault = ParticleFault { body: number, particle, number: of_particle, kind };
+                return Err(self.error(&self.report(&fault)));
             }
         }
         if asked {

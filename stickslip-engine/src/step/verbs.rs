@@ -5,15 +5,14 @@
 use super::Engine;
 use super::build::spin;
 use super::mechanism::Coupling;
-use super::pass::{FaultKind, Found, ParticleFault, ParticleLoop, Pass, Verbs, escaped, home};
+use super::pass::{FaultKind, FaultReport, Found, ParticleFault, ParticleLoop, Pass, Verbs, escaped, home};
 use super::state::{Disorder, Settings, Workspace};
 use crate::basis::Basis;
 use crate::body::Body;
 use crate::clock::signal_speed;
-use crate::contact::{ContactUse, Near, Solve, TimeStep};
+use crate::contact::{ContactUse, Impulse, Near, Solve, TimeStep};
 use crate::door::StepError;
-use crate::exact::ExactSum;
-use crate::grid::{Blocks, Disjoint, Lattice, Node, node_at, nodes_per_block};
+use crate::grid::{Blocks, Disjoint, Lattice, Node, locate, node_at, nodes_per_block};
 use crate::lanes::{Laned, Processor};
 use crate::tensor::{Matrix, Vector};
 use crate::threads::each;
@@ -35,11 +34,17 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let base =
             |body: usize, particle: usize| home::<T, D, B>(lattice, bodies[body].particles.place(particle));
         let number = |body: usize, particle: usize| bodies[body].particles.numbers()[particle];
-        let blocks = self.workspace.active.update((bodies.len(), count, reach), left, (base, number));
+        let blocks = if self.among.is_some() {
+            self.workspace.active.find_movers((bodies.len(), count, reach), left, (base, number));
+            self.cross_borders()
+        } else {
+            self.workspace.active.update((bodies.len(), count, reach), left, (base, number))
+        };
         let blocks = blocks.max(self.spread(blocks));
         if !idle {
             self.sort_particles();
         }
+        self.invite_guests();
         let Workspace { active, field, boundary, left, moved, damped, listed, .. } = &mut self.workspace;
         if blocks == Blocks::New {
             boundary.find_nodes(active);
@@ -171,7 +176,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             domain: self.settings.held.filter(|_| !self.removes_leavers()),
         });
         if verbs.update_velocity || verbs.update_stress {
-            self.state.damping += self.workspace.damped.iter().copied().sum::<ExactSum>().value();
+            let Workspace { sums, damped, .. } = &mut self.workspace;
+            damped.iter().for_each(|&damped| sums.damped().add(damped));
         }
         if verbs.advect {
             self.state.signal = Some(found.signal.f64());
@@ -180,7 +186,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             self.workspace.boundary.add_images(&mut self.workspace.field, share);
         }
         self.watch.lap(name, start);
-        found.fault.map_or(Ok(()), |fault| Err(self.error(&fault)))
+        self.judge(found.fault)
     }
 
     /// v = p / m, and v^0 = v, of nodes that have mass; with XPIC v(m) beside it, see [`crate::transfer::Xpic`].
@@ -332,12 +338,19 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             let settled = coupling.settle(&mut self.state.bodies, mechanism, listed);
             self.state.contact_sums.unsettled += u64::from(!settled);
         }
+        boundary.impose(field);
+        let listed = &self.workspace.impulses[number];
+        let active = &self.workspace.active;
+        let unsettled = listed.unsettled().filter(|&&node| active.books(locate(node).0)).count();
+        self.workspace.sums.unsettled().add(unsettled as f64);
         // What the others gave stands in the account of the step.
         if number == 2 {
-            self.state.contact_sums.count(listed.iter());
+            let pushes = |impulse: &Impulse<T, D>| impulse.change.pushes();
+            let mut touches = std::mem::take(&mut self.workspace.touches);
+            self.list_touches(&mut touches, (&self.workspace.impulses[2], pushes), |_| [0.0; 2]);
+            self.state.contact_sums.count(&touches);
+            self.workspace.touches = touches;
         }
-        self.state.contact_sums.unsettled += listed.unsettled();
-        boundary.impose(field);
         self.watch.lap("contact", start);
     }
 
@@ -368,31 +381,41 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         }
         self.state.signal = Some(found.signal.f64());
         self.watch.lap("rigid", start);
-        found.fault.map_or(Ok(()), |fault| Err(self.error(&fault)))
+        self.judge(found.fault)
     }
 
-    pub(super) fn error(&self, fault: &ParticleFault) -> StepError {
-        let body = &self.state.bodies[fault.body];
-        let particle = body.particles.get(fault.particle);
-        let (name, number, position, time) =
-            (body.name.clone(), particle.number, particle.position.space(), self.state.time);
-        match fault.kind {
-            FaultKind::Inverted => StepError::Inverted {
-                body: name,
-                number,
-                position,
-                time,
-                determinant: particle.deformation.det().f64(),
-            },
-            FaultKind::Escaped => StepError::Escaped {
-                bounded: self.settings.domain.is_some(),
-                body: name,
-                number,
-                position,
-                time,
-            },
-            FaultKind::NoThickness => StepError::NoThickness { body: name, number, position, time },
-            FaultKind::NotFinite => StepError::NotFinite { body: name, number, position, time },
+    /// What the step makes of a fault: an error, or where there are other ranks a note, for all of them to end the step
+    /// together.
+    fn judge(&mut self, fault: Option<ParticleFault>) -> Result<(), StepError> {
+        let report = fault.map(|fault| self.report(&fault));
+        if let Some(among) = &mut self.among {
+            among.take_note(report);
+            return Ok(());
+        }
+        report.map_or(Ok(()), |report| Err(self.error(&report)))
+    }
+
+    /// What there is to say of a fault.
+    pub(super) fn report(
+        &self,
+        &ParticleFault { body, particle, number, kind }: &ParticleFault,
+    ) -> FaultReport {
+        let particle = self.state.bodies[body].particles.get(particle);
+        let determinant = particle.deformation.det().f64();
+        FaultReport { body, number, kind, position: particle.position.space(), determinant }
+    }
+
+    /// The error that a fault is.
+    pub(super) fn error(&self, report: &FaultReport) -> StepError {
+        let &FaultReport { body, number, kind, position, determinant } = report;
+        let (body, time) = (self.state.bodies[body].name.clone(), self.state.time);
+        match kind {
+            FaultKind::Inverted => StepError::Inverted { body, number, position, time, determinant },
+            FaultKind::Escaped => {
+                StepError::Escaped { bounded: self.settings.domain.is_some(), body, number, position, time }
+            }
+            FaultKind::NoThickness => StepError::NoThickness { body, number, position, time },
+            FaultKind::NotFinite => StepError::NotFinite { body, number, position, time },
         }
     }
 }

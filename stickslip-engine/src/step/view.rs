@@ -88,8 +88,14 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// What the particles of each body add up to, summed once a step for whoever asks.
     pub(super) fn totals(&self) -> Arc<[Totals]> {
         let mut known = self.workspace.totals.lock().unwrap_or_else(PoisonError::into_inner);
-        let sum = |range: Range<usize>| Body::totals(&self.state.bodies[range.start]);
-        known.get_or_insert_with(|| by_parts(self.state.bodies.len(), 1, sum).into()).clone()
+        let bodies = &self.state.bodies;
+        let sum = |range: Range<usize>| Body::totals(&bodies[range.start]);
+        known
+            .get_or_insert_with(|| match &self.among {
+                Some(among) => among.totals(bodies),
+                None => by_parts(bodies.len(), 1, sum).into(),
+            })
+            .clone()
     }
 
     /// What the laws of the bodies remember and their transfer has: what two laws call alike is one column.
@@ -138,6 +144,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> View for Engine<T, D, B> {
 
     fn bodies(&self) -> Vec<BodyState> {
         let all = self.totals();
+        let spins = self.among.as_ref().map(|among| among.spins(&self.state.bodies, &all));
         (self.state.bodies.iter().enumerate())
             .map(|(i, body)| {
                 if let Some(motion) = self.without_bounds(i) {
@@ -173,7 +180,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> View for Engine<T, D, B> {
                     mass: totals.mass,
                     position: totals.first_moment.map(|x| x / totals.mass),
                     velocity: totals.momentum.map(|p| p / totals.mass),
-                    spin: body.spin(totals),
+                    spin: spins.as_ref().map_or_else(|| body.spin(totals), |spins| spins[i]),
                     angular_momentum: totals.angular_momentum,
                     kinetic: totals.kinetic,
                     strain: totals.strain,
@@ -328,7 +335,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> View for Engine<T, D, B> {
     }
 
     fn column_place(&self, body: usize, name: &str) -> Option<ColumnPlace> {
-        if self.without_bounds(body).is_some() || self.removes_leavers() {
+        if self.without_bounds(body).is_some() || self.removes_leavers() || self.among.is_some() {
             None
         } else {
             self.state.bodies[body].particles.column_place(name)
@@ -373,7 +380,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> View for Engine<T, D, B> {
             for local in 0..n {
                 let node = &self.workspace.field.nodes[slot * n + local];
                 let place = node_at(block, local);
-                if node.mass > T::ZERO && !self.workspace.boundary.is_mirrored(place) {
+                let shown = self.workspace.active.books(block) && !self.workspace.boundary.is_mirrored(place);
+                if shown && node.mass > T::ZERO {
                     snapshot.body.push(body);
                     snapshot.position.push(self.settings.lattice.position(place).space());
                     snapshot.mass.push(node.mass.f64());

@@ -27,6 +27,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// # Errors
     /// What cannot be written; then nothing is changed.
     pub(super) fn put(&mut self, number: usize, name: &str, values: &[f64]) -> Result<(), WriteError> {
+        if self.among.is_some() {
+            return Err(WriteError::Shared);
+        }
         let body = &self.state.bodies[number];
         let found = body.particles.described().find(|(_, column)| column.name == name);
         let (first, column) = found.ok_or_else(|| NoColumn::among(&self.columns(number), name))?;

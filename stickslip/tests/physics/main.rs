@@ -41,6 +41,7 @@ mod plane_stress;
 mod plastic_flow;
 mod point_clouds;
 mod precision;
+mod ranks;
 mod reactions;
 mod relaxation;
 mod resistance;

@@ -93,7 +93,8 @@ fn shuffle(body: &mut SavedBody, seed: usize) {
     }
 }
 
-fn scene(dimension: &str, basis: &str, update: &str) -> String {
+/// Bodies in contact in all ways, in a dimension, by a basis and a stress update.
+pub fn scene(dimension: &str, basis: &str, update: &str) -> String {
     let space = dimension == "3d";
     let v = |x: &str, y: &str| if space { format!("[{x}, {y}, 0]") } else { format!("[{x}, {y}]") };
     let corner =

@@ -18,8 +18,10 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
     pub(super) fn add<M: Machine<T>, V: Lanes<Real = T>>(mut self) {
         let seen = Seen::<V, D>::new(&self);
         let columns = self.near.bodies[self.body].particles.view();
-        let order = self.near.active.order_of(self.body);
-        let index = |chunk: &Chunk<D>| &order[chunk.first as usize..][..chunk.count as usize];
+        let orders = [false, true].map(|guests| self.near.active.order(self.body, guests));
+        let index = |chunk: &Chunk<D>| {
+            &orders[usize::from(chunk.guests)][chunk.first as usize..][..chunk.count as usize]
+        };
         let mut copies = CellCopies([Numbers::ZERO; ColumnStart::<3>::COUNT + MOST_EDGES]);
         for place in 0..self.chunks.len() {
             if let Some(later) = self.chunks.get(place + AHEAD) {

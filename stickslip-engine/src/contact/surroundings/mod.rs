@@ -118,7 +118,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Work for Around<'_, T, D, B> {
 /// Particles of a cell, no more than there are lanes, and the nodes that they reach.
 #[derive(Clone, Copy, Debug)]
 pub struct Chunk<const D: usize> {
-    /// Place of the first in the body's order.
+    /// Whether they are guests of another rank.
+    guests: bool,
+    /// Place of the first in the order of these.
     first: u32,
     count: u32,
     cell: [i32; D],
@@ -163,8 +165,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
                 nodes &= along.iter().fold(0, |all, nodes| all | nodes);
             }
             let tile = if nodes == 0 { None } else { self.near.active.tile_at(self.body, home) };
-            if let Some((_, cells)) = tile {
-                self.list(cells, (lowest, home), (&reached, steps), V::COUNT);
+            if let Some((guests, cells)) = tile {
+                self.list((cells, guests), (lowest, home), (&reached, steps), V::COUNT);
             }
             // The next home block, the last axis fastest.
             let mut axis = D;
@@ -186,7 +188,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
     #[inline(always)]
     fn list(
         &mut self,
-        cells: &[u32],
+        (cells, guests): (&[u32], bool),
         (lowest, home): ([i32; D], [i32; D]),
         (reached, steps): (&[[Nodes; SPAN]; 3], [[i32; 2]; 3]),
         lanes: usize,
@@ -211,7 +213,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
                     while nodes != 0 && first < end {
                         let count = (end - first).min(lanes as u32);
                         let base = array(0, |i| step[i] - reach);
-                        self.chunks.push(Chunk { first, count, cell, base, nodes });
+                        self.chunks.push(Chunk { first, guests, count, cell, base, nodes });
                         first += count;
                     }
                 }

@@ -1,5 +1,11 @@
 //! Particles of one body as columns, so that a processor can take several at a time; seen from outside, they are rows.
 
+mod rows;
+#[cfg(test)]
+mod tests;
+
+pub use rows::{fill_holes, number_of, write_number};
+
 use crate::body::Particle;
 use crate::column::{ColumnDescription, EVERY, HALF_EDGES, Kind, NUMBER, same};
 use crate::grid::Disjoint;
@@ -81,11 +87,13 @@ impl<const D: usize> ColumnStart<D> {
 pub struct Particles<T, const D: usize> {
     /// How many.
     len: usize,
+    /// How many lie behind them that belong to another rank: only contact looks at these.
+    guests: usize,
     /// One column after the other, [`Particles::stride`] apart, and room for one more, where particles are sorted.
     columns: Vec<T>,
     /// Room for a column: an odd number of cache lines, else all columns would fall into the same places of a cache.
     stride: usize,
-    /// Each particle's number in its body, and room for as many.
+    /// Each particle's number in its body, and room for as many more; a stride each.
     numbers: Vec<u32>,
     /// Whether the room is before the columns and numbers, or behind them.
     later: bool,
@@ -191,7 +199,7 @@ impl<T: Real, const D: usize> Particles<T, D> {
     /// Memory that so many particles take, of a body with these columns of its own: all columns and numbers, and the
     /// room in which they are sorted [bytes].
     pub const fn bytes_of(count: usize, own: OwnColumns) -> usize {
-        Self::stride_of(count) * Self::columns_of(own) * size_of::<T>() + 2 * count * size_of::<u32>()
+        Self::stride_of(count) * (Self::columns_of(own) * size_of::<T>() + 2 * size_of::<u32>())
     }
 
     /// The particles `f(0)` to `f(count - 1)`, before anything moves, of a body with these columns of its own.
@@ -199,10 +207,11 @@ impl<T: Real, const D: usize> Particles<T, D> {
         let stride = Self::stride_of(count);
         let columns = vec![T::ZERO; stride * Self::columns_of(own)];
         ask_for_large(columns.as_ptr(), columns.len());
-        let numbers = vec![0; 2 * count];
+        let numbers = vec![0; 2 * stride];
         let OwnColumns { history, transfer, viscosity, natural, domains } = own;
         let mut particles = Particles {
             len: count,
+            guests: 0,
             columns,
             stride,
             numbers,
@@ -318,7 +327,7 @@ impl<T: Real, const D: usize> Particles<T, D> {
     }
 
     fn first_number(&self) -> usize {
-        if self.later { self.len } else { 0 }
+        if self.later { self.stride } else { 0 }
     }
 
     /// Where the first column begins.
@@ -330,9 +339,9 @@ impl<T: Real, const D: usize> Particles<T, D> {
     /// Particle `i`.
     #[inline]
     pub fn get(&self, i: usize) -> Particle<T, D> {
-        assert!(i < self.len(), "a particle of the body");
+        assert!(i < self.len + self.guests, "a particle of the body");
         // SAFETY: in range, and borrowed for reading.
-        Particle { number: self.numbers()[i], ..unsafe { self.view().get(i) } }
+        Particle { number: self.numbers[self.first_number() + i], ..unsafe { self.view().get(i) } }
     }
 
     /// Position [m] and half the sides of the box [m] of particle `i`.
@@ -362,7 +371,7 @@ impl<T: Real, const D: usize> Particles<T, D> {
     /// deforms with it [m].
     #[inline]
     pub fn edges(&self, i: usize) -> Matrix<T> {
-        assert!(i < self.len(), "a particle of the body");
+        assert!(i < self.len + self.guests, "a particle of the body");
         // SAFETY: in range, and borrowed for reading.
         unsafe { self.view().edges(i) }
     }
@@ -451,6 +460,7 @@ impl<T: Real, const D: usize> Particles<T, D> {
     /// Every column moves into the room beside it.
     pub fn permute(&mut self, order: &[u32]) {
         assert_eq!(order.len(), self.len, "a permutation names every particle");
+        self.guests = 0;
         let count = ColumnStart::<D>::HISTORY + self.own().entries(D);
         for column in 0..count {
             let column = if self.later { column } else { count - 1 - column };
@@ -464,7 +474,7 @@ impl<T: Real, const D: usize> Particles<T, D> {
     pub fn settle(&mut self) {
         if self.later {
             self.columns.copy_within(self.stride.., 0);
-            self.numbers.copy_within(self.len.., 0);
+            self.numbers.copy_within(self.stride.., 0);
             self.later = false;
         }
     }
@@ -477,9 +487,7 @@ impl<T: Real, const D: usize> Particles<T, D> {
         let (first, len) = (self.first_number(), self.len);
         close_gaps(&mut self.numbers[first..first + len], gone);
         self.len -= gone.len();
-        let first_now = self.first_number();
-        self.numbers.copy_within(first..first + self.len, first_now);
-        self.numbers.truncate(2 * self.len);
+        self.guests = 0;
     }
 
     /// Keeps the first particles only.
@@ -506,6 +514,7 @@ impl<T: Real, const D: usize> Particles<T, D> {
     pub fn become_copy_of(&mut self, other: &Self) {
         let Particles {
             len,
+            guests,
             columns,
             stride,
             numbers,
@@ -519,7 +528,7 @@ impl<T: Real, const D: usize> Particles<T, D> {
         } = self;
         columns.clone_from(&other.columns);
         numbers.clone_from(&other.numbers);
-        (*len, *stride, *later) = (other.len, other.stride, other.later);
+        (*len, *guests, *stride, *later) = (other.len, other.guests, other.stride, other.later);
         (*history, *transfer) = (other.history, other.transfer);
         (*viscosity, *natural, *domains) = (other.viscosity, other.natural, other.domains);
         *alike = other.alike;
@@ -792,254 +801,5 @@ impl<T: Real, const D: usize> Keep<T> for HistoryOf<T, D> {
     fn keep(&mut self, entry: usize, value: T) {
         // SAFETY: as above.
         unsafe { *self.columns.at(ColumnStart::<D>::HISTORY + entry, self.particle) = value }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// As many tensors as a Prony series of two terms has.
-    const HISTORY: &[History] = &[
-        History::new("strain", "", Kind::Symmetric),
-        History { start: 2.0, ..History::new("other_strain", "", Kind::Symmetric) },
-        History::new("energy", "J/m^3", Kind::Number),
-    ];
-
-    fn own(history: &'static [History]) -> OwnColumns {
-        OwnColumns { history, ..OwnColumns::default() }
-    }
-
-    /// Orders by steps that share no factor with the count, one after the other.
-    fn sorted_again_and_again<const D: usize>(count: usize, history: &'static [History]) {
-        let number = |i: usize, k: usize| (31 * i + k) as f64;
-        let particle = |i: usize| Particle {
-            position: Vector::from_fn(|k| number(i, k)),
-            velocity: Vector::from_fn(|k| number(i, 3 + k)),
-            spin: Vector::from_fn(|k| if D == 3 || k == 2 { number(i, 6 + k) } else { 0.0 }),
-            mass: number(i, 9),
-            volume: number(i, 10),
-            half_width: number(i, 11),
-            deformation: Matrix::IDENTITY * number(i, 12),
-            stress: Symmetric::isotropic(number(i, 13)),
-            number: i as u32,
-        };
-        let mut particles = Particles::<f64, D>::from_fn(count, own(history), particle);
-        let entries = history_entries(history, D);
-        for i in 0..count {
-            // SAFETY: the particle exists and is nobody else's.
-            let mut memory = unsafe { particles.open().history_of(i) };
-            (0..entries).for_each(|entry| memory.keep(entry, number(i, 14 + entry)));
-        }
-        let mut expected: Vec<u32> = (0..count as u32).collect();
-        for step in [1, 7, 11, 13] {
-            let order: Vec<u32> = (0..count).map(|i| (i * step % count) as u32).collect();
-            particles.permute(&order);
-            expected = order.iter().map(|&i| expected[i as usize]).collect();
-            assert_eq!(particles.numbers(), expected);
-            if step == 7 {
-                // Moved back, they are what they were.
-                let before: Vec<_> = particles.iter().collect();
-                particles.settle();
-                assert!(!particles.later && particles.iter().eq(before.iter().copied()));
-            }
-            for (found, &i) in particles.iter().zip(&expected) {
-                assert_eq!(found, particle(i as usize));
-            }
-            for (place, &i) in expected.iter().enumerate() {
-                // SAFETY: as above.
-                let memory = unsafe { particles.view().history_of(place) };
-                assert!((0..entries).all(|entry| memory.recall(entry) == number(i as usize, 14 + entry)));
-            }
-        }
-    }
-
-    /// In space 30 numbers and room for one more; each particle's number twice.
-    #[test]
-    fn the_bytes_of_particles_are_those_that_they_hold() {
-        let held = |count: usize, history: &'static [History]| {
-            let particles = Particles::<f64, 3>::from_fn(count, own(history), |_| Particle {
-                position: Vector::ZERO,
-                velocity: Vector::ZERO,
-                spin: Vector::ZERO,
-                mass: 0.0,
-                volume: 0.0,
-                half_width: 0.0,
-                deformation: Matrix::IDENTITY,
-                stress: Symmetric::ZERO,
-                number: 0,
-            });
-            size_of_val(&particles.columns[..]) + size_of_val(&particles.numbers[..])
-        };
-        for (count, history) in [(0, &[][..]), (1, HISTORY), (1000, &[]), (100_000, HISTORY)] {
-            assert_eq!(Particles::<f64, 3>::bytes_of(count, own(history)), held(count, history), "{count}");
-        }
-        let each = Particles::<f64, 3>::bytes_of(1_000_000, OwnColumns::default()) as f64 / 1e6;
-        assert!((each / (31.0 * 8.0 + 2.0 * 4.0) - 1.0).abs() < 1e-3, "{each}");
-    }
-
-    #[test]
-    fn particles_are_sorted_whole() {
-        sorted_again_and_again::<2>(3 * PART + 5, &[]);
-        sorted_again_and_again::<2>(100, HISTORY);
-        sorted_again_and_again::<3>(100, HISTORY);
-        sorted_again_and_again::<3>(0, &[]);
-    }
-
-    /// Known as long as they are, whatever is done to them; one other mass or box, and each has its own.
-    #[test]
-    fn particles_are_alike_until_one_is_not() {
-        let of = |mass: f64, half_width: f64| Particle {
-            position: Vector::ZERO,
-            velocity: Vector::ZERO,
-            spin: Vector::ZERO,
-            mass,
-            volume: 1.0,
-            half_width,
-            deformation: Matrix::IDENTITY,
-            stress: Symmetric::ZERO,
-            number: 0,
-        };
-        let alike = Some([2.0, 0.5]);
-        let mut particles = Particles::<f64, 2>::from_fn(5, own(&[]), |_| of(2.0, 0.5));
-        assert_eq!(particles.view().alike(), alike);
-        particles.permute(&[4, 2, 0, 1, 3]);
-        particles.settle();
-        particles.remove(&[1]);
-        particles.set(2, &of(2.0, 0.5));
-        assert_eq!((particles.len(), particles.view().alike()), (4, alike));
-        let before = particles.clone();
-        for other in [of(3.0, 0.5), of(2.0, 0.25)] {
-            particles.set(3, &other);
-            assert_eq!(particles.open().alike(), None);
-            particles.compare();
-            assert_eq!(particles.open().alike(), None);
-            particles.become_copy_of(&before);
-            assert_eq!(particles.open().alike(), alike);
-        }
-        particles.line_mut(ColumnStart::<2>::MASS)[0] = 4.0;
-        assert_eq!(particles.view().alike(), None);
-        particles.line_mut(ColumnStart::<2>::MASS).fill(4.0);
-        particles.compare();
-        assert_eq!(particles.view().alike(), Some([4.0, 0.5]));
-    }
-
-    #[test]
-    fn those_who_stay_keep_their_order() {
-        for later in [false, true] {
-            let of = |i: usize| Particle {
-                position: Vector::from_fn(|k| (10 * i + k) as f64),
-                velocity: Vector::ZERO,
-                spin: Vector::ZERO,
-                mass: i as f64,
-                volume: 1.0,
-                half_width: 1.0,
-                deformation: Matrix::IDENTITY,
-                stress: Symmetric::ZERO,
-                number: i as u32,
-            };
-            let mut particles = Particles::<f64, 2>::from_fn(9, own(HISTORY), of);
-            let (mut order, mut expected): (Vec<u32>, Vec<usize>) = ((0..9).collect(), (0..9).collect());
-            if later {
-                order.reverse();
-                expected.reverse();
-                particles.permute(&order);
-            }
-            for gone in [&[0, 3, 4, 8][..], &[], &[1], &[3]] {
-                particles.remove(gone);
-                for &place in gone.iter().rev() {
-                    expected.remove(place as usize);
-                }
-                assert!(particles.iter().eq(expected.iter().map(|&i| of(i))), "{gone:?}");
-                assert_eq!(by_number(particles.numbers()).len(), expected.len());
-            }
-            // They can be sorted on.
-            particles.permute(&[2, 0, 1]);
-            assert!(particles.iter().eq([2, 0, 1].iter().map(|&i| of(expected[i]))));
-            particles.remove(&[0, 1, 2]);
-            assert!(particles.is_empty());
-            particles.permute(&[]);
-            particles.settle();
-        }
-        assert_eq!(by_number(&[7, 2, 9, 3]), [1, 3, 0, 2]);
-        assert_eq!(by_number(&[2, 0, 1]), [1, 2, 0]);
-    }
-
-    #[test]
-    fn others_are_taken_up_where_particles_are() {
-        let of = |count: usize, x: f64| {
-            Particles::<f64, 2>::from_fn(count, own(HISTORY), |i| Particle {
-                position: Vector::from_fn(|k| x + (i + k) as f64),
-                velocity: Vector::ZERO,
-                spin: Vector::ZERO,
-                mass: x,
-                volume: x,
-                half_width: x,
-                deformation: Matrix::IDENTITY,
-                stress: Symmetric::ZERO,
-                number: i as u32,
-            })
-        };
-        let mut particles = of(50, 1.0);
-        let place = particles.column_place("mass").unwrap();
-        let order: Vec<u32> = (0..50).rev().collect();
-        particles.permute(&order);
-        assert_ne!(particles.column_place("mass").unwrap(), place);
-        particles.become_others(of(50, 2.0));
-        assert!(particles.iter().eq(of(50, 2.0).iter()));
-        assert_eq!(particles.column_place("mass").unwrap(), place);
-        particles.become_others(of(51, 3.0));
-        assert!(particles.iter().eq(of(51, 3.0).iter()));
-    }
-
-    #[test]
-    fn columns_lie_one_behind_the_other() {
-        let at = [
-            ColumnStart::<3>::POSITION,
-            ColumnStart::<3>::VELOCITY,
-            ColumnStart::<3>::SPIN,
-            ColumnStart::<3>::MASS,
-        ];
-        assert_eq!(at, [0, 3, 6, 9]);
-        let at = [
-            ColumnStart::<3>::VOLUME,
-            ColumnStart::<3>::HALF_WIDTH,
-            ColumnStart::<3>::DEFORMATION,
-            ColumnStart::<3>::STRESS,
-        ];
-        assert_eq!(at, [10, 11, 12, 21]);
-        assert_eq!([ColumnStart::<3>::START, ColumnStart::<3>::HISTORY], [27, 30]);
-        assert_eq!(
-            [
-                ColumnStart::<2>::SPIN,
-                ColumnStart::<2>::MASS,
-                ColumnStart::<2>::STRESS,
-                ColumnStart::<2>::HISTORY
-            ],
-            [4, 5, 13, 19]
-        );
-        for (k, &[row, column]) in deformation_entries(2).iter().enumerate() {
-            assert_eq!(Kind::Tensor.place(2, k), 3 * row + column);
-        }
-    }
-
-    #[test]
-    fn history_begins_as_its_law_says() {
-        let particle = |_| Particle {
-            position: Vector::ZERO,
-            velocity: Vector::ZERO,
-            spin: Vector::ZERO,
-            mass: 0.0,
-            volume: 0.0,
-            half_width: 0.0,
-            deformation: Matrix::IDENTITY,
-            stress: Symmetric::ZERO,
-            number: 0,
-        };
-        let particles = Particles::<f64, 2>::from_fn(3, own(HISTORY), particle);
-        // SAFETY: the particle exists and is nobody else's.
-        let memory = unsafe { particles.view().history_of(2) };
-        let found: Vec<f64> = (0..9).map(|entry| memory.recall(entry)).collect();
-        assert_eq!(found, [0.0, 0.0, 0.0, 0.0, 2.0, 2.0, 2.0, 0.0, 0.0]);
     }
 }

@@ -1,0 +1,440 @@
+//! What this rank and others share of the grid.
+//!
+//! A tile belongs to one rank, and the windows of all tiles at a block are added by each rank that has a tile there,
+//! in the order of their colours: so all of them have the same nodes, bit for bit, as one rank alone would have. A
+//! *foreign* tile is one of another rank near this one's.
+
+use super::cell_list::{CellList, CornerBlocks, block_of, corner_block, key, reached_blocks};
+use super::{Periods, SIDE, Tile};
+use std::ops::Range;
+
+/// A tile whose particles another rank has. They are ordered by body and home, whoever has them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct ForeignTile {
+    /// Index of the body.
+    pub body: u32,
+    /// Key of its home block.
+    pub(super) home: u64,
+    /// Which blocks its particles reach.
+    pub(super) reached: CornerBlocks,
+    /// The rank.
+    pub rank: usize,
+}
+
+impl ForeignTile {
+    /// Bytes that name a tile: body, home, blocks that it reaches.
+    pub(super) const BYTES: usize = 13;
+
+    /// Names a tile.
+    pub(super) fn write(body: usize, home: u64, reached: CornerBlocks) -> [u8; Self::BYTES] {
+        let mut bytes = [reached; Self::BYTES];
+        bytes[..4].copy_from_slice(&(body as u32).to_le_bytes());
+        bytes[4..12].copy_from_slice(&home.to_le_bytes());
+        bytes
+    }
+
+    /// The tiles that a rank has named.
+    pub fn read(rank: usize, bytes: &[u8]) -> impl Iterator<Item = ForeignTile> {
+        bytes.chunks_exact(Self::BYTES).map(move |bytes| ForeignTile {
+            body: u32::from_le_bytes(std::array::from_fn(|i| bytes[i])),
+            home: u64::from_le_bytes(std::array::from_fn(|i| bytes[4 + i])),
+            reached: bytes[12],
+            rank,
+        })
+    }
+}
+
+/// A slot of the field to which tiles of other ranks give, too.
+#[derive(Clone, Debug)]
+pub struct BorderSlot {
+    /// The slot.
+    pub slot: u32,
+    /// Who gives, in [`Border::givers`], in the order of colours.
+    pub givers: Range<usize>,
+}
+
+/// A tile that gives to a slot.
+#[derive(Clone, Copy, Debug)]
+pub struct Giver {
+    /// Place of its window: those that are kept, and behind them those of foreign tiles.
+    pub window: u32,
+    /// Which of the tile's blocks the slot is.
+    pub corner: u8,
+}
+
+/// Tiles of another rank, and what is sent there or comes from there.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Traffic {
+    /// The other rank.
+    pub rank: usize,
+    /// Whose windows are sent, in [`Border::kept`], or come, in [`Border::foreign`], in this order.
+    pub windows: Vec<u32>,
+}
+
+/// What this rank shares with others.
+#[derive(Clone, Debug, Default)]
+pub struct Border {
+    /// Tiles of other ranks that may have to do with those here; some are at no block that this rank holds.
+    pub foreign: Vec<ForeignTile>,
+    /// Colour of each of them.
+    pub(super) colors: Vec<usize>,
+    /// Tiles of this rank whose windows are kept: others want them, or they wait for those of others.
+    pub kept: Vec<u32>,
+    /// Of each tile, its place among those if it is one, and its blocks to which others give, too.
+    pub of_tile: Vec<(Option<u32>, CornerBlocks)>,
+    /// Slots to which others give, too.
+    pub slots: Vec<BorderSlot>,
+    /// Who gives to them.
+    pub givers: Vec<Giver>,
+    /// What is sent, by rank.
+    pub outgoing: Vec<Traffic>,
+    /// What comes, by rank.
+    pub incoming: Vec<Traffic>,
+    /// Blocks that several bodies hold, sorted.
+    pub(super) shared: Vec<u64>,
+    /// Blocks that this rank holds, sorted.
+    held: Vec<u64>,
+    /// Of each of them, whether this rank is the first of those that have a tile there.
+    booked: Vec<bool>,
+}
+
+/// Faces that are mirrors.
+#[derive(Clone, Debug, Default)]
+pub struct Mirrors {
+    /// Axis and node of each.
+    pub faces: Vec<(usize, i32)>,
+}
+
+impl Mirrors {
+    /// Adds the blocks in which images of nodes of these blocks lie, as far as particles reach behind mirrors.
+    fn add_images<const D: usize>(&self, blocks: &mut Vec<u64>) {
+        for &(axis, node) in &self.faces {
+            let near = |block: &[i32; D]| is_near(block[axis], node);
+            let images = blocks.iter().map(|&block| block_of::<D>(block)).filter(near).flat_map(|block| {
+                let image = |n: i32| (2 * node - n).div_euclid(SIDE);
+                let first = block[axis] * SIDE;
+                [image(first), image(first + SIDE - 1)].map(|along| {
+                    let mut image = block;
+                    image[axis] = along;
+                    key(image)
+                })
+            });
+            let images: Vec<u64> = images.collect();
+            blocks.extend(images);
+            blocks.sort_unstable();
+            blocks.dedup();
+        }
+    }
+
+    /// How many blocks away along each axis tiles may have to do with those at a block.
+    pub(super) fn radius<const D: usize>(&self, block: [i32; D]) -> [i32; D] {
+        std::array::from_fn(|i| {
+            let near = self.faces.iter().any(|&(axis, node)| axis == i && is_near(block[axis], node));
+            if near { 4 } else { 1 }
+        })
+    }
+}
+
+/// Whether a block lies within two blocks of a mirror.
+fn is_near(along: i32, node: i32) -> bool {
+    (along - node.div_euclid(SIDE)).abs() <= 2
+}
+
+impl Border {
+    /// Whether this rank holds a block of the first period.
+    pub(super) fn holds(&self, block: u64) -> bool {
+        self.held.binary_search(&block).is_ok()
+    }
+
+    /// Whether what is at a block is booked by this rank: it is the first that has a tile there.
+    pub fn books<const D: usize>(&self, block: [i32; D]) -> bool {
+        self.held.binary_search(&key(block)).is_ok_and(|place| self.booked[place])
+    }
+
+    /// Whether several bodies hold a block of the first period.
+    pub(super) fn is_shared(&self, block: u64) -> bool {
+        self.shared.binary_search(&block).is_ok()
+    }
+
+    /// The foreign tiles of a body.
+    pub fn of_body(&self, body: usize) -> Range<usize> {
+        let first = |body: usize| self.foreign.partition_point(|tile| (tile.body as usize) < body);
+        first(body)..first(body + 1)
+    }
+
+    /// Takes the tiles that other ranks have named, and finds the blocks that this rank holds.
+    pub(super) fn find<const D: usize>(
+        &mut self,
+        (named, rank): (&[ForeignTile], usize),
+        lists: &[CellList],
+        (periods, mirrors): (Periods<D>, &Mirrors),
+    ) {
+        let wrapped = |block: [i32; D]| key(periods.wrapped(block));
+        let own =
+            lists.iter().flat_map(|list| (0..list.homes.len()).flat_map(|tile| list.reached_by::<D>(tile)));
+        let mut own: Vec<u64> = own.map(wrapped).collect();
+        own.sort_unstable();
+        own.dedup();
+        self.held.clear();
+        self.held.extend(&own);
+        mirrors.add_images::<D>(&mut self.held);
+        let reached =
+            |tile: &ForeignTile| reached_blocks::<D>(block_of(tile.home), tile.reached).map(wrapped);
+        self.foreign.clear();
+        self.foreign.extend(named);
+        self.foreign.sort_unstable();
+        let mut first: Vec<usize> = self
+            .held
+            .iter()
+            .map(|block| if own.binary_search(block).is_ok() { rank } else { usize::MAX })
+            .collect();
+        for tile in &self.foreign {
+            for block in reached(tile) {
+                if let Ok(place) = self.held.binary_search(&block) {
+                    first[place] = first[place].min(tile.rank);
+                }
+            }
+        }
+        self.booked.clear();
+        self.booked.extend(first.iter().map(|&first| first == rank));
+    }
+
+    /// The blocks of a body's foreign tiles that this rank holds.
+    pub(super) fn blocks_of<const D: usize>(
+        &self,
+        body: usize,
+        periods: Periods<D>,
+    ) -> impl Iterator<Item = u64> {
+        let tiles = &self.foreign[self.of_body(body)];
+        let blocks = tiles.iter().flat_map(|tile| reached_blocks::<D>(block_of(tile.home), tile.reached));
+        blocks.map(move |block| key(periods.wrapped(block))).filter(|block| self.holds(*block))
+    }
+
+    /// Finds who gives to which slot, and whose windows go where; `slot` of a body's block of the first period, and
+    /// `color` of each tile.
+    pub(super) fn share<const D: usize>(
+        &mut self,
+        (tiles, lists): (&[Tile<D>], &[CellList]),
+        (slot, color): (impl Fn(usize, u64) -> Option<u32>, &[usize]),
+        (periods, mirrors): (Periods<D>, &Mirrors),
+    ) {
+        let wrapped = |block: [i32; D]| key(periods.wrapped(block));
+        // What foreign tiles give.
+        let mut gifts: Vec<(u32, usize, u32, u8)> = Vec::new();
+        for (place, tile) in self.foreign.iter().enumerate() {
+            for corner in (0..1 << D).filter(|&corner| tile.reached >> corner & 1 == 1) {
+                let block = wrapped(corner_block(block_of(tile.home), corner));
+                if let Some(slot) = slot(tile.body as usize, block) {
+                    gifts.push((slot, self.colors[place], place as u32, corner as u8));
+                }
+            }
+        }
+        let mut border: Vec<u32> = gifts.iter().map(|gift| gift.0).collect();
+        border.sort_unstable();
+        border.dedup();
+        // Of each rank that has foreign tiles, the blocks that it holds near here.
+        let mut others: Vec<usize> = self.foreign.iter().map(|tile| tile.rank).collect();
+        others.sort_unstable();
+        others.dedup();
+        let held_by = |rank: usize| {
+            let tiles = self.foreign.iter().filter(|tile| tile.rank == rank);
+            let blocks = tiles.flat_map(|tile| reached_blocks::<D>(block_of(tile.home), tile.reached));
+            let mut blocks: Vec<u64> = blocks.map(wrapped).collect();
+            blocks.sort_unstable();
+            blocks.dedup();
+            mirrors.add_images::<D>(&mut blocks);
+            blocks
+        };
+        let held: Vec<Vec<u64>> = others.iter().map(|&rank| held_by(rank)).collect();
+        let mut sent: Vec<Vec<u32>> = vec![Vec::new(); others.len()];
+        self.kept.clear();
+        self.of_tile.clear();
+        for (i, tile) in tiles.iter().enumerate() {
+            let reached = lists[tile.body].reached[tile.number];
+            let shared = (0..1_usize << D)
+                .filter(|&corner| {
+                    reached >> corner & 1 == 1 && border.binary_search(&tile.slots[corner]).is_ok()
+                })
+                .fold(0, |shared, corner| shared | 1 << corner);
+            let place = self.kept.len() as u32;
+            let mut wanted = shared != 0;
+            for (held, sent) in held.iter().zip(&mut sent) {
+                let mut blocks = reached_blocks::<D>(tile.block, reached).map(wrapped);
+                if blocks.any(|block| held.binary_search(&block).is_ok()) {
+                    sent.push(place);
+                    wanted = true;
+                }
+            }
+            self.of_tile.push((wanted.then_some(place), shared));
+            if wanted {
+                self.kept.push(i as u32);
+            }
+            for corner in (0..1 << D).filter(|corner| shared >> corner & 1 == 1) {
+                gifts.push((tile.slots[corner], color[i], place, corner as u8 | OWN));
+            }
+        }
+        gifts.sort_unstable();
+        self.slots.clear();
+        self.givers.clear();
+        for gifts in gifts.chunk_by(|a, b| a.0 == b.0) {
+            let first = self.givers.len();
+            self.givers.extend(gifts.iter().map(|&(_, _, place, corner)| match corner & OWN {
+                0 => Giver { window: self.kept.len() as u32 + place, corner },
+                _ => Giver { window: place, corner: corner & !OWN },
+            }));
+            self.slots.push(BorderSlot { slot: gifts[0].0, givers: first..self.givers.len() });
+        }
+        let sent = others.iter().zip(sent).filter(|(_, sent)| !sent.is_empty());
+        self.outgoing = sent.map(|(&rank, windows)| Traffic { rank, windows }).collect();
+        let come = |&rank: &usize| {
+            let here = |tile: &ForeignTile| {
+                let mut blocks = reached_blocks::<D>(block_of(tile.home), tile.reached).map(wrapped);
+                tile.rank == rank && blocks.any(|block| self.holds(block))
+            };
+            let tiles = self.foreign.iter().zip(0..).filter(|(tile, _)| here(tile));
+            Traffic { rank, windows: tiles.map(|(_, place)| place).collect() }
+        };
+        self.incoming = others.iter().map(come).filter(|traffic| !traffic.windows.is_empty()).collect();
+    }
+}
+
+/// Marks the corner of a tile of this rank.
+const OWN: u8 = 1 << 7;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::grid::ActiveBlocks;
+    use proptest::prelude::*;
+
+    /// Two bodies in a strip of blocks between mirrors, whose blocks belong to ranks as chance has it.
+    #[derive(Clone, Debug)]
+    struct Shared {
+        /// Body and base node of each particle.
+        particles: Vec<(usize, [i32; 2])>,
+        /// Rank of each block, in rows of eight.
+        owners: Vec<usize>,
+    }
+
+    const RANKS: usize = 3;
+
+    fn shared() -> impl Strategy<Value = Shared> {
+        let particles = prop::collection::vec((0..2_usize, prop::array::uniform2(-1..31_i32)), 1..60);
+        let owners = prop::collection::vec(0..RANKS, 100);
+        (particles, owners).prop_map(|(particles, owners)| Shared { particles, owners })
+    }
+
+    impl Shared {
+        fn owner(&self, [x, y]: [i32; 2]) -> usize {
+            self.owners[((x + 1).clamp(0, 9) * 10 + (y + 1).clamp(0, 9)) as usize]
+        }
+
+        /// The blocks of each rank, after all have named their tiles.
+        fn ranks(&self) -> Vec<ActiveBlocks<2>> {
+            let mut ranks: Vec<ActiveBlocks<2>> = (0..RANKS).map(|rank| self.alone(rank)).collect();
+            let named: Vec<_> =
+                (0..RANKS).map(|rank| ranks[rank].named(rank, |block| self.owner(block))).collect();
+            for (rank, active) in ranks.iter_mut().enumerate() {
+                let to_it = |from: usize| {
+                    named[from].iter().filter(move |(to, _)| *to == rank).map(move |(_, names)| (from, names))
+                };
+                let tiles =
+                    (0..RANKS).flat_map(to_it).flat_map(|(from, names)| ForeignTile::read(from, names));
+                active.cover(&tiles.collect::<Vec<_>>(), rank);
+            }
+            ranks
+        }
+
+        fn alone(&self, rank: usize) -> ActiveBlocks<2> {
+            let mirrors = Mirrors { faces: vec![(0, 0), (1, 30)] };
+            let mut active = ActiveBlocks::<2>::new(Periods::default()).among_ranks(mirrors);
+            let own = |body: usize| {
+                let here = move |&&(of, base): &&(usize, [i32; 2])| {
+                    of == body && self.owner(base.map(|n| n.div_euclid(SIDE))) == rank
+                };
+                self.particles.iter().filter(here).map(|(_, base)| *base).collect::<Vec<_>>()
+            };
+            let bases = [own(0), own(1)];
+            let base = |body: usize, i: usize| bases[body][i];
+            active.find_movers((2, |body: usize| bases[body].len(), 2), None, (base, |_, i: usize| i as u32));
+            assert!(
+                active.emigrants(|block| Some(self.owner(block)).filter(|&owner| owner != rank)).is_empty()
+            );
+            active.settle(|_, i| i as u32);
+            active
+        }
+    }
+
+    /// Body and home of tiles.
+    type Names = Vec<(u32, u64)>;
+
+    proptest! {
+        /// What one rank sends is what the other waits for, and each block is booked by one rank that has a tile there.
+        #[test]
+        fn ranks_agree_on_what_they_share(shared in shared()) {
+            let ranks = shared.ranks();
+            for (a, sender) in ranks.iter().enumerate() {
+                for (b, receiver) in ranks.iter().enumerate().filter(|(b, _)| *b != a) {
+                    let border = |active: &ActiveBlocks<2>| active.border.clone().expect("there are ranks");
+                    let [from, to] = [sender, receiver].map(border);
+                    let of = |traffic: &[Traffic], rank: usize| {
+                        let traffic = traffic.iter().filter(|traffic| traffic.rank == rank);
+                        traffic.flat_map(|traffic| traffic.windows.clone()).collect::<Vec<u32>>()
+                    };
+                    let sent = of(&from.outgoing, b).into_iter().map(|place| {
+                        let tile = &sender.tiles[from.kept[place as usize] as usize];
+                        (tile.body as u32, key(tile.block))
+                    });
+                    let waited = of(&to.incoming, a).into_iter().map(|place| {
+                        let tile = &to.foreign[place as usize];
+                        (tile.body, tile.home)
+                    });
+                    let (sent, waited): (Names, Names) = (sent.collect(), waited.collect());
+                    prop_assert_eq!(sent, waited, "{} to {}", a, b);
+                }
+            }
+            for x in -1..9 {
+                for y in -1..9 {
+                    let here = |active: &ActiveBlocks<2>| active.slots.iter().any(|(_, block)| *block == [x, y]);
+                    let reaches = |active: &ActiveBlocks<2>| {
+                        let tiles = active.tiles.iter().flat_map(|tile| tile.slots);
+                        let mut blocks = tiles.map(|slot| active.slots[slot as usize].1);
+                        here(active) && blocks.any(|block| block == [x, y])
+                    };
+                    let books = ranks.iter().filter(|active| active.books([x, y])).count();
+                    prop_assert_eq!(books, usize::from(ranks.iter().any(reaches)), "{} {}", x, y);
+                }
+            }
+        }
+
+        /// A slot at the border is given the parts of all tiles that reach it, in the order in which one rank alone
+        /// would give them.
+        #[test]
+        fn slots_are_given_what_one_rank_would_give(shared in shared()) {
+            let colors = |block: [i32; 2]| ((block[0] & 1) << 1 | block[1] & 1) as usize;
+            for active in shared.ranks() {
+                let border = active.border.as_deref().expect("there are ranks");
+                for BorderSlot { slot, givers } in &border.slots {
+                    let (body, block) = active.slots[*slot as usize];
+                    let home = |giver: &Giver| match (giver.window as usize).checked_sub(border.kept.len()) {
+                        Some(place) => block_of::<2>(border.foreign[place].home),
+                        None => active.tiles[border.kept[giver.window as usize] as usize].block,
+                    };
+                    let found: Vec<[i32; 2]> = border.givers[givers.clone()].iter().map(home).collect();
+                    for (giver, home) in border.givers[givers.clone()].iter().zip(&found) {
+                        prop_assert_eq!(corner_block(*home, usize::from(giver.corner)), block);
+                    }
+                    let near = |n: i32, block: i32| (block * SIDE - 2..block * SIDE + SIDE).contains(&n);
+                    let reaches = |&&(of, base): &&(usize, [i32; 2])| {
+                        of == body as usize && (0..2).all(|i| near(base[i], block[i]))
+                    };
+                    let homes = shared.particles.iter().filter(reaches);
+                    let mut wanted: Vec<[i32; 2]> = homes.map(|(_, base)| base.map(|n| n.div_euclid(SIDE))).collect();
+                    wanted.sort_by_key(|&block| (colors(block), block));
+                    wanted.dedup();
+                    prop_assert_eq!(found, wanted);
+                }
+            }
+        }
+    }
+}

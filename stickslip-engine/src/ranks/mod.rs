@@ -1,0 +1,60 @@
+//! Ranks: processes that share a simulation, each with the particles in its blocks.
+//!
+//! A rank owns the blocks of a stretch of a space-filling curve. What it needs of others comes in messages: particles
+//! that move to its blocks, the windows of tiles at blocks that it holds, and sums that everybody knows. Sums of
+//! particles at a node follow the colours of tiles, and all others are exact: so any number of ranks gives the same bits
+//! as one.
+
+mod partition;
+mod threads;
+
+pub use partition::Partition;
+pub use threads::Threads;
+
+use crate::exact::ExactSum;
+
+/// A message with the other rank: whom it is for, or who sent it.
+pub type Message = (usize, Vec<u8>);
+
+/// The message to a rank among some, from now on if not before.
+pub fn message_to(messages: &mut Vec<Message>, rank: usize) -> &mut Vec<u8> {
+    let place = messages.iter().position(|(to, _)| *to == rank).unwrap_or_else(|| {
+        messages.push((rank, Vec::new()));
+        messages.len() - 1
+    });
+    &mut messages[place].1
+}
+
+/// The ranks of a simulation, as one of them sees it. All of them make the same calls in the same order.
+pub trait Ranks: Send + Sync {
+    /// This one's number.
+    fn rank(&self) -> usize;
+
+    /// How many there are.
+    fn count(&self) -> usize;
+
+    /// Sends a message to each of some other ranks, and takes those that came, by rank.
+    fn exchange(&self, messages: Vec<Message>) -> Vec<Message>;
+
+    /// What each rank says, by rank.
+    fn gather(&self, said: &[u8]) -> Vec<Vec<u8>>;
+
+    /// The largest of the numbers of all ranks.
+    fn largest(&self, x: f64) -> f64 {
+        let said = self.gather(&x.to_le_bytes());
+        let numbers =
+            said.iter().filter_map(|bytes| bytes.first_chunk().map(|bytes| f64::from_le_bytes(*bytes)));
+        numbers.fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// Adds up the sums of all ranks.
+    fn add_up(&self, sums: &mut [ExactSum]) {
+        let said: Vec<u8> = sums.iter_mut().flat_map(|sum| sum.to_bytes()).collect();
+        sums.fill(ExactSum::default());
+        for bytes in self.gather(&said) {
+            for (sum, bytes) in sums.iter_mut().zip(bytes.as_chunks().0) {
+                sum.merge(&ExactSum::of_bytes(bytes));
+            }
+        }
+    }
+}

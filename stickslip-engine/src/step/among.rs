@@ -1,0 +1,357 @@
+//! A step of one of several ranks: what it sends to others, and takes from them.
+
+use super::Engine;
+use super::pass::{FaultReport, home};
+use crate::basis::Basis;
+use crate::body::{Body, TotalSums, Totals, TurningSums};
+use crate::boundary::Wall;
+use crate::contact::BlockSums;
+use crate::exact::ExactSum;
+use crate::grid::{
+    ActiveBlocks, Blocks, Border, Disjoint, ForeignTile, Mirrors, Node, NodeSums, add_corner, nodes_per_block,
+};
+use crate::lanes::Laned;
+use crate::material::Material;
+use crate::particles::{number_of, write_number};
+use crate::ranks::{Message, Partition, Ranks, message_to};
+use crate::scene::{self, BasisKind, ContactLaw, ContactRule, Face, Leaving, NamedMaterial, Problem, Scene};
+use crate::tensor::Real;
+use crate::threads::each_range;
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// What one of several ranks knows of the others.
+pub(super) struct Among<T> {
+    /// The ranks.
+    pub ranks: Arc<dyn Ranks>,
+    /// Who owns which block.
+    partition: Partition,
+    /// The tiles that others have named, as they came.
+    named: Vec<Message>,
+    /// Passes over particles in the step so far.
+    passes: u32,
+    /// What is wrong with a particle of this rank in the step, and in which pass that was found.
+    fault: Option<(u32, FaultReport)>,
+    /// What names the tiles of this rank to others.
+    names: Vec<Message>,
+    /// Windows of tiles that are kept, and behind them those of foreign tiles.
+    windows: Vec<NodeSums<T>>,
+}
+
+/// Numbers that a node is given: momentum and force along each axis, and mass.
+const GIVEN: usize = 7;
+
+impl<T: Real> Among<T> {
+    /// Room for the windows of all tiles that are kept or come, so many nodes each.
+    pub fn make_room(&mut self, border: Option<&Border>, nodes: usize) -> &mut Vec<NodeSums<T>> {
+        let count = border.map_or(0, |border| border.kept.len() + border.foreign.len());
+        self.windows.resize(count * nodes, NodeSums::default());
+        &mut self.windows
+    }
+
+    /// Sends the windows that others wait for, takes theirs, and adds them all to the slots at the border.
+    pub fn exchange_windows<const D: usize>(
+        &mut self,
+        border: &Border,
+        nodes: &Disjoint<Node<T, D>>,
+        side: usize,
+    ) {
+        let each_window = side.pow(D as u32);
+        let bytes = each_window * GIVEN * size_of::<T>();
+        let message = |windows: &[u32]| {
+            let mut message = Vec::with_capacity(windows.len() * bytes);
+            for &window in windows {
+                for sums in &self.windows[window as usize * each_window..][..each_window] {
+                    sums.as_flattened()[..GIVEN].iter().for_each(|&x| write_number(x, &mut message));
+                }
+            }
+            message
+        };
+        let sent = border.outgoing.iter().map(|traffic| (traffic.rank, message(&traffic.windows)));
+        let came = self.ranks.exchange(sent.collect());
+        let kept = border.kept.len();
+        assert_eq!(came.len(), border.incoming.len(), "who shares blocks sends windows");
+        for ((from, message), traffic) in came.iter().zip(&border.incoming) {
+            let agreed = *from == traffic.rank && message.len() == traffic.windows.len() * bytes;
+            assert!(agreed, "ranks agree on what they share");
+            for (&place, message) in traffic.windows.iter().zip(message.chunks_exact(bytes)) {
+                let window = &mut self.windows[(kept + place as usize) * each_window..][..each_window];
+                for (sums, numbers) in window.iter_mut().zip(message.chunks_exact(GIVEN * size_of::<T>())) {
+                    let numbers = numbers.chunks_exact(size_of::<T>()).map(number_of);
+                    sums.as_flattened_mut().iter_mut().zip(numbers).for_each(|(sum, x)| *sum = x);
+                }
+            }
+        }
+        let windows = &self.windows;
+        each_range(border.slots.len(), SLOTS, &|range| {
+            for slot in &border.slots[range] {
+                for giver in &border.givers[slot.givers.clone()] {
+                    let window = &windows[giver.window as usize * each_window..][..each_window];
+                    // SAFETY: each slot is in the list once, and the pass is over.
+                    unsafe { add_corner(window, nodes, (slot.slot, giver.corner), side) };
+                }
+            }
+        });
+    }
+}
+
+impl<T: Laned> Among<T> {
+    /// Begins a step.
+    pub fn begin(&mut self) {
+        (self.passes, self.fault) = (0, None);
+    }
+
+    /// Takes note of what a pass found, the first fault of it by body and particle: all ranks make as many passes.
+    pub fn take_note(&mut self, fault: Option<FaultReport>) {
+        self.passes += 1;
+        if self.fault.is_none() {
+            self.fault = fault.map(|fault| (self.passes, fault));
+        }
+    }
+
+    /// The first fault of the step on all ranks, by pass, body and particle.
+    pub fn first_fault(&mut self) -> Option<FaultReport> {
+        let said = rmp_serde::to_vec(&self.fault.take()).expect("numbers can be written");
+        let all = self.ranks.gather(&said);
+        let faults = all.iter().filter_map(|said| rmp_serde::from_slice(said).expect("the bytes of a fault"));
+        let first = faults.min_by_key(|(pass, fault): &(u32, FaultReport)| (*pass, fault.body, fault.number));
+        first.map(|(_, fault)| fault)
+    }
+
+    /// What the particles of each body on all ranks add up to.
+    pub fn totals<const D: usize>(&self, bodies: &[Body<T, D>]) -> Arc<[Totals]> {
+        let mut sums: Vec<TotalSums> = bodies.iter().map(Body::total_sums).collect();
+        self.add_up(sums.iter_mut().flat_map(TotalSums::all));
+        sums.iter().map(TotalSums::rounded).collect()
+    }
+
+    /// The angular velocities of bodies with these totals [rad/s].
+    pub fn spins<const D: usize>(&self, bodies: &[Body<T, D>], totals: &[Totals]) -> Vec<[f64; 3]> {
+        let of_body = |(body, totals): (&Body<T, D>, &Totals)| body.turning_sums(totals, body.gyration());
+        let mut sums: Vec<TurningSums> = bodies.iter().zip(totals).map(of_body).collect();
+        self.add_up(sums.iter_mut().flat_map(TurningSums::all));
+        sums.iter().map(TurningSums::spin::<D>).collect()
+    }
+
+    /// Adds what pairs did on other ranks to what they did here, ordered by pair and block.
+    pub fn gather_touches(&self, touches: &mut Vec<BlockSums>) {
+        let said = rmp_serde::to_vec(touches).expect("numbers can be written");
+        touches.clear();
+        for said in self.ranks.gather(&said) {
+            let of_rank: Vec<BlockSums> = rmp_serde::from_slice(&said).expect("the bytes of sums");
+            touches.extend(of_rank);
+        }
+        touches.sort_unstable_by_key(BlockSums::rank);
+    }
+
+    fn add_up<'a>(&self, sums: impl Iterator<Item = &'a mut ExactSum>) {
+        let places: Vec<&mut ExactSum> = sums.collect();
+        let mut all: Vec<ExactSum> = places.iter().map(|sum| (**sum).clone()).collect();
+        self.ranks.add_up(&mut all);
+        places.into_iter().zip(all).for_each(|(place, sum)| *place = sum);
+    }
+}
+
+/// Slots that a thread takes at a time.
+const SLOTS: usize = 8;
+
+impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
+    /// Keeps the particles in this rank's share of the blocks, and forgets the others. All ranks begin with all of
+    /// them.
+    pub(super) fn divide(&mut self, ranks: Arc<dyn Ranks>) {
+        let lattice = self.settings.lattice;
+        let block_of = |body: usize, particle: usize| {
+            let place = self.state.bodies[body].particles.place(particle);
+            lattice.periods.wrapped(crate::grid::locate(home::<T, D, B>(&lattice, place)).0)
+        };
+        let mut loads: HashMap<[i32; D], u64> = HashMap::new();
+        for body in 0..self.state.bodies.len() {
+            for particle in 0..self.state.bodies[body].particles.len() {
+                *loads.entry(block_of(body, particle)).or_default() += 1;
+            }
+        }
+        let partition = Partition::balanced(ranks.count(), loads);
+        let foreign = |body: usize| {
+            let count = self.state.bodies[body].particles.len();
+            let abroad = |&particle: &u32| partition.owner(block_of(body, particle as usize)) != ranks.rank();
+            (0..count as u32).filter(abroad).collect::<Vec<u32>>()
+        };
+        let gone: Vec<Vec<u32>> = (0..self.state.bodies.len()).map(foreign).collect();
+        for (body, gone) in self.state.bodies.iter_mut().zip(gone) {
+            body.particles.remove(&gone);
+            body.particles.fit();
+        }
+        self.among = Some(Among {
+            ranks,
+            partition,
+            named: Vec::new(),
+            passes: 0,
+            fault: None,
+            names: Vec::new(),
+            windows: Vec::new(),
+        });
+        self.watch_borders();
+    }
+
+    /// Lets the blocks know that there are other ranks.
+    pub(super) fn watch_borders(&mut self) {
+        if self.among.is_some() {
+            let mirror = |wall: &Wall| (wall.face == Face::Symmetry).then_some((wall.axis, wall.node));
+            let mirrors = Mirrors { faces: self.settings.walls.iter().filter_map(mirror).collect() };
+            self.workspace.active = ActiveBlocks::new(self.settings.lattice.periods).among_ranks(mirrors);
+        }
+    }
+
+    /// Lets particles move to the ranks that own their blocks, and covers the blocks of those that are here.
+    pub(super) fn cross_borders(&mut self) -> Blocks {
+        let mut among = self.among.take().expect("there are other ranks");
+        let rank = among.ranks.rank();
+        let lattice = self.settings.lattice;
+        let owner = |block: [i32; D]| among.partition.owner(block);
+        let gone = self.workspace.active.emigrants(|block| Some(owner(block)).filter(|&owner| owner != rank));
+        let mut messages: Vec<Message> = Vec::new();
+        for of_body in gone.chunk_by(|a, b| a.body == b.body) {
+            let body = of_body[0].body;
+            let particles = &mut self.state.bodies[body].particles;
+            let mut by_rank: Vec<(usize, u32)> = of_body.iter().map(|one| (one.rank, one.particle)).collect();
+            by_rank.sort_unstable();
+            for some in by_rank.chunk_by(|a, b| a.0 == b.0) {
+                let to = some[0].0;
+                let message = message_to(&mut messages, to);
+                message.extend((body as u32).to_le_bytes());
+                message.extend((some.len() as u32).to_le_bytes());
+                particles.write_rows(some.iter().map(|&(_, particle)| particle), message);
+            }
+            let places: Vec<u32> = of_body.iter().map(|one| one.particle).collect();
+            let moves = particles.take_out(&places);
+            self.workspace.disorder.get_mut(body).into_iter().for_each(|disorder| disorder.add(moves.len()));
+            let base = |particle: usize| home::<T, D, B>(&lattice, particles.place(particle));
+            self.workspace.active.renumber(body, &moves, base);
+        }
+        for (_, message) in among.ranks.exchange(messages) {
+            let mut rest = &message[..];
+            while let Some((body, after)) = split_number(rest)
+                && let Some((count, after)) = split_number(after)
+            {
+                let particles = &mut self.state.bodies[body].particles;
+                let (rows, after) = after.split_at(count * particles.row_bytes());
+                let first = particles.len();
+                particles.take_in(rows);
+                self.workspace.disorder.get_mut(body).into_iter().for_each(|disorder| disorder.add(count));
+                let base = |particle: usize| home::<T, D, B>(&lattice, particles.place(particle));
+                let number = |particle: usize| particles.numbers()[particle];
+                self.workspace.active.arrive((body, first..particles.len()), (base, number));
+                rest = after;
+            }
+        }
+        let bodies = &self.state.bodies;
+        let blocks =
+            self.workspace.active.settle(|body, particle| bodies[body].particles.numbers()[particle]);
+        let own = blocks == Blocks::New || !self.workspace.listed;
+        if own {
+            among.names = self.workspace.active.named(rank, owner);
+        }
+        let named = among.ranks.exchange(among.names.clone());
+        let changed = own || named != among.named;
+        if changed {
+            let tiles = named.iter().flat_map(|(from, names)| ForeignTile::read(*from, names));
+            self.workspace.active.cover(&tiles.collect::<Vec<_>>(), rank);
+            among.named = named;
+        }
+        self.among = Some(among);
+        if changed { Blocks::New } else { Blocks::Same }
+    }
+
+    /// Shows the particles around blocks where bodies meet to the other ranks that have tiles there, as their guests.
+    pub(super) fn invite_guests(&mut self) {
+        let Some(among) = &self.among else { return };
+        self.workspace.active.dismiss_guests();
+        self.state.bodies.iter_mut().for_each(|body| body.particles.dismiss_guests());
+        let active = &self.workspace.active;
+        let n = nodes_per_block(D);
+        let mut messages = Vec::new();
+        for traffic in active.border.iter().flat_map(|border| &border.outgoing) {
+            let mut message = Vec::new();
+            for tile in active.tiles_near_others(traffic) {
+                let cells = active.cells_of(tile);
+                message.extend((tile.body as u32).to_le_bytes());
+                message.extend(active.home_of(tile).to_le_bytes());
+                cells.windows(2).for_each(|ends| message.extend((ends[1] - ends[0]).to_le_bytes()));
+                let order = &active.order_of(tile.body)[cells[0] as usize..cells[n] as usize];
+                self.state.bodies[tile.body].particles.write_rows(order.iter().copied(), &mut message);
+            }
+            if !message.is_empty() {
+                messages.push((traffic.rank, message));
+            }
+        }
+        let came = among.ranks.exchange(messages);
+        // Body, home, particles in each cell, rows.
+        let mut tiles: Vec<(usize, u64, Vec<usize>, &[u8])> = Vec::new();
+        for (_, message) in &came {
+            let mut rest = &message[..];
+            while let Some((body, after)) = split_number(rest)
+                && let Some((home, mut after)) = after.split_first_chunk()
+            {
+                let mut counts = Vec::with_capacity(n);
+                for _ in 0..n {
+                    let (count, others) = split_number(after).expect("a count for each cell");
+                    counts.push(count);
+                    after = others;
+                }
+                let bytes = counts.iter().sum::<usize>() * self.state.bodies[body].particles.row_bytes();
+                let (rows, others) = after.split_at(bytes);
+                tiles.push((body, u64::from_le_bytes(*home), counts, rows));
+                rest = others;
+            }
+        }
+        tiles.sort_unstable_by_key(|&(body, home, ..)| (body, home));
+        for (body, home, counts, rows) in tiles {
+            let particles = &mut self.state.bodies[body].particles;
+            let first = particles.len() + particles.guests();
+            particles.receive_guests(rows);
+            self.workspace.active.invite((body, home), first, counts.into_iter());
+        }
+    }
+}
+
+/// Refuses what ranks cannot share yet.
+pub(super) fn can_be_shared(scene: &Scene) -> Result<(), Problem> {
+    let is_linear = scene.discretization.basis == BasisKind::Linear;
+    let regression = |rule: &ContactRule| rule.law == ContactLaw::Regression && is_linear;
+    let over_arrays = |material: &NamedMaterial| match material.law {
+        Material::Custom(custom) => custom.law().over_arrays().is_some(),
+        _ => false,
+    };
+    let removes = scene.domain.as_ref().is_some_and(|domain| domain.leaving == Leaving::Remove);
+    let without_bounds = |body: &scene::Body| body.shape.bounds(scene.dimension.axes()).is_none();
+    let refused = [
+        (
+            "bodies.rigid",
+            "a rigid body that forces move",
+            scene.bodies.iter().any(|body| body.as_free_rigid().is_some()),
+        ),
+        ("bodies.shape", "a body without bounds", scene.bodies.iter().any(without_bounds)),
+        ("loads", "a support or a load", !scene.loads.is_empty()),
+        ("joints", "a joint", !scene.joints.is_empty()),
+        ("springs", "a spring", !scene.springs.is_empty()),
+        ("materials", "a law over arrays", scene.materials.iter().any(over_arrays)),
+        ("domain.leaving", "particles that are taken out of the domain", removes),
+        ("contact", "`regression` with linear functions", scene.contact.iter().any(regression)),
+        ("outputs.measurements", "forces on faces", scene.outputs.measurements.faces().next().is_some()),
+    ];
+    let found = refused.into_iter().find(|(.., is_there)| *is_there);
+    found.map_or(Ok(()), |(key, found, _)| {
+        Err(Problem {
+            key: key.to_string(),
+            found: found.to_string(),
+            allowed: "what several ranks can share".to_string(),
+            help: Some("simulate it by one rank".to_string()),
+        })
+    })
+}
+
+/// A number of four bytes at the front, and what is behind it.
+fn split_number(bytes: &[u8]) -> Option<(usize, &[u8])> {
+    let (number, rest) = bytes.split_first_chunk()?;
+    Some((u32::from_le_bytes(*number) as usize, rest))
+}
