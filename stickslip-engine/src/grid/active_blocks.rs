@@ -117,7 +117,7 @@ impl<const D: usize> ActiveBlocks<D> {
         self.border.as_ref().is_none_or(|border| border.books(block))
     }
 
-    /// Names the tiles of this rank to those who may have to do with them, which `owners` tells for blocks of the first
+    /// Names the tiles of this rank to those who may have to do with them, which `owner` tells for blocks of the first
     /// period: by rank, each tile as [`ForeignTile::read`] reads it.
     pub fn named(&self, rank: usize, owner: impl Fn([i32; D]) -> usize) -> Vec<Message> {
         let mut messages: Vec<Message> = Vec::new();

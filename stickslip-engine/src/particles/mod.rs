@@ -261,6 +261,11 @@ impl<T: Real, const D: usize> Particles<T, D> {
         self.len
     }
 
+    /// Entries of a particle in all columns.
+    fn entries(&self) -> usize {
+        ColumnStart::<D>::HISTORY + self.own().entries(D)
+    }
+
     /// What their law remembers.
     pub fn history(&self) -> &'static [History] {
         self.history
@@ -443,17 +448,8 @@ impl<T: Real, const D: usize> Particles<T, D> {
 
     /// Opens the columns to many threads.
     pub fn open(&mut self) -> Columns<T, D> {
-        let first = self.first();
-        Columns {
-            start: self.columns[first..].as_mut_ptr(),
-            stride: self.stride,
-            history: history_entries(self.history, D),
-            transfer: history_entries(self.transfer, D),
-            viscosity: history_entries(self.viscosity, D),
-            natural: history_entries(self.natural, D),
-            domains: history_entries(self.domains, D),
-            alike: self.alike,
-        }
+        let (first, view) = (self.first(), self.view());
+        Columns { start: self.columns[first..].as_mut_ptr(), ..view }
     }
 
     /// Puts the particles into the order of a permutation: first the one whose index comes first.
@@ -461,7 +457,7 @@ impl<T: Real, const D: usize> Particles<T, D> {
     pub fn permute(&mut self, order: &[u32]) {
         assert_eq!(order.len(), self.len, "a permutation names every particle");
         self.guests = 0;
-        let count = ColumnStart::<D>::HISTORY + self.own().entries(D);
+        let count = self.entries();
         for column in 0..count {
             let column = if self.later { column } else { count - 1 - column };
             move_over(&mut self.columns[column * self.stride..][..2 * self.stride], self.later, order);
@@ -481,7 +477,7 @@ impl<T: Real, const D: usize> Particles<T, D> {
 
     /// Takes out particles by their places, which must ascend; the others keep their order, and all their memory.
     pub fn remove(&mut self, gone: &[u32]) {
-        let (columns, alike) = (ColumnStart::<D>::HISTORY + self.own().entries(D), self.alike);
+        let (columns, alike) = (self.entries(), self.alike);
         (0..columns).for_each(|entry| close_gaps(self.line_mut(entry), gone));
         self.alike = alike;
         let (first, len) = (self.first_number(), self.len);

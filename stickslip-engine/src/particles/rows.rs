@@ -33,11 +33,6 @@ pub fn number_of<T: Real>(bytes: &[u8]) -> T {
 }
 
 impl<T: Real, const D: usize> Particles<T, D> {
-    /// Entries of a particle in all columns.
-    fn entries(&self) -> usize {
-        ColumnStart::<D>::HISTORY + self.own().entries(D)
-    }
-
     /// Bytes of a row.
     pub fn row_bytes(&self) -> usize {
         size_of::<u32>() + self.entries() * size_of::<T>()

@@ -2,8 +2,8 @@
 //!
 //! A rank owns the blocks of a stretch of a space-filling curve. What it needs of others comes in messages: particles
 //! that move to its blocks, the windows of tiles at blocks that it holds, and sums that everybody knows. Sums of
-//! particles at a node follow the colours of tiles, and all others are exact: so any number of ranks gives the same bits
-//! as one.
+//! particles at a node follow the colours of tiles, and all others are exact: so any number of ranks gives the same
+//! bits as one.
 
 mod partition;
 mod threads;

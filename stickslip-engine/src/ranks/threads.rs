@@ -25,8 +25,8 @@ struct Meeting {
     left: bool,
 }
 
-/// A rank that is a thread of this process. Each needs a pool of threads of its own: who waits for another rank keeps one
-/// of them.
+/// A rank that is a thread of this process. Each needs a pool of threads of its own: who waits for another rank keeps
+/// one of them.
 pub struct Threads {
     rank: usize,
     common: Arc<Common>,

@@ -187,8 +187,8 @@ fn damping_work<T: Real, const D: usize>(node: &Node<T, D>, impulse: Vector<T, D
 }
 
 impl<T: Real, const D: usize> Workspace<T, D> {
-    /// Adds to the sums of the step what there is of the nodes of deformable bodies that have mass, that this rank books,
-    /// and that repeat no other behind a mirror. `of_node` is told where the node is, and the impulse of damping there.
+    /// Adds to the sums of the step what there is of the nodes of deformable bodies that have mass, that this rank
+    /// books, and that repeat no other behind a mirror. `of_node` is told where the node is, and the impulse of damping there.
     fn sum_over_nodes(
         &mut self,
         bodies: &[Body<T, D>],

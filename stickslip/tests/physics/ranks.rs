@@ -7,7 +7,7 @@
 //!
 //! Expected: the same bits of all particles, of the sums that tables hold, and of time. No tolerance.
 
-use crate::threads::scene as crowd;
+use crate::threads::{damped, periodic, scene as crowd};
 use crate::trial::{STRESS_UPDATES, start, take_steps};
 use rayon::ThreadPoolBuilder;
 use std::sync::Arc;
@@ -124,17 +124,9 @@ fn in_the_plane() {
     compare("cubic", &plane.replace("\"gimp\"", "\"cubic\""), 200);
     compare("xpic", &with("transfer = \"xpic\"\nxpic_order = 3"), 200);
     compare("cpdi", &plane.replace("\"gimp\"", "\"cpdi\""), 200);
-    let damped = with("relax = { residual = 1e-6 }")
-        + "[damping]\nviscous = 2\nlocal = 0.1\nbulk_linear = 0.1\nbulk_quadratic = 1.5\n";
+    let damped = damped(&with("relax = { residual = 1e-6 }"));
     compare("damped and relaxed", &damped, 200);
-    // Three blocks a period: the last and the first are neighbours. Bodies move through the face.
-    let periodic = plane
-        .replace(
-            "max = [4, 4], x_min = \"symmetry\"",
-            "max = [1.2, 4], x_min = \"periodic\", x_max = \"periodic\"",
-        )
-        .replace("max = [3, 0]", "max = [1.2, 0]");
-    assert!(periodic.contains("periodic") && periodic.contains("max = [1.2, 0]"));
+    let periodic = periodic(&plane);
     compare("periodic", &periodic, 200);
     // A layer without ends that is sheared: some of its tiles are a period away from others at the same nodes.
     let layer = periodic

@@ -155,6 +155,23 @@ pub fn scene(dimension: &str, basis: &str, update: &str) -> String {
     )
 }
 
+/// The same with damping of all kinds.
+pub fn damped(plane: &str) -> String {
+    format!("{plane}[damping]\nviscous = 2\nlocal = 0.1\nbulk_linear = 0.1\nbulk_quadratic = 1.5\n")
+}
+
+/// The same with three blocks a period: the last and the first are neighbours. Bodies move through the face.
+pub fn periodic(plane: &str) -> String {
+    let periodic = plane
+        .replace(
+            "max = [4, 4], x_min = \"symmetry\"",
+            "max = [1.2, 4], x_min = \"periodic\", x_max = \"periodic\"",
+        )
+        .replace("max = [3, 0]", "max = [1.2, 0]");
+    assert!(periodic.contains("periodic") && periodic.contains("max = [1.2, 0]"));
+    periodic
+}
+
 #[test]
 fn in_the_plane() {
     for update in STRESS_UPDATES {
@@ -179,8 +196,7 @@ fn in_the_plane() {
     for update in STRESS_UPDATES {
         compare(&format!("averaged, {update}"), &averaged.replace("modified-last", update), 200);
     }
-    let damped = with("relax = { residual = 1e-6 }")
-        + "[damping]\nviscous = 2\nlocal = 0.1\nbulk_linear = 0.1\nbulk_quadratic = 1.5\n";
+    let damped = damped(&with("relax = { residual = 1e-6 }"));
     compare("damped and relaxed", &damped, 200);
     let unbounded = plane
         .replace(
@@ -190,14 +206,7 @@ fn in_the_plane() {
         .replace("rigid = {}", "rigid.velocity = [0, 0.5]");
     assert!(unbounded.contains("half_space") && unbounded.contains("rigid.velocity"));
     compare("a floor without bounds that rises", &unbounded, 200);
-    // Three blocks a period: the last and the first are neighbours. Bodies move through the face.
-    let periodic = plane
-        .replace(
-            "max = [4, 4], x_min = \"symmetry\"",
-            "max = [1.2, 4], x_min = \"periodic\", x_max = \"periodic\"",
-        )
-        .replace("max = [3, 0]", "max = [1.2, 0]");
-    assert!(periodic.contains("periodic") && periodic.contains("max = [1.2, 0]"));
+    let periodic = periodic(&plane);
     compare("periodic", &periodic, 200);
     compare("plane stress", &scene("plane-stress", "gimp", "modified-last"), 200);
     // Linear functions with the stress updated last do not live long, whatever the threads.
