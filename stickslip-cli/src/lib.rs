@@ -19,6 +19,7 @@ pub mod memory;
 mod page;
 mod picture;
 mod progress;
+mod ranks;
 mod reproduce;
 mod sweep;
 mod tell;
@@ -49,10 +50,22 @@ fn program() -> std::io::Result<Vec<OsString>> {
 
 /// Does what the words of a command line ask for, the program's name first, and gives the exit code.
 ///
-/// It takes over Ctrl-C and the pool of threads of the process, and ends that where the words ask for help or are
-/// wrong: it is for processes that do nothing else.
+/// It takes over Ctrl-C and the pool of threads of the process: it is for processes that do nothing else. Of several that
+/// a launcher began together, all are to call it with the same words.
 pub fn execute(words: impl IntoIterator<Item = OsString>) -> u8 {
-    match commands::Command::parse_from(words).execute() {
+    let together = ranks::Launched::together();
+    let ended = match (commands::Command::try_parse_from(words), together) {
+        (Ok(command), None) => command.execute(),
+        (Ok(command), Some(launched)) => launched.execute(command),
+        (Err(error), together) => {
+            // Once is enough. Nobody can be told of an output that takes nothing.
+            if together.is_none_or(ranks::Launched::is_first) {
+                let _ = error.print();
+            }
+            return u8::try_from(error.exit_code()).unwrap_or(1);
+        }
+    };
+    match ended {
         Ok(()) => 0,
         Err(failure) => {
             failure.print();

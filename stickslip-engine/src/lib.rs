@@ -60,6 +60,9 @@ pub mod contact;
 // The step and its verbs.
 pub mod step;
 
+// A simulation that several ranks share, as the first of them sees it.
+pub mod shared;
+
 // Steps to a time: the one loop.
 pub mod march;
 

@@ -3,6 +3,7 @@
 //! Memory, packing for lanes, snapshots, files and colours follow from this description; none lists columns by hand.
 
 use crate::tensor::Symmetric;
+use serde::{Deserialize, Serialize};
 
 /// A column of particles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -140,7 +141,7 @@ pub fn reserved() -> impl Iterator<Item = &'static str> {
 }
 
 /// What a particle has in a column.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Kind {
     /// A number.
     Number,

@@ -15,8 +15,8 @@
 #![forbid(unsafe_code)]
 
 pub use stickslip_engine::{
-    basis, body, boundary, clock, contact, door, exact, grid, lanes, march, pages, particles, ranks, step,
-    transfer,
+    basis, body, boundary, clock, contact, door, exact, grid, lanes, march, pages, particles, ranks, shared,
+    step, transfer,
 };
 pub use stickslip_results::{image, observe, polariscope, surface};
 pub use stickslip_scene::{column, geometry, material, number, outside, rigid, scene, tensor};

@@ -7,13 +7,14 @@
 //! Expected: every file of an interrupted run, but the times in its record and its checkpoints, has the bytes of one
 //! that was never interrupted.
 
+mod same_run;
+
+use same_run::{StopAfter, assert_same_run, files};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 use std::time::Duration;
-use stickslip::observe::{
-    Checkpoint, FolderError, Manifest, OutputError, OutputFolder, Patience, RunWarning, Status,
-};
+use stickslip::observe::{Checkpoint, FolderError, Manifest, OutputError, OutputFolder, Patience, Status};
 use stickslip::run::{
     Checkpointing, Progress, ResumeError, RunError, RunOptions, Summary, resume, run, run_with,
 };
@@ -415,68 +416,12 @@ fn go_on(scene: &Scene, out: &Path) -> Result<Summary, RunError> {
     resume(scene, &mut *stickslip::step::build(scene).unwrap(), &options(out), &mut |_| {})
 }
 
-/// Asks the run to stop after so many steps.
-struct StopAfter(u64, RunOptions);
-
-impl stickslip::observe::Observer for StopAfter {
-    fn next(&self) -> f64 {
-        0.0
-    }
-
-    fn observe(&mut self, view: &dyn stickslip::door::View) -> Result<(), OutputError> {
-        if view.steps() >= self.0 {
-            self.1.stop.store(true, Ordering::Relaxed);
-        }
-        Ok(())
-    }
-}
-
 /// Runs a scene and stops it after so many steps.
 fn start_and_stop(scene: &Scene, out: &Path, steps: u64) -> Summary {
     let options = options(out);
     let mut stop = StopAfter(steps, options.clone());
     let mut simulation = stickslip::step::build(scene).unwrap();
     run_with(scene, &mut *simulation, &options, &mut [&mut stop], &mut |_| {}).unwrap()
-}
-
-/// Every file of a run but its record and its checkpoints, by name.
-fn files(out: &Path) -> Vec<(PathBuf, Vec<u8>)> {
-    let mut found = Vec::new();
-    let mut folders = vec![out.to_path_buf()];
-    while let Some(folder) = folders.pop() {
-        for entry in fs::read_dir(folder).unwrap().map(Result::unwrap) {
-            let (path, name) = (entry.path(), entry.file_name().into_string().unwrap());
-            match path.is_dir() {
-                true if name != "checkpoints" => folders.push(path),
-                false if name != Manifest::FILE => {
-                    found.push((path.strip_prefix(out).unwrap().to_path_buf(), fs::read(&path).unwrap()));
-                }
-                _ => {}
-            }
-        }
-    }
-    found.sort();
-    found
-}
-
-fn assert_same_run(expected: &Path, found: &Path) {
-    let (expected_files, found_files) = (files(expected), files(found));
-    let names = |files: &[(PathBuf, Vec<u8>)]| files.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>();
-    assert_eq!(names(&expected_files), names(&found_files));
-    for ((name, expected), (_, found)) in expected_files.iter().zip(&found_files) {
-        assert!(expected == found, "{} differs", name.display());
-    }
-    let [expected, found] = [expected, found].map(|out| Manifest::read(out).unwrap());
-    assert!(expected.state_sum.is_some());
-    assert_eq!(expected.state_sum, found.state_sum);
-    // A damaged checkpoint is none of the run's doings.
-    let of_the_run = |warning: &RunWarning| warning.kind != "checkpoint";
-    let found_warnings: Vec<_> = found.warnings.into_iter().filter(of_the_run).collect();
-    assert_eq!((expected.warnings, expected.status), (found_warnings, found.status));
-    assert_eq!(expected.remarks, found.remarks);
-    assert_eq!(expected.looks, found.looks);
-    assert_eq!(expected.performance.steps, found.performance.steps);
-    assert_eq!(expected.relaxation, found.relaxation);
 }
 
 #[test]

@@ -172,8 +172,8 @@ impl View for Puppet {
         Ok(ColumnRef::new(column::every(name), numbers, at))
     }
 
-    fn trace(&self, _body: usize, wanted: &(dyn Fn(u32) -> bool + Sync)) -> Vec<TracedParticle> {
-        self.now().filter(|particle| wanted(particle.number)).collect()
+    fn trace(&self, _body: usize, wanted: &[u32]) -> Vec<TracedParticle> {
+        self.now().filter(|particle| wanted.contains(&particle.number)).collect()
     }
 
     fn grid_snapshot(&self) -> GridSnapshot {

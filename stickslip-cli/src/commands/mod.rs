@@ -71,6 +71,16 @@ fn build() -> &'static str {
 }
 
 impl Command {
+    /// Threads that the user asks for.
+    #[cfg(feature = "mpi")]
+    pub fn threads(&self) -> Option<usize> {
+        match self {
+            Command::Run(arguments) => arguments.threads(),
+            Command::Resume(arguments) => arguments.threads(),
+            _ => None,
+        }
+    }
+
     /// Does what the user asks.
     pub fn execute(self) -> Result<(), Failure> {
         match self {
@@ -207,14 +217,27 @@ fn stop_on_interrupt() -> Result<Arc<AtomicBool>, Failure> {
     });
     installed.map_err(|error| Failure::Run(miette!("cannot watch for Ctrl-C: {error}")))?;
     #[cfg(unix)]
-    const ASKED: [libc::c_int; 5] =
-        [libc::SIGTERM, libc::SIGHUP, libc::SIGXCPU, libc::SIGUSR1, libc::SIGUSR2];
-    #[cfg(unix)]
     for signal in ASKED.into_iter().filter(|&signal| !is_ignored(signal)) {
         let watched = signal_hook::flag::register(signal, Arc::clone(&stop));
         watched.map_err(|error| Failure::Run(miette!("cannot watch for signals: {error}")))?;
     }
     Ok(stop)
+}
+
+/// Signals by which the user, batch systems and shells ask a program to end.
+#[cfg(unix)]
+const ASKED: [libc::c_int; 5] = [libc::SIGTERM, libc::SIGHUP, libc::SIGXCPU, libc::SIGUSR1, libc::SIGUSR2];
+
+/// Lets signals by which a run is asked to end pass: the first of its processes hears them, too, and ends it.
+#[cfg(feature = "mpi")]
+pub fn outlast_signals() -> Result<(), Failure> {
+    #[cfg(unix)]
+    for signal in ASKED.into_iter().chain([libc::SIGINT]) {
+        // Nobody asks the flag: that the signal has a handler is enough.
+        let watched = signal_hook::flag::register(signal, Arc::default());
+        watched.map_err(|error| Failure::Run(miette!("cannot watch for signals: {error}")))?;
+    }
+    Ok(())
 }
 
 /// Whether whoever started the program wants it to ignore a signal, where the system says so.

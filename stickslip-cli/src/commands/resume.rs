@@ -30,6 +30,12 @@ pub struct Arguments {
 }
 
 impl Arguments {
+    /// Threads that the user asks for.
+    #[cfg(feature = "mpi")]
+    pub(super) fn threads(&self) -> Option<usize> {
+        self.how.threads()
+    }
+
     pub fn execute(self) -> Result<(), Failure> {
         self.how.use_threads()?;
         // Whoever names the scene does not need the record, which a power cut may have taken.

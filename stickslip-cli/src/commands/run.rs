@@ -5,6 +5,7 @@ use crate::failure::Failure;
 use crate::illustration::illustrate;
 use crate::memory;
 use crate::progress::{Display, ProgressForm};
+use crate::ranks;
 use crate::tell::tell;
 use bytesize::ByteSize;
 use clap::Args;
@@ -12,7 +13,7 @@ use miette::{IntoDiagnostic, miette};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 use stickslip::check::{free_memory, pairs_without_friction};
-use stickslip::door::Simulation;
+use stickslip::door::{RankShare, Simulation};
 use stickslip::observe::{
     ArrivalRow, FrontSpeedRow, Manifest, Patience, Performance, Results, SceneSource, Status,
 };
@@ -143,6 +144,12 @@ fn results_go_beside_the_user_not_beside_the_scene() {
 }
 
 impl Arguments {
+    /// Threads that the user asks for.
+    #[cfg(feature = "mpi")]
+    pub(super) fn threads(&self) -> Option<usize> {
+        self.how.threads()
+    }
+
     pub fn execute(self) -> Result<(), Failure> {
         self.how.use_threads()?;
         let before = self.again.as_deref().map(Repeated::of).transpose()?;
@@ -257,8 +264,12 @@ type Make =
 impl How {
     /// Makes the threads of the run; before the scene is read, which already takes some.
     pub(super) fn use_threads(&self) -> Result<(), Failure> {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(self.threads.map_or(0, usize::from));
-        pool.build_global().into_diagnostic().map_err(Failure::Run)
+        ranks::use_threads(self.threads(), ranks::neighbours())
+    }
+
+    /// Threads that the user asks for.
+    pub(super) fn threads(&self) -> Option<usize> {
+        self.threads.map(usize::from)
     }
 
     /// Tells the user something that is no reason to stop.
@@ -299,8 +310,7 @@ impl How {
         for warning in &report.warnings {
             tell!("warning: {warning}");
         }
-        let mut simulation =
-            stickslip::step::build(scene).map_err(|problem| Failure::input(loaded.source.locate(problem)))?;
+        let mut simulation = ranks::simulation(loaded, &source)?;
         memory::run_writes_to(&out);
         let options = RunOptions {
             stop: stop_on_interrupt()?,
@@ -358,7 +368,7 @@ impl How {
 
 /// Where the time of a run went: a line for each part of the step, for what a run does beside, and for the rest.
 fn times(performance: &Performance) -> String {
-    let Performance { wall_time, timings, .. } = performance;
+    let Performance { wall_time, timings, ranks, .. } = performance;
     let rest = wall_time - timings.iter().map(|timing| timing.seconds).sum::<f64>();
     let parts = timings.iter().map(|timing| (timing.verb.as_str(), timing.seconds));
     let line = |(part, seconds): (&str, f64)| {
@@ -367,7 +377,31 @@ fn times(performance: &Performance) -> String {
             100.0 * seconds / wall_time.max(f64::MIN_POSITIVE)
         )
     };
-    parts.chain([("the rest", rest)]).map(line).collect::<Vec<_>>().join("\n")
+    let lines = parts.chain([("the rest", rest)]).map(line);
+    lines.chain(balance(ranks)).collect::<Vec<_>>().join("\n")
+}
+
+/// What each rank had and did in the steps: how well the load is balanced.
+fn balance(ranks: &[RankShare]) -> Vec<String> {
+    let Some(slowest) = ranks.iter().map(|rank| rank.computed).max_by(f64::total_cmp) else {
+        return Vec::new();
+    };
+    let head = "  rank   particles   computing     waiting   sent a step".to_string();
+    let line = |(number, rank): (usize, &RankShare)| {
+        let RankShare { particles, steps, computed, waited, traffic } = rank;
+        let per_step = |count: u64| count as f64 / *steps.max(&1) as f64;
+        let size = ByteSize(per_step(traffic.bytes) as u64).display().si();
+        let messages = per_step(traffic.messages);
+        format!(
+            "  {number:>4} {particles:>11} {computed:>9.3} s {waited:>9.3} s   {size} in {messages:.0} messages"
+        )
+    };
+    let mean = ranks.iter().map(|rank| rank.computed).sum::<f64>() / ranks.len() as f64;
+    let last = format!(
+        "  the slowest rank computes {:.2} times as long as the mean",
+        slowest / mean.max(f64::MIN_POSITIVE)
+    );
+    [head].into_iter().chain((0..).zip(ranks).map(line)).chain([last]).collect()
 }
 
 /// Tells the user of a disk that takes nothing.

@@ -51,6 +51,12 @@ impl<'a> ColumnRef<'a> {
         self.numbers.iter().enumerate().map(row)
     }
 
+    /// The components in space of one particle after the other, in the order of memory.
+    pub fn values(&self) -> Vec<f64> {
+        let count = self.description.kind.components();
+        (0..self.len()).flat_map(|row| (0..count).map(move |k| (self.at)(row, k))).collect()
+    }
+
     /// The `N` components in space of each particle, in the order of their numbers.
     ///
     /// # Panics

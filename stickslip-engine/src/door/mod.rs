@@ -15,9 +15,11 @@ pub use snapshot::{ColumnSource, ParticleSnapshot, SnapshotColumn};
 
 use crate::column::ColumnDescription;
 use crate::outside::OutsideFault;
+use crate::ranks::SentAndWaited;
 use crate::rigid::Pose;
 use crate::scene::StartVelocities;
 use serde::{Deserialize, Serialize};
+use std::cmp::Ordering;
 use std::collections::HashMap;
 
 /// A simulation as it is now: observers, checks and pictures look at this. Asking changes nothing.
@@ -117,14 +119,18 @@ pub trait View {
     fn column_place(&self, _body: usize, _name: &str) -> Option<ColumnPlace> {
         None
     }
-    /// The particles of a body whose numbers are `wanted`, in no order that means anything.
-    fn trace(&self, _body: usize, _wanted: &(dyn Fn(u32) -> bool + Sync)) -> Vec<TracedParticle> {
+    /// The particles of a body with some numbers, which ascend: those that are there, ordered by number.
+    fn trace(&self, _body: usize, _numbers: &[u32]) -> Vec<TracedParticle> {
         Vec::new()
     }
     /// The nodes of the last step's grid that carry mass.
     fn grid_snapshot(&self) -> GridSnapshot;
     /// Wall time spent so far in each verb of the step [s].
     fn timings(&self) -> Vec<(&'static str, f64)>;
+    /// What each of the ranks that share the simulation has of it and did for it; nothing where nobody shares it.
+    fn shares(&self) -> Vec<RankShare> {
+        Vec::new()
+    }
 }
 
 /// A simulation that can be stepped.
@@ -496,7 +502,7 @@ pub struct ContactPatch {
 }
 
 /// A particle now, as [`Simulation::visit`] shows it.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ParticleView {
     /// Number of the particle in its body, from the filling; it never changes.
     pub number: u32,
@@ -512,7 +518,7 @@ pub struct ParticleView {
 
 /// What makes a stable step as short as it is: the particle whose wave and own speed are the fastest together, or the
 /// free rigid body that turns fastest.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StepLimit {
     /// Index of the body.
     pub body: usize,
@@ -523,7 +529,7 @@ pub struct StepLimit {
 }
 
 /// A particle now, as [`Simulation::trace`] gives it, with what it did since the start.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TracedParticle {
     /// Number of the particle in its body, from the filling; it never changes.
     pub number: u32,
@@ -539,7 +545,23 @@ pub struct TracedParticle {
     pub deformation: [[f64; 3]; 3],
 }
 
-/// Grid nodes with mass as columns of equal length; a node that two bodies share stands there twice.
+/// What a rank has of a simulation, and what it did for it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct RankShare {
+    /// Its particles now.
+    pub particles: usize,
+    /// Steps of which it did its part.
+    pub steps: u64,
+    /// Wall time in steps without waiting for other ranks [s].
+    pub computed: f64,
+    /// Wall time in which it waited for them in steps [s].
+    pub waited: f64,
+    /// What it sent since the start, and how long it waited in all.
+    pub traffic: SentAndWaited,
+}
+
+/// Grid nodes with mass as columns of equal length, ordered by body and place; a node that two bodies share stands there
+/// twice.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct GridSnapshot {
     /// 2 or 3.
@@ -561,6 +583,33 @@ pub struct GridSnapshot {
 }
 
 impl GridSnapshot {
+    /// Several snapshots of other nodes each as one.
+    pub fn merged(parts: Vec<Self>) -> Self {
+        let mut parts = parts.into_iter();
+        let Some(mut all) = parts.next() else { return GridSnapshot::default() };
+        for part in parts {
+            all.body.extend(part.body);
+            all.position.extend(part.position);
+            all.mass.extend(part.mass);
+            all.velocity.extend(part.velocity);
+            all.force.extend(part.force);
+            all.contact_impulse.extend(part.contact_impulse);
+        }
+        let GridSnapshot { body, position, mass, velocity, force, contact_impulse, .. } = &all;
+        let place = |a: [f64; 3], b: [f64; 3]| a.partial_cmp(&b).unwrap_or(Ordering::Equal);
+        let mut rows: Vec<usize> = (0..body.len()).collect();
+        rows.sort_by(|&a, &b| body[a].cmp(&body[b]).then_with(|| place(position[a], position[b])));
+        GridSnapshot {
+            body: rows.iter().map(|&row| body[row]).collect(),
+            position: rows.iter().map(|&row| position[row]).collect(),
+            mass: rows.iter().map(|&row| mass[row]).collect(),
+            velocity: rows.iter().map(|&row| velocity[row]).collect(),
+            force: rows.iter().map(|&row| force[row]).collect(),
+            contact_impulse: rows.iter().map(|&row| contact_impulse[row]).collect(),
+            ..all
+        }
+    }
+
     /// Whether all columns have one length.
     pub fn is_even(&self) -> bool {
         let GridSnapshot { body, position, mass, velocity, force, contact_impulse, .. } = self;

@@ -1,6 +1,7 @@
 //! Particles of all bodies at one time, as columns: what files, pictures and tests look at.
 
 use crate::column::{self, ColumnDescription, Kind};
+use serde::{Deserialize, Serialize};
 
 /// Where a snapshot's columns come from: a running engine, or a file.
 pub trait ColumnSource {
@@ -45,7 +46,7 @@ impl<const N: usize> Values for Vec<[f64; N]> {
 macro_rules! snapshot {
     ($($(#[$doc:meta])* $name:ident: $values:ty,)*) => {
         /// Particles of all bodies as columns of equal length.
-        #[derive(Clone, Debug, Default, PartialEq)]
+        #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
         pub struct ParticleSnapshot {
             /// 2 or 3.
             pub dimension: usize,
@@ -69,12 +70,34 @@ macro_rules! snapshot {
             pub fn only(&self, wanted: impl Fn(u32, u32) -> bool) -> Self {
                 let rows = 0..self.number.len();
                 let rows: Vec<usize> = rows.filter(|&i| wanted(self.body[i], self.number[i])).collect();
+                self.of_rows(&rows)
+            }
+
+            /// Several snapshots of the same bodies, each of other particles, as one: ordered by body and number.
+            pub fn merged(parts: Vec<Self>) -> Self {
+                let mut parts = parts.into_iter();
+                let Some(mut all) = parts.next() else { return ParticleSnapshot::default() };
+                for part in parts {
+                    all.body.extend(part.body);
+                    all.number.extend(part.number);
+                    $(all.$name.extend(part.$name);)*
+                    for (column, more) in all.history.iter_mut().zip(part.history) {
+                        column.values.extend(more.values);
+                    }
+                }
+                let mut rows: Vec<usize> = (0..all.number.len()).collect();
+                rows.sort_unstable_by_key(|&i| (all.body[i], all.number[i]));
+                all.of_rows(&rows)
+            }
+
+            /// The particles in these rows.
+            fn of_rows(&self, rows: &[usize]) -> Self {
                 ParticleSnapshot {
                     dimension: self.dimension,
                     body: rows.iter().map(|&i| self.body[i]).collect(),
                     number: rows.iter().map(|&i| self.number[i]).collect(),
                     $($name: rows.iter().map(|&i| self.$name[i]).collect(),)*
-                    history: self.history.iter().map(|column| column.only(&rows)).collect(),
+                    history: self.history.iter().map(|column| column.only(rows)).collect(),
                 }
             }
 
@@ -133,7 +156,7 @@ impl ParticleSnapshot {
 }
 
 /// A column of history in a snapshot: what a law calls it, and a value for every particle of all bodies.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SnapshotColumn {
     /// Its name.
     pub name: String,

@@ -12,6 +12,7 @@ pub use partition::Partition;
 pub use threads::Threads;
 
 use crate::exact::ExactSum;
+use serde::{Deserialize, Serialize};
 
 /// A message with the other rank: whom it is for, or who sent it.
 pub type Message = (usize, Vec<u8>);
@@ -23,6 +24,17 @@ pub fn message_to(messages: &mut Vec<Message>, rank: usize) -> &mut Vec<u8> {
         messages.len() - 1
     });
     &mut messages[place].1
+}
+
+/// What a rank sent to others, and how long it waited for them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct SentAndWaited {
+    /// Messages sent, what is said to all counted once.
+    pub messages: u64,
+    /// Their bytes.
+    pub bytes: u64,
+    /// Time in calls that wait for others [s].
+    pub waited: f64,
 }
 
 /// The ranks of a simulation, as one of them sees it. All of them make the same calls in the same order.
@@ -38,6 +50,21 @@ pub trait Ranks: Send + Sync {
 
     /// What each rank says, by rank.
     fn gather(&self, said: &[u8]) -> Vec<Vec<u8>>;
+
+    /// What the first rank says; what others say, nobody hears.
+    fn hear_first(&self, said: &[u8]) -> Vec<u8> {
+        let said = if self.rank() == 0 { said } else { &[] };
+        self.gather(said).swap_remove(0)
+    }
+
+    /// What each rank says, by rank, to the first; the others hear nothing.
+    fn tell_first(&self, said: &[u8]) -> Vec<Vec<u8>> {
+        let all = self.gather(said);
+        if self.rank() == 0 { all } else { Vec::new() }
+    }
+
+    /// What was sent so far, and how long this rank waited for others.
+    fn traffic(&self) -> SentAndWaited;
 
     /// The largest of the numbers of all ranks.
     fn largest(&self, x: f64) -> f64 {

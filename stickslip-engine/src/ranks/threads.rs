@@ -1,7 +1,8 @@
 //! Ranks that are threads of one process: for tests, and to try what others will be.
 
-use super::{Message, Ranks};
+use super::{Message, Ranks, SentAndWaited};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::time::Instant;
 
 /// What all of them have in common.
 struct Common {
@@ -30,6 +31,7 @@ struct Meeting {
 pub struct Threads {
     rank: usize,
     common: Arc<Common>,
+    sent: Mutex<SentAndWaited>,
 }
 
 impl Threads {
@@ -41,7 +43,7 @@ impl Threads {
             meeting: Mutex::default(),
             bell: Condvar::new(),
         });
-        (0..count).map(|rank| Threads { rank, common: common.clone() }).collect()
+        (0..count).map(|rank| Threads { rank, common: common.clone(), sent: Mutex::default() }).collect()
     }
 
     /// Waits until all ranks are here.
@@ -50,6 +52,7 @@ impl Threads {
     /// One has left: it will never come.
     fn meet(&self) {
         let Common { boxes, meeting, bell, .. } = &*self.common;
+        let begun = Instant::now();
         let mut now = open(meeting);
         let held = now.held;
         now.here += 1;
@@ -61,6 +64,12 @@ impl Threads {
             assert!(!now.left, "a rank has left the others");
             now = bell.wait(now).unwrap_or_else(PoisonError::into_inner);
         }
+        open(&self.sent).waited += begun.elapsed().as_secs_f64();
+    }
+
+    fn count_sent(&self, bytes: usize) {
+        let mut sent = open(&self.sent);
+        (sent.messages, sent.bytes) = (sent.messages + 1, sent.bytes + bytes as u64);
     }
 }
 
@@ -87,6 +96,7 @@ impl Ranks for Threads {
 
     fn exchange(&self, messages: Vec<Message>) -> Vec<Message> {
         for (to, message) in messages {
+            self.count_sent(message.len());
             open(&self.common.boxes[to]).push((self.rank, message));
         }
         self.meet();
@@ -98,11 +108,16 @@ impl Ranks for Threads {
     }
 
     fn gather(&self, said: &[u8]) -> Vec<Vec<u8>> {
+        self.count_sent(said.len());
         *open(&self.common.said[self.rank]) = said.to_vec();
         self.meet();
         let all = self.common.said.iter().map(|said| open(said).clone()).collect();
         self.meet();
         all
+    }
+
+    fn traffic(&self) -> SentAndWaited {
+        *open(&self.sent)
     }
 }
 

@@ -17,6 +17,8 @@ use crate::ranks::{Message, Partition, Ranks, message_to};
 use crate::scene::{self, BasisKind, ContactLaw, ContactRule, Face, Leaving, NamedMaterial, Problem, Scene};
 use crate::tensor::Real;
 use crate::threads::each_range;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -111,11 +113,17 @@ impl<T: Laned> Among<T> {
 
     /// The first fault of the step on all ranks, by pass, body and particle.
     pub fn first_fault(&mut self) -> Option<FaultReport> {
-        let said = rmp_serde::to_vec(&self.fault.take()).expect("numbers can be written");
-        let all = self.ranks.gather(&said);
-        let faults = all.iter().filter_map(|said| rmp_serde::from_slice(said).expect("the bytes of a fault"));
-        let first = faults.min_by_key(|(pass, fault): &(u32, FaultReport)| (*pass, fault.body, fault.number));
+        let own = self.fault.take();
+        let faults = self.gathered(&own).into_iter().flatten();
+        let first = faults.min_by_key(|(pass, fault)| (*pass, fault.body, fault.number));
         first.map(|(_, fault)| fault)
+    }
+
+    /// What each rank says, by rank.
+    pub fn gathered<X: Serialize + DeserializeOwned>(&self, said: &X) -> Vec<X> {
+        let said = rmp_serde::to_vec(said).expect("memory takes what is written");
+        let all = self.ranks.gather(&said);
+        all.iter().map(|said| rmp_serde::from_slice(said).expect("ranks run the same program")).collect()
     }
 
     /// What the particles of each body on all ranks add up to.
@@ -135,12 +143,9 @@ impl<T: Laned> Among<T> {
 
     /// Adds what pairs did on other ranks to what they did here, ordered by pair and block.
     pub fn gather_touches(&self, touches: &mut Vec<BlockSums>) {
-        let said = rmp_serde::to_vec(touches).expect("numbers can be written");
+        let all = self.gathered(touches);
         touches.clear();
-        for said in self.ranks.gather(&said) {
-            let of_rank: Vec<BlockSums> = rmp_serde::from_slice(&said).expect("the bytes of sums");
-            touches.extend(of_rank);
-        }
+        touches.extend(all.into_iter().flatten());
         touches.sort_unstable_by_key(BlockSums::rank);
     }
 

@@ -13,7 +13,7 @@ use crate::boundary::{Boundary, Wall};
 use crate::check;
 use crate::contact::{ContactSums, Rules};
 use crate::damping::{BulkViscosity, NodeDamping, viscosity_columns};
-use crate::door::{RemovedParticles, Simulation, WrittenValues};
+use crate::door::{RemovedParticles, RestoreError, Simulation, WrittenValues};
 use crate::geometry::{Curved, Filling, Mirror, MirroredShape, ParticleSite, Shape, fill};
 use crate::grid::{Lattice, Periods, SIDE};
 use crate::initial_stress::{self, InitialStress};
@@ -46,13 +46,13 @@ pub fn build(scene: &Scene) -> Result<Box<dyn Simulation>, Problem> {
 /// # Errors
 /// What [`check::problems`] finds.
 pub fn build_on(scene: &Scene, path: ParticleLoop) -> Result<Box<dyn Simulation>, Problem> {
-    build_for(scene, path, None)
+    Ok(build_whole(scene, path)?)
 }
 
 /// One rank's part of the simulation of a scene, see [`Ranks`]. All ranks make the same calls of it in the same order:
 /// `step`, `bodies`, `ledger`, `contact_sums` and what else is of the whole ask the others. What is of single particles
 /// is of those that this rank has: `particles`, `snapshot`, `grid_snapshot`, `visit`, `fastest`, `trace`, `column`,
-/// `step_limit`. Nobody can write to it, save it or give it another state yet.
+/// `save`, `save_columns`. Nobody can write to it or give it another state; [`crate::shared`] has what runs need.
 ///
 /// # Errors
 /// What [`check::problems`] finds, and what ranks cannot share yet.
@@ -62,50 +62,63 @@ pub fn build_among(
     ranks: Arc<dyn Ranks>,
 ) -> Result<Box<dyn Simulation>, Problem> {
     super::among::can_be_shared(scene)?;
-    build_for(scene, path, Some(ranks))
+    let mut whole = build_whole(scene, path)?;
+    whole.share(ranks);
+    Ok(whole)
 }
 
-fn build_for(
+/// [`build_among`], of a whole that begins in another way than the scene says.
+///
+/// # Errors
+/// `begin` refuses, on all ranks.
+pub(crate) fn build_among_from(
     scene: &Scene,
     path: ParticleLoop,
-    ranks: Option<Arc<dyn Ranks>>,
-) -> Result<Box<dyn Simulation>, Problem> {
+    ranks: Arc<dyn Ranks>,
+    begin: impl FnOnce(&mut dyn Simulation) -> Result<(), RestoreError>,
+) -> Result<Box<dyn Simulation>, RestoreError> {
+    let mut whole = build_whole(scene, path).map_err(|problem| RestoreError(problem.to_string()))?;
+    begin(&mut *whole)?;
+    whole.share(ranks);
+    Ok(whole)
+}
+
+/// A simulation that ranks can share.
+trait Shareable: Simulation {
+    /// Keeps this rank's part.
+    fn share(&mut self, ranks: Arc<dyn Ranks>);
+}
+
+impl<T: Laned, const D: usize, B: Basis<T>> Shareable for Engine<T, D, B> {
+    fn share(&mut self, ranks: Arc<dyn Ranks>) {
+        self.divide(ranks);
+    }
+}
+
+fn build_whole(scene: &Scene, path: ParticleLoop) -> Result<Box<dyn Shareable>, Problem> {
     match (scene.dimension, scene.precision) {
         (Dimension::PlaneStrain | Dimension::PlaneStress, Precision::Double) => {
-            with_basis::<f64, 2>(scene, path, ranks)
+            with_basis::<f64, 2>(scene, path)
         }
         (Dimension::PlaneStrain | Dimension::PlaneStress, Precision::Single) => {
-            with_basis::<f32, 2>(scene, path, ranks)
+            with_basis::<f32, 2>(scene, path)
         }
-        (Dimension::Space, Precision::Double) => with_basis::<f64, 3>(scene, path, ranks),
-        (Dimension::Space, Precision::Single) => with_basis::<f32, 3>(scene, path, ranks),
+        (Dimension::Space, Precision::Double) => with_basis::<f64, 3>(scene, path),
+        (Dimension::Space, Precision::Single) => with_basis::<f32, 3>(scene, path),
     }
 }
 
 fn with_basis<T: Laned, const D: usize>(
     scene: &Scene,
     path: ParticleLoop,
-    ranks: Option<Arc<dyn Ranks>>,
-) -> Result<Box<dyn Simulation>, Problem> {
-    match scene.discretization.basis {
-        BasisKind::Linear => with_ranks::<T, D, Linear>(scene, path, ranks),
+) -> Result<Box<dyn Shareable>, Problem> {
+    Ok(match scene.discretization.basis {
+        BasisKind::Linear => Box::new(Engine::<T, D, Linear>::new(scene, path)?),
         // Boxes of a cell: see `Gimp`.
-        BasisKind::Gimp | BasisKind::Spline => with_ranks::<T, D, Gimp>(scene, path, ranks),
-        BasisKind::Cubic => with_ranks::<T, D, Cubic>(scene, path, ranks),
-        BasisKind::Cpdi => with_ranks::<T, D, Cpdi>(scene, path, ranks),
-    }
-}
-
-fn with_ranks<T: Laned, const D: usize, B: Basis<T>>(
-    scene: &Scene,
-    path: ParticleLoop,
-    ranks: Option<Arc<dyn Ranks>>,
-) -> Result<Box<dyn Simulation>, Problem> {
-    let mut engine = Engine::<T, D, B>::new(scene, path)?;
-    if let Some(ranks) = ranks {
-        engine.divide(ranks);
-    }
-    Ok(Box::new(engine))
+        BasisKind::Gimp | BasisKind::Spline => Box::new(Engine::<T, D, Gimp>::new(scene, path)?),
+        BasisKind::Cubic => Box::new(Engine::<T, D, Cubic>::new(scene, path)?),
+        BasisKind::Cpdi => Box::new(Engine::<T, D, Cpdi>::new(scene, path)?),
+    })
 }
 
 impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {

@@ -20,15 +20,28 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// What makes it so short; none where the scene alone does.
     pub(super) fn limit(&self) -> Option<StepLimit> {
         let (turn, longest) = (self.longest_turn(), self.longest_whatever_moves());
-        let shortest = |fastest: &Fastest| self.step_of_signal(fastest.speed) < turn.min(longest);
-        if let Some(Fastest { body, particle, .. }) = fastest_signal(&self.state.bodies).filter(shortest) {
-            let particle = self.state.bodies[body].particles.get(particle);
-            let (number, position) = (Some(particle.number), particle.position.space());
-            return Some(StepLimit { body, particle: number, position });
+        let shortest = |(speed, _): &(f64, StepLimit)| self.step_of_signal(*speed) < turn.min(longest);
+        if let Some((_, limit)) = self.fastest_of_all().filter(shortest) {
+            return Some(limit);
         }
         let (body, _) = self.longest_turns().min_by(|(_, a), (_, b)| a.total_cmp(b))?;
         let motion = self.state.bodies[body].motion.as_ref()?;
         (turn < longest).then_some(StepLimit { body, particle: None, position: motion.center })
+    }
+
+    /// The particle with the fastest signal [m/s] of all ranks.
+    fn fastest_of_all(&self) -> Option<(f64, StepLimit)> {
+        let here = fastest_signal(&self.state.bodies).map(|Fastest { body, particle, speed, .. }| {
+            let particle = self.state.bodies[body].particles.get(particle);
+            let position = particle.position.space();
+            (speed, StepLimit { body, particle: Some(particle.number), position })
+        });
+        let Some(among) = &self.among else { return here };
+        let first = |(_, limit): &(f64, StepLimit)| (limit.body, limit.particle);
+        let faster = |a: &(f64, StepLimit), b: &(f64, StepLimit)| {
+            a.0.total_cmp(&b.0).then_with(|| first(b).cmp(&first(a)))
+        };
+        among.gathered(&here).into_iter().flatten().max_by(faster)
     }
 
     /// The step in which a signal of this speed [m/s] crosses as much of a cell as is stable [s].

@@ -53,6 +53,7 @@ mod walls;
 mod watch;
 mod writing;
 
+pub(crate) use build::build_among_from;
 pub use build::{build, build_among, build_on};
 pub(crate) use build::{heated_bodies, own_columns};
 pub(crate) use mechanism::{JointSums, TouchForce};
@@ -273,14 +274,10 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
     }
 
     fn save(&self) -> Option<SavedState> {
-        // A rank has but a part of it.
-        self.among.is_none().then(|| self.saved())
+        Some(self.saved())
     }
 
     fn save_columns(&self, body: usize, take: &mut dyn FnMut(&[u32], SavedColumn)) -> bool {
-        if self.among.is_some() {
-            return false;
-        }
         let particles = &self.state.bodies[body].particles;
         saving::columns(particles).for_each(|column| take(particles.numbers(), column));
         true

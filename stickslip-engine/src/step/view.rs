@@ -342,7 +342,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> View for Engine<T, D, B> {
         }
     }
 
-    fn trace(&self, body: usize, wanted: &(dyn Fn(u32) -> bool + Sync)) -> Vec<TracedParticle> {
+    fn trace(&self, body: usize, wanted: &[u32]) -> Vec<TracedParticle> {
         let particles = &self.state.bodies[body].particles;
         let cell = self.settings.lattice.cell;
         let traced = |i: usize| {
@@ -358,8 +358,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> View for Engine<T, D, B> {
             }
         };
         let numbers = particles.numbers().iter().enumerate();
-        let mut all: Vec<_> =
-            numbers.filter(|&(_, &number)| wanted(number)).map(|(i, _)| traced(i)).collect();
+        let is_wanted = |&(_, number): &(usize, &u32)| wanted.binary_search(number).is_ok();
+        let mut all: Vec<_> = numbers.filter(is_wanted).map(|(i, _)| traced(i)).collect();
         all.sort_unstable_by_key(|particle| particle.number);
         all
     }
@@ -391,7 +391,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> View for Engine<T, D, B> {
                 }
             }
         }
-        snapshot
+        GridSnapshot::merged(vec![snapshot])
     }
 
     fn timings(&self) -> Vec<(&'static str, f64)> {

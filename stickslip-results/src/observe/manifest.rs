@@ -3,7 +3,7 @@
 use super::file::{OutputError, ReadError, ReadProblem, read_bytes, replace_for_good};
 use super::folder::OutputFolder;
 use crate::check::Warning;
-use crate::door::RelaxationState;
+use crate::door::{RankShare, RelaxationState};
 use crate::scene::{Loaded, Scene, SceneError, load, parse};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -192,6 +192,9 @@ pub struct Performance {
     pub particle_steps_per_second: f64,
     /// Wall time of each verb of the step, in the order of the step.
     pub timings: Vec<Timing>,
+    /// What each rank had and did, where several shared the run, since that was begun or taken up.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub ranks: Vec<RankShare>,
 }
 
 /// Wall time spent in one verb of the step.

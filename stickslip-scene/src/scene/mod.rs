@@ -114,7 +114,7 @@ pub struct Start {
 }
 
 /// What becomes of velocities where bodies begin as another run left them.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum StartVelocities {
     /// They go on.

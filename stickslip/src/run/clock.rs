@@ -132,6 +132,7 @@ impl RunClock {
             wall_time,
             particle_steps_per_second: self.rate(view, wall_time),
             timings: view.timings().into_iter().chain(beside).map(timing).collect(),
+            ranks: Vec::new(),
         }
     }
 

@@ -23,7 +23,7 @@ use crate::door::{Ledger, Simulation, View};
 use crate::march::{FailedStep, March, MarchEnd, Pace};
 use crate::observe::{
     BegunFrom, Checkpoint, CheckpointForm, Manifest, Memory, Observer, OutputError, OutputFolder, Patience,
-    Recorder, SceneSource, Status, Waiting, Writer, present_state_sum,
+    Performance, Recorder, SceneSource, Status, Waiting, Writer, present_state_sum,
 };
 use crate::scene::{HealthCheck, Scene};
 use checkpoints::Checkpoints;
@@ -291,7 +291,7 @@ fn drive(
         watched.to(scene.time.end, beginning.notes, progress)
     });
 
-    manifest.performance = kept.clock.performance(simulation);
+    manifest.performance = Performance { ranks: simulation.shares(), ..kept.clock.performance(simulation) };
     manifest.status = outcome.as_ref().map_or(Status::Failed, |(status, _)| *status);
     manifest.state_sum = outcome.as_ref().ok().and_then(|(_, sum)| sum.clone());
     manifest.relaxation = simulation.relaxation();

@@ -50,7 +50,7 @@ impl Neighbours {
         let chosen: Vec<u32> = chosen.into_iter().map(|rank| numbers[rank as usize]).collect();
         let mut seeds = vec![false; most];
         chosen.iter().for_each(|&number| seeds[number as usize] = true);
-        let traced = view.trace(body, &|number| seeds[number as usize]);
+        let traced = view.trace(body, &chosen);
         let widest = traced.iter().map(|particle| particle.half_width).fold(0.0, f64::max);
         if widest == 0.0 {
             return Neighbours::default();
@@ -106,7 +106,9 @@ impl Neighbours {
             return Vec::new();
         }
         let place = |number: u32| self.place.get(number as usize).copied().unwrap_or(NONE);
-        let mut traced = view.trace(body, &|number| place(number) != NONE);
+        let mut wanted = self.numbers.clone();
+        wanted.sort_unstable();
+        let mut traced = view.trace(body, &wanted);
         traced.sort_unstable_by_key(|particle| place(particle.number));
         if traced.len() < self.start.len() {
             self.keep(traced.iter().map(|particle| particle.number).collect());

@@ -1,0 +1,451 @@
+//! A simulation that several ranks share, as the first of them sees it.
+//!
+//! The first rank has a [`Simulation`] like any other: [`lead`] gives it. The others [`follow`]: whatever the first one
+//! asks of its simulation, it tells them, and all of them do it together. So a run, its outputs and its checks are
+//! written once, for a simulation, and only the first rank has them. What it is shown of particles (a snapshot, a state
+//! as data, a column) it holds for as long as it looks.
+
+use crate::column::ColumnDescription;
+use crate::door::{
+    BodyState, ColumnRef, ContactPatch, ContactSum, GridSnapshot, JointState, Ledger, LoadState, NoColumn,
+    ParticleSnapshot, ParticleView, RankShare, RelaxationState, RemovedParticles, RestoreError, SavedBody,
+    SavedColumn, SavedState, Simulation, StepError, StepLimit, TracedParticle, View, WallState, WriteError,
+    WrittenValues,
+};
+use crate::ranks::Ranks;
+use crate::rigid::Pose;
+use crate::scene::{Problem, Scene, StartVelocities};
+use crate::step::{self, ParticleLoop};
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use std::cell::Cell;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// The simulation of a scene, which other ranks share; they [`follow`] until it is dropped.
+///
+/// # Errors
+/// What [`crate::check::problems`] finds, and what ranks cannot share yet: the others find the same.
+pub fn lead(
+    scene: &Scene,
+    path: ParticleLoop,
+    ranks: Arc<dyn Ranks>,
+) -> Result<Box<dyn Simulation>, Problem> {
+    Ok(Box::new(Leader(Part::new(scene, path, ranks)?)))
+}
+
+/// Does what the first rank asks of the simulation of this scene, until it drops it.
+///
+/// # Errors
+/// What [`lead`] finds.
+pub fn follow(scene: &Scene, path: ParticleLoop, ranks: Arc<dyn Ranks>) -> Result<(), Problem> {
+    let mut part = Part::new(scene, path, ranks)?;
+    while part.obey() {}
+    Ok(())
+}
+
+/// What the first rank asks of all, itself included.
+#[derive(Serialize, Deserialize)]
+enum Call {
+    Step(f64),
+    Rebuild,
+    Hold,
+    TakeBack,
+    Settle,
+    StableStep,
+    StepLimit,
+    Particles,
+    Bodies,
+    Ledger,
+    Snapshot,
+    Visit(usize),
+    Fastest(usize, [f64; 3]),
+    Column(usize, String),
+    Trace(usize, Vec<u32>),
+    Grid,
+    Shares,
+    Save,
+    SaveColumns(usize),
+    Restore(#[serde(with = "serde_bytes")] Vec<u8>),
+    /// The state, whether it is that of a snapshot, and what becomes of velocities.
+    BeginFrom(#[serde(with = "serde_bytes")] Vec<u8>, bool, StartVelocities),
+    End,
+}
+
+/// One rank's part of a simulation. All ranks make the same calls of it in the same order, and the first gets what they
+/// give together.
+struct Part {
+    own: Box<dyn Simulation>,
+    scene: Scene,
+    path: ParticleLoop,
+    ranks: Arc<dyn Ranks>,
+    /// Steps, the time in them, and in calls that wait for others there [s].
+    worked: Cell<(u64, f64, f64)>,
+}
+
+/// The first rank's.
+struct Leader(Part);
+
+/// Bytes of what ranks tell each other.
+fn bytes_of(said: &impl Serialize) -> Vec<u8> {
+    rmp_serde::to_vec(said).expect("memory takes what is written")
+}
+
+/// The same where fields may be left out: with their names.
+fn named_bytes_of(said: &impl Serialize) -> Vec<u8> {
+    rmp_serde::to_vec_named(said).expect("memory takes what is written")
+}
+
+/// What such bytes say.
+fn read<X: DeserializeOwned>(bytes: &[u8]) -> X {
+    rmp_serde::from_slice(bytes).expect("ranks run the same program")
+}
+
+impl Part {
+    fn new(scene: &Scene, path: ParticleLoop, ranks: Arc<dyn Ranks>) -> Result<Self, Problem> {
+        let own = step::build_among(scene, path, ranks.clone())?;
+        Ok(Part { own, scene: scene.clone(), path, ranks, worked: Cell::default() })
+    }
+
+    /// What each rank says, by rank, for the first.
+    fn gathered<X: Serialize + DeserializeOwned>(&self, said: &X) -> Vec<X> {
+        self.ranks.tell_first(&bytes_of(said)).iter().map(|said| read(said)).collect()
+    }
+
+    /// Does what the first rank asks; false if that was the last.
+    fn obey(&mut self) -> bool {
+        match read(&self.ranks.hear_first(&[])) {
+            // A step that fails does so on all ranks, and the first tells the user.
+            Call::Step(longest) => drop(self.step(longest)),
+            Call::Rebuild => self.own.rebuild_workspace(),
+            Call::Hold => self.own.hold(),
+            Call::TakeBack => drop(self.own.take_back()),
+            Call::Settle => self.own.settle(),
+            Call::StableStep => drop(self.own.stable_step()),
+            Call::StepLimit => drop(self.own.step_limit()),
+            Call::Particles => drop(self.particles()),
+            Call::Bodies => drop(self.own.bodies()),
+            Call::Ledger => drop(self.own.ledger()),
+            Call::Snapshot => drop(self.snapshot()),
+            Call::Visit(body) => drop(self.views(body)),
+            Call::Fastest(body, against) => drop(self.fastest(body, against)),
+            Call::Column(body, name) => drop(self.column(body, &name)),
+            Call::Trace(body, numbers) => drop(self.trace(body, &numbers)),
+            Call::Grid => drop(self.grid_snapshot()),
+            Call::Shares => drop(self.shares()),
+            Call::Save => drop(self.save()),
+            Call::SaveColumns(body) => drop(self.save_columns(body, &mut |_, _| ())),
+            Call::Restore(state) => drop(self.begin_anew(|whole| whole.restore(read(&state)))),
+            Call::BeginFrom(state, of_snapshot, velocities) => {
+                let state = SavedState { of_snapshot, ..read(&state) };
+                drop(self.begin_anew(|whole| whole.begin_from(&state, velocities)));
+            }
+            Call::End => return false,
+        }
+        true
+    }
+
+    fn step(&mut self, longest: f64) -> Result<f64, StepError> {
+        let (begun, before) = (Instant::now(), self.ranks.traffic().waited);
+        let step = self.own.step(longest);
+        let (steps, stepped, waited) = self.worked.get();
+        let now = self.ranks.traffic().waited;
+        self.worked.set((steps + 1, stepped + begun.elapsed().as_secs_f64(), waited + now - before));
+        step
+    }
+
+    fn particles(&self) -> usize {
+        self.gathered(&self.own.particles()).iter().sum()
+    }
+
+    fn snapshot(&self) -> ParticleSnapshot {
+        ParticleSnapshot::merged(self.gathered(&self.own.snapshot()))
+    }
+
+    /// The particles of a body as they can be seen, by their numbers.
+    fn views(&self, body: usize) -> Vec<ParticleView> {
+        let mut own = Vec::new();
+        self.own.visit(body, &mut |particle| own.push(*particle));
+        let mut all = self.gathered(&own).concat();
+        all.sort_unstable_by_key(|particle| particle.number);
+        all
+    }
+
+    fn fastest(&self, body: usize, against: [f64; 3]) -> Option<ParticleView> {
+        let square = |particle: &ParticleView| -> f64 {
+            (0..3).map(|i| (particle.velocity[i] - against[i]).powi(2)).sum()
+        };
+        let all = self.gathered(&self.own.fastest(body, against));
+        all.into_iter().flatten().max_by(|a, b| square(a).total_cmp(&square(b)).then(b.number.cmp(&a.number)))
+    }
+
+    /// The numbers of a body's particles, and their components in space one particle after the other.
+    fn column(&self, body: usize, name: &str) -> Result<(ColumnDescription, Vec<u32>, Vec<f64>), NoColumn> {
+        let column = self.own.column(body, name)?;
+        let (count, numbers) = (column.description.kind.components(), column.numbers().to_vec());
+        let values = column.values();
+        let all = self.gathered(&(numbers, values));
+        let numbers: Vec<u32> = all.iter().flat_map(|(numbers, _)| numbers).copied().collect();
+        let values: Vec<f64> = all.iter().flat_map(|(_, values)| values).copied().collect();
+        debug_assert_eq!(values.len(), count * numbers.len());
+        Ok((column.description, numbers, values))
+    }
+
+    fn trace(&self, body: usize, numbers: &[u32]) -> Vec<TracedParticle> {
+        let mut all = self.gathered(&self.own.trace(body, numbers)).concat();
+        all.sort_unstable_by_key(|particle| particle.number);
+        all
+    }
+
+    fn grid_snapshot(&self) -> GridSnapshot {
+        GridSnapshot::merged(self.gathered(&self.own.grid_snapshot()))
+    }
+
+    fn shares(&self) -> Vec<RankShare> {
+        let (steps, stepped, waited) = self.worked.get();
+        let (particles, traffic) = (self.own.particles(), self.ranks.traffic());
+        let own = RankShare { particles, steps, computed: stepped - waited, waited, traffic };
+        self.gathered(&own)
+    }
+
+    fn save(&self) -> Option<SavedState> {
+        let own = self.own.save()?;
+        let mut all = self.gathered(&own.bodies).into_iter();
+        let mut bodies = all.next()?;
+        for others in all {
+            bodies.iter_mut().zip(others).for_each(|(body, other)| body.take_in(other));
+        }
+        Some(SavedState { bodies, ..own })
+    }
+
+    fn save_columns(&self, body: usize, take: &mut dyn FnMut(&[u32], SavedColumn)) -> bool {
+        let mut known: Option<(Vec<u32>, Vec<usize>)> = None;
+        self.own.save_columns(body, &mut |numbers, column| {
+            let (numbers, ends) = known.get_or_insert_with(|| {
+                let all = self.gathered(&numbers.to_vec());
+                (all.concat(), all.iter().map(Vec::len).collect())
+            });
+            let parts = self.gathered(&column);
+            if let Some(column) = SavedColumn::merged(parts, ends) {
+                take(numbers, column);
+            }
+        })
+    }
+
+    /// Begins with another state, which the whole simulation takes up before it is shared.
+    fn begin_anew(
+        &mut self,
+        begin: impl FnOnce(&mut dyn Simulation) -> Result<(), RestoreError>,
+    ) -> Result<(), RestoreError> {
+        self.own = step::build_among_from(&self.scene, self.path, self.ranks.clone(), begin)?;
+        Ok(())
+    }
+}
+
+impl Leader {
+    /// Tells the others what all are to do.
+    fn tell(&self, call: &Call) -> &Part {
+        self.0.ranks.hear_first(&bytes_of(call));
+        &self.0
+    }
+
+    fn tell_mut(&mut self, call: &Call) -> &mut Part {
+        self.tell(call);
+        &mut self.0
+    }
+}
+
+impl Drop for Leader {
+    /// The others follow no longer; those of a rank that panics may not hear it.
+    fn drop(&mut self) {
+        if !std::thread::panicking() {
+            self.tell(&Call::End);
+        }
+    }
+}
+
+impl View for Leader {
+    fn time(&self) -> f64 {
+        self.0.own.time()
+    }
+
+    fn steps(&self) -> u64 {
+        self.0.own.steps()
+    }
+
+    fn particles(&self) -> usize {
+        self.tell(&Call::Particles).particles()
+    }
+
+    fn stable_step(&self) -> f64 {
+        self.tell(&Call::StableStep).own.stable_step()
+    }
+
+    fn step_limit(&self) -> Option<StepLimit> {
+        self.tell(&Call::StepLimit).own.step_limit()
+    }
+
+    fn bodies(&self) -> Vec<BodyState> {
+        self.tell(&Call::Bodies).own.bodies()
+    }
+
+    fn poses(&self) -> Vec<Option<Pose>> {
+        self.0.own.poses()
+    }
+
+    fn ledger(&self) -> Ledger {
+        self.tell(&Call::Ledger).own.ledger()
+    }
+
+    fn relaxation(&self) -> Option<RelaxationState> {
+        self.0.own.relaxation()
+    }
+
+    fn contact_sums(&self) -> Vec<ContactSum> {
+        self.0.own.contact_sums()
+    }
+
+    fn loads(&self) -> Vec<LoadState> {
+        self.0.own.loads()
+    }
+
+    fn joints(&self) -> Vec<JointState> {
+        self.0.own.joints()
+    }
+
+    fn walls(&self) -> Vec<WallState> {
+        self.0.own.walls()
+    }
+
+    fn patches(&self) -> Vec<ContactPatch> {
+        self.0.own.patches()
+    }
+
+    fn removed(&self) -> Vec<RemovedParticles> {
+        self.0.own.removed()
+    }
+
+    fn written(&self) -> Vec<WrittenValues> {
+        self.0.own.written()
+    }
+
+    fn snapshot(&self) -> ParticleSnapshot {
+        self.tell(&Call::Snapshot).snapshot()
+    }
+
+    fn visit(&self, body: usize, look: &mut dyn FnMut(&ParticleView)) {
+        self.tell(&Call::Visit(body)).views(body).iter().for_each(look);
+    }
+
+    fn fastest(&self, body: usize, against: [f64; 3]) -> Option<ParticleView> {
+        self.tell(&Call::Fastest(body, against)).fastest(body, against)
+    }
+
+    fn columns(&self, body: usize) -> Vec<ColumnDescription> {
+        self.0.own.columns(body)
+    }
+
+    fn column(&self, body: usize, name: &str) -> Result<ColumnRef<'_>, NoColumn> {
+        let found = self.tell(&Call::Column(body, name.to_string())).column(body, name);
+        let (description, numbers, values) = found?;
+        let count = description.kind.components();
+        Ok(ColumnRef::new(description, numbers, move |row, k| values[row * count + k]))
+    }
+
+    fn trace(&self, body: usize, numbers: &[u32]) -> Vec<TracedParticle> {
+        self.tell(&Call::Trace(body, numbers.to_vec())).trace(body, numbers)
+    }
+
+    fn grid_snapshot(&self) -> GridSnapshot {
+        self.tell(&Call::Grid).grid_snapshot()
+    }
+
+    fn timings(&self) -> Vec<(&'static str, f64)> {
+        self.0.own.timings()
+    }
+
+    fn shares(&self) -> Vec<RankShare> {
+        self.tell(&Call::Shares).shares()
+    }
+}
+
+impl Simulation for Leader {
+    fn step(&mut self, longest: f64) -> Result<f64, StepError> {
+        self.tell_mut(&Call::Step(longest)).step(longest)
+    }
+
+    fn rebuild_workspace(&mut self) {
+        self.tell_mut(&Call::Rebuild).own.rebuild_workspace();
+    }
+
+    fn hold(&mut self) {
+        self.tell_mut(&Call::Hold).own.hold();
+    }
+
+    fn take_back(&mut self) -> bool {
+        self.tell_mut(&Call::TakeBack).own.take_back()
+    }
+
+    fn settle(&mut self) {
+        self.tell_mut(&Call::Settle).own.settle();
+    }
+
+    fn write(&mut self, _: usize, _: &str, _: &[f64]) -> Result<(), WriteError> {
+        Err(WriteError::Shared)
+    }
+
+    fn save(&self) -> Option<SavedState> {
+        self.tell(&Call::Save).save()
+    }
+
+    fn save_columns(&self, body: usize, take: &mut dyn FnMut(&[u32], SavedColumn)) -> bool {
+        self.tell(&Call::SaveColumns(body)).save_columns(body, take)
+    }
+
+    fn begin_from(&mut self, state: &SavedState, velocities: StartVelocities) -> Result<(), RestoreError> {
+        let call = Call::BeginFrom(named_bytes_of(state), state.of_snapshot, velocities);
+        let part = self.tell_mut(&call);
+        part.begin_anew(|whole| whole.begin_from(state, velocities))
+    }
+
+    fn restore(&mut self, state: SavedState) -> Result<(), RestoreError> {
+        let part = self.tell_mut(&Call::Restore(named_bytes_of(&state)));
+        part.begin_anew(|whole| whole.restore(state))
+    }
+}
+
+impl SavedBody {
+    /// Takes in what another rank has of the body.
+    fn take_in(&mut self, other: SavedBody) {
+        let counts = [self.numbers.len(), other.numbers.len()];
+        self.numbers.extend(other.numbers);
+        for (column, other) in self.columns.iter_mut().zip(other.columns) {
+            let own = std::mem::take(&mut column.bytes);
+            column.bytes = entries_together([&own, &other.bytes], counts, column.width);
+        }
+        // Each rank misses those of the others.
+        self.missing = self.missing.saturating_sub(counts[1]);
+    }
+}
+
+impl SavedColumn {
+    /// A column whose parts ranks have, of so many particles each.
+    fn merged(parts: Vec<SavedColumn>, counts: &[usize]) -> Option<SavedColumn> {
+        let mut parts = parts.into_iter().zip(counts.iter().copied());
+        let (mut whole, mut count) = parts.next()?;
+        for (part, more) in parts {
+            whole.bytes = entries_together([&whole.bytes, &part.bytes], [count, more], whole.width);
+            count += more;
+        }
+        Some(whole)
+    }
+}
+
+/// Entries of two columns of so many particles, each of the first before that of the second.
+fn entries_together([first, second]: [&[u8]; 2], counts: [usize; 2], width: usize) -> Vec<u8> {
+    if counts[0] == 0 || counts[1] == 0 {
+        return if counts[0] == 0 { second.to_vec() } else { first.to_vec() };
+    }
+    let entries = first.chunks_exact(width * counts[0]).zip(second.chunks_exact(width * counts[1]));
+    entries.flat_map(|(first, second)| first.iter().chain(second)).copied().collect()
+}

@@ -1,0 +1,66 @@
+//! Whether two runs of a scene are one: every file but the times in the record and the checkpoints, byte by byte.
+
+#![allow(dead_code)] // each test uses some of it
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::Ordering;
+use stickslip::observe::{Manifest, OutputError, RunWarning};
+use stickslip::run::RunOptions;
+
+/// Asks the run to stop after so many steps.
+pub struct StopAfter(pub u64, pub RunOptions);
+
+impl stickslip::observe::Observer for StopAfter {
+    fn next(&self) -> f64 {
+        0.0
+    }
+
+    fn observe(&mut self, view: &dyn stickslip::door::View) -> Result<(), OutputError> {
+        if view.steps() >= self.0 {
+            self.1.stop.store(true, Ordering::Relaxed);
+        }
+        Ok(())
+    }
+}
+
+/// Every file of a run but its record and its checkpoints, by name.
+pub fn files(out: &Path) -> Vec<(PathBuf, Vec<u8>)> {
+    let mut found = Vec::new();
+    let mut folders = vec![out.to_path_buf()];
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(folder).unwrap().map(Result::unwrap) {
+            let (path, name) = (entry.path(), entry.file_name().into_string().unwrap());
+            match path.is_dir() {
+                true if name != "checkpoints" => folders.push(path),
+                false if name != Manifest::FILE => {
+                    found.push((path.strip_prefix(out).unwrap().to_path_buf(), fs::read(&path).unwrap()));
+                }
+                _ => {}
+            }
+        }
+    }
+    found.sort();
+    found
+}
+
+/// Two runs of a scene ended in the same bits.
+pub fn assert_same_run(expected: &Path, found: &Path) {
+    let (expected_files, found_files) = (files(expected), files(found));
+    let names = |files: &[(PathBuf, Vec<u8>)]| files.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>();
+    assert_eq!(names(&expected_files), names(&found_files));
+    for ((name, expected), (_, found)) in expected_files.iter().zip(&found_files) {
+        assert!(expected == found, "{} differs", name.display());
+    }
+    let [expected, found] = [expected, found].map(|out| Manifest::read(out).unwrap());
+    assert!(expected.state_sum.is_some());
+    assert_eq!(expected.state_sum, found.state_sum);
+    // A damaged checkpoint is none of the run's doings.
+    let of_the_run = |warning: &RunWarning| warning.kind != "checkpoint";
+    let found_warnings: Vec<_> = found.warnings.into_iter().filter(of_the_run).collect();
+    assert_eq!((expected.warnings, expected.status), (found_warnings, found.status));
+    assert_eq!(expected.remarks, found.remarks);
+    assert_eq!(expected.looks, found.looks);
+    assert_eq!(expected.performance.steps, found.performance.steps);
+    assert_eq!(expected.relaxation, found.relaxation);
+}

@@ -1,0 +1,333 @@
+//! Runs that several ranks share: the files of one, byte by byte, whatever it writes.
+//!
+//! Set-up: two disks, one viscoelastic and one that flows, fall on each other and on a rigid floor with friction beside a
+//! driven rigid paddle and a mirror, with every kind of output; a disk that flies through the faces of a periodic domain;
+//! and a block from a mesh that falls on another one in space. By one rank, and by two and three that are threads of the
+//! test; stopped, and taken up by another number of ranks; and a scene that begins from another run.
+//!
+//! Expected: every file has the bytes of one rank's. No tolerance.
+
+mod same_run;
+
+use rayon::ThreadPoolBuilder;
+use same_run::{StopAfter, assert_same_run};
+use std::fs;
+use std::path::Path;
+use std::sync::Arc;
+use stickslip::door::Simulation;
+use stickslip::lanes::Processor;
+use stickslip::observe::{Checkpoint, Results, Status};
+use stickslip::ranks::{Ranks, Threads};
+use stickslip::run::{Checkpointing, RunError, RunOptions, Summary, resume, run, run_with};
+use stickslip::scene::{Scene, parse};
+use stickslip::shared;
+use stickslip::step::ParticleLoop;
+
+const PLANE: &str = r#"
+gravity = [0, -9.81]
+[space]
+dimension = "plane-strain"
+cell = 0.1
+domain = { min = [-2, -1], max = [3, 4], x_min = "symmetry" }
+[time]
+end = 0.3
+[health]
+retries = 2
+[materials.slow]
+density = 1000
+viscoelastic = { bulk_modulus = 2e5, shear_modulus = 5e4, prony = [[0.4, 0.05]] }
+[materials.clay]
+density = 1000
+von_mises = { young_modulus = 2e5, poisson_ratio = 0.3, yield_stress = 2e3 }
+[[bodies]]
+name = "low"
+material = "slow"
+shape.ball = { center = [0, 0.5], radius = 0.5 }
+[[bodies]]
+name = "high"
+material = "clay"
+shape.ball = { center = [0.2, 1.52], radius = 0.5 }
+velocity = [0, -2]
+spin = 3
+[[bodies]]
+name = "floor"
+material = "slow"
+shape.box = { min = [-2, -0.3], max = [2, -0.01] }
+rigid = {}
+[[bodies]]
+name = "paddle"
+material = "slow"
+shape.box = { min = [-0.9, 0.3], max = [-0.6, 0.6] }
+rigid = { velocity = ["0.6 * sin(20 * t)", 0], spin = "2 * t" }
+[[contact]]
+between = ["any", "any"]
+friction = 0.3
+[outputs]
+tables = 0.004
+particles = 0.03
+particles_at = [0.1, 0.155]
+grid = 0.06
+surfaces = 0.1
+samples = 0.002
+time_unit = 0.01
+checkpoints = 0.02
+reactions = ["paddle"]
+[outputs.fringes]
+interval = 0.03
+exposure = 0.02
+samples = 5
+stress_parameter = 4e3
+width = 90
+overlay = "force-chains"
+bodies = ["low", "high"]
+[[outputs.groups]]
+name = "low and high"
+bodies = ["low", "high"]
+[[outputs.sections]]
+name = "waist"
+point = [0, 0.5]
+normal = [0, 1]
+[[outputs.probes]]
+name = "heart"
+at = [0.2, 1.5]
+fixed_in = "material"
+[[outputs.probes]]
+name = "place"
+at = [0.1, 0.4]
+fixed_in = "space"
+[[outputs.arrivals]]
+quantity = "speed"
+threshold = 0.2
+bodies = ["low", "high"]
+[[outputs.arrivals]]
+quantity = "von_mises"
+threshold = 3e3
+reading = "any"
+bodies = ["low"]
+[[outputs.arrivals]]
+quantity = "speed"
+threshold = 0.1
+reading = "mean"
+bodies = ["low"]
+[[outputs.fronts]]
+name = "wave"
+quantity = "von_mises"
+threshold = 1e3
+from = [0, 1]
+direction = [0, -1]
+bodies = ["low"]
+"#;
+
+const PERIODIC: &str = r#"
+gravity = [0, -9.81]
+[space]
+dimension = "plane-strain"
+cell = 0.1
+precision = "single"
+domain = { min = [0, 0], max = [1.2, 2], x_min = "periodic", x_max = "periodic", y_min = "fixed" }
+[time]
+end = 0.3
+[materials.slow]
+density = 1000
+viscoelastic = { bulk_modulus = 2e5, shear_modulus = 5e4, prony = [[0.4, 0.05]] }
+[[bodies]]
+name = "disk"
+material = "slow"
+shape.ball = { center = [1.0, 0.75], radius = 0.25 }
+velocity = [3, -2]
+[[bodies]]
+name = "layer"
+material = "slow"
+shape.box = { min = [0, 0], max = [1.2, 0.5] }
+[[contact]]
+friction = 0.4
+[outputs]
+tables = 0.01
+particles = 0.1
+checkpoints = 0.05
+"#;
+
+const MESHED: &str = r#"
+gravity = [0, 0, -9.81]
+[space]
+dimension = "3d"
+cell = 0.125
+basis = "cpdi"
+[time]
+end = 0.2
+[materials.rubber]
+density = 1000
+neo_hookean = { young_modulus = 1e5, poisson_ratio = 0.3 }
+[[bodies]]
+name = "block"
+material = "rubber"
+shape.mesh = { file = "box.obj", scale = 0.5, translation = [0.25, 0.25, 0.02] }
+velocity = [0.5, 0, -1]
+spin = [0, 2, 0]
+[[bodies]]
+name = "slab"
+material = "rubber"
+shape.box = { min = [0, 0, -1], max = [1, 1, 0] }
+rigid = {}
+[[contact]]
+friction = 0.3
+[outputs]
+tables = 0.005
+particles = 0.1
+surfaces = 0.05
+surface_format = "glb"
+checkpoints = 0.02
+"#;
+
+/// The unit cube.
+fn cube() -> String {
+    let corner = |i: usize| {
+        let [x, y, z] = [0, 1, 2].map(|axis| i >> axis & 1);
+        format!("v {x} {y} {z}\n")
+    };
+    let faces = [[1, 3, 4, 2], [5, 6, 8, 7], [1, 2, 6, 5], [3, 7, 8, 4], [1, 5, 7, 3], [2, 4, 8, 6]];
+    let face = |[a, b, c, d]: [usize; 4]| format!("f {a} {b} {c}\nf {a} {c} {d}\n");
+    (0..8).map(corner).chain(faces.map(face)).collect()
+}
+
+/// What a scene reads beside a cube.
+fn scene(folder: &Path, text: &str) -> Scene {
+    fs::write(folder.join("box.obj"), cube()).unwrap();
+    let name = folder.join("scene.toml").display().to_string();
+    parse(&name, text, &[]).unwrap_or_else(|error| panic!("{error}")).scene
+}
+
+fn options(out: &Path) -> RunOptions {
+    let checkpoints = Checkpointing { at_end: true, ..Checkpointing::default() };
+    RunOptions { threads: 1, checkpoints, ..RunOptions::new(out) }
+}
+
+/// What the first of so many ranks gives, which share the simulation of a scene.
+fn among<X: Send>(scene: &Scene, count: usize, act: impl FnOnce(&mut dyn Simulation) -> X + Send) -> X {
+    let path = ParticleLoop::Lanes(Processor::best());
+    std::thread::scope(|scope| {
+        let mut ranks = Threads::start(count).into_iter();
+        // A pool for each: who waits for another rank keeps a thread of its pool.
+        let pool = || ThreadPoolBuilder::new().num_threads(1).build().expect("a thread can be started");
+        let first: Arc<dyn Ranks> = Arc::new(ranks.next().expect("there is one"));
+        for other in ranks {
+            let other: Arc<dyn Ranks> = Arc::new(other);
+            scope.spawn(move || {
+                pool().install(|| shared::follow(scene, path, other)).expect("ranks can share it")
+            });
+        }
+        pool().install(|| act(&mut *shared::lead(scene, path, first).expect("ranks can share it")))
+    })
+}
+
+fn start(scene: &Scene, count: usize, out: &Path) -> Summary {
+    let go = |simulation: &mut dyn Simulation| run(scene, simulation, &options(out), &mut |_| {});
+    let ended = match count {
+        1 => go(&mut *stickslip::step::build(scene).unwrap()),
+        count => among(scene, count, go),
+    };
+    ended.unwrap_or_else(|error| panic!("{error}"))
+}
+
+#[test]
+fn ranks_write_what_one_writes() {
+    for (name, text) in [("plane", PLANE), ("periodic", PERIODIC), ("meshed", MESHED)] {
+        let folder = tempfile::tempdir().unwrap();
+        let scene = scene(folder.path(), text);
+        let alone = folder.path().join("1");
+        let expected = start(&scene, 1, &alone);
+        assert!(expected.performance.steps > 50, "{name}: {expected}");
+        for count in 2..=3 {
+            let shared = folder.path().join(count.to_string());
+            let found = start(&scene, count, &shared);
+            assert_same_run(&alone, &shared);
+            assert_eq!((found.start, found.end), (expected.start.clone(), expected.end.clone()));
+            assert_eq!(found.contacts, expected.contacts);
+            let shares = found.performance.ranks;
+            assert_eq!(shares.len(), count);
+            let particles: usize = shares.iter().map(|share| share.particles).sum();
+            assert_eq!(particles, expected.performance.particles);
+            assert!(shares.iter().all(|share| share.particles < particles && share.computed > 0.0));
+        }
+    }
+}
+
+/// Stopped on two ranks, taken up by three, and by one; on one, taken up by two.
+#[test]
+fn a_run_goes_on_with_another_number_of_ranks() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = scene(folder.path(), PLANE);
+    let whole = folder.path().join("whole");
+    start(&scene, 1, &whole);
+    for [first, second, third] in [[2, 3, 1], [1, 2, 2]] {
+        let parts = folder.path().join(format!("{first} {second} {third}"));
+        let stopped = |simulation: &mut dyn Simulation, steps: u64| {
+            let options = options(&parts);
+            let mut stop = StopAfter(steps, options.clone());
+            match steps {
+                40 => run_with(&scene, simulation, &options, &mut [&mut stop], &mut |_| {}),
+                _ => resume(&scene, simulation, &options, &mut |_| {}),
+            }
+        };
+        let by = |count: usize, steps: u64| -> Result<Summary, RunError> {
+            match count {
+                1 => stopped(&mut *stickslip::step::build(&scene).unwrap(), steps),
+                count => among(&scene, count, |simulation| stopped(simulation, steps)),
+            }
+        };
+        assert_eq!(by(first, 40).unwrap().status, Status::Interrupted);
+        // The newest but one, so that another number of ranks goes further.
+        assert_eq!(by(second, 0).unwrap().status, Status::Finished);
+        assert_same_run(&whole, &parts);
+        let checkpoints = Checkpoint::list(&parts).unwrap();
+        fs::remove_file(checkpoints.last().unwrap()).unwrap();
+        assert_eq!(by(third, 0).unwrap().status, Status::Finished);
+        assert_same_run(&whole, &parts);
+    }
+}
+
+/// From a checkpoint, and from a snapshot.
+#[test]
+fn ranks_begin_from_another_run() {
+    let folder = tempfile::tempdir().unwrap();
+    let packing = folder.path().join("packing");
+    start(&scene(folder.path(), PLANE), 2, &packing);
+    for more in ["", "at = 0.155\n"] {
+        let text = PLANE.replace("velocity = [0, -2]\nspin = 3\n", "");
+        let text = format!("{text}\n[start]\nfrom = {:?}\n{more}", packing.to_str().unwrap());
+        let begun = scene(folder.path(), &text);
+        let [alone, shared] = [1, 3].map(|count| {
+            let out = folder.path().join(format!("{count} {}", more.len()));
+            start(&begun, count, &out);
+            out
+        });
+        assert_same_run(&alone, &shared);
+    }
+}
+
+/// A particle that leaves the domain: steps are taken again from memory, then the run ends with what one rank says.
+#[test]
+fn a_run_that_fails_says_what_one_says() {
+    let folder = tempfile::tempdir().unwrap();
+    let text =
+        PLANE.replace("max = [3, 4]", "max = [3, 3]").replace("velocity = [0, -2]", "velocity = [0, 9]");
+    let scene = scene(folder.path(), &text);
+    let ended = |simulation: &mut dyn Simulation, out: &Path| {
+        let error = run(&scene, simulation, &options(out), &mut |_| {}).unwrap_err();
+        error.to_string()
+    };
+    let [alone, shared] = ["alone", "shared"].map(|name| folder.path().join(name));
+    let expected = ended(&mut *stickslip::step::build(&scene).unwrap(), &alone);
+    assert!(expected.contains("`high` left the domain"), "{expected}");
+    assert_eq!(among(&scene, 3, |simulation| ended(simulation, &shared)), expected);
+    // The last record shows how far the step came that failed, and ranks end that together.
+    let rows = |out: &Path| {
+        let results = Results::open(out).unwrap();
+        assert!(results.frames().iter().all(|frame| results.particles(frame).is_ok()));
+        let rows = results.bodies_table().unwrap();
+        let last = rows.last().unwrap().time;
+        rows.into_iter().filter(|row| row.time < last).collect::<Vec<_>>()
+    };
+    let [alone, shared] = [alone, shared].map(|out| rows(&out));
+    assert!(alone.len() > 40 && alone == shared, "{} rows and {}", alone.len(), shared.len());
+}
