@@ -143,3 +143,26 @@ fn a_rule_that_never_holds_is_told_of_by_check_and_before_a_run() {
     );
     assert!(found["text"].as_str().unwrap().starts_with("never holds: contact[0]"), "{found}");
 }
+
+/// A launcher that begins several of a program that was built without MPI: the first says so, and none begins a run that
+/// the others would have begun, too.
+#[test]
+#[cfg(not(feature = "mpi"))]
+fn processes_of_a_program_without_mpi_run_nothing() {
+    let workplace = Workplace::new();
+    workplace.succeed(&["new"]);
+    let launched = |rank: &str, words: &[&str]| {
+        let mut command = workplace.command(words);
+        command.envs([("OMPI_COMM_WORLD_RANK", rank), ("OMPI_COMM_WORLD_SIZE", "4")]).output().unwrap()
+    };
+    let first = launched("0", &["run", "scene.toml"]);
+    let told = String::from_utf8_lossy(&first.stderr);
+    assert_eq!(first.status.code(), Some(2), "{told}");
+    assert!(told.contains("found 4 processes") && told.contains("--features mpi"), "{told}");
+    let other = launched("1", &["run", "scene.toml"]);
+    assert!(other.status.success() && other.stderr.is_empty() && other.stdout.is_empty());
+    assert!(!workplace.path("scene.results").exists());
+    // What is no run, one of them does.
+    let said = [0, 1].map(|rank| launched(&rank.to_string(), &["check", "scene.toml"]).stdout);
+    assert!(!said[0].is_empty() && said[1].is_empty());
+}

@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Stdio};
 use std::time::{Duration, Instant};
-use stickslip::{Workplace, new_scene};
+use stickslip::{Workplace, has_checkpoint, new_scene, outcome, record};
 
 /// The new scene, so long that there is time to kill it.
 const SETTINGS: [&str; 4] = ["--set", "time.end=0.9", "--set", "outputs.checkpoints=0.01"];
@@ -26,33 +26,6 @@ impl Numbers {
         self.0 ^= self.0 << 17;
         self.0 as f64 / u64::MAX as f64
     }
-}
-
-fn record(folder: &Path) -> serde_json::Value {
-    serde_json::from_slice(&fs::read(folder.join("run.json")).unwrap()).unwrap()
-}
-
-/// All files of results but the record and the checkpoints, and the sum of the last state.
-fn outcome(folder: &Path) -> (BTreeMap<PathBuf, Vec<u8>>, serde_json::Value) {
-    let mut files = BTreeMap::new();
-    let mut open = vec![folder.to_path_buf()];
-    while let Some(inside) = open.pop() {
-        for entry in fs::read_dir(inside).unwrap().flatten() {
-            let name = entry.path().strip_prefix(folder).unwrap().to_path_buf();
-            if entry.path().is_dir() {
-                open.extend((name != Path::new("checkpoints")).then(|| entry.path()));
-            } else if name != Path::new("run.json") {
-                files.insert(name, fs::read(entry.path()).unwrap());
-            }
-        }
-    }
-    (files, record(folder)["state_sum"].clone())
-}
-
-fn has_checkpoint(folder: &Path) -> bool {
-    fs::read_dir(folder.join("checkpoints")).is_ok_and(|entries| {
-        entries.flatten().any(|entry| entry.path().extension().is_some_and(|ending| ending == "checkpoint"))
-    })
 }
 
 /// The run of the scene in a folder, or its resumption if there is something to go on from.

@@ -1,6 +1,6 @@
 //! Runs that several ranks share: the files of one, byte by byte, whatever it writes.
 //!
-//! Set-up: two disks, one viscoelastic and one that flows, fall on each other and on a rigid floor with friction beside a
+//! Set-up: two disks, one viscoelastic and one that flows, fall on each other and on a rigid floor without bounds with friction beside a
 //! driven rigid paddle and a mirror, with every kind of output; a disk that flies through the faces of a periodic domain;
 //! and a block from a mesh that falls on another one in space. By one rank, and by two and three that are threads of the
 //! test; stopped, and taken up by another number of ranks; and a scene that begins from another run.
@@ -52,7 +52,7 @@ spin = 3
 [[bodies]]
 name = "floor"
 material = "slow"
-shape.box = { min = [-2, -0.3], max = [2, -0.01] }
+shape.half_space = { point = [0, -0.01], normal = [0, 1] }
 rigid = {}
 [[bodies]]
 name = "paddle"
@@ -139,6 +139,11 @@ velocity = [3, -2]
 name = "layer"
 material = "slow"
 shape.box = { min = [0, 0], max = [1.2, 0.5] }
+[[bodies]]
+name = "lid"
+material = "slow"
+shape.half_space = { point = [0, 1.1], normal = [0, -1] }
+rigid = { velocity = [0.2, -1.5] }
 [[contact]]
 friction = 0.4
 [outputs]

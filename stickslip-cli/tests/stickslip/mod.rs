@@ -1,7 +1,8 @@
 //! The program as a user runs it: in a folder of its own, with its output caught.
 #![allow(dead_code, reason = "each test file uses a part")]
 
-use std::path::PathBuf;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 use tempfile::TempDir;
 
@@ -58,6 +59,35 @@ pub fn new_scene() -> String {
     let workplace = Workplace::new();
     workplace.succeed(&["new"]);
     std::fs::read_to_string(workplace.path("scene.toml")).unwrap()
+}
+
+/// The record of a run.
+pub fn record(folder: &Path) -> serde_json::Value {
+    serde_json::from_slice(&std::fs::read(folder.join("run.json")).unwrap()).unwrap()
+}
+
+/// All files of results but the record and the checkpoints, and the sum of the last state.
+pub fn outcome(folder: &Path) -> (BTreeMap<PathBuf, Vec<u8>>, serde_json::Value) {
+    let mut files = BTreeMap::new();
+    let mut open = vec![folder.to_path_buf()];
+    while let Some(inside) = open.pop() {
+        for entry in std::fs::read_dir(inside).unwrap().flatten() {
+            let name = entry.path().strip_prefix(folder).unwrap().to_path_buf();
+            if entry.path().is_dir() {
+                open.extend((name != Path::new("checkpoints")).then(|| entry.path()));
+            } else if name != Path::new("run.json") {
+                files.insert(name, std::fs::read(entry.path()).unwrap());
+            }
+        }
+    }
+    (files, record(folder)["state_sum"].clone())
+}
+
+/// Whether there is one to go on from.
+pub fn has_checkpoint(folder: &Path) -> bool {
+    std::fs::read_dir(folder.join("checkpoints")).is_ok_and(|entries| {
+        entries.flatten().any(|entry| entry.path().extension().is_some_and(|ending| ending == "checkpoint"))
+    })
 }
 
 /// A Python that can drive a browser: `STICKSLIP_PYTHON`, else `python3`. `None` where there is no browser and nobody

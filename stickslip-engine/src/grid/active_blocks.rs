@@ -271,14 +271,29 @@ impl<const D: usize> ActiveBlocks<D> {
         self.cell_lists[body].forgotten = true;
     }
 
-    /// Covers a body anew: all its particles are others than before. Counts as [`ActiveBlocks::update`] does.
+    /// Covers a body anew: all its particles are others than before. Counts as [`ActiveBlocks::update`] does. Among ranks
+    /// [`ActiveBlocks::cover`] has to follow.
     pub fn replace(
         &mut self,
         (body, count, reach): (usize, usize, i32),
         looks: (impl Fn(usize) -> [i32; D], impl Fn(usize) -> u32 + Sync),
     ) {
         self.cell_lists[body].start((count, reach), looks);
-        self.rebuild();
+        if self.border.is_none() {
+            self.rebuild();
+        }
+    }
+
+    /// The blocks of a body.
+    pub fn blocks_of(&self, body: usize) -> impl Iterator<Item = [i32; D]> {
+        self.slots[self.slots_of_body(body)].iter().map(|(_, block)| *block)
+    }
+
+    /// The blocks that this rank's particles of a body reach, some of them several times.
+    pub fn reached_by(&self, body: usize) -> impl Iterator<Item = [i32; D]> {
+        let list = &self.cell_lists[body];
+        let of_tile = |tile: usize| list.reached_by::<D>(tile);
+        (0..list.homes.len()).flat_map(of_tile).map(|block| self.periods.wrapped(block))
     }
 
     fn rebuild(&mut self) {

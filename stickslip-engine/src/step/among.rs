@@ -12,9 +12,9 @@ use crate::grid::{
 };
 use crate::lanes::Laned;
 use crate::material::Material;
-use crate::particles::{number_of, write_number};
+use crate::particles::{Particles, number_of, write_number};
 use crate::ranks::{Message, Partition, Ranks, message_to};
-use crate::scene::{self, BasisKind, ContactLaw, ContactRule, Face, Leaving, NamedMaterial, Problem, Scene};
+use crate::scene::{BasisKind, ContactLaw, ContactRule, Face, Leaving, NamedMaterial, Problem, Scene};
 use crate::tensor::Real;
 use crate::threads::each_range;
 use serde::Serialize;
@@ -176,16 +176,6 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             }
         }
         let partition = Partition::balanced(ranks.count(), loads);
-        let foreign = |body: usize| {
-            let count = self.state.bodies[body].particles.len();
-            let abroad = |&particle: &u32| partition.owner(block_of(body, particle as usize)) != ranks.rank();
-            (0..count as u32).filter(abroad).collect::<Vec<u32>>()
-        };
-        let gone: Vec<Vec<u32>> = (0..self.state.bodies.len()).map(foreign).collect();
-        for (body, gone) in self.state.bodies.iter_mut().zip(gone) {
-            body.particles.remove(&gone);
-            body.particles.fit();
-        }
         self.among = Some(Among {
             ranks,
             partition,
@@ -195,7 +185,41 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             names: Vec::new(),
             windows: Vec::new(),
         });
+        for body in 0..self.state.bodies.len() {
+            let gone = self.of_other_ranks(&self.state.bodies[body].particles);
+            let particles = &mut self.state.bodies[body].particles;
+            particles.remove(&gone);
+            particles.fit();
+        }
         self.watch_borders();
+    }
+
+    /// The blocks that any rank names, and this rank's among them, sorted.
+    pub(super) fn blocks_of_all(&self, own: Vec<[i32; D]>) -> Vec<[i32; D]> {
+        let Some(among) = &self.among else { return own };
+        let said: Vec<i32> = own.into_iter().flatten().collect();
+        let all = among.gathered(&said).concat();
+        let mut all = all.as_chunks().0.to_vec();
+        all.sort_unstable();
+        all.dedup();
+        all
+    }
+
+    /// Whether something is so on any rank.
+    pub(super) fn on_any_rank(&self, here: bool) -> bool {
+        self.among.as_ref().map_or(here, |among| among.ranks.largest(f64::from(u8::from(here))) > 0.0)
+    }
+
+    /// Which particles of a body are not in this rank's share, by their places in memory.
+    pub(super) fn of_other_ranks(&self, particles: &Particles<T, D>) -> Vec<u32> {
+        let Some(among) = &self.among else { return Vec::new() };
+        let lattice = self.settings.lattice;
+        let abroad = |&particle: &u32| {
+            let base = home::<T, D, B>(&lattice, particles.place(particle as usize));
+            let block = lattice.periods.wrapped(crate::grid::locate(base).0);
+            among.partition.owner(block) != among.ranks.rank()
+        };
+        (0..particles.len() as u32).filter(abroad).collect()
     }
 
     /// Lets the blocks know that there are other ranks.
@@ -207,13 +231,14 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         }
     }
 
-    /// Lets particles move to the ranks that own their blocks, and covers the blocks of those that are here.
+    /// Lets particles move to the ranks that own their blocks, and says whether the blocks under those that are here are
+    /// others than before.
     pub(super) fn cross_borders(&mut self) -> Blocks {
-        let mut among = self.among.take().expect("there are other ranks");
+        let among = self.among.take().expect("there are other ranks");
         let rank = among.ranks.rank();
         let lattice = self.settings.lattice;
-        let owner = |block: [i32; D]| among.partition.owner(block);
-        let gone = self.workspace.active.emigrants(|block| Some(owner(block)).filter(|&owner| owner != rank));
+        let abroad = |block: [i32; D]| Some(among.partition.owner(block)).filter(|&owner| owner != rank);
+        let gone = self.workspace.active.emigrants(abroad);
         let mut messages: Vec<Message> = Vec::new();
         for of_body in gone.chunk_by(|a, b| a.body == b.body) {
             let body = of_body[0].body;
@@ -249,12 +274,19 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 rest = after;
             }
         }
+        self.among = Some(among);
         let bodies = &self.state.bodies;
-        let blocks =
-            self.workspace.active.settle(|body, particle| bodies[body].particles.numbers()[particle]);
+        self.workspace.active.settle(|body, particle| bodies[body].particles.numbers()[particle])
+    }
+
+    /// Covers the blocks of the particles that are here, which may be others than before, and those that other ranks have
+    /// beside them.
+    pub(super) fn cover_blocks(&mut self, blocks: Blocks) -> Blocks {
+        let mut among = self.among.take().expect("there are other ranks");
+        let rank = among.ranks.rank();
         let own = blocks == Blocks::New || !self.workspace.listed;
         if own {
-            among.names = self.workspace.active.named(rank, owner);
+            among.names = self.workspace.active.named(rank, |block| among.partition.owner(block));
         }
         let named = among.ranks.exchange(among.names.clone());
         let changed = own || named != among.named;
@@ -328,14 +360,12 @@ pub(super) fn can_be_shared(scene: &Scene) -> Result<(), Problem> {
         _ => false,
     };
     let removes = scene.domain.as_ref().is_some_and(|domain| domain.leaving == Leaving::Remove);
-    let without_bounds = |body: &scene::Body| body.shape.bounds(scene.dimension.axes()).is_none();
     let refused = [
         (
             "bodies.rigid",
             "a rigid body that forces move",
             scene.bodies.iter().any(|body| body.as_free_rigid().is_some()),
         ),
-        ("bodies.shape", "a body without bounds", scene.bodies.iter().any(without_bounds)),
         ("loads", "a support or a load", !scene.loads.is_empty()),
         ("joints", "a joint", !scene.joints.is_empty()),
         ("springs", "a spring", !scene.springs.is_empty()),

@@ -208,25 +208,15 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     pub(super) fn spread(&mut self, blocks: Blocks) -> Blocks {
         let mut changed = Blocks::Same;
         for i in 0..self.state.unbounded.len() {
-            let unbounded = &self.state.unbounded[i];
-            let pose = self.without_bounds(unbounded.body).expect(ONLY_RIGID).pose();
-            if blocks == Blocks::Same && unbounded.pose == Some(pose) {
+            if !self.on_any_rank(self.lacks_particles(i, blocks)) {
                 continue;
             }
-            let held = self
-                .workspace
-                .active
-                .slots
-                .iter()
-                .filter(|(body, _)| !self.state.bodies[*body as usize].is_rigid());
-            let near = held.map(|(_, block)| *block).filter(|&block| unbounded.meets(block, &pose));
-            let drifted = unbounded.drifted(&pose);
-            if !drifted && near.clone().all(|block| unbounded.served.binary_search(&block).is_ok()) {
-                continue;
-            }
-            let mut near: Vec<_> = near.collect();
+            let mut near: Vec<[i32; D]> = self.near_blocks(i).collect();
             near.sort_unstable();
             near.dedup();
+            let near = self.blocks_of_all(near);
+            let unbounded = &self.state.unbounded[i];
+            let pose = self.without_bounds(unbounded.body).expect(ONLY_RIGID).pose();
             // Those beside them are kept: bodies come back.
             let beside = grown(&near, unbounded.periods);
             let kept = unbounded.served.iter().filter(|block| beside.binary_search(block).is_ok());
@@ -243,6 +233,31 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             changed = Blocks::New;
         }
         changed
+    }
+
+    /// Whether a body without bounds has come where it has no particles, or others have. Nobody has who holds the same
+    /// blocks as before.
+    fn lacks_particles(&self, i: usize, blocks: Blocks) -> bool {
+        let unbounded = &self.state.unbounded[i];
+        let pose = self.without_bounds(unbounded.body).expect(ONLY_RIGID).pose();
+        let moved = blocks == Blocks::New || unbounded.pose != Some(pose);
+        let served = |block: &[i32; D]| unbounded.served.binary_search(block).is_ok();
+        moved && (unbounded.drifted(&pose) || !self.near_blocks(i).all(|block| served(&block)))
+    }
+
+    /// The blocks of deformable bodies in which its surface may be met; some of them several times.
+    fn near_blocks(&self, i: usize) -> impl Iterator<Item = [i32; D]> {
+        let unbounded = &self.state.unbounded[i];
+        let pose = self.without_bounds(unbounded.body).expect(ONLY_RIGID).pose();
+        let active = &self.workspace.active;
+        let deform = (0..self.state.bodies.len()).filter(|&body| !self.state.bodies[body].is_rigid());
+        // Blocks are covered when all ranks have named their tiles: not yet.
+        let alone = self.among.is_none();
+        let held = deform.flat_map(move |body| {
+            let covered = alone.then(|| active.blocks_of(body)).into_iter().flatten();
+            covered.chain((!alone).then(|| active.reached_by(body)).into_iter().flatten())
+        });
+        held.filter(move |&block| unbounded.meets(block, &pose))
     }
 
     /// Gives a body without bounds these particles, by their sites at the start.
@@ -267,6 +282,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         for (i, &site) in sites.iter().enumerate() {
             particles.set(i, &Particle { position: Vector::of(pose.now(site)), ..particle(i) });
         }
+        particles.remove(&self.of_other_ranks(&particles));
         let body = &mut self.state.bodies[number];
         body.particles = particles;
         let (particles, grid) = (&body.particles, &self.settings.lattice);

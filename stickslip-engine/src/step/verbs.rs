@@ -36,11 +36,13 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let number = |body: usize, particle: usize| bodies[body].particles.numbers()[particle];
         let blocks = if self.among.is_some() {
             self.workspace.active.find_movers((bodies.len(), count, reach), left, (base, number));
-            self.cross_borders()
+            let blocks = self.cross_borders();
+            let blocks = blocks.max(self.spread(blocks));
+            self.cover_blocks(blocks)
         } else {
-            self.workspace.active.update((bodies.len(), count, reach), left, (base, number))
+            let blocks = self.workspace.active.update((bodies.len(), count, reach), left, (base, number));
+            blocks.max(self.spread(blocks))
         };
-        let blocks = blocks.max(self.spread(blocks));
         if !idle {
             self.sort_particles();
         }

@@ -1,0 +1,187 @@
+//! Several processes that share a run, by MPI: the files of one, an end that is told once, and runs that go on after a
+//! process was killed, with another number of them.
+//!
+//! Needs `mpirun`, and a program that was built with the feature `mpi`.
+
+mod stickslip;
+
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+use stickslip::{Ran, Workplace, new_scene, outcome, record};
+
+/// So many processes of the program with these words, on as few processors as there are.
+fn together(workplace: &Workplace, count: usize, words: &[&str]) -> Command {
+    let mut command = Command::new("mpirun");
+    command.args(["--oversubscribe", "--bind-to", "none", "-n", &count.to_string()]);
+    command.args([env!("CARGO_BIN_EXE_stickslip")]).args(words).current_dir(workplace.path(""));
+    // Containers have no other user.
+    command.envs([("OMPI_ALLOW_RUN_AS_ROOT", "1"), ("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1")]);
+    command
+}
+
+fn run(workplace: &Workplace, count: usize, words: &[&str]) -> Ran {
+    let output =
+        together(workplace, count, words).output().expect("mpirun is there: apt install openmpi-bin");
+    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+    Ran { code: output.status.code(), stdout: text(output.stdout), stderr: text(output.stderr) }
+}
+
+const SHORT: [&str; 4] = ["--set", "cells_per_radius=4", "--threads", "1"];
+/// With time to be stopped.
+const LONG: [&str; 8] = [
+    "--set",
+    "cells_per_radius=10",
+    "--set",
+    "time.end=0.9",
+    "--set",
+    "outputs.checkpoints=0.01",
+    "--threads",
+    "1",
+];
+
+fn with<'a>(words: &[&'a str], more: &[&'a str]) -> Vec<&'a str> {
+    [words, more].concat()
+}
+
+/// The new scene in a workplace, and in another one with its results by one process.
+fn scene(words: &[&str]) -> Workplace {
+    let workplace = Workplace::new();
+    workplace.write("scene.toml", &new_scene());
+    workplace.succeed(&with(&["run", "scene.toml", "--quiet", "--out", "one"], words));
+    workplace
+}
+
+/// Every file has the bytes of one process's; the summary and the balance are told once.
+#[test]
+fn processes_write_what_one_writes() {
+    let workplace = scene(&SHORT);
+    for count in [2, 3] {
+        let out = count.to_string();
+        let ran = run(&workplace, count, &with(&["run", "scene.toml", "--verbose", "--out", &out], &SHORT));
+        assert_eq!(ran.code, Some(0), "{}", ran.stderr);
+        assert_eq!(ran.stdout.matches("finished at t =").count(), 1, "{}", ran.stdout);
+        assert!(ran.stdout.contains("the slowest rank computes"), "{}", ran.stdout);
+        let [one, several] = ["one", &out].map(|out| outcome(&workplace.path(out)));
+        assert_eq!(one.0.keys().collect::<Vec<_>>(), several.0.keys().collect::<Vec<_>>());
+        for (name, bytes) in &one.0 {
+            assert!(several.0[name] == *bytes, "{} differs with {count} processes", name.display());
+        }
+        assert_eq!(one.1, several.1);
+        let ranks = record(&workplace.path(&out))["performance"]["ranks"].clone();
+        assert_eq!(ranks.as_array().map(Vec::len), Some(count));
+    }
+    // Made again by one process, and by two.
+    for count in [1, 2] {
+        let again = ["run", "--again", "2", "--threads", "1"];
+        let ran = if count == 1 { workplace.run(&again) } else { run(&workplace, count, &again) };
+        assert_eq!(ran.code, Some(0), "{}{}", ran.stdout, ran.stderr);
+        assert!(ran.stdout.contains("the same bits"), "{}", ran.stdout);
+        std::fs::remove_dir_all(workplace.path("2.again")).unwrap();
+    }
+}
+
+/// Any of them, the first one too: the launcher ends the others and names it, and another number of processes goes on.
+#[test]
+fn a_run_whose_process_was_killed_goes_on_with_another_number() {
+    let workplace = scene(&LONG);
+    let out = "killed by the test";
+    let mut words = with(&["run", "scene.toml", "--quiet", "--out", out], &LONG);
+    for (count, killed) in [(3, 1), (2, 0)] {
+        let before = newest(&workplace, out);
+        let launcher = together(&workplace, count, &words).stderr(Stdio::piped()).spawn().unwrap();
+        let begun = Instant::now();
+        while newest(&workplace, out) == before {
+            assert!(begun.elapsed() < Duration::from_secs(100), "there is a checkpoint soon");
+            std::thread::sleep(Duration::from_millis(10));
+        }
+        let process = ranks(out)[killed].to_string();
+        assert!(Command::new("kill").args(["-KILL", &process]).status().unwrap().success());
+        let ended = launcher.wait_with_output().unwrap();
+        let told = String::from_utf8_lossy(&ended.stderr);
+        assert!(!ended.status.success() && told.contains(&format!("rank {killed}")), "{told}");
+        assert_eq!(record(&workplace.path(out))["status"], "running");
+        words = vec!["resume", out, "--quiet", "--threads", "1"];
+    }
+    let ran = run(&workplace, 4, &words);
+    assert_eq!(ran.code, Some(0), "{}", ran.stderr);
+    let [one, several] = ["one", out].map(|out| outcome(&workplace.path(out)));
+    assert!(one == several, "the run ends as one that nobody killed");
+}
+
+/// `kill -USR1` of the launcher, as batch systems do before a job's time is over: the last step is saved.
+#[test]
+fn a_signal_stops_all_with_a_checkpoint() {
+    let workplace = scene(&LONG);
+    let launcher = together(&workplace, 2, &with(&["run", "scene.toml", "--out", "stopped"], &LONG))
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let begun = Instant::now();
+    while newest(&workplace, "stopped").is_none() {
+        assert!(begun.elapsed() < Duration::from_secs(100), "there is a checkpoint soon");
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    let process = launcher.id().to_string();
+    assert!(Command::new("kill").args(["-USR1", &process]).status().unwrap().success());
+    let ended = launcher.wait_with_output().unwrap();
+    let [out, error] = [&ended.stdout, &ended.stderr].map(|text| String::from_utf8_lossy(text));
+    assert_eq!(ended.status.code(), Some(130), "{out}{error}");
+    assert_eq!(out.matches("go on with: stickslip resume stopped").count(), 1, "{out}");
+    assert_eq!(record(&workplace.path("stopped"))["status"], "interrupted");
+    let ran = run(&workplace, 3, &["resume", "stopped", "--quiet", "--threads", "1"]);
+    assert_eq!(ran.code, Some(0), "{}", ran.stderr);
+    let [one, several] = ["one", "stopped"].map(|out| outcome(&workplace.path(out)));
+    assert!(one == several, "the run ends as one that nobody stopped");
+}
+
+/// What is wrong is told once, with the exit code of one process.
+#[test]
+fn what_is_wrong_is_told_once() {
+    let workplace = Workplace::new();
+    let scene = new_scene();
+    workplace.write("scene.toml", &scene);
+    workplace.write("wrong.toml", &scene.replace("density = ", "density_ = "));
+    let thrown = scene.replace("\"-0.5 m/s\"", "\"20 m/s\"");
+    assert_ne!(thrown, scene);
+    workplace.write("lost.toml", &thrown);
+    for (words, code, told) in [
+        (&["run", "wrong.toml"][..], 2, "density_"),
+        (&["run", "no such file.toml"], 2, "no such file.toml"),
+        (&["run", "scene.toml", "--no-such-flag"], 2, "--no-such-flag"),
+        (&["run", "lost.toml", "--quiet"], 1, "left the domain"),
+        (&["check", "lost.toml", "--no-such-flag"], 2, "--no-such-flag"),
+    ] {
+        let alone = workplace.run(words);
+        let ran = run(&workplace, 3, words);
+        assert_eq!((ran.code, alone.code), (Some(code), Some(code)), "{words:?}: {}", ran.stderr);
+        let count = |text: &str| text.matches(told).count();
+        assert!(count(&alone.stderr) > 0, "{}", alone.stderr);
+        assert_eq!(count(&ran.stderr), count(&alone.stderr), "{words:?}: {}", ran.stderr);
+    }
+    // Nobody but the first does what is for one.
+    let ran = run(&workplace, 3, &["check", "scene.toml"]);
+    assert_eq!((ran.code, ran.stdout.matches("particles").count() > 0), (Some(0), true), "{}", ran.stderr);
+    assert_eq!(ran.stdout, workplace.succeed(&["check", "scene.toml"]));
+}
+
+/// Process numbers of the ranks of a run into a folder, the first one first.
+fn ranks(out: &str) -> Vec<u32> {
+    let of_run = |pid: &u32| {
+        let words = std::fs::read(format!("/proc/{pid}/cmdline")).unwrap_or_default();
+        let words: Vec<&[u8]> = words.split(|&byte| byte == 0).collect();
+        words[0] == env!("CARGO_BIN_EXE_stickslip").as_bytes() && words.contains(&out.as_bytes())
+    };
+    let all = std::fs::read_dir("/proc").unwrap().flatten();
+    let mut found: Vec<u32> =
+        all.filter_map(|entry| entry.file_name().to_str()?.parse().ok()).filter(of_run).collect();
+    found.sort_unstable();
+    found
+}
+
+/// The newest checkpoint of a run, by name.
+fn newest(workplace: &Workplace, out: &str) -> Option<String> {
+    let names = std::fs::read_dir(workplace.path(out).join("checkpoints")).ok()?.flatten();
+    let names = names.filter_map(|name| name.file_name().into_string().ok());
+    names.filter(|name| name.ends_with(".checkpoint")).max()
+}
