@@ -2,9 +2,8 @@
 
 mod stickslip;
 
-use std::collections::BTreeMap;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Child, Stdio};
 use std::time::{Duration, Instant};
 use stickslip::{Workplace, has_checkpoint, new_scene, outcome, record};

@@ -18,9 +18,7 @@ use crate::scene::{Problem, Scene, StartVelocities};
 use crate::step::{self, ParticleLoop};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
-use std::cell::Cell;
 use std::sync::Arc;
-use std::time::Instant;
 
 /// The simulation of a scene, which other ranks share; they [`follow`] until it is dropped.
 ///
@@ -57,6 +55,7 @@ enum Call {
     Particles,
     Bodies,
     Ledger,
+    Loads,
     Snapshot,
     Visit(usize),
     Fastest(usize, [f64; 3]),
@@ -79,8 +78,6 @@ struct Part {
     scene: Scene,
     path: ParticleLoop,
     ranks: Arc<dyn Ranks>,
-    /// Steps, the time in them, and in calls that wait for others there [s].
-    worked: Cell<(u64, f64, f64)>,
 }
 
 /// The first rank's.
@@ -104,7 +101,7 @@ fn read<X: DeserializeOwned>(bytes: &[u8]) -> X {
 impl Part {
     fn new(scene: &Scene, path: ParticleLoop, ranks: Arc<dyn Ranks>) -> Result<Self, Problem> {
         let own = step::build_among(scene, path, ranks.clone())?;
-        Ok(Part { own, scene: scene.clone(), path, ranks, worked: Cell::default() })
+        Ok(Part { own, scene: scene.clone(), path, ranks })
     }
 
     /// What each rank says, by rank, for the first.
@@ -116,7 +113,7 @@ impl Part {
     fn obey(&mut self) -> bool {
         match read(&self.ranks.hear_first(&[])) {
             // A step that fails does so on all ranks, and the first tells the user.
-            Call::Step(longest) => drop(self.step(longest)),
+            Call::Step(longest) => drop(self.own.step(longest)),
             Call::Rebuild => self.own.rebuild_workspace(),
             Call::Hold => self.own.hold(),
             Call::TakeBack => drop(self.own.take_back()),
@@ -126,6 +123,7 @@ impl Part {
             Call::Particles => drop(self.particles()),
             Call::Bodies => drop(self.own.bodies()),
             Call::Ledger => drop(self.own.ledger()),
+            Call::Loads => drop(self.own.loads()),
             Call::Snapshot => drop(self.snapshot()),
             Call::Visit(body) => drop(self.views(body)),
             Call::Fastest(body, against) => drop(self.fastest(body, against)),
@@ -143,15 +141,6 @@ impl Part {
             Call::End => return false,
         }
         true
-    }
-
-    fn step(&mut self, longest: f64) -> Result<f64, StepError> {
-        let (begun, before) = (Instant::now(), self.ranks.traffic().waited);
-        let step = self.own.step(longest);
-        let (steps, stepped, waited) = self.worked.get();
-        let now = self.ranks.traffic().waited;
-        self.worked.set((steps + 1, stepped + begun.elapsed().as_secs_f64(), waited + now - before));
-        step
     }
 
     fn particles(&self) -> usize {
@@ -202,10 +191,7 @@ impl Part {
     }
 
     fn shares(&self) -> Vec<RankShare> {
-        let (steps, stepped, waited) = self.worked.get();
-        let (particles, traffic) = (self.own.particles(), self.ranks.traffic());
-        let own = RankShare { particles, steps, computed: stepped - waited, waited, traffic };
-        self.gathered(&own)
+        self.gathered(&self.own.shares()).concat()
     }
 
     fn save(&self) -> Option<SavedState> {
@@ -306,7 +292,7 @@ impl View for Leader {
     }
 
     fn loads(&self) -> Vec<LoadState> {
-        self.0.own.loads()
+        self.tell(&Call::Loads).own.loads()
     }
 
     fn joints(&self) -> Vec<JointState> {
@@ -371,7 +357,7 @@ impl View for Leader {
 
 impl Simulation for Leader {
     fn step(&mut self, longest: f64) -> Result<f64, StepError> {
-        self.tell_mut(&Call::Step(longest)).step(longest)
+        self.tell_mut(&Call::Step(longest)).own.step(longest)
     }
 
     fn rebuild_workspace(&mut self) {

@@ -235,7 +235,7 @@ impl View for Handle {
         self.0.lock().column_place(body, name)
     }
 
-    fn trace(&self, body: usize, wanted: &(dyn Fn(u32) -> bool + Sync)) -> Vec<TracedParticle> {
+    fn trace(&self, body: usize, wanted: &[u32]) -> Vec<TracedParticle> {
         self.0.ask(|simulation| simulation.trace(body, wanted))
     }
 

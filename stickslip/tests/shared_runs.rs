@@ -1,9 +1,10 @@
 //! Runs that several ranks share: the files of one, byte by byte, whatever it writes.
 //!
-//! Set-up: two disks, one viscoelastic and one that flows, fall on each other and on a rigid floor without bounds with friction beside a
-//! driven rigid paddle and a mirror, with every kind of output; a disk that flies through the faces of a periodic domain;
-//! and a block from a mesh that falls on another one in space. By one rank, and by two and three that are threads of the
-//! test; stopped, and taken up by another number of ranks; and a scene that begins from another run.
+//! Set-up: two disks, one viscoelastic and one that flows, fall on each other and on a rigid floor without bounds with
+//! friction, beside a driven rigid paddle and a mirror, with every kind of output; a disk that flies through the faces of
+//! a periodic domain; a block from a mesh that falls on another one in space; bodies under loads, on supports and springs;
+//! and bodies that lose particles. By one rank, and by two and three that are threads of the test; stopped, and taken up
+//! by another number of ranks; and a scene that begins from another run.
 //!
 //! Expected: every file has the bytes of one rank's. No tolerance.
 
@@ -184,6 +185,102 @@ surface_format = "glb"
 checkpoints = 0.02
 "#;
 
+/// Bodies that begin with a stress between faces whose reactions are asked for, under gravity that changes: one is pressed
+/// and hung on a spring, one is warmed, and a strut keeps them apart.
+const LOADED: &str = r#"
+damping = { local = 0.02 }
+gravity = ["2 * sin(30 * t)", { table = [[0, -9.81], ["0.1 s", -2], ["0.3 s", -9.81]] }]
+[space]
+dimension = "plane-strain"
+cell = 0.1
+domain = { min = [-1, 0], max = [1.4, 2.2], y_min = "fixed", x_min = "symmetry" }
+[time]
+end = 0.2
+[materials.soil]
+density = 1000
+neo_hookean = { young_modulus = 1e5, poisson_ratio = 0.3 }
+thermal_expansion = 2e-4
+[[bodies]]
+name = "bed"
+material = "soil"
+shape.box = { min = [-1, 0], max = [1, 0.5] }
+stress = { yy = "-9810 * (0.5 - y)", xx = "-4000 * (0.5 - y)" }
+[[bodies]]
+name = "post"
+material = "soil"
+shape.box = { min = [-0.6, 0.5], max = [-0.2, 1.1] }
+[[bodies]]
+name = "pier"
+material = "soil"
+shape.box = { min = [0.2, 0.5], max = [0.6, 1.1] }
+[[springs]]
+name = "strut"
+from = { body = "post", on = "x_max" }
+to = { body = "pier", on = "x_min" }
+stiffness = 2e3
+dashpot = 20
+[[supports]]
+name = "hook"
+body = "post"
+on = "x_min"
+stiffness = 2e4
+dashpot = 10
+[[loads]]
+name = "press"
+body = "pier"
+on = "y_max"
+traction = [0, "-3000 * (1 - exp(-t / 0.05))"]
+[[loads]]
+name = "wind"
+body = "bed"
+acceleration = ["3 * sin(50 * t)", 0]
+[[loads]]
+name = "sun"
+body = "pier"
+temperature = "100 * t"
+[[contact]]
+between = ["any", "any"]
+friction = 0.4
+[outputs]
+tables = 0.005
+particles = 0.05
+checkpoints = 0.02
+reactions = ["y_min", "x_min"]
+"#;
+
+/// A body that a blow drives through an open face, particle by particle, and one that flies through it.
+const LOSING: &str = r#"
+gravity = [0, -9.81]
+[space]
+dimension = "plane-strain"
+cell = 0.1
+domain = { min = [-1, -1], max = [2, 2], leaving = "remove" }
+[time]
+end = 0.2
+[materials.gel]
+density = 1000
+neo_hookean = { young_modulus = 1e5, poisson_ratio = 0.3 }
+[[bodies]]
+name = "struck"
+material = "gel"
+shape.box = { min = [-0.95, -0.4], max = [-0.15, 0.4] }
+[[bodies]]
+name = "gone"
+material = "gel"
+shape.box = { min = [1.2, 1.0], max = [1.7, 1.5] }
+velocity = [6, 0]
+spin = 3
+[[loads]]
+name = "blow"
+body = "struck"
+on = "x_min"
+traction = ["4e5 * exp(-t / 5e-3)", 0]
+[outputs]
+tables = 0.002
+particles = 0.02
+checkpoints = 0.01
+"#;
+
 /// The unit cube.
 fn cube() -> String {
     let corner = |i: usize| {
@@ -236,7 +333,16 @@ fn start(scene: &Scene, count: usize, out: &Path) -> Summary {
 
 #[test]
 fn ranks_write_what_one_writes() {
-    for (name, text) in [("plane", PLANE), ("periodic", PERIODIC), ("meshed", MESHED)] {
+    let first = LOADED.replace("end = 0.2", "end = 0.2\nstress_update = \"first\"");
+    let scenes = [
+        ("plane", PLANE),
+        ("periodic", PERIODIC),
+        ("meshed", MESHED),
+        ("loaded", LOADED),
+        ("loaded, first", &first),
+        ("losing", LOSING),
+    ];
+    for (name, text) in scenes {
         let folder = tempfile::tempdir().unwrap();
         let scene = scene(folder.path(), text);
         let alone = folder.path().join("1");

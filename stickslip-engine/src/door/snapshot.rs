@@ -19,6 +19,23 @@ trait Values: Sized {
     const COMPONENTS: usize;
     fn flat(&self) -> &[f64];
     fn from_source<S: ColumnSource>(source: &S, column: &ColumnDescription) -> Result<Self, S::Error>;
+    fn of_flat(values: Vec<f64>) -> Self;
+}
+
+/// Columns as bytes, one number behind the other, little-endian.
+mod flat {
+    use super::Values;
+    use serde::{Deserializer, Serializer};
+
+    pub fn serialize<V: Values, S: Serializer>(values: &V, serializer: S) -> Result<S::Ok, S::Error> {
+        let bytes: Vec<u8> = values.flat().iter().flat_map(|x| x.to_le_bytes()).collect();
+        serde_bytes::serialize(&bytes, serializer)
+    }
+
+    pub fn deserialize<'de, V: Values, D: Deserializer<'de>>(deserializer: D) -> Result<V, D::Error> {
+        let bytes: Vec<u8> = serde_bytes::deserialize(deserializer)?;
+        Ok(V::of_flat(bytes.as_chunks().0.iter().map(|bytes| f64::from_le_bytes(*bytes)).collect()))
+    }
 }
 
 impl Values for Vec<f64> {
@@ -29,6 +46,9 @@ impl Values for Vec<f64> {
     fn from_source<S: ColumnSource>(source: &S, column: &ColumnDescription) -> Result<Self, S::Error> {
         Ok(source.column::<1>(column)?.into_flattened())
     }
+    fn of_flat(values: Vec<f64>) -> Self {
+        values
+    }
 }
 
 impl<const N: usize> Values for Vec<[f64; N]> {
@@ -38,6 +58,9 @@ impl<const N: usize> Values for Vec<[f64; N]> {
     }
     fn from_source<S: ColumnSource>(source: &S, column: &ColumnDescription) -> Result<Self, S::Error> {
         source.column(column)
+    }
+    fn of_flat(values: Vec<f64>) -> Self {
+        values.as_chunks().0.to_vec()
     }
 }
 
@@ -54,7 +77,7 @@ macro_rules! snapshot {
             pub body: Vec<u32>,
             /// Number of the particle in its body, from the filling; it never changes.
             pub number: Vec<u32>,
-            $($(#[$doc])* pub $name: $values,)*
+            $($(#[$doc])* #[serde(with = "flat")] pub $name: $values,)*
             /// What the laws of the bodies remember; of the particles of other bodies zero.
             pub history: Vec<SnapshotColumn>,
         }
@@ -165,6 +188,7 @@ pub struct SnapshotColumn {
     /// What each particle has.
     pub kind: Kind,
     /// The components in space of one particle after the other.
+    #[serde(with = "flat")]
     pub values: Vec<f64>,
 }
 

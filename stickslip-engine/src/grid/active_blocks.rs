@@ -6,7 +6,7 @@
 
 use super::border::{Border, ForeignTile, Mirrors, Traffic};
 use super::cell_list::{CellList, GuestList, block_of, corner_block, key, reached_blocks};
-use super::{Periods, locate, nodes_per_block};
+use super::{Periods, cells_at, locate, nodes_per_block};
 use crate::ranks::{Message, message_to};
 use crate::threads::each;
 use std::ops::Range;
@@ -119,42 +119,51 @@ impl<const D: usize> ActiveBlocks<D> {
 
     /// Names the tiles of this rank to those who may have to do with them, which `owner` tells for blocks of the first
     /// period: by rank, each tile as [`ForeignTile::read`] reads it.
-    pub fn named(&self, rank: usize, owner: impl Fn([i32; D]) -> usize) -> Vec<Message> {
+    pub fn named(&mut self, rank: usize, owner: impl Fn([i32; D]) -> usize) -> Vec<Message> {
+        let mut border = self.border.take().expect("there are other ranks");
+        let Border { near, ranks_near, .. } = &mut *border;
+        near.clear();
         let mut messages: Vec<Message> = Vec::new();
-        let mut near: Vec<usize> = Vec::new();
-        for tile in &self.tiles_now() {
-            near.clear();
-            let radius = self.mirrors.radius(tile.0);
-            let count = radius.iter().map(|radius| 2 * radius + 1).product();
-            for n in 0..count {
-                let mut rest: i32 = n;
-                let block = std::array::from_fn(|i| {
-                    let side = 2 * radius[i] + 1;
-                    let step = rest % side - radius[i];
-                    rest /= side;
-                    tile.0[i] + step
-                });
-                near.push(owner(self.periods.wrapped(block)));
-            }
-            near.sort_unstable();
-            near.dedup();
-            for &to in near.iter().filter(|&&to| to != rank) {
-                message_to(&mut messages, to).extend(tile.1);
+        for (body, list) in self.cell_lists.iter().enumerate() {
+            for (number, (&home, &reached)) in list.homes.iter().zip(&list.reached).enumerate() {
+                let others =
+                    ranks_near.entry(home).or_insert_with(|| self.ranks_near(block_of(home), rank, &owner));
+                if others.is_empty() && self.mirrors.faces.is_empty() {
+                    continue;
+                }
+                near.push([body as u32, number as u32]);
+                let name = ForeignTile::write(body, home, reached);
+                others.iter().for_each(|&to| message_to(&mut messages, to as usize).extend(name));
             }
         }
+        self.border = Some(border);
         messages
     }
 
-    /// Home block of each tile, and the bytes that name it.
-    fn tiles_now(&self) -> Vec<([i32; D], [u8; ForeignTile::BYTES])> {
-        let lists = self.cell_lists.iter().enumerate();
-        let of_list = |(body, list): (usize, &CellList)| {
-            let tiles = list.homes.iter().zip(&list.reached);
-            let name =
-                tiles.map(|(&home, &reached)| (block_of(home), ForeignTile::write(body, home, reached)));
-            name.collect::<Vec<_>>()
+    /// The other ranks that may have to do with tiles at a block.
+    fn ranks_near(&self, home: [i32; D], rank: usize, owner: &impl Fn([i32; D]) -> usize) -> Box<[u32]> {
+        let radius = self.mirrors.radius(home);
+        let count: i32 = radius.iter().map(|radius| 2 * radius + 1).product();
+        let beside = |n: i32| {
+            let mut rest = n;
+            let block = std::array::from_fn(|i| {
+                let side = 2 * radius[i] + 1;
+                let step = rest % side - radius[i];
+                rest /= side;
+                home[i] + step
+            });
+            owner(self.periods.wrapped(block))
         };
-        lists.flat_map(of_list).collect()
+        let mut near: Vec<u32> =
+            (0..count).map(beside).filter(|&other| other != rank).map(|other| other as u32).collect();
+        near.sort_unstable();
+        near.dedup();
+        near.into()
+    }
+
+    /// Takes note that blocks have other owners than before.
+    pub fn forget_owners(&mut self) {
+        self.border.iter_mut().for_each(|border| border.ranks_near.clear());
     }
 
     /// Covers so many bodies of so many particles each, which reach so many nodes beyond their base nodes, and says
@@ -255,12 +264,18 @@ impl<const D: usize> ActiveBlocks<D> {
     /// Covers the tiles of this rank and of others at the same blocks, which those have named.
     pub fn cover(&mut self, named: &[ForeignTile], rank: usize) {
         let mut border = self.border.take().unwrap_or_default();
-        self.cell_lists.iter_mut().for_each(CellList::find_blocks::<D>);
         border.find((named, rank), &self.cell_lists, (self.periods, &self.mirrors));
         for (body, cell_list) in self.cell_lists.iter_mut().enumerate() {
+            if cell_list.has_foreign_blocks {
+                cell_list.find_blocks::<D>();
+            }
+            let own = cell_list.blocks.len();
             cell_list.blocks.extend(border.blocks_of(body, self.periods));
-            cell_list.blocks.sort_unstable();
-            cell_list.blocks.dedup();
+            if cell_list.blocks.len() > own {
+                cell_list.has_foreign_blocks = true;
+                cell_list.blocks.sort_unstable();
+                cell_list.blocks.dedup();
+            }
         }
         self.border = Some(border);
         self.rebuild();
@@ -344,8 +359,8 @@ impl<const D: usize> ActiveBlocks<D> {
             let place = self.cell_lists[body].blocks.binary_search(&block).ok()?;
             Some((self.first_slot[body] + place) as u32)
         };
-        let (own, places) = ((&self.tiles[..], &self.cell_lists[..]), (self.periods, &self.mirrors));
-        border.share(own, (slot, &self.color_of), places);
+        let own = (&self.tiles[..], &self.cell_lists[..], &self.first_tile[..]);
+        border.share(own, (slot, &self.color_of), (self.periods, &self.mirrors));
         self.border = Some(border);
     }
 
@@ -476,15 +491,25 @@ impl<const D: usize> ActiveBlocks<D> {
         &self.cell_lists[tile.body].cells[tile.number * n..=(tile.number + 1) * n]
     }
 
-    /// The tiles whose particles others see: those that go there and reach a block where bodies meet.
-    pub fn tiles_near_others<'a>(&'a self, traffic: &'a Traffic) -> impl Iterator<Item = &'a Tile<D>> {
+    /// The tiles whose particles another rank sees, and in which cells those are, a bit each: particles that reach nodes
+    /// which the other rank has, in blocks where bodies meet. `side`: that of windows.
+    pub fn seen_by<'a>(
+        &'a self,
+        traffic: &'a Traffic,
+        side: usize,
+    ) -> impl Iterator<Item = (&'a Tile<D>, u64)> {
         let border = self.border.as_deref().into_iter();
         border.flat_map(move |border| {
-            let tiles =
-                traffic.windows.iter().map(|&place| &self.tiles[border.kept[place as usize] as usize]);
-            tiles.filter(|tile| {
-                let mut blocks = self.cell_lists[tile.body].reached_by(tile.number);
-                blocks.any(|block| border.is_shared(key(self.periods.wrapped(block))))
+            traffic.windows.iter().filter_map(move |window| {
+                let tile = &self.tiles[border.kept[window.place as usize] as usize];
+                let meets = |corner: &usize| {
+                    let block = self.periods.wrapped(corner_block(tile.block, *corner));
+                    window.corners >> corner & 1 == 1 && border.is_shared(key(block))
+                };
+                let cells = (0..1 << D)
+                    .filter(meets)
+                    .fold(0, |cells, corner| cells | cells_at::<D>(corner, window.cuts[corner], side));
+                (cells != 0).then_some((tile, cells))
             })
         })
     }

@@ -3,9 +3,14 @@
 //! A tile belongs to one rank, and the windows of all tiles at a block are added by each rank that has a tile there,
 //! in the order of their colours: so all of them have the same nodes, bit for bit, as one rank alone would have. A
 //! *foreign* tile is one of another rank near this one's.
+//!
+//! Of a block that a rank reaches only from blocks before it, it has the first layers of nodes right, as far as its tiles
+//! reach, and the others nobody asks for: if a tile has its home there, the tile's rank has the whole block. Blocks that
+//! are nobody's home are whole wherever they are held, and so are all where there are mirrors.
 
 use super::cell_list::{CellList, CornerBlocks, block_of, corner_block, key, reached_blocks};
-use super::{Periods, SIDE, Tile};
+use super::{Periods, SIDE, Tile, nodes_at};
+use std::collections::HashMap;
 use std::ops::Range;
 
 /// A tile whose particles another rank has. They are ordered by body and home, whoever has them.
@@ -67,9 +72,24 @@ pub struct Giver {
 pub struct Traffic {
     /// The other rank.
     pub rank: usize,
-    /// Whose windows are sent, in [`Border::kept`], or come, in [`Border::foreign`], in this order.
-    pub windows: Vec<u32>,
+    /// What is sent or comes, in this order.
+    pub windows: Vec<SentWindow>,
 }
+
+/// A part of a tile's window that one rank sends to another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SentWindow {
+    /// The tile's place in [`Border::kept`] where it is sent, and in [`Border::foreign`] where it comes.
+    pub place: u32,
+    /// The tile's blocks that the other rank holds, too.
+    pub corners: CornerBlocks,
+    /// Of each of them, along which axes the receiver has the first layers only.
+    pub cuts: [Cut; 8],
+}
+
+/// Axes along which a rank has the first layers of a block only, a bit each: the last axis in the lowest bit, as that of
+/// [`corner_block`].
+pub type Cut = u8;
 
 /// What this rank shares with others.
 #[derive(Clone, Debug, Default)]
@@ -90,12 +110,21 @@ pub struct Border {
     pub outgoing: Vec<Traffic>,
     /// What comes, by rank.
     pub incoming: Vec<Traffic>,
+    /// Body and number of the tiles of this rank that others may have to do with, in their order.
+    pub(super) near: Vec<[u32; 2]>,
+    /// Of each home block, the other ranks that may have to do with tiles there, as far as it is known.
+    pub(super) ranks_near: HashMap<u64, Box<[u32]>>,
     /// Blocks that several bodies hold, sorted.
     pub(super) shared: Vec<u64>,
-    /// Blocks that this rank holds, sorted.
+    /// Blocks of those tiles, sorted.
     held: Vec<u64>,
-    /// Of each of them, whether this rank is the first of those that have a tile there.
+    /// Along which axes this rank has their first layers only.
+    cuts: Vec<Cut>,
+    /// Of each of them, whether this rank has a tile whose home it is, or if there is none, is the first of those that
+    /// reach it.
     booked: Vec<bool>,
+    /// Home blocks of tiles of all ranks near here, and their ranks, sorted.
+    homes: Vec<(u64, usize)>,
 }
 
 /// Faces that are mirrors.
@@ -141,14 +170,19 @@ fn is_near(along: i32, node: i32) -> bool {
 }
 
 impl Border {
-    /// Whether this rank holds a block of the first period.
+    /// Whether this rank holds a block of the first period that others may hold, too.
     pub(super) fn holds(&self, block: u64) -> bool {
         self.held.binary_search(&block).is_ok()
     }
 
-    /// Whether what is at a block is booked by this rank: it is the first that has a tile there.
+    /// Along which axes this rank has the first layers only of a block of the first period; none if it does not hold it.
+    fn cut(&self, block: u64) -> Option<Cut> {
+        self.held.binary_search(&block).ok().map(|place| self.cuts[place])
+    }
+
+    /// Whether what is at a block that this rank holds is booked by it: one of those does who have the whole block.
     pub fn books<const D: usize>(&self, block: [i32; D]) -> bool {
-        self.held.binary_search(&key(block)).is_ok_and(|place| self.booked[place])
+        self.held.binary_search(&key(block)).map_or(true, |place| self.booked[place])
     }
 
     /// Whether several bodies hold a block of the first period.
@@ -170,29 +204,41 @@ impl Border {
         (periods, mirrors): (Periods<D>, &Mirrors),
     ) {
         let wrapped = |block: [i32; D]| key(periods.wrapped(block));
-        let own =
-            lists.iter().flat_map(|list| (0..list.homes.len()).flat_map(|tile| list.reached_by::<D>(tile)));
-        let mut own: Vec<u64> = own.map(wrapped).collect();
-        own.sort_unstable();
-        own.dedup();
-        self.held.clear();
-        self.held.extend(&own);
-        mirrors.add_images::<D>(&mut self.held);
-        let reached =
-            |tile: &ForeignTile| reached_blocks::<D>(block_of(tile.home), tile.reached).map(wrapped);
         self.foreign.clear();
         self.foreign.extend(named);
         self.foreign.sort_unstable();
-        let mut first: Vec<usize> = self
-            .held
-            .iter()
-            .map(|block| if own.binary_search(block).is_ok() { rank } else { usize::MAX })
-            .collect();
-        for tile in &self.foreign {
-            for block in reached(tile) {
+        let own = self.near.iter().map(|&[body, number]| {
+            let list = &lists[body as usize];
+            (list.homes[number as usize], list.reached[number as usize])
+        });
+        self.homes.clear();
+        self.homes.extend(own.clone().map(|(home, _)| (wrapped(block_of(home)), rank)));
+        self.homes.extend(self.foreign.iter().map(|tile| (wrapped(block_of(tile.home)), tile.rank)));
+        self.homes.sort_unstable();
+        self.homes.dedup();
+        let own = held_blocks(own, &self.homes, (periods, mirrors));
+        self.held.clear();
+        self.held.extend(own.iter().map(|(block, _)| block));
+        self.cuts.clear();
+        self.cuts.extend(own.iter().map(|(_, cut)| cut));
+        let mut first: Vec<usize> = vec![usize::MAX; self.held.len()];
+        let reached =
+            |home: u64, reached: CornerBlocks| reached_blocks::<D>(block_of(home), reached).map(wrapped);
+        let tiles = self.foreign.iter().map(|tile| (tile.home, tile.reached, tile.rank));
+        let near = self.near.iter().map(|&[body, number]| {
+            let list = &lists[body as usize];
+            (list.homes[number as usize], list.reached[number as usize], rank)
+        });
+        for (home, blocks, of) in tiles.chain(near) {
+            for block in reached(home, blocks) {
                 if let Ok(place) = self.held.binary_search(&block) {
-                    first[place] = first[place].min(tile.rank);
+                    first[place] = first[place].min(of);
                 }
+            }
+        }
+        for &(home, of) in &self.homes {
+            if let Ok(place) = self.held.binary_search(&home) {
+                first[place] = of;
             }
         }
         self.booked.clear();
@@ -214,7 +260,7 @@ impl Border {
     /// `color` of each tile.
     pub(super) fn share<const D: usize>(
         &mut self,
-        (tiles, lists): (&[Tile<D>], &[CellList]),
+        (tiles, lists, first): (&[Tile<D>], &[CellList], &[usize]),
         (slot, color): (impl Fn(usize, u64) -> Option<u32>, &[usize]),
         (periods, mirrors): (Periods<D>, &Mirrors),
     ) {
@@ -238,18 +284,16 @@ impl Border {
         others.dedup();
         let held_by = |rank: usize| {
             let tiles = self.foreign.iter().filter(|tile| tile.rank == rank);
-            let blocks = tiles.flat_map(|tile| reached_blocks::<D>(block_of(tile.home), tile.reached));
-            let mut blocks: Vec<u64> = blocks.map(wrapped).collect();
-            blocks.sort_unstable();
-            blocks.dedup();
-            mirrors.add_images::<D>(&mut blocks);
-            blocks
+            held_blocks(tiles.map(|tile| (tile.home, tile.reached)), &self.homes, (periods, mirrors))
         };
-        let held: Vec<Vec<u64>> = others.iter().map(|&rank| held_by(rank)).collect();
-        let mut sent: Vec<Vec<u32>> = vec![Vec::new(); others.len()];
+        let held: Vec<Vec<(u64, Cut)>> = others.iter().map(|&rank| held_by(rank)).collect();
+        let mut sent: Vec<Vec<SentWindow>> = vec![Vec::new(); others.len()];
         self.kept.clear();
         self.of_tile.clear();
-        for (i, tile) in tiles.iter().enumerate() {
+        self.of_tile.resize(tiles.len(), (None, 0));
+        for &[body, number] in &self.near {
+            let i = first[body as usize] + number as usize;
+            let tile = &tiles[i];
             let reached = lists[tile.body].reached[tile.number];
             let shared = (0..1_usize << D)
                 .filter(|&corner| {
@@ -259,13 +303,15 @@ impl Border {
             let place = self.kept.len() as u32;
             let mut wanted = shared != 0;
             for (held, sent) in held.iter().zip(&mut sent) {
-                let mut blocks = reached_blocks::<D>(tile.block, reached).map(wrapped);
-                if blocks.any(|block| held.binary_search(&block).is_ok()) {
-                    sent.push(place);
-                    wanted = true;
-                }
+                let held = |block: [i32; D]| {
+                    let found = held.binary_search_by_key(&wrapped(block), |(block, _)| *block);
+                    found.ok().map(|at| held[at].1)
+                };
+                let window = SentWindow::new((place, tile.block, reached), held);
+                wanted |= window.corners != 0;
+                sent.extend(Some(window).filter(|window| window.corners != 0));
             }
-            self.of_tile.push((wanted.then_some(place), shared));
+            self.of_tile[i] = (wanted.then_some(place), shared);
             if wanted {
                 self.kept.push(i as u32);
             }
@@ -287,15 +333,78 @@ impl Border {
         let sent = others.iter().zip(sent).filter(|(_, sent)| !sent.is_empty());
         self.outgoing = sent.map(|(&rank, windows)| Traffic { rank, windows }).collect();
         let come = |&rank: &usize| {
-            let here = |tile: &ForeignTile| {
-                let mut blocks = reached_blocks::<D>(block_of(tile.home), tile.reached).map(wrapped);
-                tile.rank == rank && blocks.any(|block| self.holds(block))
-            };
-            let tiles = self.foreign.iter().zip(0..).filter(|(tile, _)| here(tile));
-            Traffic { rank, windows: tiles.map(|(_, place)| place).collect() }
+            let tiles = self.foreign.iter().zip(0..).filter(|(tile, _)| tile.rank == rank);
+            let windows = tiles.map(|(tile, place)| {
+                SentWindow::new((place, block_of::<D>(tile.home), tile.reached), |block| {
+                    self.cut(wrapped(block))
+                })
+            });
+            Traffic { rank, windows: windows.filter(|window| window.corners != 0).collect() }
         };
         self.incoming = others.iter().map(come).filter(|traffic| !traffic.windows.is_empty()).collect();
     }
+}
+
+impl SentWindow {
+    /// The nodes that are sent of a window with this side.
+    pub fn nodes<const D: usize>(&self, side: usize) -> impl Iterator<Item = usize> {
+        let corners = (0..1_usize << D).filter(|corner| self.corners >> corner & 1 == 1);
+        corners.flat_map(move |corner| nodes_at::<D>(corner, self.cuts[corner], side))
+    }
+
+    /// What of a tile at a place, with a home and the blocks that it reaches, is sent to a rank: what it holds of a block
+    /// `held` tells.
+    fn new<const D: usize>(
+        (place, home, reached): (u32, [i32; D], CornerBlocks),
+        held: impl Fn([i32; D]) -> Option<Cut>,
+    ) -> Self {
+        let mut window = SentWindow { place, corners: 0, cuts: [0; 8] };
+        for corner in (0..1_usize << D).filter(|&corner| reached >> corner & 1 == 1) {
+            if let Some(cut) = held(corner_block(home, corner)) {
+                window.corners |= 1 << corner;
+                window.cuts[corner] = cut;
+            }
+        }
+        window
+    }
+}
+
+/// The blocks that a rank holds by these tiles, by their homes and what they reach, and along which axes it has their
+/// first layers only: sorted. `homes`: those of all tiles near there.
+fn held_blocks<const D: usize>(
+    tiles: impl Iterator<Item = (u64, CornerBlocks)>,
+    homes: &[(u64, usize)],
+    (periods, mirrors): (Periods<D>, &Mirrors),
+) -> Vec<(u64, Cut)> {
+    let mut all: Vec<(u64, Cut)> = tiles
+        .flat_map(|(home, reached)| {
+            let corners = (0..1_usize << D).filter(move |&corner| reached >> corner & 1 == 1);
+            corners.map(move |corner| {
+                (key(periods.wrapped(corner_block(block_of::<D>(home), corner))), corner as Cut)
+            })
+        })
+        .collect();
+    all.sort_unstable();
+    // Of several tiles that reach it, what any of them does.
+    all.dedup_by(|next, kept| {
+        let same = next.0 == kept.0;
+        if same {
+            kept.1 &= next.1;
+        }
+        same
+    });
+    if !mirrors.faces.is_empty() {
+        let mut blocks: Vec<u64> = all.iter().map(|(block, _)| *block).collect();
+        mirrors.add_images::<D>(&mut blocks);
+        return blocks.into_iter().map(|block| (block, 0)).collect();
+    }
+    for (block, cut) in &mut all {
+        let place = homes.partition_point(|(home, _)| home < block);
+        if homes.get(place).is_none_or(|(home, _)| home != block) {
+            *cut = 0;
+        }
+    }
+    all
 }
 
 /// Marks the corner of a tile of this rank.
@@ -333,7 +442,7 @@ mod tests {
         fn ranks(&self) -> Vec<ActiveBlocks<2>> {
             let mut ranks: Vec<ActiveBlocks<2>> = (0..RANKS).map(|rank| self.alone(rank)).collect();
             let named: Vec<_> =
-                (0..RANKS).map(|rank| ranks[rank].named(rank, |block| self.owner(block))).collect();
+                (0..RANKS).map(|rank| ranks[rank].named(rank, |block| self.owner(block))).collect::<Vec<_>>();
             for (rank, active) in ranks.iter_mut().enumerate() {
                 let to_it = |from: usize| {
                     named[from].iter().filter(move |(to, _)| *to == rank).map(move |(_, names)| (from, names))
@@ -365,8 +474,8 @@ mod tests {
         }
     }
 
-    /// Body and home of tiles.
-    type Names = Vec<(u32, u64)>;
+    /// Body and home of tiles, which of their blocks, and how much of these.
+    type Names = Vec<(u32, u64, CornerBlocks, [Cut; 8])>;
 
     proptest! {
         /// What one rank sends is what the other waits for, and each block is booked by one rank that has a tile there.
@@ -379,15 +488,15 @@ mod tests {
                     let [from, to] = [sender, receiver].map(border);
                     let of = |traffic: &[Traffic], rank: usize| {
                         let traffic = traffic.iter().filter(|traffic| traffic.rank == rank);
-                        traffic.flat_map(|traffic| traffic.windows.clone()).collect::<Vec<u32>>()
+                        traffic.flat_map(|traffic| traffic.windows.clone()).collect::<Vec<SentWindow>>()
                     };
-                    let sent = of(&from.outgoing, b).into_iter().map(|place| {
+                    let sent = of(&from.outgoing, b).into_iter().map(|SentWindow { place, corners, cuts }| {
                         let tile = &sender.tiles[from.kept[place as usize] as usize];
-                        (tile.body as u32, key(tile.block))
+                        (tile.body as u32, key(tile.block), corners, cuts)
                     });
-                    let waited = of(&to.incoming, a).into_iter().map(|place| {
+                    let waited = of(&to.incoming, a).into_iter().map(|SentWindow { place, corners, cuts }| {
                         let tile = &to.foreign[place as usize];
-                        (tile.body, tile.home)
+                        (tile.body, tile.home, corners, cuts)
                     });
                     let (sent, waited): (Names, Names) = (sent.collect(), waited.collect());
                     prop_assert_eq!(sent, waited, "{} to {}", a, b);
@@ -401,7 +510,7 @@ mod tests {
                         let mut blocks = tiles.map(|slot| active.slots[slot as usize].1);
                         here(active) && blocks.any(|block| block == [x, y])
                     };
-                    let books = ranks.iter().filter(|active| active.books([x, y])).count();
+                    let books = ranks.iter().filter(|active| here(active) && active.books([x, y])).count();
                     prop_assert_eq!(books, usize::from(ranks.iter().any(reaches)), "{} {}", x, y);
                 }
             }

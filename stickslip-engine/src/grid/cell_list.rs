@@ -67,8 +67,12 @@ pub(super) struct CellList {
     pub reached: Vec<CornerBlocks>,
     /// Blocks that the particles reach, sorted.
     pub blocks: Vec<u64>,
+    /// Whether there are others among them, which particles of other ranks reach.
+    pub has_foreign_blocks: bool,
     /// Whether it knows nothing of the particles that there are now.
     pub forgotten: bool,
+    /// Whether it is begun anew, and not settled yet.
+    pub begun: bool,
     /// Particles that belong to other ranks.
     pub guests: GuestList,
     /// Nodes that a particle reaches beyond its base node, along each axis.
@@ -155,7 +159,7 @@ impl CellList {
         (count, reach): (usize, i32),
         (base, number): (impl Fn(usize) -> [i32; D], impl Fn(usize) -> u32),
     ) {
-        *self = CellList { reach, ..CellList::default() };
+        *self = CellList { reach, begun: true, ..CellList::default() };
         let movers = (0..count).map(|i| mover(base(i), (i as u32, number(i))));
         self.movers.extend(movers);
     }
@@ -258,7 +262,7 @@ impl CellList {
 
     /// Whether particles came, moved or left since the lists were made.
     pub fn is_stale(&self) -> bool {
-        !self.movers.is_empty() || self.gone.iter().any(|&gone| gone > 0)
+        self.begun || !self.movers.is_empty() || self.gone.iter().any(|&gone| gone > 0)
     }
 
     /// The blocks at `home` + {0, 1}^D that the particles of a tile reach.
@@ -268,6 +272,7 @@ impl CellList {
 
     /// Finds the blocks that the particles reach.
     pub fn find_blocks<const D: usize>(&mut self) {
+        self.has_foreign_blocks = false;
         self.blocks.clear();
         for tile in 0..self.homes.len() {
             let reached = reached_blocks::<D>(block_of(self.homes[tile]), self.reached[tile]);
@@ -332,7 +337,8 @@ impl CellList {
                 }
             }
         });
-        let same = *homes == self.homes && *reached == self.reached;
+        let same = !self.begun && *homes == self.homes && *reached == self.reached;
+        self.begun = false;
         std::mem::swap(&mut self.order, order);
         std::mem::swap(&mut self.cells, cells);
         std::mem::swap(&mut self.homes, homes);

@@ -1,6 +1,6 @@
 //! What the nodes carry: all bodies' blocks in one slab, and the window through which a tile sees its part of it.
 
-use super::{ActiveBlocks, Nodes, SIDE, Tile, next_of, nodes_per_block};
+use super::{ActiveBlocks, Nodes, SIDE, Tile, next_of, node_at, nodes_per_block};
 use crate::basis::MAX_WIDTH;
 use crate::lanes::{Any, Lanes, MOST_LANES, Machine, prefetch};
 use crate::pages::ask_for_large;
@@ -405,6 +405,46 @@ impl<T: Real, const D: usize> Window<T, D> {
             }
         }
     }
+}
+
+/// Nodes of a tile's window with this side that are at one of its blocks, and in the first layers that particles reach
+/// from the block before along the axes of the cut, see [`super::Border`].
+pub fn nodes_at<const D: usize>(corner: usize, cut: u8, side: usize) -> impl Iterator<Item = usize> {
+    let reach = side - SIDE as usize;
+    let along = move |axis: usize| {
+        let bit = D - 1 - axis;
+        match (corner >> bit & 1, cut >> bit & 1) {
+            (1, _) => SIDE as usize..side,
+            (_, 1) => 0..reach,
+            _ => 0..SIDE as usize,
+        }
+    };
+    let (rows, last) = (along(0), along(D - 1));
+    let middle = if D == 3 { along(1) } else { 0..1 };
+    rows.flat_map(move |row| {
+        let (middle, last) = (middle.clone(), last.clone());
+        middle.flat_map(move |place| {
+            let start = if D == 3 { (row * side + place) * side } else { row * side };
+            last.clone().map(move |node| start + node)
+        })
+    })
+}
+
+/// Cells of a tile, a bit each, whose particles reach such nodes.
+pub fn cells_at<const D: usize>(corner: usize, cut: u8, side: usize) -> u64 {
+    let reach = side as i32 - SIDE;
+    let is_one = |cell: &usize| {
+        let place: [i32; D] = node_at([0; D], *cell);
+        (0..D).all(|axis| {
+            let bit = D - 1 - axis;
+            match (corner >> bit & 1, cut >> bit & 1) {
+                (1, _) => place[axis] + reach >= SIDE,
+                (_, 1) => place[axis] < reach,
+                _ => true,
+            }
+        })
+    };
+    (0..nodes_per_block(D)).filter(is_one).fold(0, |cells, cell| cells | 1 << cell)
 }
 
 /// Adds to a slot what a tile gave it: the part of its sums, of a window with this side, that is this one of its

@@ -1,6 +1,6 @@
-//! Particles that leave a body's columns for another rank and come from there, as rows of bytes.
+//! Particles that leave a body's columns for another rank and come from there, as bytes.
 //!
-//! A row is the particle's number and all entries of its columns, little-endian, one behind the other.
+//! Those of some particles are their numbers, and then entry by entry what all of them have, little-endian.
 
 use super::{ColumnStart, Particles};
 use crate::pages::ask_for_large;
@@ -33,21 +33,39 @@ pub fn number_of<T: Real>(bytes: &[u8]) -> T {
 }
 
 impl<T: Real, const D: usize> Particles<T, D> {
-    /// Bytes of a row.
-    pub fn row_bytes(&self) -> usize {
-        size_of::<u32>() + self.entries() * size_of::<T>()
+    /// Bytes of so many particles.
+    pub fn message_bytes(&self, count: usize) -> usize {
+        count * (size_of::<u32>() + self.entries() * size_of::<T>())
     }
 
-    /// Writes the rows of particles behind a message.
-    pub fn write_rows(&self, particles: impl Iterator<Item = u32>, message: &mut Vec<u8>) {
-        let (first, first_number) = (self.first(), self.first_number());
-        for particle in particles {
-            let particle = particle as usize;
-            assert!(particle < self.len, "a particle of the body");
-            message.extend(self.numbers[first_number + particle].to_le_bytes());
-            for entry in 0..self.entries() {
-                write_number(self.columns[first + entry * self.stride + particle], message);
-            }
+    /// Bytes of so many guests.
+    pub fn bytes_of_guests(&self, count: usize) -> usize {
+        count * (size_of::<u32>() + self.shown_to_others().count() * size_of::<T>())
+    }
+
+    /// Writes particles behind a message.
+    pub fn write_particles(&self, particles: &[u32], message: &mut Vec<u8>) {
+        self.write_entries(particles, 0..self.entries(), message);
+    }
+
+    /// Writes particles behind a message as they are shown to others: where they are, and their shape, mass and stress.
+    pub fn write_guests(&self, particles: &[u32], message: &mut Vec<u8>) {
+        self.write_entries(particles, self.shown_to_others(), message);
+    }
+
+    /// The entries of particles that contact looks at.
+    fn shown_to_others(&self) -> impl Iterator<Item = usize> {
+        let of_all = (0..ColumnStart::<D>::COUNT)
+            .filter(|entry| !(ColumnStart::<D>::VELOCITY..ColumnStart::<D>::MASS).contains(entry));
+        of_all.chain(self.view().domain_columns())
+    }
+
+    fn write_entries(&self, particles: &[u32], entries: impl Iterator<Item = usize>, message: &mut Vec<u8>) {
+        let numbers = &self.numbers[self.first_number()..][..self.len];
+        message.extend(particles.iter().flat_map(|&particle| numbers[particle as usize].to_le_bytes()));
+        for entry in entries {
+            let line = &self.columns[self.first() + entry * self.stride..][..self.len];
+            particles.iter().for_each(|&particle| write_number(line[particle as usize], message));
         }
     }
 
@@ -69,11 +87,10 @@ impl<T: Real, const D: usize> Particles<T, D> {
         moves
     }
 
-    /// Puts rows behind the particles, as more of them.
-    pub fn take_in(&mut self, rows: &[u8]) {
-        let count = rows.len() / self.row_bytes();
+    /// Puts particles behind those that are there, as more of them.
+    pub fn take_in(&mut self, bytes: &[u8], count: usize) {
         self.guests = 0;
-        self.read_rows(rows, self.len);
+        self.read_entries(bytes, (self.len, count), 0..self.entries());
         let before = self.len;
         self.len += count;
         let same = |column: usize, value: T| self.line(column)[before..].iter().all(|x| *x == value);
@@ -87,10 +104,11 @@ impl<T: Real, const D: usize> Particles<T, D> {
         }
     }
 
-    /// Puts rows behind the particles and their guests, as more guests.
-    pub fn receive_guests(&mut self, rows: &[u8]) {
-        self.read_rows(rows, self.len + self.guests);
-        self.guests += rows.len() / self.row_bytes();
+    /// Puts particles behind those that are there and their guests, as more guests.
+    pub fn receive_guests(&mut self, bytes: &[u8], count: usize) {
+        let entries: Vec<usize> = self.shown_to_others().collect();
+        self.read_entries(bytes, (self.len + self.guests, count), entries.into_iter());
+        self.guests += count;
     }
 
     /// Sends all guests away.
@@ -103,17 +121,27 @@ impl<T: Real, const D: usize> Particles<T, D> {
         self.guests
     }
 
-    /// Writes rows to places from `place` on.
-    fn read_rows(&mut self, rows: &[u8], place: usize) {
-        let bytes = self.row_bytes();
-        self.make_room(place + rows.len() / bytes);
+    /// Gives so many particles from a place on what their bytes say.
+    fn read_entries(
+        &mut self,
+        bytes: &[u8],
+        (place, count): (usize, usize),
+        entries: impl Iterator<Item = usize>,
+    ) {
+        self.make_room(place + count);
         let (first, first_number) = (self.first(), self.first_number());
-        for (row, place) in rows.chunks_exact(bytes).zip(place..) {
-            let (number, entries) = row.split_first_chunk::<4>().expect("a row begins with a number");
-            self.numbers[first_number + place] = u32::from_le_bytes(*number);
-            for (entry, bytes) in entries.chunks_exact(size_of::<T>()).enumerate() {
-                self.columns[first + entry * self.stride + place] = number_of(bytes);
-            }
+        let (numbers, mut rest) = bytes.split_at(count * size_of::<u32>());
+        let places = self.numbers[first_number + place..].iter_mut();
+        for (number, bytes) in places.zip(numbers.as_chunks().0) {
+            *number = u32::from_le_bytes(*bytes);
+        }
+        for entry in entries {
+            let (own, others) = rest.split_at(count * size_of::<T>());
+            let line = &mut self.columns[first + entry * self.stride + place..][..count];
+            line.iter_mut()
+                .zip(own.chunks_exact(size_of::<T>()))
+                .for_each(|(x, bytes)| *x = number_of(bytes));
+            rest = others;
         }
     }
 

@@ -137,8 +137,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             }
         }
         let found = all.into_inner().unwrap_or_else(PoisonError::into_inner);
-        if let (Some(among), Some(border), Some(_)) = (&mut among, &active.border, pass.verbs.scatter) {
-            among.exchange_windows(border, &nodes, window_side(B::WIDTH));
+        if let (Some(among), Some(border), Some(share)) = (&mut among, &active.border, pass.verbs.scatter) {
+            among.exchange_windows(border, (&nodes, share), window_side(B::WIDTH));
         }
         self.among = among;
         found

@@ -55,7 +55,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             };
             set(body.particles.line_mut(first), |warmed| warmed.temperature);
             set(body.particles.line_mut(first + 1), |warmed| warmed.strain);
-            sums.work += room.iter().map(|warmed| warmed.work).sum::<ExactSum>().value();
+            let mut work = [room.iter().map(|warmed| warmed.work).sum::<ExactSum>()];
+            self.among.iter().for_each(|among| among.ranks.add_up(&mut work));
+            sums.work += work[0].value();
             self.watch.lap("heat", start);
         }
     }

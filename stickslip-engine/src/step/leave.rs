@@ -2,12 +2,13 @@
 
 use super::Engine;
 use crate::basis::Basis;
-use crate::body::{Body, Totals};
+use crate::body::Totals;
 use crate::door::RemovedParticles;
 use crate::grid::SIDE;
 use crate::lanes::Laned;
 use crate::particles::ColumnStart;
 use crate::scene::Leaving;
+use serde::{Deserialize, Serialize};
 use std::sync::PoisonError;
 
 /// Steps from one removal to the next: to take particles out costs about as much as to sort the body. Those that are
@@ -27,12 +28,27 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         if !self.removes_leavers() || !self.state.steps.is_multiple_of(EVERY) {
             return;
         }
-        for body in 0..self.state.bodies.len() {
-            let outside = self.outside(body);
-            if !outside.is_empty() {
-                self.remove(body, &outside);
-            }
+        let outside: Vec<Vec<u32>> = (0..self.state.bodies.len()).map(|body| self.outside(body)).collect();
+        let gone = outside.iter().enumerate().filter(|(_, outside)| !outside.is_empty());
+        let gone: Vec<Gone> = gone.map(|(body, outside)| self.first_of(body, outside)).collect();
+        let mut gone = match &self.among {
+            Some(among) => among.gathered(&gone).concat(),
+            None => gone,
+        };
+        // The same of all orders in memory, and whichever rank has them.
+        gone.sort_unstable_by_key(|gone| (gone.body, gone.number));
+        for of_body in gone.chunk_by(|a, b| a.body == b.body) {
+            let count = of_body.iter().map(|gone| gone.count).sum();
+            self.remove((of_body[0].body, &outside[of_body[0].body]), (count, of_body[0].place));
         }
+    }
+
+    /// What of a body is outside, and which of that is the first by number.
+    fn first_of(&self, body: usize, outside: &[u32]) -> Gone {
+        let particles = outside.iter().map(|&p| self.state.bodies[body].particles.get(p as usize));
+        let first = particles.min_by_key(|particle| particle.number).expect("some are outside");
+        let (number, place) = (first.number, first.position.space());
+        Gone { body, count: outside.len() as u64, number, place }
     }
 
     /// The particles of a deformable body that are outside the domain, by their places in memory, ascending. Only tiles
@@ -64,22 +80,32 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         found
     }
 
-    fn remove(&mut self, number: usize, outside: &[u32]) {
+    /// Takes particles out of a body: those of this rank, of so many, the first of which is at this place.
+    fn remove(&mut self, (number, outside): (usize, &[u32]), (count, first): (u64, [f64; 3])) {
         let gravity = self.settings.gravity.constant().unwrap_or_default();
-        let body = &mut self.state.bodies[number];
-        let before = Body::totals(body);
+        let before = self.totals_of(number);
+        self.state.bodies[number].particles.remove(outside);
+        let after = self.totals_of(number);
         let removed = &mut self.state.removed[number];
         if removed.count == 0 {
-            // The same of all orders in memory.
-            let first = outside.iter().map(|&p| body.particles.get(p as usize));
-            let first = first.min_by_key(|particle| particle.number).expect("some are outside");
-            (removed.time, removed.place) = (self.state.time, first.position.space());
+            (removed.time, removed.place) = (self.state.time, first);
         }
-        body.particles.remove(outside);
-        removed.take(outside.len() as u64, (&before, &Body::totals(body)), gravity);
-        self.workspace.active.forget(number);
+        removed.take(count, (&before, &after), gravity);
+        if !outside.is_empty() {
+            self.workspace.active.forget(number);
+        }
         *self.workspace.totals.get_mut().unwrap_or_else(PoisonError::into_inner) = None;
     }
+}
+
+/// What of a body is outside the domain on one rank.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+struct Gone {
+    body: usize,
+    count: u64,
+    /// The first particle by number, and where it is [m].
+    number: u32,
+    place: [f64; 3],
 }
 
 impl RemovedParticles {

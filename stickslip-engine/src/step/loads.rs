@@ -35,15 +35,19 @@ pub struct LoadRoom<T, const D: usize> {
     /// Place in memory of the particles of each body with loads, by number.
     places: Vec<Vec<u32>>,
     /// Load and point of each of all points, one load after the other.
-    numbers: Vec<[u32; 2]>,
+    pub(super) numbers: Vec<[u32; 2]>,
     /// The points likewise.
-    points: Vec<LoadedPoint<T, D>>,
+    pub(super) points: Vec<LoadedPoint<T, D>>,
     /// What each node takes, for all nodes; those that no load reaches have nothing.
     nodes: Vec<NodeLoad<T, D>>,
     /// Nodes that loads reach.
     reached: Vec<u32>,
     /// Whether forces were taken where the step ends.
     late: bool,
+    /// Of each load, places of its points times their measures, and the measures.
+    middles: Vec<ExactSum>,
+    /// Of each load, its impulse, the moment of that, and its work in a step.
+    booked: Vec<ExactSum>,
     /// What functions from outside are asked and say.
     outside: OutsideRoom,
 }
@@ -60,23 +64,23 @@ struct OutsideRoom {
 
 /// A point of a load in a step.
 #[derive(Clone, Debug)]
-struct LoadedPoint<T, const D: usize> {
-    felt: PointForce<T, D>,
+pub(super) struct LoadedPoint<T, const D: usize> {
+    pub felt: PointForce<T, D>,
     /// Where it was when the step began [m].
     before: Vector<T, D>,
     /// How fast its nodes were then [m/s].
     begun: Vector<T, D>,
-    nodes: Vec<LoadedNode<T>>,
+    pub nodes: Vec<LoadedNode<T>>,
 }
 
 /// A node that moves a point.
 #[derive(Clone, Copy, Debug)]
-struct LoadedNode<T> {
-    index: u32,
+pub(super) struct LoadedNode<T> {
+    pub index: u32,
     /// Axes along which the node is a mirror image, a bit each.
-    mirrored: u32,
+    pub mirrored: u32,
     /// N_i [-]
-    weight: T,
+    pub weight: T,
 }
 
 /// What a node takes from loads.
@@ -129,6 +133,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.find_loaded_particles();
         self.ask_functions(dt)?;
         self.load_points(dt, ahead);
+        self.share_points();
         if ahead.is_none() {
             let time = (self.state.time, dt.f64());
             let loads = self.settings.loads.iter().zip(&mut self.state.loads);
@@ -211,7 +216,11 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     fn find_loaded_particles(&mut self) {
         let (places, bodies) = (&mut self.workspace.loads.places, &self.state.bodies);
         places.resize_with(bodies.len(), Vec::new);
-        for load in &self.settings.loads {
+        if self.among.is_some() {
+            // Who was with another rank may have come.
+            places.iter_mut().for_each(Vec::clear);
+        }
+        for load in self.settings.loads.iter().filter(|load| !load.points.is_empty()) {
             find_carriers(&mut places[load.body], bodies[load.body].particles.numbers(), &load.points);
         }
     }
@@ -284,14 +293,31 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             return;
         }
         let start = Instant::now();
+        let (mut middles, mut booked) = {
+            let room = &mut self.workspace.loads;
+            (std::mem::take(&mut room.middles), std::mem::take(&mut room.booked))
+        };
+        let count = self.settings.loads.len();
+        middles.clear();
+        middles.resize(4 * count, ExactSum::default());
+        booked.clear();
+        booked.resize(7 * count, ExactSum::default());
+        let mut rest = &self.workspace.loads.points[..];
+        for (load, sums) in self.settings.loads.iter().zip(middles.as_chunks_mut().0) {
+            let points = rest.split_off(..load.points.len()).expect("each load has its points");
+            add_middle((load, points), &self.workspace.loads.places[load.body], sums);
+        }
+        self.add_up(&mut middles);
         let room = &self.workspace.loads;
         let field = &self.workspace.field;
         let half = if room.late { T::HALF } else { -T::HALF };
         let mut rest = &room.points[..];
-        for (load, sums) in self.settings.loads.iter().zip(&mut self.state.loads) {
+        let of_loads = middles.as_chunks().0.iter().zip(booked.as_chunks_mut::<7>().0);
+        for (load, (middle, sums)) in self.settings.loads.iter().zip(of_loads) {
             let body = &self.state.bodies[load.body];
             let points = rest.split_off(..load.points.len()).expect("each load has its points");
-            let center = middle(load, points, &room.places[load.body]);
+            let center = middle_of(middle);
+            let [impulse_x, impulse_y, impulse_z, moment_x, moment_y, moment_z, work] = sums;
             for (point, loaded) in load.points.iter().zip(points) {
                 let LoadedPoint { felt, before, begun, nodes } = loaded;
                 let place = room.places[load.body][point.particle];
@@ -313,7 +339,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                         let springs = felt.spring[i] * share * dt * dt;
                         let dashpots = felt.inertia[i] * share - springs;
                         given[i] -= springs + dashpots;
-                        sums.work -= ((springs * felt.begun[i] + dashpots * mean[i]) * dt).f64();
+                        work.add(-((springs * felt.begun[i] + dashpots * mean[i]) * dt).f64());
                     }
                 }
                 let mean = (way + (*begun - held) * dt) * T::HALF;
@@ -321,16 +347,26 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                     let pushed = if body.is_rigid() { way[i] } else { mean[i] };
                     let closer = way[i] - felt.speed[i] * dt;
                     let springs = (felt.pull[i] + felt.spring[i] * closer * half) * way[i];
-                    sums.work += (springs + (felt.force[i] - felt.pull[i]) * pushed).f64();
+                    work.add((springs + (felt.force[i] - felt.pull[i]) * pushed).f64());
                 }
                 let (arm, given) = (Vector(before.space()) - center, Vector(given.space()) * dt.f64());
                 let moment = cross(arm.0, given.0);
-                (0..3).for_each(|i| {
-                    sums.impulse[i] += given.0[i];
-                    sums.moment[i] += moment[i];
-                });
+                [&mut *impulse_x, impulse_y, impulse_z]
+                    .into_iter()
+                    .zip(given.0)
+                    .for_each(|(sum, x)| sum.add(x));
+                [&mut *moment_x, moment_y, moment_z].into_iter().zip(moment).for_each(|(sum, x)| sum.add(x));
             }
         }
+        self.add_up(&mut booked);
+        for (sums, booked) in self.state.loads.iter_mut().zip(booked.as_chunks::<7>().0) {
+            let [impulse @ .., x, y, z, work] = booked.each_ref().map(ExactSum::value);
+            sums.impulse.iter_mut().zip(impulse).for_each(|(sum, x)| *sum += x);
+            sums.moment.iter_mut().zip([x, y, z]).for_each(|(sum, x)| *sum += x);
+            sums.work += work;
+        }
+        let room = &mut self.workspace.loads;
+        (room.middles, room.booked) = (middles, booked);
         self.watch.lap("loads", start);
     }
 
@@ -339,7 +375,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let particles = &self.state.bodies[load.body].particles;
         let mut wanted: Vec<_> = load.points.iter().map(|point| (point.particle as u32, point)).collect();
         wanted.sort_by_key(|(number, _)| *number);
-        let (mut sum, mut measure, mut count) = ([0; 3].map(|_| ExactSum::default()), ExactSum::default(), 0);
+        // Places, measures, and how many.
+        let mut sums = [0; 5].map(|_| ExactSum::default());
+        let [sum @ .., measure, count] = &mut sums;
         for (place, number) in particles.numbers().iter().enumerate() {
             let first = wanted.partition_point(|(wanted, _)| wanted < number);
             let here = wanted[first..].iter().take_while(|(wanted, _)| wanted == number);
@@ -348,11 +386,13 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 let now = place_of(&particle, point).space();
                 (0..D).for_each(|i| sum[i].add(point.measure * (now[i] - load.start(point)[i])));
                 measure.add(point.measure);
-                count += 1;
+                count.add(1.0);
             }
         }
-        let measure = if count == load.points.len() { load.measure } else { measure.value() };
-        if count == 0 { [0.0; 3] } else { sum.map(|sum| sum.value() / measure) }
+        self.add_up(&mut sums);
+        let [sum @ .., measure, count] = sums.each_ref().map(ExactSum::value);
+        let measure = if count == load.points.len() as f64 { load.measure } else { measure };
+        if count == 0.0 { [0.0; 3] } else { sum.map(|sum| sum / measure) }
     }
 }
 
@@ -360,7 +400,8 @@ impl<T, const D: usize> Default for LoadRoom<T, D> {
     fn default() -> Self {
         let (places, numbers, points) = (Vec::new(), Vec::new(), Vec::new());
         let (nodes, reached, outside) = (Vec::new(), Vec::new(), OutsideRoom::default());
-        LoadRoom { places, numbers, points, nodes, reached, late: false, outside }
+        let (middles, booked) = (Vec::new(), Vec::new());
+        LoadRoom { places, numbers, points, nodes, reached, late: false, middles, booked, outside }
     }
 }
 
@@ -469,17 +510,24 @@ pub(super) fn mirror<T: Real, const D: usize>(v: Vector<T, D>, axes: u32) -> Vec
     (0..D).filter(|axis| axes >> axis & 1 == 1).fold(v, reflect)
 }
 
-/// The middle of a load's part: the mean place of its points that are there [m].
-fn middle<T: Real, const D: usize>(
-    load: &LoadPoints,
-    points: &[LoadedPoint<T, D>],
+/// Adds the places of a load's points that are there, times their measures, and the measures.
+fn add_middle<T: Real, const D: usize>(
+    (load, points): (&LoadPoints, &[LoadedPoint<T, D>]),
     places: &[u32],
-) -> Vector<f64, 3> {
+    [x, y, z, measure]: &mut [ExactSum; 4],
+) {
     let there = load.points.iter().zip(points).filter(|(point, _)| places[point.particle] != NOWHERE);
-    let (sum, measure) = there.fold((Vector::ZERO, 0.0), |(sum, measure), (point, loaded)| {
-        (sum + Vector(loaded.before.space()) * point.measure, measure + point.measure)
-    });
-    if measure > 0.0 { sum / measure } else { sum }
+    for (point, loaded) in there {
+        let place = loaded.before.space();
+        [&mut *x, y, z].into_iter().zip(place).for_each(|(sum, x)| sum.add(x * point.measure));
+        measure.add(point.measure);
+    }
+}
+
+/// The middle of a load's part: the mean place of its points that are there [m].
+fn middle_of(sums: &[ExactSum; 4]) -> Vector<f64, 3> {
+    let [x, y, z, measure] = sums.each_ref().map(ExactSum::value);
+    if measure > 0.0 { Vector([x, y, z]) / measure } else { Vector::ZERO }
 }
 
 /// Work of all loads since the start [J].

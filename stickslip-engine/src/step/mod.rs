@@ -227,7 +227,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
             })?;
         }
         self.workspace.sums = StepSums::default();
-        self.among.iter_mut().for_each(Among::begin);
+        let begun = self.among.as_mut().map(Among::begin);
         // One of the pool's threads takes the whole step: handing it every loop from outside would cost more than many
         // a loop.
         let weights = self.weigh();
@@ -242,6 +242,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
         self.state.time += dt;
         self.state.steps += 1;
         self.remove_leavers();
+        self.among.iter_mut().zip(begun).for_each(|(among, begun)| among.end(begun));
         Ok(dt)
     }
 

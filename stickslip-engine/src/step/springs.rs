@@ -13,11 +13,12 @@
 use super::Engine;
 use super::loads::{NOWHERE, find, find_carriers, mirror};
 use crate::basis::Basis;
-use crate::body::Body;
+use crate::exact::ExactSum;
+use crate::grid::{node_at, nodes_per_block};
 use crate::lanes::Laned;
 use crate::load::{SpringPoints, nodes_of, place_of};
 use crate::part::{PartPoint, PartPoints};
-use crate::tensor::{Real, Vector};
+use crate::tensor::Vector;
 use std::time::Instant;
 
 /// The nodes that move a part, each with g_i.
@@ -80,10 +81,12 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         (places, nodes): (&[Vec<u32>], &mut [PartNodes<T, D>; 2]),
     ) -> SpringStep {
         let spring = &self.settings.springs[number];
-        let Some(centers) = centers(spring, &self.state.bodies, places) else { return SpringStep::default() };
+        let Some(centers) = self.centers(spring, places) else { return SpringStep::default() };
         let apart = Vector(std::array::from_fn(|i| centers[0][i] - centers[1][i]));
         let Some(direction) = apart.direction() else { return SpringStep::default() };
-        let (mut rate, mut yields, mut driven, mut gone) = (0.0, 0.0, 0.0, 0.0);
+        let (mut rate, mut yields, mut driven) = (0.0, 0.0, 0.0);
+        // Of the nodes: of each that several ranks have, one.
+        let mut sums = [0; 3].map(|_| ExactSum::default());
         for side in 0..2 {
             let end = &spring.ends[side];
             let along = direction * if side == 0 { 1.0 } else { -1.0 };
@@ -102,13 +105,20 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             }
             let along = Vector::<T, D>::of(along.0);
             self.find_nodes((end, &places[end.body]), along, &mut nodes[side]);
+            let [of_rate, of_gone, of_yields] = &mut sums;
             for (index, pull) in &nodes[side] {
-                let node = &self.workspace.field.nodes[*index as usize];
-                rate += pull.dot(node.velocity).f64();
-                gone += (pull.dot(node.integrated) * ahead).f64();
-                yields += (pull.dot(*pull) / node.mass).f64();
+                let (_, block) = self.workspace.active.slots[*index as usize / nodes_per_block(D)];
+                if self.workspace.active.books(block) {
+                    let node = &self.workspace.field.nodes[*index as usize];
+                    of_rate.add(pull.dot(node.velocity).f64());
+                    of_gone.add((pull.dot(node.integrated) * ahead).f64());
+                    of_yields.add((pull.dot(*pull) / node.mass).f64());
+                }
             }
         }
+        self.add_up(&mut sums);
+        let [of_nodes, gone, of_all] = sums.each_ref().map(ExactSum::value);
+        (rate, yields) = (rate + of_nodes, yields + of_all);
         let softer = 1.0 / (1.0 + dt * (dt * spring.stiffness + spring.dashpot) * yields);
         let stretch = spring.drawn + self.state.springs[number].way + gone - spring.rest;
         let force = -(spring.stiffness * stretch + spring.dashpot * rate) * softer;
@@ -132,17 +142,39 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         nodes: &mut PartNodes<T, D>,
     ) {
         let (active, boundary) = (&self.workspace.active, &self.workspace.boundary);
-        for point in &end.points {
-            let (particles, place) =
-                (&self.state.bodies[end.body].particles, places[point.particle] as usize);
+        let n = nodes_per_block(D);
+        let mut found: Vec<(u32, [i32; 3], [f64; 3])> = Vec::new();
+        for (point, number) in end.points.iter().zip(0..) {
+            let particles = &self.state.bodies[end.body].particles;
+            let place = match places[point.particle] {
+                // Another rank has it.
+                NOWHERE => continue,
+                place => place as usize,
+            };
             let (lattice, seen) = (&self.settings.lattice, (&particles.get(place), &particles.edges(place)));
             let share = T::of(point.measure / end.measure);
             for (node, [_, weight]) in nodes_of::<T, D, B>(lattice, seen, point) {
                 let Some((index, mirrored)) = find(active, boundary, (end.body, node)) else { continue };
                 if self.workspace.field.nodes[index as usize].mass > T::ZERO {
-                    nodes.push((index, mirror(along, mirrored) * (weight * share)));
+                    let pull = mirror(along, mirrored) * (weight * share);
+                    if self.among.is_none() {
+                        nodes.push((index, pull));
+                        continue;
+                    }
+                    let (_, block) = active.slots[index as usize / n];
+                    let node: [i32; D] = node_at(block, index as usize % n);
+                    let node = std::array::from_fn(|k| if k < D { node[k] } else { 0 });
+                    found.push((number, node, pull.space()));
                 }
             }
+        }
+        if let Some(among) = &self.among {
+            let mut all = among.gathered(&found).concat();
+            all.sort_by_key(|(number, ..)| *number);
+            nodes.extend(all.into_iter().filter_map(|(_, node, pull)| {
+                let index = active.node_index(end.body, std::array::from_fn(|k| node[k]))?;
+                Some((index as u32, Vector::of(pull)))
+            }));
         }
         nodes.sort_by_key(|(index, _)| *index);
         nodes.dedup_by(|next, kept| {
@@ -158,6 +190,10 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     pub(super) fn find_spring_carriers(&mut self) {
         let (places, bodies) = (&mut self.workspace.springs.places, &self.state.bodies);
         places.resize_with(bodies.len(), Vec::new);
+        if self.among.is_some() {
+            // Who was with another rank may have come.
+            places.iter_mut().for_each(Vec::clear);
+        }
         for end in self.settings.springs.iter().flat_map(|spring| &spring.ends) {
             if !bodies[end.body].is_rigid() {
                 find_carriers(&mut places[end.body], bodies[end.body].particles.numbers(), &end.points);
@@ -178,8 +214,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         }
         let (room, dt) = (&self.workspace.springs, dt.f64());
         for (i, (spring, step)) in self.settings.springs.iter().zip(&room.springs).enumerate() {
+            let length = self.length(spring, &room.places);
             let sums = &mut self.state.springs[i];
-            let Some(length) = length(spring, &self.state.bodies, &room.places) else { continue };
+            let Some(length) = length else { continue };
             let way = length - spring.drawn;
             let change = way - sums.way;
             (sums.way, sums.speed) = (way, change / dt);
@@ -191,48 +228,44 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// Measures springs where bodies begin.
     pub(super) fn begin_springs(&mut self) {
         self.find_spring_carriers();
-        let (springs, places) = (&self.settings.springs, &self.workspace.springs.places);
-        for (spring, sums) in springs.iter().zip(&mut self.state.springs) {
-            sums.way = length(spring, &self.state.bodies, places).map_or(0.0, |length| length - spring.drawn);
+        for i in 0..self.settings.springs.len() {
+            let (spring, places) = (&self.settings.springs[i], &self.workspace.springs.places);
+            self.state.springs[i].way =
+                self.length(spring, places).map_or(0.0, |length| length - spring.drawn);
         }
     }
-}
 
-/// Mean places of the parts of a spring now [m]; `None` once a particle that carries one has left the domain: the spring
-/// lets go.
-fn centers<T: Real, const D: usize>(
-    spring: &SpringPoints,
-    bodies: &[Body<T, D>],
-    places: &[Vec<u32>],
-) -> Option<[[f64; 3]; 2]> {
-    let deforms = |end: &&PartPoints| bodies[end.body].motion.is_none();
-    let mut carriers = spring.ends.iter().filter(deforms).flat_map(|end| {
-        let places = &places[end.body];
-        end.points.iter().map(|point| places[point.particle])
-    });
-    if carriers.any(|place| place == NOWHERE) {
-        return None;
+    /// Mean places of the parts of a spring now [m]; `None` once a particle that carries one has left the domain: the
+    /// spring lets go.
+    fn centers(&self, spring: &SpringPoints, places: &[Vec<u32>]) -> Option<[[f64; 3]; 2]> {
+        let [a, b] = spring.ends.each_ref().map(|end| self.center(end, places));
+        Some([a?, b?])
     }
-    Some([0, 1].map(|side| {
-        let end = &spring.ends[side];
-        let body = &bodies[end.body];
+
+    /// The mean place of an end.
+    fn center(&self, end: &PartPoints, places: &[Vec<u32>]) -> Option<[f64; 3]> {
+        let body = &self.state.bodies[end.body];
         if let Some(motion) = &body.motion {
-            return motion.pose().now(end.center);
+            return Some(motion.pose().now(end.center));
         }
-        let place = |point: &PartPoint| {
-            let particle = body.particles.get(places[end.body][point.particle] as usize);
-            Vector(place_of(&particle, point).space()) * (point.measure / end.measure)
+        let here = |(number, point): (u32, &PartPoint)| match places[end.body][point.particle] {
+            NOWHERE => None,
+            place => Some((number, place_of(&body.particles.get(place as usize), point).space())),
         };
-        end.points.iter().map(place).sum::<Vector<f64, 3>>().0
-    }))
-}
+        let mut found: Vec<(u32, [f64; 3])> = (0..).zip(&end.points).filter_map(here).collect();
+        if let Some(among) = &self.among {
+            found = among.gathered(&found).concat();
+            found.sort_by_key(|(number, _)| *number);
+        }
+        let share = |(number, place): &(u32, [f64; 3])| {
+            Vector(*place) * (end.points[*number as usize].measure / end.measure)
+        };
+        (found.len() == end.points.len()).then(|| found.iter().map(share).sum::<Vector<f64, 3>>().0)
+    }
 
-/// Length of a spring now [m].
-fn length<T: Real, const D: usize>(
-    spring: &SpringPoints,
-    bodies: &[Body<T, D>],
-    places: &[Vec<u32>],
-) -> Option<f64> {
-    let [a, b] = centers(spring, bodies, places)?;
-    Some((Vector(a) - Vector(b)).norm())
+    /// Length of a spring now [m].
+    fn length(&self, spring: &SpringPoints, places: &[Vec<u32>]) -> Option<f64> {
+        let [a, b] = self.centers(spring, places)?;
+        Some((Vector(a) - Vector(b)).norm())
+    }
 }

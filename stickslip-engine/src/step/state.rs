@@ -9,7 +9,7 @@ use super::relax::RelaxationProgress;
 use super::springs::SpringRoom;
 use super::together::LawRoom;
 use super::unbounded::Unbounded;
-use super::walls::WallSums;
+use super::walls::{WallBooks, WallSums};
 use crate::body::{Body, Totals};
 use crate::boundary::{Boundary, Wall};
 use crate::contact::{BlockSums, ContactSums, Impulses, Rules, Survey};
@@ -129,6 +129,8 @@ pub struct Workspace<T, const D: usize> {
     pub damped: Vec<f64>,
     /// Sums over the step, which are booked at its end.
     pub sums: StepSums,
+    /// What bodies did to faces in the step, where somebody asks.
+    pub wall_sums: WallBooks,
     /// Room for loads and supports.
     pub loads: LoadRoom<T, D>,
     /// Room for laws that take a body at once.
@@ -171,6 +173,7 @@ impl<T, const D: usize> Workspace<T, D> {
             moved: Vec::new(),
             damped: Vec::new(),
             sums: StepSums::default(),
+            wall_sums: WallBooks::default(),
             loads: LoadRoom::default(),
             laws: LawRoom::default(),
             springs: SpringRoom::default(),

@@ -25,7 +25,8 @@ const BODIES: usize = 16;
 impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// Brings the cell lists of the particles up to date, and with them the blocks of nodes that bodies have.
     pub(super) fn find_active_blocks(&mut self) {
-        let start = Instant::now();
+        let mut start = Instant::now();
+        self.rebalance();
         let (bodies, lattice) = (&self.state.bodies, &self.settings.lattice);
         let left = self.workspace.listed.then_some(&self.workspace.left[..]);
         let idle = self.needs_no_grid();
@@ -38,7 +39,12 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             self.workspace.active.find_movers((bodies.len(), count, reach), left, (base, number));
             let blocks = self.cross_borders();
             let blocks = blocks.max(self.spread(blocks));
-            self.cover_blocks(blocks)
+            self.watch.lap("blocks", start);
+            start = Instant::now();
+            let blocks = self.cover_blocks(blocks);
+            self.watch.lap("borders", start);
+            start = Instant::now();
+            blocks
         } else {
             let blocks = self.workspace.active.update((bodies.len(), count, reach), left, (base, number));
             blocks.max(self.spread(blocks))
@@ -46,7 +52,13 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         if !idle {
             self.sort_particles();
         }
-        self.invite_guests();
+        if self.among.is_some() {
+            self.watch.lap("blocks", start);
+            start = Instant::now();
+            self.invite_guests();
+            self.watch.lap("guests", start);
+            start = Instant::now();
+        }
         let Workspace { active, field, boundary, left, moved, damped, listed, .. } = &mut self.workspace;
         if blocks == Blocks::New {
             boundary.find_nodes(active);

@@ -12,8 +12,8 @@ use crate::column::{ColumnDescription, Kind};
 use crate::contact::Span;
 use crate::door::{
     BodyState, ColumnPlace, ColumnRef, ColumnSource, ContactPatch, ContactSum, GridSnapshot, JointState,
-    Ledger, LoadState, NoColumn, ParticleSnapshot, ParticleView, RelaxationState, RemovedParticles,
-    SnapshotColumn, StepLimit, TracedParticle, View, WallState, WrittenValues,
+    Ledger, LoadState, NoColumn, ParticleSnapshot, ParticleView, RankShare, RelaxationState,
+    RemovedParticles, SnapshotColumn, StepLimit, TracedParticle, View, WallState, WrittenValues,
 };
 use crate::grid::{node_at, nodes_per_block};
 use crate::lanes::Laned;
@@ -96,6 +96,12 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 None => by_parts(bodies.len(), 1, sum).into(),
             })
             .clone()
+    }
+
+    /// What the particles of a body add up to.
+    pub(super) fn totals_of(&self, body: usize) -> Totals {
+        let body = &self.state.bodies[body];
+        self.among.as_ref().map_or_else(|| body.totals(), |among| among.totals(std::slice::from_ref(body))[0])
     }
 
     /// What the laws of the bodies remember and their transfer has: what two laws call alike is one column.
@@ -396,5 +402,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> View for Engine<T, D, B> {
 
     fn timings(&self) -> Vec<(&'static str, f64)> {
         self.watch.seconds()
+    }
+
+    fn shares(&self) -> Vec<RankShare> {
+        self.among.iter().map(|among| among.share(self.particles())).collect()
     }
 }

@@ -2,9 +2,15 @@
 
 use super::Engine;
 use crate::basis::Basis;
+use crate::exact::ExactSum;
+use crate::grid::nodes_per_block;
 use crate::lanes::Laned;
 use crate::tensor::{Vector, cross};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Impulse and moment of pairs of a face and a body in a step, by their place in [`super::state::State::walls`].
+pub type WallBooks = BTreeMap<usize, [ExactSum; 6]>;
 
 /// What a body did to a face of the domain since the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -18,15 +24,18 @@ pub struct WallSums {
 impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// Books what bodies did to the faces of the domain in the step.
     pub(super) fn account_walls(&mut self, dt: T) {
-        let (sums, bodies) = (&mut self.state.walls, self.state.bodies.len());
-        let (Some([min, max]), false) = (self.settings.domain, sums.is_empty()) else { return };
+        let bodies = self.state.bodies.len();
+        let (Some([min, max]), false) = (self.settings.domain, self.state.walls.is_empty()) else { return };
         let (lattice, walls) = (&self.settings.lattice, &self.settings.walls);
         let position =
             |place: [i32; 3]| Vector(lattice.position(std::array::from_fn::<_, D, _>(|i| place[i])).space());
         let workspace = &mut self.workspace;
-        let all = &self.state.bodies;
+        let (all, active, n) = (&self.state.bodies, &workspace.active, nodes_per_block(D));
+        let booked = &mut workspace.wall_sums;
+        booked.clear();
         workspace.boundary.book(&workspace.field, dt, |node, impulse| {
-            if all[node.body as usize].is_rigid() {
+            let (_, block) = active.slots[node.index / n];
+            if all[node.body as usize].is_rigid() || !active.books(block) {
                 return;
             }
             let wall = &walls[node.wall];
@@ -35,11 +44,16 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             face[wall.axis] = wall.node;
             middle[wall.axis] = position(face).0[wall.axis];
             let moment = cross((position(node.place) - Vector(middle)).0, impulse);
-            let sums = &mut sums[node.wall * bodies + node.body as usize];
-            for i in 0..3 {
-                sums.impulse[i] -= impulse[i];
-                sums.moment[i] -= moment[i];
-            }
+            let sums = booked.entry(node.wall * bodies + node.body as usize).or_default();
+            sums.iter_mut().zip(impulse.into_iter().chain(moment)).for_each(|(sum, x)| sum.add(-x));
         });
+        if let Some(among) = &self.among {
+            among.gather_walls(booked);
+        }
+        for (&place, booked) in &*booked {
+            let WallSums { impulse, moment } = &mut self.state.walls[place];
+            let sums = impulse.iter_mut().chain(moment);
+            sums.zip(booked).for_each(|(sum, booked)| *sum += booked.value());
+        }
     }
 }

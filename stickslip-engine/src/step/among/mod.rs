@@ -1,26 +1,35 @@
 //! A step of one of several ranks: what it sends to others, and takes from them.
 
+mod loads;
+
 use super::Engine;
 use super::pass::{FaultReport, home};
+use super::walls::WallBooks;
 use crate::basis::Basis;
 use crate::body::{Body, TotalSums, Totals, TurningSums};
 use crate::boundary::Wall;
 use crate::contact::BlockSums;
+use crate::door::RankShare;
 use crate::exact::ExactSum;
 use crate::grid::{
-    ActiveBlocks, Blocks, Border, Disjoint, ForeignTile, Mirrors, Node, NodeSums, add_corner, nodes_per_block,
+    ActiveBlocks, Blocks, Border, Disjoint, ForeignTile, Mirrors, Node, NodeSums, SentWindow, Tile,
+    add_corner, nodes_per_block, window_side,
 };
 use crate::lanes::Laned;
 use crate::material::Material;
 use crate::particles::{Particles, number_of, write_number};
 use crate::ranks::{Message, Partition, Ranks, message_to};
-use crate::scene::{BasisKind, ContactLaw, ContactRule, Face, Leaving, NamedMaterial, Problem, Scene};
+use crate::scene::{
+    BasisKind, ContactLaw, ContactRule, Face, Load, NamedMaterial, OutsideValue, Problem, Scene,
+};
 use crate::tensor::Real;
 use crate::threads::each_range;
+use crate::transfer::Share;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::collections::HashMap;
 use std::sync::Arc;
+use std::time::Instant;
 
 /// What one of several ranks knows of the others.
 pub(super) struct Among<T> {
@@ -38,10 +47,29 @@ pub(super) struct Among<T> {
     names: Vec<Message>,
     /// Windows of tiles that are kept, and behind them those of foreign tiles.
     windows: Vec<NodeSums<T>>,
+    /// Steps in which this rank did its part, and time in them, in which it computed or waited for others [s].
+    worked: Worked,
+    /// Steps since the loads were compared last, without those in which particles move house.
+    since: u64,
+    /// What it computed in the fastest of them: whatever else a machine does slows down some of them only [s].
+    fastest: f64,
+    /// Whether they do in this step.
+    moves: bool,
 }
 
-/// Numbers that a node is given: momentum and force along each axis, and mass.
-const GIVEN: usize = 7;
+/// What a rank did.
+#[derive(Clone, Copy, Debug, Default)]
+struct Worked {
+    steps: u64,
+    computed: f64,
+    waited: f64,
+}
+
+/// Steps from one comparison of loads to the next.
+const COMPARED_EVERY: u64 = 16;
+/// A rank that works so much longer than the mean has too much, if another partition would lighten that enough.
+const TOO_MUCH: f64 = 1.1;
+const LIGHTER: f64 = 0.95;
 
 impl<T: Real> Among<T> {
     /// Room for the windows of all tiles that are kept or come, so many nodes each.
@@ -55,16 +83,21 @@ impl<T: Real> Among<T> {
     pub fn exchange_windows<const D: usize>(
         &mut self,
         border: &Border,
-        nodes: &Disjoint<Node<T, D>>,
+        (nodes, share): (&Disjoint<Node<T, D>>, Share),
         side: usize,
     ) {
         let each_window = side.pow(D as u32);
-        let bytes = each_window * GIVEN * size_of::<T>();
-        let message = |windows: &[u32]| {
-            let mut message = Vec::with_capacity(windows.len() * bytes);
-            for &window in windows {
-                for sums in &self.windows[window as usize * each_window..][..each_window] {
-                    sums.as_flattened()[..GIVEN].iter().for_each(|&x| write_number(x, &mut message));
+        // What stands at a node of a window: momentum and force along each axis, and mass.
+        let momentum = (0..D).map(|axis| 2 * axis).filter(|_| share.has_momentum());
+        let force = (0..D).map(|axis| 2 * axis + 1).filter(|_| share.has_force());
+        let given: Vec<usize> = momentum.chain(force).chain(share.has_mass().then_some(6)).collect();
+        let message = |windows: &[SentWindow]| {
+            let mut message = Vec::new();
+            for sent in windows {
+                let window = &self.windows[sent.place as usize * each_window..][..each_window];
+                for node in sent.nodes::<D>(side) {
+                    let sums = window[node].as_flattened();
+                    given.iter().for_each(|&i| write_number(sums[i], &mut message));
                 }
             }
             message
@@ -74,15 +107,17 @@ impl<T: Real> Among<T> {
         let kept = border.kept.len();
         assert_eq!(came.len(), border.incoming.len(), "who shares blocks sends windows");
         for ((from, message), traffic) in came.iter().zip(&border.incoming) {
-            let agreed = *from == traffic.rank && message.len() == traffic.windows.len() * bytes;
-            assert!(agreed, "ranks agree on what they share");
-            for (&place, message) in traffic.windows.iter().zip(message.chunks_exact(bytes)) {
-                let window = &mut self.windows[(kept + place as usize) * each_window..][..each_window];
-                for (sums, numbers) in window.iter_mut().zip(message.chunks_exact(GIVEN * size_of::<T>())) {
-                    let numbers = numbers.chunks_exact(size_of::<T>()).map(number_of);
-                    sums.as_flattened_mut().iter_mut().zip(numbers).for_each(|(sum, x)| *sum = x);
+            assert_eq!(*from, traffic.rank, "who shares blocks sends windows");
+            let mut numbers = message.chunks_exact(size_of::<T>()).map(number_of);
+            for sent in &traffic.windows {
+                let window = &mut self.windows[(kept + sent.place as usize) * each_window..][..each_window];
+                window.fill(NodeSums::default());
+                for node in sent.nodes::<D>(side) {
+                    let sums = window[node].as_flattened_mut();
+                    given.iter().zip(&mut numbers).for_each(|(&i, x)| sums[i] = x);
                 }
             }
+            assert!(numbers.next().is_none(), "ranks agree on what they share");
         }
         let windows = &self.windows;
         each_range(border.slots.len(), SLOTS, &|range| {
@@ -98,9 +133,27 @@ impl<T: Real> Among<T> {
 }
 
 impl<T: Laned> Among<T> {
-    /// Begins a step.
-    pub fn begin(&mut self) {
+    /// Begins a step, and says when.
+    pub fn begin(&mut self) -> (Instant, f64) {
         (self.passes, self.fault) = (0, None);
+        (Instant::now(), self.ranks.traffic().waited)
+    }
+
+    /// Ends a step that began then.
+    pub fn end(&mut self, (begun, waited): (Instant, f64)) {
+        let waited = self.ranks.traffic().waited - waited;
+        let Worked { steps, computed, waited: all } = self.worked;
+        let own = begun.elapsed().as_secs_f64() - waited;
+        self.worked = Worked { steps: steps + 1, computed: computed + own, waited: all + waited };
+        if !std::mem::take(&mut self.moves) {
+            (self.since, self.fastest) = (self.since + 1, self.fastest.min(own));
+        }
+    }
+
+    /// What this rank did, and has: so many particles.
+    pub fn share(&self, particles: usize) -> RankShare {
+        let Worked { steps, computed, waited } = self.worked;
+        RankShare { particles, steps, computed, waited, traffic: self.ranks.traffic() }
     }
 
     /// Takes note of what a pass found, the first fault of it by body and particle: all ranks make as many passes.
@@ -149,6 +202,18 @@ impl<T: Laned> Among<T> {
         touches.sort_unstable_by_key(BlockSums::rank);
     }
 
+    /// Adds what bodies did to faces on other ranks.
+    pub fn gather_walls(&self, booked: &mut WallBooks) {
+        let here: Vec<(usize, Vec<u8>)> = (booked.iter_mut())
+            .map(|(&place, sums)| (place, sums.iter_mut().flat_map(ExactSum::to_bytes).collect()))
+            .collect();
+        booked.clear();
+        for (place, bytes) in self.gathered(&here).into_iter().flatten() {
+            let sums = booked.entry(place).or_default().iter_mut();
+            sums.zip(bytes.as_chunks().0).for_each(|(sum, bytes)| sum.merge(&ExactSum::of_bytes(bytes)));
+        }
+    }
+
     fn add_up<'a>(&self, sums: impl Iterator<Item = &'a mut ExactSum>) {
         let places: Vec<&mut ExactSum> = sums.collect();
         let mut all: Vec<ExactSum> = places.iter().map(|sum| (**sum).clone()).collect();
@@ -184,6 +249,10 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             fault: None,
             names: Vec::new(),
             windows: Vec::new(),
+            worked: Worked::default(),
+            since: 0,
+            fastest: f64::INFINITY,
+            moves: true,
         });
         for body in 0..self.state.bodies.len() {
             let gone = self.of_other_ranks(&self.state.bodies[body].particles);
@@ -231,6 +300,50 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         }
     }
 
+    /// Gives ranks that computed less than others more blocks, by the time that they took. Which rank has a block changes
+    /// no bit.
+    pub(super) fn rebalance(&mut self) {
+        let Some(among) = &mut self.among else { return };
+        if !self.workspace.listed || among.since < COMPARED_EVERY {
+            return;
+        }
+        let computed = among.fastest;
+        (among.since, among.fastest) = (0, f64::INFINITY);
+        let particles: usize = self.state.bodies.iter().map(|body| body.particles.len()).sum();
+        let all = among.gathered(&(computed, particles));
+        let whole: f64 = all.iter().map(|(computed, _)| computed).sum();
+        let most = all.iter().map(|(computed, _)| *computed).fold(0.0, f64::max);
+        if most * all.len() as f64 <= TOO_MUCH * whole {
+            return;
+        }
+        // What a rank does whatever it has stands on its particles, too: they count within bounds.
+        let mean = whole / all.iter().map(|(_, particles)| *particles as f64).sum::<f64>();
+        let own = (computed / particles.max(1) as f64 / mean).clamp(0.5, 2.0);
+        let active = &self.workspace.active;
+        let load = |tile: &Tile<D>| {
+            let cells = active.cells_of(tile);
+            let count = f64::from(cells[cells.len() - 1] - cells[0]);
+            (self.settings.lattice.periods.wrapped(tile.block).to_vec(), (100.0 * own * count).ceil() as u64)
+        };
+        let loads: Vec<(Vec<i32>, u64)> = active.tiles.iter().map(load).collect();
+        let loads = among.gathered(&loads).concat();
+        let block = |block: &[i32]| std::array::from_fn(|k| block[k]);
+        let next = Partition::balanced(all.len(), loads.iter().map(|(at, load)| (block(at), *load)));
+        let heaviest = |partition: &Partition| {
+            let mut of_ranks = vec![0; all.len()];
+            loads.iter().for_each(|(at, load)| of_ranks[partition.owner::<D>(block(at))] += load);
+            of_ranks.into_iter().max().unwrap_or(0) as f64
+        };
+        if heaviest(&next) < LIGHTER * heaviest(&among.partition) {
+            among.partition = next;
+            among.moves = true;
+            // All particles may have to move.
+            among.named.clear();
+            self.workspace.active.forget_owners();
+            self.workspace.listed = false;
+        }
+    }
+
     /// Lets particles move to the ranks that own their blocks, and says whether the blocks under those that are here are
     /// others than before.
     pub(super) fn cross_borders(&mut self) -> Blocks {
@@ -250,7 +363,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 let message = message_to(&mut messages, to);
                 message.extend((body as u32).to_le_bytes());
                 message.extend((some.len() as u32).to_le_bytes());
-                particles.write_rows(some.iter().map(|&(_, particle)| particle), message);
+                let some: Vec<u32> = some.iter().map(|&(_, particle)| particle).collect();
+                particles.write_particles(&some, message);
             }
             let places: Vec<u32> = of_body.iter().map(|one| one.particle).collect();
             let moves = particles.take_out(&places);
@@ -264,9 +378,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 && let Some((count, after)) = split_number(after)
             {
                 let particles = &mut self.state.bodies[body].particles;
-                let (rows, after) = after.split_at(count * particles.row_bytes());
+                let (bytes, after) = after.split_at(particles.message_bytes(count));
                 let first = particles.len();
-                particles.take_in(rows);
+                particles.take_in(bytes, count);
                 self.workspace.disorder.get_mut(body).into_iter().for_each(|disorder| disorder.add(count));
                 let base = |particle: usize| home::<T, D, B>(&lattice, particles.place(particle));
                 let number = |particle: usize| particles.numbers()[particle];
@@ -306,23 +420,27 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.state.bodies.iter_mut().for_each(|body| body.particles.dismiss_guests());
         let active = &self.workspace.active;
         let n = nodes_per_block(D);
-        let mut messages = Vec::new();
+        let (mut messages, mut guests) = (Vec::new(), Vec::new());
         for traffic in active.border.iter().flat_map(|border| &border.outgoing) {
             let mut message = Vec::new();
-            for tile in active.tiles_near_others(traffic) {
+            for (tile, seen) in active.seen_by(traffic, window_side(B::WIDTH)) {
                 let cells = active.cells_of(tile);
                 message.extend((tile.body as u32).to_le_bytes());
                 message.extend(active.home_of(tile).to_le_bytes());
-                cells.windows(2).for_each(|ends| message.extend((ends[1] - ends[0]).to_le_bytes()));
-                let order = &active.order_of(tile.body)[cells[0] as usize..cells[n] as usize];
-                self.state.bodies[tile.body].particles.write_rows(order.iter().copied(), &mut message);
+                guests.clear();
+                for (cell, ends) in cells.windows(2).enumerate() {
+                    let here = if seen >> cell & 1 == 1 { ends[0]..ends[1] } else { 0..0 };
+                    message.extend((here.end - here.start).to_le_bytes());
+                    guests.extend(&active.order_of(tile.body)[here.start as usize..here.end as usize]);
+                }
+                self.state.bodies[tile.body].particles.write_guests(&guests, &mut message);
             }
             if !message.is_empty() {
                 messages.push((traffic.rank, message));
             }
         }
         let came = among.ranks.exchange(messages);
-        // Body, home, particles in each cell, rows.
+        // Body, home, particles in each cell, their bytes.
         let mut tiles: Vec<(usize, u64, Vec<usize>, &[u8])> = Vec::new();
         for (_, message) in &came {
             let mut rest = &message[..];
@@ -335,17 +453,18 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                     counts.push(count);
                     after = others;
                 }
-                let bytes = counts.iter().sum::<usize>() * self.state.bodies[body].particles.row_bytes();
-                let (rows, others) = after.split_at(bytes);
-                tiles.push((body, u64::from_le_bytes(*home), counts, rows));
+                let count = counts.iter().sum::<usize>();
+                let (bytes, others) =
+                    after.split_at(self.state.bodies[body].particles.bytes_of_guests(count));
+                tiles.push((body, u64::from_le_bytes(*home), counts, bytes));
                 rest = others;
             }
         }
         tiles.sort_unstable_by_key(|&(body, home, ..)| (body, home));
-        for (body, home, counts, rows) in tiles {
+        for (body, home, counts, bytes) in tiles {
             let particles = &mut self.state.bodies[body].particles;
             let first = particles.len() + particles.guests();
-            particles.receive_guests(rows);
+            particles.receive_guests(bytes, counts.iter().sum());
             self.workspace.active.invite((body, home), first, counts.into_iter());
         }
     }
@@ -359,20 +478,17 @@ pub(super) fn can_be_shared(scene: &Scene) -> Result<(), Problem> {
         Material::Custom(custom) => custom.law().over_arrays().is_some(),
         _ => false,
     };
-    let removes = scene.domain.as_ref().is_some_and(|domain| domain.leaving == Leaving::Remove);
+    let by_function = |load: &Load| load.action.outside().and_then(OutsideValue::function).is_some();
     let refused = [
         (
             "bodies.rigid",
             "a rigid body that forces move",
             scene.bodies.iter().any(|body| body.as_free_rigid().is_some()),
         ),
-        ("loads", "a support or a load", !scene.loads.is_empty()),
+        ("loads", "a function from outside", scene.loads.iter().any(by_function)),
         ("joints", "a joint", !scene.joints.is_empty()),
-        ("springs", "a spring", !scene.springs.is_empty()),
         ("materials", "a law over arrays", scene.materials.iter().any(over_arrays)),
-        ("domain.leaving", "particles that are taken out of the domain", removes),
         ("contact", "`regression` with linear functions", scene.contact.iter().any(regression)),
-        ("outputs.measurements", "forces on faces", scene.outputs.measurements.faces().next().is_some()),
     ];
     let found = refused.into_iter().find(|(.., is_there)| *is_there);
     found.map_or(Ok(()), |(key, found, _)| {

@@ -1,0 +1,78 @@
+//! Loads on bodies that ranks share: a node takes what acts on the points of all ranks.
+
+use super::super::Engine;
+use super::super::loads::{LoadedNode, LoadedPoint};
+use crate::basis::Basis;
+use crate::exact::ExactSum;
+use crate::grid::{node_at, nodes_per_block};
+use crate::lanes::Laned;
+use crate::load::PointForce;
+use crate::ranks::Message;
+use crate::tensor::Vector;
+use serde::{Deserialize, Serialize};
+
+/// A point at a node that other ranks have, too.
+#[derive(Serialize, Deserialize)]
+struct SentPoint {
+    /// Its place among the points of all loads.
+    point: u32,
+    /// Force, inertia, springs and velocity of a support, see [`PointForce`].
+    felt: [[f64; 3]; 4],
+    /// The nodes that move it, the axes along which they are mirror images, and N_i.
+    nodes: Vec<([i32; 3], u32, f64)>,
+}
+
+impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
+    /// Tells other ranks of the points at nodes that they have, too, and takes note of theirs.
+    pub(in super::super) fn share_points(&mut self) {
+        let Some(among) = &self.among else { return };
+        let (active, room) = (&self.workspace.active, &mut self.workspace.loads);
+        let Some(border) = active.border.as_deref() else { return };
+        let n = nodes_per_block(D);
+        let is_shared = |node: &LoadedNode<T>| {
+            let slot = node.index / n as u32;
+            border.slots.binary_search_by_key(&slot, |shared| shared.slot).is_ok()
+        };
+        let place = |index: u32| {
+            let (_, block) = active.slots[index as usize / n];
+            let node: [i32; D] = node_at(block, index as usize % n);
+            std::array::from_fn(|k| if k < D { node[k] } else { 0 })
+        };
+        let shared = room.points.iter().zip(0..).filter(|(point, _)| point.nodes.iter().any(is_shared));
+        let sent: Vec<SentPoint> = shared
+            .map(|(LoadedPoint { felt, nodes, .. }, point)| SentPoint {
+                point,
+                felt: [felt.force, felt.inertia, felt.spring, felt.speed].map(|felt| felt.space()),
+                nodes: (nodes.iter())
+                    .map(|node| (place(node.index), node.mirrored, node.weight.f64()))
+                    .collect(),
+            })
+            .collect();
+        let message = rmp_serde::to_vec(&sent).expect("memory takes what is written");
+        let to = border.outgoing.iter().filter(|_| !sent.is_empty());
+        let messages: Vec<Message> = to.map(|traffic| (traffic.rank, message.clone())).collect();
+        for (_, message) in among.ranks.exchange(messages) {
+            let came: Vec<SentPoint> = rmp_serde::from_slice(&message).expect("ranks run the same program");
+            for SentPoint { point, felt, nodes } in came {
+                let [load, _] = room.numbers[point as usize];
+                let body = self.settings.loads[load as usize].body;
+                let here = nodes.into_iter().filter_map(|(node, mirrored, weight)| {
+                    let index = active.node_index(body, std::array::from_fn(|k| node[k]))? as u32;
+                    Some(LoadedNode { index, mirrored, weight: T::of(weight) })
+                });
+                let [force, inertia, spring, speed] = felt.map(Vector::of);
+                let known = &mut room.points[point as usize];
+                known.felt = PointForce { force, inertia, spring, speed, ..PointForce::default() };
+                known.nodes.clear();
+                known.nodes.extend(here);
+            }
+        }
+    }
+
+    /// Adds sums of all ranks up, where there are others.
+    pub(in super::super) fn add_up(&self, sums: &mut [ExactSum]) {
+        if let Some(among) = &self.among {
+            among.ranks.add_up(sums);
+        }
+    }
+}
