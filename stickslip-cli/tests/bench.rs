@@ -21,6 +21,7 @@ fn a_benchmark_prints_tables_and_writes_json() {
         "P4",
         "P5",
         "sphere",
+        "P7",
         "Goals",
     ] {
         assert!(printed.contains(word), "{word}: {printed}");
@@ -28,9 +29,28 @@ fn a_benchmark_prints_tables_and_writes_json() {
 
     let text = std::fs::read(workplace.path("speed.json")).unwrap();
     let record: Value = serde_json::from_slice(&text).unwrap();
-    let documented =
-        ["program", "version", "unix_time", "machine", "results", "skipped", "end_to_end", "peers", "goals"];
+    let documented = [
+        "program",
+        "version",
+        "unix_time",
+        "machine",
+        "results",
+        "skipped",
+        "end_to_end",
+        "on_ranks",
+        "peers",
+        "goals",
+    ];
     assert_eq!(keys(&record), documented);
+    // With the same bits, or it would have failed.
+    let shared = record["on_ranks"].as_array().unwrap();
+    let ranks = |shared: &Value| shared["ranks"].as_u64();
+    assert_eq!(shared.iter().filter_map(ranks).collect::<Vec<_>>(), [1, 2, 4, 1, 2, 4, 1, 2, 4]);
+    assert!(
+        shared
+            .iter()
+            .all(|shared| (shared["bytes"].as_f64() > Some(0.0)) && shared["speed"].as_f64() > Some(0.0))
+    );
     assert_eq!(keys(&record["machine"]), ["processor", "cores", "instructions", "limits"]);
     assert_eq!(record["machine"]["limits"].as_array().unwrap().len(), 2, "one thread, and two");
     let results = record["results"].as_array().unwrap();
@@ -57,9 +77,9 @@ fn scenes_of_problems_can_be_run_by_hand() {
 
 #[test]
 fn an_unknown_problem_is_refused_with_those_that_are_known() {
-    let ran = Workplace::new().run(&["bench", "--only", "P7"]);
+    let ran = Workplace::new().run(&["bench", "--only", "P8"]);
     assert_eq!(ran.code, Some(2));
-    assert!(ran.stderr.contains("P6"), "{}", ran.stderr);
+    assert!(ran.stderr.contains("P7"), "{}", ran.stderr);
 }
 
 #[cfg(unix)]

@@ -1,5 +1,6 @@
 //! Ratios of what was measured, and what they are to be.
 
+use super::on_ranks::OnRanks;
 use super::problems::{BLOCKS_APART, BLOCKS_IN_CONTACT};
 use super::record::{EndToEnd, Measured, PeerResult, median};
 use serde::Serialize;
@@ -38,6 +39,8 @@ pub struct Findings<'a> {
     pub results: &'a [Measured],
     /// Problem P6.
     pub end_to_end: &'a [EndToEnd],
+    /// Problem P7.
+    pub on_ranks: &'a [OnRanks],
     /// Other programs.
     pub peers: &'a [PeerResult],
 }
@@ -120,6 +123,10 @@ pub fn goals(findings: Findings) -> Vec<Goal> {
         goals.push(goal(&name, Some(run.checks), (AtMost, 1.02, None)));
         let name = format!("P6 {}: time with a checkpoint each minute over time without", run.scene);
         goals.push(goal(&name, Some(run.checkpoints), (AtMost, 1.01, None)));
+    }
+    for shared in findings.on_ranks.iter().filter(|shared| shared.ranks == 2) {
+        let name = format!("P7 {}: speed of two ranks over that of two threads", shared.problem);
+        goals.push(goal(&name, Some(shared.speed), (AtLeast, 0.9, None)));
     }
     for peer in findings.peers.iter().filter(|peer| peer.basis == "linear") {
         let least = match peer.program.as_str() {
@@ -263,7 +270,7 @@ mod tests {
             first_step: 0.0,
         };
         let peers = [peer("Warp", 10e6), peer("Taichi", 4e6), peer("Taichi, serial", 9e6)];
-        let goals = goals(Findings { results: &results, end_to_end: &[], peers: &peers });
+        let goals = goals(Findings { results: &results, end_to_end: &[], on_ranks: &[], peers: &peers });
 
         assert_eq!(value(&goals, "P1 linear f64, M"), Some((20.0, true)));
         assert_eq!(value(&goals, "P1 GIMP"), Some((8.0, false)));

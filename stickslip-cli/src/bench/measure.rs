@@ -7,10 +7,17 @@ use serde::{Deserialize, Serialize};
 use std::io::{Read, Write};
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
+use std::sync::Arc;
 use std::time::Instant;
-use stickslip::door::Simulation;
+use stickslip::door::{RankShare, Simulation};
+use stickslip::lanes::Processor;
 use stickslip::march::March;
+use stickslip::observe::present_state_sum;
+use stickslip::ranks::Threads;
 use stickslip::run::RunOptions;
+use stickslip::scene::{Problem, Scene};
+use stickslip::shared;
+use stickslip::step::ParticleLoop;
 
 /// What a process is asked to measure.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -30,6 +37,8 @@ pub struct Order {
 pub enum BenchTask {
     /// Step, and look at the clock.
     Steps(Effort),
+    /// The same by so many ranks, each with one thread.
+    Ranks(Effort, usize),
     /// Run it from end to end, with the outputs that the scene asks for in this folder.
     Run(PathBuf),
 }
@@ -68,6 +77,12 @@ pub struct BenchSample {
     pub memory: Option<u64>,
     /// Part of the repetitions' wall time in which the threads together had a core, over the number of threads.
     pub at_work: Option<f64>,
+    /// What each rank had and did.
+    #[serde(default)]
+    pub shares: Vec<RankShare>,
+    /// The sum of the state before the first step that counts, which is always the same one.
+    #[serde(default)]
+    pub sum: Option<String>,
 }
 
 impl BenchSample {
@@ -135,15 +150,29 @@ fn take(order: &Order) -> Result<BenchSample, Failure> {
     let (start, processor_time) = (Instant::now(), memory::processor_time());
     let loaded =
         stickslip::scene::parse("benchmark", &order.scene, &order.overrides).map_err(Failure::input)?;
-    let mut simulation = stickslip::step::build(&loaded.scene)
-        .map_err(|problem| Failure::input(loaded.source.locate(problem)))?;
+    let located = |problem| Failure::input(loaded.source.locate(problem));
+    if let BenchTask::Ranks(effort, count) = order.task {
+        return among(&loaded.scene, count, |simulation| {
+            let mut simulation = simulation.map_err(located)?;
+            let mut sample = BenchSample {
+                bodies: loaded.scene.bodies.len(),
+                particles: simulation.particles(),
+                ..BenchSample::default()
+            };
+            step((&loaded.scene, &mut *simulation), effort, &mut sample)?;
+            sample.shares = simulation.shares();
+            Ok(sample)
+        });
+    }
+    let mut simulation = stickslip::step::build(&loaded.scene).map_err(located)?;
     let mut sample = BenchSample {
         bodies: loaded.scene.bodies.len(),
         particles: simulation.particles(),
         ..BenchSample::default()
     };
     match &order.task {
-        BenchTask::Steps(effort) => step(&mut *simulation, *effort, &mut sample)?,
+        BenchTask::Ranks(..) => unreachable!("they are measured above"),
+        BenchTask::Steps(effort) => step((&loaded.scene, &mut *simulation), *effort, &mut sample)?,
         BenchTask::Run(folder) => {
             let options = RunOptions { threads: order.threads, ..RunOptions::new(folder) };
             let summary = stickslip::run::run(&loaded.scene, &mut *simulation, &options, &mut |_| {})
@@ -159,9 +188,38 @@ fn take(order: &Order) -> Result<BenchSample, Failure> {
     Ok(sample)
 }
 
-fn step(simulation: &mut dyn Simulation, effort: Effort, sample: &mut BenchSample) -> Result<(), Failure> {
+/// What the first of so many ranks makes of the simulation of a scene, which have a thread each.
+fn among<X: Send>(
+    scene: &Scene,
+    count: usize,
+    act: impl FnOnce(Result<Box<dyn Simulation>, Problem>) -> Result<X, Failure> + Send,
+) -> Result<X, Failure> {
+    let path = ParticleLoop::Lanes(Processor::best());
+    // A pool for each: who waits for another rank keeps a thread of its pool.
+    let pool = || {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
+        pool.map_err(|error| Failure::Run(miette!("{error}")))
+    };
+    let pools = (0..count).map(|_| pool()).collect::<Result<Vec<_>, _>>()?;
+    std::thread::scope(|scope| {
+        let mut ranks = Threads::start(count).into_iter().zip(&pools);
+        let (first, pool) = ranks.next().ok_or_else(|| Failure::Run(miette!("there is no rank")))?;
+        for (other, pool) in ranks {
+            // What is wrong with the scene, the first one says.
+            scope.spawn(move || pool.install(|| shared::follow(scene, path, Arc::new(other))));
+        }
+        pool.install(|| act(shared::lead(scene, path, Arc::new(first))))
+    })
+}
+
+fn step(
+    (scene, simulation): (&Scene, &mut dyn Simulation),
+    effort: Effort,
+    sample: &mut BenchSample,
+) -> Result<(), Failure> {
     advance(simulation, effort.warm_up)?;
     sample.steps = effort.steps_in(advance(simulation, 1)?);
+    sample.sum = present_state_sum(scene, simulation);
     let before = verbs(simulation);
     let core_time = memory::core_time();
     for _ in 0..effort.repetitions {

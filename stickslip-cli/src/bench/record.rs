@@ -3,6 +3,7 @@
 use super::goals::Goal;
 use super::limits::Limits;
 use super::measure::BenchSample;
+use super::on_ranks::OnRanks;
 use super::problems::BenchCase;
 use serde::{Deserialize, Serialize};
 
@@ -23,6 +24,8 @@ pub struct BenchRecord {
     pub skipped: Vec<Skipped>,
     /// Problem P6.
     pub end_to_end: Vec<EndToEnd>,
+    /// Problem P7.
+    pub on_ranks: Vec<OnRanks>,
     /// Other programs on problem P1.
     pub peers: Vec<PeerResult>,
     /// Ratios, and what they are to be.
@@ -223,6 +226,8 @@ mod tests {
             processor_time: None,
             memory: Some(500_000_000),
             at_work: None,
+            shares: Vec::new(),
+            sum: None,
         };
         let measured = Measured::new(case, sample, &machine);
         assert_eq!(measured.repetitions, [1e6, 0.5e6, 1.25e6]);

@@ -24,6 +24,9 @@ impl Display for BenchRecord {
         if !self.end_to_end.is_empty() {
             f.write_str(&self.whole_runs())?;
         }
+        if !self.on_ranks.is_empty() {
+            f.write_str(&self.shared())?;
+        }
         if !self.peers.is_empty() {
             f.write_str(&self.other_programs())?;
         }
@@ -140,6 +143,42 @@ impl BenchRecord {
         format!(
             "P6, whole runs with and without outputs; ratios of time with and without checks, and of processor time \
              with and without a checkpoint each minute.\n{table}\n"
+        )
+    }
+
+    fn shared(&self) -> String {
+        let mut table = TextTable::new(&[
+            "<problem",
+            "particles",
+            "ranks",
+            "threads ms",
+            "ranks ms",
+            "speed",
+            "kB sent",
+            "by model",
+            "messages",
+            "waiting",
+            "imbalance",
+        ]);
+        for shared in &self.on_ranks {
+            let milliseconds = |times: &[f64]| format!("{:.2}", 1e3 * median(times));
+            table.row([
+                shared.problem.clone(),
+                shared.particles.to_string(),
+                shared.ranks.to_string(),
+                milliseconds(&shared.threads),
+                milliseconds(&shared.seconds),
+                format!("{:.2}", shared.speed),
+                format!("{:.0}", shared.bytes / 1e3),
+                format!("{:.0}", shared.modelled / 1e3),
+                format!("{:.0}", shared.messages),
+                percent(shared.waiting),
+                format!("{:.2}", shared.imbalance),
+            ]);
+        }
+        format!(
+            "P7, a step by ranks of one thread against as many threads of one process, with the same bits; what a rank \
+             sends\nin a step, and by the model without contact; more ranks than cores take turns.\n{table}\n"
         )
     }
 

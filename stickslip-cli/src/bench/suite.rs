@@ -6,6 +6,7 @@ use super::limits::{self, Care};
 use super::measure::{BenchSample, BenchTask, Effort, Order};
 use super::memory;
 use super::multiply_add::instructions;
+use super::on_ranks::{self, OnRanks};
 use super::peers::Peers;
 use super::problems::{BenchCase, BenchExtent, cases};
 use super::record::{BenchRecord, Computer, Measured, Skipped};
@@ -21,7 +22,7 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 pub struct BenchSuite {
     /// How much of each problem.
     pub extent: BenchExtent,
-    /// `P1` to `P6`; all if empty.
+    /// `P1` to `P7`; all if empty.
     pub only: Vec<String>,
     /// Most threads.
     pub threads: usize,
@@ -30,7 +31,7 @@ pub struct BenchSuite {
 }
 
 /// Names of the problems.
-pub const PROBLEMS: [&str; 6] = ["P1", "P2", "P3", "P4", "P5", "P6"];
+pub const PROBLEMS: [&str; 7] = ["P1", "P2", "P3", "P4", "P5", "P6", "P7"];
 /// What a process may need for a particle; a case is left out if the machine does not have so much [bytes].
 const MEMORY: f64 = 1000.0;
 
@@ -53,6 +54,7 @@ impl BenchSuite {
             results: Vec::new(),
             skipped: Vec::new(),
             end_to_end: Vec::new(),
+            on_ranks: Vec::new(),
             peers: Vec::new(),
             goals: Vec::new(),
         };
@@ -71,11 +73,21 @@ impl BenchSuite {
                 record.end_to_end.push(whole.measure(self.threads)?);
             }
         }
+        if self.wants("P7") {
+            for case in on_ranks::problems(self.extent) {
+                let turns = if self.extent == BenchExtent::Tiny { 1 } else { TURNS_ON_RANKS };
+                record.on_ranks.extend(OnRanks::measure(&case, self.effort(), turns)?);
+            }
+        }
         if let Some((peers, python)) = self.peers.as_ref().zip(python) {
             record.peers = peers.measure(&python)?;
         }
-        let findings =
-            Findings { results: &record.results, end_to_end: &record.end_to_end, peers: &record.peers };
+        let findings = Findings {
+            results: &record.results,
+            end_to_end: &record.end_to_end,
+            on_ranks: &record.on_ranks,
+            peers: &record.peers,
+        };
         record.goals = goals(findings);
         Ok(record)
     }
@@ -104,13 +116,17 @@ impl BenchSuite {
         }
     }
 
-    /// Measures cases that are compared in turns: what slows the machine for a while slows all of them.
-    fn measure(&self, compared: &[BenchCase], machine: &Computer) -> Result<Vec<Measured>, Failure> {
-        let mut effort = match self.extent {
+    fn effort(&self) -> Effort {
+        match self.extent {
             BenchExtent::Full => Effort { warm_up: 8, repetitions: 5, least: 12, steps: 64, seconds: 15.0 },
             BenchExtent::Quick => Effort { warm_up: 2, repetitions: 3, least: 8, steps: 32, seconds: 1.2 },
             BenchExtent::Tiny => Effort { warm_up: 1, repetitions: 2, least: 1, steps: 2, seconds: 0.1 },
-        };
+        }
+    }
+
+    /// Measures cases that are compared in turns: what slows the machine for a while slows all of them.
+    fn measure(&self, compared: &[BenchCase], machine: &Computer) -> Result<Vec<Measured>, Failure> {
+        let mut effort = self.effort();
         let turns = match (compared.len(), self.extent) {
             (1, _) => 1,
             (_, BenchExtent::Full) => TURNS,
@@ -140,6 +156,7 @@ impl BenchSuite {
 /// How often cases that are compared take turns.
 const TURNS: usize = 5;
 const TURNS_OF_QUICK: usize = 2;
+const TURNS_ON_RANKS: usize = 3;
 
 fn order(case: &BenchCase, effort: Effort) -> Order {
     Order {

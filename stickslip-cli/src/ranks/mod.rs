@@ -98,7 +98,7 @@ impl Launched {
         if ranks.rank() > 0 {
             crate::commands::outlast_signals()?;
             use_threads(command.threads(), neighbours)?;
-            while follow(&*ranks, ranks.clone())? {}
+            while follow(&ranks, ranks.clone())? {}
             return Ok(());
         }
         let _ = OTHERS.set((ranks.clone(), neighbours));

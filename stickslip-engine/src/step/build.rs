@@ -15,21 +15,21 @@ use crate::contact::{ContactSums, Rules};
 use crate::damping::{BulkViscosity, NodeDamping, viscosity_columns};
 use crate::door::{RemovedParticles, RestoreError, Simulation, WrittenValues};
 use crate::geometry::{Curved, Filling, Mirror, MirroredShape, ParticleSite, Shape, fill};
-use crate::grid::{Lattice, Periods, SIDE};
+use crate::grid::{Lattice, Periods, SIDE, locate};
 use crate::initial_stress::{self, InitialStress};
 use crate::lanes::{Laned, Processor};
 use crate::load::{LoadPoints, LoadSums, SpringPoints};
 use crate::material::{BadConstants, Material};
 use crate::natural;
 use crate::particles::{DOMAINS, OwnColumns, Particles, stress_entries};
-use crate::ranks::Ranks;
+use crate::ranks::{Partition, Ranks};
 use crate::rigid::{MassProperties, RigidMotion, longest_step};
 use crate::scene::{
     self, Action, BasisKind, BodyMotion, Dimension, Face, NamedMaterial, Precision, Problem, Scene,
 };
 use crate::tensor::{Matrix, Real, Symmetric, Vector, cross};
 use crate::transfer::{has_spin, pic_share, rotation};
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::marker::PhantomData;
 use std::sync::Arc;
 
@@ -46,7 +46,7 @@ pub fn build(scene: &Scene) -> Result<Box<dyn Simulation>, Problem> {
 /// # Errors
 /// What [`check::problems`] finds.
 pub fn build_on(scene: &Scene, path: ParticleLoop) -> Result<Box<dyn Simulation>, Problem> {
-    Ok(build_whole(scene, path)?)
+    Ok(build_for(scene, path, None)?)
 }
 
 /// One rank's part of the simulation of a scene, see [`Ranks`]. All ranks make the same calls of it in the same order:
@@ -62,9 +62,7 @@ pub fn build_among(
     ranks: Arc<dyn Ranks>,
 ) -> Result<Box<dyn Simulation>, Problem> {
     super::among::can_be_shared(scene)?;
-    let mut whole = build_whole(scene, path)?;
-    whole.share(ranks);
-    Ok(whole)
+    Ok(build_for(scene, path, Some(ranks))?)
 }
 
 /// [`build_among`], of a whole that begins in another way than the scene says.
@@ -77,7 +75,7 @@ pub(crate) fn build_among_from(
     ranks: Arc<dyn Ranks>,
     begin: impl FnOnce(&mut dyn Simulation) -> Result<(), RestoreError>,
 ) -> Result<Box<dyn Simulation>, RestoreError> {
-    let mut whole = build_whole(scene, path).map_err(|problem| RestoreError(problem.to_string()))?;
+    let mut whole = build_for(scene, path, None).map_err(|problem| RestoreError(problem.to_string()))?;
     begin(&mut *whole)?;
     whole.share(ranks);
     Ok(whole)
@@ -95,29 +93,35 @@ impl<T: Laned, const D: usize, B: Basis<T>> Shareable for Engine<T, D, B> {
     }
 }
 
-fn build_whole(scene: &Scene, path: ParticleLoop) -> Result<Box<dyn Shareable>, Problem> {
+/// The whole simulation, or the part of one of several ranks.
+fn build_for(
+    scene: &Scene,
+    path: ParticleLoop,
+    ranks: Option<Arc<dyn Ranks>>,
+) -> Result<Box<dyn Shareable>, Problem> {
     match (scene.dimension, scene.precision) {
         (Dimension::PlaneStrain | Dimension::PlaneStress, Precision::Double) => {
-            with_basis::<f64, 2>(scene, path)
+            with_basis::<f64, 2>(scene, path, ranks)
         }
         (Dimension::PlaneStrain | Dimension::PlaneStress, Precision::Single) => {
-            with_basis::<f32, 2>(scene, path)
+            with_basis::<f32, 2>(scene, path, ranks)
         }
-        (Dimension::Space, Precision::Double) => with_basis::<f64, 3>(scene, path),
-        (Dimension::Space, Precision::Single) => with_basis::<f32, 3>(scene, path),
+        (Dimension::Space, Precision::Double) => with_basis::<f64, 3>(scene, path, ranks),
+        (Dimension::Space, Precision::Single) => with_basis::<f32, 3>(scene, path, ranks),
     }
 }
 
 fn with_basis<T: Laned, const D: usize>(
     scene: &Scene,
     path: ParticleLoop,
+    ranks: Option<Arc<dyn Ranks>>,
 ) -> Result<Box<dyn Shareable>, Problem> {
     Ok(match scene.discretization.basis {
-        BasisKind::Linear => Box::new(Engine::<T, D, Linear>::new(scene, path)?),
+        BasisKind::Linear => Box::new(Engine::<T, D, Linear>::of(scene, path, ranks)?),
         // Boxes of a cell: see `Gimp`.
-        BasisKind::Gimp | BasisKind::Spline => Box::new(Engine::<T, D, Gimp>::new(scene, path)?),
-        BasisKind::Cubic => Box::new(Engine::<T, D, Cubic>::new(scene, path)?),
-        BasisKind::Cpdi => Box::new(Engine::<T, D, Cpdi>::new(scene, path)?),
+        BasisKind::Gimp | BasisKind::Spline => Box::new(Engine::<T, D, Gimp>::of(scene, path, ranks)?),
+        BasisKind::Cubic => Box::new(Engine::<T, D, Cubic>::of(scene, path, ranks)?),
+        BasisKind::Cpdi => Box::new(Engine::<T, D, Cpdi>::of(scene, path, ranks)?),
     })
 }
 
@@ -127,7 +131,39 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// # Errors
     /// What [`check::problems`] finds.
     pub fn new(scene: &Scene, path: ParticleLoop) -> Result<Self, Problem> {
+        Self::of(scene, path, None)
+    }
+
+    /// The same, or the part of it that one of several ranks has.
+    fn of(scene: &Scene, path: ParticleLoop, ranks: Option<Arc<dyn Ranks>>) -> Result<Self, Problem> {
         check::problems(scene)?;
+        let Some(ranks) = ranks else { return Self::keeping(scene, path, |_| true) };
+        let (origin, periods) = (origin(scene), periods::<D>(scene));
+        let block = |x: [f64; 3]| {
+            let cell = scene.discretization.cell;
+            let cell = std::array::from_fn(|k| ((x[k] - origin[k]) / cell).floor() as i32);
+            periods.wrapped(locate(cell).0)
+        };
+        // How many particles begin in each block.
+        let mut loads: HashMap<[i32; D], u64> = HashMap::new();
+        for body in &scene.bodies {
+            let filling = fill(&body.shape, &scene.lattice(body), body.particles);
+            for site in filling.iter().flat_map(|filling| &filling.sites) {
+                *loads.entry(block(site.position)).or_default() += 1;
+            }
+        }
+        let partition = Partition::balanced(ranks.count(), None, loads);
+        let mut engine = Self::keeping(scene, path, |x| partition.owner(block(x)) == ranks.rank())?;
+        engine.join(ranks, partition);
+        Ok(engine)
+    }
+
+    /// The simulation with the particles that begin where some are wanted.
+    fn keeping(
+        scene: &Scene,
+        path: ParticleLoop,
+        wanted: impl Fn([f64; 3]) -> bool,
+    ) -> Result<Self, Problem> {
         let cell = scene.discretization.cell;
         let half_side = match scene.discretization.basis {
             BasisKind::Linear | BasisKind::Gimp | BasisKind::Cpdi => None,
@@ -135,6 +171,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             BasisKind::Cubic => Some(1.0),
         };
         let mut bodies = Vec::new();
+        let mut all_filled = Vec::new();
         let mut unbounded = Vec::new();
         let heated = heated_bodies(scene);
         for (number, body) in scene.bodies.iter().enumerate() {
@@ -184,6 +221,10 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 Some(free) => free.mass / volume(),
                 None => scene.materials[body.material].density,
             };
+            all_filled.push(filling.sites.len());
+            let sites = filling.sites.iter().zip(0..);
+            let kept: Vec<u32> =
+                sites.filter(|(site, _)| wanted(site.position)).map(|(_, number)| number).collect();
             bodies.push(Body {
                 name: body.name.clone(),
                 material: material(scene, body)?,
@@ -192,7 +233,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 particles: {
                     let own = own_columns(scene, body, heated.contains(&number));
                     let stresses = initial_stress::of_body(scene, number)?;
-                    particles((own, &stresses), &filling, (velocity, turning, density))
+                    particles((own, &stresses), (&filling, &kept), (velocity, turning, density))
                 },
                 motion,
                 whole: whole::<D>(scene, number),
@@ -202,12 +243,11 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             });
         }
         let periods = periods::<D>(scene);
-        let origin = scene.domain.as_ref().map_or([0.0; 3], |domain| domain.min);
-        let filled = bodies.iter().map(|body: &Body<T, D>| body.particles.len()).collect();
+        let origin = origin(scene);
         let removed = vec![RemovedParticles::default(); bodies.len()];
         let written = vec![WrittenValues::default(); bodies.len()];
         let tallies = scene.outputs.measurements.faces().next().is_some();
-        let points = |load: &scene::Load| LoadPoints::new(scene, load, bodies[load.body].particles.len());
+        let points = |load: &scene::Load| LoadPoints::new(scene, load, all_filled[load.body]);
         let loads = scene.loads.iter().map(points).collect();
         Ok(Engine {
             settings: Settings {
@@ -219,7 +259,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 domain: scene.domain.as_ref().map(|domain| [domain.min, domain.max].map(Vector::of)),
                 held: scene.domain.as_ref().map(held),
                 leaving: scene.domain.as_ref().map_or_else(Default::default, |domain| domain.leaving),
-                filled,
+                filled: all_filled,
                 gravity: scene.gravity.clone(),
                 transfer: scene.time.transfer,
                 pic_share: T::of(pic_share(scene.time.transfer, scene.time.pic_share)),
@@ -275,6 +315,11 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     }
 }
 
+/// Where the grid begins [m].
+fn origin(scene: &Scene) -> [f64; 3] {
+    scene.domain.as_ref().map_or([0.0; 3], |domain| domain.min)
+}
+
 /// Of each body, whether it is rigid and free; empty where none is.
 fn free_bodies(scene: &Scene) -> Vec<bool> {
     let free: Vec<bool> = scene.bodies.iter().map(|body| body.as_free_rigid().is_some()).collect();
@@ -306,10 +351,11 @@ fn about(center: [f64; 3], velocity: [f64; 3], spin: [f64; 3], x: [f64; 3]) -> [
 
 fn particles<T: Real, const D: usize>(
     (own, stresses): (OwnColumns, &[InitialStress]),
-    filling: &Filling,
+    (filling, kept): (&Filling, &[u32]),
     (velocity, turning, density): (impl Fn(usize, [f64; 3]) -> [f64; 3], [f64; 3], f64),
 ) -> Particles<T, D> {
-    let particle = |number: usize| {
+    let particle = |place: usize| {
+        let number = kept[place] as usize;
         let site: &ParticleSite = &filling.sites[number];
         Particle {
             position: Vector::of(site.position),
@@ -325,12 +371,13 @@ fn particles<T: Real, const D: usize>(
             number: number as u32,
         }
     };
-    let mut particles = Particles::from_fn(filling.sites.len(), own, particle);
+    let mut particles = Particles::from_fn(kept.len(), own, particle);
     if natural::begins_stretched(own.natural) {
         let first = particles.view().natural_columns().start;
         for k in 0..stress_entries(D) {
             let line = particles.line_mut(first + k).iter_mut();
-            line.zip(stresses).for_each(|(entry, begun)| *entry = T::of(begun.stretch.0[k]));
+            let begun = kept.iter().map(|&number| &stresses[number as usize]);
+            line.zip(begun).for_each(|(entry, begun)| *entry = T::of(begun.stretch.0[k]));
         }
     }
     particles

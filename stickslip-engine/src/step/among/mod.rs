@@ -240,7 +240,17 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 *loads.entry(block_of(body, particle)).or_default() += 1;
             }
         }
-        let partition = Partition::balanced(ranks.count(), loads);
+        self.join(ranks.clone(), Partition::balanced(ranks.count(), None, loads));
+        for body in 0..self.state.bodies.len() {
+            let gone = self.of_other_ranks(&self.state.bodies[body].particles);
+            let particles = &mut self.state.bodies[body].particles;
+            particles.remove(&gone);
+            particles.fit();
+        }
+    }
+
+    /// Becomes one of several ranks, with its particles in its share of the blocks.
+    pub(super) fn join(&mut self, ranks: Arc<dyn Ranks>, partition: Partition) {
         self.among = Some(Among {
             ranks,
             partition,
@@ -254,12 +264,6 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             fastest: f64::INFINITY,
             moves: true,
         });
-        for body in 0..self.state.bodies.len() {
-            let gone = self.of_other_ranks(&self.state.bodies[body].particles);
-            let particles = &mut self.state.bodies[body].particles;
-            particles.remove(&gone);
-            particles.fit();
-        }
         self.watch_borders();
     }
 
@@ -328,7 +332,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let loads: Vec<(Vec<i32>, u64)> = active.tiles.iter().map(load).collect();
         let loads = among.gathered(&loads).concat();
         let block = |block: &[i32]| std::array::from_fn(|k| block[k]);
-        let next = Partition::balanced(all.len(), loads.iter().map(|(at, load)| (block(at), *load)));
+        let by_block = loads.iter().map(|(at, load)| (block(at), *load));
+        let next = Partition::balanced(all.len(), Some(&among.partition), by_block);
         let heaviest = |partition: &Partition| {
             let mut of_ranks = vec![0; all.len()];
             loads.iter().for_each(|(at, load)| of_ranks[partition.owner::<D>(block(at))] += load);

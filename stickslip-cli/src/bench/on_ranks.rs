@@ -1,0 +1,123 @@
+//! Problem P7: what several ranks of one thread take for a problem, against as many threads of one process.
+//!
+//! The ranks are threads of a process whose only way to each other are messages ([`stickslip::ranks::Threads`]): what
+//! they send is what processes send, but for the time that a network takes.
+
+use super::measure::{BenchTask, Effort, Order};
+use super::problems::{BLOCKS_IN_CONTACT, BenchCase, BenchExtent, BenchScheme, cases};
+use super::record::median;
+use crate::failure::Failure;
+use crate::tell::tell;
+use miette::miette;
+use serde::Serialize;
+use stickslip::door::RankShare;
+
+/// A problem on so many ranks.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct OnRanks {
+    /// The problem, in a few words.
+    pub problem: String,
+    /// Ranks, of one thread each.
+    pub ranks: usize,
+    /// Particles.
+    pub particles: usize,
+    /// Wall time of a step by one process of as many threads, repetition by repetition [s].
+    pub threads: Vec<f64>,
+    /// Wall time of a step by the ranks likewise [s].
+    pub seconds: Vec<f64>,
+    /// The median of the former over that of the latter.
+    pub speed: f64,
+    /// What a rank sends in a step, the mean over ranks [bytes].
+    pub bytes: f64,
+    /// The same by the model in the book, without what contact adds [bytes].
+    pub modelled: f64,
+    /// In so many messages.
+    pub messages: f64,
+    /// Part of the time in steps in which ranks waited, the mean over ranks.
+    pub waiting: f64,
+    /// Time in which the slowest rank computed over the mean.
+    pub imbalance: f64,
+}
+
+/// The problems that are shared: P1, P2 with GIMP, and a pack of P3.
+pub fn problems(extent: BenchExtent) -> Vec<BenchCase> {
+    let plain = BenchScheme::default();
+    let gimp = BenchScheme { basis: "gimp", ..plain };
+    let pack = if extent == BenchExtent::Tiny { "8 balls" } else { "64 balls" };
+    let wanted = [("P1", "cube", plain), ("P2", BLOCKS_IN_CONTACT, gimp), ("P3", pack, plain)];
+    let all = cases(extent, 1);
+    let found = wanted.iter().filter_map(|(problem, variant, scheme)| {
+        all.iter().find(|case| (case.problem, &*case.variant, case.scheme) == (*problem, variant, *scheme))
+    });
+    found.cloned().collect()
+}
+
+impl OnRanks {
+    /// Measures a problem on 1, 2 and 4 ranks by turns with as many threads, so often.
+    ///
+    /// # Errors
+    /// A measurement fails, or ranks end in other bits than threads.
+    pub fn measure(case: &BenchCase, effort: Effort, turns: usize) -> Result<Vec<Self>, Failure> {
+        [1, 2, 4].into_iter().map(|ranks| Self::of(case, (effort, turns), ranks)).collect()
+    }
+
+    fn of(case: &BenchCase, (mut effort, turns): (Effort, usize), ranks: usize) -> Result<Self, Failure> {
+        let problem = case.label();
+        tell!("P7 {problem}, {ranks} ranks ...");
+        let (mut threads, mut seconds, mut shares) = (Vec::new(), Vec::new(), Vec::new());
+        let mut particles = 0;
+        for _ in 0..turns {
+            let order = |task: BenchTask, threads: usize| Order {
+                scene: case.scene.clone(),
+                overrides: Vec::new(),
+                threads,
+                task,
+            };
+            let alone = order(BenchTask::Steps(effort), ranks).measure()?;
+            // All repetitions have as many steps as the first.
+            (effort.steps, effort.least, effort.seconds) = (alone.steps, alone.steps, f64::MAX);
+            let shared = order(BenchTask::Ranks(effort, ranks), 1).measure()?;
+            if shared.sum != alone.sum || alone.sum.is_none() {
+                return Err(Failure::Run(miette!(
+                    "{problem} ends in other bits on {ranks} ranks than on one"
+                )));
+            }
+            let each = |all: &[f64]| all.iter().map(|time| time / alone.steps as f64).collect::<Vec<_>>();
+            threads.extend(each(&alone.repetitions));
+            seconds.extend(each(&shared.repetitions));
+            (particles, shares) = (shared.particles, shared.shares);
+        }
+        let mean = |of: &dyn Fn(&RankShare) -> f64| shares.iter().map(of).sum::<f64>() / ranks as f64;
+        let computed = mean(&|share| share.computed);
+        let slowest = shares.iter().map(|share| share.computed).fold(0.0, f64::max);
+        let steps = |share: &RankShare| share.steps.max(1) as f64;
+        Ok(OnRanks {
+            ranks,
+            particles,
+            speed: median(&threads) / median(&seconds),
+            threads,
+            seconds,
+            bytes: mean(&|share| share.traffic.bytes as f64 / steps(share)),
+            modelled: case.scheme.halo(particles, ranks),
+            messages: mean(&|share| share.traffic.messages as f64 / steps(share)),
+            waiting: mean(&|share| share.waited / (share.waited + share.computed).max(f64::MIN_POSITIVE)),
+            imbalance: slowest / computed.max(f64::MIN_POSITIVE),
+            problem,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn three_problems_are_shared() {
+        for extent in [BenchExtent::Full, BenchExtent::Quick, BenchExtent::Tiny] {
+            assert_eq!(
+                problems(extent).iter().map(|case| case.problem).collect::<Vec<_>>(),
+                ["P1", "P2", "P3"]
+            );
+        }
+    }
+}
