@@ -57,7 +57,7 @@ pub fn execute(words: impl IntoIterator<Item = OsString>) -> u8 {
     let ended = match (commands::Command::try_parse_from(words), together) {
         (Ok(command), None) => command.execute(),
         (Ok(command), Some(launched)) => launched.execute(command),
-        (Err(error), together) => {
+        (Err(error), _) => {
             // Once is enough. Nobody can be told of an output that takes nothing.
             if together.is_none_or(ranks::Launched::is_first) {
                 let _ = error.print();
@@ -68,7 +68,9 @@ pub fn execute(words: impl IntoIterator<Item = OsString>) -> u8 {
     match ended {
         Ok(()) => 0,
         Err(failure) => {
-            failure.print();
+            if together.is_none_or(ranks::Launched::is_first) {
+                failure.print();
+            }
             failure.exit_code()
         }
     }

@@ -14,9 +14,6 @@ const DIGITS: usize = 70;
 /// Numbers that are added before digits are carried: each adds less than 2^53 to a digit.
 const CARRY: u32 = 1 << 9;
 
-/// Bytes of a sum.
-pub const BYTES: usize = 8 * (DIGITS + 1);
-
 /// Bits of the fraction of a number.
 const FRACTION: u32 = f64::MANTISSA_DIGITS - 1;
 
@@ -78,20 +75,52 @@ impl ExactSum {
         self.beyond += other.beyond;
     }
 
-    /// The sum as bytes.
-    pub fn to_bytes(&mut self) -> [u8; BYTES] {
+    /// Writes the sum behind bytes: whether it is negative and whether there is something that is not finite, the first
+    /// digit that is not zero and how many follow, and these.
+    pub fn write_to(&mut self, bytes: &mut Vec<u8>) {
         self.carry();
-        let mut bytes = [0; BYTES];
-        let words = self.digits.map(i64::to_le_bytes).into_iter().chain([self.beyond.to_le_bytes()]);
-        bytes.chunks_exact_mut(8).zip(words).for_each(|(to, word)| to.copy_from_slice(&word));
-        bytes
+        let mut sum = self.clone();
+        let negative = sum.digits[DIGITS - 1] < 0;
+        if negative {
+            sum.negate();
+        }
+        let is_there = |digit: &i64| *digit != 0;
+        let first = sum.digits.iter().position(is_there).unwrap_or(DIGITS);
+        let end = sum.digits.iter().rposition(is_there).map_or(first, |last| last + 1);
+        bytes.extend([
+            u8::from(negative) | u8::from(sum.beyond != 0.0) << 1,
+            first as u8,
+            (end - first) as u8,
+        ]);
+        sum.digits[first..end].iter().for_each(|digit| bytes.extend(digit.to_le_bytes()));
+        if sum.beyond != 0.0 {
+            bytes.extend(sum.beyond.to_le_bytes());
+        }
     }
 
-    /// A sum that was made bytes.
-    pub fn of_bytes(bytes: &[u8; BYTES]) -> Self {
-        let word = |k: usize| std::array::from_fn(|i| bytes[8 * k + i]);
-        let digits = std::array::from_fn(|k| i64::from_le_bytes(word(k)));
-        ExactSum { digits, added: 1, beyond: f64::from_le_bytes(word(DIGITS)) }
+    /// The sum at the front of bytes, which [`ExactSum::write_to`] wrote, and what is behind it.
+    pub fn read_from(bytes: &[u8]) -> Option<(Self, &[u8])> {
+        let (&[flags, first, count], mut rest) = bytes.split_first_chunk()?;
+        let mut sum = ExactSum::default();
+        for digit in sum.digits.get_mut(usize::from(first)..)?.get_mut(..usize::from(count))? {
+            let (bytes, behind) = rest.split_first_chunk()?;
+            (*digit, rest) = (i64::from_le_bytes(*bytes), behind);
+        }
+        if flags & 2 != 0 {
+            let (bytes, behind) = rest.split_first_chunk()?;
+            (sum.beyond, rest) = (f64::from_le_bytes(*bytes), behind);
+        }
+        if flags & 1 != 0 {
+            sum.negate();
+        }
+        sum.added = 1;
+        Some((sum, rest))
+    }
+
+    /// Turns the sign.
+    fn negate(&mut self) {
+        self.digits.iter_mut().for_each(|digit| *digit = -*digit);
+        self.carry();
     }
 
     /// Leaves less than 2^32 in each digit, none of them negative but the last.
@@ -113,8 +142,7 @@ impl ExactSum {
         sum.carry();
         let negative = sum.digits[DIGITS - 1] < 0;
         if negative {
-            sum.digits.iter_mut().for_each(|digit| *digit = -*digit);
-            sum.carry();
+            sum.negate();
         }
         let Some(top) = sum.digits.iter().rposition(|&digit| digit != 0) else { return 0.0 };
         // Four digits hold all bits of a number and those that decide how it is rounded; whether any is behind them
@@ -196,8 +224,11 @@ mod tests {
             prop_assert_eq!(sum(&turned).to_bits(), whole.to_bits());
             let mut merged = ExactSum::default();
             for part in numbers.chunks(parts).rev() {
-                let mut part: ExactSum = part.iter().copied().sum();
-                merged.merge(&ExactSum::of_bytes(&part.to_bytes()));
+                let (mut part, mut bytes): (ExactSum, _) = (part.iter().copied().sum(), Vec::new());
+                part.write_to(&mut bytes);
+                let (read, rest) = ExactSum::read_from(&bytes).expect("it was written");
+                prop_assert!(rest.is_empty() && ExactSum::read_from(&bytes[..bytes.len() - 1]).is_none());
+                merged.merge(&read);
             }
             prop_assert_eq!(merged.value().to_bits(), whole.to_bits());
             let (most, plain) = numbers.iter().fold((0.0_f64, 0.0), |(most, sum), x| (most.max(x.abs()), sum + x));

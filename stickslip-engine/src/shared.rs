@@ -65,9 +65,10 @@ enum Call {
     Shares,
     Save,
     SaveColumns(usize),
-    Restore(#[serde(with = "serde_bytes")] Vec<u8>),
-    /// The state, whether it is that of a snapshot, and what becomes of velocities.
-    BeginFrom(#[serde(with = "serde_bytes")] Vec<u8>, bool, StartVelocities),
+    /// A state follows.
+    Restore,
+    /// A state follows; whether it is that of a snapshot, and what becomes of velocities.
+    BeginFrom(bool, StartVelocities),
     End,
 }
 
@@ -133,9 +134,12 @@ impl Part {
             Call::Shares => drop(self.shares()),
             Call::Save => drop(self.save()),
             Call::SaveColumns(body) => drop(self.save_columns(body, &mut |_, _| ())),
-            Call::Restore(state) => drop(self.begin_anew(|whole| whole.restore(read(&state)))),
-            Call::BeginFrom(state, of_snapshot, velocities) => {
-                let state = SavedState { of_snapshot, ..read(&state) };
+            Call::Restore => {
+                let state = read(&self.ranks.hear_first(&[]));
+                drop(self.begin_anew(|whole| whole.restore(state)));
+            }
+            Call::BeginFrom(of_snapshot, velocities) => {
+                let state = SavedState { of_snapshot, ..read(&self.ranks.hear_first(&[])) };
                 drop(self.begin_anew(|whole| whole.begin_from(&state, velocities)));
             }
             Call::End => return false,
@@ -196,11 +200,9 @@ impl Part {
 
     fn save(&self) -> Option<SavedState> {
         let own = self.own.save()?;
-        let mut all = self.gathered(&own.bodies).into_iter();
-        let mut bodies = all.next()?;
-        for others in all {
-            bodies.iter_mut().zip(others).for_each(|(body, other)| body.take_in(other));
-        }
+        let mut all: Vec<_> = self.gathered(&own.bodies).into_iter().map(Vec::into_iter).collect();
+        let of_body = |_| SavedBody::merged(all.iter_mut().filter_map(Iterator::next).collect());
+        let bodies = own.bodies.iter().filter_map(of_body).collect();
         Some(SavedState { bodies, ..own })
     }
 
@@ -389,49 +391,51 @@ impl Simulation for Leader {
     }
 
     fn begin_from(&mut self, state: &SavedState, velocities: StartVelocities) -> Result<(), RestoreError> {
-        let call = Call::BeginFrom(named_bytes_of(state), state.of_snapshot, velocities);
-        let part = self.tell_mut(&call);
+        let part = self.tell_mut(&Call::BeginFrom(state.of_snapshot, velocities));
+        part.ranks.hear_first(&named_bytes_of(state));
         part.begin_anew(|whole| whole.begin_from(state, velocities))
     }
 
     fn restore(&mut self, state: SavedState) -> Result<(), RestoreError> {
-        let part = self.tell_mut(&Call::Restore(named_bytes_of(&state)));
+        let part = self.tell_mut(&Call::Restore);
+        part.ranks.hear_first(&named_bytes_of(&state));
         part.begin_anew(|whole| whole.restore(state))
     }
 }
 
 impl SavedBody {
-    /// Takes in what another rank has of the body.
-    fn take_in(&mut self, other: SavedBody) {
-        let counts = [self.numbers.len(), other.numbers.len()];
-        self.numbers.extend(other.numbers);
-        for (column, other) in self.columns.iter_mut().zip(other.columns) {
-            let own = std::mem::take(&mut column.bytes);
-            column.bytes = entries_together([&own, &other.bytes], counts, column.width);
-        }
+    /// A body whose parts ranks have.
+    fn merged(mut parts: Vec<SavedBody>) -> Option<SavedBody> {
+        let counts: Vec<usize> = parts.iter().map(|part| part.numbers.len()).collect();
+        let columns = (0..parts.first()?.columns.len()).filter_map(|column| {
+            let of_part = |part: &mut SavedBody| SavedColumn {
+                name: part.columns[column].name.clone(),
+                width: part.columns[column].width,
+                bytes: std::mem::take(&mut part.columns[column].bytes),
+            };
+            SavedColumn::merged(parts.iter_mut().map(of_part).collect(), &counts)
+        });
+        let columns = columns.collect();
+        let numbers = parts.iter().flat_map(|part| &part.numbers).copied().collect();
+        let first = parts.swap_remove(0);
         // Each rank misses those of the others.
-        self.missing = self.missing.saturating_sub(counts[1]);
+        let missing = first.missing.saturating_sub(counts[1..].iter().sum());
+        Some(SavedBody { columns, numbers, missing, ..first })
     }
 }
 
 impl SavedColumn {
-    /// A column whose parts ranks have, of so many particles each.
+    /// A column whose parts ranks have, of so many particles each: entry by entry, those of one behind the other.
     fn merged(parts: Vec<SavedColumn>, counts: &[usize]) -> Option<SavedColumn> {
-        let mut parts = parts.into_iter().zip(counts.iter().copied());
-        let (mut whole, mut count) = parts.next()?;
-        for (part, more) in parts {
-            whole.bytes = entries_together([&whole.bytes, &part.bytes], [count, more], whole.width);
-            count += more;
+        let width = parts.first()?.width;
+        let entries = parts.iter().zip(counts).find(|(_, count)| **count > 0);
+        let entries = entries.map_or(0, |(part, count)| part.bytes.len() / (width * count));
+        let mut bytes = Vec::with_capacity(parts.iter().map(|part| part.bytes.len()).sum());
+        for entry in 0..entries {
+            for (part, count) in parts.iter().zip(counts) {
+                bytes.extend_from_slice(&part.bytes[entry * width * count..(entry + 1) * width * count]);
+            }
         }
-        Some(whole)
+        parts.into_iter().next().map(|first| SavedColumn { bytes, ..first })
     }
-}
-
-/// Entries of two columns of so many particles, each of the first before that of the second.
-fn entries_together([first, second]: [&[u8]; 2], counts: [usize; 2], width: usize) -> Vec<u8> {
-    if counts[0] == 0 || counts[1] == 0 {
-        return if counts[0] == 0 { second.to_vec() } else { first.to_vec() };
-    }
-    let entries = first.chunks_exact(width * counts[0]).zip(second.chunks_exact(width * counts[1]));
-    entries.flat_map(|(first, second)| first.iter().chain(second)).copied().collect()
 }

@@ -248,6 +248,53 @@ checkpoints = 0.02
 reactions = ["y_min", "x_min"]
 "#;
 
+/// Blocks on each other, one of which is loaded where it touches the other: of two ranks each has one block.
+const STACKED: &str = r#"
+gravity = [0, -9.81]
+[space]
+dimension = "plane-strain"
+cell = 0.1
+basis = "linear"
+[time]
+end = 0.3
+[materials.gel]
+density = 1000
+neo_hookean = { young_modulus = 1e5, poisson_ratio = 0.3 }
+[[bodies]]
+name = "low"
+material = "gel"
+shape.box = { min = [0, 0.03], max = [0.8, 2.43] }
+[[bodies]]
+name = "high"
+material = "gel"
+shape.box = { min = [0, 2.43], max = [0.8, 4.83] }
+[[supports]]
+name = "foot"
+body = "low"
+on = "y_min"
+stiffness = 1e5
+[[supports]]
+name = "side"
+body = "high"
+on = "x_min"
+stiffness = 2e4
+[[loads]]
+name = "drive"
+body = "high"
+acceleration = ["2 * sin(100 * t)", -5]
+[[loads]]
+name = "sole"
+body = "high"
+on = "y_min"
+traction = ["300 * sin(200 * t)", -200]
+[[contact]]
+friction = 0.3
+[outputs]
+tables = 0.002
+particles = 0.05
+checkpoints = 0.05
+"#;
+
 /// A body that a blow drives through an open face, particle by particle, and one that flies through it.
 const LOSING: &str = r#"
 gravity = [0, -9.81]
@@ -334,12 +381,17 @@ fn start(scene: &Scene, count: usize, out: &Path) -> Summary {
 #[test]
 fn ranks_write_what_one_writes() {
     let first = LOADED.replace("end = 0.2", "end = 0.2\nstress_update = \"first\"");
+    let unmirrored =
+        LOADED.replace(", x_min = \"symmetry\"", "").replace("[\"y_min\", \"x_min\"]", "[\"y_min\"]");
+    assert!(!unmirrored.contains("symmetry"));
     let scenes = [
         ("plane", PLANE),
         ("periodic", PERIODIC),
         ("meshed", MESHED),
         ("loaded", LOADED),
         ("loaded, first", &first),
+        ("loaded, without a mirror", &unmirrored),
+        ("stacked", STACKED),
         ("losing", LOSING),
     ];
     for (name, text) in scenes {

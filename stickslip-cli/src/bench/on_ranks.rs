@@ -100,7 +100,10 @@ impl OnRanks {
             bytes: mean(&|share| share.traffic.bytes as f64 / steps(share)),
             modelled: case.scheme.halo(particles, ranks),
             messages: mean(&|share| share.traffic.messages as f64 / steps(share)),
-            waiting: mean(&|share| share.waited / (share.waited + share.computed).max(f64::MIN_POSITIVE)),
+            waiting: mean(&|share| {
+                let waited = share.traffic.waited;
+                waited / (waited + share.computed).max(f64::MIN_POSITIVE)
+            }),
             imbalance: slowest / computed.max(f64::MIN_POSITIVE),
             problem,
         })

@@ -19,6 +19,7 @@ mod validate;
 mod view;
 
 use crate::failure::Failure;
+use crate::ranks::part_here;
 use crate::tell::tell;
 use clap::Parser;
 use miette::miette;
@@ -122,7 +123,9 @@ fn load(path: &Path, parameters: &[(String, String)]) -> Result<Loaded, SceneErr
 /// What a run of a scene would be on this machine, with what is doubtful shown where it stands in the file.
 fn report(loaded: &Loaded) -> Result<Report, Failure> {
     let report = stickslip::check::report(&loaded.scene);
-    let report = report.map_err(|problem| Failure::input(loaded.source.locate(problem)))?;
+    let mut report = report.map_err(|problem| Failure::input(loaded.source.locate(problem)))?;
+    // What is on the machine of the first process.
+    report.memory *= part_here();
     Ok(report.in_memory(free_memory()).placed(&loaded.source))
 }
 

@@ -388,7 +388,8 @@ fn balance(ranks: &[RankShare]) -> Vec<String> {
     };
     let head = "  rank   particles   computing     waiting   sent a step".to_string();
     let line = |(number, rank): (usize, &RankShare)| {
-        let RankShare { particles, steps, computed, waited, traffic } = rank;
+        let RankShare { particles, steps, computed, traffic } = rank;
+        let waited = traffic.waited;
         let per_step = |count: u64| count as f64 / *steps.max(&1) as f64;
         let size = ByteSize(per_step(traffic.bytes) as u64).display().si();
         let messages = per_step(traffic.messages);

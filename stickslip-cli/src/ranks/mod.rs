@@ -21,7 +21,18 @@ use stickslip::shared;
 use stickslip::step::ParticleLoop;
 
 /// The ranks that this process is the first of, if there are any.
-static OTHERS: OnceLock<(Arc<dyn Ranks>, usize)> = OnceLock::new();
+static OTHERS: OnceLock<Others> = OnceLock::new();
+
+struct Others {
+    ranks: Arc<dyn Ranks>,
+    /// How many of them are on its machine, itself included.
+    here: usize,
+    /// How many of these may run on the same processors.
+    neighbours: usize,
+}
+
+/// Processes of a launcher with this in their environment have nothing to do with each other.
+const ALONE: &str = "STICKSLIP_ALONE";
 
 /// What a launcher says of this process.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,20 +41,20 @@ pub struct Launched {
     count: usize,
 }
 
-/// How launchers say which of how many processes one is: those of Open MPI, of MPICH and its kin, of MVAPICH, and SLURM's
-/// with PMIx. What SLURM says beside is there in scripts, too, which no launcher began.
+/// How launchers say which of how many processes one is: those of Open MPI, of MPICH and its kin, of MVAPICH, and of
+/// SLURM. What SLURM says beside is there in scripts, too, which no launcher began.
 const LAUNCHERS: [[&str; 2]; 4] = [
     ["OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE"],
     ["PMI_RANK", "PMI_SIZE"],
     ["MV2_COMM_WORLD_RANK", "MV2_COMM_WORLD_SIZE"],
-    ["PMIX_RANK", "SLURM_STEP_NUM_TASKS"],
+    ["SLURM_PROCID", "SLURM_STEP_NUM_TASKS"],
 ];
 
 impl Launched {
     /// What the environment says, if a launcher began more than one process.
     pub fn together() -> Option<Self> {
         let number = |name: &str| std::env::var(name).ok()?.parse().ok();
-        Self::said_by(&number)
+        Self::said_by(&number).filter(|_| std::env::var_os(ALONE).is_none())
     }
 
     fn said_by(number: &dyn Fn(&str) -> Option<usize>) -> Option<Self> {
@@ -70,12 +81,10 @@ impl Launched {
 
     #[cfg(not(feature = "mpi"))]
     fn share(self, _: Command) -> Result<(), Failure> {
-        if !self.is_first() {
-            return Ok(());
-        }
         let count = self.count;
         Err(Failure::Input(miette!(
-            help = "build it with `cargo build --release --features mpi`, or start it once",
+            help = "build it with `cargo build --release --features mpi`, start it once, or set STICKSLIP_ALONE=1 for runs \
+                    that have nothing to do with each other",
             "found {count} processes that are to share a run; allowed: one, for this program was built without MPI"
         )))
     }
@@ -84,7 +93,6 @@ impl Launched {
     fn share(self, command: Command) -> Result<(), Failure> {
         let (_universe, ranks) = mpi::Mpi::join().map_err(|problem| Failure::Run(miette!("{problem}")))?;
         end_all_on_panic();
-        let (neighbours, ranks) = (ranks.neighbours(), Arc::new(ranks));
         if ranks.count() == 1 {
             let count = self.count;
             return Err(Failure::Input(miette!(
@@ -95,13 +103,31 @@ impl Launched {
                 "a launcher began {count} processes, and MPI knows of one"
             )));
         }
+        let ranks = Arc::new(ranks);
+        let words: Vec<String> =
+            std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned()).collect();
+        let all = ranks.gather(&bytes_of(&words));
+        if all.iter().any(|said| *said != all[0]) {
+            return Err(Failure::Input(miette!(
+                help = "set STICKSLIP_ALONE=1 for runs that have nothing to do with each other",
+                "the processes of a launcher that share a run were started with other words each"
+            )));
+        }
+        let alike = |of_this: Vec<u8>| ranks.gather(&of_this).iter().filter(|said| **said == of_this).count();
+        let here = alike(bytes_of(&mpi::Mpi::machine()));
+        let neighbours = alike(bytes_of(&(mpi::Mpi::machine(), processors_allowed())));
         if ranks.rank() > 0 {
-            crate::commands::outlast_signals()?;
-            use_threads(command.threads(), neighbours)?;
-            while follow(&ranks, ranks.clone())? {}
+            let mut followed = crate::commands::outlast_signals();
+            followed = followed.and_then(|()| use_threads(command.threads(), neighbours));
+            if let Err(failure) = followed {
+                // The others would wait for this one.
+                failure.print();
+                mpi::Mpi::abort(i32::from(failure.exit_code()));
+            }
+            while follow(&ranks, ranks.clone()) {}
             return Ok(());
         }
-        let _ = OTHERS.set((ranks.clone(), neighbours));
+        let _ = OTHERS.set(Others { ranks: ranks.clone(), here, neighbours });
         let ended = command.execute();
         ranks.hear_first(&bytes_of(&Task::End));
         ended
@@ -118,28 +144,34 @@ fn end_all_on_panic() {
     }));
 }
 
-/// Makes the threads of this process: as many as are asked for, or as there are processors for it.
+/// Makes the threads of this process: as many as are asked for, or as there are processors for it and so many others that
+/// may run on the same ones.
 pub fn use_threads(threads: Option<usize>, neighbours: usize) -> Result<(), Failure> {
     use miette::IntoDiagnostic;
     let threads = threads.unwrap_or_else(|| {
-        let all = std::thread::available_parallelism().map_or(1, usize::from);
-        if is_bound() { all } else { (all / neighbours).max(1) }
+        let allowed = std::thread::available_parallelism().map_or(1, usize::from);
+        (allowed / neighbours).max(1)
     });
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
     pool.build_global().into_diagnostic().map_err(Failure::Run)
 }
 
-/// Processes of the run on this machine.
+/// Processes of the run that may run on the same processors, this one among them.
 pub fn neighbours() -> usize {
-    OTHERS.get().map_or(1, |(_, neighbours)| *neighbours)
+    OTHERS.get().map_or(1, |others| others.neighbours)
 }
 
-/// Whether the launcher lets this process run on some of the processors only, where the system says so.
-fn is_bound() -> bool {
-    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let allowed = status.lines().find_map(|line| line.strip_prefix("Cpus_allowed_list:"));
-    let all = std::fs::read_to_string("/sys/devices/system/cpu/online");
-    allowed.zip(all.ok()).is_some_and(|(allowed, all)| allowed.trim() != all.trim())
+/// Which part of a simulation is on this machine, about.
+pub fn part_here() -> f64 {
+    OTHERS.get().map_or(1.0, |others| others.here as f64 / others.ranks.count() as f64)
+}
+
+/// The processors on which this process may run, where the system says so.
+#[cfg(feature = "mpi")]
+fn processors_allowed() -> Option<String> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let allowed = status.lines().find_map(|line| line.strip_prefix("Cpus_allowed_list:"))?;
+    Some(allowed.trim().to_string())
 }
 
 /// What the first process wants of the others.
@@ -158,7 +190,7 @@ fn bytes_of(said: &impl Serialize) -> Vec<u8> {
 
 /// Makes the simulation of a scene, which others share where there are any.
 pub fn simulation(loaded: &Loaded, source: &SceneSource) -> Result<Box<dyn Simulation>, Failure> {
-    let Some((ranks, _)) = OTHERS.get() else {
+    let Some(Others { ranks, .. }) = OTHERS.get() else {
         return stickslip::step::build(&loaded.scene)
             .map_err(|problem| Failure::input(loaded.source.locate(problem)));
     };
@@ -183,9 +215,9 @@ pub fn simulation(loaded: &Loaded, source: &SceneSource) -> Result<Box<dyn Simul
 
 /// Shares what the first process simulates next; false if that is nothing.
 #[cfg(feature = "mpi")]
-fn follow(here: &mpi::Mpi, ranks: Arc<dyn Ranks>) -> Result<bool, Failure> {
+fn follow(here: &mpi::Mpi, ranks: Arc<dyn Ranks>) -> bool {
     let task = serde_json::from_slice(&here.hear_first(&[])).expect("all processes are the same program");
-    let Task::Simulate(source, end) = task else { return Ok(false) };
+    let Task::Simulate(source, end) = task else { return false };
     let read = source.recorded().unwrap_or_else(|| source.load());
     let problem =
         read.as_ref().err().map(|error| format!("on {} cannot read the scene: {error}", mpi::Mpi::machine()));
@@ -196,7 +228,7 @@ fn follow(here: &mpi::Mpi, ranks: Arc<dyn Ranks>) -> Result<bool, Failure> {
         // What is wrong with the scene, the first one tells.
         let _ = shared::follow(&loaded.scene, ParticleLoop::Lanes(Processor::best()), ranks);
     }
-    Ok(true)
+    true
 }
 
 #[cfg(test)]
@@ -213,7 +245,7 @@ mod tests {
         let second = Some(Launched { rank: 1, count: 4 });
         assert_eq!(says(&[("OMPI_COMM_WORLD_RANK", 1), ("OMPI_COMM_WORLD_SIZE", 4)]), second);
         assert_eq!(says(&[("PMI_RANK", 1), ("PMI_SIZE", 4)]), second);
-        assert_eq!(says(&[("PMIX_RANK", 1), ("SLURM_STEP_NUM_TASKS", 4)]), second);
+        assert_eq!(says(&[("SLURM_PROCID", 1), ("SLURM_STEP_NUM_TASKS", 4)]), second);
         // A script, and one process.
         assert_eq!(says(&[("SLURM_PROCID", 0), ("SLURM_NTASKS", 4)]), None);
         assert_eq!(says(&[("PMI_RANK", 0), ("PMI_SIZE", 1)]), None);

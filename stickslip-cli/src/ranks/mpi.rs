@@ -58,11 +58,6 @@ impl Mpi {
         mpi::environment::processor_name().unwrap_or_default()
     }
 
-    /// How many processes of the job are on this machine.
-    pub fn neighbours(&self) -> usize {
-        world().split_shared(self.rank as i32).size() as usize
-    }
-
     /// Ends all processes of the job.
     pub fn abort(code: i32) -> ! {
         world().abort(code)

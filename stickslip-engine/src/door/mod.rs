@@ -554,9 +554,7 @@ pub struct RankShare {
     pub steps: u64,
     /// Wall time in steps without waiting for other ranks [s].
     pub computed: f64,
-    /// Wall time in which it waited for them in steps [s].
-    pub waited: f64,
-    /// What it sent since the start, and how long it waited in all.
+    /// What it sent in steps, and how long it waited for others there.
     pub traffic: SentAndWaited,
 }
 

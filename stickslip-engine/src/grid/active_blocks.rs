@@ -514,6 +514,24 @@ impl<const D: usize> ActiveBlocks<D> {
         })
     }
 
+    /// Blocks of this rank's tiles that other ranks hold, too, sorted.
+    pub fn blocks_sent(&self) -> Vec<[i32; D]> {
+        let border = self.border.iter();
+        let mut blocks: Vec<[i32; D]> = border
+            .flat_map(|border| {
+                let windows = border.outgoing.iter().flat_map(|traffic| &traffic.windows);
+                windows.flat_map(|window| {
+                    let home = self.tiles[border.kept[window.place as usize] as usize].block;
+                    let corners = (0..1 << D).filter(|corner| window.corners >> corner & 1 == 1);
+                    corners.map(move |corner| self.periods.wrapped(corner_block(home, corner)))
+                })
+            })
+            .collect();
+        blocks.sort_unstable();
+        blocks.dedup();
+        blocks
+    }
+
     /// The key of a tile's home.
     pub fn home_of(&self, tile: &Tile<D>) -> u64 {
         key(tile.block)

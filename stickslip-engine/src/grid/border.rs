@@ -416,13 +416,15 @@ mod tests {
     use crate::grid::ActiveBlocks;
     use proptest::prelude::*;
 
-    /// Two bodies in a strip of blocks between mirrors, whose blocks belong to ranks as chance has it.
+    /// Two bodies in a strip of blocks, between mirrors or not, whose blocks belong to ranks as chance has it.
     #[derive(Clone, Debug)]
     struct Shared {
         /// Body and base node of each particle.
         particles: Vec<(usize, [i32; 2])>,
         /// Rank of each block, in rows of eight.
         owners: Vec<usize>,
+        /// Whether there are mirrors; without them, of some blocks ranks have a part only.
+        mirrored: bool,
     }
 
     const RANKS: usize = 3;
@@ -430,7 +432,8 @@ mod tests {
     fn shared() -> impl Strategy<Value = Shared> {
         let particles = prop::collection::vec((0..2_usize, prop::array::uniform2(-1..31_i32)), 1..60);
         let owners = prop::collection::vec(0..RANKS, 100);
-        (particles, owners).prop_map(|(particles, owners)| Shared { particles, owners })
+        let all = (particles, owners, any::<bool>());
+        all.prop_map(|(particles, owners, mirrored)| Shared { particles, owners, mirrored })
     }
 
     impl Shared {
@@ -455,7 +458,8 @@ mod tests {
         }
 
         fn alone(&self, rank: usize) -> ActiveBlocks<2> {
-            let mirrors = Mirrors { faces: vec![(0, 0), (1, 30)] };
+            let faces = if self.mirrored { vec![(0, 0), (1, 30)] } else { Vec::new() };
+            let mirrors = Mirrors { faces };
             let mut active = ActiveBlocks::<2>::new(Periods::default()).among_ranks(mirrors);
             let own = |body: usize| {
                 let here = move |&&(of, base): &&(usize, [i32; 2])| {

@@ -300,7 +300,8 @@ proptest! {
             }
             for guest in 0..there.guests() {
                 // Nobody asks how they move.
-                let seen = Particle { velocity: Vector::ZERO, ..there.get(there.len() + guest) };
+                let guest_there = there.get(there.len() + guest);
+                let seen = Particle { velocity: Vector::ZERO, spin: Vector::ZERO, ..guest_there };
                 prop_assert_eq!(seen, here.get(guest));
             }
         }

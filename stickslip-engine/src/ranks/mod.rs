@@ -36,6 +36,26 @@ pub struct SentAndWaited {
     pub waited: f64,
 }
 
+impl SentAndWaited {
+    /// What was since an earlier moment.
+    pub fn since(self, before: SentAndWaited) -> Self {
+        SentAndWaited {
+            messages: self.messages - before.messages,
+            bytes: self.bytes - before.bytes,
+            waited: self.waited - before.waited,
+        }
+    }
+
+    /// Both together.
+    pub fn and(self, other: SentAndWaited) -> Self {
+        SentAndWaited {
+            messages: self.messages + other.messages,
+            bytes: self.bytes + other.bytes,
+            waited: self.waited + other.waited,
+        }
+    }
+}
+
 /// The ranks of a simulation, as one of them sees it. All of them make the same calls in the same order.
 pub trait Ranks: Send + Sync {
     /// This one's number.
@@ -75,11 +95,15 @@ pub trait Ranks: Send + Sync {
 
     /// Adds up the sums of all ranks.
     fn add_up(&self, sums: &mut [ExactSum]) {
-        let said: Vec<u8> = sums.iter_mut().flat_map(|sum| sum.to_bytes()).collect();
+        let mut said = Vec::new();
+        sums.iter_mut().for_each(|sum| sum.write_to(&mut said));
         sums.fill(ExactSum::default());
         for bytes in self.gather(&said) {
-            for (sum, bytes) in sums.iter_mut().zip(bytes.as_chunks().0) {
-                sum.merge(&ExactSum::of_bytes(bytes));
+            let mut rest = &bytes[..];
+            for sum in &mut *sums {
+                let (other, behind) = ExactSum::read_from(rest).expect("ranks run the same program");
+                sum.merge(&other);
+                rest = behind;
             }
         }
     }

@@ -172,8 +172,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             let mut all = among.gathered(&found).concat();
             all.sort_by_key(|(number, ..)| *number);
             nodes.extend(all.into_iter().filter_map(|(_, node, pull)| {
+                // One without mass is beyond what this rank has of the block.
                 let index = active.node_index(end.body, std::array::from_fn(|k| node[k]))?;
-                Some((index as u32, Vector::of(pull)))
+                (self.workspace.field.nodes[index].mass > T::ZERO).then(|| (index as u32, Vector::of(pull)))
             }));
         }
         nodes.sort_by_key(|(index, _)| *index);

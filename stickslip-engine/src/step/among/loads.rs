@@ -27,11 +27,14 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     pub(in super::super) fn share_points(&mut self) {
         let Some(among) = &self.among else { return };
         let (active, room) = (&self.workspace.active, &mut self.workspace.loads);
+        let nodes_here = &self.workspace.field.nodes;
         let Some(border) = active.border.as_deref() else { return };
         let n = nodes_per_block(D);
+        // Blocks of this rank's tiles that others hold, too: with a tile of any body.
+        let blocks = active.blocks_sent();
         let is_shared = |node: &LoadedNode<T>| {
-            let slot = node.index / n as u32;
-            border.slots.binary_search_by_key(&slot, |shared| shared.slot).is_ok()
+            let (_, block) = active.slots[node.index as usize / n];
+            blocks.binary_search(&block).is_ok()
         };
         let place = |index: u32| {
             let (_, block) = active.slots[index as usize / n];
@@ -57,8 +60,13 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 let [load, _] = room.numbers[point as usize];
                 let body = self.settings.loads[load as usize].body;
                 let here = nodes.into_iter().filter_map(|(node, mirrored, weight)| {
-                    let index = active.node_index(body, std::array::from_fn(|k| node[k]))? as u32;
-                    Some(LoadedNode { index, mirrored, weight: T::of(weight) })
+                    // One without mass is beyond what this rank has of the block.
+                    let index = active.node_index(body, std::array::from_fn(|k| node[k]))?;
+                    (nodes_here[index].mass > T::ZERO).then(|| LoadedNode {
+                        index: index as u32,
+                        mirrored,
+                        weight: T::of(weight),
+                    })
                 });
                 let [force, inertia, spring, speed] = felt.map(Vector::of);
                 let known = &mut room.points[point as usize];

@@ -18,9 +18,10 @@ use crate::grid::{
 use crate::lanes::Laned;
 use crate::material::Material;
 use crate::particles::{Particles, number_of, write_number};
-use crate::ranks::{Message, Partition, Ranks, message_to};
+use crate::ranks::{Message, Partition, Ranks, SentAndWaited, message_to};
 use crate::scene::{
-    BasisKind, ContactLaw, ContactRule, Face, Load, NamedMaterial, OutsideValue, Problem, Scene,
+    self, BasisKind, BodyMotion, ContactLaw, ContactRule, Face, Load, NamedMaterial, OutsideValue, Problem,
+    Scene,
 };
 use crate::tensor::Real;
 use crate::threads::each_range;
@@ -47,7 +48,7 @@ pub(super) struct Among<T> {
     names: Vec<Message>,
     /// Windows of tiles that are kept, and behind them those of foreign tiles.
     windows: Vec<NodeSums<T>>,
-    /// Steps in which this rank did its part, and time in them, in which it computed or waited for others [s].
+    /// Steps in which this rank did its part, the time in which it computed there [s], and what it sent.
     worked: Worked,
     /// Steps since the loads were compared last, without those in which particles move house.
     since: u64,
@@ -62,7 +63,7 @@ pub(super) struct Among<T> {
 struct Worked {
     steps: u64,
     computed: f64,
-    waited: f64,
+    traffic: SentAndWaited,
 }
 
 /// Steps from one comparison of loads to the next.
@@ -134,17 +135,17 @@ impl<T: Real> Among<T> {
 
 impl<T: Laned> Among<T> {
     /// Begins a step, and says when.
-    pub fn begin(&mut self) -> (Instant, f64) {
+    pub fn begin(&mut self) -> (Instant, SentAndWaited) {
         (self.passes, self.fault) = (0, None);
-        (Instant::now(), self.ranks.traffic().waited)
+        (Instant::now(), self.ranks.traffic())
     }
 
     /// Ends a step that began then.
-    pub fn end(&mut self, (begun, waited): (Instant, f64)) {
-        let waited = self.ranks.traffic().waited - waited;
-        let Worked { steps, computed, waited: all } = self.worked;
-        let own = begun.elapsed().as_secs_f64() - waited;
-        self.worked = Worked { steps: steps + 1, computed: computed + own, waited: all + waited };
+    pub fn end(&mut self, (begun, before): (Instant, SentAndWaited)) {
+        let now = self.ranks.traffic().since(before);
+        let Worked { steps, computed, traffic } = self.worked;
+        let own = begun.elapsed().as_secs_f64() - now.waited;
+        self.worked = Worked { steps: steps + 1, computed: computed + own, traffic: traffic.and(now) };
         if !std::mem::take(&mut self.moves) {
             (self.since, self.fastest) = (self.since + 1, self.fastest.min(own));
         }
@@ -152,8 +153,8 @@ impl<T: Laned> Among<T> {
 
     /// What this rank did, and has: so many particles.
     pub fn share(&self, particles: usize) -> RankShare {
-        let Worked { steps, computed, waited } = self.worked;
-        RankShare { particles, steps, computed, waited, traffic: self.ranks.traffic() }
+        let Worked { steps, computed, traffic } = self.worked;
+        RankShare { particles, steps, computed, traffic }
     }
 
     /// Takes note of what a pass found, the first fault of it by body and particle: all ranks make as many passes.
@@ -204,14 +205,12 @@ impl<T: Laned> Among<T> {
 
     /// Adds what bodies did to faces on other ranks.
     pub fn gather_walls(&self, booked: &mut WallBooks) {
-        let here: Vec<(usize, Vec<u8>)> = (booked.iter_mut())
-            .map(|(&place, sums)| (place, sums.iter_mut().flat_map(ExactSum::to_bytes).collect()))
-            .collect();
-        booked.clear();
-        for (place, bytes) in self.gathered(&here).into_iter().flatten() {
-            let sums = booked.entry(place).or_default().iter_mut();
-            sums.zip(bytes.as_chunks().0).for_each(|(sum, bytes)| sum.merge(&ExactSum::of_bytes(bytes)));
+        let places: Vec<usize> = booked.keys().copied().collect();
+        // All ranks add up the same pairs.
+        for place in self.gathered(&places).into_iter().flatten() {
+            booked.entry(place).or_default();
         }
+        self.add_up(booked.values_mut().flatten());
     }
 
     fn add_up<'a>(&self, sums: impl Iterator<Item = &'a mut ExactSum>) {
@@ -483,6 +482,10 @@ pub(super) fn can_be_shared(scene: &Scene) -> Result<(), Problem> {
         Material::Custom(custom) => custom.law().over_arrays().is_some(),
         _ => false,
     };
+    let moves_by_function = |body: &scene::Body| match &body.motion {
+        BodyMotion::Rigid { velocity, spin } => velocity.iter().chain(spin).any(|of| of.outside().is_some()),
+        _ => false,
+    };
     let by_function = |load: &Load| load.action.outside().and_then(OutsideValue::function).is_some();
     let refused = [
         (
@@ -490,6 +493,7 @@ pub(super) fn can_be_shared(scene: &Scene) -> Result<(), Problem> {
             "a rigid body that forces move",
             scene.bodies.iter().any(|body| body.as_free_rigid().is_some()),
         ),
+        ("bodies.rigid", "a function from outside", scene.bodies.iter().any(moves_by_function)),
         ("loads", "a function from outside", scene.loads.iter().any(by_function)),
         ("joints", "a joint", !scene.joints.is_empty()),
         ("materials", "a law over arrays", scene.materials.iter().any(over_arrays)),
