@@ -160,8 +160,12 @@ fn processes_of_a_program_without_mpi_run_nothing() {
     assert_eq!(first.status.code(), Some(2), "{told}");
     assert!(told.contains("found 4 processes") && told.contains("--features mpi"), "{told}");
     let other = launched("1", &["run", "scene.toml"]);
-    assert!(other.status.success() && other.stderr.is_empty() && other.stdout.is_empty());
+    assert!(other.status.code() == Some(2) && other.stderr.is_empty() && other.stdout.is_empty());
     assert!(!workplace.path("scene.results").exists());
+    // Runs that have nothing to do with each other.
+    let mut alone = workplace.command(&["run", "scene.toml", "--quiet", "--set", "cells_per_radius=2"]);
+    alone.envs([("OMPI_COMM_WORLD_RANK", "1"), ("OMPI_COMM_WORLD_SIZE", "4"), ("STICKSLIP_ALONE", "1")]);
+    assert!(alone.status().unwrap().success() && workplace.path("scene.results").exists());
     // What is no run, one of them does.
     let said = [0, 1].map(|rank| launched(&rank.to_string(), &["check", "scene.toml"]).stdout);
     assert!(!said[0].is_empty() && said[1].is_empty());
