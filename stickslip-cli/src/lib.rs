@@ -1,5 +1,5 @@
-//! The command `stickslip`, for the program of this name, and for others that bring it along, as the Python package does.
-//! What stands in [`door`] is for tests that feed it what nobody means to (`fuzz/`).
+//! The command `stickslip`, for the program of this name, and for others that bring it along, as the Python package
+//! does. What stands in [`door`] is for tests that feed it what nobody means to (`fuzz/`).
 
 #![deny(clippy::print_stderr, clippy::print_stdout)]
 
@@ -50,8 +50,8 @@ fn program() -> std::io::Result<Vec<OsString>> {
 
 /// Does what the words of a command line ask for, the program's name first, and gives the exit code.
 ///
-/// It takes over Ctrl-C and the pool of threads of the process: it is for processes that do nothing else. Of several that
-/// a launcher began together, all are to call it with the same words.
+/// It takes over Ctrl-C and the pool of threads of the process: it is for processes that do nothing else. Of several
+/// that a launcher began together, all are to call it with the same words.
 pub fn execute(words: impl IntoIterator<Item = OsString>) -> u8 {
     let together = ranks::Launched::together();
     let ended = match (commands::Command::try_parse_from(words), together) {

@@ -144,8 +144,8 @@ fn a_rule_that_never_holds_is_told_of_by_check_and_before_a_run() {
     assert!(found["text"].as_str().unwrap().starts_with("never holds: contact[0]"), "{found}");
 }
 
-/// A launcher that begins several of a program that was built without MPI: the first says so, and none begins a run that
-/// the others would have begun, too.
+/// A launcher that begins several of a program that was built without MPI: the first says so, and none begins a run
+/// that the others would have begun, too.
 #[test]
 #[cfg(not(feature = "mpi"))]
 fn processes_of_a_program_without_mpi_run_nothing() {

@@ -12,10 +12,12 @@ use crate::door::{
     SavedColumn, SavedState, Simulation, StepError, StepLimit, TracedParticle, View, WallState, WriteError,
     WrittenValues,
 };
-use crate::ranks::Ranks;
+use crate::lanes::Processor;
+use crate::ranks::{Ranks, Threads};
 use crate::rigid::Pose;
 use crate::scene::{Problem, Scene, StartVelocities};
 use crate::step::{self, ParticleLoop};
+use rayon::ThreadPoolBuilder;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -40,6 +42,27 @@ pub fn follow(scene: &Scene, path: ParticleLoop, ranks: Arc<dyn Ranks>) -> Resul
     let mut part = Part::new(scene, path, ranks)?;
     while part.obey() {}
     Ok(())
+}
+
+/// What the first of so many ranks makes of the simulation of a scene: threads of this process, each with a pool of one
+/// thread. For tests and measurements; one process with as many threads is faster.
+pub fn among_threads<X: Send>(
+    scene: &Scene,
+    count: usize,
+    act: impl FnOnce(Result<Box<dyn Simulation>, Problem>) -> X + Send,
+) -> X {
+    let path = ParticleLoop::Lanes(Processor::best());
+    // A pool for each: who waits for another rank keeps a thread of its pool.
+    let pool = || ThreadPoolBuilder::new().num_threads(1).build().expect("the system gives a thread");
+    std::thread::scope(|scope| {
+        let mut ranks = Threads::start(count.max(1)).into_iter();
+        let first = ranks.next().expect("there is one");
+        for other in ranks {
+            // What is wrong with the scene, the first one says.
+            scope.spawn(move || pool().install(|| follow(scene, path, Arc::new(other))));
+        }
+        pool().install(|| act(lead(scene, path, Arc::new(first))))
+    })
 }
 
 /// What the first rank asks of all, itself included.

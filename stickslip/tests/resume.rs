@@ -7,20 +7,20 @@
 //! Expected: every file of an interrupted run, but the times in its record and its checkpoints, has the bytes of one
 //! that was never interrupted.
 
+#[macro_use]
 mod same_run;
 
-use same_run::{StopAfter, assert_same_run, files};
+use same_run::{StopAfter, assert_same_run, files, options};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 use std::time::Duration;
 use stickslip::observe::{Checkpoint, FolderError, Manifest, OutputError, OutputFolder, Patience, Status};
-use stickslip::run::{
-    Checkpointing, Progress, ResumeError, RunError, RunOptions, Summary, resume, run, run_with,
-};
+use stickslip::run::{Progress, ResumeError, RunError, RunOptions, Summary, resume, run, run_with};
 use stickslip::scene::{Scene, parse};
 
-const PLANE: &str = r#"
+const PLANE: &str = concat!(
+    r#"
 gravity = [0, -9.81]
 [space]
 dimension = "plane-strain"
@@ -94,49 +94,9 @@ grid = 0.06
 samples = 0.002
 time_unit = 0.01
 checkpoints = 0.02
-[outputs.fringes]
-interval = 0.03
-exposure = 0.02
-samples = 5
-stress_parameter = 4e3
-width = 90
-overlay = "force-chains"
-bodies = ["low", "high"]
-[[outputs.groups]]
-name = "low and high"
-bodies = ["low", "high"]
-[[outputs.groups]]
-name = "others"
-bodies = ["*"]
-[[outputs.sections]]
-name = "waist"
-point = [0, 0.5]
-normal = [0, 1]
-[[outputs.probes]]
-name = "heart"
-at = [0.2, 1.5]
-fixed_in = "material"
-[[outputs.probes]]
-name = "place"
-at = [0.1, 0.4]
-fixed_in = "space"
-[[outputs.arrivals]]
-quantity = "speed"
-threshold = 0.2
-bodies = ["low", "high"]
-[[outputs.arrivals]]
-quantity = "von_mises"
-threshold = 3e3
-reading = "any"
-bodies = ["low"]
-[[outputs.fronts]]
-name = "wave"
-quantity = "von_mises"
-threshold = 1e3
-from = [0, 1]
-direction = [0, -1]
-bodies = ["low"]
-"#;
+"#,
+    every_measurement!()
+);
 
 const SPACE: &str = r#"
 gravity = [0, 0, -9.81]
@@ -401,11 +361,6 @@ fn scene(text: &str) -> Scene {
 fn scene_in(folder: &Path, text: &str) -> Scene {
     let name = folder.join("scene.toml").display().to_string();
     parse(&name, text, &[]).unwrap_or_else(|error| panic!("{error}")).scene
-}
-
-fn options(out: &Path) -> RunOptions {
-    let checkpoints = Checkpointing { at_end: true, ..Checkpointing::default() };
-    RunOptions { threads: 1, checkpoints, ..RunOptions::new(out) }
 }
 
 fn start(scene: &Scene, out: &Path) -> Result<Summary, RunError> {

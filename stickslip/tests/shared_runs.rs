@@ -1,30 +1,27 @@
 //! Runs that several ranks share: the files of one, byte by byte, whatever it writes.
 //!
 //! Set-up: two disks, one viscoelastic and one that flows, fall on each other and on a rigid floor without bounds with
-//! friction, beside a driven rigid paddle and a mirror, with every kind of output; a disk that flies through the faces of
-//! a periodic domain; a block from a mesh that falls on another one in space; bodies under loads, on supports and springs;
-//! and bodies that lose particles. By one rank, and by two and three that are threads of the test; stopped, and taken up
-//! by another number of ranks; and a scene that begins from another run.
+//! friction, beside a driven rigid paddle and a mirror, with every kind of output; a disk that flies through the faces
+//! of a periodic domain; a block from a mesh that falls on another one in space; bodies under loads, on supports and
+//! springs; and bodies that lose particles. By one rank, and by two and three that are threads of the test; stopped,
+//! and taken up by another number of ranks; and a scene that begins from another run.
 //!
 //! Expected: every file has the bytes of one rank's. No tolerance.
 
+#[macro_use]
 mod same_run;
 
-use rayon::ThreadPoolBuilder;
-use same_run::{StopAfter, assert_same_run};
+use same_run::{StopAfter, assert_same_run, options};
 use std::fs;
 use std::path::Path;
-use std::sync::Arc;
 use stickslip::door::Simulation;
-use stickslip::lanes::Processor;
 use stickslip::observe::{Checkpoint, Results, Status};
-use stickslip::ranks::{Ranks, Threads};
-use stickslip::run::{Checkpointing, RunError, RunOptions, Summary, resume, run, run_with};
+use stickslip::run::{RunError, Summary, resume, run, run_with};
 use stickslip::scene::{Scene, parse};
-use stickslip::shared;
-use stickslip::step::ParticleLoop;
+use stickslip::shared::among_threads;
 
-const PLANE: &str = r#"
+const PLANE: &str = concat!(
+    r#"
 gravity = [0, -9.81]
 [space]
 dimension = "plane-strain"
@@ -73,51 +70,15 @@ samples = 0.002
 time_unit = 0.01
 checkpoints = 0.02
 reactions = ["paddle"]
-[outputs.fringes]
-interval = 0.03
-exposure = 0.02
-samples = 5
-stress_parameter = 4e3
-width = 90
-overlay = "force-chains"
-bodies = ["low", "high"]
-[[outputs.groups]]
-name = "low and high"
-bodies = ["low", "high"]
-[[outputs.sections]]
-name = "waist"
-point = [0, 0.5]
-normal = [0, 1]
-[[outputs.probes]]
-name = "heart"
-at = [0.2, 1.5]
-fixed_in = "material"
-[[outputs.probes]]
-name = "place"
-at = [0.1, 0.4]
-fixed_in = "space"
-[[outputs.arrivals]]
-quantity = "speed"
-threshold = 0.2
-bodies = ["low", "high"]
-[[outputs.arrivals]]
-quantity = "von_mises"
-threshold = 3e3
-reading = "any"
-bodies = ["low"]
-[[outputs.arrivals]]
+"#,
+    every_measurement!(),
+    r#"[[outputs.arrivals]]
 quantity = "speed"
 threshold = 0.1
 reading = "mean"
 bodies = ["low"]
-[[outputs.fronts]]
-name = "wave"
-quantity = "von_mises"
-threshold = 1e3
-from = [0, 1]
-direction = [0, -1]
-bodies = ["low"]
-"#;
+"#
+);
 
 const PERIODIC: &str = r#"
 gravity = [0, -9.81]
@@ -185,8 +146,8 @@ surface_format = "glb"
 checkpoints = 0.02
 "#;
 
-/// Bodies that begin with a stress between faces whose reactions are asked for, under gravity that changes: one is pressed
-/// and hung on a spring, one is warmed, and a strut keeps them apart.
+/// Bodies that begin with a stress between faces whose reactions are asked for, under gravity that changes: one is
+/// pressed and hung on a spring, one is warmed, and a strut keeps them apart.
 const LOADED: &str = r#"
 damping = { local = 0.02 }
 gravity = ["2 * sin(30 * t)", { table = [[0, -9.81], ["0.1 s", -2], ["0.3 s", -9.81]] }]
@@ -346,27 +307,9 @@ fn scene(folder: &Path, text: &str) -> Scene {
     parse(&name, text, &[]).unwrap_or_else(|error| panic!("{error}")).scene
 }
 
-fn options(out: &Path) -> RunOptions {
-    let checkpoints = Checkpointing { at_end: true, ..Checkpointing::default() };
-    RunOptions { threads: 1, checkpoints, ..RunOptions::new(out) }
-}
-
 /// What the first of so many ranks gives, which share the simulation of a scene.
 fn among<X: Send>(scene: &Scene, count: usize, act: impl FnOnce(&mut dyn Simulation) -> X + Send) -> X {
-    let path = ParticleLoop::Lanes(Processor::best());
-    std::thread::scope(|scope| {
-        let mut ranks = Threads::start(count).into_iter();
-        // A pool for each: who waits for another rank keeps a thread of its pool.
-        let pool = || ThreadPoolBuilder::new().num_threads(1).build().expect("a thread can be started");
-        let first: Arc<dyn Ranks> = Arc::new(ranks.next().expect("there is one"));
-        for other in ranks {
-            let other: Arc<dyn Ranks> = Arc::new(other);
-            scope.spawn(move || {
-                pool().install(|| shared::follow(scene, path, other)).expect("ranks can share it")
-            });
-        }
-        pool().install(|| act(&mut *shared::lead(scene, path, first).expect("ranks can share it")))
-    })
+    among_threads(scene, count, |simulation| act(&mut *simulation.expect("ranks can share it")))
 }
 
 fn start(scene: &Scene, count: usize, out: &Path) -> Summary {

@@ -7,17 +7,13 @@ use serde::{Deserialize, Serialize};
 use std::io::{Read, Write};
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
-use std::sync::Arc;
 use std::time::Instant;
 use stickslip::door::{RankShare, Simulation};
-use stickslip::lanes::Processor;
 use stickslip::march::March;
 use stickslip::observe::present_state_sum;
-use stickslip::ranks::Threads;
 use stickslip::run::RunOptions;
-use stickslip::scene::{Problem, Scene};
+use stickslip::scene::Scene;
 use stickslip::shared;
-use stickslip::step::ParticleLoop;
 
 /// What a process is asked to measure.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -152,7 +148,7 @@ fn take(order: &Order) -> Result<BenchSample, Failure> {
         stickslip::scene::parse("benchmark", &order.scene, &order.overrides).map_err(Failure::input)?;
     let located = |problem| Failure::input(loaded.source.locate(problem));
     if let BenchTask::Ranks(effort, count) = order.task {
-        return among(&loaded.scene, count, |simulation| {
+        return shared::among_threads(&loaded.scene, count, |simulation| {
             let mut simulation = simulation.map_err(located)?;
             let mut sample = BenchSample {
                 bodies: loaded.scene.bodies.len(),
@@ -186,30 +182,6 @@ fn take(order: &Order) -> Result<BenchSample, Failure> {
         }
     }
     Ok(sample)
-}
-
-/// What the first of so many ranks makes of the simulation of a scene, which have a thread each.
-fn among<X: Send>(
-    scene: &Scene,
-    count: usize,
-    act: impl FnOnce(Result<Box<dyn Simulation>, Problem>) -> Result<X, Failure> + Send,
-) -> Result<X, Failure> {
-    let path = ParticleLoop::Lanes(Processor::best());
-    // A pool for each: who waits for another rank keeps a thread of its pool.
-    let pool = || {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
-        pool.map_err(|error| Failure::Run(miette!("{error}")))
-    };
-    let pools = (0..count).map(|_| pool()).collect::<Result<Vec<_>, _>>()?;
-    std::thread::scope(|scope| {
-        let mut ranks = Threads::start(count).into_iter().zip(&pools);
-        let (first, pool) = ranks.next().ok_or_else(|| Failure::Run(miette!("there is no rank")))?;
-        for (other, pool) in ranks {
-            // What is wrong with the scene, the first one says.
-            scope.spawn(move || pool.install(|| shared::follow(scene, path, Arc::new(other))));
-        }
-        pool.install(|| act(shared::lead(scene, path, Arc::new(first))))
-    })
 }
 
 fn step(

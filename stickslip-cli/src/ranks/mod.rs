@@ -83,8 +83,8 @@ impl Launched {
     fn share(self, _: Command) -> Result<(), Failure> {
         let count = self.count;
         Err(Failure::Input(miette!(
-            help = "build it with `cargo build --release --features mpi`, start it once, or set STICKSLIP_ALONE=1 for runs \
-                    that have nothing to do with each other",
+            help = "build it with `cargo build --release --features mpi`, start it once, or set STICKSLIP_ALONE=1 for \
+                    runs that have nothing to do with each other",
             "found {count} processes that are to share a run; allowed: one, for this program was built without MPI"
         )))
     }
@@ -144,8 +144,8 @@ fn end_all_on_panic() {
     }));
 }
 
-/// Makes the threads of this process: as many as are asked for, or as there are processors for it and so many others that
-/// may run on the same ones.
+/// Makes the threads of this process: as many as are asked for, or as there are processors for it and so many others
+/// that may run on the same ones.
 pub fn use_threads(threads: Option<usize>, neighbours: usize) -> Result<(), Failure> {
     use miette::IntoDiagnostic;
     let threads = threads.unwrap_or_else(|| {

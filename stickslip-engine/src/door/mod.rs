@@ -168,8 +168,8 @@ pub trait Simulation: View + Send {
     fn save(&self) -> Option<SavedState> {
         None
     }
-    /// The columns of a body in [`Simulation::save`], one after the other, so that no more than one is copied at a time,
-    /// and the numbers of its particles in the order of memory. False of a simulation that has no state as data.
+    /// The columns of a body in [`Simulation::save`], one after the other, so that no more than one is copied at a
+    /// time, and the numbers of its particles in the order of memory. False of a simulation that has no state as data.
     fn save_columns(&self, _body: usize, _take: &mut dyn FnMut(&[u32], SavedColumn)) -> bool {
         false
     }
@@ -558,8 +558,8 @@ pub struct RankShare {
     pub traffic: SentAndWaited,
 }
 
-/// Grid nodes with mass as columns of equal length, ordered by body and place; a node that two bodies share stands there
-/// twice.
+/// Grid nodes with mass as columns of equal length, ordered by body and place; a node that two bodies share stands
+/// there twice.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct GridSnapshot {
     /// 2 or 3.

@@ -286,8 +286,8 @@ impl<const D: usize> ActiveBlocks<D> {
         self.cell_lists[body].forgotten = true;
     }
 
-    /// Covers a body anew: all its particles are others than before. Counts as [`ActiveBlocks::update`] does. Among ranks
-    /// [`ActiveBlocks::cover`] has to follow.
+    /// Covers a body anew: all its particles are others than before. Counts as [`ActiveBlocks::update`] does. Among
+    /// ranks [`ActiveBlocks::cover`] has to follow.
     pub fn replace(
         &mut self,
         (body, count, reach): (usize, usize, i32),
@@ -491,8 +491,8 @@ impl<const D: usize> ActiveBlocks<D> {
         &self.cell_lists[tile.body].cells[tile.number * n..=(tile.number + 1) * n]
     }
 
-    /// The tiles whose particles another rank sees, and in which cells those are, a bit each: particles that reach nodes
-    /// which the other rank has, in blocks where bodies meet. `side`: that of windows.
+    /// The tiles whose particles another rank sees, and in which cells those are, a bit each: particles that reach
+    /// nodes which the other rank has, in blocks where bodies meet. `side`: that of windows.
     pub fn seen_by<'a>(
         &'a self,
         traffic: &'a Traffic,

@@ -4,9 +4,9 @@
 //! in the order of their colours: so all of them have the same nodes, bit for bit, as one rank alone would have. A
 //! *foreign* tile is one of another rank near this one's.
 //!
-//! Of a block that a rank reaches only from blocks before it, it has the first layers of nodes right, as far as its tiles
-//! reach, and the others nobody asks for: if a tile has its home there, the tile's rank has the whole block. Blocks that
-//! are nobody's home are whole wherever they are held, and so are all where there are mirrors.
+//! Of a block that a rank reaches only from blocks before it, it has the first layers of nodes right, as far as its
+//! tiles reach, and the others nobody asks for: if a tile has its home there, the tile's rank has the whole block.
+//! Blocks that are nobody's home are whole wherever they are held, and so are all where there are mirrors.
 
 use super::cell_list::{CellList, CornerBlocks, block_of, corner_block, key, reached_blocks};
 use super::{Periods, SIDE, Tile, nodes_at};
@@ -87,8 +87,8 @@ pub struct SentWindow {
     pub cuts: [Cut; 8],
 }
 
-/// Axes along which a rank has the first layers of a block only, a bit each: the last axis in the lowest bit, as that of
-/// [`corner_block`].
+/// Axes along which a rank has the first layers of a block only, a bit each: the last axis in the lowest bit, as that
+/// of [`corner_block`].
 pub type Cut = u8;
 
 /// What this rank shares with others.
@@ -175,7 +175,8 @@ impl Border {
         self.held.binary_search(&block).is_ok()
     }
 
-    /// Along which axes this rank has the first layers only of a block of the first period; none if it does not hold it.
+    /// Along which axes this rank has the first layers only of a block of the first period; none if it does not hold
+    /// it.
     fn cut(&self, block: u64) -> Option<Cut> {
         self.held.binary_search(&block).ok().map(|place| self.cuts[place])
     }
@@ -352,8 +353,8 @@ impl SentWindow {
         corners.flat_map(move |corner| nodes_at::<D>(corner, self.cuts[corner], side))
     }
 
-    /// What of a tile at a place, with a home and the blocks that it reaches, is sent to a rank: what it holds of a block
-    /// `held` tells.
+    /// What of a tile at a place, with a home and the blocks that it reaches, is sent to a rank: what it holds of a
+    /// block `held` tells.
     fn new<const D: usize>(
         (place, home, reached): (u32, [i32; D], CornerBlocks),
         held: impl Fn([i32; D]) -> Option<Cut>,

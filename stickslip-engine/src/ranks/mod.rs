@@ -1,8 +1,8 @@
 //! Ranks: processes that share a simulation, each with the particles in its blocks.
 //!
 //! A rank owns the blocks of a part of space. What it needs of others comes in messages: particles that move to its
-//! blocks, the windows of tiles at blocks that it holds, and sums that everybody knows. Sums of particles at a node follow
-//! the colours of tiles, and all others are exact: so any number of ranks gives the same bits as one.
+//! blocks, the windows of tiles at blocks that it holds, and sums that everybody knows. Sums of particles at a node
+//! follow the colours of tiles, and all others are exact: so any number of ranks gives the same bits as one.
 
 mod partition;
 mod threads;

@@ -1,8 +1,8 @@
 //! Which rank owns which block.
 
 /// Parts of space, one a rank, by recursive bisection (Berger and Bokhari 1987): ranks are halved, and space with them
-/// by a plane across its longest side, so that both halves have their share of the load; where the plane would cut through
-/// a layer of blocks, the next axes decide within that. Parts are compact, and their surfaces small.
+/// by a plane across its longest side, so that both halves have their share of the load; where the plane would cut
+/// through a layer of blocks, the next axes decide within that. Parts are compact, and their surfaces small.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Partition {
     /// How many ranks.

@@ -6,7 +6,62 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 use stickslip::observe::{Manifest, OutputError, RunWarning};
-use stickslip::run::RunOptions;
+use stickslip::run::{Checkpointing, RunOptions};
+
+/// The tables of every kind of measurement, for a scene with bodies `low` and `high`.
+macro_rules! every_measurement {
+    () => {
+        r#"[outputs.fringes]
+interval = 0.03
+exposure = 0.02
+samples = 5
+stress_parameter = 4e3
+width = 90
+overlay = "force-chains"
+bodies = ["low", "high"]
+[[outputs.groups]]
+name = "low and high"
+bodies = ["low", "high"]
+[[outputs.groups]]
+name = "others"
+bodies = ["*"]
+[[outputs.sections]]
+name = "waist"
+point = [0, 0.5]
+normal = [0, 1]
+[[outputs.probes]]
+name = "heart"
+at = [0.2, 1.5]
+fixed_in = "material"
+[[outputs.probes]]
+name = "place"
+at = [0.1, 0.4]
+fixed_in = "space"
+[[outputs.arrivals]]
+quantity = "speed"
+threshold = 0.2
+bodies = ["low", "high"]
+[[outputs.arrivals]]
+quantity = "von_mises"
+threshold = 3e3
+reading = "any"
+bodies = ["low"]
+[[outputs.fronts]]
+name = "wave"
+quantity = "von_mises"
+threshold = 1e3
+from = [0, 1]
+direction = [0, -1]
+bodies = ["low"]
+"#
+    };
+}
+
+/// A run on one thread, with a checkpoint at its end.
+pub fn options(out: &Path) -> RunOptions {
+    let checkpoints = Checkpointing { at_end: true, ..Checkpointing::default() };
+    RunOptions { threads: 1, checkpoints, ..RunOptions::new(out) }
+}
 
 /// Asks the run to stop after so many steps.
 pub struct StopAfter(pub u64, pub RunOptions);

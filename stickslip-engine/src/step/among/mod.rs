@@ -13,7 +13,7 @@ use crate::door::RankShare;
 use crate::exact::ExactSum;
 use crate::grid::{
     ActiveBlocks, Blocks, Border, Disjoint, ForeignTile, Mirrors, Node, NodeSums, SentWindow, Tile,
-    add_corner, nodes_per_block, window_side,
+    add_corner, locate, nodes_per_block, window_side,
 };
 use crate::lanes::Laned;
 use crate::material::Material;
@@ -228,15 +228,10 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// Keeps the particles in this rank's share of the blocks, and forgets the others. All ranks begin with all of
     /// them.
     pub(super) fn divide(&mut self, ranks: Arc<dyn Ranks>) {
-        let lattice = self.settings.lattice;
-        let block_of = |body: usize, particle: usize| {
-            let place = self.state.bodies[body].particles.place(particle);
-            lattice.periods.wrapped(crate::grid::locate(home::<T, D, B>(&lattice, place)).0)
-        };
         let mut loads: HashMap<[i32; D], u64> = HashMap::new();
-        for body in 0..self.state.bodies.len() {
-            for particle in 0..self.state.bodies[body].particles.len() {
-                *loads.entry(block_of(body, particle)).or_default() += 1;
+        for Body { particles, .. } in &self.state.bodies {
+            for particle in 0..particles.len() {
+                *loads.entry(self.block_of(particles, particle)).or_default() += 1;
             }
         }
         self.join(ranks.clone(), Partition::balanced(ranks.count(), None, loads));
@@ -285,13 +280,16 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// Which particles of a body are not in this rank's share, by their places in memory.
     pub(super) fn of_other_ranks(&self, particles: &Particles<T, D>) -> Vec<u32> {
         let Some(among) = &self.among else { return Vec::new() };
-        let lattice = self.settings.lattice;
         let abroad = |&particle: &u32| {
-            let base = home::<T, D, B>(&lattice, particles.place(particle as usize));
-            let block = lattice.periods.wrapped(crate::grid::locate(base).0);
-            among.partition.owner(block) != among.ranks.rank()
+            among.partition.owner(self.block_of(particles, particle as usize)) != among.ranks.rank()
         };
         (0..particles.len() as u32).filter(abroad).collect()
+    }
+
+    /// The home block of a particle, in the first period.
+    fn block_of(&self, particles: &Particles<T, D>, particle: usize) -> [i32; D] {
+        let lattice = &self.settings.lattice;
+        lattice.periods.wrapped(locate(home::<T, D, B>(lattice, particles.place(particle))).0)
     }
 
     /// Lets the blocks know that there are other ranks.
@@ -303,8 +301,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         }
     }
 
-    /// Gives ranks that computed less than others more blocks, by the time that they took. Which rank has a block changes
-    /// no bit.
+    /// Gives ranks that computed less than others more blocks, by the time that they took. Which rank has a block
+    /// changes no bit.
     pub(super) fn rebalance(&mut self) {
         let Some(among) = &mut self.among else { return };
         if !self.workspace.listed || among.since < COMPARED_EVERY {
@@ -348,8 +346,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         }
     }
 
-    /// Lets particles move to the ranks that own their blocks, and says whether the blocks under those that are here are
-    /// others than before.
+    /// Lets particles move to the ranks that own their blocks, and says whether the blocks under those that are here
+    /// are others than before.
     pub(super) fn cross_borders(&mut self) -> Blocks {
         let among = self.among.take().expect("there are other ranks");
         let rank = among.ranks.rank();
@@ -397,8 +395,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.workspace.active.settle(|body, particle| bodies[body].particles.numbers()[particle])
     }
 
-    /// Covers the blocks of the particles that are here, which may be others than before, and those that other ranks have
-    /// beside them.
+    /// Covers the blocks of the particles that are here, which may be others than before, and those that other ranks
+    /// have beside them.
     pub(super) fn cover_blocks(&mut self, blocks: Blocks) -> Blocks {
         let mut among = self.among.take().expect("there are other ranks");
         let rank = among.ranks.rank();
